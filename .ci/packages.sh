@@ -1,0 +1,91 @@
+#!/bin/sh
+# packages.sh SET...    installs what is missing of the named sets (build, run, test, format) with one call of apt-get.
+# Each thing is looked for by what it gives (a command, a library, a header), so that a copy from elsewhere is good enough.
+set -eu
+
+command_is_there() { command -v "$1" >/dev/null 2>&1; }
+library_is_there() { printf '%s\n' "$libraries" | grep -q "^[[:space:]]*$1 "; }
+file_is_there() { for file in $1; do [ -e "$file" ] && return 0; done; return 1; }
+python_has() { command_is_there "$1" && "$1" -c "import $2" >/dev/null 2>&1; }
+
+python=${PYTHON:-python3}
+if [ "$python" != python3 ] && ! "$python" -c "" >/dev/null 2>&1; then
+  echo "PYTHON=$python: there is no such Python here." >&2
+  exit 1
+fi
+
+missing=
+want() { # PACKAGE PROBE ARGUMENT...
+  package=$1
+  shift
+  "$@" || missing="$missing $package"
+}
+
+want_build() {
+  want g++ command_is_there "${CXX:-g++}"
+  want cmake command_is_there cmake
+  want ninja-build command_is_there ninja
+  want libglm-dev file_is_there "/usr/include/glm/glm.hpp /usr/local/include/glm/glm.hpp"
+}
+
+# Blender's Python module links against the X libraries even where it opens no window.
+want_run() {
+  want_build
+  want python3 command_is_there "$python"
+  want "${python##*/}-venv" python_has "$python" "venv, ensurepip"
+  want libx11-6 library_is_there libX11.so.6
+  want libxext6 library_is_there libXext.so.6
+  want libxrender1 library_is_there libXrender.so.1
+  want libxfixes3 library_is_there libXfixes.so.3
+  want libxi6 library_is_there libXi.so.6
+  want libxkbcommon0 library_is_there libxkbcommon.so.0
+  want libsm6 library_is_there libSM.so.6
+  want libice6 library_is_there libICE.so.6
+  want libgl1 library_is_there libGL.so.1
+}
+
+want_test() {
+  want_run
+  want libgtest-dev file_is_there "/usr/include/gtest/gtest.h /usr/local/include/gtest/gtest.h"
+  want blender command_is_there blender
+  want python3-numpy python_has /usr/bin/python3 numpy
+  want xvfb command_is_there Xvfb
+  want xdotool command_is_there xdotool
+  want imagemagick command_is_there import
+  want x11-utils command_is_there xwininfo
+  want libgl1-mesa-dri file_is_there "/usr/lib/*/dri/*_dri.so /usr/lib/dri/*_dri.so"
+}
+
+want_format() {
+  want python3 command_is_there "$python"
+  want "${python##*/}-venv" python_has "$python" "venv, ensurepip"
+}
+
+libraries=$(PATH="$PATH:/usr/sbin:/sbin" ldconfig -p 2>/dev/null || true)
+for set in "$@"; do
+  "want_$set"
+done
+missing=$(printf '%s\n' $missing | sort -u | tr '\n' ' ')
+[ -n "$(printf '%s' "$missing" | tr -d ' ')" ] || exit 0
+
+if ! command_is_there apt-get; then
+  echo "Lancer needs these packages (Debian's names), and there is no apt-get here to install them: $missing" >&2
+  exit 1
+fi
+sudo=
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command_is_there sudo; then
+    echo "Lancer needs these packages, and installing them takes root: apt-get install $missing" >&2
+    exit 1
+  fi
+  sudo=sudo
+fi
+echo "== packages: $missing"
+mkdir -p build
+log=build/packages.log
+if ! { $sudo apt-get update -qq && $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing; } \
+  >"$log" 2>&1 </dev/null; then
+  cat "$log" >&2
+  echo "The packages could not be installed: $missing" >&2
+  exit 1
+fi

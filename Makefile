@@ -1,0 +1,89 @@
+# The front door. Every target installs what it lacks first; `make help` lists them.
+SHELL := /bin/sh
+.DEFAULT_GOAL := build
+.NOTPARALLEL:
+MAKEFLAGS += --no-print-directory
+
+PYTHON ?= python3
+VENV ?= .venv
+WERROR ?=
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+FRAME ?=
+SAMPLES ?=
+OUT ?=
+BLEND ?=
+
+python := $(VENV)/bin/python
+core := build/core
+cmake := cmake -S core -G Ninja $(if $(WERROR),-DLANCER_WERROR=$(WERROR))
+# Ninja's moving line is for terminals; a log gets warnings and errors only.
+compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
+
+# Runs a command into a log: silent when it goes well, all of it when it does not. $(call logged,LOG,COMMAND)
+logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
+
+.PHONY: build render test test-slow bench sanitize addon format clean help
+.PHONY: packages-build packages-run packages-test packages-format python-run python-test python-dev core-tests
+
+build: packages-build ## build the core; the library lands in addon/lib, where the add-on loads it
+	@mkdir -p build
+	@test -e $(core)/build.ninja -a -z '$(WERROR)' || { $(call logged,build/configure.log,$(cmake) -B $(core)); }
+	@echo "== core"
+	@cmake --build $(core) --target lancer $(compile)
+
+render: packages-run python-run build ## render the showcase, or a file: make render BLEND=file.blend [FRAME=1] [OUT=x.png] [SAMPLES=n]
+	@$(python) scenes/render.py $(if $(BLEND),--blend "$(BLEND)") $(if $(FRAME),--frame $(FRAME)) \
+	  $(if $(OUT),--output "$(OUT)") $(if $(SAMPLES),--samples $(SAMPLES))
+
+test: packages-test python-test core-tests addon ## all tests but the slow ones
+	@echo "== blender_tests"
+	@$(python) -m pytest -q blender_tests -m "not slow"
+
+test-slow: packages-test python-test build addon ## the tests that take minutes
+	@echo "== blender_tests, slow"
+	@$(python) -m pytest -q blender_tests -m slow
+
+core-tests: packages-test
+	@mkdir -p build
+	@$(call logged,build/configure.log,$(cmake) -B $(core) -DLANCER_TESTS=ON)
+	@echo "== core and its tests"
+	@cmake --build $(core) $(compile)
+	@$(call logged,build/ctest.log,ctest --test-dir $(core) -j $(JOBS) --output-on-failure)
+	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest.log
+
+sanitize: packages-test ## the C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
+	@mkdir -p build
+	@$(call logged,build/configure-sanitize.log,$(cmake) -B build/sanitize -DLANCER_SANITIZE=ON)
+	@echo "== core under sanitizers"
+	@cmake --build build/sanitize $(compile)
+	@$(call logged,build/ctest-sanitize.log,ctest --test-dir build/sanitize -j $(JOBS) --output-on-failure)
+	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest-sanitize.log
+
+bench: packages-run python-run build ## measure speed and memory, next to Cycles: a table, and build/bench.json
+	@$(python) blender_tests/bench.py
+
+addon: packages-run python-run build ## the zips to install: build/lancer-VERSION.zip (Blender 4.2+) and -blender3.zip (3.x)
+	@$(python) .ci/package.py
+
+format: packages-format python-dev ## lay out C++ and Python text
+	@$(VENV)/bin/ruff check --quiet --fix . && $(VENV)/bin/ruff format --quiet .
+	@find core -name '*.h' -o -name '*.cpp' | xargs $(VENV)/bin/clang-format -i
+
+clean: ## remove what was built (not .venv)
+	@rm -rf build addon/lib .pytest_cache .ruff_cache
+	@find addon blender_tests scenes .ci -name __pycache__ -prune -exec rm -rf {} +
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1~\2/p' Makefile | awk -F'~' '{ printf "%-17s %s\n", $$1, $$2 }'
+
+packages-build packages-run packages-test packages-format: packages-%:
+	@PYTHON='$(PYTHON)' .ci/packages.sh $*
+
+python-run: packages-run
+	@$(PYTHON) .ci/environment.py $(VENV) run
+
+python-test: packages-test
+	@$(PYTHON) .ci/environment.py $(VENV) run test
+
+python-dev: packages-format
+	@$(PYTHON) .ci/environment.py $(VENV) dev

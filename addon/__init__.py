@@ -1,0 +1,47 @@
+"""Lancer: a render engine for Blender. Registers and unregisters, nothing else."""
+
+bl_info = {
+    "name": "Lancer",
+    "author": "The Lancer authors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "Render properties > Render Engine",
+    "description": "Ray tracing with global illumination, and the classic recursive ray tracer",
+    "category": "Render",
+}
+
+_registered = []
+
+
+def register():
+    """Gives Blender the engine, its settings and its panels; a second call does nothing."""
+    if _registered:
+        return
+    import atexit
+
+    import bpy
+
+    try:
+        import numpy  # noqa: F401
+    except ImportError:
+        raise RuntimeError(
+            "Lancer needs numpy in Blender's Python: install the package python3-numpy (Debian, Ubuntu) or numpy (pip)"
+        ) from None
+    from . import engine, properties, ui
+
+    for module in (properties, engine, ui):
+        module.register()
+        _registered.append(module)
+    # Blender as a Python module hangs (4.5) or crashes (4.2) at exit while an engine class is registered; the program itself
+    # disables its add-ons at exit, and its classes are gone by the time atexit calls.
+    if not bpy.app.binary_path:
+        atexit.register(unregister)
+
+
+def unregister():
+    """Takes everything away again; without register() before it, it does nothing."""
+    import atexit
+
+    atexit.unregister(unregister)
+    while _registered:
+        _registered.pop().unregister()

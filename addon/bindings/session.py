@@ -1,0 +1,237 @@
+"""Snapshots through the C interface: a committed Scene and the Sessions that render it.
+
+    with Session.upload(snapshot) as session:
+        session.render_all(64)
+        picture = session.read(Pass.COMBINED)
+
+poll is a function without arguments that is called at least every 0.1 s while waiting; True from it cancels.
+"""
+
+import ctypes
+import dataclasses
+import weakref
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import abi, marshal
+from .abi import LancerError, Pass, Status, check, load_library
+from .probes import SceneProbes, SessionProbes, microfacet, pixel_filter, sampler
+
+__all__ = ["Cancelled", "LancerError", "Progress", "Scene", "Session", "Statistics", "microfacet", "pixel_filter", "sampler"]
+
+_STEP = 0.05
+
+
+class Cancelled(Exception):
+    """poll asked to stop before there was anything to show."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    fraction: float
+    seconds: float
+    samples: int
+    rays: int
+    finished: bool  # the range is over: done or cancelled
+    cancelled: bool
+
+
+@dataclass(frozen=True)
+class Statistics:
+    build_seconds: float
+    render_seconds: float
+    samples: int
+    camera_rays: int
+    bounce_rays: int
+    shadow_rays: int
+    invalid_samples: int
+    invalid_x: int
+    invalid_y: int
+    invalid_sample: int
+    threads: int
+    triangles: int
+    instances: int
+    lights: int
+    geometry_bytes: int
+    accelerator_bytes: int
+    film_bytes: int
+    features: str
+    kernel: str
+    instruction_set: str
+
+    @property
+    def rays(self):
+        return self.camera_rays + self.bounce_rays + self.shadow_rays
+
+    @property
+    def rays_per_second(self):
+        return self.rays / self.render_seconds if self.render_seconds > 0 else 0.0
+
+
+class _Handle:
+    """Owns one handle; close() may be called any number of times, and a forgotten object closes itself."""
+
+    def _own(self, library, destroy, handle):
+        self.library = library
+        self.handle = handle
+        self._finalizer = weakref.finalize(self, destroy, handle)
+
+    def close(self):
+        self._finalizer()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def _check(self, status):
+        return check(status, self.library)
+
+
+class Scene(_Handle, SceneProbes):
+    """A scene in the library, empty until filled and of no use until committed; upload does all three."""
+
+    def __init__(self, library=None):
+        library = library or load_library()
+        handle = ctypes.c_uint64()
+        check(library.lancer_scene_create(ctypes.byref(handle)), library)
+        self._own(library, library.lancer_scene_destroy, handle.value)
+
+    @classmethod
+    def upload(cls, snapshot, library=None, poll=None):
+        """A committed scene from a snapshot; its settings give accelerator and threads."""
+        scene = cls(library)
+        try:
+            scene.fill(snapshot, poll)
+            scene.commit(snapshot.settings.accelerator, snapshot.settings.threads, poll)
+        except BaseException:
+            scene.close()
+            raise
+        return scene
+
+    def fill(self, snapshot, poll=None):
+        for mesh in snapshot.meshes:
+            self._check(self.library.lancer_scene_add_mesh(self.handle, ctypes.byref(marshal.mesh(mesh))))
+            _obey(poll)
+        for material in snapshot.materials:
+            self._check(self.library.lancer_scene_add_material(self.handle, ctypes.byref(marshal.material(material))))
+        _obey(poll)
+        if len(snapshot.instances):
+            self._check(self.library.lancer_scene_add_instances(self.handle, *marshal.instances(snapshot.instances)))
+        for light in snapshot.lights:
+            self._check(self.library.lancer_scene_add_light(self.handle, ctypes.byref(marshal.light(light))))
+        world = np.array(snapshot.world, np.float32)
+        self._check(self.library.lancer_scene_set_world(self.handle, world.ctypes.data))
+        _obey(poll)
+
+    def commit(self, accelerator=abi.Accelerator.BVH, threads=0, poll=None):
+        self._check(self.library.lancer_scene_commit(self.handle, int(accelerator), int(threads)))
+        while self._check(self.library.lancer_scene_wait(self.handle, int(_STEP * 1000))) is Status.RUNNING:
+            if poll is not None and poll():
+                self._check(self.library.lancer_scene_cancel(self.handle))
+                while self._check(self.library.lancer_scene_wait(self.handle, int(_STEP * 1000))) is Status.RUNNING:
+                    pass
+                raise Cancelled
+
+    def messages(self):
+        """What the library left out or replaced, a line each."""
+        needed = ctypes.c_size_t()
+        self._check(self.library.lancer_scene_messages(self.handle, None, 0, ctypes.byref(needed)))
+        text = ctypes.create_string_buffer(max(1, needed.value))
+        self._check(self.library.lancer_scene_messages(self.handle, text, len(text), None))
+        return text.value.decode("utf-8", "replace").splitlines()
+
+
+class Session(_Handle, SessionProbes):
+    """A film over a committed scene. scene stays open when the session closes, unless upload made it."""
+
+    def __init__(self, scene, camera, settings):
+        handle = ctypes.c_uint64()
+        library = scene.library
+        arguments = ctypes.byref(marshal.camera(camera)), ctypes.byref(marshal.settings(settings))
+        check(library.lancer_session_create(scene.handle, *arguments, ctypes.byref(handle)), library)
+        self._own(library, library.lancer_session_destroy, handle.value)
+        self.scene = scene
+        self.camera = camera
+        self.settings = settings
+        self._owns_scene = False
+
+    @classmethod
+    def upload(cls, snapshot, library=None, poll=None):
+        """Scene and session of a snapshot in one; close() frees both."""
+        scene = Scene.upload(snapshot, library, poll)
+        try:
+            session = cls(scene, snapshot.camera, snapshot.settings)
+        except BaseException:
+            scene.close()
+            raise
+        session._owns_scene = True
+        return session
+
+    def close(self):
+        super().close()
+        if self._owns_scene:
+            self.scene.close()
+
+    def render(self, first, count):
+        """Starts samples first ... first + count - 1 of every pixel; wait() watches them."""
+        self._check(self.library.lancer_session_render(self.handle, int(first), int(count)))
+
+    def wait(self, seconds):
+        """Waits at most that long and tells how far the range is."""
+        progress = abi.Progress()
+        milliseconds = max(0, round(seconds * 1000))
+        status = self._check(self.library.lancer_session_wait(self.handle, milliseconds, ctypes.byref(progress)))
+        return Progress(
+            progress.fraction,
+            progress.seconds,
+            progress.samples,
+            progress.rays,
+            finished=status is not Status.RUNNING,
+            cancelled=status is Status.CANCELLED,
+        )
+
+    def cancel(self):
+        self._check(self.library.lancer_session_cancel(self.handle))
+
+    def render_all(self, samples=None, poll=None):
+        """Renders samples 0 ... samples - 1 (the settings' number where not given); True where poll did not cancel."""
+        self.render(0, self.settings.samples if samples is None else samples)
+        while True:
+            progress = self.wait(_STEP)
+            if progress.finished:
+                return not progress.cancelled
+            if poll is not None and poll():
+                self.cancel()
+
+    def read(self, which=Pass.COMBINED):
+        """One pass of the region as (height, width, channels) float32; row 0 is the bottom row."""
+        which = Pass(which)
+        out = np.empty((self.camera.region_height, self.camera.region_width, which.channels), np.float32)
+        self._check(self.library.lancer_session_read(self.handle, int(which), out.ctypes.data, out.size))
+        return out
+
+    def statistics(self):
+        raw = abi.Statistics()
+        self._check(self.library.lancer_session_statistics(self.handle, ctypes.byref(raw)))
+        values = {f.name: getattr(raw, f.name) for f in dataclasses.fields(Statistics)}
+        return Statistics(**{k: v.decode("utf-8", "replace") if isinstance(v, bytes) else v for k, v in values.items()})
+
+    def messages(self):
+        return self.scene.messages()
+
+    def debug_sample(self, x, y, s, capacity=64):
+        """Sample s of pixel (x, y) again: its RGBA and its vertices (a record array of lancer_vertex)."""
+        rgba = np.zeros(4, np.float32)
+        vertices = np.zeros(capacity, np.dtype(abi.Vertex))
+        count = ctypes.c_uint32()
+        arguments = int(x), int(y), int(s), rgba.ctypes.data, vertices.ctypes.data, capacity, ctypes.byref(count)
+        self._check(self.library.lancer_debug_sample(self.handle, *arguments))
+        return rgba, vertices[: min(capacity, count.value)].view(np.recarray)
+
+
+def _obey(poll):
+    if poll is not None and poll():
+        raise Cancelled

@@ -1,0 +1,184 @@
+"""The engine that Blender calls: export, render in waves, show, account."""
+
+import dataclasses
+import logging
+import time
+
+import bpy
+
+from . import passes
+from .bindings.abi import LancerError
+from .bindings.session import Cancelled, Session
+from .export.messages import Messages
+from .export.scene import ExportOptions, export_scene
+from .waves import Waves
+
+# Of the last render of each scene, by its name, for the panel and for scripts.
+last_statistics = {}
+last_messages = {}
+
+_STEP = 0.05
+_MAX_REPORTS = 30
+
+
+class LancerRenderEngine(bpy.types.RenderEngine):
+    bl_idname = "LANCER"
+    bl_label = "Lancer"
+    bl_use_preview = False
+    bl_use_postprocess = True
+    bl_use_eevee_viewport = True
+    bl_use_shading_nodes_custom = False
+
+    # Blender runs __init__ twice and __del__ at odd times, so the class has neither; what lives longer than a call starts here.
+    _snapshot = None
+    _messages = None
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        passes.register_passes(self, scene, renderlayer)
+
+    def update(self, data=None, depsgraph=None):
+        self._guarded(self._export, depsgraph)
+
+    def render(self, depsgraph):
+        if self._snapshot is not None:
+            self._guarded(self._render, depsgraph)
+        self._snapshot = None
+
+    def _guarded(self, work, depsgraph):
+        """Whatever goes wrong becomes an error that Blender shows, and that ends a headless render with failure."""
+        try:
+            work(depsgraph)
+        except Cancelled:
+            self._snapshot = None
+        except LancerError as error:
+            self._fail(str(error))
+        except MemoryError:
+            self._fail("not enough memory for this scene")
+        except Exception as error:
+            logging.getLogger(__name__).exception("render failed")
+            self._fail(f"{type(error).__name__}: {error}")
+
+    def _fail(self, text):
+        self._snapshot = None
+        text = f"Lancer: {text}"
+        self.error_set(text)
+        self.report({"ERROR"}, text)
+
+    def _export(self, depsgraph):
+        # What a failed or cancelled export left behind must not be rendered by the next call.
+        self._snapshot = None
+        self.update_stats("", "Exporting")
+        wanted = passes.render_passes(depsgraph.scene, depsgraph.view_layer_eval)
+        options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
+        self._snapshot, self._messages = export_scene(depsgraph, options, self.test_break)
+
+    def _render(self, depsgraph):
+        scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
+        self.update_stats("", "Building the scene")
+        with Session.upload(self._snapshot, poll=self.test_break) as session:
+            # The library holds its own copy from here on.
+            self._snapshot = None
+            self._tell(scene, session)
+            camera = session.camera
+            result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=view_layer.name)
+            if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
+                expected = f"{camera.region_width} x {camera.region_height}"
+                self.end_result(result, cancel=True)
+                raise LancerError(f"Blender wants {result.resolution_x} x {result.resolution_y} pixels, not {expected}")
+            wanted = list(passes.render_passes(scene, view_layer))
+
+            def show():
+                passes.fill(result.layers[0], session.read, wanted)
+                self.update_result(result)
+
+            try:
+                self._run(session, session.settings.samples, scene.lancer.time_limit, show)
+                passes.fill(result.layers[0], session.read, wanted)
+            finally:
+                # Keep the picture as far as it is, after Esc too.
+                self.end_result(result)
+            self._account(scene, session)
+
+    def _run(self, session, samples, time_limit, show):
+        """Renders samples in waves, shows each, and stops for Esc or for the time limit."""
+        waves = Waves(samples)
+        started = shown = time.monotonic()
+        while not waves.done:
+            first, count = waves.next()
+            session.render(first, count)
+            wave_started = time.monotonic()
+            while True:
+                progress = session.wait(_STEP)
+                now = time.monotonic()
+                if progress.finished:
+                    break
+                self._show_progress(first + progress.fraction * count, samples, progress, now - started)
+                late = 0.0 < time_limit <= now - started and first > 0
+                if self.test_break() or late:
+                    session.cancel()
+                elif now - shown > waves.interval:
+                    shown = self._timed(waves, show)
+            waves.took(count, now - wave_started)
+            self._show_progress(first + count, samples, progress, now - started)
+            if progress.cancelled or self.test_break() or 0.0 < time_limit <= now - started:
+                return
+            if not waves.done and (first == 0 or now - shown > waves.interval):
+                shown = self._timed(waves, show)
+
+    @staticmethod
+    def _timed(waves, show):
+        before = time.monotonic()
+        show()
+        after = time.monotonic()
+        waves.showing_took(after - before)
+        return after
+
+    def _show_progress(self, done, samples, progress, elapsed):
+        self.update_progress(min(1.0, done / samples))
+        rate = progress.rays / progress.seconds / 1e6 if progress.seconds > 0.0 else 0.0
+        remaining = elapsed * (samples - done) / done if done > 0.0 else 0.0
+        self.update_stats("", f"Sample {int(done)}/{samples} | {rate:.2f} M rays/s | Remaining {_clock(remaining)}")
+
+    def _tell(self, scene, session):
+        """Reports what was left out, a line each, and keeps all of it for the panel."""
+        messages = self._messages or Messages()
+        for line in session.messages():
+            messages.add(line)
+        lines = messages.lines()
+        last_messages[scene.name] = lines
+        for line in lines[:_MAX_REPORTS]:
+            self.report({"WARNING"}, f"Lancer: {line}")
+        if len(lines) > _MAX_REPORTS:
+            self.report({"WARNING"}, f"Lancer: {len(lines) - _MAX_REPORTS} more messages are in the render properties")
+
+    def _account(self, scene, session):
+        statistics = session.statistics()
+        if statistics.invalid_samples:
+            place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
+            line = f"{statistics.invalid_samples} samples were not finite and are left out, the first at pixel {place}"
+            last_messages[scene.name].append(line)
+            self.report({"WARNING"}, f"Lancer: {line}")
+        numbers = dataclasses.asdict(statistics)
+        pixels = session.camera.region_width * session.camera.region_height
+        numbers["pixel_samples"] = numbers["samples"]
+        numbers["samples"] = round(statistics.samples / pixels)
+        numbers["seconds"] = statistics.render_seconds
+        numbers["rays"] = statistics.rays
+        numbers["rays_per_second"] = statistics.rays_per_second
+        last_statistics[scene.name] = numbers
+
+
+def _clock(seconds):
+    minutes, seconds = divmod(int(seconds + 0.5), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{seconds:02}" if hours else f"{minutes:02}:{seconds:02}"
+
+
+def register():
+    bpy.utils.register_class(LancerRenderEngine)
+
+
+def unregister():
+    bpy.utils.unregister_class(LancerRenderEngine)
+    last_statistics.clear()
+    last_messages.clear()

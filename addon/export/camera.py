@@ -1,0 +1,125 @@
+"""The scene's camera: a rigid frame, a window, a lens."""
+
+import numpy as np
+
+from ..bindings import snapshot
+from ..bindings.abi import LancerError
+from ..bindings.enums import CameraKind
+
+
+def image_size(scene):
+    """Full image in pixels, as Blender truncates it."""
+    render = scene.render
+    percentage = render.resolution_percentage
+    return render.resolution_x * percentage // 100, render.resolution_y * percentage // 100
+
+
+def border(scene, width, height):
+    """(x, y, width, height) of the rendered region, rounded as Blender does, in single precision."""
+    render = scene.render
+    if not render.use_border:
+        return 0, 0, width, height
+    x0, x1 = (int(np.float32(edge) * np.float32(width)) for edge in (render.border_min_x, render.border_max_x))
+    y0, y1 = (int(np.float32(edge) * np.float32(height)) for edge in (render.border_min_y, render.border_max_y))
+    return x0, y0, x1 - x0, y1 - y0
+
+
+def export_camera(camera, depsgraph, messages):
+    """camera is the object to look through; None means that the scene has none."""
+    scene = depsgraph.scene
+    if camera is None:
+        raise LancerError(f"scene '{scene.name}' has no camera: add one, or choose one in the scene properties")
+    if camera.type != "CAMERA":
+        raise LancerError(f"object '{camera.name}' is the scene's camera but no camera: choose one in the scene properties")
+    camera = camera.evaluated_get(depsgraph)
+    data = camera.data
+    who = f"camera '{camera.name}'"
+    width, height = image_size(scene)
+    x, y, region_width, region_height = border(scene, width, height)
+    if min(width, height, region_width, region_height) < 1:
+        raise LancerError(f"the image has {region_width} x {region_height} pixels: raise the resolution or widen the border")
+    kind = CameraKind.ORTHOGRAPHIC if data.type == "ORTHO" else CameraKind.PERSPECTIVE
+    if data.type not in ("PERSP", "ORTHO"):
+        messages.add(f"{who}: type {data.type} is not supported, a perspective camera is used")
+    matrix = _rigid(np.array(camera.matrix_world, float), who, messages)
+    lens_radius, focal_distance = _lens(data, kind, matrix, depsgraph, who, messages)
+    start = messages.number(data.clip_start, who, "clip start", 0.1, 0.0)
+    return snapshot.Camera(
+        matrix=matrix,
+        kind=kind,
+        width=width,
+        height=height,
+        x=x,
+        y=y,
+        region_width=region_width,
+        region_height=region_height,
+        window=_window(camera, depsgraph, kind, width, height),
+        clip_start=start,
+        clip_end=messages.number(data.clip_end, who, "clip end", 1000.0, start),
+        lens_radius=lens_radius,
+        focal_distance=focal_distance,
+    )
+
+
+def _window(camera, depsgraph, kind, width, height):
+    """left, right, bottom, top from Blender's own projection, which knows sensor fit, shift and pixel aspect."""
+    render = depsgraph.scene.render
+    p = camera.calc_matrix_camera(
+        depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y
+    )
+    if camera.data.type == "PANO":
+        # Blender gives a panoramic camera no projection: its stand-in has the same lens on the same sensor.
+        half = 0.5 * camera.data.sensor_width / max(camera.data.lens, 1e-6)
+        aspect = height * render.pixel_aspect_y / (width * render.pixel_aspect_x)
+        return -half, half, -half * aspect, half * aspect
+    if kind == CameraKind.PERSPECTIVE:
+        return tuple((sign + p[axis][2]) / p[axis][axis] for axis in (0, 1) for sign in (-1.0, 1.0))
+    return tuple((sign - p[axis][3]) / p[axis][axis] for axis in (0, 1) for sign in (-1.0, 1.0))
+
+
+def _rigid(matrix, who, messages):
+    """Scale is left out as everywhere in Blender; what is left is made exactly orthogonal, mirrored where it was."""
+    if not np.isfinite(matrix).all():
+        raise LancerError(f"{who}: its transform is not finite")
+    columns = matrix[:3, :3].T
+    lengths = np.linalg.norm(columns, axis=1)
+    if not lengths.all():
+        raise LancerError(f"{who}: its scale is zero along an axis")
+    x, y, z = columns / lengths[:, None]
+    # The view direction leads; shear is what the other two have along it and along each other.
+    upright = y - z * (y @ z)
+    length = np.linalg.norm(upright)
+    if not length > 0.0:
+        raise LancerError(f"{who}: its axes lie in one plane")
+    # Float matrices are orthogonal to some 1e-7 a product; parents without shear stay below 1e-5.
+    if max(abs(x @ y), abs(x @ z), abs(y @ z)) > 1e-5:
+        messages.add(f"{who}: shear is not supported, its view direction is kept")
+    y = upright / length
+    right = np.cross(y, z)
+    result = np.empty((3, 4))
+    result[:, 0] = right if right @ x >= 0.0 else -right
+    result[:, 1], result[:, 2], result[:, 3] = y, z, matrix[:3, 3]
+    return result
+
+
+def _lens(data, kind, matrix, depsgraph, who, messages):
+    """Aperture radius and focal distance; radius 0 without depth of field."""
+    dof = data.dof
+    if not dof.use_dof:
+        return 0.0, 1.0
+    fstop = messages.number(dof.aperture_fstop, who, "f-stop", 2.8, 1e-5)
+    radius = 0.5 / fstop if kind == CameraKind.ORTHOGRAPHIC else 0.5e-3 * data.lens / fstop
+    distance = dof.focus_distance
+    if dof.focus_object is not None:
+        focus = dof.focus_object.evaluated_get(depsgraph)
+        target = focus.matrix_world
+        bone = focus.pose.bones.get(dof.focus_subtarget) if focus.type == "ARMATURE" and dof.focus_subtarget else None
+        if bone is not None:
+            target = target @ bone.matrix
+        distance = abs(float(matrix[:, 2] @ (matrix[:, 3] - np.array(target.translation, float))))
+    if not distance > 0.0:
+        messages.add(f"{who}: its focus distance is {distance:g}, everything is kept sharp")
+        return 0.0, 1.0
+    if dof.aperture_blades > 0 or abs(dof.aperture_ratio - 1.0) > 1e-6:
+        messages.add(f"{who}: aperture blades and ratio are not supported, a round aperture is used")
+    return radius, distance

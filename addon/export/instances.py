@@ -1,0 +1,173 @@
+"""Everything that the depsgraph shows: meshes once each, and a table of where they stand."""
+
+from itertools import chain
+
+import numpy as np
+
+from ..bindings.enums import InstanceKind, Shading
+from ..bindings.snapshot import InstanceTable
+from .lights import export_light
+from .mesh import export_mesh, read_positions
+
+# Types whose surface arrives as a MESH entry of its own, beside the original.
+_SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}
+_SHOWS_NOTHING = {"ARMATURE", "CAMERA", "EMPTY", "LATTICE", "LIGHT_PROBE", "SPEAKER"}
+_POLL_EVERY = 256
+
+
+class _Object:
+    """What all entries of one object with one mesh have in common."""
+
+    __slots__ = ("kind", "mesh", "slots", "index", "shading", "name", "local")
+
+
+class Instances:
+    """Collects entries; to_table() and meshes give the snapshot's parts, lights the lamps met on the way."""
+
+    def __init__(self, view_layer, materials, messages):
+        self.view_layer = view_layer
+        self.materials = materials
+        self.messages = messages
+        self.meshes = []
+        self.lights = []
+        self._meshes = {}
+        self._objects = {}
+        self._checked = set()
+        self._list = []
+        self._rows = []
+        self._matrices = []
+
+    def collect(self, depsgraph, poll):
+        for number, entry in enumerate(depsgraph.object_instances):
+            if number % _POLL_EVERY == 0:
+                poll()
+            if not entry.show_self:
+                continue
+            thing = entry.object
+            if thing.type == "MESH":
+                self._add_mesh(thing, entry.matrix_world, poll)
+            elif thing.type == "LIGHT":
+                light = export_light(thing, entry.matrix_world, self.messages)
+                if light is not None:
+                    self.lights.append(light)
+            elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
+                self.messages.add(f"object '{thing.name}': type {thing.type} is not supported")
+
+    def to_table(self):
+        objects = self._list
+        rows = np.array(self._rows, np.intp)
+
+        def column(attribute):
+            return np.array([getattr(item, attribute) for item in objects], np.uint32)[rows]
+
+        # Equal slot lists are kept once, however many objects share them.
+        starts, slots = {}, []
+        for item in objects:
+            if item.slots not in starts:
+                starts[item.slots] = len(slots)
+                slots.extend(item.slots)
+        matrices = np.fromiter(chain.from_iterable(chain.from_iterable(self._matrices)), float, 16 * len(rows))
+        matrices = matrices.reshape(-1, 4, 4)
+        for number, item in enumerate(objects):
+            if item.local is not None:
+                here = rows == number
+                matrices[here] = matrices[here] @ item.local
+        return InstanceTable(
+            matrices=matrices[:, :3],
+            kinds=column("kind"),
+            meshes=column("mesh"),
+            first_slots=np.array([starts[item.slots] for item in objects], np.uint32)[rows],
+            slot_counts=np.array([len(item.slots) for item in objects], np.uint32)[rows],
+            object_indices=column("index"),
+            shadings=column("shading"),
+            name_indices=rows.astype(np.uint32),
+            names=tuple(item.name for item in objects),
+            slots=slots,
+        )
+
+    def _add_mesh(self, thing, matrix, poll):
+        # Evaluated data lives as long as the depsgraph, while the objects of entries are reused: only addresses are kept.
+        key = thing.original.as_pointer(), thing.data.as_pointer()
+        number = self._objects.get(key)
+        if number is None:
+            number = self._objects[key] = self._new_object(thing, key[1], poll)
+        if number >= 0:
+            self._rows.append(number)
+            self._matrices.append(matrix.copy())
+
+    def _new_object(self, thing, data_key, poll):
+        """The number of the common part; -1 where there is nothing to see."""
+        self._check(thing)
+        poll()
+        item = _Object()
+        item.kind = InstanceKind[thing.lancer.shape]
+        item.shading = Shading[thing.lancer.shading]
+        item.index = max(0, thing.pass_index)
+        item.name = thing.name
+        item.mesh, item.local, used = 0, None, {0}
+        if item.kind == InstanceKind.MESH:
+            item.mesh, used = self._mesh(thing, data_key)
+            if item.mesh < 0:
+                return -1
+        else:
+            item.local = _placement(item.kind, read_positions(thing.data))
+            if item.local is None:
+                self.messages.add(f"object '{thing.name}': has no vertices to place its exact shape by, it is left out")
+                return -1
+        item.slots = self._slots(thing, used)
+        self._list.append(item)
+        return len(self._list) - 1
+
+    def _mesh(self, thing, data_key):
+        """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces."""
+        if data_key not in self._meshes:
+            original = thing.original.data
+            data = export_mesh(thing.data, thing.name if original is None else original.name)
+            used = {0} if data.material_slots is None else set(np.unique(data.material_slots).tolist())
+            if len(data.triangles):
+                self.meshes.append(data)
+                self._meshes[data_key] = len(self.meshes) - 1, used
+            else:
+                self._meshes[data_key] = -1, used
+        number, used = self._meshes[data_key]
+        if number < 0:
+            self.messages.add(f"object '{thing.name}': has no faces, it is left out")
+        return number, used
+
+    def _slots(self, thing, used):
+        materials = [slot.material for slot in thing.material_slots] or list(thing.data.materials) or [None]
+        if len(thing.material_slots):
+            last = len(materials) - 1
+            for number in sorted({min(slot, last) for slot in used}):
+                if materials[number] is None:
+                    self.messages.add(f"object '{thing.name}': material slot {number + 1} is empty, grey is used")
+        return tuple(self.materials.number(material) for material in materials)
+
+    def _check(self, thing):
+        """Says what the object asks for that has no counterpart."""
+        key = thing.original.as_pointer()
+        if key in self._checked:
+            return
+        self._checked.add(key)
+        who = f"object '{thing.name}'"
+        for name in ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow"):
+            if not getattr(thing, f"visible_{name}", True):
+                self.messages.add(f"{who}: ray visibility ({name.replace('_', ' ')} off) is not supported")
+        if getattr(thing, "is_shadow_catcher", False):
+            self.messages.add(f"{who}: shadow catchers are not supported")
+        if getattr(thing, "is_holdout", False) or thing.original.holdout_get(view_layer=self.view_layer):
+            self.messages.add(f"{who}: holdout is not supported")
+        if thing.original.indirect_only_get(view_layer=self.view_layer):
+            self.messages.add(f"{who}: indirect only is not supported")
+
+
+def _placement(kind, positions):
+    """Unit frame of an exact surface to the object's frame: bounds' centre and half extents; a plane has no extent."""
+    if len(positions) == 0:
+        return None
+    low, high = positions.min(axis=0).astype(float), positions.max(axis=0).astype(float)
+    local = np.eye(4)
+    local[:3, 3] = 0.5 * (low + high)
+    if kind != InstanceKind.PLANE:
+        local[:3, :3] = np.diag(0.5 * (high - low))
+    return local

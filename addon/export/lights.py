@@ -1,0 +1,125 @@
+"""Blender's watts as the quantities of lancer.h: radiant intensity, irradiance, radiance."""
+
+import math
+
+import bpy
+import numpy as np
+
+from ..bindings import snapshot
+from ..bindings.enums import AreaShape, Falloff, LightKind
+from .sockets import Reader, output_node, source
+
+_KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
+
+
+def export_light(thing, matrix_world, messages):
+    """The light of an object; None, with a message, where it cannot shine."""
+    light = thing.data
+    who = f"light '{thing.name}'"
+    matrix = np.array(matrix_world, float)
+    if not np.isfinite(matrix).all():
+        messages.add(f"{who}: its transform is not finite, it is left out")
+        return None
+    _check(thing, light, who, messages)
+    kind = _KINDS[light.type]
+    radius = messages.number(getattr(light, "shadow_soft_size", 0.0), who, "radius", 0.0, 0.0)
+    sun_angle = messages.number(getattr(light, "angle", 0.0), who, "angle", 0.0, 0.0, math.pi)
+    shape, size = _area(light, matrix, who, messages) if kind == LightKind.AREA else (AreaShape.RECTANGLE, (1.0, 1.0))
+    if kind == LightKind.AREA and not size[0] * size[1] > 0.0:
+        messages.add(f"{who}: its area is zero, it is left out")
+        return None
+    own = light.lancer
+    separate = own.use_separate_colors
+    return snapshot.Light(
+        name=thing.name,
+        matrix=_rotation(matrix),
+        kind=kind,
+        emission=tuple(c * _watts_to_emission(light, kind, radius, sun_angle, shape, size) for c in _power(light, who, messages)),
+        radius=radius if kind in (LightKind.POINT, LightKind.SPOT) else 0.0,
+        soft_falloff=getattr(light, "use_soft_falloff", True),
+        spot_angle=messages.number(getattr(light, "spot_size", math.pi), who, "spot size", 0.785, 1e-3, math.pi),
+        spot_blend=messages.number(getattr(light, "spot_blend", 0.0), who, "spot blend", 0.15, 0.0, 1.0),
+        sun_angle=sun_angle if kind == LightKind.SUN else 0.0,
+        size=size,
+        shape=shape,
+        spread=messages.number(getattr(light, "spread", math.pi), who, "spread", math.pi, 1e-3, math.pi),
+        falloff=Falloff[own.falloff],
+        falloff_radius=messages.number(own.radius, who, "falloff radius", 10.0, 1e-12),
+        ambient_color=messages.color(own.ambient_color, who, "ambient colour", 1.0) if separate else (1.0, 1.0, 1.0),
+        diffuse_color=messages.color(own.diffuse_color, who, "diffuse colour", 1.0) if separate else (1.0, 1.0, 1.0),
+        specular_color=messages.color(own.specular_color, who, "specular colour", 1.0) if separate else (1.0, 1.0, 1.0),
+    )
+
+
+def _rotation(matrix):
+    """Directions are columns of unit length; a column without length takes the axis it stood for."""
+    result = matrix[:3].copy()
+    lengths = np.linalg.norm(result[:, :3], axis=0)
+    for axis in range(3):
+        result[:, axis] = result[:, axis] / lengths[axis] if lengths[axis] > 0.0 else np.eye(3)[axis]
+    return result
+
+
+def _power(light, who, messages):
+    """Watts a channel: energy, colour, temperature, exposure and constant nodes together."""
+    energy = messages.number(light.energy, who, "power", 0.0, 0.0)
+    color = messages.color(light.color, who, "colour", 1.0)
+    if getattr(light, "use_temperature", False):
+        color = tuple(c * t for c, t in zip(color, light.temperature_color))
+    energy *= 2.0 ** messages.number(getattr(light, "exposure", 0.0), who, "exposure", 0.0)
+    node_color = _nodes(light, who, messages)
+    return tuple(energy * c * n for c, n in zip(color, node_color))
+
+
+def _watts_to_emission(light, kind, radius, sun_angle, shape, size):
+    """The factor from watts to W/sr (point, spot), W/m^2 (sun) or W/(m^2 sr) (area)."""
+    normalize = getattr(light, "normalize", True)
+    if kind == LightKind.SUN:
+        return 1.0 if normalize or sun_angle == 0.0 else math.pi * math.sin(0.5 * sun_angle) ** 2
+    if kind == LightKind.AREA:
+        area = size[0] * size[1] * (0.25 * math.pi if shape == AreaShape.ELLIPSE else 1.0)
+        if not normalize:
+            return 1.0 / math.pi
+        return 1.0 / (math.pi * area) if bpy.app.version >= (4, 0) else 1.0 / (4.0 * area)
+    # Without normalisation the ball's radiance is P/pi, seen over its cross-section pi r^2.
+    return 1.0 / (4.0 * math.pi) if normalize or radius == 0.0 else radius**2
+
+
+def _area(light, matrix, who, messages):
+    """Shape and full lengths in the world: Blender scales the sides by the object's axes."""
+    x = messages.number(light.size, who, "size", 1.0, 0.0)
+    y = messages.number(light.size_y, who, "size y", 1.0, 0.0) if light.shape in ("RECTANGLE", "ELLIPSE") else x
+    shape = AreaShape.ELLIPSE if light.shape in ("DISK", "ELLIPSE") else AreaShape.RECTANGLE
+    lengths = np.linalg.norm(matrix[:3, :2], axis=0)
+    return shape, (x * float(lengths[0]), y * float(lengths[1]))
+
+
+def _nodes(light, who, messages):
+    """Colour times strength of a constant Emission node; (1, 1, 1) without nodes."""
+    neutral = (1.0, 1.0, 1.0)
+    if light.node_tree is None or (bpy.app.version < (5, 2) and not light.use_nodes):
+        return neutral
+    output = output_node(light.node_tree, "OUTPUT_LIGHT")
+    surface = source(output.inputs["Surface"]) if output is not None else None
+    if surface is None:
+        return (0.0, 0.0, 0.0)
+    reader = Reader(who, messages)
+    if surface.node.type != "EMISSION":
+        reader.tell(surface.node, f"{surface.node.bl_label} is not supported, the light's own power is used")
+        return neutral
+    strength = reader.number(surface.node, ("Strength",), 1.0)
+    return tuple(c * strength for c in reader.color(surface.node, ("Color",), neutral))
+
+
+def _check(thing, light, who, messages):
+    cycles = getattr(light, "cycles", None)
+    if light.type == "AREA" and getattr(cycles, "is_portal", False):
+        messages.add(f"{who}: portals are not supported, it shines as an area light")
+    if not getattr(light, "use_shadow", True) or not getattr(cycles, "cast_shadow", True):
+        messages.add(f"{who}: lights without shadow are not supported")
+    if getattr(light, "use_custom_distance", False) and bpy.app.version < (4, 2):
+        messages.add(f"{who}: custom distance is not supported")
+    if light.type == "SPOT":
+        lengths = [column.length for column in thing.matrix_world.to_3x3().col]
+        if max(lengths) - min(lengths) > 1e-3 * max(lengths):
+            messages.add(f"{who}: a spot scaled unevenly is not supported, its cone stays round")

@@ -1,0 +1,122 @@
+"""Evaluated Blender meshes as arrays, by foreach_get only."""
+
+import bpy
+import numpy as np
+
+from ..bindings.snapshot import MeshData
+
+
+def _read(collection, attribute, dtype, width):
+    values = np.empty(len(collection) * width, dtype)
+    collection.foreach_get(attribute, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def _attribute(mesh, name, domain):
+    """The data of a built-in attribute; None where this Blender keeps it elsewhere."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != domain or len(attribute.data) == 0:
+        return None
+    return attribute.data
+
+
+def export_mesh(mesh, name):
+    """The mesh with the normals that Blender shades with, its render UV map and its first colour attribute."""
+    positions = read_positions(mesh)
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    if count == 0:
+        return MeshData(name=name, positions=positions)
+    # Blender tessellates a triangle to itself and keeps the order of faces.
+    if count == len(mesh.polygons) and len(mesh.loops) == 3 * count:
+        corners = None
+    else:
+        corners = _read(mesh.loop_triangles, "loops", np.int32, 3)
+    vertices = _corner_vertices(mesh)
+    triangles = vertices.reshape(-1, 3) if corners is None else vertices[corners]
+    return MeshData(
+        name=name,
+        positions=positions,
+        triangles=triangles.view(np.uint32),
+        normals=_normals(mesh, corners),
+        uvs=_uvs(mesh, corners),
+        colors=_colors(mesh, corners, triangles),
+        material_slots=_material_slots(mesh, corners),
+    )
+
+
+def read_positions(mesh):
+    data = _attribute(mesh, "position", "POINT")
+    if data is not None:
+        return _read(data, "vector", np.float32, 3)
+    return _read(mesh.vertices, "co", np.float32, 3).reshape(-1, 3)
+
+
+def _corner_vertices(mesh):
+    data = _attribute(mesh, ".corner_vert", "CORNER")
+    if data is not None:
+        return _read(data, "value", np.int32, 1)
+    return _read(mesh.loops, "vertex_index", np.int32, 1)
+
+
+def _at_corners(values, corners):
+    return values.reshape(-1, 3, values.shape[1]) if corners is None else values[corners]
+
+
+def _normals(mesh, corners):
+    """None for flat faces, (vertices, 3) where all is smooth, else (triangles, 3, 3)."""
+    if hasattr(mesh, "normals_domain"):
+        domain = mesh.normals_domain
+        if domain == "FACE":
+            return None
+        if domain == "POINT":
+            return _read(mesh.vertex_normals, "vector", np.float32, 3)
+        return _at_corners(_read(mesh.corner_normals, "vector", np.float32, 3), corners)
+    if not (mesh.has_custom_normals and mesh.use_auto_smooth):
+        smooth = _read(mesh.polygons, "use_smooth", bool, 1)
+        if not smooth.any():
+            return None
+        if smooth.all() and not mesh.use_auto_smooth:
+            return _read(mesh.vertex_normals, "vector", np.float32, 3)
+    mesh.calc_normals_split()
+    normals = _at_corners(_read(mesh.loops, "normal", np.float32, 3), corners)
+    mesh.free_normals_split()
+    return normals
+
+
+def _uvs(mesh, corners):
+    layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+    if layer is None:
+        return None
+    if hasattr(layer, "uv"):
+        values = _read(layer.uv, "vector", np.float32, 2)
+    else:
+        values = _read(layer.data, "uv", np.float32, 2)
+    return _at_corners(values, corners) if len(values) else None
+
+
+def _colors(mesh, corners, triangles):
+    if len(mesh.color_attributes) == 0:
+        return None
+    attribute = mesh.color_attributes[0]
+    values = _read(attribute.data, "color", np.float32, 4).reshape(-1, 4)[:, :3]
+    if len(values) == 0:
+        return None
+    return values[triangles] if attribute.domain == "POINT" else _at_corners(values, corners)
+
+
+def _material_slots(mesh, corners):
+    data = _attribute(mesh, "material_index", "FACE")
+    if data is not None:
+        slots = _read(data, "value", np.int32, 1)
+    elif bpy.app.version >= (3, 5):
+        # Newer Blenders leave the attribute out where every face has slot 0.
+        return None
+    else:
+        slots = _read(mesh.polygons, "material_index", np.int32, 1)
+    if not slots.any():
+        return None
+    if corners is not None:
+        slots = slots[_read(mesh.loop_triangles, "polygon_index", np.int32, 1)]
+    # Faces may point anywhere; the core takes the last slot for one beyond it.
+    return np.clip(slots, 0, 0xFFFF).astype(np.uint16)

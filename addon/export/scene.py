@@ -1,0 +1,61 @@
+"""One depsgraph to one snapshot."""
+
+from dataclasses import dataclass
+
+from ..bindings.enums import Pass
+from ..bindings.session import Cancelled
+from ..bindings.snapshot import SceneSnapshot
+from .camera import export_camera
+from .instances import Instances
+from .materials import Materials
+from .messages import Messages
+from .settings import export_settings
+from .world import export_world
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    camera: object = None  # the object to look through; None = the scene's
+    passes: tuple = (Pass.COMBINED,)
+
+
+def export_scene(depsgraph, options=None, poll=None):
+    """(SceneSnapshot, Messages). poll is called every few objects; True from it raises Cancelled."""
+    options = options or ExportOptions()
+
+    def obey():
+        if poll is not None and poll():
+            raise Cancelled
+
+    obey()
+    messages = Messages()
+    scene = depsgraph.scene
+    view_layer = depsgraph.view_layer
+    # Ask for camera and settings first: what is missing there should not cost an export.
+    camera = export_camera(options.camera or scene.camera, depsgraph, messages)
+    settings = export_settings(depsgraph, options.passes)
+    _check(scene, messages)
+    materials = Materials(messages, view_layer.material_override)
+    instances = Instances(view_layer, materials, messages)
+    instances.collect(depsgraph, obey)
+    world = getattr(view_layer, "world_override", None) or scene.world
+    snapshot = SceneSnapshot(
+        meshes=tuple(instances.meshes),
+        instances=instances.to_table(),
+        materials=tuple(materials.list),
+        lights=tuple(instances.lights),
+        world=export_world(world, messages),
+        camera=camera,
+        settings=settings,
+    )
+    obey()
+    return snapshot, messages
+
+
+def _check(scene, messages):
+    """Says what the render settings ask for that has no counterpart."""
+    who = f"scene '{scene.name}'"
+    if scene.render.use_motion_blur:
+        messages.add(f"{who}: motion blur is not supported, the frame is rendered sharp")
+    if scene.render.use_multiview:
+        messages.add(f"{who}: stereoscopy is not supported, every view shows the scene's camera")

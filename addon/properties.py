@@ -1,0 +1,251 @@
+"""Settings that Lancer adds to scenes, objects, materials and lights.
+
+Items of enums carry numbers that files store: never renumber, never reuse.
+"""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
+
+QUALITY_SAMPLES = {"DRAFT": 32, "GOOD": 128, "FINAL": 512}
+
+
+def _quality_changed(self, _context):
+    samples = QUALITY_SAMPLES.get(self.quality)
+    if samples is not None and self.samples != samples:
+        self.samples = samples
+
+
+def _samples_changed(self, _context):
+    if self.quality != "CUSTOM" and self.samples != QUALITY_SAMPLES[self.quality]:
+        self.quality = "CUSTOM"
+
+
+def _color(name, description, default):
+    return FloatVectorProperty(
+        name=name, description=description, subtype="COLOR", size=3, min=0.0, soft_max=1.0, default=(default,) * 3
+    )
+
+
+class LancerSceneSettings(bpy.types.PropertyGroup):
+    integrator: EnumProperty(
+        name="Integrator",
+        description="How light is followed through the scene",
+        items=(
+            ("PATH", "Path Tracing", "Global illumination: light that bounces, soft shadows, caustics. Noise falls with samples", 0),
+            ("CLASSIC", "Classic", "Recursive ray tracing: direct light, mirrors and glass. Fast and free of noise", 1),
+            ("NORMALS", "Normals", "Surface directions as colours, to check geometry", 2),
+        ),
+        default="PATH",
+    )
+    time_limit: FloatProperty(
+        name="Time Limit",
+        description="End the render after this many seconds, once every pixel has a sample; 0 = no limit",
+        subtype="TIME_ABSOLUTE",
+        min=0.0,
+        soft_max=3600.0,
+        default=0.0,
+    )
+    seed: IntProperty(
+        name="Seed", description="Another number gives another pattern of noise", min=0, default=0
+    )
+    use_animated_seed: BoolProperty(
+        name="Animate Seed", description="Another pattern of noise in each frame of an animation", default=False
+    )
+    max_bounces: IntProperty(
+        name="Max Bounces",
+        description="How often light may bounce between surfaces; in Classic, how deep mirrors show mirrors",
+        min=0,
+        soft_max=64,
+        max=1024,
+        default=10,
+    )
+    contribution_threshold: FloatProperty(
+        name="Contribution Threshold",
+        description="Classic: leave out rays that can add no more than this to their pixel; 0 = follow all",
+        min=0.0,
+        soft_max=0.1,
+        precision=4,
+        default=0.0,
+    )
+    clamp_indirect: FloatProperty(
+        name="Clamp Indirect",
+        description="Limit of a sample's indirect light, against single bright pixels. Makes the picture darker than true; 0 = off",
+        min=0.0,
+        soft_max=100.0,
+        default=0.0,
+    )
+    pixel_filter: EnumProperty(
+        name="Pixel Filter",
+        description="How neighbouring samples are weighed within a pixel",
+        items=(
+            ("BOX", "Box", "Each pixel is the plain mean of its own area", 0),
+            ("BLACKMAN_HARRIS", "Blackman-Harris", "Smooth edges, as in Cycles", 1),
+        ),
+        default="BLACKMAN_HARRIS",
+    )
+    filter_width: FloatProperty(
+        name="Filter Width",
+        description="Full width of the Blackman-Harris filter; wider is softer",
+        subtype="PIXEL",
+        min=0.01,
+        soft_max=3.0,
+        max=10.0,
+        default=1.5,
+    )
+    use_pass_albedo: BoolProperty(
+        name="Denoising Albedo",
+        description="Also render the surface colours without light, which denoisers use",
+        default=False,
+    )
+    accelerator: EnumProperty(
+        name="Accelerator",
+        description="How the surfaces are sorted so that rays find them. Changes the time, never the picture",
+        items=(
+            ("BVH", "BVH", "Nested boxes: the fastest for nearly all scenes", 0),
+            ("KDTREE", "kd-Tree", "Space cut by planes", 1),
+            ("BRUTE_FORCE", "Brute Force", "Every surface for every ray: only to check the others", 2),
+        ),
+        default="BVH",
+    )
+    features: EnumProperty(
+        name="Features",
+        description="Which version of the renderer's inner loop runs. Changes the time, never the picture",
+        items=(
+            ("SCENE", "Scene", "The one made for what this scene uses", 0),
+            ("ALL", "All", "The general one: only to check the other", 1),
+        ),
+        default="SCENE",
+    )
+
+
+class LancerObjectSettings(bpy.types.PropertyGroup):
+    shape: EnumProperty(
+        name="Shape",
+        description="Trace the mesh itself, or the exact surface that fits its bounding box",
+        items=(
+            ("MESH", "Mesh", "The mesh as it is", 0),
+            ("SPHERE", "Sphere", "An exact sphere or ellipsoid in the mesh's bounding box", 1),
+            ("PLANE", "Plane", "A plane without end through the middle of the mesh's bounding box, facing its Z", 2),
+            ("CYLINDER", "Cylinder", "An exact closed cylinder along Z in the mesh's bounding box", 3),
+            ("CONE", "Cone", "An exact closed cone with its tip at +Z in the mesh's bounding box", 4),
+        ),
+        default="MESH",
+    )
+    shading: EnumProperty(
+        name="Shading",
+        description="How light varies over a face",
+        items=(
+            ("AS_MESH", "As Mesh", "Smooth and flat faces as the mesh has them", 0),
+            ("FLAT", "Flat", "One direction for each face", 1),
+            ("GOURAUD", "Gouraud", "Light is computed at the vertices and blended between them (Classic; elsewhere as Phong)", 2),
+            ("PHONG", "Phong", "Directions are blended between the vertices", 3),
+        ),
+        default="AS_MESH",
+    )
+
+
+class LancerMaterialSettings(bpy.types.PropertyGroup):
+    model: EnumProperty(
+        name="Model",
+        description="Where the material's look comes from",
+        items=(
+            ("NODES", "Nodes", "The material's shader nodes", 0),
+            ("KD_KS", "Diffuse and Coat", "A matt body under a rough, clear layer", 1),
+            ("PHONG", "Phong", "A matt body with Phong's highlight", 2),
+            ("BLINN_PHONG", "Blinn-Phong", "A matt body with Blinn's highlight", 3),
+        ),
+        default="NODES",
+    )
+    ka: _color("Ambient", "Share of the lights' ambient colour that the surface shows (Classic only)", 0.0)
+    kd: _color("Diffuse", "Colour of the matt body", 0.8)
+    ks: _color("Specular", "Colour of the highlight or of the clear layer", 0.2)
+    roughness: FloatProperty(
+        name="Roughness",
+        description="Roughness of the clear layer, as the alpha of Beckmann's formula (Blender's roughness is its square root)",
+        min=0.0,
+        max=1.0,
+        precision=4,
+        default=0.2,
+    )
+    ior: FloatProperty(
+        name="IOR", description="Index of refraction of the clear layer", min=1e-3, soft_min=1.0, soft_max=3.0, default=1.5
+    )
+    shininess: FloatProperty(
+        name="Shininess", description="Exponent of the highlight: larger is smaller and sharper", min=0.0, soft_max=1000.0, default=50.0
+    )
+
+
+class LancerLightSettings(bpy.types.PropertyGroup):
+    falloff: EnumProperty(
+        name="Falloff",
+        description="How the light weakens with distance (Classic only; Path Tracing is always physical)",
+        items=(
+            ("PHYSICAL", "Physical", "With the square of the distance, as in nature", 0),
+            ("CONSTANT", "Constant", "Not at all", 1),
+            ("LINEAR", "Linear", "Evenly, to nothing at the radius", 2),
+            ("QUADRATIC", "Quadratic", "Slowly at first, to nothing at the radius", 3),
+            ("SMOOTH", "Smooth", "With soft ends, to nothing at the radius", 4),
+            ("GAUSSIAN", "Gaussian", "As a bell curve whose width is the radius", 5),
+        ),
+        default="PHYSICAL",
+    )
+    radius: FloatProperty(
+        name="Radius", description="Distance over which the light weakens", subtype="DISTANCE", min=1e-6, soft_max=1000.0, default=10.0
+    )
+    use_separate_colors: BoolProperty(
+        name="Separate Colors",
+        description="Give ambient, diffuse and specular light factors of their own (Classic only)",
+        default=False,
+    )
+    ambient_color: _color("Ambient", "Factor of the light's colour for ambient light", 1.0)
+    diffuse_color: _color("Diffuse", "Factor of the light's colour for diffuse light", 1.0)
+    specular_color: _color("Specular", "Factor of the light's colour for highlights", 1.0)
+
+
+def _add_watched(scene):
+    """Properties with an update function: as annotations they would make bpy 4.2 crash at exit, added and deleted they do not."""
+    scene.quality = EnumProperty(
+        name="Quality",
+        description="How many samples to take: a preset, or your own number",
+        items=(
+            ("DRAFT", "Draft", "32 samples: a quick look", 0),
+            ("GOOD", "Good", "128 samples: for most scenes", 1),
+            ("FINAL", "Final", "512 samples: little noise is left", 2),
+            ("CUSTOM", "Custom", "Your own number of samples", 3),
+        ),
+        default="CUSTOM",
+        update=_quality_changed,
+    )
+    scene.samples = IntProperty(
+        name="Samples",
+        description="Rays through each pixel. Four times as many halve the noise",
+        min=1,
+        soft_max=4096,
+        max=1 << 24,
+        default=256,
+        update=_samples_changed,
+    )
+
+
+_GROUPS = (
+    (LancerSceneSettings, bpy.types.Scene),
+    (LancerObjectSettings, bpy.types.Object),
+    (LancerMaterialSettings, bpy.types.Material),
+    (LancerLightSettings, bpy.types.Light),
+)
+
+
+def register():
+    for group, owner in _GROUPS:
+        bpy.utils.register_class(group)
+        if group is LancerSceneSettings:
+            _add_watched(group)
+        owner.lancer = PointerProperty(type=group, name="Lancer")
+
+
+def unregister():
+    for group, owner in reversed(_GROUPS):
+        del owner.lancer
+        if group is LancerSceneSettings:
+            del group.quality, group.samples
+        bpy.utils.unregister_class(group)

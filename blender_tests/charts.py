@@ -1,0 +1,124 @@
+"""Maps from the unit square to directions in which a density is smooth, for histograms and for integrals.
+
+A chart gives, for points (count, 2) of the unit square, directions and the solid angle per unit of area there; and the way
+back from directions to the square. Directions that it cannot reach come back as NaN.
+"""
+
+import numpy as np
+
+TWO_PI = 2.0 * np.pi
+
+
+def unit(v):
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def angle(x, y):
+    """Of a full turn, 0 to 1."""
+    return np.mod(np.arctan2(y, x) / TWO_PI, 1.0)
+
+
+def frame(axis):
+    """Rows: two directions square to the axis, and the axis."""
+    axis = unit(np.asarray(axis, float))
+    helper = np.eye(3)[np.argmin(np.abs(axis))]
+    x = unit(np.cross(helper, axis))
+    return np.stack([x, np.cross(axis, x), axis])
+
+
+class Sphere:
+    """All directions: height along the axis and angle around it."""
+
+    def __init__(self, axis=(0, 0, 1), lowest=-1.0):
+        self.frame, self.lowest = frame(axis), lowest
+
+    def direct(self, u):
+        z = self.lowest + (1.0 - self.lowest) * u[:, 0]
+        r = np.sqrt(np.maximum(0.0, 1.0 - z * z))
+        w = np.stack([r * np.cos(TWO_PI * u[:, 1]), r * np.sin(TWO_PI * u[:, 1]), z], axis=1) @ self.frame
+        return w, np.full(len(u), TWO_PI * (1.0 - self.lowest))
+
+    def back(self, w):
+        local = w @ self.frame.T
+        u = np.stack([(local[:, 2] - self.lowest) / (1.0 - self.lowest), angle(local[:, 0], local[:, 1])], axis=1)
+        return np.where(local[:, 2:] < self.lowest, np.nan, u)
+
+
+class Power:
+    """Directions around an axis crowded like cos^exponent: u0 = 1 - cos^(exponent + 1)."""
+
+    def __init__(self, axis, exponent):
+        self.frame, self.exponent = frame(axis), exponent
+
+    def direct(self, u):
+        k = self.exponent + 1.0
+        z = np.exp(np.log1p(-u[:, 0]) / k)
+        # 1 - z^2 by expm1: crowded lobes live where z is 1 to many digits.
+        r = np.sqrt(-np.expm1(2.0 * np.log1p(-u[:, 0]) / k))
+        w = np.stack([r * np.cos(TWO_PI * u[:, 1]), r * np.sin(TWO_PI * u[:, 1]), z], axis=1) @ self.frame
+        return w, TWO_PI / (k * z**self.exponent)
+
+    def back(self, w):
+        local = w @ self.frame.T
+        r2 = np.minimum(local[:, 0] ** 2 + local[:, 1] ** 2, 1.0)
+        u0 = -np.expm1(0.5 * (self.exponent + 1.0) * np.log1p(-np.minimum(r2, 1 - 1e-16)))
+        u = np.stack([u0, angle(local[:, 0], local[:, 1])], axis=1)
+        return np.where(local[:, 2:] <= 0.0, np.nan, u)
+
+
+class Half:
+    """Reflections of wo at half vectors that another chart gives."""
+
+    def __init__(self, wo, halves):
+        self.wo, self.halves = np.asarray(wo, float), halves
+
+    def direct(self, u):
+        h, area = self.halves.direct(u)
+        cosine = h @ self.wo
+        # Half vectors seen from behind reflect nothing.
+        return 2.0 * cosine[:, None] * h - self.wo, area * 4.0 * np.maximum(cosine, 0.0)
+
+    def back(self, w):
+        return self.halves.back(unit(w + self.wo))
+
+
+class Slopes:
+    """Directions whose slopes are spread like exp(-slope^2/alpha^2): the domain in which tiny alpha is resolved."""
+
+    def __init__(self, alpha, side=1.0):
+        self.alpha, self.side = alpha, side
+
+    def direct(self, u):
+        r2 = -np.log1p(-u[:, 0])
+        r = self.alpha * np.sqrt(r2)
+        z = 1.0 / np.sqrt(1.0 + r * r)
+        h = np.stack([r * z * np.cos(TWO_PI * u[:, 1]), r * z * np.sin(TWO_PI * u[:, 1]), z], axis=1) * self.side
+        # d omega = cos^3 d slopes; d slopes = pi alpha^2/(1 - u0) d u.
+        return h, z**3 * np.pi * self.alpha**2 / (1.0 - u[:, 0])
+
+    def back(self, h):
+        h = h * self.side
+        z = np.where(h[:, 2] > 0.0, h[:, 2], np.nan)
+        slopes = h[:, :2] / z[:, None] / self.alpha
+        return np.stack([-np.expm1(-np.sum(slopes**2, axis=1)), angle(slopes[:, 0], slopes[:, 1])], axis=1)
+
+
+def integrate_cells(chart, density, cells, points):
+    """Integrals of density over a cells x cells grid of the chart, by points^2 Gauss-Legendre nodes in each cell."""
+    x, weight = np.polynomial.legendre.leggauss(points)
+    x, weight = (x + 1.0) / 2.0, weight / 2.0
+    axis = ((np.arange(cells)[:, None] + x) / cells).ravel()
+    u = np.stack([a.ravel() for a in np.meshgrid(axis, axis, indexing="ij")], axis=1)
+    w, area = chart.direct(u)
+    value = np.where(area > 0.0, density(w) * area, 0.0).reshape(cells, points, cells, points)
+    return np.einsum("aibj,i,j->ab", value, weight, weight) / cells**2
+
+
+def histogram(chart, w, cells):
+    """Hits per cell of directions, and the number that the chart cannot reach."""
+    u = chart.back(np.asarray(w, float))
+    inside = np.all(np.isfinite(u), axis=1)
+    index = np.minimum((u[inside] * cells).astype(int), cells - 1)
+    counts = np.zeros((cells, cells))
+    np.add.at(counts, (index[:, 0], index[:, 1]), 1)
+    return counts, int(np.sum(~inside))

@@ -1,0 +1,79 @@
+"""How sure is it: tests of significance for samplers and for images. test_significance.py proves that they reject."""
+
+import math
+
+import numpy as np
+from scipy import stats
+
+# The chance of a false alarm of one whole test function. Seeds are fixed, so a test that passed once passes for ever.
+LEVEL = 0.001
+
+
+def sidak(level, count):
+    """The level of one of count independent tests so that all together raise a false alarm with probability level."""
+    return -math.expm1(math.log1p(-level) / count)
+
+
+def z_test(mean, standard_error, expected):
+    """Two-sided p-value of the mean of many samples against its expectation; works on arrays."""
+    mean, standard_error, expected = (np.asarray(x, dtype=np.float64) for x in (mean, standard_error, expected))
+    difference = np.abs(mean - expected)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        z = np.where(difference == 0.0, 0.0, difference / standard_error)
+    p = 2.0 * stats.norm.sf(z)
+    return np.where(np.isnan(z), 0.0, p)
+
+
+def chi_square(observed, expected, smallest=5.0):
+    """p-value that observed counts come from the expected ones.
+
+    Cells that expect fewer than `smallest` are pooled, because the chi-square law holds for well-filled cells only.
+    A hit where nothing at all is expected rejects at once.
+    """
+    observed = np.asarray(observed, dtype=np.float64).ravel()
+    expected = np.asarray(expected, dtype=np.float64).ravel()
+    assert observed.shape == expected.shape
+    if not (np.all(np.isfinite(expected)) and np.all(expected >= 0.0)):
+        return 0.0
+    total = observed.sum()
+    # A cell expecting less than a thousandth of a hit that holds more than a few is impossible, not unlikely.
+    if np.any((expected < 1e-3) & (observed > 5)):
+        return 0.0
+    order = np.argsort(expected)
+    observed, expected = observed[order], expected[order]
+    # Pool the smallest cells until their sum is large enough.
+    thin = int(np.searchsorted(expected, smallest))
+    if thin:
+        while thin < len(expected) and expected[:thin].sum() < smallest:
+            thin += 1
+        observed = np.concatenate([[observed[:thin].sum()], observed[thin:]])
+        expected = np.concatenate([[expected[:thin].sum()], expected[thin:]])
+    if len(expected) < 2:
+        return 1.0 if abs(total - expected.sum()) <= 5.0 * math.sqrt(max(total, 1.0)) else 0.0
+    statistic = np.sum((observed - expected) ** 2 / np.maximum(expected, 1e-300))
+    return float(stats.chi2.sf(statistic, len(expected) - 1))
+
+
+def uniforms(count, dimensions, seed):
+    """Independent uniform numbers in [0, 1) as float32, [count][dimensions]."""
+    u = np.random.default_rng(seed).random((count, dimensions)).astype(np.float32)
+    return np.minimum(u, np.float32(1.0) - np.float32(2.0**-24))
+
+
+def midpoints(*counts):
+    """The middles of a regular grid in the unit cube: the midpoint rule's points, float32, [product][len(counts)]."""
+    axes = [(np.arange(n) + 0.5) / n for n in counts]
+    return np.stack([a.ravel() for a in np.meshgrid(*axes, indexing="ij")], axis=1).astype(np.float32)
+
+
+def mean_and_error(samples, axis=0):
+    """Mean and its standard error along an axis."""
+    samples = np.asarray(samples, dtype=np.float64)
+    count = samples.shape[axis]
+    return samples.mean(axis=axis), samples.std(axis=axis, ddof=1) / math.sqrt(count)
+
+
+def block_means(image, size):
+    """Means over size x size blocks of an [h][w][c] image whose sides are multiples of size."""
+    h, w, c = image.shape
+    return image.reshape(h // size, size, w // size, size, c).mean(axis=(1, 3), dtype=np.float64)

@@ -1,0 +1,416 @@
+"""The C interface under wrong arguments: a status and one sentence that names object and value; never a crash."""
+
+import ctypes
+import math
+
+import numpy as np
+import pytest
+from bindings import abi
+from bindings.abi import Pass, Status
+from raw import FOREIGN, IDENTITY, Raw
+
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.fixture
+def raw(library):
+    return Raw(library)
+
+
+def refused(result, *words, status=Status.ERROR_ARGUMENT):
+    """The call failed with that status and its sentence holds these words."""
+    assert result[0] == status, f"{result[0].name}: {result[1]}"
+    missing = [word for word in words if word not in result[1]]
+    assert result[1] and not missing, f"{missing} not in {result[1]!r}"
+
+
+def add(raw, scene, kind, piece):
+    return raw.call(f"lancer_scene_add_{kind}", scene, ctypes.byref(piece))
+
+
+# ---- handles ----
+
+
+def calls_on_scenes(raw):
+    """Every call that takes a scene, with otherwise sound arguments."""
+    array = raw.keep(np.zeros(64))
+    hits = raw.keep((abi.Hit * 4)())
+    pointer, out = array.ctypes.data, ctypes.addressof(hits)
+    handle = raw.keep(ctypes.c_uint64(0))
+    camera, settings = raw.keep(raw.camera()), raw.keep(raw.settings())
+    return {
+        "lancer_scene_add_mesh": (ctypes.byref(raw.keep(raw.mesh())),),
+        "lancer_scene_add_material": (ctypes.byref(raw.keep(raw.material())),),
+        "lancer_scene_add_light": (ctypes.byref(raw.keep(raw.light())),),
+        "lancer_scene_add_instances": (0, pointer, 0, pointer, b"\0", 1),
+        "lancer_scene_set_world": (pointer,),
+        "lancer_scene_commit": (0, 1),
+        "lancer_scene_wait": (0,),
+        "lancer_scene_cancel": (),
+        "lancer_scene_messages": (None, 0, None),
+        "lancer_session_create": (ctypes.byref(camera), ctypes.byref(settings), ctypes.byref(handle)),
+        "lancer_probe_intersect": (1, pointer, pointer, pointer, pointer, out),
+        "lancer_probe_occluded": (1, pointer, pointer, pointer, pointer, out),
+        "lancer_probe_bsdf": (0, 1, pointer, pointer, out, out),
+        "lancer_probe_bsdf_sample": (0, 1, pointer, pointer, out),
+        "lancer_probe_light": (0, 1, pointer, pointer, out),
+        "lancer_probe_light_pdf": (0, 1, pointer, pointer, out),
+        "lancer_scene_destroy": (),
+    }
+
+
+def calls_on_sessions(raw):
+    array = raw.keep(np.zeros(64))
+    statistics, count = raw.keep(abi.Statistics()), raw.keep(ctypes.c_uint32())
+    pointer = array.ctypes.data
+    return {
+        "lancer_session_render": (0, 1),
+        "lancer_session_wait": (0, None),
+        "lancer_session_cancel": (),
+        "lancer_session_read": (0, pointer, 4),
+        "lancer_session_statistics": (ctypes.byref(statistics),),
+        "lancer_debug_sample": (0, 0, 0, pointer, None, 0, ctypes.byref(count)),
+        "lancer_probe_camera": (1, pointer, pointer, pointer, pointer),
+        "lancer_session_destroy": (),
+    }
+
+
+def test_every_call_with_a_handle_is_tried_here(raw):
+    known = {"lancer_scene_create", "lancer_probe_microfacet", "lancer_probe_sampler", "lancer_probe_filter"}
+    assert set(calls_on_scenes(raw)) | set(calls_on_sessions(raw)) | known == set(abi._CALLS)
+
+
+@pytest.mark.parametrize("handle", [0, 1 << 63, FOREIGN, 2**64 - 1])
+def test_wrong_handles(raw, handle):
+    for name, arguments in {**calls_on_scenes(raw), **calls_on_sessions(raw)}.items():
+        result = raw.call(name, handle, *arguments)
+        assert result[0] == Status.ERROR_HANDLE and result[1], f"{name}: {result}"
+
+
+def test_use_after_free_and_double_free(raw):
+    scene = raw.committed()
+    session = raw.session(scene)
+    assert raw.call("lancer_session_destroy", session)[0] == Status.OK
+    assert raw.call("lancer_scene_destroy", scene)[0] == Status.OK
+    # A new scene must not answer to the old handle.
+    other = raw.committed()
+    for name, arguments in calls_on_scenes(raw).items():
+        assert raw.call(name, scene, *arguments)[0] == Status.ERROR_HANDLE, name
+    for name, arguments in calls_on_sessions(raw).items():
+        assert raw.call(name, session, *arguments)[0] == Status.ERROR_HANDLE, name
+    assert raw.call("lancer_scene_destroy", other)[0] == Status.OK
+    refused(raw.call("lancer_scene_destroy", other), status=Status.ERROR_HANDLE)
+
+
+def test_scene_and_session_handles_are_not_mixed_up(raw):
+    scene = raw.committed()
+    session = raw.session(scene)
+    for name, arguments in calls_on_scenes(raw).items():
+        assert raw.call(name, session, *arguments)[0] == Status.ERROR_HANDLE, name
+    for name, arguments in calls_on_sessions(raw).items():
+        assert raw.call(name, scene, *arguments)[0] == Status.ERROR_HANDLE, name
+
+
+# ---- null pointers ----
+
+
+def test_null_pointers(raw):
+    scene, committed = raw.filled(), raw.committed()
+    session = raw.session(committed)
+    array = np.zeros(64)
+    p = array.ctypes.data
+    cases = [
+        ("lancer_scene_create", None),
+        ("lancer_scene_add_mesh", scene, None),
+        ("lancer_scene_add_material", scene, None),
+        ("lancer_scene_add_light", scene, None),
+        ("lancer_scene_add_instances", scene, 1, None, 0, None, b"\0", 1),
+        ("lancer_scene_set_world", scene, None),
+        ("lancer_scene_messages", scene, None, 8, None),
+        ("lancer_session_create", committed, None, ctypes.byref(raw.settings()), ctypes.byref(ctypes.c_uint64())),
+        ("lancer_session_create", committed, ctypes.byref(raw.camera()), None, ctypes.byref(ctypes.c_uint64())),
+        ("lancer_session_create", committed, ctypes.byref(raw.camera()), ctypes.byref(raw.settings()), None),
+        ("lancer_session_read", session, 0, None, 16 * 16 * 4),
+        ("lancer_session_statistics", session, None),
+        ("lancer_debug_sample", session, 0, 0, 0, None, None, 4, None),
+        ("lancer_probe_intersect", committed, 1, None, p, p, p, p),
+        ("lancer_probe_intersect", committed, 1, p, p, p, p, None),
+        ("lancer_probe_occluded", committed, 1, p, None, p, p, p),
+        ("lancer_probe_bsdf", committed, 0, 1, p, None, p, p),
+        ("lancer_probe_bsdf_sample", committed, 0, 1, p, p, None),
+        ("lancer_probe_microfacet", 1, None, p, p, p, p, p, p, p),
+        ("lancer_probe_light", committed, 0, 1, None, p, p),
+        ("lancer_probe_light_pdf", committed, 0, 1, p, p, None),
+        ("lancer_probe_camera", session, 1, p, p, None, p),
+        ("lancer_probe_sampler", 0, 0, 0, 0, 4, None),
+        ("lancer_probe_filter", 0, 1.0, 4, None, p),
+    ]
+    for name, *arguments in cases:
+        result = raw.call(name, *arguments)
+        assert result[0] == Status.ERROR_ARGUMENT and result[1], f"{name}{arguments}: {result}"
+
+
+def test_null_arrays_of_a_mesh(raw):
+    scene = raw.scene()
+    for field in ("positions", "triangles"):
+        refused(add(raw, scene, "mesh", raw.mesh(**{field: None})), "mesh 'Cube'", field)
+    refused(add(raw, scene, "mesh", raw.mesh(normal_domain=abi.NormalDomain.VERTEX)), "mesh 'Cube'", "normal")
+    refused(add(raw, scene, "material", null_lobes(raw)), "material 'Paint'")
+
+
+def null_lobes(raw):
+    material = raw.material()
+    material.lobes = ctypes.POINTER(abi.Lobe)()
+    return material
+
+
+def test_a_name_may_be_null(raw):
+    scene = raw.scene()
+    for kind in ("mesh", "material", "light"):
+        result = add(raw, scene, kind, getattr(raw, kind)(name=None))
+        assert result[0] == Status.OK, result
+
+
+# ---- meshes and instances ----
+
+
+def test_index_out_of_range_names_mesh_and_index(raw):
+    scene = raw.scene()
+    positions = np.zeros((800, 3))
+    mesh = raw.mesh(positions=positions, triangles=[(0, 1, 2), (3, 812, 5)])
+    result = add(raw, scene, "mesh", mesh)
+    assert result == (Status.ERROR_ARGUMENT, "mesh 'Cube': index 812 >= 800 vertices")
+    refused(add(raw, scene, "mesh", raw.mesh(triangles=[(0, 1, 2**32 - 1)])), "mesh 'Cube'", "4294967295", "4 vertices")
+    # Nothing was added: the next mesh is number 0, and number 1 does not exist.
+    assert add(raw, scene, "mesh", raw.mesh())[0] == Status.OK
+    assert add(raw, scene, "material", raw.material())[0] == Status.OK
+    assert raw.add_instances(scene, [raw.instance(mesh=0)])[0] == Status.OK
+    refused(raw.add_instances(scene, [raw.instance(mesh=1)]), "Thing", "mesh", "1")
+
+
+def test_wrong_numbers_in_instances(raw):
+    scene = raw.filled()
+    refused(raw.add_instances(scene, [raw.instance(kind=5)]), "Thing", "kind", "5")
+    refused(raw.add_instances(scene, [raw.instance(shading=9)]), "Thing", "shading", "9")
+    refused(raw.add_instances(scene, [raw.instance(mesh=7)]), "Thing", "7")
+    refused(raw.add_instances(scene, [raw.instance()], slots=(44,)), "Thing", "44")
+    refused(raw.add_instances(scene, [raw.instance(first_slot=5)]), "Thing", "5")
+    refused(raw.add_instances(scene, [raw.instance(first_slot=2**32 - 1, slot_count=2)]), "Thing", "slot")
+    refused(raw.add_instances(scene, [raw.instance(name=6)]), "name")
+    refused(raw.add_instances(scene, [raw.instance()], names=b"endless"), "name")
+
+
+def test_a_failed_call_adds_no_instance(raw):
+    scene = raw.filled()
+    refused(raw.add_instances(scene, [raw.instance(), raw.instance(mesh=7)]), "7")
+    assert raw.commit(scene)[0] == Status.OK
+    session = raw.session(scene)
+    statistics = abi.Statistics()
+    assert raw.call("lancer_session_statistics", session, ctypes.byref(statistics))[0] == Status.OK
+    assert statistics.instances == 1
+
+
+def test_wrong_normal_domain(raw):
+    refused(add(raw, raw.scene(), "mesh", raw.mesh(normal_domain=3)), "mesh 'Cube'", "3")
+
+
+def test_bad_faces_are_left_out_and_reported(raw):
+    scene = raw.scene()
+    positions = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (NAN, 0, 0), (INF, 1, 0), (2, 0, 0)]
+    triangles = [(0, 3, 1), (0, 1, 2), (0, 4, 1), (0, 1, 5), (1, 1, 2)]
+    assert add(raw, scene, "mesh", raw.mesh(positions=positions, triangles=triangles))[0] == Status.OK
+    add(raw, scene, "material", raw.material())
+    raw.add_instances(scene, [raw.instance()])
+    assert raw.commit(scene)[0] == Status.OK
+    text = raw.messages(scene)
+    assert "Cube" in text and "4" in text, text
+    # The face that is left keeps the number that the user gave it.
+    hit = (abi.Hit * 1)()
+    numbers = [np.array(x, np.float64) for x in ([0.25, 0.25, 1], [0, 0, -1], [0], [10])]
+    assert raw.call("lancer_probe_intersect", scene, 1, *[x.ctypes.data for x in numbers], ctypes.addressof(hit))[0] == Status.OK
+    assert hit[0].instance == 0 and hit[0].primitive == 1 and hit[0].t == 1.0
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [(0,) * 12, (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0), (NAN,) + IDENTITY[1:], IDENTITY[:3] + (INF,) + IDENTITY[4:]],
+    ids=["zero", "flat", "nan", "infinite"],
+)
+def test_instances_without_a_usable_matrix_are_left_out_and_reported(raw, matrix):
+    scene = raw.filled()
+    assert raw.add_instances(scene, [raw.instance(matrix=matrix)], names=b"Broken\0")[0] == Status.OK
+    assert raw.commit(scene)[0] == Status.OK
+    assert "Broken" in raw.messages(scene)
+
+
+def test_messages_are_cut_at_the_given_size(raw):
+    scene = raw.filled()
+    assert raw.add_instances(scene, [raw.instance(matrix=(0,) * 12)], names=b"Broken\0")[0] == Status.OK
+    assert raw.commit(scene)[0] == Status.OK
+    text = ctypes.create_string_buffer(b"#" * 16, 16)
+    assert raw.call("lancer_scene_messages", scene, text, 4, None)[0] == Status.OK
+    assert text.raw[4:] == b"#" * 12 and b"\0" in text.raw[:4]
+
+
+# ---- materials, lights, world ----
+
+
+def test_wrong_materials(raw):
+    scene = raw.scene()
+    refused(add(raw, scene, "material", raw.material(lobes=[raw.lobe(kind=6)])), "material 'Paint'", "6")
+    refused(add(raw, scene, "material", raw.material(lobes=[raw.lobe()] * 9)), "material 'Paint'", "9")
+    textured = raw.lobe()
+    textured.color.texture = 3
+    refused(add(raw, scene, "material", raw.material(lobes=[textured])), "material 'Paint'", "3")
+
+
+@pytest.mark.parametrize("field", ["color", "roughness", "ior", "shininess"])
+@pytest.mark.parametrize("value", [NAN, INF, -INF, -1.0])
+def test_wild_values_of_a_lobe_are_refused_or_replaced_with_a_message(raw, field, value):
+    scene = raw.scene()
+    kind = abi.LobeKind.PHONG if field == "shininess" else abi.LobeKind.BECKMANN
+    result = add(raw, scene, "material", raw.material(lobes=[raw.lobe(kind=kind, **{field: value})]))
+    if field == "ior" and value == INF:
+        assert result[0] == Status.OK, result
+        return
+    if result[0] == Status.OK:
+        assert raw.commit(scene)[0] == Status.OK
+        assert "Paint" in raw.messages(scene) and field in raw.messages(scene)
+    else:
+        refused(result, "material 'Paint'", field)
+
+
+def test_wrong_lights(raw):
+    scene = raw.scene()
+    refused(add(raw, scene, "light", raw.light(kind=4)), "light 'Lamp'", "4")
+    refused(add(raw, scene, "light", raw.light(kind=abi.LightKind.AREA, shape=2)), "light 'Lamp'", "2")
+    refused(add(raw, scene, "light", raw.light(falloff=6)), "light 'Lamp'", "6")
+
+
+@pytest.mark.parametrize("field", ["emission", "radius", "size", "matrix", "spot_angle", "sun_angle"])
+@pytest.mark.parametrize("value", [NAN, -INF, -1.0])
+def test_wild_values_of_a_light_are_refused_or_replaced_with_a_message(raw, field, value):
+    scene = raw.scene()
+    kind = {"size": abi.LightKind.AREA, "spot_angle": abi.LightKind.SPOT, "sun_angle": abi.LightKind.SUN}
+    light = raw.light(kind=kind.get(field, abi.LightKind.POINT))
+    if field == "emission":
+        light.emission = (value, 1, 1)
+    elif field == "size":
+        light.size = (value, 1)
+    elif field == "matrix":
+        light.matrix[3] = value
+    else:
+        setattr(light, field, value)
+    result = add(raw, scene, "light", light)
+    if result[0] == Status.OK:
+        assert raw.commit(scene)[0] == Status.OK
+        legal = field == "matrix" and value == -1.0
+        assert legal or "Lamp" in raw.messages(scene)
+    else:
+        refused(result, "light 'Lamp'")
+
+
+def test_wild_worlds(raw):
+    for value in (NAN, INF, -1.0):
+        scene = raw.scene()
+        radiance = np.array([value, 1, 1], np.float32)
+        result = raw.call("lancer_scene_set_world", scene, radiance.ctypes.data)
+        if result[0] == Status.OK:
+            assert raw.commit(scene)[0] == Status.OK
+            assert "orld" in raw.messages(scene)
+        else:
+            refused(result, "world")
+
+
+# ---- cameras and settings ----
+
+WRONG_CAMERAS = {
+    "kind": 2,
+    "width": 0,
+    "height": 0,
+    "region_width": 0,
+    "region_height": 17,
+    "x": 1,
+    "y": 2**32 - 1,
+    "window": (0.5, 0.5, -0.5, 0.5),
+    "clip_start": NAN,
+    "clip_end": 0.05,
+    "lens_radius": -1.0,
+    "matrix": (0,) * 12,
+}
+
+
+@pytest.mark.parametrize("field", WRONG_CAMERAS)
+def test_wrong_cameras(raw, field):
+    camera = raw.camera(**{field: WRONG_CAMERAS[field] if field != "matrix" else (ctypes.c_double * 12)()})
+    refused(raw.create_session(raw.committed(), camera=camera), "camera")
+
+
+def test_focal_distance_must_be_positive_where_a_lens_is(raw):
+    for distance in (0.0, -1.0, NAN):
+        refused(raw.create_session(raw.committed(), camera=raw.camera(lens_radius=0.1, focal_distance=distance)), "camera", "focal")
+
+
+@pytest.mark.parametrize("field, value", [("integrator", 3), ("pixel_filter", 2), ("features", 2), ("passes", 1 << 7)])
+def test_wrong_choices_in_settings(raw, field, value):
+    refused(raw.create_session(raw.committed(), settings=raw.settings(**{field: value})), str(value))
+
+
+@pytest.mark.parametrize("field", ["filter_width", "contribution_threshold", "clamp_indirect"])
+@pytest.mark.parametrize("value", [NAN, -1.0])
+def test_wild_values_in_settings(raw, field, value):
+    refused(raw.create_session(raw.committed(), settings=raw.settings(**{field: value})), field.split("_")[0])
+
+
+@pytest.mark.parametrize("size", [2**32 - 1, 2**31, 1_000_000])
+def test_enormous_resolution(raw, size):
+    camera = raw.camera(width=size, height=size, region_width=size, region_height=size)
+    result = raw.create_session(raw.committed(), camera=camera)
+    assert result[0] in (Status.ERROR_MEMORY, Status.ERROR_ARGUMENT), result
+    assert str(size) in result[1], result[1]
+
+
+def test_read_checks_pass_and_size(raw):
+    session = raw.session(raw.committed())
+    assert raw.read(session, Pass.COMBINED, 16 * 16 * 4)[0] == Status.OK
+    for count in (0, 16 * 16 * 4 - 1, 16 * 16 * 4 + 1, 2**40):
+        out = np.zeros(16 * 16 * 4 + 1, np.float32)
+        refused(raw.call("lancer_session_read", session, 0, out.ctypes.data, count), str(count), str(16 * 16 * 4))
+    refused(raw.read(session, Pass.DEPTH, 16 * 16))
+    refused(raw.read(session, 99, 16 * 16), "99")
+
+
+def test_probes_check_their_numbers(raw):
+    scene = raw.committed()
+    session = raw.session(scene)
+    array = np.zeros(256)
+    p = array.ctypes.data
+    refused(raw.call("lancer_probe_bsdf", scene, 1, 1, p, p, p, p), "material", "1")
+    refused(raw.call("lancer_probe_bsdf_sample", scene, 2**32 - 1, 1, p, p, p), "material", "4294967295")
+    refused(raw.call("lancer_probe_light", scene, 9, 1, p, p, p), "light", "9")
+    refused(raw.call("lancer_probe_light_pdf", scene, 9, 1, p, p, p), "light", "9")
+    refused(raw.call("lancer_probe_filter", 7, 1.0, 1, p, p), "filter", "7")
+    count = ctypes.c_uint32()
+    refused(raw.call("lancer_debug_sample", session, 16, 0, 0, p, None, 0, ctypes.byref(count)), "16")
+    refused(raw.call("lancer_debug_sample", session, 0, 16, 0, p, None, 0, ctypes.byref(count)), "16")
+
+
+def test_rays_that_are_no_rays_meet_nothing(raw):
+    scene = raw.committed()
+    rows = [(NAN, 0, 1), (0.2, 0.2, INF), (0.2, 0.2, 1), (0.2, 0.2, 1), (0.2, 0.2, 1)]
+    directions = [(0, 0, -1), (0, 0, -1), (0, 0, 0), (0, NAN, -1), (0, 0, -INF)]
+    o, d = np.array(rows, np.float64), np.array(directions, np.float64)
+    near, far = np.zeros(5), np.full(5, INF)
+    hits = (abi.Hit * 5)()
+    arguments = [x.ctypes.data for x in (o, d, near, far)]
+    assert raw.call("lancer_probe_intersect", scene, 5, *arguments, ctypes.addressof(hits))[0] == Status.OK
+    assert [hit.instance for hit in hits] == [abi.UINT32_MAX] * 5
+    assert all(math.isinf(hit.t) for hit in hits)
+
+
+def test_the_message_belongs_to_the_last_call(raw):
+    refused(raw.call("lancer_scene_destroy", 0), status=Status.ERROR_HANDLE)
+    assert raw.library.lancer_last_error()
+    scene = raw.scene()
+    assert raw.library.lancer_last_error() == b""
+    assert raw.call("lancer_scene_destroy", scene)[0] == Status.OK

@@ -1,0 +1,38 @@
+// Does a ray meet the scene? One interface, three answers: brute force, kd-tree, wide BVH.
+#pragma once
+
+#include "accel/ray.h"
+#include "scene/geometry.h"
+
+#include <atomic>
+#include <memory>
+#include <span>
+
+namespace lancer {
+
+enum class AcceleratorKind : uint32_t { Bvh = 0, KdTree = 1, BruteForce = 2 };
+
+// Answers for batches of rays; immutable, so any number of threads may ask at once.
+// All kinds give the same hits, bit for bit: a hit depends on ray and primitive only, and closer() breaks ties.
+class Accelerator {
+public:
+  virtual ~Accelerator() = default;
+  // hits[i]: the closest hit of rays[i], or an invalid Hit.
+  virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
+  // occluded[i]: 1 where rays[i] meets anything at all.
+  virtual void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const = 0;
+  virtual size_t bytes() const = 0;
+  // The instruction set that the traversal was compiled for and runs with, e.g. "AVX2".
+  virtual const char *instruction_set() const = 0;
+};
+
+struct BuildContext {
+  uint32_t threads = 1;
+  const std::atomic<bool> *cancel = nullptr; // polled; a cancelled build throws BuildCancelled
+};
+struct BuildCancelled {};
+
+// geometry must outlive the accelerator.
+std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, const BuildContext &context);
+
+} // namespace lancer

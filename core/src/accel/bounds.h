@@ -1,0 +1,64 @@
+// Float boxes for building trees: four lanes at a time.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace lancer {
+
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int32_t __attribute__((vector_size(16)));
+
+#if defined(__SSE2__)
+inline Float4 min4(Float4 a, Float4 b) { return Float4(_mm_min_ps(__m128(a), __m128(b))); }
+inline Float4 max4(Float4 a, Float4 b) { return Float4(_mm_max_ps(__m128(a), __m128(b))); }
+#else
+inline Float4 min4(Float4 a, Float4 b) { return a < b ? a : b; }
+inline Float4 max4(Float4 a, Float4 b) { return a > b ? a : b; }
+#endif
+
+// How far boxes are widened in their frame, where coordinates are at most 1. The slab test of bvh_kernel.cpp works in float,
+// u = 2^-24; a ray that meets the contents starts within sqrt(3) of the centre (placed_shape.h), so b - q is at most 2.74.
+// Its errors, as displacements of the box's planes: rounding of q 1.74u; of b 0.5u; of b - q 2.74u; of the direction, its
+// inverse and the product 3 * 2.74u; in all 13.2u < 16u = 2^-20.
+inline constexpr float kBoxPad = 0x1p-20f;
+
+// Lane 3 is free for the builder; min and max of it mean nothing.
+struct Box {
+  Float4 lo{kInf, kInf, kInf, kInf};
+  Float4 hi{-kInf, -kInf, -kInf, -kInf};
+
+  void grow(const Box &b) {
+    lo = min4(lo, b.lo);
+    hi = max4(hi, b.hi);
+  }
+  void grow(Float4 p) {
+    lo = min4(lo, p);
+    hi = max4(hi, p);
+  }
+  // Half the surface; 0 for an empty box.
+  float half_area() const {
+    const Float4 d = hi - lo;
+    return d[0] >= 0.0f ? d[0] * d[1] + d[1] * d[2] + d[2] * d[0] : 0.0f;
+  }
+  // Twice the middle: what splits are judged by.
+  Float4 centroid() const { return lo + hi; }
+
+  static constexpr float kInf = std::numeric_limits<float>::infinity();
+};
+
+// A box and the number of what it holds, kept in the free lane: 32 bytes.
+struct BuildRef {
+  Box box;
+
+  BuildRef() = default;
+  BuildRef(const Box &b, uint32_t id) : box(b) { box.lo[3] = std::bit_cast<float>(id); }
+  uint32_t id() const { return std::bit_cast<Int4>(box.lo)[3]; }
+};
+
+} // namespace lancer

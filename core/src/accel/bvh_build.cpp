@@ -1,0 +1,283 @@
+#include "accel/bvh_build.h"
+
+#include "accel/parallel.h"
+#include "accel/placed_scene.h"
+
+#include <array>
+#include <new>
+
+namespace lancer {
+namespace {
+
+constexpr uint32_t kBins = 16;
+
+struct Range {
+  uint32_t begin = 0, end = 0;
+  Box box, centroids;
+
+  uint32_t count() const { return end - begin; }
+  void add(const BuildRef &ref) {
+    box.grow(ref.box);
+    centroids.grow(ref.box.centroid());
+  }
+};
+
+struct Split {
+  float cost = Box::kInf;
+  int axis = -1;
+  uint32_t bin = 0; // the first bin of the right side
+};
+
+// Maps centroids to bins, the same way in every pass.
+struct Binning {
+  Float4 origin, scale;
+
+  explicit Binning(const Box &centroids) : origin(centroids.lo), scale{} {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float extent = centroids.hi[axis] - centroids.lo[axis];
+      const float s = static_cast<float>(kBins) * 0.999999f / extent;
+      scale[axis] = s < Box::kInf ? s : 0.0f;
+    }
+  }
+  Int4 bins(const Box &box) const {
+    const Float4 position = (box.centroid() - origin) * scale;
+    return __builtin_convertvector(position, Int4);
+  }
+};
+
+// A subtree that is left for the threads: its place in the tree above it, and its range.
+struct Task {
+  uint32_t node, slot, depth;
+  Range range;
+  std::vector<BvhNode> nodes;
+};
+
+class Builder {
+public:
+  Builder(std::vector<BuildRef> &r, uint32_t g, const BuildContext &c) : refs(r), group(g), context(c) {}
+
+  // Appends the subtree of range to nodes; ranges of at most task_size are left to tasks, where given.
+  uint32_t build(const Range &range, uint32_t depth, std::vector<BvhNode> &nodes, uint32_t task_size, std::vector<Task> *tasks) {
+    poll_cancel(context);
+
+    // Split the largest part until there are eight, or nothing is left to split.
+    std::array<Range, kBvhWidth> parts;
+    uint32_t part_count = 1;
+    parts[0] = range;
+    const bool by_count = depth >= kBvhSahDepth;
+    while (part_count < kBvhWidth) {
+      uint32_t largest = kBvhWidth;
+      float size = -1.0f;
+      for (uint32_t i = 0; i < part_count; ++i) {
+        const float part_size = by_count ? static_cast<float>(parts[i].count()) : parts[i].box.half_area();
+        if (parts[i].count() > kBvhLeafSize && part_size > size) {
+          largest = i;
+          size = part_size;
+        }
+      }
+      if (largest == kBvhWidth)
+        break;
+      split(parts[largest], by_count, parts[largest], parts[part_count]);
+      ++part_count;
+    }
+
+    // Write the node, then its children after it.
+    const uint32_t self = static_cast<uint32_t>(nodes.size());
+    nodes.emplace_back();
+    for (uint32_t i = 0; i < kBvhWidth; ++i) {
+      const Box box = i < part_count ? parts[i].box : Box{};
+      for (int axis = 0; axis < 3; ++axis) {
+        nodes[self].bounds[axis][i] = box.lo[axis];
+        nodes[self].bounds[3 + axis][i] = box.hi[axis];
+      }
+      nodes[self].child[i] = kBvhLeaf;
+    }
+    for (uint32_t i = 0; i < part_count; ++i) {
+      const Range &part = parts[i];
+      if (part.count() <= kBvhLeafSize)
+        nodes[self].child[i] = kBvhLeaf | part.begin << 2 | (part.count() - 1);
+      else if (tasks && part.count() <= task_size)
+        tasks->push_back({self, i, depth + 1, part, {}});
+      else {
+        const uint32_t child = build(part, depth + 1, nodes, task_size, tasks);
+        nodes[self].child[i] = child;
+      }
+    }
+    return self;
+  }
+
+private:
+  Split find_split(const Range &range) const {
+    // Sort the primitives into bins along all three axes.
+    const Binning binning(range.centroids);
+    Box boxes[3][kBins];
+    uint32_t counts[3][kBins] = {};
+    for (uint32_t i = range.begin; i < range.end; ++i) {
+      const Box &box = refs[i].box;
+      const Int4 bin = binning.bins(box);
+      for (int axis = 0; axis < 3; ++axis) {
+        boxes[axis][bin[axis]].grow(box);
+        ++counts[axis][bin[axis]];
+      }
+    }
+
+    // Sweep the planes between the bins from both sides.
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) {
+      float right_cost[kBins];
+      Box right;
+      uint32_t right_count = 0;
+      for (uint32_t bin = kBins - 1; bin > 0; --bin) {
+        right.grow(boxes[axis][bin]);
+        right_count += counts[axis][bin];
+        right_cost[bin] = right_count ? right.half_area() * tests(right_count) : Box::kInf;
+      }
+      Box left;
+      uint32_t left_count = 0;
+      for (uint32_t bin = 1; bin < kBins; ++bin) {
+        left.grow(boxes[axis][bin - 1]);
+        left_count += counts[axis][bin - 1];
+        const float cost = left_count ? left.half_area() * tests(left_count) + right_cost[bin] : Box::kInf;
+        if (cost < best.cost)
+          best = {cost, axis, bin};
+      }
+    }
+    return best;
+  }
+
+  float tests(uint32_t count) const { return static_cast<float>((count + group - 1) / group); }
+
+  // left may be range itself.
+  void split(const Range range, bool by_count, Range &left, Range &right) {
+    Range sides[2];
+    uint32_t middle = range.begin;
+    const Split best = by_count ? Split{} : find_split(range);
+    if (best.axis >= 0) {
+      // Partition by bin, finding the boxes of both sides on the way.
+      const Binning binning(range.centroids);
+      uint32_t end = range.end;
+      while (middle < end) {
+        if (binning.bins(refs[middle].box)[best.axis] < static_cast<int32_t>(best.bin)) {
+          sides[0].add(refs[middle++]);
+        } else {
+          sides[1].add(refs[middle]);
+          std::swap(refs[middle], refs[--end]);
+        }
+      }
+    } else {
+      // All centroids coincide, or the tree is too deep: halve by count along the widest axis.
+      const Float4 extent = range.centroids.hi - range.centroids.lo;
+      const int axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : (extent[1] >= extent[2] ? 1 : 2);
+      middle = range.begin + range.count() / 2;
+      std::nth_element(refs.begin() + range.begin, refs.begin() + middle, refs.begin() + range.end,
+                       [axis](const BuildRef &a, const BuildRef &b) {
+                         const float x = a.box.centroid()[axis], y = b.box.centroid()[axis];
+                         return x != y ? x < y : a.id() < b.id();
+                       });
+      for (uint32_t i = range.begin; i < range.end; ++i)
+        sides[i >= middle].add(refs[i]);
+    }
+    sides[0].begin = range.begin;
+    sides[0].end = sides[1].begin = middle;
+    sides[1].end = range.end;
+    left = sides[0];
+    right = sides[1];
+  }
+
+  std::vector<BuildRef> &refs;
+  const uint32_t group;
+  const BuildContext &context;
+};
+
+} // namespace
+
+WideTree build_wide_tree(std::vector<BuildRef> refs, uint32_t group, const BuildContext &context) {
+  WideTree tree;
+  if (refs.empty())
+    return tree;
+  if (refs.size() > kBvhLeaf >> 2)
+    throw std::bad_alloc(); // more than a leaf's 29 bits can address
+  const uint32_t count = static_cast<uint32_t>(refs.size());
+  Range all;
+  all.end = count;
+  for (const BuildRef &ref : refs)
+    all.add(ref);
+
+  // Build the top, then the subtrees on all threads. Where the top ends depends on the size alone.
+  Builder builder(refs, group, context);
+  std::vector<Task> tasks;
+  const uint32_t task_size = std::max(count / 64, 4096u);
+  builder.build(all, 0, tree.nodes, task_size, &tasks);
+  parallel_for(context, tasks.size(), [&](size_t i) {
+    Task &task = tasks[i];
+    task.nodes.reserve(task.range.count() / 12 + 8);
+    builder.build(task.range, task.depth, task.nodes, 0, nullptr);
+  });
+
+  tree.order.resize(count);
+  for (uint32_t i = 0; i < count; ++i)
+    tree.order[i] = refs[i].id();
+  refs = {};
+
+  // Join the subtrees in the order in which they were met.
+  size_t node_count = tree.nodes.size();
+  for (const Task &task : tasks)
+    node_count += task.nodes.size();
+  tree.nodes.reserve(node_count);
+  for (Task &task : tasks) {
+    const uint32_t offset = static_cast<uint32_t>(tree.nodes.size());
+    tree.nodes[task.node].child[task.slot] = offset;
+    for (BvhNode &node : task.nodes) {
+      for (uint32_t &child : node.child)
+        child += child & kBvhLeaf ? 0 : offset;
+      tree.nodes.push_back(node);
+    }
+    task.nodes = {};
+  }
+  return tree;
+}
+
+MeshBvh build_mesh_bvh(const Mesh &mesh, const PlacementFrame &frame, const BuildContext &context) {
+  const uint32_t count = static_cast<uint32_t>(mesh.triangles.size());
+  constexpr uint32_t kPiece = 16384;
+  std::vector<BuildRef> refs(count);
+  parallel_for(context, (count + kPiece - 1) / kPiece, [&](size_t piece) {
+    const uint32_t begin = static_cast<uint32_t>(piece) * kPiece;
+    for (uint32_t i = begin; i < std::min(begin + kPiece, count); ++i)
+      refs[i] = BuildRef(triangle_box(mesh, frame, i), i);
+  });
+  WideTree tree = build_wide_tree(std::move(refs), kBvhLeafSize, context);
+
+  // Number the blocks in the order of the nodes that hold them.
+  MeshBvh bvh;
+  std::vector<uint32_t> firsts;
+  for (size_t n = 0; n < tree.nodes.size(); ++n)
+    for (uint32_t i = 0; i < kBvhWidth; ++i)
+      if (tree.nodes[n].child[i] & kBvhLeaf && tree.nodes[n].bounds[0][i] < Box::kInf) {
+        firsts.push_back(tree.nodes[n].child[i] & ~kBvhLeaf);
+        tree.nodes[n].child[i] = kBvhLeaf | static_cast<uint32_t>(firsts.size() - 1);
+      }
+
+  // Gather the corners of each block.
+  bvh.blocks.resize(firsts.size());
+  parallel_for(context, (firsts.size() + kPiece - 1) / kPiece, [&](size_t piece) {
+    const size_t begin = piece * kPiece;
+    for (size_t b = begin; b < std::min(begin + kPiece, firsts.size()); ++b) {
+      TriangleBlock &block = bvh.blocks[b];
+      const uint32_t first = firsts[b] >> 2, used = (firsts[b] & 3) + 1;
+      for (uint32_t lane = 0; lane < 4; ++lane) {
+        const uint32_t triangle = tree.order[first + (lane < used ? lane : 0)];
+        block.primitive[lane] = lane < used ? triangle : kNone;
+        for (int corner = 0; corner < 3; ++corner) {
+          const glm::vec3 p = mesh.vertex(triangle, lane < used ? corner : 0);
+          for (int axis = 0; axis < 3; ++axis)
+            block.corner[corner][axis][lane] = p[axis];
+        }
+      }
+    }
+  });
+  bvh.nodes = std::move(tree.nodes);
+  return bvh;
+}
+
+} // namespace lancer

@@ -1,0 +1,34 @@
+// The traversal of the wide BVH, one copy per instruction set.
+#pragma once
+
+#include "accel/bvh.h"
+#include "accel/ray.h"
+
+#include <cstddef>
+
+namespace lancer {
+
+struct BvhKernel {
+  const char *name;
+  void (*closest)(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count);
+  void (*any)(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count);
+};
+
+// Each is the same source, bvh_kernel.cpp, compiled with LANCER_ISA set to the name.
+#if defined(__x86_64__)
+namespace sse4 {
+extern const BvhKernel kernel;
+}
+namespace avx2 {
+extern const BvhKernel kernel;
+}
+namespace avx512 {
+extern const BvhKernel kernel;
+}
+#else
+namespace generic {
+extern const BvhKernel kernel;
+}
+#endif
+
+} // namespace lancer

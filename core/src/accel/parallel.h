@@ -1,0 +1,53 @@
+// A loop over independent pieces on the threads that a build was given.
+#pragma once
+
+#include "accel/accelerator.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace lancer {
+
+inline void poll_cancel(const BuildContext &context) {
+  if (context.cancel && context.cancel->load(std::memory_order_relaxed))
+    throw BuildCancelled{};
+}
+
+// Calls piece(0) ... piece(count - 1), in any order; the first exception ends the loop and is thrown here.
+template <class Piece> void parallel_for(const BuildContext &context, size_t count, Piece &&piece) {
+  std::atomic<size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto work = [&] {
+    try {
+      for (size_t i; (i = next.fetch_add(1)) < count;) {
+        poll_cancel(context);
+        piece(i);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure)
+        failure = std::current_exception();
+      next = count;
+    }
+  };
+  std::vector<std::thread> helpers;
+  const size_t threads = std::min<size_t>(std::max(context.threads, 1u), count);
+  try {
+    for (size_t i = 1; i < threads; ++i)
+      helpers.emplace_back(work);
+  } catch (const std::system_error &) {
+    // The system gives no more threads: those that there are do the work.
+  }
+  work();
+  for (std::thread &helper : helpers)
+    helper.join();
+  if (failure)
+    std::rethrow_exception(failure);
+}
+
+} // namespace lancer

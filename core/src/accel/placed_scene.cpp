@@ -1,0 +1,147 @@
+#include "accel/placed_scene.h"
+
+#include "accel/ray.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+namespace {
+
+struct Extent {
+  glm::dvec3 lo{std::numeric_limits<double>::infinity()};
+  glm::dvec3 hi{-std::numeric_limits<double>::infinity()};
+
+  void grow(const glm::dvec3 &p) {
+    lo = glm::min(lo, p);
+    hi = glm::max(hi, p);
+  }
+  glm::dvec3 middle() const { return 0.5 * lo + 0.5 * hi; }
+  glm::dvec3 half() const { return 0.5 * hi - 0.5 * lo; }
+};
+
+bool finite(const glm::dvec3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+PlacementFrame make_frame(const Extent &e) {
+  PlacementFrame frame;
+  const glm::dvec3 middle = e.middle(), half = e.half();
+  const double largest = std::max({half.x, half.y, half.z});
+  for (int i = 0; i < 3; ++i)
+    frame.centre[i] = middle[i];
+  int exponent = 0;
+  if (std::frexp(largest, &exponent) > 0.0)
+    frame.scale = std::ldexp(1.0, -std::clamp(exponent, -900, 900));
+  return frame;
+}
+
+// To float, nearest: kBoxPad holds that rounding too.
+Box make_box(const PlacementFrame &frame, const Extent &e) {
+  Box box;
+  for (int i = 0; i < 3; ++i) {
+    box.lo[i] = static_cast<float>((e.lo[i] - frame.centre[i]) * frame.scale - kBoxPad);
+    box.hi[i] = static_cast<float>((e.hi[i] - frame.centre[i]) * frame.scale + kBoxPad);
+  }
+  box.lo[3] = box.hi[3] = 0.0f;
+  return box;
+}
+
+Extent mesh_extent(const Mesh &mesh) {
+  Extent e;
+  for (const glm::uvec3 &triangle : mesh.triangles)
+    for (int corner = 0; corner < 3; ++corner)
+      e.grow(glm::dvec3(mesh.positions[triangle[corner]]));
+  return e;
+}
+
+glm::dmat3 magnitudes(const glm::dmat3 &m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
+
+// How far a point with coordinates up to reach may move in object space by going to the world and back. Each map rounds to
+// within gamma(4) of the sum of its terms' magnitudes, and the stored inverse is known to about gamma(20) of
+// |to_object| |to_world|; 32 units of 2^-53 hold all of it.
+glm::dvec3 round_trip(const Instance &instance, const glm::dvec3 &reach) {
+  const glm::dvec3 world = magnitudes(instance.to_world.linear) * reach + glm::abs(instance.to_world.translation);
+  return 0x1p-48 * (magnitudes(instance.to_object.linear) * world + glm::abs(instance.to_object.translation) + reach);
+}
+
+// Half the size of an instance's box in the world, before widening.
+glm::dvec3 world_half(const Instance &instance, const glm::dvec3 &half) {
+  const glm::dmat3 m = magnitudes(instance.to_world.linear);
+  if (instance.kind == ShapeKind::Mesh)
+    return m * half;
+  glm::dvec3 result;
+  for (int i = 0; i < 3; ++i)
+    result[i] = instance.kind == ShapeKind::Sphere ? glm::length(glm::dvec3(m[0][i], m[1][i], m[2][i]))
+                                                   : std::hypot(m[0][i], m[1][i]) + m[2][i];
+  return result;
+}
+
+PlacedShape make_shape(const Instance &instance, const std::vector<PlacementFrame> &mesh_frames) {
+  PlacedShape shape;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      shape.to_object[4 * row + column] = instance.to_object.linear[column][row];
+    shape.to_object[4 * row + 3] = instance.to_object.translation[row];
+  }
+  const bool mesh = instance.kind == ShapeKind::Mesh;
+  const glm::dvec3 moved = round_trip(instance, glm::dvec3(1.0));
+  shape.frame = mesh ? mesh_frames[instance.mesh] : PlacementFrame{};
+  shape.slack = std::max({moved.x, moved.y, moved.z});
+  shape.kind = instance.kind;
+  shape.mesh = mesh ? instance.mesh : kNone;
+  return shape;
+}
+
+} // namespace
+
+PlacedScene place_scene(const Geometry &geometry) {
+  PlacedScene scene;
+  std::vector<Extent> mesh_extents;
+  for (const Mesh &mesh : geometry.meshes) {
+    mesh_extents.push_back(mesh_extent(mesh));
+    scene.mesh_frames.push_back(mesh.triangles.empty() ? PlacementFrame{} : make_frame(mesh_extents.back()));
+  }
+
+  // Place every instance; find the world box of those that have one.
+  std::vector<Extent> extents;
+  Extent all;
+  for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
+    const Instance &instance = geometry.instances[i];
+    scene.shapes.push_back(make_shape(instance, scene.mesh_frames));
+    const bool mesh = instance.kind == ShapeKind::Mesh;
+    if (mesh && geometry.meshes[instance.mesh].triangles.empty())
+      continue;
+    const Extent object = mesh ? mesh_extents[instance.mesh] : Extent{glm::dvec3(-1.0), glm::dvec3(1.0)};
+    const glm::dvec3 middle = instance.to_world.point(object.middle());
+    const glm::dvec3 moved = round_trip(instance, glm::max(glm::abs(object.lo), glm::abs(object.hi)));
+    const glm::dvec3 half = world_half(instance, object.half()) + magnitudes(instance.to_world.linear) * moved;
+    const Extent world{middle - half, middle + half};
+    if (instance.kind == ShapeKind::Plane || !finite(world.hi - world.lo)) {
+      scene.unbounded.push_back(i);
+      continue;
+    }
+    scene.bounded.push_back(i);
+    extents.push_back(world);
+    all.grow(world.lo);
+    all.grow(world.hi);
+  }
+
+  if (!extents.empty())
+    scene.world = make_frame(all);
+  for (const Extent &extent : extents)
+    scene.boxes.push_back(make_box(scene.world, extent));
+  return scene;
+}
+
+Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangle) {
+  Extent e;
+  for (int corner = 0; corner < 3; ++corner)
+    e.grow(glm::dvec3(mesh.vertex(triangle, corner)));
+  return make_box(frame, e);
+}
+
+size_t PlacedScene::bytes() const {
+  return shapes.capacity() * sizeof(PlacedShape) + mesh_frames.capacity() * sizeof(PlacementFrame) + boxes.capacity() * sizeof(Box) +
+         (unbounded.capacity() + bounded.capacity()) * sizeof(uint32_t);
+}
+
+} // namespace lancer

@@ -1,0 +1,28 @@
+// What all accelerators share: the scene's instances as plain records, their boxes, and those that have none.
+#pragma once
+
+#include "accel/bounds.h"
+#include "accel/placed_shape.h"
+#include "scene/geometry.h"
+
+#include <vector>
+
+namespace lancer {
+
+struct PlacedScene {
+  std::vector<PlacedShape> shapes; // one per instance of the geometry
+  std::vector<PlacementFrame> mesh_frames;  // one per mesh
+  std::vector<uint32_t> unbounded; // instances without a finite box, infinite planes above all: tested against every ray
+  std::vector<uint32_t> bounded;   // all others that have anything to hit
+  std::vector<Box> boxes;          // of bounded, in the frame world
+  PlacementFrame world;
+
+  size_t bytes() const;
+};
+
+PlacedScene place_scene(const Geometry &geometry);
+
+// The box of a triangle in its mesh's frame, widened by kBoxPad.
+Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangle);
+
+} // namespace lancer

@@ -1,0 +1,23 @@
+// Exact surfaces in their unit frames: sphere, plane, cylinder, cone (lancer.h says which).
+#pragma once
+
+#include "accel/placed_shape.h"
+#include "accel/ray.h"
+#include "scene/geometry.h"
+
+namespace lancer {
+
+// The first t with tmin < t < tmax where the ray meets the surface; false where there is none.
+// leaves: the ray starts on this surface, so the root that is its own start is left out.
+bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
+
+struct SurfacePoint {
+  glm::dvec3 p; // on the surface, object space
+  glm::dvec3 n; // outward geometric normal, unit, object space
+  glm::dvec2 uv; // sphere: longitude, latitude; cylinder and cone: angle, height; all in [0, 1]. Plane: x, y
+};
+
+// The point o + t d of an object-space ray, moved to the nearest place exactly on the surface.
+SurfacePoint quadric_point(ShapeKind kind, const glm::dvec3 &o, const glm::dvec3 &d, double t);
+
+} // namespace lancer

@@ -1,0 +1,169 @@
+// Eight floats and four doubles at a time, in the instruction set that this translation unit is compiled for.
+// For bvh_kernel.cpp only: everything has internal linkage, so that no other unit can pick up this unit's instructions.
+#pragma once
+
+#include <cstdint>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace lancer {
+namespace {
+
+#define LANCER_SIMD [[gnu::always_inline]] inline
+
+#if defined(__AVX__)
+
+struct F8 {
+  __m256 v;
+};
+LANCER_SIMD F8 load8(const float *p) { return {_mm256_load_ps(p)}; }
+LANCER_SIMD F8 splat8(float x) { return {_mm256_set1_ps(x)}; }
+LANCER_SIMD void store8(float *p, F8 a) { _mm256_store_ps(p, a.v); }
+LANCER_SIMD F8 operator-(F8 a, F8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
+LANCER_SIMD F8 operator*(F8 a, F8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
+LANCER_SIMD F8 min8(F8 a, F8 b) { return {_mm256_min_ps(a.v, b.v)}; }
+LANCER_SIMD F8 max8(F8 a, F8 b) { return {_mm256_max_ps(a.v, b.v)}; }
+LANCER_SIMD uint32_t less_equal(F8 a, F8 b) {
+  return static_cast<uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
+}
+
+struct D4 {
+  __m256d v;
+};
+LANCER_SIMD D4 widen4(const float *p) { return {_mm256_cvtps_pd(_mm_load_ps(p))}; }
+LANCER_SIMD D4 splat4(double x) { return {_mm256_set1_pd(x)}; }
+LANCER_SIMD void store4(double *p, D4 a) { _mm256_store_pd(p, a.v); }
+LANCER_SIMD D4 operator+(D4 a, D4 b) { return {_mm256_add_pd(a.v, b.v)}; }
+LANCER_SIMD D4 operator-(D4 a, D4 b) { return {_mm256_sub_pd(a.v, b.v)}; }
+LANCER_SIMD D4 operator*(D4 a, D4 b) { return {_mm256_mul_pd(a.v, b.v)}; }
+LANCER_SIMD D4 operator/(D4 a, D4 b) { return {_mm256_div_pd(a.v, b.v)}; }
+LANCER_SIMD D4 min4(D4 a, D4 b) { return {_mm256_min_pd(a.v, b.v)}; }
+LANCER_SIMD D4 max4(D4 a, D4 b) { return {_mm256_max_pd(a.v, b.v)}; }
+LANCER_SIMD uint32_t less_equal(D4 a, D4 b) {
+  return static_cast<uint32_t>(_mm256_movemask_pd(_mm256_cmp_pd(a.v, b.v, _CMP_LE_OQ)));
+}
+LANCER_SIMD uint32_t not_equal(D4 a, D4 b) {
+  return static_cast<uint32_t>(_mm256_movemask_pd(_mm256_cmp_pd(a.v, b.v, _CMP_NEQ_OQ)));
+}
+
+#elif defined(__SSE4_1__)
+
+struct F8 {
+  __m128 lo, hi;
+};
+LANCER_SIMD F8 load8(const float *p) { return {_mm_load_ps(p), _mm_load_ps(p + 4)}; }
+LANCER_SIMD F8 splat8(float x) { return {_mm_set1_ps(x), _mm_set1_ps(x)}; }
+LANCER_SIMD void store8(float *p, F8 a) {
+  _mm_store_ps(p, a.lo);
+  _mm_store_ps(p + 4, a.hi);
+}
+LANCER_SIMD F8 operator-(F8 a, F8 b) { return {_mm_sub_ps(a.lo, b.lo), _mm_sub_ps(a.hi, b.hi)}; }
+LANCER_SIMD F8 operator*(F8 a, F8 b) { return {_mm_mul_ps(a.lo, b.lo), _mm_mul_ps(a.hi, b.hi)}; }
+LANCER_SIMD F8 min8(F8 a, F8 b) { return {_mm_min_ps(a.lo, b.lo), _mm_min_ps(a.hi, b.hi)}; }
+LANCER_SIMD F8 max8(F8 a, F8 b) { return {_mm_max_ps(a.lo, b.lo), _mm_max_ps(a.hi, b.hi)}; }
+LANCER_SIMD uint32_t less_equal(F8 a, F8 b) {
+  return static_cast<uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a.lo, b.lo)) | _mm_movemask_ps(_mm_cmple_ps(a.hi, b.hi)) << 4);
+}
+
+struct D4 {
+  __m128d lo, hi;
+};
+LANCER_SIMD D4 widen4(const float *p) {
+  const __m128 v = _mm_load_ps(p);
+  return {_mm_cvtps_pd(v), _mm_cvtps_pd(_mm_movehl_ps(v, v))};
+}
+LANCER_SIMD D4 splat4(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
+LANCER_SIMD void store4(double *p, D4 a) {
+  _mm_store_pd(p, a.lo);
+  _mm_store_pd(p + 2, a.hi);
+}
+LANCER_SIMD D4 operator+(D4 a, D4 b) { return {_mm_add_pd(a.lo, b.lo), _mm_add_pd(a.hi, b.hi)}; }
+LANCER_SIMD D4 operator-(D4 a, D4 b) { return {_mm_sub_pd(a.lo, b.lo), _mm_sub_pd(a.hi, b.hi)}; }
+LANCER_SIMD D4 operator*(D4 a, D4 b) { return {_mm_mul_pd(a.lo, b.lo), _mm_mul_pd(a.hi, b.hi)}; }
+LANCER_SIMD D4 operator/(D4 a, D4 b) { return {_mm_div_pd(a.lo, b.lo), _mm_div_pd(a.hi, b.hi)}; }
+LANCER_SIMD D4 min4(D4 a, D4 b) { return {_mm_min_pd(a.lo, b.lo), _mm_min_pd(a.hi, b.hi)}; }
+LANCER_SIMD D4 max4(D4 a, D4 b) { return {_mm_max_pd(a.lo, b.lo), _mm_max_pd(a.hi, b.hi)}; }
+LANCER_SIMD uint32_t less_equal(D4 a, D4 b) {
+  return static_cast<uint32_t>(_mm_movemask_pd(_mm_cmple_pd(a.lo, b.lo)) | _mm_movemask_pd(_mm_cmple_pd(a.hi, b.hi)) << 2);
+}
+LANCER_SIMD uint32_t not_equal(D4 a, D4 b) {
+  const __m128d lo = _mm_and_pd(_mm_cmpneq_pd(a.lo, b.lo), _mm_cmpord_pd(a.lo, b.lo));
+  const __m128d hi = _mm_and_pd(_mm_cmpneq_pd(a.hi, b.hi), _mm_cmpord_pd(a.hi, b.hi));
+  return static_cast<uint32_t>(_mm_movemask_pd(lo) | _mm_movemask_pd(hi) << 2);
+}
+
+#else
+
+// Plain lanes, which the compiler turns into NEON and its kin.
+template <class T, int N> struct Lanes {
+  T v[N];
+};
+using F8 = Lanes<float, 8>;
+using D4 = Lanes<double, 4>;
+
+template <class T, int N, class Op> LANCER_SIMD Lanes<T, N> each(Lanes<T, N> a, Lanes<T, N> b, Op op) {
+  Lanes<T, N> r;
+  for (int i = 0; i < N; ++i)
+    r.v[i] = op(a.v[i], b.v[i]);
+  return r;
+}
+template <class T, int N, class Op> LANCER_SIMD uint32_t mask(Lanes<T, N> a, Lanes<T, N> b, Op op) {
+  uint32_t r = 0;
+  for (int i = 0; i < N; ++i)
+    r |= static_cast<uint32_t>(op(a.v[i], b.v[i])) << i;
+  return r;
+}
+#define LANCER_LANES(name, expression)                                                                                         \
+  template <class T, int N> LANCER_SIMD Lanes<T, N> name(Lanes<T, N> a, Lanes<T, N> b) {                                       \
+    return each(a, b, [](T x, T y) { return expression; });                                                                    \
+  }
+LANCER_LANES(operator+, x + y)
+LANCER_LANES(operator-, x - y)
+LANCER_LANES(operator*, x *y)
+LANCER_LANES(operator/, x / y)
+LANCER_LANES(min8, x < y ? x : y)
+LANCER_LANES(max8, x > y ? x : y)
+LANCER_LANES(min4, x < y ? x : y)
+LANCER_LANES(max4, x > y ? x : y)
+#undef LANCER_LANES
+template <class T, int N> LANCER_SIMD uint32_t less_equal(Lanes<T, N> a, Lanes<T, N> b) {
+  return mask(a, b, [](T x, T y) { return x <= y; });
+}
+template <class T, int N> LANCER_SIMD uint32_t not_equal(Lanes<T, N> a, Lanes<T, N> b) {
+  return mask(a, b, [](T x, T y) { return x < y || x > y; });
+}
+template <class T, int N> LANCER_SIMD Lanes<T, N> splat(T x) {
+  Lanes<T, N> r;
+  for (T &lane : r.v)
+    lane = x;
+  return r;
+}
+LANCER_SIMD F8 splat8(float x) { return splat<float, 8>(x); }
+LANCER_SIMD D4 splat4(double x) { return splat<double, 4>(x); }
+LANCER_SIMD F8 load8(const float *p) {
+  F8 r;
+  for (int i = 0; i < 8; ++i)
+    r.v[i] = p[i];
+  return r;
+}
+LANCER_SIMD D4 widen4(const float *p) {
+  D4 r;
+  for (int i = 0; i < 4; ++i)
+    r.v[i] = static_cast<double>(p[i]);
+  return r;
+}
+LANCER_SIMD void store8(float *p, F8 a) {
+  for (int i = 0; i < 8; ++i)
+    p[i] = a.v[i];
+}
+LANCER_SIMD void store4(double *p, D4 a) {
+  for (int i = 0; i < 4; ++i)
+    p[i] = a.v[i];
+}
+
+#endif
+
+} // namespace
+} // namespace lancer

@@ -1,0 +1,500 @@
+// The C interface: checks handles and pointers, turns exceptions into statuses, and passes on to the rooms.
+#include "handles.h"
+#include "lancer.h"
+#include "render/fill_settings.h"
+#include "render/probe.h"
+#include "scene/error.h"
+#include "scene/fill_camera.h"
+
+#include <cstdio>
+#include <cstring>
+
+namespace {
+
+using namespace lancer;
+
+// A fixed place, so that telling of missing memory needs none.
+thread_local char last_error[1024] = "";
+
+lancer_status fail(lancer_status status, const char *text) {
+  std::snprintf(last_error, sizeof last_error, "%s", text);
+  return status;
+}
+
+lancer_status status_of(Fault fault) {
+  switch (fault) {
+  case Fault::Argument:
+    return LANCER_ERROR_ARGUMENT;
+  case Fault::State:
+    return LANCER_ERROR_STATE;
+  case Fault::Memory:
+    return LANCER_ERROR_MEMORY;
+  case Fault::Internal:
+    break;
+  }
+  return LANCER_ERROR_INTERNAL;
+}
+
+struct BadHandle {
+  const char *text;
+};
+
+// Nothing thrown inside leaves the library.
+template <class Body> lancer_status guard(Body &&body) noexcept {
+  last_error[0] = '\0';
+  const FloatEnvironment environment;
+  try {
+    return body();
+  } catch (const BadHandle &handle) {
+    return fail(LANCER_ERROR_HANDLE, handle.text);
+  } catch (const Error &error) {
+    return fail(status_of(error.fault()), error.what());
+  } catch (const std::bad_alloc &) {
+    return fail(LANCER_ERROR_MEMORY, "out of memory");
+  } catch (const std::length_error &) {
+    return fail(LANCER_ERROR_MEMORY, "out of memory: an array is larger than any memory");
+  } catch (const std::exception &error) {
+    return fail(LANCER_ERROR_INTERNAL, error.what());
+  } catch (...) {
+    return fail(LANCER_ERROR_INTERNAL, "unknown fault");
+  }
+}
+
+class SceneObject {
+public:
+  ~SceneObject() { cancel = true; }
+
+  std::mutex mutex;
+  Description description;
+  std::shared_ptr<const Scene> scene; // set by commit
+  std::string messages;
+  std::atomic<bool> cancel{false};
+  enum class State { Filling, Committing, Committed, Failed } state = State::Filling;
+  std::unique_ptr<ThreadPool> builder; // last: ends before what it works on
+
+  void require_filling() const {
+    if (state != State::Filling)
+      throw Error(Fault::State, "scene: it has been committed; nothing can be added any more");
+  }
+  const std::shared_ptr<const Scene> &committed() const {
+    if (state != State::Committed)
+      throw Error(Fault::State, state == State::Filling      ? "scene: it has not been committed yet"
+                                : state == State::Committing ? "scene: its commit has not been waited for"
+                                                             : "scene: its commit failed");
+    return scene;
+  }
+};
+
+struct SessionObject {
+  SessionObject(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
+      : session(std::move(scene), camera, settings) {}
+  std::mutex mutex;
+  Session session;
+};
+
+// Never destroyed: a thread may still be inside a call while the process ends.
+Handles<SceneObject> &scenes() {
+  static auto *const handles = new Handles<SceneObject>(0x5c);
+  return *handles;
+}
+Handles<SessionObject> &sessions() {
+  static auto *const handles = new Handles<SessionObject>(0x5e);
+  return *handles;
+}
+
+std::shared_ptr<SceneObject> scene_of(lancer_scene handle) {
+  auto object = scenes().find(handle);
+  if (!object)
+    throw BadHandle{"scene: no such scene, or it has been destroyed"};
+  return object;
+}
+std::shared_ptr<SessionObject> session_of(lancer_session handle) {
+  auto object = sessions().find(handle);
+  if (!object)
+    throw BadHandle{"session: no such session, or it has been destroyed"};
+  return object;
+}
+
+void require(const void *pointer, const char *name) {
+  if (!pointer)
+    bad_argument(std::string(name) + " is NULL");
+}
+
+// Runs fill on a scene that is still open.
+template <class Fill> lancer_status fill_scene(lancer_scene handle, const void *record, const char *name, Fill &&fill) {
+  return guard([&] {
+    const auto object = scene_of(handle);
+    require(record, name);
+    const std::lock_guard lock(object->mutex);
+    object->require_filling();
+    fill(object->description);
+    return LANCER_OK;
+  });
+}
+
+// Runs ask on a committed scene; arrays may be NULL only when there is nothing to ask.
+template <class Ask>
+lancer_status probe_scene(lancer_scene handle, uint32_t count, std::initializer_list<const void *> arrays, Ask &&ask) {
+  return guard([&] {
+    const auto object = scene_of(handle);
+    for (const void *array : arrays)
+      if (count)
+        require(array, "probe: an array");
+    std::shared_ptr<const Scene> scene;
+    {
+      const std::lock_guard lock(object->mutex);
+      scene = object->committed();
+    }
+    ask(*scene);
+    return LANCER_OK;
+  });
+}
+
+void copy_text(char *target, size_t size, const std::string &text) { std::snprintf(target, size, "%s", text.c_str()); }
+
+} // namespace
+
+extern "C" {
+
+uint32_t lancer_abi_version(void) { return LANCER_ABI_VERSION; }
+const char *lancer_version(void) { return LANCER_VERSION; }
+const char *lancer_last_error(void) { return last_error; }
+
+uint32_t lancer_sizeof(uint32_t which) {
+  static constexpr size_t sizes[LANCER_STRUCT_COUNT] = {
+      sizeof(lancer_mesh),     sizeof(lancer_instance), sizeof(lancer_parameter),    sizeof(lancer_lobe),       sizeof(lancer_material),
+      sizeof(lancer_light),    sizeof(lancer_camera),   sizeof(lancer_settings),     sizeof(lancer_progress),   sizeof(lancer_statistics),
+      sizeof(lancer_hit),      sizeof(lancer_vertex),   sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample)};
+  return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
+}
+
+lancer_status lancer_scene_create(lancer_scene *scene) {
+  return guard([&] {
+    require(scene, "scene");
+    *scene = scenes().add(std::make_shared<SceneObject>());
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_scene_destroy(lancer_scene scene) {
+  return guard([&] {
+    const auto object = scenes().remove(scene);
+    if (!object)
+      throw BadHandle{"scene: no such scene, or it has been destroyed"};
+    object->cancel = true;
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_scene_add_mesh(lancer_scene scene, const lancer_mesh *mesh) {
+  return fill_scene(scene, mesh, "mesh", [&](Description &description) { add_mesh(description, *mesh); });
+}
+
+lancer_status lancer_scene_add_material(lancer_scene scene, const lancer_material *material) {
+  return fill_scene(scene, material, "material", [&](Description &description) { add_material(description, *material); });
+}
+
+lancer_status lancer_scene_add_light(lancer_scene scene, const lancer_light *light) {
+  return fill_scene(scene, light, "light", [&](Description &description) { add_light(description, *light); });
+}
+
+lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
+                                         const uint32_t *slots, const char *names, size_t names_size) {
+  static const char nothing = 0;
+  return fill_scene(scene, &nothing, "instances", [&](Description &description) {
+    add_instances(description, count, instances, slot_count, slots, names, names_size);
+  });
+}
+
+lancer_status lancer_scene_set_world(lancer_scene scene, const float radiance[3]) {
+  return fill_scene(scene, radiance, "world: radiance", [&](Description &description) { set_world(description, radiance); });
+}
+
+lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint32_t threads) {
+  return guard([&] {
+    const auto object = scene_of(scene);
+    const std::lock_guard lock(object->mutex);
+    object->require_filling();
+    if (accelerator > LANCER_BRUTE_FORCE)
+      bad_argument("scene: accelerator " + std::to_string(accelerator) + " is not one of 0, 1, 2");
+    BuildContext context;
+    context.threads = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
+    context.cancel = &object->cancel;
+    object->builder = std::make_unique<ThreadPool>(1);
+    object->cancel = false;
+    object->state = SceneObject::State::Committing;
+    // The object owns the thread, so a plain pointer outlives the work.
+    SceneObject *const target = object.get();
+    object->builder->start([target, accelerator, context](uint32_t) {
+      target->scene = commit(std::move(target->description), static_cast<AcceleratorKind>(accelerator), context);
+    });
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_scene_wait(lancer_scene scene, uint32_t milliseconds) {
+  return guard([&]() -> lancer_status {
+    const auto object = scene_of(scene);
+    const std::lock_guard lock(object->mutex);
+    if (object->state != SceneObject::State::Committing) {
+      object->committed();
+      return LANCER_OK;
+    }
+    try {
+      if (!object->builder->wait(milliseconds))
+        return LANCER_RUNNING;
+    } catch (const BuildCancelled &) {
+      object->state = SceneObject::State::Failed;
+      return LANCER_CANCELLED;
+    } catch (...) {
+      object->state = SceneObject::State::Failed;
+      throw;
+    }
+    object->builder.reset();
+    object->messages = object->scene->messages;
+    object->state = SceneObject::State::Committed;
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_scene_cancel(lancer_scene scene) {
+  return guard([&] {
+    scene_of(scene)->cancel = true;
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_scene_messages(lancer_scene scene, char *text, size_t size, size_t *needed) {
+  return guard([&] {
+    const auto object = scene_of(scene);
+    const std::lock_guard lock(object->mutex);
+    if (object->state == SceneObject::State::Committing)
+      throw Error(Fault::State, "scene: its commit has not been waited for");
+    const std::string messages =
+        object->state == SceneObject::State::Filling ? object->description.messages.text() : object->messages;
+    if (needed)
+      *needed = messages.size() + 1;
+    if (size) {
+      require(text, "messages: text");
+      copy_text(text, size, messages);
+    }
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_create(lancer_scene scene, const lancer_camera *camera, const lancer_settings *settings,
+                                    lancer_session *session) {
+  return guard([&] {
+    const auto object = scene_of(scene);
+    require(camera, "camera");
+    require(settings, "settings");
+    require(session, "session");
+    std::shared_ptr<const Scene> committed;
+    {
+      const std::lock_guard lock(object->mutex);
+      committed = object->committed();
+    }
+    *session = sessions().add(std::make_shared<SessionObject>(std::move(committed), read_camera(*camera), read_settings(*settings)));
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_destroy(lancer_session session) {
+  return guard([&] {
+    const auto object = sessions().remove(session);
+    if (!object)
+      throw BadHandle{"session: no such session, or it has been destroyed"};
+    object->session.cancel();
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_render(lancer_session session, uint32_t first, uint32_t count) {
+  return guard([&] {
+    const auto object = session_of(session);
+    const std::lock_guard lock(object->mutex);
+    object->session.render(first, count);
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_wait(lancer_session session, uint32_t milliseconds, lancer_progress *progress) {
+  return guard([&]() -> lancer_status {
+    const auto object = session_of(session);
+    const std::lock_guard lock(object->mutex);
+    Progress now;
+    const Session::State state = object->session.wait(milliseconds, now);
+    if (progress)
+      *progress = {now.fraction, now.seconds, now.samples, now.rays};
+    return state == Session::State::Done ? LANCER_OK : state == Session::State::Running ? LANCER_RUNNING : LANCER_CANCELLED;
+  });
+}
+
+lancer_status lancer_session_cancel(lancer_session session) {
+  return guard([&] {
+    // Without the lock: one who waits holds it.
+    session_of(session)->session.cancel();
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_read(lancer_session session, uint32_t pass, float *out, size_t float_count) {
+  return guard([&] {
+    const auto object = session_of(session);
+    require(out, "read: out");
+    const std::lock_guard lock(object->mutex);
+    if (pass >= LANCER_PASS_COUNT)
+      bad_argument("read: pass " + std::to_string(pass) + " >= " + std::to_string(LANCER_PASS_COUNT) + " passes");
+    const Film &film = object->session.film();
+    const size_t expected = size_t(film.width()) * film.height() * channels(static_cast<Pass>(pass));
+    if (float_count != expected)
+      bad_argument("read: " + std::to_string(float_count) + " floats for a pass of " + std::to_string(expected));
+    object->session.read(static_cast<Pass>(pass), std::span(out, float_count));
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_statistics(lancer_session session, lancer_statistics *statistics) {
+  return guard([&] {
+    const auto object = session_of(session);
+    require(statistics, "statistics");
+    const std::lock_guard lock(object->mutex);
+    const SessionStatistics from = object->session.statistics();
+    const Scene &scene = object->session.scene();
+    *statistics = {};
+    statistics->build_seconds = scene.build_seconds;
+    statistics->render_seconds = from.render_seconds;
+    statistics->samples = from.samples;
+    statistics->camera_rays = from.rays.camera;
+    statistics->bounce_rays = from.rays.bounce;
+    statistics->shadow_rays = from.rays.shadow;
+    statistics->invalid_samples = from.invalid_samples;
+    statistics->invalid_x = from.first_invalid.x;
+    statistics->invalid_y = from.first_invalid.y;
+    statistics->invalid_sample = from.first_invalid.sample;
+    statistics->threads = from.threads;
+    statistics->triangles = scene.triangles;
+    statistics->instances = scene.geometry.instances.size();
+    statistics->lights = scene.lights.size();
+    statistics->geometry_bytes = scene.geometry_bytes();
+    statistics->accelerator_bytes = scene.accelerator->bytes();
+    statistics->film_bytes = from.film_bytes;
+    const bool lens = object->session.camera().lens_radius > 0.0;
+    copy_text(statistics->features, sizeof statistics->features, feature_names(scene.features) + (lens ? " lens" : ""));
+    copy_text(statistics->kernel, sizeof statistics->kernel, from.kernel);
+    copy_text(statistics->instruction_set, sizeof statistics->instruction_set, scene.accelerator->instruction_set());
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_debug_sample(lancer_session session, uint32_t x, uint32_t y, uint32_t s, float *rgba, lancer_vertex *vertices,
+                                  uint32_t capacity, uint32_t *count) {
+  return guard([&] {
+    const auto object = session_of(session);
+    require(rgba, "debug_sample: rgba");
+    if (capacity)
+      require(vertices, "debug_sample: vertices");
+    const std::lock_guard lock(object->mutex);
+    const Film &film = object->session.film();
+    if (x >= film.width() || y >= film.height())
+      bad_argument("debug_sample: pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") outside the region of " +
+                   std::to_string(film.width()) + " x " + std::to_string(film.height()));
+    std::vector<PathVertex> path;
+    const SampleResult result = object->session.replay({x, y, s}, path);
+    for (int i = 0; i < 3; ++i)
+      rgba[i] = result.radiance[i];
+    rgba[3] = result.alpha;
+    for (size_t i = 0; i < std::min<size_t>(capacity, path.size()); ++i) {
+      const PathVertex &from = path[i];
+      vertices[i] = {{from.position.x, from.position.y, from.position.z}, from.t, {from.normal.x, from.normal.y, from.normal.z},
+                     {from.beta.x, from.beta.y, from.beta.z}, {from.radiance.x, from.radiance.y, from.radiance.z},
+                     object->session.scene().geometry.instances[from.instance].number, from.primitive, from.material, from.depth};
+    }
+    if (count)
+      *count = uint32_t(path.size());
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_probe_intersect(lancer_scene scene, uint32_t count, const double *origins, const double *directions,
+                                     const double *tmin, const double *tmax, lancer_hit *hits) {
+  return probe_scene(scene, count, {origins, directions, tmin, tmax, hits},
+                     [&](const Scene &s) { probe_intersect(s, count, origins, directions, tmin, tmax, hits); });
+}
+
+lancer_status lancer_probe_occluded(lancer_scene scene, uint32_t count, const double *origins, const double *directions,
+                                    const double *tmin, const double *tmax, uint8_t *occluded) {
+  return probe_scene(scene, count, {origins, directions, tmin, tmax, occluded},
+                     [&](const Scene &s) { probe_occluded(s, count, origins, directions, tmin, tmax, occluded); });
+}
+
+lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo, const float *wi, float *f,
+                                float *pdf) {
+  return probe_scene(scene, count, {wo, wi, f, pdf}, [&](const Scene &s) { probe_bsdf(s, material, count, wo, wi, f, pdf); });
+}
+
+lancer_status lancer_probe_bsdf_sample(lancer_scene scene, uint32_t material, uint32_t count, const float *wo, const float *u,
+                                       lancer_bsdf_sample *samples) {
+  return probe_scene(scene, count, {wo, u, samples}, [&](const Scene &s) { probe_bsdf_sample(s, material, count, wo, u, samples); });
+}
+
+lancer_status lancer_probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv,
+                                      const float *alpha, const float *ior, float *d, float *f, float *g1) {
+  return guard([&] {
+    for (const void *array : {cos_nh, cos_lh, cos_nv, alpha, ior, static_cast<const float *>(d), static_cast<const float *>(f),
+                              static_cast<const float *>(g1)})
+      if (count)
+        require(array, "probe: an array");
+    probe_microfacet(count, cos_nh, cos_lh, cos_nv, alpha, ior, d, f, g1);
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_probe_light(lancer_scene scene, uint32_t light, uint32_t count, const double *points, const float *u,
+                                 lancer_light_sample *samples) {
+  return probe_scene(scene, count, {points, u, samples}, [&](const Scene &s) { probe_light(s, light, count, points, u, samples); });
+}
+
+lancer_status lancer_probe_light_pdf(lancer_scene scene, uint32_t light, uint32_t count, const double *points, const double *wi,
+                                     float *pdf) {
+  return probe_scene(scene, count, {points, wi, pdf}, [&](const Scene &s) { probe_light_pdf(s, light, count, points, wi, pdf); });
+}
+
+lancer_status lancer_probe_camera(lancer_session session, uint32_t count, const double *raster, const double *lens,
+                                  double *origins, double *directions) {
+  return guard([&] {
+    const auto object = session_of(session);
+    for (const void *array : {raster, lens, static_cast<const double *>(origins), static_cast<const double *>(directions)})
+      if (count)
+        require(array, "probe: an array");
+    const std::lock_guard lock(object->mutex);
+    probe_camera(object->session, count, raster, lens, origins, directions);
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_probe_sampler(uint32_t seed, uint32_t x, uint32_t y, uint32_t sample, uint32_t dimensions, float *out) {
+  return guard([&] {
+    if (dimensions)
+      require(out, "probe: out");
+    const Sampler sampler(seed, x, y, sample);
+    for (uint32_t i = 0; i < dimensions; ++i)
+      out[i] = sampler.get1(i);
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_probe_filter(uint32_t filter, float width, uint32_t count, const float *u, float *offset) {
+  return guard([&] {
+    const PixelFilter pixel(read_filter(filter, width), width);
+    if (count) {
+      require(u, "probe: u");
+      require(offset, "probe: offset");
+    }
+    for (uint32_t i = 0; i < count; ++i)
+      offset[i] = pixel.sample(u[i]);
+    return LANCER_OK;
+  });
+}
+
+} // extern "C"

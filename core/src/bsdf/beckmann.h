@@ -1,0 +1,117 @@
+// Beckmann's distribution of microfacets: density, masking, and sampling of the normals that are visible from wo.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <numbers>
+
+#include "sampling/erf_inverse.h"
+#include "sampling/warp.h"
+
+namespace lancer {
+
+// tan^2 of a direction's angle to n. Never from 1 - cos^2, which loses a small roughness in rounding.
+inline float tan2_theta(const glm::vec3 &w) { return (w.x * w.x + w.y * w.y) / (w.z * w.z); }
+
+// D: density of microfacet normals per solid angle. Beyond exp(-87) of the top a float holds 0.
+inline float beckmann_d(float tan2, float alpha) {
+  const float alpha2 = alpha * alpha;
+  if (!(tan2 <= 87.0f * alpha2))
+    return 0.0f;
+  const float sec2 = 1.0f + tan2;
+  return std::exp(-tan2 / alpha2) * sec2 * sec2 * kInvPi / alpha2;
+}
+
+// The masking parameter a = 1 / (alpha tan(theta)); infinite along n.
+inline float beckmann_a(const glm::vec3 &w, float alpha) { return w.z / (alpha * std::sqrt(w.x * w.x + w.y * w.y)); }
+
+// Walter's rational fit of G1, which is the value of the model; the fit exceeds 1 just below its end.
+inline float beckmann_g1(float a) {
+  if (!(a < 1.6f))
+    return 1.0f;
+  return std::min(1.0f, a * (3.535f + 2.181f * a) / (1.0f + a * (2.276f + 2.577f * a)));
+}
+
+// Beyond this a the share that masking takes is below erfc(4) = 2e-8, less than a float can tell.
+inline constexpr float kUnmasked = 4.0f;
+
+// The exact G1, which makes the density of visible normals integrate to 1.
+inline float beckmann_g1_exact(float a) {
+  if (!(a < kUnmasked))
+    return 1.0f;
+  constexpr float inv_2_sqrt_pi = 0.5f * std::numbers::inv_sqrtpi_v<float>;
+  // Over a common denominator, so that a = 0 is no division by zero.
+  return a / (a + inv_2_sqrt_pi * std::exp(-a * a) - 0.5f * a * std::erfc(a));
+}
+
+// Slope along wo's azimuth, in units of alpha, of a normal visible from masking parameter a: density (a - x) exp(-x^2), x < a.
+inline double beckmann_visible_slope(float a_float, float u_float) {
+  constexpr double half_sqrt_pi = 0.5 / std::numbers::inv_sqrtpi_v<double>;
+  const double a = a_float;
+  // The middle of the float's cell: 0 would ask for the end of an infinite tail.
+  const double u = static_cast<double>(u_float) + 0x1p-25;
+  const auto integral = [&](double x, double exp_x2) { return a * half_sqrt_pi * std::erfc(-x) + 0.5 * exp_x2; };
+  const double total = integral(a, std::exp(-a * a));
+  // Start from a power law between both ends of erf(x), within 0.03 of the root.
+  const double top = std::erf(a);
+  const double k = 0.43 + 0.57 * a * a / (a * a + 5.0);
+  const double start = top - (1.0 + top) * std::pow(1.0 - u, k);
+  double low = -6.0, high = a;
+  double x = std::clamp(static_cast<double>(erf_inverse(static_cast<float>(std::clamp(start, -1.0 + 0x1p-23, 1.0 - 0x1p-23)))), low, high);
+  for (int i = 0; i < 60; ++i) {
+    const double exp_x2 = std::exp(-x * x);
+    const double error = integral(x, exp_x2) / total - u;
+    if (std::abs(error) < 0x1p-30)
+      break;
+    (error > 0.0 ? high : low) = x;
+    // Halley's step, or halve the bracket where that would leave it.
+    const double slope = (a - x) * exp_x2 / total;
+    const double newton = error / slope;
+    const double step = newton / (1.0 + newton * (0.5 / (a - x) + x));
+    const double next = x - step;
+    x = next > low && next < high ? next : 0.5 * (low + high);
+  }
+  return x;
+}
+
+// Angle from wo's azimuth of a slope of length r = eccentricity * a: density (1 - eccentricity cos(phi)) / (2 pi). Its
+// distribution is Kepler's equation, phi - eccentricity sin(phi) = mean anomaly.
+inline float beckmann_visible_angle(float eccentricity, float u) {
+  const float mean = kPi * std::abs(2.0f * u - 1.0f);
+  // Newton from above: the function is convex between 0 and pi, so every step falls towards the root.
+  float phi = std::min(mean + eccentricity, kPi);
+  for (int i = 0; i < 20; ++i) {
+    const float error = phi - eccentricity * std::sin(phi) - mean;
+    const float step = error / (1.0f - eccentricity * std::cos(phi));
+    if (!(step > 0x1p-22f * phi))
+      break;
+    phi -= step;
+  }
+  return std::copysign(phi, 2.0f * u - 1.0f);
+}
+
+// A normal h visible from wo (wo.z > 0), density G1_exact(wo) max(0, wo.h) D(h) / wo.z per solid angle of h.
+inline glm::vec3 beckmann_sample_visible(const glm::vec3 &wo, float alpha, glm::vec2 u) {
+  const float a = beckmann_a(wo, alpha);
+  const float sin_theta = std::sqrt(wo.x * wo.x + wo.y * wo.y);
+  const glm::vec2 azimuth = sin_theta > 0.0f ? glm::vec2(wo.x, wo.y) / sin_theta : glm::vec2(1.0f, 0.0f);
+  // Draw the slope along wo's azimuth and across it, in units of alpha.
+  glm::vec2 slope;
+  if (a < kUnmasked) {
+    // The part along it by its visible share; the part across as it is, Gaussian.
+    slope = {static_cast<float>(beckmann_visible_slope(a, u.x)), erf_inverse(2.0f * u.y + (0x1p-24f - 1.0f))};
+  } else {
+    // Nothing is masked: Gaussian in length (log1p keeps the digits of small u), and turned by the projected area alone.
+    const float r = std::sqrt(-std::log1p(-u.x));
+    const float phi = beckmann_visible_angle(std::min(r / a, 1.0f), u.y);
+    slope = {r * std::cos(phi), r * std::sin(phi)};
+  }
+  // Turn it to wo's azimuth; the normal leans against the slope.
+  slope *= alpha;
+  const float x = azimuth.x * slope.x - azimuth.y * slope.y;
+  const float y = azimuth.y * slope.x + azimuth.x * slope.y;
+  return glm::normalize(glm::vec3(-x, -y, 1.0f));
+}
+
+} // namespace lancer

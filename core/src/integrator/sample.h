@@ -1,0 +1,126 @@
+// What an integrator is asked, and what it answers: batches of pixel samples.
+#pragma once
+
+#include "sampling/pixel_filter.h"
+#include "sampling/sobol.h"
+#include "sampling/warp.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+#include <vector>
+
+namespace lancer {
+
+enum class IntegratorKind : uint32_t { Path = 0, Classic = 1, Normals = 2 };
+
+struct IntegratorSettings {
+  IntegratorKind kind = IntegratorKind::Path;
+  uint32_t samples = 1; // planned per pixel
+  uint32_t seed = 0;
+  uint32_t max_bounces = 10;
+  float contribution_threshold = 0.0f;
+  float clamp_indirect = 0.0f;
+  FilterKind filter = FilterKind::BlackmanHarris;
+  float filter_width = 1.5f;
+  bool film_transparent = false;
+  bool all_features = false;
+};
+
+// The address of one sample: pixel of the region and number.
+struct SampleAddress {
+  uint32_t x, y, sample;
+};
+
+// What one sample adds to the film.
+struct SampleResult {
+  glm::vec3 radiance{0.0f};
+  float alpha = 0.0f;
+  glm::vec3 normal{0.0f};
+  glm::vec3 albedo{0.0f};
+  // Where the camera ray ended.
+  float depth = 1e10f; // scene units along the camera's z; 1e10: nothing there
+  glm::vec3 position{0.0f};
+  float object_index = 0.0f, material_index = 0.0f;
+};
+
+struct RayCounts {
+  uint64_t camera = 0, bounce = 0, shadow = 0;
+};
+
+// One vertex of a replayed sample, in scene units.
+struct PathVertex {
+  glm::dvec3 position{0.0};
+  double t = 0.0;
+  glm::vec3 normal{0.0f}, beta{0.0f}, radiance{0.0f};
+  uint32_t instance = kNone, primitive = kNone, material = kNone, depth = 0;
+};
+
+// Computes samples in batches. One object per thread: it keeps its queues between batches.
+class Integrator {
+public:
+  virtual ~Integrator() = default;
+  // results[i] answers addresses[i]; trace (may be null) collects the vertices of a batch of one.
+  virtual void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) = 0;
+  // The specialisation in use, for the statistics.
+  virtual const char *kernel() const = 0;
+  const RayCounts &counts() const { return counts_; }
+
+protected:
+  RayCounts counts_;
+};
+
+// scene and camera must outlive the integrator.
+std::unique_ptr<Integrator> make_integrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);
+
+// Dimensions of the sampler: the camera's, then eight per vertex of a path.
+enum Dimension : uint32_t { kDimensionPixel = 0, kDimensionLens = 2, kDimensionVertex = 4 };
+enum VertexDimension : uint32_t {
+  kVertexBsdf = 0,
+  kVertexLight = 2,
+  kVertexLightChoice = 4,
+  kVertexLobe = 5,
+  kVertexRoulette = 6,
+  kVertexStride = 8
+};
+// Layers of opacity at one vertex have numbers of their own, far behind the others.
+inline constexpr uint32_t kDimensionOpacity = 1u << 16;
+inline constexpr uint32_t kMaxLayers = 256;
+
+// Turns addresses into camera rays.
+class RayGenerator {
+public:
+  RayGenerator(const Camera &camera, const IntegratorSettings &settings)
+      : camera_(camera), filter_(settings.filter, settings.filter_width), seed_(settings.seed),
+        middle_(settings.kind != IntegratorKind::Path && settings.samples == 1) {}
+
+  Sampler sampler(const SampleAddress &address) const {
+    // The region's place in the image is part of the address: a border render repeats the full image's numbers.
+    return Sampler(seed_, camera_.x + address.x, camera_.y + address.y, address.sample);
+  }
+
+  // One sample of a recursive ray tracer goes through the middle of the pixel and of the lens.
+  bool middle() const { return middle_; }
+
+  Ray ray(const SampleAddress &address, const Sampler &sampler) const {
+    glm::dvec2 raster(double(camera_.x + address.x) + 0.5, double(camera_.y + address.y) + 0.5);
+    if (middle_)
+      return camera_.ray(raster, glm::dvec2(0.0));
+    const glm::vec2 u = sampler.get2(kDimensionPixel);
+    raster += glm::dvec2(filter_.sample(u.x), filter_.sample(u.y));
+    glm::dvec2 lens(0.0);
+    if (camera_.lens_radius > 0.0)
+      lens = glm::dvec2(warp_disk(sampler.get2(kDimensionLens)));
+    return camera_.ray(raster, lens);
+  }
+
+private:
+  const Camera &camera_;
+  PixelFilter filter_;
+  uint32_t seed_;
+  bool middle_;
+};
+
+// Fills what the first surface says about the pixel. depth: t of the camera ray.
+void record_first_surface(const Scene &scene, const Surface &surface, const glm::vec3 &albedo, double depth, SampleResult &result);
+
+} // namespace lancer

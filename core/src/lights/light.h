@@ -1,0 +1,61 @@
+// A light as the integrators see it: normalised world, ready to sample.
+#pragma once
+
+#include "accel/ray.h"
+#include "scene/light.h"
+
+#include <glm/gtc/constants.hpp>
+
+namespace lancer {
+
+// The course's light, for CLASSIC.
+struct CourseLight {
+  Falloff falloff = Falloff::Physical;
+  double radius = 0.0; // normalised units
+  double world_unit = 1.0; // one world unit, in normalised units
+  glm::vec3 ambient_color{1.0f}, diffuse_color{1.0f}, specular_color{1.0f};
+};
+
+struct Light {
+  LightKind kind = LightKind::Point;
+  glm::dvec3 position{0.0};
+  glm::dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}; // unit axes; the light shines along -z
+  // POINT, SPOT: intensity in normalised units; SUN: irradiance; AREA: radiance.
+  // Double: the scale of intensities is that of squared lengths.
+  glm::dvec3 emission{0.0};
+  double radius = 0.0;
+  bool soft_falloff = true;
+  double cos_half_angle = -1.0, blend_width = 0.0; // SPOT
+  double one_minus_cos_sun = 0.0;                  // SUN: 1 - cos of half its angle
+  double half_x = 0.0, half_y = 0.0, area = 0.0;   // AREA
+  bool ellipse = false;
+  double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
+  CourseLight course;
+
+  bool black() const { return emission == glm::dvec3(0.0); }
+};
+
+// A point of a light as seen from p.
+// The estimate of what arrives at normal incidence is radiance / pdf; for delta lights (one direction only) radiance already is
+// that irradiance and pdf is 1. pdf is per solid angle, without the choice of the light; 0 = no sample.
+struct LightSample {
+  glm::dvec3 target{0.0}; // the point, where finite
+  glm::dvec3 wi{0.0};     // unit, towards the light
+  double distance = 0.0;  // infinite for a sun
+  glm::vec3 radiance{0.0f};
+  double pdf = 0.0;
+  bool delta = false;
+};
+
+// A light that a ray from o along the unit wi runs into before distance.
+struct LightHit {
+  glm::vec3 radiance{0.0f};
+  double pdf = 0.0; // as sample() would have it; 0 = not met
+};
+
+LightSample sample(const Light &light, const glm::dvec3 &p, const glm::vec2 &u);
+// distance: how far the ray is free; a light without extent is never met.
+LightHit meet(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi, double distance);
+bool has_extent(const Light &light);
+
+} // namespace lancer

@@ -1,0 +1,72 @@
+#include "lights/light_set.h"
+
+#include <algorithm>
+
+namespace lancer {
+
+namespace {
+
+double brightest(const glm::dvec3 &v) { return std::max({v.x, v.y, v.z}); }
+
+// Rough power in normalised units: only the choice of lights depends on it, never the picture.
+double power(const Light &light, double scene_radius) {
+  constexpr double pi = glm::pi<double>();
+  const double e = brightest(light.emission);
+  switch (light.kind) {
+  case LightKind::Point:
+    return 4.0 * pi * e;
+  case LightKind::Spot:
+    return 2.0 * pi * (1.0 - light.cos_half_angle) * e;
+  case LightKind::Sun:
+    return pi * scene_radius * scene_radius * e;
+  case LightKind::Area:
+    return pi * light.area * e;
+  }
+  return 0.0;
+}
+
+} // namespace
+
+LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, const glm::vec3 &world,
+                   double radius)
+    : lights_(std::move(lights)), emitters_(std::move(emitters)), world_(world) {
+  std::vector<double> powers;
+  for (const Light &light : lights_)
+    powers.push_back(power(light, radius));
+  for (const Emitter &emitter : emitters_)
+    powers.push_back(2.0 * glm::pi<double>() * emitter.weight());
+  double total = 0.0;
+  size_t shining = 0;
+  for (double p : powers) {
+    total += p;
+    shining += p > 0.0;
+  }
+  // Half of the choice by power, half evenly among the lights that shine: power knows nothing of distance.
+  if (total > 0.0) {
+    for (double &p : powers)
+      p = p > 0.0 ? 0.5 * p / total + 0.5 / double(shining) : 0.0;
+    choice_ = Distribution(powers);
+  }
+  for (uint32_t i = 0; i < lights_.size(); ++i)
+    if (has_extent(lights_[i]) && !lights_[i].black())
+      with_extent_.push_back(i);
+  if (!emitters_.empty()) {
+    emitter_of_.assign(instance_count, kNone);
+    for (uint32_t i = 0; i < emitters_.size(); ++i)
+      emitter_of_[emitters_[i].instance()] = uint32_t(lights_.size()) + i;
+  }
+}
+
+LightSet::Choice LightSet::choose(float u) const {
+  const auto choice = choice_.sample(u);
+  return {choice.index, double(choice.pmf)};
+}
+
+size_t LightSet::bytes() const {
+  size_t bytes = lights_.size() * sizeof(Light) + emitter_of_.size() * sizeof(uint32_t);
+  for (const Emitter &emitter : emitters_)
+    bytes += sizeof(Emitter) + emitter.bytes();
+  return bytes;
+}
+
+} // namespace lancer

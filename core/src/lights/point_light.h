@@ -1,0 +1,141 @@
+// Point and spot lights: a true point, a disk that faces the shaded point, or a ball.
+#pragma once
+
+#include "lights/light.h"
+#include "sampling/warp.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+
+// Share of the intensity that a spot sends towards -wi: 0 outside the cone, a smooth step over its blended rim.
+inline double spot_attenuation(const Light &light, const glm::dvec3 &wi) {
+  if (light.kind != LightKind::Spot)
+    return 1.0;
+  const double inside = glm::dot(wi, light.z) - light.cos_half_angle;
+  if (!(inside > 0.0))
+    return 0.0;
+  if (inside >= light.blend_width)
+    return 1.0;
+  const double t = inside / light.blend_width;
+  return t * t * (3.0 - 2.0 * t);
+}
+
+// Radiance of the disk or ball: intensity over its projected area.
+inline glm::vec3 round_radiance(const Light &light, const glm::dvec3 &wi) {
+  const double scale = spot_attenuation(light, wi) / (glm::pi<double>() * light.radius * light.radius);
+  return glm::vec3(light.emission * scale);
+}
+
+// Any two unit vectors that complete unit n to a right-handed frame (Duff et al. 2017).
+inline void complete_frame(const glm::dvec3 &n, glm::dvec3 &s, glm::dvec3 &t) {
+  const double sign = std::copysign(1.0, n.z), a = -1.0 / (sign + n.z), b = n.x * n.y * a;
+  s = {1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  t = {b, sign + n.y * n.y * a, -n.y};
+}
+
+inline LightSample sample_true_point(const Light &light, const glm::dvec3 &to_light, double distance) {
+  LightSample sample;
+  sample.target = light.position;
+  sample.wi = to_light / distance;
+  sample.distance = distance;
+  sample.radiance = glm::vec3(light.emission * (spot_attenuation(light, sample.wi) / (distance * distance)));
+  sample.pdf = 1.0;
+  sample.delta = true;
+  return sample;
+}
+
+inline LightSample sample_disk(const Light &light, const glm::dvec3 &p, const glm::dvec3 &to_light, double distance,
+                               const glm::vec2 &u) {
+  // Take a uniform point of the disk whose axis runs through p.
+  const glm::dvec3 axis = to_light / distance;
+  glm::dvec3 s, t;
+  complete_frame(axis, s, t);
+  const glm::dvec2 d = glm::dvec2(warp_disk(u)) * light.radius;
+  LightSample sample;
+  sample.target = light.position + d.x * s + d.y * t;
+  const glm::dvec3 v = sample.target - p;
+  sample.distance = glm::length(v);
+  sample.wi = v / sample.distance;
+  // Turn area into solid angle.
+  const double cosine = glm::dot(sample.wi, axis);
+  sample.pdf = sample.distance * sample.distance / (cosine * glm::pi<double>() * light.radius * light.radius);
+  sample.radiance = round_radiance(light, sample.wi);
+  return sample;
+}
+
+// 1 - cos of the half angle of a ball, and cos^2 of it, without cancellation (numerics A.9).
+inline double one_minus_cos_ball(double radius, double distance) {
+  const double ratio = radius / distance, sin2 = ratio * ratio;
+  const double cos2 = (distance - radius) * (distance + radius) / (distance * distance);
+  return sin2 / (1.0 + std::sqrt(std::max(0.0, cos2)));
+}
+
+inline LightSample sample_ball(const Light &light, const glm::dvec3 &to_light, double distance, const glm::vec2 &u,
+                               const glm::dvec3 &p) {
+  LightSample sample;
+  if (distance <= light.radius) {
+    // Inside the ball, light comes from everywhere.
+    sample.wi = glm::dvec3(warp_sphere(u));
+    sample.pdf = 0.25 * glm::one_over_pi<double>();
+  } else {
+    // Take a uniform direction of the cone that the ball fills.
+    const double cone = one_minus_cos_ball(light.radius, distance), x = double(u.x) * cone;
+    const double sine = std::sqrt(x * (2.0 - x)), phi = glm::two_pi<double>() * double(u.y);
+    const glm::dvec3 axis = to_light / distance;
+    glm::dvec3 s, t;
+    complete_frame(axis, s, t);
+    sample.wi = glm::normalize((1.0 - x) * axis + sine * (std::cos(phi) * s + std::sin(phi) * t));
+    sample.pdf = 1.0 / (glm::two_pi<double>() * cone);
+  }
+  // Go to the ball's surface: its near side from outside, its far side from inside.
+  const double along = glm::dot(to_light, sample.wi);
+  const glm::dvec3 closest = along * sample.wi - to_light;
+  const double half = std::sqrt(std::max(0.0, (light.radius - glm::length(closest)) * (light.radius + glm::length(closest))));
+  sample.distance = distance <= light.radius ? along + half : std::max(along - half, 0.5 * along);
+  sample.target = p + sample.distance * sample.wi;
+  sample.radiance = round_radiance(light, sample.wi);
+  return sample;
+}
+
+inline LightSample sample_point(const Light &light, const glm::dvec3 &p, const glm::vec2 &u) {
+  const glm::dvec3 to_light = light.position - p;
+  const double distance = glm::length(to_light);
+  if (!(distance > 0.0))
+    return {};
+  if (light.radius == 0.0)
+    return sample_true_point(light, to_light, distance);
+  if (light.soft_falloff)
+    return sample_disk(light, p, to_light, distance, u);
+  return sample_ball(light, to_light, distance, u, p);
+}
+
+inline LightHit meet_point(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi, double free) {
+  LightHit hit;
+  const glm::dvec3 to_light = light.position - o;
+  const double distance = glm::length(to_light), along = glm::dot(to_light, wi);
+  if (light.radius == 0.0 || !(distance > 0.0))
+    return hit;
+  if (light.soft_falloff) {
+    // Meet the plane of the disk that faces o.
+    const double cosine = along / distance, t = distance / cosine;
+    if (!(cosine > 0.0) || !(t < free) || !(glm::length(t * wi - to_light) <= light.radius))
+      return hit;
+    hit.pdf = t * t / (cosine * glm::pi<double>() * light.radius * light.radius);
+  } else if (distance <= light.radius) {
+    hit.pdf = 0.25 * glm::one_over_pi<double>();
+  } else {
+    const double closest = glm::length(along * wi - to_light);
+    if (!(along > 0.0) || !(closest < light.radius))
+      return hit;
+    const double half = std::sqrt((light.radius - closest) * (light.radius + closest));
+    if (!(along - half < free))
+      return hit;
+    hit.pdf = 1.0 / (glm::two_pi<double>() * one_minus_cos_ball(light.radius, distance));
+  }
+  hit.radiance = round_radiance(light, wi);
+  return hit;
+}
+
+} // namespace lancer

@@ -1,0 +1,61 @@
+#include "render/fill_settings.h"
+
+#include "scene/error.h"
+
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+constexpr uint32_t kMostThreads = 1024;
+constexpr uint32_t kMostBounces = 1024;
+
+void check_choice(const char *what, uint32_t value, uint32_t last) {
+  if (value > last)
+    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " is not one of 0 ... " + std::to_string(last));
+}
+
+void check_amount(const char *what, float value) {
+  if (!(value >= 0.0f) || !std::isfinite(value))
+    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " must be finite and not negative");
+}
+
+} // namespace
+
+FilterKind read_filter(uint32_t filter, float width) {
+  check_choice("pixel_filter", filter, LANCER_FILTER_BLACKMAN_HARRIS);
+  if (!(width > 0.0f) || !std::isfinite(width))
+    bad_argument("settings: filter_width " + std::to_string(width) + " must be finite and positive");
+  return static_cast<FilterKind>(filter);
+}
+
+SessionSettings read_settings(const lancer_settings &source) {
+  check_choice("integrator", source.integrator, LANCER_NORMALS);
+  check_choice("features", source.features, LANCER_FEATURES_ALL);
+  check_amount("contribution_threshold", source.contribution_threshold);
+  check_amount("clamp_indirect", source.clamp_indirect);
+  if (source.max_bounces > kMostBounces)
+    bad_argument("settings: max_bounces " + std::to_string(source.max_bounces) + " > " + std::to_string(kMostBounces));
+  if (source.threads > kMostThreads)
+    bad_argument("settings: threads " + std::to_string(source.threads) + " > " + std::to_string(kMostThreads));
+  if (source.passes >> LANCER_PASS_COUNT)
+    bad_argument("settings: passes " + std::to_string(source.passes) + " has bits beyond the last pass");
+  SessionSettings settings;
+  settings.integrator.kind = static_cast<IntegratorKind>(source.integrator);
+  settings.integrator.samples = source.samples;
+  settings.integrator.seed = source.seed;
+  settings.integrator.max_bounces = source.max_bounces;
+  settings.integrator.contribution_threshold = source.contribution_threshold;
+  settings.integrator.clamp_indirect = source.clamp_indirect;
+  settings.integrator.filter = read_filter(source.pixel_filter, source.filter_width);
+  settings.integrator.filter_width = source.filter_width;
+  settings.integrator.film_transparent = source.film_transparent != 0;
+  settings.integrator.all_features = source.features == LANCER_FEATURES_ALL;
+  settings.passes = source.passes;
+  settings.threads = source.threads;
+  settings.tile_size = source.tile_size;
+  return settings;
+}
+
+} // namespace lancer

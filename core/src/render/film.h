@@ -1,0 +1,56 @@
+// Where samples land: tiles of double sums that do not depend on who added them when.
+#pragma once
+
+#include "integrator/sample.h"
+
+#include <mutex>
+
+namespace lancer {
+
+enum class Pass : uint32_t { Combined = 0, Depth = 1, Normal = 2, Albedo = 3, Position = 4, ObjectIndex = 5, MaterialIndex = 6 };
+inline constexpr uint32_t kPassCount = 7;
+
+uint32_t channels(Pass pass);
+
+// The samples of a pixel are summed along one fixed binary tree over their numbers: sample s is a leaf, and two neighbouring
+// complete subtrees of equal size are always joined. While samples arrive in order only the sums that wait for their neighbour are
+// kept, one per bit of the count, as in a binary counter. So neither threads nor tiles nor the split of the range show in the bits,
+// and any complete subtree can be computed elsewhere.
+class Film {
+public:
+  // passes: bits 1u << Pass; Combined is always kept.
+  Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes);
+
+  // What a film of this size takes for a dyadic number of samples.
+  static double bytes_needed(double width, double height, uint32_t passes);
+
+  struct Tile {
+    uint32_t x, y, width, height;
+    uint32_t count = 0;       // samples of each of its pixels
+    std::vector<double> sums; // [pixel][level, lowest bit of count first][summed channel]
+    std::vector<float> first; // [pixel][channel of sample 0]
+    std::mutex mutex;
+
+    uint32_t pixels() const { return width * height; }
+  };
+
+  size_t tile_count() const { return tiles_.size(); }
+  Tile &tile(size_t i) { return *tiles_[i]; }
+
+  // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel.
+  void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
+  // [height][width][channels], row 0 at the bottom; pixels without samples are 0.
+  void read(Pass pass, std::span<float> out) const;
+  bool has(Pass pass) const { return (passes_ & (1u << uint32_t(pass))) != 0; }
+  size_t bytes() const;
+  uint32_t width() const { return width_; }
+  uint32_t height() const { return height_; }
+
+private:
+  uint32_t width_, height_, passes_;
+  uint32_t summed_;  // channels that are averaged over samples
+  uint32_t normal_ = 0, albedo_ = 0; // where they begin among the summed
+  std::vector<std::unique_ptr<Tile>> tiles_;
+};
+
+} // namespace lancer

@@ -1,0 +1,187 @@
+#include "render/probe.h"
+
+#include "integrator/shading.h"
+#include "sampling/warp.h"
+#include "scene/error.h"
+
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+glm::dvec3 dvec3_at(const double *array, size_t i) { return {array[3 * i], array[3 * i + 1], array[3 * i + 2]}; }
+glm::vec3 vec3_at(const float *array, size_t i) { return {array[3 * i], array[3 * i + 1], array[3 * i + 2]}; }
+
+template <class Target, class Vector> void store(Target *target, const Vector &v) {
+  for (int i = 0; i < 3; ++i)
+    target[i] = Target(v[i]);
+}
+
+// t keeps its meaning: origin and direction are scaled alike.
+std::vector<Ray> rays_of(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
+                         const double *tmax) {
+  std::vector<Ray> rays(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    rays[i].o = scene.normalisation.to_normalised(dvec3_at(origins, i));
+    rays[i].d = dvec3_at(directions, i) * scene.normalisation.scale;
+    rays[i].tmin = tmin[i];
+    rays[i].tmax = tmax[i];
+  }
+  return rays;
+}
+
+const Bsdf &bsdf_of(const Scene &scene, uint32_t material, Bsdf &scratch) {
+  if (material >= scene.materials.size())
+    bad_argument("probe: material " + std::to_string(material) + " >= " + std::to_string(scene.materials.size()) + " materials");
+  return evaluate(scene.materials[material], Surface{}, scratch);
+}
+
+void check_light(const Scene &scene, uint32_t light) {
+  if (light >= scene.lights.size())
+    bad_argument("probe: light " + std::to_string(light) + " >= " + std::to_string(scene.lights.size()) + " lights");
+}
+
+} // namespace
+
+void probe_intersect(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
+                     const double *tmax, lancer_hit *hits) {
+  const std::vector<Ray> rays = rays_of(scene, count, origins, directions, tmin, tmax);
+  std::vector<Hit> found(count);
+  scene.accelerator->closest_hit(rays, found);
+  for (uint32_t i = 0; i < count; ++i) {
+    lancer_hit &hit = hits[i];
+    hit = {};
+    hit.t = found[i].t;
+    hit.instance = hit.primitive = hit.material = kNone;
+    if (!found[i].valid()) {
+      hit.t = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    const Surface surface = surface_at(scene.geometry, scene.slots, rays[i], found[i]);
+    const Instance &instance = scene.geometry.instances[found[i].instance];
+    const bool mesh = instance.kind == ShapeKind::Mesh;
+    hit.u = mesh ? found[i].u : double(surface.uv.x);
+    hit.v = mesh ? found[i].v : double(surface.uv.y);
+    store(hit.position, scene.normalisation.to_world(surface.p));
+    store(hit.normal, surface.ns);
+    store(hit.geometric_normal, surface.ng);
+    store(hit.color, surface.color);
+    hit.uv[0] = surface.uv.x;
+    hit.uv[1] = surface.uv.y;
+    hit.instance = instance.number;
+    // Give faces the numbers that the user knows.
+    const bool renumbered = mesh && !scene.geometry.meshes[instance.mesh].face_of.empty();
+    hit.primitive = renumbered ? scene.geometry.meshes[instance.mesh].face_of[found[i].primitive] : found[i].primitive;
+    hit.material = surface.material;
+  }
+}
+
+void probe_occluded(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
+                    const double *tmax, uint8_t *occluded) {
+  const std::vector<Ray> rays = rays_of(scene, count, origins, directions, tmin, tmax);
+  scene.accelerator->any_hit(rays, std::span(occluded, count));
+}
+
+void probe_bsdf(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *wi, float *f, float *pdf) {
+  Bsdf scratch;
+  const Bsdf &bsdf = bsdf_of(scene, material, scratch);
+  for (uint32_t i = 0; i < count; ++i) {
+    const BsdfValue value = bsdf.eval_pdf(vec3_at(wo, i), vec3_at(wi, i));
+    store(f + size_t(3) * i, value.f);
+    pdf[i] = value.pdf;
+  }
+}
+
+void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *u,
+                       lancer_bsdf_sample *samples) {
+  Bsdf scratch;
+  const Bsdf &bsdf = bsdf_of(scene, material, scratch);
+  for (uint32_t i = 0; i < count; ++i) {
+    const glm::vec3 numbers = vec3_at(u, i);
+    const BsdfSample sample = bsdf.sample(vec3_at(wo, i), numbers.x, {numbers.y, numbers.z});
+    store(samples[i].wi, sample.wi);
+    store(samples[i].weight, sample.weight);
+    samples[i].pdf = sample.pdf;
+    samples[i].delta = sample.delta;
+  }
+}
+
+void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv, const float *alpha,
+                      const float *ior, float *d, float *f, float *g1) {
+  // A direction with the given cosine, in the plane y = 0.
+  const auto direction = [](float cosine) {
+    const double c = double(cosine);
+    return glm::vec3(float(std::sqrt((1.0 - c) * (1.0 + c))), 0.0f, cosine);
+  };
+  for (uint32_t i = 0; i < count; ++i) {
+    d[i] = cos_nh[i] > 0.0f ? beckmann_d(tan2_theta(direction(cos_nh[i])), alpha[i]) : 0.0f;
+    f[i] = fresnel_dielectric(cos_lh[i], ior[i]);
+    g1[i] = cos_nv[i] > 0.0f ? beckmann_g1(beckmann_a(direction(cos_nv[i]), alpha[i])) : 0.0f;
+  }
+}
+
+void probe_light(const Scene &scene, uint32_t light, uint32_t count, const double *points, const float *u,
+                 lancer_light_sample *samples) {
+  check_light(scene, light);
+  const size_t described = scene.lights.lights().size();
+  const double scale = scene.normalisation.scale;
+  for (uint32_t i = 0; i < count; ++i) {
+    const glm::dvec3 p = scene.normalisation.to_normalised(dvec3_at(points, i));
+    const glm::vec2 numbers(u[2 * i], u[2 * i + 1]);
+    const LightSample sample =
+        light < described ? lancer::sample(scene.lights.lights()[light], p, numbers)
+                          : scene.lights.emitters()[light - described].sample(scene.geometry, scene.slots, scene.materials, p, numbers);
+    samples[i] = {};
+    store(samples[i].wi, sample.wi);
+    samples[i].distance = sample.distance / scale;
+    store(samples[i].radiance, sample.radiance);
+    samples[i].pdf = float(sample.pdf);
+    samples[i].delta = sample.delta;
+  }
+}
+
+void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const double *points, const double *wi, float *pdf) {
+  check_light(scene, light);
+  const size_t described = scene.lights.lights().size();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (uint32_t i = 0; i < count; ++i) {
+    const glm::dvec3 p = scene.normalisation.to_normalised(dvec3_at(points, i));
+    const glm::dvec3 w = dvec3_at(wi, i);
+    if (light < described) {
+      pdf[i] = float(meet(scene.lights.lights()[light], p, w, infinity).pdf);
+      continue;
+    }
+    // Sum over all places where the direction meets the emitter: the sampler may have chosen any of them.
+    const Emitter &emitter = scene.lights.emitters()[light - described];
+    double sum = 0.0;
+    Ray ray;
+    ray.o = p;
+    ray.d = w;
+    Hit hit;
+    for (uint32_t layer = 0; layer < kMaxLayers; ++layer) {
+      scene.accelerator->closest_hit(std::span(&ray, 1), std::span(&hit, 1));
+      if (!hit.valid())
+        break;
+      const Surface surface = surface_at(scene.geometry, scene.slots, ray, hit);
+      if (surface.instance == emitter.instance())
+        sum += emitter.pdf(scene.geometry, scene.materials, p, surface);
+      ray = leave(surface, w, infinity);
+      hit = Hit{};
+    }
+    pdf[i] = float(sum);
+  }
+}
+
+void probe_camera(const Session &session, uint32_t count, const double *raster, const double *lens, double *origins,
+                  double *directions) {
+  const Normalisation &normalisation = session.scene().normalisation;
+  for (uint32_t i = 0; i < count; ++i) {
+    const glm::dvec2 disk(warp_disk({float(lens[2 * i]), float(lens[2 * i + 1])}));
+    const Ray ray = session.camera().ray({raster[2 * i], raster[2 * i + 1]}, disk);
+    store(origins + size_t(3) * i, normalisation.to_world(ray.o));
+    store(directions + size_t(3) * i, ray.d);
+  }
+}
+
+} // namespace lancer

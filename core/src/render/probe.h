@@ -1,0 +1,25 @@
+// The stages by themselves, for tests: arrays in, arrays out, through the code that renders.
+#pragma once
+
+#include "lancer.h"
+#include "render/session.h"
+
+namespace lancer {
+
+// Shapes, units and frames as in lancer.h.
+void probe_intersect(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
+                     const double *tmax, lancer_hit *hits);
+void probe_occluded(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
+                    const double *tmax, uint8_t *occluded);
+void probe_bsdf(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *wi, float *f, float *pdf);
+void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *u,
+                       lancer_bsdf_sample *samples);
+void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv, const float *alpha,
+                      const float *ior, float *d, float *f, float *g1);
+void probe_light(const Scene &scene, uint32_t light, uint32_t count, const double *points, const float *u,
+                 lancer_light_sample *samples);
+void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const double *points, const double *wi, float *pdf);
+void probe_camera(const Session &session, uint32_t count, const double *raster, const double *lens, double *origins,
+                  double *directions);
+
+} // namespace lancer

@@ -1,0 +1,201 @@
+#include "render/session.h"
+
+#include "scene/error.h"
+
+#include <cmath>
+#include <unistd.h>
+
+namespace lancer {
+
+namespace {
+
+// A batch of paths that fills the queues without leaving the second-level cache.
+constexpr uint32_t kBatch = 1024;
+constexpr uint32_t kTileSize = 32, kLargestTile = 256;
+
+Camera normalised(Camera camera, const Normalisation &normalisation) {
+  camera.to_world.translation = normalisation.to_normalised(camera.to_world.translation);
+  const double scale = normalisation.scale;
+  camera.clip_start *= scale;
+  camera.clip_end *= scale;
+  camera.lens_radius *= scale;
+  camera.focal_distance *= scale;
+  if (camera.orthographic) {
+    camera.left *= scale;
+    camera.right *= scale;
+    camera.bottom *= scale;
+    camera.top *= scale;
+  }
+  return camera;
+}
+
+// Refuses a film that the machine cannot hold, before it takes the machine down.
+const Camera &checked_memory(const Camera &camera, const SessionSettings &settings) {
+  const double needed = Film::bytes_needed(camera.region_width, camera.region_height, settings.passes);
+  const double present = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  if (needed > 0.8 * present)
+    throw Error(Fault::Memory, "film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) +
+                                   " pixels need " + std::to_string(uint64_t(needed / 1e6)) + " MB, this machine has " +
+                                   std::to_string(uint64_t(present / 1e6)) + " MB");
+  return camera;
+}
+
+uint32_t tile_size(const SessionSettings &settings) {
+  return settings.tile_size ? std::min(settings.tile_size, kLargestTile) : kTileSize;
+}
+
+bool finite(const SampleResult &result) {
+  return std::isfinite(result.radiance.x) && std::isfinite(result.radiance.y) && std::isfinite(result.radiance.z) &&
+         std::isfinite(result.alpha);
+}
+
+} // namespace
+
+Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
+    : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_->normalisation)), settings_(settings),
+      film_(camera.region_width, camera.region_height, tile_size(settings), settings.passes), pool_(settings.threads) {
+  for (uint32_t i = 0; i < pool_.size(); ++i) {
+    workers_.push_back(std::make_unique<Worker>());
+    workers_.back()->integrator = make_integrator(*scene_, camera_, settings_.integrator);
+  }
+}
+
+Session::~Session() { cancel_ = true; }
+
+void Session::render(uint32_t first, uint32_t count) {
+  if (pool_.running())
+    throw Error(Fault::State, "session: a range is still being rendered");
+  if (cancelled_)
+    throw Error(Fault::State, "session: it was cancelled; its film can only be read");
+  if (first != end_)
+    throw Error(Fault::State, "session: first sample " + std::to_string(first) + " does not follow the " + std::to_string(end_) +
+                                  " samples rendered so far");
+  if (uint64_t(first) + count > (uint64_t(1) << 31))
+    bad_argument("session: " + std::to_string(uint64_t(first) + count) + " samples > 2147483648");
+  end_ = first + count;
+  range_samples_ = uint64_t(count) * film_.width() * film_.height();
+  samples_before_ = samples_;
+  seconds_before_ = seconds();
+  cancel_ = false;
+  next_tile_ = 0;
+  started_ = true;
+  active_ = pool_.size();
+  start_ = std::chrono::steady_clock::now();
+  pool_.start([this](uint32_t thread) { work(thread); });
+}
+
+void Session::work(uint32_t thread) {
+  Worker &worker = *workers_[thread];
+  while (!cancel_) {
+    const size_t tile = next_tile_.fetch_add(1);
+    if (tile >= film_.tile_count())
+      break;
+    render_tile(worker, film_.tile(tile));
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    end_time_ = std::chrono::steady_clock::now();
+  }
+  --active_;
+}
+
+void Session::render_tile(Worker &worker, Film::Tile &tile) {
+  const uint32_t pixels = tile.pixels();
+  const uint32_t per_batch = std::max(1u, kBatch / pixels);
+  while (tile.count < end_ && !cancel_) {
+    // Take the next whole samples of all pixels of the tile.
+    const uint32_t samples = std::min(per_batch, end_ - tile.count);
+    worker.addresses.clear();
+    for (uint32_t s = 0; s < samples; ++s)
+      for (uint32_t pixel = 0; pixel < pixels; ++pixel)
+        worker.addresses.push_back({tile.x + pixel % tile.width, tile.y + pixel / tile.width, tile.count + s});
+    worker.results.resize(worker.addresses.size());
+    // Large tiles go through the integrator in several batches.
+    for (size_t begin = 0; begin < worker.addresses.size(); begin += kBatch) {
+      const size_t size = std::min<size_t>(kBatch, worker.addresses.size() - begin);
+      worker.integrator->run(std::span(worker.addresses).subspan(begin, size), std::span(worker.results).subspan(begin, size), nullptr);
+    }
+    drop_invalid(worker, worker.results);
+    film_.add(tile, samples, worker.results);
+    samples_ += worker.addresses.size();
+    const RayCounts &counts = worker.integrator->counts();
+    worker.camera_rays = counts.camera;
+    worker.bounce_rays = counts.bounce;
+    worker.shadow_rays = counts.shadow;
+  }
+}
+
+void Session::drop_invalid(const Worker &worker, std::span<SampleResult> results) {
+  for (size_t i = 0; i < results.size(); ++i) {
+    if (finite(results[i]))
+      continue;
+    results[i].radiance = glm::vec3(0.0f);
+    results[i].alpha = 0.0f;
+    const std::lock_guard lock(mutex_);
+    if (invalid_++ == 0)
+      first_invalid_ = worker.addresses[i];
+  }
+}
+
+RayCounts Session::rays() const {
+  RayCounts sum;
+  for (const auto &worker : workers_) {
+    sum.camera += worker->camera_rays;
+    sum.bounce += worker->bounce_rays;
+    sum.shadow += worker->shadow_rays;
+  }
+  return sum;
+}
+
+double Session::seconds() const {
+  if (!started_)
+    return 0.0;
+  const std::lock_guard lock(mutex_);
+  const auto now = active_ > 0 ? std::chrono::steady_clock::now() : end_time_;
+  return seconds_before_ + std::chrono::duration<double>(now - start_).count();
+}
+
+Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
+  const bool done = pool_.wait(milliseconds);
+  progress.samples = samples_;
+  progress.seconds = seconds();
+  const RayCounts counts = rays();
+  progress.rays = counts.camera + counts.bounce + counts.shadow;
+  const double done_samples = double(progress.samples - samples_before_);
+  progress.fraction = range_samples_ ? std::min(1.0, done_samples / double(range_samples_)) : 1.0;
+  if (!done)
+    return State::Running;
+  cancelled_ = cancelled_ || (cancel_ && progress.samples - samples_before_ < range_samples_);
+  return cancelled_ ? State::Cancelled : State::Done;
+}
+
+void Session::read(Pass pass, std::span<float> out) const {
+  if (!film_.has(pass))
+    bad_argument("session: pass " + std::to_string(uint32_t(pass)) + " is not kept; ask for it in the settings");
+  film_.read(pass, out);
+}
+
+SampleResult Session::replay(const SampleAddress &address, std::vector<PathVertex> &vertices) {
+  const auto integrator = make_integrator(*scene_, camera_, settings_.integrator);
+  SampleResult result;
+  integrator->run(std::span(&address, 1), std::span(&result, 1), &vertices);
+  return result;
+}
+
+SessionStatistics Session::statistics() const {
+  SessionStatistics statistics;
+  statistics.render_seconds = seconds();
+  statistics.samples = samples_;
+  statistics.rays = rays();
+  {
+    const std::lock_guard lock(mutex_);
+    statistics.invalid_samples = invalid_;
+    statistics.first_invalid = first_invalid_;
+  }
+  statistics.threads = pool_.size();
+  statistics.film_bytes = film_.bytes();
+  statistics.kernel = workers_.front()->integrator->kernel();
+  return statistics;
+}
+
+} // namespace lancer

@@ -1,0 +1,92 @@
+// One render: a scene seen through a camera, samples in ranges, the film they fall on.
+#pragma once
+
+#include "render/film.h"
+#include "render/thread_pool.h"
+
+#include <atomic>
+#include <chrono>
+
+namespace lancer {
+
+struct SessionSettings {
+  IntegratorSettings integrator;
+  uint32_t passes = 1;
+  uint32_t threads = 0;
+  uint32_t tile_size = 0;
+};
+
+struct Progress {
+  double fraction = 0.0, seconds = 0.0;
+  uint64_t samples = 0, rays = 0;
+};
+
+struct SessionStatistics {
+  double render_seconds = 0.0;
+  uint64_t samples = 0;
+  RayCounts rays;
+  uint64_t invalid_samples = 0;
+  SampleAddress first_invalid{0, 0, 0};
+  uint32_t threads = 0;
+  size_t film_bytes = 0;
+  const char *kernel = "";
+};
+
+class Session {
+public:
+  // camera in world units. Throws Error when camera, settings or memory do not allow the film.
+  Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings);
+  ~Session();
+
+  // Starts samples first ... first + count - 1; Error when first does not follow, or while another range runs.
+  void render(uint32_t first, uint32_t count);
+  enum class State { Done, Running, Cancelled };
+  State wait(uint32_t milliseconds, Progress &progress);
+  void cancel() { cancel_ = true; }
+
+  void read(Pass pass, std::span<float> out) const;
+  const Film &film() const { return film_; }
+  SessionStatistics statistics() const;
+  const Scene &scene() const { return *scene_; }
+  const Camera &camera() const { return camera_; }
+  // Computes one sample by itself. Not while rendering.
+  SampleResult replay(const SampleAddress &address, std::vector<PathVertex> &vertices);
+
+private:
+  struct Worker {
+    std::unique_ptr<Integrator> integrator;
+    std::vector<SampleAddress> addresses;
+    std::vector<SampleResult> results;
+    // What the integrator has counted after its last batch, for other threads to read.
+    std::atomic<uint64_t> camera_rays{0}, bounce_rays{0}, shadow_rays{0};
+  };
+
+  void work(uint32_t thread);
+  void render_tile(Worker &worker, Film::Tile &tile);
+  void drop_invalid(const Worker &worker, std::span<SampleResult> results);
+  double seconds() const;
+  RayCounts rays() const;
+
+  std::shared_ptr<const Scene> scene_;
+  Camera camera_; // normalised
+  SessionSettings settings_;
+  Film film_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+  std::atomic<bool> cancel_{false};
+  std::atomic<size_t> next_tile_{0};
+  std::atomic<uint64_t> samples_{0};
+  uint64_t range_samples_ = 0, samples_before_ = 0;
+  uint32_t end_ = 0; // samples of every pixel when the range is done
+  bool cancelled_ = false;
+  double seconds_before_ = 0.0;
+  std::chrono::steady_clock::time_point start_;
+  bool started_ = false;
+  mutable std::mutex mutex_; // of what follows
+  uint64_t invalid_ = 0;
+  SampleAddress first_invalid_{0, 0, 0};
+  std::chrono::steady_clock::time_point end_time_;
+  std::atomic<uint32_t> active_{0};
+  ThreadPool pool_; // last: its threads end before anything else does
+};
+
+} // namespace lancer

@@ -1,0 +1,100 @@
+#include "render/thread_pool.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+namespace lancer {
+
+#if defined(__SSE2__)
+FloatEnvironment::FloatEnvironment() : saved_(_mm_getcsr()) { _mm_setcsr(0x1f80); }
+FloatEnvironment::~FloatEnvironment() { _mm_setcsr(saved_); }
+#else
+FloatEnvironment::FloatEnvironment() = default;
+FloatEnvironment::~FloatEnvironment() = default;
+#endif
+
+ThreadPool::ThreadPool(uint32_t count) {
+  if (count == 0)
+    count = std::max(1u, std::thread::hardware_concurrency());
+  try {
+    for (uint32_t i = 0; i < count; ++i)
+      threads_.emplace_back([this, i] { loop(i); });
+  } catch (...) {
+    // Not all threads could be had: end those that were, then tell.
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    wake_.notify_all();
+    for (std::thread &thread : threads_)
+      thread.join();
+    throw;
+  }
+}
+
+ThreadPool::~ThreadPool() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_all();
+  for (std::thread &thread : threads_)
+    thread.join();
+}
+
+void ThreadPool::start(std::function<void(uint32_t)> work) {
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = std::move(work);
+    failure_ = nullptr;
+    busy_ = size();
+    ++generation_;
+  }
+  wake_.notify_all();
+}
+
+bool ThreadPool::wait(uint32_t milliseconds) {
+  std::unique_lock lock(mutex_);
+  if (!done_.wait_for(lock, std::chrono::milliseconds(milliseconds), [this] { return busy_ == 0; }))
+    return false;
+  if (failure_)
+    std::rethrow_exception(std::exchange(failure_, nullptr));
+  return true;
+}
+
+bool ThreadPool::running() const {
+  const std::lock_guard lock(mutex_);
+  return busy_ > 0;
+}
+
+void ThreadPool::loop(uint32_t thread) {
+  const FloatEnvironment environment;
+  uint64_t seen = 0;
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_.wait(lock, [&] { return stop_ || generation_ != seen; });
+    if (stop_ && generation_ == seen)
+      return;
+    seen = generation_;
+    const auto work = work_;
+    lock.unlock();
+    std::exception_ptr failure;
+    try {
+      work(thread);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    lock.lock();
+    if (failure && !failure_)
+      failure_ = failure;
+    if (--busy_ == 0)
+      done_.notify_all();
+  }
+}
+
+} // namespace lancer

@@ -1,0 +1,56 @@
+// Threads that wait for work and can be watched from outside.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace lancer {
+
+// Runs one job at a time on all of its threads. The first exception of a job is kept for the one who waits.
+class ThreadPool {
+public:
+  // count 0: one per processor.
+  explicit ThreadPool(uint32_t count);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool &) = delete;
+  ThreadPool &operator=(const ThreadPool &) = delete;
+
+  uint32_t size() const { return uint32_t(threads_.size()); }
+  // Starts work(thread) on every thread; none may be running.
+  void start(std::function<void(uint32_t thread)> work);
+  // True when the job is done; waits at most the given time. Rethrows what the job threw, once.
+  bool wait(uint32_t milliseconds);
+  bool running() const;
+
+private:
+  void loop(uint32_t thread);
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_, done_;
+  std::function<void(uint32_t)> work_;
+  std::exception_ptr failure_;
+  uint64_t generation_ = 0;
+  uint32_t busy_ = 0;
+  bool stop_ = false;
+  std::vector<std::thread> threads_;
+};
+
+// Sets the processor's float arithmetic to round-to-nearest with subnormals for as long as it lives: other code in the same
+// process may have set it otherwise, and threads inherit that.
+class FloatEnvironment {
+public:
+  FloatEnvironment();
+  ~FloatEnvironment();
+  FloatEnvironment(const FloatEnvironment &) = delete;
+  FloatEnvironment &operator=(const FloatEnvironment &) = delete;
+
+private:
+  uint32_t saved_ = 0;
+};
+
+} // namespace lancer

@@ -1,0 +1,59 @@
+// Picking one of several things in proportion to weights.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lancer {
+
+class Distribution {
+public:
+  struct Choice {
+    uint32_t index = 0;
+    float pmf = 0.0f; // 0: nothing to choose from
+    float u = 0.0f;   // where u fell inside the chosen interval, uniform in [0, 1): a fresh number
+  };
+
+  Distribution() = default;
+
+  // Weights that are negative or not finite count as 0. Where all are 0 nothing is ever chosen.
+  explicit Distribution(const std::vector<double> &weights) : cdf_(weights.size() + 1, 0.0) {
+    const auto usable = [](double w) { return w > 0.0 && std::isfinite(w) ? w : 0.0; };
+    double largest = 0.0;
+    for (double w : weights)
+      largest = std::max(largest, usable(w));
+    if (largest == 0.0)
+      return;
+    // Divide by the largest first, so that the sum of huge weights stays finite.
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      cdf_[i + 1] = cdf_[i] + usable(weights[i]) / largest;
+    const double total = cdf_.back();
+    for (double &c : cdf_)
+      c /= total;
+  }
+
+  std::size_t size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
+
+  // u in [0, 1); double, because a table of a million entries would use up all digits of a float.
+  Choice sample(double u) const {
+    if (size() == 0 || cdf_.back() == 0.0)
+      return {};
+    // Find the interval cdf[i] <= u < cdf[i + 1]: an entry of weight 0 has none.
+    const auto above = std::upper_bound(cdf_.begin(), cdf_.end(), u);
+    const auto i = static_cast<uint32_t>(above - cdf_.begin() - 1);
+    const double width = cdf_[i + 1] - cdf_[i];
+    const float below_one = std::nextafter(1.0f, 0.0f);
+    return {i, static_cast<float>(width), std::min(static_cast<float>((u - cdf_[i]) / width), below_one)};
+  }
+
+  // The probability of index i, exactly that with which sample returns it.
+  float pmf(std::size_t i) const { return static_cast<float>(cdf_[i + 1] - cdf_[i]); }
+
+private:
+  std::vector<double> cdf_;
+};
+
+} // namespace lancer

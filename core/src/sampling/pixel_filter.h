@@ -1,0 +1,66 @@
+// The pixel's filter by importance sampling: a sample lands where the filter weighs it, and counts 1.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace lancer {
+
+enum class FilterKind : unsigned { Box = 0, BlackmanHarris = 1 };
+
+// Both filters are separable, symmetric and zero outside their full width (in pixels).
+class PixelFilter {
+public:
+  PixelFilter(FilterKind kind, float width) : kind_(kind), width_(width) {
+    if (kind_ == FilterKind::BlackmanHarris)
+      build();
+  }
+
+  // The four-term Blackman-Harris window over its full width, x in [0, 1].
+  static double blackman_harris(double x) {
+    const double t = 2.0 * std::numbers::pi * x;
+    return 0.35875 - 0.48829 * std::cos(t) + 0.14128 * std::cos(2.0 * t) - 0.01168 * std::cos(3.0 * t);
+  }
+
+  // Offset from the pixel's middle in pixels, in [-width / 2, width / 2], never falling as u rises.
+  float sample(float u) const { return (kind_ == FilterKind::Box ? u - 0.5f : invert(u)) * width_; }
+
+private:
+  static constexpr std::size_t kCells = 512;
+
+  // Between two nodes the window is a straight line: with 512 cells it differs from the true one by less than 3e-5 of its top,
+  // and the integral of a line inverts in closed form.
+  void build() {
+    double sum = 0.0;
+    for (std::size_t i = 0; i <= kCells; ++i)
+      weight_[i] = blackman_harris(static_cast<double>(i) / kCells);
+    for (std::size_t i = 0; i < kCells; ++i) {
+      cdf_[i] = sum;
+      sum += 0.5 * (weight_[i] + weight_[i + 1]);
+    }
+    cdf_[kCells] = sum;
+  }
+
+  // Position in the window minus one half.
+  float invert(float u) const {
+    // Find the cell that holds this share of the window.
+    const double target = static_cast<double>(u) * cdf_[kCells];
+    const auto above = std::upper_bound(cdf_.begin() + 1, cdf_.end() - 1, target);
+    const auto i = static_cast<std::size_t>(above - cdf_.begin() - 1);
+    // Solve w0 s + (w1 - w0) s^2 / 2 = rest for the place s inside it, in the form that no slope makes cancel.
+    const double rest = std::max(0.0, target - cdf_[i]);
+    const double w0 = weight_[i], w1 = weight_[i + 1];
+    const double s = 2.0 * rest / (w0 + std::sqrt(std::max(0.0, w0 * w0 + 2.0 * (w1 - w0) * rest)));
+    return static_cast<float>((static_cast<double>(i) + std::min(s, 1.0)) / kCells - 0.5);
+  }
+
+  FilterKind kind_;
+  float width_;
+  std::array<double, kCells + 1> weight_{};
+  std::array<double, kCells + 1> cdf_{};
+};
+
+} // namespace lancer

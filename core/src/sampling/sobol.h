@@ -1,0 +1,67 @@
+// The numbers behind every random choice: a sample has an address, and the same address always gives the same number.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "sampling/hash.h"
+#include "sampling/sobol_table.h"
+
+namespace lancer {
+
+// Uniform numbers in [0, 1) at the address (seed, pixel, sample, dimension). No state: any order, any thread, any split.
+//   Dimensions 0 ... 15 are one Owen-scrambled Sobol sequence: every power-of-two prefix of a pixel's samples is stratified in
+//   all of them together. They belong to the choices that matter most: pixel, lens, first light, first BSDF.
+//   Dimensions from 16 on come in pairs (16, 17), (18, 19) ...: each pair is a (0, 2)-sequence, taken in an order of its own.
+// Pixels, seeds and dimensions are scrambled independently of each other.
+class Sampler {
+public:
+  Sampler(uint32_t seed, uint32_t x, uint32_t y, uint32_t sample)
+      : pixel_(hash_combine(hash_combine(hash(seed), x), y)), sample_(sample) {}
+
+  float get1(uint32_t dimension) const {
+    if (dimension < kJointDimensions)
+      return joint(dimension);
+    const uint32_t index = shuffled_index(dimension / 2);
+    return dimension % 2 == 0 ? scrambled(index, dimension) : scrambled(sobol::reversed_second_dimension(index), dimension);
+  }
+
+  // Dimensions d and d + 1; from 16 on d is even.
+  glm::vec2 get2(uint32_t dimension) const {
+    if (dimension < kJointDimensions)
+      return {joint(dimension), get1(dimension + 1)};
+    const uint32_t index = shuffled_index(dimension / 2);
+    return {scrambled(index, dimension & ~1u), scrambled(sobol::reversed_second_dimension(index), dimension | 1u)};
+  }
+
+private:
+  // Owen's nested scrambling on reversed digits: each digit is flipped by a hash of the digits before it. Sums, and products
+  // with even numbers, carry upwards only, which is exactly that dependence.
+  static uint32_t nested_scramble(uint32_t x, uint32_t seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= seed >> 16 | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+  }
+
+  // A float has 24 digits: the rest is cut, so that 1 is never reached.
+  float scrambled(uint32_t reversed, uint32_t dimension) const {
+    const uint32_t x = sobol::reverse_bits(nested_scramble(reversed, hash_combine(pixel_, dimension)));
+    return static_cast<float>(x >> 8) * 0x1p-24f;
+  }
+
+  float joint(uint32_t dimension) const { return scrambled(sobol::reversed_point(sample_, dimension), dimension); }
+
+  // Scrambling an index is a permutation that keeps every aligned power-of-two block together.
+  uint32_t shuffled_index(uint32_t pair) const {
+    const uint32_t key = hash_combine(pixel_, 0x80000000u | pair);
+    return sobol::reverse_bits(nested_scramble(sobol::reverse_bits(sample_), key));
+  }
+
+  uint32_t pixel_;
+  uint32_t sample_;
+};
+
+} // namespace lancer

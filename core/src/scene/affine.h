@@ -1,0 +1,47 @@
+// An affine map of the world: the placement of an object.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+
+namespace lancer {
+
+// p' = linear * p + translation, in double: the composition of placements is where far-away scenes lose their digits.
+struct Affine {
+  glm::dmat3 linear{1.0};
+  glm::dvec3 translation{0.0};
+
+  glm::dvec3 point(const glm::dvec3 &p) const { return linear * p + translation; }
+  glm::dvec3 vector(const glm::dvec3 &v) const { return linear * v; }
+
+  // m: 3 x 4, row-major.
+  static Affine from_rows(const double m[12]) {
+    Affine a;
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column)
+        a.linear[column][row] = m[4 * row + column];
+      a.translation[row] = m[4 * row + 3];
+    }
+    return a;
+  }
+
+  bool finite() const {
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k)
+        if (!std::isfinite(linear[i][k]))
+          return false;
+    return std::isfinite(translation.x) && std::isfinite(translation.y) && std::isfinite(translation.z);
+  }
+};
+
+inline Affine operator*(const Affine &a, const Affine &b) {
+  return {a.linear * b.linear, a.linear * b.translation + a.translation};
+}
+
+// The inverse; the caller has checked that the determinant is not zero.
+inline Affine inverse(const Affine &a) {
+  const glm::dmat3 m = glm::inverse(a.linear);
+  return {m, -(m * a.translation)};
+}
+
+} // namespace lancer

@@ -1,0 +1,180 @@
+// From a description to a scene: normalise, find features, make lights, build the accelerator.
+#include "scene/error.h"
+#include "scene/scene.h"
+
+#include <chrono>
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+struct Box {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void add(const glm::dvec3 &p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  bool empty() const { return !(low.x <= high.x); }
+};
+
+void add_box(Box &world, const Affine &map, const glm::dvec3 &low, const glm::dvec3 &high) {
+  for (int corner = 0; corner < 8; ++corner)
+    world.add(map.point({corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z}));
+}
+
+Box world_bounds(const Description &description) {
+  const Geometry &geometry = description.geometry;
+  std::vector<Box> meshes(geometry.meshes.size());
+  for (size_t i = 0; i < meshes.size(); ++i)
+    for (const glm::uvec3 &triangle : geometry.meshes[i].triangles)
+      for (int corner = 0; corner < 3; ++corner)
+        meshes[i].add(glm::dvec3(geometry.meshes[i].positions[triangle[corner]]));
+  Box world;
+  for (const Instance &instance : geometry.instances) {
+    if (instance.kind == ShapeKind::Plane)
+      world.add(instance.to_world.translation);
+    else if (instance.kind != ShapeKind::Mesh)
+      add_box(world, instance.to_world, glm::dvec3(-1.0), glm::dvec3(1.0));
+    else if (!meshes[instance.mesh].empty())
+      add_box(world, instance.to_world, meshes[instance.mesh].low, meshes[instance.mesh].high);
+  }
+  // Without anything to meet, the lights give the scene its size.
+  if (world.empty())
+    for (const LightDescription &light : description.lights)
+      world.add(light.to_world.translation);
+  return world;
+}
+
+// Centre of the bounds, and the power of two that brings the largest extent to between 512 and 1024.
+Normalisation normalise(const Box &bounds) {
+  Normalisation result;
+  if (bounds.empty())
+    return result;
+  result.centre = 0.5 * bounds.low + 0.5 * bounds.high;
+  const glm::dvec3 size = bounds.high - bounds.low;
+  const double extent = std::max({size.x, size.y, size.z});
+  if (extent > 0.0 && std::isfinite(extent))
+    result.scale = std::ldexp(1.0, 9 - std::ilogb(extent));
+  return result;
+}
+
+// Normals at vertices: the sum of the faces' normals by area, as the course's Gouraud shading has it.
+void make_smooth_normals(Mesh &mesh) {
+  std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const glm::dvec3 v0(mesh.vertex(i, 0)), v1(mesh.vertex(i, 1)), v2(mesh.vertex(i, 2));
+    const glm::dvec3 n = glm::cross(v1 - v0, v2 - v0);
+    for (int corner = 0; corner < 3; ++corner)
+      sums[mesh.triangles[i][corner]] += n;
+  }
+  mesh.smooth_normals.resize(sums.size());
+  for (size_t i = 0; i < sums.size(); ++i) {
+    const double length = glm::length(sums[i]);
+    mesh.smooth_normals[i] = length > 0.0 ? glm::vec3(sums[i] / length) : glm::vec3(0.0f);
+  }
+}
+
+glm::dvec3 axis(const Affine &map, int column, const glm::dvec3 &fallback) {
+  const double length = glm::length(map.linear[column]);
+  return length > 0.0 ? map.linear[column] / length : fallback;
+}
+
+Light normalised_light(const LightDescription &from, const Normalisation &normalisation) {
+  Light light;
+  const double scale = normalisation.scale;
+  light.kind = from.kind;
+  light.position = normalisation.to_normalised(from.to_world.translation);
+  light.x = axis(from.to_world, 0, {1, 0, 0});
+  light.y = axis(from.to_world, 1, {0, 1, 0});
+  light.z = axis(from.to_world, 2, {0, 0, 1});
+  light.emission = glm::dvec3(from.emission);
+  // Irradiance is intensity over distance squared: lengths scale, so intensity scales with their square.
+  if (from.kind == LightKind::Point || from.kind == LightKind::Spot)
+    light.emission *= scale * scale;
+  light.radius = double(from.radius) * scale;
+  light.soft_falloff = from.soft_falloff;
+  if (from.kind == LightKind::Spot) {
+    light.cos_half_angle = std::cos(0.5 * double(from.spot_angle));
+    light.blend_width = (1.0 - light.cos_half_angle) * double(from.spot_blend);
+  }
+  // 1 - cos(a) = 2 sin^2(a / 2), exact for the smallest suns.
+  const double s = std::sin(0.25 * double(from.sun_angle));
+  light.one_minus_cos_sun = 2.0 * s * s;
+  light.half_x = 0.5 * double(from.size.x) * scale;
+  light.half_y = 0.5 * double(from.size.y) * scale;
+  light.ellipse = from.shape == AreaShape::Ellipse;
+  light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
+  if (from.spread < glm::pi<float>()) {
+    const double half = 0.5 * std::max(double(from.spread), 1e-3);
+    light.tan_half_spread = std::tan(half);
+    light.spread_scale = 1.0 / (light.tan_half_spread - half);
+  }
+  light.course = {from.falloff, double(from.falloff_radius) * scale, scale, from.ambient_color, from.diffuse_color, from.specular_color};
+  return light;
+}
+
+LightSet make_lights(const Scene &scene, const Description &description) {
+  std::vector<Light> lights;
+  for (const LightDescription &light : description.lights)
+    lights.push_back(normalised_light(light, scene.normalisation));
+  std::vector<Emitter> emitters;
+  for (uint32_t i = 0; i < scene.geometry.instances.size(); ++i) {
+    const Instance &instance = scene.geometry.instances[i];
+    bool emits = false;
+    for (uint32_t slot = 0; slot < instance.slot_count; ++slot)
+      emits |= scene.materials[scene.slots[instance.first_slot + slot]].emits();
+    if (!emits)
+      continue;
+    Emitter emitter(scene.geometry, scene.slots, scene.materials, i);
+    if (!emitter.empty())
+      emitters.push_back(std::move(emitter));
+  }
+  // Half the diagonal of a cube of 1024: what the normalised scene fits into.
+  constexpr double radius = 887.0;
+  return LightSet(std::move(lights), std::move(emitters), scene.geometry.instances.size(), description.world, radius);
+}
+
+} // namespace
+
+std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, const BuildContext &context) {
+  const auto start = std::chrono::steady_clock::now();
+  auto scene = std::make_shared<Scene>();
+  scene->features = find_features(description);
+  scene->normalisation = normalise(world_bounds(description));
+  // Place everything in the normalised world.
+  scene->geometry = std::move(description.geometry);
+  scene->slots = std::move(description.slots);
+  scene->materials = std::move(description.materials);
+  for (Instance &instance : scene->geometry.instances) {
+    instance.to_world = scene->normalisation.to_normalised(instance.to_world);
+    instance.to_object = inverse(instance.to_world);
+    if (instance.kind != ShapeKind::Mesh)
+      continue;
+    Mesh &mesh = scene->geometry.meshes[instance.mesh];
+    scene->triangles += mesh.triangles.size();
+    const bool smooth = instance.shading == Shading::Gouraud || instance.shading == Shading::Phong;
+    if (smooth && mesh.normal_domain == NormalDomain::None && mesh.smooth_normals.empty())
+      make_smooth_normals(mesh);
+  }
+  scene->lights = make_lights(*scene, description);
+  scene->accelerator = build_accelerator(kind, scene->geometry, context);
+  scene->instances_given = description.instances_given;
+  scene->messages = description.messages.text();
+  scene->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return scene;
+}
+
+size_t Scene::geometry_bytes() const {
+  size_t bytes = geometry.instances.size() * sizeof(Instance) + slots.size() * sizeof(uint32_t) + lights.bytes();
+  for (const Mesh &mesh : geometry.meshes) {
+    bytes += mesh.positions.size() * sizeof(glm::vec3) + mesh.triangles.size() * sizeof(glm::uvec3) +
+             (mesh.normals.size() + mesh.smooth_normals.size() + mesh.colors.size()) * sizeof(glm::vec3) +
+             mesh.uvs.size() * sizeof(glm::vec2) + mesh.material_slots.size() * sizeof(uint16_t) +
+             mesh.face_of.size() * sizeof(uint32_t);
+  }
+  return bytes;
+}
+
+} // namespace lancer

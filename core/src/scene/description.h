@@ -1,0 +1,50 @@
+// The scene while it is being filled: checked copies of what the user gives, in the user's units.
+#pragma once
+
+#include "lancer.h"
+#include "scene/geometry.h"
+#include "scene/light.h"
+#include "scene/material.h"
+
+#include <string>
+#include <vector>
+
+namespace lancer {
+
+// Everything that was left out or replaced, one line each; the same line is said once, with a count.
+class Messages {
+public:
+  void add(const std::string &object, const std::string &what);
+  // All lines, each ended by a newline.
+  std::string text() const;
+
+private:
+  struct Line {
+    std::string text;
+    uint64_t count;
+  };
+  std::vector<Line> lines_;
+};
+
+struct Description {
+  Geometry geometry; // instances in world units, to_object not yet set
+  std::vector<uint32_t> slots;
+  std::vector<Material> materials;
+  std::vector<LightDescription> lights;
+  glm::vec3 world{0.0f};
+  uint32_t instances_given = 0; // including those left out
+  Messages messages;
+};
+
+// Each checks one record and copies it; an Error names object and value and leaves the description as it was.
+void add_mesh(Description &description, const lancer_mesh &mesh);
+void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
+                   const uint32_t *slots, const char *names, size_t names_size);
+void add_material(Description &description, const lancer_material &material);
+void add_light(Description &description, const lancer_light &light);
+void set_world(Description &description, const float radiance[3]);
+
+// "name", or "#number" where there is no name.
+std::string label(const char *kind, const char *name, size_t number);
+
+} // namespace lancer

@@ -1,0 +1,72 @@
+#include "scene/fill_camera.h"
+
+#include "scene/error.h"
+
+#include <cmath>
+#include <string>
+
+namespace lancer {
+
+namespace {
+
+void check_rigid(const Affine &map) {
+  if (!map.finite())
+    bad_argument("camera: its matrix is not finite");
+  // Blender's matrices are products of floats: unit to about 1e-6; a scale would show far beyond that.
+  const glm::dmat3 gram = glm::transpose(map.linear) * map.linear;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (!(std::abs(gram[i][k] - (i == k ? 1.0 : 0.0)) < 1e-3))
+        bad_argument("camera: its matrix must be a rotation and a translation, without scale");
+}
+
+void check_region(const lancer_camera &source) {
+  const auto text = [](uint32_t value) { return std::to_string(value); };
+  if (source.width == 0 || source.height == 0)
+    bad_argument("camera: resolution " + text(source.width) + " x " + text(source.height) + " has no pixels");
+  if (source.region_width == 0 || source.region_height == 0)
+    bad_argument("camera: region " + text(source.region_width) + " x " + text(source.region_height) + " has no pixels");
+  if (uint64_t(source.x) + source.region_width > source.width || uint64_t(source.y) + source.region_height > source.height)
+    bad_argument("camera: region " + text(source.region_width) + " x " + text(source.region_height) + " at (" + text(source.x) +
+                 ", " + text(source.y) + ") leaves the image of " + text(source.width) + " x " + text(source.height));
+}
+
+} // namespace
+
+Camera read_camera(const lancer_camera &source) {
+  if (source.kind > LANCER_ORTHOGRAPHIC)
+    bad_argument("camera: kind " + std::to_string(source.kind) + " is not one of 0, 1");
+  check_region(source);
+  Camera camera;
+  camera.to_world = Affine::from_rows(source.matrix);
+  check_rigid(camera.to_world);
+  for (double edge : source.window)
+    if (!std::isfinite(edge))
+      bad_argument("camera: its window is not finite");
+  if (source.window[0] == source.window[1] || source.window[2] == source.window[3])
+    bad_argument("camera: its window is empty");
+  if (!(source.clip_start >= 0.0) || !(source.clip_end > source.clip_start))
+    bad_argument("camera: clip range " + std::to_string(source.clip_start) + " ... " + std::to_string(source.clip_end) + " is empty");
+  if (!(source.lens_radius >= 0.0) || !std::isfinite(source.lens_radius))
+    bad_argument("camera: lens radius " + std::to_string(source.lens_radius) + " must be finite and not negative");
+  if (source.lens_radius > 0.0 && !(source.focal_distance > 0.0))
+    bad_argument("camera: focal distance " + std::to_string(source.focal_distance) + " must be positive");
+  camera.orthographic = source.kind == LANCER_ORTHOGRAPHIC;
+  camera.width = source.width;
+  camera.height = source.height;
+  camera.x = source.x;
+  camera.y = source.y;
+  camera.region_width = source.region_width;
+  camera.region_height = source.region_height;
+  camera.left = source.window[0];
+  camera.right = source.window[1];
+  camera.bottom = source.window[2];
+  camera.top = source.window[3];
+  camera.clip_start = source.clip_start;
+  camera.clip_end = source.clip_end;
+  camera.lens_radius = source.lens_radius;
+  camera.focal_distance = source.focal_distance;
+  return camera;
+}
+
+} // namespace lancer

@@ -1,0 +1,97 @@
+// Checks and copies placements: known meshes and materials, maps that can be inverted.
+#include "scene/description.h"
+#include "scene/error.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace lancer {
+
+namespace {
+
+// Scales beyond these would leave the range in which squares of squares are finite in double.
+constexpr double kLargestScale = 1.2676506002282294e30; // 2^100
+
+// Why a placement cannot be traced; empty if it can.
+std::string fault_of(const Affine &map) {
+  if (!map.finite())
+    return "its matrix is not finite";
+  double columns[3];
+  for (int i = 0; i < 3; ++i)
+    columns[i] = glm::length(map.linear[i]);
+  for (double length : columns) {
+    if (length == 0.0)
+      return "its matrix is singular (a scale of 0)";
+    if (!(length < kLargestScale) || !(length > 1.0 / kLargestScale))
+      return "its scale is beyond what can be traced";
+  }
+  // Judge the determinant of unit columns: it does not depend on scale. At double's roundoff the map has lost a dimension.
+  const glm::dmat3 directions(map.linear[0] / columns[0], map.linear[1] / columns[1], map.linear[2] / columns[2]);
+  if (!(std::abs(glm::determinant(directions)) > std::ldexp(1.0, -50)))
+    return "its matrix is singular";
+  return "";
+}
+
+void check_instance(const Description &description, const std::string &object, const lancer_instance &given, uint32_t slot_count) {
+  if (given.kind > LANCER_CONE)
+    bad_argument(object + ": kind " + std::to_string(given.kind) + " is not a shape");
+  if (given.kind == LANCER_MESH && given.mesh >= description.geometry.meshes.size())
+    bad_argument(object + ": mesh " + std::to_string(given.mesh) + " >= " + std::to_string(description.geometry.meshes.size()) +
+                 " meshes");
+  if (given.shading > LANCER_SHADING_PHONG)
+    bad_argument(object + ": shading " + std::to_string(given.shading) + " is not one of 0 ... 3");
+  if (uint64_t(given.first_slot) + given.slot_count > slot_count)
+    bad_argument(object + ": slots " + std::to_string(given.first_slot) + " + " + std::to_string(given.slot_count) + " > " +
+                 std::to_string(slot_count) + " slots");
+}
+
+} // namespace
+
+void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
+                   const uint32_t *slots, const char *names, size_t names_size) {
+  if (count && !instances)
+    bad_argument("instances: NULL for " + std::to_string(count) + " instances");
+  if (slot_count && !slots)
+    bad_argument("instances: slots is NULL for " + std::to_string(slot_count) + " slots");
+  if (names_size && (!names || names[names_size - 1] != '\0'))
+    bad_argument("instances: names must end with a NUL");
+  for (uint32_t i = 0; i < slot_count; ++i) {
+    if (slots[i] >= description.materials.size())
+      bad_argument("instances: slot " + std::to_string(i) + " names material " + std::to_string(slots[i]) + " >= " +
+                   std::to_string(description.materials.size()) + " materials");
+  }
+  // Check all before keeping any: a refused call adds nothing.
+  const auto name_of = [&](const lancer_instance &given) { return given.name < names_size ? names + given.name : ""; };
+  for (uint32_t i = 0; i < count; ++i) {
+    if (names_size && instances[i].name >= names_size)
+      bad_argument("instance #" + std::to_string(description.instances_given + i) + ": name offset " +
+                   std::to_string(instances[i].name) + " >= " + std::to_string(names_size) + " bytes of names");
+    check_instance(description, label("object", name_of(instances[i]), description.instances_given + i), instances[i], slot_count);
+  }
+
+  const uint32_t slot_base = uint32_t(description.slots.size());
+  description.slots.insert(description.slots.end(), slots, slots + slot_count);
+  description.geometry.instances.reserve(description.geometry.instances.size() + count);
+  for (uint32_t i = 0; i < count; ++i) {
+    const lancer_instance &given = instances[i];
+    Instance instance;
+    instance.name = name_of(given);
+    instance.number = description.instances_given + i;
+    instance.to_world = Affine::from_rows(given.matrix);
+    const std::string fault = fault_of(instance.to_world);
+    if (!fault.empty()) {
+      description.messages.add(label("object", name_of(given), instance.number), fault + "; it was left out");
+      continue;
+    }
+    instance.kind = static_cast<ShapeKind>(given.kind);
+    instance.shading = static_cast<Shading>(given.shading);
+    instance.mesh = given.kind == LANCER_MESH ? given.mesh : 0;
+    instance.first_slot = slot_base + given.first_slot;
+    instance.slot_count = given.slot_count;
+    instance.object_index = given.object_index;
+    description.geometry.instances.push_back(std::move(instance));
+  }
+  description.instances_given += count;
+}
+
+} // namespace lancer

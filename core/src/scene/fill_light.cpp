@@ -1,0 +1,78 @@
+// Checks and copies lights; a value that no light can have is replaced and said.
+#include "scene/description.h"
+#include "scene/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/gtc/constants.hpp>
+
+namespace lancer {
+
+namespace {
+
+constexpr float kBrightest = 1e30f;
+
+class LightReader {
+public:
+  LightReader(std::string object, Messages &messages) : object_(std::move(object)), messages_(messages) {}
+
+  float read(const char *what, float value, float low, float high) {
+    const float used = std::isnan(value) ? low : std::clamp(value, low, high);
+    if (!(value == used)) {
+      char text[128];
+      std::snprintf(text, sizeof text, "%s %g was replaced by %g", what, double(value), double(used));
+      messages_.add(object_, text);
+    }
+    return used;
+  }
+
+  glm::vec3 read(const char *what, const float value[3]) {
+    return {read(what, value[0], 0.0f, kBrightest), read(what, value[1], 0.0f, kBrightest), read(what, value[2], 0.0f, kBrightest)};
+  }
+
+private:
+  std::string object_;
+  Messages &messages_;
+};
+
+} // namespace
+
+void add_light(Description &description, const lancer_light &source) {
+  const std::string object = label("light", source.name, description.lights.size());
+  if (source.kind > LANCER_AREA)
+    bad_argument(object + ": kind " + std::to_string(source.kind) + " is not a light");
+  if (source.shape > LANCER_ELLIPSE)
+    bad_argument(object + ": shape " + std::to_string(source.shape) + " is not one of 0, 1");
+  if (source.falloff > LANCER_FALLOFF_GAUSSIAN)
+    bad_argument(object + ": falloff " + std::to_string(source.falloff) + " is not one of 0 ... 5");
+
+  LightDescription light;
+  light.name = source.name ? source.name : "";
+  light.kind = static_cast<LightKind>(source.kind);
+  light.to_world = Affine::from_rows(source.matrix);
+  if (!light.to_world.finite()) {
+    description.messages.add(object, "its matrix is not finite; it gives no light");
+    light.to_world = Affine{};
+  } else {
+    LightReader reader(object, description.messages);
+    light.emission = reader.read("emission", source.emission);
+    light.radius = reader.read("radius", source.radius, 0.0f, kBrightest);
+    light.soft_falloff = source.soft_falloff != 0;
+    light.spot_angle = reader.read("spot angle", source.spot_angle, 0.0f, glm::two_pi<float>());
+    light.spot_blend = reader.read("spot blend", source.spot_blend, 0.0f, 1.0f);
+    light.sun_angle = reader.read("sun angle", source.sun_angle, 0.0f, glm::pi<float>());
+    light.size = {reader.read("size", source.size[0], 0.0f, kBrightest), reader.read("size", source.size[1], 0.0f, kBrightest)};
+    light.shape = static_cast<AreaShape>(source.shape);
+    light.spread = reader.read("spread", source.spread, 0.0f, glm::pi<float>());
+    light.falloff = static_cast<Falloff>(source.falloff);
+    light.falloff_radius = reader.read("falloff radius", source.falloff_radius, 0.0f, kBrightest);
+    light.ambient_color = reader.read("ambient colour", source.ambient_color);
+    light.diffuse_color = reader.read("diffuse colour", source.diffuse_color);
+    light.specular_color = reader.read("specular colour", source.specular_color);
+  }
+  // A light that gives nothing keeps its number: lights are numbered as added.
+  description.lights.push_back(std::move(light));
+}
+
+} // namespace lancer

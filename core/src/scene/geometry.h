@@ -1,0 +1,51 @@
+// Everything that a ray can meet, as the user described it: meshes and their placements.
+#pragma once
+
+#include "scene/affine.h"
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace lancer {
+
+enum class ShapeKind : uint32_t { Mesh = 0, Sphere = 1, Plane = 2, Cylinder = 3, Cone = 4 };
+enum class Shading : uint32_t { AsMesh = 0, Flat = 1, Gouraud = 2, Phong = 3 };
+enum class NormalDomain : uint32_t { None = 0, Vertex = 1, Corner = 2 };
+
+// A triangle mesh in its object's space. Only faces of finite, non-zero area are kept.
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> triangles;
+  std::vector<uint32_t> face_of;        // triangle -> face as the user numbered it; empty: the same number
+  std::vector<glm::vec3> normals;       // by normal_domain: per vertex, or three per triangle
+  std::vector<glm::vec2> uvs;           // empty, or three per triangle
+  std::vector<glm::vec3> colors;        // empty, or three per triangle
+  std::vector<uint16_t> material_slots; // empty (all 0), or per triangle
+  NormalDomain normal_domain = NormalDomain::None;
+  std::vector<glm::vec3> smooth_normals; // per vertex; only where PHONG or GOURAUD is asked of a mesh without normals
+
+  glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
+};
+
+// One placed shape, in the normalised world: (world - centre) * 2^k.
+struct Instance {
+  Affine to_world;
+  Affine to_object;
+  ShapeKind kind = ShapeKind::Mesh;
+  Shading shading = Shading::AsMesh;
+  uint32_t mesh = 0;
+  uint32_t first_slot = 0, slot_count = 0;
+  uint32_t object_index = 0;
+  uint32_t number = 0; // in the user's order of adding
+  std::string name;
+};
+
+struct Geometry {
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+};
+
+} // namespace lancer

@@ -1,0 +1,33 @@
+// A light as described by the user: world units, not yet normalised.
+#pragma once
+
+#include "scene/affine.h"
+
+#include <cstdint>
+#include <string>
+
+namespace lancer {
+
+enum class LightKind : uint32_t { Point = 0, Spot = 1, Sun = 2, Area = 3 };
+enum class AreaShape : uint32_t { Rectangle = 0, Ellipse = 1 };
+enum class Falloff : uint32_t { Physical = 0, Constant = 1, Linear = 2, Quadratic = 3, Smooth = 4, Gaussian = 5 };
+
+struct LightDescription {
+  std::string name;
+  Affine to_world;
+  LightKind kind = LightKind::Point;
+  glm::vec3 emission{0.0f}; // POINT, SPOT: W/sr; SUN: W/m^2; AREA: radiance
+  float radius = 0.0f;
+  bool soft_falloff = true;
+  float spot_angle = 0.0f, spot_blend = 0.0f;
+  float sun_angle = 0.0f;
+  glm::vec2 size{0.0f};
+  AreaShape shape = AreaShape::Rectangle;
+  float spread = 3.14159265f;
+  // The course's light, CLASSIC only.
+  Falloff falloff = Falloff::Physical;
+  float falloff_radius = 0.0f;
+  glm::vec3 ambient_color{1.0f}, diffuse_color{1.0f}, specular_color{1.0f};
+};
+
+} // namespace lancer

@@ -1,0 +1,42 @@
+// The committed scene: normalised, with its lights and its accelerator; nothing in it changes any more.
+#pragma once
+
+#include "accel/accelerator.h"
+#include "lights/light_set.h"
+#include "scene/description.h"
+#include "scene/features.h"
+
+#include <functional>
+
+namespace lancer {
+
+// p_normalised = (p_world - centre) * scale, scale a power of two: the same scene at any size and place becomes the same numbers.
+struct Normalisation {
+  glm::dvec3 centre{0.0};
+  double scale = 1.0;
+
+  glm::dvec3 to_normalised(const glm::dvec3 &p) const { return (p - centre) * scale; }
+  glm::dvec3 to_world(const glm::dvec3 &p) const { return p / scale + centre; }
+  Affine to_normalised(const Affine &map) const { return {map.linear * scale, to_normalised(map.translation)}; }
+};
+
+struct Scene {
+  Geometry geometry; // normalised
+  std::vector<uint32_t> slots;
+  std::vector<Material> materials;
+  LightSet lights;
+  Normalisation normalisation;
+  uint32_t features = 0; // bits of features.h
+  std::unique_ptr<Accelerator> accelerator;
+  std::string messages;
+  uint32_t instances_given = 0;
+  uint64_t triangles = 0; // over all instances
+  double build_seconds = 0.0;
+
+  size_t geometry_bytes() const;
+};
+
+// Turns a description into a scene. Throws Error, or BuildCancelled when context.cancel is raised.
+std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, const BuildContext &context);
+
+} // namespace lancer

@@ -1,0 +1,131 @@
+#include "scene/surface.h"
+
+#include "accel/quadric.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+double largest(const glm::dvec3 &v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+// The largest sum of absolute values in a row: how much a map can enlarge the largest component.
+double row_norm(const glm::dmat3 &m) {
+  double norm = 0.0;
+  for (int row = 0; row < 3; ++row)
+    norm = std::max(norm, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+  return norm;
+}
+
+// Bound of the distance between the computed point and the surface, seen through the maps there and back again.
+// Each coordinate of M p + T is three products and three sums: at most gamma(4) of the sum of absolute values, and the ray that
+// leaves is mapped back with the same kind of error, enlarged again by M. 2^-49 is eight times the unit roundoff of double.
+double position_bound(const Instance &instance, const glm::dvec3 &p_object, const glm::dvec3 &p_world) {
+  const double m = row_norm(instance.to_world.linear), inverse = row_norm(instance.to_object.linear);
+  const double there = m * largest(p_object) + largest(instance.to_world.translation);
+  const double back = m * (inverse * largest(p_world) + largest(instance.to_object.translation));
+  return std::ldexp(there + back, -49);
+}
+
+glm::vec3 unit(const glm::dvec3 &v) {
+  // Scale by the largest component first: squares of very small or large normals leave the range of double.
+  const double scale = largest(v);
+  return glm::vec3(glm::normalize(v / scale));
+}
+
+// A normal of the object's space in the world: the inverse transpose keeps the outward side, mirrored or not.
+glm::vec3 normal_to_world(const Instance &instance, const glm::dvec3 &n) {
+  return unit(glm::transpose(instance.to_object.linear) * n);
+}
+
+template <class Vector>
+Vector interpolate(const std::vector<Vector> &corners, uint32_t triangle, const glm::dvec3 &b) {
+  const size_t first = size_t(triangle) * 3;
+  return float(b.x) * corners[first] + float(b.y) * corners[first + 1] + float(b.z) * corners[first + 2];
+}
+
+// The interpolated normal of the object's space, or zero where the surface is flat.
+glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec3 &b) {
+  if (shading == Shading::Flat)
+    return glm::vec3(0.0f);
+  if (mesh.normal_domain == NormalDomain::Corner)
+    return interpolate(mesh.normals, triangle, b);
+  const bool smooth = mesh.normal_domain == NormalDomain::None && shading != Shading::AsMesh;
+  const std::vector<glm::vec3> &normals = smooth ? mesh.smooth_normals : mesh.normals;
+  if (normals.empty())
+    return glm::vec3(0.0f);
+  const glm::uvec3 &t = mesh.triangles[triangle];
+  return float(b.x) * normals[t.x] + float(b.y) * normals[t.y] + float(b.z) * normals[t.z];
+}
+
+void mesh_surface(const Geometry &geometry, const Hit &hit, Surface &surface) {
+  const Instance &instance = geometry.instances[hit.instance];
+  const Mesh &mesh = geometry.meshes[instance.mesh];
+  // Take the point from the barycentrics: it lies in the triangle's plane however far the ray came.
+  const glm::dvec3 b(1.0 - hit.u - hit.v, hit.u, hit.v);
+  const glm::dvec3 v0(mesh.vertex(hit.primitive, 0)), v1(mesh.vertex(hit.primitive, 1)), v2(mesh.vertex(hit.primitive, 2));
+  const glm::dvec3 p = b.x * v0 + b.y * v1 + b.z * v2;
+  surface.p = instance.to_world.point(p);
+  surface.offset = position_bound(instance, glm::max(glm::abs(v0), glm::max(glm::abs(v1), glm::abs(v2))), surface.p);
+  // Take both normals outwards.
+  surface.ng = normal_to_world(instance, glm::cross(v1 - v0, v2 - v0));
+  surface.ns = surface.ng;
+  const glm::vec3 n = interpolated_normal(mesh, instance.shading, hit.primitive, b);
+  if (n != glm::vec3(0.0f)) {
+    surface.ns = normal_to_world(instance, glm::dvec3(n));
+    if (glm::dot(surface.ns, surface.ng) < 0.0f)
+      surface.ns = -surface.ns;
+  }
+  // Take the attributes that the mesh has.
+  surface.uv = mesh.uvs.empty() ? glm::vec2(float(hit.u), float(hit.v)) : interpolate(mesh.uvs, hit.primitive, b);
+  if (!mesh.colors.empty())
+    surface.color = interpolate(mesh.colors, hit.primitive, b);
+}
+
+void quadric_surface(const Geometry &geometry, const Ray &ray, const Hit &hit, Surface &surface) {
+  const Instance &instance = geometry.instances[hit.instance];
+  const SurfacePoint point = quadric_point(instance.kind, instance.to_object.point(ray.o), instance.to_object.vector(ray.d), hit.t);
+  surface.p = instance.to_world.point(point.p);
+  surface.offset = position_bound(instance, glm::max(glm::abs(point.p), glm::dvec3(1.0)), surface.p);
+  surface.ng = surface.ns = normal_to_world(instance, point.n);
+  surface.uv = glm::vec2(point.uv);
+}
+
+} // namespace
+
+uint32_t material_of(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t primitive) {
+  const Instance &placed = geometry.instances[instance];
+  if (placed.slot_count == 0)
+    return kNone;
+  uint32_t slot = 0;
+  if (placed.kind == ShapeKind::Mesh && !geometry.meshes[placed.mesh].material_slots.empty())
+    slot = std::min<uint32_t>(geometry.meshes[placed.mesh].material_slots[primitive], placed.slot_count - 1);
+  return slots[placed.first_slot + slot];
+}
+
+Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots, const Ray &ray, const Hit &hit) {
+  Surface surface;
+  surface.instance = hit.instance;
+  surface.primitive = hit.primitive;
+  surface.material = material_of(geometry, slots, hit.instance, hit.primitive);
+  if (geometry.instances[hit.instance].kind == ShapeKind::Mesh)
+    mesh_surface(geometry, hit, surface);
+  else
+    quadric_surface(geometry, ray, hit, surface);
+  return surface;
+}
+
+Ray leave(const Surface &surface, const glm::dvec3 &d, double tmax) {
+  Ray ray;
+  const double side = glm::dot(glm::dvec3(surface.ng), d) < 0.0 ? -1.0 : 1.0;
+  ray.o = surface.p + side * surface.offset * glm::dvec3(surface.ng);
+  ray.d = d;
+  ray.tmax = tmax;
+  ray.skip_instance = surface.instance;
+  ray.skip_primitive = surface.primitive;
+  return ray;
+}
+
+} // namespace lancer

@@ -1,0 +1,30 @@
+// What the scene is like where a ray has met it.
+#pragma once
+
+#include "accel/ray.h"
+#include "scene/geometry.h"
+
+namespace lancer {
+
+struct Surface {
+  glm::dvec3 p{0.0};    // normalised world, on the surface to a few ulp of double
+  double offset = 0.0;  // bound of p's distance from the surface as any later ray sees it
+  glm::vec3 ng{0, 0, 1}; // outward geometric normal, unit
+  glm::vec3 ns{0, 0, 1}; // shading normal, unit, on the side of ng
+  glm::vec2 uv{0.0f};
+  glm::vec3 color{1.0f}; // vertex colour
+  uint32_t instance = kNone;
+  uint32_t primitive = kNone;
+  uint32_t material = kNone;
+};
+
+// The hit of ray with the geometry, with interpolated attributes. slots: material numbers of all instances.
+Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots, const Ray &ray, const Hit &hit);
+
+// A ray that leaves the surface towards d (need not be unit): it starts on the side of d and cannot meet its own primitive.
+Ray leave(const Surface &surface, const glm::dvec3 &d, double tmax);
+
+// The material number of a primitive of an instance; kNone without slots.
+uint32_t material_of(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t primitive);
+
+} // namespace lancer

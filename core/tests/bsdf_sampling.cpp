@@ -1,0 +1,251 @@
+// Every lobe and their mixtures: directions fall as the pdf says, weights add up to the albedo.
+#include "bsdf/bsdf.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bsdf_domain.h"
+#include "statistics.h"
+
+namespace lancer {
+namespace {
+
+using testing::HalfVectorDomain;
+using testing::Random;
+
+struct Case {
+  std::string name;
+  std::vector<Lobe> lobes;
+  double width;          // of the narrowest lobe, in slopes of the half vector
+  double delta = 0.0;    // probability of the delta lobes, known from how the case is built
+};
+
+Lobe lobe(LobeKind kind, float color, float alpha = 0.0f, float ior = 1.5f, float shininess = 0.0f) {
+  return {kind, glm::vec3(color, 0.5f * color, 0.25f * color), alpha, ior, shininess};
+}
+
+std::vector<Case> cases() {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const Lobe diffuse = lobe(LobeKind::Lambert, 0.6f);
+  std::vector<Case> all{{"Lambert", {diffuse}, 1.0}};
+  for (float alpha : {1e-3f, 1e-2f, 0.1f, 0.5f, 1.0f})
+    all.push_back({"Beckmann " + std::to_string(alpha), {lobe(LobeKind::Beckmann, 1.0f, alpha, infinity)}, alpha});
+  for (float n : {0.0f, 3.0f, 100.0f}) {
+    const double width = std::sqrt(2.0 / (n + 2.0));
+    all.push_back({"Phong " + std::to_string(n), {lobe(LobeKind::Phong, 0.9f, 0, 1, n)}, width});
+    all.push_back({"Blinn-Phong " + std::to_string(n), {lobe(LobeKind::BlinnPhong, 0.9f, 0, 1, n)}, width});
+  }
+  for (float ior : {0.9f, 1.5f, 4.0f})
+    all.push_back({"coated " + std::to_string(ior), {diffuse, lobe(LobeKind::Beckmann, 0.8f, 0.05f, ior)}, 0.05});
+  all.push_back({"two coats", {lobe(LobeKind::Beckmann, 0.8f, 0.3f), diffuse, lobe(LobeKind::Beckmann, 0.5f, 0.01f, 2.4f)}, 0.01});
+  all.push_back({"everything smooth",
+                 {lobe(LobeKind::Phong, 0.2f, 0, 1, 50.0f), diffuse, lobe(LobeKind::BlinnPhong, 0.3f, 0, 1, 20.0f),
+                  lobe(LobeKind::Beckmann, 0.5f, 0.2f)},
+                 0.2});
+  // Colours 0.6, 0.3 and 0.3: half of the choices are delta lobes.
+  all.push_back({"with mirror and glass",
+                 {diffuse, lobe(LobeKind::Mirror, 0.3f), lobe(LobeKind::Dielectric, 0.3f)},
+                 1.0,
+                 0.5});
+  return all;
+}
+
+Bsdf make(const std::vector<Lobe> &lobes) {
+  Bsdf bsdf;
+  bsdf.count = static_cast<int>(lobes.size());
+  std::copy(lobes.begin(), lobes.end(), bsdf.lobes);
+  return bsdf;
+}
+
+glm::vec3 direction(double cosine, double phi = 0.8) {
+  const double sine = std::sqrt((1.0 - cosine) * (1.0 + cosine));
+  return glm::vec3(glm::dvec3(sine * std::cos(phi), sine * std::sin(phi), cosine));
+}
+
+constexpr double kCosines[] = {1.0, 0.7, 0.1, 0.01};
+constexpr int kDraws = 250000, kSide = 24;
+
+struct Verdict {
+  double p;         // chi-square of directions, rejected ones and delta ones
+  double weight_p;  // z-test of the mean weight of smooth samples against the integral of f cos
+};
+
+// Draws from one Bsdf, expects what another one's pdf says.
+Verdict judge(const Bsdf &drawn, const Bsdf &expected_of, const Case &c, const glm::vec3 &wo, uint64_t seed) {
+  const HalfVectorDomain domain(wo, c.width);
+  constexpr std::size_t rejected = kSide * kSide, delta = rejected + 1;
+  std::vector<double> observed(delta + 1, 0.0), expected(delta + 1, 0.0);
+  // A cell's expectation is wanted within a small part of its own noise, sqrt(N p); 0.1 counts is that for every cell kept.
+  const double tolerance = 0.1 / kDraws;
+  double inside = 0.0;
+  for (std::size_t i = 0; i < kSide; ++i)
+    for (std::size_t j = 0; j < kSide; ++j) {
+      const glm::dvec2 low = glm::dvec2(i, j) / double{kSide}, high = glm::dvec2(i + 1, j + 1) / double{kSide};
+      const double mass = domain.integrate([&](const glm::vec3 &wi) { return double{expected_of.pdf(wo, wi)}; }, low, high, tolerance);
+      // A sliver of a cell above the horizon can slip between the nodes: no cell is called impossible.
+      expected[i * kSide + j] = std::max(kDraws * mass, 1e-3);
+      inside += mass;
+    }
+  expected[delta] = kDraws * c.delta;
+  expected[rejected] = std::max(0.0, kDraws * (1.0 - inside - c.delta));
+
+  Random random(seed);
+  double sum = 0.0, sum2 = 0.0;
+  for (int k = 0; k < kDraws; ++k) {
+    const float u = random.uniform(), x = random.uniform(), y = random.uniform();
+    const BsdfSample sample = drawn.sample(wo, u, {x, y});
+    if (sample.delta) {
+      observed[delta] += 1.0;
+    } else if (!(sample.pdf > 0.0f)) {
+      observed[rejected] += 1.0;
+    } else {
+      const glm::dvec2 place = domain.to_square(sample.wi);
+      const auto i = static_cast<std::size_t>(std::clamp(place.x * kSide, 0.0, kSide - 1.0));
+      const auto j = static_cast<std::size_t>(std::clamp(place.y * kSide, 0.0, kSide - 1.0));
+      observed[i * kSide + j] += 1.0;
+      sum += sample.weight.x;
+      sum2 += static_cast<double>(sample.weight.x) * sample.weight.x;
+    }
+  }
+  const double albedo = domain.integrate([&](const glm::vec3 &wi) { return double{expected_of.eval(wo, wi).x} * wi.z; }, 1e-5);
+  const double mean = sum / kDraws, variance = std::max(0.0, sum2 / kDraws - mean * mean) / kDraws;
+  // The quadrature's and the floats' own errors, 1e-5 each, stand beside the noise; a constant weight has no noise at all.
+  const double z = (mean - albedo) / std::sqrt(variance + 2e-10);
+  return {testing::chi_square_test(observed, expected), testing::normal_p_value(z)};
+}
+
+TEST(BsdfSampling, DirectionsFollowThePdfAndWeightsTheAlbedo) {
+  const std::vector<Case> all = cases();
+  const double level = testing::sidak_level(testing::kSignificance, 2 * all.size() * std::size(kCosines));
+  uint64_t seed = 100;
+  for (const Case &c : all)
+    for (double cosine : kCosines) {
+      const Bsdf bsdf = make(c.lobes);
+      const Verdict verdict = judge(bsdf, bsdf, c, direction(cosine), ++seed);
+      EXPECT_GT(verdict.p, level) << c.name << ", cos " << cosine;
+      EXPECT_GT(verdict.weight_p, level) << c.name << ", cos " << cosine;
+    }
+}
+
+TEST(BsdfSampling, AWrongRoughnessIsSeen) {
+  // Two percent of the width move some 2 % of the mass: in 250 000 draws that is many times the noise of any cell.
+  for (float alpha : {1e-3f, 0.1f})
+    for (double cosine : {1.0, 0.1}) {
+      const Case wrong{"", {lobe(LobeKind::Beckmann, 1.0f, 1.02f * alpha)}, alpha};
+      const Bsdf right = make({lobe(LobeKind::Beckmann, 1.0f, alpha)});
+      EXPECT_LT(judge(right, make(wrong.lobes), wrong, direction(cosine), 1).p, 1e-6) << alpha << " " << cosine;
+    }
+}
+
+TEST(BsdfSampling, VisibleNormalsIntegrateToOne) {
+  // Exactly 1 for the exact G1. Floats: the exponent's rounding is weighed by its mean, 1; G1 / cos and alpha^2 round some 20
+  // times of 6e-8 in all; the quadrature adds less.
+  for (float alpha : {1e-3f, 1e-2f, 0.1f, 0.5f, 1.0f})
+    for (double cosine : {1.0, 0.9, 0.5, 0.1, 1e-2, 1e-3}) {
+      const glm::vec3 wo = direction(cosine);
+      const HalfVectorDomain domain(wo, alpha);
+      const double g1 = beckmann_g1_exact(beckmann_a(wo, alpha));
+      const auto visible = [&](const glm::dvec3 &h) {
+        const double tan2 = (h.x * h.x + h.y * h.y) / (h.z * h.z);
+        return g1 * std::max(0.0, glm::dot(glm::dvec3(wo), h)) / wo.z * beckmann_d(static_cast<float>(tan2), alpha);
+      };
+      double sum = 0.0;
+      // Small cells from the start: at the edge of what wo sees a corner can slip between the nodes.
+      for (int i = 0; i < 64; ++i)
+        for (int j = 0; j < 64; ++j)
+          sum += domain.integrate_half(visible, glm::dvec2(i, j) / 64.0, glm::dvec2(i + 1, j + 1) / 64.0, 1e-9);
+      EXPECT_NEAR(sum, 1.0, 3e-6) << alpha << " " << cosine;
+    }
+}
+
+TEST(BsdfSampling, ThePdfIntegratesToWhatIsNotRejected) {
+  // Where next to nothing falls below the horizon the pdf holds the whole probability: at normal incidence with slopes that reach
+  // it (tan 45 degrees) only beyond exp(-1 / alpha^2) < 1e-10. Tolerance as for visible normals, times wi's own rounding.
+  for (float alpha : {1e-2f, 0.1f, 0.2f}) {
+    const Bsdf bsdf = make({lobe(LobeKind::Beckmann, 1.0f, alpha)});
+    const glm::vec3 wo = direction(1.0);
+    const double sum = HalfVectorDomain(wo, alpha).integrate([&](const glm::vec3 &wi) { return double{bsdf.pdf(wo, wi)}; }, 1e-6);
+    EXPECT_NEAR(sum, 1.0, 1e-5) << alpha;
+  }
+  const Bsdf diffuse = make({lobe(LobeKind::Lambert, 1.0f)});
+  for (double cosine : kCosines) {
+    const glm::vec3 wo = direction(cosine);
+    EXPECT_NEAR(HalfVectorDomain(wo, 1.0).integrate([&](const glm::vec3 &wi) { return double{diffuse.pdf(wo, wi)}; }, 1e-6), 1.0, 1e-5);
+  }
+}
+
+TEST(BsdfSampling, WeightPdfAndValueAgree) {
+  // A sample's weight times its pdf is f cos as evaluation gives it. The half vector from wo + wi is off by up to 2^-23 (and wi's
+  // own rounding as much) over |wo + wi| >= s, the sum of heights. Slopes reach 4 widths: 2 * 4 * 2^-22 / (width s) of the value;
+  // and wo.h >= s / 2 divides the pdf of Blinn-Phong: 2^-21 / s^2.
+  Random random(5);
+  for (const Case &c : cases())
+    for (double cosine : kCosines) {
+      const Bsdf bsdf = make(c.lobes);
+      const glm::vec3 wo = direction(cosine);
+      for (int k = 0; k < 1000; ++k) {
+        const float u = random.uniform(), x = random.uniform(), y = random.uniform();
+        const BsdfSample sample = bsdf.sample(wo, u, {x, y});
+        if (sample.delta || !(sample.pdf > 0.0f))
+          continue;
+        const BsdfValue value = bsdf.eval_pdf(wo, sample.wi);
+        const double s = std::min(1.0, double{sample.wi.z} + wo.z);
+        const double tolerance = 1e-5 + 8.0 * 0x1p-22 / (c.width * s) + 0x1p-21 / (s * s);
+        ASSERT_NEAR(value.pdf / sample.pdf, 1.0, tolerance) << c.name << " " << cosine;
+        const float product = sample.weight.y * sample.pdf;
+        ASSERT_NEAR(value.f.y * sample.wi.z / product, 1.0, 2.0 * tolerance) << c.name << " " << cosine;
+      }
+    }
+}
+
+TEST(BsdfSampling, PhongKeepsItsShapeHoweverNarrow) {
+  // Around the mirrored direction cos^(n + 1) and the azimuth are uniform; 1 - cos comes from the distance of both, in double.
+  for (float n : {10.0f, 1e3f, 1e5f})
+    for (double cosine : {0.7, 0.01}) {
+      const glm::vec3 wo = direction(cosine);
+      const Frame frame(reflect_local(wo));
+      const glm::dvec3 t(frame.t), b(frame.b), mirrored(frame.n);
+      std::vector<double> observed(16 * 16, 0.0);
+      Random random(12);
+      for (int k = 0; k < kDraws; ++k) {
+        const float x = random.uniform(), y = random.uniform();
+        const glm::dvec3 wi(phong_sample(lobe(LobeKind::Phong, 1.0f, 0, 1, n), wo, {x, y}).wi);
+        const glm::dvec3 difference = wi - mirrored;
+        const double level = std::exp((n + 1.0) * std::log1p(-std::min(1.0, 0.5 * glm::dot(difference, difference))));
+        const double turn = std::atan2(glm::dot(wi, b), glm::dot(wi, t)) / (2.0 * std::numbers::pi) + 0.5;
+        const auto i = static_cast<std::size_t>(std::clamp(level * 16.0, 0.0, 15.0));
+        const auto j = static_cast<std::size_t>(std::clamp(turn * 16.0, 0.0, 15.0));
+        observed[16 * i + j] += 1.0;
+      }
+      const double p = testing::chi_square_test(observed, std::vector<double>(256, kDraws / 256.0));
+      EXPECT_GT(p, testing::sidak_level(testing::kSignificance, 6)) << n << " " << cosine;
+    }
+}
+
+TEST(BsdfSampling, GlassReflectsWithProbabilityFresnel) {
+  Random random(9);
+  const Bsdf glass = make({lobe(LobeKind::Dielectric, 0.8f, 0, 1.5f)});
+  // Binomial z-test of reflections, from outside and from inside.
+  for (float side : {1.0f, -1.0f}) {
+    glm::vec3 wo = direction(0.8);
+    wo.z *= side;
+    const float reflectance = fresnel_dielectric(0.8f, side > 0.0f ? 1.5f : 1.0f / 1.5f);
+    double reflected = 0.0;
+    for (int k = 0; k < kDraws; ++k) {
+      const float u = random.uniform(), x = random.uniform(), y = random.uniform();
+      const BsdfSample sample = glass.sample(wo, u, {x, y});
+      ASSERT_TRUE(sample.delta);
+      ASSERT_EQ(sample.weight.x, 0.8f);
+      const bool same_side = sample.wi.z * side > 0.0f;
+      ASSERT_EQ(sample.pdf, same_side ? reflectance : 1.0f - reflectance);
+      reflected += same_side ? 1.0 : 0.0;
+    }
+    const double p = reflectance, z = (reflected - kDraws * p) / std::sqrt(kDraws * p * (1.0 - p));
+    EXPECT_GT(testing::normal_p_value(z), testing::sidak_level(testing::kSignificance, 2));
+  }
+}
+
+} // namespace
+} // namespace lancer

@@ -1,0 +1,202 @@
+// The sampler: exact stratification of every prefix, independence of pixels, seeds and dimensions.
+#include "sampling/sobol.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "statistics.h"
+
+namespace lancer {
+namespace {
+
+using testing::Random;
+
+// True if every elementary interval of area 2^(t - m) holds exactly 2^t of the 2^m points.
+bool is_net(const std::vector<glm::vec2> &points, int m, int t) {
+  const int digits = m - t;
+  for (int a = 0; a <= digits; ++a) {
+    std::vector<int> count(std::size_t{1} << digits, 0);
+    for (const glm::vec2 &p : points) {
+      const auto column = static_cast<uint32_t>(p.x * static_cast<float>(1u << a));
+      const auto row = static_cast<uint32_t>(p.y * static_cast<float>(1u << (digits - a)));
+      ++count[column << (digits - a) | row];
+    }
+    for (int c : count)
+      if (c != 1 << t)
+        return false;
+  }
+  return true;
+}
+
+std::vector<glm::vec2> points(uint32_t seed, uint32_t x, uint32_t y, uint32_t first, int m, uint32_t dimension) {
+  std::vector<glm::vec2> result;
+  for (uint32_t s = first; s < first + (1u << m); ++s)
+    result.push_back(Sampler(seed, x, y, s).get2(dimension));
+  return result;
+}
+
+TEST(Sobol, EachJointDimensionIsStratified) {
+  for (uint32_t d = 0; d < kJointDimensions; ++d)
+    for (int m = 0; m <= 12; ++m) {
+      std::vector<int> count(std::size_t{1} << m, 0);
+      for (uint32_t s = 0; s < 1u << m; ++s)
+        ++count[static_cast<std::size_t>(Sampler(3, 5, 7, s).get1(d) * static_cast<float>(1u << m))];
+      for (int c : count)
+        ASSERT_EQ(c, 1) << "dimension " << d << ", 2^" << m << " points";
+    }
+}
+
+TEST(Sobol, JointPairsAreNets) {
+  // Sobol's theorem: two dimensions with polynomials of degrees e and e' are a (t, 2)-sequence with t = e - 1 + e' - 1. The first
+  // dimension counts 0. Every aligned block of 2^m points is then a (t, m, 2)-net.
+  const int degree[kJointDimensions] = {1, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5, 6, 6, 6};
+  for (uint32_t d = 0; d < kJointDimensions; d += 2) {
+    const int t = degree[d] - 1 + degree[d + 1] - 1;
+    for (int m = t; m <= 13; ++m)
+      for (uint32_t block = 0; block < 3; ++block)
+        ASSERT_TRUE(is_net(points(11, 2, 9, block << m, m, d), m, t)) << "dimension " << d << ", 2^" << m << " points";
+  }
+}
+
+TEST(Sobol, JointDimensionsAreLinearlyIndependentOverAll16) {
+  // Property A of Sobol: the first digits of all 16 dimensions over 2^16 points take every combination exactly once.
+  std::vector<int> count(std::size_t{1} << 16, 0);
+  for (uint32_t s = 0; s < 1u << 16; ++s) {
+    uint32_t corner = 0;
+    for (uint32_t d = 0; d < kJointDimensions; ++d)
+      corner = corner << 1 | (Sampler(1, 0, 0, s).get1(d) >= 0.5f ? 1u : 0u);
+    ++count[corner];
+  }
+  for (int c : count)
+    ASSERT_EQ(c, 1);
+}
+
+TEST(Sobol, PaddedPairsAreNets) {
+  for (uint32_t d : {16u, 18u, 40u, 1000u})
+    for (int m = 0; m <= 12; ++m)
+      for (uint32_t block = 0; block < 3; ++block)
+        ASSERT_TRUE(is_net(points(11, 2, 9, block << m, m, d), m, 0)) << "dimension " << d << ", 2^" << m << " points";
+}
+
+TEST(Sobol, SingleNumbersAreThoseOfThePairs) {
+  for (uint32_t d : {0u, 7u, 14u, 16u, 30u}) {
+    const Sampler sampler(1, 2, 3, 77);
+    const glm::vec2 pair = sampler.get2(d);
+    EXPECT_EQ(pair.x, sampler.get1(d));
+    EXPECT_EQ(pair.y, sampler.get1(d + 1));
+  }
+}
+
+TEST(Sobol, StaysBelowOne) {
+  // 2^24 samples of one dimension visit each of 2^24 cells once, the last one included. A conversion that rounds would give 1 there
+  // for half of the scramblings.
+  for (uint32_t seed = 0; seed < 4; ++seed) {
+    float largest = 0.0f;
+    for (uint32_t s = 0; s < 1u << 24; ++s)
+      largest = std::max(largest, Sampler(seed, 0, 0, s).get1(0));
+    EXPECT_EQ(largest, 1.0f - 0x1p-24f);
+  }
+}
+
+// Chi-square of pairs (a, b) in [0, 1)^2 against independence and uniformity, 16 x 16 cells.
+class PairTest {
+public:
+  void add(float a, float b) {
+    observed_[static_cast<std::size_t>(a * 16.0f) * 16 + static_cast<std::size_t>(b * 16.0f)] += 1.0;
+    total_ += 1.0;
+  }
+  double p_value() const { return testing::chi_square_test(observed_, std::vector<double>(256, total_ / 256.0)); }
+
+private:
+  std::vector<double> observed_ = std::vector<double>(256, 0.0);
+  double total_ = 0.0;
+};
+
+TEST(Sobol, PixelsSeedsAndPairsAreIndependent) {
+  // Over the pixels of an image one sample's number is a plain random number: pairs of them at two addresses that differ in one
+  // coordinate only must be uniform on the square.
+  constexpr uint32_t size = 192;
+  std::vector<double> p_values;
+  for (uint32_t d : {0u, 1u, 5u, 15u, 16u, 17u, 21u})
+    for (uint32_t s : {0u, 1u, 6u, 100u}) {
+      PairTest right, up, seed, next_dimension, far_dimension;
+      for (uint32_t y = 0; y < size; y += 2)
+        for (uint32_t x = 0; x < size; x += 2) {
+          const float u = Sampler(0, x, y, s).get1(d);
+          right.add(u, Sampler(0, x + 1, y, s).get1(d));
+          up.add(u, Sampler(0, x, y + 1, s).get1(d));
+          seed.add(u, Sampler(1, x, y, s).get1(d));
+          next_dimension.add(u, Sampler(0, x, y, s).get1(d + 1));
+          far_dimension.add(u, Sampler(0, x, y, s).get1(d + 33));
+        }
+      for (const PairTest *test : {&right, &up, &seed, &next_dimension, &far_dimension})
+        p_values.push_back(test->p_value());
+    }
+  for (double p : p_values)
+    EXPECT_GT(p, testing::sidak_level(testing::kSignificance, p_values.size()));
+}
+
+TEST(Sobol, ScramblingIsUnbiased) {
+  // The mean over 16 points of a smooth product integrand, over many scramblings, must be its integral 1: a z-test with the
+  // means' own variance. A scrambling with preferred digits would shift it.
+  for (uint32_t d : {0u, 4u, 16u, 22u}) {
+    double sum = 0.0, sum2 = 0.0;
+    constexpr int runs = 20000;
+    for (uint32_t run = 0; run < runs; ++run) {
+      double mean = 0.0;
+      for (uint32_t s = 0; s < 16; ++s) {
+        const glm::dvec2 u(Sampler(run, 3, 4, s).get2(d));
+        mean += 9.0 * u.x * u.x * u.y * u.y / 16.0;
+      }
+      sum += mean;
+      sum2 += mean * mean;
+    }
+    const double mean = sum / runs, variance = (sum2 / runs - mean * mean) / runs;
+    EXPECT_GT(testing::normal_p_value((mean - 1.0) / std::sqrt(variance)), testing::sidak_level(testing::kSignificance, 4)) << d;
+  }
+}
+
+TEST(Sobol, ConvergesFasterThanRandom) {
+  // Owen: for smooth integrands the scrambled net's variance falls like N^-3, random numbers' like 1/N. At 256 points in 2-D a
+  // factor of 100 is far on the safe side of the thousands that this gives.
+  for (uint32_t d : {0u, 16u}) {
+    constexpr int runs = 200, count = 256;
+    double net = 0.0, plain = 0.0;
+    Random random(3);
+    for (uint32_t run = 0; run < runs; ++run) {
+      double a = 0.0, b = 0.0;
+      for (uint32_t s = 0; s < count; ++s) {
+        const glm::dvec2 u(Sampler(run, 8, 8, s).get2(d));
+        a += 9.0 * u.x * u.x * u.y * u.y / count;
+        const double x = random.uniform(), y = random.uniform();
+        b += 9.0 * x * x * y * y / count;
+      }
+      net += (a - 1.0) * (a - 1.0);
+      plain += (b - 1.0) * (b - 1.0);
+    }
+    EXPECT_LT(net * 100.0, plain);
+  }
+}
+
+TEST(Hash, FlipsHalfOfTheBits) {
+  // One flipped input bit flips each of 32 output bits with probability 1/2: over 4096 inputs the count is 2048 +- 32, and 6
+  // standard deviations are exceeded by chance in 1 of 5e5 of 1024 counts.
+  for (int in = 0; in < 32; ++in) {
+    int flips[32] = {};
+    for (uint32_t x = 0; x < 4096; ++x) {
+      const uint32_t change = hash(x * 0x2545f491u) ^ hash((x * 0x2545f491u) ^ 1u << in);
+      for (int out = 0; out < 32; ++out)
+        flips[out] += static_cast<int>(change >> out & 1);
+    }
+    for (int out = 0; out < 32; ++out)
+      EXPECT_NEAR(flips[out], 2048, 6 * 32) << in << " -> " << out;
+  }
+}
+
+TEST(Hash, CombineKeepsTheOrderOfCoordinates) {
+  EXPECT_NE(hash_combine(hash_combine(1, 2), 3), hash_combine(hash_combine(1, 3), 2));
+}
+
+} // namespace
+} // namespace lancer

@@ -1,0 +1,41 @@
+"""Small scenes: Blender's default cube, and a closed room where most of the light arrives indirectly."""
+
+import math
+
+from . import parts
+
+
+def build_default_cube(scene):
+    """Blender's start-up file, with its own lens, light and grey."""
+    parts.set_size(scene, 960, 540, 64)
+    grey = parts.principled("Material", base_color=(0.8, 0.8, 0.8), roughness=0.5, ior=1.5)
+    parts.place(scene, "Cube", parts.cube_mesh("Cube"), grey)
+    parts.add_light(scene, "Light", "POINT", 1000.0, (4.076, 1.005, 5.904), shadow_soft_size=0.1)
+    parts.set_world(scene, (0.051, 0.051, 0.051))
+    parts.add_camera(scene, (7.359, -6.926, 4.958), (0, 0, 0))
+
+
+def build_cornell(scene):
+    """A closed box: the lamp shines at the ceiling from a shade, so walls and blocks are lit by what the ceiling returns."""
+    parts.set_size(scene, 512, 512, 128)
+    white = parts.principled("White", base_color=(0.75, 0.75, 0.75), roughness=1.0, specular_ior_level=0.0)
+    red = parts.principled("Red", base_color=(0.6, 0.05, 0.04), roughness=1.0, specular_ior_level=0.0)
+    green = parts.principled("Green", base_color=(0.1, 0.45, 0.08), roughness=1.0, specular_ior_level=0.0)
+    quarter = math.pi / 2
+    sides = [
+        ("Floor", white, (0, -1, 0), (1, 2, 1), (0, 0, 0)),
+        ("Ceiling", white, (0, -1, 2), (1, 2, 1), (2 * quarter, 0, 0)),
+        ("Back", white, (0, 1, 1), (1, 1, 1), (quarter, 0, 0)),
+        ("Front", white, (0, -3, 1), (1, 1, 1), (-quarter, 0, 0)),
+        ("Left", red, (-1, -1, 1), (1, 2, 1), (0, quarter, 0)),
+        ("Right", green, (1, -1, 1), (1, 2, 1), (0, -quarter, 0)),
+    ]
+    mesh = parts.plane_mesh("Side")
+    for name, material, location, scale, rotation in sides:
+        parts.place(scene, name, mesh, material, location, scale, rotation)
+    block = parts.cube_mesh("Block", 1.0)
+    parts.place(scene, "Tall block", block, white, (-0.38, 0.3, 0.6), (0.55, 0.55, 1.2), (0, 0, 0.3))
+    parts.place(scene, "Short block", block, white, (0.35, -0.25, 0.3), (0.55, 0.55, 0.6), (0, 0, -0.3))
+    parts.add_light(scene, "Lamp", "AREA", 40.0, (0, 0, 1.5), (0, 0, 2), (1.0, 0.85, 0.6), size=0.5)
+    parts.set_world(scene, (0, 0, 0))
+    parts.add_camera(scene, (0, -2.95, 1), (0, 1, 0.98), lens=38.0)
