@@ -18,6 +18,7 @@ last_statistics = {}
 last_messages = {}
 
 _STEP = 0.05
+_TELL_EVERY = 0.25
 _MAX_REPORTS = 30
 
 
@@ -102,7 +103,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _run(self, session, samples, time_limit, show):
         """Renders samples in waves, shows each, and stops for Esc or for the time limit."""
         waves = Waves(samples)
-        started = shown = time.monotonic()
+        started = shown = told = time.monotonic()
         while not waves.done:
             first, count = waves.next()
             session.render(first, count)
@@ -112,14 +113,18 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 now = time.monotonic()
                 if progress.finished:
                     break
-                self._show_progress(first + progress.fraction * count, samples, progress, now - started)
+                if now - told > _TELL_EVERY:
+                    told = now
+                    self._show_progress(first + progress.fraction * count, samples, progress, now - started)
                 late = 0.0 < time_limit <= now - started and first > 0
                 if self.test_break() or late:
                     session.cancel()
                 elif now - shown > waves.interval:
                     shown = self._timed(waves, show)
             waves.took(count, now - wave_started)
-            self._show_progress(first + count, samples, progress, now - started)
+            if waves.done or now - told > _TELL_EVERY:
+                told = now
+                self._show_progress(waves.first, samples, progress, now - started)
             if progress.cancelled or self.test_break() or 0.0 < time_limit <= now - started:
                 return
             if not waves.done and (first == 0 or now - shown > waves.interval):

@@ -178,7 +178,7 @@ enum {
 };
 
 /* A light shines along its local -z. The matrix's linear part gives directions only (columns are normalised); sizes are
- * world lengths in the fields below. */
+ * world lengths in the fields below. The camera does not see it; in PATH mirrors and glass do. */
 typedef struct lancer_light {
   const char *name;
   double matrix[12];

@@ -48,8 +48,8 @@ TEST(Sobol, EachJointDimensionIsStratified) {
 }
 
 TEST(Sobol, JointPairsAreNets) {
-  // Sobol's theorem: two dimensions with polynomials of degrees e and e' are a (t, 2)-sequence with t = e - 1 + e' - 1. The first
-  // dimension counts 0. Every aligned block of 2^m points is then a (t, m, 2)-net.
+  // Sobol's theorem: two dimensions with polynomials of degrees e and e' are a (t, 2)-sequence with t = e - 1 + e' - 1. The
+  // first dimension counts 0. Every aligned block of 2^m points is then a (t, m, 2)-net.
   const int degree[kJointDimensions] = {1, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5, 6, 6, 6};
   for (uint32_t d = 0; d < kJointDimensions; d += 2) {
     const int t = degree[d] - 1 + degree[d + 1] - 1;
@@ -89,8 +89,8 @@ TEST(Sobol, SingleNumbersAreThoseOfThePairs) {
 }
 
 TEST(Sobol, StaysBelowOne) {
-  // 2^24 samples of one dimension visit each of 2^24 cells once, the last one included. A conversion that rounds would give 1 there
-  // for half of the scramblings.
+  // 2^24 samples of one dimension visit each of 2^24 cells once, the last one included. A conversion that rounds would give 1
+  // there for half of the scramblings.
   for (uint32_t seed = 0; seed < 4; ++seed) {
     float largest = 0.0f;
     for (uint32_t s = 0; s < 1u << 24; ++s)
@@ -153,7 +153,8 @@ TEST(Sobol, ScramblingIsUnbiased) {
       sum2 += mean * mean;
     }
     const double mean = sum / runs, variance = (sum2 / runs - mean * mean) / runs;
-    EXPECT_GT(testing::normal_p_value((mean - 1.0) / std::sqrt(variance)), testing::sidak_level(testing::kSignificance, 4)) << d;
+    EXPECT_GT(testing::normal_p_value((mean - 1.0) / std::sqrt(variance)), testing::sidak_level(testing::kSignificance, 4))
+        << d;
   }
 }
 

@@ -30,7 +30,8 @@ double p_value_of_slope(double slope, uint64_t seed) {
   Random random(seed);
   for (int i = 0; i < draws; ++i) {
     const double v = random.uniform();
-    const double u = slope == 0.0 ? v : (slope - 1.0 + std::sqrt((1.0 - slope) * (1.0 - slope) + 4.0 * slope * v)) / (2.0 * slope);
+    const double u =
+        slope == 0.0 ? v : (slope - 1.0 + std::sqrt((1.0 - slope) * (1.0 - slope) + 4.0 * slope * v)) / (2.0 * slope);
     observed[std::min(cells - 1, static_cast<int>(u * cells))] += 1.0;
   }
   return chi_square_test(observed, expected);

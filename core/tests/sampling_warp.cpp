@@ -100,7 +100,8 @@ TEST(Warp, DirectionsAreUnitAndFinite) {
   // Corners of the square are where a warp breaks first. Rounding: three squares, each to a few ulp.
   for (float x : {0.0f, 0x1p-24f, 0.5f, 1.0f - 0x1p-24f})
     for (float y : {0.0f, 0x1p-24f, 0.5f, 1.0f - 0x1p-24f})
-      for (const glm::vec3 &w : {warp_sphere({x, y}), warp_cosine_hemisphere({x, y}), warp_cone({x, y}, 1.0f), warp_cone({x, y}, 1e-12f)})
+      for (const glm::vec3 &w :
+           {warp_sphere({x, y}), warp_cosine_hemisphere({x, y}), warp_cone({x, y}, 1.0f), warp_cone({x, y}, 1e-12f)})
         EXPECT_NEAR(glm::dot(w, w), 1.0f, 10.0f * 0x1p-24f);
 }
 
@@ -142,7 +143,8 @@ TEST(Distribution, TakesBadWeights) {
 // The window's integral from 0 to x over its whole integral, 0.35875.
 double blackman_harris_cdf(double x) {
   const double t = 2.0 * std::numbers::pi;
-  return x + (-0.48829 * std::sin(t * x) + 0.14128 / 2.0 * std::sin(2.0 * t * x) - 0.01168 / 3.0 * std::sin(3.0 * t * x)) / (t * 0.35875);
+  return x + (-0.48829 * std::sin(t * x) + 0.14128 / 2.0 * std::sin(2.0 * t * x) - 0.01168 / 3.0 * std::sin(3.0 * t * x)) /
+                 (t * 0.35875);
 }
 
 TEST(PixelFilter, BlackmanHarrisFollowsTheWindow) {
@@ -155,7 +157,8 @@ TEST(PixelFilter, BlackmanHarrisFollowsTheWindow) {
           kDraws * (blackman_harris_cdf((i + 1.0) / cells) - blackman_harris_cdf(static_cast<double>(i) / cells));
     Random random(8);
     for (int k = 0; k < kDraws; ++k)
-      observed[static_cast<std::size_t>(std::clamp((filter.sample(random.uniform()) / width + 0.5) * cells, 0.0, cells - 1.0))] += 1.0;
+      observed[static_cast<std::size_t>(
+          std::clamp((filter.sample(random.uniform()) / width + 0.5) * cells, 0.0, cells - 1.0))] += 1.0;
     EXPECT_GT(testing::chi_square_test(observed, expected), testing::sidak_level(testing::kSignificance, 3));
   }
 }

@@ -14,7 +14,9 @@ namespace lancer::testing {
 inline constexpr double kSignificance = 1e-3;
 
 // Level at which each of count independent tests is judged so that any of them fails by chance with probability level.
-inline double sidak_level(double level, std::size_t count) { return -std::expm1(std::log1p(-level) / static_cast<double>(count)); }
+inline double sidak_level(double level, std::size_t count) {
+  return -std::expm1(std::log1p(-level) / static_cast<double>(count));
+}
 
 // Q(a, x) = Gamma(a, x) / Gamma(a): the series of P below a + 1, else the continued fraction (Lentz).
 inline double upper_gamma_ratio(double a, double x) {
@@ -47,8 +49,9 @@ inline double upper_gamma_ratio(double a, double x) {
 
 inline double chi_square_p_value(double statistic, double degrees) { return upper_gamma_ratio(0.5 * degrees, 0.5 * statistic); }
 
-// Pearson's test of counts against expected counts. Cells are pooled from the rarest up until each expects at least 10, where the
-// chi-square law holds well. A hit where nothing may land gives p = 0. Totals must agree: what a sampler rejects is a cell, too.
+// Pearson's test of counts against expected counts. Cells are pooled from the rarest up until each expects at least 10, where
+// the chi-square law holds well. A hit where nothing may land gives p = 0. Totals must agree: what a sampler rejects is a cell,
+// too.
 inline double chi_square_test(const std::vector<double> &observed, const std::vector<double> &expected) {
   std::vector<std::size_t> order(expected.size());
   for (std::size_t i = 0; i < order.size(); ++i)

@@ -58,7 +58,8 @@ inline double beckmann_visible_slope(float a_float, float u_float) {
   const double k = 0.43 + 0.57 * a * a / (a * a + 5.0);
   const double start = top - (1.0 + top) * std::pow(1.0 - u, k);
   double low = -6.0, high = a;
-  double x = std::clamp(static_cast<double>(erf_inverse(static_cast<float>(std::clamp(start, -1.0 + 0x1p-23, 1.0 - 0x1p-23)))), low, high);
+  double x = std::clamp(static_cast<double>(erf_inverse(static_cast<float>(std::clamp(start, -1.0 + 0x1p-23, 1.0 - 0x1p-23)))),
+                        low, high);
   for (int i = 0; i < 60; ++i) {
     const double exp_x2 = std::exp(-x * x);
     const double error = integral(x, exp_x2) / total - u;

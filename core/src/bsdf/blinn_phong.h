@@ -18,8 +18,8 @@ inline LobeValue blinn_phong_eval_pdf(const Lobe &lobe, const glm::vec3 &wo, con
   const float n = lobe.shininess;
   const float power = n > 0.0f ? std::exp(-0.5f * n * std::log1p(tan2_theta(h))) : 1.0f;
   const float f = (n + 2.0f) * (0.125f * kInvPi) * ((n + 4.0f) / (std::exp2(-0.5f * n) + n)) * power;
-  // Half vectors of density (n + 1) / (2 pi) cos^n become directions of density / (4 wo.h), which a float cannot hold where both
-  // directions are opposite along the horizon.
+  // Half vectors of density (n + 1) / (2 pi) cos^n become directions of density / (4 wo.h), which a float cannot hold where
+  // both directions are opposite along the horizon.
   const float pdf = (n + 1.0f) * (0.125f * kInvPi) * power / cos_oh;
   return std::isfinite(pdf) ? LobeValue{f, pdf} : LobeValue{};
 }

@@ -26,7 +26,8 @@ struct BsdfValue {
 };
 
 // Contract
-//   Frame     local, n = +z; wo and wi are unit and point away from the surface. wo.z < 0: seen from behind. All lobes act alike on
+//   Frame     local, n = +z; wo and wi are unit and point away from the surface. wo.z < 0: seen from behind. All lobes act
+//   alike on
 //             both sides, except Dielectric, whose inside is z < 0.
 //   f         1/sr, without the cosine; only smooth lobes: a delta lobe is 0 in every given direction.
 //   pdf       density per solid angle of wi with which sample takes a smooth lobe into wi. It integrates to 1 minus the
@@ -194,8 +195,7 @@ private:
     return {};
   }
 
-  template <uint32_t Lobes>
-  static DeltaDirection sample_delta(const Lobe &lobe, const glm::vec3 &wo, bool inside, float u) {
+  template <uint32_t Lobes> static DeltaDirection sample_delta(const Lobe &lobe, const glm::vec3 &wo, bool inside, float u) {
     if (is<Lobes>(lobe, LobeKind::Mirror))
       return mirror_sample(wo);
     if (is<Lobes>(lobe, LobeKind::Beckmann))

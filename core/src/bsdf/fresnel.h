@@ -12,9 +12,9 @@ struct Fresnel {
   float cos_t;       // cosine of the refracted direction; 0 under total internal reflection
 };
 
-// cos_i: cosine on the incident side, taken as at least 0. eta: index beyond the boundary over index before it; infinite = mirror.
-// Double carries the whole range of float indices: e^2 neither overflows nor vanishes, and the small differences near eta = 1
-// keep at least 8 digits. So one form serves everywhere, and F is exact to the rounding of the result.
+// cos_i: cosine on the incident side, taken as at least 0. eta: index beyond the boundary over index before it; infinite =
+// mirror. Double carries the whole range of float indices: e^2 neither overflows nor vanishes, and the small differences near
+// eta = 1 keep at least 8 digits. So one form serves everywhere, and F is exact to the rounding of the result.
 inline Fresnel fresnel(float cos_i, float eta) {
   const double c = std::clamp(static_cast<double>(cos_i), 0.0, 1.0);
   if (eta == 1.0f)

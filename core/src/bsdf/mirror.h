@@ -1,8 +1,8 @@
 // Lobes that reflect into the mirrored direction alone.
 #pragma once
 
-#include "bsdf/fresnel.h"
 #include "bsdf/frame.h"
+#include "bsdf/fresnel.h"
 #include "bsdf/lobe.h"
 
 namespace lancer {

@@ -143,7 +143,8 @@ template <uint32_t Lobes, bool Opacity> void PathIntegrator<Lobes, Opacity>::mis
 
 template <uint32_t Lobes, bool Opacity>
 void PathIntegrator<Lobes, Opacity>::add_lights_met(Path &path, const Ray &ray, double t, SampleResult &result) {
-  if (scene_.lights.with_extent().empty())
+  // The camera does not see lights themselves, as in Cycles; mirrors and glass do.
+  if (path.scatterings == 0 || scene_.lights.with_extent().empty())
     return;
   const double length = glm::length(ray.d);
   const glm::dvec3 wi = ray.d / length;

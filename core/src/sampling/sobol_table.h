@@ -69,7 +69,8 @@ constexpr std::array<uint32_t, 32> reversed_columns(uint32_t dimension) {
 
 using NibbleTable = std::array<std::array<std::array<uint32_t, 16>, 8>, kJointDimensions>;
 
-// 8 KB stay in the first-level cache, where a table over whole bytes (64 KB) would not; an index below 4096 takes three look-ups.
+// 8 KB stay in the first-level cache, where a table over whole bytes (64 KB) would not; an index below 4096 takes three
+// look-ups.
 constexpr NibbleTable make_nibble_table() {
   NibbleTable table{};
   for (uint32_t d = 0; d < kJointDimensions; ++d) {

@@ -54,7 +54,8 @@ inline glm::vec3 warp_cone(glm::vec2 u, float one_minus_cos_max) {
 }
 inline float warp_cone_pdf(float one_minus_cos_max) { return 0.5f * kInvPi / one_minus_cos_max; }
 
-// Uniform on a triangle: barycentric weights of corners 1 and 2. The square is folded over its diagonal, not squeezed into a corner.
+// Uniform on a triangle: barycentric weights of corners 1 and 2. The square is folded over its diagonal, not squeezed into a
+// corner.
 inline glm::vec2 warp_triangle(glm::vec2 u) {
   if (u.y > u.x) {
     const float half = 0.5f * u.x;
