@@ -38,6 +38,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         passes.register_passes(self, scene, renderlayer)
 
     def update(self, data=None, depsgraph=None):
+        # One engine serves all view layers of a render, one after the other: its messages add up.
+        if self._messages is None:
+            self._messages = Messages()
+            last_messages.pop(depsgraph.scene.name, None)
+            last_statistics.pop(depsgraph.scene.name, None)
         self._guarded(self._export, depsgraph)
 
     def render(self, depsgraph):
@@ -49,21 +54,21 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         """Whatever goes wrong becomes an error that Blender shows, and that ends a headless render with failure."""
         try:
             work(depsgraph)
+            return
         except Cancelled:
             self._snapshot = None
+            return
         except LancerError as error:
-            self._fail(str(error))
+            text = str(error)
         except MemoryError:
-            self._fail("not enough memory for this scene")
+            text = "not enough memory for this scene"
         except Exception as error:
             logging.getLogger(__name__).exception("render failed")
-            self._fail(f"{type(error).__name__}: {error}")
-
-    def _fail(self, text):
+            text = f"{type(error).__name__}: {error}"
         self._snapshot = None
-        text = f"Lancer: {text}"
-        self.error_set(text)
-        self.report({"ERROR"}, text)
+        last_messages.setdefault(depsgraph.scene.name, []).append(text)
+        self.error_set(f"Lancer: {text}")
+        self.report({"ERROR"}, f"Lancer: {text}")
 
     def _export(self, depsgraph):
         # What a failed or cancelled export left behind must not be rendered by the next call.
@@ -71,7 +76,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         self.update_stats("", "Exporting")
         wanted = passes.render_passes(depsgraph.scene, depsgraph.view_layer_eval)
         options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
-        self._snapshot, self._messages = export_scene(depsgraph, options, self.test_break)
+        self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
+        self._tell(depsgraph.scene, messages)
 
     def _render(self, depsgraph):
         scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
@@ -79,7 +85,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         with Session.upload(self._snapshot, poll=self.test_break) as session:
             # The library holds its own copy from here on.
             self._snapshot = None
-            self._tell(scene, session)
+            self._tell(scene, session.messages())
             camera = session.camera
             result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=view_layer.name)
             if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
@@ -144,25 +150,25 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         remaining = elapsed * (samples - done) / done if done > 0.0 else 0.0
         self.update_stats("", f"Sample {int(done)}/{samples} | {rate:.2f} M rays/s | Remaining {_clock(remaining)}")
 
-    def _tell(self, scene, session):
-        """Reports what was left out, a line each, and keeps all of it for the panel."""
-        messages = self._messages or Messages()
-        for line in session.messages():
-            messages.add(line)
-        lines = messages.lines()
-        last_messages[scene.name] = lines
-        for line in lines[:_MAX_REPORTS]:
+    def _tell(self, scene, lines):
+        """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
+        known = set(self._messages)
+        for line in lines:
+            self._messages.add(line)
+        last_messages[scene.name] = self._messages.lines()
+        new = [line for line in lines if line not in known]
+        room = max(0, _MAX_REPORTS - len(known))
+        for line in new[:room]:
             self.report({"WARNING"}, f"Lancer: {line}")
-        if len(lines) > _MAX_REPORTS:
-            self.report({"WARNING"}, f"Lancer: {len(lines) - _MAX_REPORTS} more messages are in the render properties")
+        if len(new) > room:
+            self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
 
     def _account(self, scene, session):
         statistics = session.statistics()
         if statistics.invalid_samples:
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
-            line = f"{statistics.invalid_samples} samples were not finite and are left out, the first at pixel {place}"
-            last_messages[scene.name].append(line)
-            self.report({"WARNING"}, f"Lancer: {line}")
+            count = statistics.invalid_samples
+            self._tell(scene, [f"{count} samples were not finite and are left out, the first at pixel {place}"])
         numbers = dataclasses.asdict(statistics)
         pixels = session.camera.region_width * session.camera.region_height
         numbers["pixel_samples"] = numbers["samples"]

@@ -50,7 +50,9 @@ def chart_of(material, wo):
     """The chart in which the material's density from wo is gentle."""
     side = np.sign(wo[2])
     only = material.lobes[0] if len(material.lobes) == 1 else None
-    if only is None or only.kind == LobeKind.LAMBERT:
+    if only is None:
+        return Sphere((0, 0, side), 0.0, 3.0)
+    if only.kind == LobeKind.LAMBERT:
         return Sphere((0, 0, side), 0.0)
     if only.kind == LobeKind.BECKMANN:
         return Half(wo.astype(float), Slopes(only.roughness, side))
@@ -59,18 +61,34 @@ def chart_of(material, wo):
     return Half(wo.astype(float), Power((0, 0, side), only.shininess))
 
 
+def resolvable(material, wo):
+    """Whether the histogram can judge this lobe from there.
+
+    Half vectors of float32 directions carry 6e-8/|wo + wi|, cells are 0.1 alpha wide. A Phong lobe seen at grazing is cut in
+    two along its axis by the horizon, and a grazing rough lobe in the plain chart is a needle: no quadrature by cells holds them.
+    """
+    only = material.lobes[0]
+    if only.kind == LobeKind.PHONG or len(material.lobes) > 1:
+        return abs(wo[2]) > 0.05
+    return only.kind != LobeKind.BECKMANN or 6e-8 / (2 * abs(wo[2])) < 0.005 * only.roughness
+
+
 @pytest.mark.parametrize("index", SMOOTH, ids=NAMES)
 def test_chi_square_of_the_sampler_against_its_pdf(scene, index):
     material, count, cells = MATERIALS[index], 100000, 12
     wos = [direction(c) for c in COSINES] + [direction(-0.6)]
     for number, wo in enumerate(wos):
         wo = unit(wo.astype(float)).astype(np.float32)
+        if not resolvable(material, wo):
+            continue
         samples = scene.bsdf_sample(index, wo, uniforms(count, 3, 100 * index + number))
         smooth = (samples.pdf > 0) & (samples.delta == 0)
         assert np.all(np.isfinite(samples.wi)) and np.all(np.isfinite(samples.weight)) and np.all(samples.weight >= 0)
         chart = chart_of(material, wo)
+        # Where lobes are mixed the chart is the plain hemisphere, in which a grazing lobe is narrow.
+        nodes = 10 if len(material.lobes) == 1 else 32
         counts, outside = histogram(chart, samples.wi[smooth], cells)
-        probability = integrate_cells(chart, lambda w: scene.bsdf(index, wo, w)[1].astype(float), cells, 10)
+        probability = integrate_cells(chart, lambda w: scene.bsdf(index, wo, w)[1].astype(float), cells, nodes)
         # What is no smooth direction (a mirror, a lobe below the horizon) is one more cell.
         rest = max(0.0, 1.0 - probability.sum())
         observed = np.append(counts.ravel(), count - counts.sum())

@@ -9,6 +9,7 @@ WO = unit(np.array([0.6, 0.2, 0.5]))
 CHARTS = {
     "sphere": (Sphere(), 4 * np.pi),
     "cap": (Sphere((1, 2, 3), 0.5), np.pi),
+    "crowded": (Sphere((0, 0, 1), 0.0, 3.0), None),
     "power": (Power((0.3, 0.2, 0.9), 20.0), None),
     "slopes": (Slopes(0.3), None),
     "slopes behind": (Slopes(0.3, -1.0), None),

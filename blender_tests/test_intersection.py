@@ -162,7 +162,7 @@ def test_attributes_are_interpolated_by_barycentrics(library):
     rng = np.random.default_rng(2)
     mesh = MeshData(
         "one", [(0, 0, 0), (2, 0, 0.5), (0, 3, 1.0)], [(0, 1, 2)],
-        normals=np.array([[(0, 0, 1), (0.6, 0, 0.8), (0, 0.6, 0.8)]], np.float32),
+        normals=np.array([[(0, 0, 1), (0.1, 0, 1), (-0.1, -0.2, 1)]], np.float32),
         uvs=rng.random((1, 3, 2), np.float32), colors=rng.random((1, 3, 3), np.float32),
     )
     b = rng.dirichlet((1, 1, 1), 100)
@@ -188,6 +188,7 @@ def test_attributes_are_interpolated_by_barycentrics(library):
         flat = normal_matrix @ np.cross((2, 0, 0.5), (0, 3, 1.0))
         flat /= np.linalg.norm(flat)
         assert np.allclose(hits.geometric_normal, flat, atol=1e-6)
+        assert np.all(shading @ flat > 0.5), "the sheared normals stay on one side"
         assert np.allclose(hits.normal, shading, atol=1e-6 + weight)
 
 

@@ -84,7 +84,7 @@ def open_scene(arguments):
     try:
         bpy.ops.wm.open_mainfile(filepath=str(arguments.blend.resolve()), load_ui=False)
     except RuntimeError as error:
-        sys.exit(f"{arguments.blend} could not be opened: {error}")
+        sys.exit(f"{arguments.blend} could not be opened: {str(error).strip()}")
     return bpy.context.scene
 
 

@@ -15,7 +15,7 @@ def build(scene):
     ground = parts.principled("Ground", base_color=(0.32, 0.30, 0.29), roughness=0.28, ior=1.45)
     parts.place(scene, "Ground", parts.plane_mesh("Ground", 60.0), ground, shape="PLANE")
     # A warm key from the left, a cool fill from the right, and a rim that draws the outlines.
-    parts.add_light(scene, "Key", "AREA", 1100.0, (-6.0, -4.0, 6.5), (0, 0, 0.8), (1.0, 0.80, 0.58), size=3.0)
+    parts.add_light(scene, "Key", "AREA", 1400.0, (-6.0, -4.0, 6.5), (0, 0, 0.8), (1.0, 0.80, 0.58), size=3.0)
     parts.add_light(scene, "Fill", "AREA", 260.0, (7.0, -4.0, 4.0), (0, 0, 0.8), (0.55, 0.75, 1.0), size=5.0)
     parts.add_light(scene, "Rim", "AREA", 700.0, (3.5, 7.0, 5.0), (0, 0, 1.0), (1.0, 0.9, 0.8), size=2.5)
     parts.set_world(scene, (0.36, 0.52, 0.80), 0.40)

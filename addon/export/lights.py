@@ -81,8 +81,10 @@ def _watts_to_emission(light, kind, radius, sun_angle, shape, size):
         if not normalize:
             return 1.0 / math.pi
         return 1.0 / (math.pi * area) if bpy.app.version >= (4, 0) else 1.0 / (4.0 * area)
-    # Without normalisation the ball's radiance is P/pi, seen over its cross-section pi r^2.
-    return 1.0 / (4.0 * math.pi) if normalize or radius == 0.0 else radius**2
+    if normalize:
+        return 1.0 / (4.0 * math.pi)
+    # The ball's radiance is P/pi, seen over its cross-section pi r^2; Cycles gives a true point the cross-section 1.
+    return radius**2 if radius > 0.0 else 1.0 / math.pi
 
 
 def _area(light, matrix, who, messages):

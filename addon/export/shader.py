@@ -158,12 +158,21 @@ class ShaderReader:
         if glass > 0.0:
             if roughness_alpha > 0.0:
                 self.reader.tell(node, "rough glass is not supported, smooth glass is used")
-            self._add(LobeKind.DIELECTRIC, _scaled(base, glass), ior=number("ior", 1.5, 1e-5))
+            self._tinted_glass(base, glass, number("ior", 1.5, 1e-5), layered)
         if opaque > 0.0:
             ior, scale = self._specular(node, number, layered)
             self._add(LobeKind.LAMBERT, _scaled(base, opaque * scale))
             if ior > 1.0:
                 self._add(LobeKind.BECKMANN, (opaque,) * 3, roughness_alpha, ior)
+
+    def _tinted_glass(self, base, weight, ior, layered):
+        """Only what is refracted takes the colour: from 4.0 its root at each of the two surfaces that light passes."""
+        tint = tuple(math.sqrt(min(c, 1.0)) for c in base) if layered else base
+        self._add(LobeKind.DIELECTRIC, _scaled(tint, weight), ior=ior)
+        # The dielectric lobe tints its reflection too; a smooth coat gives back what that takes.
+        rest = tuple(max(0.0, 1.0 - c) for c in tint)
+        if max(rest) > 1e-6:
+            self._add(LobeKind.BECKMANN, _scaled(rest, weight), 0.0, ior)
 
     @staticmethod
     def _specular(node, number, layered):

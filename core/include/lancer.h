@@ -202,7 +202,7 @@ typedef struct lancer_light {
 /* ---- scene: create, fill, commit, destroy ------------------------------------------------------------------------ */
 
 LANCER_API lancer_status lancer_scene_create(lancer_scene *scene);
-/* Stops what still runs on it and frees it. Its sessions stay valid until they are destroyed themselves. */
+/* Stops a commit that still runs, and frees it. Sessions made from it go on: each keeps what it needs until it is destroyed. */
 LANCER_API lancer_status lancer_scene_destroy(lancer_scene scene);
 
 /* Meshes and materials are numbered 0, 1, 2 ... in the order in which they are added. Bad faces (non-finite or zero area)

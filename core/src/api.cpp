@@ -1,124 +1,14 @@
 // The C interface: checks handles and pointers, turns exceptions into statuses, and passes on to the rooms.
-#include "handles.h"
-#include "lancer.h"
+#include "objects.h"
 #include "render/fill_settings.h"
 #include "render/probe.h"
-#include "scene/error.h"
 #include "scene/fill_camera.h"
 
-#include <cstdio>
 #include <cstring>
 
 namespace {
 
 using namespace lancer;
-
-// A fixed place, so that telling of missing memory needs none.
-thread_local char last_error[1024] = "";
-
-lancer_status fail(lancer_status status, const char *text) {
-  std::snprintf(last_error, sizeof last_error, "%s", text);
-  return status;
-}
-
-lancer_status status_of(Fault fault) {
-  switch (fault) {
-  case Fault::Argument:
-    return LANCER_ERROR_ARGUMENT;
-  case Fault::State:
-    return LANCER_ERROR_STATE;
-  case Fault::Memory:
-    return LANCER_ERROR_MEMORY;
-  case Fault::Internal:
-    break;
-  }
-  return LANCER_ERROR_INTERNAL;
-}
-
-struct BadHandle {
-  const char *text;
-};
-
-// Nothing thrown inside leaves the library.
-template <class Body> lancer_status guard(Body &&body) noexcept {
-  last_error[0] = '\0';
-  const FloatEnvironment environment;
-  try {
-    return body();
-  } catch (const BadHandle &handle) {
-    return fail(LANCER_ERROR_HANDLE, handle.text);
-  } catch (const Error &error) {
-    return fail(status_of(error.fault()), error.what());
-  } catch (const std::bad_alloc &) {
-    return fail(LANCER_ERROR_MEMORY, "out of memory");
-  } catch (const std::length_error &) {
-    return fail(LANCER_ERROR_MEMORY, "out of memory: an array is larger than any memory");
-  } catch (const std::exception &error) {
-    return fail(LANCER_ERROR_INTERNAL, error.what());
-  } catch (...) {
-    return fail(LANCER_ERROR_INTERNAL, "unknown fault");
-  }
-}
-
-class SceneObject {
-public:
-  ~SceneObject() { cancel = true; }
-
-  std::mutex mutex;
-  Description description;
-  std::shared_ptr<const Scene> scene; // set by commit
-  std::string messages;
-  std::atomic<bool> cancel{false};
-  enum class State { Filling, Committing, Committed, Failed } state = State::Filling;
-  std::unique_ptr<ThreadPool> builder; // last: ends before what it works on
-
-  void require_filling() const {
-    if (state != State::Filling)
-      throw Error(Fault::State, "scene: it has been committed; nothing can be added any more");
-  }
-  const std::shared_ptr<const Scene> &committed() const {
-    if (state != State::Committed)
-      throw Error(Fault::State, state == State::Filling      ? "scene: it has not been committed yet"
-                                : state == State::Committing ? "scene: its commit has not been waited for"
-                                                             : "scene: its commit failed");
-    return scene;
-  }
-};
-
-struct SessionObject {
-  SessionObject(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
-      : session(std::move(scene), camera, settings) {}
-  std::mutex mutex;
-  Session session;
-};
-
-// Never destroyed: a thread may still be inside a call while the process ends.
-Handles<SceneObject> &scenes() {
-  static auto *const handles = new Handles<SceneObject>(0x5c);
-  return *handles;
-}
-Handles<SessionObject> &sessions() {
-  static auto *const handles = new Handles<SessionObject>(0x5e);
-  return *handles;
-}
-
-std::shared_ptr<SceneObject> scene_of(lancer_scene handle) {
-  auto object = scenes().find(handle);
-  if (!object)
-    throw BadHandle{"scene: no such scene, or it has been destroyed"};
-  return object;
-}
-std::shared_ptr<SessionObject> session_of(lancer_session handle) {
-  auto object = sessions().find(handle);
-  if (!object)
-    throw BadHandle{"session: no such session, or it has been destroyed"};
-  return object;
-}
-
-void require(const void *pointer, const char *name) {
-  if (!pointer)
-    bad_argument(std::string(name) + " is NULL");
-}
 
 // Runs fill on a scene that is still open.
 template <class Fill> lancer_status fill_scene(lancer_scene handle, const void *record, const char *name, Fill &&fill) {
@@ -162,9 +52,10 @@ const char *lancer_last_error(void) { return last_error; }
 
 uint32_t lancer_sizeof(uint32_t which) {
   static constexpr size_t sizes[LANCER_STRUCT_COUNT] = {
-      sizeof(lancer_mesh),     sizeof(lancer_instance), sizeof(lancer_parameter),    sizeof(lancer_lobe),       sizeof(lancer_material),
-      sizeof(lancer_light),    sizeof(lancer_camera),   sizeof(lancer_settings),     sizeof(lancer_progress),   sizeof(lancer_statistics),
-      sizeof(lancer_hit),      sizeof(lancer_vertex),   sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample)};
+      sizeof(lancer_mesh),         sizeof(lancer_instance),   sizeof(lancer_parameter), sizeof(lancer_lobe),
+      sizeof(lancer_material),     sizeof(lancer_light),      sizeof(lancer_camera),    sizeof(lancer_settings),
+      sizeof(lancer_progress),     sizeof(lancer_statistics), sizeof(lancer_hit),       sizeof(lancer_vertex),
+      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -198,8 +89,8 @@ lancer_status lancer_scene_add_light(lancer_scene scene, const lancer_light *lig
   return fill_scene(scene, light, "light", [&](Description &description) { add_light(description, *light); });
 }
 
-lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
-                                         const uint32_t *slots, const char *names, size_t names_size) {
+lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, const lancer_instance *instances,
+                                         uint32_t slot_count, const uint32_t *slots, const char *names, size_t names_size) {
   static const char nothing = 0;
   return fill_scene(scene, &nothing, "instances", [&](Description &description) {
     add_instances(description, count, instances, slot_count, slots, names, names_size);
@@ -294,7 +185,8 @@ lancer_status lancer_session_create(lancer_scene scene, const lancer_camera *cam
       const std::lock_guard lock(object->mutex);
       committed = object->committed();
     }
-    *session = sessions().add(std::make_shared<SessionObject>(std::move(committed), read_camera(*camera), read_settings(*settings)));
+    *session =
+        sessions().add(std::make_shared<SessionObject>(std::move(committed), read_camera(*camera), read_settings(*settings)));
     return LANCER_OK;
   });
 }
@@ -387,8 +279,8 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
   });
 }
 
-lancer_status lancer_debug_sample(lancer_session session, uint32_t x, uint32_t y, uint32_t s, float *rgba, lancer_vertex *vertices,
-                                  uint32_t capacity, uint32_t *count) {
+lancer_status lancer_debug_sample(lancer_session session, uint32_t x, uint32_t y, uint32_t s, float *rgba,
+                                  lancer_vertex *vertices, uint32_t capacity, uint32_t *count) {
   return guard([&] {
     const auto object = session_of(session);
     require(rgba, "debug_sample: rgba");
@@ -406,9 +298,15 @@ lancer_status lancer_debug_sample(lancer_session session, uint32_t x, uint32_t y
     rgba[3] = result.alpha;
     for (size_t i = 0; i < std::min<size_t>(capacity, path.size()); ++i) {
       const PathVertex &from = path[i];
-      vertices[i] = {{from.position.x, from.position.y, from.position.z}, from.t, {from.normal.x, from.normal.y, from.normal.z},
-                     {from.beta.x, from.beta.y, from.beta.z}, {from.radiance.x, from.radiance.y, from.radiance.z},
-                     object->session.scene().geometry.instances[from.instance].number, from.primitive, from.material, from.depth};
+      vertices[i] = {{from.position.x, from.position.y, from.position.z},
+                     from.t,
+                     {from.normal.x, from.normal.y, from.normal.z},
+                     {from.beta.x, from.beta.y, from.beta.z},
+                     {from.radiance.x, from.radiance.y, from.radiance.z},
+                     object->session.scene().geometry.instances[from.instance].number,
+                     from.primitive,
+                     from.material,
+                     from.depth};
     }
     if (count)
       *count = uint32_t(path.size());
@@ -428,14 +326,15 @@ lancer_status lancer_probe_occluded(lancer_scene scene, uint32_t count, const do
                      [&](const Scene &s) { probe_occluded(s, count, origins, directions, tmin, tmax, occluded); });
 }
 
-lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo, const float *wi, float *f,
-                                float *pdf) {
+lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo, const float *wi,
+                                float *f, float *pdf) {
   return probe_scene(scene, count, {wo, wi, f, pdf}, [&](const Scene &s) { probe_bsdf(s, material, count, wo, wi, f, pdf); });
 }
 
 lancer_status lancer_probe_bsdf_sample(lancer_scene scene, uint32_t material, uint32_t count, const float *wo, const float *u,
                                        lancer_bsdf_sample *samples) {
-  return probe_scene(scene, count, {wo, u, samples}, [&](const Scene &s) { probe_bsdf_sample(s, material, count, wo, u, samples); });
+  return probe_scene(scene, count, {wo, u, samples},
+                     [&](const Scene &s) { probe_bsdf_sample(s, material, count, wo, u, samples); });
 }
 
 lancer_status lancer_probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv,
@@ -452,12 +351,14 @@ lancer_status lancer_probe_microfacet(uint32_t count, const float *cos_nh, const
 
 lancer_status lancer_probe_light(lancer_scene scene, uint32_t light, uint32_t count, const double *points, const float *u,
                                  lancer_light_sample *samples) {
-  return probe_scene(scene, count, {points, u, samples}, [&](const Scene &s) { probe_light(s, light, count, points, u, samples); });
+  return probe_scene(scene, count, {points, u, samples},
+                     [&](const Scene &s) { probe_light(s, light, count, points, u, samples); });
 }
 
 lancer_status lancer_probe_light_pdf(lancer_scene scene, uint32_t light, uint32_t count, const double *points, const double *wi,
                                      float *pdf) {
-  return probe_scene(scene, count, {points, wi, pdf}, [&](const Scene &s) { probe_light_pdf(s, light, count, points, wi, pdf); });
+  return probe_scene(scene, count, {points, wi, pdf},
+                     [&](const Scene &s) { probe_light_pdf(s, light, count, points, wi, pdf); });
 }
 
 lancer_status lancer_probe_camera(lancer_session session, uint32_t count, const double *raster, const double *lens,

@@ -8,7 +8,8 @@
 
 namespace lancer {
 
-// Handles of one kind. A number is never used twice, and kinds differ in their highest byte: a freed or foreign handle finds nothing.
+// Handles of one kind. A number is never used twice, and kinds differ in their highest byte: a freed or foreign handle finds
+// nothing.
 template <class T> class Handles {
 public:
   explicit Handles(uint64_t kind) : next_((kind << 56) + 1) {}

@@ -51,9 +51,9 @@ void expect_equal(const Geometry &geometry, const std::vector<Ray> &rays, double
     c.accelerator->closest_hit(rays, hits);
     c.accelerator->any_hit(rays, occlusion);
     for (size_t i = 0; i < rays.size(); ++i) {
-      ASSERT_TRUE(same_bits(hits[i], oracle[i])) << c.name << ", ray " << i << ": t " << hits[i].t << " instead of "
-                                                 << oracle[i].t << ", instance " << hits[i].instance << " instead of "
-                                                 << oracle[i].instance;
+      ASSERT_TRUE(same_bits(hits[i], oracle[i]))
+          << c.name << ", ray " << i << ": t " << hits[i].t << " instead of " << oracle[i].t << ", instance "
+          << hits[i].instance << " instead of " << oracle[i].instance;
       ASSERT_EQ(occlusion[i], oracle[i].valid()) << c.name << ", ray " << i;
     }
   }

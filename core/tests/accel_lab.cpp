@@ -27,8 +27,7 @@ struct Expected {
 
 glm::dvec3 world_normal(const Geometry &geometry, const Ray &ray, const Hit &hit) {
   const Instance &instance = geometry.instances[hit.instance];
-  const SurfacePoint s =
-      quadric_point(instance.kind, instance.to_object.point(ray.o), instance.to_object.vector(ray.d), hit.t);
+  const SurfacePoint s = quadric_point(instance.kind, instance.to_object.point(ray.o), instance.to_object.vector(ray.d), hit.t);
   return glm::normalize(glm::transpose(instance.to_object.linear) * s.n);
 }
 

@@ -82,7 +82,8 @@ void expect_accurate(double radius, const glm::dvec3 &centre, double least_heigh
     if (!e.hit || e.t <= 0.0 || e.cosine < 1e-4)
       continue;
     const double length = glm::length(ray.d);
-    const double error = 16 * 0x1p-53 * (glm::length(o) + glm::length(centre) + radius) / (e.cosine * length) + 8 * 0x1p-53 * e.t;
+    const double error =
+        16 * 0x1p-53 * (glm::length(o) + glm::length(centre) + radius) / (e.cosine * length) + 8 * 0x1p-53 * e.t;
     const Hit hit = closest(*accelerator, ray);
     ASSERT_TRUE(hit.valid());
     ASSERT_NEAR(hit.t, e.t, error) << "height " << height;
@@ -110,8 +111,7 @@ TEST(Quadric, StartIsNotMetAgain) {
           linear[column] = random.in_box(1.0);
       } while (std::abs(glm::determinant(linear)) < 0.1);
       Geometry geometry;
-      geometry.instances.push_back(
-          placed(kind, linear * scale, random.in_box(scale * std::exp2(random.uniform(-2.0, 20.0)))));
+      geometry.instances.push_back(placed(kind, linear * scale, random.in_box(scale * std::exp2(random.uniform(-2.0, 20.0)))));
       const Instance &instance = geometry.instances[0];
       const auto accelerator = build_accelerator(AcceleratorKind::BruteForce, geometry, {});
       for (int i = 0; i < 500; ++i) {

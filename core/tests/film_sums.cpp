@@ -61,8 +61,9 @@ TEST(Film, KeepsSampleZeroAndMeansApart) {
   film.read(Pass::Depth, depth);
   film.read(Pass::Normal, normal);
   EXPECT_EQ(depth[1], results[1].depth);
-  const double mean =
-      ((double(results[1].normal.x) + double(results[3].normal.x)) + (double(results[5].normal.x) + double(results[7].normal.x))) / 4.0;
+  const double mean = ((double(results[1].normal.x) + double(results[3].normal.x)) +
+                       (double(results[5].normal.x) + double(results[7].normal.x))) /
+                      4.0;
   EXPECT_EQ(normal[3], float(mean));
 }
 

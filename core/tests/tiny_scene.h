@@ -21,7 +21,8 @@ inline lancer_lobe lobe(uint32_t kind, float color, float roughness = 0.3f) {
   return {kind, parameter(color), parameter(roughness), parameter(1.5f), parameter(20.0f)};
 }
 
-inline void add_material(lancer_scene scene, const std::vector<lancer_lobe> &lobes, float emission = 0.0f, float opacity = 1.0f) {
+inline void add_material(lancer_scene scene, const std::vector<lancer_lobe> &lobes, float emission = 0.0f,
+                         float opacity = 1.0f) {
   lancer_material material = {};
   material.name = "material";
   material.lobes = lobes.data();

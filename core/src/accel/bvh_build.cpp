@@ -57,7 +57,8 @@ public:
   Builder(std::vector<BuildRef> &r, uint32_t g, const BuildContext &c) : refs(r), group(g), context(c) {}
 
   // Appends the subtree of range to nodes; ranges of at most task_size are left to tasks, where given.
-  uint32_t build(const Range &range, uint32_t depth, std::vector<BvhNode> &nodes, uint32_t task_size, std::vector<Task> *tasks) {
+  uint32_t build(const Range &range, uint32_t depth, std::vector<BvhNode> &nodes, uint32_t task_size,
+                 std::vector<Task> *tasks) {
     poll_cancel(context);
 
     // Split the largest part until there are eight, or nothing is left to split.

@@ -63,6 +63,15 @@ LANCER_SIMD uint32_t intersect_node(const BvhNode &node, const SlabRay &ray, F8 
   return less_equal(entry, min8(min8(fx, fy), min8(fz, splat8(ray.tau_max))));
 }
 
+// Starts loading a node that waits on the stack.
+LANCER_SIMD void prefetch(const BvhNode *nodes, uint32_t child) {
+  if (child & kBvhLeaf)
+    return;
+  const char *line = reinterpret_cast<const char *>(nodes + child);
+  for (size_t offset = 0; offset < sizeof(BvhNode); offset += 64)
+    __builtin_prefetch(line + offset);
+}
+
 struct Pending {
   float entry;
   uint32_t child;
@@ -97,6 +106,7 @@ template <class Leaf> LANCER_SIMD void visit_in_order(const BvhNode *nodes, Slab
         do {
           i = static_cast<uint32_t>(__builtin_ctz(mask));
           mask &= mask - 1;
+          prefetch(nodes, node.child[i]);
           uint32_t place = size++;
           for (; place > bottom && stack[place - 1].entry < entries[i]; --place)
             stack[place] = stack[place - 1];
@@ -207,26 +217,28 @@ template <bool any> LANCER_SIMD bool intersect_instance(const BvhScene &scene, u
   make_slab_ray(shape.frame, object_ray, ray.tmin, ray.tmax < best.t ? ray.tmax : best.t, slab);
   const uint32_t skip = ray.skip_instance == instance ? ray.skip_primitive : kNone;
   bool found = false;
-  visit<any>(bvh.nodes, slab, [&](uint32_t leaf) __attribute__((always_inline)) {
-    const TriangleBlock &block = bvh.blocks[leaf & ~kBvhLeaf];
-    BlockHits hits;
-    for (uint32_t met = intersect_block(block, object_ray, shear, ray.tmin, ray.tmax, best.t, hits); met != 0; met &= met - 1) {
-      const int i = __builtin_ctz(met);
-      const uint32_t primitive = block.primitive[i];
-      if (primitive == skip || !closer(hits.t[i], instance, primitive, best))
-        continue;
-      best.t = hits.t[i];
-      best.u = hits.wb[i] / hits.det[i];
-      best.v = hits.wc[i] / hits.det[i];
-      best.instance = instance;
-      best.primitive = primitive;
-      found = true;
-      if (any)
-        return true;
-      slab.tau_max = round_up(box_tau_above(object_ray, shape.frame, best.t));
-    }
-    return false;
-  });
+  visit<any>(
+      bvh.nodes, slab, [&](uint32_t leaf) __attribute__((always_inline)) {
+        const TriangleBlock &block = bvh.blocks[leaf & ~kBvhLeaf];
+        BlockHits hits;
+        for (uint32_t met = intersect_block(block, object_ray, shear, ray.tmin, ray.tmax, best.t, hits); met != 0;
+             met &= met - 1) {
+          const int i = __builtin_ctz(met);
+          const uint32_t primitive = block.primitive[i];
+          if (primitive == skip || !closer(hits.t[i], instance, primitive, best))
+            continue;
+          best.t = hits.t[i];
+          best.u = hits.wb[i] / hits.det[i];
+          best.v = hits.wc[i] / hits.det[i];
+          best.instance = instance;
+          best.primitive = primitive;
+          found = true;
+          if (any)
+            return true;
+          slab.tau_max = round_up(box_tau_above(object_ray, shape.frame, best.t));
+        }
+        return false;
+      });
   return any && found;
 }
 
@@ -246,15 +258,16 @@ template <bool any> LANCER_SIMD void intersect_scene(const BvhScene &scene, cons
     return;
   SlabRay slab;
   make_slab_ray(scene.world, world_ray, ray.tmin, ray.tmax < best.t ? ray.tmax : best.t, slab);
-  visit<any>(scene.top, slab, [&](uint32_t leaf) __attribute__((always_inline)) {
-    const uint32_t first = (leaf & ~kBvhLeaf) >> 2, count = (leaf & 3) + 1;
-    for (uint32_t i = first; i < first + count; ++i)
-      if (intersect_instance<any>(scene, scene.top_order[i], ray, best))
-        return true;
-    if (best.t < ray.tmax)
-      slab.tau_max = round_up(box_tau_above(world_ray, scene.world, best.t));
-    return false;
-  });
+  visit<any>(
+      scene.top, slab, [&](uint32_t leaf) __attribute__((always_inline)) {
+        const uint32_t first = (leaf & ~kBvhLeaf) >> 2, count = (leaf & 3) + 1;
+        for (uint32_t i = first; i < first + count; ++i)
+          if (intersect_instance<any>(scene, scene.top_order[i], ray, best))
+            return true;
+        if (best.t < ray.tmax)
+          slab.tau_max = round_up(box_tau_above(world_ray, scene.world, best.t));
+        return false;
+      });
 }
 
 [[gnu::flatten]] void closest(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count) {

@@ -37,11 +37,13 @@ struct KdTree {
   // Calls visit(item) for the boxes on the ray, cell by cell from front to back, until it returns true. A box that lies in
   // several cells is visited in each. limit() is the parameter, in the boxes' frame, that no interesting hit exceeds.
   template <class Visit, class Limit>
-  void traverse(const ObjectRay &ray, const PlacementFrame &frame, double tau_min, const Limit &limit, const Visit &visit) const;
+  void traverse(const ObjectRay &ray, const PlacementFrame &frame, double tau_min, const Limit &limit,
+                const Visit &visit) const;
 };
 
 template <class Visit, class Limit>
-void KdTree::traverse(const ObjectRay &ray, const PlacementFrame &frame, double tau_min, const Limit &limit, const Visit &visit) const {
+void KdTree::traverse(const ObjectRay &ray, const PlacementFrame &frame, double tau_min, const Limit &limit,
+                      const Visit &visit) const {
   struct Cell {
     uint32_t node;
     double entry, exit;

@@ -9,7 +9,8 @@
 namespace lancer {
 namespace {
 
-// Prices over a step through the tree: a triangle is a few operations more, an instance a change of space and a tree of its own.
+// Prices over a step through the tree: a triangle is a few operations more, an instance a change of space and a tree of its
+// own.
 constexpr float kTriangleCost = 1.5f;
 constexpr float kInstanceCost = 8.0f;
 

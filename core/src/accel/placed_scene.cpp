@@ -140,8 +140,8 @@ Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangl
 }
 
 size_t PlacedScene::bytes() const {
-  return shapes.capacity() * sizeof(PlacedShape) + mesh_frames.capacity() * sizeof(PlacementFrame) + boxes.capacity() * sizeof(Box) +
-         (unbounded.capacity() + bounded.capacity()) * sizeof(uint32_t);
+  return shapes.capacity() * sizeof(PlacedShape) + mesh_frames.capacity() * sizeof(PlacementFrame) +
+         boxes.capacity() * sizeof(Box) + (unbounded.capacity() + bounded.capacity()) * sizeof(uint32_t);
 }
 
 } // namespace lancer

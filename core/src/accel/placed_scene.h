@@ -10,8 +10,8 @@
 namespace lancer {
 
 struct PlacedScene {
-  std::vector<PlacedShape> shapes; // one per instance of the geometry
-  std::vector<PlacementFrame> mesh_frames;  // one per mesh
+  std::vector<PlacedShape> shapes;         // one per instance of the geometry
+  std::vector<PlacementFrame> mesh_frames; // one per mesh
   std::vector<uint32_t> unbounded; // instances without a finite box, infinite planes above all: tested against every ray
   std::vector<uint32_t> bounded;   // all others that have anything to hit
   std::vector<Box> boxes;          // of bounded, in the frame world

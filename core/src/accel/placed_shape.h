@@ -16,7 +16,7 @@ struct PlacementFrame {
 
 struct PlacedShape {
   double to_object[12]; // 3 x 4, row-major
-  PlacementFrame frame;          // box frame in object space; unit for exact surfaces
+  PlacementFrame frame; // box frame in object space; unit for exact surfaces
   double slack;         // exact surfaces: how far rounding may lift a stored surface point off the surface, object space
   ShapeKind kind;
   uint32_t mesh; // kNone for exact surfaces

@@ -12,8 +12,8 @@ namespace lancer {
 bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
 
 struct SurfacePoint {
-  glm::dvec3 p; // on the surface, object space
-  glm::dvec3 n; // outward geometric normal, unit, object space
+  glm::dvec3 p;  // on the surface, object space
+  glm::dvec3 n;  // outward geometric normal, unit, object space
   glm::dvec2 uv; // sphere: longitude, latitude; cylinder and cone: angle, height; all in [0, 1]. Plane: x, y
 };
 

@@ -33,7 +33,7 @@ struct Hit {
 };
 
 // The rule that makes "closest" unique: smaller t, then smaller instance, then smaller primitive.
-inline bool closer(double t, uint32_t instance, uint32_t primitive, const Hit &best) {
+[[gnu::always_inline]] inline bool closer(double t, uint32_t instance, uint32_t primitive, const Hit &best) {
   if (t != best.t)
     return t < best.t;
   if (instance != best.instance)

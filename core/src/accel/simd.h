@@ -97,9 +97,7 @@ LANCER_SIMD uint32_t not_equal(D4 a, D4 b) {
 #else
 
 // Plain lanes, which the compiler turns into NEON and its kin.
-template <class T, int N> struct Lanes {
-  T v[N];
-};
+template <class T, int N> struct Lanes { T v[N]; };
 using F8 = Lanes<float, 8>;
 using D4 = Lanes<double, 4>;
 

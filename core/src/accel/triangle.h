@@ -26,8 +26,8 @@ LANCER_INLINE Shear make_shear(const ObjectRay &ray) {
 
 // t, u, v of the point where the ray meets the triangle's interior, edges or corners; false where it does not.
 // Edge functions change sign exactly when their corners are swapped, so triangles that share an edge cannot both miss.
-LANCER_INLINE bool intersect_triangle(const ObjectRay &ray, const Shear &s, const float a[3], const float b[3], const float c[3],
-                                      double &t, double &u, double &v) {
+LANCER_INLINE bool intersect_triangle(const ObjectRay &ray, const Shear &s, const float a[3], const float b[3],
+                                      const float c[3], double &t, double &u, double &v) {
   // Shear the corners into the ray's frame.
   const double az = a[s.kz] - ray.o[s.kz], bz = b[s.kz] - ray.o[s.kz], cz = c[s.kz] - ray.o[s.kz];
   const double ax = (a[s.kx] - ray.o[s.kx]) - s.sx * az, ay = (a[s.ky] - ray.o[s.ky]) - s.sy * az;

@@ -18,7 +18,8 @@ struct LitPoints {
   int count = 1;
 };
 
-LitPoints lit_points(const Scene &scene, const Surface &surface, const ShadingPoint &point, const Hit &hit, const glm::dvec3 &eye) {
+LitPoints lit_points(const Scene &scene, const Surface &surface, const ShadingPoint &point, const Hit &hit,
+                     const glm::dvec3 &eye) {
   LitPoints lit;
   lit.points[0] = {surface.p, point.frame, point.wo};
   const Instance &instance = scene.geometry.instances[surface.instance];
@@ -167,7 +168,8 @@ void ClassicIntegrator::add_reflection_and_refraction(const Branch &branch, cons
           branches.refracted);
 }
 
-void ClassicIntegrator::spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight) {
+void ClassicIntegrator::spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction,
+                              const glm::vec3 &weight) {
   Branch child = parent;
   child.weight *= weight;
   ++child.depth;

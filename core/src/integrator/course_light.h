@@ -18,11 +18,13 @@ glm::vec3 course_irradiance(const CourseLight &course, const LightSample &sample
 
 // Sum of Kd/pi (l.n) lc and the specular lobes for one light; diffuse and specular colours of the light apply.
 //   BECKMANN     Ks D F G / (4 (l.n)(v.n)) (l.n) lc
-//   PHONG        Ks (R.V)^n lc / pi, BLINN_PHONG Ks (N.H)^n lc / pi: C of the lectures is lc / pi, so that Kd means the same everywhere
+//   PHONG        Ks (R.V)^n lc / pi, BLINN_PHONG Ks (N.H)^n lc / pi: C of the lectures is lc / pi, so that Kd means the same
+//   everywhere
 glm::vec3 course_illumination(const Bsdf &bsdf, const LitPoint &point, const glm::vec3 &wi_world, const CourseLight &course,
                               const glm::vec3 &irradiance);
 
-// Weights of the mirrored and of the refracted ray: F c_s and (1 - F) c_s, summed over the lobes. eta: of the refraction; 0 = none.
+// Weights of the mirrored and of the refracted ray: F c_s and (1 - F) c_s, summed over the lobes. eta: of the refraction; 0 =
+// none.
 struct CourseBranches {
   glm::vec3 reflected{0.0f}, refracted{0.0f};
   float eta = 0.0f, cos_t = 0.0f;

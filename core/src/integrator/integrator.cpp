@@ -4,7 +4,8 @@
 
 namespace lancer {
 
-void record_first_surface(const Scene &scene, const Surface &surface, const glm::vec3 &albedo, double depth, SampleResult &result) {
+void record_first_surface(const Scene &scene, const Surface &surface, const glm::vec3 &albedo, double depth,
+                          SampleResult &result) {
   result.normal = surface.ns;
   result.albedo = albedo;
   result.depth = float(depth / scene.normalisation.scale);

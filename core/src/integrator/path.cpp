@@ -92,8 +92,8 @@ void PathIntegrator<Lobes, Opacity>::shade(std::span<SampleResult> results, std:
     }
     if (trace) {
       const glm::vec3 so_far = result.radiance + indirect_[path.slot];
-      trace->push_back({scene_.normalisation.to_world(surface.p), hits_[i].t / scene_.normalisation.scale, surface.ns, path.beta,
-                        so_far, surface.instance, surface.primitive, surface.material, path.scatterings});
+      trace->push_back({scene_.normalisation.to_world(surface.p), hits_[i].t / scene_.normalisation.scale, surface.ns,
+                        path.beta, so_far, surface.instance, surface.primitive, surface.material, path.scatterings});
     }
 
     Ray next;
@@ -155,7 +155,8 @@ void PathIntegrator<Lobes, Opacity>::add_lights_met(Path &path, const Ray &ray, 
     float weight = 1.0f;
     if (path.pdf > 0.0) {
       // Compare with the density as seen from the last scattering, wherever layers were passed since.
-      const LightHit seen = path.layers ? meet(scene_.lights.lights()[light], path.from, wi, std::numeric_limits<double>::infinity()) : met;
+      const LightHit seen =
+          path.layers ? meet(scene_.lights.lights()[light], path.from, wi, std::numeric_limits<double>::infinity()) : met;
       weight = mis_weight(path.pdf, seen.pdf * scene_.lights.probability(light));
     }
     add(path, result, path.beta * met.radiance * weight, path.scatterings);
@@ -187,10 +188,9 @@ void PathIntegrator<Lobes, Opacity>::sample_light(const Path &path, const Surfac
     return;
   const glm::vec2 u = path.sampler.get2(dimension + kVertexLight);
   const size_t described = scene_.lights.lights().size();
-  const LightSample light =
-      choice.light < described
-          ? sample(scene_.lights.lights()[choice.light], surface.p, u)
-          : scene_.lights.emitters()[choice.light - described].sample(scene_.geometry, scene_.slots, scene_.materials, surface.p, u);
+  const LightSample light = choice.light < described ? sample(scene_.lights.lights()[choice.light], surface.p, u)
+                                                     : scene_.lights.emitters()[choice.light - described].sample(
+                                                           scene_.geometry, scene_.slots, scene_.materials, surface.p, u);
   if (!(light.pdf > 0.0))
     return;
   // Ask the surface how much of it goes towards the viewer.

@@ -20,12 +20,12 @@ private:
   struct Path {
     Sampler sampler;
     glm::vec3 beta{1.0f};
-    glm::dvec3 from{0.0};  // last scattering point
-    double pdf = 0.0;      // of the BSDF sample that made the ray; 0 after the camera or a single direction
-    uint32_t slot;         // of its result
+    glm::dvec3 from{0.0}; // last scattering point
+    double pdf = 0.0;     // of the BSDF sample that made the ray; 0 after the camera or a single direction
+    uint32_t slot;        // of its result
     uint32_t scatterings = 0;
-    uint32_t layers = 0;   // passed straight through since the last scattering
-    bool seen = false;     // the first surface has been recorded
+    uint32_t layers = 0; // passed straight through since the last scattering
+    bool seen = false;   // the first surface has been recorded
     glm::vec3 indirect{0.0f};
   };
 

@@ -60,7 +60,8 @@ class Integrator {
 public:
   virtual ~Integrator() = default;
   // results[i] answers addresses[i]; trace (may be null) collects the vertices of a batch of one.
-  virtual void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) = 0;
+  virtual void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+                   std::vector<PathVertex> *trace) = 0;
   // The specialisation in use, for the statistics.
   virtual const char *kernel() const = 0;
   const RayCounts &counts() const { return counts_; }
@@ -121,6 +122,7 @@ private:
 };
 
 // Fills what the first surface says about the pixel. depth: t of the camera ray.
-void record_first_surface(const Scene &scene, const Surface &surface, const glm::vec3 &albedo, double depth, SampleResult &result);
+void record_first_surface(const Scene &scene, const Surface &surface, const glm::vec3 &albedo, double depth,
+                          SampleResult &result);
 
 } // namespace lancer

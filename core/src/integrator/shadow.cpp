@@ -29,8 +29,7 @@ uint64_t ShadowQueue::trace_layers() {
         continue;
       // Keep what its opacity lets pass; beyond the last layer nothing does.
       const Surface surface = surface_at(scene_.geometry, scene_.slots, waiting_rays_[i], hits_[i]);
-      const float opacity =
-          surface.material == kNone ? 1.0f : evaluate(scene_.materials[surface.material].opacity, surface).x;
+      const float opacity = surface.material == kNone ? 1.0f : evaluate(scene_.materials[surface.material].opacity, surface).x;
       glm::vec3 &contribution = contributions_[waiting_[i]];
       contribution *= layer + 1 < kMaxLayers ? 1.0f - opacity : 0.0f;
       if (contribution == glm::vec3(0.0f))

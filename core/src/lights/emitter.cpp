@@ -89,8 +89,8 @@ Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, c
     faces_ = Distribution(weights);
 }
 
-LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
-                            const glm::dvec3 &p, const glm::vec2 &u) const {
+LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t> &slots,
+                            const std::vector<Material> &materials, const glm::dvec3 &p, const glm::vec2 &u) const {
   const Instance &placed = geometry.instances[instance_];
   // Choose a face; what is left of the number places the point on it.
   const auto choice = faces_.sample(u.x);

@@ -10,7 +10,8 @@ namespace lancer {
 class Emitter {
 public:
   // Tables for one instance of the normalised world; no faces that emit: empty().
-  Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials, uint32_t instance);
+  Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
+          uint32_t instance);
 
   bool empty() const { return !(weight_ > 0.0); }
   uint32_t instance() const { return instance_; }
@@ -21,7 +22,8 @@ public:
   LightSample sample(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
                      const glm::dvec3 &p, const glm::vec2 &u) const;
   // Density per solid angle of having sampled this surface point from p.
-  double pdf(const Geometry &geometry, const std::vector<Material> &materials, const glm::dvec3 &p, const Surface &surface) const;
+  double pdf(const Geometry &geometry, const std::vector<Material> &materials, const glm::dvec3 &p,
+             const Surface &surface) const;
 
 private:
   uint32_t instance_ = kNone;

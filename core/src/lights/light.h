@@ -11,7 +11,7 @@ namespace lancer {
 // The course's light, for CLASSIC.
 struct CourseLight {
   Falloff falloff = Falloff::Physical;
-  double radius = 0.0; // normalised units
+  double radius = 0.0;     // normalised units
   double world_unit = 1.0; // one world unit, in normalised units
   glm::vec3 ambient_color{1.0f}, diffuse_color{1.0f}, specular_color{1.0f};
 };

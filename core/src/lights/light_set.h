@@ -9,7 +9,8 @@ class LightSet {
 public:
   LightSet() = default;
   // Lights as described come first, then one per emitting instance. radius: of the scene's bounds, normalised.
-  LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, const glm::vec3 &world, double radius);
+  LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, const glm::vec3 &world,
+           double radius);
 
   size_t size() const { return lights_.size() + emitters_.size(); }
   bool empty() const { return size() == 0; }

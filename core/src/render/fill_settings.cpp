@@ -13,7 +13,8 @@ constexpr uint32_t kMostBounces = 1024;
 
 void check_choice(const char *what, uint32_t value, uint32_t last) {
   if (value > last)
-    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " is not one of 0 ... " + std::to_string(last));
+    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " is not one of 0 ... " +
+                 std::to_string(last));
 }
 
 void check_amount(const char *what, float value) {

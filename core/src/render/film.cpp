@@ -62,7 +62,8 @@ Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes)
 }
 
 double Film::bytes_needed(double width, double height, uint32_t passes) {
-  const double per_pixel = double(summed_channels(passes)) * sizeof(double) + (needs_first(passes) ? kFirstChannels * sizeof(float) : 0);
+  const double per_pixel =
+      double(summed_channels(passes)) * sizeof(double) + (needs_first(passes) ? kFirstChannels * sizeof(float) : 0);
   return width * height * per_pixel;
 }
 

@@ -7,15 +7,23 @@
 
 namespace lancer {
 
-enum class Pass : uint32_t { Combined = 0, Depth = 1, Normal = 2, Albedo = 3, Position = 4, ObjectIndex = 5, MaterialIndex = 6 };
+enum class Pass : uint32_t {
+  Combined = 0,
+  Depth = 1,
+  Normal = 2,
+  Albedo = 3,
+  Position = 4,
+  ObjectIndex = 5,
+  MaterialIndex = 6
+};
 inline constexpr uint32_t kPassCount = 7;
 
 uint32_t channels(Pass pass);
 
 // The samples of a pixel are summed along one fixed binary tree over their numbers: sample s is a leaf, and two neighbouring
-// complete subtrees of equal size are always joined. While samples arrive in order only the sums that wait for their neighbour are
-// kept, one per bit of the count, as in a binary counter. So neither threads nor tiles nor the split of the range show in the bits,
-// and any complete subtree can be computed elsewhere.
+// complete subtrees of equal size are always joined. While samples arrive in order only the sums that wait for their neighbour
+// are kept, one per bit of the count, as in a binary counter. So neither threads nor tiles nor the split of the range show in
+// the bits, and any complete subtree can be computed elsewhere.
 class Film {
 public:
   // passes: bits 1u << Pass; Combined is always kept.
@@ -48,7 +56,7 @@ public:
 
 private:
   uint32_t width_, height_, passes_;
-  uint32_t summed_;  // channels that are averaged over samples
+  uint32_t summed_;                  // channels that are averaged over samples
   uint32_t normal_ = 0, albedo_ = 0; // where they begin among the summed
   std::vector<std::unique_ptr<Tile>> tiles_;
 };

@@ -19,8 +19,8 @@ template <class Target, class Vector> void store(Target *target, const Vector &v
 }
 
 // t keeps its meaning: origin and direction are scaled alike.
-std::vector<Ray> rays_of(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
-                         const double *tmax) {
+std::vector<Ray> rays_of(const Scene &scene, uint32_t count, const double *origins, const double *directions,
+                         const double *tmin, const double *tmax) {
   std::vector<Ray> rays(count);
   for (uint32_t i = 0; i < count; ++i) {
     rays[i].o = scene.normalisation.to_normalised(dvec3_at(origins, i));
@@ -33,7 +33,8 @@ std::vector<Ray> rays_of(const Scene &scene, uint32_t count, const double *origi
 
 const Bsdf &bsdf_of(const Scene &scene, uint32_t material, Bsdf &scratch) {
   if (material >= scene.materials.size())
-    bad_argument("probe: material " + std::to_string(material) + " >= " + std::to_string(scene.materials.size()) + " materials");
+    bad_argument("probe: material " + std::to_string(material) + " >= " + std::to_string(scene.materials.size()) +
+                 " materials");
   return evaluate(scene.materials[material], Surface{}, scratch);
 }
 
@@ -130,8 +131,9 @@ void probe_light(const Scene &scene, uint32_t light, uint32_t count, const doubl
     const glm::dvec3 p = scene.normalisation.to_normalised(dvec3_at(points, i));
     const glm::vec2 numbers(u[2 * i], u[2 * i + 1]);
     const LightSample sample =
-        light < described ? lancer::sample(scene.lights.lights()[light], p, numbers)
-                          : scene.lights.emitters()[light - described].sample(scene.geometry, scene.slots, scene.materials, p, numbers);
+        light < described
+            ? lancer::sample(scene.lights.lights()[light], p, numbers)
+            : scene.lights.emitters()[light - described].sample(scene.geometry, scene.slots, scene.materials, p, numbers);
     samples[i] = {};
     store(samples[i].wi, sample.wi);
     samples[i].distance = sample.distance / scale;

@@ -52,8 +52,9 @@ bool finite(const SampleResult &result) {
 } // namespace
 
 Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
-    : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_->normalisation)), settings_(settings),
-      film_(camera.region_width, camera.region_height, tile_size(settings), settings.passes), pool_(settings.threads) {
+    : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_->normalisation)),
+      settings_(settings), film_(camera.region_width, camera.region_height, tile_size(settings), settings.passes),
+      pool_(settings.threads) {
   for (uint32_t i = 0; i < pool_.size(); ++i) {
     workers_.push_back(std::make_unique<Worker>());
     workers_.back()->integrator = make_integrator(*scene_, camera_, settings_.integrator);
@@ -68,8 +69,8 @@ void Session::render(uint32_t first, uint32_t count) {
   if (cancelled_)
     throw Error(Fault::State, "session: it was cancelled; its film can only be read");
   if (first != end_)
-    throw Error(Fault::State, "session: first sample " + std::to_string(first) + " does not follow the " + std::to_string(end_) +
-                                  " samples rendered so far");
+    throw Error(Fault::State, "session: first sample " + std::to_string(first) + " does not follow the " +
+                                  std::to_string(end_) + " samples rendered so far");
   if (uint64_t(first) + count > (uint64_t(1) << 31))
     bad_argument("session: " + std::to_string(uint64_t(first) + count) + " samples > 2147483648");
   end_ = first + count;
@@ -113,7 +114,8 @@ void Session::render_tile(Worker &worker, Film::Tile &tile) {
     // Large tiles go through the integrator in several batches.
     for (size_t begin = 0; begin < worker.addresses.size(); begin += kBatch) {
       const size_t size = std::min<size_t>(kBatch, worker.addresses.size() - begin);
-      worker.integrator->run(std::span(worker.addresses).subspan(begin, size), std::span(worker.results).subspan(begin, size), nullptr);
+      worker.integrator->run(std::span(worker.addresses).subspan(begin, size), std::span(worker.results).subspan(begin, size),
+                             nullptr);
     }
     drop_invalid(worker, worker.results);
     film_.add(tile, samples, worker.results);

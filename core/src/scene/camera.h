@@ -13,8 +13,8 @@ struct Normalisation; // scene.h
 struct Camera {
   Affine to_world;
   bool orthographic = false;
-  uint32_t width = 0, height = 0;                     // full image, pixels
-  uint32_t x = 0, y = 0;                              // lower left pixel of the region
+  uint32_t width = 0, height = 0; // full image, pixels
+  uint32_t x = 0, y = 0;          // lower left pixel of the region
   uint32_t region_width = 0, region_height = 0;
   double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
   double clip_start = 0.0, clip_end = 0.0;

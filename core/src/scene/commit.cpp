@@ -111,7 +111,8 @@ Light normalised_light(const LightDescription &from, const Normalisation &normal
     light.tan_half_spread = std::tan(half);
     light.spread_scale = 1.0 / (light.tan_half_spread - half);
   }
-  light.course = {from.falloff, double(from.falloff_radius) * scale, scale, from.ambient_color, from.diffuse_color, from.specular_color};
+  light.course = {from.falloff,       double(from.falloff_radius) * scale, scale, from.ambient_color, from.diffuse_color,
+                  from.specular_color};
   return light;
 }
 

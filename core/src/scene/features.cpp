@@ -59,9 +59,10 @@ uint32_t find_features(const Description &description) {
 }
 
 std::string feature_names(uint32_t features) {
-  static const char *const names[] = {"lambert",   "beckmann", "mirror",       "dielectric", "phong",       "blinn-phong", "opacity",
-                                      "triangles", "instances", "spheres",     "planes",     "cylinders",   "cones",       "point-lights",
-                                      "spot-lights", "sun-lights", "area-lights", "emitters",   "environment", "vertex-colors"};
+  static const char *const names[] = {"lambert",     "beckmann",    "mirror",    "dielectric",   "phong",
+                                      "blinn-phong", "opacity",     "triangles", "instances",    "spheres",
+                                      "planes",      "cylinders",   "cones",     "point-lights", "spot-lights",
+                                      "sun-lights",  "area-lights", "emitters",  "environment",  "vertex-colors"};
   std::string text;
   for (uint32_t bit = 0; bit < std::size(names); ++bit) {
     if (!(features & (1u << bit)))

@@ -46,7 +46,8 @@ Camera read_camera(const lancer_camera &source) {
   if (source.window[0] == source.window[1] || source.window[2] == source.window[3])
     bad_argument("camera: its window is empty");
   if (!(source.clip_start >= 0.0) || !(source.clip_end > source.clip_start))
-    bad_argument("camera: clip range " + std::to_string(source.clip_start) + " ... " + std::to_string(source.clip_end) + " is empty");
+    bad_argument("camera: clip range " + std::to_string(source.clip_start) + " ... " + std::to_string(source.clip_end) +
+                 " is empty");
   if (!(source.lens_radius >= 0.0) || !std::isfinite(source.lens_radius))
     bad_argument("camera: lens radius " + std::to_string(source.lens_radius) + " must be finite and not negative");
   if (source.lens_radius > 0.0 && !(source.focal_distance > 0.0))

@@ -32,7 +32,8 @@ std::string fault_of(const Affine &map) {
   return "";
 }
 
-void check_instance(const Description &description, const std::string &object, const lancer_instance &given, uint32_t slot_count) {
+void check_instance(const Description &description, const std::string &object, const lancer_instance &given,
+                    uint32_t slot_count) {
   if (given.kind > LANCER_CONE)
     bad_argument(object + ": kind " + std::to_string(given.kind) + " is not a shape");
   if (given.kind == LANCER_MESH && given.mesh >= description.geometry.meshes.size())
@@ -57,8 +58,8 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     bad_argument("instances: names must end with a NUL");
   for (uint32_t i = 0; i < slot_count; ++i) {
     if (slots[i] >= description.materials.size())
-      bad_argument("instances: slot " + std::to_string(i) + " names material " + std::to_string(slots[i]) + " >= " +
-                   std::to_string(description.materials.size()) + " materials");
+      bad_argument("instances: slot " + std::to_string(i) + " names material " + std::to_string(slots[i]) +
+                   " >= " + std::to_string(description.materials.size()) + " materials");
   }
   // Check all before keeping any: a refused call adds nothing.
   const auto name_of = [&](const lancer_instance &given) { return given.name < names_size ? names + given.name : ""; };
@@ -66,7 +67,8 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     if (names_size && instances[i].name >= names_size)
       bad_argument("instance #" + std::to_string(description.instances_given + i) + ": name offset " +
                    std::to_string(instances[i].name) + " >= " + std::to_string(names_size) + " bytes of names");
-    check_instance(description, label("object", name_of(instances[i]), description.instances_given + i), instances[i], slot_count);
+    check_instance(description, label("object", name_of(instances[i]), description.instances_given + i), instances[i],
+                   slot_count);
   }
 
   const uint32_t slot_base = uint32_t(description.slots.size());

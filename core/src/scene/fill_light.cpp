@@ -28,7 +28,8 @@ public:
   }
 
   glm::vec3 read(const char *what, const float value[3]) {
-    return {read(what, value[0], 0.0f, kBrightest), read(what, value[1], 0.0f, kBrightest), read(what, value[2], 0.0f, kBrightest)};
+    return {read(what, value[0], 0.0f, kBrightest), read(what, value[1], 0.0f, kBrightest),
+            read(what, value[2], 0.0f, kBrightest)};
   }
 
 private:

@@ -25,7 +25,8 @@ public:
   // Each component: NaN becomes fallback, the rest is brought into [low, high].
   Parameter read(const char *what, const lancer_parameter &given, float low, float high, float fallback) {
     if (given.texture >= 0)
-      bad_argument(object_ + ": " + what + " names texture " + std::to_string(given.texture) + ", but the scene has 0 textures");
+      bad_argument(object_ + ": " + what + " names texture " + std::to_string(given.texture) +
+                   ", but the scene has 0 textures");
     Parameter parameter;
     for (int i = 0; i < 3; ++i) {
       const float value = given.value[i];

@@ -129,7 +129,8 @@ void add_mesh(Description &description, const lancer_mesh &source) {
   copy_corners(source.uvs, kept, mesh.uvs);
   copy_corners(source.colors, kept, mesh.colors);
   if (const size_t replaced = zero_where_not_finite(mesh.uvs) + zero_where_not_finite(mesh.colors))
-    description.messages.add(object, std::to_string(replaced) + " texture coordinates or colours that are not finite were set to 0");
+    description.messages.add(object,
+                             std::to_string(replaced) + " texture coordinates or colours that are not finite were set to 0");
   if (source.material_slots) {
     mesh.material_slots.resize(kept.size());
     for (size_t i = 0; i < kept.size(); ++i)

@@ -10,7 +10,8 @@
 
 namespace lancer {
 
-// p_normalised = (p_world - centre) * scale, scale a power of two: the same scene at any size and place becomes the same numbers.
+// p_normalised = (p_world - centre) * scale, scale a power of two: the same scene at any size and place becomes the same
+// numbers.
 struct Normalisation {
   glm::dvec3 centre{0.0};
   double scale = 1.0;

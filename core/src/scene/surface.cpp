@@ -40,8 +40,7 @@ glm::vec3 normal_to_world(const Instance &instance, const glm::dvec3 &n) {
   return unit(glm::transpose(instance.to_object.linear) * n);
 }
 
-template <class Vector>
-Vector interpolate(const std::vector<Vector> &corners, uint32_t triangle, const glm::dvec3 &b) {
+template <class Vector> Vector interpolate(const std::vector<Vector> &corners, uint32_t triangle, const glm::dvec3 &b) {
   const size_t first = size_t(triangle) * 3;
   return float(b.x) * corners[first] + float(b.y) * corners[first + 1] + float(b.z) * corners[first + 2];
 }
@@ -86,7 +85,8 @@ void mesh_surface(const Geometry &geometry, const Hit &hit, Surface &surface) {
 
 void quadric_surface(const Geometry &geometry, const Ray &ray, const Hit &hit, Surface &surface) {
   const Instance &instance = geometry.instances[hit.instance];
-  const SurfacePoint point = quadric_point(instance.kind, instance.to_object.point(ray.o), instance.to_object.vector(ray.d), hit.t);
+  const SurfacePoint point =
+      quadric_point(instance.kind, instance.to_object.point(ray.o), instance.to_object.vector(ray.d), hit.t);
   surface.p = instance.to_world.point(point.p);
   surface.offset = position_bound(instance, glm::max(glm::abs(point.p), glm::dvec3(1.0)), surface.p);
   surface.ng = surface.ns = normal_to_world(instance, point.n);

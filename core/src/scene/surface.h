@@ -7,8 +7,8 @@
 namespace lancer {
 
 struct Surface {
-  glm::dvec3 p{0.0};    // normalised world, on the surface to a few ulp of double
-  double offset = 0.0;  // bound of p's distance from the surface as any later ray sees it
+  glm::dvec3 p{0.0};     // normalised world, on the surface to a few ulp of double
+  double offset = 0.0;   // bound of p's distance from the surface as any later ray sees it
   glm::vec3 ng{0, 0, 1}; // outward geometric normal, unit
   glm::vec3 ns{0, 0, 1}; // shading normal, unit, on the side of ng
   glm::vec2 uv{0.0f};

@@ -1,0 +1,65 @@
+// What handles stand for: a scene on its way from filling to committed, and a session.
+#pragma once
+
+#include "guard.h"
+#include "handles.h"
+#include "render/session.h"
+
+namespace lancer {
+
+class SceneObject {
+public:
+  ~SceneObject() { cancel = true; }
+
+  std::mutex mutex;
+  Description description;
+  std::shared_ptr<const Scene> scene; // set by commit
+  std::string messages;
+  std::atomic<bool> cancel{false};
+  enum class State { Filling, Committing, Committed, Failed } state = State::Filling;
+  std::unique_ptr<ThreadPool> builder; // last: ends before what it works on
+
+  void require_filling() const {
+    if (state != State::Filling)
+      throw Error(Fault::State, "scene: it has been committed; nothing can be added any more");
+  }
+  const std::shared_ptr<const Scene> &committed() const {
+    if (state != State::Committed)
+      throw Error(Fault::State, state == State::Filling      ? "scene: it has not been committed yet"
+                                : state == State::Committing ? "scene: its commit has not been waited for"
+                                                             : "scene: its commit failed");
+    return scene;
+  }
+};
+
+struct SessionObject {
+  SessionObject(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
+      : session(std::move(scene), camera, settings) {}
+  std::mutex mutex;
+  Session session;
+};
+
+// Never destroyed: a thread may still be inside a call while the process ends.
+inline Handles<SceneObject> &scenes() {
+  static auto *const handles = new Handles<SceneObject>(0x5c);
+  return *handles;
+}
+inline Handles<SessionObject> &sessions() {
+  static auto *const handles = new Handles<SessionObject>(0x5e);
+  return *handles;
+}
+
+inline std::shared_ptr<SceneObject> scene_of(lancer_scene handle) {
+  auto object = scenes().find(handle);
+  if (!object)
+    throw BadHandle{"scene: no such scene, or it has been destroyed"};
+  return object;
+}
+inline std::shared_ptr<SessionObject> session_of(lancer_session handle) {
+  auto object = sessions().find(handle);
+  if (!object)
+    throw BadHandle{"session: no such session, or it has been destroyed"};
+  return object;
+}
+
+} // namespace lancer
