@@ -60,6 +60,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             return
         except LancerError as error:
             text = str(error)
+        except KeyboardInterrupt:
+            # Python's own Ctrl-C, in Blender as a module: what runs the render should end too.
+            text = "interrupted"
         except MemoryError:
             text = "not enough memory for this scene"
         except Exception as error:

@@ -56,8 +56,6 @@ def fill(layer, read, wanted):
 
 
 def _upload(target, image):
-    if image.shape[2] == 1 or bpy.app.version >= (4, 0):
-        target.rect.foreach_set(image.ravel())
-        return
-    # foreach_set of older Blenders counts pixels where it should count floats; tuples are the next best there.
-    target.rect = list(map(tuple, image.reshape(-1, image.shape[2]).tolist()))
+    # foreach_set of older Blenders compares the length with the number of pixels, and then copies the whole buffer.
+    rows = image.reshape(-1, image.shape[2])
+    target.rect.foreach_set(rows.ravel() if bpy.app.version >= (4, 0) else rows)

@@ -31,7 +31,12 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         name="Integrator",
         description="How light is followed through the scene",
         items=(
-            ("PATH", "Path Tracing", "Global illumination: light that bounces, soft shadows, caustics. Noise falls with samples", 0),
+            (
+                "PATH",
+                "Path Tracing",
+                "Global illumination: light that bounces, soft shadows, caustics. Noise falls with samples",
+                0,
+            ),
             ("CLASSIC", "Classic", "Recursive ray tracing: direct light, mirrors and glass. Fast and free of noise", 1),
             ("NORMALS", "Normals", "Surface directions as colours, to check geometry", 2),
         ),
@@ -45,9 +50,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         soft_max=3600.0,
         default=0.0,
     )
-    seed: IntProperty(
-        name="Seed", description="Another number gives another pattern of noise", min=0, default=0
-    )
+    seed: IntProperty(name="Seed", description="Another number gives another pattern of noise", min=0, default=0)
     use_animated_seed: BoolProperty(
         name="Animate Seed", description="Another pattern of noise in each frame of an animation", default=False
     )
@@ -69,7 +72,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
     )
     clamp_indirect: FloatProperty(
         name="Clamp Indirect",
-        description="Limit of a sample's indirect light, against single bright pixels. Makes the picture darker than true; 0 = off",
+        description="Limit of a sample's indirect light, against bright specks. Makes the picture too dark; 0 = off",
         min=0.0,
         soft_max=100.0,
         default=0.0,
@@ -137,7 +140,12 @@ class LancerObjectSettings(bpy.types.PropertyGroup):
         items=(
             ("AS_MESH", "As Mesh", "Smooth and flat faces as the mesh has them", 0),
             ("FLAT", "Flat", "One direction for each face", 1),
-            ("GOURAUD", "Gouraud", "Light is computed at the vertices and blended between them (Classic; elsewhere as Phong)", 2),
+            (
+                "GOURAUD",
+                "Gouraud",
+                "Light is computed at the vertices and blended between them (Classic; elsewhere as Phong)",
+                2,
+            ),
             ("PHONG", "Phong", "Directions are blended between the vertices", 3),
         ),
         default="AS_MESH",
@@ -171,7 +179,11 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
         name="IOR", description="Index of refraction of the clear layer", min=1e-3, soft_min=1.0, soft_max=3.0, default=1.5
     )
     shininess: FloatProperty(
-        name="Shininess", description="Exponent of the highlight: larger is smaller and sharper", min=0.0, soft_max=1000.0, default=50.0
+        name="Shininess",
+        description="Exponent of the highlight: larger is smaller and sharper",
+        min=0.0,
+        soft_max=1000.0,
+        default=50.0,
     )
 
 
@@ -190,7 +202,12 @@ class LancerLightSettings(bpy.types.PropertyGroup):
         default="PHYSICAL",
     )
     radius: FloatProperty(
-        name="Radius", description="Distance over which the light weakens", subtype="DISTANCE", min=1e-6, soft_max=1000.0, default=10.0
+        name="Radius",
+        description="Distance over which the light weakens",
+        subtype="DISTANCE",
+        min=1e-6,
+        soft_max=1000.0,
+        default=10.0,
     )
     use_separate_colors: BoolProperty(
         name="Separate Colors",
@@ -203,7 +220,7 @@ class LancerLightSettings(bpy.types.PropertyGroup):
 
 
 def _add_watched(scene):
-    """Properties with an update function: as annotations they would make bpy 4.2 crash at exit, added and deleted they do not."""
+    """Properties with an update function: kept as annotations they make bpy 4.2 crash at exit; added and deleted they do not."""
     scene.quality = EnumProperty(
         name="Quality",
         description="How many samples to take: a preset, or your own number",

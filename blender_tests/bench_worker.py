@@ -113,7 +113,11 @@ def accelerators(kinds, **settings):
 
 
 def versions():
-    return {"blender": bpy.app.version_string, "lancer": ".".join(map(str, addon.bl_info["version"])), "python": sys.version.split()[0]}
+    return {
+        "blender": bpy.app.version_string,
+        "lancer": ".".join(map(str, addon.bl_info["version"])),
+        "python": sys.version.split()[0],
+    }
 
 
 TASKS = {task.__name__: task for task in (f12, prepare, accelerators, versions)}

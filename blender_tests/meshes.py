@@ -18,11 +18,11 @@ def primitives():
     rng = np.random.default_rng(1)
     shapes = {
         "box": trimesh.creation.box((1.0, 2.0, 0.5)),
-        "icosphere": trimesh.creation.icosphere(3),
+        "icosphere": trimesh.creation.icosphere(2),
         "torus": trimesh.creation.torus(1.0, 0.3, 24, 16),
-        "capsule": trimesh.creation.capsule(1.0, 0.4),
+        "capsule": trimesh.creation.capsule(1.0, 0.4, count=(8, 8)),
         "cone": trimesh.creation.cone(0.7, 1.5, sections=24),
-        "bumpy": trimesh.creation.icosphere(3),
+        "bumpy": trimesh.creation.icosphere(2),
     }
     bumpy = shapes["bumpy"]
     bumpy.vertices = bumpy.vertices * rng.uniform(0.8, 1.0, (len(bumpy.vertices), 1))

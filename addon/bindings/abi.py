@@ -4,8 +4,7 @@ import ctypes
 import functools
 import os
 import sys
-from ctypes import POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32
-from ctypes import c_uint64, c_void_p
+from ctypes import POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
 
 from . import elf
 from .enums import *  # noqa: F403 - abi is the one name under which others find the whole interface
@@ -284,7 +283,7 @@ def load_library(path=None):
     return _load(os.path.abspath(os.fspath(path)) if path is not None else library_path())
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def _load(path):
     remedy = "install the add-on for this system again, or run `make` in the project's root"
     if not os.path.isfile(path):

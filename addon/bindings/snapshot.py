@@ -11,8 +11,20 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .enums import Accelerator, AreaShape, CameraKind, Falloff, Features, InstanceKind, Integrator, LightKind, LobeKind
-from .enums import Pass, PixelFilter, Shading
+from .enums import (
+    Accelerator,
+    AreaShape,
+    CameraKind,
+    Falloff,
+    Features,
+    InstanceKind,
+    Integrator,
+    LightKind,
+    LobeKind,
+    Pass,
+    PixelFilter,
+    Shading,
+)
 from .npz import load_npz, register, save_npz
 
 _IDENTITY = np.eye(4)[:3]

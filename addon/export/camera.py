@@ -64,9 +64,7 @@ def export_camera(camera, depsgraph, messages):
 def _window(camera, depsgraph, kind, width, height):
     """left, right, bottom, top from Blender's own projection, which knows sensor fit, shift and pixel aspect."""
     render = depsgraph.scene.render
-    p = camera.calc_matrix_camera(
-        depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y
-    )
+    p = camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y)
     if camera.data.type == "PANO":
         # Blender gives a panoramic camera no projection: its stand-in has the same lens on the same sensor.
         half = 0.5 * camera.data.sensor_width / max(camera.data.lens, 1e-6)

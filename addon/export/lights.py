@@ -34,7 +34,9 @@ def export_light(thing, matrix_world, messages):
         name=thing.name,
         matrix=_rotation(matrix),
         kind=kind,
-        emission=tuple(c * _watts_to_emission(light, kind, radius, sun_angle, shape, size) for c in _power(light, who, messages)),
+        emission=tuple(
+            c * _watts_to_emission(light, kind, radius, sun_angle, shape, size) for c in _power(light, who, messages)
+        ),
         radius=radius if kind in (LightKind.POINT, LightKind.SPOT) else 0.0,
         soft_falloff=getattr(light, "use_soft_falloff", True),
         spot_angle=messages.number(getattr(light, "spot_size", math.pi), who, "spot size", 0.785, 1e-3, math.pi),

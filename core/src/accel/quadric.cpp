@@ -170,25 +170,21 @@ bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, do
 }
 
 SurfacePoint quadric_point(ShapeKind kind, const glm::dvec3 &o, const glm::dvec3 &d, double t) {
-  SurfacePoint s{o + t * d, glm::dvec3(0.0, 0.0, 1.0), glm::dvec2(0.0)};
+  SurfacePoint s{o + t * d, glm::dvec3(0.0, 0.0, 1.0)};
   if (kind == ShapeKind::Plane) {
     s.p.z = 0.0;
-    s.uv = glm::dvec2(s.p.x, s.p.y);
     return s;
   }
-  double angle = std::atan2(s.p.y, s.p.x) * (0.5 * std::numbers::inv_pi);
-  angle = angle < 0.0 ? std::min(angle + 1.0, std::nextafter(1.0, 0.0)) : angle;
   if (kind == ShapeKind::Sphere) {
     const double length = glm::length(s.p);
     s.p = length > 0.0 ? s.p / length : s.n;
     s.n = s.p;
-    s.uv = glm::dvec2(angle, 0.5 + std::atan2(s.p.z, std::hypot(s.p.x, s.p.y)) * std::numbers::inv_pi);
     return s;
   }
 
   // Find the nearest part: the side, or one of the disks.
   const bool cone = kind == ShapeKind::Cone;
-  const double r = std::hypot(s.p.x, s.p.y);
+  const double r = std::sqrt(s.p.x * s.p.x + s.p.y * s.p.y);
   const double radius = cone ? 0.5 * (1.0 - s.p.z) : 1.0;
   const double to_side = std::abs(r - radius) * (cone ? 2.0 / std::sqrt(5.0) : 1.0);
   const double to_disk = cone ? std::abs(s.p.z + 1.0) : std::abs(std::abs(s.p.z) - 1.0);
@@ -204,8 +200,17 @@ SurfacePoint quadric_point(ShapeKind kind, const glm::dvec3 &o, const glm::dvec3
     else if (r > 0.0)
       s.n = glm::dvec3(2.0 * outward, 1.0) / std::sqrt(5.0);
   }
-  s.uv = glm::dvec2(angle, 0.5 * (s.p.z + 1.0));
   return s;
+}
+
+glm::dvec2 quadric_uv(ShapeKind kind, const glm::dvec3 &p) {
+  if (kind == ShapeKind::Plane)
+    return {p.x, p.y};
+  const double turn = std::atan2(p.y, p.x) * (0.5 * std::numbers::inv_pi);
+  const double angle = turn < 0.0 ? std::min(turn + 1.0, std::nextafter(1.0, 0.0)) : turn;
+  if (kind == ShapeKind::Sphere)
+    return {angle, 0.5 + std::atan2(p.z, std::hypot(p.x, p.y)) * std::numbers::inv_pi};
+  return {angle, 0.5 * (p.z + 1.0)};
 }
 
 } // namespace lancer

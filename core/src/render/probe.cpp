@@ -61,15 +61,16 @@ void probe_intersect(const Scene &scene, uint32_t count, const double *origins, 
     }
     const Surface surface = surface_at(scene.geometry, scene.slots, rays[i], found[i]);
     const Instance &instance = scene.geometry.instances[found[i].instance];
+    const SurfaceAttributes attributes = attributes_at(scene.geometry, surface, found[i]);
     const bool mesh = instance.kind == ShapeKind::Mesh;
-    hit.u = mesh ? found[i].u : double(surface.uv.x);
-    hit.v = mesh ? found[i].v : double(surface.uv.y);
+    hit.u = mesh ? found[i].u : double(attributes.uv.x);
+    hit.v = mesh ? found[i].v : double(attributes.uv.y);
     store(hit.position, scene.normalisation.to_world(surface.p));
     store(hit.normal, surface.ns);
     store(hit.geometric_normal, surface.ng);
-    store(hit.color, surface.color);
-    hit.uv[0] = surface.uv.x;
-    hit.uv[1] = surface.uv.y;
+    store(hit.color, attributes.color);
+    hit.uv[0] = attributes.uv.x;
+    hit.uv[1] = attributes.uv.y;
     hit.instance = instance.number;
     // Give faces the numbers that the user knows.
     const bool renumbered = mesh && !scene.geometry.meshes[instance.mesh].face_of.empty();

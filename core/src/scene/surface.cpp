@@ -77,10 +77,6 @@ void mesh_surface(const Geometry &geometry, const Hit &hit, Surface &surface) {
     if (glm::dot(surface.ns, surface.ng) < 0.0f)
       surface.ns = -surface.ns;
   }
-  // Take the attributes that the mesh has.
-  surface.uv = mesh.uvs.empty() ? glm::vec2(float(hit.u), float(hit.v)) : interpolate(mesh.uvs, hit.primitive, b);
-  if (!mesh.colors.empty())
-    surface.color = interpolate(mesh.colors, hit.primitive, b);
 }
 
 void quadric_surface(const Geometry &geometry, const Ray &ray, const Hit &hit, Surface &surface) {
@@ -90,7 +86,6 @@ void quadric_surface(const Geometry &geometry, const Ray &ray, const Hit &hit, S
   surface.p = instance.to_world.point(point.p);
   surface.offset = position_bound(instance, glm::max(glm::abs(point.p), glm::dvec3(1.0)), surface.p);
   surface.ng = surface.ns = normal_to_world(instance, point.n);
-  surface.uv = glm::vec2(point.uv);
 }
 
 } // namespace
@@ -115,6 +110,21 @@ Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots,
   else
     quadric_surface(geometry, ray, hit, surface);
   return surface;
+}
+
+SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface, const Hit &hit) {
+  SurfaceAttributes attributes;
+  const Instance &instance = geometry.instances[hit.instance];
+  if (instance.kind != ShapeKind::Mesh) {
+    attributes.uv = glm::vec2(quadric_uv(instance.kind, instance.to_object.point(surface.p)));
+    return attributes;
+  }
+  const Mesh &mesh = geometry.meshes[instance.mesh];
+  const glm::dvec3 b(1.0 - hit.u - hit.v, hit.u, hit.v);
+  attributes.uv = mesh.uvs.empty() ? glm::vec2(float(hit.u), float(hit.v)) : interpolate(mesh.uvs, hit.primitive, b);
+  if (!mesh.colors.empty())
+    attributes.color = interpolate(mesh.colors, hit.primitive, b);
+  return attributes;
 }
 
 Ray leave(const Surface &surface, const glm::dvec3 &d, double tmax) {

@@ -11,8 +11,6 @@ struct Surface {
   double offset = 0.0;   // bound of p's distance from the surface as any later ray sees it
   glm::vec3 ng{0, 0, 1}; // outward geometric normal, unit
   glm::vec3 ns{0, 0, 1}; // shading normal, unit, on the side of ng
-  glm::vec2 uv{0.0f};
-  glm::vec3 color{1.0f}; // vertex colour
   uint32_t instance = kNone;
   uint32_t primitive = kNone;
   uint32_t material = kNone;
@@ -20,6 +18,13 @@ struct Surface {
 
 // The hit of ray with the geometry, with interpolated attributes. slots: material numbers of all instances.
 Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots, const Ray &ray, const Hit &hit);
+
+// What is painted on the surface; asked for only where something reads it.
+struct SurfaceAttributes {
+  glm::vec2 uv{0.0f};    // texture coordinates; barycentrics on a mesh without, the parametrisation of an exact surface
+  glm::vec3 color{1.0f}; // vertex colour; white on what has none
+};
+SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface, const Hit &hit);
 
 // A ray that leaves the surface towards d (need not be unit): it starts on the side of d and cannot meet its own primitive.
 Ray leave(const Surface &surface, const glm::dvec3 &d, double tmax);
