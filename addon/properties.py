@@ -220,7 +220,7 @@ class LancerLightSettings(bpy.types.PropertyGroup):
 
 
 def _add_watched(scene):
-    """Properties with an update function: kept as annotations they make bpy 4.2 crash at exit; added and deleted they do not."""
+    """Properties with an update function: as annotations they make bpy 4.2 crash at exit; added and deleted they do not."""
     scene.quality = EnumProperty(
         name="Quality",
         description="How many samples to take: a preset, or your own number",

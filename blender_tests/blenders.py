@@ -33,17 +33,32 @@ def command(which, result, where, name, *arguments):
     return [program(), "-b", "--factory-startup", "--python-exit-code", "3", "-P", RUN, *tail]
 
 
-def run(which, folder, where, name, *arguments, **extra):
-    """The result of a case. A crash, a hang of minutes, a Python error: all are failures with the last lines said."""
+def attempt(which, folder, where, name, *arguments, **extra):
+    """(exit code, all that was said, the case's result or None). A hang of minutes is a failure."""
     result = os.path.join(str(folder), "result.json")
     done = subprocess.run(
-        command(which, result, where, name, *arguments), env=environment(folder, **extra), cwd=str(folder), capture_output=True,
-        text=True, errors="replace", timeout=300,
+        command(which, result, where, name, *arguments),
+        env=environment(folder, **extra),
+        cwd=str(folder),
+        capture_output=True,
+        text=True,
+        errors="replace",
+        timeout=300,
     )
-    said = (done.stdout + done.stderr)[-3000:]
-    assert done.returncode == 0 and os.path.exists(result), f"exit code {done.returncode}\n{said}"
-    with open(result, encoding="utf-8") as file:
-        return json.load(file)
+    value = None
+    if os.path.exists(result):
+        with open(result, encoding="utf-8") as file:
+            value = json.load(file)
+    return done.returncode, done.stdout + done.stderr, value
+
+
+def run(which, folder, where, name, *arguments, **extra):
+    """The result of a case. A crash, a Python error: all are failures with the last lines said."""
+    code, said, value = attempt(which, folder, where, name, *arguments, **extra)
+    assert code == 0 and value is not None, f"exit code {code}\n{said[-3000:]}"
+    if isinstance(value, dict):
+        value["console"] = said
+    return value
 
 
 def zip_for_blender_3():

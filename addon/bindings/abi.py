@@ -83,6 +83,7 @@ class Light(Structure):
         ("soft_falloff", c_uint32),
         ("spot_angle", c_float),
         ("spot_blend", c_float),
+        ("spot_cosine", c_uint32),
         ("sun_angle", c_float),
         ("size", c_float * 2),
         ("shape", c_uint32),

@@ -64,7 +64,7 @@ def instances(table):
 
 def material(m):
     lobes = (abi.Lobe * len(m.lobes))()
-    for target, lobe in zip(lobes, m.lobes):
+    for target, lobe in zip(lobes, m.lobes, strict=True):
         target.kind = int(lobe.kind)
         target.color = _parameter(lobe.color)
         target.roughness = _parameter(lobe.roughness)
@@ -91,6 +91,7 @@ def light(li):
         soft_falloff=int(li.soft_falloff),
         spot_angle=li.spot_angle,
         spot_blend=li.spot_blend,
+        spot_cosine=li.spot_cosine,
         sun_angle=li.sun_angle,
         size=li.size,
         shape=int(li.shape),

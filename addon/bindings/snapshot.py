@@ -33,7 +33,7 @@ _IDENTITY = np.eye(4)[:3]
 def _array(value, dtype, shape, what):
     """value as a read-only C-contiguous array; shape may hold None for any length."""
     array = np.ascontiguousarray(value, dtype).view()
-    if array.ndim != len(shape) or any(want is not None and want != got for want, got in zip(shape, array.shape)):
+    if array.ndim != len(shape) or any(want is not None and want != got for want, got in zip(shape, array.shape, strict=True)):
         raise ValueError(f"{what} has shape {array.shape}, expected {shape}")
     array.flags.writeable = False
     return array
@@ -45,7 +45,7 @@ def _same(a, b):
             return False
         return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
     if isinstance(a, tuple) and isinstance(b, tuple):
-        return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b))
+        return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b, strict=True))
     if isinstance(a, float) and isinstance(b, float) and math.isnan(a):
         return math.isnan(b)
     return a == b
@@ -215,6 +215,7 @@ class Light(_Record):
     soft_falloff: bool = True
     spot_angle: float = math.radians(45.0)
     spot_blend: float = 0.15
+    spot_cosine: bool = False
     sun_angle: float = 0.0
     size: tuple = (1.0, 1.0)
     shape: int = AreaShape.RECTANGLE

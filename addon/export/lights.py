@@ -41,6 +41,7 @@ def export_light(thing, matrix_world, messages):
         soft_falloff=getattr(light, "use_soft_falloff", True),
         spot_angle=messages.number(getattr(light, "spot_size", math.pi), who, "spot size", 0.785, 1e-3, math.pi),
         spot_blend=messages.number(getattr(light, "spot_blend", 0.0), who, "spot blend", 0.15, 0.0, 1.0),
+        spot_cosine=bpy.app.version < (4, 0),
         sun_angle=sun_angle if kind == LightKind.SUN else 0.0,
         size=size,
         shape=shape,
@@ -67,10 +68,10 @@ def _power(light, who, messages):
     energy = messages.number(light.energy, who, "power", 0.0, 0.0)
     color = messages.color(light.color, who, "colour", 1.0)
     if getattr(light, "use_temperature", False):
-        color = tuple(c * t for c, t in zip(color, light.temperature_color))
+        color = tuple(c * t for c, t in zip(color, light.temperature_color, strict=True))
     energy *= 2.0 ** messages.number(getattr(light, "exposure", 0.0), who, "exposure", 0.0)
     node_color = _nodes(light, who, messages)
-    return tuple(energy * c * n for c, n in zip(color, node_color))
+    return tuple(energy * c * n for c, n in zip(color, node_color, strict=True))
 
 
 def _watts_to_emission(light, kind, radius, sun_angle, shape, size):

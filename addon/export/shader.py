@@ -19,7 +19,7 @@ def _scaled(color, factor):
 
 
 def _plus(a, b):
-    return tuple(x + y for x, y in zip(a, b))
+    return tuple(x + y for x, y in zip(a, b, strict=True))
 
 
 class ShaderReader:

@@ -186,7 +186,7 @@ def engine_statistics():
 def progress():
     """What the status line said while rendering."""
     texts = []
-    scene = stage.room(width=128, height=128, samples=256)
+    stage.room(width=128, height=128, samples=256)
     bpy.app.handlers.render_stats.append(lambda *arguments: texts.append(str(arguments[0])))
     bpy.ops.render.render()
-    return [text for text in texts if text] or [scene.name]
+    return {"texts": texts}

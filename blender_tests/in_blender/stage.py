@@ -149,12 +149,16 @@ def picture(scene):
 
 
 def channels(path):
-    """The channel names of an EXR file, from its header."""
-    data = open(path, "rb").read(65536)
-    at = data.index(b"channels\0chlist\0") + len(b"channels\0chlist\0") + 4
-    names = []
-    while data[at] != 0:
-        end = data.index(b"\0", at)
-        names.append(data[at:end].decode())
-        at = end + 1 + 16
+    """The channel names of an EXR file, from the headers of all its parts."""
+    with open(path, "rb") as file:
+        data = file.read(65536)
+    names, mark = [], b"channels\0chlist\0"
+    at = data.find(mark)
+    while at >= 0:
+        at += len(mark) + 4
+        while data[at] != 0:
+            end = data.index(b"\0", at)
+            names.append(data[at:end].decode())
+            at = end + 1 + 16
+        at = data.find(mark, at)
     return names

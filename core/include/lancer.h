@@ -188,6 +188,7 @@ typedef struct lancer_light {
   uint32_t soft_falloff;     /* POINT, SPOT with radius: 1 = a disk that always faces the shaded point (E = I/(d^2 + r^2)); 0 = a ball */
   float spot_angle;          /* SPOT: full angle of the cone */
   float spot_blend;          /* SPOT: 0 hard edge ... 1 all of the cone softened */
+  uint32_t spot_cosine;      /* SPOT: 1 = intensity also falls with the cosine of the angle to the axis, as in Blender before 4.0 */
   float sun_angle;           /* SUN: full angle of the disk in the sky; 0 is exactly parallel light */
   float size[2];             /* AREA: full lengths along local x and y */
   uint32_t shape;            /* AREA: LANCER_RECTANGLE or LANCER_ELLIPSE */

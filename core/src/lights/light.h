@@ -26,6 +26,7 @@ struct Light {
   double radius = 0.0;
   bool soft_falloff = true;
   double cos_half_angle = -1.0, blend_width = 0.0; // SPOT
+  bool spot_cosine = false;
   double one_minus_cos_sun = 0.0;                  // SUN: 1 - cos of half its angle
   double half_x = 0.0, half_y = 0.0, area = 0.0;   // AREA
   bool ellipse = false;

@@ -9,17 +9,19 @@
 
 namespace lancer {
 
-// Share of the intensity that a spot sends towards -wi: 0 outside the cone, a smooth step over its blended rim.
+// Share of the intensity that a spot sends towards -wi: 0 outside the cone, a smooth step over its blended rim; where asked
+// for, it falls with the cosine to the axis too.
 inline double spot_attenuation(const Light &light, const glm::dvec3 &wi) {
   if (light.kind != LightKind::Spot)
     return 1.0;
-  const double inside = glm::dot(wi, light.z) - light.cos_half_angle;
+  const double cosine = glm::dot(wi, light.z), inside = cosine - light.cos_half_angle;
   if (!(inside > 0.0))
     return 0.0;
+  const double tilted = light.spot_cosine ? std::max(cosine, 0.0) : 1.0;
   if (inside >= light.blend_width)
-    return 1.0;
+    return tilted;
   const double t = inside / light.blend_width;
-  return t * t * (3.0 - 2.0 * t);
+  return tilted * t * t * (3.0 - 2.0 * t);
 }
 
 // Radiance of the disk or ball: intensity over its projected area.

@@ -42,14 +42,23 @@ private:
       sum += 0.5 * (weight_[i] + weight_[i + 1]);
     }
     cdf_[kCells] = sum;
+    // Where to begin looking for a share: the first cell that a number of each of as many equal steps can lie in.
+    std::size_t cell = 0;
+    for (std::size_t step = 0; step < kCells; ++step) {
+      const double target = static_cast<double>(step) / kCells * sum;
+      while (cell + 1 < kCells && !(cdf_[cell + 1] > target))
+        ++cell;
+      guide_[step] = static_cast<unsigned short>(cell);
+    }
   }
 
   // Position in the window minus one half.
   float invert(float u) const {
     // Find the cell that holds this share of the window.
     const double target = static_cast<double>(u) * cdf_[kCells];
-    const auto above = std::upper_bound(cdf_.begin() + 1, cdf_.end() - 1, target);
-    const auto i = static_cast<std::size_t>(above - cdf_.begin() - 1);
+    std::size_t i = guide_[static_cast<std::size_t>(u * static_cast<float>(kCells))];
+    while (i + 1 < kCells && !(cdf_[i + 1] > target))
+      ++i;
     // Solve w0 s + (w1 - w0) s^2 / 2 = rest for the place s inside it, in the form that no slope makes cancel.
     const double rest = std::max(0.0, target - cdf_[i]);
     const double w0 = weight_[i], w1 = weight_[i + 1];
@@ -61,6 +70,7 @@ private:
   float width_;
   std::array<double, kCells + 1> weight_{};
   std::array<double, kCells + 1> cdf_{};
+  std::array<unsigned short, kCells> guide_{};
 };
 
 } // namespace lancer

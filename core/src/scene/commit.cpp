@@ -98,6 +98,7 @@ Light normalised_light(const LightDescription &from, const Normalisation &normal
   if (from.kind == LightKind::Spot) {
     light.cos_half_angle = std::cos(0.5 * double(from.spot_angle));
     light.blend_width = (1.0 - light.cos_half_angle) * double(from.spot_blend);
+    light.spot_cosine = from.spot_cosine;
   }
   // 1 - cos(a) = 2 sin^2(a / 2), exact for the smallest suns.
   const double s = std::sin(0.25 * double(from.sun_angle));

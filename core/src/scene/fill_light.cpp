@@ -62,6 +62,7 @@ void add_light(Description &description, const lancer_light &source) {
     light.soft_falloff = source.soft_falloff != 0;
     light.spot_angle = reader.read("spot angle", source.spot_angle, 0.0f, glm::two_pi<float>());
     light.spot_blend = reader.read("spot blend", source.spot_blend, 0.0f, 1.0f);
+    light.spot_cosine = source.spot_cosine != 0;
     light.sun_angle = reader.read("sun angle", source.sun_angle, 0.0f, glm::pi<float>());
     light.size = {reader.read("size", source.size[0], 0.0f, kBrightest), reader.read("size", source.size[1], 0.0f, kBrightest)};
     light.shape = static_cast<AreaShape>(source.shape);

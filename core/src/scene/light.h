@@ -20,6 +20,7 @@ struct LightDescription {
   float radius = 0.0f;
   bool soft_falloff = true;
   float spot_angle = 0.0f, spot_blend = 0.0f;
+  bool spot_cosine = false;
   float sun_angle = 0.0f;
   glm::vec2 size{0.0f};
   AreaShape shape = AreaShape::Rectangle;

@@ -1,0 +1,142 @@
+"""The same scene by both engines in one Blender: 8 x 8-block means of each, for the test to compare."""
+
+import math
+
+import bpy
+import numpy as np
+import stage
+
+SIZE, BLOCK = 64, 8
+
+
+def _unbiased(scene, bounces, samples):
+    """Both engines on the same integral: equal bounces, box filter, nothing clamped, guessed, stopped early or smoothed."""
+    cycles = scene.cycles
+    cycles.device, cycles.samples, cycles.seed = "CPU", samples, 1
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    cycles.blur_glossy, cycles.light_sampling_threshold = 0.0, 0.0
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
+    cycles.max_bounces = bounces
+    for kind in ("diffuse", "glossy", "transmission"):
+        setattr(cycles, kind + "_bounces", bounces)
+    cycles.transparent_max_bounces = 32
+    cycles.use_light_tree = False
+    scene.lancer.quality, scene.lancer.samples = "CUSTOM", samples
+    scene.lancer.max_bounces, scene.lancer.pixel_filter = bounces, "BOX"
+    scene.lancer.clamp_indirect = 0.0
+
+
+def _blocks(picture):
+    n = SIZE // BLOCK
+    return picture[..., :3].astype(np.float64).reshape(n, BLOCK, n, BLOCK, 3).mean(axis=(1, 3))
+
+
+def compare(name, bounces, samples):
+    scene = stage.empty(SIZE, SIZE)
+    globals()["_" + name]()
+    if scene.camera is None:
+        stage.camera()
+    result = {}
+    for engine in ("LANCER", "CYCLES"):
+        scene.render.engine = engine
+        _unbiased(scene, int(bounces), int(samples))
+        blocks = _blocks(stage.picture(scene))
+        # A second picture with other numbers tells the noise.
+        scene.cycles.seed, scene.lancer.seed = 2, 2
+        again = _blocks(stage.picture(scene))
+        scene.cycles.seed, scene.lancer.seed = 1, 0
+        result[engine] = ((blocks + again) / 2).tolist()
+        result[engine + " noise"] = float(np.sqrt(np.mean((blocks - again) ** 2) / 4))
+    return result
+
+
+def _floor(**fields):
+    stage.plane(material=stage.shader(Color=(0.8, 0.6, 0.4), **fields))
+
+
+def _lambert():
+    _floor()
+    stage.cube(material=stage.shader(Color=(0.2, 0.5, 0.8)), location=(0, 0, 0.5))
+    stage.sky((0.6, 0.7, 0.9))
+
+
+def _emission():
+    _floor()
+    stage.cube(0.6, stage.shader("ShaderNodeEmission", Color=(1.0, 0.8, 0.5), Strength=5.0), location=(0, 0, 1.2), rotation=(0.3, 0.2, 0))
+    stage.ball(0.5, stage.shader(Color=(0.9, 0.9, 0.9)), location=(1.2, 0, 0.5))
+
+
+def _point():
+    _floor()
+    stage.cube(material=stage.shader(), location=(0, 0, 0.5))
+    stage.light("POINT", 300.0, (2, -2, 3), shadow_soft_size=0.0)
+
+
+def _soft_point():
+    _floor()
+    stage.cube(material=stage.shader(), location=(0, 0, 0.5))
+    stage.light("POINT", 300.0, (1.5, -1, 2), shadow_soft_size=0.5)
+
+
+def _spot():
+    _floor()
+    stage.cube(material=stage.shader(), location=(0, 0, 0.5))
+    stage.light("SPOT", 500.0, (0, -1, 4), (0.25, 0, 0), spot_size=0.9, spot_blend=0.4, shadow_soft_size=0.0)
+
+
+def _sun():
+    _floor()
+    stage.cube(material=stage.shader(), location=(0, 0, 0.5))
+    stage.light("SUN", 3.0, (0, 0, 5), (0.6, 0.3, 0), angle=0.1)
+
+
+def _area():
+    _floor()
+    stage.cube(material=stage.shader(), location=(0, 0, 0.5))
+    stage.light("AREA", 100.0, (1, -1, 3), (0.4, 0.3, 0), shape="RECTANGLE", size=1.5, size_y=0.7)
+
+
+def _ellipse():
+    _floor()
+    stage.light("AREA", 100.0, (0, 0, 2), (0.4, 0.3, 0), shape="ELLIPSE", size=1.5, size_y=0.7)
+
+
+def _spread():
+    _floor()
+    stage.light("AREA", 100.0, (0, 0, 2.5), (0.1, 0.2, 0), shape="DISK", size=0.5, spread=math.radians(70))
+
+
+def _mirror():
+    _floor()
+    stage.ball(0.9, stage.shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.9, 0.7), Roughness=0.0), location=(0, 0, 0.9), segments=128)
+    stage.cube(0.7, stage.shader(Color=(0.9, 0.2, 0.2)), location=(-1.6, -0.8, 0.35))
+    stage.sky((0.5, 0.6, 0.8))
+
+
+def _glass():
+    _floor()
+    stage.ball(0.9, stage.shader("ShaderNodeBsdfGlass", Color=(1.0, 1.0, 1.0), Roughness=0.0, IOR=1.45), location=(0, 0, 1.0), segments=128)
+    stage.cube(0.7, stage.shader(Color=(0.9, 0.2, 0.2)), location=(-1.4, 1.2, 0.35))
+    stage.sky((0.7, 0.7, 0.7))
+
+
+def _depth_of_field():
+    _floor()
+    for i in range(3):
+        stage.cube(0.8, stage.shader(Color=(0.9, 0.3 * i, 0.2)), location=(i - 1.0, 1.5 * i, 0.4))
+    stage.sky((0.8, 0.8, 0.8))
+    eye = stage.camera()
+    eye.data.dof.use_dof = True
+    eye.data.dof.focus_distance, eye.data.dof.aperture_fstop = 5.0, 0.1
+
+
+def _orthographic():
+    _lambert()
+    stage.camera(type="ORTHO", ortho_scale=5.0)
+
+
+def _background():
+    stage.sky((0.2, 0.4, 0.8), 2.0)
+    stage.plane(2.0, stage.shader(Color=(0.5, 0.5, 0.5)))
