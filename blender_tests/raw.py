@@ -99,7 +99,14 @@ class Raw:
         array = (abi.Instance * max(len(instances), 1))(*instances)
         slots = np.asarray(slots, np.uint32)
         return self.call(
-            "lancer_scene_add_instances", scene, len(instances), ctypes.byref(array), len(slots), address(slots), names, len(names)
+            "lancer_scene_add_instances",
+            scene,
+            len(instances),
+            ctypes.byref(array),
+            len(slots),
+            address(slots),
+            names,
+            len(names),
         )
 
     def camera(self, **fields):

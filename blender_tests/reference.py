@@ -49,7 +49,7 @@ def g1(cos_nx, cos_xh, alpha):
 
 
 def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
+    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 def normalize(a):
@@ -62,11 +62,11 @@ def vector(a):
 
 
 def beckmann_bsdf(wo, wi, alpha, ior, color=1.0):
-    """color D F G1(l) G1(v) / (4 (l.n)(v.n)), n = +z, both directions above the surface."""
-    v, l = normalize(vector(wo)), normalize(vector(wi))
-    h = normalize([x + y for x, y in zip(v, l)])
-    g = g1(l[2], dot(l, h), alpha) * g1(v[2], dot(v, h), alpha)
-    return exact(color) * beckmann_d(h[2], alpha) * fresnel(dot(l, h), ior) * g / (4 * l[2] * v[2])
+    """color D F G1(wi) G1(wo) / (4 (wi.n)(wo.n)), n = +z, both directions above the surface."""
+    wo, wi = normalize(vector(wo)), normalize(vector(wi))
+    h = normalize([x + y for x, y in zip(wo, wi, strict=True)])
+    g = g1(wi[2], dot(wi, h), alpha) * g1(wo[2], dot(wo, h), alpha)
+    return exact(color) * beckmann_d(h[2], alpha) * fresnel(dot(wi, h), ior) * g / (4 * wi[2] * wo[2])
 
 
 def sphere_hits(origin, direction, radius=1):

@@ -86,7 +86,9 @@ def test_bad_faces_are_left_out_and_reported(raw):
     # The face that is left keeps the number that the user gave it.
     hit = (abi.Hit * 1)()
     numbers = [np.array(x, np.float64) for x in ([0.25, 0.25, 1], [0, 0, -1], [0], [10])]
-    assert raw.call("lancer_probe_intersect", scene, 1, *[x.ctypes.data for x in numbers], ctypes.addressof(hit))[0] == Status.OK
+    assert (
+        raw.call("lancer_probe_intersect", scene, 1, *[x.ctypes.data for x in numbers], ctypes.addressof(hit))[0] == Status.OK
+    )
     assert hit[0].instance == 0 and hit[0].primitive == 1 and hit[0].t == 1.0
 
 
@@ -210,7 +212,9 @@ def test_wrong_cameras(raw, field):
 
 def test_focal_distance_must_be_positive_where_a_lens_is(raw):
     for distance in (0.0, -1.0, NAN):
-        refused(raw.create_session(raw.committed(), camera=raw.camera(lens_radius=0.1, focal_distance=distance)), "camera", "focal")
+        refused(
+            raw.create_session(raw.committed(), camera=raw.camera(lens_radius=0.1, focal_distance=distance)), "camera", "focal"
+        )
 
 
 @pytest.mark.parametrize("field, value", [("integrator", 3), ("pixel_filter", 2), ("features", 2), ("passes", 1 << 7)])

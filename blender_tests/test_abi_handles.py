@@ -161,5 +161,3 @@ def test_a_name_may_be_null(raw):
     for kind in ("mesh", "material", "light"):
         result = add(raw, scene, kind, getattr(raw, kind)(name=None))
         assert result[0] == Status.OK, result
-
-

@@ -11,7 +11,9 @@ from tiny_scenes import move, rotate_x, rotate_y, scale
 
 
 def upload(library, instances, mesh_list, accelerator):
-    return Scene.upload(tiny_scenes.scene(instances, [tiny_scenes.lambert()], meshes=mesh_list, accelerator=accelerator), library)
+    return Scene.upload(
+        tiny_scenes.scene(instances, [tiny_scenes.lambert()], meshes=mesh_list, accelerator=accelerator), library
+    )
 
 
 def answers(library, instances, mesh_list, accelerator, origins, directions, tmin=0.0, tmax=np.inf):
@@ -24,8 +26,12 @@ def answers(library, instances, mesh_list, accelerator, origins, directions, tmi
 def assert_same(one, other, what):
     hits, occluded = one
     hits2, occluded2 = other
-    different = [i for i in range(len(hits)) if hits[i].tobytes() != hits2[i].tobytes()] if hits.tobytes() != hits2.tobytes() else []
-    assert not different, f"{what}: {len(different)} of {len(hits)} differ, first {hits[different[0]]} against {hits2[different[0]]}"
+    different = (
+        [i for i in range(len(hits)) if hits[i].tobytes() != hits2[i].tobytes()] if hits.tobytes() != hits2.tobytes() else []
+    )
+    assert not different, (
+        f"{what}: {len(different)} of {len(hits)} differ, first {hits[different[0]]} against {hits2[different[0]]}"
+    )
     assert np.array_equal(occluded, occluded2), what
     # Anything met is something met: closest hit and any hit agree.
     assert np.array_equal(occluded, hits.instance != UINT32_MAX), what
@@ -61,7 +67,9 @@ def test_models_by_brute_force(library, name):
     mesh = meshes.model(name)
     origins, directions = meshes.rays_at(mesh, 170_000, 5)
     data = [meshes.data(mesh, name)]
-    brute, bvh = (answers(library, [Instance()], data, a, origins, directions) for a in (Accelerator.BRUTE_FORCE, Accelerator.BVH))
+    brute, bvh = (
+        answers(library, [Instance()], data, a, origins, directions) for a in (Accelerator.BRUTE_FORCE, Accelerator.BVH)
+    )
     assert_same(bvh, brute, "brute force and BVH")
 
 
@@ -118,10 +126,13 @@ def leaks(library, mesh, matrix, accelerator, count):
     inside = meshes.points_inside(mesh, 16)
     pick = rng.integers(len(inside), size=count)
     third = count // 3
-    targets = np.concatenate([
-        vertices[rng.integers(len(vertices), size=third)], edges[rng.integers(len(edges), size=third)],
-        inside[pick[2 * third:]] + rng.normal(size=(count - 2 * third, 3)),
-    ])
+    targets = np.concatenate(
+        [
+            vertices[rng.integers(len(vertices), size=third)],
+            edges[rng.integers(len(edges), size=third)],
+            inside[pick[2 * third :]] + rng.normal(size=(count - 2 * third, 3)),
+        ]
+    )
 
     def place(p):
         return p @ matrix[:3, :3].T + matrix[:3, 3]

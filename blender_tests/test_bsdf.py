@@ -7,7 +7,7 @@ from bindings.abi import LobeKind
 from bindings.session import Scene
 from bindings.snapshot import Lobe, Material
 from charts import Half, Power, Slopes, Sphere, histogram, integrate_cells, unit
-from significance import LEVEL, chi_square, midpoints, sidak, uniforms, z_test, mean_and_error
+from significance import LEVEL, chi_square, mean_and_error, midpoints, sidak, uniforms, z_test
 
 COSINES = [1.0, 0.9, 0.5, 0.1, 0.01]
 ALPHAS = [1e-4, 1e-3, 0.01, 0.1, 0.3, 0.5, 0.7, 1.0]
@@ -30,7 +30,9 @@ MATERIALS = (
         Material("with mirror", lobes=(Lobe(), Lobe(LobeKind.MIRROR, color=(0.5, 0.5, 0.5)))),
     ]
 )
-NAMES = [f"{m.name}-{m.lobes[-1].roughness if 'BECK' in m.name else m.lobes[-1].shininess}-{m.lobes[-1].ior}" for m in MATERIALS]
+NAMES = [
+    f"{m.name}-{m.lobes[-1].roughness if 'BECK' in m.name else m.lobes[-1].shininess}-{m.lobes[-1].ior}" for m in MATERIALS
+]
 SMOOTH = range(len(MATERIALS))
 
 
@@ -65,7 +67,8 @@ def resolvable(material, wo):
     """Whether the histogram can judge this lobe from there.
 
     Half vectors of float32 directions carry 6e-8/|wo + wi|, cells are 0.1 alpha wide. A Phong lobe seen at grazing is cut in
-    two along its axis by the horizon, and a grazing rough lobe in the plain chart is a needle: no quadrature by cells holds them.
+    two along its axis by the horizon, and a grazing rough lobe in the plain chart is a needle: no quadrature by cells holds
+    them.
     """
     only = material.lobes[0]
     if only.kind == LobeKind.PHONG or len(material.lobes) > 1:
@@ -88,7 +91,7 @@ def test_chi_square_of_the_sampler_against_its_pdf(scene, index):
         # Where lobes are mixed the chart is the plain hemisphere, in which a grazing lobe is narrow.
         nodes = 10 if len(material.lobes) == 1 else 32
         counts, outside = histogram(chart, samples.wi[smooth], cells)
-        probability = integrate_cells(chart, lambda w: scene.bsdf(index, wo, w)[1].astype(float), cells, nodes)
+        probability = integrate_cells(chart, lambda w, wo=wo: scene.bsdf(index, wo, w)[1].astype(float), cells, nodes)
         # What is no smooth direction (a mirror, a lobe below the horizon) is one more cell.
         rest = max(0.0, 1.0 - probability.sum())
         observed = np.append(counts.ravel(), count - counts.sum())
@@ -135,7 +138,9 @@ def test_energy(scene, index):
     for c in COSINES:
         wo = direction(c)
         chart = chart_of(material, wo)
-        integral = integrate_cells(chart, lambda w: (scene.bsdf(index, wo, w)[0][:, 0] * np.abs(w[:, 2])).astype(float), 24, 8).sum()
+        integral = integrate_cells(
+            chart, lambda w, wo=wo: (scene.bsdf(index, wo, w)[0][:, 0] * np.abs(w[:, 2])).astype(float), 24, 8
+        ).sum()
         if len(material.lobes) == 1:
             # float32 values and the quadrature at the horizon's edge leave a few 1e-5 of slack.
             assert integral <= 1.0 + 5e-5, (c, integral)

@@ -99,7 +99,9 @@ def test_depth_is_along_the_axis_and_clipped(library):
 def test_picture_is_the_right_way_up(library):
     """Row 0 is the bottom row: with a glowing ball above and to the right, the last rows' last columns are bright."""
     glow = tiny_scenes.Material("glow", lobes=(), emission=(1, 1, 1))
-    snapshot = tiny_scenes.scene([tiny_scenes.sphere(0, move(2, 2, -5))], [glow], camera=Camera(width=9, height=9, window=(-1, 1, -1, 1)))
+    snapshot = tiny_scenes.scene(
+        [tiny_scenes.sphere(0, move(2, 2, -5))], [glow], camera=Camera(width=9, height=9, window=(-1, 1, -1, 1))
+    )
     picture = tiny_scenes.render(snapshot)[..., 0]
     rows, columns = np.nonzero(picture > 0.5)
     assert len(rows) and rows.min() > 4 and columns.min() > 4
@@ -155,7 +157,12 @@ def test_filter_reaches_the_pixel_it_should(library):
     view = Camera(kind=CameraKind.ORTHOGRAPHIC, width=8, height=1, window=(-4, 4, -0.5, 0.5))
     for width, reached in ((1.0, [0, 0, 0, 0]), (3.0, [0, 0, 0, 1])):
         snapshot = tiny_scenes.scene(
-            [wall], [glow], meshes=[tiny_scenes.quad(10.0)], camera=view, samples=512, pixel_filter=PixelFilter.BLACKMAN_HARRIS,
+            [wall],
+            [glow],
+            meshes=[tiny_scenes.quad(10.0)],
+            camera=view,
+            samples=512,
+            pixel_filter=PixelFilter.BLACKMAN_HARRIS,
             filter_width=width,
         )
         row = tiny_scenes.render(snapshot)[0, :4, 0]

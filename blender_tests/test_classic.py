@@ -97,7 +97,9 @@ def test_phong_and_blinn_phong(kind, shininess):
 def test_ambient():
     """Ia Ka: the sky's radiance, and each light's lc/pi by its ambient colour, without shadow or angle."""
     material = Material("ambient", lobes=(), ambient=(0.5, 0.25, 1.0))
-    snapshot = tiny_scenes.scene([plane()], [material], world=(0.1, 0.2, 0.4), camera=pencil(EYE), integrator=Integrator.CLASSIC)
+    snapshot = tiny_scenes.scene(
+        [plane()], [material], world=(0.1, 0.2, 0.4), camera=pencil(EYE), integrator=Integrator.CLASSIC
+    )
     assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :3], (0.05, 0.05, 0.4), rtol=EXACT)
     # Behind a wall, so that nothing but the ambient part can arrive.
     wall = sphere(0, move(*np.array(LAMP) / 2) @ scale(0.1))
@@ -131,8 +133,14 @@ def test_spot_edges(blend):
     """A hard edge cuts; a soft one is the smooth step of the cosine."""
     half, height = 0.4, 5.0
     for angle in (0.0, 0.3, 0.38, 0.42):
-        light = Light("spot", move(height * math.tan(angle), 0, height), LightKind.SPOT, emission=rgb(7.0), spot_angle=2 * half,
-                      spot_blend=blend)
+        light = Light(
+            "spot",
+            move(height * math.tan(angle), 0, height),
+            LightKind.SPOT,
+            emission=rgb(7.0),
+            spot_angle=2 * half,
+            spot_blend=blend,
+        )
         distance = height / math.cos(angle)
         over, edge = math.cos(angle) - math.cos(half), (1 - math.cos(half)) * blend
         fade = float(over > 0) if edge == 0 else reference.smoothstep(over / edge)
@@ -147,8 +155,15 @@ def test_sun():
 
 
 def mirrored_sky(material, **settings):
-    snapshot = tiny_scenes.scene([plane()], [material], world=(1, 2, 3), camera=pencil(EYE), integrator=Integrator.CLASSIC, samples=1,
-                                 **{"max_bounces": 10, **settings})
+    snapshot = tiny_scenes.scene(
+        [plane()],
+        [material],
+        world=(1, 2, 3),
+        camera=pencil(EYE),
+        integrator=Integrator.CLASSIC,
+        samples=1,
+        **{"max_bounces": 10, **settings},
+    )
     return tiny_scenes.render(snapshot)[0, 0, :3]
 
 
@@ -188,7 +203,9 @@ def test_refraction():
     camera = pencil((0.3, 0.0, 3.0), (0.3, 0.0, 0.0))
     f = 0.04
     for bounces, series in ((2, f + (1 - f) ** 2), (4, f + (1 - f) ** 2 * (1 + f + f**2)), (10, 1.0)):
-        snapshot = tiny_scenes.scene([slab], [glass], world=1.0, camera=camera, integrator=Integrator.CLASSIC, max_bounces=bounces)
+        snapshot = tiny_scenes.scene(
+            [slab], [glass], world=1.0, camera=camera, integrator=Integrator.CLASSIC, max_bounces=bounces
+        )
         got = tiny_scenes.render(snapshot)[0, 0, :3]
         # At 10 all but f^9 has left; what is cut at the limit is below the rounding.
         assert np.allclose(got, series, rtol=EXACT), bounces
@@ -207,8 +224,14 @@ def test_refraction_bends_by_snell():
 
     def seen(offset):
         place = Instance(mesh=0, matrix=move(reach + offset, 0, -thickness / 2 - 2.0), materials=(1,))
-        snapshot = tiny_scenes.scene([slab, place], [glass, glow], meshes=[strip], camera=pencil(eye, (0, 0, thickness / 2)),
-                                     integrator=Integrator.CLASSIC, max_bounces=2)
+        snapshot = tiny_scenes.scene(
+            [slab, place],
+            [glass, glow],
+            meshes=[strip],
+            camera=pencil(eye, (0, 0, thickness / 2)),
+            integrator=Integrator.CLASSIC,
+            max_bounces=2,
+        )
         return tiny_scenes.render(snapshot)[0, 0, 0]
 
     f_in, f_out = (float(reference.fresnel(math.cos(a), n)) for a, n in ((angle, eta), (inside, 1 / eta)))
@@ -221,20 +244,32 @@ def test_total_internal_reflection():
     glass = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=1.5),))
     glow = Material("glow", lobes=(), emission=(1, 1, 1))
     camera = pencil((0, 0, -1.0), (1.5, 0, 0.0))
-    snapshot = tiny_scenes.scene([plane(0), plane(1, move(z=-2.0))], [glass, glow], world=50.0, camera=camera,
-                                 integrator=Integrator.CLASSIC, max_bounces=3)
+    snapshot = tiny_scenes.scene(
+        [plane(0), plane(1, move(z=-2.0))],
+        [glass, glow],
+        world=50.0,
+        camera=camera,
+        integrator=Integrator.CLASSIC,
+        max_bounces=3,
+    )
     assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :3], 1.0, rtol=EXACT)
 
 
 TILTED = MeshData(
-    "tilted", [(-1, -1, 0), (2, -1, 0), (-1, 2, 0)], [(0, 1, 2)],
+    "tilted",
+    [(-1, -1, 0), (2, -1, 0), (-1, 2, 0)],
+    [(0, 1, 2)],
     normals=np.float32([(0.6, 0, 0.8), (0, 0, 1), (0, -0.6, 0.8)]),
 )
 
 
 def shaded(shading, point, light):
     snapshot = tiny_scenes.scene(
-        [Instance(shading=shading)], [lambert()], [light], [TILTED], camera=pencil((point[0], point[1], 5.0), (*point, 0.0)),
+        [Instance(shading=shading)],
+        [lambert()],
+        [light],
+        [TILTED],
+        camera=pencil((point[0], point[1], 5.0), (*point, 0.0)),
         integrator=Integrator.CLASSIC,
     )
     return tiny_scenes.render(snapshot)[0, 0, 0]
@@ -261,7 +296,7 @@ def test_flat_gouraud_and_phong_shading():
             Shading.FLAT: lit(p, np.array([0, 0, 1.0])),
             Shading.PHONG: lit(p, n / np.linalg.norm(n)),
             Shading.AS_MESH: lit(p, n / np.linalg.norm(n)),
-            Shading.GOURAUD: float(weights @ [lit(c, m) for c, m in zip(corners, normals)]),
+            Shading.GOURAUD: float(weights @ [lit(c, m) for c, m in zip(corners, normals, strict=True)]),
         }
         assert len({round(x, 4) for x in want.values()}) == 3, "the test's point tells them apart"
         for shading, value in want.items():
@@ -270,8 +305,9 @@ def test_flat_gouraud_and_phong_shading():
 
 def test_normals_view():
     """c = 0.5 n + 0.5; the sky on a miss."""
-    snapshot = tiny_scenes.scene([sphere()], [lambert()], world=(0.1, 0.2, 0.3), integrator=Integrator.NORMALS,
-                                 camera=pencil((0.6, 0, 5), (0.6, 0, 0)))
+    snapshot = tiny_scenes.scene(
+        [sphere()], [lambert()], world=(0.1, 0.2, 0.3), integrator=Integrator.NORMALS, camera=pencil((0.6, 0, 5), (0.6, 0, 0))
+    )
     assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :3], (0.8, 0.5, 0.9), atol=1e-6)
     missed = tiny_scenes.scene(world=(0.1, 0.2, 0.3), integrator=Integrator.NORMALS)
     assert np.allclose(tiny_scenes.render(missed)[0, 0, :3], (0.1, 0.2, 0.3), rtol=1e-7)
@@ -280,8 +316,12 @@ def test_normals_view():
 def test_one_sample_is_deterministic():
     """With one sample the seed changes nothing: the middle of pixel, lens and lamp."""
     pictures = [
-        tiny_scenes.render(tiny_scenes.showroom(16, integrator=Integrator.CLASSIC, samples=1, seed=seed)).tobytes() for seed in (0, 1, 77)
+        tiny_scenes.render(tiny_scenes.showroom(16, integrator=Integrator.CLASSIC, samples=1, seed=seed)).tobytes()
+        for seed in (0, 1, 77)
     ]
     assert pictures[0] == pictures[1] == pictures[2]
-    many = [tiny_scenes.render(tiny_scenes.showroom(16, integrator=Integrator.CLASSIC, samples=2, seed=seed)).tobytes() for seed in (0, 1)]
+    many = [
+        tiny_scenes.render(tiny_scenes.showroom(16, integrator=Integrator.CLASSIC, samples=2, seed=seed)).tobytes()
+        for seed in (0, 1)
+    ]
     assert many[0] != many[1]

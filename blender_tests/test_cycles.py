@@ -8,7 +8,7 @@ from blenders import MODULE
 # scene -> bounces, samples
 SCENES = {
     "lambert": (4, 512),
-    "emission": (2, 1024),
+    "emission": (2, 2048),
     "point": (1, 256),
     "soft_point": (0, 512),
     "spot": (1, 256),

@@ -74,7 +74,11 @@ def test_special_kernels_equal_the_general_one(name):
     lights = {"sky": (), "sun": room.lights[2:3]}.get(name, room.lights[:1])
     camera = room.camera if name == "lens" else dataclasses.replace(room.camera, lens_radius=0.0)
     small = dataclasses.replace(
-        room, instances=type(room.instances)(**rows), lights=lights, camera=camera, world=room.world if name == "sky" else (0, 0, 0)
+        room,
+        instances=type(room.instances)(**rows),
+        lights=lights,
+        camera=camera,
+        world=room.world if name == "sky" else (0, 0, 0),
     )
     for integrator in (Integrator.PATH, Integrator.CLASSIC):
         special, general = (bits(tiny_scenes.with_settings(small, integrator=integrator, features=f)) for f in Features)
@@ -91,7 +95,10 @@ def test_a_second_session_repeats_the_first():
     """Sessions of one scene share nothing but the scene."""
     snapshot = picture()
     with Scene.upload(snapshot) as scene:
-        with Session(scene, snapshot.camera, snapshot.settings) as one, Session(scene, snapshot.camera, snapshot.settings) as two:
+        with (
+            Session(scene, snapshot.camera, snapshot.settings) as one,
+            Session(scene, snapshot.camera, snapshot.settings) as two,
+        ):
             one.render(0, 4)
             two.render(0, 4)
             for session in (one, two):

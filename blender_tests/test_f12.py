@@ -63,8 +63,13 @@ def test_view_layers_and_pass_names(case, which):
     got = case("view_layers")
     long_names = which == MODULE
     passes = {
-        "Combined": "RGBA", "Depth": "Z", "Normal": "XYZ", "Position": "XYZ", "Denoising Albedo": "RGB",
-        "Object Index" if long_names else "IndexOB": "X", "Material Index" if long_names else "IndexMA": "X",
+        "Combined": "RGBA",
+        "Depth": "Z",
+        "Normal": "XYZ",
+        "Position": "XYZ",
+        "Denoising Albedo": "RGB",
+        "Object Index" if long_names else "IndexOB": "X",
+        "Material Index" if long_names else "IndexMA": "X",
     }
     wanted = {f"{layer}.{name}.{c}" for layer in got["layers"] for name, letters in passes.items() for c in letters}
     # Depth's channel is called V or Z by version.

@@ -70,7 +70,10 @@ def test_furnaces_made_of_triangles(library, kind):
     albedo = 0.7
     material = tiny_scenes.lambert(albedo, emission=(0.3, 0.3, 0.3))
     snapshot = tiny_scenes.scene(
-        [Instance(matrix=scale(3.0))], [material], meshes=[meshes.data(shape)], world=(1000, 1000, 1000),
+        [Instance(matrix=scale(3.0))],
+        [material],
+        meshes=[meshes.data(shape)],
+        world=(1000, 1000, 1000),
         camera=tiny_scenes.pencil((0, 0, 0), (0.3, 0.2, -1)),
     )
     # 0.7^60 = 5e-10 of the energy is beyond the depth limit; a single leak to the bright sky would be seen.
@@ -92,8 +95,14 @@ def test_white_things_vanish_in_a_white_sky(library, name, shape):
     """What loses no light looks like the sky behind it, from every side."""
     kind = {"sphere": 1, "cylinder": 3, "cone": 4}[shape]
     snapshot = tiny_scenes.scene(
-        [Instance(kind=kind)], [Material(name, lobes=WHITE[name])], world=1.0, samples=16, max_bounces=400,
-        camera=tiny_scenes.Camera(matrix=tiny_scenes.look_at((3, 2, 2), (0, 0, 0)), width=16, height=16, window=(-0.4, 0.4, -0.4, 0.4)),
+        [Instance(kind=kind)],
+        [Material(name, lobes=WHITE[name])],
+        world=1.0,
+        samples=16,
+        max_bounces=400,
+        camera=tiny_scenes.Camera(
+            matrix=tiny_scenes.look_at((3, 2, 2), (0, 0, 0)), width=16, height=16, window=(-0.4, 0.4, -0.4, 0.4)
+        ),
     )
     values = pixels_of(snapshot)
     # Convex bodies: every path carries exactly 1 but for its float32 products; glass loses what is still inside at the limit.
@@ -104,11 +113,14 @@ def test_white_things_vanish_in_a_white_sky(library, name, shape):
         assert np.allclose(values, 1.0, rtol=1e-4), (values.min(), values.max())
 
 
-@pytest.mark.parametrize("name, lobe", {
-    "beckmann": Lobe(LobeKind.BECKMANN, color=(1, 1, 1), roughness=0.4, ior=np.inf),
-    "phong": Lobe(LobeKind.PHONG, color=(1, 1, 1), shininess=20.0),
-    "blinn": Lobe(LobeKind.BLINN_PHONG, color=(1, 1, 1), shininess=20.0),
-}.items())
+@pytest.mark.parametrize(
+    "name, lobe",
+    {
+        "beckmann": Lobe(LobeKind.BECKMANN, color=(1, 1, 1), roughness=0.4, ior=np.inf),
+        "phong": Lobe(LobeKind.PHONG, color=(1, 1, 1), shininess=20.0),
+        "blinn": Lobe(LobeKind.BLINN_PHONG, color=(1, 1, 1), shininess=20.0),
+    }.items(),
+)
 def test_no_lobe_makes_light(library, name, lobe):
     """In a white sky a plane of one lobe is at most white, from steep to grazing; and not black.
 
@@ -116,7 +128,10 @@ def test_no_lobe_makes_light(library, name, lobe):
     """
     for height in (5.0, 1.0, 0.2):
         snapshot = tiny_scenes.scene(
-            [tiny_scenes.plane()], [Material(name, lobes=(lobe,))], world=1.0, camera=tiny_scenes.pencil((1, 0, height)),
+            [tiny_scenes.plane()],
+            [Material(name, lobes=(lobe,))],
+            world=1.0,
+            camera=tiny_scenes.pencil((1, 0, height)),
         )
         mean, error = mean_and_error(pixels_of(many(snapshot, samples=64)))
         assert 0.05 < mean <= 1.0 + 4 * error + 1e-5, (height, mean, error)
@@ -136,8 +151,13 @@ def test_film_transparent(library):
     for transparent, alpha in ((False, 1.0), (True, 0.0)):
         sky = tiny_scenes.render(tiny_scenes.scene(world=(1, 2, 3), film_transparent=transparent))[0, 0]
         assert sky.tolist() == ([0, 0, 0, 0] if transparent else [1, 2, 3, 1]) and sky[3] == alpha
-        solid = tiny_scenes.scene([sphere()], [tiny_scenes.lambert(0.5)], world=1.0, film_transparent=transparent,
-                                  camera=tiny_scenes.pencil((0, 0, 3)))
+        solid = tiny_scenes.scene(
+            [sphere()],
+            [tiny_scenes.lambert(0.5)],
+            world=1.0,
+            film_transparent=transparent,
+            camera=tiny_scenes.pencil((0, 0, 3)),
+        )
         pixel = tiny_scenes.render(tiny_scenes.with_settings(solid, samples=16))[0, 0]
         assert pixel[3] == 1.0 and pixel[0] > 0.1
 
@@ -145,9 +165,14 @@ def test_film_transparent(library):
 @pytest.mark.parametrize("size", [1e-6, 1e9])
 def test_the_same_room_at_any_size(library, size):
     """Two planes, the camera and all at a millionth and a billion times the size give the same picture."""
+
     def room(s):
         glow = Material("glow", lobes=(), emission=(1, 1, 1))
-        items = [tiny_scenes.plane(0), tiny_scenes.plane(1, move(z=2 * s) @ rotate_x(np.pi)), sphere(1, move(z=s) @ scale(0.3 * s))]
+        items = [
+            tiny_scenes.plane(0),
+            tiny_scenes.plane(1, move(z=2 * s) @ rotate_x(np.pi)),
+            sphere(1, move(z=s) @ scale(0.3 * s)),
+        ]
         camera = tiny_scenes.pencil((2.0 * s, 0, s), (s, 0.1 * s, 2 * s), 1e-6 * s)
         return many(tiny_scenes.scene(items, [glow, tiny_scenes.lambert(0.6)], camera=camera), samples=16, max_bounces=4)
 

@@ -21,8 +21,20 @@ def home(tmp_path_factory):
     """A user's folder with the add-on installed from its zip."""
     folder = tmp_path_factory.mktemp("home")
     archive = blenders.zip_for_blender_3()
-    command = [blenders.program(), "-b", "--factory-startup", "--python-exit-code", "3", "--python-expr", INSTALL, "--", archive]
-    done = subprocess.run(command, env=blenders.environment(folder), capture_output=True, text=True, errors="replace", cwd=folder)
+    command = [
+        blenders.program(),
+        "-b",
+        "--factory-startup",
+        "--python-exit-code",
+        "3",
+        "--python-expr",
+        INSTALL,
+        "--",
+        archive,
+    ]
+    done = subprocess.run(
+        command, env=blenders.environment(folder), capture_output=True, text=True, errors="replace", cwd=folder
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
 
@@ -39,7 +51,13 @@ def command_line(path, *tail):
 
 def render(home, path, *tail):
     return subprocess.run(
-        command_line(path, *tail), env=blenders.environment(home), cwd=home, capture_output=True, text=True, errors="replace", timeout=300
+        command_line(path, *tail),
+        env=blenders.environment(home),
+        cwd=home,
+        capture_output=True,
+        text=True,
+        errors="replace",
+        timeout=300,
     )
 
 
@@ -73,8 +91,14 @@ def test_interrupt(home):
     """Ctrl-C ends a render that would take hours, without a crash."""
     path = blend(home, "long.blend", "long_render")
     process = subprocess.Popen(
-        command_line(path, "-F", "PNG", "-f", "1"), env=blenders.environment(home), cwd=home, stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT, text=True, errors="replace", bufsize=1,
+        command_line(path, "-F", "PNG", "-f", "1"),
+        env=blenders.environment(home),
+        cwd=home,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        bufsize=1,
     )
     try:
         for line in process.stdout:

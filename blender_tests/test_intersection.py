@@ -2,7 +2,6 @@
 
 import dataclasses
 
-import meshes
 import mpmath as mp
 import numpy as np
 import pytest
@@ -17,7 +16,9 @@ U = 2.0**-53
 
 
 def upload(library, instances, mesh_list=(), accelerator=Accelerator.BVH):
-    return Scene.upload(tiny_scenes.scene(instances, [tiny_scenes.lambert()], meshes=mesh_list, accelerator=accelerator), library)
+    return Scene.upload(
+        tiny_scenes.scene(instances, [tiny_scenes.lambert()], meshes=mesh_list, accelerator=accelerator), library
+    )
 
 
 # ---- the course's checks: three rays against two spheres and two planes ----
@@ -37,8 +38,11 @@ def expected_hits(shape, origin, direction):
     if shape.kind == InstanceKind.SPHERE:
         radius = linear[0, 0]
         hits = reference.sphere_hits(np.asarray(origin) - translation, direction, radius)
-        points = [[mp.mpf(float(o)) + t * mp.mpf(float(d)) for o, d in zip(origin, direction)] for t in hits]
-        return [(t, [(p - mp.mpf(float(c))) / mp.mpf(float(radius)) for p, c in zip(q, translation)]) for t, q in zip(hits, points)]
+        points = [[mp.mpf(float(o)) + t * mp.mpf(float(d)) for o, d in zip(origin, direction, strict=True)] for t in hits]
+        return [
+            (t, [(p - mp.mpf(float(c))) / mp.mpf(float(radius)) for p, c in zip(q, translation, strict=True)])
+            for t, q in zip(hits, points, strict=True)
+        ]
     normal = reference.vector(linear[:, 2])
     along = reference.dot(normal, reference.vector(direction))
     if along == 0:
@@ -70,7 +74,9 @@ def test_lab_rays(library, name, number, accelerator):
         beyond = scene.intersect([origin], [direction], after)[0]
         assert np.isclose(beyond.t, later, rtol=1e-12) if len(ahead) > 1 else beyond.instance == UINT32_MAX
         assert list(scene.occluded([origin] * 3, [direction] * 3, [1e-12, before, after], [before, after, np.inf])) == [
-            False, True, len(ahead) > 1,
+            False,
+            True,
+            len(ahead) > 1,
         ]
 
 
@@ -100,12 +106,12 @@ def test_sphere_distance(library, radius, height):
     directions = np.stack([np.sin(angles), 0 * angles, -np.cos(angles)], axis=1)
     with upload(library, [sphere(matrix=scale(radius))]) as scene:
         hits = scene.intersect(origin, directions)
-    for direction, got in zip(directions, hits):
+    for direction, got in zip(directions, hits, strict=True):
         want = reference.sphere_hits(origin, direction, mp.mpf(radius))
         assert want and got.instance == 0
         # The origin's distance to the surface is known to an ulp of |o| + r; at the angle theta to the normal that moves t
         # by 1/cos theta. Eight such ulps allow for the dozen operations behind.
-        point = [mp.mpf(float(o)) + want[0] * mp.mpf(float(d)) for o, d in zip(origin, direction)]
+        point = [mp.mpf(float(o)) + want[0] * mp.mpf(float(d)) for o, d in zip(origin, direction, strict=True)]
         cosine = abs(float(reference.dot(reference.vector(direction), reference.normalize(point))))
         assert abs(got.t - float(want[0])) <= 8 * U * (origin[2] + radius) / cosine, (radius, height, direction)
         normal = [float(x) for x in reference.normalize(point)]
@@ -161,9 +167,12 @@ def test_exact_surfaces_by_their_equation(library, kind):
 def test_attributes_are_interpolated_by_barycentrics(library):
     rng = np.random.default_rng(2)
     mesh = MeshData(
-        "one", [(0, 0, 0), (2, 0, 0.5), (0, 3, 1.0)], [(0, 1, 2)],
+        "one",
+        [(0, 0, 0), (2, 0, 0.5), (0, 3, 1.0)],
+        [(0, 1, 2)],
         normals=np.array([[(0, 0, 1), (0.1, 0, 1), (-0.1, -0.2, 1)]], np.float32),
-        uvs=rng.random((1, 3, 2), np.float32), colors=rng.random((1, 3, 3), np.float32),
+        uvs=rng.random((1, 3, 2), np.float32),
+        colors=rng.random((1, 3, 3), np.float32),
     )
     b = rng.dirichlet((1, 1, 1), 100)
     for matrix in (np.eye(4), sheared(), move(1e6, 0, 0) @ scale(1e-3)):
@@ -194,7 +203,9 @@ def test_attributes_are_interpolated_by_barycentrics(library):
 
 @pytest.mark.parametrize("shading, interpolated", [(0, True), (1, False), (3, True)])
 def test_shading_of_the_object(library, shading, interpolated):
-    mesh = MeshData("one", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], normals=np.float32([(0, 0, 1), (0.6, 0, 0.8), (0, 0, 1)]))
+    mesh = MeshData(
+        "one", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], normals=np.float32([(0, 0, 1), (0.6, 0, 0.8), (0, 0, 1)])
+    )
     with upload(library, [Instance(shading=shading)], [mesh]) as scene:
         hit = scene.intersect([(0.5, 0.25, 1)], [(0, 0, -1)])[0]
     assert (abs(hit.normal[0]) > 0.1) == interpolated and np.allclose(hit.geometric_normal, (0, 0, 1))
@@ -206,7 +217,8 @@ def test_slots(library):
     materials = [tiny_scenes.lambert(i / 4) for i in range(4)]
     snapshot = tiny_scenes.scene(
         [Instance(materials=(2, 3)), Instance(materials=(1,), matrix=move(z=-1)), Instance(materials=(), matrix=move(z=-2))],
-        materials, meshes=[mesh],
+        materials,
+        meshes=[mesh],
     )
     with Scene.upload(snapshot, library) as scene:
         origins = np.array([(0.5, -0.5, 1.0), (-0.5, 0.5, 1.0)])

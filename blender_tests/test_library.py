@@ -89,11 +89,23 @@ def test_versions_and_sizes(library):
 
 def test_header_is_c99(tmp_path):
     """The header alone, as strict C99 and as C++, without a warning."""
-    (tmp_path / "use.c").write_text('#include "lancer.h"\nint main(void) { return lancer_abi_version() == LANCER_ABI_VERSION; }\n')
+    (tmp_path / "use.c").write_text(
+        '#include "lancer.h"\nint main(void) { return lancer_abi_version() == LANCER_ABI_VERSION; }\n'
+    )
     include = os.path.dirname(HEADER)
     for language in (["-std=c99", "-x", "c"], ["-std=c++20", "-x", "c++"]):
-        command = ["g++" if "c++" in language else "gcc", *language, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I", include,
-                   "-fsyntax-only", tmp_path / "use.c"]
+        command = [
+            "g++" if "c++" in language else "gcc",
+            *language,
+            "-Wall",
+            "-Wextra",
+            "-Wpedantic",
+            "-Werror",
+            "-I",
+            include,
+            "-fsyntax-only",
+            tmp_path / "use.c",
+        ]
         done = subprocess.run(command, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
 
@@ -104,12 +116,28 @@ def test_bindings_name_every_function_and_number_of_the_header(tmp_path):
     functions = set(re.findall(r"^LANCER_API [^;]*?\b(lancer_\w+)\(", text, re.M))
     assert functions == set(abi._CALLS) | set(abi._QUERIES)
     enums = {
-        "LANCER_PASS_": abi.Pass, "LANCER_FALLOFF_": abi.Falloff, "LANCER_SHADING_": abi.Shading, "LANCER_STRUCT_": abi.Struct,
-        "LANCER_FEATURES_": abi.Features, "LANCER_FILTER_": abi.PixelFilter, "LANCER_NORMALS_": abi.NormalDomain,
+        "LANCER_PASS_": abi.Pass,
+        "LANCER_FALLOFF_": abi.Falloff,
+        "LANCER_SHADING_": abi.Shading,
+        "LANCER_STRUCT_": abi.Struct,
+        "LANCER_FEATURES_": abi.Features,
+        "LANCER_FILTER_": abi.PixelFilter,
+        "LANCER_NORMALS_": abi.NormalDomain,
     }
-    plain = [abi.Status, abi.InstanceKind, abi.LobeKind, abi.LightKind, abi.AreaShape, abi.Accelerator, abi.CameraKind, abi.Integrator]
-    names = [(p + m.name, int(m)) for p, e in enums.items() for m in e] + [("LANCER_" + m.name, int(m)) for e in plain for m in e]
-    checks = "".join(f"_Static_assert({name} == {value}, \"{name}\");\n" for name, value in names)
+    plain = [
+        abi.Status,
+        abi.InstanceKind,
+        abi.LobeKind,
+        abi.LightKind,
+        abi.AreaShape,
+        abi.Accelerator,
+        abi.CameraKind,
+        abi.Integrator,
+    ]
+    names = [(p + m.name, int(m)) for p, e in enums.items() for m in e] + [
+        ("LANCER_" + m.name, int(m)) for e in plain for m in e
+    ]
+    checks = "".join(f'_Static_assert({name} == {value}, "{name}");\n' for name, value in names)
     (tmp_path / "numbers.c").write_text('#include "lancer.h"\n' + checks)
     command = ["gcc", "-std=c11", "-I", os.path.dirname(HEADER), "-fsyntax-only", tmp_path / "numbers.c"]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -126,4 +154,11 @@ def test_exported_symbols(library):
 def test_needs_nothing_but_the_c_library(library):
     done = subprocess.run(["readelf", "-d", abi.library_path()], capture_output=True, text=True, check=True)
     needed = set(re.findall(r"\(NEEDED\).*\[(.*?)\]", done.stdout))
-    assert {name.split(".so")[0] for name in needed} <= {"libc", "libm", "libpthread", "libdl", "ld-linux-x86-64", "ld-linux-aarch64"}
+    assert {name.split(".so")[0] for name in needed} <= {
+        "libc",
+        "libm",
+        "libpthread",
+        "libdl",
+        "ld-linux-x86-64",
+        "ld-linux-aarch64",
+    }

@@ -169,11 +169,20 @@ def test_spot_cone_and_blend(library, blend):
         points = np.stack([np.sin(angles), 0 * angles, height - np.cos(angles)], axis=1)
         samples = scene.light(0, points, [[0.5, 0.5]])
     edge = (1 - math.cos(half)) * blend
-    for angle, got in zip(angles, np.where(samples.pdf > 0, samples.radiance[:, 0], 0)):
+    for angle, got in zip(angles, np.where(samples.pdf > 0, samples.radiance[:, 0], 0), strict=True):
         over = math.cos(angle) - math.cos(half)
         want = 3 * (float(over > 0) if edge == 0 else reference.smoothstep(over / edge))
         # The cosine is good to 1e-7, the edge is 1e-2 wide and the step's slope 1.5.
         assert abs(got - want) <= 1e-4 * 3, (angle, got, want)
+
+
+def test_spot_of_old_blenders(library):
+    """Before 4.0 the intensity also falls with the cosine of the angle to the axis."""
+    light = Light("spot", move(z=2), LightKind.SPOT, emission=(3, 3, 3), spot_angle=2.5, spot_blend=0.0, spot_cosine=True)
+    for angle in (0.0, 0.5, 1.0):
+        point = (2 * math.tan(angle), 0, 0)
+        want = 3 * math.cos(angle) * (math.cos(angle) / 2) ** 2 * math.cos(angle)
+        assert np.isclose(irradiance(light, point, library=library), want, rtol=LIMIT)
 
 
 def test_spot_angles_of_half_and_full_turns(library):
@@ -185,7 +194,11 @@ def test_spot_angles_of_half_and_full_turns(library):
 def test_constant_environment(library):
     """E = pi L on an open plane, so an albedo-1 plane shows L itself; seen directly it is L."""
     snapshot = tiny_scenes.scene(
-        [tiny_scenes.plane()], [tiny_scenes.lambert()], [], world=(0.7, 0.5, 0.2), samples=256,
+        [tiny_scenes.plane()],
+        [tiny_scenes.lambert()],
+        [],
+        world=(0.7, 0.5, 0.2),
+        samples=256,
         camera=tiny_scenes.pencil((1, 0, 1), pixels=16),
     )
     assert np.allclose(tiny_scenes.radiance(snapshot), (0.7, 0.5, 0.2), rtol=LIMIT)
@@ -199,7 +212,11 @@ def test_mesh_light_equals_area_light(library):
     glow = tiny_scenes.Material("glow", lobes=(), emission=(3, 3, 3))
     lamp = tiny_scenes.Instance(mesh=0, matrix=move(z=2) @ rotate_x(np.pi), materials=(1,))
     snapshot = tiny_scenes.scene(
-        [tiny_scenes.plane(), lamp], [tiny_scenes.lambert(), glow], [], [tiny_scenes.quad(1.0)], samples=256,
+        [tiny_scenes.plane(), lamp],
+        [tiny_scenes.lambert(), glow],
+        [],
+        [tiny_scenes.quad(1.0)],
+        samples=256,
         camera=tiny_scenes.pencil((3, 4, 1), pixels=32),
     )
     want = 3 * float(reference.rectangle_irradiance(1, 1, 2)) / math.pi
@@ -210,7 +227,9 @@ def test_exact_sphere_as_lamp(library):
     """A glowing exact sphere: E = pi L r^2/d^2."""
     glow = tiny_scenes.Material("glow", lobes=(), emission=(3, 3, 3))
     snapshot = tiny_scenes.scene(
-        [tiny_scenes.plane(), tiny_scenes.sphere(1, move(z=3))], [tiny_scenes.lambert(), glow], samples=1024,
+        [tiny_scenes.plane(), tiny_scenes.sphere(1, move(z=3))],
+        [tiny_scenes.lambert(), glow],
+        samples=1024,
         camera=tiny_scenes.pencil((3, 4, 1), pixels=32),
     )
     got = tiny_scenes.radiance(snapshot)

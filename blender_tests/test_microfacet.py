@@ -19,7 +19,7 @@ def test_beckmann_d(library):
         tangents = alpha * np.array([0.0, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0])
         cosines = (1.0 / np.sqrt(1.0 + tangents**2)).astype(np.float32)
         d, _, _ = microfacet(cosines, 1.0, 1.0, alpha, 1.5, library=library)
-        for c, got in zip(cosines, d):
+        for c, got in zip(cosines, d, strict=True):
             want = reference.beckmann_d(c, np.float32(alpha))
             # The probe has cos only: tan^2 = (1 - c)(1 + c)/c^2 carries a few roundings, multiplied by tan^2/alpha^2.
             exponent = float((1 - float(c) ** 2) / float(c) ** 2 / float(np.float32(alpha)) ** 2)
@@ -34,7 +34,7 @@ def test_beckmann_d_is_zero_behind(library):
 @pytest.mark.parametrize("ior", IORS)
 def test_fresnel(library, ior):
     _, f, _ = microfacet(1.0, COSINES, 1.0, 0.3, ior, library=library)
-    for c, got in zip(COSINES, f):
+    for c, got in zip(COSINES, f, strict=True):
         want = reference.fresnel(np.float32(c), np.float32(ior))
         # Below IOR 1 the critical angle is near, where F' is infinite: the condition number grows the rounding tenfold.
         limit = 1e-6 if ior >= 1.0 else 1e-5
@@ -54,7 +54,7 @@ def test_fresnel_at_the_ends(library):
 def test_g1(library):
     for alpha in ALPHAS:
         _, _, got = microfacet(1.0, 1.0, COSINES, alpha, 1.5, library=library)
-        for c, value in zip(COSINES, got):
+        for c, value in zip(COSINES, got, strict=True):
             want = reference.g1(np.float32(c), 1.0, np.float32(alpha))
             assert abs(value - want) <= 2e-6 * want, (alpha, c, value, want)
             assert value <= 1.0
@@ -90,13 +90,13 @@ def test_whole_bsdf(library, alpha, ior):
         wi /= np.linalg.norm(wi, axis=1, keepdims=True)
         wi = wi.astype(np.float32)
         f, _ = scene.bsdf(0, wo, wi)
-    for v, l, got in zip(wo, wi, f[:, 0]):
-        want = 0.25 / reference.mp.pi + reference.beckmann_bsdf(v, l, np.float32(alpha), np.float32(ior), 0.75)
-        # h of float32 directions is known to 1e-7 / |v + l|, which D answers with 2 tan/alpha^2 per unit of slope.
-        h = reference.normalize([a + b for a, b in zip(reference.vector(v), reference.vector(l))])
+    for o, i, got in zip(wo, wi, f[:, 0], strict=True):
+        want = 0.25 / reference.mp.pi + reference.beckmann_bsdf(o, i, np.float32(alpha), np.float32(ior), 0.75)
+        # h of float32 directions is known to 1e-7 / |wo + wi|, which D answers with 2 tan/alpha^2 per unit of slope.
+        h = reference.normalize([a + b for a, b in zip(reference.vector(o), reference.vector(i), strict=True)])
         tangent = float(reference.mp.sqrt(1 - h[2] ** 2) / h[2])
-        sensitivity = 2e-7 / float(np.linalg.norm(v.astype(float) + l)) / float(h[2]) ** 2 * 2 * (tangent / alpha**2 + 2)
-        assert abs(got - want) <= (4e-6 + 4 * sensitivity) * float(want), (v, l, got, want)
+        sensitivity = 2e-7 / float(np.linalg.norm(o.astype(float) + i)) / float(h[2]) ** 2 * 2 * (tangent / alpha**2 + 2)
+        assert abs(got - want) <= (4e-6 + 4 * sensitivity) * float(want), (o, i, got, want)
 
 
 def test_the_reference_itself():

@@ -1,8 +1,7 @@
-"""The judges themselves: they accept right samplers, reject slightly wrong ones, and raise false alarms as often as promised."""
+"""The judges themselves: they accept right samplers, reject slightly wrong ones, and err as often as promised."""
 
 import numpy as np
 from scipy import stats
-
 from significance import LEVEL, block_means, chi_square, mean_and_error, midpoints, sidak, uniforms, z_test
 
 

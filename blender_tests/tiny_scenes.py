@@ -143,7 +143,9 @@ def showroom(pixels=32, **settings):
         sphere(3, move(0.4, 1.5, 0.8) @ scale(0.8), name="mirror", object_index=4),
         Instance(mesh=0, matrix=move(0, 0, 3.5) @ rotate_x(np.pi), materials=(4,), name="lamp", object_index=5),
         Instance(mesh=0, matrix=move(-0.5, -1.5, 0.6) @ rotate_x(1.2), materials=(6,), name="veil", object_index=6),
-        Instance(kind=InstanceKind.CYLINDER, matrix=move(2.0, 1.0, 0.5) @ scale(0.4, 0.4, 0.5), materials=(5,), name="cylinder"),
+        Instance(
+            kind=InstanceKind.CYLINDER, matrix=move(2.0, 1.0, 0.5) @ scale(0.4, 0.4, 0.5), materials=(5,), name="cylinder"
+        ),
         Instance(kind=InstanceKind.CONE, matrix=move(-2.2, 1.0, 0.7) @ scale(0.6, 0.6, 0.7), materials=(0,), name="cone"),
     ]
     lights = [

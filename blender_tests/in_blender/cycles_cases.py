@@ -2,7 +2,6 @@
 
 import math
 
-import bpy
 import numpy as np
 import stage
 
@@ -64,7 +63,12 @@ def _lambert():
 
 def _emission():
     _floor()
-    stage.cube(0.6, stage.shader("ShaderNodeEmission", Color=(1.0, 0.8, 0.5), Strength=5.0), location=(0, 0, 1.2), rotation=(0.3, 0.2, 0))
+    stage.cube(
+        0.6,
+        stage.shader("ShaderNodeEmission", Color=(1.0, 0.8, 0.5), Strength=5.0),
+        location=(0, 0, 1.2),
+        rotation=(0.3, 0.2, 0),
+    )
     stage.ball(0.5, stage.shader(Color=(0.9, 0.9, 0.9)), location=(1.2, 0, 0.5))
 
 
@@ -110,14 +114,21 @@ def _spread():
 
 def _mirror():
     _floor()
-    stage.ball(0.9, stage.shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.9, 0.7), Roughness=0.0), location=(0, 0, 0.9), segments=128)
+    stage.ball(
+        0.9, stage.shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.9, 0.7), Roughness=0.0), location=(0, 0, 0.9), segments=128
+    )
     stage.cube(0.7, stage.shader(Color=(0.9, 0.2, 0.2)), location=(-1.6, -0.8, 0.35))
     stage.sky((0.5, 0.6, 0.8))
 
 
 def _glass():
     _floor()
-    stage.ball(0.9, stage.shader("ShaderNodeBsdfGlass", Color=(1.0, 1.0, 1.0), Roughness=0.0, IOR=1.45), location=(0, 0, 1.0), segments=128)
+    stage.ball(
+        0.9,
+        stage.shader("ShaderNodeBsdfGlass", Color=(1.0, 1.0, 1.0), Roughness=0.0, IOR=1.45),
+        location=(0, 0, 1.0),
+        segments=128,
+    )
     stage.cube(0.7, stage.shader(Color=(0.9, 0.2, 0.2)), location=(-1.4, 1.2, 0.35))
     stage.sky((0.7, 0.7, 0.7))
 

@@ -70,7 +70,9 @@ def ball(radius=1.0, material=None, segments=64, **place):
         theta = math.pi * i / rings
         for k in range(segments):
             phi = 2 * math.pi * k / segments
-            vertices.append((radius * math.sin(theta) * math.cos(phi), radius * math.sin(theta) * math.sin(phi), radius * math.cos(theta)))
+            vertices.append(
+                (radius * math.sin(theta) * math.cos(phi), radius * math.sin(theta) * math.sin(phi), radius * math.cos(theta))
+            )
     vertices.append((0, 0, -radius))
     faces = [(0, 1 + k, 1 + (k + 1) % segments) for k in range(segments)]
     for i in range(rings - 2):

@@ -71,7 +71,7 @@ public:
       float size = -1.0f;
       for (uint32_t i = 0; i < part_count; ++i) {
         const float part_size = by_count ? static_cast<float>(parts[i].count()) : parts[i].box.half_area();
-        if (parts[i].count() > kBvhLeafSize && part_size > size) {
+        if (parts[i].count() > group && part_size > size) {
           largest = i;
           size = part_size;
         }
@@ -95,7 +95,7 @@ public:
     }
     for (uint32_t i = 0; i < part_count; ++i) {
       const Range &part = parts[i];
-      if (part.count() <= kBvhLeafSize)
+      if (part.count() <= group)
         nodes[self].child[i] = kBvhLeaf | part.begin << 2 | (part.count() - 1);
       else if (tasks && part.count() <= task_size)
         tasks->push_back({self, i, depth + 1, part, {}});

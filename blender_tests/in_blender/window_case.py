@@ -1,0 +1,65 @@
+"""Inside a real window: a scene that takes minutes, and a clock that shows whether Blender still answers.
+
+Started by the program itself: blender --factory-startup -P window_case.py -- FOLDER. What happens is written to FOLDER/log.txt,
+a line each: seconds, word.
+"""
+
+import os
+import sys
+import time
+
+import bpy
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [os.path.dirname(os.path.dirname(HERE)), HERE]
+
+import stage  # noqa: E402
+
+import addon  # noqa: E402
+
+FOLDER = sys.argv[sys.argv.index("--") + 1]
+LOG = open(os.path.join(FOLDER, "log.txt"), "w", encoding="utf-8", buffering=1)
+
+
+def say(word):
+    LOG.write(f"{time.time():.4f} {word}\n")
+
+
+def tick():
+    say("tick")
+    if os.path.exists(os.path.join(FOLDER, "quit")):
+        addon.unregister()
+        bpy.ops.wm.quit_blender()
+    return 0.05
+
+
+def prepare():
+    """Not in the first moments: the window has to be there."""
+    bpy.app.timers.register(tick, persistent=True)
+    say("ready")
+
+
+def build():
+    scene = bpy.context.scene
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    stage.plane(material=stage.shader(Color=(0.6, 0.6, 0.6)))
+    stage.cube(material=stage.shader("ShaderNodeEmission", Strength=8.0), location=(-1, 0, 0.8))
+    stage.ball(0.8, stage.shader(Color=(0.9, 0.3, 0.2)), location=(1, 0, 0.8))
+    stage.sky((0.1, 0.15, 0.2))
+    stage.camera()
+    scene.render.engine = "LANCER"
+    scene.render.resolution_x, scene.render.resolution_y = 480, 360
+    scene.render.resolution_percentage = 100
+    scene.render.threads_mode, scene.render.threads = "FIXED", 2
+    scene.lancer.quality = "CUSTOM"
+    scene.lancer.samples = 100000
+
+
+addon.register()
+build()
+for name in ("render_init", "render_pre", "render_post", "render_cancel", "render_complete"):
+    getattr(bpy.app.handlers, name).append(lambda *_, word=name: say(word))
+bpy.context.preferences.view.show_splash = False
+bpy.context.preferences.view.render_display_type = "WINDOW"
+bpy.app.timers.register(prepare, first_interval=2.0)
