@@ -1,4 +1,4 @@
-"""Roads and markers for all tests."""
+"""Roads to the project and to its library, for all tests."""
 
 import os
 import sys
@@ -14,18 +14,9 @@ for folder in (os.path.join(ROOT, "addon"), ROOT, HERE):
         sys.path.insert(0, folder)
 
 
-def pytest_configure(config):
-    config.addinivalue_line("markers", "slow: takes more than a few seconds; left out by `make test`")
-
-
 @pytest.fixture(scope="session")
 def library():
     """The library under test with typed functions; where it is missing, every test of the core fails with the reason."""
     from bindings import abi
 
     return abi.load_library()
-
-
-@pytest.fixture(scope="session")
-def root():
-    return ROOT

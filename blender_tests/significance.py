@@ -71,9 +71,3 @@ def mean_and_error(samples, axis=0):
     samples = np.asarray(samples, dtype=np.float64)
     count = samples.shape[axis]
     return samples.mean(axis=axis), samples.std(axis=axis, ddof=1) / math.sqrt(count)
-
-
-def block_means(image, size):
-    """Means over size x size blocks of an [h][w][c] image whose sides are multiples of size."""
-    h, w, c = image.shape
-    return image.reshape(h // size, size, w // size, size, c).mean(axis=(1, 3), dtype=np.float64)

@@ -65,7 +65,7 @@ def test_models(library, name):
 @pytest.mark.parametrize("name", meshes.CLOSED + meshes.OPEN)
 def test_models_by_brute_force(library, name):
     mesh = meshes.model(name)
-    origins, directions = meshes.rays_at(mesh, 170_000, 5)
+    origins, directions = meshes.rays_at(mesh, 60_000, 5)
     data = [meshes.data(mesh, name)]
     brute, bvh = (
         answers(library, [Instance()], data, a, origins, directions) for a in (Accelerator.BRUTE_FORCE, Accelerator.BVH)

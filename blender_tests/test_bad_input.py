@@ -57,9 +57,8 @@ def test_pictures_in_blender_3(name, tmp_path):
     "name, word", {"no_camera": "camera", "camera_is_no_camera": "camera", "smallest_picture": "small"}.items()
 )
 def test_refusals(which, name, word, tmp_path):
-    """Python gets the sentence as an exception; the program in the background may end at once, with exit code 1."""
+    """Python gets the sentence as an exception; the program in the background may also end with exit code 1."""
     code, said, value = blenders.attempt(which, tmp_path, "bad_cases", name)
-    if which == MODULE or value is not None:
-        assert code == 0 and word in value["error"].lower(), said[-2000:]
-    else:
-        assert code == 1 and word in said.lower(), said[-2000:]
+    assert code in ((0,) if which == MODULE else (0, 1)), said[-2000:]
+    told = value["error"] if value else said
+    assert word in told.lower(), said[-2000:]

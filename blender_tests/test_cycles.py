@@ -5,22 +5,22 @@ import numpy as np
 import pytest
 from blenders import MODULE
 
-# scene -> bounces, samples
+# scene -> bounces, samples of each of four pictures
 SCENES = {
-    "lambert": (4, 512),
-    "emission": (2, 2048),
+    "lambert": (4, 256),
+    "emission": (1, 1024),
     "point": (1, 256),
-    "soft_point": (0, 512),
-    "spot": (1, 256),
+    "soft_point": (0, 256),
+    "spot": (1, 512),
     "sun": (1, 256),
-    "area": (1, 512),
-    "ellipse": (0, 512),
-    "spread": (0, 512),
-    "mirror": (4, 512),
-    "glass": (6, 1024),
-    "depth_of_field": (2, 512),
-    "orthographic": (2, 512),
-    "background": (1, 128),
+    "area": (1, 256),
+    "ellipse": (0, 256),
+    "spread": (0, 256),
+    "mirror": (4, 256),
+    "glass": (6, 512),
+    "depth_of_field": (2, 256),
+    "orthographic": (2, 256),
+    "background": (1, 64),
 }
 # Of the picture's mean level: what an artist could just see side by side, and what the issue asks for.
 LIMIT = 0.01
@@ -35,14 +35,15 @@ def test_blocks(name, tmp_path):
     difference = (ours - theirs) / level
     worst = np.unravel_index(np.abs(difference).argmax(), difference.shape)
     noise = np.hypot(got["LANCER noise"], got["CYCLES noise"]) / level
+    typical = np.sqrt(np.mean(noise**2))
     figures = (
         f"{name}: level {level:.5f}, Lancer/Cycles {ours.mean() / level:.5f}, worst block {worst[0]}, {worst[1]} (row 0 below) "
-        f"{ours[worst[0], worst[1]]} against {theirs[worst[0], worst[1]]}, noise {noise:.5f} of the level\n"
+        f"{ours[worst[0], worst[1]]} against {theirs[worst[0], worst[1]]}, noise {typical:.5f}, there {noise[worst]:.5f}\n"
         f"{np.array2string(difference.mean(axis=2)[::-1], precision=4, suppress_small=True)}"
     )
-    # The noise of a block must be well below the limit, or the test would only test luck: four of it still fit.
-    assert noise < LIMIT / 4, figures
-    assert level > 0.01, figures
-    assert np.abs(difference).max() <= LIMIT, figures
+    # Blocks whose own noise is far below the limit judge by the limit itself; that must be nearly all of them, or the test
+    # would test luck. The few noisier ones have 4 standard errors more: of 192 values one in 16 000 lies beyond that.
+    assert level > 0.01 and np.mean(noise < LIMIT / 4) > 0.95, figures
+    assert np.all(np.abs(difference) <= LIMIT + np.where(noise < LIMIT / 4, 0.0, 4.0 * noise)), figures
     # The noise of the mean of 192 block values is 14 times smaller: a general difference of 0.3 % is no noise.
     assert abs(ours.mean() / level - 1.0) <= 0.003, figures

@@ -1,11 +1,9 @@
 """Chi-square of each light's sampler against its pdf, and what sample and pdf say about one another."""
 
-import math
-
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import AreaShape, LightKind
+from bindings.abi import AreaShape, LancerError, LightKind
 from bindings.session import Scene
 from bindings.snapshot import Instance, Light, Material, MeshData
 from charts import Sphere, histogram, unit
@@ -43,8 +41,6 @@ LIGHTS = {
 
 def upload(library, name):
     """The scene and the number of the one light in it."""
-    if name == "environment":
-        return Scene.upload(tiny_scenes.scene(world=(1, 1, 1)), library)
     if name in ("mesh", "sheared mesh"):
         shear = np.eye(4)
         shear[0, 1] = 0.7 if "sheared" in name else 0.0
@@ -55,7 +51,7 @@ def upload(library, name):
     return Scene.upload(tiny_scenes.scene(lights=[LIGHTS[name]]), library)
 
 
-NAMES = [*LIGHTS, "mesh", "sheared mesh", "environment"]
+NAMES = [*LIGHTS, "mesh", "sheared mesh"]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -80,13 +76,10 @@ def test_chi_square(library, name):
         samples = scene.light(0, [(0, 0, 0)], uniforms(COUNT, 2, 2))
         good = samples.pdf > 0
         w = samples.wi[good]
-        if name == "environment":
-            chart = Sphere()
-        else:
-            axis = unit(w.mean(axis=0))
-            # 1 - cos from the chord, since tiny lights subtend less than the rounding of a cosine.
-            away = 0.5 * np.sum((w - axis) ** 2, axis=1).max()
-            chart = Cap(axis, 1.02 * away)
+        axis = unit(w.mean(axis=0))
+        # 1 - cos from the chord, since tiny lights subtend less than the rounding of a cosine.
+        away = 0.5 * np.sum((w - axis) ** 2, axis=1).max()
+        chart = Cap(axis, 1.02 * away)
         counts, outside = histogram(chart, w, cells)
         assert outside == 0
         u = (np.arange(cells * fine) + 0.5) / (cells * fine)
@@ -135,7 +128,7 @@ def test_points_and_parallel_light_are_single_directions(library, name):
         assert np.all(scene.light_pdf(0, [(0, 0, 0)], samples.wi) == 0)
 
 
-def test_lights_are_numbered_as_added_then_emitters_then_environment(library):
+def test_lights_are_numbered_as_added_then_emitters(library):
     glow = Material("glow", lobes=(), emission=(5, 5, 5))
     dark = tiny_scenes.lambert()
     instances = [Instance(mesh=0, matrix=move(z=9), materials=(1,)), Instance(mesh=0, matrix=move(z=3) @ rotate_x(np.pi))]
@@ -143,7 +136,8 @@ def test_lights_are_numbered_as_added_then_emitters_then_environment(library):
         instances, [glow, dark], [Light("lamp", move(z=7), emission=(49, 49, 49))], [tiny_scenes.quad()], world=(2, 2, 2)
     )
     with Scene.upload(snapshot, library) as scene:
-        lamp, mesh, world = (scene.light(i, [(0, 0, 0)], [(0.5, 0.5)])[0] for i in range(3))
+        lamp, mesh = (scene.light(i, [(0, 0, 0)], [(0.5, 0.5)])[0] for i in range(2))
+        with pytest.raises(LancerError, match="light 2 >= 2 lights"):
+            scene.light(2, [(0, 0, 0)], [(0.5, 0.5)])
     assert lamp.delta == 1 and abs(lamp.radiance[0] - 1) < 1e-6
     assert mesh.radiance[0] == 5 and abs(mesh.distance * mesh.wi[2] - 3) < 1e-6
-    assert world.radiance[0] == 2 and math.isinf(world.distance)

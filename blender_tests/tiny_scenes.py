@@ -7,8 +7,6 @@ from bindings.abi import CameraKind, InstanceKind, LightKind, LobeKind, Pass
 from bindings.session import Session
 from bindings.snapshot import Camera, Instance, InstanceTable, Light, Lobe, Material, MeshData, SceneSnapshot, Settings
 
-DOWN = np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]])  # a light or a camera that looks along -z
-
 
 def move(x=0.0, y=0.0, z=0.0):
     matrix = np.eye(4)
@@ -105,11 +103,6 @@ def scene(instances=(), materials=(), lights=(), meshes=(), world=0.0, camera=No
         camera=camera or pencil(),
         settings=one_pixel(**settings),
     )
-
-
-def lit_plane(*lights, albedo=1.0, eye=(3.0, 0.0, 4.0), target=(0.0, 0.0, 0.0), **settings):
-    """A Lambert plane z = 0 under lights, seen at one point from the side so that the camera covers no light."""
-    return scene([plane()], [lambert(albedo)], lights, camera=pencil(eye, target), **settings)
 
 
 def furnace(albedo, emission, **settings):
