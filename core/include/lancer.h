@@ -39,13 +39,13 @@ typedef uint64_t lancer_session;
 typedef int32_t lancer_status;
 enum {
   LANCER_OK = 0,
-  LANCER_RUNNING = 1,         /* *_wait: not finished yet */
-  LANCER_CANCELLED = 2,       /* *_wait: ended early, as asked; what was done is kept */
-  LANCER_ERROR_ARGUMENT = 3,  /* a value that cannot be used */
-  LANCER_ERROR_HANDLE = 4,    /* no such scene or session (any more) */
-  LANCER_ERROR_STATE = 5,     /* the call does not fit now: filled after commit, rendered before it, busy */
-  LANCER_ERROR_MEMORY = 6,    /* not enough memory for what was asked */
-  LANCER_ERROR_INTERNAL = 7   /* a fault of Lancer's own */
+  LANCER_RUNNING = 1,        /* *_wait: not finished yet */
+  LANCER_CANCELLED = 2,      /* *_wait: ended early, as asked; what was done is kept */
+  LANCER_ERROR_ARGUMENT = 3, /* a value that cannot be used */
+  LANCER_ERROR_HANDLE = 4,   /* no such scene or session (any more) */
+  LANCER_ERROR_STATE = 5,    /* the call does not fit now: filled after commit, rendered before it, busy */
+  LANCER_ERROR_MEMORY = 6,   /* not enough memory for what was asked */
+  LANCER_ERROR_INTERNAL = 7  /* a fault of Lancer's own */
 };
 
 /* ---- the library ------------------------------------------------------------------------------------------------ */
@@ -91,7 +91,7 @@ typedef struct lancer_mesh {
   const uint16_t *material_slots; /* NULL (all slot 0) or [triangle_count] */
   uint32_t vertex_count;
   uint32_t triangle_count;
-  uint32_t normal_domain;         /* LANCER_NORMALS_* */
+  uint32_t normal_domain; /* LANCER_NORMALS_* */
   uint32_t reserved;
 } lancer_mesh;
 
@@ -107,14 +107,14 @@ enum { LANCER_SHADING_AS_MESH = 0, LANCER_SHADING_FLAT = 1, LANCER_SHADING_GOURA
 
 /* One placed object. */
 typedef struct lancer_instance {
-  double matrix[12];       /* object to world, 3 x 4 row-major; any invertible affine map, mirrored ones included */
-  uint32_t kind;           /* LANCER_MESH ... LANCER_CONE */
-  uint32_t mesh;           /* number of the mesh, in order of lancer_scene_add_mesh; ignored unless LANCER_MESH */
-  uint32_t first_slot;     /* its material slots are slots[first_slot .. first_slot + slot_count) */
-  uint32_t slot_count;     /* a triangle's slot beyond the last takes the last, as Blender does */
-  uint32_t object_index;   /* value of the object index pass */
-  uint32_t shading;        /* LANCER_SHADING_* */
-  uint32_t name;           /* offset of its NUL-terminated name in the names of lancer_scene_add_instances */
+  double matrix[12];     /* object to world, 3 x 4 row-major; any invertible affine map, mirrored ones included */
+  uint32_t kind;         /* LANCER_MESH ... LANCER_CONE */
+  uint32_t mesh;         /* number of the mesh, in order of lancer_scene_add_mesh; ignored unless LANCER_MESH */
+  uint32_t first_slot;   /* its material slots are slots[first_slot .. first_slot + slot_count) */
+  uint32_t slot_count;   /* a triangle's slot beyond the last takes the last, as Blender does */
+  uint32_t object_index; /* value of the object index pass */
+  uint32_t shading;      /* LANCER_SHADING_* */
+  uint32_t name;         /* offset of its NUL-terminated name in the names of lancer_scene_add_instances */
   uint32_t reserved;
 } lancer_instance;
 
@@ -145,21 +145,21 @@ enum {
 };
 
 typedef struct lancer_lobe {
-  uint32_t kind;               /* LANCER_LAMBERT ... */
-  lancer_parameter color;      /* Kd or Ks */
-  lancer_parameter roughness;  /* alpha, BECKMANN */
-  lancer_parameter ior;        /* relative to the outside, > 0, may be infinite; BECKMANN, DIELECTRIC */
-  lancer_parameter shininess;  /* the exponent n; PHONG, BLINN_PHONG */
+  uint32_t kind;              /* LANCER_LAMBERT ... */
+  lancer_parameter color;     /* Kd or Ks */
+  lancer_parameter roughness; /* alpha, BECKMANN */
+  lancer_parameter ior;       /* relative to the outside, > 0, may be infinite; BECKMANN, DIELECTRIC */
+  lancer_parameter shininess; /* the exponent n; PHONG, BLINN_PHONG */
 } lancer_lobe;
 
 typedef struct lancer_material {
   const char *name;
   const lancer_lobe *lobes;
-  uint32_t lobe_count;         /* 0 is a black surface; at most 8 */
-  uint32_t material_index;     /* value of the material index pass */
-  lancer_parameter emission;   /* radiance, both sides */
-  lancer_parameter opacity;    /* 1 solid ... 0 not there; the rest of the light passes straight on */
-  lancer_parameter ambient;    /* Ka, CLASSIC only */
+  uint32_t lobe_count;       /* 0 is a black surface; at most 8 */
+  uint32_t material_index;   /* value of the material index pass */
+  lancer_parameter emission; /* radiance, both sides */
+  lancer_parameter opacity;  /* 1 solid ... 0 not there; the rest of the light passes straight on */
+  lancer_parameter ambient;  /* Ka, CLASSIC only */
 } lancer_material;
 
 /* ---- lights ----------------------------------------------------------------------------------------------------- */
@@ -167,7 +167,8 @@ typedef struct lancer_material {
 enum { LANCER_POINT = 0, LANCER_SPOT = 1, LANCER_SUN = 2, LANCER_AREA = 3 };
 enum { LANCER_RECTANGLE = 0, LANCER_ELLIPSE = 1 };
 /* CLASSIC's attenuation over the distance d with the light's falloff_radius r:
- * PHYSICAL 1/d^2 | CONSTANT 1 | LINEAR max(0, 1-d/r) | QUADRATIC max(0, 1-d^2/r^2) | SMOOTH max(0, 1-d^2/r^2)^2 | GAUSSIAN exp(-d^2/r^2) */
+ * PHYSICAL 1/d^2 | CONSTANT 1 | LINEAR max(0, 1-d/r) | QUADRATIC max(0, 1-d^2/r^2) | SMOOTH max(0, 1-d^2/r^2)^2 | GAUSSIAN
+ * exp(-d^2/r^2) */
 enum {
   LANCER_FALLOFF_PHYSICAL = 0,
   LANCER_FALLOFF_CONSTANT = 1,
@@ -182,20 +183,21 @@ enum {
 typedef struct lancer_light {
   const char *name;
   double matrix[12];
-  uint32_t kind;             /* LANCER_POINT ... */
-  float emission[3];         /* POINT, SPOT: radiant intensity, W/sr. SUN: irradiance at normal incidence, W/m^2. AREA: radiance */
-  float radius;              /* POINT, SPOT: 0 is a true point */
-  uint32_t soft_falloff;     /* POINT, SPOT with radius: 1 = a disk that always faces the shaded point (E = I/(d^2 + r^2)); 0 = a ball */
-  float spot_angle;          /* SPOT: full angle of the cone */
-  float spot_blend;          /* SPOT: 0 hard edge ... 1 all of the cone softened */
-  uint32_t spot_cosine;      /* SPOT: 1 = intensity also falls with the cosine of the angle to the axis, as in Blender before 4.0 */
-  float sun_angle;           /* SUN: full angle of the disk in the sky; 0 is exactly parallel light */
-  float size[2];             /* AREA: full lengths along local x and y */
-  uint32_t shape;            /* AREA: LANCER_RECTANGLE or LANCER_ELLIPSE */
-  float spread;              /* AREA: full angle of emission, pi = all of the front side */
-  uint32_t falloff;          /* CLASSIC: LANCER_FALLOFF_* */
-  float falloff_radius;      /* CLASSIC: r above */
-  float ambient_color[3];    /* CLASSIC: factors of emission for the ambient, diffuse and specular sum; 1, 1, 1 = one colour */
+  uint32_t kind;     /* LANCER_POINT ... */
+  float emission[3]; /* POINT, SPOT: radiant intensity, W/sr. SUN: irradiance at normal incidence, W/m^2. AREA: radiance */
+  float radius;      /* POINT, SPOT: 0 is a true point */
+  uint32_t
+      soft_falloff; /* POINT, SPOT with radius: 1 = a disk that always faces the shaded point (E = I/(d^2 + r^2)); 0 = a ball */
+  float spot_angle; /* SPOT: full angle of the cone */
+  float spot_blend; /* SPOT: 0 hard edge ... 1 all of the cone softened */
+  uint32_t spot_cosine; /* SPOT: 1 = intensity also falls with the cosine of the angle to the axis, as in Blender before 4.0 */
+  float sun_angle;      /* SUN: full angle of the disk in the sky; 0 is exactly parallel light */
+  float size[2];        /* AREA: full lengths along local x and y */
+  uint32_t shape;       /* AREA: LANCER_RECTANGLE or LANCER_ELLIPSE */
+  float spread;         /* AREA: full angle of emission, pi = all of the front side */
+  uint32_t falloff;     /* CLASSIC: LANCER_FALLOFF_* */
+  float falloff_radius; /* CLASSIC: r above */
+  float ambient_color[3]; /* CLASSIC: factors of emission for the ambient, diffuse and specular sum; 1, 1, 1 = one colour */
   float diffuse_color[3];
   float specular_color[3];
 } lancer_light;
@@ -235,15 +237,16 @@ enum { LANCER_PERSPECTIVE = 0, LANCER_ORTHOGRAPHIC = 1 };
 
 /* The camera looks along its local -z, y up. */
 typedef struct lancer_camera {
-  double matrix[12];        /* camera to world; must be rigid (rotation or mirrored rotation, translation) */
-  uint32_t kind;            /* LANCER_PERSPECTIVE, LANCER_ORTHOGRAPHIC */
-  uint32_t width, height;   /* full image, pixels */
-  uint32_t x, y;            /* lower left pixel of the rendered region */
+  double matrix[12];                    /* camera to world; must be rigid (rotation or mirrored rotation, translation) */
+  uint32_t kind;                        /* LANCER_PERSPECTIVE, LANCER_ORTHOGRAPHIC */
+  uint32_t width, height;               /* full image, pixels */
+  uint32_t x, y;                        /* lower left pixel of the rendered region */
   uint32_t region_width, region_height; /* size of the rendered region */
-  double window[4];         /* left, right, bottom, top of the full image: on the plane z = -1 (PERSPECTIVE), at any depth (ORTHOGRAPHIC) */
+  double window[4];            /* left, right, bottom, top of the full image: on the plane z = -1 (PERSPECTIVE), at any depth
+                                  (ORTHOGRAPHIC) */
   double clip_start, clip_end; /* along z */
-  double lens_radius;       /* thin lens: aperture radius; 0 = everything sharp */
-  double focal_distance;    /* along z, > 0 where lens_radius > 0 */
+  double lens_radius;          /* thin lens: aperture radius; 0 = everything sharp */
+  double focal_distance;       /* along z, > 0 where lens_radius > 0 */
 } lancer_camera;
 
 enum { LANCER_PATH = 0, LANCER_CLASSIC = 1, LANCER_NORMALS = 2 };
@@ -263,11 +266,12 @@ enum {
 };
 
 typedef struct lancer_settings {
-  uint32_t integrator;        /* LANCER_PATH ... */
-  uint32_t samples;           /* planned per pixel; CLASSIC with 1 takes the middle of pixel, lens and light */
+  uint32_t integrator; /* LANCER_PATH ... */
+  uint32_t samples;    /* planned per pixel; CLASSIC with 1 takes the middle of pixel, lens and light */
   uint32_t seed;
-  uint32_t max_bounces;       /* PATH: scatterings after the first; CLASSIC: depth of the recursion */
-  float contribution_threshold; /* CLASSIC: a ray that brings no more than this share of what it meets is not traced; 0 = never */
+  uint32_t max_bounces; /* PATH: scatterings after the first; CLASSIC: depth of the recursion */
+  float
+      contribution_threshold; /* CLASSIC: a ray that brings no more than this share of what it meets is not traced; 0 = never */
   float clamp_indirect;       /* PATH: largest channel of a sample's indirect light; 0 = off */
   uint32_t pixel_filter;      /* LANCER_FILTER_* */
   float filter_width;         /* full width in pixels */
@@ -287,16 +291,16 @@ typedef struct lancer_progress {
 
 typedef struct lancer_statistics {
   double build_seconds, render_seconds;
-  uint64_t samples;                                   /* pixel samples */
+  uint64_t samples; /* pixel samples */
   uint64_t camera_rays, bounce_rays, shadow_rays;
-  uint64_t invalid_samples;                           /* non-finite, dropped */
-  uint32_t invalid_x, invalid_y, invalid_sample;      /* the first of them, for lancer_debug_sample */
+  uint64_t invalid_samples;                      /* non-finite, dropped */
+  uint32_t invalid_x, invalid_y, invalid_sample; /* the first of them, for lancer_debug_sample */
   uint32_t threads;
   uint64_t triangles, instances, lights;
   uint64_t geometry_bytes, accelerator_bytes, film_bytes;
-  char features[256];                                 /* what the scene uses, separated by blanks */
-  char kernel[64];                                    /* the integrator's specialisation that ran */
-  char instruction_set[32];                           /* e.g. "AVX2" */
+  char features[256];       /* what the scene uses, separated by blanks */
+  char kernel[64];          /* the integrator's specialisation that ran */
+  char instruction_set[32]; /* e.g. "AVX2" */
 } lancer_statistics;
 
 /* The scene must be committed. Checks camera and settings; allocates the film. */
@@ -310,7 +314,8 @@ LANCER_API lancer_status lancer_session_render(lancer_session session, uint32_t 
 LANCER_API lancer_status lancer_session_wait(lancer_session session, uint32_t milliseconds, lancer_progress *progress);
 /* Asks the running range to stop; *_wait then gives LANCER_CANCELLED. The film keeps what each pixel has. */
 LANCER_API lancer_status lancer_session_cancel(lancer_session session);
-/* Copies one pass of the region: [region_height][region_width][channels]; float_count must be exactly that. While rendering, too. */
+/* Copies one pass of the region: [region_height][region_width][channels]; float_count must be exactly that. While rendering,
+ * too. */
 LANCER_API lancer_status lancer_session_read(lancer_session session, uint32_t pass, float *out, size_t float_count);
 LANCER_API lancer_status lancer_session_statistics(lancer_session session, lancer_statistics *statistics);
 
@@ -318,11 +323,11 @@ LANCER_API lancer_status lancer_session_statistics(lancer_session session, lance
 
 /* One vertex of a replayed sample. */
 typedef struct lancer_vertex {
-  double position[3];   /* world */
-  double t;             /* along the ray, scene units */
-  float normal[3];      /* shading normal, world */
-  float beta[3];        /* throughput on arrival */
-  float radiance[3];    /* the sample's radiance as it stood when this vertex was left */
+  double position[3]; /* world */
+  double t;           /* along the ray, scene units */
+  float normal[3];    /* shading normal, world */
+  float beta[3];      /* throughput on arrival */
+  float radiance[3];  /* the sample's radiance as it stood when this vertex was left */
   uint32_t instance, primitive, material, depth;
 } lancer_vertex;
 
@@ -334,57 +339,61 @@ LANCER_API lancer_status lancer_debug_sample(lancer_session session, uint32_t x,
 /* ---- probes: the stages by themselves, vectorised, for tests ------------------------------------------------------ */
 
 typedef struct lancer_hit {
-  double t;              /* in units of the direction's length; infinity on a miss */
-  double u, v;           /* barycentric weights of vertex 1 and 2; for exact surfaces their parametrisation */
-  double position[3];    /* world */
-  float normal[3];       /* shading normal, world, unit, on the side of the outward geometric normal */
+  double t;           /* in units of the direction's length; infinity on a miss */
+  double u, v;        /* barycentric weights of vertex 1 and 2; for exact surfaces their parametrisation */
+  double position[3]; /* world */
+  float normal[3];    /* shading normal, world, unit, on the side of the outward geometric normal */
   float geometric_normal[3];
   float uv[2];
-  float color[3];        /* vertex colour, 1 without */
-  uint32_t instance;     /* in order of adding; UINT32_MAX on a miss */
-  uint32_t primitive;    /* triangle as given to add_mesh; 0 for exact surfaces */
-  uint32_t material;     /* UINT32_MAX where the instance has no slot */
+  float color[3];     /* vertex colour, 1 without */
+  uint32_t instance;  /* in order of adding; UINT32_MAX on a miss */
+  uint32_t primitive; /* triangle as given to add_mesh; 0 for exact surfaces */
+  uint32_t material;  /* UINT32_MAX where the instance has no slot */
 } lancer_hit;
 
 /* Closest hits with tmin < t < tmax. origins, directions [count][3]; tmin, tmax [count]. */
-LANCER_API lancer_status lancer_probe_intersect(lancer_scene scene, uint32_t count, const double *origins, const double *directions,
-                                                const double *tmin, const double *tmax, lancer_hit *hits);
+LANCER_API lancer_status lancer_probe_intersect(lancer_scene scene, uint32_t count, const double *origins,
+                                                const double *directions, const double *tmin, const double *tmax,
+                                                lancer_hit *hits);
 /* occluded[i] = 1 where anything is met with tmin < t < tmax. */
-LANCER_API lancer_status lancer_probe_occluded(lancer_scene scene, uint32_t count, const double *origins, const double *directions,
-                                               const double *tmin, const double *tmax, uint8_t *occluded);
+LANCER_API lancer_status lancer_probe_occluded(lancer_scene scene, uint32_t count, const double *origins,
+                                               const double *directions, const double *tmin, const double *tmax,
+                                               uint8_t *occluded);
 
 /* f[count][3] and pdf[count] of a material for local directions wo, wi [count][3] (n = +z); f without cosine, pdf per solid
  * angle; lobes that are a single direction give 0 here. */
-LANCER_API lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo, const float *wi,
-                                           float *f, float *pdf);
+LANCER_API lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo,
+                                           const float *wi, float *f, float *pdf);
 
 typedef struct lancer_bsdf_sample {
   float wi[3];
-  float weight[3];  /* f |cos| / pdf; for a single direction the whole weight / probability; 0 = no sample */
-  float pdf;        /* per solid angle; for a single direction its probability */
-  uint32_t delta;   /* 1 for a single direction */
+  float weight[3]; /* f |cos| / pdf; for a single direction the whole weight / probability; 0 = no sample */
+  float pdf;       /* per solid angle; for a single direction its probability */
+  uint32_t delta;  /* 1 for a single direction */
 } lancer_bsdf_sample;
 /* Samples a material: wo [count][3], u [count][3] in [0, 1). */
 LANCER_API lancer_status lancer_probe_bsdf_sample(lancer_scene scene, uint32_t material, uint32_t count, const float *wo,
                                                   const float *u, lancer_bsdf_sample *samples);
 
-/* The terms of BECKMANN for cosines against n and h: D(n.h), F(l.h), G1 of a direction with cosine n.v and v.h > 0. Arrays [count]. */
+/* The terms of BECKMANN for cosines against n and h: D(n.h), F(l.h), G1 of a direction with cosine n.v and v.h > 0. Arrays
+ * [count]. */
 LANCER_API lancer_status lancer_probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv,
                                                  const float *alpha, const float *ior, float *d, float *f, float *g1);
 
 typedef struct lancer_light_sample {
-  double wi[3];       /* unit, towards the light */
-  double distance;    /* infinite for sun and environment */
-  float radiance[3];  /* for a point-like light: intensity / distance^2 (irradiance at normal incidence) */
-  float pdf;          /* per solid angle; 1 for a point-like light; 0 = no sample */
+  double wi[3];      /* unit, towards the light */
+  double distance;   /* infinite for sun and environment */
+  float radiance[3]; /* for a point-like light: intensity / distance^2 (irradiance at normal incidence) */
+  float pdf;         /* per solid angle; 1 for a point-like light; 0 = no sample */
   uint32_t delta;
   uint32_t reserved;
 } lancer_light_sample;
 /* Samples one light as seen from points [count][3] with u [count][2]. Lights are numbered as added, then one per emitting
  * instance. (The constant environment is not among them: the BSDF's own samples find it best.) */
-LANCER_API lancer_status lancer_probe_light(lancer_scene scene, uint32_t light, uint32_t count, const double *points, const float *u,
-                                            lancer_light_sample *samples);
-/* Density per solid angle with which that light would sample wi (unit, [count][3]) from points; 0 where the direction misses it. */
+LANCER_API lancer_status lancer_probe_light(lancer_scene scene, uint32_t light, uint32_t count, const double *points,
+                                            const float *u, lancer_light_sample *samples);
+/* Density per solid angle with which that light would sample wi (unit, [count][3]) from points; 0 where the direction misses
+ * it. */
 LANCER_API lancer_status lancer_probe_light_pdf(lancer_scene scene, uint32_t light, uint32_t count, const double *points,
                                                 const double *wi, float *pdf);
 
@@ -394,7 +403,8 @@ LANCER_API lancer_status lancer_probe_camera(lancer_session session, uint32_t co
                                              double *origins, double *directions);
 
 /* The sampler's numbers for dimensions 0 ... dimensions - 1 of one address: out[dimensions] in [0, 1). */
-LANCER_API lancer_status lancer_probe_sampler(uint32_t seed, uint32_t x, uint32_t y, uint32_t sample, uint32_t dimensions, float *out);
+LANCER_API lancer_status lancer_probe_sampler(uint32_t seed, uint32_t x, uint32_t y, uint32_t sample, uint32_t dimensions,
+                                              float *out);
 /* Offsets from the pixel's middle, in pixels, that a filter of that kind and full width gives for u [count]. */
 LANCER_API lancer_status lancer_probe_filter(uint32_t filter, float width, uint32_t count, const float *u, float *offset);
 

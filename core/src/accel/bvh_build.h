@@ -14,8 +14,8 @@ struct WideTree {
   std::vector<uint32_t> order; // ids of the refs, leaf after leaf
 };
 
-// refs is used up. group: how many primitives are tested at the price of one, and the most that a leaf holds. The result depends
-// on refs alone.
+// refs is used up. group: how many primitives are tested at the price of one, and the most that a leaf holds. The result
+// depends on refs alone.
 WideTree build_wide_tree(std::vector<BuildRef> refs, uint32_t group, const BuildContext &context);
 
 struct MeshBvh {

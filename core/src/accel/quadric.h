@@ -12,8 +12,8 @@ namespace lancer {
 bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
 
 struct SurfacePoint {
-  glm::dvec3 p;  // on the surface, object space
-  glm::dvec3 n;  // outward geometric normal, unit, object space
+  glm::dvec3 p; // on the surface, object space
+  glm::dvec3 n; // outward geometric normal, unit, object space
 };
 
 // The point o + t d of an object-space ray, moved to the nearest place exactly on the surface.

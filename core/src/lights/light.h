@@ -27,8 +27,8 @@ struct Light {
   bool soft_falloff = true;
   double cos_half_angle = -1.0, blend_width = 0.0; // SPOT
   bool spot_cosine = false;
-  double one_minus_cos_sun = 0.0;                  // SUN: 1 - cos of half its angle
-  double half_x = 0.0, half_y = 0.0, area = 0.0;   // AREA
+  double one_minus_cos_sun = 0.0;                // SUN: 1 - cos of half its angle
+  double half_x = 0.0, half_y = 0.0, area = 0.0; // AREA
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
   CourseLight course;
