@@ -167,6 +167,7 @@ def view_layers():
     path = stage.write_exr(scene, layers=True)
     image = bpy.data.images.load(path)
     result = {"channels": stage.channels(path), "layers": [layer.name for layer in scene.view_layers], "type": image.type}
+    result["version"] = list(bpy.app.version[:2])
     scene.view_layers[0].use = False
     single = stage.picture(scene)
     scene.view_layers[0].use, second.use = True, False
@@ -187,6 +188,12 @@ def progress():
     """What the status line said while rendering."""
     texts = []
     stage.room(width=128, height=128, samples=256)
-    bpy.app.handlers.render_stats.append(lambda *arguments: texts.append(str(arguments[0])))
+
+    def note(*arguments):
+        texts.append(str(arguments[0]))
+
+    bpy.app.handlers.render_stats.append(note)
     bpy.ops.render.render()
+    # Blender 4.5 as a module never ends with a handler left behind.
+    bpy.app.handlers.render_stats.remove(note)
     return {"texts": texts}

@@ -212,7 +212,9 @@ template <bool any> LANCER_SIMD bool intersect_instance(const BvhScene &scene, u
   const BvhView &bvh = scene.meshes[shape.mesh];
   if (!bvh.nodes || !enter_shape(shape, ray, object_ray))
     return false;
-  const Shear shear = make_shear(object_ray);
+  // Most instances are entered in vain: the shear's divisions wait for the first leaf.
+  Shear shear;
+  bool sheared = false;
   SlabRay slab;
   make_slab_ray(shape.frame, object_ray, ray.tmin, ray.tmax < best.t ? ray.tmax : best.t, slab);
   const uint32_t skip = ray.skip_instance == instance ? ray.skip_primitive : kNone;
@@ -220,6 +222,10 @@ template <bool any> LANCER_SIMD bool intersect_instance(const BvhScene &scene, u
   visit<any>(
       bvh.nodes, slab, [&](uint32_t leaf) __attribute__((always_inline)) {
         const TriangleBlock &block = bvh.blocks[leaf & ~kBvhLeaf];
+        if (!sheared) {
+          shear = make_shear(object_ray);
+          sheared = true;
+        }
         BlockHits hits;
         for (uint32_t met = intersect_block(block, object_ray, shear, ray.tmin, ray.tmax, best.t, hits); met != 0;
              met &= met - 1) {

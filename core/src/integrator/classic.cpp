@@ -48,7 +48,7 @@ void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<
   generate(addresses, results);
   // Trace the recursion depth by depth: a pixel's sum has the same order in any batch.
   while (!rays_.empty()) {
-    hits_.assign(rays_.size(), Hit{});
+    hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
     next_branches_.clear();
     next_rays_.clear();

@@ -14,7 +14,7 @@ public:
     rays_.clear();
     for (const SampleAddress &address : addresses)
       rays_.push_back(generator_.ray(address, generator_.sampler(address)));
-    hits_.assign(rays_.size(), Hit{});
+    hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
     counts_.camera += rays_.size();
     for (size_t i = 0; i < rays_.size(); ++i) {

@@ -27,7 +27,7 @@ void PathIntegrator<Lobes, Opacity>::run(std::span<const SampleAddress> addresse
   generate(addresses, results);
   while (!paths_.empty()) {
     // Find where every path goes next.
-    hits_.assign(rays_.size(), Hit{});
+    hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
     // Gather emission, ask a light, choose how each path goes on.
     shade(results, trace);
