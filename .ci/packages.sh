@@ -52,7 +52,6 @@ want_test() {
   want xvfb command_is_there Xvfb
   want xdotool command_is_there xdotool
   want imagemagick command_is_there import
-  want x11-utils command_is_there xwininfo
   want libgl1-mesa-dri file_is_there "/usr/lib/*/dri/*_dri.so /usr/lib/dri/*_dri.so"
 }
 

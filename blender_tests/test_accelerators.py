@@ -64,8 +64,9 @@ def test_models(library, name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", meshes.CLOSED + meshes.OPEN)
 def test_models_by_brute_force(library, name):
+    """The million rays of test_models against brute force, which takes minutes."""
     mesh = meshes.model(name)
-    origins, directions = meshes.rays_at(mesh, 60_000, 5)
+    origins, directions = meshes.rays_at(mesh, 170_000, 4)
     data = [meshes.data(mesh, name)]
     brute, bvh = (
         answers(library, [Instance()], data, a, origins, directions) for a in (Accelerator.BRUTE_FORCE, Accelerator.BVH)

@@ -4,8 +4,6 @@
 #include "render/probe.h"
 #include "scene/fill_camera.h"
 
-#include <cstring>
-
 namespace {
 
 using namespace lancer;

@@ -107,6 +107,9 @@ void add_material(Description &description, const lancer_material &source) {
   material.opacity = reader.read_scalar("opacity", source.opacity, 0.0f, 1.0f, 1.0f);
   material.ambient = reader.read("ambient", source.ambient, 0.0f, kBrightest, 0.0f);
   for (const LobeDescription &lobe : material.lobes)
+    for (const Parameter &parameter : {lobe.color, lobe.roughness, lobe.ior, lobe.shininess})
+      material.textured |= parameter.texture >= 0;
+  for (const LobeDescription &lobe : material.lobes)
     material.constant.lobes[material.constant.count++] = evaluate(lobe, Surface{});
   description.materials.push_back(std::move(material));
 }
