@@ -327,7 +327,7 @@ typedef struct lancer_vertex {
   double t;           /* along the ray, scene units */
   float normal[3];    /* shading normal, world */
   float beta[3];      /* throughput on arrival */
-  float radiance[3];  /* the sample's radiance as it stood when this vertex was left */
+  float radiance[3];  /* the sample's radiance on arrival, without this vertex's own light */
   uint32_t instance, primitive, material, depth;
 } lancer_vertex;
 

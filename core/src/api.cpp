@@ -106,6 +106,9 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
     object->require_filling();
     if (accelerator > LANCER_BRUTE_FORCE)
       bad_argument("scene: accelerator " + std::to_string(accelerator) + " is not one of 0, 1, 2");
+    if (threads > 1024)
+      bad_argument("scene: threads " + std::to_string(threads) + " > 1024");
+    object->messages = object->description.messages.text();
     BuildContext context;
     context.threads = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
     context.cancel = &object->cancel;
@@ -289,6 +292,7 @@ lancer_status lancer_debug_sample(lancer_session session, uint32_t x, uint32_t y
     if (x >= film.width() || y >= film.height())
       bad_argument("debug_sample: pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") outside the region of " +
                    std::to_string(film.width()) + " x " + std::to_string(film.height()));
+    const Scene &scene = object->session.scene();
     std::vector<PathVertex> path;
     const SampleResult result = object->session.replay({x, y, s}, path);
     for (int i = 0; i < 3; ++i)
@@ -301,8 +305,8 @@ lancer_status lancer_debug_sample(lancer_session session, uint32_t x, uint32_t y
                      {from.normal.x, from.normal.y, from.normal.z},
                      {from.beta.x, from.beta.y, from.beta.z},
                      {from.radiance.x, from.radiance.y, from.radiance.z},
-                     object->session.scene().geometry.instances[from.instance].number,
-                     from.primitive,
+                     scene.geometry.instances[from.instance].number,
+                     scene.face_number(from.instance, from.primitive),
                      from.material,
                      from.depth};
     }
@@ -390,8 +394,7 @@ lancer_status lancer_probe_filter(uint32_t filter, float width, uint32_t count, 
       require(u, "probe: u");
       require(offset, "probe: offset");
     }
-    for (uint32_t i = 0; i < count; ++i)
-      offset[i] = pixel.sample(u[i]);
+    probe_filter(pixel, count, u, offset);
     return LANCER_OK;
   });
 }

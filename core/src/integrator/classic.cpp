@@ -11,6 +11,8 @@ float largest(const glm::vec3 &v) { return std::max({v.x, v.y, v.z}); }
 // Every lamp at every depth has numbers of its own, behind those of a path.
 constexpr uint32_t kDimensionLamp = 1u << 24;
 
+constexpr size_t kGlassBatch = 64;
+
 // The corners of a triangle under Gouraud shading, with their weights; otherwise the hit point itself.
 struct LitPoints {
   LitPoint points[3];
@@ -45,9 +47,20 @@ LitPoints lit_points(const Scene &scene, const Surface &surface, const ShadingPo
 
 void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                             std::vector<PathVertex> *trace) {
+  // Glass doubles the rays of every depth: fewer samples at a time keep the queues within memory.
+  const bool doubles = (scene_.features & kFeatureDielectric) != 0;
+  const size_t part = doubles ? kGlassBatch : addresses.size();
+  for (size_t begin = 0; begin < addresses.size() && !settings_.cancelled(); begin += part) {
+    const size_t size = std::min(part, addresses.size() - begin);
+    run_part(addresses.subspan(begin, size), results.subspan(begin, size), trace);
+  }
+}
+
+void ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+                                 std::vector<PathVertex> *trace) {
   generate(addresses, results);
   // Trace the recursion depth by depth: a pixel's sum has the same order in any batch.
-  while (!rays_.empty()) {
+  while (!rays_.empty() && !settings_.cancelled()) {
     hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
     next_branches_.clear();
@@ -89,8 +102,6 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
   Bsdf scratch;
   const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
   const ShadingPoint point = shading_point(scene_, surface, glm::vec3(-glm::normalize(ray.d)), scratch);
-  if (from_camera && branch.layers == 0)
-    record_first_surface(scene_, surface, point.bsdf->albedo_color(), hit.t, result);
   if (trace)
     trace->push_back({scene_.normalisation.to_world(surface.p), hit.t / scene_.normalisation.scale, surface.ns, branch.weight,
                       result.radiance, surface.instance, surface.primitive, surface.material, branch.depth});
@@ -99,8 +110,14 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
   Branch solid = branch;
   const float opacity = point.material ? evaluate(point.material->opacity, surface).x : 1.0f;
   solid.weight *= opacity;
+  if (from_camera && !branch.seen && opacity >= kSeenOpacity) {
+    record_first_surface(scene_, surface, point.bsdf->albedo_color(), branch.passed + hit.t, result);
+    solid.seen = true;
+  }
   if (opacity < 1.0f && branch.layers + 1 < kMaxLayers) {
     Branch behind = branch;
+    behind.seen = solid.seen;
+    behind.passed += hit.t;
     behind.weight *= 1.0f - opacity;
     ++behind.layers;
     next_branches_.push_back(behind);
@@ -162,10 +179,15 @@ void ClassicIntegrator::add_reflection_and_refraction(const Branch &branch, cons
   const float side = point.wo.z < 0.0f ? -1.0f : 1.0f;
   const CourseBranches branches = course_branches(*point.bsdf, point.wo, point.wo.z >= 0.0f);
   const auto to_world = [&](const glm::vec3 &w) { return point.frame.to_world({w.x, w.y, side * w.z}); };
-  spawn(branch, surface, to_world(reflect_local(up)), branches.reflected);
+  // About an interpolated normal a mirrored direction may point into the surface: such a ray is black.
+  const auto spawn_towards = [&](const glm::vec3 &w, const glm::vec3 &weight) {
+    const glm::vec3 wi = to_world(w);
+    if (point.consistent(wi, {w.x, w.y, side * w.z}))
+      spawn(branch, surface, wi, weight);
+  };
+  spawn_towards(reflect_local(up), branches.reflected);
   if (branches.cos_t > 0.0f)
-    spawn(branch, surface, to_world(branches.eta == 1.0f ? -up : refract_local(up, branches.eta, branches.cos_t)),
-          branches.refracted);
+    spawn_towards(branches.eta == 1.0f ? -up : refract_local(up, branches.eta, branches.cos_t), branches.refracted);
 }
 
 void ClassicIntegrator::spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction,

@@ -23,8 +23,11 @@ private:
     uint32_t slot;
     uint32_t depth = 0;
     uint32_t layers = 0; // passed straight through
+    bool seen = false;   // the first surface has been recorded
+    double passed = 0.0; // t of the camera ray up to its last layer
   };
 
+  void run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(const Branch &branch, const Ray &ray, const Hit &hit, SampleResult &result, std::vector<PathVertex> *trace);
   void add_direct_light(const Branch &branch, const Surface &surface, const ShadingPoint &point, const glm::dvec3 &eye,

@@ -25,7 +25,7 @@ void PathIntegrator<Lobes, Opacity>::run(std::span<const SampleAddress> addresse
                                          std::vector<PathVertex> *trace) {
   // Start one path per sample.
   generate(addresses, results);
-  while (!paths_.empty()) {
+  while (!paths_.empty() && !settings_.cancelled()) {
     // Find where every path goes next.
     hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
@@ -86,10 +86,6 @@ void PathIntegrator<Lobes, Opacity>::shade(std::span<SampleResult> results, std:
     const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
     const glm::vec3 wo(-glm::normalize(ray.d));
     const ShadingPoint point = shading_point(scene_, surface, wo, scratch);
-    if (!path.seen) {
-      record_first_surface(scene_, surface, point.bsdf->albedo_color(), hits_[i].t, result);
-      path.seen = true;
-    }
     if (trace) {
       const glm::vec3 so_far = result.radiance + indirect_[path.slot];
       trace->push_back({scene_.normalisation.to_world(surface.p), hits_[i].t / scene_.normalisation.scale, surface.ns,
@@ -97,13 +93,19 @@ void PathIntegrator<Lobes, Opacity>::shade(std::span<SampleResult> results, std:
     }
 
     Ray next;
+    const float opacity = Opacity && point.material ? evaluate(point.material->opacity, surface).x : 1.0f;
+    if (!path.seen && path.scatterings == 0 && opacity >= kSeenOpacity) {
+      record_first_surface(scene_, surface, point.bsdf->albedo_color(), path.depth + hits_[i].t, result);
+      path.seen = true;
+    }
     if constexpr (Opacity) {
       // Meet the surface, or pass straight on, by its opacity.
-      const float opacity = point.material ? evaluate(point.material->opacity, surface).x : 1.0f;
       const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
       if (opacity < 1.0f && path.sampler.get1(dimension) >= opacity) {
         if (++path.layers < kMaxLayers) {
           next = leave(surface, ray.d, ray.tmax - hits_[i].t);
+          path.passed += hits_[i].t * glm::length(ray.d);
+          path.depth += hits_[i].t;
           next_paths_.push_back(path);
           next_rays_.push_back(next);
         }
@@ -124,7 +126,8 @@ void PathIntegrator<Lobes, Opacity>::shade(std::span<SampleResult> results, std:
 }
 
 template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::add(Path &path, SampleResult &result, const glm::vec3 &radiance, uint32_t scatterings) {
+void PathIntegrator<Lobes, Opacity>::add(const Path &path, SampleResult &result, const glm::vec3 &radiance,
+                                         uint32_t scatterings) {
   // Light that was scattered at most once is direct; clamping never touches it.
   if (scatterings <= 1)
     result.radiance += radiance;
@@ -132,7 +135,7 @@ void PathIntegrator<Lobes, Opacity>::add(Path &path, SampleResult &result, const
     indirect_[path.slot] += radiance;
 }
 
-template <uint32_t Lobes, bool Opacity> void PathIntegrator<Lobes, Opacity>::miss(Path &path, SampleResult &result) {
+template <uint32_t Lobes, bool Opacity> void PathIntegrator<Lobes, Opacity>::miss(const Path &path, SampleResult &result) {
   // A transparent film does not show the environment itself, only what it lights.
   if (path.scatterings == 0 && settings_.film_transparent)
     return;
@@ -142,29 +145,25 @@ template <uint32_t Lobes, bool Opacity> void PathIntegrator<Lobes, Opacity>::mis
 }
 
 template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::add_lights_met(Path &path, const Ray &ray, double t, SampleResult &result) {
+void PathIntegrator<Lobes, Opacity>::add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result) {
   // The camera does not see lights themselves, as in Cycles; mirrors and glass do.
   if (path.scatterings == 0 || scene_.lights.with_extent().empty())
     return;
-  const double length = glm::length(ray.d);
+  // Look from the last scattering, as sampling does, at what lies on this stretch of the way.
+  const double length = glm::length(ray.d), end = path.passed + t * length;
   const glm::dvec3 wi = ray.d / length;
   for (uint32_t light : scene_.lights.with_extent()) {
-    const LightHit met = meet(scene_.lights.lights()[light], ray.o, wi, t * length);
-    if (!(met.pdf > 0.0))
+    const LightHit met = meet(scene_.lights.lights()[light], path.from, wi);
+    const bool here = met.distance >= path.passed && (met.distance < end || std::isinf(end));
+    if (!(met.pdf > 0.0) || !here)
       continue;
-    float weight = 1.0f;
-    if (path.pdf > 0.0) {
-      // Compare with the density as seen from the last scattering, wherever layers were passed since.
-      const LightHit seen =
-          path.layers ? meet(scene_.lights.lights()[light], path.from, wi, std::numeric_limits<double>::infinity()) : met;
-      weight = mis_weight(path.pdf, seen.pdf * scene_.lights.probability(light));
-    }
+    const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(light)) : 1.0f;
     add(path, result, path.beta * met.radiance * weight, path.scatterings);
   }
 }
 
 template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::add_emission(Path &path, const Surface &surface, const Material &material,
+void PathIntegrator<Lobes, Opacity>::add_emission(const Path &path, const Surface &surface, const Material &material,
                                                   SampleResult &result) {
   const glm::vec3 Le = evaluate(material.emission, surface);
   float weight = 1.0f;
@@ -222,6 +221,7 @@ bool PathIntegrator<Lobes, Opacity>::scatter(Path &path, const Surface &surface,
   path.pdf = sample.delta ? 0.0 : double(sample.pdf);
   path.from = surface.p;
   path.layers = 0;
+  path.passed = 0.0;
   ++path.scatterings;
   next = leave(surface, glm::dvec3(wi), std::numeric_limits<double>::infinity());
   return true;

@@ -26,19 +26,19 @@ private:
     uint32_t scatterings = 0;
     uint32_t layers = 0; // passed straight through since the last scattering
     bool seen = false;   // the first surface has been recorded
-    glm::vec3 indirect{0.0f};
+    double passed = 0.0; // length of the way since the last scattering, through layers
+    double depth = 0.0;  // t of the camera ray up to its last layer
   };
 
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(std::span<SampleResult> results, std::vector<PathVertex> *trace);
-  void miss(Path &path, SampleResult &result);
-  void add_lights_met(Path &path, const Ray &ray, double t, SampleResult &result);
-  void add_emission(Path &path, const Surface &surface, const Material &material, SampleResult &result);
+  void miss(const Path &path, SampleResult &result);
+  void add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result);
+  void add_emission(const Path &path, const Surface &surface, const Material &material, SampleResult &result);
   void sample_light(const Path &path, const Surface &surface, const ShadingPoint &point);
   bool scatter(Path &path, const Surface &surface, const ShadingPoint &point, Ray &next) const;
   bool survives(Path &path) const;
-  void add(Path &path, SampleResult &result, const glm::vec3 &radiance, uint32_t scatterings);
-  void finish(Path &path, SampleResult &result) const;
+  void add(const Path &path, SampleResult &result, const glm::vec3 &radiance, uint32_t scatterings);
 
   const Scene &scene_;
   IntegratorSettings settings_;

@@ -7,6 +7,7 @@
 #include "scene/camera.h"
 #include "scene/scene.h"
 
+#include <atomic>
 #include <vector>
 
 namespace lancer {
@@ -24,6 +25,9 @@ struct IntegratorSettings {
   float filter_width = 1.5f;
   bool film_transparent = false;
   bool all_features = false;
+  const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with results that are worth nothing
+
+  bool cancelled() const { return cancel && *cancel; }
 };
 
 // The address of one sample: pixel of the region and number.
@@ -86,6 +90,8 @@ enum VertexDimension : uint32_t {
 // Layers of opacity at one vertex have numbers of their own, far behind the others.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
 inline constexpr uint32_t kMaxLayers = 256;
+// The first surface at least this solid gives depth, normal, albedo, position and indices, as in Cycles.
+inline constexpr float kSeenOpacity = 0.5f;
 
 // Turns addresses into camera rays.
 class RayGenerator {

@@ -35,10 +35,10 @@ inline LightSample sample_area(const Light &light, const glm::dvec3 &p, const gl
   return sample;
 }
 
-inline LightHit meet_area(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi, double free) {
+inline LightHit meet_area(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi) {
   LightHit hit;
   const double cosine = glm::dot(wi, light.z), t = glm::dot(light.position - o, light.z) / cosine;
-  if (!(cosine > 0.0) || !(t > 0.0) || !(t < free) || !(light.area > 0.0))
+  if (!(cosine > 0.0) || !(t > 0.0) || !(light.area > 0.0))
     return hit;
   const glm::dvec3 at = o + t * wi - light.position;
   const double x = glm::dot(at, light.x) / light.half_x, y = glm::dot(at, light.y) / light.half_y;
@@ -47,6 +47,7 @@ inline LightHit meet_area(const Light &light, const glm::dvec3 &o, const glm::dv
     return hit;
   hit.radiance = area_radiance(light, cosine);
   hit.pdf = t * t / (cosine * light.area);
+  hit.distance = t;
   return hit;
 }
 

@@ -18,15 +18,15 @@ LightSample sample(const Light &light, const glm::dvec3 &p, const glm::vec2 &u) 
   return {};
 }
 
-LightHit meet(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi, double distance) {
+LightHit meet(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi) {
   switch (light.kind) {
   case LightKind::Point:
   case LightKind::Spot:
-    return meet_point(light, o, wi, distance);
+    return meet_point(light, o, wi);
   case LightKind::Sun:
-    return meet_sun(light, wi, distance);
+    return meet_sun(light, wi);
   case LightKind::Area:
-    return meet_area(light, o, wi, distance);
+    return meet_area(light, o, wi);
   }
   return {};
 }

@@ -32,8 +32,6 @@ struct Light {
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
   CourseLight course;
-
-  bool black() const { return emission == glm::dvec3(0.0); }
 };
 
 // A point of a light as seen from p.
@@ -48,15 +46,16 @@ struct LightSample {
   bool delta = false;
 };
 
-// A light that a ray from o along the unit wi runs into before distance.
+// A light on the way from o along the unit wi.
 struct LightHit {
   glm::vec3 radiance{0.0f};
-  double pdf = 0.0; // as sample() would have it; 0 = not met
+  double pdf = 0.0;      // as sample() from o would have it; 0 = not on the way
+  double distance = 0.0; // of the point that sample() would have given; infinite for a sun
 };
 
 LightSample sample(const Light &light, const glm::dvec3 &p, const glm::vec2 &u);
-// distance: how far the ray is free; a light without extent is never met.
-LightHit meet(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi, double distance);
+// A light without extent is never met.
+LightHit meet(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi);
 bool has_extent(const Light &light);
 
 } // namespace lancer

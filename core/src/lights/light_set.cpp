@@ -47,8 +47,9 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
       p = p > 0.0 ? 0.5 * p / total + 0.5 / double(shining) : 0.0;
     choice_ = Distribution(powers);
   }
+  // One that is never chosen is never met either: both techniques know the same lights.
   for (uint32_t i = 0; i < lights_.size(); ++i)
-    if (has_extent(lights_[i]) && !lights_[i].black())
+    if (has_extent(lights_[i]) && powers[i] > 0.0)
       with_extent_.push_back(i);
   if (!emitters_.empty()) {
     emitter_of_.assign(instance_count, kNone);

@@ -24,6 +24,9 @@ inline double spot_attenuation(const Light &light, const glm::dvec3 &wi) {
   return tilted * t * t * (3.0 - 2.0 * t);
 }
 
+// A disk that is smaller than a float direction can tell is a point: its radiance would leave float's range before that.
+inline bool is_true_point(const Light &light, double distance) { return light.radius <= distance * 0x1p-24; }
+
 // Radiance of the disk or ball: intensity over its projected area.
 inline glm::vec3 round_radiance(const Light &light, const glm::dvec3 &wi) {
   const double scale = spot_attenuation(light, wi) / (glm::pi<double>() * light.radius * light.radius);
@@ -74,6 +77,16 @@ inline double one_minus_cos_ball(double radius, double distance) {
   return sin2 / (1.0 + std::sqrt(std::max(0.0, cos2)));
 }
 
+// A uniform direction around unit axis with 1 - cos <= cone: concentric, so that neighbours stay neighbours.
+inline glm::dvec3 cone_direction(const glm::dvec3 &axis, const glm::dvec3 &s, const glm::dvec3 &t, double cone,
+                                 const glm::vec2 &u) {
+  const glm::dvec2 d(warp_disk(u));
+  const double r2 = std::min(1.0, glm::dot(d, d)), x = r2 * cone;
+  // sin^2 = x (2 - x), spread over the disk's own direction d / |d|.
+  const glm::dvec2 across = d * std::sqrt(cone * (2.0 - x));
+  return glm::normalize((1.0 - x) * axis + across.x * s + across.y * t);
+}
+
 inline LightSample sample_ball(const Light &light, const glm::dvec3 &to_light, double distance, const glm::vec2 &u,
                                const glm::dvec3 &p) {
   LightSample sample;
@@ -82,13 +95,12 @@ inline LightSample sample_ball(const Light &light, const glm::dvec3 &to_light, d
     sample.wi = glm::dvec3(warp_sphere(u));
     sample.pdf = 0.25 * glm::one_over_pi<double>();
   } else {
-    // Take a uniform direction of the cone that the ball fills.
-    const double cone = one_minus_cos_ball(light.radius, distance), x = double(u.x) * cone;
-    const double sine = std::sqrt(x * (2.0 - x)), phi = glm::two_pi<double>() * double(u.y);
+    // Take a uniform direction of the cone that the ball fills; the middle of the square is its axis.
+    const double cone = one_minus_cos_ball(light.radius, distance);
     const glm::dvec3 axis = to_light / distance;
     glm::dvec3 s, t;
     complete_frame(axis, s, t);
-    sample.wi = glm::normalize((1.0 - x) * axis + sine * (std::cos(phi) * s + std::sin(phi) * t));
+    sample.wi = cone_direction(axis, s, t, cone, u);
     sample.pdf = 1.0 / (glm::two_pi<double>() * cone);
   }
   // Go to the ball's surface: its near side from outside, its far side from inside.
@@ -106,35 +118,36 @@ inline LightSample sample_point(const Light &light, const glm::dvec3 &p, const g
   const double distance = glm::length(to_light);
   if (!(distance > 0.0))
     return {};
-  if (light.radius == 0.0)
+  if (is_true_point(light, distance))
     return sample_true_point(light, to_light, distance);
   if (light.soft_falloff)
     return sample_disk(light, p, to_light, distance, u);
   return sample_ball(light, to_light, distance, u, p);
 }
 
-inline LightHit meet_point(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi, double free) {
+inline LightHit meet_point(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi) {
   LightHit hit;
   const glm::dvec3 to_light = light.position - o;
   const double distance = glm::length(to_light), along = glm::dot(to_light, wi);
-  if (light.radius == 0.0 || !(distance > 0.0))
+  if (!(distance > 0.0) || is_true_point(light, distance))
     return hit;
   if (light.soft_falloff) {
     // Meet the plane of the disk that faces o.
     const double cosine = along / distance, t = distance / cosine;
-    if (!(cosine > 0.0) || !(t < free) || !(glm::length(t * wi - to_light) <= light.radius))
+    if (!(cosine > 0.0) || !(glm::length(t * wi - to_light) <= light.radius))
       return hit;
     hit.pdf = t * t / (cosine * glm::pi<double>() * light.radius * light.radius);
-  } else if (distance <= light.radius) {
-    hit.pdf = 0.25 * glm::one_over_pi<double>();
+    hit.distance = t;
   } else {
+    // Meet the ball where sampling would: on its near side from outside, on its far side from inside.
     const double closest = glm::length(along * wi - to_light);
-    if (!(along > 0.0) || !(closest < light.radius))
+    const bool inside = distance <= light.radius;
+    if (!inside && (!(along > 0.0) || !(closest < light.radius)))
       return hit;
-    const double half = std::sqrt((light.radius - closest) * (light.radius + closest));
-    if (!(along - half < free))
-      return hit;
-    hit.pdf = 1.0 / (glm::two_pi<double>() * one_minus_cos_ball(light.radius, distance));
+    const double half = std::sqrt(std::max(0.0, (light.radius - closest) * (light.radius + closest)));
+    hit.pdf =
+        inside ? 0.25 * glm::one_over_pi<double>() : 1.0 / (glm::two_pi<double>() * one_minus_cos_ball(light.radius, distance));
+    hit.distance = inside ? along + half : along - half;
   }
   hit.radiance = round_radiance(light, wi);
   return hit;

@@ -21,22 +21,21 @@ inline LightSample sample_sun(const Light &light, const glm::vec2 &u) {
     sample.delta = true;
     return sample;
   }
-  const double x = double(u.x) * light.one_minus_cos_sun, sine = std::sqrt(x * (2.0 - x));
-  const double phi = glm::two_pi<double>() * double(u.y);
-  sample.wi = glm::normalize((1.0 - x) * light.z + sine * (std::cos(phi) * light.x + std::sin(phi) * light.y));
+  sample.wi = cone_direction(light.z, light.x, light.y, light.one_minus_cos_sun, u);
   sample.radiance = sun_radiance(light);
   sample.pdf = 1.0 / (glm::two_pi<double>() * light.one_minus_cos_sun);
   return sample;
 }
 
-inline LightHit meet_sun(const Light &light, const glm::dvec3 &wi, double free) {
+inline LightHit meet_sun(const Light &light, const glm::dvec3 &wi) {
   LightHit hit;
   // |wi - z|^2 = 2 (1 - cos): no cancellation however small the sun.
   const glm::dvec3 apart = wi - light.z;
-  if (light.one_minus_cos_sun == 0.0 || std::isfinite(free) || !(0.5 * glm::dot(apart, apart) <= light.one_minus_cos_sun))
+  if (light.one_minus_cos_sun == 0.0 || !(0.5 * glm::dot(apart, apart) <= light.one_minus_cos_sun))
     return hit;
   hit.radiance = sun_radiance(light);
   hit.pdf = 1.0 / (glm::two_pi<double>() * light.one_minus_cos_sun);
+  hit.distance = std::numeric_limits<double>::infinity();
   return hit;
 }
 

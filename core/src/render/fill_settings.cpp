@@ -10,6 +10,8 @@ namespace {
 
 constexpr uint32_t kMostThreads = 1024;
 constexpr uint32_t kMostBounces = 1024;
+// Glass doubles the rays of CLASSIC with every depth.
+constexpr uint32_t kDeepestRecursion = 16;
 
 void check_choice(const char *what, uint32_t value, uint32_t last) {
   if (value > last)
@@ -38,6 +40,9 @@ SessionSettings read_settings(const lancer_settings &source) {
   check_amount("clamp_indirect", source.clamp_indirect);
   if (source.max_bounces > kMostBounces)
     bad_argument("settings: max_bounces " + std::to_string(source.max_bounces) + " > " + std::to_string(kMostBounces));
+  if (source.integrator == LANCER_CLASSIC && source.max_bounces > kDeepestRecursion)
+    bad_argument("settings: max_bounces " + std::to_string(source.max_bounces) + " > " + std::to_string(kDeepestRecursion) +
+                 ", the deepest recursion of CLASSIC");
   if (source.threads > kMostThreads)
     bad_argument("settings: threads " + std::to_string(source.threads) + " > " + std::to_string(kMostThreads));
   if (source.passes >> LANCER_PASS_COUNT)

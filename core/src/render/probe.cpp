@@ -38,6 +38,13 @@ const Bsdf &bsdf_of(const Scene &scene, uint32_t material, Bsdf &scratch) {
   return evaluate(scene.materials[material], Surface{}, scratch);
 }
 
+// Numbers that stand for random ones.
+void check_unit(const float *u, size_t count) {
+  for (size_t i = 0; i < count; ++i)
+    if (!(u[i] >= 0.0f && u[i] < 1.0f))
+      bad_argument("probe: u " + std::to_string(u[i]) + " is not in [0, 1)");
+}
+
 void check_light(const Scene &scene, uint32_t light) {
   if (light >= scene.lights.size())
     bad_argument("probe: light " + std::to_string(light) + " >= " + std::to_string(scene.lights.size()) + " lights");
@@ -72,9 +79,7 @@ void probe_intersect(const Scene &scene, uint32_t count, const double *origins, 
     hit.uv[0] = attributes.uv.x;
     hit.uv[1] = attributes.uv.y;
     hit.instance = instance.number;
-    // Give faces the numbers that the user knows.
-    const bool renumbered = mesh && !scene.geometry.meshes[instance.mesh].face_of.empty();
-    hit.primitive = renumbered ? scene.geometry.meshes[instance.mesh].face_of[found[i].primitive] : found[i].primitive;
+    hit.primitive = scene.face_number(found[i].instance, found[i].primitive);
     hit.material = surface.material;
   }
 }
@@ -97,6 +102,7 @@ void probe_bsdf(const Scene &scene, uint32_t material, uint32_t count, const flo
 
 void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *u,
                        lancer_bsdf_sample *samples) {
+  check_unit(u, size_t(3) * count);
   Bsdf scratch;
   const Bsdf &bsdf = bsdf_of(scene, material, scratch);
   for (uint32_t i = 0; i < count; ++i) {
@@ -126,6 +132,7 @@ void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, 
 void probe_light(const Scene &scene, uint32_t light, uint32_t count, const double *points, const float *u,
                  lancer_light_sample *samples) {
   check_light(scene, light);
+  check_unit(u, size_t(2) * count);
   const size_t described = scene.lights.lights().size();
   const double scale = scene.normalisation.scale;
   for (uint32_t i = 0; i < count; ++i) {
@@ -152,7 +159,7 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
     const glm::dvec3 p = scene.normalisation.to_normalised(dvec3_at(points, i));
     const glm::dvec3 w = dvec3_at(wi, i);
     if (light < described) {
-      pdf[i] = float(meet(scene.lights.lights()[light], p, w, infinity).pdf);
+      pdf[i] = float(meet(scene.lights.lights()[light], p, w).pdf);
       continue;
     }
     // Sum over all places where the direction meets the emitter: the sampler may have chosen any of them.
@@ -174,6 +181,12 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
     }
     pdf[i] = float(sum);
   }
+}
+
+void probe_filter(const PixelFilter &filter, uint32_t count, const float *u, float *offset) {
+  check_unit(u, count);
+  for (uint32_t i = 0; i < count; ++i)
+    offset[i] = filter.sample(u[i]);
 }
 
 void probe_camera(const Session &session, uint32_t count, const double *raster, const double *lens, double *origins,

@@ -19,6 +19,7 @@ void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, 
 void probe_light(const Scene &scene, uint32_t light, uint32_t count, const double *points, const float *u,
                  lancer_light_sample *samples);
 void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const double *points, const double *wi, float *pdf);
+void probe_filter(const PixelFilter &filter, uint32_t count, const float *u, float *offset);
 void probe_camera(const Session &session, uint32_t count, const double *raster, const double *lens, double *origins,
                   double *directions);
 

@@ -55,6 +55,7 @@ Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const
     : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_->normalisation)),
       settings_(settings), film_(camera.region_width, camera.region_height, tile_size(settings), settings.passes),
       pool_(settings.threads) {
+  settings_.integrator.cancel = &cancel_;
   for (uint32_t i = 0; i < pool_.size(); ++i) {
     workers_.push_back(std::make_unique<Worker>());
     workers_.back()->integrator = make_integrator(*scene_, camera_, settings_.integrator);
@@ -66,6 +67,8 @@ Session::~Session() { cancel_ = true; }
 void Session::render(uint32_t first, uint32_t count) {
   if (pool_.running())
     throw Error(Fault::State, "session: a range is still being rendered");
+  if (failed_)
+    throw Error(Fault::State, "session: a range failed; its film can only be read");
   if (cancelled_)
     throw Error(Fault::State, "session: it was cancelled; its film can only be read");
   if (first != end_)
@@ -86,6 +89,17 @@ void Session::render(uint32_t first, uint32_t count) {
 }
 
 void Session::work(uint32_t thread) {
+  // However the thread leaves, the clock stops with the last one.
+  struct Leave {
+    Session &session;
+    ~Leave() {
+      {
+        const std::lock_guard lock(session.mutex_);
+        session.end_time_ = std::chrono::steady_clock::now();
+      }
+      --session.active_;
+    }
+  } const leave{*this};
   Worker &worker = *workers_[thread];
   while (!cancel_) {
     const size_t tile = next_tile_.fetch_add(1);
@@ -93,11 +107,6 @@ void Session::work(uint32_t thread) {
       break;
     render_tile(worker, film_.tile(tile));
   }
-  {
-    const std::lock_guard lock(mutex_);
-    end_time_ = std::chrono::steady_clock::now();
-  }
-  --active_;
 }
 
 void Session::render_tile(Worker &worker, Film::Tile &tile) {
@@ -117,6 +126,9 @@ void Session::render_tile(Worker &worker, Film::Tile &tile) {
       worker.integrator->run(std::span(worker.addresses).subspan(begin, size), std::span(worker.results).subspan(begin, size),
                              nullptr);
     }
+    // A batch that was broken off is worth nothing.
+    if (cancel_)
+      return;
     drop_invalid(worker, worker.results);
     film_.add(tile, samples, worker.results);
     samples_ += worker.addresses.size();
@@ -158,7 +170,15 @@ double Session::seconds() const {
 }
 
 Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
-  const bool done = pool_.wait(milliseconds);
+  if (failed_)
+    throw Error(Fault::State, "session: a range failed; its film can only be read");
+  bool done = false;
+  try {
+    done = pool_.wait(milliseconds);
+  } catch (...) {
+    failed_ = true;
+    throw;
+  }
   progress.samples = samples_;
   progress.seconds = seconds();
   const RayCounts counts = rays();
@@ -178,7 +198,9 @@ void Session::read(Pass pass, std::span<float> out) const {
 }
 
 SampleResult Session::replay(const SampleAddress &address, std::vector<PathVertex> &vertices) {
-  const auto integrator = make_integrator(*scene_, camera_, settings_.integrator);
+  IntegratorSettings settings = settings_.integrator;
+  settings.cancel = nullptr;
+  const auto integrator = make_integrator(*scene_, camera_, settings);
   SampleResult result;
   integrator->run(std::span(&address, 1), std::span(&result, 1), &vertices);
   return result;

@@ -77,7 +77,7 @@ private:
   std::atomic<uint64_t> samples_{0};
   uint64_t range_samples_ = 0, samples_before_ = 0;
   uint32_t end_ = 0; // samples of every pixel when the range is done
-  bool cancelled_ = false;
+  bool cancelled_ = false, failed_ = false;
   double seconds_before_ = 0.0;
   std::chrono::steady_clock::time_point start_;
   bool started_ = false;

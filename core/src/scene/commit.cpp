@@ -1,5 +1,4 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
-#include "scene/error.h"
 #include "scene/scene.h"
 
 #include <chrono>
@@ -24,13 +23,20 @@ void add_box(Box &world, const Affine &map, const glm::dvec3 &low, const glm::dv
     world.add(map.point({corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z}));
 }
 
-Box world_bounds(const Description &description) {
+void poll(const BuildContext &context) {
+  if (context.cancel && *context.cancel)
+    throw BuildCancelled{};
+}
+
+Box world_bounds(const Description &description, const BuildContext &context) {
   const Geometry &geometry = description.geometry;
   std::vector<Box> meshes(geometry.meshes.size());
-  for (size_t i = 0; i < meshes.size(); ++i)
+  for (size_t i = 0; i < meshes.size(); ++i) {
+    poll(context);
     for (const glm::uvec3 &triangle : geometry.meshes[i].triangles)
       for (int corner = 0; corner < 3; ++corner)
         meshes[i].add(glm::dvec3(geometry.meshes[i].positions[triangle[corner]]));
+  }
   Box world;
   for (const Instance &instance : geometry.instances) {
     if (instance.kind == ShapeKind::Plane)
@@ -76,9 +82,17 @@ void make_smooth_normals(Mesh &mesh) {
   }
 }
 
-glm::dvec3 axis(const Affine &map, int column, const glm::dvec3 &fallback) {
-  const double length = glm::length(map.linear[column]);
-  return length > 0.0 ? map.linear[column] / length : fallback;
+// The light's axes: its z kept, the others made orthogonal to it; what vanishes is replaced by any direction that fits.
+void set_axes(Light &light, const Affine &map) {
+  const auto unit = [](const glm::dvec3 &v) { return glm::length(v) > 0.0 ? v / glm::length(v) : glm::dvec3(0.0); };
+  const glm::dvec3 z = unit(map.linear[2]), x = unit(map.linear[0]), y = unit(map.linear[1]);
+  light.z = z == glm::dvec3(0.0) ? glm::dvec3(0.0, 0.0, 1.0) : z;
+  light.x = unit(x - glm::dot(x, light.z) * light.z);
+  if (light.x == glm::dvec3(0.0))
+    light.x = unit(std::abs(light.z.x) < 0.5 ? glm::cross(light.z, {1, 0, 0}) : glm::cross(light.z, {0, 1, 0}));
+  light.y = glm::cross(light.z, light.x);
+  if (glm::dot(light.y, y) < 0.0)
+    light.y = -light.y;
 }
 
 Light normalised_light(const LightDescription &from, const Normalisation &normalisation) {
@@ -86,9 +100,7 @@ Light normalised_light(const LightDescription &from, const Normalisation &normal
   const double scale = normalisation.scale;
   light.kind = from.kind;
   light.position = normalisation.to_normalised(from.to_world.translation);
-  light.x = axis(from.to_world, 0, {1, 0, 0});
-  light.y = axis(from.to_world, 1, {0, 1, 0});
-  light.z = axis(from.to_world, 2, {0, 0, 1});
+  set_axes(light, from.to_world);
   light.emission = glm::dvec3(from.emission);
   // Irradiance is intensity over distance squared: lengths scale, so intensity scales with their square.
   if (from.kind == LightKind::Point || from.kind == LightKind::Spot)
@@ -103,6 +115,9 @@ Light normalised_light(const LightDescription &from, const Normalisation &normal
   // 1 - cos(a) = 2 sin^2(a / 2), exact for the smallest suns.
   const double s = std::sin(0.25 * double(from.sun_angle));
   light.one_minus_cos_sun = 2.0 * s * s;
+  // A disk that is smaller than a float direction can tell is a direction.
+  if (0.5 * double(from.sun_angle) < 0x1p-24)
+    light.one_minus_cos_sun = 0.0;
   light.half_x = 0.5 * double(from.size.x) * scale;
   light.half_y = 0.5 * double(from.size.y) * scale;
   light.ellipse = from.shape == AreaShape::Ellipse;
@@ -117,7 +132,7 @@ Light normalised_light(const LightDescription &from, const Normalisation &normal
   return light;
 }
 
-LightSet make_lights(const Scene &scene, const Description &description) {
+LightSet make_lights(const Scene &scene, const Description &description, const BuildContext &context) {
   std::vector<Light> lights;
   for (const LightDescription &light : description.lights)
     lights.push_back(normalised_light(light, scene.normalisation));
@@ -129,6 +144,7 @@ LightSet make_lights(const Scene &scene, const Description &description) {
       emits |= scene.materials[scene.slots[instance.first_slot + slot]].emits();
     if (!emits)
       continue;
+    poll(context);
     Emitter emitter(scene.geometry, scene.slots, scene.materials, i);
     if (!emitter.empty())
       emitters.push_back(std::move(emitter));
@@ -144,7 +160,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   const auto start = std::chrono::steady_clock::now();
   auto scene = std::make_shared<Scene>();
   scene->features = find_features(description);
-  scene->normalisation = normalise(world_bounds(description));
+  scene->normalisation = normalise(world_bounds(description, context));
   // Place everything in the normalised world.
   scene->geometry = std::move(description.geometry);
   scene->slots = std::move(description.slots);
@@ -157,15 +173,22 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
     Mesh &mesh = scene->geometry.meshes[instance.mesh];
     scene->triangles += mesh.triangles.size();
     const bool smooth = instance.shading == Shading::Gouraud || instance.shading == Shading::Phong;
+    poll(context);
     if (smooth && mesh.normal_domain == NormalDomain::None && mesh.smooth_normals.empty())
       make_smooth_normals(mesh);
   }
-  scene->lights = make_lights(*scene, description);
+  scene->lights = make_lights(*scene, description, context);
   scene->accelerator = build_accelerator(kind, scene->geometry, context);
   scene->instances_given = description.instances_given;
   scene->messages = description.messages.text();
   scene->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return scene;
+}
+
+uint32_t Scene::face_number(uint32_t instance, uint32_t primitive) const {
+  const Instance &placed = geometry.instances[instance];
+  const bool renumbered = placed.kind == ShapeKind::Mesh && !geometry.meshes[placed.mesh].face_of.empty();
+  return renumbered ? geometry.meshes[placed.mesh].face_of[primitive] : primitive;
 }
 
 size_t Scene::geometry_bytes() const {

@@ -8,13 +8,11 @@ namespace lancer {
 
 void Messages::add(const std::string &object, const std::string &what) {
   const std::string text = object + ": " + what;
-  for (Line &line : lines_) {
-    if (line.text == text) {
-      ++line.count;
-      return;
-    }
-  }
-  lines_.push_back({text, 1});
+  const auto [known, fresh] = numbers_.emplace(text, lines_.size());
+  if (fresh)
+    lines_.push_back({text, 1});
+  else
+    ++lines_[known->second].count;
 }
 
 std::string Messages::text() const {

@@ -7,6 +7,7 @@
 #include "scene/material.h"
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace lancer {
@@ -24,6 +25,7 @@ private:
     uint64_t count;
   };
   std::vector<Line> lines_;
+  std::unordered_map<std::string, size_t> numbers_; // of a line, by its text
 };
 
 struct Description {

@@ -24,9 +24,6 @@ public:
 
   // Each component: NaN becomes fallback, the rest is brought into [low, high].
   Parameter read(const char *what, const lancer_parameter &given, float low, float high, float fallback) {
-    if (given.texture >= 0)
-      bad_argument(object_ + ": " + what + " names texture " + std::to_string(given.texture) +
-                   ", but the scene has 0 textures");
     Parameter parameter;
     for (int i = 0; i < 3; ++i) {
       const float value = given.value[i];
@@ -38,10 +35,11 @@ public:
     return parameter;
   }
 
-  // A scalar in value[0].
+  // A scalar in value[0]; nobody is told of the other two.
   Parameter read_scalar(const char *what, lancer_parameter given, float low, float high, float fallback) {
-    given.value[1] = given.value[2] = given.value[0];
-    const Parameter parameter = read_first(what, given, low, high, fallback);
+    given.value[1] = given.value[2] = low;
+    Parameter parameter = read(what, given, low, high, fallback);
+    parameter.value = glm::vec3(parameter.value.x);
     return parameter;
   }
 
@@ -57,14 +55,6 @@ public:
   }
 
 private:
-  Parameter read_first(const char *what, const lancer_parameter &given, float low, float high, float fallback) {
-    lancer_parameter one = given;
-    one.value[1] = one.value[2] = std::clamp(0.0f, low, high);
-    Parameter parameter = read(what, one, low, high, fallback);
-    parameter.value = glm::vec3(parameter.value.x);
-    return parameter;
-  }
-
   std::string object_;
   Messages &messages_;
 };
@@ -83,6 +73,22 @@ LobeDescription read_lobe(MaterialReader &reader, const lancer_lobe &given) {
   return lobe;
 }
 
+void check_textures(const std::string &object, const lancer_material &source) {
+  const auto check = [&](const char *what, const lancer_parameter &given) {
+    if (given.texture >= 0)
+      bad_argument(object + ": " + what + " names texture " + std::to_string(given.texture) + ", but the scene has 0 textures");
+  };
+  check("emission", source.emission);
+  check("opacity", source.opacity);
+  check("ambient", source.ambient);
+  for (uint32_t i = 0; i < source.lobe_count; ++i) {
+    check("colour", source.lobes[i].color);
+    check("roughness", source.lobes[i].roughness);
+    check("IOR", source.lobes[i].ior);
+    check("shininess", source.lobes[i].shininess);
+  }
+}
+
 } // namespace
 
 void add_material(Description &description, const lancer_material &source) {
@@ -96,6 +102,8 @@ void add_material(Description &description, const lancer_material &source) {
       bad_argument(object + ": lobe " + std::to_string(i) + " has kind " + std::to_string(source.lobes[i].kind) +
                    ", which is none");
   }
+
+  check_textures(object, source);
 
   MaterialReader reader(object, description.messages);
   Material material;

@@ -6,8 +6,6 @@
 #include "scene/description.h"
 #include "scene/features.h"
 
-#include <functional>
-
 namespace lancer {
 
 // p_normalised = (p_world - centre) * scale, scale a power of two: the same scene at any size and place becomes the same
@@ -34,6 +32,8 @@ struct Scene {
   uint64_t triangles = 0; // over all instances
   double build_seconds = 0.0;
 
+  // A primitive as the user numbered it.
+  uint32_t face_number(uint32_t instance, uint32_t primitive) const;
   size_t geometry_bytes() const;
 };
 

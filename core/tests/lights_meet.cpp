@@ -1,0 +1,120 @@
+// Lights on a ray's way: met where sampling would have put them, and only by those that sampling can choose.
+#include "tiny_scene.h"
+
+#include "lights/light_set.h"
+
+#include <gtest/gtest.h>
+#include <random>
+
+namespace lancer {
+namespace {
+
+Light ball(double radius, bool soft) {
+  Light light;
+  light.kind = LightKind::Point;
+  light.emission = glm::dvec3(1.0);
+  light.radius = radius;
+  light.soft_falloff = soft;
+  return light;
+}
+
+TEST(Lights, AreMetWhereTheyAreSampled) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0.0f, 0.999f);
+  for (const bool soft : {false, true}) {
+    // From outside, and for the ball from inside too.
+    for (const double height : {-3.0, -0.5}) {
+      if (soft && height > -1.0)
+        continue;
+      const Light light = ball(1.0, soft);
+      const glm::dvec3 p(0.1, 0.2, height);
+      for (int i = 0; i < 1000; ++i) {
+        const LightSample s = sample(light, p, {uniform(random), uniform(random)});
+        const LightHit hit = meet(light, p, s.wi);
+        // Directions are rounded to double: at grazing incidence the root of the ball magnifies that to 1e-8.
+        EXPECT_NEAR(hit.distance, s.distance, 1e-6);
+        EXPECT_NEAR(hit.pdf, s.pdf, 1e-9 * s.pdf);
+      }
+    }
+  }
+}
+
+TEST(Lights, TheMiddleOfTheSquareIsTheMiddleOfTheLight) {
+  Light sun;
+  sun.kind = LightKind::Sun;
+  sun.emission = glm::dvec3(1.0);
+  sun.one_minus_cos_sun = 0.2;
+  EXPECT_EQ(sample(sun, glm::dvec3(0.0), {0.5f, 0.5f}).wi, sun.z);
+  const LightSample s = sample(ball(0.5, false), glm::dvec3(0.0, 0.0, -2.0), {0.5f, 0.5f});
+  EXPECT_NEAR(s.wi.z, 1.0, 1e-15);
+  EXPECT_NEAR(s.distance, 1.5, 1e-12);
+}
+
+TEST(Lights, ALightThatIsNeverChosenIsNeverMet) {
+  // A spot without an opening has extent and emission, but no power.
+  Light spot = ball(0.1, true);
+  spot.kind = LightKind::Spot;
+  spot.cos_half_angle = 1.0;
+  const LightSet lights({spot}, {}, 0, glm::vec3(0.0f), 100.0);
+  EXPECT_TRUE(lights.with_extent().empty());
+}
+
+TEST(Lights, ATinyDiskIsAPoint) {
+  const Light light = ball(1e-30, true);
+  const LightSample s = sample(light, glm::dvec3(0.0, 0.0, -2.0), {0.2f, 0.7f});
+  EXPECT_TRUE(s.delta);
+  EXPECT_FLOAT_EQ(s.radiance.x, 0.25f);
+}
+
+// The level of a floor under a lamp; a pane of some opacity runs through the lamp, none where that is negative.
+double floor_level(float pane_opacity, bool soft) {
+  using namespace lancer_test;
+  lancer_scene scene = 0;
+  lancer_scene_create(&scene);
+  add_material(scene, {lobe(LANCER_LAMBERT, 0.8f)});
+  add_material(scene, {lobe(LANCER_LAMBERT, 0.0f)}, 0.0f, std::max(pane_opacity, 0.0f));
+  lancer_instance instances[2] = {};
+  const uint32_t slots[] = {0, 1};
+  for (uint32_t i = 0; i < 2; ++i) {
+    place(instances[i].matrix, 0, 0, i == 0 ? 0.0 : 2.2);
+    instances[i].kind = LANCER_PLANE;
+    instances[i].first_slot = i;
+    instances[i].slot_count = 1;
+  }
+  lancer_scene_add_instances(scene, pane_opacity < 0.0f ? 1 : 2, instances, 2, slots, nullptr, 0);
+  lancer_light light = point_light();
+  place(light.matrix, 0, 0, 2);
+  light.radius = 1.0f;
+  light.soft_falloff = soft;
+  lancer_scene_add_light(scene, &light);
+  lancer_scene_commit(scene, LANCER_BVH, 1);
+  while (lancer_scene_wait(scene, 50) == LANCER_RUNNING)
+    ;
+  lancer_camera camera = make_camera(8, 8);
+  const double down[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5};
+  std::copy(down, down + 12, camera.matrix);
+  lancer_settings settings = make_settings();
+  settings.max_bounces = 0;
+  lancer_session session = 0;
+  lancer_session_create(scene, &camera, &settings, &session);
+  lancer_session_render(session, 0, 1024);
+  finish(session);
+  std::vector<float> image(8 * 8 * 4);
+  lancer_session_read(session, LANCER_PASS_COMBINED, image.data(), image.size());
+  double sum = 0.0;
+  for (size_t i = 0; i < image.size(); i += 4)
+    sum += double(image[i]) / 64.0;
+  lancer_session_destroy(session);
+  lancer_scene_destroy(scene);
+  return sum;
+}
+
+TEST(Lights, APaneThatIsNotThereChangesNothing) {
+  for (const bool soft : {true, false}) {
+    // 65536 samples of a level whose standard deviation is below itself agree within 4 / 256.
+    EXPECT_NEAR(floor_level(0.0f, soft) / floor_level(-1.0f, soft), 1.0, 4.0 / 256.0);
+  }
+}
+
+} // namespace
+} // namespace lancer
