@@ -1,5 +1,6 @@
 #include "integrator/shadow.h"
 
+#include <cmath>
 #include <numeric>
 
 namespace lancer {

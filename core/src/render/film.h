@@ -16,7 +16,6 @@ enum class Pass : uint32_t {
   ObjectIndex = 5,
   MaterialIndex = 6
 };
-inline constexpr uint32_t kPassCount = 7;
 
 uint32_t channels(Pass pass);
 
@@ -47,7 +46,7 @@ public:
 
   // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
-  // [height][width][channels], row 0 at the bottom; pixels without samples are 0.
+  // [height][width][channels], row 0 at the bottom; a pixel without samples is 0, its depth 1e10.
   void read(Pass pass, std::span<float> out) const;
   bool has(Pass pass) const { return (passes_ & (1u << uint32_t(pass))) != 0; }
   size_t bytes() const;

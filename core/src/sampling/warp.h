@@ -23,7 +23,6 @@ inline glm::vec2 warp_disk(glm::vec2 u) {
   const float phi = 0.25f * kPi * (a / b);
   return {b * std::sin(phi), b * std::cos(phi)};
 }
-inline float warp_disk_pdf() { return kInvPi; }
 
 // Directions around +z with a density proportional to the cosine.
 inline glm::vec3 warp_cosine_hemisphere(glm::vec2 u) {
@@ -64,6 +63,5 @@ inline glm::vec2 warp_triangle(glm::vec2 u) {
   const float half = 0.5f * u.y;
   return {u.x - half, half};
 }
-inline float warp_triangle_pdf(float area) { return 1.0f / area; }
 
 } // namespace lancer

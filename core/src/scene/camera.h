@@ -6,8 +6,6 @@
 
 namespace lancer {
 
-struct Normalisation; // scene.h
-
 // The camera looks along its local -z, y up. The window is the full image's rectangle on the plane z = -1 (perspective) or at
 // any depth (orthographic); sensor fit, shift and pixel aspect are all in it.
 struct Camera {

@@ -3,7 +3,6 @@
 #include "scene/error.h"
 
 #include <cmath>
-#include <cstring>
 
 namespace lancer {
 

@@ -1,0 +1,299 @@
+"""Scenes exported and not rendered: each function returns what the snapshot holds for the test to judge."""
+
+import bpy
+import numpy as np
+import stage
+
+from addon.bindings.enums import InstanceKind, LightKind, LobeKind, Shading
+from addon.export.scene import export_scene
+
+
+class ExportProbe(bpy.types.RenderEngine):
+    """Takes the snapshot from the depsgraph of a final render, which alone knows render visibility and render counts."""
+
+    bl_idname = "EXPORT_PROBE"
+    bl_label = "Export Probe"
+    caught = None
+
+    def render(self, depsgraph):
+        ExportProbe.caught, _messages = export_scene(depsgraph)
+
+
+def export():
+    """The scene's snapshot, with a camera where it has none; an error in it is in the console."""
+    scene = bpy.context.scene
+    if scene.camera is None:
+        stage.camera()
+    bpy.utils.register_class(ExportProbe)
+    ExportProbe.caught, scene.render.engine = None, ExportProbe.bl_idname
+    bpy.ops.render.render()
+    bpy.utils.unregister_class(ExportProbe)
+    assert ExportProbe.caught is not None, "the export failed"
+    return ExportProbe.caught
+
+
+def facts(snapshot):
+    table, rows = snapshot.instances, []
+    for i in range(len(table)):
+        rows.append(
+            {
+                "name": table.names[table.name_indices[i]],
+                "kind": InstanceKind(int(table.kinds[i])).name,
+                "shading": Shading(int(table.shadings[i])).name,
+                "mesh": int(table.meshes[i]),
+                "matrix": table.matrices[i].tolist(),
+                "materials": [snapshot.materials[s].name for s in table.slots[table.first_slots[i] :][: table.slot_counts[i]]],
+            }
+        )
+    return rows
+
+
+def counts(snapshot):
+    rows = facts(snapshot)
+    return {
+        "meshes": len(snapshot.meshes),
+        "instances": len(rows),
+        "names": sorted(row["name"] for row in rows),
+        "mesh of": [row["mesh"] for row in rows],
+        "triangles": [len(mesh.triangles) for mesh in snapshot.meshes],
+        "places": sorted([row[3] for row in placed["matrix"]] for placed in rows),
+    }
+
+
+def named(item, name):
+    item.name = name
+    return item
+
+
+def modifiers():
+    stage.empty()
+    item = stage.cube(2.0)
+    subdivision = item.modifiers.new("Subdivision", "SUBSURF")
+    subdivision.subdivision_type, subdivision.levels, subdivision.render_levels = "SIMPLE", 0, 1
+    item.modifiers.new("Array", "ARRAY").count = 3
+    snapshot = export()
+    positions = snapshot.meshes[0].positions
+    return {**counts(snapshot), "low": positions.min(axis=0).tolist(), "high": positions.max(axis=0).tolist()}
+
+
+def collection_instances():
+    scene = stage.empty()
+    group = bpy.data.collections.new("Group")
+    item = stage.cube(location=(0, 0, 1))
+    scene.collection.objects.unlink(item)
+    group.objects.link(item)
+    for x in (1, 2, 3):
+        holder = stage.link("Holder", None, (x, 0, 0))
+        holder.instance_type, holder.instance_collection = "COLLECTION", group
+    return counts(export())
+
+
+def particle_instances():
+    stage.empty()
+    seed = named(stage.cube(0.1), "Seed")
+    ground = named(stage.plane(2.0), "Ground")
+    ground.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = ground.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 7, "OBJECT", seed
+    return counts(export())
+
+
+def node_instances():
+    """Five cubes on a line of points, beside a plain cube."""
+    stage.empty()
+    tree = bpy.data.node_groups.new("Row", "GeometryNodeTree")
+    if hasattr(tree, "interface"):
+        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    else:
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    line, box = tree.nodes.new("GeometryNodeMeshLine"), tree.nodes.new("GeometryNodeMeshCube")
+    spread, output = tree.nodes.new("GeometryNodeInstanceOnPoints"), tree.nodes.new("NodeGroupOutput")
+    line.inputs["Count"].default_value = 5
+    line.inputs["Offset"].default_value = (2, 0, 0)
+    tree.links.new(line.outputs["Mesh"], spread.inputs["Points"])
+    tree.links.new(box.outputs["Mesh"], spread.inputs["Instance"])
+    tree.links.new(spread.outputs["Instances"], output.inputs[0])
+    stage.plane().modifiers.new("Row", "NODES").node_group = tree
+    stage.cube(location=(0, 9, 0))
+    return counts(export())
+
+
+def surfaces():
+    """A curve, a text and a metaball."""
+    stage.empty()
+    curve = bpy.data.curves.new("Curve", "CURVE")
+    curve.dimensions, curve.bevel_depth = "3D", 0.1
+    curve.splines.new("POLY").points.add(1)
+    curve.splines[0].points[1].co = (1, 0, 0, 1)
+    stage.link("Curve", curve)
+    stage.link("Text", bpy.data.curves.new("Text", "FONT"))
+    ball = bpy.data.metaballs.new("Meta")
+    ball.elements.new()
+    stage.link("Meta", ball)
+    return counts(export())
+
+
+def shapes():
+    """A box from (1, 2, 3) to (3, 6, 9) at (10, 0, 0), twice as large, as each shape; and each way to shade it."""
+    stage.empty()
+    corners = [(x, y, z) for x in (1, 3) for y in (2, 6) for z in (3, 9)]
+    for kind in InstanceKind:
+        item = stage.mesh(kind.name, corners, [(0, 1, 3, 2)], location=(10, 0, 0))
+        item.scale = (2, 2, 2)
+        item.lancer.shape = kind.name
+    for way in Shading:
+        item = stage.cube()
+        item.name, item.lancer.shading = f"shading {way.name}", way.name
+    snapshot = export()
+    return {"meshes": len(snapshot.meshes), "rows": {row["name"]: row for row in facts(snapshot)}}
+
+
+def materials():
+    """Every material under its name: its lobes, what it emits and how much it hides."""
+    stage.empty()
+    for model in ("KD_KS", "PHONG", "BLINN_PHONG"):
+        material = bpy.data.materials.new(model)
+        own = material.lancer
+        own.model, own.kd, own.ks = model, (0.5, 0.25, 0.125), (0.75, 0.5, 0.25)
+        own.roughness, own.ior, own.shininess, own.ka = 0.25, 1.75, 40.0, (0.5, 0.25, 0.0)
+        stage.cube(material=material)
+    level, transmission, emission = "Specular_IOR_Level", "Transmission_Weight", "Emission_Color"
+    if bpy.app.version < (4, 0):
+        level, transmission, emission = "Specular", "Transmission", "Emission"
+    base = {"Base_Color": (0.75, 0.5, 0.25), "Roughness": 0.5, level: 0.5, "IOR": 1.5, "Metallic": 0.0}
+    principled = {
+        "plain": {},
+        "level": {level: 0.25, "IOR": 1.75},
+        "metal": {"Metallic": 1.0, "Roughness": 0.25},
+        "polished metal": {"Metallic": 1.0, "Roughness": 0.0},
+        "half metal": {"Metallic": 0.5},
+        "glass": {transmission: 1.0, "Roughness": 0.0, "IOR": 1.25, "Base_Color": (1.0, 1.0, 1.0)},
+        "coloured glass": {transmission: 1.0, "Roughness": 0.0, "IOR": 1.25, "Base_Color": (0.25, 0.25, 0.25)},
+        "veil": {"Alpha": 0.25, level: 0.0},
+        "lamp": {emission: (1.0, 0.5, 0.25), "Emission_Strength": 3.0},
+    }
+    for name, inputs in principled.items():
+        stage.cube(material=stage.shader("ShaderNodeBsdfPrincipled", name, **{**base, **inputs}))
+    result = {"version": list(bpy.app.version)}
+    for material in export().materials:
+        result[material.name] = {
+            "lobes": {LobeKind(x.kind).name: [x.color, x.roughness, x.ior, x.shininess] for x in material.lobes},
+            "count": len(material.lobes),
+            "emission": material.emission,
+            "opacity": material.opacity,
+            "ambient": material.ambient,
+        }
+    return result
+
+
+def roof(name, smooth=True, **place):
+    """Two slopes of 45 degrees that meet in a ridge along y."""
+    vertices = [(-1, 0, 0), (-1, 2, 0), (0, 0, 1), (0, 2, 1), (1, 0, 0), (1, 2, 0)]
+    item = stage.mesh(name, vertices, [(0, 2, 3, 1), (2, 4, 5, 3)], **place)
+    item.data.name = name
+    item.data.polygons.foreach_set("use_smooth", [smooth] * 2)
+    return item
+
+
+def attributes():
+    """Roofs: flat, smooth, with a sharp ridge, with normals of the user's, and with UVs and colours told by place."""
+    stage.empty()
+    roof("flat", False)
+    roof("smooth")
+    mixed = roof("mixed")
+    mixed.data.polygons[0].use_smooth = False
+    sharp, custom = roof("sharp").data, roof("custom").data
+    for mesh in (sharp, custom):
+        if hasattr(mesh, "use_auto_smooth"):
+            mesh.use_auto_smooth, mesh.auto_smooth_angle = True, np.pi
+    next(edge for edge in sharp.edges if set(edge.vertices) == {2, 3}).use_edge_sharp = True
+    custom.normals_split_custom_set([(0.6, 0.0, 0.8)] * len(custom.loops))
+    painted, points = roof("painted").data, roof("points").data
+    painted.uv_layers.new(name="Other")
+    painted.uv_layers.new(name="Shown").active_render = True
+    paint = painted.color_attributes.new("Paint", "FLOAT_COLOR", "CORNER")
+    # A new attribute may move the others, so the layer is asked for once all are there.
+    layer = painted.uv_layers["Shown"]
+    for polygon in painted.polygons:
+        for loop in polygon.loop_indices:
+            x, y, z = painted.vertices[painted.loops[loop].vertex_index].co
+            layer.data[loop].uv = (0.5 * x, 0.25 * y)
+            paint.data[loop].color = (z, float(polygon.index), 0.5, 1.0)
+        polygon.material_index = polygon.index
+    paint = points.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
+    for vertex in points.vertices:
+        paint.data[vertex.index].color = (vertex.co.x + 1, 0.25 * vertex.co.y, vertex.co.z, 1.0)
+    arrays = {mesh.name: {k: v for k, v in vars(mesh).items() if k != "name"} for mesh in export().meshes}
+    return {name: {k: None if v is None else v.tolist() for k, v in fields.items()} for name, fields in arrays.items()}
+
+
+def sharing():
+    """One mesh three times: plain, with a material of the object's own, and mirrored."""
+    stage.empty()
+    plain = stage.cube(material=bpy.data.materials.new("of the mesh"))
+    plain.name = "plain"
+    own = stage.link("own", plain.data)
+    own.material_slots[0].link = "OBJECT"
+    own.material_slots[0].material = bpy.data.materials.new("of the object")
+    stage.link("mirrored", plain.data, (5, 0, 0)).scale = (-1, 2, 3)
+    snapshot = export()
+    return {"meshes": len(snapshot.meshes), "rows": {row["name"]: row for row in facts(snapshot)}}
+
+
+def lights():
+    stage.empty()
+    for kind in ("POINT", "SPOT", "SUN"):
+        named(stage.light(kind, 10.0, color=(1.0, 0.5, 0.25)), kind)
+    area = named(stage.light("AREA", 10.0, shape="RECTANGLE", size=2.0, size_y=0.5), "rectangle")
+    area.scale = (3, 3, 1)
+    named(stage.light("AREA", 10.0, shape="DISK", size=2.0), "disk")
+    result = {"version": list(bpy.app.version)}
+    if "exposure" in bpy.types.Light.bl_rna.properties:
+        named(stage.light("POINT", 10.0, exposure=2.0), "exposure")
+        warm = named(stage.light("POINT", 10.0, use_temperature=True, temperature=3000.0), "temperature")
+        result["temperature color"] = list(warm.data.temperature_color)
+    for light in export().lights:
+        result[light.name] = {"kind": LightKind(light.kind).name, "emission": light.emission, "size": light.size}
+    return result
+
+
+def cameras():
+    result = {}
+    for name, width, height, aspect, shift in (
+        ("portrait", 20, 40, (1, 1), (0, 0)),
+        ("shift", 40, 20, (1, 1), (0.1, -0.2)),
+        ("wide pixels", 40, 40, (2, 1), (0, 0)),
+        ("all", 20, 50, (1.5, 1), (0.25, 0.125)),
+    ):
+        scene = stage.empty(width, height)
+        item = stage.camera(lens=50.0, sensor_width=36.0, shift_x=shift[0], shift_y=shift[1])
+        scene.render.pixel_aspect_x, scene.render.pixel_aspect_y = aspect
+        graph = bpy.context.evaluated_depsgraph_get()
+        matrix = item.calc_matrix_camera(graph, x=width, y=height, scale_x=aspect[0], scale_y=aspect[1])
+        window = export().camera.window
+        result[name] = {"window": list(window), "projection": [list(row) for row in matrix]}
+    scene = stage.empty(40, 20)
+    render = scene.render
+    render.use_border = True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.25, 0.75, 0.5, 0.9
+    camera = export().camera
+    result["border"] = [camera.width, camera.height, camera.x, camera.y, camera.region_width, camera.region_height]
+    return result
+
+
+def hidden():
+    """Of things hidden in renders, in viewports, and by their collection."""
+    scene = stage.empty()
+    named(stage.cube(), "shown")
+    named(stage.cube(), "hidden").hide_render = True
+    named(stage.cube(), "hidden in viewports").hide_viewport = True
+    for name in ("shown light", "hidden light"):
+        named(stage.light(), name).hide_render = name == "hidden light"
+    group = bpy.data.collections.new("Group")
+    scene.collection.children.link(group)
+    item = named(stage.cube(), "in hidden collection")
+    scene.collection.objects.unlink(item)
+    group.objects.link(item)
+    group.hide_render = True
+    snapshot = export()
+    return sorted([*snapshot.instances.names, *(light.name for light in snapshot.lights)])

@@ -1,0 +1,246 @@
+"""Blender's data as a snapshot, in the bpy module of this Python and in Debian's Blender 3.4.1; nothing is rendered.
+
+Blender stores single precision: a number that went through it is compared to 1e-6, sixteen times its rounding of 2^-24.
+"""
+
+import math
+
+import blenders
+import numpy as np
+import pytest
+from blenders import MODULE, PROGRAM
+
+pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
+H = math.sqrt(0.5)  # of the normals of slopes of 45 degrees
+
+
+def near(value, limit=1e-6):
+    return pytest.approx(value, rel=limit, abs=limit)
+
+
+@pytest.fixture
+def case(which, tmp_path):
+    return lambda name: blenders.run(which, tmp_path, "export_cases", name)
+
+
+def test_modifiers_are_applied_as_for_a_render(case):
+    """Six faces, each cut into 2 x 2 quads at render level (uncut in the viewport), three times in a row of 2 m steps."""
+    got = case("modifiers")
+    assert (got["meshes"], got["instances"], got["triangles"]) == (1, 1, [6 * 4 * 2 * 3])
+    assert got["low"] == near([-1, -1, -1]) and got["high"] == near([5, 1, 1])
+
+
+def test_collection_instances_share_their_mesh(case):
+    got = case("collection_instances")
+    assert (got["meshes"], got["instances"], got["triangles"]) == (1, 3, [12])
+    assert got["places"] == [[1, 0, 1], [2, 0, 1], [3, 0, 1]]
+
+
+def test_particle_instances_share_their_mesh(case):
+    """Seven hairs, the object that they show, and the ground that they grow on."""
+    got = case("particle_instances")
+    assert (got["meshes"], got["instances"]) == (2, 9) and sorted(got["triangles"]) == [2, 12]
+    assert got["names"] == ["Ground"] + ["Seed"] * 8
+    # The seed and the ground are at the origin; hairs grow at places of their own on the ground, which reaches 1 m.
+    assert len({tuple(place) for place in got["places"]}) == 8
+    assert all(abs(x) <= 1 and abs(y) <= 1 and abs(z) < 1e-6 for x, y, z in got["places"])
+
+
+def test_node_instances_share_their_mesh(case):
+    got = case("node_instances")
+    assert (got["meshes"], got["instances"], got["triangles"]) == (2, 6, [12, 12])
+    assert max(got["mesh of"].count(mesh) for mesh in (0, 1)) == 5
+    assert got["places"] == near(np.array([[0, 0, 0], [0, 9, 0], [2, 0, 0], [4, 0, 0], [6, 0, 0], [8, 0, 0]]))
+
+
+def test_curve_text_and_metaball_come_once_each(case):
+    got = case("surfaces")
+    assert got["names"] == ["Curve", "Meta", "Text"] and sorted(got["mesh of"]) == [0, 1, 2]
+    assert len(got["triangles"]) == 3 and min(got["triangles"]) > 0
+
+
+def test_exact_shapes_fit_the_bounding_box(case):
+    """Middle (2, 4, 6) and half extents (1, 2, 3), twice as large, 10 m along x. A plane takes the middle alone."""
+    rows = case("shapes")["rows"]
+    plain = [[2, 0, 0, 10], [0, 2, 0, 0], [0, 0, 2, 0]]
+    middle = [[2, 0, 0, 14], [0, 2, 0, 8], [0, 0, 2, 12]]
+    fitted = [[2, 0, 0, 14], [0, 4, 0, 8], [0, 0, 6, 12]]
+    wanted = {"MESH": plain, "SPHERE": fitted, "PLANE": middle, "CYLINDER": fitted, "CONE": fitted}
+    for kind, matrix in wanted.items():
+        assert rows[kind]["kind"] == kind and rows[kind]["matrix"] == near(np.array(matrix)), kind
+
+
+def test_exact_shapes_bring_no_mesh_and_shading_is_told(case):
+    got = case("shapes")
+    # One object of shape MESH, and four cubes that differ in shading.
+    assert got["meshes"] == 5
+    shadings = {name[8:]: row["shading"] for name, row in got["rows"].items() if name.startswith("shading ")}
+    assert shadings == {way: way for way in ("AS_MESH", "FLAT", "GOURAUD", "PHONG")}
+    assert got["rows"]["SPHERE"]["shading"] == "AS_MESH"
+
+
+def test_own_material_models(case):
+    got = case("materials")
+    kd, ks = [0.5, 0.25, 0.125], [0.75, 0.5, 0.25]
+    for model, lobe in (("KD_KS", "BECKMANN"), ("PHONG", "PHONG"), ("BLINN_PHONG", "BLINN_PHONG")):
+        material = got[model]
+        assert material["count"] == 2 and set(material["lobes"]) == {"LAMBERT", lobe}
+        assert material["lobes"]["LAMBERT"][0] == near(kd) and material["lobes"][lobe][0] == near(ks)
+        assert material["ambient"] == near([0.5, 0.25, 0.0]) and material["opacity"] == 1.0 and not any(material["emission"])
+        _, roughness, ior, shininess = material["lobes"][lobe]
+        if model == "KD_KS":
+            assert (roughness, ior) == near((0.25, 1.75))
+        else:
+            assert shininess == near(40.0)
+
+
+def reflected_share(ior):
+    """Of diffuse light on a smooth surface: Fresnel's two polarisations over the cosines, by the midpoint rule."""
+    mu = (np.arange(20000) + 0.5) / 20000
+    below = np.sqrt(1.0 - (1.0 - mu**2) / ior**2)
+    s, p = (mu - ior * below) / (mu + ior * below), (ior * mu - below) / (ior * mu + below)
+    return float(np.mean(mu * (s**2 + p**2)))
+
+
+def test_principled_specular_and_diffuse(case):
+    """From 4.0 the level scales the reflectance of the IOR and the coat shades what is below; before, it is 0.08 level."""
+    got = case("materials")
+    layered = got["version"] >= [4, 0]
+    for name, level, ior in (("plain", 0.5, 1.5), ("level", 0.25, 1.75)):
+        f0 = 2 * level * ((ior - 1) / (ior + 1)) ** 2 if layered else 0.08 * level
+        wanted_ior = (1 + math.sqrt(f0)) / (1 - math.sqrt(f0))
+        keeps = 1 - reflected_share(wanted_ior) if layered else 1.0
+        assert got[name]["count"] == 2 and got[name]["opacity"] == 1.0
+        color, alpha, found, _ = got[name]["lobes"]["BECKMANN"]
+        # Blender's roughness is the square root of alpha.
+        assert color == near([1, 1, 1]) and alpha == near(0.25) and found == near(wanted_ior)
+        assert got[name]["lobes"]["LAMBERT"][0] == near([0.75 * keeps, 0.5 * keeps, 0.25 * keeps])
+
+
+def test_principled_metal(case):
+    got = case("materials")
+    base = [0.75, 0.5, 0.25]
+    assert got["metal"]["count"] == 1 and got["metal"]["lobes"]["BECKMANN"][:3] == [base, near(0.0625), math.inf]
+    assert got["polished metal"]["count"] == 1 and got["polished metal"]["lobes"]["MIRROR"][0] == near(base)
+    # Half a metal is half of each: the Lambert part is half that of the plain one; two Beckmann lobes differ in IOR.
+    assert got["half metal"]["count"] == 3
+    assert got["half metal"]["lobes"]["LAMBERT"][0] == near([0.5 * c for c in got["plain"]["lobes"]["LAMBERT"][0]])
+
+
+def test_principled_glass(case):
+    """Colour is for what is refracted, from 4.0 its root at each surface; a coat gives white back to the reflection."""
+    got = case("materials")
+    glass = got["glass"]
+    assert glass["count"] == 1
+    assert glass["lobes"]["DIELECTRIC"][0] == near([1, 1, 1]) and glass["lobes"]["DIELECTRIC"][2] == near(1.25)
+    tint = 0.5 if got["version"] >= [4, 0] else 0.25
+    lobes = got["coloured glass"]["lobes"]
+    assert set(lobes) == {"DIELECTRIC", "BECKMANN"}
+    assert lobes["DIELECTRIC"][0] == near([tint] * 3) and lobes["BECKMANN"][0] == near([1 - tint] * 3)
+    assert lobes["BECKMANN"][1] == 0.0 and lobes["BECKMANN"][2] == near(1.25)
+
+
+def test_principled_alpha_and_emission(case):
+    got = case("materials")
+    veil, lamp = got["veil"], got["lamp"]
+    # The core scales lobes by opacity, so they arrive unscaled.
+    assert veil["opacity"] == near(0.25) and veil["count"] == 1
+    assert veil["lobes"]["LAMBERT"][0] == near([0.75, 0.5, 0.25])
+    assert lamp["emission"] == near([3.0, 1.5, 0.75]) and lamp["opacity"] == 1.0
+    assert not any(got["plain"]["emission"])
+
+
+def test_normals(case):
+    meshes = case("attributes")
+    left, right = [-H, 0, H], [H, 0, H]
+    assert meshes["flat"]["normals"] is None
+    assert np.array(meshes["smooth"]["normals"]) == near(np.array([left, left, [0, 0, 1], [0, 0, 1], right, right]))
+    # A sharp ridge parts the two slopes: each corner has its face's normal.
+    assert np.array(meshes["sharp"]["normals"]) == near(np.array([[left] * 3] * 2 + [[right] * 3] * 2))
+    # Flat beside smooth needs corners too; the flat face keeps its own normal.
+    mixed = np.array(meshes["mixed"]["normals"])
+    assert mixed.shape == (4, 3, 3) and mixed[:2] == near(np.array([[left] * 3] * 2))
+    # Blender keeps the user's normals as two angles, each up to 2 pi in 2^15 steps of 1.9e-4.
+    custom = np.array(meshes["custom"]["normals"])
+    assert custom.shape == (4, 3, 3) and np.abs(custom - [0.6, 0.0, 0.8]).max() < 2 * 1.9e-4
+
+
+def test_uvs_colours_and_slots_of_faces(case):
+    """Each was set from the place of its corner, and is found there again after quads became triangles."""
+    meshes = case("attributes")
+    painted, points = meshes["painted"], meshes["points"]
+    at = np.array(painted["positions"])[painted["triangles"]]
+    assert at.shape == (4, 3, 3)
+    # Of two UV maps the one for renders is taken.
+    assert np.array(painted["uvs"]) == near(at[..., :2] * [0.5, 0.25])
+    face = np.array([0, 0, 1, 1])
+    assert painted["material_slots"] == face.tolist()
+    wanted = np.stack([at[..., 2], np.tile(face[:, None], 3), np.full((4, 3), 0.5)], axis=2)
+    assert np.array(painted["colors"]) == near(wanted)
+    # Colours of vertices are spread to the corners.
+    at = np.array(points["positions"])[points["triangles"]]
+    assert np.array(points["colors"]) == near(at * [1.0, 0.25, 1.0] + [1.0, 0.0, 0.0])
+    for name in ("uvs", "colors", "material_slots"):
+        assert meshes["flat"][name] is None
+
+
+def test_object_materials_and_mirrors_share_the_mesh(case):
+    got = case("sharing")
+    assert got["meshes"] == 1 and len(got["rows"]) == 3
+    materials = {name: row["materials"] for name, row in got["rows"].items()}
+    assert materials == {"plain": ["of the mesh"], "own": ["of the object"], "mirrored": ["of the mesh"]}
+    assert got["rows"]["mirrored"]["matrix"] == near(np.array([[-1, 0, 0, 5], [0, 2, 0, 0], [0, 0, 3, 0]]))
+
+
+def test_light_power_in_physical_units(case):
+    """Ten watts. Point and spot: W/sr of the whole sphere; sun: W/m^2; area: W/(m^2 sr) of a cosine emitter's one side."""
+    got = case("lights")
+    tint = np.array([1.0, 0.5, 0.25])
+    for kind, factor in (("POINT", 1 / (4 * math.pi)), ("SPOT", 1 / (4 * math.pi)), ("SUN", 1.0)):
+        assert got[kind]["kind"] == kind and got[kind]["emission"] == near(list(10 * factor * tint)), kind
+    # The sides of 2 and 0.5 m are scaled by 3; before 4.0 Blender divides by 4 where physics wants pi.
+    share = math.pi if got["version"] >= [4, 0] else 4.0
+    assert got["rectangle"]["kind"] == got["disk"]["kind"] == "AREA"
+    assert got["rectangle"]["size"] == near([6.0, 1.5]) and got["rectangle"]["emission"] == near([10 / (9 * share)] * 3)
+    assert got["disk"]["size"] == near([2.0, 2.0]) and got["disk"]["emission"] == near([10 / (math.pi * share)] * 3)
+
+
+def test_light_exposure_and_temperature_where_blender_has_them(case):
+    got = case("lights")
+    present = got["version"] >= [4, 5]
+    assert ("exposure" in got, "temperature" in got) == (present, present)
+    if present:
+        assert got["exposure"]["emission"] == near([4 * 10 / (4 * math.pi)] * 3)
+        warm = got["temperature color"]
+        assert warm[0] > 1 > warm[1] > warm[2]
+        assert got["temperature"]["emission"] == near([10 / (4 * math.pi) * c for c in warm])
+
+
+def test_camera_window(case):
+    """Lens 50 on a sensor of 36: 0.36 either side along the longer edge, of which shift counts twice its share."""
+    got = case("cameras")
+    wanted = {
+        "portrait": (0.18, 0.36, 0.0, 0.0),
+        "shift": (0.36, 0.18, 0.072, -0.144),
+        "wide pixels": (0.36, 0.18, 0.0, 0.0),
+        # Pixels 1.5 times as wide as high: 20 x 50 of them are as 30 x 50; Blender's shift is of the longer edge.
+        "all": (0.216, 0.36, 0.18, 0.09),
+    }
+    for name, (x, y, shift_x, shift_y) in wanted.items():
+        window = got[name]["window"]
+        assert window == near([shift_x - x, shift_x + x, shift_y - y, shift_y + y]), name
+        # Blender's own projection takes the window's corners to those of the image.
+        left, right, bottom, top = window
+        for corner, place in (((left, bottom), (-1, -1)), ((right, top), (1, 1))):
+            x_, y_, _, w = np.array(got[name]["projection"]) @ [*corner, -1.0, 1.0]
+            assert (x_ / w, y_ / w) == near(place), name
+
+
+def test_border_region(case):
+    """Of 40 x 20 pixels the middle half in x, and from 10 to 18 in y; the whole image keeps its size."""
+    assert case("cameras")["border"] == [40, 20, 10, 10, 20, 8]
+
+
+def test_what_is_hidden_in_renders_stays_out(case):
+    """Objects, lights and whole collections; what is hidden in viewports only is rendered."""
+    assert case("hidden") == ["hidden in viewports", "shown", "shown light"]

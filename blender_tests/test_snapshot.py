@@ -1,0 +1,107 @@
+"""A snapshot in a file is the snapshot: it loads equal, compares by every number, and renders the same bits."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from bindings.abi import Pass
+from bindings.npz import save_npz
+from bindings.session import Session
+from bindings.snapshot import Lobe, MeshData, SceneSnapshot
+from tiny_scenes import quad, showroom
+
+
+def rich():
+    """The showroom and a mesh with every array that a mesh can have."""
+    plain = quad(1.0, "rich")
+    corner = np.arange(6, dtype=np.float32).reshape(2, 3, 1)
+    mesh = MeshData(
+        "rich",
+        plain.positions,
+        plain.triangles,
+        normals=np.tile(np.float32([0, 0, 1]), (4, 1)),
+        uvs=corner * np.float32([0.1, 0.2]),
+        colors=corner * np.float32([0.1, 0.2, 0.3]),
+        material_slots=[0, 1],
+    )
+    room = showroom(16)
+    return dataclasses.replace(room, meshes=(*room.meshes, mesh))
+
+
+@pytest.fixture
+def saved(tmp_path):
+    path = str(tmp_path / "scene.npz")
+    rich().save(path)
+    return path
+
+
+def leaves(item, path=()):
+    """The path of every number, text and array within a record."""
+    if dataclasses.is_dataclass(item):
+        for field in dataclasses.fields(item):
+            yield from leaves(getattr(item, field.name), (*path, field.name))
+    elif isinstance(item, tuple):
+        for number, part in enumerate(item):
+            yield from leaves(part, (*path, number))
+    elif item is not None:
+        yield path
+
+
+def changed(item, path):
+    """A copy in which the leaf at the path differs in one number."""
+    if path:
+        key, rest = path[0], path[1:]
+        if isinstance(item, tuple):
+            return (*item[:key], changed(item[key], rest), *item[key + 1 :])
+        return dataclasses.replace(item, **{key: changed(getattr(item, key), rest)})
+    if isinstance(item, np.ndarray):
+        copy = item.copy()
+        flat = copy.reshape(-1)
+        # An index stays within its table: name 7 of 8 becomes name 6.
+        flat[-1] = np.nextafter(flat[-1], flat.dtype.type(np.inf)) if copy.dtype.kind == "f" else flat[-1] ^ 1
+        return copy
+    if isinstance(item, str):
+        return item + "x"
+    if isinstance(item, bool):
+        return not item
+    return item + 1 if isinstance(item, int) else float(np.nextafter(item, np.inf))
+
+
+def test_a_loaded_snapshot_equals_the_saved_one(saved):
+    loaded = SceneSnapshot.load(saved)
+    assert loaded == rich()
+    assert loaded.meshes[1].uvs.dtype == np.float32 and loaded.instances.matrices.dtype == np.float64
+    assert loaded.meshes[0].normals is None
+
+
+def test_a_file_of_another_record_is_refused(tmp_path):
+    path = str(tmp_path / "lobe.npz")
+    save_npz(Lobe(), path)
+    with pytest.raises(ValueError, match="holds no scene snapshot"):
+        SceneSnapshot.load(path)
+
+
+def test_one_number_makes_a_difference(saved):
+    """Each field in turn, by the smallest step that its type knows; the file keeps that step."""
+    loaded, paths = SceneSnapshot.load(saved), list(leaves(rich()))
+    assert len(paths) > 200
+    assert [path for path in paths if changed(loaded, path) == rich()] == []
+
+
+def test_the_smallest_step_survives_the_file(tmp_path):
+    other = changed(rich(), ("lights", 1, "emission", 2))
+    path = str(tmp_path / "other.npz")
+    other.save(path)
+    assert SceneSnapshot.load(path) == other and SceneSnapshot.load(path) != rich()
+
+
+def test_the_loaded_snapshot_renders_the_same_bits(saved):
+    def bits(snapshot):
+        with Session.upload(snapshot) as session:
+            assert session.render_all()
+            return {which.name: session.read(which).tobytes() for which in Pass}
+
+    first, again = bits(rich()), bits(SceneSnapshot.load(saved))
+    assert [name for name in first if first[name] != again[name]] == []
+    # Equal zeros would prove nothing.
+    assert np.frombuffer(first["COMBINED"], np.float32).std() > 0.01
