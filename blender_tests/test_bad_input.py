@@ -10,8 +10,8 @@ PICTURES = {
     "infinite_vertices": ["Cube"],
     "huge_vertices": None,
     "zero_area_faces": ["Cube"],
-    "loose_edges": None,
-    "no_faces": None,
+    "loose_edges": ["Wire", "faces"],
+    "no_faces": ["Dust", "faces"],
     "spare_uv_layers": None,
     "singular_matrix": ["Cube"],
     "nan_matrix": ["Cube"],
@@ -20,16 +20,28 @@ PICTURES = {
     "nan_power": ["Light"],
     "infinite_power": ["Light"],
     "nan_radius": ["Light"],
-    "zero_area_light": None,
-    "missing_slot": None,
-    "missing_image": ["Material"],
-    "unsupported_node": ["Fur"],
-    "wild_material": ["Wild"],
+    "zero_area_light": ["Light", "area"],
+    "missing_slot": ["Cube", "slot 2", "empty"],
+    "missing_image": ["Material", "Plane"],
+    "unsupported_node": ["Fur", "Cube"],
+    "wild_material": ["Wild", "Cube"],
     "empty_scene": None,
     "panoramic_camera": ["Camera"],
     "no_world_no_light": None,
     "text_metaballs_and_curves": None,
 }
+# One list of words for each message that `unsupported_features` must give, and no other message may come.
+UNSUPPORTED = [
+    ["object 'Cube'", "hair", "'Fluff'"],
+    ["view layer", "Mist", "Diffuse Direct", "Vector", "Cryptomatte Object", "'Rust'"],
+    ["view layer", "Freestyle"],
+    ["light 'Light'", "glossy off"],
+    ["object 'Cube'", "shadow off"],
+    ["world 'World'", "camera off"],
+    ["film exposure", "2"],
+    ["material 'Shiny'", "object 'Cube'", "node", "GGX"],
+]
+LINKING = [["light 'Light'", "light linking", "'Chosen'"], ["light 'Light'", "shadow linking", "'Chosen'"]]
 DARK = {"empty_scene", "no_world_no_light"}
 
 
@@ -62,3 +74,22 @@ def test_refusals(which, name, word, tmp_path):
     assert code in ((0,) if which == MODULE else (0, 1)), said[-2000:]
     told = value["error"] if value else said
     assert word in told.lower(), said[-2000:]
+
+
+@pytest.mark.parametrize("which, expected", {MODULE: UNSUPPORTED + LINKING, PROGRAM: UNSUPPORTED}.items())
+def test_unsupported_features_are_told(which, expected, tmp_path):
+    """The program is a Blender before 4.0 and has no light linking."""
+    got = blenders.run(which, tmp_path, "bad_cases", "unsupported_features")
+    assert got["error"] == "" and got["finite"]
+    for words in expected:
+        assert any(all(word in line for word in words) for line in got["messages"]), (words, got["messages"])
+    assert len(got["messages"]) == len(expected), got["messages"]
+    # Depth is rendered, so it is not among the missing passes.
+    assert not any("Depth" in line or " Z" in line for line in got["messages"]), got["messages"]
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_nothing_is_said_about_the_factory_scene(which, tmp_path):
+    got = blenders.run(which, tmp_path, "bad_cases", "factory_scene")
+    assert got["error"] == "" and got["finite"] and got["mean"] > 0.0
+    assert got["messages"] == []

@@ -40,6 +40,8 @@ def save_npz(record, path):
 
 def load_npz(path):
     with np.load(os.fspath(path), allow_pickle=False) as archive:
+        if _TREE not in archive:
+            raise ValueError(f"{path} holds no scene snapshot")
 
         def decode(value):
             if isinstance(value, list):

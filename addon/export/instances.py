@@ -6,6 +6,7 @@ import numpy as np
 
 from ..bindings.enums import InstanceKind, Shading
 from ..bindings.snapshot import InstanceTable
+from .checks import check_hair, check_object
 from .lights import export_light
 from .mesh import export_mesh, read_positions
 
@@ -13,6 +14,7 @@ from .mesh import export_mesh, read_positions
 _SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}
 _SHOWS_NOTHING = {"ARMATURE", "CAMERA", "EMPTY", "LATTICE", "LIGHT_PROBE", "SPEAKER"}
 _POLL_EVERY = 256
+_MATRICES_AT_ONCE = 4096
 
 
 class _Object:
@@ -33,6 +35,7 @@ class Instances:
         self._meshes = {}
         self._objects = {}
         self._checked = set()
+        self._checked_hair = set()
         self._list = []
         self._rows = []
         self._matrices = []
@@ -41,9 +44,11 @@ class Instances:
         for number, entry in enumerate(depsgraph.object_instances):
             if number % _POLL_EVERY == 0:
                 poll()
+            thing = entry.object
+            if entry.show_particles and thing.type == "MESH":
+                self._check_hair(thing)
             if not entry.show_self:
                 continue
-            thing = entry.object
             if thing.type == "MESH":
                 self._add_mesh(thing, entry.matrix_world, poll)
             elif thing.type == "LIGHT":
@@ -53,7 +58,7 @@ class Instances:
             elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
                 self.messages.add(f"object '{thing.name}': type {thing.type} is not supported")
 
-    def to_table(self):
+    def to_table(self, poll):
         objects = self._list
         rows = np.array(self._rows, np.intp)
 
@@ -66,10 +71,15 @@ class Instances:
             if item.slots not in starts:
                 starts[item.slots] = len(slots)
                 slots.extend(item.slots)
-        matrices = np.fromiter(chain.from_iterable(chain.from_iterable(self._matrices)), float, 16 * len(rows))
-        matrices = matrices.reshape(-1, 4, 4)
+        matrices = np.empty((len(rows), 4, 4))
+        for first in range(0, len(rows), _MATRICES_AT_ONCE):
+            poll()
+            part = self._matrices[first : first + _MATRICES_AT_ONCE]
+            numbers = np.fromiter(chain.from_iterable(chain.from_iterable(part)), float, 16 * len(part))
+            matrices[first : first + len(part)] = numbers.reshape(-1, 4, 4)
         for number, item in enumerate(objects):
             if item.local is not None:
+                poll()
                 here = rows == number
                 matrices[here] = matrices[here] @ item.local
         return InstanceTable(
@@ -106,7 +116,7 @@ class Instances:
         item.name = thing.name
         item.mesh, item.local, used = 0, None, {0}
         if item.kind == InstanceKind.MESH:
-            item.mesh, used = self._mesh(thing, data_key)
+            item.mesh, used = self._mesh(thing, data_key, poll)
             if item.mesh < 0:
                 return -1
         else:
@@ -118,11 +128,12 @@ class Instances:
         self._list.append(item)
         return len(self._list) - 1
 
-    def _mesh(self, thing, data_key):
+    def _mesh(self, thing, data_key, poll):
         """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces."""
         if data_key not in self._meshes:
             original = thing.original.data
-            data = export_mesh(thing.data, thing.name if original is None else original.name)
+            data = export_mesh(thing.data, thing.name if original is None else original.name, poll)
+            poll()
             used = {0} if data.material_slots is None else set(np.unique(data.material_slots).tolist())
             if len(data.triangles):
                 self.meshes.append(data)
@@ -141,7 +152,13 @@ class Instances:
             for number in sorted({min(slot, last) for slot in used}):
                 if materials[number] is None:
                     self.messages.add(f"object '{thing.name}': material slot {number + 1} is empty, grey is used")
-        return tuple(self.materials.number(material) for material in materials)
+        return tuple(self.materials.number(material, thing.name) for material in materials)
+
+    def _check_hair(self, thing):
+        key = thing.original.as_pointer()
+        if key not in self._checked_hair:
+            self._checked_hair.add(key)
+            check_hair(thing, self.messages)
 
     def _check(self, thing):
         """Says what the object asks for that has no counterpart."""
@@ -149,16 +166,7 @@ class Instances:
         if key in self._checked:
             return
         self._checked.add(key)
-        who = f"object '{thing.name}'"
-        for name in ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow"):
-            if not getattr(thing, f"visible_{name}", True):
-                self.messages.add(f"{who}: ray visibility ({name.replace('_', ' ')} off) is not supported")
-        if getattr(thing, "is_shadow_catcher", False):
-            self.messages.add(f"{who}: shadow catchers are not supported")
-        if getattr(thing, "is_holdout", False) or thing.original.holdout_get(view_layer=self.view_layer):
-            self.messages.add(f"{who}: holdout is not supported")
-        if thing.original.indirect_only_get(view_layer=self.view_layer):
-            self.messages.add(f"{who}: indirect only is not supported")
+        check_object(thing, self.view_layer, self.messages)
 
 
 def _placement(kind, positions):

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind
+from .checks import check_light_object
 from .sockets import Reader, output_node, source
 
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
@@ -117,6 +118,7 @@ def _nodes(light, who, messages):
 
 
 def _check(thing, light, who, messages):
+    check_light_object(thing, who, messages)
     cycles = getattr(light, "cycles", None)
     if light.type == "AREA" and getattr(cycles, "is_portal", False):
         messages.add(f"{who}: portals are not supported, it shines as an area light")

@@ -29,18 +29,19 @@ class Materials:
         self.list = []
         self._numbers = {}
 
-    def number(self, material):
-        """The number of a material; None is the default grey, as everywhere in Blender."""
+    def number(self, material, asker):
+        """The number of a material; None is the default grey, as everywhere in Blender. asker is the object's name."""
         material = self.override or material
         key = None if material is None else material.original.as_pointer()
         if key not in self._numbers:
             self._numbers[key] = len(self.list)
-            self.list.append(_DEFAULT if material is None else export_material(material, self.messages))
+            self.list.append(_DEFAULT if material is None else export_material(material, self.messages, asker))
         return self._numbers[key]
 
 
-def export_material(material, messages):
-    who = f"material '{material.name}'"
+def export_material(material, messages, asker=None):
+    """asker is the object that is met first with the material: messages name it too."""
+    who = f"material '{material.name}'" + ("" if asker is None else f" on object '{asker}'")
     own = material.lancer
     ambient = messages.color(own.ka, who, "ambient colour")
     if own.model != "NODES":

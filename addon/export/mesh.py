@@ -5,6 +5,8 @@ import numpy as np
 
 from ..bindings.snapshot import MeshData
 
+_TRIANGLES_AT_ONCE = 1 << 18
+
 
 def _read(collection, attribute, dtype, width):
     values = np.empty(len(collection) * width, dtype)
@@ -20,10 +22,15 @@ def _attribute(mesh, name, domain):
     return attribute.data
 
 
-def export_mesh(mesh, name):
-    """The mesh with the normals that Blender shades with, its render UV map and its first colour attribute."""
+def export_mesh(mesh, name, poll):
+    """The mesh with the normals that Blender shades with, its render UV map and its first colour attribute.
+
+    poll ends the export by an exception; one array of Blender's is the least that it can wait for.
+    """
     positions = read_positions(mesh)
+    poll()
     mesh.calc_loop_triangles()
+    poll()
     count = len(mesh.loop_triangles)
     if count == 0:
         return MeshData(name=name, positions=positions)
@@ -32,15 +39,23 @@ def export_mesh(mesh, name):
         corners = None
     else:
         corners = _read(mesh.loop_triangles, "loops", np.int32, 3)
+        poll()
     vertices = _corner_vertices(mesh)
-    triangles = vertices.reshape(-1, 3) if corners is None else vertices[corners]
+    triangles = vertices.reshape(-1, 3) if corners is None else _gather(vertices, corners, poll)
+    poll()
+    normals = _normals(mesh, corners, poll)
+    poll()
+    uvs = _uvs(mesh, corners, poll)
+    poll()
+    colors = _colors(mesh, corners, triangles, poll)
+    poll()
     return MeshData(
         name=name,
         positions=positions,
         triangles=triangles.view(np.uint32),
-        normals=_normals(mesh, corners),
-        uvs=_uvs(mesh, corners),
-        colors=_colors(mesh, corners, triangles),
+        normals=normals,
+        uvs=uvs,
+        colors=colors,
         material_slots=_material_slots(mesh, corners),
     )
 
@@ -59,11 +74,21 @@ def _corner_vertices(mesh):
     return _read(mesh.loops, "vertex_index", np.int32, 1)
 
 
-def _at_corners(values, corners):
-    return values.reshape(-1, 3, values.shape[1]) if corners is None else values[corners]
+def _gather(values, indices, poll):
+    """values[indices], in parts short enough to be stopped between."""
+    result = np.empty(indices.shape + values.shape[1:], values.dtype)
+    for first in range(0, len(indices), _TRIANGLES_AT_ONCE):
+        poll()
+        part = slice(first, first + _TRIANGLES_AT_ONCE)
+        result[part] = values[indices[part]]
+    return result
 
 
-def _normals(mesh, corners):
+def _at_corners(values, corners, poll):
+    return values.reshape(-1, 3, values.shape[1]) if corners is None else _gather(values, corners, poll)
+
+
+def _normals(mesh, corners, poll):
     """None for flat faces, (vertices, 3) where all is smooth, else (triangles, 3, 3)."""
     if hasattr(mesh, "normals_domain"):
         domain = mesh.normals_domain
@@ -71,7 +96,7 @@ def _normals(mesh, corners):
             return None
         if domain == "POINT":
             return _read(mesh.vertex_normals, "vector", np.float32, 3)
-        return _at_corners(_read(mesh.corner_normals, "vector", np.float32, 3), corners)
+        return _at_corners(_read(mesh.corner_normals, "vector", np.float32, 3), corners, poll)
     if not (mesh.has_custom_normals and mesh.use_auto_smooth):
         smooth = _read(mesh.polygons, "use_smooth", bool, 1)
         if not smooth.any():
@@ -79,12 +104,12 @@ def _normals(mesh, corners):
         if smooth.all() and not mesh.use_auto_smooth:
             return _read(mesh.vertex_normals, "vector", np.float32, 3)
     mesh.calc_normals_split()
-    normals = _at_corners(_read(mesh.loops, "normal", np.float32, 3), corners)
+    normals = _at_corners(_read(mesh.loops, "normal", np.float32, 3), corners, poll)
     mesh.free_normals_split()
     return normals
 
 
-def _uvs(mesh, corners):
+def _uvs(mesh, corners, poll):
     layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
     if layer is None:
         return None
@@ -92,17 +117,17 @@ def _uvs(mesh, corners):
         values = _read(layer.uv, "vector", np.float32, 2)
     else:
         values = _read(layer.data, "uv", np.float32, 2)
-    return _at_corners(values, corners) if len(values) else None
+    return _at_corners(values, corners, poll) if len(values) else None
 
 
-def _colors(mesh, corners, triangles):
+def _colors(mesh, corners, triangles, poll):
     if len(mesh.color_attributes) == 0:
         return None
     attribute = mesh.color_attributes[0]
     values = _read(attribute.data, "color", np.float32, 4).reshape(-1, 4)[:, :3]
     if len(values) == 0:
         return None
-    return values[triangles] if attribute.domain == "POINT" else _at_corners(values, corners)
+    return _gather(values, triangles, poll) if attribute.domain == "POINT" else _at_corners(values, corners, poll)
 
 
 def _material_slots(mesh, corners):

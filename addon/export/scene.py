@@ -6,6 +6,7 @@ from ..bindings.enums import Pass
 from ..bindings.session import Cancelled
 from ..bindings.snapshot import SceneSnapshot
 from .camera import export_camera
+from .checks import check_scene, check_view_layer
 from .instances import Instances
 from .materials import Materials
 from .messages import Messages
@@ -33,15 +34,16 @@ def export_scene(depsgraph, options=None, poll=None):
     view_layer = depsgraph.view_layer
     # Ask for camera and settings first: what is missing there should not cost an export.
     camera = export_camera(options.camera or scene.camera, depsgraph, messages)
-    settings = export_settings(depsgraph, options.passes)
-    _check(scene, messages)
+    settings = export_settings(depsgraph, options.passes, messages)
+    check_scene(scene, messages)
+    check_view_layer(scene, view_layer, messages)
     materials = Materials(messages, view_layer.material_override)
     instances = Instances(view_layer, materials, messages)
     instances.collect(depsgraph, obey)
     world = getattr(view_layer, "world_override", None) or scene.world
     snapshot = SceneSnapshot(
         meshes=tuple(instances.meshes),
-        instances=instances.to_table(),
+        instances=instances.to_table(obey),
         materials=tuple(materials.list),
         lights=tuple(instances.lights),
         world=export_world(world, messages),
@@ -50,12 +52,3 @@ def export_scene(depsgraph, options=None, poll=None):
     )
     obey()
     return snapshot, messages
-
-
-def _check(scene, messages):
-    """Says what the render settings ask for that has no counterpart."""
-    who = f"scene '{scene.name}'"
-    if scene.render.use_motion_blur:
-        messages.add(f"{who}: motion blur is not supported, the frame is rendered sharp")
-    if scene.render.use_multiview:
-        messages.add(f"{who}: stereoscopy is not supported, every view shows the scene's camera")

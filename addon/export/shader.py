@@ -83,6 +83,9 @@ class ShaderReader:
             roughness = self.reader.number(node, ("Roughness",), 0.5, 0.0, 1.0)
         self.reader.unsupported(node, ("Anisotropy",))
         self.reader.unsupported(node, ("Normal",))
+        # Without roughness all distributions are the same mirror.
+        if roughness**2 >= _MIRROR_BELOW and node.distribution != "BECKMANN":
+            self.reader.tell(node, f"distribution {node.distribution} is not supported, Beckmann is used")
         self._metal(_scaled(self.reader.color(node, ("Color",)), weight), roughness**2)
 
     def _metallic(self, node, weight):

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .checks import check_world
 from .sockets import Reader, output_node, source
 
 _BLACK = (0.0, 0.0, 0.0)
@@ -11,6 +12,7 @@ def export_world(world, messages):
     if world is None:
         return _BLACK
     who = f"world '{world.name}'"
+    check_world(world, who, messages)
     if bpy.app.version < (5, 0) and not world.use_nodes:
         return messages.color(world.color, who, "colour")
     output = output_node(world.node_tree, "OUTPUT_WORLD") if world.node_tree is not None else None

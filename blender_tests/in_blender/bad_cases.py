@@ -152,6 +152,51 @@ def unsupported_node():
     return _outcome()
 
 
+def unsupported_features():
+    """One of each thing that has no counterpart, outside of nodes."""
+    scene = stage.room()
+    layer, cube, lamp = bpy.context.view_layer, bpy.data.objects["Cube"], bpy.data.objects["Light"]
+    # Strands on the cube.
+    bpy.context.view_layer.objects.active = cube
+    system = cube.modifiers.new("Fluff", "PARTICLE_SYSTEM").particle_system
+    system.name = "Fluff"
+    system.settings.type, system.settings.render_type, system.settings.count = "HAIR", "PATH", 5
+    # Passes and lines. Without a line set Blender has nothing to draw, for which it would want a graphics device.
+    layer.use_pass_mist = layer.use_pass_diffuse_direct = layer.use_pass_vector = True
+    layer.use_pass_cryptomatte_object = layer.use_pass_z = True
+    layer.aovs.add().name = "Rust"
+    scene.render.use_freestyle = True
+    sets = layer.freestyle_settings.linesets
+    for lines in list(sets):
+        sets.remove(lines)
+    # Flags of rays, and lamps that shine on some things only.
+    lamp.visible_glossy = False
+    cube.visible_shadow = False
+    scene.world.cycles_visibility.camera = False
+    scene.cycles.film_exposure = 2.0
+    if bpy.app.version >= (4, 0):
+        chosen = bpy.data.collections.new("Chosen")
+        lamp.light_linking.receiver_collection = lamp.light_linking.blocker_collection = chosen
+    # A rough gloss of another distribution, and a smooth one, for which all are the same.
+    shiny = stage.shader("ShaderNodeBsdfGlossy", "Shiny", Roughness=0.4)
+    smooth = stage.shader("ShaderNodeBsdfGlossy", "Smooth", Roughness=0.0)
+    for material in (shiny, smooth):
+        next(n for n in material.node_tree.nodes if n.type == "BSDF_GLOSSY").distribution = "GGX"
+    cube.data.materials[0] = shiny
+    bpy.data.objects["Plane"].data.materials[0] = smooth
+    return _outcome()
+
+
+def factory_scene():
+    """What Blender opens with."""
+    bpy.ops.wm.read_factory_settings()
+    scene = bpy.context.scene
+    scene.render.engine = "LANCER"
+    scene.lancer.quality, scene.lancer.samples = "CUSTOM", 1
+    scene.render.resolution_percentage = 3
+    return _outcome()
+
+
 def wild_material():
     stage.room()
     cube = bpy.data.objects["Cube"]

@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <new>
+#include <system_error>
 
 namespace lancer {
 
@@ -50,6 +51,9 @@ template <class Body> lancer_status guard(Body &&body) noexcept {
     return fail(LANCER_ERROR_MEMORY, "out of memory");
   } catch (const std::length_error &) {
     return fail(LANCER_ERROR_MEMORY, "out of memory: an array is larger than any memory");
+  } catch (const std::system_error &) {
+    // Only threads are asked of the system here.
+    return fail(LANCER_ERROR_MEMORY, "not enough memory, or too many threads: the system gives no more threads");
   } catch (const std::exception &error) {
     return fail(LANCER_ERROR_INTERNAL, error.what());
   } catch (...) {

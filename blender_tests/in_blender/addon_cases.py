@@ -1,0 +1,293 @@
+"""The add-on as a guest in Blender: what it adds, takes away, shows and obeys. Each function returns numbers to judge."""
+
+import ctypes
+import sys
+import types
+
+import bpy
+import numpy as np
+import stage
+
+_OWNERS = ("Scene", "Object", "Material", "Light")
+
+
+def _traces():
+    """Everything by which Blender could still know the add-on."""
+    panels = [cls for cls in bpy.types.Panel.__subclasses__() if cls.is_registered]
+    return {
+        "properties": [name for name in _OWNERS if "lancer" in getattr(bpy.types, name).bl_rna.properties],
+        "panels": [cls.__name__ for cls in panels if "LANCER" in getattr(cls, "COMPAT_ENGINES", ())],
+        "engines": [cls.__name__ for cls in bpy.types.RenderEngine.__subclasses__() if cls.is_registered],
+        "types": [name for name in dir(bpy.types) if "lancer" in name.lower()],
+    }
+
+
+def registration():
+    """What is there while registered, after unregister, and after register again; each twice, as users click."""
+    import addon
+
+    result = {"first": _traces()}
+    addon.unregister()
+    addon.unregister()
+    result["without"] = _traces()
+    addon.register()
+    addon.register()
+    result["again"] = _traces()
+    result["mean"] = float(stage.picture(stage.room())[..., :3].mean())
+    return result
+
+
+def _forget():
+    """As if the add-on had never been imported."""
+    import addon
+
+    addon.unregister()
+    for name in [name for name in sys.modules if name.split(".")[0] == "addon"]:
+        del sys.modules[name]
+
+
+def without_numpy():
+    """Registers as if numpy were not installed, then with it."""
+    _forget()
+    numpy = sys.modules["numpy"]
+    sys.modules["numpy"] = None
+    import addon
+
+    try:
+        addon.register()
+        text = ""
+    except RuntimeError as error:
+        text = str(error)
+    sys.modules["numpy"] = numpy
+    result = {"error": text, "without": _traces()}
+    addon.register()
+    result["with"] = _traces()
+    addon.unregister()
+    return result
+
+
+def other_library(folder):
+    """Renders with the copy of the add-on in folder: the error's text, and whether the add-on came from there."""
+    _forget()
+    sys.path.insert(0, folder)
+    import addon
+
+    addon.register()
+    stage.room()
+    try:
+        bpy.ops.render.render()
+        text = ""
+    except RuntimeError as error:
+        text = str(error)
+    addon.unregister()
+    return {"error": text, "from": addon.__file__}
+
+
+class _Layout:
+    """Takes a panel's calls and judges them as Blender would: a property must exist, an icon must have a name known to it."""
+
+    def __init__(self, shown=None):
+        self.shown = [] if shown is None else shown
+
+    def row(self, **_):
+        return _Layout(self.shown)
+
+    def column(self, **_):
+        return _Layout(self.shown)
+
+    def separator(self, **_):
+        pass
+
+    def prop(self, data, name, **options):
+        if name not in data.bl_rna.properties:
+            raise KeyError(f"{data.bl_rna.identifier}.{name}")
+        self._judge("prop", options)
+        self.shown.append(name)
+
+    def label(self, **options):
+        self._judge("label", options)
+        self.shown.append(options["text"])
+
+    def template_node_view(self, tree, node, socket):
+        if socket.node != node or node.id_data != tree:
+            raise ValueError("the socket is of another node")
+        self.shown.append("nodes")
+
+    @staticmethod
+    def _judge(name, options):
+        parameters = bpy.types.UILayout.bl_rna.functions[name].parameters
+        for option, value in options.items():
+            if option not in parameters:
+                raise TypeError(f"{name} has no option {option}")
+            if option == "icon" and value not in parameters["icon"].enum_items:
+                raise TypeError(f"no icon {value}")
+
+
+def _draw(cls, context):
+    """Calls draw as Blender does, on a stand-in: a panel exists only within a window."""
+    members = {name: value for base in reversed(cls.__mro__[:2]) for name, value in vars(base).items()}
+    panel = types.SimpleNamespace(layout=_Layout())
+    panel._column = types.MethodType(members["_column"], panel)
+    if "_draw_nodes" in members:
+        panel._draw_nodes = members["_draw_nodes"].__get__(None, cls)
+    cls.draw(panel, context)
+    return panel.layout.shown
+
+
+def _variants(context):
+    """The context again and again, with other choices made."""
+    yield "plain"
+    bpy.ops.render.render()
+    yield "rendered"
+    own = context.scene.lancer
+    for integrator in own.bl_rna.properties["integrator"].enum_items.keys():
+        own.integrator = integrator
+        yield integrator
+    for model in ("KD_KS", "PHONG", "BLINN_PHONG", "NODES"):
+        context.material.lancer.model = model
+        yield model
+    context.material.node_tree.nodes.clear()
+    yield "material without output"
+    context.world.node_tree.nodes.clear()
+    yield "world without output"
+    context.light.lancer.use_separate_colors = True
+    if "use_temperature" in context.light.bl_rna.properties:
+        context.light.use_temperature = True
+    lamp = next(item for item in bpy.data.objects if item.type == "LIGHT")
+    for kind in ("SUN", "SPOT", "AREA", "POINT"):
+        lamp.data.type = kind
+        # The type of the data-block's Python object follows its kind only when asked for anew.
+        context.light = lamp.data
+        yield kind
+        if kind == "AREA":
+            for shape in ("SQUARE", "RECTANGLE", "DISK", "ELLIPSE"):
+                lamp.data.shape = shape
+                yield shape
+
+
+def panels():
+    """Draws every panel in many states: what was shown, and what went wrong."""
+    from addon import ui
+
+    scene = stage.room(width=16, height=16, samples=1)
+    cube = bpy.data.objects["Cube"]
+    context = types.SimpleNamespace(
+        engine="LANCER",
+        scene=scene,
+        view_layer=scene.view_layers[0],
+        object=cube,
+        material=cube.data.materials[0],
+        light=next(item.data for item in bpy.data.objects if item.type == "LIGHT"),
+        world=scene.world,
+    )
+    shown, errors, polls = {cls.__name__: {} for cls in ui._CLASSES}, [], []
+    for variant in _variants(context):
+        for cls in ui._CLASSES:
+            try:
+                if not cls.poll(context):
+                    polls.append(f"{cls.__name__}: hidden, {variant}")
+                shown[cls.__name__][variant] = _draw(cls, context)
+            except Exception as error:
+                errors.append(f"{cls.__name__}, {variant}: {type(error).__name__}: {error}")
+    nothing = types.SimpleNamespace(engine="LANCER", object=None, material=None, light=None, world=None)
+    hidden = [cls.__name__ for cls in ui._CLASSES if not cls.poll(nothing)]
+    context.engine = "CYCLES"
+    foreign = [cls.__name__ for cls in ui._CLASSES if cls.poll(context)]
+    return {"shown": shown, "errors": errors, "polls": polls, "hidden": hidden, "foreign": foreign}
+
+
+def _statistics(scene):
+    from addon import engine
+
+    return engine.last_statistics[scene.name]
+
+
+def time_limit():
+    scene = stage.room(samples=10**6)
+    scene.lancer.time_limit = 1.0
+    mean = float(stage.picture(scene)[..., :3].mean())
+    return {"samples": _statistics(scene)["samples"], "mean": mean}
+
+
+def animated_seed():
+    """Whether the noise of frame 2 is that of frame 1: with the setting off, and on."""
+    scene = stage.room(samples=1)
+    result = {}
+    for on in (False, True):
+        scene.lancer.use_animated_seed = on
+        frames = []
+        for frame in (1, 2):
+            scene.frame_set(frame)
+            frames.append(stage.picture(scene))
+        result[str(on)] = bool((frames[0] == frames[1]).all())
+    return result
+
+
+def quality():
+    own = stage.empty().lancer
+    result = {}
+    for name in ("DRAFT", "GOOD", "FINAL"):
+        own.quality = name
+        result[name] = [own.samples, own.quality]
+    own.samples = 77
+    result["own number"] = [own.samples, own.quality]
+    return result
+
+
+def threads():
+    scene = stage.room(samples=1)
+    result = []
+    for count in (1, 2, 3):
+        scene.render.threads = count
+        bpy.ops.render.render()
+        result.append([count, _statistics(scene)["threads"]])
+    return result
+
+
+def clamp(limit):
+    """A white corner under a point lamp: all light, all light clamped, direct light alone; the direct light clamped."""
+    scene = stage.empty(16, 16, 16)
+    white = stage.shader(Color=(1.0, 1.0, 1.0))
+    stage.plane(material=white)
+    stage.plane(material=white, location=(0, 2, 0), rotation=(np.pi / 2, 0, 0))
+    stage.light("POINT", 500.0, (0, 0, 2), shadow_soft_size=0.0)
+    stage.camera((0, -4, 2), (0, 2, 0.5))
+    pictures = {}
+    for name, bounces, at_most in (
+        ("all", 4, 0.0),
+        ("clamped", 4, float(limit)),
+        ("direct", 0, 0.0),
+        ("direct clamped", 0, float(limit)),
+    ):
+        scene.lancer.max_bounces, scene.lancer.clamp_indirect = bounces, at_most
+        pictures[name] = stage.picture(scene)[..., :3].astype(np.float64)
+    added = pictures["clamped"] - pictures["direct"]
+    return {
+        "brightest": float(pictures["direct"].max()),
+        "indirect": float((pictures["all"] - pictures["direct"]).min()),
+        "least added": float(added.min()),
+        "most added": float(added.max()),
+        "direct stays": bool((pictures["direct"] == pictures["direct clamped"]).all()),
+    }
+
+
+def _resident():
+    """Without the free pages that glibc keeps for later."""
+    ctypes.CDLL(None).malloc_trim(0)
+    with open("/proc/self/status", encoding="ascii") as file:
+        return next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmRSS:"))
+
+
+def many_renders():
+    """Resident bytes after each of 20 renders, and what the library held for one of them."""
+    scene = stage.empty(32, 32, 1)
+    stage.ball(segments=248)
+    stage.light()
+    stage.camera()
+    resident = []
+    for _ in range(20):
+        bpy.ops.render.render()
+        resident.append(_resident())
+    last = _statistics(scene)
+    held = sum(last[name] for name in ("geometry_bytes", "accelerator_bytes", "film_bytes"))
+    return {"resident": resident, "held": held, "triangles": last["triangles"]}
