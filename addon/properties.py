@@ -64,7 +64,7 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
     )
     contribution_threshold: FloatProperty(
         name="Contribution Threshold",
-        description="Classic: a ray that brings its pixel no more than this share of what it meets is not traced; 0 = trace all",
+        description="Classic: a ray that brings its pixel no more than this share of what it meets is left out; 0 = trace all",
         min=0.0,
         soft_max=0.1,
         precision=4,

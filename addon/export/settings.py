@@ -3,7 +3,6 @@
 from ..bindings import snapshot
 from ..bindings.enums import Accelerator, Features, Integrator, Pass, PixelFilter
 
-
 # The core's own limit: glass doubles the rays of Classic with every depth.
 _DEEPEST_RECURSION = 16
 
