@@ -20,14 +20,19 @@ template <class Fill> lancer_status fill_scene(lancer_scene handle, const void *
   });
 }
 
+// Arrays may be NULL only when there is nothing to ask.
+void require_arrays(uint32_t count, std::initializer_list<const void *> arrays) {
+  for (const void *array : arrays)
+    if (count)
+      require(array, "probe: an array");
+}
+
 // Runs ask on a committed scene; arrays may be NULL only when there is nothing to ask.
 template <class Ask>
 lancer_status probe_scene(lancer_scene handle, uint32_t count, std::initializer_list<const void *> arrays, Ask &&ask) {
   return guard([&] {
     const auto object = scene_of(handle);
-    for (const void *array : arrays)
-      if (count)
-        require(array, "probe: an array");
+    require_arrays(count, arrays);
     std::shared_ptr<const Scene> scene;
     {
       const std::lock_guard lock(object->mutex);
@@ -342,10 +347,7 @@ lancer_status lancer_probe_bsdf_sample(lancer_scene scene, uint32_t material, ui
 lancer_status lancer_probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv,
                                       const float *alpha, const float *ior, float *d, float *f, float *g1) {
   return guard([&] {
-    for (const void *array : {cos_nh, cos_lh, cos_nv, alpha, ior, static_cast<const float *>(d), static_cast<const float *>(f),
-                              static_cast<const float *>(g1)})
-      if (count)
-        require(array, "probe: an array");
+    require_arrays(count, {cos_nh, cos_lh, cos_nv, alpha, ior, d, f, g1});
     probe_microfacet(count, cos_nh, cos_lh, cos_nv, alpha, ior, d, f, g1);
     return LANCER_OK;
   });
@@ -367,9 +369,7 @@ lancer_status lancer_probe_camera(lancer_session session, uint32_t count, const 
                                   double *origins, double *directions) {
   return guard([&] {
     const auto object = session_of(session);
-    for (const void *array : {raster, lens, static_cast<const double *>(origins), static_cast<const double *>(directions)})
-      if (count)
-        require(array, "probe: an array");
+    require_arrays(count, {raster, lens, origins, directions});
     const std::lock_guard lock(object->mutex);
     probe_camera(object->session, count, raster, lens, origins, directions);
     return LANCER_OK;
@@ -390,10 +390,7 @@ lancer_status lancer_probe_sampler(uint32_t seed, uint32_t x, uint32_t y, uint32
 lancer_status lancer_probe_filter(uint32_t filter, float width, uint32_t count, const float *u, float *offset) {
   return guard([&] {
     const PixelFilter pixel(read_filter(filter, width), width);
-    if (count) {
-      require(u, "probe: u");
-      require(offset, "probe: offset");
-    }
+    require_arrays(count, {u, offset});
     probe_filter(pixel, count, u, offset);
     return LANCER_OK;
   });
