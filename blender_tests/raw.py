@@ -187,3 +187,14 @@ class Raw:
         out = np.zeros(count, np.float32) if out is None else out
         status, message = self.call("lancer_session_read", session, which, address(out), count)
         return status, message, out
+
+
+def refused(result, *words, status=Status.ERROR_ARGUMENT):
+    """The call failed with that status and its sentence holds these words."""
+    assert result[0] == status, f"{result[0].name}: {result[1]}"
+    missing = [word for word in words if word not in result[1]]
+    assert result[1] and not missing, f"{missing} not in {result[1]!r}"
+
+
+def add(raw, scene, kind, piece):
+    return raw.call(f"lancer_scene_add_{kind}", scene, ctypes.byref(piece))

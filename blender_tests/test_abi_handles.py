@@ -6,23 +6,12 @@ import numpy as np
 import pytest
 from bindings import abi
 from bindings.abi import Status
-from raw import FOREIGN, Raw
+from raw import FOREIGN, Raw, add, refused
 
 
 @pytest.fixture
 def raw(library):
     return Raw(library)
-
-
-def refused(result, *words, status=Status.ERROR_ARGUMENT):
-    """The call failed with that status and its sentence holds these words."""
-    assert result[0] == status, f"{result[0].name}: {result[1]}"
-    missing = [word for word in words if word not in result[1]]
-    assert result[1] and not missing, f"{missing} not in {result[1]!r}"
-
-
-def add(raw, scene, kind, piece):
-    return raw.call(f"lancer_scene_add_{kind}", scene, ctypes.byref(piece))
 
 
 def calls_on_scenes(raw):
