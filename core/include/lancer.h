@@ -31,7 +31,7 @@ extern "C" {
 #endif
 
 /* Changes whenever a struct or a call of this header does. */
-#define LANCER_ABI_VERSION 1u
+#define LANCER_ABI_VERSION 2u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;
@@ -71,6 +71,12 @@ typedef enum lancer_struct {
   LANCER_STRUCT_VERTEX,
   LANCER_STRUCT_LIGHT_SAMPLE,
   LANCER_STRUCT_BSDF_SAMPLE,
+  LANCER_STRUCT_ATTRIBUTE,
+  LANCER_STRUCT_IMAGE,
+  LANCER_STRUCT_NODE,
+  LANCER_STRUCT_PRINCIPLED,
+  LANCER_STRUCT_WORLD,
+  LANCER_STRUCT_LOBE_INFO,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* sizeof one of the structs below, by lancer_struct; 0 for an unknown number. Lets a caller refuse a stale library. */
@@ -80,19 +86,31 @@ LANCER_API uint32_t lancer_sizeof(uint32_t which);
 
 enum { LANCER_NORMALS_NONE = 0, LANCER_NORMALS_VERTEX = 1, LANCER_NORMALS_CORNER = 2 };
 
+/* What an attribute has one value for. */
+enum { LANCER_DOMAIN_VERTEX = 0, LANCER_DOMAIN_FACE = 1, LANCER_DOMAIN_CORNER = 2 };
+
+/* A named attribute of a mesh, for nodes: further UV maps and colours, tangents, coordinates. Interpolated linearly. */
+typedef struct lancer_attribute {
+  const char *name;    /* UTF-8; what a node asks for */
+  const float *values; /* [n][channels]; n = vertex_count, triangle_count or 3 triangle_count, as domain says */
+  uint32_t domain;     /* LANCER_DOMAIN_* */
+  uint32_t channels;   /* 1 ... 4; one is a scalar; of more, missing ones are 0, a missing fourth is 1 */
+} lancer_attribute;
+
 /* A triangle mesh in object space, shared by any number of instances. */
 typedef struct lancer_mesh {
-  const char *name;               /* UTF-8, for messages */
-  const float *positions;         /* [vertex_count][3] */
-  const uint32_t *triangles;      /* [triangle_count][3], indices below vertex_count, counter-clockwise from outside */
-  const float *normals;           /* NULL, [vertex_count][3] or [triangle_count][3][3], as normal_domain says */
-  const float *uvs;               /* NULL or [triangle_count][3][2] */
-  const float *colors;            /* NULL or [triangle_count][3][3], linear RGB */
-  const uint16_t *material_slots; /* NULL (all slot 0) or [triangle_count] */
+  const char *name;                   /* UTF-8, for messages */
+  const float *positions;             /* [vertex_count][3] */
+  const uint32_t *triangles;          /* [triangle_count][3], indices below vertex_count, counter-clockwise from outside */
+  const float *normals;               /* NULL, [vertex_count][3] or [triangle_count][3][3], as normal_domain says */
+  const float *uvs;                   /* NULL or [triangle_count][3][2] */
+  const float *colors;                /* NULL or [triangle_count][3][3], linear RGB */
+  const uint16_t *material_slots;     /* NULL (all slot 0) or [triangle_count] */
+  const lancer_attribute *attributes; /* NULL or [attribute_count] */
   uint32_t vertex_count;
   uint32_t triangle_count;
   uint32_t normal_domain; /* LANCER_NORMALS_* */
-  uint32_t reserved;
+  uint32_t attribute_count;
 } lancer_mesh;
 
 /* Exact surfaces stand in their own unit frame; the instance's matrix places, scales and shears them:
@@ -105,6 +123,18 @@ enum { LANCER_MESH = 0, LANCER_SPHERE = 1, LANCER_PLANE = 2, LANCER_CYLINDER = 3
 /* How normals are used. GOURAUD is an idea of CLASSIC (illumination at the vertices, interpolated); PATH takes it as PHONG. */
 enum { LANCER_SHADING_AS_MESH = 0, LANCER_SHADING_FLAT = 1, LANCER_SHADING_GOURAUD = 2, LANCER_SHADING_PHONG = 3 };
 
+/* Rays by what sent them. A thing hidden from some of them is not there for those rays. */
+enum {
+  LANCER_RAY_CAMERA = 1,
+  LANCER_RAY_DIFFUSE = 2,
+  LANCER_RAY_GLOSSY = 4,
+  LANCER_RAY_TRANSMISSION = 8,
+  LANCER_RAY_SHADOW = 16,
+  LANCER_RAY_VOLUME = 32
+};
+
+enum { LANCER_INSTANCE_HOLDOUT = 1 /* a hole in the picture: alpha 0 where it is seen */ };
+
 /* One placed object. */
 typedef struct lancer_instance {
   double matrix[12];     /* object to world, 3 x 4 row-major; any invertible affine map, mirrored ones included */
@@ -115,16 +145,209 @@ typedef struct lancer_instance {
   uint32_t object_index; /* value of the object index pass */
   uint32_t shading;      /* LANCER_SHADING_* */
   uint32_t name;         /* offset of its NUL-terminated name in the names of lancer_scene_add_instances */
-  uint32_t reserved;
+  uint32_t hidden_from;  /* LANCER_RAY_* bits */
+  uint32_t flags;        /* LANCER_INSTANCE_* bits */
+  float terminator;      /* smooth meshes: below this cosine to the light a shadow ray starts on the curved surface that the
+                            normals stand for, as Blender's shadow terminator offset; 0 = on the triangle */
 } lancer_instance;
 
-/* ---- materials -------------------------------------------------------------------------------------------------- */
+/* ---- images ----------------------------------------------------------------------------------------------------- */
 
-/* A value of a material. texture is -1 for a constant; else the number of a texture that replaces value. */
+enum { LANCER_TEXEL_U8 = 0, LANCER_TEXEL_U16 = 1, LANCER_TEXEL_FLOAT = 2 };
+/* How a texel becomes scene-linear, after interpolation: as it is, or decoded by the sRGB curve; then multiplied by matrix. */
+enum { LANCER_TRANSFER_LINEAR = 0, LANCER_TRANSFER_SRGB = 1 };
+/* What the fourth channel does. ASSOCIATED: colour is premultiplied in memory. STRAIGHT: it is not, and is multiplied on the
+ * way. CHANNEL_PACKED: colour and alpha are independent. NONE: alpha is 1. */
+enum { LANCER_ALPHA_ASSOCIATED = 0, LANCER_ALPHA_STRAIGHT = 1, LANCER_ALPHA_CHANNEL_PACKED = 2, LANCER_ALPHA_NONE = 3 };
+
+typedef struct lancer_image {
+  const char *name;
+  const void *texels; /* [height][width][channels] of kind, row 0 at the bottom; integers stand for 0 ... 1 */
+  uint32_t width, height;
+  uint32_t channels; /* 1 (grey), 3 or 4 */
+  uint32_t kind;     /* LANCER_TEXEL_* */
+  uint32_t transfer; /* LANCER_TRANSFER_* */
+  uint32_t alpha;    /* LANCER_ALPHA_* */
+  uint32_t tile;     /* UDIM number, 1001 ...; 0 where the picture is not one of several tiles */
+  uint32_t reserved;
+  float matrix[9]; /* row-major: decoded RGB to the scene's working space */
+  uint32_t reserved2;
+} lancer_image;
+
+/* ---- nodes ------------------------------------------------------------------------------------------------------ */
+
+/* A value of a material, light or world: a constant, or the result of a node. */
 typedef struct lancer_parameter {
   float value[3]; /* scalars use value[0] */
-  int32_t texture;
+  int32_t node;   /* -1: the value; else the number of a node of the same owner, whose result replaces it */
 } lancer_parameter;
+
+/* Nodes compute values where a ray meets a surface. Each has up to five inputs, refers only to nodes before it, and gives four
+ * numbers: x, y, z or RGB, and alpha (1 where it has none). A scalar is in all of x, y, z. Vectors are in the world unless said
+ * otherwise; lengths in scene units. */
+enum {
+  /* option LANCER_COORDINATE_*; matrix: world to object for OBJECT with flag 1; name: the UV map of UV ("" = the mesh's own) */
+  LANCER_NODE_COORDINATE = 0,
+  LANCER_NODE_ATTRIBUTE = 1, /* name: of the attribute; "" = the mesh's own colours */
+  /* images [image, image + image_count): one, or the tiles of one; inputs: vector. option: projection LANCER_PROJECT_*;
+   * flags: extension LANCER_EXTEND_* in bits 0-3, interpolation LANCER_INTERPOLATE_* in bits 4-7, 256 = colour is wanted
+   * straight (divided by alpha) as the image's alpha mode says; input 1: blend of BOX. Vector as it is given: 0 ... 1 covers
+   * the image */
+  LANCER_NODE_IMAGE = 2,
+  LANCER_NODE_ENVIRONMENT =
+      3, /* the same, vector a direction; option LANCER_ENVIRONMENT_*; CUBE takes six images: +x -x +y -y +z -z, upright for
+            one who stands inside with +z up; +z and -z for one who looks along +y, then up or down */
+  LANCER_NODE_ALPHA = 4,         /* the fourth number of input 0 */
+  LANCER_NODE_MAPPING = 5,       /* inputs: vector, location, rotation (Euler XYZ), scale; option LANCER_MAPPING_* */
+  LANCER_NODE_TRANSFORM = 6,     /* matrix times input 0; option 0 point, 1 vector, 2 normal (inverse transpose, normalised) */
+  LANCER_NODE_MATH = 7,          /* inputs a, b, c; option LANCER_MATH_*; flag 1: clamped to 0 ... 1 */
+  LANCER_NODE_VECTOR_MATH = 8,   /* inputs a, b, c, scale; option LANCER_VECTOR_* */
+  LANCER_NODE_MIX = 9,           /* inputs factor, a, b; option LANCER_MIX_*; flag 1: factor clamped, 2: result clamped */
+  LANCER_NODE_SEPARATE = 10,     /* component option (0, 1, 2) of input 0 */
+  LANCER_NODE_COMBINE = 11,      /* inputs x, y, z */
+  LANCER_NODE_GREY = 12,         /* luminance of input 0; matrix[0 ... 2]: the weights */
+  LANCER_NODE_FRESNEL = 13,      /* inputs: IOR, normal */
+  LANCER_NODE_LAYER_WEIGHT = 14, /* inputs: blend, normal; option 0 Fresnel, 1 facing */
+  LANCER_NODE_NORMAL_MAP = 15,   /* inputs: strength, colour; option 0 tangent, 1 object, 2 world, 3 object with y, z inverted
+                                    (Blender's), 4 world so; name: the UV map; its tangents are attribute "tangent:" + name */
+  LANCER_NODE_BUMP = 16,    /* inputs: strength, distance, height, normal, filter width in pixels; flag 1: inverted, 2: over
+                               the surface as it was before displacement, in object space. Nodes
+                               [first, this) compute the height, which is evaluated there, to the right and above */
+  LANCER_NODE_TANGENT = 17, /* option 0, 1, 2 radial about x, y, z of GENERATED; 3 along u of the UV map name */
+  LANCER_NODE_CLAMP = 18,   /* inputs: value, low, high */
+  LANCER_NODE_DISPLACEMENT = 19, /* inputs: height, midlevel, scale, normal; option 0 object, 1 world: where
+                                    scale is measured. Gives an offset in object space */
+  LANCER_NODE_GAMMA = 20,        /* inputs: colour, exponent */
+  LANCER_NODE_INVERT = 21,       /* inputs: factor, colour */
+  LANCER_NODE_COUNT = 22
+};
+enum {
+  LANCER_COORDINATE_GENERATED = 0, /* 0 ... 1 over the mesh's bounds; attribute "generated" where the mesh has it */
+  LANCER_COORDINATE_NORMAL = 1,    /* object space */
+  LANCER_COORDINATE_UV = 2,
+  LANCER_COORDINATE_OBJECT = 3,
+  LANCER_COORDINATE_CAMERA = 4,
+  LANCER_COORDINATE_WINDOW = 5,
+  LANCER_COORDINATE_REFLECTION = 6,
+  LANCER_COORDINATE_POSITION = 7,
+  LANCER_COORDINATE_SHADING_NORMAL = 8, /* towards the viewer */
+  LANCER_COORDINATE_TRUE_NORMAL = 9,    /* towards the viewer */
+  LANCER_COORDINATE_INCOMING = 10,      /* towards the viewer */
+  LANCER_COORDINATE_BACKFACING = 11,    /* 1 where seen from inside */
+  LANCER_COORDINATE_PARAMETRIC = 12,    /* barycentric weights of vertex 0 and 1, Blender's */
+  LANCER_COORDINATE_COUNT = 13
+};
+enum { LANCER_PROJECT_FLAT = 0, LANCER_PROJECT_BOX = 1, LANCER_PROJECT_SPHERE = 2, LANCER_PROJECT_TUBE = 3 };
+enum { LANCER_EXTEND_REPEAT = 0, LANCER_EXTEND_EXTEND = 1, LANCER_EXTEND_CLIP = 2, LANCER_EXTEND_MIRROR = 3 };
+enum { LANCER_INTERPOLATE_LINEAR = 0, LANCER_INTERPOLATE_CLOSEST = 1, LANCER_INTERPOLATE_CUBIC = 2 };
+enum { LANCER_ENVIRONMENT_EQUIRECTANGULAR = 0, LANCER_ENVIRONMENT_MIRROR_BALL = 1, LANCER_ENVIRONMENT_CUBE = 2 };
+enum { LANCER_MAPPING_POINT = 0, LANCER_MAPPING_TEXTURE = 1, LANCER_MAPPING_VECTOR = 2, LANCER_MAPPING_NORMAL = 3 };
+/* As Blender's nodes of these names. */
+enum {
+  LANCER_MATH_ADD = 0,
+  LANCER_MATH_SUBTRACT,
+  LANCER_MATH_MULTIPLY,
+  LANCER_MATH_DIVIDE,
+  LANCER_MATH_MULTIPLY_ADD,
+  LANCER_MATH_POWER,
+  LANCER_MATH_LOGARITHM,
+  LANCER_MATH_SQRT,
+  LANCER_MATH_INVERSE_SQRT,
+  LANCER_MATH_ABSOLUTE,
+  LANCER_MATH_EXPONENT,
+  LANCER_MATH_MINIMUM,
+  LANCER_MATH_MAXIMUM,
+  LANCER_MATH_LESS_THAN,
+  LANCER_MATH_GREATER_THAN,
+  LANCER_MATH_SIGN,
+  LANCER_MATH_COMPARE,
+  LANCER_MATH_SMOOTH_MIN,
+  LANCER_MATH_SMOOTH_MAX,
+  LANCER_MATH_ROUND,
+  LANCER_MATH_FLOOR,
+  LANCER_MATH_CEIL,
+  LANCER_MATH_TRUNC,
+  LANCER_MATH_FRACT,
+  LANCER_MATH_MODULO,
+  LANCER_MATH_FLOORED_MODULO,
+  LANCER_MATH_WRAP,
+  LANCER_MATH_SNAP,
+  LANCER_MATH_PINGPONG,
+  LANCER_MATH_SINE,
+  LANCER_MATH_COSINE,
+  LANCER_MATH_TANGENT,
+  LANCER_MATH_ARCSINE,
+  LANCER_MATH_ARCCOSINE,
+  LANCER_MATH_ARCTANGENT,
+  LANCER_MATH_ARCTAN2,
+  LANCER_MATH_SINH,
+  LANCER_MATH_COSH,
+  LANCER_MATH_TANH,
+  LANCER_MATH_RADIANS,
+  LANCER_MATH_DEGREES,
+  LANCER_MATH_COUNT
+};
+enum {
+  LANCER_VECTOR_ADD = 0,
+  LANCER_VECTOR_SUBTRACT,
+  LANCER_VECTOR_MULTIPLY,
+  LANCER_VECTOR_DIVIDE,
+  LANCER_VECTOR_MULTIPLY_ADD,
+  LANCER_VECTOR_CROSS_PRODUCT,
+  LANCER_VECTOR_PROJECT,
+  LANCER_VECTOR_REFLECT,
+  LANCER_VECTOR_DOT_PRODUCT,
+  LANCER_VECTOR_DISTANCE,
+  LANCER_VECTOR_LENGTH,
+  LANCER_VECTOR_SCALE,
+  LANCER_VECTOR_NORMALIZE,
+  LANCER_VECTOR_ABSOLUTE,
+  LANCER_VECTOR_MINIMUM,
+  LANCER_VECTOR_MAXIMUM,
+  LANCER_VECTOR_FLOOR,
+  LANCER_VECTOR_CEIL,
+  LANCER_VECTOR_FRACTION,
+  LANCER_VECTOR_MODULO,
+  LANCER_VECTOR_SNAP,
+  LANCER_VECTOR_SINE,
+  LANCER_VECTOR_COSINE,
+  LANCER_VECTOR_TANGENT,
+  LANCER_VECTOR_COUNT
+};
+enum {
+  LANCER_MIX_MIX = 0,
+  LANCER_MIX_DARKEN,
+  LANCER_MIX_MULTIPLY,
+  LANCER_MIX_BURN,
+  LANCER_MIX_LIGHTEN,
+  LANCER_MIX_SCREEN,
+  LANCER_MIX_DODGE,
+  LANCER_MIX_ADD,
+  LANCER_MIX_OVERLAY,
+  LANCER_MIX_SOFT_LIGHT,
+  LANCER_MIX_LINEAR_LIGHT,
+  LANCER_MIX_DIFFERENCE,
+  LANCER_MIX_EXCLUSION,
+  LANCER_MIX_SUBTRACT,
+  LANCER_MIX_DIVIDE,
+  LANCER_MIX_HUE,
+  LANCER_MIX_SATURATION,
+  LANCER_MIX_COLOR,
+  LANCER_MIX_VALUE,
+  LANCER_MIX_COUNT
+};
+
+typedef struct lancer_node {
+  uint32_t kind;               /* LANCER_NODE_* */
+  uint32_t option, flags;      /* as the kind says */
+  uint32_t image, image_count; /* numbers of pictures, in order of lancer_scene_add_image */
+  uint32_t first;              /* BUMP */
+  const char *name;            /* NULL is "" */
+  lancer_parameter inputs[5];
+  float matrix[12]; /* 3 x 4 row-major */
+} lancer_node;
+
+/* ---- materials -------------------------------------------------------------------------------------------------- */
 
 /* Lobes, summed. In the local frame n = +z; wo and wi point away from the surface. Value f, without the cosine.
  *   LAMBERT      color/pi, on both sides
@@ -134,32 +357,90 @@ typedef struct lancer_parameter {
  *   DIELECTRIC   smooth glass: color F reflected, color (1 - F) refracted, total internal reflection; ior is that of the
  *                inside, the side that the geometric normal points away from
  *   PHONG        color (n + 2)/(2 pi) max(0, R.V)^n in PATH; color max(0, R.V)^n per light / pi in CLASSIC; n = shininess
- *   BLINN_PHONG  color (n + 2)(n + 4)/(8 pi (2^(-n/2) + n)) max(0, N.H)^n in PATH; color max(0, N.H)^n / pi in CLASSIC */
+ *   BLINN_PHONG  color (n + 2)(n + 4)/(8 pi (2^(-n/2) + n)) max(0, N.H)^n in PATH; color max(0, N.H)^n / pi in CLASSIC
+ * Those of Blender's shader nodes, as Cycles of the running version defines them. roughness is the socket's: alpha is its
+ * square (DIFFUSE, SHEEN, VELVET: the value itself); anisotropy and rotation turn and stretch it along tangent. DIFFUSE
+ * Oren-Nayar of roughness; 0 is LAMBERT. option 0: before Blender 4.3, 1: energy-preserving, from 4.3 GLOSSY       a metal of
+ * constant color, with distribution GLASS        reflection and refraction by Fresnel of ior, rough or smooth, with
+ * distribution REFRACTION   the refraction of it alone, all of color CONDUCTOR    option 0: F82, color at the normal and edge
+ * at 82 degrees; 1: ior = color, extinction = edge SHEEN        of cloth: distribution GGX = microfibres, BECKMANN =
+ * Ashikhmin's velvet (VELVET before 4.0) TRANSLUCENT  color/pi on the other side PRINCIPLED   as its record says */
 enum {
   LANCER_LAMBERT = 0,
   LANCER_BECKMANN = 1,
   LANCER_MIRROR = 2,
   LANCER_DIELECTRIC = 3,
   LANCER_PHONG = 4,
-  LANCER_BLINN_PHONG = 5
+  LANCER_BLINN_PHONG = 5,
+  LANCER_DIFFUSE = 6,
+  LANCER_GLOSSY = 7,
+  LANCER_GLASS = 8,
+  LANCER_REFRACTION = 9,
+  LANCER_CONDUCTOR = 10,
+  LANCER_SHEEN = 11,
+  LANCER_TRANSLUCENT = 12,
+  LANCER_PRINCIPLED = 13,
+  LANCER_LOBE_KIND_COUNT = 14
 };
+enum { LANCER_GGX = 0, LANCER_BECKMANN_DISTRIBUTION = 1, LANCER_ASHIKHMIN_SHIRLEY = 2, LANCER_MULTI_GGX = 3 };
+/* Whose definitions hold for lobes of nodes: those of Blender 3.x, of 4.0 to 4.4, of 4.5 and newer. */
+enum { LANCER_RULES_3 = 0, LANCER_RULES_4 = 1, LANCER_RULES_45 = 2 };
+
+/* The Principled BSDF's inputs under their newest names. Before 4.0 some mean another thing: specular is the level over 0.08,
+ * specular_tint[0] a share of the base colour, sheen_tint[0] and coat likewise; transmission_roughness exists there alone. */
+typedef struct lancer_principled {
+  uint32_t rules;        /* LANCER_RULES_* */
+  uint32_t distribution; /* LANCER_GGX or LANCER_MULTI_GGX */
+  uint32_t option;       /* as of DIFFUSE, for diffuse_roughness */
+  uint32_t reserved;
+  lancer_parameter base_color, metallic, roughness, ior;
+  lancer_parameter diffuse_roughness;
+  lancer_parameter specular, specular_tint;
+  lancer_parameter anisotropic, anisotropic_rotation;
+  lancer_parameter transmission, transmission_roughness;
+  lancer_parameter coat, coat_roughness, coat_ior, coat_tint, coat_normal;
+  lancer_parameter sheen, sheen_roughness, sheen_tint;
+  lancer_parameter emission; /* radiance, below sheen and coat */
+} lancer_principled;
 
 typedef struct lancer_lobe {
-  uint32_t kind;              /* LANCER_LAMBERT ... */
-  lancer_parameter color;     /* Kd or Ks */
-  lancer_parameter roughness; /* alpha, BECKMANN */
-  lancer_parameter ior;       /* relative to the outside, > 0, may be infinite; BECKMANN, DIELECTRIC */
-  lancer_parameter shininess; /* the exponent n; PHONG, BLINN_PHONG */
+  uint32_t kind;                         /* LANCER_LAMBERT ... */
+  uint32_t distribution;                 /* LANCER_GGX ...; GLOSSY, GLASS, REFRACTION, CONDUCTOR, SHEEN */
+  uint32_t option;                       /* as the kind says */
+  uint32_t rules;                        /* LANCER_RULES_* */
+  lancer_parameter weight;               /* RGB, times everything: the shares of Mix Shaders above it */
+  lancer_parameter color;                /* Kd or Ks */
+  lancer_parameter roughness;            /* alpha itself, BECKMANN; else the socket's value */
+  lancer_parameter ior;                  /* relative to the outside, > 0, may be infinite */
+  lancer_parameter shininess;            /* the exponent n; PHONG, BLINN_PHONG */
+  lancer_parameter edge;                 /* CONDUCTOR */
+  lancer_parameter anisotropy, rotation; /* -1 ... 1 and turns, GLOSSY, CONDUCTOR */
+  lancer_parameter normal;               /* world; the constant 0, 0, 0: the shading normal */
+  lancer_parameter tangent;              /* world; the constant 0, 0, 0: any */
+  const lancer_principled *principled;   /* PRINCIPLED */
 } lancer_lobe;
+
+enum {
+  LANCER_MATERIAL_NO_BUMP_CORRECTION = 1, /* bumps darken as they are, without a smooth end of the lit side */
+  LANCER_MATERIAL_NOT_A_LIGHT = 2,        /* it shines, but is only found by chance, never sampled */
+  LANCER_MATERIAL_OPAQUE_SHADOWS = 4,     /* transmittance lets no shadow ray pass */
+  LANCER_MATERIAL_KEEP_NORMALS = 8        /* displacement leaves the normals as they were: a BUMP with flag 2 makes them */
+};
 
 typedef struct lancer_material {
   const char *name;
   const lancer_lobe *lobes;
-  uint32_t lobe_count;       /* 0 is a black surface; at most 8 */
-  uint32_t material_index;   /* value of the material index pass */
-  lancer_parameter emission; /* radiance, both sides */
-  lancer_parameter opacity;  /* 1 solid ... 0 not there; the rest of the light passes straight on */
-  lancer_parameter ambient;  /* Ka, CLASSIC only */
+  const lancer_node *nodes;
+  uint32_t lobe_count;            /* 0 is a black surface; at most 64 */
+  uint32_t node_count;            /* at most 4096 */
+  uint32_t material_index;        /* value of the material index pass */
+  uint32_t flags;                 /* LANCER_MATERIAL_* bits */
+  lancer_parameter emission;      /* radiance, both sides, RGB */
+  lancer_parameter transmittance; /* share of light that passes straight on, RGB; lobes and emission are not scaled by it */
+  lancer_parameter holdout;       /* share of the picture that becomes a hole, a scalar */
+  lancer_parameter ambient;       /* Ka, CLASSIC only */
+  lancer_parameter displacement;  /* offset of vertices in object space, applied when the scene is committed; 0, 0, 0: none */
+  lancer_parameter normal;        /* world; takes the place of the shading normal for all lobes; 0, 0, 0: none */
 } lancer_material;
 
 /* ---- lights ----------------------------------------------------------------------------------------------------- */
@@ -179,7 +460,7 @@ enum {
 };
 
 /* A light shines along its local -z. The matrix's linear part gives directions only (columns are normalised); sizes are
- * world lengths in the fields below. The camera does not see it; in PATH mirrors and glass do. */
+ * world lengths in the fields below. In PATH camera, mirrors and glass see it unless it is hidden from their rays. */
 typedef struct lancer_light {
   const char *name;
   double matrix[12];
@@ -192,11 +473,13 @@ typedef struct lancer_light {
   float spot_blend; /* SPOT: 0 hard edge ... 1 all of the cone softened */
   uint32_t spot_cosine; /* SPOT: 1 = intensity also falls with the cosine of the angle to the axis, as in Blender before 4.0 */
   float sun_angle;      /* SUN: full angle of the disk in the sky; 0 is exactly parallel light */
-  float size[2];        /* AREA: full lengths along local x and y */
-  uint32_t shape;       /* AREA: LANCER_RECTANGLE or LANCER_ELLIPSE */
-  float spread;         /* AREA: full angle of emission, pi = all of the front side */
-  uint32_t falloff;     /* CLASSIC: LANCER_FALLOFF_* */
-  float falloff_radius; /* CLASSIC: r above */
+  float size[2];  /* AREA: full lengths along local x and y. SPOT: what widens the cone along them; 1, 1 (and 0, 0): round */
+  uint32_t shape; /* AREA: LANCER_RECTANGLE or LANCER_ELLIPSE */
+  float spread;   /* AREA: full angle of emission, pi = all of the front side */
+  uint32_t hidden_from;   /* LANCER_RAY_* bits; SHADOW has no meaning here */
+  uint32_t no_shadow;     /* 1: nothing stands in its way */
+  uint32_t falloff;       /* CLASSIC: LANCER_FALLOFF_* */
+  float falloff_radius;   /* CLASSIC: r above */
   float ambient_color[3]; /* CLASSIC: factors of emission for the ambient, diffuse and specular sum; 1, 1, 1 = one colour */
   float diffuse_color[3];
   float specular_color[3];
@@ -218,8 +501,22 @@ LANCER_API lancer_status lancer_scene_add_light(lancer_scene scene, const lancer
 LANCER_API lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, const lancer_instance *instances,
                                                     uint32_t slot_count, const uint32_t *slots, const char *names,
                                                     size_t names_size);
-/* The constant environment's radiance; black until set. */
-LANCER_API lancer_status lancer_scene_set_world(lancer_scene scene, const float radiance[3]);
+/* Pictures are numbered in the order in which they are added. */
+LANCER_API lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image);
+
+/* What lies beyond everything: its radiance as a value or as nodes, in which every coordinate is the unit direction
+ * (GENERATED, OBJECT, POSITION) or its opposite, as of a surface that looks back at the viewer (normals, INCOMING,
+ * REFLECTION). */
+typedef struct lancer_world {
+  const lancer_node *nodes;
+  uint32_t node_count;
+  uint32_t hidden_from;      /* LANCER_RAY_* bits */
+  lancer_parameter radiance; /* RGB */
+  uint32_t map_resolution;   /* width of the map by which directions are sampled where the radiance varies; 0 = by its images */
+  uint32_t reserved;
+} lancer_world;
+/* Black until set. */
+LANCER_API lancer_status lancer_scene_set_world(lancer_scene scene, const lancer_world *world);
 
 enum { LANCER_BVH = 0, LANCER_KDTREE = 1, LANCER_BRUTE_FORCE = 2 };
 /* Starts the build on threads threads (0 = all): checks, normalises, finds features, builds the accelerator. Once only. */
@@ -233,36 +530,69 @@ LANCER_API lancer_status lancer_scene_messages(lancer_scene scene, char *text, s
 
 /* ---- session: camera, settings, film ----------------------------------------------------------------------------- */
 
-enum { LANCER_PERSPECTIVE = 0, LANCER_ORTHOGRAPHIC = 1 };
+enum {
+  LANCER_PERSPECTIVE = 0,
+  LANCER_ORTHOGRAPHIC = 1,
+  LANCER_EQUIRECTANGULAR = 2,     /* panorama: latitude_min, latitude_max, longitude_min, longitude_max */
+  LANCER_FISHEYE_EQUIDISTANT = 3, /* panorama: field of view */
+  LANCER_FISHEYE_EQUISOLID = 4,   /* panorama: focal length, field of view, sensor width, sensor height (mm) */
+  LANCER_FISHEYE_POLYNOMIAL = 5,  /* panorama: field of view, sensor width, sensor height (mm), k0 ... k4 */
+  LANCER_MIRROR_BALL = 6,
+  LANCER_CYLINDRICAL = 7 /* panorama: longitude_min, longitude_max, height_min, height_max, radius */
+};
 
 /* The camera looks along its local -z, y up. */
 typedef struct lancer_camera {
   double matrix[12];                    /* camera to world; must be rigid (rotation or mirrored rotation, translation) */
-  uint32_t kind;                        /* LANCER_PERSPECTIVE, LANCER_ORTHOGRAPHIC */
+  uint32_t kind;                        /* LANCER_PERSPECTIVE ... */
   uint32_t width, height;               /* full image, pixels */
   uint32_t x, y;                        /* lower left pixel of the rendered region */
   uint32_t region_width, region_height; /* size of the rendered region */
+  uint32_t aperture_blades;             /* below 3: a round lens */
   double window[4];            /* left, right, bottom, top of the full image: on the plane z = -1 (PERSPECTIVE), at any depth
-                                  (ORTHOGRAPHIC) */
-  double clip_start, clip_end; /* along z */
+                                  (ORTHOGRAPHIC); panoramas: where 0 ... 1 is the whole panorama */
+  double panorama[8];          /* as the kind says, angles in radians */
+  double clip_start, clip_end; /* along z; panoramas: along the ray */
   double lens_radius;          /* thin lens: aperture radius; 0 = everything sharp */
-  double focal_distance;       /* along z, > 0 where lens_radius > 0 */
+  double focal_distance;       /* along z, > 0 where lens_radius > 0; panoramas: along the ray */
+  double aperture_rotation;    /* of the blades, radians */
+  double aperture_ratio;       /* height of the bokeh over its width; 1 = round */
 } lancer_camera;
 
 enum { LANCER_PATH = 0, LANCER_CLASSIC = 1, LANCER_NORMALS = 2 };
 enum { LANCER_FILTER_BOX = 0, LANCER_FILTER_BLACKMAN_HARRIS = 1 };
 enum { LANCER_FEATURES_SCENE = 0, LANCER_FEATURES_ALL = 1 };
 
-/* Passes; the film keeps those whose bit (1u << pass) is in lancer_settings.passes. Channels in brackets. */
+/* Passes; the film keeps those whose bit (1u << pass) is in lancer_settings.passes. Channels in brackets; "mean": over samples;
+ * "sample 0": of the first sample, unfiltered. A component's direct and indirect light are divided by its colour (a channel
+ * without colour gets the mean of the other two, or of the one that has some), so that
+ *   COMBINED = DIFFUSE_COLOR (DIFFUSE_DIRECT + DIFFUSE_INDIRECT) + GLOSSY_... + TRANSMISSION_... + EMISSION + ENVIRONMENT.
+ * Light passes are PATH's; CLASSIC and NORMALS give them as 0. */
 enum {
-  LANCER_PASS_COMBINED = 0,       /* [4] premultiplied */
-  LANCER_PASS_DEPTH = 1,          /* [1] distance along the camera's z; 1e10 where nothing is. Sample 0 */
-  LANCER_PASS_NORMAL = 2,         /* [3] shading normal, world, mean over samples */
-  LANCER_PASS_ALBEDO = 3,         /* [3] sum of the lobes' colours, mean over samples */
-  LANCER_PASS_POSITION = 4,       /* [3] world. Sample 0 */
-  LANCER_PASS_OBJECT_INDEX = 5,   /* [1] sample 0 */
-  LANCER_PASS_MATERIAL_INDEX = 6, /* [1] sample 0 */
-  LANCER_PASS_COUNT = 7
+  LANCER_PASS_COMBINED = 0,           /* [4] premultiplied */
+  LANCER_PASS_DEPTH = 1,              /* [1] along the camera's z (panoramas: distance); 1e10 where nothing is. Sample 0 */
+  LANCER_PASS_NORMAL = 2,             /* [3] shading normal, world, mean */
+  LANCER_PASS_ALBEDO = 3,             /* [3] for denoising: sum of the lobes' albedos, mean */
+  LANCER_PASS_POSITION = 4,           /* [3] world. Sample 0 */
+  LANCER_PASS_OBJECT_INDEX = 5,       /* [1] sample 0 */
+  LANCER_PASS_MATERIAL_INDEX = 6,     /* [1] sample 0 */
+  LANCER_PASS_UV = 7,                 /* [3] u, v, 1, mean */
+  LANCER_PASS_MIST = 8,               /* [1] mean */
+  LANCER_PASS_EMISSION = 9,           /* [3] */
+  LANCER_PASS_ENVIRONMENT = 10,       /* [3] */
+  LANCER_PASS_AMBIENT_OCCLUSION = 11, /* [3] */
+  LANCER_PASS_DIFFUSE_DIRECT = 12,    /* [3] */
+  LANCER_PASS_DIFFUSE_INDIRECT = 13,
+  LANCER_PASS_DIFFUSE_COLOR = 14,
+  LANCER_PASS_GLOSSY_DIRECT = 15,
+  LANCER_PASS_GLOSSY_INDIRECT = 16,
+  LANCER_PASS_GLOSSY_COLOR = 17,
+  LANCER_PASS_TRANSMISSION_DIRECT = 18,
+  LANCER_PASS_TRANSMISSION_INDIRECT = 19,
+  LANCER_PASS_TRANSMISSION_COLOR = 20,
+  LANCER_PASS_DENOISING_NORMAL = 21, /* [3] camera space, mean */
+  LANCER_PASS_DENOISING_DEPTH = 22,  /* [1] mean */
+  LANCER_PASS_COUNT = 23
 };
 
 typedef struct lancer_settings {
@@ -276,10 +606,19 @@ typedef struct lancer_settings {
   uint32_t pixel_filter;      /* LANCER_FILTER_* */
   float filter_width;         /* full width in pixels */
   uint32_t film_transparent;  /* 1: the environment leaves alpha 0 */
-  uint32_t features;          /* LANCER_FEATURES_SCENE: the kernel for what the scene uses; ALL: the general one. Same pixels */
-  uint32_t passes;            /* bits 1u << LANCER_PASS_*; COMBINED is always kept */
-  uint32_t threads;           /* 0 = one per processor */
-  uint32_t tile_size;         /* pixels; 0 = Lancer's choice. Changes no pixel */
+  uint32_t transparent_glass; /* 1: so it does where it is seen through glass of at most glass_roughness */
+  float glass_roughness;      /* alpha */
+  uint32_t transparent_bounces; /* surfaces that a ray may pass straight through; the next one shows its own light only */
+  uint32_t transparent_shadows; /* surfaces that a shadow ray may pass, with those that the path before it has passed */
+  float alpha_threshold;        /* NORMAL, UV, DEPTH, POSITION and the indices are of the first surface at least this opaque */
+  uint32_t
+      environment_reflections; /* CLASSIC: 1 = a reflected or refracted ray takes its colour from the environment, untraced */
+  float occlusion_distance;    /* AMBIENT_OCCLUSION: how far a thing may be to darken; 0 = any distance */
+  float mist_start, mist_depth, mist_falloff; /* MIST: distances from the camera; the exponent */
+  uint32_t features;  /* LANCER_FEATURES_SCENE: the kernel for what the scene uses; ALL: the general one. Same pixels */
+  uint32_t passes;    /* bits 1u << LANCER_PASS_*; COMBINED is always kept */
+  uint32_t threads;   /* 0 = one per processor */
+  uint32_t tile_size; /* pixels; 0 = Lancer's choice. Changes no pixel */
 } lancer_settings;
 
 typedef struct lancer_progress {
@@ -360,8 +699,8 @@ LANCER_API lancer_status lancer_probe_occluded(lancer_scene scene, uint32_t coun
                                                const double *directions, const double *tmin, const double *tmax,
                                                uint8_t *occluded);
 
-/* f[count][3] and pdf[count] of a material for local directions wo, wi [count][3] (n = +z); f without cosine, pdf per solid
- * angle; lobes that are a single direction give 0 here. */
+/* f[count][3] and pdf[count] of a material for local directions wo, wi [count][3] (n = +z, tangent +x; nodes see the middle of
+ * a unit square); f without cosine, pdf per solid angle; lobes that are a single direction give 0 here. */
 LANCER_API lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo,
                                            const float *wi, float *f, float *pdf);
 
@@ -374,6 +713,28 @@ typedef struct lancer_bsdf_sample {
 /* Samples a material: wo [count][3], u [count][3] in [0, 1). */
 LANCER_API lancer_status lancer_probe_bsdf_sample(lancer_scene scene, uint32_t material, uint32_t count, const float *wo,
                                                   const float *u, lancer_bsdf_sample *samples);
+
+/* A lobe as it stands for one wo, after nodes and layers. */
+typedef struct lancer_lobe_info {
+  uint32_t kind;      /* LANCER_LAMBERT ...; never PRINCIPLED */
+  uint32_t component; /* 0 diffuse, 1 glossy, 2 transmission */
+  float weight[3];    /* what its value is multiplied with */
+  float albedo[3];    /* what it scatters of light from wo, weight included */
+  float roughness[2]; /* alpha along tangent and bitangent */
+  float ior;
+  float probability; /* of being sampled */
+} lancer_lobe_info;
+/* The lobes that a material has for the local direction wo (float[3]): the first capacity of them; *count gets how many.
+ * emission and transmittance (float[3] each) may be NULL. */
+LANCER_API lancer_status lancer_probe_lobes(lancer_scene scene, uint32_t material, const float *wo, lancer_lobe_info *lobes,
+                                            uint32_t capacity, uint32_t *count, float *emission, float *transmittance);
+/* Values [count][4] of a node of a material at UV coordinates [count][2] of a unit square in the plane z = 0 of its object,
+ * seen along its normal. */
+LANCER_API lancer_status lancer_probe_node(lancer_scene scene, uint32_t material, uint32_t node, uint32_t count,
+                                           const float *uv, float *values);
+/* Radiance [count][3] of the world in unit directions [count][3], and the density per solid angle with which it is sampled. */
+LANCER_API lancer_status lancer_probe_world(lancer_scene scene, uint32_t count, const double *directions, float *radiance,
+                                            float *pdf);
 
 /* The terms of BECKMANN for cosines against n and h: D(n.h), F(l.h), G1 of a direction with cosine n.v and v.h > 0. Arrays
  * [count]. */
@@ -389,7 +750,7 @@ typedef struct lancer_light_sample {
   uint32_t reserved;
 } lancer_light_sample;
 /* Samples one light as seen from points [count][3] with u [count][2]. Lights are numbered as added, then one per emitting
- * instance. (The constant environment is not among them: the BSDF's own samples find it best.) */
+ * instance, then the environment where its radiance varies (a constant one is found best by the BSDF's own samples). */
 LANCER_API lancer_status lancer_probe_light(lancer_scene scene, uint32_t light, uint32_t count, const double *points,
                                             const float *u, lancer_light_sample *samples);
 /* Density per solid angle with which that light would sample wi (unit, [count][3]) from points; 0 where the direction misses
@@ -398,7 +759,8 @@ LANCER_API lancer_status lancer_probe_light_pdf(lancer_scene scene, uint32_t lig
                                                 const double *wi, float *pdf);
 
 /* Rays for raster positions [count][2] (pixels of the full image, 0, 0 lower left corner) and lens [count][2] in [0, 1).
- * Directions have z component 1 along the camera's axis (PERSPECTIVE) or unit length (ORTHOGRAPHIC). */
+ * Directions have z component 1 along the camera's axis (PERSPECTIVE) or unit length; 0, 0, 0 where a panorama shows
+ * nothing. */
 LANCER_API lancer_status lancer_probe_camera(lancer_session session, uint32_t count, const double *raster, const double *lens,
                                              double *origins, double *directions);
 
