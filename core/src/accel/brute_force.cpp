@@ -31,6 +31,8 @@ private:
       return best;
     for (uint32_t instance = 0; instance < scene.shapes.size(); ++instance) {
       const PlacedShape &shape = scene.shapes[instance];
+      if (!visible(shape, ray))
+        continue;
       if (shape.mesh == kNone) {
         try_quadric(ray, shape, instance, best);
         continue;

@@ -197,6 +197,8 @@ LANCER_SIMD uint32_t intersect_block(const TriangleBlock &block, const ObjectRay
 // One instance; true where the search may end.
 template <bool any> LANCER_SIMD bool intersect_instance(const BvhScene &scene, uint32_t instance, const Ray &ray, Hit &best) {
   const PlacedShape &shape = scene.shapes[instance];
+  if (!visible(shape, ray))
+    return false;
   if (shape.mesh == kNone) {
     double t;
     if (!intersect_quadric(shape, ray, ray.skip_instance == instance, t) || !closer(t, instance, 0, best))

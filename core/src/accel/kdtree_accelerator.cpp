@@ -66,6 +66,8 @@ private:
   // True where the search may end.
   template <bool any> bool intersect_instance(const Ray &ray, uint32_t instance, Hit &best) const {
     const PlacedShape &shape = placed.shapes[instance];
+    if (!visible(shape, ray))
+      return false;
     if (shape.mesh == kNone) {
       try_quadric(ray, shape, instance, best);
       return any && best.valid();

@@ -73,6 +73,9 @@ LANCER_INLINE void to_object_space(const PlacedShape &shape, const Ray &ray, dou
   }
 }
 
+// Whether the ray can see the shape at all.
+LANCER_INLINE bool visible(const PlacedShape &shape, const Ray &ray) { return (ray.kinds & ~shape.hidden_from) != 0; }
+
 LANCER_INLINE bool enter_shape(const PlacedShape &shape, const Ray &ray, ObjectRay &object_ray) {
   double o[3], d[3];
   to_object_space(shape, ray, o, d);

@@ -88,6 +88,7 @@ PlacedShape make_shape(const Instance &instance, const std::vector<PlacementFram
   shape.slack = std::max({moved.x, moved.y, moved.z});
   shape.kind = instance.kind;
   shape.mesh = mesh ? instance.mesh : kNone;
+  shape.hidden_from = instance.hidden_from;
   return shape;
 }
 

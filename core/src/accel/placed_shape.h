@@ -19,7 +19,8 @@ struct PlacedShape {
   PlacementFrame frame; // box frame in object space; unit for exact surfaces
   double slack;         // exact surfaces: how far rounding may lift a stored surface point off the surface, object space
   ShapeKind kind;
-  uint32_t mesh; // kNone for exact surfaces
+  uint32_t mesh;        // kNone for exact surfaces
+  uint32_t hidden_from; // bits of Ray::kinds
 };
 
 } // namespace lancer

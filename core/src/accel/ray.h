@@ -19,6 +19,8 @@ struct Ray {
   // The flat primitive that the ray starts on: it cannot be met again. kNone: none.
   uint32_t skip_instance = kNone;
   uint32_t skip_primitive = kNone;
+  // Bits of LANCER_RAY_*: what sent it. A thing hidden from all of them is not there.
+  uint32_t kinds = ~0u;
 };
 
 // primitive: index into Mesh::triangles; 0 for exact surfaces.
