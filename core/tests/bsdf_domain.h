@@ -58,7 +58,8 @@ inline double integrate_square(const SquareFunction &f, int cells, double tolera
 
 inline double turn(double y, double x) { return std::atan2(y, x) / (2.0 * std::numbers::pi) + 0.5; }
 
-// A way to lay out directions wi of the upper side. density turns a function per solid angle of wi into one over the square.
+// A way to lay out directions wi of one side of the plane, the upper one unless it is said. density turns a function per solid
+// angle of wi into one over the square.
 struct Domain {
   std::function<glm::dvec2(const glm::vec3 &)> place;
   std::function<SquareFunction(const std::function<double(const glm::vec3 &)> &)> density;
@@ -107,6 +108,40 @@ inline Domain half_vector_domain(const glm::vec3 &wo_float, double scale) {
               // A half vector's solid angle spans 4 wo.h of that of wi.
               return cos_oh > 0.0 && wi.z > 0.0 ? jacobian * 4.0 * cos_oh * f(glm::vec3(wi)) : 0.0;
             };
+          }};
+}
+
+// The place of directions below the plane: by the facet that bends wo there.
+inline Domain bent_domain(const glm::vec3 &wo_float, double scale, double eta) {
+  const glm::dvec3 wo(wo_float);
+  return {[wo, scale, eta](const glm::vec3 &wi) {
+            glm::dvec3 h = wo + eta * glm::dvec3(wi);
+            if (h.z < 0.0)
+              h = -h;
+            return glm::dvec2(slope_to_x(std::hypot(h.x, h.y) / h.z, scale), turn(h.y, h.x));
+          },
+          [wo, scale, eta](const std::function<double(const glm::vec3 &)> &f) -> SquareFunction {
+            return [wo, scale, eta, f](const glm::dvec2 &place) {
+              double jacobian;
+              const glm::dvec3 h = half_vector_at(place, scale, jacobian);
+              const double cos_oh = glm::dot(wo, h), cos2_t = 1.0 - (1.0 - cos_oh * cos_oh) / (eta * eta);
+              if (!(cos_oh > 0.0 && cos2_t > 0.0))
+                return 0.0;
+              const glm::dvec3 wi = (cos_oh / eta - std::sqrt(cos2_t)) * h - wo / eta;
+              const double cos_ih = glm::dot(wi, h), sum = cos_oh + eta * cos_ih;
+              // A half vector's solid angle spans this much of that of wi.
+              return wi.z < 0.0 ? jacobian * sum * sum / (eta * eta * -cos_ih) * f(glm::vec3(wi)) : 0.0;
+            };
+          }};
+}
+
+// Height below the plane and azimuth.
+inline Domain below_domain() {
+  const Domain above = direction_domain();
+  const glm::vec3 flip(1.0f, 1.0f, -1.0f);
+  return {[above, flip](const glm::vec3 &wi) { return above.place(wi * flip); },
+          [above, flip](const std::function<double(const glm::vec3 &)> &f) {
+            return above.density([f, flip](const glm::vec3 &wi) { return f(wi * flip); });
           }};
 }
 

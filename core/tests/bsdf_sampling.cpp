@@ -7,16 +7,20 @@
 #include <vector>
 
 #include "bsdf_domain.h"
+#include "bsdf_seen.h"
 #include "statistics.h"
 
 namespace lancer {
 namespace {
 
+using testing::described;
+using testing::direction;
 using testing::Random;
+using testing::seen;
 
 struct Case {
   std::string name;
-  std::vector<Lobe> lobes;
+  std::vector<LobeInputs> lobes;
   double width = 0.0; // of the narrowest microfacet lobe, in slopes of the half vector; 0: none
   double delta = 0.0; // probability of the delta lobes, known from how the case is built
 
@@ -25,13 +29,13 @@ struct Case {
   }
 };
 
-Lobe lobe(LobeKind kind, float color, float alpha = 0.0f, float ior = 1.5f, float shininess = 0.0f) {
-  return {kind, glm::vec3(color, 0.5f * color, 0.25f * color), alpha, ior, shininess};
+LobeInputs lobe(LobeKind kind, float color, float alpha = 0.0f, float ior = 1.5f, float shininess = 0.0f) {
+  return described(kind, alpha, ior, shininess, glm::vec3(color, 0.5f * color, 0.25f * color));
 }
 
 std::vector<Case> cases() {
   const float infinity = std::numeric_limits<float>::infinity();
-  const Lobe diffuse = lobe(LobeKind::Lambert, 0.6f);
+  const LobeInputs diffuse = lobe(LobeKind::Lambert, 0.6f);
   std::vector<Case> all{{"Lambert", {diffuse}}};
   for (float alpha : {1e-3f, 1e-2f, 0.1f, 0.5f, 1.0f})
     all.push_back({"Beckmann " + std::to_string(alpha), {lobe(LobeKind::Beckmann, 1.0f, alpha, infinity)}, alpha});
@@ -52,18 +56,6 @@ std::vector<Case> cases() {
   return all;
 }
 
-Bsdf make(const std::vector<Lobe> &lobes) {
-  Bsdf bsdf;
-  bsdf.count = static_cast<int>(lobes.size());
-  std::copy(lobes.begin(), lobes.end(), bsdf.lobes);
-  return bsdf;
-}
-
-glm::vec3 direction(double cosine, double phi = 0.8) {
-  const double sine = std::sqrt((1.0 - cosine) * (1.0 + cosine));
-  return glm::vec3(glm::dvec3(sine * std::cos(phi), sine * std::sin(phi), cosine));
-}
-
 constexpr double kCosines[] = {1.0, 0.7, 0.1, 0.01};
 constexpr int kDraws = 250000, kSide = 16;
 
@@ -75,7 +67,7 @@ struct Verdict {
 // Draws from one Bsdf, expects what another one's pdf says.
 Verdict judge(const Bsdf &drawn, const Bsdf &expected_of, const Case &c, const glm::vec3 &wo, uint64_t seed) {
   const testing::Domain domain = c.domain(wo);
-  const testing::SquareFunction pdf = domain.density([&](const glm::vec3 &wi) { return double{expected_of.pdf(wo, wi)}; });
+  const testing::SquareFunction pdf = domain.density([&](const glm::vec3 &wi) { return double{expected_of.eval(wi).pdf}; });
   constexpr std::size_t rejected = kSide * kSide, delta = rejected + 1;
   std::vector<double> observed(delta + 1, 0.0), expected(delta + 1, 0.0);
   // A cell's expectation is wanted within a small part of its own noise, which is 3 for the rarest that is kept.
@@ -96,7 +88,7 @@ Verdict judge(const Bsdf &drawn, const Bsdf &expected_of, const Case &c, const g
   double sum = 0.0, sum2 = 0.0;
   for (int k = 0; k < kDraws; ++k) {
     const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-    const BsdfSample sample = drawn.sample(wo, u, {x, y});
+    const BsdfSample sample = drawn.sample(u, {x, y});
     if (sample.delta) {
       observed[delta] += 1.0;
     } else if (!(sample.pdf > 0.0f)) {
@@ -111,7 +103,7 @@ Verdict judge(const Bsdf &drawn, const Bsdf &expected_of, const Case &c, const g
     }
   }
   const double albedo = testing::integrate_square(
-      domain.density([&](const glm::vec3 &wi) { return double{expected_of.eval(wo, wi).x} * wi.z; }), 16, 1e-6);
+      domain.density([&](const glm::vec3 &wi) { return double{expected_of.eval(wi).f().x}; }), 16, 1e-6);
   const double mean = sum / kDraws, variance = std::max(0.0, sum2 / kDraws - mean * mean) / kDraws;
   // The quadrature's and the floats' own errors, 1e-5 each, stand beside the noise; a constant weight has no noise at all.
   const double z = (mean - albedo) / std::sqrt(variance + 2e-10);
@@ -124,7 +116,7 @@ TEST(BsdfSampling, DirectionsFollowThePdfAndWeightsTheAlbedo) {
   uint64_t seed = 100;
   for (const Case &c : all)
     for (double cosine : kCosines) {
-      const Bsdf bsdf = make(c.lobes);
+      const Bsdf bsdf = seen(c.lobes, direction(cosine));
       const Verdict verdict = judge(bsdf, bsdf, c, direction(cosine), ++seed);
       EXPECT_GT(verdict.p, level) << c.name << ", cos " << cosine;
       EXPECT_GT(verdict.weight_p, level) << c.name << ", cos " << cosine;
@@ -136,8 +128,9 @@ TEST(BsdfSampling, AWrongRoughnessIsSeen) {
   for (float alpha : {1e-3f, 0.1f})
     for (double cosine : {1.0, 0.1}) {
       const Case wrong{"", {lobe(LobeKind::Beckmann, 1.0f, 1.02f * alpha)}, alpha};
-      const Bsdf right = make({lobe(LobeKind::Beckmann, 1.0f, alpha)});
-      EXPECT_LT(judge(right, make(wrong.lobes), wrong, direction(cosine), 1).p, 1e-6) << alpha << " " << cosine;
+      const Bsdf right = seen({lobe(LobeKind::Beckmann, 1.0f, alpha)}, direction(cosine));
+      EXPECT_LT(judge(right, seen(wrong.lobes, direction(cosine)), wrong, direction(cosine), 1).p, 1e-6)
+          << alpha << " " << cosine;
     }
 }
 
@@ -164,16 +157,15 @@ TEST(BsdfSampling, ThePdfIntegratesToWhatIsNotRejected) {
   // Where next to nothing falls below the horizon the pdf holds the whole probability: at normal incidence with slopes that
   // reach it (tan 45 degrees) only beyond exp(-1 / alpha^2) < 1e-10. Tolerance as for visible normals, times wi's own rounding.
   for (float alpha : {1e-2f, 0.1f, 0.2f}) {
-    const Bsdf bsdf = make({lobe(LobeKind::Beckmann, 1.0f, alpha)});
     const glm::vec3 wo = direction(1.0);
+    const Bsdf bsdf = seen({lobe(LobeKind::Beckmann, 1.0f, alpha)}, wo);
     const testing::Domain domain = testing::half_vector_domain(wo, alpha);
-    const auto pdf = domain.density([&](const glm::vec3 &wi) { return double{bsdf.pdf(wo, wi)}; });
+    const auto pdf = domain.density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).pdf}; });
     EXPECT_NEAR(testing::integrate_square(pdf, 16, 1e-7), 1.0, 1e-5) << alpha;
   }
-  const Bsdf diffuse = make({lobe(LobeKind::Lambert, 1.0f)});
   for (double cosine : kCosines) {
-    const glm::vec3 wo = direction(cosine);
-    const auto pdf = testing::direction_domain().density([&](const glm::vec3 &wi) { return double{diffuse.pdf(wo, wi)}; });
+    const Bsdf diffuse = seen({lobe(LobeKind::Lambert, 1.0f)}, direction(cosine));
+    const auto pdf = testing::direction_domain().density([&](const glm::vec3 &wi) { return double{diffuse.eval(wi).pdf}; });
     EXPECT_NEAR(testing::integrate_square(pdf, 16, 1e-7), 1.0, 1e-5) << cosine;
   }
 }
@@ -185,19 +177,19 @@ TEST(BsdfSampling, WeightPdfAndValueAgree) {
   Random random(5);
   for (const Case &c : cases())
     for (double cosine : kCosines) {
-      const Bsdf bsdf = make(c.lobes);
       const glm::vec3 wo = direction(cosine);
+      const Bsdf bsdf = seen(c.lobes, wo);
       for (int k = 0; k < 1000; ++k) {
         const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-        const BsdfSample sample = bsdf.sample(wo, u, {x, y});
+        const BsdfSample sample = bsdf.sample(u, {x, y});
         if (sample.delta || !(sample.pdf > 0.0f))
           continue;
-        const BsdfValue value = bsdf.eval_pdf(wo, sample.wi);
+        const BsdfValue value = bsdf.eval(sample.wi);
         const double s = std::min(1.0, double{sample.wi.z} + wo.z);
         const double tolerance = 1e-5 + 8.0 * 0x1p-22 / ((c.width > 0.0 ? c.width : 0.1) * s) + 0x1p-21 / (s * s);
         ASSERT_NEAR(value.pdf / sample.pdf, 1.0, tolerance) << c.name << " " << cosine;
         const float product = sample.weight.y * sample.pdf;
-        ASSERT_NEAR(value.f.y * sample.wi.z / product, 1.0, 2.0 * tolerance) << c.name << " " << cosine;
+        ASSERT_NEAR(value.f().y / product, 1.0, 2.0 * tolerance) << c.name << " " << cosine;
       }
     }
 }
@@ -213,7 +205,9 @@ TEST(BsdfSampling, PhongKeepsItsShapeHoweverNarrow) {
       Random random(12);
       for (int k = 0; k < kDraws; ++k) {
         const float x = random.uniform(), y = random.uniform();
-        const glm::dvec3 wi(phong_sample(lobe(LobeKind::Phong, 1.0f, 0, 1, n), wo, {x, y}).wi);
+        Lobe phong;
+        phong.shininess = n;
+        const glm::dvec3 wi(phong_sample(phong, wo, {x, y}).wi);
         const glm::dvec3 difference = wi - mirrored;
         const double level = std::exp((n + 1.0) * std::log1p(-std::min(1.0, 0.5 * glm::dot(difference, difference))));
         const double turn = std::atan2(glm::dot(wi, b), glm::dot(wi, t)) / (2.0 * std::numbers::pi) + 0.5;
@@ -228,16 +222,16 @@ TEST(BsdfSampling, PhongKeepsItsShapeHoweverNarrow) {
 
 TEST(BsdfSampling, GlassReflectsWithProbabilityFresnel) {
   Random random(9);
-  const Bsdf glass = make({lobe(LobeKind::Dielectric, 0.8f, 0, 1.5f)});
   // Binomial z-test of reflections, from outside and from inside.
   for (float side : {1.0f, -1.0f}) {
     glm::vec3 wo = direction(0.8);
     wo.z *= side;
+    const Bsdf glass = seen({lobe(LobeKind::Dielectric, 0.8f, 0, 1.5f)}, wo);
     const float reflectance = fresnel_dielectric(0.8f, side > 0.0f ? 1.5f : 1.0f / 1.5f);
     double reflected = 0.0;
     for (int k = 0; k < kDraws; ++k) {
       const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-      const BsdfSample sample = glass.sample(wo, u, {x, y});
+      const BsdfSample sample = glass.sample(u, {x, y});
       ASSERT_TRUE(sample.delta);
       ASSERT_EQ(sample.weight.x, 0.8f);
       const bool same_side = sample.wi.z * side > 0.0f;

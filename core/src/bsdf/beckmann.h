@@ -93,11 +93,13 @@ inline float beckmann_visible_angle(float eccentricity, float u) {
 }
 
 // A normal h visible from wo (wo.z > 0), density G1_exact(wo) max(0, wo.h) D(h) / wo.z per solid angle of h.
-inline glm::vec3 beckmann_sample_visible(const glm::vec3 &wo, float alpha, glm::vec2 u) {
-  const float a = beckmann_a(wo, alpha);
-  const float sin_theta = std::sqrt(wo.x * wo.x + wo.y * wo.y);
-  const glm::vec2 azimuth = sin_theta > 0.0f ? glm::vec2(wo.x, wo.y) / sin_theta : glm::vec2(1.0f, 0.0f);
-  // Draw the slope along wo's azimuth and across it, in units of alpha.
+inline glm::vec3 beckmann_sample_visible(const glm::vec3 &wo, float alpha_x, float alpha_y, glm::vec2 u) {
+  // Squeeze the facets to roughness 1; wo goes along.
+  const glm::vec3 w(alpha_x * wo.x, alpha_y * wo.y, wo.z);
+  const float sin_theta = std::sqrt(w.x * w.x + w.y * w.y);
+  const float a = w.z / sin_theta;
+  const glm::vec2 azimuth = sin_theta > 0.0f ? glm::vec2(w.x, w.y) / sin_theta : glm::vec2(1.0f, 0.0f);
+  // Draw the slope along wo's azimuth and across it.
   glm::vec2 slope;
   if (a < kUnmasked) {
     // The part along it by its visible share; the part across as it is, Gaussian.
@@ -108,10 +110,9 @@ inline glm::vec3 beckmann_sample_visible(const glm::vec3 &wo, float alpha, glm::
     const float phi = beckmann_visible_angle(std::min(r / a, 1.0f), u.y);
     slope = {r * std::cos(phi), r * std::sin(phi)};
   }
-  // Turn it to wo's azimuth; the normal leans against the slope.
-  slope *= alpha;
-  const float x = azimuth.x * slope.x - azimuth.y * slope.y;
-  const float y = azimuth.y * slope.x + azimuth.x * slope.y;
+  // Turn it to wo's azimuth and stretch it again; the normal leans against the slope.
+  const float x = alpha_x * (azimuth.x * slope.x - azimuth.y * slope.y);
+  const float y = alpha_y * (azimuth.y * slope.x + azimuth.x * slope.y);
   return glm::normalize(glm::vec3(-x, -y, 1.0f));
 }
 

@@ -1,209 +1,100 @@
-// A surface's whole answer: a sum of lobes with one way to evaluate it and one to sample it.
+// A surface's whole answer at one place: a sum of lobes with one way to evaluate it and one to sample it.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <glm/glm.hpp>
-
-#include "bsdf/blinn_phong.h"
-#include "bsdf/dielectric.h"
-#include "bsdf/lambert.h"
+#include "bsdf/frame.h"
 #include "bsdf/lobe.h"
-#include "bsdf/microfacet_lobe.h"
-#include "bsdf/mirror.h"
-#include "bsdf/phong.h"
 
 namespace lancer {
 
-constexpr uint32_t lobe_bit(LobeKind kind) { return 1u << static_cast<uint32_t>(kind); }
-inline constexpr uint32_t kAllLobes = (1u << 6) - 1u;
-inline constexpr int kMaxLobes = 8;
-
+// Light scattered from wi towards wo, by component: f |cos(wi)|, and the density with which sample() would have taken wi.
 struct BsdfValue {
-  glm::vec3 f{0.0f};
+  glm::vec3 part[3] = {glm::vec3(0.0f), glm::vec3(0.0f), glm::vec3(0.0f)}; // by Component
   float pdf = 0.0f;
+
+  glm::vec3 f() const { return part[0] + part[1] + part[2]; }
+};
+
+// weight 0 = no sample: the path ends there.
+struct BsdfSample {
+  glm::vec3 wi{0.0f};     // world, unit
+  glm::vec3 weight{0.0f}; // f |cos(wi)| / pdf over all smooth lobes, or the single direction's weight over its probability
+  glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // of weight that is diffuse, glossy; the rest is transmission
+  float pdf = 0.0f;                         // per solid angle; for a single direction the probability of having chosen it
+  bool delta = false;                       // a single direction: evaluation and pdf elsewhere are 0
+  Component component = Component::Diffuse; // of the chosen lobe
+  bool transmitted = false;                 // it goes through the surface
+  float alpha2 = 1.0f;                      // alpha_x alpha_y of the chosen lobe; 0 for a single direction
 };
 
 // Contract
-//   Frame     local, n = +z; wo and wi are unit and point away from the surface. wo.z < 0: seen from behind. All lobes act
-//   alike on
-//             both sides, except Dielectric, whose inside is z < 0.
-//   f         1/sr, without the cosine; only smooth lobes: a delta lobe is 0 in every given direction.
-//   pdf       density per solid angle of wi with which sample takes a smooth lobe into wi. It integrates to 1 minus the
-//             probability of delta lobes minus what falls below the horizon.
-//   sample    weight = f |cos(wi)| / pdf over all smooth lobes together, or the delta lobe's weight / probability.
-//             Weight 0 = no sample: the path ends there.
-//   Zero      wo.z = 0 has no side: f = 0, pdf = 0, no sample. Parameters must be finite and not negative; ior may be infinite.
-//   Lobes     bits lobe_bit(kind) of the kinds that can occur; the code of others is left out, the results are the same.
+//   Place     begin() says where: wo unit, away from the surface; ng unit, on the side of wo; ns unit, on the same side of the
+//             surface as ng; inside: wo lies behind the outward side. All directions are in the world.
+//   Lobes     are added by add_lobe and add_principled (build.h); complete() makes the probabilities. A lobe's normal may be
+//             its own. It acts on the side of its normal and scatters through to the other; lobes that need wo there are 0
+//             where wo is behind their normal.
+//   eval      f |cos| of smooth lobes, single directions are 0; the cosine is that of the lobe's own normal.
+//   pdf       per solid angle; it integrates to 1 minus the probability of single directions minus what is lost at the horizon.
+//   Sides     A lobe decides by its own normal whether wi is reflected or goes through. Two other normals have a say:
+//             - ns, where the lobe's normal differs from it (bump): a direction on the other side of ns than the lobe says is
+//             0,
+//               and diffuse lobes end smoothly before it where bump_correction is set.
+//             - ng: sample() never takes a direction that would pass the surface the wrong way, so its pdf is 0. The value
+//               stays: lights are met as on the smooth surface that interpolated normals stand for, and what is in the way
+//               of the shadow ray decides.
+//   Shapes    bits shape_bit(...) of the shapes that can occur; the code of others is left out, the results are the same.
 struct Bsdf {
-  Lobe lobes[kMaxLobes];
+  glm::vec3 wo{0, 0, 1}, ns{0, 0, 1}, ng{0, 0, 1};
+  bool inside = false;
+  bool bump_correction = true;
+  bool flat = true;                   // ns is ng
+  bool smooth = false, delta = false; // some lobe is; set by complete()
+  int frame_count = 0;
   int count = 0;
+  glm::vec3 emission{0.0f}; // what layered lobes emit towards wo
+  // Neither is initialised: only the first frame_count and count entries exist.
+  union {
+    Frame frames[kMaxFrames];
+  };
+  glm::vec3 wo_local[kMaxFrames]; // wo in each of the frames
+  union {
+    Lobe lobes[kMaxLobes];
+  };
 
-  template <uint32_t Lobes = kAllLobes> BsdfValue eval_pdf(glm::vec3 wo, glm::vec3 wi) const {
-    if (!to_upper_side(wo, wi))
-      return {};
-    float probability[kMaxLobes];
-    if (!choose_probabilities<Lobes>(wo, probability))
-      return {};
-    return smooth_eval_pdf<Lobes>(wo, wi, needs_half_vector<Lobes>() ? half_vector(wo, wi) : glm::vec3(0.0f), probability);
-  }
+  Bsdf() {}
 
-  template <uint32_t Lobes = kAllLobes> glm::vec3 eval(const glm::vec3 &wo, const glm::vec3 &wi) const {
-    return eval_pdf<Lobes>(wo, wi).f;
-  }
+  void begin(const glm::vec3 &wo, const glm::vec3 &ns, const glm::vec3 &ng, bool inside, bool bump_correction);
+  void complete();
 
-  template <uint32_t Lobes = kAllLobes> float pdf(const glm::vec3 &wo, const glm::vec3 &wi) const {
-    return eval_pdf<Lobes>(wo, wi).pdf;
-  }
+  template <uint32_t Shapes = kAllShapes> BsdfValue eval(const glm::vec3 &wi) const;
+  // u_lobe picks the lobe, and what it says beyond that picks reflection or refraction; u the direction; all in [0, 1).
+  template <uint32_t Shapes = kAllShapes> BsdfSample sample(float u_lobe, glm::vec2 u) const;
 
-  // u_lobe picks the lobe, u the direction; all in [0, 1).
-  template <uint32_t Lobes = kAllLobes> BsdfSample sample(glm::vec3 wo, float u_lobe, glm::vec2 u) const {
-    const bool inside = wo.z < 0.0f;
-    wo.z = std::abs(wo.z);
-    float probability[kMaxLobes];
-    if (!(wo.z > 0.0f) || !choose_probabilities<Lobes>(wo, probability))
-      return {};
-    // Pick a lobe by the share of light that it is expected to reflect.
-    const int chosen = pick(probability, u_lobe);
-    const Lobe &lobe = lobes[chosen];
-    BsdfSample result;
-    if (is_delta<Lobes>(lobe)) {
-      const DeltaDirection direction = sample_delta<Lobes>(lobe, wo, inside, u.x);
-      result.wi = direction.wi;
-      result.weight = lobe.color * (direction.weight / probability[chosen]);
-      result.pdf = direction.probability * probability[chosen];
-      result.delta = true;
-    } else {
-      const LobeDirection direction = sample_smooth<Lobes>(lobe, wo, u);
-      if (!(direction.wi.z > 0.0f))
-        return {};
-      // Weigh with the sum over all smooth lobes, whichever was picked; h goes along with all digits of the sampler.
-      const BsdfValue value = smooth_eval_pdf<Lobes>(wo, direction.wi, direction.h, probability);
-      if (!(value.pdf > 0.0f))
-        return {};
-      result.wi = direction.wi;
-      result.weight = value.f * (direction.wi.z / value.pdf);
-      result.pdf = value.pdf;
-    }
-    if (inside)
-      result.wi.z = -result.wi.z;
-    return result;
-  }
-
-  // The sum of the lobes' colours, for the albedo pass.
-  glm::vec3 albedo_color() const {
-    glm::vec3 sum(0.0f);
-    for (int i = 0; i < count; ++i)
-      sum += lobes[i].color;
-    return sum;
-  }
-
-  bool has_delta() const {
-    return std::any_of(lobes, lobes + count, [](const Lobe &lobe) { return is_delta<kAllLobes>(lobe); });
-  }
-  bool has_smooth() const {
-    return std::any_of(lobes, lobes + count, [](const Lobe &lobe) { return !is_delta<kAllLobes>(lobe); });
-  }
+  // Sum of the lobes' albedos of one component.
+  glm::vec3 albedo(Component component) const;
+  glm::vec3 albedo() const;
 
 private:
-  template <uint32_t Lobes> static bool is(const Lobe &lobe, LobeKind kind) {
-    return (Lobes & lobe_bit(kind)) != 0 && (Lobes == lobe_bit(kind) || lobe.kind == kind);
-  }
+  // Directions of one wi in all frames.
+  struct Local {
+    glm::vec3 wi[kMaxFrames];
+    float cos_ng; // to ng
+  };
+  // The lobe that drew wi, with the half vector that its sampler had.
+  struct Drawn {
+    int lobe = -1;
+    glm::vec3 h{0.0f};
+  };
 
-  template <uint32_t Lobes> static bool is_delta(const Lobe &lobe) {
-    return is<Lobes>(lobe, LobeKind::Mirror) || is<Lobes>(lobe, LobeKind::Dielectric) ||
-           (is<Lobes>(lobe, LobeKind::Beckmann) && lobe.alpha < kMirrorAlpha);
-  }
-
-  template <uint32_t Lobes> static constexpr bool needs_half_vector() {
-    return (Lobes & (lobe_bit(LobeKind::Beckmann) | lobe_bit(LobeKind::BlinnPhong))) != 0;
-  }
-
-  // Mirrors both directions so that wo lies above. False where no smooth lobe can connect them.
-  static bool to_upper_side(glm::vec3 &wo, glm::vec3 &wi) {
-    if (wo.z < 0.0f) {
-      wo.z = -wo.z;
-      wi.z = -wi.z;
-    }
-    return wo.z > 0.0f && wi.z > 0.0f;
-  }
-
-  // The probability of each lobe, proportional to an estimate of its albedo for wo. False where every lobe is black.
-  template <uint32_t Lobes> bool choose_probabilities(const glm::vec3 &wo, float *probability) const {
-    float sum = 0.0f;
-    for (int i = 0; i < count; ++i) {
-      const glm::vec3 &color = lobes[i].color;
-      probability[i] = std::max(color.x, std::max(color.y, color.z));
-      if (is<Lobes>(lobes[i], LobeKind::Beckmann) && count > 1)
-        probability[i] *= microfacet_albedo_estimate(lobes[i], wo);
-      sum += probability[i];
-    }
-    if (!(sum > 0.0f))
-      return false;
-    for (int i = 0; i < count; ++i)
-      probability[i] /= sum;
-    return true;
-  }
-
-  // A lobe of probability 0 is never picked, even where rounding leaves u beyond the last sum.
-  int pick(const float *probability, float u) const {
-    int last = 0;
-    for (int i = 0; i < count; ++i) {
-      if (!(probability[i] > 0.0f))
-        continue;
-      last = i;
-      if (u < probability[i])
-        break;
-      u -= probability[i];
-    }
-    return last;
-  }
-
-  // wo.z > 0 and wi.z > 0; h their half vector.
-  template <uint32_t Lobes>
-  BsdfValue smooth_eval_pdf(const glm::vec3 &wo, const glm::vec3 &wi, const glm::vec3 &h, const float *probability) const {
-    BsdfValue sum;
-    for (int i = 0; i < count; ++i) {
-      const Lobe &lobe = lobes[i];
-      if (is_delta<Lobes>(lobe) || probability[i] == 0.0f)
-        continue;
-      LobeValue value;
-      if (is<Lobes>(lobe, LobeKind::Lambert))
-        value = lambert_eval_pdf(wi);
-      else if (is<Lobes>(lobe, LobeKind::Beckmann))
-        value = microfacet_eval_pdf(lobe, wo, wi, h);
-      else if (is<Lobes>(lobe, LobeKind::Phong))
-        value = phong_eval_pdf(lobe, wo, wi);
-      else if (is<Lobes>(lobe, LobeKind::BlinnPhong))
-        value = blinn_phong_eval_pdf(lobe, wo, h);
-      sum.f += lobe.color * value.f;
-      sum.pdf += probability[i] * value.pdf;
-    }
-    return sum;
-  }
-
-  template <uint32_t Lobes> static LobeDirection sample_smooth(const Lobe &lobe, const glm::vec3 &wo, glm::vec2 u) {
-    if (is<Lobes>(lobe, LobeKind::Lambert))
-      return lambert_sample(wo, u);
-    if (is<Lobes>(lobe, LobeKind::Beckmann))
-      return microfacet_sample(lobe, wo, u);
-    if (is<Lobes>(lobe, LobeKind::Phong))
-      return phong_sample(lobe, wo, u);
-    if (is<Lobes>(lobe, LobeKind::BlinnPhong))
-      return blinn_phong_sample(lobe, wo, u);
-    return {};
-  }
-
-  template <uint32_t Lobes> static DeltaDirection sample_delta(const Lobe &lobe, const glm::vec3 &wo, bool inside, float u) {
-    if (is<Lobes>(lobe, LobeKind::Mirror))
-      return mirror_sample(wo);
-    if (is<Lobes>(lobe, LobeKind::Beckmann))
-      return smooth_coating_sample(lobe, wo);
-    if (is<Lobes>(lobe, LobeKind::Dielectric))
-      return dielectric_sample(lobe, wo, inside, u);
-    return {};
-  }
+  template <uint32_t Shapes> static bool is(const Lobe &lobe, LobeShape shape);
+  template <uint32_t Shapes> static bool is_delta(const Lobe &lobe);
+  template <uint32_t Shapes> BsdfValue sum(const Local &local, const Drawn &drawn) const;
+  template <uint32_t Shapes> BsdfSample sample_delta(const Lobe &lobe, float u) const;
+  template <uint32_t Shapes> BsdfSample sample_smooth(int chosen, float u_side, glm::vec2 u) const;
+  BsdfSample single(const Lobe &lobe, const glm::vec3 &wi, const glm::vec3 &weight, float probability) const;
+  void turn_to_frames(const glm::vec3 &wi, int known, const glm::vec3 &wi_known, Local &local) const;
+  int pick(float &u) const;
 };
 
 } // namespace lancer
+
+#include "bsdf/bsdf_terms.h" // the templates

@@ -1,4 +1,4 @@
-// Lambert: the same radiance in every direction on the side of wo.
+// Lambert: the same radiance in every direction on the side of the normal.
 #pragma once
 
 #include "bsdf/lobe_value.h"
@@ -6,11 +6,9 @@
 
 namespace lancer {
 
-inline LobeValue lambert_eval_pdf(const glm::vec3 &wi) { return {kInvPi, warp_cosine_hemisphere_pdf(wi.z)}; }
+// f cos, which is also the density of lambert_sample.
+inline float lambert_eval(const glm::vec3 &wi) { return warp_cosine_hemisphere_pdf(wi.z); }
 
-inline LobeDirection lambert_sample(const glm::vec3 &wo, glm::vec2 u) {
-  const glm::vec3 wi = warp_cosine_hemisphere(u);
-  return {wi, half_vector(wo, wi)};
-}
+inline glm::vec3 lambert_sample(glm::vec2 u) { return warp_cosine_hemisphere(u); }
 
 } // namespace lancer

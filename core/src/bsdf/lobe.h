@@ -1,27 +1,66 @@
-// A lobe's parameters at one point, after textures: what sample, eval and pdf work on.
+// A lobe of one place, ready to be evaluated and sampled: what is left of a material after nodes, layers and wo.
 #pragma once
 
-#include <cstdint>
-#include <glm/glm.hpp>
+#include "bsdf/inputs.h"
 
 namespace lancer {
 
-enum class LobeKind : uint32_t { Lambert = 0, Beckmann = 1, Mirror = 2, Dielectric = 3, Phong = 4, BlinnPhong = 5 };
+// Which mathematics a lobe follows; bits of Shapes select what a kernel knows.
+enum class LobeShape : uint8_t {
+  Lambert = 0,    // color / pi
+  Beckmann = 1,   // the course's coating: exact Fresnel, Walter's G1
+  Mirror = 2,     // one direction
+  Dielectric = 3, // smooth glass: one or two directions
+  Phong = 4,
+  BlinnPhong = 5,
+  Matte = 6,      // Oren-Nayar, Burley, velvet, translucent: smooth and wide, told apart by variant
+  Microfacet = 7, // GGX or Beckmann, reflection, refraction or both, smooth or rough
+  Ashikhmin = 8,  // Ashikhmin-Shirley, the clear coat of 3.x
+  Sheen = 9       // microfibres
+};
+inline constexpr uint32_t kLobeShapes = 10;
+constexpr uint32_t shape_bit(LobeShape shape) { return 1u << static_cast<uint32_t>(shape); }
+inline constexpr uint32_t kAllShapes = (1u << kLobeShapes) - 1u;
 
-struct Lobe {
-  LobeKind kind = LobeKind::Lambert;
-  glm::vec3 color{0.0f};
-  float alpha = 0.0f;     // Beckmann
-  float ior = 1.5f;       // Beckmann, Dielectric; may be infinite
-  float shininess = 0.0f; // Phong, BlinnPhong
+// The kinds of light that passes and ray visibility tell apart.
+enum class Component : uint8_t { Diffuse = 0, Glossy = 1, Transmission = 2 };
+
+// Where the facets of Microfacet send light; Lobe::variant.
+enum class Scatter : uint8_t { Reflect = 1, Refract = 2, Both = 3 };
+
+// How a microfacet reflects: F of the half vector's cosine.
+enum class FresnelKind : uint8_t {
+  None = 0,       // 1 reflected, 1 refracted: color says all; f0 is the mean of further bounces
+  Dielectric = 1, // of ior
+  Conductor = 2,  // n = f0, k = f90
+  F82 = 3,        // f0 at the normal, b the Lazanyi term
+  Schlick = 4,    // f0 ... f90 along the dielectric of ior
+  Principled3 = 5 // the same as Blender 3.x has it
 };
 
-// A direction drawn from a lobe or a whole BSDF, in the local frame (n = +z, wo and wi away from the surface).
-struct BsdfSample {
-  glm::vec3 wi{0.0f};
-  glm::vec3 weight{0.0f}; // f |cos(wi)| / pdf; 0 = no sample
-  float pdf = 0.0f;       // per solid angle; for a delta lobe the probability of having chosen it
-  bool delta = false;     // a single direction: evaluation and pdf elsewhere are 0
+inline constexpr int kMaxFrames = 8;
+inline constexpr int kMaxLobes = 64;
+
+struct Lobe {
+  LobeShape shape = LobeShape::Lambert;
+  uint8_t variant = 0;                      // of Matte, Ashikhmin; of Microfacet: Scatter
+  Component component = Component::Diffuse; // of what stays on the side of wo, where a lobe does both
+  uint8_t frame = 0;                        // of Bsdf::frames
+  bool beckmann = false;                    // the facets' distribution; else GGX
+  bool delta = false;                       // a single direction: too smooth to be evaluated
+  bool delta_through = false; // what Microfacet refracts goes in a single direction, even if what it reflects does not
+  FresnelKind fresnel = FresnelKind::None;
+  Rules rules = Rules::Blender45;
+  glm::vec3 color{0.0f};                // times everything
+  float probability = 0.0f;             // of being sampled, set when the BSDF is complete
+  float alpha_x = 0.0f, alpha_y = 0.0f; // or the one roughness in alpha_x
+  float ior = 1.5f;                     // seen from wo's side: beyond over before
+  float shininess = 0.0f;
+  float energy = 1.0f; // what multiple scattering multiplies the single one with
+  glm::vec3 f0{0.0f}, f90{1.0f}, b{0.0f};
+  glm::vec3 reflection{1.0f}, transmission{1.0f}; // tints
+  glm::vec3 albedo{0.0f};                         // share of light from wo that is scattered, color included
+  glm::vec3 through{0.0f};                        // the part of albedo that goes through, of lobes that do both
 };
 
 } // namespace lancer

@@ -1,0 +1,360 @@
+#include "bsdf/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bsdf/ashikhmin.h"
+#include "bsdf/coating.h"
+#include "bsdf/matte.h"
+#include "bsdf/microfacet.h"
+#include "bsdf/microfacet_fresnel.h"
+#include "bsdf/sheen.h"
+
+namespace lancer {
+
+namespace {
+
+glm::vec3 unit_or(const glm::vec3 &v, const glm::vec3 &otherwise) {
+  const float length2 = glm::dot(v, v);
+  return length2 > 0.0f && std::isfinite(length2) ? v / std::sqrt(length2) : otherwise;
+}
+
+// The normal of lobes that need not reflect: as it is given; Blender 3.x bent it, too.
+glm::vec3 wide_normal(const Bsdf &bsdf, const LobeInputs &inputs) {
+  return inputs.rules == Rules::Blender3 ? reflecting_normal(bsdf, inputs.normal) : inputs.normal;
+}
+
+Lobe course_lobe(LobeShape shape, Component component, uint8_t frame, const LobeInputs &inputs, const glm::vec3 &weight) {
+  Lobe lobe;
+  lobe.shape = shape;
+  lobe.component = component;
+  lobe.frame = frame;
+  lobe.rules = inputs.rules;
+  lobe.color = lobe.albedo = weight;
+  lobe.ior = inputs.ior;
+  lobe.shininess = inputs.shininess;
+  return lobe;
+}
+
+void add_lambert(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+  const uint8_t frame = add_frame(bsdf, wide_normal(bsdf, inputs), glm::vec3(0.0f));
+  add(bsdf, course_lobe(LobeShape::Lambert, Component::Diffuse, frame, inputs, weight));
+}
+
+void add_diffuse(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+  const uint8_t frame = add_frame(bsdf, wide_normal(bsdf, inputs), glm::vec3(0.0f));
+  Lobe lobe = make_diffuse(weight, inputs.color, inputs.roughness, inputs.option != 0, bsdf.wo_local[frame].z);
+  lobe.frame = frame;
+  lobe.rules = inputs.rules;
+  add(bsdf, lobe);
+}
+
+void add_coating(Bsdf &bsdf, const LobeInputs &inputs, uint8_t frame, const glm::vec3 &weight) {
+  Lobe lobe = course_lobe(LobeShape::Beckmann, Component::Glossy, frame, inputs, weight);
+  lobe.alpha_x = lobe.alpha_y = inputs.roughness;
+  lobe.delta = lobe.alpha_x < kMirrorAlpha;
+  lobe.albedo *= coating_albedo_estimate(lobe, bsdf.wo_local[frame]);
+  add(bsdf, lobe);
+}
+
+void add_smooth_glass(Bsdf &bsdf, const LobeInputs &inputs, uint8_t frame, const glm::vec3 &weight) {
+  Lobe lobe = course_lobe(LobeShape::Dielectric, Component::Glossy, frame, inputs, weight);
+  lobe.delta = true;
+  lobe.ior = bsdf.inside ? 1.0f / inputs.ior : inputs.ior;
+  lobe.through = weight * (1.0f - fresnel_dielectric(bsdf.wo_local[frame].z, lobe.ior));
+  add(bsdf, lobe);
+}
+
+// Roughness along the tangent and across it, and the frame that they lie in.
+struct Stretched {
+  float alpha_x, alpha_y;
+  uint8_t frame;
+};
+
+// axis: what the tangent is turned about.
+Stretched stretched(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &n, const glm::vec3 &axis, float alpha, float along,
+                    float across) {
+  const glm::vec3 t = inputs.rotation != 0.0f ? turn_about(inputs.tangent, axis, inputs.rotation) : inputs.tangent;
+  return {alpha * along, alpha * across, add_frame(bsdf, n, t)};
+}
+
+// The Glossy node's: squeezed one way as it is drawn out the other.
+Stretched glossy_roughness(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &n) {
+  const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f), alpha = roughness * roughness;
+  const float anisotropy = std::clamp(inputs.anisotropy, -0.99f, 0.99f);
+  if (std::abs(anisotropy) <= 1e-4f)
+    return {alpha, alpha, add_frame(bsdf, n, glm::vec3(0.0f))};
+  if (anisotropy < 0.0f)
+    return stretched(bsdf, inputs, n, n, alpha, 1.0f / (1.0f + anisotropy), 1.0f + anisotropy);
+  return stretched(bsdf, inputs, n, n, alpha, 1.0f - anisotropy, 1.0f / (1.0f - anisotropy));
+}
+
+// The Metallic node's, as Principled has it.
+Stretched conductor_roughness(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &n) {
+  const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f), alpha = roughness * roughness;
+  const float anisotropy = std::clamp(inputs.anisotropy, 0.0f, 1.0f);
+  if (anisotropy == 0.0f)
+    return {alpha, alpha, add_frame(bsdf, n, glm::vec3(0.0f))};
+  const float aspect = std::sqrt(1.0f - 0.9f * anisotropy);
+  return stretched(bsdf, inputs, n, normal_or_shading(bsdf, inputs.normal), alpha, 1.0f / aspect, aspect);
+}
+
+void add_glossy(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+  const Stretched s = glossy_roughness(bsdf, inputs, reflecting_normal(bsdf, inputs.normal));
+  if (inputs.distribution == Facets::AshikhminShirley) {
+    Lobe lobe = make_ashikhmin(weight, s.alpha_x, s.alpha_y);
+    lobe.frame = s.frame;
+    lobe.rules = inputs.rules;
+    add(bsdf, lobe);
+    return;
+  }
+  Lobe lobe = make_microfacet(Scatter::Reflect, s.frame, weight, s.alpha_x, s.alpha_y, inputs.rules);
+  lobe.beckmann = inputs.distribution == Facets::Beckmann;
+  set_constant(lobe, inputs.color);
+  complete_microfacet(lobe, bsdf.wo_local[s.frame].z, inputs.distribution == Facets::MultiGgx);
+  add(bsdf, lobe);
+}
+
+void add_conductor(Bsdf &bsdf, const LobeInputs &inputs) {
+  const Stretched s = conductor_roughness(bsdf, inputs, reflecting_normal(bsdf, inputs.normal));
+  Lobe lobe = make_microfacet(Scatter::Reflect, s.frame, inputs.weight, s.alpha_x, s.alpha_y, inputs.rules);
+  lobe.beckmann = inputs.distribution == Facets::Beckmann;
+  if (inputs.option == 0)
+    set_f82(lobe, glm::clamp(inputs.color, 0.0f, 1.0f), glm::clamp(inputs.edge, 0.0f, 1.0f));
+  else
+    set_conductor(lobe, glm::max(inputs.color, 0.0f), glm::max(inputs.edge, 0.0f));
+  complete_microfacet(lobe, bsdf.wo_local[s.frame].z, inputs.distribution == Facets::MultiGgx);
+  add(bsdf, lobe);
+}
+
+// The index from wo's side; Cycles keeps the node's away from 0.
+float index_from(const Bsdf &bsdf, float ior) {
+  const float outside = std::max(ior, 1e-5f);
+  return bsdf.inside ? 1.0f / outside : outside;
+}
+
+void add_refraction(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
+  const float alpha = inputs.roughness * inputs.roughness;
+  Lobe lobe = make_microfacet(Scatter::Refract, frame, weight, alpha, alpha, inputs.rules);
+  lobe.beckmann = inputs.distribution == Facets::Beckmann;
+  lobe.ior = index_from(bsdf, inputs.ior);
+  complete_microfacet(lobe, bsdf.wo_local[frame].z, false);
+  add(bsdf, lobe);
+}
+
+void add_glass(Bsdf &bsdf, const LobeInputs &inputs) {
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
+  const float cos_o = bsdf.wo_local[frame].z, eta = index_from(bsdf, inputs.ior);
+  const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f), alpha = roughness * roughness;
+  const glm::vec3 color = glm::max(inputs.color, 0.0f);
+  const bool beckmann = inputs.distribution == Facets::Beckmann;
+  const bool preserving = inputs.distribution == Facets::MultiGgx;
+  if (inputs.rules == Rules::Blender3 && !preserving) {
+    // Blender 3.x: Fresnel of the smooth surface shares the light between two lobes of facets without Fresnel.
+    const float f = fresnel_dielectric(cos_o, eta);
+    for (Scatter scatter : {Scatter::Reflect, Scatter::Refract}) {
+      const float share = scatter == Scatter::Reflect ? f : 1.0f - f;
+      Lobe lobe = make_microfacet(scatter, frame, inputs.weight * color * share, alpha, alpha, inputs.rules);
+      lobe.beckmann = beckmann;
+      lobe.ior = eta;
+      complete_microfacet(lobe, cos_o, false);
+      add(bsdf, lobe);
+    }
+    return;
+  }
+  Lobe lobe = make_microfacet(Scatter::Both, frame, inputs.weight, alpha, alpha, inputs.rules);
+  lobe.beckmann = beckmann;
+  set_schlick(lobe, glm::vec3(f0_of_ior(eta)), glm::vec3(1.0f), eta, color, color);
+  complete_microfacet(lobe, cos_o, preserving);
+  add(bsdf, lobe);
+}
+
+void add_sheen(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+  const uint8_t frame = add_frame(bsdf, wide_normal(bsdf, inputs), glm::vec3(0.0f));
+  const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f);
+  Lobe lobe = inputs.distribution == Facets::Beckmann ? make_velvet(weight, roughness)
+                                                      : make_sheen(weight, roughness, bsdf.wo_local[frame].z);
+  lobe.frame = frame;
+  lobe.rules = inputs.rules;
+  add(bsdf, lobe);
+}
+
+void add_translucent(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+  Lobe lobe = make_translucent(weight);
+  lobe.frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
+  lobe.rules = inputs.rules;
+  add(bsdf, lobe);
+}
+
+} // namespace
+
+uint32_t shapes_of(LobeKind kind) {
+  switch (kind) {
+  case LobeKind::Lambert:
+    return shape_bit(LobeShape::Lambert);
+  case LobeKind::Beckmann:
+    return shape_bit(LobeShape::Beckmann);
+  case LobeKind::Mirror:
+    return shape_bit(LobeShape::Mirror);
+  case LobeKind::Dielectric:
+    return shape_bit(LobeShape::Dielectric);
+  case LobeKind::Phong:
+    return shape_bit(LobeShape::Phong);
+  case LobeKind::BlinnPhong:
+    return shape_bit(LobeShape::BlinnPhong);
+  case LobeKind::Diffuse:
+    return shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Matte);
+  case LobeKind::Glossy:
+    return shape_bit(LobeShape::Microfacet) | shape_bit(LobeShape::Ashikhmin);
+  case LobeKind::Glass:
+  case LobeKind::Refraction:
+  case LobeKind::Conductor:
+    return shape_bit(LobeShape::Microfacet);
+  case LobeKind::Sheen:
+    return shape_bit(LobeShape::Sheen) | shape_bit(LobeShape::Matte);
+  case LobeKind::Translucent:
+    return shape_bit(LobeShape::Matte);
+  case LobeKind::Principled:
+    return shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Matte) | shape_bit(LobeShape::Microfacet) |
+           shape_bit(LobeShape::Ashikhmin) | shape_bit(LobeShape::Sheen);
+  }
+  return kAllShapes;
+}
+
+void add_lobe(Bsdf &bsdf, const LobeInputs &inputs) {
+  const glm::vec3 weight = inputs.weight * glm::max(inputs.color, 0.0f);
+  switch (inputs.kind) {
+  case LobeKind::Lambert:
+    return add_lambert(bsdf, inputs, weight);
+  case LobeKind::Diffuse:
+    return add_diffuse(bsdf, inputs, weight);
+  case LobeKind::Glossy:
+    return add_glossy(bsdf, inputs, weight);
+  case LobeKind::Glass:
+    return add_glass(bsdf, inputs);
+  case LobeKind::Refraction:
+    return add_refraction(bsdf, inputs, weight);
+  case LobeKind::Conductor:
+    return add_conductor(bsdf, inputs);
+  case LobeKind::Sheen:
+    return add_sheen(bsdf, inputs, weight);
+  case LobeKind::Translucent:
+    return add_translucent(bsdf, inputs, weight);
+  case LobeKind::Principled:
+    return;
+  default:
+    break;
+  }
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
+  if (inputs.kind == LobeKind::Beckmann)
+    return add_coating(bsdf, inputs, frame, weight);
+  if (inputs.kind == LobeKind::Dielectric)
+    return add_smooth_glass(bsdf, inputs, frame, weight);
+  const LobeShape shape = inputs.kind == LobeKind::Mirror  ? LobeShape::Mirror
+                          : inputs.kind == LobeKind::Phong ? LobeShape::Phong
+                                                           : LobeShape::BlinnPhong;
+  Lobe lobe = course_lobe(shape, Component::Glossy, frame, inputs, weight);
+  lobe.delta = shape == LobeShape::Mirror;
+  add(bsdf, lobe);
+}
+
+uint8_t add_frame(Bsdf &bsdf, const glm::vec3 &n, const glm::vec3 &t) {
+  if (n == glm::vec3(0.0f) && t == glm::vec3(0.0f))
+    return 0;
+  const glm::vec3 normal = normal_or_shading(bsdf, n);
+  const bool any_tangent = t == glm::vec3(0.0f);
+  const Frame frame = any_tangent ? Frame() : Frame(normal, t);
+  // One that is there already will do.
+  for (int i = 0; i < bsdf.frame_count; ++i)
+    if (bsdf.frames[i].n == normal && (any_tangent || bsdf.frames[i].t == frame.t))
+      return static_cast<uint8_t>(i);
+  if (bsdf.frame_count == kMaxFrames)
+    return 0;
+  const int i = bsdf.frame_count++;
+  bsdf.frames[i] = any_tangent ? Frame(normal) : frame;
+  bsdf.wo_local[i] = bsdf.frames[i].to_local(bsdf.wo);
+  return static_cast<uint8_t>(i);
+}
+
+glm::vec3 normal_or_shading(const Bsdf &bsdf, const glm::vec3 &n) {
+  // To normalise once more might move it by a bit, and make a second frame of the first.
+  return n == bsdf.ns ? n : unit_or(n, bsdf.ns);
+}
+
+glm::vec3 reflecting_normal(const Bsdf &bsdf, const glm::vec3 &n) {
+  const glm::vec3 normal = normal_or_shading(bsdf, n);
+  if (!bsdf.bump_correction || normal == bsdf.ng)
+    return normal;
+  // The mirrored direction shall rise above the surface by this cosine, or nearly as much as wo does.
+  const float cos_o = glm::dot(bsdf.wo, bsdf.ng), least = std::min(0.9f * cos_o, 0.01f);
+  const glm::vec3 mirrored = 2.0f * glm::dot(normal, bsdf.wo) * normal - bsdf.wo;
+  if (glm::dot(bsdf.ng, mirrored) >= least)
+    return normal;
+  // In the plane of both normals wo is (x, z). The normal at angle t from ng mirrors its z to x sin(2t) + z cos(2t), which is
+  // to be least: the sine and cosine of the two angles where it is, taken on the side towards the given normal.
+  const glm::vec3 side = unit_or(normal - glm::dot(normal, bsdf.ng) * bsdf.ng, normal);
+  const float x = glm::dot(bsdf.wo, side), z = cos_o;
+  const float length2 = x * x + z * z;
+  const float reach = std::sqrt(std::max(0.0f, length2 - least * least));
+  // cos(2t) of the solution; the tilt is the largest that still works.
+  const float cos_2t = (z * least - x * reach) / length2;
+  const float cos_t = std::sqrt(std::clamp(0.5f * (1.0f + cos_2t), 0.0f, 1.0f));
+  const float sin_t = std::sqrt(std::clamp(0.5f * (1.0f - cos_2t), 0.0f, 1.0f));
+  return glm::normalize(sin_t * side + cos_t * bsdf.ng);
+}
+
+glm::vec3 turn_about(const glm::vec3 &t, const glm::vec3 &axis, float turns) {
+  const float angle = 2.0f * std::numbers::pi_v<float> * turns, c = std::cos(angle), s = std::sin(angle);
+  return c * t + s * glm::cross(axis, t) + (1.0f - c) * glm::dot(axis, t) * axis;
+}
+
+void Bsdf::begin(const glm::vec3 &wo_, const glm::vec3 &ns_, const glm::vec3 &ng_, bool inside_, bool bump_correction_) {
+  wo = wo_;
+  ns = ns_;
+  ng = ng_;
+  inside = inside_;
+  bump_correction = bump_correction_;
+  flat = ns == ng;
+  smooth = delta = false;
+  frames[0] = Frame(ns);
+  wo_local[0] = frames[0].to_local(wo);
+  frame_count = 1;
+  count = 0;
+  emission = glm::vec3(0.0f);
+}
+
+void Bsdf::complete() {
+  // Lobes are picked by the light that they are expected to scatter.
+  float sum = 0.0f;
+  smooth = delta = false;
+  for (int i = 0; i < count; ++i) {
+    const glm::vec3 &albedo = lobes[i].albedo;
+    sum += lobes[i].probability = std::max({albedo.x, albedo.y, albedo.z, 0.0f});
+    delta = delta || lobes[i].delta || lobes[i].delta_through;
+    smooth = smooth || !lobes[i].delta;
+  }
+  for (int i = 0; i < count; ++i)
+    lobes[i].probability = sum > 0.0f ? lobes[i].probability / sum : 0.0f;
+}
+
+glm::vec3 Bsdf::albedo(Component component) const {
+  glm::vec3 sum(0.0f);
+  for (int i = 0; i < count; ++i) {
+    if (lobes[i].component == component)
+      sum += lobes[i].albedo - lobes[i].through;
+    if (component == Component::Transmission)
+      sum += lobes[i].through;
+  }
+  return sum;
+}
+
+glm::vec3 Bsdf::albedo() const {
+  glm::vec3 sum(0.0f);
+  for (int i = 0; i < count; ++i)
+    sum += lobes[i].albedo;
+  return sum;
+}
+
+} // namespace lancer

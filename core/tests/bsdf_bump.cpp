@@ -1,0 +1,166 @@
+// Normals that disagree: the surface's, the shading normal and a lobe's own.
+#include "bsdf/bsdf.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "bsdf_seen.h"
+#include "statistics.h"
+
+namespace lancer {
+namespace {
+
+using testing::described;
+using testing::direction;
+using testing::Random;
+
+constexpr double kUlp = 0x1p-24;
+
+glm::vec3 tilted(double degrees, double phi) { return direction(std::cos(degrees / 180.0 * std::numbers::pi), phi); }
+
+struct Place {
+  glm::vec3 wo, ns, ng;
+  bool correction = true;
+};
+
+Bsdf at(const Place &place, const LobeInputs &lobe, bool with_translucent = false) {
+  Bsdf bsdf;
+  bsdf.begin(place.wo, place.ns, place.ng, false, place.correction);
+  add_lobe(bsdf, lobe);
+  if (with_translucent)
+    add_lobe(bsdf, described(LobeKind::Translucent));
+  bsdf.complete();
+  return bsdf;
+}
+
+LobeInputs about(LobeKind kind, const glm::vec3 &n, Rules rules = Rules::Blender45) {
+  LobeInputs inputs = described(kind, 0.5f);
+  inputs.normal = n;
+  inputs.rules = rules;
+  return inputs;
+}
+
+const glm::vec3 kUp(0.0f, 0.0f, 1.0f);
+
+TEST(BsdfBump, NothingIsSampledThroughTheSurface) {
+  Random random(1);
+  for (LobeKind kind : {LobeKind::Lambert, LobeKind::Diffuse, LobeKind::Beckmann, LobeKind::Phong, LobeKind::BlinnPhong,
+                        LobeKind::Mirror, LobeKind::Dielectric, LobeKind::Glossy, LobeKind::Glass, LobeKind::Refraction,
+                        LobeKind::Conductor, LobeKind::Sheen, LobeKind::Translucent})
+    for (int k = 0; k < 500; ++k) {
+      const glm::vec3 ns = tilted(40.0 * random.uniform(), 7.0 * random.uniform());
+      LobeInputs lobe = about(kind, tilted(60.0 * random.uniform(), 7.0 * random.uniform()));
+      lobe.shininess = 5.0f;
+      lobe.roughness = k % 3 == 0 ? 0.0f : 0.6f;
+      const Place place{direction(0.05 + 0.95 * random.uniform(), 7.0 * random.uniform()), ns, kUp};
+      // A lobe that goes through must not lend its density to one that reflects.
+      const Bsdf bsdf = at(place, lobe), mixed = at(place, lobe, true);
+      for (int i = 0; i < 20; ++i) {
+        const float u = random.uniform(), x = random.uniform(), y = random.uniform();
+        for (const BsdfSample &sample : {bsdf.sample(u, {x, y}), mixed.sample(u, {x, y})})
+          if (sample.pdf > 0.0f) {
+            ASSERT_EQ(sample.transmitted, sample.wi.z < 0.0f) << static_cast<int>(kind);
+          }
+        // The density says the same: 0 where a lobe that reflects would have to pass.
+        const glm::vec3 wi = direction(2.0 * x - 1.0, 7.0 * y);
+        const bool through = kind == LobeKind::Translucent || kind == LobeKind::Refraction;
+        if (kind != LobeKind::Glass && (wi.z < 0.0f) != through) {
+          ASSERT_EQ(bsdf.eval(wi).pdf, 0.0f) << static_cast<int>(kind);
+        }
+      }
+    }
+}
+
+TEST(BsdfBump, InterpolatedNormalsMeetLightsAsTheSmoothSurfaceWould) {
+  // 5 degrees below the surface, 25 above the horizon of the shading normal.
+  const Place place{direction(0.8, 0.0), tilted(30.0, 0.0), kUp};
+  const glm::vec3 wi = tilted(95.0, 0.0);
+  const BsdfValue value = at(place, described(LobeKind::Lambert)).eval(wi);
+  EXPECT_NEAR(value.f().x, std::cos(65.0 / 180.0 * std::numbers::pi) / std::numbers::pi, 8.0 * kUlp);
+  EXPECT_EQ(value.pdf, 0.0f);
+}
+
+TEST(BsdfBump, ABumpIsDarkBehindTheShadingNormal) {
+  const Place place{direction(0.8, 0.0), kUp, kUp};
+  const glm::vec3 n = tilted(40.0, 0.0), below = tilted(95.0, 0.0);
+  ASSERT_GT(glm::dot(n, below), 0.5f);
+  for (LobeKind kind : {LobeKind::Lambert, LobeKind::Diffuse, LobeKind::Glossy, LobeKind::Conductor, LobeKind::Sheen})
+    EXPECT_EQ(at(place, about(kind, n)).eval(below).f(), glm::vec3(0.0f)) << static_cast<int>(kind);
+}
+
+TEST(BsdfBump, TheLitSideEndsSmoothly) {
+  const glm::vec3 n = tilted(40.0, 0.0);
+  const double tilt = 40.0 / 180.0 * std::numbers::pi;
+  for (double degrees : {-60.0, 0.0, 30.0, 60.0, 80.0, 89.0}) {
+    const glm::vec3 wi = direction(std::cos(degrees / 180.0 * std::numbers::pi), degrees < 0.0 ? std::numbers::pi : 0.0);
+    const double cos_n = glm::dot(glm::dvec3(n), glm::dvec3(wi)), c = wi.z;
+    const Place smooth{direction(0.8, 0.0), kUp, kUp, true}, hard{direction(0.8, 0.0), kUp, kUp, false};
+    // Smith's term of GGX with alpha^2 = tan^2(tilt) / 8. The tilt's cosine rounds, and tan^2 of it again: 20 roundings.
+    const double alpha2 = std::min(1.0, 0.125 * std::pow(std::tan(tilt), 2.0));
+    const double g = 2.0 / (1.0 + std::sqrt(1.0 + alpha2 * (1.0 - c * c) / (c * c)));
+    const double plain = std::max(0.0, cos_n) / std::numbers::pi;
+    EXPECT_NEAR(at(smooth, about(LobeKind::Lambert, n)).eval(wi).f().x, g * plain, 20.0 * kUlp) << degrees;
+    EXPECT_NEAR(at(hard, about(LobeKind::Lambert, n)).eval(wi).f().x, plain, 8.0 * kUlp) << degrees;
+    // Before Blender 4.5: a cubic in the ratio of cosines, 1 on the unshadowed side.
+    const double ratio = cos_n > 0.0 ? std::min(1.0, c / (cos_n * std::cos(tilt))) : 1.0;
+    const double cubic = ratio * (1.0 + ratio - ratio * ratio);
+    EXPECT_NEAR(at(smooth, about(LobeKind::Lambert, n, Rules::Blender4)).eval(wi).f().x, cubic * plain, 20.0 * kUlp) << degrees;
+    // Glossy lobes have no such end.
+    const float gloss = at(smooth, about(LobeKind::Glossy, n)).eval(wi).f().x;
+    EXPECT_EQ(gloss, at(hard, about(LobeKind::Glossy, n)).eval(wi).f().x) << degrees;
+  }
+}
+
+TEST(BsdfBump, ReflectionsRiseAboveTheSurface) {
+  Random random(3);
+  for (int k = 0; k < 20000; ++k) {
+    const glm::vec3 wo = direction(1e-3 + random.uniform() * (1.0 - 1e-3), 7.0 * random.uniform());
+    const glm::vec3 n = tilted(85.0 * random.uniform(), 7.0 * random.uniform());
+    Bsdf bsdf;
+    bsdf.begin(wo, kUp, kUp, false, true);
+    const glm::vec3 m = reflecting_normal(bsdf, n);
+    const double height = 2.0 * glm::dot(glm::dvec3(m), glm::dvec3(wo)) * m.z - wo.z;
+    const double least = std::min(0.9 * wo.z, 0.01);
+    const double before = 2.0 * glm::dot(glm::dvec3(n), glm::dvec3(wo)) * n.z - wo.z;
+    // Some ten roundings of unit vectors; the root's argument may be small, but what it is a root of is then as good as 0:
+    // an error of 2^-22 below it moves the cosine by the root of that where the tilt is nearly 0 or 90 degrees.
+    constexpr double tolerance = 1e-3;
+    ASSERT_NEAR(glm::length(m), 1.0, 8.0 * kUlp);
+    if (before >= least + 1e-6) {
+      ASSERT_NEAR(glm::distance(m, n), 0.0f, 4.0 * kUlp);
+    } else {
+      ASSERT_NEAR(height, least, tolerance) << k;
+      // The normal stays between both: in their plane, and no farther from the surface's than before.
+      ASSERT_NEAR(glm::dot(glm::cross(n, kUp), m), 0.0f, tolerance);
+      ASSERT_GE(m.z, n.z - tolerance);
+    }
+    bsdf.begin(wo, kUp, kUp, false, false);
+    ASSERT_NEAR(glm::distance(reflecting_normal(bsdf, n), n), 0.0f, 4.0 * kUlp);
+  }
+}
+
+TEST(BsdfBump, SeveralFramesAreKeptApart) {
+  Bsdf bsdf;
+  bsdf.begin(direction(0.5), kUp, kUp, false, true);
+  EXPECT_EQ(add_frame(bsdf, glm::vec3(0.0f), glm::vec3(0.0f)), 0);
+  EXPECT_EQ(add_frame(bsdf, 2.0f * kUp, glm::vec3(0.0f)), 0);
+  const uint8_t stretched = add_frame(bsdf, kUp, {0.0f, 3.0f, 1.0f});
+  EXPECT_EQ(stretched, 1);
+  EXPECT_EQ(bsdf.frames[1].t, glm::vec3(0.0f, 1.0f, 0.0f));
+  EXPECT_EQ(bsdf.frames[1].b, glm::vec3(-1.0f, 0.0f, 0.0f));
+  EXPECT_EQ(add_frame(bsdf, kUp, {0.0f, 1.0f, 0.0f}), 1);
+  // Where no room is left the shading frame stands in.
+  for (int i = 0; i < 2 * kMaxFrames; ++i)
+    add_frame(bsdf, tilted(10.0 + i, 1.0), glm::vec3(0.0f));
+  EXPECT_EQ(bsdf.frame_count, kMaxFrames);
+  EXPECT_EQ(add_frame(bsdf, tilted(70.0, 1.0), glm::vec3(0.0f)), 0);
+}
+
+TEST(BsdfBump, TangentsTurnCounterClockwise) {
+  const glm::vec3 quarter = turn_about({1.0f, 0.0f, 0.0f}, kUp, 0.25f);
+  // The angle's cosine at pi/2 rounds to 4e-8.
+  EXPECT_NEAR(glm::distance(quarter, glm::vec3(0.0f, 1.0f, 0.0f)), 0.0f, 2.0 * kUlp);
+}
+
+} // namespace
+} // namespace lancer

@@ -1,0 +1,199 @@
+// Lobes that may go through the surface, stretched and tilted ones: directions fall as the pdf says, weights add up to the
+// value.
+#include "bsdf/bsdf.h"
+
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "bsdf_domain.h"
+#include "bsdf_seen.h"
+#include "statistics.h"
+
+namespace lancer {
+namespace {
+
+using testing::described;
+using testing::direction;
+using testing::Random;
+
+constexpr int kDraws = 250000, kSide = 16, kCells = kSide * kSide;
+
+LobeInputs rough(LobeKind kind, Facets facets, float roughness, float ior = 1.5f, float anisotropy = 0.0f) {
+  LobeInputs inputs = described(kind, roughness, ior, 0.0f, {0.9f, 0.6f, 0.3f});
+  inputs.distribution = facets;
+  inputs.anisotropy = anisotropy;
+  inputs.rotation = 0.1f;
+  inputs.tangent = {1.0f, 0.0f, 0.0f};
+  return inputs;
+}
+
+struct Case {
+  std::string name;
+  std::vector<LobeInputs> lobes;
+  double width = 0.0; // of the narrowest lobe, in slopes of the half vector; 0: wide
+  float ior = 1.5f;   // by which what goes through is bent, from outside
+  // Of the shading normal and of a lobe's own, against the surface.
+  glm::vec3 ns{0.0f, 0.0f, 1.0f};
+};
+
+// Directions above the plane and below it, each laid out on its own square.
+struct Sides {
+  testing::Domain above, below;
+
+  Sides(const Case &c, const glm::vec3 &wo, float eta)
+      : above(c.width > 0.0 ? testing::half_vector_domain(wo, c.width) : testing::direction_domain()),
+        below(c.width > 0.0 && eta != 1.0f ? testing::bent_domain(wo, c.width, eta) : testing::below_domain()) {}
+
+  std::size_t cell(const glm::vec3 &wi) const {
+    const glm::dvec2 place = wi.z > 0.0f ? above.place(wi) : below.place(wi);
+    const auto index = [](double x) { return static_cast<std::size_t>(std::clamp(x * kSide, 0.0, kSide - 1.0)); };
+    return (wi.z > 0.0f ? 0 : kCells) + index(place.x) * kSide + index(place.y);
+  }
+};
+
+struct Verdict {
+  double p = 0.0;        // chi-square of directions and rejected samples
+  double weight_p = 0.0; // z-test of the mean weight against the integral of f cos where samples may go
+};
+
+// wo above the plane, seen in the case's own frame: inside turns the surface over.
+Verdict judge(const Case &c, const glm::vec3 &wo, bool inside, uint64_t seed, const Case *expected_case = nullptr) {
+  const auto look = [&](Bsdf &bsdf, const Case &as) {
+    const glm::vec3 ng(0.0f, 0.0f, 1.0f);
+    bsdf.begin(wo, as.ns, ng, inside, true);
+    for (const LobeInputs &lobe : as.lobes)
+      add_lobe(bsdf, lobe);
+    bsdf.complete();
+  };
+  Bsdf bsdf, other;
+  look(bsdf, c);
+  look(other, expected_case ? *expected_case : c);
+  const Sides sides(c, wo, inside ? 1.0f / c.ior : c.ior);
+  std::vector<double> observed(2 * kCells + 1, 0.0), expected(2 * kCells + 1, 0.0);
+  const double tolerance = 0.2 / kDraws;
+  double inside_mass = 0.0, albedo = 0.0;
+  for (const testing::Domain *domain : {&sides.above, &sides.below}) {
+    const testing::SquareFunction pdf = domain->density([&](const glm::vec3 &wi) { return double{other.eval(wi).pdf}; });
+    for (std::size_t i = 0; i < kSide; ++i)
+      for (std::size_t j = 0; j < kSide; ++j) {
+        const glm::dvec2 low = glm::dvec2(i, j) / double{kSide}, high = glm::dvec2(i + 1, j + 1) / double{kSide};
+        const double mass = testing::integrate_square(pdf, 2, tolerance, low, high);
+        expected[(domain == &sides.above ? 0 : kCells) + i * kSide + j] = std::max(kDraws * mass, 1e-3);
+        inside_mass += mass;
+      }
+    const auto value = domain->density([&](const glm::vec3 &wi) {
+      const BsdfValue v = bsdf.eval(wi);
+      return v.pdf > 0.0f ? double{v.f().x} : 0.0;
+    });
+    albedo += testing::integrate_square(value, 16, 1e-6);
+  }
+  expected.back() = std::max(1e-3, kDraws * (1.0 - inside_mass));
+  Random random(seed);
+  double sum = 0.0, sum2 = 0.0;
+  for (int k = 0; k < kDraws; ++k) {
+    const float u = random.uniform(), x = random.uniform(), y = random.uniform();
+    const BsdfSample sample = bsdf.sample(u, {x, y});
+    if (!(sample.pdf > 0.0f)) {
+      observed.back() += 1.0;
+      continue;
+    }
+    EXPECT_FALSE(sample.delta);
+    EXPECT_EQ(sample.transmitted, sample.wi.z < 0.0f);
+    observed[sides.cell(sample.wi)] += 1.0;
+    sum += sample.weight.x;
+    sum2 += static_cast<double>(sample.weight.x) * sample.weight.x;
+  }
+  const double mean = sum / kDraws, variance = std::max(0.0, sum2 / kDraws - mean * mean) / kDraws;
+  // The quadrature's and the floats' own errors, 1e-5 each and side, stand beside the noise.
+  const double z = (mean - albedo) / std::sqrt(variance + 4e-10);
+  return {testing::chi_square_test(observed, expected), testing::normal_p_value(z)};
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (float roughness : {0.1f, 0.5f, 1.0f}) {
+    const double width = roughness * roughness;
+    const std::string r = std::to_string(roughness);
+    all.push_back({"GGX " + r, {rough(LobeKind::Glossy, Facets::Ggx, roughness)}, width});
+    all.push_back({"Beckmann " + r, {rough(LobeKind::Glossy, Facets::Beckmann, roughness)}, width});
+    all.push_back({"glass GGX " + r, {rough(LobeKind::Glass, Facets::MultiGgx, roughness)}, width});
+    all.push_back({"glass Beckmann " + r, {rough(LobeKind::Glass, Facets::Beckmann, roughness)}, width});
+    all.push_back({"refraction GGX " + r, {rough(LobeKind::Refraction, Facets::Ggx, roughness)}, width});
+  }
+  all.push_back({"glass 1.02", {rough(LobeKind::Glass, Facets::Ggx, 0.5f, 1.02f)}, 0.25, 1.02f});
+  all.push_back({"glass 0.7", {rough(LobeKind::Glass, Facets::Ggx, 0.5f, 0.7f)}, 0.25, 0.7f});
+  for (Facets facets : {Facets::MultiGgx, Facets::Beckmann}) {
+    all.push_back({"along", {rough(LobeKind::Glossy, facets, 0.5f, 1.5f, 0.7f)}, 0.2});
+    all.push_back({"across", {rough(LobeKind::Glossy, facets, 0.4f, 1.5f, -0.5f)}, 0.1});
+  }
+  LobeInputs metal = rough(LobeKind::Conductor, Facets::MultiGgx, 0.4f, 1.5f, 0.8f);
+  metal.edge = {0.5f, 0.7f, 0.9f};
+  all.push_back({"metal", {metal}, 0.1});
+  metal.option = 1;
+  metal.color = {0.2f, 0.9f, 1.4f};
+  metal.edge = {3.9f, 2.4f, 2.1f};
+  all.push_back({"gold", {metal}, 0.1});
+  LobeInputs old = rough(LobeKind::Glass, Facets::Ggx, 0.5f);
+  old.rules = Rules::Blender3;
+  all.push_back({"glass of Blender 3", {old}, 0.25});
+  LobeInputs shirley = rough(LobeKind::Glossy, Facets::AshikhminShirley, 0.6f, 1.5f, 0.4f);
+  LobeInputs cloth = rough(LobeKind::Sheen, Facets::Ggx, 0.4f);
+  LobeInputs leaf = described(LobeKind::Translucent, 0.0f, 1.5f, 0.0f, {0.2f, 0.6f, 0.1f});
+  LobeInputs clay = described(LobeKind::Diffuse, 0.7f, 1.5f, 0.0f, {0.7f, 0.5f, 0.4f});
+  clay.option = 1;
+  all.push_back({"wide", {leaf, clay, cloth, shirley}});
+  all.push_back({"everything", {leaf, clay, rough(LobeKind::Glass, Facets::MultiGgx, 0.8f), cloth}});
+  // Bumped: the shading normal tilts, and two lobes have normals of their own.
+  LobeInputs bumped = clay;
+  bumped.normal = glm::normalize(glm::vec3(0.5f, -0.2f, 1.0f));
+  LobeInputs bumped_gloss = rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f);
+  bumped_gloss.normal = glm::normalize(glm::vec3(-0.4f, 0.3f, 1.0f));
+  all.push_back({"bumped", {bumped, bumped_gloss, leaf}, 0.0, 1.5f, glm::normalize(glm::vec3(0.2f, 0.3f, 1.0f))});
+  return all;
+}
+
+constexpr double kCosines[] = {1.0, 0.6, 0.08};
+
+TEST(BsdfScatter, DirectionsFollowThePdfAndWeightsTheValue) {
+  const std::vector<Case> all = cases();
+  const double level = testing::sidak_level(testing::kSignificance, 4 * all.size() * std::size(kCosines));
+  uint64_t seed = 700;
+  for (const Case &c : all)
+    for (double cosine : kCosines)
+      for (bool inside : {false, true}) {
+        const Verdict verdict = judge(c, direction(cosine), inside, ++seed);
+        EXPECT_GT(verdict.p, level) << c.name << ", cos " << cosine << (inside ? " inside" : "");
+        EXPECT_GT(verdict.weight_p, level) << c.name << ", cos " << cosine << (inside ? " inside" : "");
+      }
+}
+
+TEST(BsdfScatter, AWrongIndexIsSeen) {
+  const Case right{"", {rough(LobeKind::Glass, Facets::Ggx, 0.5f)}, 0.25};
+  const Case wrong{"", {rough(LobeKind::Glass, Facets::Ggx, 0.5f, 1.53f)}, 0.25};
+  EXPECT_LT(judge(right, direction(0.6), false, 1, &wrong).p, 1e-6);
+}
+
+TEST(BsdfScatter, SpecialisedKernelsGiveTheSameBits) {
+  constexpr uint32_t shapes = shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Microfacet) | shape_bit(LobeShape::Matte);
+  const std::vector<LobeInputs> lobes{rough(LobeKind::Glass, Facets::MultiGgx, 0.5f), described(LobeKind::Lambert, 0.4f),
+                                      described(LobeKind::Diffuse, 0.4f), rough(LobeKind::Glossy, Facets::Beckmann, 0.0f)};
+  Random random(6);
+  for (int k = 0; k < 2000; ++k) {
+    const Bsdf bsdf = testing::seen(lobes, direction(2.0 * random.uniform() - 1.0, 1.0));
+    const glm::vec3 wi = direction(2.0 * random.uniform() - 1.0, 4.0);
+    ASSERT_EQ(bsdf.eval<shapes>(wi).f(), bsdf.eval(wi).f());
+    ASSERT_EQ(bsdf.eval<shapes>(wi).pdf, bsdf.eval(wi).pdf);
+    const float u = random.uniform(), x = random.uniform(), y = random.uniform();
+    const BsdfSample special = bsdf.sample<shapes>(u, {x, y}), general = bsdf.sample(u, {x, y});
+    ASSERT_EQ(special.wi, general.wi);
+    ASSERT_EQ(special.weight, general.weight);
+    ASSERT_EQ(special.share[0], general.share[0]);
+    ASSERT_EQ(special.share[1], general.share[1]);
+    ASSERT_EQ(special.pdf, general.pdf);
+    ASSERT_EQ(special.delta, general.delta);
+  }
+}
+
+} // namespace
+} // namespace lancer

@@ -1,0 +1,48 @@
+// Surfaces for tests: lobes described in a few words, seen from wo in a frame whose axes are the world's.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bsdf/build.h"
+
+namespace lancer::testing {
+
+inline glm::vec3 direction(double cosine, double phi = 0.8) {
+  const double sine = std::sqrt((1.0 - cosine) * (1.0 + cosine));
+  return glm::vec3(glm::dvec3(sine * std::cos(phi), sine * std::sin(phi), cosine));
+}
+
+// roughness is alpha for Beckmann and of the socket for Blender's.
+inline LobeInputs described(LobeKind kind, float roughness = 0.0f, float ior = 1.5f, float shininess = 0.0f,
+                            const glm::vec3 &color = glm::vec3(1.0f)) {
+  LobeInputs inputs;
+  inputs.kind = kind;
+  inputs.roughness = roughness;
+  inputs.ior = ior;
+  inputs.shininess = shininess;
+  inputs.color = color;
+  return inputs;
+}
+
+// The plane z = 0, whose outward side is up.
+inline void look(Bsdf &bsdf, const std::vector<LobeInputs> &lobes, const glm::vec3 &wo) {
+  const bool inside = wo.z < 0.0f;
+  const glm::vec3 n(0.0f, 0.0f, inside ? -1.0f : 1.0f);
+  bsdf.begin(wo, n, n, inside, true);
+  for (const LobeInputs &lobe : lobes)
+    add_lobe(bsdf, lobe);
+  bsdf.complete();
+}
+
+inline Bsdf seen(const std::vector<LobeInputs> &lobes, const glm::vec3 &wo) {
+  Bsdf bsdf;
+  look(bsdf, lobes, wo);
+  return bsdf;
+}
+
+// The same half turn for all directions swaps the sides of the plane; in the frame of the other side nothing has moved.
+inline glm::vec3 turned_over(const glm::vec3 &w) { return {w.x, -w.y, -w.z}; }
+
+} // namespace lancer::testing

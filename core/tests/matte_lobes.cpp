@@ -1,0 +1,211 @@
+// The wide lobes and the two glossy ones of their own kind: samplers fall as their density says, values keep the laws and the
+// closed forms that are known.
+#include "bsdf/matte.h"
+
+#include <functional>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "bsdf/ashikhmin.h"
+#include "bsdf/sheen.h"
+#include "bsdf_domain.h"
+#include "bsdf_seen.h"
+#include "statistics.h"
+
+namespace lancer {
+namespace {
+
+using testing::direction;
+using testing::Random;
+
+struct Case {
+  std::string name;
+  std::function<Lobe(const glm::vec3 &wo)> make;
+  bool reciprocal = true;
+};
+
+ColorValue value_of(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
+  if (lobe.shape == LobeShape::Matte)
+    return matte_eval(lobe, wo, wi);
+  return lobe.shape == LobeShape::Sheen ? sheen_eval(lobe, wo, wi) : gloss_eval(lobe, wo, wi);
+}
+
+glm::vec3 drawn(const Lobe &lobe, const glm::vec3 &wo, glm::vec2 u) {
+  if (lobe.shape == LobeShape::Matte)
+    return matte_sample(lobe, u);
+  return lobe.shape == LobeShape::Sheen ? sheen_sample(lobe, wo, u) : gloss_sample(lobe, wo, u);
+}
+
+std::vector<Case> cases() {
+  const glm::vec3 white(1.0f), color(0.8f, 0.4f, 0.1f);
+  std::vector<Case> all;
+  for (const float r : {0.05f, 0.3f, 0.6f, 1.0f}) {
+    const std::string name = ", " + std::to_string(r);
+    all.push_back({"Oren-Nayar" + name, [=](const glm::vec3 &wo) { return make_diffuse(white, color, r, false, wo.z); }});
+    all.push_back({"preserving" + name, [=](const glm::vec3 &wo) { return make_diffuse(white, color, r, true, wo.z); }});
+    all.push_back({"Burley" + name, [=](const glm::vec3 &) { return make_burley(white, r); }});
+    all.push_back({"velvet" + name, [=](const glm::vec3 &) { return make_velvet(white, r); }});
+    all.push_back({"sheen" + name, [=](const glm::vec3 &wo) { return make_sheen(white, r, wo.z); }, false});
+    all.push_back({"Ashikhmin-Shirley" + name, [=](const glm::vec3 &) { return make_ashikhmin(white, r, r); }});
+    all.push_back({"stretched" + name, [=](const glm::vec3 &) { return make_ashikhmin(white, r, 0.4f * r); }});
+    all.push_back({"clear coat" + name, [=](const glm::vec3 &wo) { return make_clear_coat(white, r, wo.z); }});
+  }
+  all.push_back({"dust", [=](const glm::vec3 &) { return make_matte(Matte::DustSheen, white); }});
+  return all;
+}
+
+double over_directions(const std::function<double(const glm::vec3 &)> &f) {
+  return testing::integrate_square(testing::direction_domain().density(f), 8, 1e-6);
+}
+
+double albedo(const Lobe &lobe, const glm::vec3 &wo, int channel = 0) {
+  return over_directions([&](const glm::vec3 &wi) { return double{value_of(lobe, wo, wi).f[channel]}; });
+}
+
+TEST(MatteLobes, FallAsTheirDensitySays) {
+  constexpr int kSide = 12, kDraws = 100000;
+  const std::vector<Case> all = cases();
+  const std::vector<double> cosines{0.95, 0.5, 0.15};
+  const double level = testing::sidak_level(testing::kSignificance, all.size() * cosines.size());
+  uint64_t seed = 1;
+  for (const Case &c : all)
+    for (const double cosine : cosines) {
+      const glm::vec3 wo = direction(cosine);
+      const Lobe lobe = c.make(wo);
+      const testing::Domain domain = testing::direction_domain();
+      const testing::SquareFunction pdf =
+          domain.density([&](const glm::vec3 &wi) { return double{value_of(lobe, wo, wi).pdf}; });
+      std::vector<double> expected, observed(kSide * kSide + 1, 0.0);
+      double sum = 0.0;
+      for (int i = 0; i < kSide; ++i)
+        for (int j = 0; j < kSide; ++j) {
+          const glm::dvec2 low = glm::dvec2(i, j) / double{kSide}, high = glm::dvec2(i + 1, j + 1) / double{kSide};
+          expected.push_back(std::max(1e-3, kDraws * testing::integrate_square(pdf, 2, 0.2 / kDraws, low, high)));
+          sum += expected.back();
+        }
+      // What falls below the horizon is a cell, too.
+      expected.push_back(std::max(1e-3, kDraws - sum));
+      Random random(seed++);
+      for (int k = 0; k < kDraws; ++k) {
+        const float u = random.uniform();
+        const glm::vec3 wi = drawn(lobe, wo, {u, random.uniform()});
+        std::size_t cell = kSide * kSide;
+        if (wi.z > 0.0f) {
+          const glm::dvec2 place = glm::clamp(domain.place(wi) * double{kSide}, 0.0, kSide - 1.0);
+          cell = static_cast<std::size_t>(place.x) * kSide + static_cast<std::size_t>(place.y);
+        }
+        observed[cell] += 1.0;
+      }
+      EXPECT_GT(testing::chi_square_test(observed, expected), level) << c.name << " from " << cosine;
+    }
+}
+
+TEST(MatteLobes, AnswerAlikeBothWays) {
+  Random random(7);
+  const auto any = [&] { return direction(0.02 + 0.98 * random.uniform(), 6.28 * random.uniform()); };
+  for (const Case &c : cases()) {
+    if (!c.reciprocal)
+      continue;
+    for (int k = 0; k < 200; ++k) {
+      const glm::vec3 wo = any(), wi = any();
+      const glm::vec3 there = value_of(c.make(wo), wo, wi).f / wi.z, back = value_of(c.make(wi), wi, wo).f / wo.z;
+      // A few dozen roundings, some of them before a power of 800 (the exponent of roughness 0.05) or a fourth power of 1/sin.
+      const float rounding = 3e-4f * std::max({there.x, there.y, there.z}) + 1e-30f;
+      for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(there[i], back[i], rounding) << c.name << " from " << wo.z << " to " << wi.z;
+    }
+  }
+}
+
+TEST(MatteLobes, AreDarkBehind) {
+  const glm::vec3 wo = direction(0.5), below = direction(-0.3);
+  for (const Case &c : cases()) {
+    EXPECT_EQ(value_of(c.make(wo), wo, below).f, glm::vec3(0.0f)) << c.name;
+    EXPECT_EQ(value_of(c.make(wo), wo, below).pdf, 0.0f) << c.name;
+  }
+  const Lobe paper = make_translucent(glm::vec3(1.0f));
+  EXPECT_EQ(value_of(paper, wo, direction(0.3)).f, glm::vec3(0.0f));
+  EXPECT_NEAR(value_of(paper, wo, below).f.x, 0.3 / std::numbers::pi, 1e-7);
+  EXPECT_LT(drawn(paper, wo, {0.3f, 0.6f}).z, 0.0f);
+}
+
+// The model has edges where wi is as high as wo and where both are a quarter turn apart: cells that end there see smooth
+// functions.
+double oren_nayar_albedo(const Lobe &lobe, const glm::vec3 &wo) {
+  const testing::SquareFunction f =
+      testing::direction_domain().density([&](const glm::vec3 &wi) { return double{matte_eval(lobe, wo, wi).f.x}; });
+  return testing::integrate_square(f, 4, 1e-7, {0.0, 0.0}, {wo.z, 1.0}) +
+         testing::integrate_square(f, 4, 1e-7, {wo.z, 0.0}, {1.0, 1.0});
+}
+
+// Fujii's directional albedo is a closed form; where the lost light of a white surface comes back none is lost at all.
+TEST(MatteLobes, OrenNayarKeepsItsLight) {
+  const glm::vec3 white(1.0f);
+  for (const float r : {1e-4f, 0.2f, 0.7f, 1.0f})
+    for (const double cosine : {1.0, 0.7, 0.3, 0.05, 1e-3}) {
+      const glm::vec3 wo = direction(cosine, 0.0);
+      const Lobe single = make_diffuse(white, white, r, false, wo.z), all = make_diffuse(white, white, r, true, wo.z);
+      const double expected = single.alpha_x * std::numbers::pi + single.alpha_y * oren_nayar_g(wo.z);
+      // Some thirty float roundings.
+      EXPECT_NEAR(oren_nayar_albedo(single, wo), expected, 3e-6) << r << " " << cosine;
+      EXPECT_NEAR(oren_nayar_albedo(all, wo), 1.0, 3e-6) << r << " " << cosine;
+    }
+}
+
+TEST(MatteLobes, SmoothOrenNayarIsLambert) {
+  EXPECT_EQ(make_diffuse(glm::vec3(0.5f), glm::vec3(0.5f), 0.0f, true, 0.4f).shape, LobeShape::Lambert);
+  EXPECT_EQ(make_diffuse(glm::vec3(0.5f), glm::vec3(0.5f), 1e-4f, true, 0.4f).shape, LobeShape::Matte);
+}
+
+// Along the normal Burley's two Fresnel factors are 1 and nothing turns back.
+TEST(MatteLobes, BurleyAlongTheNormalIsLambert) {
+  const glm::vec3 n(0.0f, 0.0f, 1.0f);
+  EXPECT_NEAR(value_of(make_burley(glm::vec3(1.0f), 0.9f), n, n).f.x, std::numbers::inv_pi, 1e-7);
+}
+
+// The density of half vectors is normalised on the projected hemisphere: so is what the values are made of.
+TEST(MatteLobes, ClearCoatDistributionIsNormalised) {
+  for (const float alpha : {0.01f, 0.1f, 0.5f, 1.0f}) {
+    const double sum =
+        testing::integrate_square(testing::half_vector_domain({0.0f, 0.0f, 1.0f}, alpha).density([&](const glm::vec3 &wi) {
+          const glm::vec3 h = half_vector({0.0f, 0.0f, 1.0f}, wi);
+          // Solid angle of normals per solid angle of wi: 1 / (4 wo.h).
+          return double{gtr1_d(h, alpha)} * h.z / (4.0 * h.z);
+        }),
+                                  8, 1e-6);
+    // Half vectors of directions above the plane lean by at most 45 degrees: the rest of the distribution in closed form.
+    const double a2 = double{alpha} * alpha;
+    const double reached = a2 < 1.0 ? std::log((a2 + 0.5 * (1.0 - a2)) / a2) / -std::log(a2) : 0.5;
+    EXPECT_NEAR(sum, reached, 1e-4) << alpha;
+  }
+}
+
+TEST(MatteLobes, SheenScattersItsAlbedo) {
+  const glm::vec3 weight(0.9f, 0.5f, 0.2f);
+  for (const float r : {0.1f, 0.5f, 1.0f})
+    for (const double cosine : {0.9, 0.4, 0.1}) {
+      const glm::vec3 wo = direction(cosine);
+      const Lobe lobe = make_sheen(weight, r, wo.z);
+      EXPECT_NEAR(albedo(lobe, wo), 1.0, 1e-4) << r << " " << cosine;
+      EXPECT_EQ(lobe.albedo, lobe.color);
+      EXPECT_LE(lobe.albedo.x, weight.x);
+    }
+  // Rougher cloth is brighter, and so is cloth along the horizon.
+  EXPECT_GT(sheen_fit(0.5f, 0.8f).albedo, sheen_fit(0.5f, 0.4f).albedo);
+  EXPECT_GT(sheen_fit(0.2f, 0.5f).albedo, sheen_fit(0.8f, 0.5f).albedo);
+}
+
+TEST(MatteLobes, GlossGoesOverIntoAMirror) {
+  EXPECT_TRUE(make_ashikhmin(glm::vec3(1.0f), 0.0f, 0.0f).delta);
+  EXPECT_FALSE(make_ashikhmin(glm::vec3(1.0f), 0.0f, 0.1f).delta);
+  EXPECT_TRUE(make_clear_coat(glm::vec3(1.0f), 0.0f, 0.5f).delta);
+  const glm::vec3 wo(0.0f, 0.0f, 1.0f);
+  // A quarter of what a dielectric of IOR 1.5 reflects along its normal.
+  const Lobe coat = make_clear_coat(glm::vec3(1.0f), 0.0f, wo.z);
+  EXPECT_NEAR(coat.color.x * gloss_delta_weight(coat, wo), 0.01f, 1e-8f);
+  EXPECT_NEAR(coat.albedo.x, 0.01f, 1e-8f);
+}
+
+} // namespace
+} // namespace lancer
