@@ -1,46 +1,57 @@
-// From a place on the film to a ray: perspective, orthographic, thin lens.
+// From a place on the film to a ray: flat pictures, panoramas, the lens.
 #pragma once
 
 #include "accel/ray.h"
 #include "scene/affine.h"
 
+#include <array>
+
 namespace lancer {
 
-// The camera looks along its local -z, y up. The window is the full image's rectangle on the plane z = -1 (perspective) or at
-// any depth (orthographic); sensor fit, shift and pixel aspect are all in it.
+enum class CameraKind : uint32_t {
+  Perspective = 0,
+  Orthographic = 1,
+  Equirectangular = 2,
+  FisheyeEquidistant = 3,
+  FisheyeEquisolid = 4,
+  FisheyePolynomial = 5,
+  MirrorBall = 6,
+  Cylindrical = 7
+};
+
+// The camera looks along its local -z, y up. The window is the full image's rectangle: on the plane z = -1 (perspective), at
+// any depth (orthographic), of a panorama whose whole is 0 ... 1; sensor fit, shift and pixel aspect are all in it.
 struct Camera {
   Affine to_world;
-  bool orthographic = false;
+  CameraKind kind = CameraKind::Perspective;
   uint32_t width = 0, height = 0; // full image, pixels
   uint32_t x = 0, y = 0;          // lower left pixel of the region
   uint32_t region_width = 0, region_height = 0;
   double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
+  std::array<double, 8> panorama{}; // as the kind says
   double clip_start = 0.0, clip_end = 0.0;
   double lens_radius = 0.0, focal_distance = 0.0;
+  uint32_t aperture_blades = 0; // below 3: a round lens
+  double aperture_rotation = 0.0, aperture_ratio = 1.0;
 
-  // raster: pixels of the full image, (0, 0) the lower left corner; lens: a point of the unit disk.
-  // The direction's component along the axis is 1, so that t is the depth.
-  Ray ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const {
-    const double sx = left + (right - left) * raster.x / width;
-    const double sy = bottom + (top - bottom) * raster.y / height;
-    glm::dvec3 o(0.0), d(sx, sy, -1.0);
-    if (orthographic) {
-      o = glm::dvec3(sx, sy, 0.0);
-      d = glm::dvec3(0.0, 0.0, -1.0);
-    }
-    if (lens_radius > 0.0) {
-      // Aim every point of the lens at the same point of the plane in focus.
-      const glm::dvec3 shift(lens_radius * lens.x, lens_radius * lens.y, 0.0);
-      o += shift;
-      d -= shift / focal_distance;
-    }
-    Ray ray;
-    ray.o = to_world.point(o);
-    ray.d = to_world.vector(d);
-    ray.tmin = clip_start;
-    ray.tmax = clip_end;
-    return ray;
-  }
+  bool is_panorama() const { return kind > CameraKind::Orthographic; }
+  // Lengths of the scene times scale.
+  void scale_lengths(double scale);
+
+  // raster: pixels of the full image, (0, 0) the lower left corner; lens: a point of the lens, as aperture() gives it.
+  // t is the depth: the direction's component along the axis is 1; panoramas: the direction is unit. tmax < 0: no ray, this
+  // panorama shows nothing there.
+  Ray ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const;
+  // A point of the lens, in units of its radius, for u in [0, 1)^2.
+  glm::dvec2 aperture(const glm::vec2 &u) const;
+
+  // Depth of a point of the world as the depth pass has it: along the axis; panoramas: the distance.
+  double depth(const glm::dvec3 &p) const;
+  // A point, or a direction, in the camera's frame with z forwards, as nodes see it.
+  glm::vec3 to_camera(const glm::dvec3 &p) const;
+  glm::vec3 direction_to_camera(const glm::dvec3 &d) const;
+  // Where the picture shows a point: (0, 0) the lower left corner, (1, 1) the upper right; z is 0.
+  glm::vec3 to_window(const glm::dvec3 &p) const;
 };
 
 } // namespace lancer

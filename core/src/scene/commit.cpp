@@ -1,4 +1,7 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
+#include "integrator/shading.h"
+#include "lights/place_light.h"
+#include "scene/displace.h"
 #include "scene/scene.h"
 
 #include <chrono>
@@ -82,60 +85,12 @@ void make_smooth_normals(Mesh &mesh) {
   }
 }
 
-// The light's axes: its z kept, the others made orthogonal to it; what vanishes is replaced by any direction that fits.
-void set_axes(Light &light, const Affine &map) {
-  const auto unit = [](const glm::dvec3 &v) { return glm::length(v) > 0.0 ? v / glm::length(v) : glm::dvec3(0.0); };
-  const glm::dvec3 z = unit(map.linear[2]), x = unit(map.linear[0]), y = unit(map.linear[1]);
-  light.z = z == glm::dvec3(0.0) ? glm::dvec3(0.0, 0.0, 1.0) : z;
-  light.x = unit(x - glm::dot(x, light.z) * light.z);
-  if (light.x == glm::dvec3(0.0))
-    light.x = unit(std::abs(light.z.x) < 0.5 ? glm::cross(light.z, {1, 0, 0}) : glm::cross(light.z, {0, 1, 0}));
-  light.y = glm::cross(light.z, light.x);
-  if (glm::dot(light.y, y) < 0.0)
-    light.y = -light.y;
-}
-
-Light normalised_light(const LightDescription &from, const Normalisation &normalisation) {
-  Light light;
-  const double scale = normalisation.scale;
-  light.kind = from.kind;
-  light.position = normalisation.to_normalised(from.to_world.translation);
-  set_axes(light, from.to_world);
-  light.emission = glm::dvec3(from.emission);
-  // Irradiance is intensity over distance squared: lengths scale, so intensity scales with their square.
-  if (from.kind == LightKind::Point || from.kind == LightKind::Spot)
-    light.emission *= scale * scale;
-  light.radius = double(from.radius) * scale;
-  light.soft_falloff = from.soft_falloff;
-  if (from.kind == LightKind::Spot) {
-    light.cos_half_angle = std::cos(0.5 * double(from.spot_angle));
-    light.blend_width = (1.0 - light.cos_half_angle) * double(from.spot_blend);
-    light.spot_cosine = from.spot_cosine;
-  }
-  // 1 - cos(a) = 2 sin^2(a / 2), exact for the smallest suns.
-  const double s = std::sin(0.25 * double(from.sun_angle));
-  light.one_minus_cos_sun = 2.0 * s * s;
-  // A disk that is smaller than a float direction can tell is a direction.
-  if (0.5 * double(from.sun_angle) < 0x1p-24)
-    light.one_minus_cos_sun = 0.0;
-  light.half_x = 0.5 * double(from.size.x) * scale;
-  light.half_y = 0.5 * double(from.size.y) * scale;
-  light.ellipse = from.shape == AreaShape::Ellipse;
-  light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
-  if (from.spread < glm::pi<float>()) {
-    const double half = 0.5 * std::max(double(from.spread), 1e-3);
-    light.tan_half_spread = std::tan(half);
-    light.spread_scale = 1.0 / (light.tan_half_spread - half);
-  }
-  light.course = {from.falloff,       double(from.falloff_radius) * scale, scale, from.ambient_color, from.diffuse_color,
-                  from.specular_color};
-  return light;
-}
-
 LightSet make_lights(const Scene &scene, const Description &description, const BuildContext &context) {
   std::vector<Light> lights;
   for (const LightDescription &light : description.lights)
-    lights.push_back(normalised_light(light, scene.normalisation));
+    lights.push_back(place_light(light, scene.normalisation));
+  Shader shader(scene, nullptr);
+  const EmissionAt emission = [&](const Surface &surface, const glm::vec3 &wo) { return shader.emission(surface, wo); };
   std::vector<Emitter> emitters;
   for (uint32_t i = 0; i < scene.geometry.instances.size(); ++i) {
     const Instance &instance = scene.geometry.instances[i];
@@ -145,13 +100,14 @@ LightSet make_lights(const Scene &scene, const Description &description, const B
     if (!emits)
       continue;
     poll(context);
-    Emitter emitter(scene.geometry, scene.slots, scene.materials, i);
+    Emitter emitter(scene.geometry, scene.slots, scene.materials, i, emission);
     if (!emitter.empty())
       emitters.push_back(std::move(emitter));
   }
   // Half the diagonal of a cube of 1024: what the normalised scene fits into.
   constexpr double radius = 887.0;
-  return LightSet(std::move(lights), std::move(emitters), scene.geometry.instances.size(), description.world, radius);
+  return LightSet(std::move(lights), std::move(emitters), scene.geometry.instances.size(),
+                  Environment(scene.world, scene.images, scene.normalisation, context), radius);
 }
 
 } // namespace
@@ -159,12 +115,19 @@ LightSet make_lights(const Scene &scene, const Description &description, const B
 std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, const BuildContext &context) {
   const auto start = std::chrono::steady_clock::now();
   auto scene = std::make_shared<Scene>();
-  scene->features = find_features(description);
+  const Features features = find_features(description);
+  scene->features = features.bits;
+  scene->shapes = features.shapes;
+  // Move vertices before anything asks where they are.
+  if (features.bits & kFeatureDisplacement)
+    displace(description, context);
   scene->normalisation = normalise(world_bounds(description, context));
   // Place everything in the normalised world.
   scene->geometry = std::move(description.geometry);
   scene->slots = std::move(description.slots);
   scene->materials = std::move(description.materials);
+  scene->images = std::move(description.images);
+  scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {
     instance.to_world = scene->normalisation.to_normalised(instance.to_world);
     instance.to_object = inverse(instance.to_world);
@@ -198,7 +161,11 @@ size_t Scene::geometry_bytes() const {
              (mesh.normals.size() + mesh.smooth_normals.size() + mesh.colors.size()) * sizeof(glm::vec3) +
              mesh.uvs.size() * sizeof(glm::vec2) + mesh.material_slots.size() * sizeof(uint16_t) +
              mesh.face_of.size() * sizeof(uint32_t);
+    for (const MeshAttribute &attribute : mesh.attributes)
+      bytes += attribute.values.size() * sizeof(float);
   }
+  for (const Image &image : images)
+    bytes += image.bytes();
   return bytes;
 }
 

@@ -3,8 +3,10 @@
 
 #include "lancer.h"
 #include "scene/geometry.h"
+#include "scene/image.h"
 #include "scene/light.h"
 #include "scene/material.h"
+#include "scene/world.h"
 
 #include <string>
 #include <unordered_map>
@@ -33,7 +35,9 @@ struct Description {
   std::vector<uint32_t> slots;
   std::vector<Material> materials;
   std::vector<LightDescription> lights;
-  glm::vec3 world{0.0f};
+  std::vector<Image> images;
+  std::vector<std::string> attribute_names{""}; // that nodes ask for; Node::name is a number of this list
+  World world;
   uint32_t instances_given = 0; // including those left out
   Messages messages;
 };
@@ -44,7 +48,16 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
                    const uint32_t *slots, const char *names, size_t names_size);
 void add_material(Description &description, const lancer_material &material);
 void add_light(Description &description, const lancer_light &light);
-void set_world(Description &description, const float radiance[3]);
+void add_image(Description &description, const lancer_image &image);
+void set_world(Description &description, const lancer_world &world);
+
+// Checks and copies the nodes of an owner ("material 'Wood'"), and a parameter that may refer to one of them.
+Program read_program(Description &description, const std::string &owner, const lancer_node *nodes, uint32_t count);
+void check_reference(const std::string &owner, const char *what, const lancer_parameter &parameter, const Program &program);
+
+// The number of a name among attribute_names; a new name gets the next one. kUndisplaced: the vertices before displacement.
+inline constexpr const char *kUndisplaced = "undisplaced position ";
+uint32_t attribute_name(Description &description, const std::string &name);
 
 // "name", or "#number" where there is no name.
 std::string label(const char *kind, const char *name, size_t number);

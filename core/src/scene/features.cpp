@@ -1,6 +1,9 @@
 #include "scene/features.h"
 
+#include "bsdf/build.h"
 #include "scene/description.h"
+
+#include <iterator>
 
 namespace lancer {
 
@@ -22,55 +25,108 @@ uint32_t shape_feature(ShapeKind kind) {
   return 0;
 }
 
+bool uses_images(const Program &program) {
+  for (const Node &node : program.nodes)
+    if (node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT)
+      return true;
+  return false;
+}
+
+bool is_glass(LobeKind kind) {
+  return kind == LobeKind::Dielectric || kind == LobeKind::Glass || kind == LobeKind::Refraction ||
+         kind == LobeKind::Principled;
+}
+
+bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
+
+// What a Principled lobe can become, without the layers that it has not.
+uint32_t principled_shapes(const PrincipledDescription &principled) {
+  uint32_t shapes = shapes_of(LobeKind::Principled);
+  if (principled.constants.rules == Rules::Blender3)
+    return shapes;
+  shapes &= ~shape_bit(LobeShape::Ashikhmin);
+  if (!may_be_positive(principled.diffuse_roughness))
+    shapes &= ~shape_bit(LobeShape::Matte);
+  if (!may_be_positive(principled.sheen))
+    shapes &= ~shape_bit(LobeShape::Sheen);
+  return shapes;
+}
+
+void add_material(const Material &material, Features &features) {
+  for (const LobeDescription &lobe : material.lobes) {
+    features.shapes |= lobe.principled ? principled_shapes(*lobe.principled) : shapes_of(lobe.kind);
+    if (is_glass(lobe.kind))
+      features.bits |= kFeatureGlass;
+  }
+  if (material.transmits())
+    features.bits |= kFeatureTransparency;
+  if (material.emits())
+    features.bits |= kFeatureEmitters;
+  if (!material.program.nodes.empty())
+    features.bits |= kFeatureNodes;
+  if (uses_images(material.program))
+    features.bits |= kFeatureTextures;
+  if (material.displaces())
+    features.bits |= kFeatureDisplacement;
+  if (material.holdout.varies() || material.holdout.value.x > 0.0f)
+    features.bits |= kFeatureHoldout;
+}
+
 } // namespace
 
-uint32_t find_features(const Description &description) {
-  uint32_t features = 0;
+Features find_features(const Description &description) {
+  Features features;
   // Look at what is placed: a mesh or material that nothing shows costs nothing.
   std::vector<uint32_t> uses(description.geometry.meshes.size());
   std::vector<bool> shown(description.materials.size());
   for (const Instance &instance : description.geometry.instances) {
-    features |= shape_feature(instance.kind);
+    features.bits |= shape_feature(instance.kind);
+    if (instance.hidden_from)
+      features.bits |= kFeatureVisibility;
+    if (instance.holdout)
+      features.bits |= kFeatureHoldout;
     if (instance.kind == ShapeKind::Mesh) {
       if (++uses[instance.mesh] > 1)
-        features |= kFeatureInstances;
+        features.bits |= kFeatureInstances;
       if (!description.geometry.meshes[instance.mesh].colors.empty())
-        features |= kFeatureVertexColors;
+        features.bits |= kFeatureVertexColors;
     }
     for (uint32_t slot = 0; slot < instance.slot_count; ++slot)
       shown[description.slots[instance.first_slot + slot]] = true;
   }
-  for (size_t i = 0; i < shown.size(); ++i) {
-    const Material &material = description.materials[i];
-    if (!shown[i])
-      continue;
-    for (const LobeDescription &lobe : material.lobes)
-      features |= 1u << uint32_t(lobe.kind);
-    if (material.opacity.value.x < 1.0f)
-      features |= kFeatureOpacity;
-    if (material.emits())
-      features |= kFeatureEmitters;
-  }
+  for (size_t i = 0; i < shown.size(); ++i)
+    if (shown[i])
+      add_material(description.materials[i], features);
   for (const LightDescription &light : description.lights)
-    features |= kFeaturePointLights << uint32_t(light.kind);
-  if (description.world != glm::vec3(0.0f))
-    features |= kFeatureEnvironment;
+    features.bits |= kFeaturePointLights << uint32_t(light.kind);
+  const World &world = description.world;
+  if (world.varies() || world.radiance.value != glm::vec3(0.0f))
+    features.bits |= kFeatureEnvironment;
+  if (world.varies())
+    features.bits |= kFeatureEnvironmentMap;
   return features;
 }
 
-std::string feature_names(uint32_t features) {
-  static const char *const names[] = {"lambert",     "beckmann",    "mirror",    "dielectric",   "phong",
-                                      "blinn-phong", "opacity",     "triangles", "instances",    "spheres",
-                                      "planes",      "cylinders",   "cones",     "point-lights", "spot-lights",
-                                      "sun-lights",  "area-lights", "emitters",  "environment",  "vertex-colors"};
+std::string feature_names(const Features &features) {
+  static const char *const shapes[] = {"lambert",     "beckmann", "mirror",     "dielectric", "phong",
+                                       "blinn-phong", "matte",    "microfacet", "ashikhmin",  "sheen"};
+  static const char *const bits[] = {
+      "transparency",  "triangles",   "instances",  "spheres",      "planes",   "cylinders",   "cones",
+      "point-lights",  "spot-lights", "sun-lights", "area-lights",  "emitters", "environment", "environment-map",
+      "vertex-colors", "nodes",       "textures",   "displacement", "holdout",  "visibility",  "glass"};
+  static_assert(std::size(shapes) == kLobeShapes);
   std::string text;
-  for (uint32_t bit = 0; bit < std::size(names); ++bit) {
-    if (!(features & (1u << bit)))
-      continue;
+  const auto add = [&](const char *name) {
     if (!text.empty())
       text += ' ';
-    text += names[bit];
-  }
+    text += name;
+  };
+  for (uint32_t bit = 0; bit < std::size(shapes); ++bit)
+    if (features.shapes & (1u << bit))
+      add(shapes[bit]);
+  for (uint32_t bit = 0; bit < std::size(bits); ++bit)
+    if (features.bits & (1u << bit))
+      add(bits[bit]);
   return text;
 }
 

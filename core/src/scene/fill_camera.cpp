@@ -2,6 +2,7 @@
 
 #include "scene/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -31,11 +32,44 @@ void check_region(const lancer_camera &source) {
                  ", " + text(source.y) + ") leaves the image of " + text(source.width) + " x " + text(source.height));
 }
 
+// What a projection divides by, and what it measures angles with.
+void check_panorama(const lancer_camera &source) {
+  const double *p = source.panorama;
+  for (int i = 0; i < 8; ++i)
+    if (!std::isfinite(p[i]))
+      bad_argument("camera: panorama[" + std::to_string(i) + "] is not finite");
+  const auto positive = [&](int i, const char *what) {
+    if (!(p[i] > 0.0))
+      bad_argument("camera: " + std::string(what) + " " + std::to_string(p[i]) + " must be positive");
+  };
+  switch (source.kind) {
+  case LANCER_FISHEYE_EQUIDISTANT:
+    positive(0, "field of view");
+    break;
+  case LANCER_FISHEYE_EQUISOLID:
+    positive(0, "focal length");
+    positive(1, "field of view");
+    positive(2, "sensor width");
+    positive(3, "sensor height");
+    break;
+  case LANCER_FISHEYE_POLYNOMIAL:
+    positive(0, "field of view");
+    positive(1, "sensor width");
+    positive(2, "sensor height");
+    break;
+  case LANCER_CYLINDRICAL:
+    positive(4, "radius");
+    break;
+  default:
+    break;
+  }
+}
+
 } // namespace
 
 Camera read_camera(const lancer_camera &source) {
-  if (source.kind > LANCER_ORTHOGRAPHIC)
-    bad_argument("camera: kind " + std::to_string(source.kind) + " is not one of 0, 1");
+  if (source.kind > LANCER_CYLINDRICAL)
+    bad_argument("camera: kind " + std::to_string(source.kind) + " is not one of 0 ... " + std::to_string(LANCER_CYLINDRICAL));
   check_region(source);
   Camera camera;
   camera.to_world = Affine::from_rows(source.matrix);
@@ -48,11 +82,17 @@ Camera read_camera(const lancer_camera &source) {
   if (!(source.clip_start >= 0.0) || !(source.clip_end > source.clip_start))
     bad_argument("camera: clip range " + std::to_string(source.clip_start) + " ... " + std::to_string(source.clip_end) +
                  " is empty");
+  check_panorama(source);
+  if (!std::isfinite(source.aperture_rotation))
+    bad_argument("camera: aperture rotation " + std::to_string(source.aperture_rotation) + " is not finite");
+  if (source.lens_radius > 0.0 && (!(source.aperture_ratio > 0.0) || !std::isfinite(source.aperture_ratio)))
+    bad_argument("camera: aperture ratio " + std::to_string(source.aperture_ratio) + " must be positive and finite");
   if (!(source.lens_radius >= 0.0) || !std::isfinite(source.lens_radius))
     bad_argument("camera: lens radius " + std::to_string(source.lens_radius) + " must be finite and not negative");
   if (source.lens_radius > 0.0 && !(source.focal_distance > 0.0))
     bad_argument("camera: focal distance " + std::to_string(source.focal_distance) + " must be positive");
-  camera.orthographic = source.kind == LANCER_ORTHOGRAPHIC;
+  camera.kind = static_cast<CameraKind>(source.kind);
+  std::copy(source.panorama, source.panorama + 8, camera.panorama.begin());
   camera.width = source.width;
   camera.height = source.height;
   camera.x = source.x;
@@ -67,6 +107,9 @@ Camera read_camera(const lancer_camera &source) {
   camera.clip_end = source.clip_end;
   camera.lens_radius = source.lens_radius;
   camera.focal_distance = source.focal_distance;
+  camera.aperture_blades = source.aperture_blades;
+  camera.aperture_rotation = source.aperture_rotation;
+  camera.aperture_ratio = source.lens_radius > 0.0 ? source.aperture_ratio : 1.0;
   return camera;
 }
 

@@ -2,6 +2,7 @@
 #include "scene/description.h"
 #include "scene/error.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lancer {
@@ -10,6 +11,8 @@ namespace {
 
 // Scales beyond these would leave the range in which squares of squares are finite in double.
 constexpr double kLargestScale = 1.2676506002282294e30; // 2^100
+
+constexpr uint32_t kRays = 2 * LANCER_RAY_VOLUME - 1;
 
 // Why a placement cannot be traced; empty if it can.
 std::string fault_of(const Affine &map) {
@@ -40,6 +43,10 @@ void check_instance(const Description &description, const std::string &object, c
                  " meshes");
   if (given.shading > LANCER_SHADING_PHONG)
     bad_argument(object + ": shading " + std::to_string(given.shading) + " is not one of 0 ... 3");
+  if (given.hidden_from & ~kRays)
+    bad_argument(object + ": hidden_from " + std::to_string(given.hidden_from) + " has bits beyond the last kind of ray");
+  if (given.flags & ~uint32_t(LANCER_INSTANCE_HOLDOUT))
+    bad_argument(object + ": flags " + std::to_string(given.flags) + " has bits beyond the last flag");
   if (uint64_t(given.first_slot) + given.slot_count > slot_count)
     bad_argument(object + ": slots " + std::to_string(given.first_slot) + " + " + std::to_string(given.slot_count) + " > " +
                  std::to_string(slot_count) + " slots");
@@ -90,6 +97,9 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     instance.first_slot = slot_base + given.first_slot;
     instance.slot_count = given.slot_count;
     instance.object_index = given.object_index;
+    instance.hidden_from = given.hidden_from;
+    instance.terminator = std::isfinite(given.terminator) ? std::clamp(given.terminator, 0.0f, 1.0f) : 0.0f;
+    instance.holdout = (given.flags & LANCER_INSTANCE_HOLDOUT) != 0;
     description.geometry.instances.push_back(std::move(instance));
   }
   description.instances_given += count;

@@ -64,9 +64,16 @@ void add_light(Description &description, const lancer_light &source) {
     light.spot_blend = reader.read("spot blend", source.spot_blend, 0.0f, 1.0f);
     light.spot_cosine = source.spot_cosine != 0;
     light.sun_angle = reader.read("sun angle", source.sun_angle, 0.0f, glm::pi<float>());
-    light.size = {reader.read("size", source.size[0], 0.0f, kBrightest), reader.read("size", source.size[1], 0.0f, kBrightest)};
+    // A spot needs some stretch; whoever leaves it 0 has a round one in mind.
+    const float smallest = light.kind == LightKind::Spot ? 1e-6f : 0.0f;
+    const bool round = light.kind == LightKind::Spot && source.size[0] == 0.0f && source.size[1] == 0.0f;
+    light.size = round ? glm::vec2(1.0f)
+                       : glm::vec2(reader.read("size", source.size[0], smallest, kBrightest),
+                                   reader.read("size", source.size[1], smallest, kBrightest));
     light.shape = static_cast<AreaShape>(source.shape);
     light.spread = reader.read("spread", source.spread, 0.0f, glm::pi<float>());
+    light.hidden_from = source.hidden_from;
+    light.no_shadow = source.no_shadow != 0;
     light.falloff = static_cast<Falloff>(source.falloff);
     light.falloff_radius = reader.read("falloff radius", source.falloff_radius, 0.0f, kBrightest);
     light.ambient_color = reader.read("ambient colour", source.ambient_color);

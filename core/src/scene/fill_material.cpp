@@ -1,4 +1,5 @@
 // Checks and copies materials; values outside the model are replaced and said, structure that cannot be read is refused.
+#include "bsdf/lobe.h"
 #include "scene/description.h"
 #include "scene/error.h"
 
@@ -20,11 +21,16 @@ std::string number(float value) {
 
 class MaterialReader {
 public:
-  MaterialReader(std::string object, Messages &messages) : object_(std::move(object)), messages_(messages) {}
+  MaterialReader(std::string object, const Program &program, Messages &messages)
+      : object_(std::move(object)), program_(program), messages_(messages) {}
 
-  // Each component: NaN becomes fallback, the rest is brought into [low, high].
-  Parameter read(const char *what, const lancer_parameter &given, float low, float high, float fallback) {
+  // Each component: NaN becomes fallback, the rest is brought into [low, high]. What a node gives is brought there later.
+  Parameter read(const char *what, const lancer_parameter &given, float low, float high, float fallback) const {
+    check_reference(object_, what, given, program_);
     Parameter parameter;
+    parameter.node = given.node;
+    if (parameter.varies())
+      return parameter;
     for (int i = 0; i < 3; ++i) {
       const float value = given.value[i];
       const float used = std::isnan(value) ? fallback : std::clamp(value, low, high);
@@ -35,58 +41,173 @@ public:
     return parameter;
   }
 
+  Parameter read_color(const char *what, const lancer_parameter &given, float high = kBrightest) const {
+    return read(what, given, 0.0f, high, 0.0f);
+  }
+
   // A scalar in value[0]; nobody is told of the other two.
-  Parameter read_scalar(const char *what, lancer_parameter given, float low, float high, float fallback) {
+  Parameter read_scalar(const char *what, lancer_parameter given, float low, float high, float fallback) const {
     given.value[1] = given.value[2] = low;
     Parameter parameter = read(what, given, low, high, fallback);
     parameter.value = glm::vec3(parameter.value.x);
     return parameter;
   }
 
-  Parameter read_ior(const lancer_parameter &given) {
+  Parameter read_share(const char *what, const lancer_parameter &given, float fallback = 0.0f) const {
+    return read_scalar(what, given, 0.0f, 1.0f, fallback);
+  }
+
+  Parameter read_ior(const char *what, const lancer_parameter &given) const {
     // Zero and below have no meaning; glass's own default is the least surprise.
     const float value = given.value[0];
     lancer_parameter checked = given;
-    if (!(value > 0.0f)) {
-      messages_.add(object_, "IOR " + number(value) + " was replaced by 1.45");
+    if (given.node < 0 && !(value > 0.0f)) {
+      messages_.add(object_, std::string(what) + " " + number(value) + " was replaced by 1.45");
       checked.value[0] = 1.45f;
     }
-    return read_scalar("IOR", checked, 0.0f, INFINITY, 1.45f);
+    return read_scalar(what, checked, 0.0f, INFINITY, 1.45f);
+  }
+
+  Parameter read_vector(const char *what, const lancer_parameter &given) const {
+    return read(what, given, -kBrightest, kBrightest, 0.0f);
   }
 
 private:
   std::string object_;
+  const Program &program_;
   Messages &messages_;
 };
 
-LobeDescription read_lobe(MaterialReader &reader, const lancer_lobe &given) {
+std::shared_ptr<const PrincipledDescription> read_principled(const MaterialReader &reader, const lancer_principled &given) {
+  auto principled = std::make_shared<PrincipledDescription>();
+  principled->constants.rules = static_cast<Rules>(given.rules);
+  principled->constants.distribution = static_cast<Facets>(given.distribution);
+  principled->constants.option = given.option;
+  principled->base_color = reader.read_color("base colour", given.base_color);
+  principled->metallic = reader.read_share("metallic", given.metallic);
+  principled->roughness = reader.read_share("roughness", given.roughness, 0.5f);
+  principled->ior = reader.read_ior("IOR", given.ior);
+  principled->diffuse_roughness = reader.read_share("diffuse roughness", given.diffuse_roughness);
+  principled->specular = reader.read_scalar("specular", given.specular, 0.0f, kBrightest, 0.5f);
+  principled->specular_tint = reader.read_color("specular tint", given.specular_tint);
+  principled->anisotropic = reader.read_share("anisotropic", given.anisotropic);
+  principled->anisotropic_rotation =
+      reader.read_scalar("anisotropic rotation", given.anisotropic_rotation, -kBrightest, kBrightest, 0.0f);
+  principled->transmission = reader.read_share("transmission", given.transmission);
+  principled->transmission_roughness = reader.read_share("transmission roughness", given.transmission_roughness);
+  principled->coat = reader.read_scalar("coat", given.coat, 0.0f, kBrightest, 0.0f);
+  principled->coat_roughness = reader.read_share("coat roughness", given.coat_roughness, 0.03f);
+  principled->coat_ior = reader.read_ior("coat IOR", given.coat_ior);
+  principled->coat_tint = reader.read_color("coat tint", given.coat_tint);
+  principled->coat_normal = reader.read_vector("coat normal", given.coat_normal);
+  principled->sheen = reader.read_scalar("sheen", given.sheen, 0.0f, kBrightest, 0.0f);
+  principled->sheen_roughness = reader.read_share("sheen roughness", given.sheen_roughness, 0.5f);
+  principled->sheen_tint = reader.read_color("sheen tint", given.sheen_tint);
+  principled->emission = reader.read_color("emission", given.emission);
+  return principled;
+}
+
+LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given) {
   LobeDescription lobe;
   lobe.kind = static_cast<LobeKind>(given.kind);
-  lobe.color = reader.read("colour", given.color, 0.0f, kBrightest, 0.0f);
+  lobe.rules = static_cast<Rules>(given.rules);
+  lobe.distribution = static_cast<Facets>(given.distribution);
+  lobe.option = given.option;
+  lobe.weight = reader.read_color("weight", given.weight);
+  lobe.normal = reader.read_vector("normal", given.normal);
   // Only what the lobe uses is looked at: nobody is told of a value without effect.
-  if (lobe.kind == LobeKind::Beckmann)
-    lobe.roughness = reader.read_scalar("roughness", given.roughness, 0.0f, 1.0f, 0.5f);
-  if (lobe.kind == LobeKind::Beckmann || lobe.kind == LobeKind::Dielectric)
-    lobe.ior = reader.read_ior(given.ior);
-  if (lobe.kind == LobeKind::Phong || lobe.kind == LobeKind::BlinnPhong)
+  const bool coating = lobe.kind == LobeKind::Beckmann, blinn = lobe.kind == LobeKind::BlinnPhong,
+             glass = lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction,
+             metal = lobe.kind == LobeKind::Glossy || lobe.kind == LobeKind::Conductor;
+  const bool cloth = lobe.kind == LobeKind::Sheen || lobe.kind == LobeKind::Diffuse;
+  if (metal || lobe.kind == LobeKind::Principled)
+    lobe.tangent = reader.read_vector("tangent", given.tangent);
+  if (lobe.kind == LobeKind::Principled) {
+    lobe.principled = read_principled(reader, *given.principled);
+    return lobe;
+  }
+  const bool f82 = lobe.kind == LobeKind::Conductor && lobe.option == 0;
+  lobe.color = reader.read_color("colour", given.color, f82 ? 1.0f : kBrightest);
+  if (coating || glass || metal || cloth)
+    lobe.roughness = reader.read_share("roughness", given.roughness, 0.5f);
+  if (coating || glass || lobe.kind == LobeKind::Dielectric)
+    lobe.ior = reader.read_ior("IOR", given.ior);
+  if (blinn || lobe.kind == LobeKind::Phong)
     lobe.shininess = reader.read_scalar("shininess", given.shininess, 0.0f, 1e8f, 32.0f);
+  if (lobe.kind == LobeKind::Conductor)
+    lobe.edge = reader.read_color("edge", given.edge, f82 ? 1.0f : kBrightest);
+  if (metal) {
+    lobe.anisotropy = reader.read_scalar("anisotropy", given.anisotropy, -1.0f, 1.0f, 0.0f);
+    lobe.rotation = reader.read_scalar("rotation", given.rotation, -kBrightest, kBrightest, 0.0f);
+  }
   return lobe;
 }
 
-void check_textures(const std::string &object, const lancer_material &source) {
-  const auto check = [&](const char *what, const lancer_parameter &given) {
-    if (given.texture >= 0)
-      bad_argument(object + ": " + what + " names texture " + std::to_string(given.texture) + ", but the scene has 0 textures");
+void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) {
+  const std::string where = object + ": lobe " + std::to_string(i) + " has ";
+  const auto check = [&](const char *what, uint32_t value, uint32_t count) {
+    if (value >= count)
+      bad_argument(where + what + " " + std::to_string(value) + ", which is none");
   };
-  check("emission", source.emission);
-  check("opacity", source.opacity);
-  check("ambient", source.ambient);
-  for (uint32_t i = 0; i < source.lobe_count; ++i) {
-    check("colour", source.lobes[i].color);
-    check("roughness", source.lobes[i].roughness);
-    check("IOR", source.lobes[i].ior);
-    check("shininess", source.lobes[i].shininess);
+  check("kind", lobe.kind, LANCER_LOBE_KIND_COUNT);
+  check("distribution", lobe.distribution, LANCER_MULTI_GGX + 1);
+  check("option", lobe.option, 2);
+  check("rules", lobe.rules, LANCER_RULES_45 + 1);
+  if (lobe.kind != LANCER_PRINCIPLED)
+    return;
+  if (!lobe.principled)
+    bad_argument(where + "no record: principled is NULL");
+  check("distribution", lobe.principled->distribution, LANCER_MULTI_GGX + 1);
+  check("option", lobe.principled->option, 2);
+  check("rules", lobe.principled->rules, LANCER_RULES_45 + 1);
+}
+
+// All parameters that decide how a lobe looks.
+void collect(const LobeDescription &lobe, std::vector<Parameter> &parameters) {
+  parameters.insert(parameters.end(), {lobe.weight, lobe.color, lobe.roughness, lobe.ior, lobe.shininess, lobe.edge,
+                                       lobe.anisotropy, lobe.rotation, lobe.normal, lobe.tangent});
+  if (!lobe.principled)
+    return;
+  const PrincipledDescription &p = *lobe.principled;
+  parameters.insert(parameters.end(), {p.base_color,
+                                       p.metallic,
+                                       p.roughness,
+                                       p.ior,
+                                       p.diffuse_roughness,
+                                       p.specular,
+                                       p.specular_tint,
+                                       p.anisotropic,
+                                       p.anisotropic_rotation,
+                                       p.transmission,
+                                       p.transmission_roughness,
+                                       p.coat,
+                                       p.coat_roughness,
+                                       p.coat_ior,
+                                       p.coat_tint,
+                                       p.coat_normal,
+                                       p.sheen,
+                                       p.sheen_roughness,
+                                       p.sheen_tint,
+                                       p.emission});
+}
+
+void make_schedules(Material &material) {
+  const auto schedule = [&](std::vector<Parameter> parameters) { return material.program.schedule(parameters); };
+  std::vector<Parameter> surface{material.emission, material.transmittance, material.holdout, material.ambient,
+                                 material.normal};
+  std::vector<Parameter> emission{material.emission};
+  for (const LobeDescription &lobe : material.lobes) {
+    collect(lobe, surface);
+    if (!lobe.principled)
+      continue;
+    const Parameter &below = lobe.principled->emission;
+    material.layered_emission |= below.varies() || below.value != glm::vec3(0.0f);
+    emission.push_back(below);
   }
+  material.surface_nodes = schedule(std::move(surface));
+  material.transmittance_nodes = schedule({material.transmittance});
+  material.emission_nodes = schedule(std::move(emission));
+  material.displacement_nodes = schedule({material.displacement});
 }
 
 } // namespace
@@ -97,28 +218,24 @@ void add_material(Description &description, const lancer_material &source) {
     bad_argument(object + ": " + std::to_string(source.lobe_count) + " lobes > " + std::to_string(kMaxLobes));
   if (source.lobe_count && !source.lobes)
     bad_argument(object + ": lobes is NULL for " + std::to_string(source.lobe_count) + " lobes");
-  for (uint32_t i = 0; i < source.lobe_count; ++i) {
-    if (source.lobes[i].kind > LANCER_BLINN_PHONG)
-      bad_argument(object + ": lobe " + std::to_string(i) + " has kind " + std::to_string(source.lobes[i].kind) +
-                   ", which is none");
-  }
+  for (uint32_t i = 0; i < source.lobe_count; ++i)
+    check_lobe(object, source.lobes[i], i);
 
-  check_textures(object, source);
-
-  MaterialReader reader(object, description.messages);
   Material material;
   material.name = source.name ? source.name : "";
   material.index = source.material_index;
+  material.flags = source.flags;
+  material.program = read_program(description, object, source.nodes, source.node_count);
+  const MaterialReader reader(object, material.program, description.messages);
   for (uint32_t i = 0; i < source.lobe_count; ++i)
     material.lobes.push_back(read_lobe(reader, source.lobes[i]));
-  material.emission = reader.read("emission", source.emission, 0.0f, kBrightest, 0.0f);
-  material.opacity = reader.read_scalar("opacity", source.opacity, 0.0f, 1.0f, 1.0f);
-  material.ambient = reader.read("ambient", source.ambient, 0.0f, kBrightest, 0.0f);
-  for (const LobeDescription &lobe : material.lobes)
-    for (const Parameter &parameter : {lobe.color, lobe.roughness, lobe.ior, lobe.shininess})
-      material.textured |= parameter.texture >= 0;
-  for (const LobeDescription &lobe : material.lobes)
-    material.constant.lobes[material.constant.count++] = evaluate(lobe, Surface{});
+  material.emission = reader.read_color("emission", source.emission);
+  material.transmittance = reader.read_color("transmittance", source.transmittance);
+  material.holdout = reader.read_share("holdout", source.holdout);
+  material.ambient = reader.read_color("ambient", source.ambient);
+  material.displacement = reader.read_vector("displacement", source.displacement);
+  material.normal = reader.read_vector("normal", source.normal);
+  make_schedules(material);
   description.materials.push_back(std::move(material));
 }
 

@@ -86,6 +86,17 @@ void copy_normals(const std::string &object, const lancer_mesh &source, const st
     messages.add(object, std::to_string(replaced) + " normals that are not finite were replaced by geometric ones");
 }
 
+size_t zero_where_not_finite(std::vector<float> &values) {
+  size_t replaced = 0;
+  for (float &value : values) {
+    if (std::isfinite(value))
+      continue;
+    value = 0.0f;
+    ++replaced;
+  }
+  return replaced;
+}
+
 template <class Vector> size_t zero_where_not_finite(std::vector<Vector> &values) {
   size_t replaced = 0;
   for (Vector &v : values) {
@@ -97,6 +108,56 @@ template <class Vector> size_t zero_where_not_finite(std::vector<Vector> &values
     }
   }
   return replaced;
+}
+
+void check_attributes(const std::string &object, const lancer_mesh &mesh) {
+  if (mesh.attribute_count && !mesh.attributes)
+    bad_argument(object + ": attributes is NULL for " + std::to_string(mesh.attribute_count) + " attributes");
+  for (uint32_t i = 0; i < mesh.attribute_count; ++i) {
+    const lancer_attribute &attribute = mesh.attributes[i];
+    const std::string where = object + ": " + label("attribute", attribute.name, i) + ": ";
+    if (!attribute.name || !*attribute.name)
+      bad_argument(where + "it has no name");
+    if (attribute.domain > LANCER_DOMAIN_CORNER)
+      bad_argument(where + "domain " + std::to_string(attribute.domain) + " is not one of 0, 1, 2");
+    if (attribute.channels < 1 || attribute.channels > 4)
+      bad_argument(where + "channels " + std::to_string(attribute.channels) + " is not 1 ... 4");
+    if (!attribute.values && (attribute.domain == LANCER_DOMAIN_VERTEX ? mesh.vertex_count : mesh.triangle_count))
+      bad_argument(where + "values is NULL");
+  }
+}
+
+// Copies an attribute, of kept faces only where it stands for faces.
+MeshAttribute copy_attribute(Description &description, const lancer_attribute &source, uint32_t vertex_count,
+                             const std::vector<uint32_t> &kept) {
+  MeshAttribute attribute;
+  attribute.name = attribute_name(description, source.name);
+  attribute.domain = static_cast<Domain>(source.domain);
+  attribute.channels = source.channels;
+  if (attribute.domain == Domain::Vertex) {
+    attribute.values.assign(source.values, source.values + size_t(vertex_count) * source.channels);
+    return attribute;
+  }
+  const size_t size = size_t(source.channels) * (attribute.domain == Domain::Corner ? 3 : 1);
+  attribute.values.reserve(kept.size() * size);
+  for (const uint32_t face : kept)
+    attribute.values.insert(attribute.values.end(), source.values + face * size, source.values + (face + 1) * size);
+  return attribute;
+}
+
+// The bounds of all vertices that are somewhere.
+void find_bounds(Mesh &mesh) {
+  glm::vec3 low(INFINITY), high(-INFINITY);
+  for (const glm::vec3 &p : mesh.positions) {
+    if (!usable(p))
+      continue;
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  if (!(low.x <= high.x))
+    return;
+  mesh.low = low;
+  mesh.high = high;
 }
 
 } // namespace
@@ -111,6 +172,7 @@ void add_mesh(Description &description, const lancer_mesh &source) {
   if (source.normal_domain > LANCER_NORMALS_CORNER)
     bad_argument(object + ": normal_domain " + std::to_string(source.normal_domain) + " is not one of 0, 1, 2");
   check_indices(object, source);
+  check_attributes(object, source);
 
   // Keep the faces that can be hit, with their attributes.
   const std::vector<uint32_t> kept = kept_faces(object, source, description.messages);
@@ -128,7 +190,13 @@ void add_mesh(Description &description, const lancer_mesh &source) {
   copy_normals(object, source, kept, mesh, description.messages);
   copy_corners(source.uvs, kept, mesh.uvs);
   copy_corners(source.colors, kept, mesh.colors);
-  if (const size_t replaced = zero_where_not_finite(mesh.uvs) + zero_where_not_finite(mesh.colors))
+  find_bounds(mesh);
+  size_t replaced = zero_where_not_finite(mesh.uvs) + zero_where_not_finite(mesh.colors);
+  for (uint32_t i = 0; i < source.attribute_count; ++i) {
+    mesh.attributes.push_back(copy_attribute(description, source.attributes[i], source.vertex_count, kept));
+    replaced += zero_where_not_finite(mesh.attributes.back().values);
+  }
+  if (replaced)
     description.messages.add(object,
                              std::to_string(replaced) + " texture coordinates or colours that are not finite were set to 0");
   if (source.material_slots) {

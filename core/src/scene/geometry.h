@@ -14,6 +14,15 @@ enum class ShapeKind : uint32_t { Mesh = 0, Sphere = 1, Plane = 2, Cylinder = 3,
 enum class Shading : uint32_t { AsMesh = 0, Flat = 1, Gouraud = 2, Phong = 3 };
 enum class NormalDomain : uint32_t { None = 0, Vertex = 1, Corner = 2 };
 
+// A named attribute, one to four numbers each; name is a number of Description::attribute_names.
+enum class Domain : uint32_t { Vertex = 0, Face = 1, Corner = 2 };
+struct MeshAttribute {
+  uint32_t name = 0;
+  Domain domain = Domain::Corner;
+  uint32_t channels = 3;
+  std::vector<float> values;
+};
+
 // A triangle mesh in its object's space. Only faces of finite, non-zero area are kept.
 struct Mesh {
   std::string name;
@@ -24,6 +33,8 @@ struct Mesh {
   std::vector<glm::vec2> uvs;           // empty, or three per triangle
   std::vector<glm::vec3> colors;        // empty, or three per triangle
   std::vector<uint16_t> material_slots; // empty (all 0), or per triangle
+  std::vector<MeshAttribute> attributes;
+  glm::vec3 low{-1.0f}, high{1.0f}; // bounds of the positions as they were given
   NormalDomain normal_domain = NormalDomain::None;
   std::vector<glm::vec3> smooth_normals; // per vertex; only where PHONG or GOURAUD is asked of a mesh without normals
 
@@ -39,7 +50,10 @@ struct Instance {
   uint32_t mesh = 0;
   uint32_t first_slot = 0, slot_count = 0;
   uint32_t object_index = 0;
-  uint32_t number = 0; // in the user's order of adding
+  uint32_t hidden_from = 0; // LANCER_RAY_* bits
+  bool holdout = false;
+  float terminator = 0.0f; // cosine below which shadow rays start on the curved surface
+  uint32_t number = 0;     // in the user's order of adding
   std::string name;
 };
 

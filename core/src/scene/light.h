@@ -25,6 +25,8 @@ struct LightDescription {
   glm::vec2 size{0.0f};
   AreaShape shape = AreaShape::Rectangle;
   float spread = 3.14159265f;
+  uint32_t hidden_from = 0; // LANCER_RAY_* bits
+  bool no_shadow = false;
   // The course's light, CLASSIC only.
   Falloff falloff = Falloff::Physical;
   float falloff_radius = 0.0f;

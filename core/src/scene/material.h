@@ -1,58 +1,54 @@
-// A material as described: lobes whose parameters are constants or textures.
+// A material as described: lobes whose parameters are constants or the results of nodes.
 #pragma once
 
-#include "bsdf/bsdf.h"
-#include "scene/surface.h"
+#include "bsdf/inputs.h"
+#include "scene/node.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace lancer {
 
-// One value of a material. texture < 0: the constant; every other parameter of every lobe takes the same road.
-struct Parameter {
-  glm::vec3 value{0.0f};
-  int32_t texture = -1;
+struct PrincipledDescription {
+  PrincipledInputs constants; // rules, distribution, option, and what is not in parameters
+  Parameter base_color, metallic, roughness, ior, diffuse_roughness, specular, specular_tint, anisotropic, anisotropic_rotation,
+      transmission, transmission_roughness, coat, coat_roughness, coat_ior, coat_tint, coat_normal, sheen, sheen_roughness,
+      sheen_tint, emission;
 };
 
 struct LobeDescription {
   LobeKind kind = LobeKind::Lambert;
-  Parameter color, roughness, ior, shininess;
+  Rules rules = Rules::Blender45;
+  Facets distribution = Facets::Ggx;
+  uint32_t option = 0;
+  Parameter weight{glm::vec3(1.0f)}, color, roughness, ior{glm::vec3(1.5f)}, shininess, edge{glm::vec3(1.0f)}, anisotropy,
+      rotation, normal, tangent;
+  std::shared_ptr<const PrincipledDescription> principled;
 };
 
 struct Material {
   std::string name;
   std::vector<LobeDescription> lobes;
-  Parameter emission, opacity, ambient;
+  Program program;
+  Parameter emission, transmittance, holdout, ambient, displacement, normal;
   uint32_t index = 0;
+  uint32_t flags = 0; // LANCER_MATERIAL_*
 
-  bool textured = false; // any lobe parameter with a texture
-  Bsdf constant;         // the lobes where nothing is textured, made once
+  // Which nodes each question needs.
+  Schedule surface_nodes;       // lobes, emission, transmittance, holdout, ambient, normal
+  Schedule transmittance_nodes; // for shadow rays
+  Schedule emission_nodes;      // for light samples, with those of layered emission
+  Schedule displacement_nodes;
 
-  bool emits() const { return emission.texture >= 0 || emission.value != glm::vec3(0.0f); }
+  bool layered_emission = false; // some Principled lobe emits
+  bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
+  bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
+  bool transmits() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }
 };
 
-// The value of a parameter at a surface point.
-inline glm::vec3 evaluate(const Parameter &parameter, const Surface &) { return parameter.value; }
-
-inline Lobe evaluate(const LobeDescription &lobe, const Surface &surface) {
-  Lobe result;
-  result.kind = lobe.kind;
-  result.color = evaluate(lobe.color, surface);
-  result.alpha = evaluate(lobe.roughness, surface).x;
-  result.ior = evaluate(lobe.ior, surface).x;
-  result.shininess = evaluate(lobe.shininess, surface).x;
-  return result;
-}
-
-// The material's BSDF at a surface point; scratch is filled only where a texture makes the lobes differ from place to place.
-inline const Bsdf &evaluate(const Material &material, const Surface &surface, Bsdf &scratch) {
-  if (!material.textured)
-    return material.constant;
-  scratch = Bsdf{};
-  for (const LobeDescription &lobe : material.lobes)
-    scratch.lobes[scratch.count++] = evaluate(lobe, surface);
-  return scratch;
-}
+// A described lobe with its values of one place, brought into the ranges that the models know; what is no number becomes 0.
+LobeInputs evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values);
+PrincipledInputs evaluate(const PrincipledDescription &principled, std::span<const glm::vec4> values);
 
 } // namespace lancer

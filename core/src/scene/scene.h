@@ -23,9 +23,12 @@ struct Scene {
   Geometry geometry; // normalised
   std::vector<uint32_t> slots;
   std::vector<Material> materials;
+  std::vector<Image> images;
+  World world;
   LightSet lights;
   Normalisation normalisation;
   uint32_t features = 0; // bits of features.h
+  uint32_t shapes = 0;   // of lobes, as Features has them
   std::unique_ptr<Accelerator> accelerator;
   std::string messages;
   uint32_t instances_given = 0;

@@ -45,8 +45,10 @@ template <class Vector> Vector interpolate(const std::vector<Vector> &corners, u
   return float(b.x) * corners[first] + float(b.y) * corners[first + 1] + float(b.z) * corners[first + 2];
 }
 
-// The interpolated normal of the object's space, or zero where the surface is flat.
-glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec3 &b) {
+} // namespace
+
+glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary) {
+  const glm::dvec3 b(1.0 - bary.x - bary.y, bary.x, bary.y);
   if (shading == Shading::Flat)
     return glm::vec3(0.0f);
   if (mesh.normal_domain == NormalDomain::Corner)
@@ -59,6 +61,8 @@ glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triang
   return float(b.x) * normals[t.x] + float(b.y) * normals[t.y] + float(b.z) * normals[t.z];
 }
 
+namespace {
+
 void mesh_surface(const Geometry &geometry, const Hit &hit, Surface &surface) {
   const Instance &instance = geometry.instances[hit.instance];
   const Mesh &mesh = geometry.meshes[instance.mesh];
@@ -67,11 +71,12 @@ void mesh_surface(const Geometry &geometry, const Hit &hit, Surface &surface) {
   const glm::dvec3 v0(mesh.vertex(hit.primitive, 0)), v1(mesh.vertex(hit.primitive, 1)), v2(mesh.vertex(hit.primitive, 2));
   const glm::dvec3 p = b.x * v0 + b.y * v1 + b.z * v2;
   surface.p = instance.to_world.point(p);
+  surface.bary = {hit.u, hit.v};
   surface.offset = position_bound(instance, glm::max(glm::abs(v0), glm::max(glm::abs(v1), glm::abs(v2))), surface.p);
   // Take both normals outwards.
   surface.ng = normal_to_world(instance, glm::cross(v1 - v0, v2 - v0));
   surface.ns = surface.ng;
-  const glm::vec3 n = interpolated_normal(mesh, instance.shading, hit.primitive, b);
+  const glm::vec3 n = interpolated_normal(mesh, instance.shading, hit.primitive, surface.bary);
   if (n != glm::vec3(0.0f)) {
     surface.ns = normal_to_world(instance, glm::dvec3(n));
     if (glm::dot(surface.ns, surface.ng) < 0.0f)
@@ -112,18 +117,19 @@ Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots,
   return surface;
 }
 
-SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface, const Hit &hit) {
+SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface) {
   SurfaceAttributes attributes;
-  const Instance &instance = geometry.instances[hit.instance];
+  const Instance &instance = geometry.instances[surface.instance];
   if (instance.kind != ShapeKind::Mesh) {
     attributes.uv = glm::vec2(quadric_uv(instance.kind, instance.to_object.point(surface.p)));
     return attributes;
   }
   const Mesh &mesh = geometry.meshes[instance.mesh];
-  const glm::dvec3 b(1.0 - hit.u - hit.v, hit.u, hit.v);
-  attributes.uv = mesh.uvs.empty() ? glm::vec2(float(hit.u), float(hit.v)) : interpolate(mesh.uvs, hit.primitive, b);
+  const glm::dvec3 b(1.0 - surface.bary.x - surface.bary.y, surface.bary.x, surface.bary.y);
+  attributes.uv =
+      mesh.uvs.empty() ? glm::vec2(float(surface.bary.x), float(surface.bary.y)) : interpolate(mesh.uvs, surface.primitive, b);
   if (!mesh.colors.empty())
-    attributes.color = interpolate(mesh.colors, hit.primitive, b);
+    attributes.color = interpolate(mesh.colors, surface.primitive, b);
   return attributes;
 }
 

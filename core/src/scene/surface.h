@@ -11,6 +11,7 @@ struct Surface {
   double offset = 0.0;   // bound of p's distance from the surface as any later ray sees it
   glm::vec3 ng{0, 0, 1}; // outward geometric normal, unit
   glm::vec3 ns{0, 0, 1}; // shading normal, unit, on the side of ng
+  glm::dvec2 bary{0.0};  // weights of vertex 1 and 2; 0 on an exact surface
   uint32_t instance = kNone;
   uint32_t primitive = kNone;
   uint32_t material = kNone;
@@ -24,7 +25,10 @@ struct SurfaceAttributes {
   glm::vec2 uv{0.0f};    // texture coordinates; barycentrics on a mesh without, the parametrisation of an exact surface
   glm::vec3 color{1.0f}; // vertex colour; white on what has none
 };
-SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface, const Hit &hit);
+SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface);
+
+// The interpolated normal in the object's space, of any length; 0 where the surface is flat. bary: as Surface::bary.
+glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary);
 
 // A ray that leaves the surface towards d (need not be unit): it starts on the side of d and cannot meet its own primitive.
 Ray leave(const Surface &surface, const glm::dvec3 &d, double tmax);

@@ -1,0 +1,54 @@
+#include "scene/attribute.h"
+
+namespace lancer {
+
+namespace {
+
+// Where the values of a corner begin.
+size_t offset_of(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, int corner) {
+  switch (attribute.domain) {
+  case Domain::Vertex:
+    return size_t(mesh.triangles[triangle][corner]) * attribute.channels;
+  case Domain::Face:
+    return size_t(triangle) * attribute.channels;
+  case Domain::Corner:
+    break;
+  }
+  return (size_t(triangle) * 3 + size_t(corner)) * attribute.channels;
+}
+
+glm::vec4 at_corner(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, int corner) {
+  const float *values = attribute.values.data() + offset_of(mesh, attribute, triangle, corner);
+  if (attribute.channels == 1)
+    return {values[0], values[0], values[0], 1.0f};
+  return {values[0], values[1], attribute.channels > 2 ? values[2] : 0.0f, attribute.channels > 3 ? values[3] : 1.0f};
+}
+
+} // namespace
+
+const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name) {
+  for (const MeshAttribute &attribute : mesh.attributes)
+    if (attribute.name == name)
+      return &attribute;
+  return nullptr;
+}
+
+glm::vec4 attribute_at(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, const glm::dvec2 &bary) {
+  const glm::vec4 a = at_corner(mesh, attribute, triangle, 0);
+  if (attribute.domain == Domain::Face)
+    return a;
+  const glm::vec4 b = at_corner(mesh, attribute, triangle, 1), c = at_corner(mesh, attribute, triangle, 2);
+  return float(1.0 - bary.x - bary.y) * a + float(bary.x) * b + float(bary.y) * c;
+}
+
+bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 uvs[3]) {
+  const MeshAttribute *attribute = find_attribute(mesh, name);
+  if (!attribute && (name != 0 || mesh.uvs.empty()))
+    return false;
+  for (int corner = 0; corner < 3; ++corner)
+    uvs[corner] =
+        attribute ? glm::vec2(at_corner(mesh, *attribute, triangle, corner)) : mesh.uvs[size_t(triangle) * 3 + size_t(corner)];
+  return true;
+}
+
+} // namespace lancer

@@ -1,0 +1,17 @@
+// Named attributes of a mesh, at a place of one of its triangles.
+#pragma once
+
+#include "scene/geometry.h"
+
+namespace lancer {
+
+// The attribute with this number of a name; null where the mesh has none.
+const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name);
+
+// bary: weights of vertex 1 and 2. One channel is in all of x, y, z; two or three leave z at 0 and w at 1.
+glm::vec4 attribute_at(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, const glm::dvec2 &bary);
+
+// The texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute; false where there are none.
+bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 uvs[3]);
+
+} // namespace lancer

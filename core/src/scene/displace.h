@@ -1,0 +1,12 @@
+// True displacement: vertices moved by what their materials say, once, before the scene is built.
+#pragma once
+
+#include "accel/accelerator.h"
+#include "scene/description.h"
+
+namespace lancer {
+
+// Moves the vertices of every mesh whose materials displace, and makes their normals anew.
+void displace(Description &description, const BuildContext &context);
+
+} // namespace lancer

@@ -1,0 +1,101 @@
+// Checks and copies pictures; colours are multiplied by a straight alpha here, once, in the depth in which they are stored.
+#include "scene/description.h"
+#include "scene/error.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace lancer {
+
+namespace {
+
+// A side beyond this is no picture; below it, the size in bytes fits 64 bits.
+constexpr uint32_t kLargestSide = 1u << 20;
+
+uint8_t multiplied(uint8_t color, uint8_t alpha) { return uint8_t(uint32_t(color) * alpha / 255u); }
+uint16_t multiplied(uint16_t color, uint16_t alpha) { return uint16_t(uint32_t(color) * alpha / 65535u); }
+float multiplied(float color, float alpha) { return color * alpha; }
+
+template <class Texel> void associate(Image &image) {
+  auto *texel = reinterpret_cast<Texel *>(image.texels.get());
+  const size_t count = size_t(image.width) * image.height;
+  for (size_t i = 0; i < count; ++i, texel += 4)
+    for (int c = 0; c < 3; ++c)
+      texel[c] = multiplied(texel[c], texel[3]);
+}
+
+// A texel with a number that is not finite becomes black and clear: half of it would be a wrong hue.
+size_t clear_not_finite(Image &image) {
+  auto *texel = reinterpret_cast<float *>(image.texels.get());
+  const size_t count = size_t(image.width) * image.height;
+  size_t cleared = 0;
+  for (size_t i = 0; i < count; ++i, texel += image.channels) {
+    bool finite = true;
+    for (uint32_t c = 0; c < image.channels; ++c)
+      finite &= std::isfinite(texel[c]);
+    if (finite)
+      continue;
+    std::fill(texel, texel + image.channels, 0.0f);
+    ++cleared;
+  }
+  return cleared;
+}
+
+void check_image(const std::string &object, const lancer_image &source) {
+  const auto refuse = [&](const char *what, uint64_t value, const char *expected) {
+    bad_argument(object + ": " + what + " " + std::to_string(value) + " is not " + expected);
+  };
+  if (source.width == 0 || source.width > kLargestSide)
+    refuse("width", source.width, "1 ... 1048576");
+  if (source.height == 0 || source.height > kLargestSide)
+    refuse("height", source.height, "1 ... 1048576");
+  if (source.channels != 1 && source.channels != 3 && source.channels != 4)
+    refuse("channels", source.channels, "1, 3 or 4");
+  if (source.kind > LANCER_TEXEL_FLOAT)
+    refuse("kind", source.kind, "one of 0, 1, 2");
+  if (source.transfer > LANCER_TRANSFER_SRGB)
+    refuse("transfer", source.transfer, "one of 0, 1");
+  if (source.alpha > LANCER_ALPHA_NONE)
+    refuse("alpha", source.alpha, "one of 0 ... 3");
+  if (!source.texels)
+    bad_argument(object + ": texels is NULL");
+  for (int i = 0; i < 9; ++i)
+    if (!std::isfinite(source.matrix[i]))
+      bad_argument(object + ": matrix holds " + std::to_string(source.matrix[i]));
+}
+
+} // namespace
+
+void add_image(Description &description, const lancer_image &source) {
+  const std::string object = label("image", source.name, description.images.size());
+  check_image(object, source);
+  Image image;
+  image.name = source.name ? source.name : "";
+  image.width = source.width;
+  image.height = source.height;
+  image.channels = source.channels;
+  image.kind = static_cast<TexelKind>(source.kind);
+  image.transfer = static_cast<Transfer>(source.transfer);
+  image.alpha = static_cast<AlphaMode>(source.alpha);
+  image.tile = source.tile;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      image.matrix[column][row] = source.matrix[3 * row + column];
+  image.has_matrix = image.matrix != glm::mat3(1.0f);
+  image.texels = std::make_unique_for_overwrite<std::byte[]>(image.bytes());
+  std::memcpy(image.texels.get(), source.texels, image.bytes());
+  if (image.kind == TexelKind::Float)
+    if (const size_t cleared = clear_not_finite(image))
+      description.messages.add(object, std::to_string(cleared) + " texels that are not finite were set to 0");
+  if (image.alpha == AlphaMode::Straight && image.channels == 4) {
+    if (image.kind == TexelKind::U8)
+      associate<uint8_t>(image);
+    else if (image.kind == TexelKind::U16)
+      associate<uint16_t>(image);
+    else
+      associate<float>(image);
+  }
+  description.images.push_back(std::move(image));
+}
+
+} // namespace lancer

@@ -1,0 +1,221 @@
+// Checks and copies nodes: all that the machine relies on when it runs them.
+#include "scene/description.h"
+#include "scene/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace lancer {
+
+namespace {
+
+constexpr uint32_t kMostNodes = 4096;
+
+// What a kind of node reads: how many inputs, which options there are, whether its matrix counts.
+struct Shape {
+  int inputs;
+  uint32_t options;
+  bool matrix;
+};
+
+Shape shape_of(const lancer_node &node) {
+  switch (node.kind) {
+  case LANCER_NODE_COORDINATE:
+    return {0, LANCER_COORDINATE_COUNT, node.option == LANCER_COORDINATE_OBJECT && (node.flags & 1)};
+  case LANCER_NODE_ATTRIBUTE:
+    return {0, 0, false};
+  case LANCER_NODE_IMAGE:
+    return {node.option == LANCER_PROJECT_BOX ? 2 : 1, 4, false};
+  case LANCER_NODE_ENVIRONMENT:
+    return {1, 3, false};
+  case LANCER_NODE_ALPHA:
+    return {1, 0, false};
+  case LANCER_NODE_MAPPING:
+    return {4, 4, false};
+  case LANCER_NODE_TRANSFORM:
+    return {1, 3, true};
+  case LANCER_NODE_MATH:
+    return {3, LANCER_MATH_COUNT, false};
+  case LANCER_NODE_VECTOR_MATH:
+    return {4, LANCER_VECTOR_COUNT, false};
+  case LANCER_NODE_MIX:
+    return {3, LANCER_MIX_COUNT, false};
+  case LANCER_NODE_SEPARATE:
+    return {1, 3, false};
+  case LANCER_NODE_COMBINE:
+    return {3, 0, false};
+  case LANCER_NODE_GREY:
+    return {1, 0, true};
+  case LANCER_NODE_FRESNEL:
+    return {2, 0, false};
+  case LANCER_NODE_LAYER_WEIGHT:
+    return {2, 2, false};
+  case LANCER_NODE_NORMAL_MAP:
+    return {2, 5, false};
+  case LANCER_NODE_BUMP:
+    return {5, 0, false};
+  case LANCER_NODE_TANGENT:
+    return {0, 4, false};
+  case LANCER_NODE_CLAMP:
+    return {3, 0, false};
+  case LANCER_NODE_DISPLACEMENT:
+    return {4, 2, false};
+  default:
+    return {2, 0, false};
+  }
+}
+
+std::string number(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", double(value));
+  return text;
+}
+
+class ProgramReader {
+public:
+  ProgramReader(Description &description, const std::string &owner) : description_(description), owner_(owner) {}
+
+  Node read(const lancer_node &given, uint32_t at) {
+    where_ = owner_ + ": node " + std::to_string(at) + ": ";
+    if (given.kind >= LANCER_NODE_COUNT)
+      bad_argument(where_ + "kind " + std::to_string(given.kind) + " is none");
+    const Shape shape = shape_of(given);
+    if (shape.options && given.option >= shape.options)
+      bad_argument(where_ + "option " + std::to_string(given.option) + " >= " + std::to_string(shape.options) + " options");
+    Node node;
+    node.kind = given.kind;
+    node.option = given.option;
+    node.flags = given.flags;
+    for (int i = 0; i < shape.inputs; ++i)
+      node.inputs[i] = read_input(given.inputs[i], i, at);
+    if (shape.matrix)
+      read_matrix(given, node);
+    if (given.kind == LANCER_NODE_IMAGE || given.kind == LANCER_NODE_ENVIRONMENT)
+      read_pictures(given, node);
+    if (given.kind == LANCER_NODE_BUMP) {
+      if (given.first > at)
+        bad_argument(where_ + "first " + std::to_string(given.first) + " comes after it");
+      node.first = given.first;
+    }
+    read_names(given, node);
+    return node;
+  }
+
+private:
+  Parameter read_input(const lancer_parameter &given, int i, uint32_t at) const {
+    const std::string input = "input " + std::to_string(i) + " ";
+    Parameter result;
+    result.node = given.node;
+    if (given.node < -1 || given.node >= int64_t(at))
+      bad_argument(where_ + input + "names node " + std::to_string(given.node) + ", which does not come before it");
+    if (given.node >= 0)
+      return result;
+    for (int k = 0; k < 3; ++k) {
+      if (!std::isfinite(given.value[k]))
+        bad_argument(where_ + input + "is " + number(given.value[k]));
+      result.value[k] = given.value[k];
+    }
+    return result;
+  }
+
+  void read_matrix(const lancer_node &given, Node &node) const {
+    for (int i = 0; i < 12; ++i) {
+      if (!std::isfinite(given.matrix[i]))
+        bad_argument(where_ + "matrix holds " + number(given.matrix[i]));
+      node.matrix[i] = given.matrix[i];
+    }
+  }
+
+  void read_pictures(const lancer_node &given, Node &node) const {
+    const size_t images = description_.images.size();
+    if (uint64_t(given.image) + given.image_count > images)
+      bad_argument(where_ + "images " + std::to_string(given.image) + " + " + std::to_string(given.image_count) + " > " +
+                   std::to_string(images) + " images");
+    if ((given.flags & 0xf) > LANCER_EXTEND_MIRROR)
+      bad_argument(where_ + "extension " + std::to_string(given.flags & 0xf) + " is not one of 0 ... 3");
+    if ((given.flags >> 4 & 0xf) > LANCER_INTERPOLATE_CUBIC)
+      bad_argument(where_ + "interpolation " + std::to_string(given.flags >> 4 & 0xf) + " is not one of 0, 1, 2");
+    node.image = given.image;
+    node.image_count = given.image_count;
+  }
+
+  // Turns names into numbers, those that the kind stands for as well.
+  void read_names(const lancer_node &given, Node &node) {
+    const std::string name = given.name ? given.name : "";
+    const bool generated = (node.kind == LANCER_NODE_COORDINATE && node.option == LANCER_COORDINATE_GENERATED) ||
+                           (node.kind == LANCER_NODE_TANGENT && node.option < 3);
+    // The position before displacement is kept under a name that no user can give: it ends with a blank.
+    const bool undisplaced = node.kind == LANCER_NODE_BUMP && (node.flags & 2);
+    node.name = attribute_name(description_, generated ? "generated" : undisplaced ? kUndisplaced : name);
+    if (node.kind == LANCER_NODE_NORMAL_MAP || node.kind == LANCER_NODE_TANGENT)
+      node.tangent = attribute_name(description_, "tangent:" + name);
+  }
+
+  Description &description_;
+  const std::string &owner_;
+  std::string where_;
+};
+
+// The nodes of a bump that its height needs.
+Schedule height_schedule(const Program &program, uint32_t bump) {
+  const Node &owner = program.nodes[bump];
+  std::vector<bool> needed(bump);
+  const auto mark = [&](const Parameter &input) {
+    if (input.varies() && input.node >= int32_t(owner.first))
+      needed[size_t(input.node)] = true;
+  };
+  mark(owner.inputs[2]);
+  for (size_t i = bump; i-- > owner.first;) {
+    if (!needed[i])
+      continue;
+    // A bump within it only hands on its normal.
+    const Node &node = program.nodes[i];
+    for (int k = 0; k < 5; ++k)
+      if (node.kind != LANCER_NODE_BUMP || k == 3)
+        mark(node.inputs[k]);
+  }
+  Schedule schedule;
+  for (size_t i = owner.first; i < bump; ++i)
+    if (needed[i])
+      schedule.push_back(uint16_t(i));
+  return schedule;
+}
+
+} // namespace
+
+uint32_t attribute_name(Description &description, const std::string &name) {
+  std::vector<std::string> &names = description.attribute_names;
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end())
+    return uint32_t(found - names.begin());
+  names.push_back(name);
+  return uint32_t(names.size() - 1);
+}
+
+Program read_program(Description &description, const std::string &owner, const lancer_node *nodes, uint32_t count) {
+  if (count > kMostNodes)
+    bad_argument(owner + ": " + std::to_string(count) + " nodes > " + std::to_string(kMostNodes));
+  if (count && !nodes)
+    bad_argument(owner + ": nodes is NULL for " + std::to_string(count) + " nodes");
+  ProgramReader reader(description, owner);
+  Program program;
+  program.nodes.reserve(count);
+  for (uint32_t i = 0; i < count; ++i)
+    program.nodes.push_back(reader.read(nodes[i], i));
+  for (uint32_t i = 0; i < count; ++i) {
+    if (program.nodes[i].kind != LANCER_NODE_BUMP)
+      continue;
+    program.nodes[i].heights = uint32_t(program.heights.size());
+    program.heights.push_back(height_schedule(program, i));
+  }
+  return program;
+}
+
+void check_reference(const std::string &owner, const char *what, const lancer_parameter &parameter, const Program &program) {
+  if (parameter.node < -1 || parameter.node >= int64_t(program.nodes.size()))
+    bad_argument(owner + ": " + what + " names node " + std::to_string(parameter.node) + ", but there are " +
+                 std::to_string(program.nodes.size()) + " nodes");
+}
+
+} // namespace lancer

@@ -1,0 +1,29 @@
+// Checks and copies the world.
+#include "scene/description.h"
+#include "scene/error.h"
+
+#include <cmath>
+
+namespace lancer {
+
+void set_world(Description &description, const lancer_world &source) {
+  constexpr uint32_t widest = 1u << 16;
+  if (source.map_resolution > widest)
+    bad_argument("world: map resolution " + std::to_string(source.map_resolution) + " is above " + std::to_string(widest));
+  World world;
+  world.program = read_program(description, "world", source.nodes, source.node_count);
+  check_reference("world", "radiance", source.radiance, world.program);
+  for (int i = 0; i < 3; ++i) {
+    const float value = source.radiance.value[i];
+    if (source.radiance.node < 0 && (!std::isfinite(value) || value < 0.0f))
+      bad_argument("world: radiance " + std::to_string(value) + " must be finite and not negative");
+    world.radiance.value[i] = value;
+  }
+  world.radiance.node = source.radiance.node;
+  world.schedule = world.program.schedule(std::span(&world.radiance, 1));
+  world.hidden_from = source.hidden_from;
+  world.map_resolution = source.map_resolution;
+  description.world = std::move(world);
+}
+
+} // namespace lancer

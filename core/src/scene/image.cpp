@@ -1,0 +1,192 @@
+#include "scene/image.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+size_t texel_bytes(TexelKind kind) { return kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4; }
+
+float unit(uint8_t value) { return float(value) * (1.0f / 255.0f); }
+float unit(uint16_t value) { return float(value) * (1.0f / 65535.0f); }
+float unit(float value) { return value; }
+
+float srgb_to_linear(float c) {
+  if (c < 0.04045f)
+    return c < 0.0f ? 0.0f : c * (1.0f / 12.92f);
+  return std::pow((c + 0.055f) * (1.0f / 1.055f), 2.4f);
+}
+
+// The curve at the 256 values that a byte can have.
+const std::array<float, 256> &srgb_table() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> values{};
+    for (size_t i = 0; i < values.size(); ++i)
+      values[i] = srgb_to_linear(unit(uint8_t(i)));
+    return values;
+  }();
+  return table;
+}
+
+// A texel with four numbers, whatever is stored.
+template <class Texel, int Channels> glm::vec4 fetch(const Image &image, int64_t x, int64_t y) {
+  const auto *texels = reinterpret_cast<const Texel *>(image.texels.get());
+  const Texel *t = texels + size_t(y * int64_t(image.width) + x) * Channels;
+  if constexpr (Channels == 1) {
+    const float value = unit(t[0]);
+    return {value, value, value, 1.0f};
+  }
+  const float alpha = Channels == 4 && image.alpha != AlphaMode::None ? unit(t[Channels - 1]) : 1.0f;
+  return {unit(t[0]), unit(t[1]), unit(t[2]), alpha};
+}
+
+// The texel that stands at index i of an endless row; -1: none.
+int64_t wrap(int64_t i, int64_t size, Extension extension) {
+  switch (extension) {
+  case Extension::Repeat:
+    i %= size;
+    return i < 0 ? i + size : i;
+  case Extension::Extend:
+    return std::clamp<int64_t>(i, 0, size - 1);
+  case Extension::Clip:
+    return i < 0 || i >= size ? -1 : i;
+  case Extension::Mirror:
+    i %= 2 * size;
+    i = i < 0 ? i + 2 * size : i;
+    return i < size ? i : 2 * size - 1 - i;
+  }
+  return -1;
+}
+
+// A coordinate brought to where texel indices are small, without a change of what is found there.
+float near_picture(float u, Extension extension) {
+  switch (extension) {
+  case Extension::Repeat:
+    return u - std::floor(u);
+  case Extension::Mirror:
+    return u - 2.0f * std::floor(0.5f * u);
+  case Extension::Extend:
+  case Extension::Clip:
+    break;
+  }
+  return std::clamp(u, -8.0f, 9.0f);
+}
+
+// Weights of four neighbours by the cubic B-spline, for a place t beyond the second.
+std::array<float, 4> spline_weights(float t) {
+  const float s = 1.0f - t, t2 = t * t, s2 = s * s;
+  return {s2 * s / 6.0f, 2.0f / 3.0f - t2 + 0.5f * t2 * t, 2.0f / 3.0f - s2 + 0.5f * s2 * s, t2 * t / 6.0f};
+}
+
+// Neighbours along one axis, with their weights.
+struct Taps {
+  std::array<int64_t, 4> at{};
+  std::array<float, 4> weight{};
+  int count = 0;
+};
+
+Taps taps(float u, uint32_t size, Extension extension, Interpolation interpolation) {
+  Taps result;
+  const float x = near_picture(u, extension) * float(size);
+  // Texels are centred at halves: the place between two centres is half a texel lower.
+  const float place = interpolation == Interpolation::Closest ? x : x - 0.5f;
+  const float whole = std::floor(place), part = place - whole;
+  int64_t first = int64_t(whole);
+  switch (interpolation) {
+  case Interpolation::Closest:
+    result.count = 1;
+    result.weight = {1.0f};
+    break;
+  case Interpolation::Linear:
+    result.count = 2;
+    result.weight = {1.0f - part, part};
+    break;
+  case Interpolation::Cubic:
+    result.count = 4;
+    result.weight = spline_weights(part);
+    --first;
+    break;
+  }
+  for (int i = 0; i < result.count; ++i)
+    result.at[size_t(i)] = wrap(first + i, size, extension);
+  return result;
+}
+
+template <class Texel, int Channels> glm::vec4 gather(const Image &image, const Taps &across, const Taps &up) {
+  if (across.count == 1)
+    return across.at[0] < 0 || up.at[0] < 0 ? glm::vec4(0.0f) : fetch<Texel, Channels>(image, across.at[0], up.at[0]);
+  glm::vec4 sum(0.0f);
+  for (size_t y = 0; y < size_t(up.count); ++y) {
+    glm::vec4 row(0.0f);
+    for (size_t x = 0; x < size_t(across.count); ++x)
+      if (across.at[x] >= 0 && up.at[y] >= 0)
+        row += across.weight[x] * fetch<Texel, Channels>(image, across.at[x], up.at[y]);
+    sum += up.weight[y] * row;
+  }
+  return sum;
+}
+
+template <class Texel> glm::vec4 gather_kind(const Image &image, const Taps &across, const Taps &up) {
+  switch (image.channels) {
+  case 1:
+    return gather<Texel, 1>(image, across, up);
+  case 3:
+    return gather<Texel, 3>(image, across, up);
+  default:
+    return gather<Texel, 4>(image, across, up);
+  }
+}
+
+glm::vec4 gather_any(const Image &image, const Taps &across, const Taps &up) {
+  switch (image.kind) {
+  case TexelKind::U8:
+    return gather_kind<uint8_t>(image, across, up);
+  case TexelKind::U16:
+    return gather_kind<uint16_t>(image, across, up);
+  case TexelKind::Float:
+    break;
+  }
+  return gather_kind<float>(image, across, up);
+}
+
+glm::vec3 decode(const glm::vec3 &c) { return {srgb_to_linear(c.x), srgb_to_linear(c.y), srgb_to_linear(c.z)}; }
+
+// One byte texel exactly: the curve by its table.
+glm::vec3 decode_bytes(const glm::vec3 &c) {
+  const auto &table = srgb_table();
+  const auto at = [&](float value) { return table[size_t(value * 255.0f + 0.5f)]; };
+  return {at(c.x), at(c.y), at(c.z)};
+}
+
+} // namespace
+
+size_t Image::bytes() const { return size_t(width) * height * channels * texel_bytes(kind); }
+
+glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight) {
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+    return glm::vec4(0.0f);
+  const Taps across = taps(uv.x, image.width, extension, interpolation);
+  const Taps up = taps(uv.y, image.height, extension, interpolation);
+  glm::vec4 texel = gather_any(image, across, up);
+  // A picture without a fourth number is solid even where it is clipped.
+  if (image.channels == 1)
+    texel.w = 1.0f;
+  const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
+  const bool divide = straight && multiplied && texel.w != 1.0f && texel.w != 0.0f;
+  glm::vec3 color(texel);
+  if (divide)
+    color /= texel.w;
+  // Decode what was interpolated as it is stored.
+  if (image.transfer == Transfer::Srgb) {
+    const bool byte = image.kind == TexelKind::U8 && interpolation == Interpolation::Closest && !divide;
+    color = byte ? decode_bytes(color) : decode(color);
+  }
+  if (image.has_matrix)
+    color = image.matrix * color;
+  return {color, texel.w};
+}
+
+} // namespace lancer

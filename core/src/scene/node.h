@@ -1,0 +1,64 @@
+// Nodes: what a material, or the world, computes at a place before its lobes are known.
+#pragma once
+
+#include "lancer.h"
+#include "scene/image.h"
+#include "scene/surface.h"
+
+#include <span>
+#include <vector>
+
+namespace lancer {
+
+struct Camera;
+struct Normalisation;
+
+// One value: a constant, or the result of a node.
+struct Parameter {
+  glm::vec3 value{0.0f};
+  int32_t node = -1;
+
+  bool varies() const { return node >= 0; }
+};
+
+struct Node {
+  uint32_t kind = 0, option = 0, flags = 0;
+  uint32_t image = 0, image_count = 0, first = 0;
+  uint32_t name = 0;    // number of the name among Description::attribute_names; 0 is ""
+  uint32_t tangent = 0; // likewise, of the tangents that belong to the UV map of that name
+  uint32_t heights = 0; // BUMP: number of its schedule among Program::heights
+  Parameter inputs[5];
+  float matrix[12] = {};
+};
+
+// Numbers of nodes in the order in which to compute them.
+using Schedule = std::vector<uint16_t>;
+
+struct Program {
+  std::vector<Node> nodes;
+  std::vector<Schedule> heights; // of each BUMP: those of its nodes [first, this) that its height needs
+
+  // The nodes that the parameters need, directly or not, in order; a BUMP's own height nodes are left to it.
+  Schedule schedule(std::span<const Parameter> parameters) const;
+};
+
+// Where nodes are evaluated. Everything is in the normalised world but what nodes see, which is in the user's units.
+struct NodeContext {
+  const Geometry *geometry = nullptr;
+  const std::vector<Image> *images = nullptr;
+  const Normalisation *normalisation = nullptr;
+  const Camera *camera = nullptr;   // may be null: CAMERA and WINDOW then see the world's frame
+  const Surface *surface = nullptr; // null: a direction of the world
+  glm::vec3 wo{0, 0, 1};            // unit, towards the viewer; for the world minus the direction
+  float footprint = 0.0f;           // radius of what a pixel covers here, in normalised units: the step of BUMP; 0: no bumps
+  bool is_camera_ray = false;
+};
+
+// Computes the scheduled nodes into values, which has room for all nodes of the program.
+void run(const Program &program, const Schedule &schedule, const NodeContext &context, std::span<glm::vec4> values);
+
+inline glm::vec3 value_of(const Parameter &parameter, std::span<const glm::vec4> values) {
+  return parameter.node < 0 ? parameter.value : glm::vec3(values[size_t(parameter.node)]);
+}
+
+} // namespace lancer
