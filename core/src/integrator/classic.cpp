@@ -1,5 +1,7 @@
 #include "integrator/classic.h"
 
+#include "integrator/first_surface.h"
+
 #include <algorithm>
 
 namespace lancer {
@@ -13,42 +15,14 @@ constexpr uint32_t kDimensionLamp = 1u << 24;
 
 constexpr size_t kGlassBatch = 64;
 
-// The corners of a triangle under Gouraud shading, with their weights; otherwise the hit point itself.
-struct LitPoints {
-  LitPoint points[3];
-  float weights[3] = {1.0f, 0.0f, 0.0f};
-  int count = 1;
-};
-
-LitPoints lit_points(const Scene &scene, const Surface &surface, const ShadingPoint &point, const Hit &hit,
-                     const glm::dvec3 &eye) {
-  LitPoints lit;
-  lit.points[0] = {surface.p, point.frame, point.wo};
-  const Instance &instance = scene.geometry.instances[surface.instance];
-  if (instance.kind != ShapeKind::Mesh || instance.shading != Shading::Gouraud)
-    return lit;
-  // A vertex is a hit of its own with all weight on one corner.
-  lit.count = 3;
-  for (int corner = 0; corner < 3; ++corner) {
-    Hit at = hit;
-    at.u = corner == 1 ? 1.0 : 0.0;
-    at.v = corner == 2 ? 1.0 : 0.0;
-    const Surface vertex = surface_at(scene.geometry, scene.slots, Ray{}, at);
-    const glm::vec3 wo(glm::normalize(eye - vertex.p));
-    lit.points[corner].p = vertex.p;
-    lit.points[corner].frame = Frame(visible_normal(vertex.ns, vertex.ng, wo));
-    lit.points[corner].wo = lit.points[corner].frame.to_local(wo);
-    lit.weights[corner] = float(corner == 0 ? 1.0 - hit.u - hit.v : corner == 1 ? hit.u : hit.v);
-  }
-  return lit;
-}
+float mean(const glm::vec3 &v) { return (v.x + v.y + v.z) / 3.0f; }
 
 } // namespace
 
 void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                             std::vector<PathVertex> *trace) {
   // Glass doubles the rays of every depth: fewer samples at a time keep the queues within memory.
-  const bool doubles = (scene_.features & kFeatureDielectric) != 0;
+  const bool doubles = (scene_.features & kFeatureGlass) != 0;
   const size_t part = doubles ? kGlassBatch : addresses.size();
   for (size_t begin = 0; begin < addresses.size() && !settings_.cancelled(); begin += part) {
     const size_t size = std::min(part, addresses.size() - begin);
@@ -67,7 +41,8 @@ void ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     next_rays_.clear();
     for (size_t i = 0; i < rays_.size(); ++i)
       shade(branches_[i], rays_[i], hits_[i], results[branches_[i].slot], trace);
-    counts_.shadow += shadows_.trace([&](uint32_t slot, const glm::vec3 &light) { results[slot].radiance += light; });
+    counts_.shadow +=
+        shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { results[waiting.slot].radiance += light; });
     counts_.bounce += next_rays_.size();
     branches_.swap(next_branches_);
     rays_.swap(next_rays_);
@@ -81,126 +56,160 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
     results[slot] = SampleResult{};
     samplers_.push_back(generator_.sampler(addresses[slot]));
-    rays_.push_back(generator_.ray(addresses[slot], samplers_.back()));
+    Ray ray = generator_.ray(addresses[slot], samplers_.back());
+    // Outside a panorama's picture there is no direction to look in: it is black, and as solid as Cycles has it.
+    results[slot].alpha = 1.0f;
+    if (ray.tmax < 0.0)
+      continue;
+    ray.kinds = LANCER_RAY_CAMERA;
+    rays_.push_back(ray);
     branches_.push_back({.slot = slot});
   }
-  counts_.camera += addresses.size();
+  counts_.camera += rays_.size();
+}
+
+void ClassicIntegrator::miss(const Branch &branch, const glm::vec3 &direction, SampleResult &result) {
+  // A transparent film does not show the environment itself.
+  if (branch.depth == 0 && settings_.film_transparent) {
+    result.alpha -= mean(branch.weight);
+    return;
+  }
+  if (!(branch.kinds & ~scene_.world.hidden_from))
+    return;
+  result.radiance += branch.weight * scene_.lights.environment().radiance(glm::dvec3(direction), shader_.values());
 }
 
 void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &hit, SampleResult &result,
                               std::vector<PathVertex> *trace) {
-  const bool from_camera = branch.depth == 0;
+  const glm::vec3 direction(glm::normalize(ray.d));
   // The sky on a miss.
   if (!hit.valid()) {
-    if (from_camera && settings_.film_transparent)
-      return;
-    if (from_camera)
-      result.alpha += largest(branch.weight);
-    result.radiance += branch.weight * scene_.lights.world();
+    miss(branch, direction, result);
     return;
   }
-  Bsdf scratch;
+  const bool from_camera = branch.depth == 0;
   const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-  const ShadingPoint point = shading_point(scene_, surface, glm::vec3(-glm::normalize(ray.d)), scratch);
+  const double way = (branch.passed + hit.t) * glm::length(ray.d);
+  shader_.shade(surface, {.wo = -direction, .footprint = float(cone_.base + way * cone_.spread), .camera_ray = from_camera},
+                point_);
   if (trace)
     trace->push_back({scene_.normalisation.to_world(surface.p), hit.t / scene_.normalisation.scale, surface.ns, branch.weight,
                       result.radiance, surface.instance, surface.primitive, surface.material, branch.depth});
 
-  // Split by opacity: what is there, and what lies behind.
-  Branch solid = branch;
-  const float opacity = point.material ? evaluate(point.material->opacity, surface).x : 1.0f;
-  solid.weight *= opacity;
-  if (from_camera && !branch.seen && opacity >= kSeenOpacity) {
-    record_first_surface(scene_, surface, point.bsdf->albedo_color(), branch.passed + hit.t, result);
-    solid.seen = true;
+  // Split what is there from what lies behind.
+  const glm::vec3 opacity = glm::clamp(1.0f - point_.transmittance, 0.0f, 1.0f);
+  Branch here = branch;
+  if (from_camera && !branch.seen && mean(opacity) >= settings_.alpha_threshold) {
+    record_first_surface(scene_, surface, point_, branch.passed + hit.t, result);
+    here.seen = true;
   }
-  if (opacity < 1.0f && branch.layers + 1 < kMaxLayers) {
-    Branch behind = branch;
-    behind.seen = solid.seen;
+  if (point_.passes() && branch.layers < settings_.transparent_bounces) {
+    Branch behind = here;
     behind.passed += hit.t;
-    behind.weight *= 1.0f - opacity;
+    behind.weight *= point_.transmittance;
     ++behind.layers;
-    next_branches_.push_back(behind);
-    next_rays_.push_back(leave(surface, ray.d, ray.tmax - hit.t));
+    push(behind, leave(surface, ray.d, ray.tmax - hit.t));
+  }
+  // A hole in the picture shows nothing of itself.
+  if (from_camera && scene_.geometry.instances[surface.instance].holdout) {
+    result.alpha -= mean(branch.weight * opacity);
+    return;
   }
   if (from_camera)
-    result.alpha += largest(solid.weight);
-  if (!point.material || opacity == 0.0f)
+    result.alpha -= mean(branch.weight) * point_.holdout;
+  if (!point_.material)
     return;
-  result.radiance += solid.weight * evaluate(point.material->emission, surface);
-  result.radiance += solid.weight * evaluate(point.material->ambient, surface) * scene_.lights.world();
-  add_direct_light(solid, surface, point, ray.o, hit, result);
-  add_reflection_and_refraction(solid, surface, point);
+  result.radiance += here.weight * point_.emission;
+  result.radiance += here.weight * value_of(point_.material->ambient, shader_.values()) * ambient_;
+  add_direct_light(here, surface, ray.o, hit, result);
+  add_reflection_and_refraction(here, surface, result);
 }
 
-void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &surface, const ShadingPoint &point,
-                                         const glm::dvec3 &eye, const Hit &hit, SampleResult &result) {
+void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &surface, const glm::dvec3 &eye, const Hit &hit,
+                                         SampleResult &result) {
   static const CourseLight plain;
-  const LitPoints lit = lit_points(scene_, surface, point, hit, eye);
-  const glm::vec3 ambient = branch.weight * evaluate(point.material->ambient, surface);
+  // Under Gouraud shading the triangle's corners are lit, each a hit of its own with all weight on one corner.
+  LitPoint lit[3] = {{surface.p, &point_.bsdf, 1.0f}, {}, {}};
+  int lit_count = 1;
+  const Instance &instance = scene_.geometry.instances[surface.instance];
+  const glm::vec3 ambient = branch.weight * value_of(point_.material->ambient, shader_.values());
+  if (instance.kind == ShapeKind::Mesh && instance.shading == Shading::Gouraud) {
+    lit_count = 3;
+    for (int corner = 0; corner < 3; ++corner) {
+      Hit at = hit;
+      at.u = corner == 1 ? 1.0 : 0.0;
+      at.v = corner == 2 ? 1.0 : 0.0;
+      const Surface vertex = surface_at(scene_.geometry, scene_.slots, Ray{}, at);
+      shader_.shade(vertex, {.wo = glm::vec3(glm::normalize(eye - vertex.p))}, corners_[corner]);
+      lit[corner] = {vertex.p, &corners_[corner].bsdf, float(corner == 0 ? 1.0 - hit.u - hit.v : corner == 1 ? hit.u : hit.v)};
+    }
+  }
   const auto &lights = scene_.lights.lights();
-  const auto &emitters = scene_.lights.emitters();
   for (uint32_t i = 0; i < scene_.lights.size(); ++i) {
     // Take a point of the lamp: its middle when there is one sample only.
     const uint32_t dimension = kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + i);
     const glm::vec2 u = generator_.middle() ? glm::vec2(0.5f) : samplers_[branch.slot].get2(dimension);
     const bool lamp = i < lights.size();
     const CourseLight &course = lamp ? lights[i].course : plain;
-    const auto sample_from = [&](const glm::dvec3 &p) {
-      return lamp ? sample(lights[i], p, u)
-                  : emitters[i - lights.size()].sample(scene_.geometry, scene_.slots, scene_.materials, p, u);
-    };
     // Illuminate each lit point as if nothing stood between.
     glm::vec3 light(0.0f);
-    for (int k = 0; k < lit.count; ++k) {
-      const LightSample s = sample_from(lit.points[k].p);
+    for (int k = 0; k < lit_count; ++k) {
+      const LightSample s = sample_scene_light(scene_, i, lit[k].p, u, shader_);
       if (!(s.pdf > 0.0))
         continue;
       const glm::vec3 irradiance = course_irradiance(course, s);
-      light += lit.weights[k] * course_illumination(*point.bsdf, lit.points[k], glm::vec3(s.wi), course, irradiance);
+      light += lit[k].weight * course_illumination(*lit[k].bsdf, glm::vec3(s.wi), course, irradiance);
       if (lamp)
-        result.radiance += ambient * course.ambient_color * irradiance * (kInvPi * lit.weights[k]);
+        result.radiance += ambient * course.ambient_color * irradiance * (kInvPi * lit[k].weight);
     }
     if (light == glm::vec3(0.0f))
       continue;
     // Ask whether the lamp is seen from the hit point, on the viewer's side of the surface.
-    const LightSample s = sample_from(surface.p);
-    const bool same_side = (glm::dot(glm::vec3(s.wi), surface.ng) > 0.0f) == point.outside;
-    if (s.pdf > 0.0 && same_side)
-      shadows_.push(shadow_ray(surface, s), branch.slot, branch.weight * light);
+    const LightSample s = sample_scene_light(scene_, i, surface.p, u, shader_);
+    const bool same_side = glm::dot(glm::vec3(s.wi), point_.bsdf.ng) > 0.0f;
+    if (!(s.pdf > 0.0) || !same_side)
+      continue;
+    if (scene_.lights.no_shadow(i))
+      shadows_.push_lit({.slot = branch.slot}, branch.weight * light);
+    else
+      shadows_.push(shadow_ray(scene_.geometry, surface, point_.bsdf, s), {.slot = branch.slot}, branch.weight * light);
   }
 }
 
-void ClassicIntegrator::add_reflection_and_refraction(const Branch &branch, const Surface &surface, const ShadingPoint &point) {
+void ClassicIntegrator::add_reflection_and_refraction(const Branch &branch, const Surface &surface, SampleResult &result) {
   // Beyond the depth limit a ray is black: it need not be traced.
   if (branch.depth >= settings_.max_bounces)
     return;
-  const glm::vec3 up(point.wo.x, point.wo.y, std::abs(point.wo.z));
-  const float side = point.wo.z < 0.0f ? -1.0f : 1.0f;
-  const CourseBranches branches = course_branches(*point.bsdf, point.wo, point.wo.z >= 0.0f);
-  const auto to_world = [&](const glm::vec3 &w) { return point.frame.to_world({w.x, w.y, side * w.z}); };
+  const CourseBranches branches = course_branches(point_.bsdf);
   // About an interpolated normal a mirrored direction may point into the surface: such a ray is black.
-  const auto spawn_towards = [&](const glm::vec3 &w, const glm::vec3 &weight) {
-    const glm::vec3 wi = to_world(w);
-    if (point.consistent(wi, {w.x, w.y, side * w.z}))
-      spawn(branch, surface, wi, weight);
-  };
-  spawn_towards(reflect_local(up), branches.reflected);
-  if (branches.cos_t > 0.0f)
-    spawn_towards(branches.eta == 1.0f ? -up : refract_local(up, branches.eta, branches.cos_t), branches.refracted);
+  if (glm::dot(branches.mirrored, point_.bsdf.ng) > 0.0f)
+    spawn(branch, surface, branches.mirrored, branches.reflected, LANCER_RAY_GLOSSY, result);
+  if (branches.refracted != glm::vec3(0.0f) && glm::dot(branches.through, point_.bsdf.ng) < 0.0f)
+    spawn(branch, surface, branches.through, branches.refracted, LANCER_RAY_TRANSMISSION, result);
 }
 
-void ClassicIntegrator::spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction,
-                              const glm::vec3 &weight) {
+void ClassicIntegrator::spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight,
+                              uint32_t kind, SampleResult &result) {
   Branch child = parent;
   child.weight *= weight;
+  child.kinds = kind;
+  child.layers = 0;
   ++child.depth;
   // Stop what can no longer matter.
   const float share = largest(child.weight);
   if (!(share > 0.0f) || share <= settings_.contribution_threshold)
     return;
-  next_branches_.push_back(child);
-  next_rays_.push_back(leave(surface, glm::dvec3(direction), std::numeric_limits<double>::infinity()));
+  // The cheap way: the colour that the environment has there, whatever stands between.
+  if (settings_.environment_reflections)
+    miss(child, direction, result);
+  else
+    push(child, leave(surface, glm::dvec3(direction), std::numeric_limits<double>::infinity()));
+}
+
+void ClassicIntegrator::push(const Branch &branch, Ray ray) {
+  ray.kinds = branch.kinds;
+  next_branches_.push_back(branch);
+  next_rays_.push_back(ray);
 }
 
 } // namespace lancer

@@ -3,6 +3,7 @@
 
 #include "integrator/course_light.h"
 #include "integrator/sample.h"
+#include "integrator/scene_lights.h"
 #include "integrator/shading.h"
 #include "integrator/shadow.h"
 
@@ -11,7 +12,8 @@ namespace lancer {
 class ClassicIntegrator final : public Integrator {
 public:
   ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : scene_(scene), settings_(settings), generator_(camera, settings), shadows_(scene, settings) {}
+      : scene_(scene), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
+        shadows_(scene, camera, settings), cone_(camera), ambient_(mean_environment(scene)) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
   const char *kernel() const override { return "classic"; }
@@ -22,23 +24,32 @@ private:
     glm::vec3 weight{1.0f}; // of what it brings back
     uint32_t slot;
     uint32_t depth = 0;
-    uint32_t layers = 0; // passed straight through
-    bool seen = false;   // the first surface has been recorded
-    double passed = 0.0; // t of the camera ray up to its last layer
+    uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
+    uint32_t layers = 0;                // passed straight through
+    bool seen = false;                  // the first surface has been recorded
+    double passed = 0.0;                // t of the camera ray up to its last layer
   };
 
   void run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(const Branch &branch, const Ray &ray, const Hit &hit, SampleResult &result, std::vector<PathVertex> *trace);
-  void add_direct_light(const Branch &branch, const Surface &surface, const ShadingPoint &point, const glm::dvec3 &eye,
-                        const Hit &hit, SampleResult &result);
-  void add_reflection_and_refraction(const Branch &branch, const Surface &surface, const ShadingPoint &point);
-  void spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight);
+  void miss(const Branch &branch, const glm::vec3 &direction, SampleResult &result);
+  void add_direct_light(const Branch &branch, const Surface &surface, const glm::dvec3 &eye, const Hit &hit,
+                        SampleResult &result);
+  void add_reflection_and_refraction(const Branch &branch, const Surface &surface, SampleResult &result);
+  void spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight, uint32_t kind,
+             SampleResult &result);
+  void push(const Branch &branch, Ray ray);
 
   const Scene &scene_;
   IntegratorSettings settings_;
   RayGenerator generator_;
+  Shader shader_;
   ShadowQueue shadows_;
+  PixelCone cone_;
+  glm::vec3 ambient_;             // light from everywhere, for Ka
+  Shaded point_;                  // of the surface at hand
+  Shaded corners_[3];             // of its triangle, under Gouraud shading
   std::vector<Sampler> samplers_; // per slot
   std::vector<Branch> branches_, next_branches_;
   std::vector<Ray> rays_, next_rays_;

@@ -1,5 +1,8 @@
 #include "integrator/course_light.h"
 
+#include "bsdf/coating.h"
+#include "bsdf/phong.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +32,35 @@ double attenuation(Falloff falloff, double ratio) {
 // A power of a cosine that is 0 from behind; x^0 is 1 in front.
 float lobe_power(float cosine, float n) { return cosine > 0.0f ? std::pow(std::min(cosine, 1.0f), n) : 0.0f; }
 
+constexpr uint32_t kCourseShapes = shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Beckmann) |
+                                   shape_bit(LobeShape::Phong) | shape_bit(LobeShape::BlinnPhong);
+
+// The direction that goes through a lobe's boundary; straight on where the index bends nothing.
+glm::vec3 refracted(const Bsdf &bsdf, const Lobe &lobe, float cosine) {
+  const Fresnel boundary = fresnel(cosine, lobe.ior);
+  if (lobe.ior == 1.0f || !(boundary.cos_t > 0.0f))
+    return -bsdf.wo;
+  return bsdf.frames[lobe.frame].to_world(refract_local(bsdf.wo_local[lobe.frame], lobe.ior, boundary.cos_t));
+}
+
 } // namespace
+
+glm::vec3 mean_environment(const Scene &scene) {
+  const Environment &environment = scene.lights.environment();
+  if (!environment.varies())
+    return environment.constant();
+  // The mean of the six directions of the axes: Ka is no more than a guess of light from everywhere.
+  std::vector<glm::vec4> values(scene.world.program.nodes.size());
+  glm::vec3 sum(0.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 wi(0.0);
+    for (double sign : {-1.0, 1.0}) {
+      wi[axis] = sign;
+      sum += environment.radiance(wi, values);
+    }
+  }
+  return sum / 6.0f;
+}
 
 glm::vec3 course_irradiance(const CourseLight &course, const LightSample &sample) {
   const glm::dvec3 physical = glm::dvec3(sample.radiance) / sample.pdf;
@@ -41,58 +72,55 @@ glm::vec3 course_irradiance(const CourseLight &course, const LightSample &sample
   return glm::vec3(physical * (d * d * attenuation(course.falloff, ratio)));
 }
 
-glm::vec3 course_illumination(const Bsdf &bsdf, const LitPoint &point, const glm::vec3 &wi_world, const CourseLight &course,
+glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const CourseLight &course,
                               const glm::vec3 &irradiance) {
-  // Look at both directions from the side that the viewer is on.
-  glm::vec3 wo = point.wo, wi = point.frame.to_local(wi_world);
-  if (wo.z < 0.0f) {
-    wo.z = -wo.z;
-    wi.z = -wi.z;
-  }
-  if (!(wi.z > 0.0f) || !(wo.z > 0.0f))
-    return glm::vec3(0.0f);
-  const glm::vec3 h = half_vector(wo, wi);
   glm::vec3 diffuse(0.0f), specular(0.0f);
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe &lobe = bsdf.lobes[i];
-    switch (lobe.kind) {
-    case LobeKind::Lambert:
+    const glm::vec3 &wo = bsdf.wo_local[lobe.frame];
+    const glm::vec3 wi = bsdf.frames[lobe.frame].to_local(wi_world);
+    if (!(wi.z > 0.0f) || !(wo.z > 0.0f))
+      continue;
+    const glm::vec3 h = half_vector(wo, wi);
+    if (lobe.shape == LobeShape::Lambert)
       diffuse += lobe.color * (kInvPi * wi.z);
-      break;
-    case LobeKind::Beckmann:
-      if (lobe.alpha >= kMirrorAlpha)
-        specular += lobe.color * (microfacet_eval_pdf(lobe, wo, wi, h).f * wi.z);
-      break;
-    case LobeKind::Phong:
+    else if (lobe.shape == LobeShape::Beckmann && !lobe.delta)
+      specular += lobe.color * (coating_eval_pdf(lobe, wo, wi, h).f * wi.z);
+    else if (lobe.shape == LobeShape::Phong)
       specular += lobe.color * (kInvPi * lobe_power(glm::dot(reflect_local(wi), wo), lobe.shininess));
-      break;
-    case LobeKind::BlinnPhong:
+    else if (lobe.shape == LobeShape::BlinnPhong)
       specular += lobe.color * (kInvPi * lobe_power(h.z, lobe.shininess));
-      break;
-    case LobeKind::Mirror:
-    case LobeKind::Dielectric:
-      break;
-    }
   }
+  // Lobes that the course does not know answer as they do in PATH.
+  const BsdfValue rest = bsdf.eval<kAllShapes & ~kCourseShapes>(wi_world);
+  diffuse += rest.part[size_t(Component::Diffuse)];
+  specular += rest.part[size_t(Component::Glossy)];
   return irradiance * (diffuse * course.diffuse_color + specular * course.specular_color);
 }
 
-CourseBranches course_branches(const Bsdf &bsdf, const glm::vec3 &wo, bool outside) {
+CourseBranches course_branches(const Bsdf &bsdf) {
   CourseBranches branches;
-  const float cosine = std::abs(wo.z);
+  branches.mirrored = 2.0f * glm::dot(bsdf.wo, bsdf.ns) * bsdf.ns - bsdf.wo;
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe &lobe = bsdf.lobes[i];
-    if (lobe.kind == LobeKind::Mirror)
+    const float cosine = std::abs(bsdf.wo_local[lobe.frame].z);
+    switch (lobe.shape) {
+    case LobeShape::Mirror:
       branches.reflected += lobe.color;
-    if (lobe.kind == LobeKind::Beckmann)
+      break;
+    case LobeShape::Beckmann:
       branches.reflected += lobe.color * fresnel_dielectric(cosine, lobe.ior);
-    if (lobe.kind == LobeKind::Dielectric) {
-      const float eta = outside ? lobe.ior : 1.0f / lobe.ior;
-      const Fresnel boundary = fresnel(cosine, eta);
-      branches.reflected += lobe.color * boundary.reflectance;
-      branches.refracted += lobe.color * (1.0f - boundary.reflectance);
-      branches.eta = eta;
-      branches.cos_t = boundary.cos_t;
+      break;
+    case LobeShape::Dielectric:
+    case LobeShape::Microfacet: {
+      branches.reflected += lobe.albedo - lobe.through;
+      branches.refracted += lobe.through;
+      if (lobe.through != glm::vec3(0.0f))
+        branches.through = refracted(bsdf, lobe, cosine);
+      break;
+    }
+    default:
+      break;
     }
   }
   return branches;

@@ -5,12 +5,15 @@
 
 namespace lancer {
 
-// A place that is lit: a hit point, or a vertex under Gouraud shading.
+// A place that is lit: a hit point, or a vertex under Gouraud shading with its share of it.
 struct LitPoint {
   glm::dvec3 p{0.0};
-  Frame frame{glm::vec3(0.0f, 0.0f, 1.0f)}; // of the normal
-  glm::vec3 wo{0.0f};                       // local
+  const Bsdf *bsdf = nullptr;
+  float weight = 0.0f;
 };
+
+// The light from everywhere that Ka reflects: the environment where it is the same in all directions, else its mean.
+glm::vec3 mean_environment(const Scene &scene);
 
 // What the texts call lc, as irradiance at normal incidence from a light's sample, after the light's own attenuation.
 // The attenuations other than PHYSICAL replace 1/d^2: such a light is at every distance d att(d) times what it is at one unit.
@@ -20,15 +23,14 @@ glm::vec3 course_irradiance(const CourseLight &course, const LightSample &sample
 //   BECKMANN     Ks D F G / (4 (l.n)(v.n)) (l.n) lc
 //   PHONG        Ks (R.V)^n lc / pi, BLINN_PHONG Ks (N.H)^n lc / pi: C of the lectures is lc / pi, so that Kd means the same
 //   everywhere
-glm::vec3 course_illumination(const Bsdf &bsdf, const LitPoint &point, const glm::vec3 &wi_world, const CourseLight &course,
-                              const glm::vec3 &irradiance);
+// Lobes of other kinds give what they give in PATH, on the viewer's side.
+glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi, const CourseLight &course, const glm::vec3 &irradiance);
 
-// Weights of the mirrored and of the refracted ray: F c_s and (1 - F) c_s, summed over the lobes. eta: of the refraction; 0 =
-// none.
+// Weights of the mirrored and of the refracted ray, F c_s and (1 - F) c_s summed over the lobes, and where they go.
 struct CourseBranches {
   glm::vec3 reflected{0.0f}, refracted{0.0f};
-  float eta = 0.0f, cos_t = 0.0f;
+  glm::vec3 mirrored{0.0f}, through{0.0f}; // world
 };
-CourseBranches course_branches(const Bsdf &bsdf, const glm::vec3 &wo, bool outside);
+CourseBranches course_branches(const Bsdf &bsdf);
 
 } // namespace lancer

@@ -14,14 +14,26 @@ float mis_weight(double pdf, double other) {
 }
 
 float largest(const glm::vec3 &v) { return std::max({v.x, v.y, v.z}); }
+float mean(const glm::vec3 &v) { return (v.x + v.y + v.z) / 3.0f; }
 
 // Roulette starts where most of the light has been gathered.
 constexpr uint32_t kRouletteAfter = 3;
 
+constexpr glm::vec3 divided(const glm::vec3 &a, const glm::vec3 &b) {
+  return {b.x != 0.0f ? a.x / b.x : 0.0f, b.y != 0.0f ? a.y / b.y : 0.0f, b.z != 0.0f ? a.z / b.z : 0.0f};
+}
+
+// What sent a ray that a BSDF has sampled.
+uint32_t ray_kind(const BsdfSample &sample) {
+  if (sample.transmitted)
+    return LANCER_RAY_TRANSMISSION;
+  return sample.component == Component::Diffuse ? LANCER_RAY_DIFFUSE : LANCER_RAY_GLOSSY;
+}
+
 } // namespace
 
-template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                                          std::vector<PathVertex> *trace) {
   // Start one path per sample.
   generate(addresses, results);
@@ -32,12 +44,17 @@ void PathIntegrator<Lobes, Opacity>::run(std::span<const SampleAddress> addresse
     // Gather emission, ask a light, choose how each path goes on.
     shade(results, trace);
     // Add the light that was not in shadow.
-    counts_.shadow += shadows_.trace([&](uint32_t owner, const glm::vec3 &light) {
-      const uint32_t slot = owner >> 1;
-      if (owner & 1)
-        indirect_[slot] += light;
+    counts_.shadow += shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) {
+      SampleResult &result = results[waiting.slot];
+      if (waiting.occlusion) {
+        result.light[kLightOcclusion] += light;
+        return;
+      }
+      if (waiting.indirect)
+        indirect_[waiting.slot] += light;
       else
-        results[slot].radiance += light;
+        result.radiance += light;
+      passes_.add(result, light, waiting.share, waiting.indirect);
     });
     counts_.bounce += next_rays_.size();
     paths_.swap(next_paths_);
@@ -47,125 +64,174 @@ void PathIntegrator<Lobes, Opacity>::run(std::span<const SampleAddress> addresse
   for (size_t slot = 0; slot < results.size(); ++slot) {
     glm::vec3 indirect = indirect_[slot];
     const float top = largest(indirect);
-    if (settings_.clamp_indirect > 0.0f && top > settings_.clamp_indirect)
+    if (settings_.clamp_indirect > 0.0f && top > settings_.clamp_indirect) {
       indirect *= settings_.clamp_indirect / top;
+      passes_.scale_indirect(results[slot], settings_.clamp_indirect / top);
+    }
     results[slot].radiance += indirect;
   }
 }
 
-template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
   paths_.clear();
   rays_.clear();
   indirect_.assign(addresses.size(), glm::vec3(0.0f));
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
     results[slot] = SampleResult{};
     Path path{.sampler = generator_.sampler(addresses[slot]), .slot = slot};
-    rays_.push_back(generator_.ray(addresses[slot], path.sampler));
-    path.from = rays_.back().o;
+    path.features.open = passes_.features();
+    const Ray ray = generator_.ray(addresses[slot], path.sampler);
+    // Outside a panorama's picture there is no direction to look in: it is black, and as solid as Cycles has it.
+    results[slot].alpha = 1.0f;
+    if (ray.tmax < 0.0)
+      continue;
+    path.from = ray.o;
+    rays_.push_back(ray);
+    rays_.back().kinds = path.kinds;
     paths_.push_back(path);
   }
-  counts_.camera += addresses.size();
+  counts_.camera += paths_.size();
 }
 
-template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::shade(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
   next_paths_.clear();
   next_rays_.clear();
-  Bsdf scratch;
   for (size_t i = 0; i < paths_.size(); ++i) {
     Path path = paths_[i];
     const Ray &ray = rays_[i];
+    const double t = hits_[i].t;
     SampleResult &result = results[path.slot];
     // Lights stand in no one's way: add all that the ray passes before it ends.
-    add_lights_met(path, ray, hits_[i].t, result);
+    add_lights_met(path, ray, t, result);
     if (!hits_[i].valid()) {
-      miss(path, result);
+      miss(path, ray, result);
       continue;
     }
+    // Ask the material what it does to light that goes back along the ray.
     const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-    const glm::vec3 wo(-glm::normalize(ray.d));
-    const ShadingPoint point = shading_point(scene_, surface, wo, scratch);
+    const double way = path.length + t * glm::length(ray.d);
+    shader_.shade(surface,
+                  {.wo = glm::vec3(-glm::normalize(ray.d)),
+                   .footprint = float(cone_.base + way * cone_.spread),
+                   .camera_ray = path.scatterings == 0},
+                  point_);
     if (trace) {
       const glm::vec3 so_far = result.radiance + indirect_[path.slot];
-      trace->push_back({scene_.normalisation.to_world(surface.p), hits_[i].t / scene_.normalisation.scale, surface.ns,
-                        path.beta, so_far, surface.instance, surface.primitive, surface.material, path.scatterings});
+      trace->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta, so_far,
+                        surface.instance, surface.primitive, surface.material, path.scatterings});
     }
+    // Holes end what the camera sees.
+    if (path.in_view && !cut_hole(path, surface, result))
+      continue;
+    if (path.in_view)
+      record(path, surface, t, result);
+    add_emission(path, surface, result);
+    if (path.features.open)
+      add_denoising_features(scene_, camera_, point_, t * glm::length(ray.d), path.features, result);
+    if (path.last)
+      continue;
 
-    Ray next;
-    const float opacity = Opacity && point.material ? evaluate(point.material->opacity, surface).x : 1.0f;
-    if (!path.seen && path.scatterings == 0 && opacity >= kSeenOpacity) {
-      record_first_surface(scene_, surface, point.bsdf->albedo_color(), path.depth + hits_[i].t, result);
-      path.seen = true;
+    const bool ends = path.scatterings > settings_.max_bounces;
+    // Share the path between what passes straight on and what the surface scatters.
+    float pass = 0.0f;
+    if constexpr (Layers) {
+      const float through = mean(point_.transmittance);
+      const float rest = ends ? 0.0f : mean(point_.bsdf.albedo());
+      if (through > 0.0f)
+        pass = through / (through + rest);
     }
-    if constexpr (Opacity) {
-      // Meet the surface, or pass straight on, by its opacity.
+    if (!ends) {
+      sample_light(path, surface, double(pass));
+      if (path.in_view && passes_.occlusion())
+        sample_occlusion(path, surface);
+    }
+    if constexpr (Layers) {
       const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
-      if (opacity < 1.0f && path.sampler.get1(dimension) >= opacity) {
-        if (++path.layers < kMaxLayers) {
-          next = leave(surface, ray.d, ray.tmax - hits_[i].t);
-          path.passed += hits_[i].t * glm::length(ray.d);
-          path.depth += hits_[i].t;
+      if (pass > 0.0f && (pass >= 1.0f || path.sampler.get1(dimension) < pass)) {
+        if (path.layers + 1 < kMaxLayers) {
+          next_rays_.push_back(pass_straight_on(path, surface, ray, t, point_.transmittance / pass));
           next_paths_.push_back(path);
-          next_rays_.push_back(next);
         }
         continue;
       }
     }
-    result.alpha = 1.0f;
-    if (point.material && point.material->emits())
-      add_emission(path, surface, *point.material, result);
-    if (path.scatterings > settings_.max_bounces)
+    if (ends)
       continue;
-    sample_light(path, surface, point);
-    if (scatter(path, surface, point, next) && survives(path)) {
+    Ray next;
+    path.length = way;
+    if (scatter(path, surface, double(pass), next) && survives(path)) {
       next_paths_.push_back(path);
       next_rays_.push_back(next);
     }
   }
 }
 
-template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::add(const Path &path, SampleResult &result, const glm::vec3 &radiance,
-                                         uint32_t scatterings) {
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment) {
   // Light that was scattered at most once is direct; clamping never touches it.
-  if (scatterings <= 1)
-    result.radiance += radiance;
-  else
+  const bool indirect = path.scatterings > 1;
+  if (path.features.open)
+    result.albedo += path.features.beta * radiance;
+  if (indirect)
     indirect_[path.slot] += radiance;
+  else
+    result.radiance += radiance;
+  if (path.in_view)
+    passes_.add_seen(result, radiance, environment);
+  else
+    passes_.add(result, radiance, path.share, indirect);
 }
 
-template <uint32_t Lobes, bool Opacity> void PathIntegrator<Lobes, Opacity>::miss(const Path &path, SampleResult &result) {
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, SampleResult &result) {
+  if (path.in_view && !path.seen)
+    forget_place(result);
   // A transparent film does not show the environment itself, only what it lights.
-  if (path.scatterings == 0 && settings_.film_transparent)
+  if (path.in_view && settings_.film_transparent) {
+    result.alpha -= mean(path.beta);
     return;
-  if (path.scatterings == 0)
-    result.alpha = 1.0f;
-  add(path, result, path.beta * scene_.lights.world(), path.scatterings);
+  }
+  if (!(path.kinds & ~scene_.world.hidden_from))
+    return;
+  const Environment &environment = scene_.lights.environment();
+  if (!environment.varies()) {
+    add(path, result, path.beta * environment.constant(), true);
+    return;
+  }
+  // The environment is sampled as a light, too.
+  const glm::dvec3 wi = glm::normalize(ray.d);
+  float weight = 1.0f;
+  if (path.pdf > 0.0)
+    weight = mis_weight(path.pdf, environment.pdf(wi) * scene_.lights.probability(scene_.lights.environment_light()));
+  add(path, result, path.beta * environment.radiance(wi, shader_.values()) * weight, true);
 }
 
-template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result) {
-  // The camera does not see lights themselves, as in Cycles; mirrors and glass do.
-  if (path.scatterings == 0 || scene_.lights.with_extent().empty())
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result) {
+  if (scene_.lights.with_extent().empty())
     return;
   // Look from the last scattering, as sampling does, at what lies on this stretch of the way.
   const double length = glm::length(ray.d), end = path.passed + t * length;
   const glm::dvec3 wi = ray.d / length;
-  for (uint32_t light : scene_.lights.with_extent()) {
-    const LightHit met = meet(scene_.lights.lights()[light], path.from, wi);
+  for (uint32_t number : scene_.lights.with_extent()) {
+    const Light &light = scene_.lights.lights()[number];
+    if (!(path.kinds & ~light.hidden_from))
+      continue;
+    const LightHit met = meet(light, path.from, wi);
     const bool here = met.distance >= path.passed && (met.distance < end || std::isinf(end));
     if (!(met.pdf > 0.0) || !here)
       continue;
-    const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(light)) : 1.0f;
-    add(path, result, path.beta * met.radiance * weight, path.scatterings);
+    const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(number)) : 1.0f;
+    add(path, result, path.beta * met.radiance * weight, false);
   }
 }
 
-template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::add_emission(const Path &path, const Surface &surface, const Material &material,
-                                                  SampleResult &result) {
-  const glm::vec3 Le = evaluate(material.emission, surface);
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::add_emission(const Path &path, const Surface &surface, SampleResult &result) {
+  if (point_.emission == glm::vec3(0.0f))
+    return;
   float weight = 1.0f;
   const uint32_t light = scene_.lights.emitter_light(surface.instance);
   if (path.pdf > 0.0 && light != kNone) {
@@ -173,12 +239,49 @@ void PathIntegrator<Lobes, Opacity>::add_emission(const Path &path, const Surfac
     const double pdf = emitter.pdf(scene_.geometry, scene_.materials, path.from, surface);
     weight = mis_weight(path.pdf, pdf * scene_.lights.probability(light));
   }
-  add(path, result, path.beta * Le * weight, path.scatterings);
+  add(path, result, path.beta * point_.emission * weight, false);
 }
 
-template <uint32_t Lobes, bool Opacity>
-void PathIntegrator<Lobes, Opacity>::sample_light(const Path &path, const Surface &surface, const ShadingPoint &point) {
-  if (scene_.lights.empty() || !point.bsdf->has_smooth())
+// Takes a hole out of the picture; false where nothing else is left of the surface.
+template <uint32_t Shapes, bool Layers>
+bool PathIntegrator<Shapes, Layers>::cut_hole(Path &path, const Surface &surface, SampleResult &result) {
+  if (scene_.geometry.instances[surface.instance].holdout) {
+    // All that the object would show becomes the hole; only what passes straight through it is left.
+    const glm::vec3 hole = glm::max(1.0f - point_.transmittance, 0.0f);
+    result.alpha -= mean(hole * path.beta);
+    point_.bsdf.count = 0;
+    point_.bsdf.complete();
+    point_.emission = glm::vec3(0.0f);
+    return point_.passes();
+  }
+  if (point_.holdout > 0.0f) {
+    result.alpha -= point_.holdout * mean(path.beta);
+    return point_.holdout < 1.0f;
+  }
+  return true;
+}
+
+// Fills the passes that describe what the camera sees.
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::record(Path &path, const Surface &surface, double t, SampleResult &result) {
+  const glm::vec3 opacity = glm::clamp(1.0f - point_.transmittance, 0.0f, 1.0f);
+  // A surface that is hardly there gives way to the next one, unless the path ends on it.
+  if (!path.seen && mean(opacity) >= settings_.alpha_threshold) {
+    record_first_surface(scene_, surface, point_, path.depth + t, result);
+    path.seen = true;
+  } else if (!path.seen) {
+    record_place(scene_, surface, point_, path.depth + t, result);
+  }
+  if (!passes_.data())
+    return;
+  result.mist += (1.0f - mist_at(scene_, camera_, settings_, surface)) * mean(path.beta * opacity);
+  for (uint32_t component = 0; component < 3 && passes_.wanted(); ++component)
+    result.light[kLightComponents + 3 * component + 2] += path.beta * point_.bsdf.albedo(Component(component));
+}
+
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surface &surface, double pass) {
+  if (scene_.lights.empty() || !point_.bsdf.smooth)
     return;
   // Choose a light and a point of it.
   const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
@@ -186,48 +289,100 @@ void PathIntegrator<Lobes, Opacity>::sample_light(const Path &path, const Surfac
   if (!(choice.probability > 0.0))
     return;
   const glm::vec2 u = path.sampler.get2(dimension + kVertexLight);
-  const size_t described = scene_.lights.lights().size();
-  const LightSample light = choice.light < described ? sample(scene_.lights.lights()[choice.light], surface.p, u)
-                                                     : scene_.lights.emitters()[choice.light - described].sample(
-                                                           scene_.geometry, scene_.slots, scene_.materials, surface.p, u);
-  if (!(light.pdf > 0.0))
+  const LightSample light = sample_scene_light(scene_, choice.light, surface.p, u, shader_);
+  if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
     return;
-  // Ask the surface how much of it goes towards the viewer.
-  const glm::vec3 wi_world(light.wi), wi = point.frame.to_local(wi_world);
-  if (!point.consistent(wi_world, wi))
+  // Ask the surface how much of it goes towards the viewer, without what the light is hidden from.
+  BsdfValue value = point_.bsdf.template eval<Shapes>(glm::vec3(light.wi));
+  const uint32_t hidden = scene_.lights.hidden_from(choice.light);
+  if (hidden & LANCER_RAY_DIFFUSE)
+    value.part[size_t(Component::Diffuse)] = glm::vec3(0.0f);
+  if (hidden & LANCER_RAY_GLOSSY)
+    value.part[size_t(Component::Glossy)] = glm::vec3(0.0f);
+  if (hidden & LANCER_RAY_TRANSMISSION)
+    value.part[size_t(Component::Transmission)] = glm::vec3(0.0f);
+  const glm::vec3 f = value.f();
+  if (f == glm::vec3(0.0f))
     return;
-  const auto value = point.bsdf->template eval_pdf<Lobes>(point.wo, wi);
-  if (value.f == glm::vec3(0.0f))
-    return;
+  // The BSDF finds the same light by the samples that do not pass straight on.
   const double pdf = light.pdf * choice.probability;
-  const float weight = light.delta ? 1.0f : mis_weight(pdf, double(value.pdf));
-  const glm::vec3 contribution = path.beta * value.f * light.radiance * float(std::abs(double(wi.z)) * double(weight) / pdf);
-  shadows_.push(shadow_ray(surface, light), path.slot << 1 | (path.scatterings > 0 ? 1u : 0u), contribution);
+  const float weight = light.delta ? 1.0f : mis_weight(pdf, double(value.pdf) * (1.0 - pass));
+  const glm::vec3 contribution = path.beta * f * light.radiance * float(double(weight) / pdf);
+  WaitingLight waiting{.slot = path.slot, .indirect = path.scatterings > 0};
+  if (passes_.wanted()) {
+    for (size_t component = 0; component < 2; ++component)
+      waiting.share[component] = path.in_view ? divided(value.part[component], f) : path.share[component];
+  }
+  if (scene_.lights.no_shadow(choice.light))
+    shadows_.push_lit(waiting, contribution);
+  else
+    shadows_.push(shadow_ray(scene_.geometry, surface, point_.bsdf, light), waiting, contribution, path.passed_through);
 }
 
-template <uint32_t Lobes, bool Opacity>
-bool PathIntegrator<Lobes, Opacity>::scatter(Path &path, const Surface &surface, const ShadingPoint &point, Ray &next) const {
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::sample_occlusion(const Path &path, const Surface &surface) {
+  // Look around the normal of what is diffuse, with the weight of a cosine.
+  glm::vec3 n(0.0f);
+  for (int i = 0; i < point_.bsdf.count; ++i)
+    if (point_.bsdf.lobes[i].component == Component::Diffuse)
+      n += point_.bsdf.frames[point_.bsdf.lobes[i].frame].n * mean(point_.bsdf.lobes[i].color);
+  n = n == glm::vec3(0.0f) ? point_.bsdf.ns : glm::normalize(n);
+  const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
+  const glm::vec3 local = warp_cosine_hemisphere(path.sampler.get2(dimension + kVertexBsdf));
+  const double distance = settings_.occlusion_distance * scene_.normalisation.scale;
+  Ray ray =
+      leave(surface, glm::dvec3(Frame(n).to_world(local)), distance > 0.0 ? distance : std::numeric_limits<double>::infinity());
+  ray.kinds = LANCER_RAY_SHADOW;
+  const glm::vec3 opacity = glm::clamp(1.0f - point_.transmittance, 0.0f, 1.0f);
+  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, path.beta * opacity, path.passed_through);
+}
+
+template <uint32_t Shapes, bool Layers>
+Ray PathIntegrator<Shapes, Layers>::pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t,
+                                                     const glm::vec3 &weight) const {
+  const double length = t * glm::length(ray.d);
+  path.beta *= weight;
+  path.passed += length;
+  path.length += length;
+  path.depth += t;
+  ++path.layers;
+  // Beyond the last layer the next surface shows its own light only.
+  path.last = ++path.passed_through >= settings_.transparent_bounces;
+  Ray next = leave(surface, ray.d, ray.tmax - t);
+  next.kinds = path.kinds;
+  return next;
+}
+
+template <uint32_t Shapes, bool Layers>
+bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface, double pass, Ray &next) const {
   // Draw a direction from the BSDF.
   const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
-  const BsdfSample sample = point.bsdf->template sample<Lobes>(point.wo, path.sampler.get1(dimension + kVertexLobe),
-                                                               path.sampler.get2(dimension + kVertexBsdf));
+  const BsdfSample sample = point_.bsdf.template sample<Shapes>(path.sampler.get1(dimension + kVertexLobe),
+                                                                path.sampler.get2(dimension + kVertexBsdf));
   if (sample.weight == glm::vec3(0.0f) || !(sample.pdf > 0.0f))
     return false;
-  const glm::vec3 wi = point.frame.to_world(sample.wi);
-  if (!point.consistent(wi, sample.wi))
-    return false;
+  // Glass that does not count leaves the picture what it was.
+  const bool clear = settings_.transparent_glass && sample.transmitted && sample.component != Component::Diffuse &&
+                     sample.alpha2 <= settings_.glass_alpha2;
+  if (path.in_view && !clear) {
+    path.in_view = false;
+    for (int component = 0; component < 2; ++component)
+      path.share[component] = sample.share[component];
+  }
   // Go on from here.
-  path.beta *= sample.weight;
-  path.pdf = sample.delta ? 0.0 : double(sample.pdf);
+  path.beta *= sample.weight / float(1.0 - pass);
+  path.pdf = sample.delta ? 0.0 : double(sample.pdf) * (1.0 - pass);
   path.from = surface.p;
+  path.kinds = ray_kind(sample);
   path.layers = 0;
   path.passed = 0.0;
   ++path.scatterings;
-  next = leave(surface, glm::dvec3(wi), std::numeric_limits<double>::infinity());
+  next = leave(surface, glm::dvec3(sample.wi), std::numeric_limits<double>::infinity());
+  next.kinds = path.kinds;
   return true;
 }
 
-template <uint32_t Lobes, bool Opacity> bool PathIntegrator<Lobes, Opacity>::survives(Path &path) const {
+template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::survives(Path &path) const {
   if (path.scatterings <= kRouletteAfter)
     return true;
   // End dark paths early; what survives is brightened by exactly that.
@@ -240,16 +395,17 @@ template <uint32_t Lobes, bool Opacity> bool PathIntegrator<Lobes, Opacity>::sur
 }
 
 std::unique_ptr<Integrator> make_path(const Scene &scene, const Camera &camera, const IntegratorSettings &settings) {
-  constexpr uint32_t matte = kFeatureLambert, plastic = kFeatureLambert | kFeatureBeckmann;
-  const uint32_t lobes = settings.all_features ? uint32_t(kFeatureAllLobes) : scene.features & kFeatureAllLobes;
-  const bool opacity = settings.all_features || (scene.features & kFeatureOpacity);
-  if (opacity)
-    return std::make_unique<PathIntegrator<kFeatureAllLobes, true>>(scene, camera, settings, "path all");
-  if ((lobes & ~matte) == 0)
+  constexpr uint32_t matte = shape_bit(LobeShape::Lambert);
+  constexpr uint32_t plastic = matte | shape_bit(LobeShape::Beckmann) | shape_bit(LobeShape::Microfacet);
+  const uint32_t shapes = settings.all_features ? kAllShapes : scene.shapes;
+  const bool layers = settings.all_features || (scene.features & kFeatureTransparency);
+  if (layers)
+    return std::make_unique<PathIntegrator<kAllShapes, true>>(scene, camera, settings, "path all");
+  if ((shapes & ~matte) == 0)
     return std::make_unique<PathIntegrator<matte, false>>(scene, camera, settings, "path lambert");
-  if ((lobes & ~plastic) == 0)
-    return std::make_unique<PathIntegrator<plastic, false>>(scene, camera, settings, "path lambert+beckmann");
-  return std::make_unique<PathIntegrator<kFeatureAllLobes, false>>(scene, camera, settings, "path all lobes, solid");
+  if ((shapes & ~plastic) == 0)
+    return std::make_unique<PathIntegrator<plastic, false>>(scene, camera, settings, "path lambert+microfacet");
+  return std::make_unique<PathIntegrator<kAllShapes, false>>(scene, camera, settings, "path all lobes, solid");
 }
 
 } // namespace lancer

@@ -1,17 +1,22 @@
 // Path tracing: global illumination with next-event estimation, multiple importance sampling and Russian roulette.
 #pragma once
 
+#include "integrator/denoising_features.h"
+#include "integrator/first_surface.h"
+#include "integrator/light_passes.h"
 #include "integrator/sample.h"
+#include "integrator/scene_lights.h"
 #include "integrator/shading.h"
 #include "integrator/shadow.h"
 
 namespace lancer {
 
-// Lobes: bits of the lobe kinds that the kernel knows; Opacity: whether surfaces may let light pass straight on.
-template <uint32_t Lobes, bool Opacity> class PathIntegrator final : public Integrator {
+// Shapes: bits of the lobe shapes that the kernel knows; Layers: whether surfaces may let light pass straight on.
+template <uint32_t Shapes, bool Layers> class PathIntegrator final : public Integrator {
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
-      : scene_(scene), settings_(settings), generator_(camera, settings), shadows_(scene, settings), kernel_(kernel) {}
+      : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
+        shadows_(scene, camera, settings), cone_(camera), passes_(settings), kernel_(kernel) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
   const char *kernel() const override { return kernel_; }
@@ -24,27 +29,43 @@ private:
     double pdf = 0.0;     // of the BSDF sample that made the ray; 0 after the camera or a single direction
     uint32_t slot;        // of its result
     uint32_t scatterings = 0;
-    uint32_t layers = 0; // passed straight through since the last scattering
-    bool seen = false;   // the first surface has been recorded
-    double passed = 0.0; // length of the way since the last scattering, through layers
-    double depth = 0.0;  // t of the camera ray up to its last layer
+    uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
+    uint32_t layers = 0;                // passed straight through since the last scattering
+    uint32_t passed_through = 0;        // and in all
+    bool seen = false;                  // the first surface has been recorded
+    bool in_view = true;                // what it meets is still the picture itself: nothing reflected, no glass that counts
+    bool last = false;                  // the next surface ends it
+    double passed = 0.0;                // length of the way since the last scattering, through layers
+    double depth = 0.0;                 // t of the camera ray up to its last layer
+    double length = 0.0;                // of the whole way
+    DenoisingFeatures features{};
+    glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // of the light that came by a diffuse, glossy first scattering
   };
 
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(std::span<SampleResult> results, std::vector<PathVertex> *trace);
-  void miss(const Path &path, SampleResult &result);
+  void miss(const Path &path, const Ray &ray, SampleResult &result);
   void add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result);
-  void add_emission(const Path &path, const Surface &surface, const Material &material, SampleResult &result);
-  void sample_light(const Path &path, const Surface &surface, const ShadingPoint &point);
-  bool scatter(Path &path, const Surface &surface, const ShadingPoint &point, Ray &next) const;
+  void add_emission(const Path &path, const Surface &surface, SampleResult &result);
+  bool cut_hole(Path &path, const Surface &surface, SampleResult &result);
+  void record(Path &path, const Surface &surface, double t, SampleResult &result);
+  void sample_light(const Path &path, const Surface &surface, double pass);
+  void sample_occlusion(const Path &path, const Surface &surface);
+  bool scatter(Path &path, const Surface &surface, double pass, Ray &next) const;
+  Ray pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight) const;
   bool survives(Path &path) const;
-  void add(const Path &path, SampleResult &result, const glm::vec3 &radiance, uint32_t scatterings);
+  void add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment);
 
   const Scene &scene_;
+  const Camera &camera_;
   IntegratorSettings settings_;
   RayGenerator generator_;
+  Shader shader_;
   ShadowQueue shadows_;
+  PixelCone cone_;
+  LightPasses passes_;
   const char *kernel_;
+  Shaded point_; // of the surface at hand
   // The queue: paths_[i] travels along rays_[i].
   std::vector<Path> paths_, next_paths_;
   std::vector<Ray> rays_, next_rays_;

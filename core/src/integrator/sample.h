@@ -3,7 +3,6 @@
 
 #include "sampling/pixel_filter.h"
 #include "sampling/sobol.h"
-#include "sampling/warp.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -24,6 +23,14 @@ struct IntegratorSettings {
   FilterKind filter = FilterKind::BlackmanHarris;
   float filter_width = 1.5f;
   bool film_transparent = false;
+  bool transparent_glass = false;
+  float glass_alpha2 = 0.0f; // glass of at most this alpha_x alpha_y leaves the film transparent
+  uint32_t transparent_bounces = 8, transparent_shadows = 8;
+  float alpha_threshold = 0.5f;         // the first surface at least this opaque gives depth, normal, position, indices, UV
+  bool environment_reflections = false; // CLASSIC
+  double occlusion_distance = 0.0;      // scene units; 0 = any
+  float mist_start = 5.0f, mist_depth = 25.0f, mist_falloff = 2.0f;
+  uint32_t passes = 1; // bits 1u << Pass of film.h
   bool all_features = false;
   const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with results that are worth nothing
 
@@ -33,6 +40,15 @@ struct IntegratorSettings {
 // The address of one sample: pixel of the region and number.
 struct SampleAddress {
   uint32_t x, y, sample;
+};
+
+// Light by the way that it came, in the order of LANCER_PASS_EMISSION and what follows.
+enum LightPass : uint32_t {
+  kLightEmission = 0,
+  kLightEnvironment = 1,
+  kLightOcclusion = 2,
+  kLightComponents = 3, // then direct, indirect, colour of diffuse, glossy, transmission
+  kLightPasses = 12
 };
 
 // What one sample adds to the film.
@@ -45,6 +61,12 @@ struct SampleResult {
   float depth = 1e10f; // scene units along the camera's z; 1e10: nothing there
   glm::vec3 position{0.0f};
   float object_index = 0.0f, material_index = 0.0f;
+  glm::vec3 uv{0.0f};
+  float mist = 0.0f;
+  glm::vec3 denoising_normal{0.0f}; // camera space
+  float denoising_depth = 0.0f;
+  // Parts of radiance, filled where settings ask for them; colours are their divisors.
+  glm::vec3 light[kLightPasses] = {};
 };
 
 struct RayCounts {
@@ -90,8 +112,6 @@ enum VertexDimension : uint32_t {
 // Layers of opacity at one vertex have numbers of their own, far behind the others.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
 inline constexpr uint32_t kMaxLayers = 256;
-// The first surface at least this solid gives depth, normal, albedo, position and indices, as in Cycles.
-inline constexpr float kSeenOpacity = 0.5f;
 
 // Turns addresses into camera rays.
 class RayGenerator {
@@ -116,7 +136,7 @@ public:
     raster += glm::dvec2(filter_.sample(u.x), filter_.sample(u.y));
     glm::dvec2 lens(0.0);
     if (camera_.lens_radius > 0.0)
-      lens = glm::dvec2(warp_disk(sampler.get2(kDimensionLens)));
+      lens = camera_.aperture(sampler.get2(kDimensionLens));
     return camera_.ray(raster, lens);
   }
 
@@ -126,9 +146,5 @@ private:
   uint32_t seed_;
   bool middle_;
 };
-
-// Fills what the first surface says about the pixel. depth: t of the camera ray.
-void record_first_surface(const Scene &scene, const Surface &surface, const glm::vec3 &albedo, double depth,
-                          SampleResult &result);
 
 } // namespace lancer

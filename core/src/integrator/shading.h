@@ -1,61 +1,68 @@
-// The meeting of a ray with a material: frame, side and BSDF at a surface point.
+// From a hit to what the integrators ask of it: the BSDF, what it emits, what passes straight through.
 #pragma once
 
-#include "bsdf/frame.h"
+#include "bsdf/build.h"
+#include "lights/light.h"
+#include "scene/camera.h"
 #include "scene/scene.h"
+
+#include <cmath>
+#include <limits>
 
 namespace lancer {
 
-// The shading point: directions are turned into the local frame of the shading normal (n = +z, outward).
-struct ShadingPoint {
+// A surface as one direction sees it.
+struct Shaded {
   const Material *material = nullptr; // null: an instance without slots, black
-  const Bsdf *bsdf = nullptr;
-  Frame frame{glm::vec3(0.0f, 0.0f, 1.0f)};
-  glm::vec3 wo{0.0f}; // local
-  glm::vec3 ng{0.0f};
-  bool outside = true; // wo is on the side of the outward geometric normal
+  Bsdf bsdf;
+  glm::vec3 emission{0.0f};
+  glm::vec3 transmittance{0.0f}; // share of light that passes straight on
+  float holdout = 0.0f;          // share that becomes a hole in the picture
 
-  // Whether the world direction wi, local as given, leaves on the side that the shading normal promises. Where an interpolated
-  // normal and the surface disagree the light would have to pass through the surface.
-  bool consistent(const glm::vec3 &wi_world, const glm::vec3 &wi_local) const {
-    return (glm::dot(wi_world, ng) > 0.0f) == (wi_local.z > 0.0f);
-  }
+  bool passes() const { return transmittance != glm::vec3(0.0f); }
 };
 
-// Tilts an interpolated normal that looks away from the viewer just so far that it sees him at a grazing angle, as the
-// smooth surface that it stands for would.
-inline glm::vec3 visible_normal(const glm::vec3 &ns, const glm::vec3 &ng, const glm::vec3 &wo) {
-  const float side = glm::dot(wo, ng) < 0.0f ? -1.0f : 1.0f, cosine = side * glm::dot(wo, ns);
-  constexpr float grazing = 1.0f / 1024.0f;
-  if (cosine >= grazing || side * glm::dot(wo, ng) < grazing)
-    return cosine > 0.0f ? ns : ng;
-  return glm::normalize(ns + side * (grazing - cosine) * wo);
-}
+// How the viewer sees the surface that a material is evaluated for.
+struct View {
+  glm::vec3 wo{0, 0, 1};  // unit, world, away from the surface
+  float footprint = 0.0f; // radius that a pixel covers there, normalised units
+  bool camera_ray = false;
+};
 
-// wo: unit, world, away from the surface. scratch keeps the BSDF of textured materials.
-inline ShadingPoint shading_point(const Scene &scene, const Surface &surface, const glm::vec3 &wo, Bsdf &scratch) {
-  ShadingPoint point;
-  point.ng = surface.ng;
-  point.outside = glm::dot(wo, surface.ng) >= 0.0f;
-  point.frame = Frame(visible_normal(surface.ns, surface.ng, wo));
-  point.wo = point.frame.to_local(wo);
-  if (surface.material == kNone) {
-    scratch = Bsdf{};
-    point.bsdf = &scratch;
-    return point;
-  }
-  point.material = &scene.materials[surface.material];
-  point.bsdf = &evaluate(*point.material, surface, scratch);
-  return point;
-}
+// Evaluates materials at surfaces. One object per thread: it keeps the nodes' values.
+class Shader {
+public:
+  // camera may be null.
+  Shader(const Scene &scene, const Camera *camera);
 
-// A shadow ray to a light's sample.
-inline Ray shadow_ray(const Surface &surface, const LightSample &sample) {
-  if (std::isinf(sample.distance))
-    return leave(surface, sample.wi, std::numeric_limits<double>::infinity());
-  Ray ray = leave(surface, sample.wi, 1.0);
-  ray.d = sample.target - ray.o;
-  return ray;
-}
+  void shade(const Surface &surface, const View &view, Shaded &result);
+  // By themselves, for shadow rays and light samples.
+  glm::vec3 transmittance(const Surface &surface, const glm::vec3 &wo);
+  glm::vec3 emission(const Surface &surface, const glm::vec3 &wo);
+  std::span<glm::vec4> values() { return values_; }
+  // Looks at surfaces of this geometry instead of the scene's; it must outlive the shader.
+  void set_geometry(const Geometry &geometry) { context_.geometry = &geometry; }
+  // The value of one node of a material at a surface.
+  glm::vec4 node_value(const Surface &surface, uint32_t node, const glm::vec3 &wo);
+
+private:
+  void add_lobes(const Material &material, Bsdf &bsdf);
+  void run_nodes(const Material &material, const Schedule &schedule, const Surface &surface, const View &view);
+  void begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf &bsdf) const;
+
+  const Scene &scene_;
+  NodeContext context_;
+  std::vector<glm::vec4> values_; // of the nodes of one material at a time
+  Shaded layered_;                // scratch for emission below layers
+};
+
+// The size of a pixel's view: at distance 0, and what it grows by per unit of distance; normalised units.
+struct PixelCone {
+  explicit PixelCone(const Camera &camera);
+  double base = 0.0, spread = 0.0;
+};
+
+// A shadow ray to a light's sample; bsdf: of the surface.
+Ray shadow_ray(const Geometry &geometry, const Surface &surface, const Bsdf &bsdf, const LightSample &sample);
 
 } // namespace lancer

@@ -16,36 +16,41 @@ uint64_t ShadowQueue::trace_solid() {
 
 uint64_t ShadowQueue::trace_layers() {
   uint64_t count = 0;
-  waiting_.resize(rays_.size());
-  std::iota(waiting_.begin(), waiting_.end(), 0u);
-  waiting_rays_ = rays_;
-  for (uint32_t layer = 0; !waiting_.empty(); ++layer) {
+  under_way_.resize(rays_.size());
+  std::iota(under_way_.begin(), under_way_.end(), 0u);
+  under_way_rays_ = rays_;
+  while (!under_way_.empty()) {
     // Find the next surface of every ray that is still under way.
-    hits_.assign(waiting_.size(), Hit{});
-    scene_.accelerator->closest_hit(waiting_rays_, hits_);
-    count += waiting_.size();
+    hits_.assign(under_way_.size(), Hit{});
+    scene_.accelerator->closest_hit(under_way_rays_, hits_);
+    count += under_way_.size();
     size_t kept = 0;
-    for (size_t i = 0; i < waiting_.size(); ++i) {
+    for (size_t i = 0; i < under_way_.size(); ++i) {
       if (!hits_[i].valid())
         continue;
-      // Keep what its opacity lets pass; beyond the last layer nothing does.
-      const Surface surface = surface_at(scene_.geometry, scene_.slots, waiting_rays_[i], hits_[i]);
-      const float opacity = surface.material == kNone ? 1.0f : evaluate(scene_.materials[surface.material].opacity, surface).x;
-      glm::vec3 &contribution = contributions_[waiting_[i]];
-      contribution *= layer + 1 < kMaxLayers ? 1.0f - opacity : 0.0f;
+      // Keep what the surface lets pass; beyond the last one nothing does.
+      const uint32_t number = under_way_[i];
+      const Ray &ray = under_way_rays_[i];
+      const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
+      glm::vec3 &contribution = contributions_[number];
+      if (passed_[number]++ >= deepest_)
+        contribution = glm::vec3(0.0f);
+      else
+        contribution *= shader_.transmittance(surface, glm::vec3(-glm::normalize(ray.d)));
       if (contribution == glm::vec3(0.0f))
         continue;
       // Go on to the same end from behind it.
-      Ray next = leave(surface, waiting_rays_[i].d, waiting_rays_[i].tmax);
+      Ray next = leave(surface, ray.d, ray.tmax);
       if (std::isfinite(next.tmax)) {
-        next.d = waiting_rays_[i].o + waiting_rays_[i].d * waiting_rays_[i].tmax - next.o;
+        next.d = ray.o + ray.d * ray.tmax - next.o;
         next.tmax = 1.0;
       }
-      waiting_[kept] = waiting_[i];
-      waiting_rays_[kept++] = next;
+      next.kinds = ray.kinds;
+      under_way_[kept] = number;
+      under_way_rays_[kept++] = next;
     }
-    waiting_.resize(kept);
-    waiting_rays_.resize(kept);
+    under_way_.resize(kept);
+    under_way_rays_.resize(kept);
   }
   return count;
 }

@@ -1,6 +1,7 @@
 // Shadow rays, kept in a queue and traced as a batch: how much of a light's contribution arrives.
 #pragma once
 
+#include "integrator/light_passes.h"
 #include "integrator/sample.h"
 #include "integrator/shading.h"
 
@@ -8,26 +9,37 @@ namespace lancer {
 
 class ShadowQueue {
 public:
-  ShadowQueue(const Scene &scene, const IntegratorSettings &settings)
-      : scene_(scene), opacity_(settings.all_features || (scene.features & kFeatureOpacity)) {}
+  ShadowQueue(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
+      : scene_(scene), shader_(scene, &camera), deepest_(settings.transparent_shadows),
+        layers_(settings.all_features || (scene.features & kFeatureTransparency)) {}
 
-  // contribution reaches the owner where nothing stands between.
-  void push(const Ray &ray, uint32_t owner, const glm::vec3 &contribution) {
+  // contribution reaches the waiting sum where nothing stands between. passed: surfaces that the path already passed straight
+  // through; they count against the same limit.
+  void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
     rays_.push_back(ray);
-    owners_.push_back(owner);
+    waiting_.push_back(waiting);
     contributions_.push_back(contribution);
+    passed_.push_back(passed);
   }
 
-  // Traces all rays, calls arrive(owner, contribution times transmittance) in the order of pushing, and empties the queue.
+  // Light that nothing can stop.
+  void push_lit(const WaitingLight &waiting, const glm::vec3 &contribution) {
+    Ray ray;
+    ray.tmax = ray.tmin;
+    push(ray, waiting, contribution);
+  }
+
+  // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing, and empties the queue.
   // Returns how many rays it took.
   template <class Arrive> uint64_t trace(Arrive &&arrive) {
-    const uint64_t count = opacity_ ? trace_layers() : trace_solid();
-    for (size_t i = 0; i < owners_.size(); ++i)
+    const uint64_t count = layers_ ? trace_layers() : trace_solid();
+    for (size_t i = 0; i < waiting_.size(); ++i)
       if (contributions_[i] != glm::vec3(0.0f))
-        arrive(owners_[i], contributions_[i]);
+        arrive(waiting_[i], contributions_[i]);
     rays_.clear();
-    owners_.clear();
+    waiting_.clear();
     contributions_.clear();
+    passed_.clear();
     return count;
   }
 
@@ -38,14 +50,17 @@ private:
   uint64_t trace_layers();
 
   const Scene &scene_;
-  bool opacity_;
+  Shader shader_;
+  uint32_t deepest_; // surfaces that a ray may pass
+  bool layers_;
   std::vector<Ray> rays_;
-  std::vector<uint32_t> owners_;
+  std::vector<WaitingLight> waiting_;
   std::vector<glm::vec3> contributions_;
+  std::vector<uint32_t> passed_;
   std::vector<uint8_t> occluded_;
   std::vector<Hit> hits_;
-  std::vector<uint32_t> waiting_;
-  std::vector<Ray> waiting_rays_;
+  std::vector<uint32_t> under_way_;
+  std::vector<Ray> under_way_rays_;
 };
 
 } // namespace lancer

@@ -1,0 +1,58 @@
+// Which pass a contribution belongs to: direct or indirect, and the component of the first scattering.
+#pragma once
+
+#include "integrator/sample.h"
+#include "lancer.h"
+
+namespace lancer {
+
+// Light that waits for its shadow ray.
+struct WaitingLight {
+  uint32_t slot = 0;
+  bool indirect = false;                                   // scattered more than once
+  bool occlusion = false;                                  // no light: the pass of ambient occlusion
+  glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission
+};
+
+class LightPasses {
+public:
+  explicit LightPasses(const IntegratorSettings &settings)
+      : wanted_((settings.passes & kAnyLight) != 0), occlusion_((settings.passes & 1u << LANCER_PASS_AMBIENT_OCCLUSION) != 0),
+        data_((settings.passes & kAnyData) != 0), features_((settings.passes & kAnyFeature) != 0) {}
+
+  bool wanted() const { return wanted_; }
+  bool occlusion() const { return occlusion_; }
+  // Passes that describe surfaces, other than the first one's place.
+  bool data() const { return data_; }
+  bool features() const { return features_; }
+
+  // Light that came by a first scattering with these shares.
+  void add(SampleResult &result, const glm::vec3 &light, const glm::vec3 (&share)[2], bool indirect) const {
+    if (!wanted_)
+      return;
+    const uint32_t first = kLightComponents + (indirect ? 1u : 0u);
+    const glm::vec3 diffuse = light * share[0], glossy = light * share[1];
+    result.light[first] += diffuse;
+    result.light[first + 3] += glossy;
+    result.light[first + 6] += light - diffuse - glossy;
+  }
+  // Light that the camera sees itself.
+  void add_seen(SampleResult &result, const glm::vec3 &light, bool environment) const {
+    if (wanted_)
+      result.light[environment ? kLightEnvironment : kLightEmission] += light;
+  }
+  // Scales all indirect light, as clamping does.
+  void scale_indirect(SampleResult &result, float factor) const {
+    for (uint32_t component = 0; component < 3 && wanted_; ++component)
+      result.light[kLightComponents + 3 * component + 1] *= factor;
+  }
+
+private:
+  static constexpr uint32_t kAnyLight = (1u << (LANCER_PASS_TRANSMISSION_COLOR + 1)) - (1u << LANCER_PASS_EMISSION);
+  static constexpr uint32_t kAnyData = kAnyLight | 1u << LANCER_PASS_MIST;
+  static constexpr uint32_t kAnyFeature =
+      1u << LANCER_PASS_ALBEDO | 1u << LANCER_PASS_DENOISING_NORMAL | 1u << LANCER_PASS_DENOISING_DEPTH;
+  bool wanted_, occlusion_, data_, features_;
+};
+
+} // namespace lancer

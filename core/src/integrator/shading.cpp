@@ -1,0 +1,155 @@
+#include "integrator/shading.h"
+
+#include "integrator/terminator.h"
+
+#include <algorithm>
+
+namespace lancer {
+
+namespace {
+
+size_t most_nodes(const Scene &scene) {
+  size_t most = scene.world.program.nodes.size();
+  for (const Material &material : scene.materials)
+    most = std::max(most, material.program.nodes.size());
+  return most;
+}
+
+// The shading normal as the viewer sees it. Where interpolation lets it look away from him it is tilted just so far that it
+// sees him at a grazing angle, as the smooth surface that it stands for would.
+glm::vec3 visible_normal(const glm::vec3 &ns, const glm::vec3 &ng, const glm::vec3 &wo) {
+  const float cosine = glm::dot(wo, ns);
+  constexpr float grazing = 1.0f / 1024.0f;
+  if (cosine >= grazing || glm::dot(wo, ng) < grazing)
+    return cosine > 0.0f ? ns : ng;
+  return glm::normalize(ns + (grazing - cosine) * wo);
+}
+
+} // namespace
+
+Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values_(most_nodes(scene)) {
+  context_.geometry = &scene.geometry;
+  context_.images = &scene.images;
+  context_.normalisation = &scene.normalisation;
+  context_.camera = camera;
+}
+
+void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
+  result.emission = result.transmittance = glm::vec3(0.0f);
+  result.holdout = 0.0f;
+  result.material = surface.material == kNone ? nullptr : &scene_.materials[surface.material];
+  if (!result.material) {
+    static const Material nothing;
+    begin(nothing, surface, view.wo, result.bsdf);
+    result.bsdf.complete();
+    return;
+  }
+  const Material &material = *result.material;
+  // Compute what the nodes say here, then what becomes of the lobes seen from wo.
+  run_nodes(material, material.surface_nodes, surface, view);
+  begin(material, surface, view.wo, result.bsdf);
+  add_lobes(material, result.bsdf);
+  result.bsdf.complete();
+  result.emission = value_of(material.emission, values_) + result.bsdf.emission;
+  if (material.transmits())
+    result.transmittance = glm::max(value_of(material.transmittance, values_), 0.0f);
+  result.holdout = std::clamp(value_of(material.holdout, values_).x, 0.0f, 1.0f);
+}
+
+glm::vec3 Shader::transmittance(const Surface &surface, const glm::vec3 &wo) {
+  if (surface.material == kNone)
+    return glm::vec3(0.0f);
+  const Material &material = scene_.materials[surface.material];
+  if (!material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
+    return glm::vec3(0.0f);
+  run_nodes(material, material.transmittance_nodes, surface, {.wo = wo});
+  return glm::max(value_of(material.transmittance, values_), 0.0f);
+}
+
+glm::vec3 Shader::emission(const Surface &surface, const glm::vec3 &wo) {
+  if (surface.material == kNone)
+    return glm::vec3(0.0f);
+  const Material &material = scene_.materials[surface.material];
+  if (material.layered_emission) {
+    // What lies above the emitting layer depends on the direction: ask the whole material.
+    shade(surface, {.wo = wo}, layered_);
+    return layered_.emission;
+  }
+  run_nodes(material, material.emission_nodes, surface, {.wo = wo});
+  return value_of(material.emission, values_);
+}
+
+glm::vec4 Shader::node_value(const Surface &surface, uint32_t node, const glm::vec3 &wo) {
+  const Material &material = scene_.materials[surface.material];
+  Parameter parameter;
+  parameter.node = int32_t(node);
+  run_nodes(material, material.program.schedule(std::span(&parameter, 1)), surface, {.wo = wo});
+  return values_[node];
+}
+
+void Shader::run_nodes(const Material &material, const Schedule &schedule, const Surface &surface, const View &view) {
+  if (schedule.empty())
+    return;
+  context_.surface = &surface;
+  context_.wo = view.wo;
+  context_.footprint = view.footprint;
+  context_.is_camera_ray = view.camera_ray;
+  run(material.program, schedule, context_, values_);
+}
+
+void Shader::begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf &bsdf) const {
+  // Turn both normals to the viewer's side.
+  const bool inside = glm::dot(wo, surface.ng) < 0.0f;
+  const glm::vec3 ng = inside ? -surface.ng : surface.ng;
+  glm::vec3 ns = inside ? -surface.ns : surface.ns;
+  // A bump of the whole surface stands in for its normal; nodes give it on the viewer's side.
+  if (material.normal.varies()) {
+    const glm::vec3 bumped = value_of(material.normal, values_);
+    const float length2 = glm::dot(bumped, bumped);
+    if (length2 > 0.0f && std::isfinite(length2))
+      ns = bumped / std::sqrt(length2);
+  }
+  bsdf.begin(wo, visible_normal(ns, ng, wo), ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
+}
+
+void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
+  for (const LobeDescription &lobe : material.lobes) {
+    const LobeInputs inputs = evaluate(lobe, values_);
+    if (inputs.weight == glm::vec3(0.0f))
+      continue;
+    if (lobe.principled)
+      add_principled(bsdf, inputs, evaluate(*lobe.principled, values_));
+    else
+      add_lobe(bsdf, inputs);
+  }
+}
+
+Ray shadow_ray(const Geometry &geometry, const Surface &surface, const Bsdf &bsdf, const LightSample &sample) {
+  const bool far = std::isinf(sample.distance);
+  const glm::vec3 wi(sample.wi);
+  Ray ray = leave(surface, sample.wi, far ? std::numeric_limits<double>::infinity() : 1.0);
+  const glm::dvec3 lift = terminator_offset(geometry, surface, bsdf.ns, bsdf.ng, wi);
+  if (lift != glm::dvec3(0.0)) {
+    // From below the triangle's own plane it may be met; from above it cannot.
+    ray.o = surface.p + lift;
+    if (!((glm::dot(wi, bsdf.ng) > 0.0f) == (glm::dot(wi, bsdf.ns) > 0.0f)))
+      ray.skip_instance = ray.skip_primitive = kNone;
+  }
+  if (!far)
+    ray.d = sample.target - ray.o;
+  ray.kinds = LANCER_RAY_SHADOW;
+  return ray;
+}
+
+PixelCone::PixelCone(const Camera &camera) {
+  // Compare the rays through the middle of the picture and one pixel beside it.
+  const glm::dvec2 middle(0.5 * camera.width, 0.5 * camera.height);
+  const Ray here = camera.ray(middle, glm::dvec2(0.0));
+  const Ray right = camera.ray(middle + glm::dvec2(1.0, 0.0), glm::dvec2(0.0));
+  const Ray above = camera.ray(middle + glm::dvec2(0.0, 1.0), glm::dvec2(0.0));
+  const glm::dvec3 d = glm::normalize(here.d);
+  base = 0.5 * (glm::length(right.o - here.o) + glm::length(above.o - here.o));
+  spread = 0.5 * (glm::length(glm::normalize(right.d) - d) + glm::length(glm::normalize(above.d) - d));
+}
+
+} // namespace lancer
