@@ -2,6 +2,7 @@
 #include "objects.h"
 #include "render/fill_settings.h"
 #include "render/probe.h"
+#include "render/probe_material.h"
 #include "scene/fill_camera.h"
 
 namespace {
@@ -55,10 +56,11 @@ const char *lancer_last_error(void) { return last_error; }
 
 uint32_t lancer_sizeof(uint32_t which) {
   static constexpr size_t sizes[LANCER_STRUCT_COUNT] = {
-      sizeof(lancer_mesh),         sizeof(lancer_instance),   sizeof(lancer_parameter), sizeof(lancer_lobe),
-      sizeof(lancer_material),     sizeof(lancer_light),      sizeof(lancer_camera),    sizeof(lancer_settings),
-      sizeof(lancer_progress),     sizeof(lancer_statistics), sizeof(lancer_hit),       sizeof(lancer_vertex),
-      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample)};
+      sizeof(lancer_mesh),         sizeof(lancer_instance),    sizeof(lancer_parameter), sizeof(lancer_lobe),
+      sizeof(lancer_material),     sizeof(lancer_light),       sizeof(lancer_camera),    sizeof(lancer_settings),
+      sizeof(lancer_progress),     sizeof(lancer_statistics),  sizeof(lancer_hit),       sizeof(lancer_vertex),
+      sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample), sizeof(lancer_attribute), sizeof(lancer_image),
+      sizeof(lancer_node),         sizeof(lancer_principled),  sizeof(lancer_world),     sizeof(lancer_lobe_info)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -100,8 +102,12 @@ lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, con
   });
 }
 
-lancer_status lancer_scene_set_world(lancer_scene scene, const float radiance[3]) {
-  return fill_scene(scene, radiance, "world: radiance", [&](Description &description) { set_world(description, radiance); });
+lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image) {
+  return fill_scene(scene, image, "image", [&](Description &description) { add_image(description, *image); });
+}
+
+lancer_status lancer_scene_set_world(lancer_scene scene, const lancer_world *world) {
+  return fill_scene(scene, world, "world", [&](Description &description) { set_world(description, *world); });
 }
 
 lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint32_t threads) {
@@ -278,7 +284,8 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
     statistics->accelerator_bytes = scene.accelerator->bytes();
     statistics->film_bytes = from.film_bytes;
     const bool lens = object->session.camera().lens_radius > 0.0;
-    copy_text(statistics->features, sizeof statistics->features, feature_names(scene.features) + (lens ? " lens" : ""));
+    copy_text(statistics->features, sizeof statistics->features,
+              feature_names({scene.features, scene.shapes}) + (lens ? " lens" : ""));
     copy_text(statistics->kernel, sizeof statistics->kernel, from.kernel);
     copy_text(statistics->instruction_set, sizeof statistics->instruction_set, scene.accelerator->instruction_set());
     return LANCER_OK;
@@ -342,6 +349,27 @@ lancer_status lancer_probe_bsdf_sample(lancer_scene scene, uint32_t material, ui
                                        lancer_bsdf_sample *samples) {
   return probe_scene(scene, count, {wo, u, samples},
                      [&](const Scene &s) { probe_bsdf_sample(s, material, count, wo, u, samples); });
+}
+
+lancer_status lancer_probe_lobes(lancer_scene scene, uint32_t material, const float *wo, lancer_lobe_info *lobes,
+                                 uint32_t capacity, uint32_t *count, float *emission, float *transmittance) {
+  return guard([&] {
+    require(count, "probe: count");
+    if (capacity)
+      require(lobes, "probe: lobes");
+    return probe_scene(scene, 1, {wo},
+                       [&](const Scene &s) { probe_lobes(s, material, wo, lobes, capacity, count, emission, transmittance); });
+  });
+}
+
+lancer_status lancer_probe_node(lancer_scene scene, uint32_t material, uint32_t node, uint32_t count, const float *uv,
+                                float *values) {
+  return probe_scene(scene, count, {uv, values}, [&](const Scene &s) { probe_node(s, material, node, count, uv, values); });
+}
+
+lancer_status lancer_probe_world(lancer_scene scene, uint32_t count, const double *directions, float *radiance, float *pdf) {
+  return probe_scene(scene, count, {directions, radiance, pdf},
+                     [&](const Scene &s) { probe_world(s, count, directions, radiance, pdf); });
 }
 
 lancer_status lancer_probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv,

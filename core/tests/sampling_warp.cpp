@@ -105,9 +105,9 @@ TEST(Warp, DirectionsAreUnitAndFinite) {
         EXPECT_NEAR(glm::dot(w, w), 1.0f, 10.0f * 0x1p-24f);
 }
 
-TEST(Distribution, FollowsItsWeights) {
+TEST(WeightedChoice, FollowsItsWeights) {
   const std::vector<double> weights{0.0, 3.0, 1e-4, 0.0, 5.0, 0.5, 0.0};
-  const Distribution distribution(weights);
+  const WeightedChoice distribution(weights);
   std::vector<double> observed(weights.size() * 4, 0.0), expected(weights.size() * 4);
   double pmf_sum = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -120,7 +120,7 @@ TEST(Distribution, FollowsItsWeights) {
   EXPECT_NEAR(pmf_sum, 1.0, 7 * 0x1p-25);
   Random random(6);
   for (int k = 0; k < kDraws; ++k) {
-    const Distribution::Choice choice = distribution.sample(static_cast<double>(random.next() >> 11) * 0x1p-53);
+    const WeightedChoice::Choice choice = distribution.sample(static_cast<double>(random.next() >> 11) * 0x1p-53);
     ASSERT_EQ(choice.pmf, distribution.pmf(choice.index));
     ASSERT_TRUE(choice.u >= 0.0f && choice.u < 1.0f);
     observed[4 * choice.index + static_cast<std::size_t>(choice.u * 4.0f)] += 1.0;
@@ -128,16 +128,16 @@ TEST(Distribution, FollowsItsWeights) {
   EXPECT_GT(testing::chi_square_test(observed, expected), testing::kSignificance);
 }
 
-TEST(Distribution, TakesBadWeights) {
+TEST(WeightedChoice, TakesBadWeights) {
   const double infinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(Distribution().sample(0.5).pmf, 0.0f);
-  EXPECT_EQ(Distribution({0.0, 0.0}).sample(0.5).pmf, 0.0f);
-  EXPECT_EQ(Distribution({0.0, 0.0}).pmf(1), 0.0f);
-  EXPECT_EQ(Distribution({-1.0, std::nan(""), infinity}).sample(0.5).pmf, 0.0f);
-  EXPECT_EQ(Distribution({1e308, 1e308, 0.0}).sample(0.75).index, 1u);
-  EXPECT_EQ(Distribution({1e308, 1e308, 0.0}).pmf(1), 0.5f);
-  EXPECT_EQ(Distribution({0.0, 1e-320, 0.0}).sample(0.0).index, 1u);
-  EXPECT_EQ(Distribution({1.0, 1.0, 0.0}).sample(1.0 - 0x1p-53).index, 1u);
+  EXPECT_EQ(WeightedChoice().sample(0.5).pmf, 0.0f);
+  EXPECT_EQ(WeightedChoice({0.0, 0.0}).sample(0.5).pmf, 0.0f);
+  EXPECT_EQ(WeightedChoice({0.0, 0.0}).pmf(1), 0.0f);
+  EXPECT_EQ(WeightedChoice({-1.0, std::nan(""), infinity}).sample(0.5).pmf, 0.0f);
+  EXPECT_EQ(WeightedChoice({1e308, 1e308, 0.0}).sample(0.75).index, 1u);
+  EXPECT_EQ(WeightedChoice({1e308, 1e308, 0.0}).pmf(1), 0.5f);
+  EXPECT_EQ(WeightedChoice({0.0, 1e-320, 0.0}).sample(0.0).index, 1u);
+  EXPECT_EQ(WeightedChoice({1.0, 1.0, 0.0}).sample(1.0 - 0x1p-53).index, 1u);
 }
 
 // The window's integral from 0 to x over its whole integral, 0.35875.

@@ -18,17 +18,28 @@ inline lancer_parameter parameter(float x, float y, float z) { return {{x, y, z}
 inline lancer_parameter parameter(float x) { return parameter(x, x, x); }
 
 inline lancer_lobe lobe(uint32_t kind, float color, float roughness = 0.3f) {
-  return {kind, parameter(color), parameter(roughness), parameter(1.5f), parameter(20.0f)};
+  lancer_lobe lobe = {};
+  lobe.kind = kind;
+  lobe.weight = lobe.edge = parameter(1.0f);
+  lobe.color = parameter(color);
+  lobe.roughness = parameter(roughness);
+  lobe.ior = parameter(1.5f);
+  lobe.shininess = parameter(20.0f);
+  lobe.anisotropy = lobe.rotation = lobe.normal = lobe.tangent = parameter(0.0f);
+  return lobe;
 }
 
-inline void add_material(lancer_scene scene, const std::vector<lancer_lobe> &lobes, float emission = 0.0f,
-                         float opacity = 1.0f) {
+// opacity: share of what is there; the rest passes.
+inline void add_material(lancer_scene scene, std::vector<lancer_lobe> lobes, float emission = 0.0f, float opacity = 1.0f) {
   lancer_material material = {};
   material.name = "material";
+  for (lancer_lobe &lobe : lobes)
+    lobe.weight = parameter(opacity);
   material.lobes = lobes.data();
   material.lobe_count = uint32_t(lobes.size());
-  material.emission = parameter(emission);
-  material.opacity = parameter(opacity);
+  material.emission = parameter(emission * opacity);
+  material.transmittance = parameter(1.0f - opacity);
+  material.holdout = material.displacement = material.normal = parameter(0.0f);
   material.ambient = parameter(0.1f);
   lancer_scene_add_material(scene, &material);
 }
@@ -79,8 +90,9 @@ inline lancer_scene make_scene(uint32_t accelerator = LANCER_BVH, uint32_t shadi
   lancer_scene_add_instances(scene, 6, instances, 6, slots, nullptr, 0);
   const lancer_light light = point_light();
   lancer_scene_add_light(scene, &light);
-  const float sky[3] = {0.1f, 0.2f, 0.3f};
-  lancer_scene_set_world(scene, sky);
+  lancer_world sky = {};
+  sky.radiance = parameter(0.1f, 0.2f, 0.3f);
+  lancer_scene_set_world(scene, &sky);
   lancer_scene_commit(scene, accelerator, 1);
   while (lancer_scene_wait(scene, 50) == LANCER_RUNNING)
     ;
@@ -99,6 +111,7 @@ inline lancer_camera make_camera(uint32_t width = 24, uint32_t height = 16) {
   camera.clip_start = 0.1;
   camera.clip_end = 100.0;
   camera.focal_distance = 6.0;
+  camera.aperture_ratio = 1.0;
   return camera;
 }
 
@@ -107,6 +120,8 @@ inline lancer_settings make_settings(uint32_t integrator = LANCER_PATH) {
   settings.integrator = integrator;
   settings.samples = 8;
   settings.max_bounces = 6;
+  settings.transparent_bounces = settings.transparent_shadows = 8;
+  settings.alpha_threshold = 0.5f;
   settings.pixel_filter = LANCER_FILTER_BLACKMAN_HARRIS;
   settings.filter_width = 1.5f;
   settings.passes = (1u << LANCER_PASS_COUNT) - 1;

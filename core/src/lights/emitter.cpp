@@ -9,10 +9,11 @@ namespace lancer {
 
 namespace {
 
-double brightness(const Material &material) {
-  const glm::vec3 &e = material.emission.value;
-  return std::max({e.x, e.y, e.z});
-}
+double brightest(const glm::vec3 &v) { return std::max({0.0, double(v.x), double(v.y), double(v.z)}); }
+
+bool sampled(const Material &material) { return material.emits() && !(material.flags & LANCER_MATERIAL_NOT_A_LIGHT); }
+
+bool varies(const Material &material) { return material.emission.varies() || material.layered_emission; }
 
 double face_area(const Geometry &geometry, const Instance &instance, uint32_t face) {
   const Mesh &mesh = geometry.meshes[instance.mesh];
@@ -60,58 +61,137 @@ double area_scale(const Instance &instance, const glm::dvec3 &n) {
   return std::abs(glm::determinant(instance.to_world.linear)) * glm::length(glm::transpose(instance.to_object.linear) * n);
 }
 
+// A point of a mesh's face by the weights of its corners 1 and 2.
+Surface face_point(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t face,
+                   const glm::dvec2 &weights) {
+  Hit hit;
+  hit.instance = instance;
+  hit.primitive = face;
+  hit.u = weights.x;
+  hit.v = weights.y;
+  return surface_at(geometry, slots, Ray{}, hit);
+}
+
+// A point of an exact surface: looked straight at, so that the surface stage finds it at t = 1.
+Surface part_point(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, int part,
+                   const glm::vec2 &u) {
+  const Instance &placed = geometry.instances[instance];
+  const UnitPoint point = unit_point(placed.kind, part, u);
+  Ray ray;
+  ray.o = placed.to_world.point(point.p + point.n);
+  ray.d = placed.to_world.vector(-point.n);
+  Hit hit;
+  hit.instance = instance;
+  hit.primitive = 0;
+  hit.t = 1.0;
+  return surface_at(geometry, slots, ray, hit);
+}
+
+// Seen straight on, from the brighter side.
+double brightness_at(const EmissionAt &emission, const Surface &surface) {
+  const double both = std::max(brightest(emission(surface, surface.ng)), brightest(emission(surface, -surface.ng)));
+  return std::isfinite(both) ? both : 0.0;
+}
+
+// Where a face is looked at: middle, and halfway from there to each corner.
+constexpr double kLooks[4][2] = {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}};
+// What a face counts for at least, as a share of the mean over all: a texture may shine between the looks.
+constexpr double kLeastShare = 0.05;
+
 } // namespace
 
 Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
-                 uint32_t instance)
-    : instance_(instance) {
-  const Instance &placed = geometry.instances[instance];
-  std::vector<double> weights;
-  const auto emission = [&](uint32_t face) {
-    const uint32_t material = material_of(geometry, slots, instance, face);
-    return material == kNone ? 0.0 : brightness(materials[material]);
-  };
-  if (placed.kind == ShapeKind::Mesh) {
-    const size_t faces = geometry.meshes[placed.mesh].triangles.size();
-    weights.resize(faces);
-    for (uint32_t face = 0; face < faces; ++face) {
-      const double e = emission(face);
-      weights[face] = e > 0.0 ? e * face_area(geometry, placed, face) : 0.0;
-      weight_ += weights[face];
+                 uint32_t instance, const EmissionAt &emission)
+    : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from) {
+  const ShapeKind kind = geometry.instances[instance].kind;
+  if (kind == ShapeKind::Mesh)
+    add_faces(geometry, slots, materials, emission);
+  else if (kind != ShapeKind::Plane)
+    add_parts(geometry, slots, materials, emission);
+}
+
+void Emitter::add_faces(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
+                        const EmissionAt &emission) {
+  const Instance &placed = geometry.instances[instance_];
+  const uint32_t faces = uint32_t(geometry.meshes[placed.mesh].triangles.size());
+  std::vector<double> weights(faces);
+  std::vector<bool> textured(faces);
+  double looked_at = 0.0, seen = 0.0;
+  for (uint32_t face = 0; face < faces; ++face) {
+    const uint32_t number = material_of(geometry, slots, instance_, face);
+    if (number == kNone || !sampled(materials[number]))
+      continue;
+    const Material &material = materials[number];
+    const double area = face_area(geometry, placed, face);
+    double level = brightest(material.emission.value);
+    if (varies(material)) {
+      // Look at a few points; at one where nothing but the direction matters.
+      const bool by_nodes = !material.emission_nodes.empty();
+      level = 0.0;
+      const int looks = by_nodes ? 4 : 1;
+      for (int i = 0; i < looks; ++i)
+        level += brightness_at(emission, face_point(geometry, slots, instance_, face, {kLooks[i][0], kLooks[i][1]})) / looks;
+      brightness_.resize(faces);
+      brightness_[face] = float(level);
+      textured[face] = by_nodes;
+      looked_at += by_nodes ? area : 0.0;
+      seen += by_nodes ? level * area : 0.0;
     }
-  } else if (placed.kind != ShapeKind::Plane) {
-    // Parts are weighted by their unit areas; the density accounts for what the map does to them.
-    for (int part = 0; part < 3; ++part)
-      weights.push_back(part_area(placed.kind, part));
-    weight_ = emission(0) * part_area(placed.kind, 0) * std::pow(std::abs(glm::determinant(placed.to_world.linear)), 2.0 / 3.0);
+    weights[face] = level * area;
+  }
+  // Give the dark faces of a texture their least share.
+  const double least = looked_at > 0.0 ? kLeastShare * seen / looked_at : 0.0;
+  for (uint32_t face = 0; face < faces; ++face) {
+    if (textured[face] && double(brightness_[face]) < least) {
+      brightness_[face] = float(least);
+      weights[face] = double(brightness_[face]) * face_area(geometry, placed, face);
+    }
+    weight_ += weights[face];
   }
   if (weight_ > 0.0)
-    faces_ = Distribution(weights);
+    faces_ = WeightedChoice(weights);
+}
+
+void Emitter::add_parts(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
+                        const EmissionAt &emission) {
+  const Instance &placed = geometry.instances[instance_];
+  const uint32_t number = material_of(geometry, slots, instance_, 0);
+  if (number == kNone || !sampled(materials[number]))
+    return;
+  double level = brightest(materials[number].emission.value);
+  if (varies(materials[number])) {
+    // Look at 8 x 8 points of the curved side; the parts are covered evenly whatever is seen.
+    level = 0.0;
+    for (int i = 0; i < 64; ++i) {
+      const glm::vec2 u((float(i % 8) + 0.5f) / 8.0f, (float(i / 8) + 0.5f) / 8.0f);
+      level += brightness_at(emission, part_point(geometry, slots, instance_, 0, u)) / 64.0;
+    }
+  }
+  // Parts are weighted by their unit areas; the density accounts for what the map does to them.
+  std::vector<double> weights;
+  for (int part = 0; part < 3; ++part)
+    weights.push_back(part_area(placed.kind, part));
+  weight_ = level * part_area(placed.kind, 0) * std::pow(std::abs(glm::determinant(placed.to_world.linear)), 2.0 / 3.0);
+  if (weight_ > 0.0)
+    faces_ = WeightedChoice(weights);
+}
+
+double Emitter::brightness(const Material &material, uint32_t face) const {
+  if (!sampled(material))
+    return 0.0;
+  return varies(material) ? double(brightness_[face]) : brightest(material.emission.value);
 }
 
 LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                            const std::vector<Material> &materials, const glm::dvec3 &p, const glm::vec2 &u) const {
-  const Instance &placed = geometry.instances[instance_];
+                            const std::vector<Material> &materials, const glm::dvec3 &p, const glm::vec2 &u,
+                            Surface &surface) const {
   // Choose a face; what is left of the number places the point on it.
   const auto choice = faces_.sample(u.x);
   const glm::vec2 rest(choice.u, u.y);
-  Hit hit;
-  hit.instance = instance_;
-  hit.primitive = 0;
-  Ray ray;
-  if (placed.kind == ShapeKind::Mesh) {
-    const glm::dvec2 b(warp_triangle(rest));
-    hit.primitive = choice.index;
-    hit.u = b.x;
-    hit.v = b.y;
-  } else {
-    // Look straight at the chosen point so that the surface stage finds it at t = 1.
-    const UnitPoint point = unit_point(placed.kind, int(choice.index), rest);
-    ray.o = placed.to_world.point(point.p + point.n);
-    ray.d = placed.to_world.vector(-point.n);
-    hit.t = 1.0;
-  }
-  const Surface surface = surface_at(geometry, slots, ray, hit);
+  if (geometry.instances[instance_].kind == ShapeKind::Mesh)
+    surface = face_point(geometry, slots, instance_, choice.index, glm::dvec2(warp_triangle(rest)));
+  else
+    surface = part_point(geometry, slots, instance_, int(choice.index), rest);
 
   LightSample sample;
   const glm::dvec3 v = surface.p - p;
@@ -123,11 +203,6 @@ LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t
   const double side = glm::dot(glm::dvec3(surface.ng), sample.wi) < 0.0 ? 1.0 : -1.0;
   sample.target = surface.p + (side * surface.offset) * glm::dvec3(surface.ng);
   sample.pdf = pdf(geometry, materials, p, surface);
-  if (surface.material != kNone) {
-    // What is not there does not shine either.
-    const Material &material = materials[surface.material];
-    sample.radiance = evaluate(material.emission, surface) * evaluate(material.opacity, surface);
-  }
   return sample;
 }
 
@@ -136,12 +211,12 @@ double Emitter::pdf(const Geometry &geometry, const std::vector<Material> &mater
   const Instance &placed = geometry.instances[instance_];
   const glm::dvec3 v = surface.p - p;
   const double d2 = glm::dot(v, v), cosine = std::abs(glm::dot(glm::dvec3(surface.ng), v)) / std::sqrt(d2);
-  if (!(cosine > 0.0) || !(d2 > 0.0) || surface.material == kNone)
+  if (!(cosine > 0.0) || !(d2 > 0.0) || surface.material == kNone || !(weight_ > 0.0))
     return 0.0;
   double per_area;
   if (placed.kind == ShapeKind::Mesh) {
     // A face is chosen by emission times area and covered evenly: its area cancels.
-    per_area = brightness(materials[surface.material]) / weight_;
+    per_area = brightness(materials[surface.material], surface.primitive) / weight_;
   } else {
     double unit_area = 0.0;
     for (int part = 0; part < 3; ++part)

@@ -27,10 +27,13 @@ struct Light {
   bool soft_falloff = true;
   double cos_half_angle = -1.0, blend_width = 0.0; // SPOT
   bool spot_cosine = false;
+  double stretch_x = 1.0, stretch_y = 1.0;       // SPOT: of the cone's section
   double one_minus_cos_sun = 0.0;                // SUN: 1 - cos of half its angle
   double half_x = 0.0, half_y = 0.0, area = 0.0; // AREA
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
+  uint32_t hidden_from = 0;                         // LANCER_RAY_* bits
+  bool no_shadow = false;
   CourseLight course;
 };
 

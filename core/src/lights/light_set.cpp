@@ -27,14 +27,17 @@ double power(const Light &light, double scene_radius) {
 
 } // namespace
 
-LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, const glm::vec3 &world,
+LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
                    double radius)
-    : lights_(std::move(lights)), emitters_(std::move(emitters)), world_(world) {
+    : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
   std::vector<double> powers;
   for (const Light &light : lights_)
     powers.push_back(power(light, radius));
   for (const Emitter &emitter : emitters_)
     powers.push_back(2.0 * glm::pi<double>() * emitter.weight());
+  // Beyond the scene's bounds nothing is lit: what passes through their disk from all directions.
+  if (environment_.varies())
+    powers.push_back(4.0 * glm::pi<double>() * environment_.mean() * glm::pi<double>() * radius * radius);
   double total = 0.0;
   size_t shining = 0;
   for (double p : powers) {
@@ -45,7 +48,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   if (total > 0.0) {
     for (double &p : powers)
       p = p > 0.0 ? 0.5 * p / total + 0.5 / double(shining) : 0.0;
-    choice_ = Distribution(powers);
+    choice_ = WeightedChoice(powers);
   }
   // One that is never chosen is never met either: both techniques know the same lights.
   for (uint32_t i = 0; i < lights_.size(); ++i)
@@ -63,8 +66,15 @@ LightSet::Choice LightSet::choose(float u) const {
   return {choice.index, double(choice.pmf)};
 }
 
+uint32_t LightSet::hidden_from(uint32_t light) const {
+  if (light < lights_.size())
+    return lights_[light].hidden_from;
+  const size_t emitter = light - lights_.size();
+  return emitter < emitters_.size() ? emitters_[emitter].hidden_from() : environment_.hidden_from();
+}
+
 size_t LightSet::bytes() const {
-  size_t bytes = lights_.size() * sizeof(Light) + emitter_of_.size() * sizeof(uint32_t);
+  size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) + emitter_of_.size() * sizeof(uint32_t);
   for (const Emitter &emitter : emitters_)
     bytes += sizeof(Emitter) + emitter.bytes();
   return bytes;

@@ -14,7 +14,13 @@ namespace lancer {
 inline double spot_attenuation(const Light &light, const glm::dvec3 &wi) {
   if (light.kind != LightKind::Spot)
     return 1.0;
-  const double cosine = glm::dot(wi, light.z), inside = cosine - light.cos_half_angle;
+  double cosine = glm::dot(wi, light.z);
+  if (light.stretch_x != 1.0 || light.stretch_y != 1.0) {
+    // Look at the direction where the cone is round.
+    const double x = glm::dot(wi, light.x) / light.stretch_x, y = glm::dot(wi, light.y) / light.stretch_y;
+    cosine /= std::sqrt(x * x + y * y + cosine * cosine);
+  }
+  const double inside = cosine - light.cos_half_angle;
   if (!(inside > 0.0))
     return 0.0;
   const double tilted = light.spot_cosine ? std::max(cosine, 0.0) : 1.0;
@@ -27,9 +33,9 @@ inline double spot_attenuation(const Light &light, const glm::dvec3 &wi) {
 // A disk that is smaller than a float direction can tell is a point: its radiance would leave float's range before that.
 inline bool is_true_point(const Light &light, double distance) { return light.radius <= distance * 0x1p-24; }
 
-// Radiance of the disk or ball: intensity over its projected area.
-inline glm::vec3 round_radiance(const Light &light, const glm::dvec3 &wi) {
-  const double scale = spot_attenuation(light, wi) / (glm::pi<double>() * light.radius * light.radius);
+// Radiance of the disk or ball: intensity over its projected area. Within the ball there is no cone.
+inline glm::vec3 round_radiance(const Light &light, const glm::dvec3 &wi, bool within = false) {
+  const double scale = (within ? 1.0 : spot_attenuation(light, wi)) / (glm::pi<double>() * light.radius * light.radius);
   return glm::vec3(light.emission * scale);
 }
 
@@ -109,7 +115,7 @@ inline LightSample sample_ball(const Light &light, const glm::dvec3 &to_light, d
   const double half = std::sqrt(std::max(0.0, (light.radius - glm::length(closest)) * (light.radius + glm::length(closest))));
   sample.distance = distance <= light.radius ? along + half : std::max(along - half, 0.5 * along);
   sample.target = p + sample.distance * sample.wi;
-  sample.radiance = round_radiance(light, sample.wi);
+  sample.radiance = round_radiance(light, sample.wi, distance <= light.radius);
   return sample;
 }
 
@@ -149,7 +155,7 @@ inline LightHit meet_point(const Light &light, const glm::dvec3 &o, const glm::d
         inside ? 0.25 * glm::one_over_pi<double>() : 1.0 / (glm::two_pi<double>() * one_minus_cos_ball(light.radius, distance));
     hit.distance = inside ? along + half : along - half;
   }
-  hit.radiance = round_radiance(light, wi);
+  hit.radiance = round_radiance(light, wi, !light.soft_falloff && distance <= light.radius);
   return hit;
 }
 

@@ -19,6 +19,11 @@ void check_choice(const char *what, uint32_t value, uint32_t last) {
                  std::to_string(last));
 }
 
+void check_bounces(const char *what, uint32_t value) {
+  if (value > kMostBounces)
+    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " > " + std::to_string(kMostBounces));
+}
+
 void check_amount(const char *what, float value) {
   if (!(value >= 0.0f) || !std::isfinite(value))
     bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " must be finite and not negative");
@@ -38,11 +43,18 @@ SessionSettings read_settings(const lancer_settings &source) {
   check_choice("features", source.features, LANCER_FEATURES_ALL);
   check_amount("contribution_threshold", source.contribution_threshold);
   check_amount("clamp_indirect", source.clamp_indirect);
-  if (source.max_bounces > kMostBounces)
-    bad_argument("settings: max_bounces " + std::to_string(source.max_bounces) + " > " + std::to_string(kMostBounces));
+  check_amount("glass_roughness", source.glass_roughness);
+  check_amount("alpha_threshold", source.alpha_threshold);
+  check_amount("occlusion_distance", source.occlusion_distance);
+  check_amount("mist_start", source.mist_start);
+  check_amount("mist_depth", source.mist_depth);
+  check_amount("mist_falloff", source.mist_falloff);
+  check_bounces("max_bounces", source.max_bounces);
   if (source.integrator == LANCER_CLASSIC && source.max_bounces > kDeepestRecursion)
     bad_argument("settings: max_bounces " + std::to_string(source.max_bounces) + " > " + std::to_string(kDeepestRecursion) +
                  ", the deepest recursion of CLASSIC");
+  check_bounces("transparent_bounces", source.transparent_bounces);
+  check_bounces("transparent_shadows", source.transparent_shadows);
   if (source.threads > kMostThreads)
     bad_argument("settings: threads " + std::to_string(source.threads) + " > " + std::to_string(kMostThreads));
   if (source.passes >> LANCER_PASS_COUNT)
@@ -57,6 +69,17 @@ SessionSettings read_settings(const lancer_settings &source) {
   settings.integrator.filter = read_filter(source.pixel_filter, source.filter_width);
   settings.integrator.filter_width = source.filter_width;
   settings.integrator.film_transparent = source.film_transparent != 0;
+  settings.integrator.transparent_glass = source.film_transparent && source.transparent_glass;
+  settings.integrator.glass_alpha2 = source.glass_roughness * source.glass_roughness;
+  settings.integrator.transparent_bounces = source.transparent_bounces;
+  settings.integrator.transparent_shadows = source.transparent_shadows;
+  settings.integrator.alpha_threshold = source.alpha_threshold;
+  settings.integrator.environment_reflections = source.environment_reflections != 0;
+  settings.integrator.occlusion_distance = double(source.occlusion_distance);
+  settings.integrator.mist_start = source.mist_start;
+  settings.integrator.mist_depth = source.mist_depth;
+  settings.integrator.mist_falloff = source.mist_falloff;
+  settings.integrator.passes = source.passes;
   settings.integrator.all_features = source.features == LANCER_FEATURES_ALL;
   settings.passes = source.passes;
   settings.threads = source.threads;

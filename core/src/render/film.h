@@ -1,23 +1,12 @@
 // Where samples land: tiles of double sums that do not depend on who added them when.
 #pragma once
 
-#include "integrator/sample.h"
+#include "render/pass.h"
 
+#include <array>
 #include <mutex>
 
 namespace lancer {
-
-enum class Pass : uint32_t {
-  Combined = 0,
-  Depth = 1,
-  Normal = 2,
-  Albedo = 3,
-  Position = 4,
-  ObjectIndex = 5,
-  MaterialIndex = 6
-};
-
-uint32_t channels(Pass pass);
 
 // The samples of a pixel are summed along one fixed binary tree over their numbers: sample s is a leaf, and two neighbouring
 // complete subtrees of equal size are always joined. While samples arrive in order only the sums that wait for their neighbour
@@ -25,7 +14,7 @@ uint32_t channels(Pass pass);
 // the bits, and any complete subtree can be computed elsewhere.
 class Film {
 public:
-  // passes: bits 1u << Pass; Combined is always kept.
+  // passes: bits 1u << Pass; Combined is always kept, and with a light pass the colour that it is divided by.
   Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes);
 
   // What a film of this size takes for a dyadic number of samples.
@@ -46,17 +35,29 @@ public:
 
   // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
+  // Whether all that would be summed is finite.
+  bool finite(const SampleResult &result) const;
   // [height][width][channels], row 0 at the bottom; a pixel without samples is 0, its depth 1e10.
   void read(Pass pass, std::span<float> out) const;
-  bool has(Pass pass) const { return (passes_ & (1u << uint32_t(pass))) != 0; }
+  bool has(Pass pass) const { return (passes_ & bit(pass)) != 0; }
   size_t bytes() const;
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
 
 private:
+  // Which channels are kept, in order of pass.
+  struct Layout {
+    explicit Layout(uint32_t passes);
+
+    std::vector<Pass> summed, first;
+    std::array<uint32_t, kPassCount> at{}; // of a pass, where its channels begin in its list
+    uint32_t summed_channels = 0, first_channels = 0;
+  };
+
+  void read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const;
+
   uint32_t width_, height_, passes_;
-  uint32_t summed_;                  // channels that are averaged over samples
-  uint32_t normal_ = 0, albedo_ = 0; // where they begin among the summed
+  Layout layout_;
   std::vector<std::unique_ptr<Tile>> tiles_;
 };
 

@@ -1,7 +1,8 @@
 #include "render/probe.h"
 
-#include "integrator/shading.h"
-#include "sampling/warp.h"
+#include "bsdf/coating.h"
+#include "integrator/scene_lights.h"
+#include "sampling/checks.h"
 #include "scene/error.h"
 
 #include <cmath>
@@ -11,7 +12,6 @@ namespace lancer {
 namespace {
 
 glm::dvec3 dvec3_at(const double *array, size_t i) { return {array[3 * i], array[3 * i + 1], array[3 * i + 2]}; }
-glm::vec3 vec3_at(const float *array, size_t i) { return {array[3 * i], array[3 * i + 1], array[3 * i + 2]}; }
 
 template <class Target, class Vector> void store(Target *target, const Vector &v) {
   for (int i = 0; i < 3; ++i)
@@ -29,20 +29,6 @@ std::vector<Ray> rays_of(const Scene &scene, uint32_t count, const double *origi
     rays[i].tmax = tmax[i];
   }
   return rays;
-}
-
-const Bsdf &bsdf_of(const Scene &scene, uint32_t material, Bsdf &scratch) {
-  if (material >= scene.materials.size())
-    bad_argument("probe: material " + std::to_string(material) + " >= " + std::to_string(scene.materials.size()) +
-                 " materials");
-  return evaluate(scene.materials[material], Surface{}, scratch);
-}
-
-// Numbers that stand for random ones.
-void check_unit(const float *u, size_t count) {
-  for (size_t i = 0; i < count; ++i)
-    if (!(u[i] >= 0.0f && u[i] < 1.0f))
-      bad_argument("probe: u " + std::to_string(u[i]) + " is not in [0, 1)");
 }
 
 void check_light(const Scene &scene, uint32_t light) {
@@ -68,7 +54,7 @@ void probe_intersect(const Scene &scene, uint32_t count, const double *origins, 
     }
     const Surface surface = surface_at(scene.geometry, scene.slots, rays[i], found[i]);
     const Instance &instance = scene.geometry.instances[found[i].instance];
-    const SurfaceAttributes attributes = attributes_at(scene.geometry, surface, found[i]);
+    const SurfaceAttributes attributes = attributes_at(scene.geometry, surface);
     const bool mesh = instance.kind == ShapeKind::Mesh;
     hit.u = mesh ? found[i].u : double(attributes.uv.x);
     hit.v = mesh ? found[i].v : double(attributes.uv.y);
@@ -90,31 +76,6 @@ void probe_occluded(const Scene &scene, uint32_t count, const double *origins, c
   scene.accelerator->any_hit(rays, std::span(occluded, count));
 }
 
-void probe_bsdf(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *wi, float *f, float *pdf) {
-  Bsdf scratch;
-  const Bsdf &bsdf = bsdf_of(scene, material, scratch);
-  for (uint32_t i = 0; i < count; ++i) {
-    const BsdfValue value = bsdf.eval_pdf(vec3_at(wo, i), vec3_at(wi, i));
-    store(f + size_t(3) * i, value.f);
-    pdf[i] = value.pdf;
-  }
-}
-
-void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *u,
-                       lancer_bsdf_sample *samples) {
-  check_unit(u, size_t(3) * count);
-  Bsdf scratch;
-  const Bsdf &bsdf = bsdf_of(scene, material, scratch);
-  for (uint32_t i = 0; i < count; ++i) {
-    const glm::vec3 numbers = vec3_at(u, i);
-    const BsdfSample sample = bsdf.sample(vec3_at(wo, i), numbers.x, {numbers.y, numbers.z});
-    store(samples[i].wi, sample.wi);
-    store(samples[i].weight, sample.weight);
-    samples[i].pdf = sample.pdf;
-    samples[i].delta = sample.delta;
-  }
-}
-
 void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv, const float *alpha,
                       const float *ior, float *d, float *f, float *g1) {
   // A direction with the given cosine, in the plane y = 0.
@@ -133,15 +94,11 @@ void probe_light(const Scene &scene, uint32_t light, uint32_t count, const doubl
                  lancer_light_sample *samples) {
   check_light(scene, light);
   check_unit(u, size_t(2) * count);
-  const size_t described = scene.lights.lights().size();
   const double scale = scene.normalisation.scale;
+  Shader shader(scene, nullptr);
   for (uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 p = scene.normalisation.to_normalised(dvec3_at(points, i));
-    const glm::vec2 numbers(u[2 * i], u[2 * i + 1]);
-    const LightSample sample =
-        light < described
-            ? lancer::sample(scene.lights.lights()[light], p, numbers)
-            : scene.lights.emitters()[light - described].sample(scene.geometry, scene.slots, scene.materials, p, numbers);
+    const LightSample sample = sample_scene_light(scene, light, p, {u[2 * i], u[2 * i + 1]}, shader);
     samples[i] = {};
     store(samples[i].wi, sample.wi);
     samples[i].distance = sample.distance / scale;
@@ -160,6 +117,10 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
     const glm::dvec3 w = dvec3_at(wi, i);
     if (light < described) {
       pdf[i] = float(meet(scene.lights.lights()[light], p, w).pdf);
+      continue;
+    }
+    if (light - described >= scene.lights.emitters().size()) {
+      pdf[i] = float(scene.lights.environment().pdf(w));
       continue;
     }
     // Sum over all places where the direction meets the emitter: the sampler may have chosen any of them.
@@ -193,10 +154,10 @@ void probe_camera(const Session &session, uint32_t count, const double *raster, 
                   double *directions) {
   const Normalisation &normalisation = session.scene().normalisation;
   for (uint32_t i = 0; i < count; ++i) {
-    const glm::dvec2 disk(warp_disk({float(lens[2 * i]), float(lens[2 * i + 1])}));
+    const glm::dvec2 disk = session.camera().aperture({float(lens[2 * i]), float(lens[2 * i + 1])});
     const Ray ray = session.camera().ray({raster[2 * i], raster[2 * i + 1]}, disk);
     store(origins + size_t(3) * i, normalisation.to_world(ray.o));
-    store(directions + size_t(3) * i, ray.d);
+    store(directions + size_t(3) * i, ray.tmax < 0.0 ? glm::dvec3(0.0) : ray.d);
   }
 }
 

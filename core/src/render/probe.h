@@ -11,9 +11,6 @@ void probe_intersect(const Scene &scene, uint32_t count, const double *origins, 
                      const double *tmax, lancer_hit *hits);
 void probe_occluded(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
                     const double *tmax, uint8_t *occluded);
-void probe_bsdf(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *wi, float *f, float *pdf);
-void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *u,
-                       lancer_bsdf_sample *samples);
 void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv, const float *alpha,
                       const float *ior, float *d, float *f, float *g1);
 void probe_light(const Scene &scene, uint32_t light, uint32_t count, const double *points, const float *u,

@@ -2,7 +2,6 @@
 
 #include "scene/error.h"
 
-#include <cmath>
 #include <unistd.h>
 
 namespace lancer {
@@ -15,17 +14,7 @@ constexpr uint32_t kTileSize = 32, kLargestTile = 256;
 
 Camera normalised(Camera camera, const Normalisation &normalisation) {
   camera.to_world.translation = normalisation.to_normalised(camera.to_world.translation);
-  const double scale = normalisation.scale;
-  camera.clip_start *= scale;
-  camera.clip_end *= scale;
-  camera.lens_radius *= scale;
-  camera.focal_distance *= scale;
-  if (camera.orthographic) {
-    camera.left *= scale;
-    camera.right *= scale;
-    camera.bottom *= scale;
-    camera.top *= scale;
-  }
+  camera.scale_lengths(normalisation.scale);
   return camera;
 }
 
@@ -44,9 +33,14 @@ uint32_t tile_size(const SessionSettings &settings) {
   return settings.tile_size ? std::min(settings.tile_size, kLargestTile) : kTileSize;
 }
 
-bool finite(const SampleResult &result) {
-  return std::isfinite(result.radiance.x) && std::isfinite(result.radiance.y) && std::isfinite(result.radiance.z) &&
-         std::isfinite(result.alpha);
+// Nothing but where the camera ray ended.
+SampleResult place_of(const SampleResult &result) {
+  SampleResult place;
+  place.depth = result.depth;
+  place.position = result.position;
+  place.object_index = result.object_index;
+  place.material_index = result.material_index;
+  return place;
 }
 
 } // namespace
@@ -141,10 +135,9 @@ void Session::render_tile(Worker &worker, Film::Tile &tile) {
 
 void Session::drop_invalid(const Worker &worker, std::span<SampleResult> results) {
   for (size_t i = 0; i < results.size(); ++i) {
-    if (finite(results[i]))
+    if (film_.finite(results[i]))
       continue;
-    results[i].radiance = glm::vec3(0.0f);
-    results[i].alpha = 0.0f;
+    results[i] = place_of(results[i]);
     const std::lock_guard lock(mutex_);
     if (invalid_++ == 0)
       first_invalid_ = worker.addresses[i];

@@ -9,7 +9,7 @@
 
 namespace lancer {
 
-class Distribution {
+class WeightedChoice {
 public:
   struct Choice {
     uint32_t index = 0;
@@ -17,10 +17,10 @@ public:
     float u = 0.0f;   // where u fell inside the chosen interval, uniform in [0, 1): a fresh number
   };
 
-  Distribution() = default;
+  WeightedChoice() = default;
 
   // Weights that are negative or not finite count as 0. Where all are 0 nothing is ever chosen.
-  explicit Distribution(const std::vector<double> &weights) : cdf_(weights.size() + 1, 0.0) {
+  explicit WeightedChoice(const std::vector<double> &weights) : cdf_(weights.size() + 1, 0.0) {
     const auto usable = [](double w) { return w > 0.0 && std::isfinite(w) ? w : 0.0; };
     double largest = 0.0;
     for (double w : weights)

@@ -1,0 +1,65 @@
+#include "lights/place_light.h"
+
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+// The light's axes: its z kept, the others made orthogonal to it; what vanishes is replaced by any direction that fits.
+void set_axes(Light &light, const Affine &map) {
+  const auto unit = [](const glm::dvec3 &v) { return glm::length(v) > 0.0 ? v / glm::length(v) : glm::dvec3(0.0); };
+  const glm::dvec3 z = unit(map.linear[2]), x = unit(map.linear[0]), y = unit(map.linear[1]);
+  light.z = z == glm::dvec3(0.0) ? glm::dvec3(0.0, 0.0, 1.0) : z;
+  light.x = unit(x - glm::dot(x, light.z) * light.z);
+  if (light.x == glm::dvec3(0.0))
+    light.x = unit(std::abs(light.z.x) < 0.5 ? glm::cross(light.z, {1, 0, 0}) : glm::cross(light.z, {0, 1, 0}));
+  light.y = glm::cross(light.z, light.x);
+  if (glm::dot(light.y, y) < 0.0)
+    light.y = -light.y;
+}
+
+} // namespace
+
+Light place_light(const LightDescription &from, const Normalisation &normalisation) {
+  Light light;
+  const double scale = normalisation.scale;
+  light.kind = from.kind;
+  light.position = normalisation.to_normalised(from.to_world.translation);
+  set_axes(light, from.to_world);
+  light.emission = glm::dvec3(from.emission);
+  // Irradiance is intensity over distance squared: lengths scale, so intensity scales with their square.
+  if (from.kind == LightKind::Point || from.kind == LightKind::Spot)
+    light.emission *= scale * scale;
+  light.radius = double(from.radius) * scale;
+  light.soft_falloff = from.soft_falloff;
+  if (from.kind == LightKind::Spot) {
+    light.cos_half_angle = std::cos(0.5 * double(from.spot_angle));
+    light.blend_width = (1.0 - light.cos_half_angle) * double(from.spot_blend);
+    light.spot_cosine = from.spot_cosine;
+    light.stretch_x = double(from.size.x);
+    light.stretch_y = double(from.size.y);
+  }
+  // 1 - cos(a) = 2 sin^2(a / 2), exact for the smallest suns.
+  const double s = std::sin(0.25 * double(from.sun_angle));
+  light.one_minus_cos_sun = 2.0 * s * s;
+  // A disk that is smaller than a float direction can tell is a direction.
+  if (0.5 * double(from.sun_angle) < 0x1p-24)
+    light.one_minus_cos_sun = 0.0;
+  light.half_x = 0.5 * double(from.size.x) * scale;
+  light.half_y = 0.5 * double(from.size.y) * scale;
+  light.ellipse = from.shape == AreaShape::Ellipse;
+  light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
+  if (from.spread < glm::pi<float>()) {
+    const double half = 0.5 * std::max(double(from.spread), 1e-3);
+    light.tan_half_spread = std::tan(half);
+    light.spread_scale = 1.0 / (light.tan_half_spread - half);
+  }
+  light.hidden_from = from.hidden_from;
+  light.no_shadow = from.no_shadow;
+  light.course = {from.falloff,       double(from.falloff_radius) * scale, scale, from.ambient_color, from.diffuse_color,
+                  from.specular_color};
+  return light;
+}
+
+} // namespace lancer

@@ -1,0 +1,45 @@
+// What the film can show: how many numbers a pass has, where a sample holds them, how a sum becomes a picture.
+#pragma once
+
+#include "integrator/sample.h"
+#include "lancer.h"
+
+namespace lancer {
+
+enum class Pass : uint32_t {
+  Combined = LANCER_PASS_COMBINED,
+  Depth = LANCER_PASS_DEPTH,
+  Normal = LANCER_PASS_NORMAL,
+  Albedo = LANCER_PASS_ALBEDO,
+  Position = LANCER_PASS_POSITION,
+  ObjectIndex = LANCER_PASS_OBJECT_INDEX,
+  MaterialIndex = LANCER_PASS_MATERIAL_INDEX,
+  Uv = LANCER_PASS_UV,
+  Mist = LANCER_PASS_MIST,
+  Emission = LANCER_PASS_EMISSION, // the first of those that are parts of the light, in the order of LightPass
+  DiffuseDirect = LANCER_PASS_DIFFUSE_DIRECT,
+  DiffuseIndirect = LANCER_PASS_DIFFUSE_INDIRECT,
+  DiffuseColor = LANCER_PASS_DIFFUSE_COLOR,
+  TransmissionColor = LANCER_PASS_TRANSMISSION_COLOR, // the last of them
+  DenoisingNormal = LANCER_PASS_DENOISING_NORMAL,
+  DenoisingDepth = LANCER_PASS_DENOISING_DEPTH
+};
+inline constexpr uint32_t kPassCount = LANCER_PASS_COUNT;
+
+constexpr uint32_t bit(Pass pass) { return 1u << uint32_t(pass); }
+
+uint32_t channels(Pass pass);
+// Whether sample 0 alone decides: a mean of depths or numbers would be that of no thing.
+bool of_first_sample(Pass pass);
+// The colour that a direct or indirect pass is divided by; the pass itself where there is none.
+Pass divisor(Pass pass);
+// The passes asked for with Combined and all divisors.
+uint32_t kept_passes(uint32_t passes);
+
+// Writes the channels of a sample.
+template <class Number> void copy_channels(const SampleResult &result, Pass pass, Number *to);
+
+// Light over its colour. A channel without colour gets the mean of the others that have some: grey, where nothing is known.
+glm::dvec3 divide_by_color(const glm::dvec3 &light, const glm::dvec3 &color);
+
+} // namespace lancer

@@ -1,0 +1,161 @@
+// The film's passes: what is kept, what it costs, and how sums become pictures.
+#include "render/film.h"
+
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace lancer {
+namespace {
+
+constexpr uint32_t kAll = (1u << kPassCount) - 1;
+
+Pass pass(uint32_t number) { return static_cast<Pass>(number); }
+
+// Samples whose radiance is the sum of their parts, as an integrator gives them; every number differs from every other.
+std::vector<SampleResult> synthetic(uint32_t count) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> number(0.1f, 1.0f);
+  const auto color = [&] { return glm::vec3(number(random), number(random), number(random)); };
+  std::vector<SampleResult> results(count);
+  for (SampleResult &result : results) {
+    for (glm::vec3 &light : result.light)
+      light = color();
+    result.radiance = result.light[kLightEmission] + result.light[kLightEnvironment];
+    for (uint32_t component = 0; component < 3; ++component)
+      for (uint32_t way = 0; way < 2; ++way)
+        result.radiance += result.light[kLightComponents + 3 * component + way];
+    result.alpha = number(random);
+    result.normal = color();
+    result.albedo = color();
+    result.depth = number(random);
+    result.position = color();
+    result.object_index = number(random);
+    result.material_index = number(random);
+    result.uv = color();
+    result.mist = number(random);
+    result.denoising_normal = color();
+    result.denoising_depth = number(random);
+  }
+  return results;
+}
+
+std::vector<float> read(const Film &film, Pass which) {
+  std::vector<float> out(size_t(film.width()) * film.height() * channels(which));
+  film.read(which, out);
+  return out;
+}
+
+// A film of one pixel.
+std::unique_ptr<Film> film_of(const std::vector<SampleResult> &results, uint32_t passes = kAll) {
+  auto film = std::make_unique<Film>(1, 1, 1, passes);
+  film->add(film->tile(0), uint32_t(results.size()), results);
+  return film;
+}
+
+double mean_of(const std::vector<SampleResult> &results, const std::function<float(const SampleResult &)> &value) {
+  double sum = 0.0;
+  for (const SampleResult &result : results)
+    sum += double(value(result));
+  return sum / double(results.size());
+}
+
+TEST(FilmPasses, PartsSumToCombined) {
+  const auto results = synthetic(16);
+  const auto film = film_of(results);
+  const auto combined = read(*film, Pass::Combined);
+  for (int i = 0; i < 3; ++i) {
+    float sum = read(*film, Pass::Emission)[size_t(i)] + read(*film, pass(LANCER_PASS_ENVIRONMENT))[size_t(i)];
+    for (uint32_t first = LANCER_PASS_DIFFUSE_DIRECT; first <= LANCER_PASS_TRANSMISSION_DIRECT; first += 3)
+      sum += read(*film, pass(first + 2))[size_t(i)] *
+             (read(*film, pass(first))[size_t(i)] + read(*film, pass(first + 1))[size_t(i)]);
+    // Roundings to float: four of a product, five of the sum of products, one of COMBINED, seven within a sample's radiance.
+    EXPECT_NEAR(sum, combined[size_t(i)], 17.0f * std::ldexp(1.0f, -24) * combined[size_t(i)]);
+  }
+}
+
+TEST(FilmPasses, EveryPassShowsItsOwnNumbers) {
+  const auto results = synthetic(8);
+  const auto film = film_of(results);
+  const auto expect_mean = [&](Pass which, const std::function<float(const SampleResult &)> &last) {
+    // A sum of 8 floats and a mean in double are exact to its last digit; then it is rounded to float.
+    EXPECT_EQ(read(*film, which).back(), float(mean_of(results, last))) << uint32_t(which);
+  };
+  expect_mean(Pass::Combined, [](const auto &r) { return r.alpha; });
+  expect_mean(Pass::Normal, [](const auto &r) { return r.normal.z; });
+  expect_mean(Pass::Albedo, [](const auto &r) { return r.albedo.z; });
+  expect_mean(Pass::Uv, [](const auto &r) { return r.uv.z; });
+  expect_mean(Pass::DenoisingNormal, [](const auto &r) { return r.denoising_normal.z; });
+  expect_mean(Pass::DenoisingDepth, [](const auto &r) { return r.denoising_depth; });
+  for (uint32_t light : {0u, 1u, 2u, 5u, 8u, 11u})
+    expect_mean(pass(LANCER_PASS_EMISSION + light), [&](const auto &r) { return r.light[light].z; });
+  for (uint32_t light : {3u, 4u, 6u, 7u, 9u, 10u}) {
+    const uint32_t color = light - light % 3 + 2;
+    const double expected = mean_of(results, [&](const auto &r) { return r.light[light].z; }) /
+                            mean_of(results, [&](const auto &r) { return r.light[color].z; });
+    EXPECT_EQ(read(*film, pass(LANCER_PASS_EMISSION + light)).back(), float(expected)) << light;
+  }
+  EXPECT_EQ(read(*film, Pass::Mist).back(), float(1.0 - mean_of(results, [](const auto &r) { return r.mist; })));
+  EXPECT_EQ(read(*film, Pass::Depth).back(), results[0].depth);
+  EXPECT_EQ(read(*film, Pass::Position).back(), results[0].position.z);
+  EXPECT_EQ(read(*film, Pass::ObjectIndex).back(), results[0].object_index);
+  EXPECT_EQ(read(*film, Pass::MaterialIndex).back(), results[0].material_index);
+}
+
+TEST(FilmPasses, WhatAPassShowsDoesNotDependOnTheOthers) {
+  const auto results = synthetic(13);
+  const auto all = film_of(results);
+  for (uint32_t number = 0; number < kPassCount; ++number) {
+    const auto alone = film_of(results, 1u << number);
+    EXPECT_TRUE(alone->has(pass(number)));
+    EXPECT_EQ(read(*alone, pass(number)), read(*all, pass(number))) << number;
+    EXPECT_EQ(read(*alone, Pass::Combined), read(*all, Pass::Combined)) << number;
+  }
+}
+
+TEST(FilmPasses, AreKeptOnlyWhereAskedFor) {
+  const uint32_t direct = 1u << LANCER_PASS_GLOSSY_DIRECT;
+  const Film film(1, 1, 1, direct);
+  EXPECT_TRUE(film.has(Pass::Combined));
+  // The divisor is there, but nobody asked to read it.
+  EXPECT_FALSE(film.has(pass(LANCER_PASS_GLOSSY_COLOR)));
+  EXPECT_EQ(Film::bytes_needed(1, 1, 0), 4 * sizeof(double));
+  EXPECT_EQ(Film::bytes_needed(1, 1, direct), (4 + 6) * sizeof(double));
+  EXPECT_EQ(Film::bytes_needed(1, 1, direct | 1u << LANCER_PASS_GLOSSY_COLOR), (4 + 6) * sizeof(double));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Depth)), 4 * sizeof(double) + sizeof(float));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Position)), 4 * sizeof(double) + 3 * sizeof(float));
+}
+
+TEST(FilmPasses, AChannelWithoutColorIsGrey) {
+  EXPECT_EQ(divide_by_color({1, 2, 3}, {2, 2, 2}), glm::dvec3(0.5, 1.0, 1.5));
+  EXPECT_EQ(divide_by_color({1, 0, 3}, {2, 0, 2}), glm::dvec3(0.5, 1.0, 1.5));
+  EXPECT_EQ(divide_by_color({0, 0, 3}, {0, 0, 2}), glm::dvec3(1.5));
+  EXPECT_EQ(divide_by_color({1, 2, 3}, {0, 0, 0}), glm::dvec3(0.0));
+}
+
+TEST(FilmPasses, MistIsWhatIsNotClear) {
+  SampleResult clear, sky, bright;
+  clear.mist = 0.75f;
+  // Light paths that split may count a little more than all.
+  bright.mist = 1.5f;
+  EXPECT_EQ(read(*film_of({clear, sky}), Pass::Mist)[0], 0.625f);
+  EXPECT_EQ(read(*film_of({sky}), Pass::Mist)[0], 1.0f);
+  EXPECT_EQ(read(*film_of({bright}), Pass::Mist)[0], 0.0f);
+}
+
+TEST(FilmPasses, FiniteMeansEveryNumberThatIsSummed) {
+  const float nan = std::nanf("");
+  const Film plain(1, 1, 1, 0), all(1, 1, 1, kAll);
+  SampleResult result;
+  EXPECT_TRUE(plain.finite(result) && all.finite(result));
+  result.light[kLightPasses - 1].y = nan;
+  EXPECT_TRUE(plain.finite(result));
+  EXPECT_FALSE(all.finite(result));
+  result = SampleResult{};
+  result.alpha = INFINITY;
+  EXPECT_FALSE(plain.finite(result));
+}
+
+} // namespace
+} // namespace lancer
