@@ -1,6 +1,6 @@
 """The numbers of lancer.h."""
 
-from enum import IntEnum
+from enum import IntEnum, IntFlag
 
 
 class Status(IntEnum):
@@ -29,6 +29,12 @@ class Struct(IntEnum):
     VERTEX = 11
     LIGHT_SAMPLE = 12
     BSDF_SAMPLE = 13
+    ATTRIBUTE = 14
+    IMAGE = 15
+    NODE = 16
+    PRINCIPLED = 17
+    WORLD = 18
+    LOBE_INFO = 19
 
 
 class NormalDomain(IntEnum):
@@ -59,6 +65,14 @@ class LobeKind(IntEnum):
     DIELECTRIC = 3
     PHONG = 4
     BLINN_PHONG = 5
+    DIFFUSE = 6
+    GLOSSY = 7
+    GLASS = 8
+    REFRACTION = 9
+    CONDUCTOR = 10
+    SHEEN = 11
+    TRANSLUCENT = 12
+    PRINCIPLED = 13
 
 
 class LightKind(IntEnum):
@@ -91,6 +105,12 @@ class Accelerator(IntEnum):
 class CameraKind(IntEnum):
     PERSPECTIVE = 0
     ORTHOGRAPHIC = 1
+    EQUIRECTANGULAR = 2
+    FISHEYE_EQUIDISTANT = 3
+    FISHEYE_EQUISOLID = 4
+    FISHEYE_POLYNOMIAL = 5
+    MIRROR_BALL = 6
+    CYLINDRICAL = 7
 
 
 class Integrator(IntEnum):
@@ -117,7 +137,253 @@ class Pass(IntEnum):
     POSITION = 4
     OBJECT_INDEX = 5
     MATERIAL_INDEX = 6
+    UV = 7
+    MIST = 8
+    EMISSION = 9
+    ENVIRONMENT = 10
+    AMBIENT_OCCLUSION = 11
+    DIFFUSE_DIRECT = 12
+    DIFFUSE_INDIRECT = 13
+    DIFFUSE_COLOR = 14
+    GLOSSY_DIRECT = 15
+    GLOSSY_INDIRECT = 16
+    GLOSSY_COLOR = 17
+    TRANSMISSION_DIRECT = 18
+    TRANSMISSION_INDIRECT = 19
+    TRANSMISSION_COLOR = 20
+    DENOISING_NORMAL = 21
+    DENOISING_DEPTH = 22
 
     @property
     def channels(self):
-        return (4, 1, 3, 3, 3, 1, 1)[self]
+        """How many numbers a pixel of the pass has."""
+        return _CHANNELS.get(self, 3)
+
+
+_CHANNELS = {Pass.COMBINED: 4} | dict.fromkeys(
+    (Pass.DEPTH, Pass.OBJECT_INDEX, Pass.MATERIAL_INDEX, Pass.MIST, Pass.DENOISING_DEPTH), 1
+)
+
+
+class Domain(IntEnum):
+    VERTEX = 0
+    FACE = 1
+    CORNER = 2
+
+
+class TexelKind(IntEnum):
+    U8 = 0
+    U16 = 1
+    FLOAT = 2
+
+
+class Transfer(IntEnum):
+    LINEAR = 0
+    SRGB = 1
+
+
+class AlphaMode(IntEnum):
+    ASSOCIATED = 0
+    STRAIGHT = 1
+    CHANNEL_PACKED = 2
+    NONE = 3
+
+
+class NodeKind(IntEnum):
+    COORDINATE = 0
+    ATTRIBUTE = 1
+    IMAGE = 2
+    ENVIRONMENT = 3
+    ALPHA = 4
+    MAPPING = 5
+    TRANSFORM = 6
+    MATH = 7
+    VECTOR_MATH = 8
+    MIX = 9
+    SEPARATE = 10
+    COMBINE = 11
+    GREY = 12
+    FRESNEL = 13
+    LAYER_WEIGHT = 14
+    NORMAL_MAP = 15
+    BUMP = 16
+    TANGENT = 17
+    CLAMP = 18
+    DISPLACEMENT = 19
+    GAMMA = 20
+    INVERT = 21
+
+
+class Coordinate(IntEnum):
+    GENERATED = 0
+    NORMAL = 1
+    UV = 2
+    OBJECT = 3
+    CAMERA = 4
+    WINDOW = 5
+    REFLECTION = 6
+    POSITION = 7
+    SHADING_NORMAL = 8
+    TRUE_NORMAL = 9
+    INCOMING = 10
+    BACKFACING = 11
+    PARAMETRIC = 12
+
+
+class Projection(IntEnum):
+    FLAT = 0
+    BOX = 1
+    SPHERE = 2
+    TUBE = 3
+
+
+class Extension(IntEnum):
+    REPEAT = 0
+    EXTEND = 1
+    CLIP = 2
+    MIRROR = 3
+
+
+class Interpolation(IntEnum):
+    LINEAR = 0
+    CLOSEST = 1
+    CUBIC = 2
+
+
+class Environment(IntEnum):
+    EQUIRECTANGULAR = 0
+    MIRROR_BALL = 1
+    CUBE = 2
+
+
+class MappingType(IntEnum):
+    POINT = 0
+    TEXTURE = 1
+    VECTOR = 2
+    NORMAL = 3
+
+
+class MathOperation(IntEnum):
+    ADD = 0
+    SUBTRACT = 1
+    MULTIPLY = 2
+    DIVIDE = 3
+    MULTIPLY_ADD = 4
+    POWER = 5
+    LOGARITHM = 6
+    SQRT = 7
+    INVERSE_SQRT = 8
+    ABSOLUTE = 9
+    EXPONENT = 10
+    MINIMUM = 11
+    MAXIMUM = 12
+    LESS_THAN = 13
+    GREATER_THAN = 14
+    SIGN = 15
+    COMPARE = 16
+    SMOOTH_MIN = 17
+    SMOOTH_MAX = 18
+    ROUND = 19
+    FLOOR = 20
+    CEIL = 21
+    TRUNC = 22
+    FRACT = 23
+    MODULO = 24
+    FLOORED_MODULO = 25
+    WRAP = 26
+    SNAP = 27
+    PINGPONG = 28
+    SINE = 29
+    COSINE = 30
+    TANGENT = 31
+    ARCSINE = 32
+    ARCCOSINE = 33
+    ARCTANGENT = 34
+    ARCTAN2 = 35
+    SINH = 36
+    COSH = 37
+    TANH = 38
+    RADIANS = 39
+    DEGREES = 40
+
+
+class VectorOperation(IntEnum):
+    ADD = 0
+    SUBTRACT = 1
+    MULTIPLY = 2
+    DIVIDE = 3
+    MULTIPLY_ADD = 4
+    CROSS_PRODUCT = 5
+    PROJECT = 6
+    REFLECT = 7
+    DOT_PRODUCT = 8
+    DISTANCE = 9
+    LENGTH = 10
+    SCALE = 11
+    NORMALIZE = 12
+    ABSOLUTE = 13
+    MINIMUM = 14
+    MAXIMUM = 15
+    FLOOR = 16
+    CEIL = 17
+    FRACTION = 18
+    MODULO = 19
+    SNAP = 20
+    SINE = 21
+    COSINE = 22
+    TANGENT = 23
+
+
+class MixMode(IntEnum):
+    MIX = 0
+    DARKEN = 1
+    MULTIPLY = 2
+    BURN = 3
+    LIGHTEN = 4
+    SCREEN = 5
+    DODGE = 6
+    ADD = 7
+    OVERLAY = 8
+    SOFT_LIGHT = 9
+    LINEAR_LIGHT = 10
+    DIFFERENCE = 11
+    EXCLUSION = 12
+    SUBTRACT = 13
+    DIVIDE = 14
+    HUE = 15
+    SATURATION = 16
+    COLOR = 17
+    VALUE = 18
+
+
+class Distribution(IntEnum):
+    GGX = 0
+    BECKMANN = 1
+    ASHIKHMIN_SHIRLEY = 2
+    MULTI_GGX = 3
+
+
+class Rules(IntEnum):
+    BLENDER_3 = 0
+    BLENDER_4 = 1
+    BLENDER_45 = 2
+
+
+class Ray(IntFlag):
+    CAMERA = 1
+    DIFFUSE = 2
+    GLOSSY = 4
+    TRANSMISSION = 8
+    SHADOW = 16
+    VOLUME = 32
+
+
+class InstanceFlag(IntFlag):
+    HOLDOUT = 1
+
+
+class MaterialFlag(IntFlag):
+    NO_BUMP_CORRECTION = 1
+    NOT_A_LIGHT = 2
+    OPAQUE_SHADOWS = 4
+    KEEP_NORMALS = 8

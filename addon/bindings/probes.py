@@ -60,6 +60,39 @@ class SceneProbes:
         check(self.library.lancer_probe_bsdf_sample(self.handle, material, count, *addresses), self.library)
         return samples.view(np.recarray)
 
+    def lobes(self, material, wo=(0.0, 0.0, 1.0)):
+        """The lobes of a material for the local direction wo, as records of lancer_lobe_info, with the emission and the
+        transmittance (3,) that go with them."""
+        wo = _rows(1, wo, np.float32, 3)
+        emission, transmittance = np.zeros(3, np.float32), np.zeros(3, np.float32)
+        count = ctypes.c_uint32()
+
+        def ask(lobes):
+            addresses = lobes.ctypes.data, len(lobes), ctypes.byref(count), emission.ctypes.data, transmittance.ctypes.data
+            check(self.library.lancer_probe_lobes(self.handle, material, wo.ctypes.data, *addresses), self.library)
+            return lobes
+
+        ask(np.zeros(0, np.dtype(abi.LobeInfo)))
+        lobes = ask(np.zeros(count.value, np.dtype(abi.LobeInfo)))
+        return lobes.view(np.recarray), emission, transmittance
+
+    def node(self, material, node, uv):
+        """Values (count, 4) of a material's node at texture coordinates (count, 2)."""
+        count = _count(uv)
+        uv, values = _rows(count, uv, np.float32, 2), np.zeros((count, 4), np.float32)
+        addresses = uv.ctypes.data, values.ctypes.data
+        check(self.library.lancer_probe_node(self.handle, material, node, count, *addresses), self.library)
+        return values
+
+    def world(self, directions):
+        """Radiance (count, 3) of the world in unit directions, and the density per solid angle of sampling them."""
+        count = _count(directions)
+        directions = _rows(count, directions, np.float64, 3)
+        radiance, pdf = np.zeros((count, 3), np.float32), np.zeros(count, np.float32)
+        addresses = [a.ctypes.data for a in (directions, radiance, pdf)]
+        check(self.library.lancer_probe_world(self.handle, count, *addresses), self.library)
+        return radiance, pdf
+
     def light(self, light, points, u):
         """Records of lancer_light_sample for points (count, 3) and u (count, 2)."""
         count = _count(points, u)

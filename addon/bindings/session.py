@@ -112,19 +112,21 @@ class Scene(_Handle, SceneProbes):
         return scene
 
     def fill(self, snapshot, poll=None):
-        for mesh in snapshot.meshes:
-            self._check(self.library.lancer_scene_add_mesh(self.handle, ctypes.byref(marshal.mesh(mesh))))
-            _obey(poll)
-        for material in snapshot.materials:
-            self._check(self.library.lancer_scene_add_material(self.handle, ctypes.byref(marshal.material(material))))
-        _obey(poll)
+        library, handle = self.library, self.handle
+        # What refers to another thing comes after it.
+        for add, to_struct, records in (
+            (library.lancer_scene_add_image, marshal.image, snapshot.images),
+            (library.lancer_scene_add_mesh, marshal.mesh, snapshot.meshes),
+            (library.lancer_scene_add_material, marshal.material, snapshot.materials),
+            (library.lancer_scene_add_light, marshal.light, snapshot.lights),
+            (library.lancer_scene_set_world, marshal.world, (snapshot.world,)),
+        ):
+            for record in records:
+                self._check(add(handle, ctypes.byref(to_struct(record))))
+                _obey(poll)
         if len(snapshot.instances):
-            self._check(self.library.lancer_scene_add_instances(self.handle, *marshal.instances(snapshot.instances)))
-        for light in snapshot.lights:
-            self._check(self.library.lancer_scene_add_light(self.handle, ctypes.byref(marshal.light(light))))
-        world = np.array(snapshot.world, np.float32)
-        self._check(self.library.lancer_scene_set_world(self.handle, world.ctypes.data))
-        _obey(poll)
+            self._check(library.lancer_scene_add_instances(handle, *marshal.instances(snapshot.instances)))
+            _obey(poll)
 
     def commit(self, accelerator=abi.Accelerator.BVH, threads=0, poll=None):
         self._check(self.library.lancer_scene_commit(self.handle, int(accelerator), int(threads)))

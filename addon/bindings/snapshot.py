@@ -5,7 +5,6 @@ Units and frames are those of lancer.h. Snapshots compare with == (NaN equals Na
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import dataclass, field
 
@@ -15,66 +14,40 @@ from .enums import (
     Accelerator,
     AreaShape,
     CameraKind,
+    Domain,
     Falloff,
     Features,
     InstanceKind,
     Integrator,
     LightKind,
-    LobeKind,
     Pass,
     PixelFilter,
+    Ray,
     Shading,
 )
 from .npz import load_npz, register, save_npz
+from .record import Record, array
+from .shading import Image, Lobe, Material, Node, NodeRef, Principled, World  # noqa: F401 - all records have one address
 
 _IDENTITY = np.eye(4)[:3]
 
 
-def _array(value, dtype, shape, what):
-    """value as a read-only C-contiguous array; shape may hold None for any length."""
-    array = np.ascontiguousarray(value, dtype).view()
-    if array.ndim != len(shape) or any(want is not None and want != got for want, got in zip(shape, array.shape, strict=True)):
-        raise ValueError(f"{what} has shape {array.shape}, expected {shape}")
-    array.flags.writeable = False
-    return array
+@register
+@dataclass(frozen=True, eq=False)
+class MeshAttribute(Record):
+    """values: (n, channels); n is the number of vertices, triangles or 3 triangles, as domain says."""
 
+    name: str = ""
+    values: np.ndarray = field(default_factory=lambda: np.empty((0, 1), np.float32))
+    domain: int = Domain.CORNER
 
-def _same(a, b):
-    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
-        if not (isinstance(a, np.ndarray) and isinstance(b, np.ndarray)):
-            return False
-        return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
-    if isinstance(a, tuple) and isinstance(b, tuple):
-        return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b, strict=True))
-    if isinstance(a, float) and isinstance(b, float) and math.isnan(a):
-        return math.isnan(b)
-    return a == b
-
-
-class _Record:
-    """Equality that understands arrays."""
-
-    __hash__ = None
-
-    def __eq__(self, other):
-        if type(self) is not type(other):
-            return NotImplemented
-        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in dataclasses.fields(self))
-
-    def _set(self, name, value):
-        object.__setattr__(self, name, value)
-
-    def _vectors(self, **lengths):
-        for name, length in lengths.items():
-            value = tuple(float(x) for x in getattr(self, name))
-            if len(value) != length:
-                raise ValueError(f"{type(self).__name__}.{name} has {len(value)} values, expected {length}")
-            self._set(name, value)
+    def __post_init__(self):
+        self.set("values", array(self.values, np.float32, (None, None), f"attribute '{self.name}'"))
 
 
 @register
 @dataclass(frozen=True, eq=False)
-class MeshData(_Record):
+class MeshData(Record):
     """A triangle mesh in object space."""
 
     name: str = ""
@@ -84,21 +57,28 @@ class MeshData(_Record):
     uvs: np.ndarray | None = None  # (T, 3, 2)
     colors: np.ndarray | None = None  # (T, 3, 3), linear
     material_slots: np.ndarray | None = None  # (T,)
+    attributes: tuple = ()  # of MeshAttribute
 
     def __post_init__(self):
         what = f"mesh '{self.name}': "
-        self._set("positions", _array(self.positions, np.float32, (None, 3), what + "positions"))
-        self._set("triangles", _array(self.triangles, np.uint32, (None, 3), what + "triangles"))
+        self.set("positions", array(self.positions, np.float32, (None, 3), what + "positions"))
+        self.set("triangles", array(self.triangles, np.uint32, (None, 3), what + "triangles"))
         vertices, count = len(self.positions), len(self.triangles)
         if self.normals is not None:
             shape = (vertices, 3) if np.ndim(self.normals) == 2 else (count, 3, 3)
-            self._set("normals", _array(self.normals, np.float32, shape, what + "normals"))
+            self.set("normals", array(self.normals, np.float32, shape, what + "normals"))
         if self.uvs is not None:
-            self._set("uvs", _array(self.uvs, np.float32, (count, 3, 2), what + "uvs"))
+            self.set("uvs", array(self.uvs, np.float32, (count, 3, 2), what + "uvs"))
         if self.colors is not None:
-            self._set("colors", _array(self.colors, np.float32, (count, 3, 3), what + "colors"))
+            self.set("colors", array(self.colors, np.float32, (count, 3, 3), what + "colors"))
         if self.material_slots is not None:
-            self._set("material_slots", _array(self.material_slots, np.uint16, (count,), what + "material_slots"))
+            self.set("material_slots", array(self.material_slots, np.uint16, (count,), what + "material_slots"))
+        self.set("attributes", tuple(self.attributes))
+        rows = {Domain.VERTEX: vertices, Domain.FACE: count, Domain.CORNER: 3 * count}
+        for attribute in self.attributes:
+            if len(attribute.values) != rows.get(attribute.domain):
+                where = f"domain {int(attribute.domain)}"
+                raise ValueError(f"{what}attribute '{attribute.name}' has {len(attribute.values)} rows in {where}")
 
     @classmethod
     def from_trimesh(cls, mesh, name="mesh", smooth=False):
@@ -120,11 +100,19 @@ class Instance:
     object_index: int = 0
     shading: int = Shading.AS_MESH
     name: str = ""
+    hidden_from: int = 0  # Ray bits
+    flags: int = 0  # InstanceFlag bits
+    terminator: float = 0.0  # cosine; 0 = shadow rays start on the triangle
+
+
+_INSTANCE_COLUMNS = (
+    "kinds", "meshes", "first_slots", "slot_counts", "object_indices", "shadings", "name_indices", "hidden_from", "flags",
+)  # fmt: skip
 
 
 @register
 @dataclass(frozen=True, eq=False)
-class InstanceTable(_Record):
+class InstanceTable(Record):
     """All placed objects, a column for each property; materials are slots[first_slot : first_slot + slot_count]."""
 
     matrices: np.ndarray = field(default_factory=lambda: np.empty((0, 3, 4)))
@@ -135,16 +123,25 @@ class InstanceTable(_Record):
     object_indices: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
     shadings: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
     name_indices: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
+    hidden_from: np.ndarray | None = None  # zeros where not given
+    flags: np.ndarray | None = None
+    terminators: np.ndarray | None = None  # float
     names: tuple = ()
     slots: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
 
     def __post_init__(self):
         count = len(self.matrices)
-        self._set("matrices", _array(self.matrices, np.float64, (count, 3, 4), "matrices"))
-        for name in ("kinds", "meshes", "first_slots", "slot_counts", "object_indices", "shadings", "name_indices"):
-            self._set(name, _array(getattr(self, name), np.uint32, (count,), name))
-        self._set("slots", _array(self.slots, np.uint32, (None,), "slots"))
-        self._set("names", tuple(self.names))
+        self.set("matrices", array(self.matrices, np.float64, (count, 3, 4), "matrices"))
+        for name in ("hidden_from", "flags"):
+            if getattr(self, name) is None:
+                self.set(name, np.zeros(count, np.uint32))
+        if self.terminators is None:
+            self.set("terminators", np.zeros(count, np.float32))
+        self.set("terminators", array(self.terminators, np.float32, (count,), "terminators"))
+        for name in _INSTANCE_COLUMNS:
+            self.set(name, array(getattr(self, name), np.uint32, (count,), name))
+        self.set("slots", array(self.slots, np.uint32, (None,), "slots"))
+        self.set("names", tuple(self.names))
         if count and int(self.name_indices.max()) >= len(self.names):
             raise ValueError(f"name index {int(self.name_indices.max())} >= {len(self.names)} names")
 
@@ -171,6 +168,9 @@ class InstanceTable(_Record):
             object_indices=[i.object_index for i in instances],
             shadings=[i.shading for i in instances],
             name_indices=[names[i.name] for i in instances],
+            hidden_from=[i.hidden_from for i in instances],
+            flags=[i.flags for i in instances],
+            terminators=[i.terminator for i in instances],
             names=tuple(names),
             slots=slots,
         )
@@ -178,35 +178,7 @@ class InstanceTable(_Record):
 
 @register
 @dataclass(frozen=True, eq=False)
-class Lobe(_Record):
-    kind: int = LobeKind.LAMBERT
-    color: tuple = (0.8, 0.8, 0.8)
-    roughness: float = 0.5  # alpha itself
-    ior: float = 1.5
-    shininess: float = 50.0
-
-    def __post_init__(self):
-        self._vectors(color=3)
-
-
-@register
-@dataclass(frozen=True, eq=False)
-class Material(_Record):
-    name: str = ""
-    lobes: tuple = (Lobe(),)
-    emission: tuple = (0.0, 0.0, 0.0)
-    opacity: float = 1.0
-    ambient: tuple = (0.0, 0.0, 0.0)
-    material_index: int = 0
-
-    def __post_init__(self):
-        self._set("lobes", tuple(self.lobes))
-        self._vectors(emission=3, ambient=3)
-
-
-@register
-@dataclass(frozen=True, eq=False)
-class Light(_Record):
+class Light(Record):
     name: str = ""
     matrix: np.ndarray = field(default_factory=lambda: _IDENTITY)
     kind: int = LightKind.POINT
@@ -225,15 +197,17 @@ class Light(_Record):
     ambient_color: tuple = (1.0, 1.0, 1.0)
     diffuse_color: tuple = (1.0, 1.0, 1.0)
     specular_color: tuple = (1.0, 1.0, 1.0)
+    hidden_from: int = Ray.CAMERA  # bits; lamps are invisible to the camera unless asked for
+    no_shadow: bool = False
 
     def __post_init__(self):
-        self._set("matrix", _array(np.asarray(self.matrix, float)[:3], np.float64, (3, 4), f"light '{self.name}': matrix"))
-        self._vectors(emission=3, size=2, ambient_color=3, diffuse_color=3, specular_color=3)
+        self.set("matrix", array(np.asarray(self.matrix, float)[:3], np.float64, (3, 4), f"light '{self.name}': matrix"))
+        self.vectors(emission=3, size=2, ambient_color=3, diffuse_color=3, specular_color=3)
 
 
 @register
 @dataclass(frozen=True, eq=False)
-class Camera(_Record):
+class Camera(Record):
     """window: left, right, bottom, top at z = -1 (perspective). The region is the whole image where not given."""
 
     matrix: np.ndarray = field(default_factory=lambda: _IDENTITY)
@@ -249,19 +223,23 @@ class Camera(_Record):
     clip_end: float = 1e6
     lens_radius: float = 0.0
     focal_distance: float = 1.0
+    aperture_blades: int = 0
+    aperture_rotation: float = 0.0
+    aperture_ratio: float = 1.0
+    panorama: tuple = (0.0,) * 8  # as the kind says
 
     def __post_init__(self):
-        self._set("matrix", _array(np.asarray(self.matrix, float)[:3], np.float64, (3, 4), "camera matrix"))
-        self._vectors(window=4)
+        self.set("matrix", array(np.asarray(self.matrix, float)[:3], np.float64, (3, 4), "camera matrix"))
+        self.vectors(window=4, panorama=8)
         if self.region_width is None:
-            self._set("region_width", self.width - self.x)
+            self.set("region_width", self.width - self.x)
         if self.region_height is None:
-            self._set("region_height", self.height - self.y)
+            self.set("region_height", self.height - self.y)
 
 
 @register
 @dataclass(frozen=True, eq=False)
-class Settings(_Record):
+class Settings(Record):
     integrator: int = Integrator.PATH
     samples: int = 16
     seed: int = 0
@@ -271,6 +249,16 @@ class Settings(_Record):
     pixel_filter: int = PixelFilter.BOX
     filter_width: float = 1.0
     film_transparent: bool = False
+    transparent_glass: bool = False
+    glass_roughness: float = 0.0  # alpha
+    transparent_bounces: int = 8
+    transparent_shadows: int = 8
+    alpha_threshold: float = 0.5
+    environment_reflections: bool = False
+    occlusion_distance: float = 0.0
+    mist_start: float = 5.0
+    mist_depth: float = 25.0
+    mist_falloff: float = 2.0
     features: int = Features.SCENE
     passes: tuple = (Pass.COMBINED,)
     threads: int = 0
@@ -278,24 +266,26 @@ class Settings(_Record):
     accelerator: int = Accelerator.BVH
 
     def __post_init__(self):
-        self._set("passes", tuple(int(p) for p in self.passes))
+        self.set("passes", tuple(int(p) for p in self.passes))
 
 
 @register
 @dataclass(frozen=True, eq=False)
-class SceneSnapshot(_Record):
+class SceneSnapshot(Record):
     meshes: tuple = ()
     instances: InstanceTable = field(default_factory=InstanceTable)
     materials: tuple = ()
     lights: tuple = ()
-    world: tuple = (0.0, 0.0, 0.0)
+    images: tuple = ()
+    world: World = field(default_factory=World)  # or its constant radiance
     camera: Camera = field(default_factory=Camera)
     settings: Settings = field(default_factory=Settings)
 
     def __post_init__(self):
-        for name in ("meshes", "materials", "lights"):
-            self._set(name, tuple(getattr(self, name)))
-        self._vectors(world=3)
+        for name in ("meshes", "materials", "lights", "images"):
+            self.set(name, tuple(getattr(self, name)))
+        if not isinstance(self.world, World):
+            self.set("world", World(radiance=self.world))
 
     def save(self, path):
         save_npz(self, path)

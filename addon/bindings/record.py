@@ -1,0 +1,48 @@
+"""What the records of a snapshot have in common: checked arrays and equality."""
+
+import dataclasses
+import math
+
+import numpy as np
+
+
+def array(value, dtype, shape, what):
+    """value as a read-only C-contiguous array; shape may hold None for any length."""
+    array = np.ascontiguousarray(value, dtype).view()
+    if array.ndim != len(shape) or any(want is not None and want != got for want, got in zip(shape, array.shape, strict=True)):
+        raise ValueError(f"{what} has shape {array.shape}, expected {shape}")
+    array.flags.writeable = False
+    return array
+
+
+def same(a, b):
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        if not (isinstance(a, np.ndarray) and isinstance(b, np.ndarray)):
+            return False
+        return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b, strict=True))
+    if isinstance(a, float) and isinstance(b, float) and math.isnan(a):
+        return math.isnan(b)
+    return a == b
+
+
+class Record:
+    """Equality that understands arrays."""
+
+    __hash__ = None
+
+    def __eq__(self, other):
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(same(getattr(self, f.name), getattr(other, f.name)) for f in dataclasses.fields(self))
+
+    def set(self, name, value):
+        object.__setattr__(self, name, value)
+
+    def vectors(self, **lengths):
+        for name, length in lengths.items():
+            value = tuple(float(x) for x in getattr(self, name))
+            if len(value) != length:
+                raise ValueError(f"{type(self).__name__}.{name} has {len(value)} values, expected {length}")
+            self.set(name, value)

@@ -1,0 +1,180 @@
+"""Materials, nodes, images and the world as records of a snapshot. Meanings, units and frames are those of lancer.h.
+
+A parameter is a number, three numbers, or a NodeRef: the result of a node of the same owner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .enums import AlphaMode, Distribution, LobeKind, NodeKind, Rules, Transfer
+from .npz import register
+from .record import Record, array
+
+_BLACK = (0.0, 0.0, 0.0)
+_WHITE = (1.0, 1.0, 1.0)
+_TEXELS = (np.uint8, np.uint16, np.float32)
+
+
+@register
+@dataclass(frozen=True)
+class NodeRef:
+    """The result of node number `node`."""
+
+    node: int
+
+
+def _parameter(value):
+    if isinstance(value, NodeRef):
+        return value
+    return tuple(float(x) for x in value) if isinstance(value, (tuple, list, np.ndarray)) else float(value)
+
+
+class _Parameters(Record):
+    """Turns every field named in PARAMETERS into a parameter."""
+
+    PARAMETERS = ()
+
+    def __post_init__(self):
+        for name in self.PARAMETERS:
+            self.set(name, _parameter(getattr(self, name)))
+
+
+@register
+@dataclass(frozen=True, eq=False)
+class Image(Record):
+    """texels: (height, width, channels) of uint8, uint16 or float32, row 0 at the bottom; 1, 3 or 4 channels."""
+
+    name: str = ""
+    texels: np.ndarray = field(default_factory=lambda: np.zeros((1, 1, 4), np.uint8))
+    transfer: int = Transfer.LINEAR
+    alpha: int = AlphaMode.STRAIGHT
+    tile: int = 0  # UDIM number; 0 = not one of several tiles
+    matrix: tuple = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)  # decoded RGB to the working space, row-major
+
+    def __post_init__(self):
+        texels = np.asarray(self.texels)
+        if texels.dtype not in _TEXELS:
+            raise ValueError(f"image '{self.name}': texels are {texels.dtype}, expected uint8, uint16 or float32")
+        if texels.ndim != 3 or texels.shape[2] not in (1, 3, 4):
+            raise ValueError(f"image '{self.name}': texels have shape {texels.shape}, expected (height, width, 1, 3 or 4)")
+        self.set("texels", array(texels, texels.dtype, (None, None, None), f"image '{self.name}'"))
+        self.vectors(matrix=9)
+
+
+@register
+@dataclass(frozen=True, eq=False)
+class Node(Record):
+    kind: int = NodeKind.COORDINATE
+    option: int = 0
+    flags: int = 0
+    image: int = 0
+    image_count: int = 0
+    first: int = 0
+    name: str = ""
+    inputs: tuple = ()  # up to five parameters
+    matrix: tuple = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+
+    def __post_init__(self):
+        self.set("inputs", tuple(_parameter(value) for value in self.inputs))
+        if len(self.inputs) > 5:
+            raise ValueError(f"node has {len(self.inputs)} inputs, at most 5")
+        self.vectors(matrix=12)
+
+
+@register
+@dataclass(frozen=True, eq=False)
+class Principled(_Parameters):
+    rules: int = Rules.BLENDER_45
+    distribution: int = Distribution.MULTI_GGX
+    option: int = 1
+    base_color: object = (0.8, 0.8, 0.8)
+    metallic: object = 0.0
+    roughness: object = 0.5
+    ior: object = 1.5
+    diffuse_roughness: object = 0.0
+    specular: object = 0.5
+    specular_tint: object = _WHITE
+    anisotropic: object = 0.0
+    anisotropic_rotation: object = 0.0
+    transmission: object = 0.0
+    transmission_roughness: object = 0.0
+    coat: object = 0.0
+    coat_roughness: object = 0.03
+    coat_ior: object = 1.5
+    coat_tint: object = _WHITE
+    coat_normal: object = _BLACK
+    sheen: object = 0.0
+    sheen_roughness: object = 0.5
+    sheen_tint: object = _WHITE
+    emission: object = _BLACK
+
+    PARAMETERS = (
+        "base_color", "metallic", "roughness", "ior", "diffuse_roughness", "specular", "specular_tint", "anisotropic",
+        "anisotropic_rotation", "transmission", "transmission_roughness", "coat", "coat_roughness", "coat_ior", "coat_tint",
+        "coat_normal", "sheen", "sheen_roughness", "sheen_tint", "emission",
+    )  # fmt: skip
+
+
+@register
+@dataclass(frozen=True, eq=False)
+class Lobe(_Parameters):
+    kind: int = LobeKind.LAMBERT
+    color: object = (0.8, 0.8, 0.8)
+    roughness: object = 0.5  # alpha itself for BECKMANN, else the socket's value
+    ior: object = 1.5
+    shininess: object = 50.0
+    weight: object = _WHITE
+    edge: object = _WHITE
+    anisotropy: object = 0.0
+    rotation: object = 0.0
+    normal: object = _BLACK
+    tangent: object = _BLACK
+    distribution: int = Distribution.GGX
+    option: int = 0
+    rules: int = Rules.BLENDER_45
+    principled: Principled | None = None
+
+    PARAMETERS = (
+        "color", "roughness", "ior", "shininess", "weight", "edge", "anisotropy", "rotation", "normal", "tangent",
+    )  # fmt: skip
+
+
+@register
+@dataclass(frozen=True, eq=False)
+class Material(_Parameters):
+    name: str = ""
+    lobes: tuple = (Lobe(),)
+    emission: object = _BLACK
+    transmittance: object = _BLACK
+    holdout: object = 0.0
+    ambient: object = _BLACK
+    displacement: object = _BLACK
+    normal: object = _BLACK
+    nodes: tuple = ()
+    flags: int = 0  # MaterialFlag
+    material_index: int = 0
+
+    PARAMETERS = ("emission", "transmittance", "holdout", "ambient", "displacement", "normal")
+
+    def __post_init__(self):
+        super().__post_init__()
+        self.set("lobes", tuple(self.lobes))
+        self.set("nodes", tuple(self.nodes))
+
+
+@register
+@dataclass(frozen=True, eq=False)
+class World(_Parameters):
+    radiance: object = _BLACK
+    nodes: tuple = ()
+    hidden_from: int = 0  # Ray bits
+    map_resolution: int = 0
+
+    PARAMETERS = ("radiance",)
+
+    def __post_init__(self):
+        super().__post_init__()
+        self.set("nodes", tuple(self.nodes))

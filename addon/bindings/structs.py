@@ -1,0 +1,343 @@
+"""The structs of lancer.h in ctypes, field by field."""
+
+from ctypes import POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_uint32, c_uint64, c_void_p
+
+from .enums import Struct
+
+# Arrays cross as plain addresses: numpy gives them without a conversion for each element type.
+Array = c_void_p
+
+
+class Attribute(Structure):
+    _fields_ = [("name", c_char_p), ("values", Array), ("domain", c_uint32), ("channels", c_uint32)]
+
+
+class Mesh(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("positions", Array),
+        ("triangles", Array),
+        ("normals", Array),
+        ("uvs", Array),
+        ("colors", Array),
+        ("material_slots", Array),
+        ("attributes", POINTER(Attribute)),
+        ("vertex_count", c_uint32),
+        ("triangle_count", c_uint32),
+        ("normal_domain", c_uint32),
+        ("attribute_count", c_uint32),
+    ]
+
+
+class Instance(Structure):
+    _fields_ = [
+        ("matrix", c_double * 12),
+        ("kind", c_uint32),
+        ("mesh", c_uint32),
+        ("first_slot", c_uint32),
+        ("slot_count", c_uint32),
+        ("object_index", c_uint32),
+        ("shading", c_uint32),
+        ("name", c_uint32),
+        ("hidden_from", c_uint32),
+        ("flags", c_uint32),
+        ("terminator", c_float),
+    ]
+
+
+class Image(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("texels", Array),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("channels", c_uint32),
+        ("kind", c_uint32),
+        ("transfer", c_uint32),
+        ("alpha", c_uint32),
+        ("tile", c_uint32),
+        ("reserved", c_uint32),
+        ("matrix", c_float * 9),
+        ("reserved2", c_uint32),
+    ]
+
+
+class Parameter(Structure):
+    _fields_ = [("value", c_float * 3), ("node", c_int32)]
+
+
+class Node(Structure):
+    _fields_ = [
+        ("kind", c_uint32),
+        ("option", c_uint32),
+        ("flags", c_uint32),
+        ("image", c_uint32),
+        ("image_count", c_uint32),
+        ("first", c_uint32),
+        ("name", c_char_p),
+        ("inputs", Parameter * 5),
+        ("matrix", c_float * 12),
+    ]
+
+
+class Principled(Structure):
+    _fields_ = [
+        ("rules", c_uint32),
+        ("distribution", c_uint32),
+        ("option", c_uint32),
+        ("reserved", c_uint32),
+        ("base_color", Parameter),
+        ("metallic", Parameter),
+        ("roughness", Parameter),
+        ("ior", Parameter),
+        ("diffuse_roughness", Parameter),
+        ("specular", Parameter),
+        ("specular_tint", Parameter),
+        ("anisotropic", Parameter),
+        ("anisotropic_rotation", Parameter),
+        ("transmission", Parameter),
+        ("transmission_roughness", Parameter),
+        ("coat", Parameter),
+        ("coat_roughness", Parameter),
+        ("coat_ior", Parameter),
+        ("coat_tint", Parameter),
+        ("coat_normal", Parameter),
+        ("sheen", Parameter),
+        ("sheen_roughness", Parameter),
+        ("sheen_tint", Parameter),
+        ("emission", Parameter),
+    ]
+
+
+class Lobe(Structure):
+    _fields_ = [
+        ("kind", c_uint32),
+        ("distribution", c_uint32),
+        ("option", c_uint32),
+        ("rules", c_uint32),
+        ("weight", Parameter),
+        ("color", Parameter),
+        ("roughness", Parameter),
+        ("ior", Parameter),
+        ("shininess", Parameter),
+        ("edge", Parameter),
+        ("anisotropy", Parameter),
+        ("rotation", Parameter),
+        ("normal", Parameter),
+        ("tangent", Parameter),
+        ("principled", POINTER(Principled)),
+    ]
+
+
+class Material(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("lobes", POINTER(Lobe)),
+        ("nodes", POINTER(Node)),
+        ("lobe_count", c_uint32),
+        ("node_count", c_uint32),
+        ("material_index", c_uint32),
+        ("flags", c_uint32),
+        ("emission", Parameter),
+        ("transmittance", Parameter),
+        ("holdout", Parameter),
+        ("ambient", Parameter),
+        ("displacement", Parameter),
+        ("normal", Parameter),
+    ]
+
+
+class World(Structure):
+    _fields_ = [
+        ("nodes", POINTER(Node)),
+        ("node_count", c_uint32),
+        ("hidden_from", c_uint32),
+        ("radiance", Parameter),
+        ("map_resolution", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class Light(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("matrix", c_double * 12),
+        ("kind", c_uint32),
+        ("emission", c_float * 3),
+        ("radius", c_float),
+        ("soft_falloff", c_uint32),
+        ("spot_angle", c_float),
+        ("spot_blend", c_float),
+        ("spot_cosine", c_uint32),
+        ("sun_angle", c_float),
+        ("size", c_float * 2),
+        ("shape", c_uint32),
+        ("spread", c_float),
+        ("hidden_from", c_uint32),
+        ("no_shadow", c_uint32),
+        ("falloff", c_uint32),
+        ("falloff_radius", c_float),
+        ("ambient_color", c_float * 3),
+        ("diffuse_color", c_float * 3),
+        ("specular_color", c_float * 3),
+    ]
+
+
+class Camera(Structure):
+    _fields_ = [
+        ("matrix", c_double * 12),
+        ("kind", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("x", c_uint32),
+        ("y", c_uint32),
+        ("region_width", c_uint32),
+        ("region_height", c_uint32),
+        ("aperture_blades", c_uint32),
+        ("window", c_double * 4),
+        ("panorama", c_double * 8),
+        ("clip_start", c_double),
+        ("clip_end", c_double),
+        ("lens_radius", c_double),
+        ("focal_distance", c_double),
+        ("aperture_rotation", c_double),
+        ("aperture_ratio", c_double),
+    ]
+
+
+class Settings(Structure):
+    _fields_ = [
+        ("integrator", c_uint32),
+        ("samples", c_uint32),
+        ("seed", c_uint32),
+        ("max_bounces", c_uint32),
+        ("contribution_threshold", c_float),
+        ("clamp_indirect", c_float),
+        ("pixel_filter", c_uint32),
+        ("filter_width", c_float),
+        ("film_transparent", c_uint32),
+        ("transparent_glass", c_uint32),
+        ("glass_roughness", c_float),
+        ("transparent_bounces", c_uint32),
+        ("transparent_shadows", c_uint32),
+        ("alpha_threshold", c_float),
+        ("environment_reflections", c_uint32),
+        ("occlusion_distance", c_float),
+        ("mist_start", c_float),
+        ("mist_depth", c_float),
+        ("mist_falloff", c_float),
+        ("features", c_uint32),
+        ("passes", c_uint32),
+        ("threads", c_uint32),
+        ("tile_size", c_uint32),
+    ]
+
+
+class Progress(Structure):
+    _fields_ = [("fraction", c_double), ("seconds", c_double), ("samples", c_uint64), ("rays", c_uint64)]
+
+
+class Statistics(Structure):
+    _fields_ = [
+        ("build_seconds", c_double),
+        ("render_seconds", c_double),
+        ("samples", c_uint64),
+        ("camera_rays", c_uint64),
+        ("bounce_rays", c_uint64),
+        ("shadow_rays", c_uint64),
+        ("invalid_samples", c_uint64),
+        ("invalid_x", c_uint32),
+        ("invalid_y", c_uint32),
+        ("invalid_sample", c_uint32),
+        ("threads", c_uint32),
+        ("triangles", c_uint64),
+        ("instances", c_uint64),
+        ("lights", c_uint64),
+        ("geometry_bytes", c_uint64),
+        ("accelerator_bytes", c_uint64),
+        ("film_bytes", c_uint64),
+        ("features", c_char * 256),
+        ("kernel", c_char * 64),
+        ("instruction_set", c_char * 32),
+    ]
+
+
+class Hit(Structure):
+    _fields_ = [
+        ("t", c_double),
+        ("u", c_double),
+        ("v", c_double),
+        ("position", c_double * 3),
+        ("normal", c_float * 3),
+        ("geometric_normal", c_float * 3),
+        ("uv", c_float * 2),
+        ("color", c_float * 3),
+        ("instance", c_uint32),
+        ("primitive", c_uint32),
+        ("material", c_uint32),
+    ]
+
+
+class Vertex(Structure):
+    _fields_ = [
+        ("position", c_double * 3),
+        ("t", c_double),
+        ("normal", c_float * 3),
+        ("beta", c_float * 3),
+        ("radiance", c_float * 3),
+        ("instance", c_uint32),
+        ("primitive", c_uint32),
+        ("material", c_uint32),
+        ("depth", c_uint32),
+    ]
+
+
+class LightSample(Structure):
+    _fields_ = [
+        ("wi", c_double * 3),
+        ("distance", c_double),
+        ("radiance", c_float * 3),
+        ("pdf", c_float),
+        ("delta", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class BsdfSample(Structure):
+    _fields_ = [("wi", c_float * 3), ("weight", c_float * 3), ("pdf", c_float), ("delta", c_uint32)]
+
+
+class LobeInfo(Structure):
+    _fields_ = [
+        ("kind", c_uint32),
+        ("component", c_uint32),
+        ("weight", c_float * 3),
+        ("albedo", c_float * 3),
+        ("roughness", c_float * 2),
+        ("ior", c_float),
+        ("probability", c_float),
+    ]
+
+
+STRUCTS = {
+    Struct.MESH: Mesh,
+    Struct.INSTANCE: Instance,
+    Struct.PARAMETER: Parameter,
+    Struct.LOBE: Lobe,
+    Struct.MATERIAL: Material,
+    Struct.LIGHT: Light,
+    Struct.CAMERA: Camera,
+    Struct.SETTINGS: Settings,
+    Struct.PROGRESS: Progress,
+    Struct.STATISTICS: Statistics,
+    Struct.HIT: Hit,
+    Struct.VERTEX: Vertex,
+    Struct.LIGHT_SAMPLE: LightSample,
+    Struct.BSDF_SAMPLE: BsdfSample,
+    Struct.ATTRIBUTE: Attribute,
+    Struct.IMAGE: Image,
+    Struct.NODE: Node,
+    Struct.PRINCIPLED: Principled,
+    Struct.WORLD: World,
+    Struct.LOBE_INFO: LobeInfo,
+}
