@@ -179,6 +179,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         numbers["seconds"] = statistics.render_seconds
         numbers["rays"] = statistics.rays
         numbers["rays_per_second"] = statistics.rays_per_second
+        # Pictures count as geometry.
+        held = sum(numbers[name] for name in ("geometry_bytes", "accelerator_bytes", "film_bytes")) / 2**20
+        self.update_memory_stats(memory_used=held, memory_peak=held)
         last_statistics[scene.name] = numbers
 
 

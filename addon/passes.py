@@ -15,26 +15,45 @@ class RenderPass(NamedTuple):
     source: Pass
 
 
-_LONG_NAMES = bpy.app.version >= (5, 0)
-_OBJECT_INDEX = "Object Index" if _LONG_NAMES else "IndexOB"
-_MATERIAL_INDEX = "Material Index" if _LONG_NAMES else "IndexMA"
+# A view layer's use_pass_*, the pass's name from Blender 5 on and before, its channels and their kind.
+_TABLE = (
+    ("z", "Depth", "Depth", "Z", "VALUE", Pass.DEPTH),
+    ("mist", "Mist", "Mist", "Z", "VALUE", Pass.MIST),
+    ("position", "Position", "Position", "XYZ", "VECTOR", Pass.POSITION),
+    ("normal", "Normal", "Normal", "XYZ", "VECTOR", Pass.NORMAL),
+    ("uv", "UV", "UV", "UVA", "VECTOR", Pass.UV),
+    ("object_index", "Object Index", "IndexOB", "X", "VALUE", Pass.OBJECT_INDEX),
+    ("material_index", "Material Index", "IndexMA", "X", "VALUE", Pass.MATERIAL_INDEX),
+    ("diffuse_direct", "Diffuse Direct", "DiffDir", "RGB", "COLOR", Pass.DIFFUSE_DIRECT),
+    ("diffuse_indirect", "Diffuse Indirect", "DiffInd", "RGB", "COLOR", Pass.DIFFUSE_INDIRECT),
+    ("diffuse_color", "Diffuse Color", "DiffCol", "RGB", "COLOR", Pass.DIFFUSE_COLOR),
+    ("glossy_direct", "Glossy Direct", "GlossDir", "RGB", "COLOR", Pass.GLOSSY_DIRECT),
+    ("glossy_indirect", "Glossy Indirect", "GlossInd", "RGB", "COLOR", Pass.GLOSSY_INDIRECT),
+    ("glossy_color", "Glossy Color", "GlossCol", "RGB", "COLOR", Pass.GLOSSY_COLOR),
+    ("transmission_direct", "Transmission Direct", "TransDir", "RGB", "COLOR", Pass.TRANSMISSION_DIRECT),
+    ("transmission_indirect", "Transmission Indirect", "TransInd", "RGB", "COLOR", Pass.TRANSMISSION_INDIRECT),
+    ("transmission_color", "Transmission Color", "TransCol", "RGB", "COLOR", Pass.TRANSMISSION_COLOR),
+    ("emit", "Emission", "Emit", "RGB", "COLOR", Pass.EMISSION),
+    ("environment", "Environment", "Env", "RGB", "COLOR", Pass.ENVIRONMENT),
+    ("ambient_occlusion", "Ambient Occlusion", "AO", "RGB", "COLOR", Pass.AMBIENT_OCCLUSION),
+)
+_NAME = 1 if bpy.app.version >= (5, 0) else 2
 
 
 def render_passes(scene, view_layer):
     """The passes that a view layer asks for."""
     yield RenderPass("Combined", "RGBA", "COLOR", Pass.COMBINED)
-    if view_layer.use_pass_z:
-        yield RenderPass("Depth", "Z", "VALUE", Pass.DEPTH)
-    if view_layer.use_pass_normal:
-        yield RenderPass("Normal", "XYZ", "VECTOR", Pass.NORMAL)
-    if view_layer.use_pass_position:
-        yield RenderPass("Position", "XYZ", "VECTOR", Pass.POSITION)
-    if view_layer.use_pass_object_index:
-        yield RenderPass(_OBJECT_INDEX, "X", "VALUE", Pass.OBJECT_INDEX)
-    if view_layer.use_pass_material_index:
-        yield RenderPass(_MATERIAL_INDEX, "X", "VALUE", Pass.MATERIAL_INDEX)
-    if scene.lancer.use_pass_albedo:
+    for row in _TABLE:
+        if getattr(view_layer, "use_pass_" + row[0]):
+            yield RenderPass(row[_NAME], *row[3:])
+    # The switch is that of Cycles, an add-on that may be off.
+    denoising = getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False)
+    if denoising:
+        yield RenderPass("Denoising Normal", "XYZ", "VECTOR", Pass.DENOISING_NORMAL)
+    if denoising or scene.lancer.use_pass_albedo:
         yield RenderPass("Denoising Albedo", "RGB", "COLOR", Pass.ALBEDO)
+    if denoising:
+        yield RenderPass("Denoising Depth", "Z", "VALUE", Pass.DENOISING_DEPTH)
 
 
 def register_passes(engine, scene, view_layer):
@@ -44,15 +63,11 @@ def register_passes(engine, scene, view_layer):
 
 def fill(layer, read, wanted):
     """Copies the passes of a result's layer; read(Pass) gives (height, width, channels) float32."""
-    images = {}
     sources = {item.name: item.source for item in wanted}
     for target in layer.passes:
         source = sources.get(target.name)
-        if source is None:
-            continue
-        if source not in images:
-            images[source] = np.ascontiguousarray(read(source), np.float32)
-        _upload(target, images[source])
+        if source is not None:
+            _upload(target, np.ascontiguousarray(read(source), np.float32))
 
 
 def _upload(target, image):

@@ -1,4 +1,4 @@
-"""Settings that Lancer adds to scenes, objects, materials and lights.
+"""Settings that Lancer adds to scenes, objects, materials, lights and worlds.
 
 Items of enums carry numbers that files store: never renumber, never reuse.
 """
@@ -70,6 +70,19 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         precision=4,
         default=0.0,
     )
+    transparent_bounces: IntProperty(
+        name="Transparent Bounces",
+        description="Through how many transparent surfaces, one behind the other, light and camera see; beyond is black",
+        min=0,
+        soft_max=64,
+        max=1023,
+        default=8,
+    )
+    environment_reflections: BoolProperty(
+        name="Environment Reflections",
+        description="Classic: mirrors and glass show the environment alone, without tracing a ray. Fast, blind to the scene",
+        default=False,
+    )
     clamp_indirect: FloatProperty(
         name="Clamp Indirect",
         description="Limit of a sample's indirect light, against bright specks. Makes the picture too dark; 0 = off",
@@ -88,12 +101,25 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
     )
     filter_width: FloatProperty(
         name="Filter Width",
-        description="Full width of the Blackman-Harris filter; wider is softer",
+        description="Width of the Blackman-Harris filter as Cycles counts it: how far it reaches to each side; wider is softer",
         subtype="PIXEL",
         min=0.01,
         soft_max=3.0,
         max=10.0,
         default=1.5,
+    )
+    film_transparent_glass: BoolProperty(
+        name="Transparent Glass",
+        description="With a transparent film, glass lets it show through, for compositing over another picture",
+        default=False,
+    )
+    film_transparent_roughness: FloatProperty(
+        name="Roughness Threshold",
+        description="Rougher glass than this stays opaque",
+        subtype="FACTOR",
+        min=0.0,
+        max=1.0,
+        default=0.1,
     )
     use_pass_albedo: BoolProperty(
         name="Denoising Albedo",
@@ -219,6 +245,29 @@ class LancerLightSettings(bpy.types.PropertyGroup):
     specular_color: _color("Specular", "Factor of the light's colour for highlights", 1.0)
 
 
+def _side(direction):
+    return PointerProperty(
+        name=direction, description=f"Picture that is seen when looking along {direction} of the world", type=bpy.types.Image
+    )
+
+
+class LancerWorldSettings(bpy.types.PropertyGroup):
+    use_cube: BoolProperty(
+        name="Cube Environment",
+        description="Surround the scene with six pictures, one for each side of a cube, in place of the world's nodes",
+        default=False,
+    )
+    cube_strength: FloatProperty(
+        name="Strength", description="Factor of the pictures' brightness", min=0.0, soft_max=10.0, default=1.0
+    )
+    cube_positive_x: _side("+X")
+    cube_negative_x: _side("-X")
+    cube_positive_y: _side("+Y")
+    cube_negative_y: _side("-Y")
+    cube_positive_z: _side("+Z")
+    cube_negative_z: _side("-Z")
+
+
 def _add_watched(scene):
     """Properties with an update function: as annotations they make bpy 4.2 crash at exit; added and deleted they do not."""
     scene.quality = EnumProperty(
@@ -249,6 +298,7 @@ _GROUPS = (
     (LancerObjectSettings, bpy.types.Object),
     (LancerMaterialSettings, bpy.types.Material),
     (LancerLightSettings, bpy.types.Light),
+    (LancerWorldSettings, bpy.types.World),
 )
 
 

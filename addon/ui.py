@@ -3,7 +3,8 @@
 import bpy
 
 from . import engine
-from .export.materials import describe_material
+from .export.describe import describe_material
+from .export.world import CUBE_SIDES
 
 _ID = engine.LancerRenderEngine.bl_idname
 
@@ -70,12 +71,14 @@ class LANCER_RENDER_PT_light_paths(_LancerPanel, bpy.types.Panel):
         settings = context.scene.lancer
         column = self._column()
         column.prop(settings, "max_bounces")
+        column.prop(settings, "transparent_bounces")
         row = column.row()
         row.active = settings.integrator == "PATH"
         row.prop(settings, "clamp_indirect")
-        row = column.row()
+        row = column.column()
         row.active = settings.integrator == "CLASSIC"
         row.prop(settings, "contribution_threshold")
+        row.prop(settings, "environment_reflections")
 
 
 class LANCER_RENDER_PT_film(_LancerPanel, bpy.types.Panel):
@@ -87,6 +90,12 @@ class LANCER_RENDER_PT_film(_LancerPanel, bpy.types.Panel):
         settings = context.scene.lancer
         column = self._column()
         column.prop(context.scene.render, "film_transparent", text="Transparent")
+        glass = column.column()
+        glass.active = context.scene.render.film_transparent
+        glass.prop(settings, "film_transparent_glass")
+        row = glass.row()
+        row.active = settings.film_transparent_glass
+        row.prop(settings, "film_transparent_roughness")
         column.prop(settings, "pixel_filter")
         row = column.row()
         row.active = settings.pixel_filter == "BLACKMAN_HARRIS"
@@ -136,12 +145,21 @@ class LANCER_VIEWLAYER_PT_passes(_LancerPanel, bpy.types.Panel):
     def draw(self, context):
         layer = context.view_layer
         column = self._column()
-        column.prop(layer, "use_pass_z")
-        column.prop(layer, "use_pass_normal")
-        column.prop(layer, "use_pass_position")
-        column.prop(layer, "use_pass_object_index")
-        column.prop(layer, "use_pass_material_index")
+        for name in ("z", "mist", "position", "normal", "uv", "object_index", "material_index"):
+            column.prop(layer, "use_pass_" + name)
+        light = self._column()
+        light.active = context.scene.lancer.integrator == "PATH"
+        for component in ("diffuse", "glossy", "transmission"):
+            row = light.row(heading=component.capitalize(), align=True)
+            for part in ("direct", "indirect", "color"):
+                row.prop(layer, f"use_pass_{component}_{part}", text=part.capitalize(), toggle=True)
+        for name in ("emit", "environment", "ambient_occlusion"):
+            light.prop(layer, "use_pass_" + name)
+        column = self._column()
+        if hasattr(layer, "cycles"):
+            column.prop(layer.cycles, "denoising_store_passes", text="Denoising Data")
         column.prop(context.scene.lancer, "use_pass_albedo")
+        column.prop(layer, "pass_alpha_threshold")
 
 
 class LANCER_OBJECT_PT_surface(_LancerPanel, bpy.types.Panel):
@@ -229,6 +247,13 @@ class LANCER_DATA_PT_light(_LancerPanel, bpy.types.Panel):
                 continue
             if hasattr(light, name):
                 column.prop(light, name)
+        column.separator()
+        # Cycles' own switch in the versions that have it, where use_shadow is EEVEE's.
+        cycles = getattr(light, "cycles", None)
+        if hasattr(cycles, "cast_shadow"):
+            column.prop(cycles, "cast_shadow")
+        else:
+            column.prop(light, "use_shadow", text="Cast Shadow")
 
 
 class LANCER_DATA_PT_classic_light(_LancerPanel, bpy.types.Panel):
@@ -266,6 +291,12 @@ class LANCER_WORLD_PT_surface(_LancerPanel, bpy.types.Panel):
     def draw(self, context):
         world = context.world
         column = self._column()
+        column.prop(world.lancer, "use_cube")
+        if world.lancer.use_cube:
+            column.prop(world.lancer, "cube_strength")
+            for side in CUBE_SIDES:
+                column.template_ID(world.lancer, side, open="image.open", text=world.lancer.bl_rna.properties[side].name)
+            return
         output = None
         if world.node_tree is not None and (bpy.app.version >= (5, 0) or world.use_nodes):
             output = world.node_tree.get_output_node("CYCLES")

@@ -1,10 +1,12 @@
 """The scene's camera: a rigid frame, a window, a lens."""
 
+import bpy
 import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.abi import LancerError
 from ..bindings.enums import CameraKind
+from .panorama import panorama
 
 
 def image_size(scene):
@@ -38,12 +40,11 @@ def export_camera(camera, depsgraph, messages):
     x, y, region_width, region_height = border(scene, width, height)
     if min(width, height, region_width, region_height) < 1:
         raise LancerError(f"the image has {region_width} x {region_height} pixels: raise the resolution or widen the border")
-    kind = CameraKind.ORTHOGRAPHIC if data.type == "ORTHO" else CameraKind.PERSPECTIVE
-    if data.type not in ("PERSP", "ORTHO"):
-        messages.add(f"{who}: type {data.type} is not supported, a perspective camera is used")
+    kind, projection = _projection(data, scene.render, width, height, who, messages)
     matrix = _rigid(np.array(camera.matrix_world, float), who, messages)
-    lens_radius, focal_distance = _lens(data, kind, matrix, depsgraph, who, messages)
     start = messages.number(data.clip_start, who, "clip start", 0.1, 0.0)
+    lens_radius, focal_distance = _lens(data, kind, matrix, start, depsgraph, who, messages)
+    dof = data.dof
     return snapshot.Camera(
         matrix=matrix,
         kind=kind,
@@ -58,14 +59,31 @@ def export_camera(camera, depsgraph, messages):
         clip_end=messages.number(data.clip_end, who, "clip end", 1000.0, start),
         lens_radius=lens_radius,
         focal_distance=focal_distance,
+        aperture_blades=dof.aperture_blades,
+        aperture_rotation=messages.number(dof.aperture_rotation, who, "aperture rotation", 0.0),
+        aperture_ratio=messages.number(dof.aperture_ratio, who, "aperture ratio", 1.0, 1e-3),
+        panorama=projection,
     )
+
+
+def _projection(data, render, width, height, who, messages):
+    """(kind, the panorama's numbers)."""
+    if data.type == "PANO":
+        aspect = width * render.pixel_aspect_x / (height * render.pixel_aspect_y)
+        return panorama(data, aspect, who, messages)
+    if data.type not in ("PERSP", "ORTHO"):
+        messages.add(f"{who}: type {data.type} is not supported, a perspective camera is used")
+    return CameraKind.ORTHOGRAPHIC if data.type == "ORTHO" else CameraKind.PERSPECTIVE, (0.0,) * 8
 
 
 def _window(camera, depsgraph, kind, width, height):
     """left, right, bottom, top from Blender's own projection, which knows sensor fit, shift and pixel aspect."""
+    if kind not in (CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC):
+        x, y = camera.data.shift_x, camera.data.shift_y
+        return x, 1.0 + x, y, 1.0 + y
     render = depsgraph.scene.render
     p = camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y)
-    if camera.data.type == "PANO":
+    if camera.data.type not in ("PERSP", "ORTHO"):
         # Blender gives a panoramic camera no projection: its stand-in has the same lens on the same sensor.
         half = 0.5 * camera.data.sensor_width / max(camera.data.lens, 1e-6)
         aspect = height * render.pixel_aspect_y / (width * render.pixel_aspect_x)
@@ -100,7 +118,7 @@ def _rigid(matrix, who, messages):
     return result
 
 
-def _lens(data, kind, matrix, depsgraph, who, messages):
+def _lens(data, kind, matrix, clip_start, depsgraph, who, messages):
     """Aperture radius and focal distance; radius 0 without depth of field."""
     dof = data.dof
     if not dof.use_dof:
@@ -118,6 +136,7 @@ def _lens(data, kind, matrix, depsgraph, who, messages):
     if not distance > 0.0:
         messages.add(f"{who}: its focus distance is {distance:g}, everything is kept sharp")
         return 0.0, 1.0
-    if dof.aperture_blades > 0 or abs(dof.aperture_ratio - 1.0) > 1e-6:
-        messages.add(f"{who}: aperture blades and ratio are not supported, a round aperture is used")
+    if kind == CameraKind.ORTHOGRAPHIC and bpy.app.version < (4, 0):
+        # There Cycles puts the lens on the near clipping plane: seen from the camera the same cone of rays is wider and longer.
+        return radius * (distance + clip_start) / distance, distance + clip_start
     return radius, distance

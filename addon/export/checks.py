@@ -1,12 +1,13 @@
 """What a scene asks for that has no counterpart: each thing becomes a message that names its owner."""
 
-_PASSES_HERE = {"combined", "z", "normal", "position", "object_index", "material_index"}
+# As passes.py renders them, by the names of a view layer's switches.
+_COMPONENTS = ("diffuse", "glossy", "transmission")
+_PASSES_HERE = {f"{component}_{part}" for component in _COMPONENTS for part in ("direct", "indirect", "color")} | {
+    "combined", "z", "mist", "position", "normal", "uv", "object_index", "material_index", "emit", "environment",
+    "ambient_occlusion",
+}  # fmt: skip
 # No picture of its own, and one that Blender draws itself.
 _NO_PASSES = {"cryptomatte_accurate", "grease_pencil"}
-_OBJECT_RAYS = ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow")
-# Lamps are hidden from the camera unless asked for, and their shadow flag has no meaning.
-_LIGHT_RAYS = ("diffuse", "glossy", "transmission", "volume_scatter")
-_WORLD_RAYS = ("camera", "diffuse", "glossy", "transmission", "scatter", "shadow")
 
 
 def check_scene(scene, messages):
@@ -44,16 +45,14 @@ def _missing_passes(view_layer):
     return names + [f"light group '{group.name}'" for group in view_layer.lightgroups]
 
 
-def check_object(thing, view_layer, messages):
+def check_object(thing, messages):
     who = f"object '{thing.name}'"
-    _check_rays(thing, "visible_", _OBJECT_RAYS, who, messages)
     _check_linking(thing, who, messages)
     if getattr(thing, "is_shadow_catcher", False):
-        messages.add(f"{who}: shadow catchers are not supported")
-    if getattr(thing, "is_holdout", False) or thing.original.holdout_get(view_layer=view_layer):
-        messages.add(f"{who}: holdout is not supported")
-    if thing.original.indirect_only_get(view_layer=view_layer):
-        messages.add(f"{who}: indirect only is not supported")
+        messages.add(f"{who}: shadow catchers are not supported, it is rendered as any other object")
+    name = "shadow_terminator_shading_offset"
+    if getattr(thing, name, getattr(getattr(thing, "cycles", None), name, 0.0)) > 0.0:
+        messages.add(f"{who}: the shading offset of the shadow terminator is not supported")
 
 
 def check_hair(thing, messages):
@@ -67,20 +66,7 @@ def check_hair(thing, messages):
 
 
 def check_light_object(thing, who, messages):
-    _check_rays(thing, "visible_", _LIGHT_RAYS, who, messages)
     _check_linking(thing, who, messages)
-
-
-def check_world(world, who, messages):
-    flags = getattr(world, "cycles_visibility", None)
-    if flags is not None:
-        _check_rays(flags, "", _WORLD_RAYS, who, messages)
-
-
-def _check_rays(owner, prefix, names, who, messages):
-    for name in names:
-        if not getattr(owner, prefix + name, True):
-            messages.add(f"{who}: ray visibility ({name.replace('_', ' ')} off) is not supported")
 
 
 def _check_linking(thing, who, messages):

@@ -4,11 +4,12 @@ from itertools import chain
 
 import numpy as np
 
-from ..bindings.enums import InstanceKind, Shading
+from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
 from ..bindings.snapshot import InstanceTable
 from .checks import check_hair, check_object
 from .lights import export_light
 from .mesh import export_mesh, read_positions
+from .visibility import hidden_from
 
 # Types whose surface arrives as a MESH entry of its own, beside the original.
 _SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}
@@ -20,7 +21,7 @@ _MATRICES_AT_ONCE = 4096
 class _Object:
     """What all entries of one object with one mesh have in common."""
 
-    __slots__ = ("kind", "mesh", "slots", "index", "shading", "name", "local")
+    __slots__ = ("kind", "mesh", "slots", "index", "shading", "name", "local", "hidden", "flags", "terminator")
 
 
 class Instances:
@@ -34,6 +35,7 @@ class Instances:
         self.lights = []
         self._meshes = {}
         self._objects = {}
+        self._sights = {}
         self._checked = set()
         self._checked_hair = set()
         self._list = []
@@ -50,7 +52,8 @@ class Instances:
             if not entry.show_self:
                 continue
             if thing.type == "MESH":
-                self._add_mesh(thing, entry.matrix_world, poll)
+                sight = self._sight(thing, entry.parent if entry.is_instance else None)
+                self._add_mesh(thing, entry.matrix_world, sight, poll)
             elif thing.type == "LIGHT":
                 light = export_light(thing, entry.matrix_world, self.messages)
                 if light is not None:
@@ -90,22 +93,43 @@ class Instances:
             slot_counts=np.array([len(item.slots) for item in objects], np.uint32)[rows],
             object_indices=column("index"),
             shadings=column("shading"),
+            hidden_from=column("hidden"),
+            flags=column("flags"),
+            terminators=np.array([item.terminator for item in objects], np.float32)[rows],
             name_indices=rows.astype(np.uint32),
             names=tuple(item.name for item in objects),
             slots=slots,
         )
 
-    def _add_mesh(self, thing, matrix, poll):
+    def _sight(self, thing, instancer):
+        """(Ray bits that do not see it, InstanceFlag bits) of an object, as the object that brings it in narrows them."""
+        key = thing.original.as_pointer(), 0 if instancer is None else instancer.original.as_pointer()
+        if key not in self._sights:
+            hidden, holdout = hidden_from(thing, "visible_"), self._is_holdout(thing)
+            top = thing
+            if instancer is not None:
+                top = instancer
+                hidden |= hidden_from(instancer, "visible_")
+                holdout = holdout or self._is_holdout(instancer)
+            if not holdout and top.original.indirect_only_get(view_layer=self.view_layer):
+                hidden |= int(Ray.CAMERA)
+            self._sights[key] = hidden, int(InstanceFlag.HOLDOUT) if holdout else 0
+        return self._sights[key]
+
+    def _is_holdout(self, thing):
+        return getattr(thing, "is_holdout", False) or thing.original.holdout_get(view_layer=self.view_layer)
+
+    def _add_mesh(self, thing, matrix, sight, poll):
         # Evaluated data lives as long as the depsgraph, while the objects of entries are reused: only addresses are kept.
-        key = thing.original.as_pointer(), thing.data.as_pointer()
+        key = thing.original.as_pointer(), thing.data.as_pointer(), sight
         number = self._objects.get(key)
         if number is None:
-            number = self._objects[key] = self._new_object(thing, key[1], poll)
+            number = self._objects[key] = self._new_object(thing, key[1], sight, poll)
         if number >= 0:
             self._rows.append(number)
             self._matrices.append(matrix.copy())
 
-    def _new_object(self, thing, data_key, poll):
+    def _new_object(self, thing, data_key, sight, poll):
         """The number of the common part; -1 where there is nothing to see."""
         self._check(thing)
         poll()
@@ -114,9 +138,12 @@ class Instances:
         item.shading = Shading[thing.lancer.shading]
         item.index = max(0, thing.pass_index)
         item.name = thing.name
+        item.hidden, item.flags = sight
+        item.terminator = _terminator(thing)
         item.mesh, item.local, used = 0, None, {0}
+        item.slots = self._slots(thing)
         if item.kind == InstanceKind.MESH:
-            item.mesh, used = self._mesh(thing, data_key, poll)
+            item.mesh, used = self._mesh(thing, data_key, self.materials.attributes(item.slots), poll)
             if item.mesh < 0:
                 return -1
         else:
@@ -124,35 +151,42 @@ class Instances:
             if item.local is None:
                 self.messages.add(f"object '{thing.name}': has no vertices to place its exact shape by, it is left out")
                 return -1
-        item.slots = self._slots(thing, used)
+        self._check_slots(thing, used)
         self._list.append(item)
         return len(self._list) - 1
 
-    def _mesh(self, thing, data_key, poll):
-        """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces."""
-        if data_key not in self._meshes:
+    def _mesh(self, thing, data_key, wanted, poll):
+        """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces.
+
+        wanted: names of attributes. Objects that share a mesh may show it with materials that read different ones.
+        """
+        copies = self._meshes.setdefault(data_key, [])
+        found = next((copy for copy in copies if copy[0] >= wanted), None)
+        if found is None:
             original = thing.original.data
-            data = export_mesh(thing.data, thing.name if original is None else original.name, poll)
+            data = export_mesh(thing.data, thing.name if original is None else original.name, poll, wanted)
             poll()
             used = {0} if data.material_slots is None else set(np.unique(data.material_slots).tolist())
+            number = -1
             if len(data.triangles):
                 self.meshes.append(data)
-                self._meshes[data_key] = len(self.meshes) - 1, used
-            else:
-                self._meshes[data_key] = -1, used
-        number, used = self._meshes[data_key]
+                number = len(self.meshes) - 1
+            found = wanted, number, used
+            copies.append(found)
+        _, number, used = found
         if number < 0:
             self.messages.add(f"object '{thing.name}': has no faces, it is left out")
         return number, used
 
-    def _slots(self, thing, used):
+    def _slots(self, thing):
         materials = [slot.material for slot in thing.material_slots] or list(thing.data.materials) or [None]
-        if len(thing.material_slots):
-            last = len(materials) - 1
-            for number in sorted({min(slot, last) for slot in used}):
-                if materials[number] is None:
-                    self.messages.add(f"object '{thing.name}': material slot {number + 1} is empty, grey is used")
         return tuple(self.materials.number(material, thing.name) for material in materials)
+
+    def _check_slots(self, thing, used):
+        last = len(thing.material_slots) - 1
+        for number in sorted({min(slot, last) for slot in used}) if last >= 0 else ():
+            if thing.material_slots[number].material is None:
+                self.messages.add(f"object '{thing.name}': material slot {number + 1} is empty, grey is used")
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()
@@ -166,7 +200,13 @@ class Instances:
         if key in self._checked:
             return
         self._checked.add(key)
-        check_object(thing, self.view_layer, self.messages)
+        check_object(thing, self.messages)
+
+
+def _terminator(thing):
+    """Blender's geometry offset of the shadow terminator; before 4.5 it belongs to Cycles, an add-on that may be off."""
+    name = "shadow_terminator_geometry_offset"
+    return float(getattr(thing, name, getattr(getattr(thing, "cycles", None), name, 0.1)))
 
 
 def _placement(kind, positions):

@@ -6,9 +6,12 @@ import bpy
 import numpy as np
 
 from ..bindings import snapshot
-from ..bindings.enums import AreaShape, Falloff, LightKind
+from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
+from ..bindings.shading import NodeRef
 from .checks import check_light_object
-from .sockets import Reader, output_node, source
+from .closures import emission_of
+from .graph import NodeGraph
+from .visibility import hidden_from
 
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
 
@@ -21,11 +24,18 @@ def export_light(thing, matrix_world, messages):
     if not np.isfinite(matrix).all():
         messages.add(f"{who}: its transform is not finite, it is left out")
         return None
+    # A portal gives no light: it tells Cycles where to look for the sky's.
+    if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
+        return None
     _check(thing, light, who, messages)
     kind = _KINDS[light.type]
     radius = messages.number(getattr(light, "shadow_soft_size", 0.0), who, "radius", 0.0, 0.0)
     sun_angle = messages.number(getattr(light, "angle", 0.0), who, "angle", 0.0, 0.0, math.pi)
-    shape, size = _area(light, matrix, who, messages) if kind == LightKind.AREA else (AreaShape.RECTANGLE, (1.0, 1.0))
+    shape, size = AreaShape.RECTANGLE, (1.0, 1.0)
+    if kind == LightKind.AREA:
+        shape, size = _area(light, matrix, who, messages)
+    elif kind == LightKind.SPOT:
+        size = _stretch(matrix)
     if kind == LightKind.AREA and not size[0] * size[1] > 0.0:
         messages.add(f"{who}: its area is zero, it is left out")
         return None
@@ -46,7 +56,9 @@ def export_light(thing, matrix_world, messages):
         sun_angle=sun_angle if kind == LightKind.SUN else 0.0,
         size=size,
         shape=shape,
-        spread=messages.number(getattr(light, "spread", math.pi), who, "spread", math.pi, 1e-3, math.pi),
+        spread=messages.number(getattr(light, "spread", math.pi), who, "spread", math.pi, 0.0, math.pi),
+        hidden_from=hidden_from(thing, "visible_") & ~int(Ray.SHADOW),
+        no_shadow=not _casts_shadow(light),
         falloff=Falloff[own.falloff],
         falloff_radius=messages.number(own.radius, who, "falloff radius", 10.0, 1e-12),
         ambient_color=messages.color(own.ambient_color, who, "ambient colour", 1.0) if separate else (1.0, 1.0, 1.0),
@@ -64,6 +76,19 @@ def _rotation(matrix):
     return result
 
 
+def _stretch(matrix):
+    """What an uneven scale does to a spot's cone along x and y; before 4.0 Cycles kept it round."""
+    lengths = np.linalg.norm(matrix[:3, :3], axis=0)
+    if bpy.app.version < (4, 0) or not lengths.all():
+        return 1.0, 1.0
+    return float(lengths[0] / lengths[2]), float(lengths[1] / lengths[2])
+
+
+def _casts_shadow(light):
+    """Cycles' own switch in the versions that have it, where use_shadow is EEVEE's."""
+    return getattr(getattr(light, "cycles", None), "cast_shadow", light.use_shadow)
+
+
 def _power(light, who, messages):
     """Watts a channel: energy, colour, temperature, exposure and constant nodes together."""
     energy = messages.number(light.energy, who, "power", 0.0, 0.0)
@@ -79,6 +104,8 @@ def _watts_to_emission(light, kind, radius, sun_angle, shape, size):
     """The factor from watts to W/sr (point, spot), W/m^2 (sun) or W/(m^2 sr) (area)."""
     normalize = getattr(light, "normalize", True)
     if kind == LightKind.SUN:
+        if bpy.app.version < (4, 0):
+            return _old_sun(sun_angle)
         return 1.0 if normalize or sun_angle == 0.0 else math.pi * math.sin(0.5 * sun_angle) ** 2
     if kind == LightKind.AREA:
         area = size[0] * size[1] * (0.25 * math.pi if shape == AreaShape.ELLIPSE else 1.0)
@@ -91,6 +118,12 @@ def _watts_to_emission(light, kind, radius, sun_angle, shape, size):
     return radius**2 if radius > 0.0 else 1.0 / math.pi
 
 
+def _old_sun(sun_angle):
+    """Before 4.0 the strength was that of a flat disk at distance 1: its mean cosine is missing at normal incidence."""
+    tangent2 = math.tan(0.5 * min(sun_angle, math.radians(179.9))) ** 2
+    return 2.0 / (math.sqrt(1.0 + tangent2) + 1.0)
+
+
 def _area(light, matrix, who, messages):
     """Shape and full lengths in the world: Blender scales the sides by the object's axes."""
     x = messages.number(light.size, who, "size", 1.0, 0.0)
@@ -101,32 +134,35 @@ def _area(light, matrix, who, messages):
 
 
 def _nodes(light, who, messages):
-    """Colour times strength of a constant Emission node; (1, 1, 1) without nodes."""
+    """Colour times strength of the light's own nodes where they are constant; (1, 1, 1) without nodes."""
     neutral = (1.0, 1.0, 1.0)
     if light.node_tree is None or (bpy.app.version < (5, 2) and not light.use_nodes):
         return neutral
-    output = output_node(light.node_tree, "OUTPUT_LIGHT")
-    surface = source(output.inputs["Surface"]) if output is not None else None
-    if surface is None:
-        return (0.0, 0.0, 0.0)
-    reader = Reader(who, messages)
-    if surface.node.type != "EMISSION":
-        reader.tell(surface.node, f"{surface.node.bl_label} is not supported, the light's own power is used")
+    emission = emission_of(NodeGraph(who, messages), light.node_tree, "OUTPUT_LIGHT")
+    if isinstance(emission, NodeRef):
+        messages.add(f"{who}: light that varies with place or direction is not supported, its own power is used")
         return neutral
-    strength = reader.number(surface.node, ("Strength",), 1.0)
-    return tuple(c * strength for c in reader.color(surface.node, ("Color",), neutral))
+    return emission
 
 
 def _check(thing, light, who, messages):
     check_light_object(thing, who, messages)
     cycles = getattr(light, "cycles", None)
-    if light.type == "AREA" and getattr(cycles, "is_portal", False):
-        messages.add(f"{who}: portals are not supported, it shines as an area light")
-    if not getattr(light, "use_shadow", True) or not getattr(cycles, "cast_shadow", True):
-        messages.add(f"{who}: lights without shadow are not supported")
+    if getattr(cycles, "max_bounces", 1024) < 1024:
+        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported")
     if getattr(light, "use_custom_distance", False) and bpy.app.version < (4, 2):
         messages.add(f"{who}: custom distance is not supported")
-    if light.type == "SPOT":
-        lengths = [column.length for column in thing.matrix_world.to_3x3().col]
-        if max(lengths) - min(lengths) > 1e-3 * max(lengths):
-            messages.add(f"{who}: a spot scaled unevenly is not supported, its cone stays round")
+    if not getattr(cycles, "use_multiple_importance_sampling", True):
+        messages.add(f"{who}: without multiple importance sampling Cycles hides it from mirrors and glass, here they show it")
+    if light.type == "SPOT" and _sheared(np.array(thing.matrix_world, float)):
+        messages.add(f"{who}: a sheared spot is not supported, its cone is only stretched")
+
+
+def _sheared(matrix):
+    """Whether the axes are not upright to one another: products of float matrices are to some 1e-6, parents to 1e-5."""
+    columns = matrix[:3, :3].T
+    lengths = np.linalg.norm(columns, axis=1)
+    if not lengths.all():
+        return False
+    x, y, z = columns / lengths[:, None]
+    return max(abs(x @ y), abs(x @ z), abs(y @ z)) > 1e-4

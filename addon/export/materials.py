@@ -1,33 +1,34 @@
-"""Blender materials as lobes: Kd, Ks, roughness, IOR, emission and opacity."""
+"""Blender materials as lobes: their weights and values, what they emit, let through, and where they move the surface."""
 
 import bpy
 
 from ..bindings import snapshot
-from ..bindings.enums import LobeKind
-from .messages import Messages
-from .shader import ShaderReader
-from .sockets import output_node, source
+from ..bindings.enums import LobeKind, MaterialFlag
+from .arithmetic import is_constant, triple
+from .closures import Surface
+from .graph import NodeGraph
+from .images import Images
+from .normals import bump, displacement_height
+from .sockets import output_node
+from .walk import Site
 
+_BLACK = (0.0, 0.0, 0.0)
 _DEFAULT = snapshot.Material(name="default grey", lobes=(snapshot.Lobe(LobeKind.LAMBERT, (0.8, 0.8, 0.8)),))
-
-_LOBE_NAMES = {
-    LobeKind.LAMBERT: "Diffuse Kd",
-    LobeKind.BECKMANN: "Specular Ks",
-    LobeKind.MIRROR: "Mirror",
-    LobeKind.DIELECTRIC: "Glass",
-    LobeKind.PHONG: "Phong Ks",
-    LobeKind.BLINN_PHONG: "Blinn-Phong Ks",
-}
+# Cycles' filter width of the bump that stands for displacement, in pixels; before it was one pixel.
+_BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
 
 
 class Materials:
     """Numbers the materials that objects ask for; each is read once."""
 
-    def __init__(self, messages, override=None):
+    def __init__(self, messages, override=None, images=None, depsgraph=None):
         self.messages = messages
         self.override = override
+        self.images = Images() if images is None else images
+        self.depsgraph = depsgraph
         self.list = []
         self._numbers = {}
+        self._attributes = []
 
     def number(self, material, asker):
         """The number of a material; None is the default grey, as everywhere in Blender. asker is the object's name."""
@@ -35,30 +36,50 @@ class Materials:
         key = None if material is None else material.original.as_pointer()
         if key not in self._numbers:
             self._numbers[key] = len(self.list)
-            self.list.append(_DEFAULT if material is None else export_material(material, self.messages, asker))
+            exported, attributes = _DEFAULT, frozenset()
+            if material is not None:
+                exported, attributes = _export(material, self.messages, asker, self.images, self.depsgraph)
+            self.list.append(exported)
+            self._attributes.append(attributes)
         return self._numbers[key]
 
+    def attributes(self, numbers):
+        """Names of the mesh attributes that these materials read: what export_mesh takes as wanted."""
+        return frozenset().union(*(self._attributes[number] for number in numbers))
 
-def export_material(material, messages, asker=None):
-    """asker is the object that is met first with the material: messages name it too."""
+
+def _export(material, messages, asker, images, depsgraph):
+    """(Material, names of mesh attributes). asker is the object that is met first with it: messages name it too."""
     who = f"material '{material.name}'" + ("" if asker is None else f" on object '{asker}'")
     own = material.lancer
-    ambient = messages.color(own.ka, who, "ambient colour")
+    graph = NodeGraph(who, messages, images, depsgraph)
+    common = {
+        "name": material.name,
+        "ambient": messages.color(own.ka, who, "ambient colour"),
+        "material_index": max(0, material.pass_index),
+        "flags": _flags(material),
+    }
     if own.model != "NODES":
-        lobes, emission, opacity = _own_model(own, who, messages), (0.0, 0.0, 0.0), 1.0
-    elif bpy.app.version >= (5, 0) or material.use_nodes:
-        lobes, emission, opacity = _from_nodes(material.node_tree, who, messages)
-    else:
+        return snapshot.Material(lobes=_own_model(own, who, messages), **common), frozenset()
+    if bpy.app.version < (5, 0) and not material.use_nodes:
         color = messages.color(material.diffuse_color, who, "viewport colour")
-        lobes, emission, opacity = (snapshot.Lobe(LobeKind.LAMBERT, color),), (0.0, 0.0, 0.0), 1.0
-    return snapshot.Material(
-        name=material.name,
-        lobes=lobes,
-        emission=emission,
-        opacity=opacity,
-        ambient=ambient,
-        material_index=max(0, material.pass_index),
-    )
+        return snapshot.Material(lobes=(snapshot.Lobe(LobeKind.LAMBERT, color),), **common), frozenset()
+    values = _from_nodes(material, graph)
+    common["flags"] |= values.pop("flags", 0)
+    return snapshot.Material(nodes=graph.nodes, **values, **common), frozenset(graph.attributes)
+
+
+def _flags(material):
+    """Cycles' own settings of a material; it is an add-on and may be off."""
+    cycles = getattr(material, "cycles", None)
+    flags = MaterialFlag(0)
+    if not getattr(cycles, "use_bump_map_correction", True):
+        flags |= MaterialFlag.NO_BUMP_CORRECTION
+    if getattr(cycles, "emission_sampling", "AUTO") == "NONE" or not getattr(cycles, "sample_as_light", True):
+        flags |= MaterialFlag.NOT_A_LIGHT
+    if not getattr(cycles, "use_transparent_shadow", getattr(material, "use_transparent_shadow", True)):
+        flags |= MaterialFlag.OPAQUE_SHADOWS
+    return int(flags)
 
 
 def _own_model(own, who, messages):
@@ -78,44 +99,54 @@ def _own_model(own, who, messages):
     return tuple(lobes)
 
 
-def _from_nodes(tree, who, messages):
-    black = (), (0.0, 0.0, 0.0), 1.0
+def _from_nodes(material, graph):
+    """The fields of a material that its node tree gives."""
+    who, messages, tree = graph.owner, graph.messages, material.node_tree
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
         messages.add(f"{who}: has no Material Output node, black is used")
-        return black
-    surface = source(output.inputs["Surface"])
-    if source(output.inputs["Volume"]) is not None:
+        return {"lobes": ()}
+    site = Site(output)
+    has_surface = graph.is_linked(site, ("Surface",))
+    if graph.is_linked(site, ("Volume",)):
         messages.add(f"{who}: volumes are not supported")
-        if surface is None:
-            return (), (0.0, 0.0, 0.0), 0.0
-    if source(output.inputs["Displacement"]) is not None:
-        messages.add(f"{who}: displacement is not supported, the undisplaced surface is used")
-    if surface is None:
-        return black
-    reader = ShaderReader(who, messages)
-    reader.read(surface, 1.0)
-    return reader.result()
+        if not has_surface:
+            return {"lobes": (), "transmittance": (1.0, 1.0, 1.0)}
+    values = _displacement(material, graph, site)
+    surface = Surface(graph)
+    surface.read(site, output.inputs["Surface"])
+    return {
+        **values,
+        "lobes": surface.lobes,
+        "emission": _color(surface.emission),
+        "transmittance": _color(surface.transmittance),
+        "holdout": surface.holdout if not isinstance(surface.holdout, tuple) else surface.holdout[0],
+    }
 
 
-def describe_material(material):
-    """What a material becomes, as lines for its panel."""
-    messages = Messages()
-    exported = export_material(material, messages)
-    lines = []
-    for lobe in exported.lobes:
-        text = f"{_LOBE_NAMES[lobe.kind]}: {_triple(lobe.color)}"
-        if lobe.kind == LobeKind.BECKMANN:
-            text += f", alpha {lobe.roughness:.3g}"
-        if lobe.kind in (LobeKind.BECKMANN, LobeKind.DIELECTRIC):
-            text += f", IOR {lobe.ior:.3g}"
-        lines.append(text)
-    if any(exported.emission):
-        lines.append(f"Emission: {_triple(exported.emission)}")
-    if exported.opacity < 1.0:
-        lines.append(f"Opacity: {exported.opacity:.3g}")
-    return lines + messages.lines()
+def _color(value):
+    return triple(value) if isinstance(value, (float, tuple)) else value
 
 
-def _triple(color):
-    return " ".join(f"{c:.3g}" for c in color)
+def _displacement(material, graph, site):
+    """True displacement of the material's method, and the bump that stands for it or goes with it."""
+    if not graph.is_linked(site, ("Displacement",)):
+        return {}
+    socket = site.node.inputs["Displacement"]
+    method = getattr(material, "displacement_method", None) or getattr(
+        getattr(material, "cycles", None), "displacement_method", "BUMP"
+    )
+    values = {}
+    if method != "BUMP":
+        offset = graph.input(site, socket)
+        if not is_constant(offset, 0.0):
+            values["displacement"] = offset
+    if method != "DISPLACEMENT":
+        first, height = graph.height_nodes(lambda: displacement_height(graph, site, socket))
+        both = "displacement" in values
+        normal = bump(graph, first, height, 1.0, 1.0, graph.normal, _BUMP_WIDTH, undisplaced=both)
+        graph.normal = values["normal"] = normal
+        # The bump shows what displacement does to the normals; both would show it twice.
+        if both:
+            values["flags"] = int(MaterialFlag.KEEP_NORMALS)
+    return values

@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import MeshData
+from .attributes import read_attributes
 
 _TRIANGLES_AT_ONCE = 1 << 18
 
@@ -22,10 +23,11 @@ def _attribute(mesh, name, domain):
     return attribute.data
 
 
-def export_mesh(mesh, name, poll):
-    """The mesh with the normals that Blender shades with, its render UV map and its first colour attribute.
+def export_mesh(mesh, name, poll, wanted=frozenset()):
+    """The mesh with the normals that Blender shades with, its render UV map and colours, and the attributes that are wanted.
 
-    poll ends the export by an exception; one array of Blender's is the least that it can wait for.
+    wanted: names of further UV maps and attributes, "tangent:" with that of a UV map, "generated". poll ends the export by an
+    exception; one array of Blender's is the least that it can wait for.
     """
     positions = read_positions(mesh)
     poll()
@@ -49,6 +51,8 @@ def export_mesh(mesh, name, poll):
     poll()
     colors = _colors(mesh, corners, triangles, poll)
     poll()
+    slots = _material_slots(mesh, corners)
+    faces = None if corners is None or not wanted else _read(mesh.loop_triangles, "polygon_index", np.int32, 1)
     return MeshData(
         name=name,
         positions=positions,
@@ -56,7 +60,8 @@ def export_mesh(mesh, name, poll):
         normals=normals,
         uvs=uvs,
         colors=colors,
-        material_slots=_material_slots(mesh, corners),
+        material_slots=slots,
+        attributes=read_attributes(mesh, wanted, corners, faces, poll) if wanted else (),
     )
 
 
@@ -96,7 +101,7 @@ def _normals(mesh, corners, poll):
             return None
         if domain == "POINT":
             return _read(mesh.vertex_normals, "vector", np.float32, 3)
-        return _at_corners(_read(mesh.corner_normals, "vector", np.float32, 3), corners, poll)
+        return _at_corners(_corner_normals(mesh), corners, poll)
     if not (mesh.has_custom_normals and mesh.use_auto_smooth):
         smooth = _read(mesh.polygons, "use_smooth", bool, 1)
         if not smooth.any():
@@ -106,6 +111,17 @@ def _normals(mesh, corners, poll):
     mesh.calc_normals_split()
     normals = _at_corners(_read(mesh.loops, "normal", np.float32, 3), corners, poll)
     mesh.free_normals_split()
+    return normals
+
+
+def _corner_normals(mesh):
+    """As Cycles has them: before 5.1 hard edges and custom normals split a vertex, but not a flat face beside a smooth one."""
+    sharp = _attribute(mesh, "sharp_edge", "EDGE")
+    if bpy.app.version >= (5, 1) or mesh.has_custom_normals or (sharp is not None and _read(sharp, "value", bool, 1).any()):
+        return _read(mesh.corner_normals, "vector", np.float32, 3)
+    normals = _read(mesh.vertex_normals, "vector", np.float32, 3)[_corner_vertices(mesh)]
+    flat = np.repeat(~_read(mesh.polygons, "use_smooth", bool, 1), _read(mesh.polygons, "loop_total", np.int32, 1))
+    normals[flat] = _read(mesh.corner_normals, "vector", np.float32, 3)[flat]
     return normals
 
 
@@ -123,7 +139,9 @@ def _uvs(mesh, corners, poll):
 def _colors(mesh, corners, triangles, poll):
     if len(mesh.color_attributes) == 0:
         return None
-    attribute = mesh.color_attributes[0]
+    # Blender renders the one with the camera; files of old versions have none so marked.
+    index = mesh.color_attributes.render_color_index
+    attribute = mesh.color_attributes[index if 0 <= index < len(mesh.color_attributes) else 0]
     values = _read(attribute.data, "color", np.float32, 4).reshape(-1, 4)[:, :3]
     if len(values) == 0:
         return None

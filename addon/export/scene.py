@@ -7,6 +7,7 @@ from ..bindings.session import Cancelled
 from ..bindings.snapshot import SceneSnapshot
 from .camera import export_camera
 from .checks import check_scene, check_view_layer
+from .images import Images
 from .instances import Instances
 from .materials import Materials
 from .messages import Messages
@@ -34,19 +35,22 @@ def export_scene(depsgraph, options=None, poll=None):
     view_layer = depsgraph.view_layer
     # Ask for camera and settings first: what is missing there should not cost an export.
     camera = export_camera(options.camera or scene.camera, depsgraph, messages)
-    settings = export_settings(depsgraph, options.passes, messages)
+    world = getattr(view_layer, "world_override", None) or scene.world
+    settings = export_settings(depsgraph, options.passes, world, messages)
     check_scene(scene, messages)
     check_view_layer(scene, view_layer, messages)
-    materials = Materials(messages, view_layer.material_override)
+    images = Images()
+    materials = Materials(messages, view_layer.material_override, images, depsgraph)
     instances = Instances(view_layer, materials, messages)
     instances.collect(depsgraph, obey)
-    world = getattr(view_layer, "world_override", None) or scene.world
+    sky = export_world(world, images, depsgraph, messages)
     snapshot = SceneSnapshot(
         meshes=tuple(instances.meshes),
         instances=instances.to_table(obey),
         materials=tuple(materials.list),
         lights=tuple(instances.lights),
-        world=export_world(world, messages),
+        images=tuple(images.list),
+        world=sky,
         camera=camera,
         settings=settings,
     )

@@ -1,32 +1,70 @@
-"""The world as one constant radiance."""
+"""The world: one radiance, or nodes over the direction; or the course's six pictures."""
 
 import bpy
+import numpy as np
 
-from .checks import check_world
-from .sockets import Reader, output_node, source
+from ..bindings import snapshot
+from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind
+from .closures import emission_of
+from .graph import NodeGraph
+from .sockets import output_node
+from .visibility import hidden_from
 
-_BLACK = (0.0, 0.0, 0.0)
+# In the order of lancer.h.
+CUBE_SIDES = tuple(f"cube_{sign}_{axis}" for axis in "xyz" for sign in ("positive", "negative"))
 
 
-def export_world(world, messages):
+def export_world(world, images, depsgraph, messages):
+    """images: the registry that all materials share."""
     if world is None:
-        return _BLACK
+        return snapshot.World()
     who = f"world '{world.name}'"
-    check_world(world, who, messages)
+    graph = NodeGraph(who, messages, images, depsgraph)
+    cycles = getattr(world, "cycles", None)
+    if getattr(cycles, "max_bounces", 1024) < 1024:
+        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported")
+    radiance = _cube(world.lancer, graph, who, messages) if world.lancer.use_cube else _nodes(world, graph, who, messages)
+    return snapshot.World(
+        radiance=radiance,
+        nodes=graph.nodes,
+        hidden_from=hidden_from(getattr(world, "cycles_visibility", None)),
+        map_resolution=cycles.sample_map_resolution if getattr(cycles, "sampling_method", "") == "MANUAL" else 0,
+    )
+
+
+def _nodes(world, graph, who, messages):
     if bpy.app.version < (5, 0) and not world.use_nodes:
         return messages.color(world.color, who, "colour")
     output = output_node(world.node_tree, "OUTPUT_WORLD") if world.node_tree is not None else None
     if output is None:
-        return _BLACK
-    if source(output.inputs["Volume"]) is not None:
+        return 0.0, 0.0, 0.0
+    if output.inputs["Volume"].is_linked:
         messages.add(f"{who}: volumes are not supported")
-    surface = source(output.inputs["Surface"])
-    if surface is None:
-        return _BLACK
-    reader = Reader(who, messages)
-    node = surface.node
-    if node.type not in ("BACKGROUND", "EMISSION"):
-        reader.tell(node, f"{node.bl_label} is not supported, the world's viewport colour is used")
-        return messages.color(world.color, who, "colour")
-    strength = reader.number(node, ("Strength",), 1.0)
-    return tuple(c * strength for c in reader.color(node, ("Color",)))
+    return emission_of(graph, world.node_tree, "OUTPUT_WORLD")
+
+
+def _cube(own, graph, who, messages):
+    """Radiance by the picture of the side that a direction leaves a cube through."""
+    sides = [_side(getattr(own, name), own.bl_rna.properties[name].name, graph.images, who, messages) for name in CUBE_SIDES]
+    first = sides[0][0]
+    if [number for number, _ in sides] != list(range(first, first + 6)):
+        # The core wants them in a row: say them again where a picture stands for two sides or for something else, too.
+        first = len(graph.images.list)
+        graph.images.list += [picture for _, picture in sides]
+    direction = graph.emit(NodeKind.COORDINATE, option=Coordinate.GENERATED)
+    shown = graph.emit(
+        NodeKind.ENVIRONMENT, direction, option=Environment.CUBE, flags=int(Extension.EXTEND), image=first, image_count=6
+    )
+    strength = messages.number(own.cube_strength, who, "cube strength", 1.0, 0.0)
+    return graph.multiply(shown, strength)
+
+
+def _side(image, name, images, who, messages):
+    """(number, picture) of one side; a black one, with a message, where there is none."""
+    found = None
+    if image is not None:
+        found = images.numbers(image, None, lambda text: messages.add(f"{who}, side {name}: {text}"))
+    if found is not None:
+        return found[0], images.list[found[0]]
+    messages.add(f"{who}: side {name} of its cube has no picture, it is black")
+    return -1, snapshot.Image(name="black", texels=np.zeros((1, 1, 3), np.uint8), alpha=AlphaMode.NONE)

@@ -1,0 +1,46 @@
+"""Sums on numbers and on threes of them: a scalar is a float, a colour or vector a tuple of three."""
+
+import math
+
+from ..bindings.shading import NodeRef
+
+_LARGEST = (2.0 - 2.0**-23) * 2.0**127
+
+
+def scalar(value):
+    """The first of three, or the number itself: what a scalar input of the core sees."""
+    return value[0] if isinstance(value, tuple) else value
+
+
+def triple(value):
+    return value if isinstance(value, tuple) else (value,) * 3
+
+
+def each(function, *values):
+    return tuple(map(function, *map(triple, values)))
+
+
+def single(value):
+    """What single precision, in which the core computes, has for a constant: its largest number beyond, 0 for what is none."""
+    if isinstance(value, NodeRef):
+        return value
+    if isinstance(value, tuple):
+        return tuple(map(single, value))
+    return 0.0 if math.isnan(value) else min(max(value, -_LARGEST), _LARGEST)
+
+
+def divide(a, b):
+    return a / b if b != 0.0 else 0.0
+
+
+def clamp(value, low=0.0, high=1.0):
+    return min(max(value, low), high)
+
+
+def mix(factor, a, b):
+    return a + factor * (b - a)
+
+
+def is_constant(value, number):
+    """Whether a value is that number, in all channels, and no node's result."""
+    return not isinstance(value, NodeRef) and all(x == number for x in triple(value))

@@ -1,0 +1,181 @@
+"""Colour nodes: each reader takes (graph, site, output) and gives a value, None where it cannot."""
+
+from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.shading import NodeRef
+from . import fold_colors
+from .arithmetic import clamp, triple
+from .maths import smooth_step
+
+_NEUTRAL_HUE = 0.5  # of Hue Saturation Value: the socket that turns nothing
+_CONVERSIONS = {"HSV": (fold_colors.to_hsv, fold_colors.from_hsv), "HSL": (fold_colors.to_hsl, fold_colors.from_hsl)}
+
+
+def _rgb(graph, site, output):
+    return tuple(float(c) for c in output.default_value[:3])
+
+
+def _mixed(graph, mode, factor, a, b, clamp_factor, clamp_result):
+    mode = MixMode.__members__.get(mode)
+    if mode is None:
+        return None
+    return graph.emit(NodeKind.MIX, factor, a, b, option=mode, flags=int(clamp_factor) + 2 * int(clamp_result))
+
+
+def _mix_rgb(graph, site, output):
+    factor, a, b = (graph.input(site, socket) for socket in site.node.inputs[:3])
+    return _mixed(graph, site.node.blend_type, factor, a, b, True, site.node.use_clamp)
+
+
+def _mix(graph, site, output):
+    node = site.node
+    if node.data_type == "RGBA":
+        factor, a, b = (graph.value(site, name) for name in ("Factor_Float", "A_Color", "B_Color"))
+        return _mixed(graph, node.blend_type, factor, a, b, node.clamp_factor, node.clamp_result)
+    if node.data_type not in ("FLOAT", "VECTOR"):
+        return None
+    suffix = "_Float" if node.data_type == "FLOAT" else "_Vector"
+    varied = node.data_type == "VECTOR" and node.factor_mode == "NON_UNIFORM"
+    factor = graph.value(site, "Factor_Vector" if varied else "Factor_Float")
+    a, b = graph.value(site, "A" + suffix), graph.value(site, "B" + suffix)
+    m, v = MathOperation, VectorOperation
+    if node.data_type == "FLOAT":
+        factor = graph.op(m.ADD, factor, 0.0, clamped=True) if node.clamp_factor else factor
+        return graph.op(m.MULTIPLY_ADD, factor, graph.op(m.SUBTRACT, b, a), a)
+    factor = factor if isinstance(factor, (NodeRef, tuple)) else (factor,) * 3
+    if node.clamp_factor:
+        factor = graph.vector_op(v.MAXIMUM, graph.vector_op(v.MINIMUM, factor, (1.0,) * 3), (0.0,) * 3)
+    return graph.vector_op(v.MULTIPLY_ADD, factor, graph.vector_op(v.SUBTRACT, b, a), a)
+
+
+def _gamma(graph, site, output):
+    return graph.emit(NodeKind.GAMMA, *(graph.input(site, socket) for socket in site.node.inputs[:2]))
+
+
+def _invert(graph, site, output):
+    return graph.emit(NodeKind.INVERT, *(graph.input(site, socket) for socket in site.node.inputs[:2]))
+
+
+def _grey(graph, site, output):
+    return graph.grey(graph.input(site, site.node.inputs[0]))
+
+
+def _brightness(graph, site, output):
+    color, bright, contrast = (graph.input(site, socket) for socket in site.node.inputs[:3])
+    factor = graph.op(MathOperation.ADD, contrast, 1.0)
+    offset = graph.op(MathOperation.MULTIPLY_ADD, contrast, -0.5, bright)
+    scaled = graph.vector_op(VectorOperation.MULTIPLY_ADD, color, *(_spread(x) for x in (factor, offset)))
+    return graph.vector_op(VectorOperation.MAXIMUM, scaled, (0.0,) * 3)
+
+
+def _spread(value):
+    return value if isinstance(value, NodeRef) else triple(value)
+
+
+def _extremes(graph, color):
+    """The largest and the smallest channel."""
+    r, g, b = (graph.component(color, i) for i in range(3))
+    m = MathOperation
+    return (graph.op(m.MAXIMUM, r, graph.op(m.MAXIMUM, g, b)), graph.op(m.MINIMUM, r, graph.op(m.MINIMUM, g, b)))
+
+
+def _hue_saturation(graph, site, output):
+    node = site.node
+    hue, saturation, value, factor, color = (graph.input(site, socket) for socket in node.inputs[:5])
+    if not any(isinstance(x, NodeRef) for x in (hue, saturation, value, color)):
+        h, s, v = fold_colors.to_hsv(color)
+        turned = fold_colors.from_hsv(((h + hue + 0.5) % 1.0, clamp(s * saturation), v * value))
+        result = graph.mix(factor, color, turned)
+    else:
+        if hue != _NEUTRAL_HUE:
+            graph.tell(site, "input 'Hue' is not supported where the colour varies, the hue is kept")
+        # Move the channels towards the largest, as far as the smallest may go, and scale them.
+        high, low = _extremes(graph, color)
+        m, v = MathOperation, VectorOperation
+        furthest = graph.op(m.DIVIDE, high, graph.op(m.SUBTRACT, high, low))
+        share = graph.op(m.MAXIMUM, graph.op(m.MINIMUM, saturation, furthest), 0.0)
+        top = graph.combine(high, high, high)
+        moved = graph.vector_op(v.SCALE, graph.vector_op(v.SUBTRACT, color, top), scale=share)
+        turned = graph.vector_op(v.SCALE, graph.vector_op(v.ADD, moved, top), scale=value)
+        result = graph.emit(NodeKind.MIX, factor, color, turned, option=MixMode.MIX)
+    return graph.vector_op(VectorOperation.MAXIMUM, result, (0.0,) * 3)
+
+
+def _combine_color(graph, site, output):
+    mode = getattr(site.node, "mode", "HSV" if site.node.type == "COMBHSV" else "RGB")
+    value = graph.combine(*(graph.input(site, socket) for socket in site.node.inputs[:3]))
+    if mode == "RGB":
+        return value
+    return None if isinstance(value, NodeRef) else _CONVERSIONS[mode][1](value)
+
+
+def _separate_color(graph, site, output):
+    mode = getattr(site.node, "mode", "HSV" if site.node.type == "SEPHSV" else "RGB")
+    index = list(site.node.outputs).index(output)
+    color = graph.input(site, site.node.inputs[0])
+    if mode == "RGB":
+        return graph.component(color, index)
+    if not isinstance(color, NodeRef):
+        return _CONVERSIONS[mode][0](color)[index]
+    if index == 0 or mode == "HSL":
+        return None
+    high, low = _extremes(graph, color)
+    m = MathOperation
+    return high if index == 2 else graph.op(m.DIVIDE, graph.op(m.SUBTRACT, high, low), high)
+
+
+def _ramp(graph, site, output):
+    """Stops mixed one after the other; every stop begins where the one before is reached."""
+    node = site.node
+    ramp = node.color_ramp
+    factor = graph.input(site, node.inputs[0])
+    is_alpha = output.identifier == "Alpha"
+    if not isinstance(factor, NodeRef):
+        color = tuple(ramp.evaluate(clamp(factor)))
+        return color[3] if is_alpha else color[:3]
+    if ramp.color_mode != "RGB" or ramp.interpolation not in ("LINEAR", "CONSTANT", "EASE"):
+        graph.tell(site, f"{ramp.color_mode} {ramp.interpolation} interpolation is not supported, linear RGB is used")
+    stops = [(stop.position, (stop.color[3],) * 3 if is_alpha else tuple(stop.color[:3])) for stop in ramp.elements]
+    m = MathOperation
+    result = stops[0][1]
+    for (start, _), (end, color) in zip(stops, stops[1:]):  # noqa: B905
+        if ramp.interpolation == "CONSTANT" or end <= start:
+            share = graph.op(m.SUBTRACT, 1.0, graph.op(m.LESS_THAN, factor, end))
+        else:
+            scale = 1.0 / (end - start)
+            share = graph.op(m.MULTIPLY_ADD, factor, scale, -start * scale, clamped=True)
+            share = smooth_step(graph, share) if ramp.interpolation == "EASE" else share
+        result = graph.mix(share, result, color)
+    return graph.component(result, 0) if is_alpha else result
+
+
+def _curves(graph, site, output):
+    node = site.node
+    factor, color = graph.input(site, node.inputs[0]), graph.input(site, node.inputs[1])
+    if isinstance(color, NodeRef):
+        graph.tell(site, "RGB Curves is not supported where its input varies, the colour is passed unchanged")
+        return color
+    mapping = node.mapping
+    mapping.initialize()
+    curves = mapping.curves
+    curved = tuple(float(mapping.evaluate(curves[i], mapping.evaluate(curves[3], clamp(color[i])))) for i in range(3))
+    return graph.mix(factor, color, curved)
+
+
+READERS = {
+    "BRIGHTCONTRAST": _brightness,
+    "COMBHSV": _combine_color,
+    "COMBINE_COLOR": _combine_color,
+    "COMBRGB": _combine_color,
+    "CURVE_RGB": _curves,
+    "GAMMA": _gamma,
+    "HUE_SAT": _hue_saturation,
+    "INVERT": _invert,
+    "MIX": _mix,
+    "MIX_RGB": _mix_rgb,
+    "RGB": _rgb,
+    "RGBTOBW": _grey,
+    "SEPARATE_COLOR": _separate_color,
+    "SEPHSV": _separate_color,
+    "SEPRGB": _separate_color,
+    "VALTORGB": _ramp,
+}

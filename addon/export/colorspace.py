@@ -1,0 +1,91 @@
+"""Blender's own conversions to the scene's working space, as curves and matrices that the core applies."""
+
+import contextlib
+import functools
+import os
+import tempfile
+
+import bpy
+import numpy as np
+from mathutils import Color
+
+from ..bindings.enums import Transfer
+
+IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+# OpenColorIO works in single precision, with curves that are off by 2.4e-5: a matrix or curve this near is that one. An eighth
+# of it is what one step of 8 bits is worth at most to a colour between 0 and 1.
+_NEAR = 2.0**-12
+
+
+def _working_space():
+    """Something that differs where the working space does."""
+    settings = getattr(bpy.data, "colorspace", None)
+    return getattr(settings, "working_space", "")
+
+
+def luminance_weights():
+    return _luminance_weights(_working_space())
+
+
+@functools.lru_cache(maxsize=16)
+def _luminance_weights(working_space):
+    return tuple(Color(row).from_scene_linear_to_xyz_d65()[1] for row in np.eye(3))
+
+
+def srgb_to_linear(values):
+    return np.where(values <= 0.04045, values / 12.92, ((np.maximum(values, 0.0) + 0.055) / 1.055) ** 2.4)
+
+
+def conversion(name):
+    """(transfer, matrix) from a colour space to the working space; None where it takes more than a curve and a matrix."""
+    return _conversion(name, _working_space())
+
+
+@functools.lru_cache(maxsize=64)
+def _conversion(name, working_space):
+    samples = np.vstack([np.eye(3), np.random.default_rng(1).random((61, 3))])
+    pixels = np.ones((1, len(samples), 4), np.float32)
+    pixels[0, :, :3] = samples
+    wanted = convert(pixels, name)[0, :, :3].astype(float)
+    matrix = wanted[:3].T
+    for transfer, decoded in ((Transfer.LINEAR, samples), (Transfer.SRGB, srgb_to_linear(samples))):
+        if np.abs(decoded @ matrix.T - wanted).max() < _NEAR:
+            plain = np.abs(matrix - np.eye(3)).max() < _NEAR
+            return transfer, IDENTITY if plain else tuple(matrix.ravel().tolist())
+    return None
+
+
+def convert(pixels, name):
+    """(height, width, 4) in a colour space to the working space: written to a file as it is, and read as that space."""
+    height, width = pixels.shape[:2]
+    with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+        path = os.path.join(folder, "pixels.exr")
+        written = bpy.data.images.new("Lancer", width, height, alpha=True, float_buffer=True, is_data=True)
+        stack.callback(bpy.data.images.remove, written)
+        written.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
+        written.filepath_raw, written.file_format = path, "OPEN_EXR"
+        written.save()
+        read = stack.enter_context(loaded(path, name, "CHANNEL_PACKED"))
+        return floats(read)
+
+
+@contextlib.contextmanager
+def loaded(path, name, alpha_mode):
+    """A file as an image of Blender's, for as long as it is looked at."""
+    image = bpy.data.images.load(path, check_existing=False)
+    try:
+        # Empty for what Blender has not looked at yet, a set of tiles: it then chooses by the file.
+        if name:
+            image.colorspace_settings.name = name
+        image.alpha_mode = alpha_mode
+        yield image
+    finally:
+        bpy.data.images.remove(image)
+
+
+def floats(image):
+    """(height, width, channels) as Blender holds it: bytes over 255, floating point in the working space."""
+    width, height = image.size
+    values = np.empty(width * height * image.channels, np.float32)
+    image.pixels.foreach_get(values)
+    return values.reshape(height, width, image.channels)

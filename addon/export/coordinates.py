@@ -1,0 +1,151 @@
+"""Nodes that say where a ray meets a surface: coordinates, attributes, geometry."""
+
+import numpy as np
+
+from ..bindings.enums import Coordinate, MappingType, NodeKind, VectorOperation
+from ..bindings.shading import NodeRef
+from .arithmetic import divide
+from .fold import rotation
+from .maths import transformed
+
+_THIRD = (1.0 / 3.0,) * 3
+_RADIAL = {"X": 0, "Y": 1, "Z": 2}
+_ALONG_U = 3
+
+_TEXTURE_COORDINATES = {
+    "Generated": Coordinate.GENERATED,
+    "Normal": Coordinate.NORMAL,
+    "UV": Coordinate.UV,
+    "Object": Coordinate.OBJECT,
+    "Camera": Coordinate.CAMERA,
+    "Window": Coordinate.WINDOW,
+    "Reflection": Coordinate.REFLECTION,
+}
+_GEOMETRY = {
+    "Position": Coordinate.POSITION,
+    "Normal": Coordinate.SHADING_NORMAL,
+    "True Normal": Coordinate.TRUE_NORMAL,
+    "Incoming": Coordinate.INCOMING,
+    "Parametric": Coordinate.PARAMETRIC,
+    "Backfacing": Coordinate.BACKFACING,
+}
+
+
+def coordinate(graph, which, name=""):
+    if which == Coordinate.GENERATED:
+        graph.attributes.add("generated")
+    if which == Coordinate.UV and name:
+        graph.attributes.add(name)
+    return graph.emit(NodeKind.COORDINATE, option=which, name=name)
+
+
+def _texture_coordinate(graph, site, output):
+    node = site.node
+    which = _TEXTURE_COORDINATES.get(output.identifier)
+    if which is None:
+        return None
+    if node.from_instancer and which in (Coordinate.GENERATED, Coordinate.UV):
+        graph.tell(site, "coordinates from the instancer are not supported, the object's own are used")
+    if which != Coordinate.OBJECT or node.object is None:
+        return coordinate(graph, which)
+    thing = node.object if graph.depsgraph is None else node.object.evaluated_get(graph.depsgraph)
+    matrix = np.array(thing.matrix_world, float)
+    if not np.isfinite(matrix).all() or np.linalg.det(matrix[:3, :3]) == 0.0:
+        graph.tell(site, f"object '{node.object.name}' has no usable transform, the object's own coordinates are used")
+        return coordinate(graph, which)
+    inverse = np.linalg.inv(matrix)[:3]
+    return graph.emit(NodeKind.COORDINATE, option=which, flags=1, matrix=inverse.ravel())
+
+
+def _uv_map(graph, site, output):
+    if site.node.from_instancer:
+        graph.tell(site, "coordinates from the instancer are not supported, the object's own are used")
+    return coordinate(graph, Coordinate.UV, site.node.uv_map)
+
+
+def _named(graph, name):
+    if name:
+        graph.attributes.add(name)
+    return graph.emit(NodeKind.ATTRIBUTE, name=name)
+
+
+def _attribute(graph, site, output):
+    node = site.node
+    if getattr(node, "attribute_type", "GEOMETRY") != "GEOMETRY" or not node.attribute_name:
+        return None
+    value = _named(graph, node.attribute_name)
+    if output.identifier == "Fac":
+        return graph.vector_op(VectorOperation.DOT_PRODUCT, value, _THIRD)
+    return graph.emit(NodeKind.ALPHA, value) if output.identifier == "Alpha" else value
+
+
+def _vertex_color(graph, site, output):
+    value = _named(graph, site.node.layer_name)
+    return graph.emit(NodeKind.ALPHA, value) if output.identifier == "Alpha" else value
+
+
+def _geometry(graph, site, output):
+    name = output.identifier
+    if name == "Tangent":
+        return default_tangent(graph)
+    if name == "Normal" and isinstance(graph.normal, NodeRef):
+        return graph.normal
+    which = _GEOMETRY.get(name)
+    return None if which is None else coordinate(graph, which)
+
+
+def default_tangent(graph):
+    """Round the z axis of the object, as Cycles lays the highlights of anisotropic surfaces."""
+    graph.attributes.add("generated")
+    return graph.emit(NodeKind.TANGENT, option=_RADIAL["Z"])
+
+
+def _tangent(graph, site, output):
+    node = site.node
+    if node.direction_type == "RADIAL":
+        graph.attributes.add("generated")
+        return graph.emit(NodeKind.TANGENT, option=_RADIAL[node.axis])
+    want_tangents(graph, node.uv_map)
+    return graph.emit(NodeKind.TANGENT, option=_ALONG_U, name=node.uv_map)
+
+
+def want_tangents(graph, uv_map):
+    graph.attributes.add("tangent:" + uv_map)
+    if uv_map:
+        graph.attributes.add(uv_map)
+
+
+def _mapping(graph, site, output):
+    kind = MappingType[site.node.vector_type]
+    vector, angles, scale = (graph.value(site, name) for name in ("Vector", "Rotation", "Scale"))
+    moves = kind in (MappingType.POINT, MappingType.TEXTURE)
+    location = graph.value(site, "Location") if moves else (0.0, 0.0, 0.0)
+    if kind == MappingType.NORMAL or any(isinstance(value, NodeRef) for value in (location, angles, scale)):
+        return graph.emit(NodeKind.MAPPING, vector, location, angles, scale, option=kind)
+    return transformed(graph, vector, mapping_matrix(kind, location, angles, scale))
+
+
+def mapping_matrix(kind, location, angles, scale):
+    """Rows of the 3 x 4 matrix of a Mapping node; a scale of 0 divides to 0, as there."""
+    rows = rotation(angles)
+    if kind != MappingType.TEXTURE:
+        return [(*(row[k] * scale[k] for k in range(3)), location[i]) for i, row in enumerate(rows)]
+    linear = [[divide(rows[k][i], scale[i]) for k in range(3)] for i in range(3)]
+    return [(*row, -sum(x * y for x, y in zip(row, location, strict=True))) for row in linear]
+
+
+def _transform(graph, site, output):
+    node = site.node
+    return graph.value(site, 0) if node.convert_from == node.convert_to else None
+
+
+READERS = {
+    "ATTRIBUTE": _attribute,
+    "MAPPING": _mapping,
+    "NEW_GEOMETRY": _geometry,
+    "TANGENT": _tangent,
+    "TEX_COORD": _texture_coordinate,
+    "UVMAP": _uv_map,
+    "VECT_TRANSFORM": _transform,
+    "VERTEX_COLOR": _vertex_color,
+}

@@ -1,0 +1,91 @@
+"""What a material becomes, in lines for its panel."""
+
+from ..bindings.enums import LobeKind
+from ..bindings.shading import NodeRef
+from .arithmetic import is_constant
+from .materials import Materials
+from .messages import Messages
+
+_NAMES = {
+    LobeKind.LAMBERT: "Diffuse Kd",
+    LobeKind.BECKMANN: "Specular Ks",
+    LobeKind.MIRROR: "Mirror",
+    LobeKind.DIELECTRIC: "Glass",
+    LobeKind.PHONG: "Phong Ks",
+    LobeKind.BLINN_PHONG: "Blinn-Phong Ks",
+    LobeKind.DIFFUSE: "Rough diffuse Kd",
+    LobeKind.GLOSSY: "Glossy Ks",
+    LobeKind.GLASS: "Glass",
+    LobeKind.REFRACTION: "Refraction",
+    LobeKind.CONDUCTOR: "Metal Ks",
+    LobeKind.SHEEN: "Sheen",
+    LobeKind.TRANSLUCENT: "Translucent Kd",
+    LobeKind.PRINCIPLED: "Principled",
+}
+_ROUGH = {LobeKind.DIFFUSE, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR, LobeKind.SHEEN}
+_REFRACTIVE = {LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION}
+# Inputs of the Principled BSDF that are shown where they are not neutral, with their names.
+_PRINCIPLED = (
+    ("metallic", "metallic"),
+    ("transmission", "transmission"),
+    ("coat", "coat"),
+    ("sheen", "sheen"),
+    ("diffuse_roughness", "diffuse roughness"),
+    ("anisotropic", "anisotropic"),
+)
+
+
+def describe_material(material):
+    messages = Messages()
+    materials = Materials(messages, images=_NoPictures())
+    exported = materials.list[materials.number(material, None)]
+    lines = [line for lobe in exported.lobes for line in _lobe(lobe)]
+    for value, name in ((exported.emission, "Emission"), (exported.transmittance, "Passes"), (exported.holdout, "Hole")):
+        if not is_constant(value, 0.0):
+            lines.append(f"{name}: {_told(value)}")
+    if not is_constant(exported.displacement, 0.0):
+        lines.append("Displacement: textured")
+    return (lines or ["Black"]) + messages.lines()
+
+
+class _NoPictures:
+    """Stands for the pictures of a render: a panel is drawn often, and must not read files."""
+
+    def numbers(self, image, user, tell):
+        return 0, 1
+
+
+def _lobe(lobe):
+    weight = "" if is_constant(lobe.weight, 1.0) else f", weight {_told(lobe.weight)}"
+    if lobe.kind == LobeKind.PRINCIPLED:
+        record = lobe.principled
+        extras = [f"{name} {_told(getattr(record, field))}" for field, name in _PRINCIPLED if _shown(getattr(record, field))]
+        yield f"Diffuse Kd: {_told(record.base_color)}{weight}"
+        yield f"Specular Ks: roughness {_told(record.roughness)}, IOR {_told(record.ior)}, level {_told(record.specular)}"
+        if extras:
+            yield "Principled: " + ", ".join(extras)
+        if _shown(record.emission):
+            yield f"Emission: {_told(record.emission)}"
+        return
+    text = f"{_NAMES[lobe.kind]}: {_told(lobe.color)}{weight}"
+    if lobe.kind == LobeKind.BECKMANN:
+        text += f", alpha {_told(lobe.roughness)}"
+    if lobe.kind in _ROUGH:
+        text += f", roughness {_told(lobe.roughness)}"
+    if lobe.kind in _REFRACTIVE:
+        text += f", IOR {_told(lobe.ior)}"
+    if not is_constant(lobe.normal, 0.0):
+        text += ", normal mapped"
+    yield text
+
+
+def _shown(value):
+    return not is_constant(value, 0.0)
+
+
+def _told(value):
+    if isinstance(value, NodeRef):
+        return "textured"
+    if isinstance(value, tuple):
+        return f"{value[0]:.3g}" if len(set(value)) == 1 else " ".join(f"{c:.3g}" for c in value)
+    return f"{value:.3g}"

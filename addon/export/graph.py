@@ -1,0 +1,299 @@
+"""Blender's value nodes as nodes of the core, constants folded on the way.
+
+    graph = NodeGraph("material 'Wood'", messages, images, depsgraph)
+    strength = graph.parameter(node, ("Strength",), 1.0)          # a number, or a NodeRef
+    color = graph.parameter(node, ("Color",), kind="color")       # three numbers, or a NodeRef
+    snapshot.World(radiance=graph.multiply(color, strength), nodes=graph.nodes)
+
+node is a node of Blender, or a Site where it may lie in a group. Sums and products fold too: add, multiply, mix, subtract.
+closures.emission_of(graph, tree, "OUTPUT_WORLD" or "OUTPUT_LIGHT") does the whole way for worlds and lights.
+"""
+
+import math
+
+import bpy
+
+from ..bindings import snapshot
+from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.shading import NodeRef
+from . import colors, coordinates, maths, normals, textures
+from .arithmetic import is_constant, single, triple
+from .colorspace import luminance_weights
+from .fold import FOLD, gives_number
+from .sockets import find
+from .walk import Site, Walker
+
+_READERS = {**maths.READERS, **colors.READERS, **coordinates.READERS, **normals.READERS, **textures.READERS}
+_OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
+_SCALARS = {"VALUE", "INT", "BOOLEAN"}
+_VECTORS = {"VECTOR", "ROTATION"}
+_GREY = (0.5, 0.5, 0.5)
+_DEEPEST = 150  # nodes read one within the other; each takes a handful of Python's thousand calls
+_STRIDE = 100  # nodes one behind the other, after which the value of one is computed ahead
+_MOST_NODES = 4096  # of the core
+_CONVERTS_ENDS_ONLY = bpy.app.version >= (5, 0)
+_THIRD = (1.0 / 3.0,) * 3
+
+
+class _Scope:
+    """What was computed before, and may be used again from here."""
+
+    def __init__(self):
+        self.numbers = {}
+        self.values = {}
+
+
+class NodeGraph:
+    def __init__(self, owner, messages, images=None, depsgraph=None):
+        self.owner = owner
+        self.messages = messages
+        self.images = images
+        self.depsgraph = depsgraph
+        self.attributes = set()  # names of mesh attributes that the nodes read
+        self.normal = (0.0, 0.0, 0.0)  # what takes the place of the shading normal where it is bumped as a whole
+        self.walker = Walker()
+        self._nodes = []
+        self._scopes = [_Scope()]
+        self._active = set()
+        self._is_ahead = False
+
+    @property
+    def nodes(self):
+        return tuple(self._nodes)
+
+    # ---- building ----
+
+    def emit(self, kind, *inputs, option=0, flags=0, name="", image=0, image_count=0, first=0, matrix=None):
+        """The value of a node of the core: a constant where it can be computed now."""
+        # A constant number stands in all three channels, as the result of a node does.
+        inputs = tuple(map(single, map(_three, inputs) if kind in _OF_THREE else inputs))
+        fields = {} if matrix is None else {"matrix": tuple(float(x) for x in matrix)}
+        node = snapshot.Node(
+            kind=kind, option=option, flags=flags, name=name, image=image, image_count=image_count, first=first,
+            inputs=inputs, **fields,
+        )  # fmt: skip
+        if kind in FOLD and not any(isinstance(value, NodeRef) for value in node.inputs):
+            return self._fold(node)
+        numbers = self._scopes[-1].numbers
+        key = (kind, option, flags, name, image, image_count, first, node.inputs, node.matrix)
+        if key not in numbers:
+            if len(self._nodes) >= _MOST_NODES:
+                self.messages.add(f"{self.owner}: has more than {_MOST_NODES} nodes, mid-grey is used for the rest")
+                return _GREY
+            numbers[key] = len(self._nodes)
+            self._nodes.append(node)
+        return NodeRef(numbers[key])
+
+    def _fold(self, node):
+        try:
+            value = FOLD[node.kind](node, node.inputs)
+        except (OverflowError, ValueError, ZeroDivisionError):
+            value = math.nan
+        if all(map(math.isfinite, triple(value))):
+            return single(value)
+        self.messages.add(f"{self.owner}: a node's result is not finite, 0 is used")
+        return 0.0 if gives_number(node) else (0.0, 0.0, 0.0)
+
+    def height_nodes(self, build):
+        """(first, value) of build(), with nodes of its own from number first on: BUMP computes them at other places."""
+        first = len(self._nodes)
+        self._scopes.append(_Scope())
+        value = build()
+        self._scopes.pop()
+        return first, value
+
+    def op(self, operation, *values, clamped=False):
+        values = (*values, *(0.0,) * (3 - len(values)))
+        return self.emit(NodeKind.MATH, *values, option=operation, flags=int(clamped))
+
+    def vector_op(self, operation, *values, scale=1.0):
+        values = (*values, *((0.0, 0.0, 0.0),) * (3 - len(values)))
+        return self.emit(NodeKind.VECTOR_MATH, *values, scale, option=operation)
+
+    def multiply(self, a, b):
+        if is_constant(a, 0.0) or is_constant(b, 0.0):
+            return _like(0.0, a, b)
+        if is_constant(a, 1.0) or is_constant(b, 1.0):
+            return _like(b if is_constant(a, 1.0) else a, a, b)
+        if isinstance(a, float) and isinstance(b, float):
+            return single(a * b)
+        return self.vector_op(VectorOperation.MULTIPLY, _three(a), _three(b))
+
+    def add(self, a, b):
+        if is_constant(a, 0.0) or is_constant(b, 0.0):
+            return _like(b if is_constant(a, 0.0) else a, a, b)
+        if isinstance(a, float) and isinstance(b, float):
+            return single(a + b)
+        return self.vector_op(VectorOperation.ADD, _three(a), _three(b))
+
+    def subtract(self, a, b):
+        """Of scalars."""
+        return a if is_constant(b, 0.0) else self.op(MathOperation.SUBTRACT, a, b)
+
+    def mix(self, factor, a, b):
+        """Of colours; the factor is clamped."""
+        if is_constant(factor, 0.0) or is_constant(factor, 1.0):
+            return b if is_constant(factor, 1.0) else a
+        return self.emit(NodeKind.MIX, factor, _three(a), _three(b), option=MixMode.MIX, flags=1)
+
+    def component(self, value, axis):
+        return self.emit(NodeKind.SEPARATE, value, option=axis)
+
+    def combine(self, x, y, z):
+        return self.emit(NodeKind.COMBINE, x, y, z)
+
+    def grey(self, color):
+        return self.emit(NodeKind.GREY, color, matrix=(*luminance_weights(), *(0.0,) * 9))
+
+    # ---- reading ----
+
+    def tell(self, site, text):
+        self.messages.add(f"{self.owner}, node '{_site(site).node.name}': {text}")
+
+    def parameter(self, site, names, default=0.0, kind="number", low=-math.inf, high=math.inf):
+        """The input of a node that has one of the names, made usable; default where this Blender has none.
+
+        kind: number, color (not negative) or vector; low and high are for constant numbers.
+        """
+        site = _site(site)
+        socket = find(site.node, names)
+        if socket is None:
+            return default
+        value = self._read(site, socket)
+        if isinstance(value, NodeRef):
+            return value
+        who = f"{self.owner}, node '{site.node.name}'"
+        if kind == "number":
+            return self.messages.number(value if isinstance(value, float) else value[0], who, socket.name, default, low, high)
+        if kind == "color":
+            return self.messages.color(triple(value), who, socket.name, 0.5)
+        return tuple(self.messages.number(x, who, socket.name, 0.0) for x in triple(value))
+
+    def value(self, site, name):
+        """An input as it is, by identifier or by number."""
+        socket = site.node.inputs[name] if isinstance(name, int) else find(site.node, (name,))
+        return self.input(site, socket)
+
+    def is_linked(self, site, names):
+        site = _site(site)
+        socket = find(site.node, names)
+        return socket is not None and self.walker.origin(site, socket).site is not None
+
+    def linked(self, site, names, default):
+        """The value of an input that means something else where nothing is linked to it, or nothing that has a value."""
+        site = _site(site)
+        socket = find(site.node, names)
+        origin = None if socket is None else self.walker.origin(site, socket)
+        if origin is None or origin.site is None:
+            return default
+        if self._output(origin.site, origin.output) is None:
+            source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
+            self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, its default is used")
+            return default
+        return self.input(site, socket)
+
+    def input(self, site, socket):
+        """The value that reaches a socket, finite where it is constant."""
+        value = self._read(site, socket)
+        if isinstance(value, NodeRef) or all(map(math.isfinite, triple(value))):
+            return value
+        self.tell(site, f"input '{socket.name}' is not finite, 0 is used")
+        return 0.0 if isinstance(value, float) else (0.0, 0.0, 0.0)
+
+    def _read(self, site, socket):
+        origin = self.walker.origin(site, socket)
+        value = None if origin.site is None else self._output(origin.site, origin.output)
+        types = origin.types
+        if value is not None:
+            types = (*types, origin.output.type)
+        elif origin.site is None:
+            value = _constant(origin.socket)
+        else:
+            value, types = self._stand_in(site, socket, origin), types[:1]
+        # Convert at every socket passed on the way; from 5.0 on only constants are.
+        if _CONVERTS_ENDS_ONLY and isinstance(value, NodeRef):
+            types = (types[0], types[-1])
+        for target, source in zip(reversed(types[:-1]), reversed(types[1:]), strict=True):
+            value = self._convert(value, source, target)
+        return value
+
+    def color_of(self, origin):
+        """The value of an origin as a colour; mid-grey where it has none."""
+        value = self._output(origin.site, origin.output)
+        if value is None:
+            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, mid-grey is used")
+            return _GREY
+        return _three(value)
+
+    def _output(self, site, output):
+        """The value of an output; None where it has none."""
+        values = self._scopes[-1].values
+        key = (*site.key, output.as_pointer())
+        if key in values:
+            return values[key]
+        if not self._active and not self._is_ahead:
+            self._look_ahead(site, output)
+        if key in self._active or len(self._active) >= _DEEPEST:
+            return None
+        self._active.add(key)
+        reader = _READERS.get(site.node.type)
+        value = None if reader is None else reader(self, site, output)
+        self._active.discard(key)
+        values[key] = value
+        return value
+
+    def _look_ahead(self, site, output):
+        """Computes values along chains that are longer than calls can nest, from the far end on."""
+        self._is_ahead = True
+        depths, open_ = {}, [(site, output, None)]
+        while open_:
+            site, output, sources = open_.pop()
+            key = (*site.key, output.as_pointer())
+            if sources is not None:
+                depths[key] = 1 + max((depths[source] for source in sources), default=0)
+                if depths[key] % _STRIDE == 0:
+                    self._output(site, output)
+            elif key not in depths:
+                depths[key] = 0
+                origins = [self.walker.origin(site, socket) for socket in site.node.inputs if socket.enabled]
+                origins = [origin for origin in origins if origin.site is not None]
+                open_.append((site, output, [(*origin.site.key, origin.output.as_pointer()) for origin in origins]))
+                open_.extend((origin.site, origin.output, None) for origin in origins)
+        self._is_ahead = False
+
+    def _stand_in(self, site, socket, origin):
+        """What is used for an input whose source cannot be computed."""
+        source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
+        if socket.type == "RGBA":
+            self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, mid-grey is used")
+            return _GREY
+        value = _constant(socket)
+        told = f"{value:g}" if isinstance(value, float) else ", ".join(f"{x:g}" for x in value)
+        self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, the constant {told} is used")
+        return value
+
+    def _convert(self, value, source, target):
+        if target in _SCALARS and source not in _SCALARS:
+            return self.grey(value) if source == "RGBA" else self.vector_op(VectorOperation.DOT_PRODUCT, value, _THIRD)
+        return _three(value) if target not in _SCALARS else value
+
+
+def _site(node):
+    return node if isinstance(node, Site) else Site(node)
+
+
+def _three(value):
+    return value if isinstance(value, NodeRef) else triple(value)
+
+
+def _like(value, a, b):
+    """value as a number where both operands were, else with three channels."""
+    return value if isinstance(a, float) and isinstance(b, float) else _three(value)
+
+
+def _constant(socket):
+    """The constant of a socket; 0 where it has none."""
+    value = getattr(socket, "default_value", 0.0)
+    if hasattr(value, "__len__") and not isinstance(value, str):
+        return (*map(float, value[:3]), 0.0, 0.0, 0.0)[:3]
+    return float(value) if isinstance(value, (int, float)) else 0.0

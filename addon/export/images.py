@@ -1,0 +1,189 @@
+"""Pictures in their own bit depth, once each, however many materials show them."""
+
+import os
+
+import bpy
+import numpy as np
+
+from ..bindings import snapshot
+from ..bindings.enums import AlphaMode, Transfer
+from .colorspace import IDENTITY, conversion, convert, floats, loaded
+
+_VALUES_AT_ONCE = 1 << 18  # converted in one piece, which stays in the cache
+_WHITE = 65535.0
+
+
+class Images:
+    """Numbers the pictures that nodes ask for."""
+
+    def __init__(self):
+        self.list = []
+        self._ranges = {}
+
+    def numbers(self, image, user, tell):
+        """(first, count) of a Blender image, more than one for tiles; None where there is none. tell(text) takes messages."""
+        path = _frame_path(image, user)
+        key = (image.as_pointer(), image.colorspace_settings.name, image.alpha_mode, path)
+        if key not in self._ranges:
+            first = len(self.list)
+            self.list += _read_all(image, path, tell)
+            self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
+        if self._ranges[key] is None:
+            tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used")
+        return self._ranges[key]
+
+
+def _frame_path(image, user):
+    """The file of the current frame of a sequence; "" for what has one picture only."""
+    if image.source != "SEQUENCE":
+        return ""
+    return bpy.path.abspath(image.filepath_from_user(image_user=user), library=image.library)
+
+
+def _read_all(image, path, tell):
+    if image.source == "TILED":
+        return [picture for tile in image.tiles for picture in _read_tile(image, tile.number, tell)]
+    if path:
+        return _read_file(image, path)
+    if image.source == "MOVIE":
+        tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used")
+    if _divided(image) and image.source == "FILE" and image.packed_file is None and not image.is_dirty:
+        pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library))
+        if pictures:
+            return pictures
+    # What Blender had not loaded before, it need not keep.
+    had_data = image.has_data
+    pictures = _read(image, image)
+    if not had_data and not image.is_dirty:
+        image.buffers_free()
+    return pictures
+
+
+def _divided(image):
+    """Whether Blender divides the bytes of a file by alpha; Cycles takes them as they are."""
+    return image.alpha_mode == "PREMUL" and not image.is_float
+
+
+def _read_file(image, path, tile=0):
+    if not os.path.isfile(path):
+        return []
+    try:
+        with loaded(path, image.colorspace_settings.name, "STRAIGHT" if _divided(image) else image.alpha_mode) as source:
+            return _read(image, source, tile)
+    except RuntimeError:
+        return []
+
+
+def _read_tile(image, number, tell):
+    if image.is_dirty:
+        tell(f"image '{image.name}' has tiles with unsaved changes, their files are used")
+    column, row = (number - 1001) % 10, (number - 1001) // 10
+    path = image.filepath.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
+    path = bpy.path.abspath(path, library=image.library)
+    pictures = _read_packed(image, number) or _read_file(image, path, number)
+    if not pictures and len(image.tiles) == 1:
+        pictures = _read(image, image, number)
+    if not pictures:
+        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out")
+    return pictures
+
+
+def _read_packed(image, number):
+    """A tile that lies in the .blend: its bytes are a file."""
+    packed = next((item for item in image.packed_files if getattr(item, "tile_number", 0) == number), None)
+    if packed is None or packed.packed_file is None:
+        return []
+    path = os.path.join(bpy.app.tempdir, f"lancer_{os.getpid()}_{number}{os.path.splitext(packed.filepath)[1]}")
+    try:
+        with open(path, "wb") as file:
+            file.write(packed.packed_file.data)
+        return _read_file(image, path, number)
+    finally:
+        if os.path.exists(path):
+            os.remove(path)
+
+
+def _read(image, source, tile=0):
+    """The picture of source under the settings of image, in a list; empty where it has no pixels."""
+    if min(source.size) < 1 or source.channels < 1:
+        return []
+    values = floats(source)
+    is_data = image.colorspace_settings.is_data
+    alpha = _alpha_mode(image, source.is_float, is_data)
+    # Before 5.1 Cycles took all bytes of files for straight ones.
+    if alpha == AlphaMode.STRAIGHT and source != image and _divided(image) and bpy.app.version >= (5, 1):
+        alpha = AlphaMode.ASSOCIATED
+    if values.shape[2] == 2:
+        values = values[:, :, [0, 0, 0, 1]]
+    if values.shape[2] == 4 and (alpha == AlphaMode.NONE or bool((values[:, :, 3] == 1.0).all())):
+        # The mode stays: it says what becomes of colour where the picture is clipped.
+        values = values[:, :, :3]
+    transfer, matrix = Transfer.LINEAR, IDENTITY
+    if not source.is_float and not is_data:
+        found = conversion(image.colorspace_settings.name)
+        if found is None:
+            values = _converted(values, image.colorspace_settings.name)
+            return [_picture(image, values, transfer, _associate(values, alpha), tile, matrix)]
+        transfer, matrix = found
+    texels = _floating(values) if source.is_float else _quantised(values, 255.0, np.uint8)
+    return [_picture(image, texels, transfer, alpha, tile, matrix)]
+
+
+def _picture(image, texels, transfer, alpha, tile, matrix):
+    return snapshot.Image(name=image.name, texels=texels, transfer=transfer, alpha=alpha, tile=tile, matrix=matrix)
+
+
+def _alpha_mode(image, is_float, is_data):
+    """As Blender keeps pixels in memory: bytes straight, floating point multiplied by alpha, data as it is."""
+    if image.alpha_mode == "NONE":
+        return AlphaMode.NONE
+    if is_data or image.alpha_mode == "CHANNEL_PACKED":
+        return AlphaMode.CHANNEL_PACKED
+    return AlphaMode.ASSOCIATED if is_float else AlphaMode.STRAIGHT
+
+
+def _converted(values, name):
+    """Bytes of a colour space that is no curve and matrix, as floating point in the working space."""
+    if values.shape[2] == 4:
+        return convert(values, name)
+    full = np.ones((*values.shape[:2], 4), np.float32)
+    full[:, :, :3] = values
+    return np.ascontiguousarray(convert(full, name)[:, :, :3])
+
+
+def _associate(values, alpha):
+    """Multiplies straight colour by alpha, as interpolation wants it; gives the mode that it has then."""
+    if alpha != AlphaMode.STRAIGHT:
+        return alpha
+    if values.shape[2] == 4:
+        values[:, :, :3] *= values[:, :, 3:]
+    return AlphaMode.ASSOCIATED
+
+
+def _floating(values):
+    """Floating point texels; those of a 16 bit file, which are whole steps of it, as 16 bits."""
+    values = np.ascontiguousarray(values)
+    if not np.isfinite(values).all():
+        values[~np.isfinite(values).all(axis=2)] = 0.0
+    sample = values.reshape(-1)[:: max(1, values.size // 4096)]
+    if _is_stepped(sample) and _is_stepped(values):
+        return _quantised(values, _WHITE, np.uint16)
+    return values
+
+
+def _is_stepped(values):
+    """Whether all are whole steps of 16 bits, to the rounding of single precision, which is 2^-9 of a step."""
+    if values.min() < 0.0 or values.max() > 1.0:
+        return False
+    steps = values * _WHITE
+    return bool((np.abs(steps - np.rint(steps)) <= 2.0**-8).all())
+
+
+def _quantised(values, scale, dtype):
+    """Whole steps between 0 and 1 again, some rows at a time so that memory does not peak."""
+    texels = np.empty(values.shape, dtype)
+    rows = max(1, _VALUES_AT_ONCE // (values.shape[1] * values.shape[2]))
+    for first in range(0, len(values), rows):
+        part = slice(first, first + rows)
+        texels[part] = values[part] * np.float32(scale) + np.float32(0.5)
+    return texels

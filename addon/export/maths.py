@@ -1,0 +1,188 @@
+"""Value and vector nodes: each reader takes (graph, site, output) and gives a value, None where it cannot."""
+
+from mathutils import Matrix
+
+from ..bindings.enums import MathOperation, NodeKind, VectorOperation
+from ..bindings.shading import NodeRef
+from .fold import normalized, rotation
+
+# Operations on vectors that are those on numbers, for each channel by itself.
+_PER_CHANNEL = {name: MathOperation[name] for name in ("POWER", "ROUND", "SIGN", "WRAP")}
+
+
+def _value(graph, site, output):
+    return float(output.default_value)
+
+
+def _math(graph, site, output):
+    operation = MathOperation.__members__.get(site.node.operation)
+    if operation is None:
+        return None
+    values = [graph.input(site, socket) for socket in site.node.inputs]
+    return graph.op(operation, *values, clamped=site.node.use_clamp)
+
+
+def _vector_math(graph, site, output):
+    name = site.node.operation
+    a, b, c = (graph.input(site, socket) for socket in site.node.inputs[:3])
+    scale = graph.input(site, site.node.inputs[3])
+    if name in _PER_CHANNEL:
+        return graph.combine(*(graph.op(_PER_CHANNEL[name], *(graph.component(v, i) for v in (a, b, c))) for i in range(3)))
+    if name == "FACEFORWARD":
+        dot = graph.vector_op(VectorOperation.DOT_PRODUCT, c, b)
+        sign = graph.op(MathOperation.MULTIPLY_ADD, graph.op(MathOperation.LESS_THAN, dot, 0.0), 2.0, -1.0)
+        return graph.vector_op(VectorOperation.SCALE, a, scale=sign)
+    if name == "REFRACT":
+        return _refract(graph, a, b, scale)
+    operation = VectorOperation.__members__.get(name)
+    return None if operation is None else graph.vector_op(operation, a, b, c, scale=scale)
+
+
+def _refract(graph, incident, normal, eta):
+    """eta i - (eta n.i + sqrt k) n with k = 1 - eta^2 (1 - (n.i)^2); nothing where k is negative."""
+    m = MathOperation
+    n = graph.vector_op(VectorOperation.NORMALIZE, normal)
+    cosine = graph.vector_op(VectorOperation.DOT_PRODUCT, n, incident)
+    sine2 = graph.op(m.SUBTRACT, 1.0, graph.op(m.MULTIPLY, cosine, cosine))
+    k = graph.op(m.SUBTRACT, 1.0, graph.op(m.MULTIPLY, graph.op(m.MULTIPLY, eta, eta), sine2))
+    along = graph.op(m.ADD, graph.op(m.MULTIPLY, eta, cosine), graph.op(m.SQRT, k))
+    onward = graph.vector_op(VectorOperation.SCALE, incident, scale=eta)
+    bent = graph.vector_op(VectorOperation.SUBTRACT, onward, graph.vector_op(VectorOperation.SCALE, n, scale=along))
+    exists = graph.op(m.SUBTRACT, 1.0, graph.op(m.LESS_THAN, k, 0.0))
+    return graph.vector_op(VectorOperation.SCALE, bent, scale=exists)
+
+
+def _clamp(graph, site, output):
+    value, low, high = (graph.input(site, socket) for socket in site.node.inputs[:3])
+    if site.node.clamp_type == "RANGE":
+        m = MathOperation
+        low, high = graph.op(m.MINIMUM, low, high), graph.op(m.MAXIMUM, low, high)
+    return graph.emit(NodeKind.CLAMP, value, low, high)
+
+
+def _map_range(graph, site, output):
+    node = site.node
+    if getattr(node, "data_type", "FLOAT") == "FLOAT":
+        names = ("Value", "From Min", "From Max", "To Min", "To Max", "Steps")
+        values = [graph.value(site, name) if name != "Steps" or node.interpolation_type == "STEPPED" else 4.0 for name in names]
+        if not isinstance(values[1], NodeRef) and values[1] == values[2]:
+            return 0.0
+        return _mapped(graph, node, values)
+    names = ("Vector", "From_Min_FLOAT3", "From_Max_FLOAT3", "To_Min_FLOAT3", "To_Max_FLOAT3", "Steps_FLOAT3")
+    values = [
+        graph.value(site, name) if name != names[-1] or node.interpolation_type == "STEPPED" else (4.0,) * 3 for name in names
+    ]
+    return graph.combine(*(_mapped(graph, node, [graph.component(value, i) for value in values]) for i in range(3)))
+
+
+def _mapped(graph, node, values):
+    m = MathOperation
+    value, from_low, from_high, to_low, to_high, steps = values
+    kind = node.interpolation_type
+    t = graph.op(m.DIVIDE, graph.op(m.SUBTRACT, value, from_low), graph.op(m.SUBTRACT, from_high, from_low))
+    if kind == "STEPPED":
+        reached = graph.op(m.FLOOR, graph.op(m.MULTIPLY, t, graph.op(m.ADD, steps, 1.0)))
+        t = graph.op(m.MULTIPLY, graph.op(m.DIVIDE, reached, steps), graph.op(m.GREATER_THAN, steps, 0.0))
+    elif kind in ("SMOOTHSTEP", "SMOOTHERSTEP"):
+        t = smooth_step(graph, graph.emit(NodeKind.CLAMP, t, 0.0, 1.0), kind == "SMOOTHERSTEP")
+    result = graph.op(m.MULTIPLY_ADD, t, graph.op(m.SUBTRACT, to_high, to_low), to_low)
+    if node.clamp and kind in ("LINEAR", "STEPPED"):
+        low, high = graph.op(m.MINIMUM, to_low, to_high), graph.op(m.MAXIMUM, to_low, to_high)
+        result = graph.emit(NodeKind.CLAMP, result, low, high)
+    return result
+
+
+def smooth_step(graph, t, twice=False):
+    """t^2 (3 - 2 t), or the smoother t^3 (t (6 t - 15) + 10), of t between 0 and 1."""
+    m = MathOperation
+    square = graph.op(m.MULTIPLY, t, t)
+    if not twice:
+        return graph.op(m.MULTIPLY, square, graph.op(m.MULTIPLY_ADD, t, -2.0, 3.0))
+    inner = graph.op(m.MULTIPLY_ADD, t, graph.op(m.MULTIPLY_ADD, t, 6.0, -15.0), 10.0)
+    return graph.op(m.MULTIPLY, graph.op(m.MULTIPLY, square, t), inner)
+
+
+def _combine(graph, site, output):
+    return graph.combine(*(graph.input(site, socket) for socket in site.node.inputs[:3]))
+
+
+def _separate(graph, site, output):
+    return graph.component(graph.input(site, site.node.inputs[0]), list(site.node.outputs).index(output))
+
+
+def _normal(graph, site, output):
+    direction = normalized(tuple(site.node.outputs[0].default_value))
+    if output.identifier == "Normal":
+        return direction
+    towards = graph.vector_op(VectorOperation.NORMALIZE, graph.input(site, site.node.inputs[0]))
+    return graph.vector_op(VectorOperation.DOT_PRODUCT, direction, towards)
+
+
+def _rotate(graph, site, output):
+    """As a matrix, for which centre, axis and angle must be constant."""
+    node = site.node
+    vector, center = graph.value(site, "Vector"), graph.value(site, "Center")
+    if node.rotation_type == "EULER_XYZ":
+        turn = graph.value(site, "Rotation")
+        rows = None if isinstance(turn, NodeRef) else Matrix(rotation(turn))
+    else:
+        angle = graph.value(site, "Angle")
+        axis = graph.value(site, "Axis") if node.rotation_type == "AXIS_ANGLE" else node.rotation_type[0]
+        if isinstance(angle, NodeRef) or isinstance(axis, NodeRef):
+            rows = None
+        else:
+            rows = Matrix.Rotation(angle, 3, axis) if isinstance(axis, str) or any(axis) else Matrix.Identity(3)
+    if rows is None or isinstance(center, NodeRef):
+        return None
+    if node.invert:
+        rows.transpose()
+    moved = [center[i] - sum(rows[i][k] * center[k] for k in range(3)) for i in range(3)]
+    return transformed(graph, vector, [(*rows[i], moved[i]) for i in range(3)])
+
+
+def transformed(graph, vector, rows):
+    """Rows of a 3 x 4 matrix times a vector."""
+    flat = [float(x) for row in rows for x in row]
+    if flat == [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]:
+        return vector
+    if not isinstance(vector, NodeRef):
+        return tuple(sum(row[k] * x for k, x in enumerate((*vector, 1.0))) for row in rows)
+    return graph.emit(NodeKind.TRANSFORM, vector, matrix=flat)
+
+
+def _float_curve(graph, site, output):
+    factor, value = graph.value(site, 0), graph.value(site, 1)
+    if isinstance(value, NodeRef):
+        graph.tell(site, "Float Curve is not supported where its input varies, the value is passed unchanged")
+        return value
+    mapping = site.node.mapping
+    mapping.initialize()
+    curved = float(mapping.evaluate(mapping.curves[0], value))
+    return graph.op(MathOperation.MULTIPLY_ADD, factor, curved - value, value)
+
+
+def _vector_curve(graph, site, output):
+    factor, vector = graph.value(site, 0), graph.value(site, 1)
+    if isinstance(vector, NodeRef):
+        graph.tell(site, "Vector Curves is not supported where its input varies, the vector is passed unchanged")
+        return vector
+    mapping = site.node.mapping
+    mapping.initialize()
+    curved = tuple(float(mapping.evaluate(mapping.curves[i], vector[i])) for i in range(3))
+    change = tuple(b - a for a, b in zip(vector, curved, strict=True))
+    return graph.vector_op(VectorOperation.ADD, vector, graph.vector_op(VectorOperation.SCALE, change, scale=factor))
+
+
+READERS = {
+    "CLAMP": _clamp,
+    "COMBXYZ": _combine,
+    "CURVE_FLOAT": _float_curve,
+    "CURVE_VEC": _vector_curve,
+    "MAP_RANGE": _map_range,
+    "MATH": _math,
+    "NORMAL": _normal,
+    "SEPXYZ": _separate,
+    "VALUE": _value,
+    "VECTOR_ROTATE": _rotate,
+    "VECT_MATH": _vector_math,
+}

@@ -1,0 +1,148 @@
+"""Nodes about normals: maps, bumps, displacement, and what depends on the angle of view."""
+
+from ..bindings.enums import Coordinate, MathOperation, NodeKind, Rules, VectorOperation
+from ..bindings.shading import NodeRef
+from .arithmetic import is_constant
+from .coordinates import coordinate, want_tangents
+from .sockets import RULES
+
+_SPACES = {"TANGENT": 0, "OBJECT": 1, "WORLD": 2, "BLENDER_OBJECT": 3, "BLENDER_WORLD": 4}
+_FRESNEL, _FACING = 0, 1
+_INVERTED = 1
+_UNDISPLACED = 2
+_WHOLE_PIXEL = 1.0  # the filter width of Blenders whose Bump node has no input for it
+_ORIGIN = (0.0, 0.0, 0.0)
+_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_OBJECT, _WORLD = 0, 1  # the space of a displacement's length
+
+
+def _normal_map(graph, site, output):
+    node = site.node
+    strength, color = graph.value(site, "Strength"), graph.value(site, "Color")
+    space = _SPACES.get(node.space)
+    if space is None:
+        return None
+    if getattr(node, "convention", "OPENGL") == "DIRECTX":
+        color = graph.vector_op(VectorOperation.MULTIPLY_ADD, color, (1.0, -1.0, 1.0), (0.0, 1.0, 0.0))
+    if space != _SPACES["TANGENT"]:
+        return graph.emit(NodeKind.NORMAL_MAP, strength, color, option=space)
+    want_tangents(graph, node.uv_map)
+    if RULES != Rules.BLENDER_3 or is_constant(strength, 1.0):
+        return graph.emit(NodeKind.NORMAL_MAP, strength, color, option=space, name=node.uv_map)
+    # Blender 3 tilts the normal by a share of the way to the mapped one.
+    v = VectorOperation
+    mapped = graph.emit(NodeKind.NORMAL_MAP, 1.0, color, option=space, name=node.uv_map)
+    plain = graph.normal if isinstance(graph.normal, NodeRef) else coordinate(graph, Coordinate.SHADING_NORMAL)
+    share = graph.op(MathOperation.MAXIMUM, strength, 0.0)
+    way = graph.vector_op(v.SCALE, graph.vector_op(v.SUBTRACT, mapped, plain), scale=share)
+    return graph.vector_op(v.NORMALIZE, graph.vector_op(v.ADD, plain, way))
+
+
+def _bump(graph, site, output):
+    normal = graph.linked(site, ("Normal",), graph.normal)
+    if not graph.is_linked(site, ("Height",)):
+        return normal
+    strength, distance = graph.value(site, "Strength"), graph.value(site, "Distance")
+    width = graph.parameter(site, ("Filter Width",), _WHOLE_PIXEL)
+    first, height = graph.height_nodes(lambda: graph.value(site, "Height"))
+    return bump(graph, first, height, strength, distance, normal, width, site.node.invert)
+
+
+def bump(graph, first, height, strength, distance, normal, width, invert=False, undisplaced=False):
+    """A height that varies, as a normal; undisplaced looks at the surface as it was before true displacement."""
+    if not isinstance(height, NodeRef):
+        return normal
+    flags = (_INVERTED if invert else 0) | (_UNDISPLACED if undisplaced else 0)
+    return graph.emit(NodeKind.BUMP, strength, distance, height, normal, width, first=first, flags=flags)
+
+
+def _fresnel(graph, site, output):
+    return graph.emit(NodeKind.FRESNEL, graph.value(site, "IOR"), graph.linked(site, ("Normal",), graph.normal))
+
+
+def _layer_weight(graph, site, output):
+    option = _FRESNEL if output.identifier == "Fresnel" else _FACING
+    blend, normal = graph.value(site, "Blend"), graph.linked(site, ("Normal",), graph.normal)
+    return graph.emit(NodeKind.LAYER_WEIGHT, blend, normal, option=option)
+
+
+def _bevel(graph, site, output):
+    graph.tell(site, "Bevel is not supported, the normal is kept")
+    return graph.linked(site, ("Normal",), graph.normal)
+
+
+def _displacement(graph, site, output):
+    values = (graph.value(site, name) for name in ("Height", "Midlevel", "Scale"))
+    normal = graph.linked(site, ("Normal",), _ORIGIN)
+    return graph.emit(NodeKind.DISPLACEMENT, *values, normal, option=_WORLD if site.node.space == "WORLD" else _OBJECT)
+
+
+def _vector_displacement(graph, site, output):
+    vector, midlevel, scale = (graph.value(site, name) for name in ("Vector", "Midlevel", "Scale"))
+    v = VectorOperation
+    middle = graph.combine(midlevel, midlevel, midlevel)
+    offset = graph.vector_op(v.SCALE, graph.vector_op(v.SUBTRACT, vector, middle), scale=scale)
+    if site.node.space == "WORLD":
+        return _to_object(graph, offset)
+    return _from_tangents(graph, offset) if site.node.space == "TANGENT" else offset
+
+
+def _to_object(graph, vector):
+    """A vector in the world as the object has it: as much along each axis as it says."""
+    result = _ORIGIN
+    for number, axis in enumerate(_AXES):
+        height = graph.component(vector, number)
+        along = graph.emit(NodeKind.DISPLACEMENT, height, 0.0, 1.0, axis, option=_WORLD)
+        result = graph.add(result, along)
+    return result
+
+
+def _from_tangents(graph, vector):
+    """A vector along tangent, normal and bitangent, in this order, as the object has it."""
+    v = VectorOperation
+    want_tangents(graph, "")
+    tangent = graph.emit(NodeKind.ATTRIBUTE, name="tangent:")
+    normal = graph.emit(NodeKind.DISPLACEMENT, 1.0, 0.0, 1.0, _ORIGIN, option=_OBJECT)
+    turned = graph.vector_op(v.NORMALIZE, graph.vector_op(v.CROSS_PRODUCT, normal, tangent))
+    bitangent = graph.vector_op(v.SCALE, turned, scale=graph.emit(NodeKind.ALPHA, tangent))
+    result = _ORIGIN
+    for number, axis in enumerate((tangent, normal, bitangent)):
+        result = graph.add(result, graph.vector_op(v.SCALE, axis, scale=graph.component(vector, number)))
+    return result
+
+
+def displacement_height(graph, site, socket):
+    """How far the displacement that is linked to a socket moves the surface along its normal."""
+    m, v = MathOperation, VectorOperation
+    origin = graph.walker.origin(site, socket)
+    if origin.site is None:
+        return 0.0
+    node = origin.site.node
+    if node.type == "DISPLACEMENT":
+        height, midlevel, scale = (graph.value(origin.site, name) for name in ("Height", "Midlevel", "Scale"))
+        height = graph.op(m.MULTIPLY, graph.op(m.SUBTRACT, height, midlevel), scale)
+        return height if node.space == "WORLD" else graph.op(m.MULTIPLY, height, _stretch(graph))
+    offset = graph.input(site, socket)
+    if not isinstance(offset, NodeRef):
+        return 0.0
+    if node.type != "VECTOR_DISPLACEMENT":
+        return graph.vector_op(v.DOT_PRODUCT, offset, coordinate(graph, Coordinate.SHADING_NORMAL))
+    along = graph.emit(NodeKind.DISPLACEMENT, 1.0, 0.0, 1.0, _ORIGIN, option=_OBJECT)
+    return graph.op(m.MULTIPLY, graph.vector_op(v.DOT_PRODUCT, offset, along), _stretch(graph))
+
+
+def _stretch(graph):
+    """What a step along the object's normal is along the world's: 1 over that of a world's step, seen from the object."""
+    steps = (graph.emit(NodeKind.DISPLACEMENT, 1.0, 0.0, 1.0, _ORIGIN, option=option) for option in (_OBJECT, _WORLD))
+    return graph.op(MathOperation.DIVIDE, 1.0, graph.vector_op(VectorOperation.DOT_PRODUCT, *steps))
+
+
+READERS = {
+    "BEVEL": _bevel,
+    "BUMP": _bump,
+    "DISPLACEMENT": _displacement,
+    "FRESNEL": _fresnel,
+    "LAYER_WEIGHT": _layer_weight,
+    "NORMAL_MAP": _normal_map,
+    "VECTOR_DISPLACEMENT": _vector_displacement,
+}

@@ -1,0 +1,109 @@
+"""The Principled BSDF as its record: each Blender's inputs under their newest names."""
+
+from ..bindings import snapshot
+from ..bindings.enums import Distribution, LobeKind, Rules
+from ..bindings.shading import NodeRef
+from .arithmetic import is_constant
+from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, find
+
+_SMALLEST_IOR = 1e-5  # as Cycles takes smaller ones
+_WHITE = (1.0, 1.0, 1.0)
+# Inputs between 0 and 1, with what they are where a version lacks them.
+_SHARES = (
+    ("metallic", 0.0),
+    ("roughness", 0.5),
+    ("diffuse_roughness", 0.0),
+    ("anisotropic", 0.0),
+    ("transmission", 0.0),
+    ("transmission_roughness", 0.0),
+    ("coat", 0.0),
+    ("sheen", 0.0),
+)
+_FILM = ("thin_film", "the surface has no film")
+_WALL = ("thin_wall", "the surface bounds a solid")
+
+
+def read_principled(surface, site, weight):
+    graph = surface.graph
+
+    def number(name, default, low=float("-inf"), high=float("inf")):
+        return graph.parameter(site, PRINCIPLED[name], default, low=low, high=high)
+
+    # Take what alpha leaves; the rest of the light passes straight on.
+    alpha = number("alpha", 1.0, 0.0, 1.0)
+    surface.transmit(graph.multiply(graph.subtract(1.0, alpha), weight))
+    weight = graph.multiply(weight, alpha)
+    if is_constant(weight, 0.0):
+        return
+    for name, meaning in (_FILM, _WALL):
+        if not is_constant(number(name, 0.0), 0.0):
+            graph.tell(site, f"input '{PRINCIPLED[name][0]}' is not supported, {meaning}")
+    values = {name: number(name, default, 0.0, 1.0) for name, default in _SHARES}
+    values["base_color"] = _base_color(surface, site, values)
+    values["ior"] = number("ior", 1.5, _SMALLEST_IOR)
+    values["specular"] = number("specular", 0.5, 0.0)
+    values["specular_tint"] = _tint(surface, site, "specular_tint")
+    if not is_constant(values["anisotropic"], 0.0):
+        values["anisotropic_rotation"] = number("anisotropic_rotation", 0.0)
+    if not is_constant(values["coat"], 0.0):
+        values["coat_roughness"] = number("coat_roughness", 0.03, 0.0, 1.0)
+        values["coat_ior"] = number("coat_ior", 1.5, _SMALLEST_IOR)
+        values["coat_tint"] = surface.color(site, PRINCIPLED["coat_tint"], _WHITE)
+        values["coat_normal"] = surface.normal(site, PRINCIPLED["coat_normal"])
+    if not is_constant(values["sheen"], 0.0):
+        values["sheen_roughness"] = number("sheen_roughness", 0.5, 0.0, 1.0)
+        values["sheen_tint"] = _tint(surface, site, "sheen_tint")
+    emission = _emission(surface, site)
+    if _is_bare(values):
+        surface.emit(graph.multiply(emission, weight))
+    else:
+        values["emission"] = emission
+    record = snapshot.Principled(
+        rules=RULES,
+        distribution=Distribution[site.node.distribution],
+        option=DIFFUSE_OPTION,
+        **values,
+    )
+    surface.add(
+        LobeKind.PRINCIPLED,
+        weight,
+        principled=record,
+        normal=surface.normal(site),
+        tangent=surface.tangent(site, values["anisotropic"]),
+    )
+
+
+def _tint(surface, site, name):
+    """A colour from 4.0 on; before, a share of the base colour, in the first channel."""
+    if RULES != Rules.BLENDER_3:
+        return surface.color(site, PRINCIPLED[name], _WHITE)
+    share = surface.graph.parameter(site, PRINCIPLED[name], 0.0, low=0.0, high=1.0)
+    return share if isinstance(share, NodeRef) else (share, 0.0, 0.0)
+
+
+def _base_color(surface, site, values):
+    """What scatters below the surface is shown as diffuse, in the colour that Blender has for it."""
+    graph = surface.graph
+    base = surface.color(site, PRINCIPLED["base_color"])
+    share = surface.share(site, PRINCIPLED["subsurface"])
+    if is_constant(share, 0.0):
+        return base
+    name = find(site.node, PRINCIPLED["subsurface"]).name
+    graph.tell(site, f"input '{name}' is not supported, a diffuse surface is used")
+    diffuse_only = is_constant(values["metallic"], 0.0) and is_constant(values["transmission"], 0.0)
+    if RULES == Rules.BLENDER_3 and diffuse_only:
+        return graph.mix(share, base, surface.color(site, ("Subsurface Color",)))
+    return base
+
+
+def _emission(surface, site):
+    graph = surface.graph
+    strength = graph.parameter(site, PRINCIPLED["emission_strength"], 1.0)
+    if is_constant(strength, 0.0):
+        return (0.0, 0.0, 0.0)
+    return graph.multiply(surface.color(site, PRINCIPLED["emission_color"], (0.0, 0.0, 0.0)), strength)
+
+
+def _is_bare(values):
+    """Whether nothing lies over what shines: its light is then the material's own. Blender 3 never laid anything over it."""
+    return RULES == Rules.BLENDER_3 or is_constant(values["coat"], 0.0) and is_constant(values["sheen"], 0.0)

@@ -1,0 +1,97 @@
+"""Links of node trees followed to what feeds them: through reroutes, muted nodes and groups, as Cycles does."""
+
+from dataclasses import dataclass
+
+import bpy
+
+# A reroute or muted node that nothing feeds is no link at all from 5.0 on; before, it gave 0.
+_LOOSE_ENDS_ARE_ZERO = bpy.app.version < (5, 0)
+_LONGEST = 10000  # hops; a ring of reroutes has no end
+
+
+@dataclass(frozen=True)
+class Site:
+    """A node, and the group nodes that were entered on the way to it, outermost first."""
+
+    node: object
+    path: tuple = ()
+
+    @property
+    def key(self):
+        return (self.node.as_pointer(), *(group.as_pointer() for group in self.path))
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What feeds a socket: output of site; or, where site is None, the constant of a socket on the way, 0 where that is None.
+
+    types are those of the sockets passed, the asked one first: values are converted at each.
+    """
+
+    site: object
+    output: object
+    socket: object
+    types: tuple
+
+
+class Walker:
+    """Remembers the links of each tree, which Blender would search for every socket anew."""
+
+    def __init__(self):
+        self._links = {}
+
+    def origin(self, site, socket):
+        path, types = site.path, [socket.type]
+        constant, depth = socket, 1
+        for _ in range(_LONGEST):
+            link = self._link(socket)
+            if link is None:
+                break
+            node, output = link.from_node, link.from_socket
+            if node.mute or node.type == "REROUTE":
+                onward = _passed_through(node, output)
+            elif node.type == "GROUP":
+                onward, path = _group_result(node, output), (*path, node)
+            elif node.type == "GROUP_INPUT" and path:
+                onward, path = _by_identifier(path[-1].inputs, output.identifier), path[:-1]
+            else:
+                return Origin(Site(node, path), output, None, tuple(types))
+            if onward is None:
+                break
+            socket = onward
+            types.append(socket.type)
+            if not node.mute and node.type != "REROUTE":
+                constant, depth = socket, len(types)
+            elif _LOOSE_ENDS_ARE_ZERO:
+                constant, depth = None, len(types)
+        return Origin(None, None, constant, tuple(types[:depth]))
+
+    def _link(self, socket):
+        tree = socket.id_data
+        key = tree.as_pointer()
+        if key not in self._links:
+            usable = (link for link in tree.links if link.is_valid and not link.is_muted)
+            self._links[key] = {
+                link.to_socket.as_pointer(): link for link in usable if link.from_socket.enabled and link.to_socket.enabled
+            }
+        return self._links[key].get(socket.as_pointer())
+
+
+def _passed_through(node, output):
+    """The input that a reroute or muted node gives on at an output; None where it gives none."""
+    if node.type == "REROUTE":
+        return node.inputs[0]
+    return next((inner.from_socket for inner in node.internal_links if inner.to_socket == output), None)
+
+
+def _by_identifier(sockets, identifier):
+    return next((socket for socket in sockets if socket.identifier == identifier), None)
+
+
+def _group_result(node, output):
+    """The socket inside a group that gives one of its outputs; None where the group is missing or empty."""
+    if node.node_tree is None:
+        return None
+    results = [inner for inner in node.node_tree.nodes if inner.type == "GROUP_OUTPUT"]
+    active = next((inner for inner in results if inner.is_active_output), results[0] if results else None)
+    return None if active is None else _by_identifier(active.inputs, output.identifier)
