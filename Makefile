@@ -12,6 +12,9 @@ FRAME ?=
 SAMPLES ?=
 OUT ?=
 BLEND ?=
+ONLY ?=
+QUICK ?=
+BLENDER ?=
 
 python := $(VENV)/bin/python
 core := build/core
@@ -22,7 +25,7 @@ compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
 # Runs a command into a log: silent when it goes well, all of it when it does not. $(call logged,LOG,COMMAND)
 logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 
-.PHONY: build render test test-slow bench sanitize addon format clean help
+.PHONY: build render test test-slow bench parity sanitize addon format clean help
 .PHONY: packages-build packages-run packages-test packages-format python-run python-test python-dev core-tests
 
 build: packages-build ## build the core; the library lands in addon/lib, where the add-on loads it
@@ -61,6 +64,10 @@ sanitize: packages-test ## the C++ tests under AddressSanitizer and UndefinedBeh
 
 bench: packages-run python-run build ## measure speed and memory, next to Cycles: a table, and build/bench.json
 	@$(python) blender_tests/bench.py
+
+parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
+	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P scenes/parity/run.py --,$(python) scenes/parity/run.py) \
+	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
 
 addon: packages-run python-run build ## the zips to install: build/lancer-VERSION.zip (Blender 4.2+) and -blender3.zip (3.x)
 	@$(python) .ci/package.py

@@ -1,0 +1,123 @@
+"""The list of parity scenes: a decorator enters a builder under its name, with what it is judged by."""
+
+import fnmatch
+import importlib
+from dataclasses import dataclass, replace
+
+from .figures import KINDS, Kind, Limit
+
+# One file for each subject.
+SUBJECTS = (
+    "materials_principled",
+    "materials_closures",
+    "materials_mixes",
+    "furnaces",
+    "textures_images",
+    "textures_coordinates",
+    "textures_normals",
+    "lights_shapes",
+    "lights_switches",
+    "worlds",
+    "cameras",
+    "objects",
+    "films",
+    "passes_light",
+    "passes_data",
+    "real_models",
+)
+
+CASES = {}
+
+
+@dataclass(frozen=True)
+class Case:
+    name: str
+    subject: str
+    build: object  # build(scene) fills an empty scene
+    kind_name: str = "EXACT"
+    limit: Limit | None = None  # in place of the kind's
+    reason: str = ""  # why that limit is looser
+    since: tuple = (3, 4)  # the first Blender that has the feature
+    until: tuple = (99, 0)  # the first that lacks it again
+    bounces: int = 2
+    transparent_bounces: int = 32
+    samples: int = 128  # of each half of each engine, at first
+    size: tuple = (96, 64)
+    filter_width: float = 0.0  # 0: the box of one pixel; else the width of a Blackman-Harris filter
+    passes: tuple = ("Combined",)  # by the names of Blender 5
+    needs: object = None  # needs() gives "" or the sentence that tells what is absent here
+    sum_of_passes: bool = False  # compare the sum of our passes with our Combined
+    may_differ: bool = False  # a message of Lancer excuses a difference
+    quick: bool = False  # belongs to the subset of `make test`
+
+    @property
+    def kind(self) -> Kind:
+        return KINDS[self.kind_name]
+
+    @property
+    def limits(self) -> Limit:
+        return self.limit or self.kind.limit
+
+
+def case(kind_name="EXACT", *, name=None, limit=None, reason="", **fields):
+    """Decorates build(scene); the scene's name is the function's."""
+    if (limit is None) != (not reason):
+        raise ValueError(f"{name}: a limit of its own and the reason for it go together")
+
+    def enter(build):
+        key = name or build.__name__
+        if key in CASES:
+            raise ValueError(f"two scenes are called {key}")
+        subject = build.__module__.rpartition(".")[2]
+        CASES[key] = Case(key, subject, build, kind_name, Limit(*limit) if limit else None, reason, **fields)
+        return build
+
+    return enter
+
+
+def variants(kind_name="EXACT", *, values, **fields):
+    """Decorates build(scene, value): one scene for each {suffix: value}; a value may be (value, fields of this scene)."""
+
+    def enter(build):
+        for suffix, value in values.items():
+            more = {}
+            if isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], dict):
+                value, more = value
+            entry = _bind(build, value)
+            case(kind_name, name=f"{build.__name__}_{suffix}", **{**fields, **more})(entry)
+        return build
+
+    return enter
+
+
+def _bind(build, value):
+    def entry(scene):
+        return build(scene, value)
+
+    entry.__module__ = build.__module__
+    entry.__doc__ = build.__doc__
+    return entry
+
+
+def load():
+    """All cases by name, subject after subject."""
+    for subject in SUBJECTS:
+        importlib.import_module(f"{__package__}.{subject}")
+    return CASES
+
+
+def select(pattern="", quick=False):
+    """The cases whose name or subject matches one of the comma-separated patterns."""
+    patterns = [part.strip() for part in pattern.split(",") if part.strip()] or ["*"]
+    return [
+        item
+        for item in load().values()
+        if any(fnmatch.fnmatchcase(text, p) for text in (item.name, item.subject) for p in patterns)
+        and (item.quick or not quick)
+    ]
+
+
+def smaller(item):
+    """The case as `make test` renders it: a quarter of the pixels' blocks, few samples."""
+    width, height = item.size
+    return item if item.kind.relative else replace(item, size=(width // 2 // 8 * 8, height // 2 // 8 * 8))

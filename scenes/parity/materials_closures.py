@@ -1,0 +1,187 @@
+"""Every closure beside Principled, on a ball in a small studio."""
+
+import bpy
+
+from .. import parts
+from .catalogue import case, variants
+from .nodes import material, shader, with_node
+from .stages import ball, camera, floor, lamp, open_air, sky, studio
+
+_NEW = bpy.app.version >= (4, 0)
+_GLOSSY = "ShaderNodeBsdfGlossy"
+_MULTI = "MULTI_GGX"
+_STEEL = (0.7, 0.75, 0.8)
+
+
+@variants(values={"smooth": (0.0, {"quick": True}), "half": 0.5, "rough": 1.0})
+def diffuse(scene, roughness):
+    studio(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.5, 0.3), Roughness=roughness))
+
+
+@case()
+def glossy_mirror(scene):
+    # Before 4.0 SHARP is what roughness 0 is since.
+    studio(scene, shader(_GLOSSY, Color=_STEEL, Roughness=0.0))
+
+
+@variants(
+    values={
+        "ggx_low": ("GGX", 0.1),
+        "ggx_high": (("GGX", 0.7), {"quick": True}),
+        "beckmann_low": ("BECKMANN", 0.1),
+        "beckmann_high": ("BECKMANN", 0.7),
+        "ashikhmin_low": ("ASHIKHMIN_SHIRLEY", 0.1),
+        "ashikhmin_high": ("ASHIKHMIN_SHIRLEY", 0.7),
+    }
+)
+def glossy(scene, value):
+    distribution, roughness = value
+    studio(scene, shader(_GLOSSY, {"distribution": distribution}, Color=_STEEL, Roughness=roughness))
+
+
+@variants("LOBES", values={"low": 0.2, "high": 0.9})
+def glossy_multiple(scene, roughness):
+    studio(scene, shader(_GLOSSY, {"distribution": _MULTI}, Color=(0.9, 0.6, 0.3), Roughness=roughness))
+
+
+@variants(
+    values={
+        "ggx": ("GGX", 0.7, 0.0),
+        "beckmann": ("BECKMANN", 0.7, 0.0),
+        "ashikhmin": ("ASHIKHMIN_SHIRLEY", 0.7, 0.0),
+        "negative": ("GGX", -0.6, 0.0),
+        "turned": ("GGX", 0.7, 0.2),
+    }
+)
+def anisotropic(scene, value):
+    distribution, anisotropy, rotation = value
+
+    def build(nodes):
+        around = nodes.add("ShaderNodeTangent", props={"direction_type": "RADIAL", "axis": "Z"})
+        return nodes.add(
+            "ShaderNodeBsdfAnisotropic",
+            props={"distribution": distribution},
+            Color=_STEEL,
+            Roughness=0.4,
+            Anisotropy=anisotropy,
+            Rotation=rotation,
+            Tangent=around,
+        )
+
+    studio(scene, material(build))
+
+
+@variants(values={"smooth": (0.0, {"quick": True})}, bounces=4)
+def glass(scene, roughness):
+    open_air(scene, shader("ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.95), Roughness=roughness, IOR=1.45))
+
+
+@case(bounces=4)
+def glass_under_a_lamp(scene):
+    """The lamp's own light through glass, on what stands behind it."""
+    studio(scene, shader("ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.95), Roughness=0.0, IOR=1.45))
+
+
+@variants(values={"ggx": ("GGX", 0.3), "beckmann": ("BECKMANN", 0.3), "ggx_full": ("GGX", 1.0)}, bounces=4)
+def glass_rough(scene, value):
+    distribution, roughness = value
+    props = {"distribution": distribution}
+    open_air(scene, shader("ShaderNodeBsdfGlass", props, Color=(0.9, 1.0, 0.95), Roughness=roughness, IOR=1.45))
+
+
+@variants("LOBES", values={"low": 0.3, "high": 0.8}, bounces=4)
+def glass_multiple(scene, roughness):
+    open_air(
+        scene, shader("ShaderNodeBsdfGlass", {"distribution": _MULTI}, Color=(0.9, 1.0, 0.95), Roughness=roughness, IOR=1.45)
+    )
+
+
+@case(bounces=4)
+def glass_thinner_than_air(scene):
+    open_air(scene, shader("ShaderNodeBsdfGlass", {"distribution": "GGX"}, Color=(1, 1, 1), Roughness=0.0, IOR=0.8))
+
+
+@variants(values={"smooth": ("GGX", 0.0), "ggx": ("GGX", 0.3), "beckmann": ("BECKMANN", 0.3)}, bounces=4)
+def refraction(scene, value):
+    distribution, roughness = value
+    props = {"distribution": distribution}
+    open_air(scene, shader("ShaderNodeBsdfRefraction", props, Color=(1.0, 0.9, 0.7), Roughness=roughness, IOR=1.3))
+
+
+@variants("LOBES", values={"low": 0.2, "high": 0.8}, needs=with_node("ShaderNodeBsdfMetallic"))
+def metallic_tint(scene, roughness):
+    props = {"fresnel_type": "F82"}
+    inputs = {"Base_Color": (0.9, 0.6, 0.3), "Edge_Tint": (0.4, 0.6, 1.0), "Roughness": roughness}
+    studio(scene, shader("ShaderNodeBsdfMetallic", props, **inputs))
+
+
+@case("LOBES", needs=with_node("ShaderNodeBsdfMetallic"))
+def metallic_physical(scene):
+    props = {"fresnel_type": "PHYSICAL_CONDUCTOR"}
+    inputs = {"IOR": (0.18, 0.42, 1.37), "Extinction": (3.42, 2.35, 1.77), "Roughness": 0.25}
+    studio(scene, shader("ShaderNodeBsdfMetallic", props, **inputs))
+
+
+@variants(
+    "LOBES", values={"microfiber": ("MICROFIBER", 0.5), "ashikhmin": ("ASHIKHMIN", 0.5), "microfiber_low": ("MICROFIBER", 0.2)}
+)
+def sheen(scene, value):
+    distribution, roughness = value
+    if _NEW:
+        fabric = shader("ShaderNodeBsdfSheen", {"distribution": distribution}, Color=(0.8, 0.5, 0.6), Roughness=roughness)
+    else:
+        fabric = shader("ShaderNodeBsdfVelvet", Color=(0.8, 0.5, 0.6), Sigma=roughness)
+    studio(scene, fabric)
+
+
+@case(quick=True)
+def translucent(scene):
+    floor(scene)
+    leaf = shader("ShaderNodeBsdfTranslucent", Color=(0.5, 0.8, 0.3))
+    parts.place(scene, "Leaf", parts.plane_mesh("Leaf", 2.0), leaf, (0, 0, 0.9), rotation=(1.2, 0, 0.3))
+    lamp(scene, 200.0, (1, 3, 3))
+    sky(scene, strength=0.2)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
+
+
+@case()
+def transparent_coloured(scene):
+    studio(scene, shader("ShaderNodeBsdfTransparent", Color=(0.9, 0.6, 0.3)))
+
+
+@case(quick=True)
+def emission(scene):
+    floor(scene)
+    ball(scene, shader("ShaderNodeEmission", Color=(1.0, 0.6, 0.3), Strength=2.0))
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
+
+
+@case()
+def holdout(scene):
+    scene.render.film_transparent = True
+    studio(scene, material(lambda nodes: nodes.add("ShaderNodeHoldout")))
+
+
+@case()
+def holdout_half(scene):
+    def build(nodes):
+        grey = nodes.add("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7))
+        mix = nodes.add("ShaderNodeMixShader", 0.5)
+        nodes.link(grey, mix.inputs[1])
+        nodes.link(nodes.add("ShaderNodeHoldout"), mix.inputs[2])
+        return mix
+
+    scene.render.film_transparent = True
+    studio(scene, material(build))
+
+
+@case()
+def back_of_a_material(scene):
+    """A closure that turns itself by which side is seen: an open bowl of mirror outside and inside."""
+    floor(scene)
+    bowl = parts.plane_mesh("Wall", 2.0)
+    parts.place(scene, "Wall", bowl, shader(_GLOSSY, Color=_STEEL, Roughness=0.0), (0, 0.6, 1), rotation=(-1.4, 0, 0.2))
+    parts.place(scene, "Side", bowl, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.3, 0.2)), (0.6, 0, 1), rotation=(0, 1.4, 0))
+    lamp(scene)
+    sky(scene)
+    camera(scene)

@@ -1,0 +1,151 @@
+"""The Principled node, one input at a time, on a ball in a small studio."""
+
+import math
+
+import bpy
+
+from .catalogue import case, variants
+from .nodes import material, principled, with_socket
+from .stages import open_air, studio
+
+_RED = (0.8, 0.2, 0.1)
+_GOLD = (0.9, 0.6, 0.2)
+_KIND = "ShaderNodeBsdfPrincipled"
+
+
+@case("LOBES", quick=True)
+def principled_default(scene):
+    studio(scene, principled())
+
+
+@variants("LOBES", values={"smooth": 0.0, "low": 0.15, "middle": 0.5, "full": 1.0})
+def principled_dielectric(scene, roughness):
+    studio(scene, principled(Base_Color=_RED, Roughness=roughness))
+
+
+@variants("LOBES", values={"smooth": 0.0, "low": 0.15, "middle": (0.5, {"quick": True}), "full": 1.0})
+def principled_metal(scene, roughness):
+    studio(scene, principled(Base_Color=_GOLD, Metallic=1.0, Roughness=roughness))
+
+
+@case("LOBES")
+def principled_half_metal(scene):
+    studio(scene, principled(Base_Color=_GOLD, Metallic=0.5, Roughness=0.3))
+
+
+@variants("LOBES", values={"single": "GGX", "multiple": "MULTI_GGX"})
+def principled_distribution(scene, distribution):
+    def build(nodes):
+        props = {"distribution": distribution}
+        return nodes.add(_KIND, props=props, Base_Color=_GOLD, Metallic=0.7, Roughness=0.7)
+
+    studio(scene, material(build))
+
+
+@variants("LOBES", values={"none": 0.0, "full": 1.0})
+def principled_specular(scene, level):
+    studio(scene, principled(Base_Color=_RED, Roughness=0.3, Specular_IOR_Level=level))
+
+
+@case("LOBES")
+def principled_specular_tint(scene):
+    tint = (0.9, 0.3, 0.2) if bpy.app.version >= (4, 0) else 1.0
+    studio(scene, principled(Base_Color=(0.2, 0.3, 0.8), Roughness=0.25, Specular_Tint=tint))
+
+
+@case("LOBES", since=(4, 0))
+def principled_metal_edge_tint(scene):
+    studio(scene, principled(Base_Color=_GOLD, Metallic=1.0, Roughness=0.2, Specular_Tint=(0.2, 0.5, 1.0)))
+
+
+@variants("LOBES", values={"low": 1.1, "high": 2.4})
+def principled_ior(scene, ior):
+    studio(scene, principled(Base_Color=_RED, Roughness=0.2, IOR=ior))
+
+
+@variants("LOBES", values={"smooth": 0.0, "rough": 0.4}, bounces=4)
+def principled_transmission(scene, roughness):
+    open_air(scene, principled(Base_Color=(0.85, 0.95, 1.0), Transmission_Weight=1.0, Roughness=roughness, IOR=1.45))
+
+
+@case("LOBES", bounces=4)
+def principled_half_transmission(scene):
+    open_air(scene, principled(Base_Color=_RED, Transmission_Weight=0.5, Roughness=0.2))
+
+
+@case("LOBES", quick=True)
+def principled_coat(scene):
+    studio(scene, principled(Base_Color=_RED, Roughness=0.8, Coat_Weight=1.0, Coat_Roughness=0.1))
+
+
+@case("LOBES", needs=with_socket(_KIND, "Coat IOR"))
+def principled_coat_ior(scene):
+    studio(scene, principled(Base_Color=_RED, Roughness=0.8, Coat_Weight=1.0, Coat_Roughness=0.2, Coat_IOR=2.2))
+
+
+@case("LOBES", needs=with_socket(_KIND, "Coat Tint"))
+def principled_coat_tint(scene):
+    studio(scene, principled(Base_Color=(0.8, 0.8, 0.8), Coat_Weight=1.0, Coat_Tint=(0.9, 0.5, 0.2)))
+
+
+@case("LOBES")
+def principled_coat_normal(scene):
+    def build(nodes):
+        # A map of one colour leans the coat, and the coat alone.
+        lean = nodes.add("ShaderNodeNormalMap", props={"space": "WORLD"}, Color=(0.8, 0.5, 0.9))
+        return nodes.add(_KIND, Base_Color=_RED, Roughness=0.7, Coat_Weight=1.0, Coat_Roughness=0.15, Coat_Normal=lean)
+
+    studio(scene, material(build))
+
+
+@variants("LOBES", values={"soft": 0.3, "wide": (0.9, {"since": (4, 0)})})
+def principled_sheen(scene, roughness):
+    inputs = {"Sheen_Roughness": roughness} if bpy.app.version >= (4, 0) else {}
+    studio(scene, principled(Base_Color=(0.1, 0.1, 0.15), Roughness=0.9, Sheen_Weight=1.0, **inputs))
+
+
+@case("LOBES")
+def principled_sheen_tint(scene):
+    tint = (0.9, 0.2, 0.4) if bpy.app.version >= (4, 0) else 1.0
+    studio(scene, principled(Base_Color=(0.1, 0.1, 0.3), Roughness=0.9, Sheen_Weight=1.0, Sheen_Tint=tint))
+
+
+@case("LOBES")
+def principled_emission(scene):
+    studio(scene, principled(Base_Color=(0.5, 0.5, 0.5), Emission_Color=(1.0, 0.5, 0.2), Emission_Strength=0.7))
+
+
+@case("LOBES", quick=True)
+def principled_alpha(scene):
+    studio(scene, principled(Base_Color=_RED, Alpha=0.4))
+
+
+@variants("LOBES", values={"half": (0.5, 0.0), "full": (1.0, 0.0), "turned": (0.8, 0.15)})
+def principled_anisotropic(scene, value):
+    anisotropic, rotation = value
+    metal = principled(Base_Color=_GOLD, Metallic=1.0, Roughness=0.4, Anisotropic=anisotropic, Anisotropic_Rotation=rotation)
+    studio(scene, metal)
+
+
+@case("LOBES")
+def principled_anisotropic_tangent(scene):
+    def build(nodes):
+        around = nodes.add("ShaderNodeTangent", props={"direction_type": "RADIAL", "axis": "X"})
+        return nodes.add(_KIND, Base_Color=_GOLD, Metallic=1.0, Roughness=0.4, Anisotropic=0.8, Tangent=around)
+
+    studio(scene, material(build)).rotation_euler = (0.3, 0.0, math.radians(20))
+
+
+@case("LOBES", needs=with_socket(_KIND, "Diffuse Roughness"))
+def principled_diffuse_roughness(scene):
+    studio(scene, principled(Base_Color=_RED, Diffuse_Roughness=1.0, Specular_IOR_Level=0.0))
+
+
+@case(
+    "LOBES",
+    limit=(1.0, 4.0),
+    reason="a diffuse surface stands in for light under the skin, and a message says so",
+    may_differ=True,
+)
+def principled_subsurface(scene):
+    studio(scene, principled(Base_Color=(0.8, 0.5, 0.4), Subsurface_Weight=1.0, Roughness=0.5))

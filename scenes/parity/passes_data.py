@@ -1,0 +1,92 @@
+"""The passes of data, at the centres of pixels."""
+
+import bpy
+
+from .. import parts
+from . import images
+from .catalogue import case, variants
+from .nodes import material, shader
+from .stages import add_uv, ball, camera, sky
+
+_ONE_SAMPLE = {
+    "limit": (0.005, 2e-3),
+    "reason": "Cycles keeps the data of one sample, up to 0.005 pixels off the middle: on a ball of 30 pixels that turns the "
+    "normal by 3e-4, and where a surface is seen aslant it moves depth, map and mist by as much",
+}
+
+
+def _corner(scene):
+    """Three walls fill the view, with a ball and a block before them."""
+    for index, (place, turn) in enumerate((((0, 0, 0), (0, 0, 0)), ((0, 4, 0), (1.5708, 0, 0)), ((-4, 0, 0), (0, 1.5708, 0)))):
+        wall = parts.place(scene, f"Wall {index}", parts.plane_mesh("Wall", 30.0), _plain((0.6, 0.5, 0.2 * index)), place)
+        wall.rotation_euler = turn
+        wall.pass_index = index + 3
+        add_uv(wall.data)
+    thing = ball(scene, _plain((0.8, 0.3, 0.2), 7))
+    thing.pass_index = 5
+    add_uv(thing.data)
+    block = parts.place(scene, "Block", parts.cube_mesh("Block", 1.0), _plain((0.2, 0.3, 0.8), 11), (1.6, 0, 0.5))
+    block.rotation_euler, block.pass_index = (0, 0, 0.5), 9
+    add_uv(block.data)
+    sky(scene)
+    camera(scene, (2, -5, 3), (0, 0, 0.8))
+
+
+def _plain(color, index=2):
+    result = shader("ShaderNodeBsdfDiffuse", Color=color)
+    result.pass_index = index
+    return result
+
+
+@variants(
+    "PIXELS",
+    values={
+        "depth": ("Depth", {"passes": ("Depth",), **_ONE_SAMPLE}),
+        "normal": ("Normal", {"passes": ("Normal",), **_ONE_SAMPLE}),
+        "position": ("Position", {"passes": ("Position",), "quick": True}),
+        "uv": ("UV", {"passes": ("UV",), **_ONE_SAMPLE}),
+        "object_index": ("Object Index", {"passes": ("Object Index",)}),
+        "material_index": ("Material Index", {"passes": ("Material Index",)}),
+    },
+    filter_width=0.01,
+    bounces=0,
+    samples=16,
+)
+def pass_data(scene, name):
+    _corner(scene)
+
+
+@variants(
+    "PIXELS",
+    values={name.lower(): (name, {}) for name in ("LINEAR", "QUADRATIC", "INVERSE_QUADRATIC")},
+    passes=("Mist",),
+    **_ONE_SAMPLE,
+    filter_width=0.01,
+    bounces=0,
+    samples=16,
+)
+def pass_mist(scene, falloff):
+    _corner(scene)
+    mist = scene.world.mist_settings
+    mist.start, mist.depth, mist.falloff = 3.0, 9.0, falloff
+
+
+@case("PIXELS", passes=("Normal",), filter_width=0.01, bounces=0, samples=16, **_ONE_SAMPLE)
+def pass_normal_mapped(scene):
+    """With the map's lean, as the shader sees it."""
+
+    def build(nodes):
+        picture = nodes.add("ShaderNodeTexImage", props={"image": images.gradient(colorspace="Non-Color")})
+        lean = nodes.add("ShaderNodeNormalMap", props={"space": "WORLD"}, Color=picture.outputs["Color"])
+        return nodes.add("ShaderNodeBsdfDiffuse", Normal=lean)
+
+    _corner(scene)
+    bpy.data.objects["Ball"].material_slots[0].material = material(build)
+
+
+@case("PIXELS", passes=("Depth", "Position", "Normal"), filter_width=0.01, bounces=2, samples=16, **_ONE_SAMPLE)
+def pass_data_through_panes(scene):
+    """A pane of alpha before the scene: which surface the data tell of."""
+    _corner(scene)
+    clear = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.7, 0.3), Alpha=0.3)
+    parts.place(scene, "Pane", parts.plane_mesh("Pane", 1.5), clear, (0.8, -2.5, 1.6), rotation=(1.3, 0, 0.3))

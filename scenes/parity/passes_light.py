@@ -1,0 +1,110 @@
+"""The passes of light, each as Cycles splits it, and their sum."""
+
+from .. import parts
+from .catalogue import case
+from .nodes import shader
+from .stages import ball, camera, floor, lamp, sky
+
+_LIGHT = tuple(f"{kind} {part}" for kind in ("Diffuse", "Glossy", "Transmission") for part in ("Direct", "Indirect", "Color"))
+
+
+def _still_life(scene):
+    """One thing for every pass, with reflections of one in the other."""
+    floor(scene)
+    ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.3, 0.2)), radius=0.6, location=(-1.3, 0.3, 0.6))
+    steel = shader("ShaderNodeBsdfGlossy", {"distribution": "GGX"}, Color=(0.8, 0.8, 0.6), Roughness=0.4)
+    ball(scene, steel, radius=0.6, location=(0, 0.3, 0.6))
+    leaf = shader("ShaderNodeBsdfTranslucent", Color=(0.4, 0.8, 0.3))
+    parts.place(scene, "Leaf", parts.plane_mesh("Leaf", 0.8), leaf, (0.6, -0.8, 0.3), rotation=(1.2, 0, 0.2))
+    glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=2.0)
+    parts.place(scene, "Glow", parts.cube_mesh("Glow", 0.3), glow, (-0.6, -0.8, 0.3), rotation=(0.3, 0.4, 0))
+    clear = shader("ShaderNodeBsdfRefraction", {"distribution": "GGX"}, Color=(0.8, 0.9, 1.0), Roughness=0.3, IOR=1.3)
+    ball(scene, clear, radius=0.6, location=(1.3, 0.3, 0.6))
+    lamp(scene)
+    sky(scene, strength=0.8)
+    camera(scene, (0, -4.5, 1.5), (0, 0, 0.6))
+
+
+def _room(scene, surface):
+    """Bright walls and a ball of one closure fill the view, so that light between them is strong in every block."""
+    for name, place, turn in (
+        ("Floor", (0, 0, 0), (0, 0, 0)),
+        ("Back", (0, 2, 0), (1.5708, 0, 0)),
+        ("Left", (-2, 0, 0), (0, 1.5708, 0)),
+        ("Right", (2, 0, 0), (0, -1.5708, 0)),
+    ):
+        parts.place(scene, name, parts.plane_mesh("Wall", 8.0), surface, place, rotation=turn)
+    ball(scene, surface, radius=0.7, location=(0.2, 0.6, 0.7))
+    parts.add_light(scene, "Lamp", "AREA", 150.0, (0, -1.5, 3.5), (0, 0.5, 0.5), size=2.0)
+    camera(scene, (0, -3.5, 1.5), (0, 0, 0.9))
+
+
+@case(passes=_LIGHT[:3])
+def pass_diffuse(scene):
+    _room(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)))
+
+
+@case(passes=_LIGHT[3:6])
+def pass_glossy(scene):
+    _room(scene, shader("ShaderNodeBsdfGlossy", {"distribution": "GGX"}, Color=(0.8, 0.7, 0.6), Roughness=0.6))
+
+
+@case(passes=_LIGHT[6:])
+def pass_transmission(scene):
+    """The room through a wide rough pane, which the lamp also lights from behind."""
+    _room(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)))
+    clear = shader("ShaderNodeBsdfRefraction", {"distribution": "GGX"}, Color=(0.8, 0.9, 1.0), Roughness=0.4, IOR=1.3)
+    parts.place(scene, "Pane", parts.plane_mesh("Pane", 4.0), clear, (0, -1.9, 1.2), rotation=(1.5708, 0, 0))
+
+
+@case(passes=_LIGHT)
+def pass_translucent(scene):
+    """In which of the passes the light through a leaf is counted."""
+    _room(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)))
+    leaf = shader("ShaderNodeBsdfTranslucent", Color=(0.4, 0.8, 0.3))
+    parts.place(scene, "Leaf", parts.plane_mesh("Leaf", 3.0), leaf, (0, -1.0, 1.2), rotation=(1.4, 0, 0))
+
+
+@case(passes=("Emission",))
+def pass_emission(scene):
+    _still_life(scene)
+
+
+@case(passes=("Environment",))
+def pass_environment(scene):
+    _still_life(scene)
+
+
+@case(passes=("Ambient Occlusion",))
+def pass_ambient_occlusion(scene):
+    _still_life(scene)
+    scene.world.light_settings.distance = 1.0
+
+
+@case("LOBES", passes=_LIGHT)
+def pass_light_principled(scene):
+    """One node that feeds all of them."""
+    floor(scene)
+    mixed = shader(
+        "ShaderNodeBsdfPrincipled",
+        Base_Color=(0.8, 0.4, 0.3),
+        Roughness=0.4,
+        Transmission_Weight=0.3,
+        Coat_Weight=0.5,
+        Metallic=0.2,
+    )
+    ball(scene, mixed)
+    lamp(scene)
+    sky(scene)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
+
+
+@case(passes=("Combined", *_LIGHT, "Emission", "Environment"), sum_of_passes=True, quick=True)
+def pass_sum(scene):
+    """Ours alone: the passes put together again are the picture."""
+    _still_life(scene)
+
+
+@case(passes=("Denoising Albedo", "Denoising Normal"))
+def pass_denoising(scene):
+    _still_life(scene)

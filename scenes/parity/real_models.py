@@ -1,0 +1,92 @@
+"""Real material: scanned and modelled meshes, glTF, Blender's start-up file and templates."""
+
+import math
+import os
+from pathlib import Path
+
+import bpy
+from mathutils import Matrix, Vector
+
+from .. import parts
+from .catalogue import case, variants
+from .nodes import principled
+from .stages import camera, floor, lamp, sky
+
+# Beside the project, and not part of it.
+MODELS = Path(__file__).resolve().parents[3] / "shared" / "models"
+_NAMES = ("stanford-bunny", "spot", "teapot", "fandisk", "rocker-arm", "cheburashka")
+
+
+def _with_model(name):
+    def needs():
+        return "" if (MODELS / f"{name}.obj").exists() else f"the folder of models has no {name}.obj here"
+
+    return needs
+
+
+@variants("LOBES", values={name: (name, {"needs": _with_model(name)}) for name in _NAMES})
+def real_model(scene, name):
+    bpy.ops.wm.obj_import(filepath=str(MODELS / f"{name}.obj"))
+    _show(scene, [thing for thing in scene.objects if thing.type == "MESH"])
+
+
+def _show(scene, things):
+    """The things on a floor in a small studio, brought to a height of about 2."""
+    bpy.context.view_layer.update()
+    corners = [thing.matrix_world @ Vector(corner) for thing in things for corner in thing.bound_box]
+    low, high = (Vector(pick(corner[axis] for corner in corners) for axis in range(3)) for pick in (min, max))
+    scale = 2.0 / max(high - low)
+    middle = (low + high) / 2
+    for thing in things:
+        thing.matrix_world.translation -= Vector((middle.x, middle.y, low.z))
+        thing.matrix_world = Matrix.Scale(scale, 4) @ thing.matrix_world
+        if not any(slot.material for slot in thing.material_slots):
+            thing.data.materials.clear()
+            thing.data.materials.append(principled(Base_Color=(0.7, 0.5, 0.35), Roughness=0.4))
+    floor(scene)
+    lamp(scene)
+    sky(scene)
+    camera(scene, (0.6, -4.2, 2.2), (0, 0, 0.8))
+
+
+def _with_gltf():
+    try:
+        bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
+    except Exception as error:
+        return f"the glTF add-on does not start here: {error}"
+    return "" if hasattr(bpy.types, "EXPORT_SCENE_OT_gltf") else "the glTF add-on is not here"
+
+
+@case("LOBES", needs=_with_gltf)
+def real_gltf(scene):
+    """Written and read back: what glTF makes of materials, lamps and camera."""
+    for index in range(4):
+        surface = principled(Base_Color=(0.8, 0.3 + 0.15 * index, 0.2), Metallic=float(index % 2), Roughness=0.2 + 0.2 * index)
+        parts.place(scene, f"Ball {index}", parts.sphere_mesh("Ball", 48, 24), surface, (1.1 * index - 1.6, 0, 0.5), 0.5)
+    floor(scene)
+    parts.add_light(scene, "Sun", "SUN", 3.0, (1, -1, 2))
+    parts.add_light(scene, "Point", "POINT", 100.0, (-1, -2, 2), shadow_soft_size=0.2)
+    camera(scene)
+    path = os.path.join(bpy.app.tempdir, "round_trip.glb")
+    bpy.ops.export_scene.gltf(filepath=path, export_cameras=True, export_lights=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
+    bpy.ops.import_scene.gltf(filepath=path)
+    scene = bpy.context.scene
+    scene.camera = next(thing for thing in scene.objects if thing.type == "CAMERA")
+    sky(scene)
+
+
+@variants(
+    "LOBES",
+    values={name.lower(): name for name in ("General", "Sculpting", "VFX", "Video_Editing", "2D_Animation", "Storyboarding")},
+    may_differ=True,
+    bounces=4,
+)
+def real_startup(scene, template):
+    """What Blender opens with, untouched but for a camera where there is none."""
+    bpy.ops.wm.read_homefile(app_template="" if template == "General" else template, use_factory_startup=True)
+    scene = bpy.context.scene
+    if scene.camera is None:
+        eye = parts.add_camera(scene, (4, -5, 3), (0, 0, 0))
+        eye.data.lens, eye.rotation_euler.x = 35.0, math.radians(65)

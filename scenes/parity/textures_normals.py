@@ -1,0 +1,146 @@
+"""Surfaces that lean without bending: normal maps, bump, and true displacement."""
+
+import bmesh
+import numpy as np
+
+from .. import parts
+from . import images
+from .catalogue import case, variants
+from .nodes import material
+from .stages import add_uv, camera, card, lamp, sky, studio
+
+
+def _waves(space):
+    """Directions of gentle waves, coded as colours."""
+    x, y = np.meshgrid(np.linspace(0, 1, 32), np.linspace(0, 1, 32))
+    direction = np.stack([0.5 * np.sin(9 * x), 0.4 * np.cos(7 * y), np.ones_like(x)], axis=-1)
+    if space == "BLENDER":
+        direction[..., 1:] *= -1.0
+    direction /= np.linalg.norm(direction, axis=-1, keepdims=True)
+    pixels = np.ones((32, 32, 4))
+    pixels[..., :3] = 0.5 + 0.5 * direction
+    return images.image("Waves", pixels, "Non-Color")
+
+
+def _leaning(space, strength=1.0):
+    def build(nodes):
+        waves = _waves("BLENDER" if space.startswith("BLENDER") else space)
+        picture = nodes.add("ShaderNodeTexImage", props={"image": waves})
+        lean = nodes.add("ShaderNodeNormalMap", props={"space": space}, Strength=strength, Color=picture.outputs["Color"])
+        return nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6), Normal=lean)
+
+    return material(build)
+
+
+def _tilted_card(scene, surface):
+    thing = card(scene, surface)
+    thing.rotation_euler = (0.15, 0.1, 0.3)
+    parts.add_light(scene, "Sun", "SUN", 2.0, (1, -0.5, 1.2), angle=0.1)
+    return thing
+
+
+@variants(
+    values={
+        "tangent": ("TANGENT", 1.0),
+        "tangent_strong": ("TANGENT", 2.0),
+        "tangent_weak": ("TANGENT", 0.4),
+        "object": ("OBJECT", 1.0),
+        "world": ("WORLD", 1.0),
+        "blender_object": ("BLENDER_OBJECT", 1.0),
+        "blender_world": ("BLENDER_WORLD", 1.0),
+    }
+)
+def normal_map(scene, value):
+    _tilted_card(scene, _leaning(*value))
+
+
+@case()
+def normal_map_on_ball(scene):
+    """Tangents of a map that turns and shrinks over a round mesh."""
+    thing = studio(scene, _leaning("TANGENT"))
+    add_uv(thing.data)
+
+
+@case()
+def normal_map_in_gloss(scene):
+    def build(nodes):
+        picture = nodes.add("ShaderNodeTexImage", props={"image": _waves("TANGENT")})
+        lean = nodes.add("ShaderNodeNormalMap", Color=picture.outputs["Color"])
+        return nodes.add(
+            "ShaderNodeBsdfGlossy", props={"distribution": "GGX"}, Color=(0.8, 0.8, 0.8), Roughness=0.3, Normal=lean
+        )
+
+    _tilted_card(scene, material(build))
+
+
+def _heights():
+    x, y = np.meshgrid(np.linspace(0, 1, 64), np.linspace(0, 1, 64))
+    pixels = np.ones((64, 64, 4))
+    pixels[..., :3] = (0.5 + 0.25 * np.sin(9 * x) + 0.25 * np.cos(8 * y))[..., None]
+    return images.image("Heights", pixels, "Non-Color")
+
+
+def _bump(strength=1.0, distance=0.3, invert=False, kind="ShaderNodeBsdfDiffuse"):
+    def build(nodes):
+        picture = nodes.add("ShaderNodeTexImage", props={"image": _heights(), "interpolation": "Cubic"})
+        bump = nodes.add(
+            "ShaderNodeBump", props={"invert": invert}, Strength=strength, Distance=distance, Height=picture.outputs["Color"]
+        )
+        return nodes.add(kind, Color=(0.8, 0.7, 0.6), Normal=bump)
+
+    return material(build)
+
+
+@variants(values={"plain": {}, "weak": {"strength": 0.3}, "inverted": {"invert": True}})
+def bump(scene, settings):
+    _tilted_card(scene, _bump(**settings))
+
+
+@case()
+def bump_scaled_object(scene):
+    thing = _tilted_card(scene, _bump())
+    thing.scale = (1.0, 1.0, 0.4)
+
+
+def _displace(surface, method):
+    owner = surface if "displacement_method" in surface.bl_rna.properties else surface.cycles
+    owner.displacement_method = method
+
+
+@variants(values={"true": "DISPLACEMENT", "both": "BOTH", "bump": "BUMP"})
+def displacement(scene, method):
+    def build(nodes):
+        picture = nodes.add("ShaderNodeTexImage", props={"image": _heights()})
+        height = nodes.add("ShaderNodeDisplacement", Height=picture.outputs["Color"], Midlevel=0.5, Scale=0.4)
+        return nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)), height
+
+    surface = material(build)
+    _displace(surface, method)
+    mesh = _grid(48, 3.0)
+    parts.place(scene, "Grid", mesh, surface, rotation=(0.15, 0.1, 0.3))
+    lamp(scene)
+    sky(scene)
+    camera(scene, (0.2, -2.4, 2.6), (0, 0.05, 0))
+
+
+def _grid(count, size):
+    def make(bm):
+        bmesh.ops.create_grid(bm, x_segments=count, y_segments=count, size=size / 2)
+
+    mesh = parts.mesh_from_bmesh("Grid", make, smooth=True)
+    add_uv(mesh)
+    return mesh
+
+
+@case()
+def smooth_and_sharp(scene):
+    """Faces of both kinds in one mesh: the normals of the corners decide."""
+    mesh = parts.cone_mesh("Cylinder", 0.9, 0.5, 1.8, 12)
+    for face in mesh.polygons:
+        face.use_smooth = len(face.vertices) == 4
+    parts.place(
+        scene, "Cylinder", mesh, material(lambda nodes: nodes.add("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7))), (0, 0, 0.9)
+    )
+    lamp(scene)
+    sky(scene)
+    camera(scene)
