@@ -58,15 +58,70 @@ class Raw:
         value = tuple(value) * 3 if len(value) == 1 else tuple(value)
         return abi.Parameter((ctypes.c_float * 3)(*value), -1)
 
-    def lobe(self, kind=abi.LobeKind.LAMBERT, color=0.5, roughness=0.1, ior=1.5, shininess=10.0):
+    def reference(self, node):
+        """The result of a node in place of a value."""
+        return abi.Parameter((ctypes.c_float * 3)(), node)
+
+    def lobe(self, kind=abi.LobeKind.LAMBERT, principled=None, **fields):
         p = self.parameter
-        return abi.Lobe(kind=kind, color=p(color), roughness=p(roughness), ior=p(ior), shininess=p(shininess))
+        values = {"weight": 1.0, "color": 0.5, "roughness": 0.1, "ior": 1.5, "shininess": 10.0, "edge": 1.0}
+        values |= {"anisotropy": 0.0, "rotation": 0.0, "normal": 0.0, "tangent": 0.0, **fields}
+        lobe = abi.Lobe(kind=kind, **{name: p(value) for name, value in values.items()})
+        if principled is not None:
+            lobe.principled = ctypes.pointer(self.keep(principled))
+        return lobe
+
+    def principled(self, **fields):
+        """All inputs 0 but those that must not be, and those given."""
+        names = [name for name, kind in abi.Principled._fields_ if kind is abi.Parameter]
+        values = dict.fromkeys(names, 0.0) | {"ior": 1.5, "coat_ior": 1.5, **fields}
+        return abi.Principled(rules=abi.Rules.BLENDER_45, **{name: self.parameter(value) for name, value in values.items()})
+
+    def node(self, kind=abi.NodeKind.COORDINATE, inputs=(), **fields):
+        """inputs: parameters; what is not given is 0."""
+        inputs = [*inputs, *(self.parameter(0.0) for _ in range(5 - len(inputs)))]
+        return abi.Node(kind=kind, inputs=(abi.Parameter * 5)(*inputs), matrix=(ctypes.c_float * 12)(*IDENTITY), **fields)
+
+    def nodes(self, *nodes):
+        """The fields of an owner of these nodes."""
+        return {"nodes": self.keep((abi.Node * max(len(nodes), 1))(*nodes)), "node_count": len(nodes)}
+
+    def image(self, width=2, height=2, channels=4, name=b"Picture", **fields):
+        texels = self.keep(np.zeros(width * height * channels, np.float32))
+        image = abi.Image(
+            name=name,
+            texels=address(texels),
+            width=width,
+            height=height,
+            channels=channels,
+            matrix=(ctypes.c_float * 9)(1, 0, 0, 0, 1, 0, 0, 0, 1),
+        )
+        for field, value in fields.items():
+            setattr(image, field, value)
+        return image
+
+    def attribute(self, values, name=b"Map", domain=abi.Domain.VERTEX):
+        values = self.keep(np.ascontiguousarray(values, np.float32))
+        return abi.Attribute(name=name, values=address(values), domain=domain, channels=values.shape[1])
+
+    def attributes(self, *attributes):
+        """The fields of a mesh with these attributes."""
+        array = self.keep((abi.Attribute * max(len(attributes), 1))(*attributes))
+        return {"attributes": array, "attribute_count": len(attributes)}
+
+    def world(self, radiance=1.0, **fields):
+        world = abi.World(radiance=self.parameter(radiance))
+        for field, value in fields.items():
+            setattr(world, field, value)
+        return world
 
     def material(self, lobes=None, name=b"Paint", **fields):
         lobes = [self.lobe()] if lobes is None else lobes
         array = self.keep((abi.Lobe * max(len(lobes), 1))(*lobes))
         p = self.parameter
-        material = abi.Material(name=name, lobes=array, lobe_count=len(lobes), emission=p(0.0), opacity=p(1.0), ambient=p(0.0))
+        parameters = ("emission", "transmittance", "holdout", "ambient", "displacement", "normal")
+        values = {parameter: p(0.0) for parameter in parameters}
+        material = abi.Material(name=name, lobes=array, lobe_count=len(lobes), **values)
         for field, value in fields.items():
             setattr(material, field, value)
         return material
@@ -119,13 +174,16 @@ class Raw:
             window=(-0.5, 0.5, -0.5, 0.5),
             clip_start=0.1,
             clip_end=100.0,
+            aperture_ratio=1.0,
         )
         for field, value in fields.items():
             setattr(camera, field, value)
         return camera
 
     def settings(self, **fields):
-        settings = abi.Settings(samples=4, max_bounces=2, filter_width=1.0, passes=1, threads=1)
+        settings = abi.Settings(
+            samples=4, max_bounces=2, filter_width=1.0, passes=1, threads=1, transparent_bounces=8, transparent_shadows=8
+        )
         for field, value in fields.items():
             setattr(settings, field, value)
         return settings

@@ -44,6 +44,8 @@ def test_wrong_numbers_in_instances(raw):
     refused(raw.add_instances(scene, [raw.instance(first_slot=5)]), "Thing", "5")
     refused(raw.add_instances(scene, [raw.instance(first_slot=2**32 - 1, slot_count=2)]), "Thing", "slot")
     refused(raw.add_instances(scene, [raw.instance(name=6)]), "name")
+    refused(raw.add_instances(scene, [raw.instance(hidden_from=64)]), "Thing", "hidden_from", "64")
+    refused(raw.add_instances(scene, [raw.instance(flags=2)]), "Thing", "flags", "2")
     refused(raw.add_instances(scene, [raw.instance()], names=b"endless"), "name")
 
 
@@ -107,11 +109,115 @@ def test_messages_are_cut_at_the_given_size(raw):
 
 def test_wrong_materials(raw):
     scene = raw.scene()
-    refused(add(raw, scene, "material", raw.material(lobes=[raw.lobe(kind=6)])), "material 'Paint'", "6")
-    refused(add(raw, scene, "material", raw.material(lobes=[raw.lobe()] * 9)), "material 'Paint'", "9")
-    textured = raw.lobe()
-    textured.color.texture = 3
-    refused(add(raw, scene, "material", raw.material(lobes=[textured])), "material 'Paint'", "3")
+
+    def refused_with(lobe, *words):
+        refused(add(raw, scene, "material", raw.material(lobes=[lobe])), "material 'Paint'", *words)
+
+    refused_with(raw.lobe(kind=14), "kind", "14")
+    refused(add(raw, scene, "material", raw.material(lobes=[raw.lobe()] * 65)), "material 'Paint'", "65")
+    refused_with(raw.lobe(kind=abi.LobeKind.PRINCIPLED), "rincipled")
+    for kind in (abi.LobeKind.GLOSSY, abi.LobeKind.GLASS, abi.LobeKind.SHEEN):
+        lobe = raw.lobe(kind=kind)
+        lobe.distribution = 4
+        refused_with(lobe, "distribution", "4")
+    for field, value in (("rules", 3), ("distribution", 4), ("option", 2)):
+        principled = raw.principled()
+        setattr(principled, field, value)
+        refused_with(raw.lobe(kind=abi.LobeKind.PRINCIPLED, principled=principled), field, str(value))
+
+
+def test_references_to_nodes_that_are_not_there(raw):
+    """Of a lobe, of a Principled lobe, of a material and of a world: each names its owner and the node."""
+    scene = raw.scene()
+    one = raw.nodes(raw.node())
+    lobe = raw.lobe()
+    lobe.color = raw.reference(3)
+    refused(add(raw, scene, "material", raw.material(lobes=[lobe], **one)), "material 'Paint'", "node 3")
+    principled = raw.principled()
+    principled.coat_tint = raw.reference(1)
+    lobe = raw.lobe(kind=abi.LobeKind.PRINCIPLED, principled=principled)
+    refused(add(raw, scene, "material", raw.material(lobes=[lobe], **one)), "material 'Paint'", "node 1")
+    for field in ("emission", "transmittance", "holdout", "ambient", "displacement", "normal"):
+        for node in (1, -2):
+            material = raw.material(**{field: raw.reference(node)}, **one)
+            refused(add(raw, scene, "material", material), "material 'Paint'", field, str(node))
+    world = raw.world(radiance=0.0, **one)
+    world.radiance = raw.reference(7)
+    refused(raw.call("lancer_scene_set_world", scene, ctypes.byref(world)), "world", "node 7")
+    # The same with a node that is there is no error.
+    assert add(raw, scene, "material", raw.material(emission=raw.reference(0), **one))[0] == Status.OK
+
+
+def test_wrong_nodes(raw):
+    scene = raw.scene()
+    kinds = abi.NodeKind
+
+    def refused_with(*nodes, words):
+        result = add(raw, scene, "material", raw.material(**raw.nodes(*nodes)))
+        refused(result, "material 'Paint'", f"node {len(nodes) - 1}", *words)
+
+    plain = raw.node()
+    refused_with(raw.node(kind=22), words=["kind", "22"])
+    for kind, options in (
+        (kinds.COORDINATE, 13),
+        (kinds.MATH, 41),
+        (kinds.VECTOR_MATH, 24),
+        (kinds.MIX, 19),
+        (kinds.MAPPING, 4),
+        (kinds.SEPARATE, 3),
+    ):
+        refused_with(raw.node(kind=kind, option=options), words=["option", str(options)])
+    # A node sees only those before it.
+    for node in (0, 1, 2**31 - 1, -2):
+        refused_with(raw.node(kind=kinds.GAMMA, inputs=[raw.reference(node)]), words=[str(node)])
+    refused_with(plain, raw.node(kind=kinds.BUMP, first=2), words=["first", "2"])
+    refused_with(raw.node(kind=kinds.IMAGE, image_count=1), words=["image", "0 images"])
+    assert raw.call("lancer_scene_add_image", scene, ctypes.byref(raw.image(kind=abi.TexelKind.FLOAT)))[0] == Status.OK
+    refused_with(raw.node(kind=kinds.IMAGE, image=2**32 - 1, image_count=2), words=["1 images"])
+    for value in (NAN, INF):
+        refused_with(raw.node(kind=kinds.GAMMA, inputs=[raw.parameter(value)]), words=["is", "inf" if value == INF else "nan"])
+        wild = raw.node(kind=kinds.TRANSFORM)
+        wild.matrix[5] = value
+        refused_with(wild, words=["matrix"])
+    refused(add(raw, scene, "material", raw.material(nodes=None, node_count=1)), "material 'Paint'", "nodes", "NULL")
+    refused(add(raw, scene, "material", raw.material(node_count=5000)), "material 'Paint'", "5000", "4096")
+
+
+@pytest.mark.parametrize(
+    "field, value",
+    [("width", 0), ("height", 0), ("width", 2**31), ("channels", 2), ("channels", 5), ("kind", 3), ("transfer", 2)]
+    + [("alpha", 4), ("texels", None)],
+)
+def test_wrong_images(raw, field, value):
+    scene = raw.scene()
+    image = raw.image()
+    setattr(image, field, value)
+    result = raw.call("lancer_scene_add_image", scene, ctypes.byref(image))
+    refused(result, "image 'Picture'", field, *([] if value is None else [str(value)]))
+
+
+def test_a_picture_with_a_wild_matrix(raw):
+    image = raw.image()
+    image.matrix[4] = NAN
+    refused(raw.call("lancer_scene_add_image", raw.scene(), ctypes.byref(image)), "image 'Picture'", "matrix")
+
+
+def test_wrong_attributes(raw):
+    scene = raw.scene()
+    good = np.zeros((4, 2))
+
+    def refused_with(word, **fields):
+        attribute = raw.attribute(good)
+        for field, value in fields.items():
+            setattr(attribute, field, value)
+        refused(add(raw, scene, "mesh", raw.mesh(**raw.attributes(attribute))), "mesh 'Cube'", word)
+
+    refused_with("domain", domain=3)
+    refused_with("channels", channels=0)
+    refused_with("channels", channels=5)
+    refused_with("values", values=None)
+    refused(add(raw, scene, "mesh", raw.mesh(attribute_count=1)), "mesh 'Cube'", "attributes")
+    assert add(raw, scene, "mesh", raw.mesh(**raw.attributes(raw.attribute(good))))[0] == Status.OK
 
 
 WORDS = {"color": "colour", "roughness": "roughness", "ior": "IOR", "shininess": "shininess"}
@@ -166,8 +272,9 @@ def test_wild_values_of_a_light_are_refused_or_replaced_with_a_message(raw, fiel
 def test_wild_worlds(raw):
     for value in (NAN, INF, -1.0):
         scene = raw.scene()
-        radiance = np.array([value, 1, 1], np.float32)
-        result = raw.call("lancer_scene_set_world", scene, radiance.ctypes.data)
+        world = raw.world()
+        world.radiance.value[0] = value
+        result = raw.call("lancer_scene_set_world", scene, ctypes.byref(world))
         if result[0] == Status.OK:
             assert raw.commit(scene)[0] == Status.OK
             assert "orld" in raw.messages(scene)
@@ -178,7 +285,7 @@ def test_wild_worlds(raw):
 # ---- cameras and settings ----
 
 WRONG_CAMERAS = {
-    "kind": 2,
+    "kind": 8,
     "width": 0,
     "height": 0,
     "region_width": 0,
@@ -190,13 +297,34 @@ WRONG_CAMERAS = {
     "clip_end": 0.05,
     "lens_radius": -1.0,
     "matrix": (0,) * 12,
+    "aperture_rotation": NAN,
 }
+# What each kind of panorama cannot be, by the place of the number.
+WRONG_PANORAMAS = [
+    (abi.CameraKind.EQUIRECTANGULAR, (0.0, 0.0, NAN, 1.0)),
+    (abi.CameraKind.FISHEYE_EQUIDISTANT, (0.0,)),
+    (abi.CameraKind.FISHEYE_EQUISOLID, (0.0, 3.0, 36.0, 24.0)),
+    (abi.CameraKind.FISHEYE_POLYNOMIAL, (3.0, 0.0, 24.0)),
+    (abi.CameraKind.CYLINDRICAL, (-1.0, 1.0, -1.0, 1.0, 0.0)),
+]
+
+
+@pytest.mark.parametrize("kind, numbers", WRONG_PANORAMAS)
+def test_wrong_panoramas(raw, kind, numbers):
+    camera = raw.camera(kind=kind, panorama=(*numbers, *(0.0,) * (8 - len(numbers))), window=(0, 1, 0, 1))
+    refused(raw.create_session(raw.committed(), camera=camera), "camera")
 
 
 @pytest.mark.parametrize("field", WRONG_CAMERAS)
 def test_wrong_cameras(raw, field):
     camera = raw.camera(**{field: WRONG_CAMERAS[field] if field != "matrix" else (ctypes.c_double * 12)()})
     refused(raw.create_session(raw.committed(), camera=camera), "camera")
+
+
+@pytest.mark.parametrize("ratio", [0.0, -1.0, NAN, INF])
+def test_the_aperture_must_have_a_ratio_where_a_lens_is(raw, ratio):
+    camera = raw.camera(lens_radius=0.1, focal_distance=1.0, aperture_ratio=ratio)
+    refused(raw.create_session(raw.committed(), camera=camera), "camera", "aperture ratio")
 
 
 def test_focal_distance_must_be_positive_where_a_lens_is(raw):
@@ -206,13 +334,22 @@ def test_focal_distance_must_be_positive_where_a_lens_is(raw):
         )
 
 
-@pytest.mark.parametrize("field, value", [("integrator", 3), ("pixel_filter", 2), ("features", 2), ("passes", 1 << 7)])
+@pytest.mark.parametrize("field, value", [("integrator", 3), ("pixel_filter", 2), ("features", 2), ("passes", 1 << 23)])
 def test_wrong_choices_in_settings(raw, field, value):
     refused(raw.create_session(raw.committed(), settings=raw.settings(**{field: value})), str(value))
 
 
-@pytest.mark.parametrize("field", ["filter_width", "contribution_threshold", "clamp_indirect"])
-@pytest.mark.parametrize("value", [NAN, -1.0])
+@pytest.mark.parametrize("field", ["max_bounces", "transparent_bounces", "transparent_shadows"])
+def test_too_many_bounces(raw, field):
+    refused(raw.create_session(raw.committed(), settings=raw.settings(**{field: 1025})), field, "1025", "1024")
+
+
+AMOUNTS = ("filter_width", "contribution_threshold", "clamp_indirect", "glass_roughness", "alpha_threshold")
+AMOUNTS += ("occlusion_distance", "mist_start", "mist_depth", "mist_falloff")
+
+
+@pytest.mark.parametrize("field", AMOUNTS)
+@pytest.mark.parametrize("value", [NAN, INF, -1.0])
 def test_wild_values_in_settings(raw, field, value):
     refused(raw.create_session(raw.committed(), settings=raw.settings(**{field: value})), field.split("_")[0])
 
@@ -242,6 +379,10 @@ def test_probes_check_their_numbers(raw):
     p = array.ctypes.data
     refused(raw.call("lancer_probe_bsdf", scene, 1, 1, p, p, p, p), "material", "1")
     refused(raw.call("lancer_probe_bsdf_sample", scene, 2**32 - 1, 1, p, p, p), "material", "4294967295")
+    lobes = ctypes.c_uint32()
+    refused(raw.call("lancer_probe_lobes", scene, 1, p, p, 1, ctypes.byref(lobes), None, None), "material", "1")
+    refused(raw.call("lancer_probe_node", scene, 0, 5, 1, p, p), "node", "5")
+    refused(raw.call("lancer_probe_node", scene, 4, 0, 1, p, p), "material", "4")
     refused(raw.call("lancer_probe_light", scene, 9, 1, p, p, p), "light", "9")
     refused(raw.call("lancer_probe_light_pdf", scene, 9, 1, p, p, p), "light", "9")
     refused(raw.call("lancer_probe_filter", 7, 1.0, 1, p, p), "filter", "7")

@@ -19,6 +19,7 @@ def calls_on_scenes(raw):
     array = raw.keep(np.zeros(64))
     hits = raw.keep((abi.Hit * 4)())
     pointer, out = array.ctypes.data, ctypes.addressof(hits)
+    count = ctypes.byref(raw.keep(ctypes.c_uint32()))
     handle = raw.keep(ctypes.c_uint64(0))
     camera, settings = raw.keep(raw.camera()), raw.keep(raw.settings())
     return {
@@ -26,7 +27,8 @@ def calls_on_scenes(raw):
         "lancer_scene_add_material": (ctypes.byref(raw.keep(raw.material())),),
         "lancer_scene_add_light": (ctypes.byref(raw.keep(raw.light())),),
         "lancer_scene_add_instances": (0, pointer, 0, pointer, b"\0", 1),
-        "lancer_scene_set_world": (pointer,),
+        "lancer_scene_add_image": (ctypes.byref(raw.keep(raw.image())),),
+        "lancer_scene_set_world": (ctypes.byref(raw.keep(raw.world())),),
         "lancer_scene_commit": (0, 1),
         "lancer_scene_wait": (0,),
         "lancer_scene_cancel": (),
@@ -36,6 +38,9 @@ def calls_on_scenes(raw):
         "lancer_probe_occluded": (1, pointer, pointer, pointer, pointer, out),
         "lancer_probe_bsdf": (0, 1, pointer, pointer, out, out),
         "lancer_probe_bsdf_sample": (0, 1, pointer, pointer, out),
+        "lancer_probe_lobes": (0, pointer, out, 1, count, None, None),
+        "lancer_probe_node": (0, 0, 1, pointer, out),
+        "lancer_probe_world": (1, pointer, out, out),
         "lancer_probe_light": (0, 1, pointer, pointer, out),
         "lancer_probe_light_pdf": (0, 1, pointer, pointer, out),
         "lancer_scene_destroy": (),
@@ -105,6 +110,7 @@ def test_null_pointers(raw):
         ("lancer_scene_add_material", scene, None),
         ("lancer_scene_add_light", scene, None),
         ("lancer_scene_add_instances", scene, 1, None, 0, None, b"\0", 1),
+        ("lancer_scene_add_image", scene, None),
         ("lancer_scene_set_world", scene, None),
         ("lancer_scene_messages", scene, None, 8, None),
         ("lancer_session_create", committed, None, ctypes.byref(raw.settings()), ctypes.byref(ctypes.c_uint64())),
@@ -118,6 +124,11 @@ def test_null_pointers(raw):
         ("lancer_probe_occluded", committed, 1, p, None, p, p, p),
         ("lancer_probe_bsdf", committed, 0, 1, p, None, p, p),
         ("lancer_probe_bsdf_sample", committed, 0, 1, p, p, None),
+        ("lancer_probe_lobes", committed, 0, None, p, 1, ctypes.byref(ctypes.c_uint32()), None, None),
+        ("lancer_probe_lobes", committed, 0, p, None, 1, ctypes.byref(ctypes.c_uint32()), None, None),
+        ("lancer_probe_lobes", committed, 0, p, p, 1, None, None, None),
+        ("lancer_probe_node", committed, 0, 0, 1, None, p),
+        ("lancer_probe_world", committed, 1, p, None, p),
         ("lancer_probe_microfacet", 1, None, p, p, p, p, p, p, p),
         ("lancer_probe_light", committed, 0, 1, None, p, p),
         ("lancer_probe_light_pdf", committed, 0, 1, p, p, None),
@@ -147,6 +158,6 @@ def null_lobes(raw):
 
 def test_a_name_may_be_null(raw):
     scene = raw.scene()
-    for kind in ("mesh", "material", "light"):
+    for kind in ("mesh", "image", "material", "light"):
         result = add(raw, scene, kind, getattr(raw, kind)(name=None))
         assert result[0] == Status.OK, result

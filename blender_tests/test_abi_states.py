@@ -25,12 +25,12 @@ def test_render_before_commit(raw):
 
 def test_fill_after_commit(raw):
     scene = raw.committed()
-    radiance = np.ones(3, np.float32)
     refused(raw.call("lancer_scene_add_mesh", scene, ctypes.byref(raw.mesh())))
     refused(raw.call("lancer_scene_add_material", scene, ctypes.byref(raw.material())))
     refused(raw.call("lancer_scene_add_light", scene, ctypes.byref(raw.light())))
     refused(raw.add_instances(scene, [raw.instance()]))
-    refused(raw.call("lancer_scene_set_world", scene, radiance.ctypes.data))
+    refused(raw.call("lancer_scene_add_image", scene, ctypes.byref(raw.image())))
+    refused(raw.call("lancer_scene_set_world", scene, ctypes.byref(raw.world())))
     refused(raw.call("lancer_scene_commit", scene, Accelerator.BVH, 1))
 
 

@@ -59,7 +59,7 @@ def test_orthographic(library):
     assert np.allclose(directions, -MATRIX[:3, 2], rtol=0, atol=LIMIT)
 
 
-@pytest.mark.parametrize("kind", CameraKind)
+@pytest.mark.parametrize("kind", [CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC])
 def test_thin_lens(library, kind):
     """Rays start all over the aperture's disk and meet where the pinhole's ray pierces the plane in focus."""
     radius, focus = 0.25, 5.0
@@ -82,6 +82,105 @@ def test_thin_lens(library, kind):
         # 1600 points of a grid tell areas to about the length of the rim in cells: 2 %.
         assert abs(np.mean(r < radius / 2) - 0.25) < 0.02
         assert np.linalg.norm((start - centre).mean(axis=0)) < 0.01 * radius
+
+
+def equirectangular(x, y, p):
+    latitude, longitude = p[0] + (p[1] - p[0]) * y, p[2] + (p[3] - p[2]) * x
+    return np.cos(latitude) * np.sin(longitude), np.sin(latitude), -np.cos(latitude) * np.cos(longitude)
+
+
+def tilted(theta, x, y):
+    """theta off the axis -z, towards (x, y)."""
+    r = np.hypot(x, y)
+    return x / r * np.sin(theta), y / r * np.sin(theta), -np.cos(theta)
+
+
+def equidistant(x, y, p):
+    return tilted(np.hypot(2 * x - 1, 2 * y - 1) * p[0] / 2, x - 0.5, y - 0.5)
+
+
+def equisolid(x, y, p):
+    x, y = (x - 0.5) * p[2], (y - 0.5) * p[3]
+    return tilted(2 * np.arcsin(np.hypot(x, y) / (2 * p[0])), x, y)
+
+
+def polynomial(x, y, p):
+    x, y = (x - 0.5) * p[1], (y - 0.5) * p[2]
+    return tilted(-np.polynomial.polynomial.polyval(np.hypot(x, y), p[3:]), x, y)
+
+
+def mirror_ball(x, y, _p):
+    """A ray along -z that a ball mirrors, turned around along the axis: the ball's middle shows what lies ahead."""
+    nx, ny = 2 * x - 1, 2 * y - 1
+    n = np.stack([nx, ny, np.sqrt(1 - nx**2 - ny**2)], axis=1)
+    mirrored = np.array([0.0, 0.0, -1.0]) + 2 * n[:, 2:] * n
+    return mirrored[:, 0], mirrored[:, 1], -mirrored[:, 2]
+
+
+def cylindrical(x, y, p):
+    longitude, height = p[0] + (p[1] - p[0]) * x, (p[2] + (p[3] - p[2]) * y) / p[4]
+    r = np.sqrt(1 + height**2)
+    return np.sin(longitude) / r, height / r, -np.cos(longitude) / r
+
+
+K = (-1.17e-05, -0.02, -3.35e-06, 3.1e-06, -2.6e-08)
+PANORAMAS = {
+    "equirectangular": (CameraKind.EQUIRECTANGULAR, equirectangular, (-1.2, 1.4, -3.0, 2.0)),
+    "equidistant": (CameraKind.FISHEYE_EQUIDISTANT, equidistant, (3.5,)),
+    "equisolid": (CameraKind.FISHEYE_EQUISOLID, equisolid, (10.5, 3.0, 36.0, 24.0)),
+    "polynomial": (CameraKind.FISHEYE_POLYNOMIAL, polynomial, (3.1, 36.0, 24.0, *K)),
+    "mirror ball": (CameraKind.MIRROR_BALL, mirror_ball, ()),
+    "cylindrical": (CameraKind.CYLINDRICAL, cylindrical, (-2.0, 2.5, -1.0, 3.0, 1.5)),
+}
+
+
+@pytest.mark.parametrize("name", PANORAMAS)
+def test_panorama(library, name):
+    """By the projection's formula, with the picture moved by its window; nothing beyond a round picture's rim."""
+    kind, formula, numbers = PANORAMAS[name]
+    numbers += (0.0,) * (8 - len(numbers))
+    raster = raster_points()
+    view = camera(kind=kind, panorama=numbers, window=(0.1, 1.1, -0.05, 0.95))
+    _, directions = rays(library, view, raster)
+    x, y = 0.1 + raster[:, 0] / 80, -0.05 + raster[:, 1] / 45
+    with np.errstate(invalid="ignore"):
+        local = np.stack(formula(x, y, numbers), axis=1)
+    shown = np.any(directions != 0.0, axis=1)
+    r = np.hypot(2 * x - 1, 2 * y - 1)
+    sensor = np.hypot((x - 0.5) * 36, (y - 0.5) * 24)
+    beyond = {
+        "equidistant": r > 1,
+        "equisolid": sensor > 21 * math.sin(3.0 / 4),
+        "polynomial": np.abs(np.polynomial.polynomial.polyval(sensor, K)) > 3.1 / 2,
+        "mirror ball": r > 1,
+    }.get(name, np.zeros(len(x), bool))
+    assert np.array_equal(shown, ~beyond) and shown.any()
+    assert np.allclose(directions[shown], (local @ MATRIX[:3, :3].T)[shown], rtol=0, atol=10 * LIMIT)
+
+
+def test_a_fisheye_leaves_its_corners_empty(library):
+    """No ray, no light, and solid black as in Cycles; the world within."""
+    view = Camera(kind=CameraKind.FISHEYE_EQUIDISTANT, panorama=(math.pi, *(0,) * 7), width=16, height=16, window=(0, 1, 0, 1))
+    snapshot = tiny_scenes.scene(world=(0.5, 0.5, 0.5), camera=view)
+    picture = tiny_scenes.render(snapshot)
+    assert picture[0, 0].tolist() == [0, 0, 0, 1] and picture[8, 8].tolist() == [0.5, 0.5, 0.5, 1]
+
+
+def test_blades(library):
+    """A lens of three blades turned by a quarter: its starts fill that triangle, narrowed by the ratio."""
+    view = camera(kind=CameraKind.ORTHOGRAPHIC, matrix=np.eye(4), lens_radius=0.5, focal_distance=3.0)
+    view = dataclasses.replace(view, aperture_blades=3, aperture_rotation=math.pi / 2, aperture_ratio=2.0)
+    u = midpoints(60, 60).astype(float)
+    origins, _ = rays(library, view, np.tile((40.0, 22.5), (len(u), 1)), u)
+    centre, _ = rays(library, dataclasses.replace(view, lens_radius=0.0), (40.0, 22.5))
+    p = (origins - centre)[:, :2] / 0.5 * [2.0, 1.0]
+    # Sides stand at half the radius; blades begin half a blade before the rotation: their middles are at rotation + k turn / 3.
+    normals = math.pi / 2 + 2 * math.pi / 3 * np.arange(3)
+    across = p @ np.stack([np.cos(normals), np.sin(normals)])
+    assert np.all(across <= 0.5 + 1e-6)
+    # Evenly: each side's triangle has a third, and the mean is the middle, as well as 3600 points of a grid know.
+    assert np.allclose(np.bincount(across.argmax(axis=1), minlength=3) / len(u), 1 / 3, atol=0.01)
+    assert np.linalg.norm(p.mean(axis=0)) < 0.01 and np.linalg.norm(p, axis=1).max() > 0.95
 
 
 def test_depth_is_along_the_axis_and_clipped(library):

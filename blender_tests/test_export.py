@@ -79,77 +79,6 @@ def test_exact_shapes_bring_no_mesh_and_shading_is_told(case):
     assert got["rows"]["SPHERE"]["shading"] == "AS_MESH"
 
 
-def test_own_material_models(case):
-    got = case("materials")
-    kd, ks = [0.5, 0.25, 0.125], [0.75, 0.5, 0.25]
-    for model, lobe in (("KD_KS", "BECKMANN"), ("PHONG", "PHONG"), ("BLINN_PHONG", "BLINN_PHONG")):
-        material = got[model]
-        assert material["count"] == 2 and set(material["lobes"]) == {"LAMBERT", lobe}
-        assert material["lobes"]["LAMBERT"][0] == near(kd) and material["lobes"][lobe][0] == near(ks)
-        assert material["ambient"] == near([0.5, 0.25, 0.0]) and material["opacity"] == 1.0 and not any(material["emission"])
-        _, roughness, ior, shininess = material["lobes"][lobe]
-        if model == "KD_KS":
-            assert (roughness, ior) == near((0.25, 1.75))
-        else:
-            assert shininess == near(40.0)
-
-
-def reflected_share(ior):
-    """Of diffuse light on a smooth surface: Fresnel's two polarisations over the cosines, by the midpoint rule."""
-    mu = (np.arange(20000) + 0.5) / 20000
-    below = np.sqrt(1.0 - (1.0 - mu**2) / ior**2)
-    s, p = (mu - ior * below) / (mu + ior * below), (ior * mu - below) / (ior * mu + below)
-    return float(np.mean(mu * (s**2 + p**2)))
-
-
-def test_principled_specular_and_diffuse(case):
-    """From 4.0 the level scales the reflectance of the IOR and the coat shades what is below; before, it is 0.08 level."""
-    got = case("materials")
-    layered = got["version"] >= [4, 0]
-    for name, level, ior in (("plain", 0.5, 1.5), ("level", 0.25, 1.75)):
-        f0 = 2 * level * ((ior - 1) / (ior + 1)) ** 2 if layered else 0.08 * level
-        wanted_ior = (1 + math.sqrt(f0)) / (1 - math.sqrt(f0))
-        keeps = 1 - reflected_share(wanted_ior) if layered else 1.0
-        assert got[name]["count"] == 2 and got[name]["opacity"] == 1.0
-        color, alpha, found, _ = got[name]["lobes"]["BECKMANN"]
-        # Blender's roughness is the square root of alpha.
-        assert color == near([1, 1, 1]) and alpha == near(0.25) and found == near(wanted_ior)
-        assert got[name]["lobes"]["LAMBERT"][0] == near([0.75 * keeps, 0.5 * keeps, 0.25 * keeps])
-
-
-def test_principled_metal(case):
-    got = case("materials")
-    base = [0.75, 0.5, 0.25]
-    assert got["metal"]["count"] == 1 and got["metal"]["lobes"]["BECKMANN"][:3] == [base, near(0.0625), math.inf]
-    assert got["polished metal"]["count"] == 1 and got["polished metal"]["lobes"]["MIRROR"][0] == near(base)
-    # Half a metal is half of each: the Lambert part is half that of the plain one; two Beckmann lobes differ in IOR.
-    assert got["half metal"]["count"] == 3
-    assert got["half metal"]["lobes"]["LAMBERT"][0] == near([0.5 * c for c in got["plain"]["lobes"]["LAMBERT"][0]])
-
-
-def test_principled_glass(case):
-    """Colour is for what is refracted, from 4.0 its root at each surface; a coat gives white back to the reflection."""
-    got = case("materials")
-    glass = got["glass"]
-    assert glass["count"] == 1
-    assert glass["lobes"]["DIELECTRIC"][0] == near([1, 1, 1]) and glass["lobes"]["DIELECTRIC"][2] == near(1.25)
-    tint = 0.5 if got["version"] >= [4, 0] else 0.25
-    lobes = got["coloured glass"]["lobes"]
-    assert set(lobes) == {"DIELECTRIC", "BECKMANN"}
-    assert lobes["DIELECTRIC"][0] == near([tint] * 3) and lobes["BECKMANN"][0] == near([1 - tint] * 3)
-    assert lobes["BECKMANN"][1] == 0.0 and lobes["BECKMANN"][2] == near(1.25)
-
-
-def test_principled_alpha_and_emission(case):
-    got = case("materials")
-    veil, lamp = got["veil"], got["lamp"]
-    # The core scales lobes by opacity, so they arrive unscaled.
-    assert veil["opacity"] == near(0.25) and veil["count"] == 1
-    assert veil["lobes"]["LAMBERT"][0] == near([0.75, 0.5, 0.25])
-    assert lamp["emission"] == near([3.0, 1.5, 0.75]) and lamp["opacity"] == 1.0
-    assert not any(got["plain"]["emission"])
-
-
 def test_normals(case):
     meshes = case("attributes")
     left, right = [-H, 0, H], [H, 0, H]
@@ -196,7 +125,9 @@ def test_light_power_in_physical_units(case):
     """Ten watts. Point and spot: W/sr of the whole sphere; sun: W/m^2; area: W/(m^2 sr) of a cosine emitter's one side."""
     got = case("lights")
     tint = np.array([1.0, 0.5, 0.25])
-    for kind, factor in (("POINT", 1 / (4 * math.pi)), ("SPOT", 1 / (4 * math.pi)), ("SUN", 1.0)):
+    # Before 4.0 the sun loses the mean cosine of its disk, of Blender's default angle.
+    sun = 1.0 if got["version"] >= [4, 0] else 0.5 * (1.0 + math.cos(0.5 * 0.00918043))
+    for kind, factor in (("POINT", 1 / (4 * math.pi)), ("SPOT", 1 / (4 * math.pi)), ("SUN", sun)):
         assert got[kind]["kind"] == kind and got[kind]["emission"] == near(list(10 * factor * tint)), kind
     # The sides of 2 and 0.5 m are scaled by 3; before 4.0 Blender divides by 4 where physics wants pi.
     share = math.pi if got["version"] >= [4, 0] else 4.0

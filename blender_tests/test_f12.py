@@ -1,5 +1,7 @@
 """F12 in the bpy module of this Python and in Debian's Blender 3.4.1, through the registered engine."""
 
+import math
+
 import blenders
 import pytest
 from blenders import MODULE, PROGRAM
@@ -52,6 +54,21 @@ def test_aspect_fit_and_shift(case):
     assert got["portrait"][:2] == near([side, side], abs=0.5) and got["landscape"][:2] == near([side, side], abs=0.5)
     assert got["shift"][2] == near(got["square"][2] - 16, abs=0.5) and got["shift"][3] == near(got["square"][3], abs=0.5)
     assert got["scaled camera"] == near(got["square"], abs=1e-3)
+
+
+@pytest.mark.parametrize("width", [1.5, 3.0])
+def test_the_smooth_filter_reaches_its_width_to_each_side(case, width):
+    """The share of the four-term Blackman-Harris window that lies across the edge, as Cycles has it."""
+
+    def below(x):
+        # Integral of the window over its left part, x in 0 ... 1.
+        x = min(max(x, 0.0), 1.0)
+        terms = (-0.48829, 0.14128, -0.01168)
+        return 0.35875 * x + sum(a * math.sin(2 * math.pi * k * x) / (2 * math.pi * k) for k, a in enumerate(terms, 1))
+
+    wanted = [below(0.5 - (3.5 - column) / (2 * width)) / 0.35875 for column in range(4)]
+    # Of 64 rows of 256 samples each at most half a standard deviation comes from one sample; four of the mean are allowed.
+    assert case("filter_reach", width) == pytest.approx(wanted, abs=4 * 0.5 / math.sqrt(64 * 256))
 
 
 def test_film_transparent(case):

@@ -139,7 +139,7 @@ def test_no_lobe_makes_light(library, name, lobe):
 
 def test_opacity_lets_the_rest_pass(library):
     """A black veil of opacity 0.25 before a white sky shows 0.75 of it; alpha is 1 as the sky is opaque."""
-    veil = Material("veil", lobes=(), opacity=0.25)
+    veil = tiny_scenes.veiled(Material("veil", lobes=()), 0.25)
     snapshot = tiny_scenes.scene([tiny_scenes.plane()], [veil], world=1.0, camera=tiny_scenes.pencil((0, 0, 1)))
     values = pixels_of(many(snapshot, samples=64))
     mean, error = mean_and_error(values)

@@ -18,8 +18,8 @@ TENT = MeshData(
 )
 
 
-def area(shape, size=(1.0, 0.6), **fields):
-    matrix = move(0.3, 0.2, 2.0) @ rotate_y(0.5) @ rotate_x(0.2)
+def area(shape, size=(1.0, 0.6), matrix=None, **fields):
+    matrix = move(0.3, 0.2, 2.0) @ rotate_y(0.5) @ rotate_x(0.2) if matrix is None else matrix
     return Light("lamp", matrix, LightKind.AREA, emission=(1, 1, 1), size=size, shape=shape, **fields)
 
 
@@ -36,6 +36,10 @@ LIGHTS = {
     "small rectangle": area(AreaShape.RECTANGLE, (1e-3, 2e-3)),
     "ellipse": area(AreaShape.ELLIPSE),
     "spread": area(AreaShape.RECTANGLE, spread=1.2),
+    # So narrow that only a part of the lamp reaches the origin.
+    "narrow rectangle": area(AreaShape.RECTANGLE, (3.0, 2.0), matrix=move(0.3, 0.2, 2.0), spread=0.5),
+    "narrow ellipse": area(AreaShape.ELLIPSE, (1.6, 2.0), matrix=move(0.3, 0.2, 2.0), spread=0.5),
+    "stretched spot": Light("lamp", move(0.2, 0, 2), LightKind.SPOT, emission=(1, 1, 1), radius=0.3, size=(1.5, 0.6)),
 }
 
 

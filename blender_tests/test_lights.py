@@ -2,6 +2,7 @@
 
 import math
 
+import blenders
 import numpy as np
 import pytest
 import reference
@@ -9,6 +10,7 @@ import tiny_scenes
 from bindings.abi import AreaShape, LightKind
 from bindings.session import Scene
 from bindings.snapshot import Light
+from blenders import MODULE, PROGRAM
 from significance import midpoints
 from tiny_scenes import move, rotate_x, rotate_y
 
@@ -176,6 +178,25 @@ def test_spot_cone_and_blend(library, blend):
         assert abs(got - want) <= 1e-4 * 3, (angle, got, want)
 
 
+def test_stretched_spot(library):
+    """An object scaled unevenly stretches its spot's cone: twice as wide, half as high."""
+    half, height = 0.5, 2.0
+    fields = dict(spot_angle=2 * half, spot_blend=0.3)
+    round_spot = Light("spot", move(z=height), LightKind.SPOT, emission=(3, 3, 3), **fields)
+    stretched = Light("spot", move(z=height), LightKind.SPOT, emission=(3, 3, 3), size=(2.0, 0.5), **fields)
+    below = np.stack([a.ravel() for a in np.meshgrid(np.linspace(-2, 2, 21), np.linspace(-2, 2, 21))], axis=1)
+
+    def intensity(light, xy):
+        points = np.concatenate([xy, np.zeros((len(xy), 1))], axis=1)
+        with Scene.upload(tiny_scenes.scene([], [], [light]), library) as scene:
+            samples = scene.light(0, points, [[0.5, 0.5]])
+        return np.where(samples.pdf > 0, samples.radiance[:, 0], 0) * (np.sum(xy**2, axis=1) + height**2)
+
+    got, want = intensity(stretched, below), intensity(round_spot, below / [2.0, 0.5])
+    # One rounding to float on each side of a step whose slope is 1.5 over a rim of 1/30.
+    assert np.allclose(got, want, rtol=0, atol=1e-4) and np.any(got > 0) and np.any(got == 0)
+
+
 def test_spot_of_old_blenders(library):
     """Before 4.0 the intensity also falls with the cosine of the angle to the axis."""
     light = Light("spot", move(z=2), LightKind.SPOT, emission=(3, 3, 3), spot_angle=2.5, spot_blend=0.0, spot_cosine=True)
@@ -236,3 +257,17 @@ def test_exact_sphere_as_lamp(library):
     # Where the sphere is found by hemisphere sampling alone, p = 1/9 of 1e6 samples hits: 4 standard errors are 1.1 %.
     limit = 4 * math.sqrt(8 / 1024**2)
     assert np.allclose(got, 3 / 9, rtol=limit)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_export(which, tmp_path):
+    """Units are judged against Cycles; here: which rays see a lamp, shadows, stretch, portals, nodes, and what is said."""
+    got = blenders.run(which, tmp_path, "light_cases", "export")
+    new = got["version"] >= [4, 0]
+    assert got["plain"] == {"hidden_from": 1, "no_shadow": False, "size": [1.0, 1.0]}
+    assert got["seen"]["hidden_from"] == 4 + 32 and got["unshadowed"]["no_shadow"]
+    assert np.allclose(got["stretched"]["size"], (3.0, 0.5) if new else (1.0, 1.0))
+    assert got["portal"] is None
+    assert np.allclose(got["nodes"], np.array((0.5, 0.25, 1.0)) * 3.0)
+    assert got["messages"] == []
+    assert any("not supported, its own power is used" in line for line in got["textured"]), got["textured"]

@@ -5,14 +5,26 @@ import dataclasses
 import numpy as np
 import pytest
 from bindings.abi import Pass
+from bindings.enums import Domain, LobeKind, NodeKind
 from bindings.npz import save_npz
 from bindings.session import Session
-from bindings.snapshot import Lobe, MeshData, SceneSnapshot
+from bindings.snapshot import (
+    Image,
+    Lobe,
+    Material,
+    MeshAttribute,
+    MeshData,
+    Node,
+    NodeRef,
+    Principled,
+    SceneSnapshot,
+    World,
+)
 from tiny_scenes import quad, showroom
 
 
 def rich():
-    """The showroom and a mesh with every array that a mesh can have."""
+    """The showroom with a record of every kind, and a mesh with every array that a mesh can have."""
     plain = quad(1.0, "rich")
     corner = np.arange(6, dtype=np.float32).reshape(2, 3, 1)
     mesh = MeshData(
@@ -23,9 +35,31 @@ def rich():
         uvs=corner * np.float32([0.1, 0.2]),
         colors=corner * np.float32([0.1, 0.2, 0.3]),
         material_slots=[0, 1],
+        attributes=(
+            MeshAttribute("second map", np.arange(12).reshape(6, 2) / 8.0),
+            MeshAttribute("weight", np.arange(4).reshape(4, 1) / 8.0, Domain.VERTEX),
+        ),
+    )
+    pictures = (
+        Image("bytes", np.arange(24).reshape(2, 3, 4).astype(np.uint8)),
+        Image("shorts", np.arange(6).reshape(2, 3, 1).astype(np.uint16), tile=1001),
+        Image("floats", np.arange(6).reshape(1, 2, 3).astype(np.float32) / 8.0),
+    )
+    seen = Node(NodeKind.IMAGE, inputs=(NodeRef(0),), image=2, image_count=1)
+    paint = Material(
+        "paint",
+        lobes=(Lobe(LobeKind.PRINCIPLED, principled=Principled(base_color=NodeRef(1))),),
+        emission=NodeRef(1),
+        nodes=(Node(), seen),
     )
     room = showroom(16)
-    return dataclasses.replace(room, meshes=(*room.meshes, mesh))
+    return dataclasses.replace(
+        room,
+        meshes=(*room.meshes, mesh),
+        images=pictures,
+        materials=(*room.materials, paint),
+        world=World(radiance=NodeRef(1), nodes=(Node(), dataclasses.replace(seen, kind=NodeKind.ENVIRONMENT))),
+    )
 
 
 @pytest.fixture
@@ -67,6 +101,14 @@ def changed(item, path):
     return item + 1 if isinstance(item, int) else float(np.nextafter(item, np.inf))
 
 
+def differs(item, path, from_this):
+    """Whether one step at the path shows; where a table would no longer fit its mesh, the record refuses it."""
+    try:
+        return changed(item, path) != from_this
+    except ValueError as error:
+        return "rows in domain" in str(error)
+
+
 def test_a_loaded_snapshot_equals_the_saved_one(saved):
     loaded = SceneSnapshot.load(saved)
     assert loaded == rich()
@@ -85,7 +127,7 @@ def test_one_number_makes_a_difference(saved):
     """Each field in turn, by the smallest step that its type knows; the file keeps that step."""
     loaded, paths = SceneSnapshot.load(saved), list(leaves(rich()))
     assert len(paths) > 200
-    assert [path for path in paths if changed(loaded, path) == rich()] == []
+    assert [path for path in paths if not differs(loaded, path, rich())] == []
 
 
 def test_the_smallest_step_survives_the_file(tmp_path):

@@ -55,6 +55,13 @@ def beckmann(color=1.0, alpha=0.3, ior=1.5, **fields):
     return Material("beckmann", lobes=(Lobe(LobeKind.BECKMANN, color=rgb(color), roughness=alpha, ior=ior),), **fields)
 
 
+def veiled(material, opacity):
+    """The material at that share; the rest passes."""
+    lobes = tuple(dataclasses.replace(lobe, weight=rgb(opacity)) for lobe in material.lobes)
+    emission = tuple(opacity * c for c in material.emission)
+    return dataclasses.replace(material, lobes=lobes, emission=emission, transmittance=rgb(1.0 - opacity))
+
+
 def rgb(value):
     return tuple(value) if np.ndim(value) else (float(value),) * 3
 
@@ -127,7 +134,7 @@ def showroom(pixels=32, **settings):
         Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(0.9, 0.8, 0.7)),)),
         Material("glow", lobes=(), emission=(4.0, 3.0, 2.0)),
         Material("mixed", lobes=(Lobe(color=(0.3, 0.1, 0.1)), Lobe(LobeKind.BECKMANN, color=(1, 1, 1), roughness=0.1))),
-        lambert(0.5, opacity=0.5),
+        veiled(lambert(0.5), 0.5),
     ]
     instances = [
         plane(0, name="floor", object_index=1),

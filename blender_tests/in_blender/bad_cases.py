@@ -169,21 +169,12 @@ def unsupported_features():
     sets = layer.freestyle_settings.linesets
     for lines in list(sets):
         sets.remove(lines)
-    # Flags of rays, and lamps that shine on some things only.
-    lamp.visible_glossy = False
-    cube.visible_shadow = False
-    scene.world.cycles_visibility.camera = False
+    # A shadow catcher, and lamps that shine on some things only.
+    cube.is_shadow_catcher = True
     scene.cycles.film_exposure = 2.0
     if bpy.app.version >= (4, 0):
         chosen = bpy.data.collections.new("Chosen")
         lamp.light_linking.receiver_collection = lamp.light_linking.blocker_collection = chosen
-    # A rough gloss of another distribution, and a smooth one, for which all are the same.
-    shiny = stage.shader("ShaderNodeBsdfGlossy", "Shiny", Roughness=0.4)
-    smooth = stage.shader("ShaderNodeBsdfGlossy", "Smooth", Roughness=0.0)
-    for material in (shiny, smooth):
-        next(n for n in material.node_tree.nodes if n.type == "BSDF_GLOSSY").distribution = "GGX"
-    cube.data.materials[0] = shiny
-    bpy.data.objects["Plane"].data.materials[0] = smooth
     return _outcome()
 
 
@@ -228,7 +219,9 @@ def camera_is_no_camera():
 
 def panoramic_camera():
     stage.room()
-    bpy.data.cameras["Camera"].type = "PANO"
+    data = bpy.data.cameras["Camera"]
+    data.type = "PANO"
+    (data if hasattr(data, "panorama_type") else data.cycles).panorama_type = "EQUIANGULAR_CUBEMAP_FACE"
     return _outcome()
 
 

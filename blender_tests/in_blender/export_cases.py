@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import stage
 
-from addon.bindings.enums import InstanceKind, LightKind, LobeKind, Shading
+from addon.bindings.enums import InstanceKind, LightKind, Shading
 from addon.export.scene import export_scene
 
 
@@ -16,11 +16,16 @@ class ExportProbe(bpy.types.RenderEngine):
     caught = None
 
     def render(self, depsgraph):
-        ExportProbe.caught, _messages = export_scene(depsgraph)
+        ExportProbe.caught = export_scene(depsgraph)
 
 
 def export():
-    """The scene's snapshot, with a camera where it has none; an error in it is in the console."""
+    """The scene's snapshot."""
+    return export_told()[0]
+
+
+def export_told():
+    """(snapshot, messages) of the scene, with a camera where it has none; an error in it is in the console."""
     scene = bpy.context.scene
     if scene.camera is None:
         stage.camera()
@@ -148,44 +153,6 @@ def shapes():
     return {"meshes": len(snapshot.meshes), "rows": {row["name"]: row for row in facts(snapshot)}}
 
 
-def materials():
-    """Every material under its name: its lobes, what it emits and how much it hides."""
-    stage.empty()
-    for model in ("KD_KS", "PHONG", "BLINN_PHONG"):
-        material = bpy.data.materials.new(model)
-        own = material.lancer
-        own.model, own.kd, own.ks = model, (0.5, 0.25, 0.125), (0.75, 0.5, 0.25)
-        own.roughness, own.ior, own.shininess, own.ka = 0.25, 1.75, 40.0, (0.5, 0.25, 0.0)
-        stage.cube(material=material)
-    level, transmission, emission = "Specular_IOR_Level", "Transmission_Weight", "Emission_Color"
-    if bpy.app.version < (4, 0):
-        level, transmission, emission = "Specular", "Transmission", "Emission"
-    base = {"Base_Color": (0.75, 0.5, 0.25), "Roughness": 0.5, level: 0.5, "IOR": 1.5, "Metallic": 0.0}
-    principled = {
-        "plain": {},
-        "level": {level: 0.25, "IOR": 1.75},
-        "metal": {"Metallic": 1.0, "Roughness": 0.25},
-        "polished metal": {"Metallic": 1.0, "Roughness": 0.0},
-        "half metal": {"Metallic": 0.5},
-        "glass": {transmission: 1.0, "Roughness": 0.0, "IOR": 1.25, "Base_Color": (1.0, 1.0, 1.0)},
-        "coloured glass": {transmission: 1.0, "Roughness": 0.0, "IOR": 1.25, "Base_Color": (0.25, 0.25, 0.25)},
-        "veil": {"Alpha": 0.25, level: 0.0},
-        "lamp": {emission: (1.0, 0.5, 0.25), "Emission_Strength": 3.0},
-    }
-    for name, inputs in principled.items():
-        stage.cube(material=stage.shader("ShaderNodeBsdfPrincipled", name, **{**base, **inputs}))
-    result = {"version": list(bpy.app.version)}
-    for material in export().materials:
-        result[material.name] = {
-            "lobes": {LobeKind(x.kind).name: [x.color, x.roughness, x.ior, x.shininess] for x in material.lobes},
-            "count": len(material.lobes),
-            "emission": material.emission,
-            "opacity": material.opacity,
-            "ambient": material.ambient,
-        }
-    return result
-
-
 def roof(name, smooth=True, **place):
     """Two slopes of 45 degrees that meet in a ridge along y."""
     vertices = [(-1, 0, 0), (-1, 2, 0), (0, 0, 1), (0, 2, 1), (1, 0, 0), (1, 2, 0)]
@@ -223,7 +190,7 @@ def attributes():
     paint = points.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
     for vertex in points.vertices:
         paint.data[vertex.index].color = (vertex.co.x + 1, 0.25 * vertex.co.y, vertex.co.z, 1.0)
-    arrays = {mesh.name: {k: v for k, v in vars(mesh).items() if k != "name"} for mesh in export().meshes}
+    arrays = {mesh.name: {k: v for k, v in vars(mesh).items() if k not in ("name", "attributes")} for mesh in export().meshes}
     return {name: {k: None if v is None else v.tolist() for k, v in fields.items()} for name, fields in arrays.items()}
 
 

@@ -142,6 +142,17 @@ def shape_of_a_square():
     return result
 
 
+def filter_reach(width):
+    """Columns across an edge between black and white, beside the edge, under the smooth filter."""
+    scene = stage.empty(32, 64, 256)
+    scene.lancer.pixel_filter, scene.lancer.filter_width = "BLACKMAN_HARRIS", float(width)
+    corners = [(0, -99, 0), (99, -99, 0), (99, 99, 0), (0, 99, 0)]
+    stage.mesh("Half", corners, [(0, 1, 2, 3)], stage.shader("ShaderNodeEmission", Strength=1.0))
+    # The wider side of the picture is 64 m: pixels of 1 m.
+    stage.camera((0, 0, 5), (0, 0, 0), type="ORTHO", ortho_scale=64.0)
+    return stage.picture(scene)[..., 0].astype(np.float64).mean(axis=0)[12:16].tolist()
+
+
 def film_transparent():
     scene = stage.room()
     scene.render.film_transparent = True

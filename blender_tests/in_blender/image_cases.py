@@ -1,0 +1,168 @@
+"""Pictures of materials, exported in a render: what the snapshot holds of them, and what Blender's data look like after."""
+
+import os
+import tempfile
+
+import bpy
+import numpy as np
+import stage
+from export_cases import export_told
+
+from addon.bindings.enums import AlphaMode, NodeKind, Transfer
+
+SIZE = 8
+
+
+def ramp(channels=4):
+    """Bytes that tell their place: (8, 8, channels)."""
+    return (np.arange(SIZE * SIZE * channels) * 37 % 256).reshape(SIZE, SIZE, channels)
+
+
+def image(name, values, space=None, is_float=False, **fields):
+    """A picture in memory. values: bytes, or floating point."""
+    values = np.asarray(values, float)
+    alpha = values.shape[2] == 4
+    item = bpy.data.images.new(name, values.shape[1], values.shape[0], alpha=True, float_buffer=is_float)
+    full = np.ones((*values.shape[:2], 4), np.float32)
+    full[:, :, : values.shape[2]] = values if is_float else values / 255.0
+    if not alpha:
+        full[:, :, 3] = 1.0
+    item.colorspace_settings.name = space or item.colorspace_settings.name
+    item.pixels.foreach_set(full.ravel())
+    for field, value in fields.items():
+        setattr(item, field, value)
+    return item
+
+
+def write(path, values, space="sRGB", file_format="PNG", depth="8"):
+    """A file of that picture."""
+    item = image("written", values, space, is_float=depth != "8")
+    scene = bpy.context.scene
+    settings = scene.render.image_settings
+    item.filepath_raw, item.file_format = path, file_format
+    if depth == "8":
+        item.save()
+    else:
+        settings.file_format, settings.color_mode, settings.color_depth = file_format, "RGBA", depth
+        scene.view_settings.view_transform = "Raw" if bpy.app.version < (4, 0) else "Standard"
+        item.save_render(path, scene=scene)
+    bpy.data.images.remove(item)
+    return path
+
+
+def show(item, name="Material", **fields):
+    """A cube whose colour is the picture."""
+    material = stage.shader("ShaderNodeBsdfDiffuse", name)
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = item
+    for field, value in fields.items():
+        setattr(node, field, value)
+    tree.links.new(node.outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
+    stage.cube(material=material)
+    return material, node
+
+
+def told(picture):
+    return {
+        "name": picture.name,
+        "texels": picture.texels.tolist(),
+        "type": str(picture.texels.dtype),
+        "transfer": Transfer(picture.transfer).name,
+        "alpha": AlphaMode(picture.alpha).name,
+        "tile": picture.tile,
+        "matrix": picture.matrix,
+    }
+
+
+def listed():
+    """All pictures of the user's and how they stand; the render adds its own."""
+    return [
+        (item.name, item.users, item.is_dirty, item.source, item.filepath, item.colorspace_settings.name, item.alpha_mode)
+        for item in bpy.data.images
+        if item.type != "RENDER_RESULT"
+    ]
+
+
+def answer():
+    before = listed()
+    snapshot, messages = export_told()
+    nodes = [node for material in snapshot.materials for node in material.nodes if node.kind == NodeKind.IMAGE]
+    return {
+        "images": [told(picture) for picture in snapshot.images],
+        "ranges": [[node.image, node.image_count] for node in nodes],
+        "flags": [node.flags for node in nodes],
+        "messages": list(messages),
+        "unchanged": before == listed(),
+    }
+
+
+def depths():
+    """A picture of each kind: bytes with and without alpha, data, floating point, linear bytes; the first with two users."""
+    stage.empty()
+    opaque = image("opaque", ramp(3))
+    show(opaque)
+    show(opaque, "Second")
+    show(image("seen through", ramp()))
+    show(image("data", ramp(), "Non-Color"))
+    show(image("packed", ramp(), alpha_mode="CHANNEL_PACKED"))
+    show(image("ignored", ramp(), alpha_mode="NONE"))
+    show(image("bright", 4.0 * ramp(3) / 255.0, is_float=True))
+    show(image("linear", ramp(3), "Linear" if bpy.app.version < (4, 0) else "Linear Rec.709"))
+    return answer()
+
+
+def spaces():
+    """A colour space that is a matrix, one that is more; and what Blender's own conversion makes of the same bytes."""
+    stage.empty()
+    old = bpy.app.version < (4, 0)
+    names = ("Linear ACES", "Filmic sRGB") if old else ("ACEScg", "Filmic sRGB")
+    result = {}
+    for name in names:
+        show(image(name, ramp(3), name))
+        folder = tempfile.mkdtemp()
+        path = os.path.join(folder, "same.exr")
+        plain = image("plain", ramp(3) / 255.0, "Non-Color", is_float=True)
+        plain.filepath_raw, plain.file_format = path, "OPEN_EXR"
+        plain.save()
+        loaded = bpy.data.images.load(path)
+        loaded.colorspace_settings.name = name
+        values = np.empty(SIZE * SIZE * 4, np.float32)
+        loaded.pixels.foreach_get(values)
+        result[name] = values.reshape(SIZE, SIZE, 4)[:, :, :3].tolist()
+    return {**answer(), "wanted": result}
+
+
+def files():
+    """Tiles, one of them missing; the second frame of a sequence; sixteen bits; a file that is not there; no image at all."""
+    scene = stage.empty()
+    folder = tempfile.mkdtemp()
+    for number, shift in ((1001, 0), (1002, 50), (1011, 100)):
+        write(os.path.join(folder, f"tile.{number}.png"), (ramp(3) + shift) % 256)
+    tiled = bpy.data.images.load(os.path.join(folder, "tile.1001.png"))
+    tiled.name, tiled.source, tiled.filepath = "tiles", "TILED", os.path.join(folder, "tile.<UDIM>.png")
+    for number in (1002, 1011, 1012):
+        if number not in [tile.number for tile in tiled.tiles]:
+            tiled.tiles.new(number)
+    show(tiled)
+    for frame in (1, 2, 3):
+        write(os.path.join(folder, f"frame_{frame:03d}.png"), (ramp(3) + 10 * frame) % 256)
+    sequence = bpy.data.images.load(os.path.join(folder, "frame_001.png"))
+    sequence.name, sequence.source = "sequence", "SEQUENCE"
+    _, node = show(sequence)
+    node.image_user.frame_duration, node.image_user.frame_start = 3, 10
+    scene.frame_set(11)
+    deep = bpy.data.images.load(write(os.path.join(folder, "deep.png"), ramp(3) * 257 / 65535, "Non-Color", depth="16"))
+    deep.name, deep.colorspace_settings.name = "deep", "Non-Color"
+    show(deep)
+    lost = bpy.data.images.load(os.path.join(folder, "tile.1001.png"))
+    lost.name, lost.filepath = "lost", os.path.join(folder, "nowhere.png")
+    lost.reload()
+    show(lost, "Lost")
+    show(None, "Empty")
+    packed = bpy.data.images.load(os.path.join(folder, "frame_003.png"))
+    packed.name = "in the file"
+    packed.pack()
+    show(packed)
+    os.remove(os.path.join(folder, "frame_003.png"))
+    return answer()

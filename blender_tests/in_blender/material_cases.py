@@ -1,0 +1,364 @@
+"""Materials exported and not rendered: their lobes and nodes as plain data for the test to judge."""
+
+import dataclasses
+import random
+
+import bpy
+import numpy as np
+import stage
+from export_cases import export_told
+
+from addon.bindings.enums import Domain, LobeKind, NodeKind
+from addon.bindings.shading import NodeRef
+from addon.export.describe import describe_material
+from addon.export.materials import Materials
+from addon.export.messages import Messages
+
+
+def told(value):
+    """Records as lists, NodeRefs as {"node": n}, enumerations as numbers."""
+    if isinstance(value, NodeRef):
+        return {"node": value.node}
+    if dataclasses.is_dataclass(value):
+        return {field.name: told(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, (tuple, list)):
+        return [told(item) for item in value]
+    return value
+
+
+def read(material, name="object"):
+    """(the record, its messages, the attributes that it reads)."""
+    messages = Messages()
+    materials = Materials(messages)
+    number = materials.number(material, name)
+    return materials.list[number], messages.lines(), sorted(materials.attributes([number]))
+
+
+def answer(*materials):
+    result = {"version": list(bpy.app.version)}
+    for material in materials:
+        record, messages, attributes = read(material)
+        result[material.name] = {
+            **told(record),
+            "kinds": [LobeKind(lobe.kind).name for lobe in record.lobes],
+            "node kinds": [NodeKind(node.kind).name for node in record.nodes],
+            "messages": messages,
+            "attributes": attributes,
+            "panel": describe_material(material),
+        }
+    return result
+
+
+class Tree:
+    """A material under construction."""
+
+    def __init__(self, name):
+        self.material = bpy.data.materials.new(name)
+        self.material.use_nodes = True
+        self.tree = self.material.node_tree
+        self.tree.nodes.clear()
+        self.output = self.tree.nodes.new("ShaderNodeOutputMaterial")
+
+    def node(self, kind, **inputs):
+        """inputs: constants or output sockets, by name with _ for blanks; properties where the node has no such input."""
+        node = self.tree.nodes.new(kind if kind.startswith("NodeR") else "ShaderNode" + kind)
+        for name, value in inputs.items():
+            sockets = [socket for socket in node.inputs if socket.enabled and name.replace("_", " ") == socket.name]
+            if not sockets:
+                setattr(node, name, value)
+            elif isinstance(value, bpy.types.NodeSocket):
+                self.tree.links.new(value, sockets[0])
+            else:
+                sockets[0].default_value = (*value, 1.0) if isinstance(value, tuple) and sockets[0].type == "RGBA" else value
+        return node
+
+    def shaders(self, kind, first, second, **inputs):
+        node = self.node(kind, **inputs)
+        sockets = [socket for socket in node.inputs if socket.type == "SHADER"]
+        for source, socket in zip((first, second), sockets, strict=True):
+            self.tree.links.new(source, socket)
+        return node.outputs[0]
+
+    def show(self, shader):
+        self.tree.links.new(shader, self.output.inputs["Surface"])
+        return self.material
+
+    def varying(self, name="shade"):
+        """A number that only the core can tell."""
+        return self.node("Attribute", attribute_name=name).outputs["Fac"]
+
+
+def own_models():
+    stage.empty()
+    materials = []
+    for model in ("KD_KS", "PHONG", "BLINN_PHONG"):
+        material = bpy.data.materials.new(model)
+        own = material.lancer
+        own.model, own.kd, own.ks = model, (0.5, 0.25, 0.125), (0.75, 0.5, 0.25)
+        own.roughness, own.ior, own.shininess, own.ka = 0.25, 1.75, 40.0, (0.5, 0.25, 0.0)
+        materials.append(material)
+    return answer(*materials)
+
+
+def principled():
+    stage.empty()
+    new = bpy.app.version >= (4, 0)
+    level, transmission, coat = ("Specular IOR Level", "Transmission Weight", "Coat Weight") if new else (
+        "Specular", "Transmission", "Clearcoat"
+    )  # fmt: skip
+    emission, sheen, subsurface = ("Emission Color", "Sheen Weight", "Subsurface Weight") if new else (
+        "Emission", "Sheen", "Subsurface"
+    )  # fmt: skip
+    base = {"Base_Color": (0.75, 0.5, 0.25), "Roughness": 0.5, "IOR": 1.5, level: 0.5}
+    cases = {
+        "plain": {"distribution": "GGX"},
+        "all": {
+            "Metallic": 0.25,
+            transmission: 0.5,
+            "Anisotropic": 0.75,
+            "Anisotropic_Rotation": 0.125,
+            coat: 0.5,
+            sheen: 0.25,
+        },
+        "veil": {"Alpha": 0.25},
+        "unseen": {"Alpha": 0.0},
+        "lamp": {emission: (1.0, 0.5, 0.25), "Emission_Strength": 3.0},
+        "lamp under coat": {emission: (1.0, 0.5, 0.25), "Emission_Strength": 3.0, coat: 1.0},
+        "wax": {subsurface: 0.5},
+    }
+    materials = []
+    for name, inputs in cases.items():
+        tree = Tree(name)
+        materials.append(tree.show(tree.node("BsdfPrincipled", **base, **inputs).outputs[0]))
+    tree = Tree("textured")
+    color = tree.node("Attribute", attribute_name="paint").outputs["Color"]
+    node = tree.node("BsdfPrincipled", Base_Color=color, Alpha=tree.varying(), Normal=tree.node("NormalMap").outputs[0])
+    materials.append(tree.show(node.outputs[0]))
+    return answer(*materials)
+
+
+def closures():
+    """One material for each closure node of this Blender, as it comes, and some as they are set."""
+    stage.empty()
+    materials = []
+    kinds = [name[len("ShaderNode") :] for name in dir(bpy.types) if name.startswith("ShaderNode")]
+    for kind in kinds:
+        tree = Tree(kind)
+        try:
+            node = tree.node(kind)
+        except RuntimeError:
+            continue
+        if any(socket.type == "SHADER" for socket in node.outputs):
+            materials.append(tree.show(next(socket for socket in node.outputs if socket.type == "SHADER")))
+    glossy = "BsdfAnisotropic"
+    for distribution in ("GGX", "BECKMANN", "ASHIKHMIN_SHIRLEY", "MULTI_GGX"):
+        tree = Tree(distribution)
+        node = tree.node(glossy, distribution=distribution, Roughness=0.25, Anisotropy=0.5, Rotation=0.125)
+        materials.append(tree.show(node.outputs[0]))
+    tree = Tree("rough")
+    materials.append(tree.show(tree.node("BsdfDiffuse", Roughness=0.5, Color=(0.5, 0.25, 0.125)).outputs[0]))
+    tree = Tree("colour as shader")
+    materials.append(tree.show(tree.node("RGB").outputs[0]))
+    return answer(*materials)
+
+
+def mixing():
+    """0.25 of a sum of red and half glass, 0.75 of blue; the same by a number of the core; what adds nothing; long chains."""
+    stage.empty()
+
+    def mixed(name, factor=None):
+        tree = Tree(name)
+        red = tree.node("BsdfDiffuse", Color=(1.0, 0.0, 0.0)).outputs[0]
+        blue = tree.node("BsdfDiffuse", Color=(0.0, 0.0, 1.0)).outputs[0]
+        glass, hole = tree.node("BsdfGlass").outputs[0], tree.node("Holdout").outputs[0]
+        pane, glow = tree.node("BsdfTransparent", Color=(0.5, 1.0, 1.0)), tree.node("Emission", Strength=4.0)
+        half = tree.shaders("MixShader", glass, hole, **{fac(): 0.5})
+        rest = tree.shaders("AddShader", pane.outputs[0], glow.outputs[0])
+        total = tree.shaders("AddShader", red, tree.shaders("AddShader", half, rest))
+        share = tree.varying() if factor is None else factor
+        return tree.show(tree.shaders("MixShader", total, blue, **{fac(): share}))
+
+    def fac():
+        return "Factor" if bpy.app.version >= (5, 0) else "Fac"
+
+    def nothing(name):
+        tree = Tree(name)
+        black = tree.node("BsdfDiffuse", Color=(0.0, 0.0, 0.0)).outputs[0]
+        return tree.show(tree.shaders("MixShader", tree.node("BsdfGlass").outputs[0], black, **{fac(): 1.0}))
+
+    def chain(name, count, value):
+        """Every step mixes half of the same blue in; or adds, which doubles, when value is None."""
+        tree = Tree(name)
+        last = tree.node("BsdfDiffuse", Color=(1.0, 0.0, 0.0)).outputs[0]
+        blue = tree.node("BsdfDiffuse", Color=(0.0, 0.0, 1.0)).outputs[0]
+        for _ in range(count):
+            if value is None:
+                last = tree.shaders("AddShader", last, last)
+            else:
+                last = tree.shaders("MixShader", last, blue, **{fac(): value})
+        return tree.show(last)
+
+    def sums(name, count):
+        """A roughness of as many additions of 1/1024 to a number of the core."""
+        tree = Tree(name)
+        last = tree.varying()
+        for _ in range(count):
+            node = tree.node("Math", operation="ADD")
+            tree.tree.links.new(last, node.inputs[0])
+            node.inputs[1].default_value = 1.0 / 1024.0
+            last = node.outputs[0]
+        return tree.show(tree.node("BsdfDiffuse", Roughness=last).outputs[0])
+
+    return answer(
+        sums("sums", 1000),
+        mixed("mixed", 0.75),
+        mixed("textured"),
+        nothing("nothing"),
+        chain("long", 400, 0.5),
+        chain("doubled", 10, None),
+    )
+
+
+def displacements():
+    """Each method with a height that varies; the method of this Blender's own default."""
+    stage.empty()
+    materials = []
+    for method in ("BUMP", "DISPLACEMENT", "BOTH"):
+        tree = Tree(method)
+        owner = tree.material if hasattr(tree.material, "displacement_method") else tree.material.cycles
+        owner.displacement_method = method
+        node = tree.node("Displacement", Height=tree.varying(), Midlevel=0.25, Scale=2.0, space="WORLD")
+        tree.tree.links.new(node.outputs[0], tree.output.inputs["Displacement"])
+        materials.append(tree.show(tree.node("BsdfDiffuse").outputs[0]))
+    tree = Tree("chained")
+    first = tree.node("Bump", Height=tree.varying("one"))
+    second = tree.node("Bump", Height=tree.varying("two"), Normal=first.outputs[0], invert=True)
+    materials.append(tree.show(tree.node("BsdfDiffuse", Normal=second.outputs[0]).outputs[0]))
+    return answer(*materials)
+
+
+def attributes():
+    """A cut pyramid that moved, seen with a material that reads all that a mesh can have; and another that reads nothing."""
+    scene = stage.empty()
+    tree = Tree("reader")
+    uv = tree.node("UVMap", uv_map="Second").outputs[0]
+    paint = tree.node("VertexColor", layer_name="Paint").outputs[0]
+    number = tree.node("Attribute", attribute_name="number").outputs["Fac"]
+    place = tree.node("TexCoord").outputs["Generated"]
+    mapped = tree.node("NormalMap", uv_map="Second").outputs[0]
+    total = tree.node("VectorMath").inputs
+    for socket, source in zip(total[:2], (uv, place), strict=True):
+        tree.tree.links.new(source, socket)
+    node = tree.node("BsdfPrincipled", Base_Color=paint, Roughness=number, Normal=mapped, Metallic=total[0].node.outputs[0])
+    vertices = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (0, 0, 2)]
+    faces = [(0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    item = stage.mesh("Reader", vertices, faces, tree.show(node.outputs[0]))
+    mesh = item.data
+    mesh.uv_layers.new(name="First")
+    mesh.uv_layers.new(name="Second")
+    mesh.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
+    mesh.attributes.new("number", "FLOAT", "FACE")
+    second = mesh.uv_layers["Second"]
+    for loop in mesh.loops:
+        x, y, _ = mesh.vertices[loop.vertex_index].co
+        second.data[loop.index].uv = (0.5 * x + 0.5, 0.25 * y)
+    for i in range(5):
+        mesh.color_attributes["Paint"].data[i].color = (0.1 * i, 0.5, 0.25, 0.5)
+        mesh.attributes["number"].data[i].value = float(i)
+    # A lattice-free deformation: the wave moves vertices, GENERATED keeps where they were.
+    modifier = item.modifiers.new("Cast", "CAST")
+    modifier.cast_type, modifier.factor = "SPHERE", 1.0
+    stage.mesh("Plain", vertices, faces, stage.shader("ShaderNodeBsdfDiffuse", "blind"))
+    scene.render.use_simplify = False
+    snapshot, messages = export_told()
+    return {
+        mesh.name: {
+            "triangles": mesh.triangles.tolist(),
+            "positions": mesh.positions.tolist(),
+            "attributes": {a.name: [Domain(a.domain).name, a.values.tolist()] for a in mesh.attributes},
+        }
+        for mesh in snapshot.meshes
+    } | {"messages": list(messages), "original": np.array(vertices, float).tolist()}
+
+
+def fuzz(count):
+    """Every node that a material can hold, set and linked at random, also in groups: what was built, and what failed."""
+    stage.empty()
+    material = bpy.data.materials.new("asked")
+    material.use_nodes = True
+    kinds = []
+    for name in sorted(dir(bpy.types)):
+        if name.startswith("ShaderNode"):
+            try:
+                material.node_tree.nodes.new(name)
+                kinds.append(name)
+            except RuntimeError:
+                pass
+    picture = bpy.data.images.new("picture", 4, 4, alpha=True)
+    group = bpy.data.node_groups.new("group", "ShaderNodeTree")
+    result = {"kinds": len(kinds), "lobes": 0, "nodes": 0, "backward": 0, "wild": 0}
+    for seed in range(int(count)):
+        rng = random.Random(seed)
+        group.nodes.clear()
+        _fill(rng, group, kinds, 6, picture, None)
+        tree = Tree(f"fuzz {seed}")
+        nodes = _fill(rng, tree.tree, kinds, 30, picture, group)
+        outputs = [socket for node in nodes for socket in node.outputs]
+        shaders = [socket for socket in outputs if socket.type == "SHADER"]
+        if shaders:
+            tree.show(rng.choice(shaders))
+        tree.tree.links.new(rng.choice(outputs), tree.output.inputs["Displacement"])
+        record = read(tree.material)[0]
+        describe_material(tree.material)
+        result["lobes"] += len(record.lobes)
+        result["nodes"] += len(record.nodes)
+        result["wild"] += sum(not finite(value) for value in told_numbers(told(record)))
+        for number, node in enumerate(record.nodes):
+            result["backward"] += sum(isinstance(value, NodeRef) and value.node >= number for value in node.inputs)
+    return result
+
+
+def finite(value):
+    """Whether single precision, in which the core computes, has the number."""
+    return bool(np.isfinite(np.float32(value)))
+
+
+def told_numbers(value):
+    """All numbers of a record that was told."""
+    if isinstance(value, (dict, list)):
+        return [number for item in (value.values() if isinstance(value, dict) else value) for number in told_numbers(item)]
+    return [value] if isinstance(value, float) else []
+
+
+def _fill(rng, tree, kinds, count, picture, group):
+    nodes = [tree.nodes.new(kind) for kind in rng.choices(kinds, k=count)]
+    for node in nodes:
+        for field in node.bl_rna.properties:
+            if field.is_readonly or field.identifier.startswith("bl_"):
+                continue
+            try:
+                if field.type == "ENUM":
+                    setattr(node, field.identifier, rng.choice([item.identifier for item in field.enum_items]))
+                elif field.type == "BOOLEAN":
+                    setattr(node, field.identifier, rng.random() < 0.2)
+            except (TypeError, AttributeError):
+                pass  # not among the choices of this moment
+        if hasattr(node, "image") and rng.random() < 0.7:
+            node.image = picture
+        if node.type == "GROUP":
+            node.node_tree = group
+        for socket in node.inputs:
+            if socket.type == "VALUE":
+                socket.default_value = rng.choice([0.0, 1.0, 0.3, -2.0, 1e30, float("nan"), rng.random()])
+            elif socket.type in ("VECTOR", "RGBA"):
+                socket.default_value = [rng.choice([0.0, 1.0, 0.4, -1.0, 5.0]) for _ in socket.default_value]
+    outputs = {}
+    for node in nodes:
+        for socket in node.outputs:
+            outputs.setdefault(socket.type == "SHADER", []).append(socket)
+    # Link like to like three times of four, so that most links mean something.
+    for socket in (socket for node in nodes for socket in node.inputs):
+        alike = outputs.get((socket.type == "SHADER") == (rng.random() < 0.75))
+        if alike and rng.random() < 0.7:
+            tree.links.new(rng.choice(alike), socket)
+    return nodes

@@ -1,0 +1,115 @@
+"""What objects' own switches become: which rays do not see them, and what leaves a hole in the picture."""
+
+import bpy
+import stage
+from export_cases import export_told
+
+from addon.bindings.enums import InstanceFlag, Ray
+
+
+def _rows(snapshot):
+    """{name: [(kinds of rays that do not see it, holdout), ...]}, one for each instance, in the order of their height."""
+    table, rows = snapshot.instances, {}
+    for i in sorted(range(len(table)), key=lambda i: table.matrices[i, 2, 3]):
+        hidden = [ray.name for ray in Ray if table.hidden_from[i] & ray]
+        rows.setdefault(table.names[table.name_indices[i]], []).append([hidden, bool(table.flags[i] & InstanceFlag.HOLDOUT)])
+    return rows
+
+
+def _named(name, **fields):
+    item = stage.cube()
+    item.name = name
+    for field, value in fields.items():
+        setattr(item, field, value)
+    return item
+
+
+def _collected(name, item, parent=None):
+    """Moves the item into a collection of its own; gives that collection's place in the view layer."""
+    collection = bpy.data.collections.new(name)
+    (parent or bpy.context.scene.collection).children.link(collection)
+    bpy.context.scene.collection.objects.unlink(item)
+    collection.objects.link(item)
+    return bpy.context.view_layer.layer_collection.children[name]
+
+
+def switches():
+    stage.empty()
+    _named("plain")
+    for ray in ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow"):
+        _named(ray, **{"visible_" + ray: False})
+    _named("two", visible_camera=False, visible_shadow=False)
+    _named("hole", is_holdout=True)
+    _named("gone", hide_render=True)
+    _collected("Holes", _named("hole of a collection")).holdout = True
+    _collected("Indirect", _named("indirect")).indirect_only = True
+    both = _collected("Both", _named("hole, not indirect"))
+    both.holdout = both.indirect_only = True
+    _named("catcher", is_shadow_catcher=True)
+    snapshot, messages = export_told()
+    return {"rows": _rows(snapshot), "messages": messages.lines()}
+
+
+def instancers():
+    """A collection brought in three times: as it is, by a hidden empty, and by one that is a hole."""
+    stage.empty()
+    collection = bpy.data.collections.new("Set")
+    item = _named("piece", visible_glossy=False)
+    bpy.context.scene.collection.objects.unlink(item)
+    collection.objects.link(item)
+    for height, fields in enumerate(({}, {"visible_camera": False}, {"is_holdout": True})):
+        empty = stage.link(f"Empty {height}", None, (0, 0, float(height)))
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        for field, value in fields.items():
+            setattr(empty, field, value)
+    snapshot, _ = export_told()
+    return {"rows": _rows(snapshot), "meshes": len(snapshot.meshes)}
+
+
+def _textured(name, uv_map):
+    """A material that reads a UV map by its name."""
+    material = stage.shader(name=name)
+    tree = material.node_tree
+    node = next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE")
+    coordinates = tree.nodes.new("ShaderNodeUVMap")
+    coordinates.uv_map = uv_map
+    tree.links.new(coordinates.outputs[0], node.inputs["Color"])
+    return material
+
+
+def attributes():
+    """One mesh under three materials: the data is copied only where a material reads what the first copy lacks."""
+    stage.empty()
+    first = stage.plane(material=stage.shader(name="plain"))
+    for name in ("One", "Two"):
+        first.data.uv_layers.new(name=name)
+    first.data.uv_layers["One"].active_render = True
+    for number, material in enumerate((_textured("reader", "Two"), stage.shader(name="plain too"))):
+        item = stage.link(f"Copy {number}", first.data, (0, 0, 1.0 + number))
+        item.material_slots[0].link = "OBJECT"
+        item.material_slots[0].material = material
+    snapshot, _ = export_told()
+    table = snapshot.instances
+    names = [sorted(a.name for a in mesh.attributes) for mesh in snapshot.meshes]
+    return {table.names[table.name_indices[i]]: names[table.meshes[i]] for i in range(len(table))}
+
+
+def settings():
+    """What the film's and the world's settings become."""
+    scene = stage.empty()
+    own = scene.lancer
+    told = {"first": _facts(export_told()[0].settings)}
+    scene.render.film_transparent = own.film_transparent_glass = True
+    own.film_transparent_roughness, own.transparent_bounces = 0.5, 3
+    bpy.context.view_layer.pass_alpha_threshold = 0.25
+    stage.sky()
+    mist, light = scene.world.mist_settings, scene.world.light_settings
+    mist.start, mist.depth, mist.falloff, light.distance = 2.0, 30.0, "INVERSE_QUADRATIC", 4.0
+    told["second"] = _facts(export_told()[0].settings)
+    return told
+
+
+def _facts(record):
+    names = ("film_transparent", "transparent_glass", "glass_roughness", "transparent_shadows", "alpha_threshold")
+    names += ("occlusion_distance", "mist_start", "mist_depth", "mist_falloff")
+    return [getattr(record, name) for name in names]

@@ -1,0 +1,52 @@
+"""Objects' own switches, the film's and the world's, as they arrive in the snapshot."""
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+
+pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
+
+
+@pytest.fixture
+def case(which, tmp_path):
+    return lambda name, *arguments: blenders.run(which, tmp_path, "object_cases", name, *arguments)
+
+
+def test_switches(case):
+    got = case("switches")
+    assert got["rows"] == {
+        "plain": [[[], False]],
+        "camera": [[["CAMERA"], False]],
+        "diffuse": [[["DIFFUSE"], False]],
+        "glossy": [[["GLOSSY"], False]],
+        "transmission": [[["TRANSMISSION"], False]],
+        "volume_scatter": [[["VOLUME"], False]],
+        "shadow": [[["SHADOW"], False]],
+        "two": [[["CAMERA", "SHADOW"], False]],
+        "hole": [[[], True]],
+        "hole of a collection": [[[], True]],
+        "indirect": [[["CAMERA"], False]],
+        # A hole is seen by the camera, or it would be none.
+        "hole, not indirect": [[[], True]],
+        "catcher": [[[], False]],
+    }
+    assert [line for line in got["messages"] if "catcher" in line] == got["messages"] and len(got["messages"]) == 1
+
+
+def test_instancers_narrow_what_they_bring_in(case):
+    got = case("instancers")
+    assert got["rows"] == {"piece": [[["GLOSSY"], False], [["CAMERA", "GLOSSY"], False], [["GLOSSY"], True]]}
+    assert got["meshes"] == 1
+
+
+def test_meshes_bring_what_their_materials_read(case):
+    got = case("attributes")
+    got.pop("console")
+    assert got["Plane"] == [] and got["Copy 0"] == ["Two"] and got["Copy 1"] in ([], ["Two"])
+
+
+def test_settings(case):
+    got = case("settings")
+    assert got["first"] == [False, False, pytest.approx(0.01), 8, 0.5, 0.0, 0.0, 100.0, 1.0]
+    # A roughness of 0.5 is an alpha of 0.25.
+    assert got["second"] == [True, True, 0.25, 3, 0.25, 4.0, 2.0, 30.0, 0.5]

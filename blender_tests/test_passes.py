@@ -1,0 +1,91 @@
+"""Passes under the names that each Blender has for them, with numbers that are known."""
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+
+pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
+
+# Names from Blender 5 on, those before, channels.
+NAMES = [
+    ("Combined", "Combined", 4),
+    ("Depth", "Depth", 1),
+    ("Mist", "Mist", 1),
+    ("Position", "Position", 3),
+    ("Normal", "Normal", 3),
+    ("UV", "UV", 3),
+    ("Object Index", "IndexOB", 1),
+    ("Material Index", "IndexMA", 1),
+    ("Diffuse Direct", "DiffDir", 3),
+    ("Diffuse Indirect", "DiffInd", 3),
+    ("Diffuse Color", "DiffCol", 3),
+    ("Glossy Direct", "GlossDir", 3),
+    ("Glossy Indirect", "GlossInd", 3),
+    ("Glossy Color", "GlossCol", 3),
+    ("Transmission Direct", "TransDir", 3),
+    ("Transmission Indirect", "TransInd", 3),
+    ("Transmission Color", "TransCol", 3),
+    ("Emission", "Emit", 3),
+    ("Environment", "Env", 3),
+    ("Ambient Occlusion", "AO", 3),
+    ("Denoising Normal", "Denoising Normal", 3),
+    ("Denoising Albedo", "Denoising Albedo", 3),
+    ("Denoising Depth", "Denoising Depth", 1),
+]
+
+
+@pytest.fixture
+def case(which, tmp_path):
+    return lambda name, *arguments: blenders.run(which, tmp_path, "pass_cases", name, *arguments)
+
+
+def test_every_pass_is_there_and_filled(case):
+    got = case("every_pass")
+    wanted = {row[0] if got["version"] >= [5, 0] else row[1]: row[2] for row in NAMES}
+    assert {name: look["channels"] for name, look in got["passes"].items()} == wanted
+    # The scene has something for each: none is of one value.
+    assert [name for name, look in got["passes"].items() if not look["finite"] or look["low"] == look["high"]] == []
+    assert got["indices"] == [0, 7] and got["materials"] == [0, 9]
+    assert [line for line in got["messages"] if "pass" in line] == []
+
+
+def test_parts_give_the_picture_again(case):
+    """Every number is rounded to float a few times on its way, and the sum has seven terms."""
+    assert case("every_pass")["difference"] < 2.0**-20
+
+
+def test_nothing_is_rendered_that_is_not_asked_for(case):
+    got = case("no_pass")
+    assert got["passes"] == ["Combined"] and [line for line in got["messages"] if "pass" in line] == []
+
+
+def test_a_missing_pass_is_named(case):
+    told = [line for line in case("missing_passes") if "passes are not supported" in line]
+    assert len(told) == 1 and "Vector" in told[0] and "Cryptomatte" in told[0]
+
+
+def test_albedo_may_come_alone(case):
+    assert case("albedo_alone") == ["Combined", "Denoising Albedo"]
+
+
+def test_known_numbers(case):
+    got = case("known_numbers")
+    # The middle pixel's corner is less than half a metre off the axis, and the distance to it less than 0.032 m longer.
+    for falloff, exponent in (("QUADRATIC", 2.0), ("LINEAR", 1.0), ("INVERSE_QUADRATIC", 0.5)):
+        assert (3.0 / 12.0) ** exponent <= got["mist"][falloff] < (3.032 / 12.0) ** exponent, falloff
+    assert got["sky mist"] == 1.0
+    assert got["Depth"][0] == pytest.approx([4.0]) and got["Depth"][1] == pytest.approx([1e10])
+    # The middle pixel is a square of 2/3 m about the origin; sample 0 lies somewhere in it.
+    x, y, z = got["Position"][0]
+    assert abs(x) <= 1 / 3 and abs(y) <= 1 / 3 and abs(z) < 1e-6 and got["Position"][1] == [0, 0, 0]
+    assert got["Normal"] == [pytest.approx([0, 0, 1]), [0, 0, 0]]
+    # The file's reader sorts the third channel, A, to the front.
+    w, u, v = got["UV"][0]
+    # A mean over the pixel, which spans a third of the plane's side.
+    assert abs(u - 0.5) < 1 / 6 and abs(v - 0.5) < 1 / 6 and w == 1.0 and got["UV"][1] == [0, 0, 0]
+    # Camera space: z points into the picture.
+    assert got["Denoising Normal"][0] == pytest.approx([0, 0, -1], abs=1e-6)
+    assert got["Denoising Albedo"][0] == pytest.approx([0.8, 0.4, 0.2]) and got["Denoising Depth"][0] == pytest.approx([4.0])
+    assert got["open"] == [1.0, 1.0, 1.0]
+    assert got["under a lid, 0.5"] == [1.0, 1.0, 1.0] and got["under a lid, 1e+06"] == [0.0, 0.0, 0.0]
+    assert got["veil, 0.2"] == pytest.approx(3.0) and got["veil, 0.4"] == pytest.approx(4.0)

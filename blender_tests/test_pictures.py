@@ -1,0 +1,79 @@
+"""Pictures of materials, read in a render, in the bpy module of this Python and in Debian's Blender 3.4.1."""
+
+import blenders
+import numpy as np
+import pytest
+from blenders import MODULE, PROGRAM
+
+pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
+IDENTITY = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+
+
+@pytest.fixture
+def case(which, tmp_path):
+    return lambda name: blenders.run(which, tmp_path, "image_cases", name)
+
+
+def ramp(channels=4):
+    """The bytes of the pictures that the cases make."""
+    return np.arange(8 * 8 * channels).reshape(8, 8, channels) * 37 % 256
+
+
+def test_bit_depth_and_alpha(case):
+    got = case("depths")
+    images = {picture["name"]: picture for picture in got["images"]}
+    # Two materials show the first picture, which is there once.
+    assert got["ranges"] == [[0, 1], [0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1]]
+    wanted = {
+        "opaque": (3, "uint8", "SRGB", "NONE"),
+        "seen through": (4, "uint8", "SRGB", "STRAIGHT"),
+        "data": (4, "uint8", "LINEAR", "CHANNEL_PACKED"),
+        "packed": (4, "uint8", "SRGB", "CHANNEL_PACKED"),
+        "ignored": (3, "uint8", "SRGB", "NONE"),
+        "linear": (3, "uint8", "LINEAR", "NONE"),
+    }
+    for name, (channels, *kinds) in wanted.items():
+        picture = images[name]
+        assert [picture[field] for field in ("type", "transfer", "alpha")] == kinds, name
+        texels = ramp(4)[..., :3] if name == "ignored" else ramp(channels)
+        assert np.array_equal(picture["texels"], texels) and picture["matrix"] == IDENTITY, name
+    bright = images["bright"]
+    assert (bright["type"], bright["transfer"], bright["alpha"]) == ("float32", "LINEAR", "NONE")
+    assert np.array_equal(bright["texels"], (4.0 * ramp(3) / 255.0).astype(np.float32))
+    assert got["messages"] == [] and got["unchanged"]
+
+
+def test_colour_spaces_as_blender_converts_them(case):
+    got = case("spaces")
+    kinds = {}
+    for picture in got["images"]:
+        values = np.array(picture["texels"], float)
+        assert picture["transfer"] == "LINEAR"
+        if picture["type"] == "uint8":
+            values = values / 255.0
+        values = values @ np.array(picture["matrix"]).reshape(3, 3).T
+        wanted = np.array(got["wanted"][picture["name"]])
+        # Single precision through a file and curves that are up to 2^4 steep: 2^-24 times 2^4 times the value, and some steps.
+        assert np.abs(values - wanted).max() < 4e-6 * np.abs(wanted).max(), picture["name"]
+        kinds[picture["name"]] = picture["type"]
+    # What is a matrix stays in bytes.
+    assert sorted(kinds.values()) == ["float32", "uint8"] and kinds["Filmic sRGB"] == "float32"
+    assert got["unchanged"]
+
+
+def test_tiles_sequences_and_what_is_missing(case):
+    got = case("files")
+    tiles = [picture for picture in got["images"] if picture["name"] == "tiles"]
+    assert [tile["tile"] for tile in tiles] == [1001, 1002, 1011]
+    for tile, shift in zip(tiles, (0, 50, 100), strict=True):
+        assert np.array_equal(tile["texels"], (ramp(3) + shift) % 256)
+    images = {picture["name"]: picture for picture in got["images"]}
+    # Frame 11 of a sequence that starts at 10 is its second picture.
+    assert np.array_equal(images["sequence"]["texels"], (ramp(3) + 20) % 256)
+    assert np.array_equal(images["in the file"]["texels"], (ramp(3) + 30) % 256)
+    assert images["deep"]["type"] == "uint16" and np.array_equal(images["deep"]["texels"], ramp(3) * 257)
+    assert got["ranges"] == [[0, 3], [3, 1], [4, 1], [5, 1]] and "lost" not in images
+    told = got["messages"]
+    assert len(told) == 3 and "tile 1012 of image 'tiles'" in told[0]
+    assert "material 'Lost'" in told[1] and "image 'lost'" in told[1] and "has no image" in told[2]
+    assert got["unchanged"]
