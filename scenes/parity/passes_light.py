@@ -53,8 +53,9 @@ def pass_glossy(scene):
 def pass_transmission(scene):
     """The room through a wide rough pane, which the lamp also lights from behind."""
     _room(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)))
-    clear = shader("ShaderNodeBsdfRefraction", {"distribution": "GGX"}, Color=(0.8, 0.9, 1.0), Roughness=0.4, IOR=1.3)
+    clear = shader("ShaderNodeBsdfRefraction", {"distribution": "GGX"}, Color=(0.8, 0.9, 1.0), Roughness=0.2, IOR=1.3)
     parts.place(scene, "Pane", parts.plane_mesh("Pane", 4.0), clear, (0, -1.9, 1.2), rotation=(1.5708, 0, 0))
+    parts.add_light(scene, "Facing", "AREA", 30.0, (-1.2, 1.5, 1.5), (0, -3.5, 1.5), size=0.8)
 
 
 @case(passes=_LIGHT)
@@ -81,15 +82,14 @@ def pass_ambient_occlusion(scene):
     scene.world.light_settings.distance = 1.0
 
 
-@case("LOBES", passes=_LIGHT)
+@case("LOBES", passes=_LIGHT[:6])
 def pass_light_principled(scene):
-    """One node that feeds all of them."""
+    """One node that feeds several of them."""
     floor(scene)
     mixed = shader(
         "ShaderNodeBsdfPrincipled",
         Base_Color=(0.8, 0.4, 0.3),
         Roughness=0.4,
-        Transmission_Weight=0.3,
         Coat_Weight=0.5,
         Metallic=0.2,
     )

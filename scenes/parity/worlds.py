@@ -29,14 +29,14 @@ def world_color(scene, strength):
 @case(bounces=1)
 def world_none(scene):
     """Without a sky only the lamp shines."""
-    _things(scene)
+    _things(scene, mirror=False)
     scene.world = None
     parts.add_light(scene, "Lamp", "POINT", 200.0, (1, -2, 3), shadow_soft_size=0.3)
 
 
 @case(bounces=1)
 def world_without_surface(scene):
-    _things(scene)
+    _things(scene, mirror=False)
     result = bpy.data.worlds.new("World")
     parts.enable_nodes(result).nodes.new("ShaderNodeOutputWorld")
     scene.world = result

@@ -48,6 +48,8 @@ struct Bsdf {
   bool bump_correction = true;
   bool flat = true;                   // ns is ng
   bool smooth = false, delta = false; // some lobe is; set by complete()
+  bool shares = true;                 // samples say their shares by component
+  uint32_t shapes = 0;                // shape_bit of the lobes that are there
   int frame_count = 0;
   int count = 0;
   glm::vec3 emission{0.0f}; // what layered lobes emit towards wo

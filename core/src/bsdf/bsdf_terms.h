@@ -248,7 +248,7 @@ template <uint32_t Shapes> BsdfSample Bsdf::sample_smooth(int chosen, float u_si
   if constexpr (Shapes == shape_bit(LobeShape::Lambert)) {
     result.share[0] = glm::vec3(1.0f);
   } else {
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3 && shares; ++c)
       if (f[c] > 0.0f)
         for (int k = 0; k < 2; ++k)
           result.share[k][c] = value.part[k][c] / f[c];

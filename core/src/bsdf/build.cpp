@@ -322,6 +322,7 @@ void Bsdf::begin(const glm::vec3 &wo_, const glm::vec3 &ns_, const glm::vec3 &ng
   wo_local[0] = frames[0].to_local(wo);
   frame_count = 1;
   count = 0;
+  shapes = 0;
   emission = glm::vec3(0.0f);
 }
 

@@ -165,8 +165,10 @@ void complete_microfacet(Lobe &lobe, float cos_o, bool preserving) {
 }
 
 void add(Bsdf &bsdf, const Lobe &lobe) {
-  if (bsdf.count < kMaxLobes && lobe.color != glm::vec3(0.0f))
-    bsdf.lobes[bsdf.count++] = lobe;
+  if (bsdf.count >= kMaxLobes || lobe.color == glm::vec3(0.0f))
+    return;
+  bsdf.lobes[bsdf.count++] = lobe;
+  bsdf.shapes |= shape_bit(lobe.shape);
 }
 
 } // namespace lancer

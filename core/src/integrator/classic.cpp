@@ -54,7 +54,7 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
   rays_.clear();
   samplers_.clear();
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
-    results[slot] = SampleResult{};
+    results[slot] = SampleResult(LightPasses(settings_).wanted());
     samplers_.push_back(generator_.sampler(addresses[slot]));
     Ray ray = generator_.ray(addresses[slot], samplers_.back());
     // Outside a panorama's picture there is no direction to look in: it is black, and as solid as Cycles has it.
@@ -100,7 +100,7 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
   const glm::vec3 opacity = glm::clamp(1.0f - point_.transmittance, 0.0f, 1.0f);
   Branch here = branch;
   if (from_camera && !branch.seen && mean(opacity) >= settings_.alpha_threshold) {
-    record_first_surface(scene_, surface, point_, branch.passed + hit.t, result);
+    record_first_surface(scene_, settings_, surface, point_, branch.passed + hit.t, result);
     here.seen = true;
   }
   if (point_.passes() && branch.layers < settings_.transparent_bounces) {

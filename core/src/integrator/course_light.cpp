@@ -92,9 +92,11 @@ glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const
       specular += lobe.color * (kInvPi * lobe_power(h.z, lobe.shininess));
   }
   // Lobes that the course does not know answer as they do in PATH.
-  const BsdfValue rest = bsdf.eval<kAllShapes & ~kCourseShapes>(wi_world);
-  diffuse += rest.part[size_t(Component::Diffuse)];
-  specular += rest.part[size_t(Component::Glossy)];
+  if (bsdf.shapes & ~kCourseShapes) {
+    const BsdfValue rest = bsdf.eval<kAllShapes & ~kCourseShapes>(wi_world);
+    diffuse += rest.part[size_t(Component::Diffuse)];
+    specular += rest.part[size_t(Component::Glossy)];
+  }
   return irradiance * (diffuse * course.diffuse_color + specular * course.specular_color);
 }
 

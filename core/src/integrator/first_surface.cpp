@@ -33,10 +33,12 @@ void forget_place(SampleResult &result) {
   result.object_index = result.material_index = 0.0f;
 }
 
-void record_first_surface(const Scene &scene, const Surface &surface, const Shaded &shaded, double t, SampleResult &result) {
+void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
+                          double t, SampleResult &result) {
   record_place(scene, surface, shaded, t, result);
   result.normal = mean_normal(shaded.bsdf);
-  result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
+  if (settings.passes & 1u << LANCER_PASS_UV)
+    result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
 }
 
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface) {

@@ -11,7 +11,8 @@ void record_place(const Scene &scene, const Surface &surface, const Shaded &shad
 // As if it had met nothing.
 void forget_place(SampleResult &result);
 // Fills all that the first surface says about the pixel.
-void record_first_surface(const Scene &scene, const Surface &surface, const Shaded &shaded, double t, SampleResult &result);
+void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
+                          double t, SampleResult &result);
 
 // How much mist covers a point: 0 near, 1 far.
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface);

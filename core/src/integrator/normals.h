@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrator/first_surface.h"
+#include "integrator/light_passes.h"
 #include "integrator/sample.h"
 
 namespace lancer {
@@ -22,7 +23,7 @@ public:
     counts_.camera += rays_.size();
     for (size_t i = 0; i < rays_.size(); ++i) {
       const Ray &ray = rays_[i];
-      results[i] = SampleResult{};
+      results[i] = SampleResult(LightPasses(settings_).wanted());
       // Outside a panorama's picture there is no direction to look in: it is black, and as solid as Cycles has it.
       results[i].alpha = ray.tmax < 0.0 ? 1.0f : 0.0f;
       if (ray.tmax < 0.0)
@@ -36,7 +37,7 @@ public:
       }
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
       shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .camera_ray = true}, point_);
-      record_first_surface(scene_, surface, point_, hits_[i].t, results[i]);
+      record_first_surface(scene_, settings_, surface, point_, hits_[i].t, results[i]);
       results[i].radiance = 0.5f * surface.ns + 0.5f;
       results[i].alpha = 1.0f;
       if (trace)

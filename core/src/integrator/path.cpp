@@ -78,7 +78,7 @@ void PathIntegrator<Shapes, Layers>::generate(std::span<const SampleAddress> add
   rays_.clear();
   indirect_.assign(addresses.size(), glm::vec3(0.0f));
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
-    results[slot] = SampleResult{};
+    results[slot] = SampleResult(passes_.wanted());
     Path path{.sampler = generator_.sampler(addresses[slot]), .slot = slot};
     path.features.open = passes_.features();
     const Ray ray = generator_.ray(addresses[slot], path.sampler);
@@ -267,7 +267,7 @@ void PathIntegrator<Shapes, Layers>::record(Path &path, const Surface &surface, 
   const glm::vec3 opacity = glm::clamp(1.0f - point_.transmittance, 0.0f, 1.0f);
   // A surface that is hardly there gives way to the next one, unless the path ends on it.
   if (!path.seen && mean(opacity) >= settings_.alpha_threshold) {
-    record_first_surface(scene_, surface, point_, path.depth + t, result);
+    record_first_surface(scene_, settings_, surface, point_, path.depth + t, result);
     path.seen = true;
   } else if (!path.seen) {
     record_place(scene_, surface, point_, path.depth + t, result);

@@ -16,7 +16,9 @@ template <uint32_t Shapes, bool Layers> class PathIntegrator final : public Inte
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), cone_(camera), passes_(settings), kernel_(kernel) {}
+        shadows_(scene, camera, settings), cone_(camera), passes_(settings), kernel_(kernel) {
+    point_.bsdf.shares = passes_.wanted();
+  }
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
   const char *kernel() const override { return kernel_; }

@@ -6,6 +6,7 @@
 #include "scene/camera.h"
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <atomic>
 #include <vector>
 
@@ -65,8 +66,13 @@ struct SampleResult {
   float mist = 0.0f;
   glm::vec3 denoising_normal{0.0f}; // camera space
   float denoising_depth = 0.0f;
-  // Parts of radiance, filled where settings ask for them; colours are their divisors.
-  glm::vec3 light[kLightPasses] = {};
+  // Parts of radiance, where settings ask for them; colours are their divisors. Elsewhere nobody reads them.
+  glm::vec3 light[kLightPasses];
+
+  explicit SampleResult(bool with_light = false) {
+    if (with_light)
+      std::fill(light, light + kLightPasses, glm::vec3(0.0f));
+  }
 };
 
 struct RayCounts {

@@ -1,5 +1,6 @@
 #include "integrator/shading.h"
 
+#include "bsdf/microfacet.h"
 #include "integrator/terminator.h"
 
 #include <algorithm>
@@ -25,6 +26,26 @@ glm::vec3 visible_normal(const glm::vec3 &ns, const glm::vec3 &ng, const glm::ve
   return glm::normalize(ns + (grazing - cosine) * wo);
 }
 
+// Makes a lobe once where neither wo nor the place changes it.
+ReadyLobe make_ready(const LobeInputs &inputs) {
+  ReadyLobe ready;
+  const bool matte = inputs.kind == LobeKind::Lambert || (inputs.kind == LobeKind::Diffuse && inputs.roughness == 0.0f);
+  const bool course = inputs.kind == LobeKind::Mirror || inputs.kind == LobeKind::Phong || inputs.kind == LobeKind::BlinnPhong;
+  if ((!matte && !course) || inputs.normal != glm::vec3(0.0f))
+    return ready;
+  const auto bsdf = std::make_unique<Bsdf>();
+  const glm::vec3 up(0.0f, 0.0f, 1.0f);
+  bsdf->begin(up, up, up, false, true);
+  add_lobe(*bsdf, inputs);
+  if (bsdf->count != 1)
+    return ready;
+  ready.lobe = bsdf->lobes[0];
+  ready.usable = true;
+  // About an interpolated normal reflecting lobes, and in Blender 3.x all, may be bent.
+  ready.flat_only = course || inputs.rules == Rules::Blender3;
+  return ready;
+}
+
 } // namespace
 
 Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values_(most_nodes(scene)) {
@@ -32,6 +53,11 @@ Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values
   context_.images = &scene.images;
   context_.normalisation = &scene.normalisation;
   context_.camera = camera;
+  for (const Material &material : scene.materials) {
+    std::vector<ReadyLobe> &ready = ready_.emplace_back();
+    for (const LobeInputs &inputs : material.fixed)
+      ready.push_back(make_ready(inputs));
+  }
 }
 
 void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
@@ -113,6 +139,18 @@ void Shader::begin(const Material &material, const Surface &surface, const glm::
 }
 
 void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
+  if (!material.fixed.empty()) {
+    const std::vector<ReadyLobe> &ready = ready_[size_t(&material - scene_.materials.data())];
+    for (size_t i = 0; i < material.fixed.size(); ++i) {
+      if (ready[i].usable && (bsdf.flat || !ready[i].flat_only))
+        add(bsdf, ready[i].lobe);
+      else if (material.lobes[i].principled)
+        add_principled(bsdf, material.fixed[i], material.fixed_principled[i]);
+      else
+        add_lobe(bsdf, material.fixed[i]);
+    }
+    return;
+  }
   for (const LobeDescription &lobe : material.lobes) {
     const LobeInputs inputs = evaluate(lobe, values_);
     if (inputs.weight == glm::vec3(0.0f))

@@ -29,6 +29,13 @@ struct View {
   bool camera_ray = false;
 };
 
+// A lobe that is the same wherever its material is met.
+struct ReadyLobe {
+  Lobe lobe;
+  bool usable = false;
+  bool flat_only = false; // only where the shading normal is the geometric one
+};
+
 // Evaluates materials at surfaces. One object per thread: it keeps the nodes' values.
 class Shader {
 public:
@@ -52,8 +59,9 @@ private:
 
   const Scene &scene_;
   NodeContext context_;
-  std::vector<glm::vec4> values_; // of the nodes of one material at a time
-  Shaded layered_;                // scratch for emission below layers
+  std::vector<std::vector<ReadyLobe>> ready_; // of materials without nodes, by number
+  std::vector<glm::vec4> values_;             // of the nodes of one material at a time
+  Shaded layered_;                            // scratch for emission below layers
 };
 
 // The size of a pixel's view: at distance 0, and what it grows by per unit of distance; normalised units.

@@ -35,6 +35,10 @@ struct Material {
   uint32_t index = 0;
   uint32_t flags = 0; // LANCER_MATERIAL_*
 
+  // Where no node has a say the lobes' inputs are made once, principled ones by the number of their lobe; else both are empty.
+  std::vector<LobeInputs> fixed;
+  std::vector<PrincipledInputs> fixed_principled;
+
   // Which nodes each question needs.
   Schedule surface_nodes;       // lobes, emission, transmittance, holdout, ambient, normal
   Schedule transmittance_nodes; // for shadow rays
