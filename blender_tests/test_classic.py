@@ -1,5 +1,6 @@
 """The course's ray tracer on single pixels, each against its formula worked out here."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 import reference
 import tiny_scenes
 from bindings.abi import Falloff, Integrator, LightKind, LobeKind, Shading
-from bindings.snapshot import Instance, Light, Lobe, Material, MeshData
+from bindings.enums import Coordinate, Environment, NodeKind
+from bindings.snapshot import Image, Instance, Light, Lobe, Material, MeshData, Node, NodeRef, World
 from tiny_scenes import lambert, move, pencil, plane, rgb, rotate_x, scale, sphere
 
 # One sample through the middle of everything has no noise: only float32 products, a dozen at 6e-8.
@@ -325,3 +327,21 @@ def test_one_sample_is_deterministic():
         for seed in (0, 1)
     ]
     assert many[0] != many[1]
+
+
+def cube_world(snapshot):
+    """The snapshot under the course's cube: one colour a side, 1 ... 6 in order."""
+    sides = tuple(Image(f"side {i}", np.full((1, 1, 3), i + 1, np.float32)) for i in range(6))
+    direction = Node(NodeKind.COORDINATE, Coordinate.GENERATED)
+    cube = Node(NodeKind.ENVIRONMENT, Environment.CUBE, image_count=6, inputs=(NodeRef(0),))
+    return dataclasses.replace(snapshot, images=sides, world=World(NodeRef(1), nodes=(direction, cube)))
+
+
+@pytest.mark.parametrize("cheap, want", [(False, 0.25), (True, 5.0)])
+def test_environment_mapping_looks_past_what_stands_between(cheap, want):
+    """A mirror throws the view to (-0.6, 0, 0.8): the side +z, the fifth, unless the glowing ball on the way is traced."""
+    mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=rgb(1.0)),))
+    glow = Material("glow", lobes=(), emission=rgb(0.25))
+    ball = sphere(1, move(-3.0, 0.0, 4.0) @ scale(0.5))
+    snapshot = cube_world(classic([plane(), ball], [mirror, glow], environment_reflections=cheap))
+    assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :3], want, rtol=EXACT)

@@ -25,12 +25,12 @@ def test_bit_depth_and_alpha(case):
     # Two materials show the first picture, which is there once.
     assert got["ranges"] == [[0, 1], [0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1]]
     wanted = {
-        "opaque": (3, "uint8", "SRGB", "NONE"),
+        "opaque": (3, "uint8", "SRGB", "STRAIGHT"),
         "seen through": (4, "uint8", "SRGB", "STRAIGHT"),
         "data": (4, "uint8", "LINEAR", "CHANNEL_PACKED"),
         "packed": (4, "uint8", "SRGB", "CHANNEL_PACKED"),
         "ignored": (3, "uint8", "SRGB", "NONE"),
-        "linear": (3, "uint8", "LINEAR", "NONE"),
+        "linear": (3, "uint8", "LINEAR", "STRAIGHT"),
     }
     for name, (channels, *kinds) in wanted.items():
         picture = images[name]
@@ -38,7 +38,7 @@ def test_bit_depth_and_alpha(case):
         texels = ramp(4)[..., :3] if name == "ignored" else ramp(channels)
         assert np.array_equal(picture["texels"], texels) and picture["matrix"] == IDENTITY, name
     bright = images["bright"]
-    assert (bright["type"], bright["transfer"], bright["alpha"]) == ("float32", "LINEAR", "NONE")
+    assert (bright["type"], bright["transfer"], bright["alpha"]) == ("float32", "LINEAR", "ASSOCIATED")
     assert np.array_equal(bright["texels"], (4.0 * ramp(3) / 255.0).astype(np.float32))
     assert got["messages"] == [] and got["unchanged"]
 

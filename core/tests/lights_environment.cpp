@@ -111,7 +111,7 @@ struct Sky {
     image.channels = 1;
     image.kind = TexelKind::Float;
     image.alpha = AlphaMode::None;
-    image.texels = std::make_unique<std::byte[]>(texels.size() * sizeof(float));
+    image.texels = allocate_texels(texels.size() * sizeof(float));
     std::memcpy(image.texels.get(), texels.data(), texels.size() * sizeof(float));
     images.push_back(std::move(image));
     Node direction, mapping, environment;

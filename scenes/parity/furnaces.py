@@ -57,9 +57,23 @@ _CLOSURES = {
 }
 
 
+_LOOSER = {
+    "ashikhmin": {
+        "limit": (0.04, 0.45),
+        "reason": "Cycles' sampler of this lobe mirrors about half vectors that face away, which brightens rough surfaces at "
+        "grazing angles under a sky; under lamps both agree",
+    },
+    "sheen": {
+        "limit": (0.03, 0.4),
+        "reason": "smooth cloth seen steeply reflects a thousandth of the light and less; our table of it is within 0.0002 of "
+        "white there, a large share of nearly nothing",
+    },
+}
+
+
 @variants(
     "FURNACE",
-    values={name: (value, {"needs": with_node(value[0])}) for name, value in _CLOSURES.items()},
+    values={name: (value, {"needs": with_node(value[0]), **_LOOSER.get(name, {})}) for name, value in _CLOSURES.items()},
     size=_SIZE,
     bounces=1,
 )

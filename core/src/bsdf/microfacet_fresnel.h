@@ -16,6 +16,8 @@ struct FacetResponse {
 
   // The probability of choosing reflection.
   float reflected_share() const {
+    if (through == glm::vec3(0.0f))
+      return reflected == glm::vec3(0.0f) ? 0.0f : 1.0f;
     const float r = reflected.x + reflected.y + reflected.z, t = through.x + through.y + through.z;
     return r > 0.0f ? r / (r + t) : 0.0f;
   }

@@ -133,6 +133,12 @@ inline MicrofacetDirection microfacet_sample(const Lobe &lobe, const glm::vec3 &
   MicrofacetDirection result;
   const glm::vec3 h = lobe.beckmann ? beckmann_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, u)
                                     : ggx_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, u);
+  // Where nothing goes through there is no choice, and what is reflected is weighed later.
+  if (!refracts(lobe)) {
+    result.h = h;
+    result.wi = reflect_about(wo, h);
+    return result.wi.z > 0.0f ? result : MicrofacetDirection{};
+  }
   // Choose the side at the facet that was drawn, by what it sends there.
   const FacetResponse response = facet_response(lobe, glm::dot(wo, h));
   if (response.black())

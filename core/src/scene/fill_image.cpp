@@ -82,7 +82,7 @@ void add_image(Description &description, const lancer_image &source) {
     for (int column = 0; column < 3; ++column)
       image.matrix[column][row] = source.matrix[3 * row + column];
   image.has_matrix = image.matrix != glm::mat3(1.0f);
-  image.texels = std::make_unique_for_overwrite<std::byte[]>(image.bytes());
+  image.texels = allocate_texels(image.bytes());
   std::memcpy(image.texels.get(), source.texels, image.bytes());
   if (image.kind == TexelKind::Float)
     if (const size_t cleared = clear_not_finite(image))

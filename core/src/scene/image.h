@@ -1,10 +1,11 @@
 // Pictures in memory, in their own bit depth, and how a texel becomes a colour.
 #pragma once
 
+#include "scene/texels.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <string>
 
 namespace lancer {
@@ -23,8 +24,8 @@ struct Image {
   AlphaMode alpha = AlphaMode::Straight;
   uint32_t tile = 0; // UDIM; 0 = none
   bool has_matrix = false;
-  glm::mat3 matrix{1.0f};              // decoded RGB to the working space
-  std::unique_ptr<std::byte[]> texels; // [height][width][channels]
+  glm::mat3 matrix{1.0f}; // decoded RGB to the working space
+  Texels texels;          // [height][width][channels]
 
   size_t bytes() const;
 };
