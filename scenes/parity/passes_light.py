@@ -49,7 +49,12 @@ def pass_glossy(scene):
     _room(scene, shader("ShaderNodeBsdfGlossy", {"distribution": "GGX"}, Color=(0.8, 0.7, 0.6), Roughness=0.6))
 
 
-@case(passes=_LIGHT[6:])
+@case(
+    passes=_LIGHT[6:],
+    limit=(0.015, 0.08),
+    reason="Cycles' lamps also light rough refraction along directions that no facet connects, which brightens it by up to a "
+    "percent; ours keeps to what the facets can do",
+)
 def pass_transmission(scene):
     """The room through a wide rough pane, which the lamp also lights from behind."""
     _room(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)))
