@@ -196,6 +196,51 @@ TEST(MatteLobes, SheenScattersItsAlbedo) {
   EXPECT_GT(sheen_fit(0.2f, 0.5f).albedo, sheen_fit(0.8f, 0.5f).albedo);
 }
 
+TEST(MatteLobes, SheenIsLinearBetweenItsNodes) {
+  constexpr float kStep = 1.0f / (kSheenNodes - 1);
+  const auto node = [](int j, int i) { return glm::vec3(kSheen[j][i][0], kSheen[j][i][1], kSheen[j][i][2]) * 1e-5f; };
+  for (int j = 1; j < kSheenNodes; ++j)
+    for (int i = 1; i < kSheenNodes; ++i) {
+      const glm::vec3 near = node(j, i), far = node(j - 1, i - 1), mixed = node(j - 1, i) + node(j, i - 1);
+      const SheenFit at = sheen_fit(i * kStep, j * kStep), middle = sheen_fit((i - 0.5f) * kStep, (j - 0.5f) * kStep);
+      // A rounding of the place, 31 at most, times what lies between two nodes, which is below 1.
+      const float rounding = 4.0f * 31.0f * std::numeric_limits<float>::epsilon();
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(glm::vec3(at.a, at.b, at.albedo)[k], near[k], rounding) << j << " " << i;
+        EXPECT_NEAR(glm::vec3(middle.a, middle.b, middle.albedo)[k], 0.25f * (near + far + mixed)[k], rounding)
+            << j << " " << i;
+      }
+    }
+}
+
+// Of this row of the table the albedo falls from 2e-5 at cos = 3/31 to 0 at 4/31.
+TEST(MatteLobes, SheenWithHardlyAnAlbedoIsNothing) {
+  const glm::vec3 white(1.0f);
+  EXPECT_GT(make_sheen(white, 1.0f / 31.0f, 3.25f / 31.0f).color.x, 1e-5f);
+  const Lobe lobe = make_sheen(white, 1.0f / 31.0f, 3.75f / 31.0f);
+  EXPECT_EQ(lobe.color, glm::vec3(0.0f));
+  EXPECT_EQ(lobe.albedo, glm::vec3(0.0f));
+}
+
+// What samples weigh is f / pdf: their mean is the integral of f, also where many half vectors face away.
+TEST(MatteLobes, AshikhminSamplesWeighItsIntegral) {
+  constexpr int kSide = 512;
+  for (const float r : {0.6f, 1.0f})
+    for (const float degrees : {20.0f, 65.0f, 80.0f}) {
+      const glm::vec3 wo = direction(std::cos(glm::radians(degrees)));
+      const Lobe lobe = make_ashikhmin(glm::vec3(1.0f), r * r, r * r);
+      double sum = 0.0;
+      for (int i = 0; i < kSide; ++i)
+        for (int j = 0; j < kSide; ++j) {
+          const glm::vec3 wi = drawn(lobe, wo, (glm::vec2(i, j) + 0.5f) / float{kSide});
+          const ColorValue term = wi.z > 0.0f ? value_of(lobe, wo, wi) : ColorValue{};
+          sum += term.pdf > 0.0f ? double{term.f.x} / term.pdf : 0.0;
+        }
+      // The weights fall to 0 at the horizon, so the grid's middles are good to some 1 / kSide^2.
+      EXPECT_NEAR(sum / (kSide * kSide), albedo(lobe, wo), 1e-4) << r << " seen at " << degrees;
+    }
+}
+
 TEST(MatteLobes, GlossGoesOverIntoAMirror) {
   EXPECT_TRUE(make_ashikhmin(glm::vec3(1.0f), 0.0f, 0.0f).delta);
   EXPECT_FALSE(make_ashikhmin(glm::vec3(1.0f), 0.0f, 0.1f).delta);

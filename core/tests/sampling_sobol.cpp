@@ -88,6 +88,16 @@ TEST(Sobol, SingleNumbersAreThoseOfThePairs) {
   }
 }
 
+TEST(Sobol, EightAtOnceAreTheSameNumbers) {
+  for (uint32_t sample = 0; sample < 64; ++sample)
+    for (uint32_t dimension = 0; dimension < 64; dimension += 4) {
+      const Sampler sampler(3, 5, 7, sample * 0x2545f491u);
+      const auto numbers = sampler.get8(dimension);
+      for (uint32_t i = 0; i < 8; ++i)
+        ASSERT_EQ(numbers[i], sampler.get1(dimension + i)) << dimension << " + " << i;
+    }
+}
+
 TEST(Sobol, StaysBelowOne) {
   // 2^24 samples of one dimension visit each of 2^24 cells once, the last one included. A conversion that rounds would give 1
   // there for half of the scramblings.

@@ -26,6 +26,12 @@ inline float read1(const uint16_t *table, int n, float x) {
   const float t = x - static_cast<float>(i), a = table[i], b = table[i + 1];
   return (a + (b - a) * t) * (1.0f / 65535.0f);
 }
+// The same of a row of floats.
+inline float read_row(const float *row, int n, float x) {
+  x = std::clamp(x, 0.0f, 1.0f) * static_cast<float>(n - 1);
+  const int i = std::min(static_cast<int>(x), n - 2);
+  return row[i] + (row[i + 1] - row[i]) * (x - static_cast<float>(i));
+}
 inline float read2(const uint16_t *table, int n, float y, float x) {
   y = std::clamp(y, 0.0f, 1.0f) * static_cast<float>(n - 1);
   const int i = std::min(static_cast<int>(y), n - 2);
@@ -43,6 +49,12 @@ inline float read3(const uint16_t *table, int n, float z, float y, float x) {
 inline float index_axis(float ior) { return std::isinf(ior) ? 1.0f : std::sqrt(std::abs((ior - 1.0f) / (ior + 1.0f))); }
 
 } // namespace tables
+
+// The tables of one lobe along the cosine of wo, for a roughness and an index that are read again and again.
+struct AlbedoRows {
+  float single[tables::kFine]; // ggx_albedo, or the first kCoarse of glass_albedo
+  float mix[tables::kCoarse];  // dielectric_mix or fifth_power_mix
+};
 
 // roughness: of the socket, the root of alpha. cos_o: of wo.
 // What facets that reflect all send out at once, and its mean over a white sky.

@@ -35,9 +35,9 @@ struct BsdfSample {
 //   eval      f |cos| of smooth lobes, single directions are 0; the cosine is that of the lobe's own normal.
 //   pdf       per solid angle; it integrates to 1 minus the probability of single directions minus what is lost at the horizon.
 //   Sides     A lobe decides by its own normal whether wi is reflected or goes through. Two other normals have a say:
-//             - ns, where the lobe's normal differs from it (bump): a direction on the other side of ns than the lobe says is
-//             0,
-//               and diffuse lobes end smoothly before it where bump_correction is set.
+//             - ns, where the lobe's normal differs from it (bump): a direction on the other side of ns than the lobe says
+//               is 0, and diffuse lobes end smoothly before it where bump_correction is set.
+//               A lobe that reflects keeps what it draws itself beyond ns, as in Cycles.
 //             - ng: sample() never takes a direction that would pass the surface the wrong way, so its pdf is 0. The value
 //               stays: lights are met as on the smooth surface that interpolated normals stand for, and what is in the way
 //               of the shadow ray decides.
@@ -46,10 +46,10 @@ struct Bsdf {
   glm::vec3 wo{0, 0, 1}, ns{0, 0, 1}, ng{0, 0, 1};
   bool inside = false;
   bool bump_correction = true;
-  bool flat = true;                   // ns is ng
-  bool smooth = false, delta = false; // some lobe is; set by complete()
-  bool shares = true;                 // samples say their shares by component
-  uint32_t shapes = 0;                // shape_bit of the lobes that are there
+  bool flat = true;    // ns is ng
+  bool smooth = false; // some lobe is more than single directions; set by complete()
+  bool shares = true;  // samples say their shares by component
+  uint32_t shapes = 0; // shape_bit of the lobes that are there
   int frame_count = 0;
   int count = 0;
   glm::vec3 emission{0.0f}; // what layered lobes emit towards wo
@@ -81,9 +81,10 @@ private:
     glm::vec3 wi[kMaxFrames];
     float cos_ng; // to ng
   };
-  // The lobe that drew wi, with the half vector that its sampler had.
+  // The lobe that drew wi, with the half vector that its sampler had, if it had one.
   struct Drawn {
     int lobe = -1;
+    bool has_h = false;
     glm::vec3 h{0.0f};
   };
 

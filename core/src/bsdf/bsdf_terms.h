@@ -61,7 +61,7 @@ inline void Bsdf::turn_to_frames(const glm::vec3 &wi, int known, const glm::vec3
 template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &drawn) const {
   BsdfValue value;
   // The half vector of a frame serves all lobes that reflect in it.
-  int half_frame = drawn.lobe >= 0 && local.wi[lobes[drawn.lobe].frame].z > 0.0f ? lobes[drawn.lobe].frame : -1;
+  int half_frame = drawn.has_h && local.wi[lobes[drawn.lobe].frame].z > 0.0f ? lobes[drawn.lobe].frame : -1;
   glm::vec3 h = drawn.h;
   for (int i = 0; i < count; ++i) {
     const Lobe &lobe = lobes[i];
@@ -77,7 +77,7 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
       continue;
     }
     float bump = 1.0f;
-    if (lobe.frame != 0) {
+    if (lobe.frame != 0 && (i != drawn.lobe || ends_smoothly(lobe))) {
       bump = bump_factor(lobe, frames[lobe.frame].n, ns, local.wi[0].z, wi.z, bump_correction);
       if (bump == 0.0f)
         continue;
@@ -94,7 +94,8 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
     } else if (is<Shapes>(lobe, LobeShape::Ashikhmin)) {
       term = gloss_eval(lobe, wo_l, wi);
     } else if (is<Shapes>(lobe, LobeShape::Microfacet) && through) {
-      term = microfacet_eval_through(lobe, wo_l, wi, i == drawn.lobe ? drawn.h : refraction_half_vector(wo_l, wi, lobe.ior));
+      term = microfacet_eval_through(lobe, wo_l, wi,
+                                     i == drawn.lobe && drawn.has_h ? drawn.h : refraction_half_vector(wo_l, wi, lobe.ior));
     } else if (wo_l.z > 0.0f && wi.z > 0.0f) {
       // What is left reflects about the half vector.
       if (half_frame != lobe.frame) {
@@ -237,7 +238,7 @@ template <uint32_t Shapes> BsdfSample Bsdf::sample_smooth(int chosen, float u_si
   if (direction.wi.z == 0.0f || (local.cos_ng < 0.0f) != through)
     return {};
   // Weigh with the sum over all smooth lobes, whichever was picked; h goes along with all digits of the sampler.
-  const BsdfValue value = sum<Shapes>(local, {has_half_vector ? chosen : -1, direction.h});
+  const BsdfValue value = sum<Shapes>(local, {chosen, has_half_vector, direction.h});
   if (!(value.pdf > 0.0f))
     return {};
   const glm::vec3 f = value.f();

@@ -188,6 +188,10 @@ void add_translucent(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weig
   add(bsdf, lobe);
 }
 
+bool scatters_beyond_albedo(const Lobe &lobe) {
+  return lobe.shape == LobeShape::Microfacet && !reflects(lobe) && !lobe.delta && !lobe.delta_through;
+}
+
 } // namespace
 
 uint32_t shapes_of(LobeKind kind) {
@@ -317,7 +321,7 @@ void Bsdf::begin(const glm::vec3 &wo_, const glm::vec3 &ns_, const glm::vec3 &ng
   inside = inside_;
   bump_correction = bump_correction_;
   flat = ns == ng;
-  smooth = delta = false;
+  smooth = false;
   frames[0] = Frame(ns);
   wo_local[0] = frames[0].to_local(wo);
   frame_count = 1;
@@ -329,11 +333,11 @@ void Bsdf::begin(const glm::vec3 &wo_, const glm::vec3 &ns_, const glm::vec3 &ng
 void Bsdf::complete() {
   // Lobes are picked by the light that they are expected to scatter.
   float sum = 0.0f;
-  smooth = delta = false;
+  smooth = false;
   for (int i = 0; i < count; ++i) {
-    const glm::vec3 &albedo = lobes[i].albedo;
-    sum += lobes[i].probability = std::max({albedo.x, albedo.y, albedo.z, 0.0f});
-    delta = delta || lobes[i].delta || lobes[i].delta_through;
+    // The albedo of rough refraction is that of the smooth surface, which may reflect all where tilted facets do not.
+    const glm::vec3 &expected = scatters_beyond_albedo(lobes[i]) ? lobes[i].color : lobes[i].albedo;
+    sum += lobes[i].probability = std::max({expected.x, expected.y, expected.z, 0.0f});
     smooth = smooth || !lobes[i].delta;
   }
   for (int i = 0; i < count; ++i)

@@ -58,6 +58,7 @@ struct Lobe {
   float shininess = 0.0f;
   float energy = 1.0f; // what multiple scattering multiplies the single one with
   glm::vec3 f0{0.0f}, f90{1.0f}, b{0.0f};
+  float lowest = 0.0f, per_range = 1.0f;          // Schlick: of ior, at the normal, and 1 over what is left to 1
   glm::vec3 reflection{1.0f}, transmission{1.0f}; // tints
   glm::vec3 albedo{0.0f};                         // share of light from wo that is scattered, color included
   glm::vec3 through{0.0f};                        // the part of albedo that goes through, of lobes that do both

@@ -46,27 +46,92 @@ glm::vec3 further_bounce(const Lobe &lobe) {
   case FresnelKind::Principled3: {
     if (lobe.transmission != glm::vec3(0.0f))
       return lobe.transmission;
-    const float lowest = f0_of_ior(lobe.ior);
-    const float s = std::clamp((dielectric_sky(lobe.ior) - lowest) / (1.0f - lowest), 0.0f, 1.0f);
-    return lobe.reflection * (lobe.f0 + (lobe.f90 - lobe.f0) * s);
+    return lobe.reflection * schlick(lobe, dielectric_sky(lobe.ior));
   }
   }
   return glm::vec3(1.0f);
 }
 
-// Gives the lobe the light that is lost between facets (Turquin 2019, with Kulla and Conty's colour).
-void preserve_energy(Lobe &lobe, float cos_o) {
-  const float roughness = roughness_of(lobe);
-  const bool glass = refracts(lobe);
-  const float albedo = glass ? glass_albedo(roughness, cos_o, lobe.ior) : ggx_albedo(roughness, cos_o);
-  const float mean = glass ? glass_mean_albedo(roughness, lobe.ior) : ggx_mean_albedo(roughness);
-  const float missing = (1.0f - albedo) / albedo;
-  lobe.energy = 1.0f + missing;
-  const glm::vec3 bounce = further_bounce(lobe);
+// The dielectric whose curve Schlick's follows; one that reflects all is at its end everywhere.
+void set_curve(Lobe &lobe, float ior) {
+  lobe.ior = ior;
+  lobe.lowest = f0_of_ior(ior);
+  const float range = 1.0f - lobe.lowest;
+  if (range > 0.0f)
+    lobe.per_range = 1.0f / range;
+  else
+    lobe.lowest = -1.0f;
+}
+
+// Share of the light lost between facets that further bounces bring back (Turquin 2019, with Kulla and Conty's colour).
+glm::vec3 further_light(const Lobe &lobe, float roughness) {
+  // Beyond 1 the sum over all bounces would not end.
+  const glm::vec3 bounce = glm::min(further_bounce(lobe), 1.0f);
   if (bounce == glm::vec3(1.0f))
-    return;
-  const glm::vec3 all_further = bounce * mean / (1.0f - bounce * (1.0f - mean));
-  lobe.color *= (1.0f + all_further * missing) / lobe.energy;
+    return bounce;
+  const float mean = refracts(lobe) ? glass_mean_albedo(roughness, lobe.ior) : ggx_mean_albedo(roughness);
+  return bounce * mean / (1.0f - bounce * (1.0f - mean));
+}
+
+float single_albedo(const Lobe &lobe, float roughness, float cos_o, const AlbedoRows *rows) {
+  if (rows)
+    return tables::read_row(rows->single, refracts(lobe) ? tables::kCoarse : tables::kFine, cos_o);
+  return refracts(lobe) ? glass_albedo(roughness, cos_o, lobe.ior) : ggx_albedo(roughness, cos_o);
+}
+
+float mix_of(const Lobe &lobe, float roughness, float cos_o, const AlbedoRows *rows) {
+  if (rows)
+    return tables::read_row(rows->mix, tables::kCoarse, cos_o);
+  return lobe.fresnel == FresnelKind::F82 ? fifth_power_mix(roughness, cos_o) : dielectric_mix(roughness, cos_o, lobe.ior);
+}
+
+void set_smoothness(Lobe &lobe) {
+  const float alpha2 = lobe.alpha_x * lobe.alpha_y;
+  lobe.delta = alpha2 <= (lobe.rules == Rules::Blender3 ? kMirrorAlpha2Blender3 : kMirrorAlpha2);
+  if (refracts(lobe)) {
+    // The refracted lobe is narrower than the reflected one by the share by which the index bends.
+    const float bent = std::abs(1.0f - 1.0f / lobe.ior);
+    lobe.delta_through = std::abs(lobe.ior - 1.0f) < kStraightIor || alpha2 * bent * bent < kMirrorAlpha2;
+  }
+}
+
+// What Cycles takes for the reflected albedo, without the colour.
+glm::vec3 reflected_albedo(const Lobe &lobe, float cos_o, float roughness, const FacetResponse &smooth,
+                           const AlbedoRows *rows) {
+  if (smooth.reflected == glm::vec3(0.0f))
+    return glm::vec3(0.0f);
+  // Fresnel curves are averaged over the facets.
+  if (lobe.fresnel == FresnelKind::Schlick)
+    return (lobe.f0 + (lobe.f90 - lobe.f0) * mix_of(lobe, roughness, cos_o, rows)) * lobe.reflection;
+  if (lobe.fresnel == FresnelKind::F82)
+    return lobe.f0 + (1.0f - lobe.f0) * mix_of(lobe, roughness, cos_o, rows);
+  if (lobe.fresnel == FresnelKind::Dielectric && lobe.ior > 1.0f && lobe.rules == Rules::Blender45) {
+    const float f0 = f0_of_ior(lobe.ior);
+    return (f0 + (1.0f - f0) * mix_of(lobe, roughness, cos_o, rows)) * lobe.reflection;
+  }
+  return smooth.reflected;
+}
+
+// Where nothing but the mean over the facets is asked for, and a smooth surface would not be black either.
+bool needs_no_smooth_response(const Lobe &lobe) {
+  return lobe.fresnel == FresnelKind::Schlick && !refracts(lobe) && lobe.f0 != glm::vec3(0.0f);
+}
+
+// Gives a lobe that holds all but these its energy, its colour and its albedo from wo.
+void finish(Lobe &lobe, float cos_o, bool preserving, float roughness, const glm::vec3 &further, const AlbedoRows *rows) {
+  if (preserving) {
+    const float single = single_albedo(lobe, roughness, cos_o, rows);
+    lobe.energy = 1.0f / single;
+    if (further != glm::vec3(1.0f))
+      lobe.color *= single + further * (1.0f - single);
+  }
+  FacetResponse smooth;
+  smooth.reflected = glm::vec3(1.0f);
+  if (!needs_no_smooth_response(lobe))
+    smooth = facet_response(lobe, cos_o);
+  const glm::vec3 through = lobe.color * smooth.through;
+  lobe.albedo = lobe.color * reflected_albedo(lobe, cos_o, roughness, smooth, rows) + through;
+  lobe.through = reflects(lobe) ? through : glm::vec3(0.0f);
 }
 
 } // namespace
@@ -118,7 +183,7 @@ void set_schlick(Lobe &lobe, const glm::vec3 &f0, const glm::vec3 &f90, float io
   lobe.fresnel = FresnelKind::Schlick;
   lobe.f0 = glm::clamp(f0, 0.0f, 1.0f);
   lobe.f90 = f90;
-  lobe.ior = ior;
+  set_curve(lobe, ior);
   lobe.reflection = reflection;
   lobe.transmission = transmission;
 }
@@ -126,42 +191,43 @@ void set_schlick(Lobe &lobe, const glm::vec3 &f0, const glm::vec3 &f90, float io
 void set_principled3(Lobe &lobe, const glm::vec3 &f0, float ior) {
   lobe.fresnel = FresnelKind::Principled3;
   lobe.f0 = glm::clamp(f0, 0.0f, 1.0f);
-  lobe.ior = ior;
+  set_curve(lobe, ior);
   lobe.transmission = glm::vec3(0.0f);
 }
 
-MicrofacetAlbedo microfacet_albedo(const Lobe &lobe, float cos_o) {
-  // Smooth surfaces first; reflection of Fresnel curves is averaged over the facets.
-  const FacetResponse smooth = facet_response(lobe, cos_o);
-  glm::vec3 reflected = smooth.reflected;
-  if (reflected != glm::vec3(0.0f)) {
-    const float roughness = roughness_of(lobe);
-    if (lobe.fresnel == FresnelKind::Schlick) {
-      const float s = dielectric_mix(roughness, cos_o, lobe.ior);
-      reflected = (lobe.f0 + (lobe.f90 - lobe.f0) * s) * lobe.reflection;
-    } else if (lobe.fresnel == FresnelKind::F82) {
-      reflected = lobe.f0 + (1.0f - lobe.f0) * fifth_power_mix(roughness, cos_o);
-    } else if (lobe.fresnel == FresnelKind::Dielectric && lobe.ior > 1.0f && lobe.rules == Rules::Blender45) {
-      const float f0 = f0_of_ior(lobe.ior);
-      reflected = (f0 + (1.0f - f0) * dielectric_mix(roughness, cos_o, lobe.ior)) * lobe.reflection;
-    }
-  }
-  return {lobe.color * reflected, lobe.color * smooth.through};
+void complete_microfacet(Lobe &lobe, float cos_o, bool preserving) {
+  const float roughness = roughness_of(lobe);
+  const bool several = preserving && !lobe.beckmann;
+  set_smoothness(lobe);
+  finish(lobe, cos_o, several, roughness, several ? further_light(lobe, roughness) : glm::vec3(1.0f), nullptr);
 }
 
-void complete_microfacet(Lobe &lobe, float cos_o, bool preserving) {
-  const float alpha2 = lobe.alpha_x * lobe.alpha_y;
-  lobe.delta = alpha2 <= (lobe.rules == Rules::Blender3 ? kMirrorAlpha2Blender3 : kMirrorAlpha2);
-  if (refracts(lobe)) {
-    // The refracted lobe is narrower than the reflected one by the share by which the index bends.
-    const float bent = std::abs(1.0f - 1.0f / lobe.ior);
-    lobe.delta_through = std::abs(lobe.ior - 1.0f) < kStraightIor || alpha2 * bent * bent < kMirrorAlpha2;
-  }
-  if (preserving && !lobe.beckmann)
-    preserve_energy(lobe, cos_o);
-  const MicrofacetAlbedo albedo = microfacet_albedo(lobe, cos_o);
-  lobe.albedo = albedo.reflected + albedo.through;
-  lobe.through = reflects(lobe) ? albedo.through : glm::vec3(0.0f);
+MicrofacetPlan plan_microfacet(const Lobe &lobe, bool preserving) {
+  MicrofacetPlan plan;
+  plan.lobe = lobe;
+  plan.preserving = preserving && !lobe.beckmann;
+  plan.roughness = roughness_of(lobe);
+  if (plan.preserving)
+    plan.further = further_light(lobe, plan.roughness);
+  set_smoothness(plan.lobe);
+  return plan;
+}
+
+void keep_rows(MicrofacetPlan &plan) {
+  const auto rows = std::make_shared<AlbedoRows>();
+  const int singles = refracts(plan.lobe) ? tables::kCoarse : tables::kFine;
+  for (int i = 0; i < singles; ++i)
+    rows->single[i] = single_albedo(plan.lobe, plan.roughness, float(i) / float(singles - 1), nullptr);
+  for (int i = 0; i < tables::kCoarse; ++i)
+    rows->mix[i] = mix_of(plan.lobe, plan.roughness, float(i) / float(tables::kCoarse - 1), nullptr);
+  plan.rows = rows;
+}
+
+Lobe seen_from(const MicrofacetPlan &plan, float cos_o, const glm::vec3 &color) {
+  Lobe lobe = plan.lobe;
+  lobe.color = color;
+  finish(lobe, cos_o, plan.preserving, plan.roughness, plan.further, plan.rows.get());
+  return lobe;
 }
 
 void add(Bsdf &bsdf, const Lobe &lobe) {

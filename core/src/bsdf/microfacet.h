@@ -5,15 +5,20 @@
 //   complete_microfacet(lobe, cos_o, preserving);    then: smoothness, energy, albedo
 #pragma once
 
+#include <memory>
+
 #include "bsdf/bsdf.h"
 
 namespace lancer {
+
+struct AlbedoRows;
 
 // Below this product of both roughnesses Cycles takes a lobe for a mirror; ours is a little above it, where float half vectors
 // stop telling directions apart (alpha 2e-5).
 inline constexpr float kMirrorAlpha2 = 4e-10f;
 inline constexpr float kMirrorAlpha2Blender3 = 1e-7f;
-// roughness is the socket's: alpha is its square. The lobe reflects all (FresnelKind::None) until one of the following is set.
+
+// The lobe reflects all (FresnelKind::None) until one of the following is set.
 Lobe make_microfacet(Scatter scatter, uint8_t frame, const glm::vec3 &color, float alpha_x, float alpha_y, Rules rules);
 
 // further: what each further bounce keeps; the node's colour, where color carries it together with other weights.
@@ -30,15 +35,24 @@ void set_schlick(Lobe &lobe, const glm::vec3 &f0, const glm::vec3 &f90, float io
 void set_principled3(Lobe &lobe, const glm::vec3 &f0, float ior);
 
 // cos_o: wo.z in the lobe's frame. preserving: gives back the light that single scattering loses (GGX only), with the colour
-// that further bounces give it; afterwards color holds that share, too.
+// that further bounces give it; afterwards color holds that share, too. The albedo is what Cycles takes for it: Fresnel
+// averaged over the facets that are seen, or of a smooth surface.
 void complete_microfacet(Lobe &lobe, float cos_o, bool preserving);
 
-// What Cycles takes for the albedo of a lobe from wo, color included: Fresnel averaged over the facets that are seen, or of a
-// smooth surface. total = reflected + through.
-struct MicrofacetAlbedo {
-  glm::vec3 reflected{0.0f}, through{0.0f};
+// The same in two steps, for lobes whose numbers are the same wherever they are met: the plan, then its look from wo.
+struct MicrofacetPlan {
+  Lobe lobe; // all but color, energy and albedo
+  bool preserving = false;
+  float roughness = 0.0f;
+  glm::vec3 further{1.0f}; // share of the lost light that comes back, by colour
+  // Tables along the cosine, where they are worth reading ahead.
+  std::shared_ptr<const AlbedoRows> rows;
 };
-MicrofacetAlbedo microfacet_albedo(const Lobe &lobe, float cos_o);
+MicrofacetPlan plan_microfacet(const Lobe &lobe, bool preserving);
+// Reads the tables ahead: for plans that are looked at many times.
+void keep_rows(MicrofacetPlan &plan);
+// color: the weight of the lobe.
+Lobe seen_from(const MicrofacetPlan &plan, float cos_o, const glm::vec3 &color);
 
 // The index above 1 whose reflectance at the normal is f0; Cycles ends at 0.99. f0_of_ior is in microfacet_fresnel.h.
 float ior_of_f0(float f0);

@@ -41,51 +41,64 @@ inline glm::vec3 fresnel_f82(float cos_i, const glm::vec3 &f0, const glm::vec3 &
   return glm::clamp(f0 + (1.0f - f0) * s5 - b * (cos_i * s5 * s), 0.0f, 1.0f);
 }
 
+// f0 ... f90, as far as the dielectric's own curve is from its lowest value to 1.
+inline glm::vec3 schlick(const Lobe &lobe, float reflectance) {
+  return lobe.f0 + (lobe.f90 - lobe.f0) * std::clamp((reflectance - lobe.lowest) * lobe.per_range, 0.0f, 1.0f);
+}
+
+// cos_i: wo against the facet. Of a lobe that only reflects.
+inline glm::vec3 facet_reflected(const Lobe &lobe, float cos_i) {
+  switch (lobe.fresnel) {
+  case FresnelKind::None:
+    break;
+  case FresnelKind::Dielectric:
+    return fresnel_dielectric(cos_i, lobe.ior) * lobe.reflection;
+  case FresnelKind::Conductor: {
+    glm::vec3 f;
+    for (int c = 0; c < 3; ++c)
+      f[c] = fresnel_conductor(cos_i, lobe.f0[c], lobe.f90[c]);
+    return f;
+  }
+  case FresnelKind::F82:
+    return fresnel_f82(cos_i, lobe.f0, lobe.b);
+  case FresnelKind::Schlick:
+  case FresnelKind::Principled3:
+    return schlick(lobe, fresnel_dielectric(cos_i, lobe.ior)) * lobe.reflection;
+  }
+  return glm::vec3(1.0f);
+}
+
 // cos_i: wo against the facet.
 inline FacetResponse facet_response(const Lobe &lobe, float cos_i) {
   FacetResponse r;
+  if (!refracts(lobe)) {
+    r.reflected = facet_reflected(lobe, cos_i);
+    return r;
+  }
+  // Only boundaries of dielectrics let light through.
+  const Fresnel boundary = fresnel(cos_i, lobe.ior);
+  r.cos_t = boundary.cos_t;
   switch (lobe.fresnel) {
-  case FresnelKind::None: {
-    r.reflected = glm::vec3(1.0f);
-    if (refracts(lobe)) {
-      const Fresnel boundary = fresnel(cos_i, lobe.ior);
-      r.cos_t = boundary.cos_t;
-      r.through = glm::vec3(boundary.reflectance < 1.0f ? 1.0f : 0.0f);
-    }
-    break;
-  }
-  case FresnelKind::Dielectric: {
-    const Fresnel boundary = fresnel(cos_i, lobe.ior);
-    r = {boundary.reflectance * lobe.reflection, boundary.transmittance * lobe.transmission, boundary.cos_t};
-    break;
-  }
-  case FresnelKind::Conductor:
-    for (int c = 0; c < 3; ++c)
-      r.reflected[c] = fresnel_conductor(cos_i, lobe.f0[c], lobe.f90[c]);
-    break;
-  case FresnelKind::F82:
-    r.reflected = fresnel_f82(cos_i, lobe.f0, lobe.b);
+  case FresnelKind::Dielectric:
+    r.reflected = boundary.reflectance * lobe.reflection;
+    r.through = boundary.transmittance * lobe.transmission;
     break;
   case FresnelKind::Schlick:
   case FresnelKind::Principled3: {
-    // The dielectric's own curve says how far between f0 and f90.
-    const Fresnel boundary = fresnel(cos_i, lobe.ior);
-    const float lowest = f0_of_ior(lobe.ior), range = 1.0f - lowest;
-    const float s = range > 0.0f ? std::clamp((boundary.reflectance - lowest) / range, 0.0f, 1.0f) : 1.0f;
-    const float left = range > 0.0f ? std::min(boundary.transmittance / range, 1.0f) : 0.0f;
-    r.reflected = (lobe.f0 + (lobe.f90 - lobe.f0) * s) * lobe.reflection;
-    r.through = ((1.0f - lobe.f90) + (lobe.f90 - lobe.f0) * left) * lobe.transmission;
-    r.cos_t = boundary.cos_t;
+    r.reflected = schlick(lobe, boundary.reflectance) * lobe.reflection;
     // Nothing goes through where the boundary reflects totally, whatever f90.
-    if (!(boundary.cos_t > 0.0f))
-      r.through = glm::vec3(0.0f);
+    const float left = std::min(boundary.transmittance * lobe.per_range, 1.0f);
+    if (boundary.cos_t > 0.0f)
+      r.through = ((1.0f - lobe.f90) + (lobe.f90 - lobe.f0) * left) * lobe.transmission;
     break;
   }
+  default:
+    r.reflected = glm::vec3(1.0f);
+    r.through = glm::vec3(boundary.reflectance < 1.0f ? 1.0f : 0.0f);
+    break;
   }
   if (!reflects(lobe))
     r.reflected = glm::vec3(0.0f);
-  if (!refracts(lobe))
-    r.through = glm::vec3(0.0f);
   return r;
 }
 

@@ -1,5 +1,6 @@
 // Cloth by multiple scattering in a layer of microfibres (Zeltner, Burley, Chiang 2022): a linearly transformed cosine whose
-// two coefficients and albedo follow wo and the roughness. Local frame, wo.z > 0; values are f cos(wi) without the colour.
+// two coefficients and albedo follow wo and the roughness, linearly between the nodes of a table. Local frame, wo.z > 0; values
+// are f cos(wi) without the colour.
 #pragma once
 
 #include <algorithm>
@@ -19,20 +20,23 @@ struct SheenFit {
 inline SheenFit sheen_fit(float cos_o, float roughness) {
   constexpr float kLast = kSheenNodes - 1;
   // Cycles keeps the roughness at 1e-3 or more.
-  const float y = kLast * std::sqrt(std::clamp(cos_o, 0.0f, 1.0f)), x = kLast * std::sqrt(std::clamp(roughness, 1e-3f, 1.0f));
-  const int i = std::min(static_cast<int>(y), kSheenNodes - 2), j = std::min(static_cast<int>(x), kSheenNodes - 2);
-  const float v = y - static_cast<float>(i), u = x - static_cast<float>(j);
-  const float weight[4] = {(1.0f - u) * (1.0f - v), u * (1.0f - v), (1.0f - u) * v, u * v};
-  float fit[3] = {0.0f, 0.0f, 0.0f};
-  for (int corner = 0; corner < 4; ++corner)
-    for (int k = 0; k < 3; ++k)
-      fit[k] += 1e-4f * weight[corner] * static_cast<float>(kSheen[i + corner / 2][3 * (j + corner % 2) + k]);
+  const float y = kLast * std::clamp(roughness, 1e-3f, 1.0f), x = kLast * std::clamp(cos_o, 0.0f, 1.0f);
+  const int j = std::min(static_cast<int>(y), kSheenNodes - 2), i = std::min(static_cast<int>(x), kSheenNodes - 2);
+  const float v = y - static_cast<float>(j), u = x - static_cast<float>(i);
+  float fit[3];
+  for (int k = 0; k < 3; ++k) {
+    const auto node = [&](int row, int column) { return static_cast<float>(kSheen[j + row][i + column][k]); };
+    const float low = (1.0f - u) * node(0, 0) + u * node(0, 1), high = (1.0f - u) * node(1, 0) + u * node(1, 1);
+    fit[k] = 1e-5f * ((1.0f - v) * low + v * high);
+  }
   return {fit[0], fit[1], fit[2]};
 }
 
-// color is black where the layer does nothing.
+// color is black where the layer does nothing: Cycles leaves it out where a or the albedo is below 1e-5.
 inline Lobe make_sheen(const glm::vec3 &weight, float roughness, float cos_o) {
-  const SheenFit fit = sheen_fit(cos_o, roughness);
+  SheenFit fit = sheen_fit(cos_o, roughness);
+  if (fit.a < 1e-5f || fit.albedo < 1e-5f)
+    fit = {1.0f, 0.0f, 0.0f};
   Lobe lobe;
   lobe.shape = LobeShape::Sheen;
   lobe.component = Component::Diffuse;

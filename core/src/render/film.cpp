@@ -1,7 +1,6 @@
 #include "render/film.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace lancer {
@@ -9,8 +8,8 @@ namespace lancer {
 namespace {
 
 constexpr float kNothing = 1e10f;
-// A pass has no more channels than these, a count no more bits.
-constexpr uint32_t kMostChannels = 4, kLevels = 32;
+// A pass has no more channels than these.
+constexpr uint32_t kMostChannels = 4;
 
 } // namespace
 
@@ -47,54 +46,58 @@ double Film::bytes_needed(double width, double height, uint32_t passes) {
 }
 
 void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> results) {
-  const uint32_t summed = layout_.summed_channels, pixels = tile.pixels(), before = tile.count, after = before + samples;
-  const uint32_t levels_before = uint32_t(std::popcount(before)), levels_after = uint32_t(std::popcount(after));
-  std::vector<double> sums(size_t(pixels) * levels_after * summed);
-  // The waiting sums of one pixel, by level of the tree.
-  std::vector<double> pending((kLevels + 1) * size_t(summed));
-  std::vector<double> carry(summed);
-  for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
-    const double *from = tile.sums.data() + size_t(pixel) * levels_before * summed;
-    for (uint32_t level = 0; level < kLevels; ++level) {
-      if (before >> level & 1u) {
-        std::copy(from, from + summed, pending.begin() + std::ptrdiff_t(level * summed));
-        from += summed;
-      }
-    }
-    for (uint32_t s = 0; s < samples; ++s) {
-      // A new leaf joins every complete neighbour, the smaller numbers first.
-      for (const Pass pass : layout_.summed)
-        copy_channels(results[size_t(s) * pixels + pixel], pass, carry.data() + layout_.at[uint32_t(pass)]);
-      uint32_t level = 0;
-      for (uint32_t count = before + s; count & 1u; count >>= 1, ++level)
-        for (uint32_t c = 0; c < summed; ++c)
-          carry[c] = pending[level * summed + c] + carry[c];
-      std::copy(carry.begin(), carry.end(), pending.begin() + std::ptrdiff_t(level * summed));
-    }
-    double *to = sums.data() + size_t(pixel) * levels_after * summed;
-    for (uint32_t level = 0; level < kLevels; ++level) {
-      if (after >> level & 1u) {
-        std::copy_n(pending.begin() + std::ptrdiff_t(level * summed), summed, to);
-        to += summed;
-      }
-    }
-  }
-  std::vector<float> first;
-  if (before == 0) {
-    first.resize(size_t(pixels) * layout_.first_channels);
-    for (uint32_t pixel = 0; pixel < pixels; ++pixel)
-      for (const Pass pass : layout_.first)
-        copy_channels(results[pixel], pass, first.data() + size_t(pixel) * layout_.first_channels + layout_.at[uint32_t(pass)]);
-  }
+  const uint32_t pixels = tile.pixels();
   const std::lock_guard lock(tile.mutex);
-  tile.sums.swap(sums);
-  if (before == 0)
-    tile.first.swap(first);
-  tile.count = after;
+  if (tile.count == 0)
+    keep_first(tile, results);
+  std::vector<double> carry;
+  for (uint32_t s = 0; s < samples; ++s) {
+    carry.resize(size_t(pixels) * layout_.summed_channels);
+    gather(results.subspan(size_t(s) * pixels, pixels), carry.data());
+    // A new leaf joins every complete neighbour, the smaller numbers first. All pixels stand at the same leaf.
+    uint32_t level = 0;
+    for (uint32_t count = tile.count++; count & 1u; count >>= 1, ++level) {
+      const std::vector<double> &waiting = tile.levels[level];
+      for (size_t i = 0; i < carry.size(); ++i)
+        carry[i] = waiting[i] + carry[i];
+    }
+    if (tile.levels.size() <= level)
+      tile.levels.resize(level + 1);
+    tile.levels[level].swap(carry);
+  }
+  // Sums that have been joined are not needed any more.
+  for (uint32_t level = 0; level < tile.levels.size(); ++level)
+    if (!(tile.count >> level & 1u))
+      std::vector<double>().swap(tile.levels[level]);
+}
+
+void Film::keep_first(Tile &tile, std::span<const SampleResult> results) const {
+  tile.first.resize(size_t(tile.pixels()) * layout_.first_channels);
+  for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel)
+    for (const Pass pass : layout_.first)
+      copy_channels(results[pixel], pass,
+                    tile.first.data() + size_t(pixel) * layout_.first_channels + layout_.at[uint32_t(pass)]);
+}
+
+// One sample of all pixels, as they are summed.
+void Film::gather(std::span<const SampleResult> results, double *to) const {
+  for (const SampleResult &result : results) {
+    // The picture comes first, and mostly alone.
+    for (int i = 0; i < 3; ++i)
+      to[i] = double(result.radiance[i]);
+    to[3] = double(result.alpha);
+    for (size_t i = 1; i < layout_.summed.size(); ++i)
+      copy_channels(result, layout_.summed[i], to + layout_.at[uint32_t(layout_.summed[i])]);
+    to += layout_.summed_channels;
+  }
 }
 
 bool Film::finite(const SampleResult &result) const {
-  for (const Pass pass : layout_.summed) {
+  const glm::vec3 &radiance = result.radiance;
+  if (!std::isfinite(radiance.x) || !std::isfinite(radiance.y) || !std::isfinite(radiance.z) || !std::isfinite(result.alpha))
+    return false;
+  for (size_t i = 1; i < layout_.summed.size(); ++i) {
+    const Pass pass = layout_.summed[i];
     float values[kMostChannels];
     copy_channels(result, pass, values);
     if (!std::all_of(values, values + channels(pass), [](float value) { return std::isfinite(value); }))
@@ -121,13 +124,13 @@ void Film::read(Pass pass, std::span<float> out) const {
 }
 
 void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const {
-  const uint32_t levels = uint32_t(std::popcount(tile.count));
-  const double *from = tile.sums.data() + size_t(pixel) * levels * layout_.summed_channels;
+  const size_t place = size_t(pixel) * layout_.summed_channels;
   const auto mean = [&](Pass of, uint32_t channel) {
     // Join the waiting sums, later and smaller ones first, as the tree would.
     double sum = 0.0;
-    for (uint32_t level = 0; level < levels; ++level)
-      sum = from[size_t(level) * layout_.summed_channels + layout_.at[uint32_t(of)] + channel] + sum;
+    for (const std::vector<double> &level : tile.levels)
+      if (!level.empty())
+        sum = level[place + layout_.at[uint32_t(of)] + channel] + sum;
     return sum / double(tile.count);
   };
   const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };
@@ -148,7 +151,9 @@ size_t Film::bytes() const {
   size_t bytes = 0;
   for (const auto &tile : tiles_) {
     const std::lock_guard lock(tile->mutex);
-    bytes += sizeof(Tile) + tile->sums.capacity() * sizeof(double) + tile->first.capacity() * sizeof(float);
+    bytes += sizeof(Tile) + tile->first.capacity() * sizeof(float);
+    for (const std::vector<double> &level : tile->levels)
+      bytes += sizeof(level) + level.capacity() * sizeof(double);
   }
   return bytes;
 }

@@ -22,8 +22,9 @@ public:
 
   struct Tile {
     uint32_t x, y, width, height;
-    uint32_t count = 0;       // samples of each of its pixels
-    std::vector<double> sums; // [pixel][level, lowest bit of count first][summed channel]
+    uint32_t count = 0; // samples of each of its pixels
+    // By bit of count, where it is set: [pixel][summed channel].
+    std::vector<std::vector<double>> levels;
     std::vector<float> first; // [pixel][channel of sample 0]
     std::mutex mutex;
 
@@ -54,6 +55,8 @@ private:
     uint32_t summed_channels = 0, first_channels = 0;
   };
 
+  void keep_first(Tile &tile, std::span<const SampleResult> results) const;
+  void gather(std::span<const SampleResult> results, double *to) const;
   void read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const;
 
   uint32_t width_, height_, passes_;

@@ -41,10 +41,17 @@ struct Mesh {
   glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
 };
 
+// How much a placement can enlarge the largest coordinate of a point, and what it adds: bounds of rounding errors need them.
+struct Reach {
+  double there = 1.0, moved = 0.0;     // object to world
+  double back = 1.0, moved_back = 0.0; // world to object
+};
+
 // One placed shape, in the normalised world: (world - centre) * 2^k.
 struct Instance {
   Affine to_world;
-  Affine to_object;
+  Affine to_object; // set by place()
+  Reach reach;      // set by place()
   ShapeKind kind = ShapeKind::Mesh;
   Shading shading = Shading::AsMesh;
   uint32_t mesh = 0;
@@ -55,7 +62,13 @@ struct Instance {
   float terminator = 0.0f; // cosine below which shadow rays start on the curved surface
   uint32_t number = 0;     // in the user's order of adding
   std::string name;
+
+  // Puts the shape there; the map has an inverse.
+  void place(const Affine &map);
 };
+
+// The largest of the coordinates' absolute values.
+double largest_coordinate(const glm::dvec3 &v);
 
 struct Geometry {
   std::vector<Mesh> meshes;
