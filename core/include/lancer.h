@@ -194,9 +194,9 @@ enum {
    * straight (divided by alpha) as the image's alpha mode says; input 1: blend of BOX. Vector as it is given: 0 ... 1 covers
    * the image */
   LANCER_NODE_IMAGE = 2,
-  LANCER_NODE_ENVIRONMENT =
-      3, /* the same, vector a direction; option LANCER_ENVIRONMENT_*; CUBE takes six images: +x -x +y -y +z -z, upright for
-            one who stands inside with +z up; +z and -z for one who looks along +y, then up or down */
+  /* the same, vector a direction; option LANCER_ENVIRONMENT_*; CUBE takes six images: +x -x +y -y +z -z, upright for one who
+   * stands inside with +z up; +z and -z for one who looks along +y, then up or down */
+  LANCER_NODE_ENVIRONMENT = 3,
   LANCER_NODE_ALPHA = 4,         /* the fourth number of input 0 */
   LANCER_NODE_MAPPING = 5,       /* inputs: vector, location, rotation (Euler XYZ), scale; option LANCER_MAPPING_* */
   LANCER_NODE_TRANSFORM = 6,     /* matrix times input 0; option 0 point, 1 vector, 2 normal (inverse transpose, normalised) */
@@ -209,10 +209,12 @@ enum {
   LANCER_NODE_FRESNEL = 13,      /* inputs: IOR, normal */
   LANCER_NODE_LAYER_WEIGHT = 14, /* inputs: blend, normal; option 0 Fresnel, 1 facing */
   LANCER_NODE_NORMAL_MAP = 15,   /* inputs: strength, colour; option 0 tangent, 1 object, 2 world, 3 object with y, z inverted
-                                    (Blender's), 4 world so; name: the UV map; its tangents are attribute "tangent:" + name */
+                                    (Blender's), 4 world so; name: the UV map; its tangents are attribute "tangent:" + name;
+                                    flag 1: in the frame of the interpolated normal made unit, else as long as it is */
   LANCER_NODE_BUMP = 16,    /* inputs: strength, distance, height, normal, filter width in pixels; flag 1: inverted, 2: over
-                               the surface as it was before displacement, in object space. Nodes
-                               [first, this) compute the height, which is evaluated there, to the right and above */
+                               the surface as it was before displacement, in object space, 4: a flat face has the normal
+                               that it had before, too. Nodes [first, this) compute the height, which is evaluated there, to the
+                               right and above */
   LANCER_NODE_TANGENT = 17, /* option 0, 1, 2 radial about x, y, z of GENERATED; 3 along u of the UV map name */
   LANCER_NODE_CLAMP = 18,   /* inputs: value, low, high */
   LANCER_NODE_DISPLACEMENT = 19, /* inputs: height, midlevel, scale, normal; option 0 object, 1 world: where
@@ -349,6 +351,7 @@ typedef struct lancer_node {
 
 /* ---- materials -------------------------------------------------------------------------------------------------- */
 
+/* clang-format off */
 /* Lobes, summed. In the local frame n = +z; wo and wi point away from the surface. Value f, without the cosine.
  *   LAMBERT      color/pi, on both sides
  *   BECKMANN     color D F G / (4 (l.n)(v.n)): Beckmann D, exact dielectric Fresnel F of ior (infinite = 1), Smith G
@@ -359,12 +362,16 @@ typedef struct lancer_node {
  *   PHONG        color (n + 2)/(2 pi) max(0, R.V)^n in PATH; color max(0, R.V)^n per light / pi in CLASSIC; n = shininess
  *   BLINN_PHONG  color (n + 2)(n + 4)/(8 pi (2^(-n/2) + n)) max(0, N.H)^n in PATH; color max(0, N.H)^n / pi in CLASSIC
  * Those of Blender's shader nodes, as Cycles of the running version defines them. roughness is the socket's: alpha is its
- * square (DIFFUSE, SHEEN, VELVET: the value itself); anisotropy and rotation turn and stretch it along tangent. DIFFUSE
- * Oren-Nayar of roughness; 0 is LAMBERT. option 0: before Blender 4.3, 1: energy-preserving, from 4.3 GLOSSY       a metal of
- * constant color, with distribution GLASS        reflection and refraction by Fresnel of ior, rough or smooth, with
- * distribution REFRACTION   the refraction of it alone, all of color CONDUCTOR    option 0: F82, color at the normal and edge
- * at 82 degrees; 1: ior = color, extinction = edge SHEEN        of cloth: distribution GGX = microfibres, BECKMANN =
- * Ashikhmin's velvet (VELVET before 4.0) TRANSLUCENT  color/pi on the other side PRINCIPLED   as its record says */
+ * square (DIFFUSE, SHEEN, VELVET: the value itself); anisotropy and rotation turn and stretch it along tangent.
+ *   DIFFUSE      Oren-Nayar of roughness; 0 is LAMBERT. option 0: before Blender 4.3, 1: energy-preserving, from 4.3
+ *   GLOSSY       a metal of constant color, with distribution
+ *   GLASS        reflection and refraction by Fresnel of ior, rough or smooth, with distribution
+ *   REFRACTION   the refraction of it alone, all of color
+ *   CONDUCTOR    option 0: F82, color at the normal and edge at 82 degrees; 1: ior = color, extinction = edge
+ *   SHEEN        of cloth: distribution GGX = microfibres, BECKMANN = Ashikhmin's velvet (VELVET before 4.0)
+ *   TRANSLUCENT  color/pi on the other side
+ *   PRINCIPLED   as its record says */
+/* clang-format on */
 enum {
   LANCER_LAMBERT = 0,
   LANCER_BECKMANN = 1,
@@ -439,7 +446,9 @@ typedef struct lancer_material {
   lancer_parameter transmittance; /* share of light that passes straight on, RGB; lobes and emission are not scaled by it */
   lancer_parameter holdout;       /* share of the picture that becomes a hole, a scalar */
   lancer_parameter ambient;       /* Ka, CLASSIC only */
-  lancer_parameter displacement;  /* offset of vertices in object space, applied when the scene is committed; 0, 0, 0: none */
+  lancer_parameter displacement;  /* offset of vertices in object space, applied when the scene is committed; 0, 0, 0: none.
+                                     A mesh is moved once for each list of displacing materials that its instances have, at
+                                     the first of those instances */
   lancer_parameter normal;        /* world; takes the place of the shading normal for all lobes; 0, 0, 0: none */
 } lancer_material;
 
@@ -464,15 +473,15 @@ enum {
 typedef struct lancer_light {
   const char *name;
   double matrix[12];
-  uint32_t kind;     /* LANCER_POINT ... */
-  float emission[3]; /* POINT, SPOT: radiant intensity, W/sr. SUN: irradiance at normal incidence, W/m^2. AREA: radiance */
-  float radius;      /* POINT, SPOT: 0 is a true point */
-  uint32_t
-      soft_falloff; /* POINT, SPOT with radius: 1 = a disk that always faces the shaded point (E = I/(d^2 + r^2)); 0 = a ball */
-  float spot_angle; /* SPOT: full angle of the cone */
-  float spot_blend; /* SPOT: 0 hard edge ... 1 all of the cone softened */
-  uint32_t spot_cosine; /* SPOT: 1 = intensity also falls with the cosine of the angle to the axis, as in Blender before 4.0 */
-  float sun_angle;      /* SUN: full angle of the disk in the sky; 0 is exactly parallel light */
+  uint32_t kind;         /* LANCER_POINT ... */
+  float emission[3];     /* POINT, SPOT: radiant intensity, W/sr. SUN: irradiance at normal incidence, W/m^2. AREA: radiance */
+  float radius;          /* POINT, SPOT: 0 is a true point */
+  uint32_t soft_falloff; /* POINT, SPOT with radius: 1 = a disk that always faces the shaded point (E = I/(d^2 + r^2));
+                            0 = a ball */
+  float spot_angle;      /* SPOT: full angle of the cone */
+  float spot_blend;      /* SPOT: 0 hard edge ... 1 all of the cone softened */
+  uint32_t spot_cosine;  /* SPOT: 1 = intensity also falls with the cosine of the angle to the axis, as in Blender before 4.0 */
+  float sun_angle;       /* SUN: full angle of the disk in the sky; 0 is exactly parallel light */
   float size[2];  /* AREA: full lengths along local x and y. SPOT: what widens the cone along them; 1, 1 (and 0, 0): round */
   uint32_t shape; /* AREA: LANCER_RECTANGLE or LANCER_ELLIPSE */
   float spread;   /* AREA: full angle of emission, pi = all of the front side */
@@ -512,7 +521,8 @@ typedef struct lancer_world {
   uint32_t node_count;
   uint32_t hidden_from;      /* LANCER_RAY_* bits */
   lancer_parameter radiance; /* RGB */
-  uint32_t map_resolution;   /* width of the map by which directions are sampled where the radiance varies; 0 = by its images */
+  uint32_t map_resolution;   /* width of the map by which directions are sampled where the radiance varies; 0 = by its images.
+                                At most 65536; at most 2048 are stored, what is finer is looked at and joined */
   uint32_t reserved;
 } lancer_world;
 /* Black until set. */
@@ -599,26 +609,28 @@ typedef struct lancer_settings {
   uint32_t integrator; /* LANCER_PATH ... */
   uint32_t samples;    /* planned per pixel; CLASSIC with 1 takes the middle of pixel, lens and light */
   uint32_t seed;
-  uint32_t max_bounces; /* PATH: scatterings after the first; CLASSIC: depth of the recursion */
-  float
-      contribution_threshold; /* CLASSIC: a ray that brings no more than this share of what it meets is not traced; 0 = never */
-  float clamp_indirect;       /* PATH: largest channel of a sample's indirect light; 0 = off */
-  uint32_t pixel_filter;      /* LANCER_FILTER_* */
-  float filter_width;         /* full width in pixels */
-  uint32_t film_transparent;  /* 1: the environment leaves alpha 0 */
-  uint32_t transparent_glass; /* 1: so it does where it is seen through glass of at most glass_roughness */
-  float glass_roughness;      /* alpha */
+  uint32_t max_bounces;         /* PATH: scatterings after the first; CLASSIC: depth of the recursion */
+  float contribution_threshold; /* CLASSIC: a ray that brings no more than this share of what it meets is not traced;
+                                   0 = never */
+  float clamp_indirect;         /* PATH: largest channel of a sample's indirect light; 0 = off */
+  uint32_t pixel_filter;        /* LANCER_FILTER_* */
+  float filter_width;           /* full width in pixels */
+  uint32_t film_transparent;    /* 1: the environment leaves alpha 0 */
+  uint32_t transparent_glass;   /* 1: so it does where it is seen through glass of at most glass_roughness */
+  float glass_roughness;        /* alpha */
   uint32_t transparent_bounces; /* surfaces that a ray may pass straight through; the next one shows its own light only */
   uint32_t transparent_shadows; /* surfaces that a shadow ray may pass, with those that the path before it has passed */
   float alpha_threshold;        /* NORMAL, UV, DEPTH, POSITION and the indices are of the first surface at least this opaque */
-  uint32_t
-      environment_reflections; /* CLASSIC: 1 = a reflected or refracted ray takes its colour from the environment, untraced */
-  float occlusion_distance;    /* AMBIENT_OCCLUSION: how far a thing may be to darken; 0 = any distance */
+  uint32_t environment_reflections; /* CLASSIC: 1 = a reflected or refracted ray takes its colour from the environment,
+                                       untraced */
+  float occlusion_distance;         /* AMBIENT_OCCLUSION: how far a thing may be to darken; 0 = any distance */
   float mist_start, mist_depth, mist_falloff; /* MIST: distances from the camera; the exponent */
-  uint32_t features;  /* LANCER_FEATURES_SCENE: the kernel for what the scene uses; ALL: the general one. Same pixels */
-  uint32_t passes;    /* bits 1u << LANCER_PASS_*; COMBINED is always kept */
-  uint32_t threads;   /* 0 = one per processor */
-  uint32_t tile_size; /* pixels; 0 = Lancer's choice. Changes no pixel */
+  uint32_t blended_features; /* ALBEDO, DENOISING_*: 0 = one surface gives all, as in Blender up to 5.1; 1 = surfaces share, by
+                                how matt they are, as in 5.2 */
+  uint32_t features;         /* LANCER_FEATURES_SCENE: the kernel for what the scene uses; ALL: the general one. Same pixels */
+  uint32_t passes;           /* bits 1u << LANCER_PASS_*; COMBINED is always kept */
+  uint32_t threads;          /* 0 = one per processor */
+  uint32_t tile_size;        /* pixels; 0 = Lancer's choice. Changes no pixel */
 } lancer_settings;
 
 typedef struct lancer_progress {
@@ -637,7 +649,7 @@ typedef struct lancer_statistics {
   uint32_t threads;
   uint64_t triangles, instances, lights;
   uint64_t geometry_bytes, accelerator_bytes, film_bytes;
-  char features[256];       /* what the scene uses, separated by blanks */
+  char features[512];       /* what the scene uses, separated by blanks */
   char kernel[64];          /* the integrator's specialisation that ran */
   char instruction_set[32]; /* e.g. "AVX2" */
 } lancer_statistics;

@@ -38,8 +38,7 @@ inline Instance placed(ShapeKind kind, const glm::dmat3 &linear, const glm::dvec
   Instance instance;
   instance.kind = kind;
   instance.mesh = mesh;
-  instance.to_world = {linear, translation};
-  instance.to_object = inverse(instance.to_world);
+  instance.place({linear, translation});
   return instance;
 }
 

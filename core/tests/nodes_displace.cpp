@@ -185,7 +185,7 @@ TEST(NodesDisplace, KeptNormalsAndABumpThatStandsForThem) {
   stage.description.geometry = description.geometry;
   stage.description.attribute_names = description.attribute_names;
   Instance &instance = stage.description.geometry.instances[0];
-  instance.to_object = inverse(instance.to_world);
+  instance.place(instance.to_world);
   stage.footprint = 0x1p-8f;
   const Surface surface = stage.surface(0.3, 0.3);
   expect_near(surface.ns, {0, 0, 1});

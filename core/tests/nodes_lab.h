@@ -59,8 +59,7 @@ public:
   Stage(const lancer_mesh &mesh, const std::vector<double> &rows) {
     add_mesh(description, mesh);
     Instance instance;
-    instance.to_world = Affine::from_rows(rows.data());
-    instance.to_object = inverse(instance.to_world);
+    instance.place(Affine::from_rows(rows.data()));
     description.geometry.instances.push_back(instance);
   }
 
@@ -82,8 +81,7 @@ public:
   void normalise(const glm::dvec3 &centre, double scale) {
     normalisation = {centre, scale};
     Instance &instance = description.geometry.instances[0];
-    instance.to_world = normalisation.to_normalised(instance.to_world);
-    instance.to_object = inverse(instance.to_world);
+    instance.place(normalisation.to_normalised(instance.to_world));
   }
 
   Surface surface(double u, double v, uint32_t primitive = 0) const {

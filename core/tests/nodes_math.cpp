@@ -166,6 +166,7 @@ TEST(NodesMath, MappingIsScaleThenRotationThenLocation) {
   };
   expect_near(mapped(LANCER_MAPPING_POINT), glm::vec3(turn * (v * scale) + location));
   expect_near(mapped(LANCER_MAPPING_VECTOR), glm::vec3(turn * (v * scale)));
+  // Numbers up to 7, as it divides by a scale of a half, with a dozen roundings of 2^-24 of that.
   expect_near(mapped(LANCER_MAPPING_TEXTURE), glm::vec3(glm::inverse(turn) * (v - location) / scale), 1e-5f);
   expect_near(mapped(LANCER_MAPPING_NORMAL), glm::vec3(glm::normalize(turn * (v / scale))));
 }
@@ -216,7 +217,8 @@ TEST(NodesMath, MixModesAreStraightBetweenTheirEnds) {
       for (int i = 0; i < 3; ++i)
         expected[i] = float((1.0 - double(t)) * double(a[i]) + double(t) * full_mix(mode, double(a[i]), double(b[i])));
       const lancer_node mix = node(LANCER_NODE_MIX, mode, {constant(t), constant(a.x, a.y, a.z), constant(b.x, b.y, b.z)});
-      expect_near(glm::vec3(stage.value({mix})), expected, 4e-7f * 4.0f);
+      // Numbers up to 2 (a quotient of 0.9 and 0.5), and eight roundings of 2^-24 of that with the result's.
+      expect_near(glm::vec3(stage.value({mix})), expected, 1e-6f);
     }
   }
 }
@@ -226,6 +228,7 @@ TEST(NodesMath, DodgeAndBurn) {
   const auto mixed = [&](uint32_t mode, float t, float a, float b) {
     return stage.value({node(LANCER_NODE_MIX, mode, {constant(t), constant(a), constant(b)})}).x;
   };
+  // Numbers below 1 with three roundings of 2^-24.
   EXPECT_NEAR(mixed(LANCER_MIX_DODGE, 0.5f, 0.3f, 0.6f), 0.3 / 0.7, 2e-7);
   EXPECT_EQ(mixed(LANCER_MIX_DODGE, 1.0f, 0.8f, 0.6f), 1.0f);
   EXPECT_EQ(mixed(LANCER_MIX_DODGE, 1.0f, 0.0f, 1.0f), 0.0f);

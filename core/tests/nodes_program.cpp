@@ -85,6 +85,12 @@ TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   EXPECT_NE(refusal(bad), "");
   EXPECT_NE(refusal(flagged(node(LANCER_NODE_IMAGE), 4)), "");
   EXPECT_NE(refusal(flagged(node(LANCER_NODE_IMAGE), 3 << 4)), "");
+  bad = node(LANCER_NODE_ENVIRONMENT, LANCER_ENVIRONMENT_CUBE);
+  bad.image_count = 1;
+  EXPECT_EQ(refusal(bad), "material 'Wood': node 1: 1 images for the 6 sides of a cube");
+  EXPECT_EQ(refusal(flagged(node(LANCER_NODE_IMAGE), 512)), "material 'Wood': node 1: flags 512 has bits beyond the last flag");
+  EXPECT_NE(refusal(flagged(node(LANCER_NODE_BUMP), 4)), "");
+  EXPECT_NE(refusal(flagged(node(LANCER_NODE_SEPARATE), 1)), "");
   bad = node(LANCER_NODE_BUMP);
   bad.first = 2;
   EXPECT_EQ(refusal(bad), "material 'Wood': node 1: first 2 comes after it");
@@ -156,6 +162,20 @@ TEST(NodesProgram, MaterialsThatAreRefused) {
   lobe = diffuse();
   lobe.distribution = 4;
   EXPECT_TRUE(refused(lobe));
+}
+
+TEST(NodesProgram, ARefusedMaterialSaysNothing) {
+  lancer_lobe lobes[2] = {diffuse(), diffuse()};
+  lobes[0].roughness = constant(7.0f);
+  lobes[1].color = result_of(3);
+  lancer_material material = plain(lobes[0]);
+  material.lobe_count = 2;
+  Description description;
+  EXPECT_THROW(add_material(description, material), Error);
+  EXPECT_EQ(description.messages.text(), "");
+  material.lobe_count = 1;
+  add_material(description, material);
+  EXPECT_EQ(description.messages.text(), "material 'Wood': roughness 7 was replaced by 1\n");
 }
 
 TEST(NodesProgram, ValuesOfNodesAreBroughtIntoRange) {

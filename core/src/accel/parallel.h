@@ -7,6 +7,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -35,13 +36,16 @@ template <class Piece> void parallel_for(const BuildContext &context, size_t cou
       next = count;
     }
   };
-  std::vector<std::thread> helpers;
   const size_t threads = std::min<size_t>(std::max(context.threads, 1u), count);
+  std::vector<std::thread> helpers;
+  helpers.reserve(threads);
   try {
     for (size_t i = 1; i < threads; ++i)
       helpers.emplace_back(work);
   } catch (const std::system_error &) {
     // The system gives no more threads: those that there are do the work.
+  } catch (const std::bad_alloc &) {
+    // There is no memory for one.
   }
   work();
   for (std::thread &helper : helpers)

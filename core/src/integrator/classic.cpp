@@ -1,6 +1,7 @@
 #include "integrator/classic.h"
 
 #include "integrator/first_surface.h"
+#include "sampling/color.h"
 
 #include <algorithm>
 
@@ -8,14 +9,10 @@ namespace lancer {
 
 namespace {
 
-float largest(const glm::vec3 &v) { return std::max({v.x, v.y, v.z}); }
-
 // Every lamp at every depth has numbers of its own, behind those of a path.
 constexpr uint32_t kDimensionLamp = 1u << 24;
 
 constexpr size_t kGlassBatch = 64;
-
-float mean(const glm::vec3 &v) { return (v.x + v.y + v.z) / 3.0f; }
 
 } // namespace
 
@@ -54,21 +51,20 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
   rays_.clear();
   samplers_.clear();
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
-    results[slot] = SampleResult(LightPasses(settings_).wanted());
     samplers_.push_back(generator_.sampler(addresses[slot]));
-    Ray ray = generator_.ray(addresses[slot], samplers_.back());
-    // Outside a panorama's picture there is no direction to look in: it is black, and as solid as Cycles has it.
-    results[slot].alpha = 1.0f;
-    if (ray.tmax < 0.0)
+    Ray ray;
+    if (!generator_.start(addresses[slot], samplers_.back(), passes_.wanted(), results[slot], ray))
       continue;
-    ray.kinds = LANCER_RAY_CAMERA;
     rays_.push_back(ray);
     branches_.push_back({.slot = slot});
+    branches_.back().features = begin_features(settings_, passes_.features());
   }
   counts_.camera += rays_.size();
 }
 
-void ClassicIntegrator::miss(const Branch &branch, const glm::vec3 &direction, SampleResult &result) {
+void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result) {
+  if (branch.depth == 0)
+    add_sky_features(branch.features, result);
   // A transparent film does not show the environment itself.
   if (branch.depth == 0 && settings_.film_transparent) {
     result.alpha -= mean(branch.weight);
@@ -76,7 +72,9 @@ void ClassicIntegrator::miss(const Branch &branch, const glm::vec3 &direction, S
   }
   if (!(branch.kinds & ~scene_.world.hidden_from))
     return;
-  result.radiance += branch.weight * scene_.lights.environment().radiance(glm::dvec3(direction), shader_.values());
+  const glm::vec3 sky = scene_.lights.environment().radiance(glm::dvec3(direction), shader_.values(), &camera_,
+                                                             branch.depth == 0 ? &eye : nullptr);
+  add(branch, branch.weight * sky, true, result);
 }
 
 void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &hit, SampleResult &result,
@@ -84,45 +82,48 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
   const glm::vec3 direction(glm::normalize(ray.d));
   // The sky on a miss.
   if (!hit.valid()) {
-    miss(branch, direction, result);
+    miss(branch, ray.o, direction, result);
     return;
   }
   const bool from_camera = branch.depth == 0;
   const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
   const double way = (branch.passed + hit.t) * glm::length(ray.d);
-  shader_.shade(surface, {.wo = -direction, .footprint = float(cone_.base + way * cone_.spread), .camera_ray = from_camera},
-                point_);
+  shader_.shade(surface, {.wo = -direction, .footprint = float(cone_.base + way * cone_.spread)}, point_);
   if (trace)
     trace->push_back({scene_.normalisation.to_world(surface.p), hit.t / scene_.normalisation.scale, surface.ns, branch.weight,
                       result.radiance, surface.instance, surface.primitive, surface.material, branch.depth});
-
-  // Split what is there from what lies behind.
-  const glm::vec3 opacity = glm::clamp(1.0f - point_.transmittance, 0.0f, 1.0f);
+  if (from_camera && !cut_hole(scene_, surface, branch.weight, point_, result))
+    return;
   Branch here = branch;
-  if (from_camera && !branch.seen && mean(opacity) >= settings_.alpha_threshold) {
-    record_first_surface(scene_, settings_, surface, point_, branch.passed + hit.t, result);
-    here.seen = true;
-  }
-  if (point_.passes() && branch.layers < settings_.transparent_bounces) {
-    Branch behind = here;
-    behind.passed += hit.t;
-    behind.weight *= point_.transmittance;
-    ++behind.layers;
-    push(behind, leave(surface, ray.d, ray.tmax - hit.t));
-  }
-  // A hole in the picture shows nothing of itself.
-  if (from_camera && scene_.geometry.instances[surface.instance].holdout) {
-    result.alpha -= mean(branch.weight * opacity);
-    return;
-  }
   if (from_camera)
-    result.alpha -= mean(branch.weight) * point_.holdout;
-  if (!point_.material)
-    return;
-  result.radiance += here.weight * point_.emission;
-  result.radiance += here.weight * value_of(point_.material->ambient, shader_.values()) * ambient_;
-  add_direct_light(here, surface, ray.o, hit, result);
-  add_reflection_and_refraction(here, surface, result);
+    record(here, surface, hit.t, result);
+  add(here, here.weight * point_.emission, false, result);
+  if (here.features.open)
+    add_denoising_features(scene_, camera_, point_, hit.t * glm::length(ray.d), here.features, result);
+  // A hole has no light of its own.
+  const bool hole = from_camera && scene_.geometry.instances[surface.instance].holdout;
+  if (point_.material && !hole) {
+    result.radiance += here.weight * value_of(point_.material->ambient, shader_.values()) * ambient_;
+    add_direct_light(here, surface, ray.o, hit, result);
+  }
+  branch_out(here, surface, ray, hit, result);
+}
+
+// Fills the passes that describe what the camera sees.
+void ClassicIntegrator::record(Branch &branch, const Surface &surface, double t, SampleResult &result) {
+  if (!branch.seen && mean(point_.opacity()) >= settings_.alpha_threshold) {
+    record_first_surface(scene_, settings_, surface, point_, branch.passed + t, result);
+    branch.seen = true;
+  }
+  record_seen(scene_, camera_, settings_, passes_, surface, point_, branch.weight, result);
+}
+
+void ClassicIntegrator::add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result) {
+  result.radiance += light;
+  if (branch.features.open)
+    result.albedo += branch.features.beta * light;
+  if (branch.depth == 0)
+    passes_.add_seen(result, light, environment);
 }
 
 void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &surface, const glm::dvec3 &eye, const Hit &hit,
@@ -151,6 +152,7 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
     const glm::vec2 u = generator_.middle() ? glm::vec2(0.5f) : samplers_[branch.slot].get2(dimension);
     const bool lamp = i < lights.size();
     const CourseLight &course = lamp ? lights[i].course : plain;
+    const uint32_t hidden = scene_.lights.hidden_from(i);
     // Illuminate each lit point as if nothing stood between.
     glm::vec3 light(0.0f);
     for (int k = 0; k < lit_count; ++k) {
@@ -158,7 +160,7 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
       if (!(s.pdf > 0.0))
         continue;
       const glm::vec3 irradiance = course_irradiance(course, s);
-      light += lit[k].weight * course_illumination(*lit[k].bsdf, glm::vec3(s.wi), course, irradiance);
+      light += lit[k].weight * course_illumination(*lit[k].bsdf, glm::vec3(s.wi), course, irradiance, hidden);
       if (lamp)
         result.radiance += ambient * course.ambient_color * irradiance * (kInvPi * lit[k].weight);
     }
@@ -176,21 +178,35 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
   }
 }
 
-void ClassicIntegrator::add_reflection_and_refraction(const Branch &branch, const Surface &surface, SampleResult &result) {
+void ClassicIntegrator::branch_out(const Branch &branch, const Surface &surface, const Ray &ray, const Hit &hit,
+                                   SampleResult &result) {
+  const CourseBranches branches = course_branches(point_.bsdf);
+  // Features follow every branch by its share of the light.
+  const float all = mean(point_.transmittance + branches.reflected + branches.refracted);
+  const auto child = [&](const glm::vec3 &part) {
+    Branch next = branch;
+    next.features.share *= all > 0.0f ? mean(part) / all : 0.0f;
+    return next;
+  };
+  if (point_.passes() && branch.layers < settings_.transparent_bounces) {
+    Branch behind = child(point_.transmittance);
+    behind.passed += hit.t;
+    behind.weight *= point_.transmittance;
+    ++behind.layers;
+    push(behind, leave(surface, ray.d, ray.tmax - hit.t));
+  }
   // Beyond the depth limit a ray is black: it need not be traced.
   if (branch.depth >= settings_.max_bounces)
     return;
-  const CourseBranches branches = course_branches(point_.bsdf);
   // About an interpolated normal a mirrored direction may point into the surface: such a ray is black.
   if (glm::dot(branches.mirrored, point_.bsdf.ng) > 0.0f)
-    spawn(branch, surface, branches.mirrored, branches.reflected, LANCER_RAY_GLOSSY, result);
-  if (branches.refracted != glm::vec3(0.0f) && glm::dot(branches.through, point_.bsdf.ng) < 0.0f)
-    spawn(branch, surface, branches.through, branches.refracted, LANCER_RAY_TRANSMISSION, result);
+    spawn(child(branches.reflected), surface, branches.mirrored, branches.reflected, LANCER_RAY_GLOSSY, result);
+  if (glm::dot(branches.through, point_.bsdf.ng) < 0.0f)
+    spawn(child(branches.refracted), surface, branches.through, branches.refracted, LANCER_RAY_TRANSMISSION, result);
 }
 
-void ClassicIntegrator::spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight,
+void ClassicIntegrator::spawn(Branch child, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight,
                               uint32_t kind, SampleResult &result) {
-  Branch child = parent;
   child.weight *= weight;
   child.kinds = kind;
   child.layers = 0;
@@ -201,7 +217,7 @@ void ClassicIntegrator::spawn(const Branch &parent, const Surface &surface, cons
     return;
   // The cheap way: the colour that the environment has there, whatever stands between.
   if (settings_.environment_reflections)
-    miss(child, direction, result);
+    miss(child, surface.p, direction, result);
   else
     push(child, leave(surface, glm::dvec3(direction), std::numeric_limits<double>::infinity()));
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "integrator/course_light.h"
+#include "integrator/denoising_features.h"
+#include "integrator/light_passes.h"
 #include "integrator/sample.h"
 #include "integrator/scene_lights.h"
 #include "integrator/shading.h"
@@ -12,8 +14,8 @@ namespace lancer {
 class ClassicIntegrator final : public Integrator {
 public:
   ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : scene_(scene), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), cone_(camera), ambient_(mean_environment(scene)) {}
+      : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
+        shadows_(scene, camera, settings), cone_(camera), passes_(settings), ambient_(mean_environment(scene, camera)) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
   const char *kernel() const override { return "classic"; }
@@ -28,25 +30,30 @@ private:
     uint32_t layers = 0;                // passed straight through
     bool seen = false;                  // the first surface has been recorded
     double passed = 0.0;                // t of the camera ray up to its last layer
+    DenoisingFeatures features{};
   };
 
   void run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(const Branch &branch, const Ray &ray, const Hit &hit, SampleResult &result, std::vector<PathVertex> *trace);
-  void miss(const Branch &branch, const glm::vec3 &direction, SampleResult &result);
+  void miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result);
+  void record(Branch &branch, const Surface &surface, double t, SampleResult &result);
+  void add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result);
   void add_direct_light(const Branch &branch, const Surface &surface, const glm::dvec3 &eye, const Hit &hit,
                         SampleResult &result);
-  void add_reflection_and_refraction(const Branch &branch, const Surface &surface, SampleResult &result);
-  void spawn(const Branch &parent, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight, uint32_t kind,
+  void branch_out(const Branch &branch, const Surface &surface, const Ray &ray, const Hit &hit, SampleResult &result);
+  void spawn(Branch child, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight, uint32_t kind,
              SampleResult &result);
   void push(const Branch &branch, Ray ray);
 
   const Scene &scene_;
+  const Camera &camera_;
   IntegratorSettings settings_;
   RayGenerator generator_;
   Shader shader_;
   ShadowQueue shadows_;
   PixelCone cone_;
+  LightPasses passes_;
   glm::vec3 ambient_;             // light from everywhere, for Ka
   Shaded point_;                  // of the surface at hand
   Shaded corners_[3];             // of its triangle, under Gouraud shading

@@ -1,7 +1,9 @@
 #include "integrator/course_light.h"
 
 #include "bsdf/coating.h"
+#include "bsdf/microfacet_fresnel.h"
 #include "bsdf/phong.h"
+#include "sampling/color.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +45,34 @@ glm::vec3 refracted(const Bsdf &bsdf, const Lobe &lobe, float cosine) {
   return bsdf.frames[lobe.frame].to_world(refract_local(bsdf.wo_local[lobe.frame], lobe.ior, boundary.cos_t));
 }
 
+struct CourseShares {
+  glm::vec3 reflected{0.0f}, refracted{0.0f};
+};
+
+// What a lobe mirrors of light and what it lets through, seen at that cosine to its normal.
+CourseShares course_shares(const Lobe &lobe, float cosine) {
+  switch (lobe.shape) {
+  case LobeShape::Mirror:
+    return {lobe.color};
+  case LobeShape::Beckmann:
+    return {lobe.color * fresnel_dielectric(cosine, lobe.ior)};
+  case LobeShape::Ashikhmin:
+    return {lobe.albedo};
+  case LobeShape::Dielectric:
+    return {lobe.albedo - lobe.through, lobe.through};
+  case LobeShape::Microfacet:
+    // One that does not reflect keeps no account of what goes through: all of it does.
+    if (!reflects(lobe))
+      return {glm::vec3(0.0f), lobe.albedo};
+    return {lobe.albedo - lobe.through, lobe.through};
+  default:
+    return {};
+  }
+}
+
 } // namespace
 
-glm::vec3 mean_environment(const Scene &scene) {
+glm::vec3 mean_environment(const Scene &scene, const Camera &camera) {
   const Environment &environment = scene.lights.environment();
   if (!environment.varies())
     return environment.constant();
@@ -56,7 +83,7 @@ glm::vec3 mean_environment(const Scene &scene) {
     glm::dvec3 wi(0.0);
     for (double sign : {-1.0, 1.0}) {
       wi[axis] = sign;
-      sum += environment.radiance(wi, values);
+      sum += environment.radiance(wi, values, &camera);
     }
   }
   return sum / 6.0f;
@@ -73,23 +100,27 @@ glm::vec3 course_irradiance(const CourseLight &course, const LightSample &sample
 }
 
 glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const CourseLight &course,
-                              const glm::vec3 &irradiance) {
+                              const glm::vec3 &irradiance, uint32_t hidden) {
   glm::vec3 diffuse(0.0f), specular(0.0f);
+  uint8_t frame = 0;
+  glm::vec3 wi = bsdf.frames[0].to_local(wi_world);
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe &lobe = bsdf.lobes[i];
     const glm::vec3 &wo = bsdf.wo_local[lobe.frame];
-    const glm::vec3 wi = bsdf.frames[lobe.frame].to_local(wi_world);
+    if (lobe.frame != frame) {
+      frame = lobe.frame;
+      wi = bsdf.frames[frame].to_local(wi_world);
+    }
     if (!(wi.z > 0.0f) || !(wo.z > 0.0f))
       continue;
-    const glm::vec3 h = half_vector(wo, wi);
     if (lobe.shape == LobeShape::Lambert)
       diffuse += lobe.color * (kInvPi * wi.z);
     else if (lobe.shape == LobeShape::Beckmann && !lobe.delta)
-      specular += lobe.color * (coating_eval_pdf(lobe, wo, wi, h).f * wi.z);
+      specular += lobe.color * (coating_eval_pdf(lobe, wo, wi, half_vector(wo, wi)).f * wi.z);
     else if (lobe.shape == LobeShape::Phong)
       specular += lobe.color * (kInvPi * lobe_power(glm::dot(reflect_local(wi), wo), lobe.shininess));
     else if (lobe.shape == LobeShape::BlinnPhong)
-      specular += lobe.color * (kInvPi * lobe_power(h.z, lobe.shininess));
+      specular += lobe.color * (kInvPi * lobe_power(half_vector(wo, wi).z, lobe.shininess));
   }
   // Lobes that the course does not know answer as they do in PATH.
   if (bsdf.shapes & ~kCourseShapes) {
@@ -97,32 +128,32 @@ glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const
     diffuse += rest.part[size_t(Component::Diffuse)];
     specular += rest.part[size_t(Component::Glossy)];
   }
+  if (hidden & LANCER_RAY_DIFFUSE)
+    diffuse = glm::vec3(0.0f);
+  if (hidden & LANCER_RAY_GLOSSY)
+    specular = glm::vec3(0.0f);
   return irradiance * (diffuse * course.diffuse_color + specular * course.specular_color);
 }
 
 CourseBranches course_branches(const Bsdf &bsdf) {
   CourseBranches branches;
-  branches.mirrored = 2.0f * glm::dot(bsdf.wo, bsdf.ns) * bsdf.ns - bsdf.wo;
+  float most_reflected = 0.0f, most_refracted = 0.0f;
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe &lobe = bsdf.lobes[i];
-    const float cosine = std::abs(bsdf.wo_local[lobe.frame].z);
-    switch (lobe.shape) {
-    case LobeShape::Mirror:
-      branches.reflected += lobe.color;
-      break;
-    case LobeShape::Beckmann:
-      branches.reflected += lobe.color * fresnel_dielectric(cosine, lobe.ior);
-      break;
-    case LobeShape::Dielectric:
-    case LobeShape::Microfacet: {
-      branches.reflected += lobe.albedo - lobe.through;
-      branches.refracted += lobe.through;
-      if (lobe.through != glm::vec3(0.0f))
-        branches.through = refracted(bsdf, lobe, cosine);
-      break;
+    const glm::vec3 &wo = bsdf.wo_local[lobe.frame];
+    // From behind its own normal a lobe is not seen.
+    if (!(wo.z > 0.0f))
+      continue;
+    const CourseShares shares = course_shares(lobe, wo.z);
+    branches.reflected += shares.reflected;
+    branches.refracted += shares.refracted;
+    if (mean(shares.reflected) > most_reflected) {
+      most_reflected = mean(shares.reflected);
+      branches.mirrored = bsdf.frames[lobe.frame].to_world(reflect_local(wo));
     }
-    default:
-      break;
+    if (mean(shares.refracted) > most_refracted) {
+      most_refracted = mean(shares.refracted);
+      branches.through = refracted(bsdf, lobe, wo.z);
     }
   }
   return branches;

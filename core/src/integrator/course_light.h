@@ -13,7 +13,7 @@ struct LitPoint {
 };
 
 // The light from everywhere that Ka reflects: the environment where it is the same in all directions, else its mean.
-glm::vec3 mean_environment(const Scene &scene);
+glm::vec3 mean_environment(const Scene &scene, const Camera &camera);
 
 // What the texts call lc, as irradiance at normal incidence from a light's sample, after the light's own attenuation.
 // The attenuations other than PHYSICAL replace 1/d^2: such a light is at every distance d att(d) times what it is at one unit.
@@ -23,10 +23,13 @@ glm::vec3 course_irradiance(const CourseLight &course, const LightSample &sample
 //   BECKMANN     Ks D F G / (4 (l.n)(v.n)) (l.n) lc
 //   PHONG        Ks (R.V)^n lc / pi, BLINN_PHONG Ks (N.H)^n lc / pi: C of the lectures is lc / pi, so that Kd means the same
 //   everywhere
-// Lobes of other kinds give what they give in PATH, on the viewer's side.
-glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi, const CourseLight &course, const glm::vec3 &irradiance);
+// Lobes of other kinds give what they give in PATH, on the viewer's side. hidden: bits LANCER_RAY_* that the light is hidden
+// from.
+glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi, const CourseLight &course, const glm::vec3 &irradiance,
+                              uint32_t hidden);
 
-// Weights of the mirrored and of the refracted ray, F c_s and (1 - F) c_s summed over the lobes, and where they go.
+// Weights of the mirrored and of the refracted ray, F c_s and (1 - F) c_s summed over the lobes, and where they go: as the
+// strongest lobe of each has it, about its own normal.
 struct CourseBranches {
   glm::vec3 reflected{0.0f}, refracted{0.0f};
   glm::vec3 mirrored{0.0f}, through{0.0f}; // world

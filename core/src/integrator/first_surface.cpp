@@ -1,13 +1,13 @@
 #include "integrator/first_surface.h"
 
+#include "sampling/color.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace lancer {
 
 namespace {
-
-float mean(const glm::vec3 &v) { return (v.x + v.y + v.z) / 3.0f; }
 
 // The lobes' normals, each with its weight.
 glm::vec3 mean_normal(const Bsdf &bsdf) {
@@ -41,8 +41,33 @@ void record_first_surface(const Scene &scene, const IntegratorSettings &settings
     result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
 }
 
+bool cut_hole(const Scene &scene, const Surface &surface, const glm::vec3 &weight, Shaded &shaded, SampleResult &result) {
+  if (scene.geometry.instances[surface.instance].holdout) {
+    // All that the object would show becomes the hole.
+    result.alpha -= mean(weight * shaded.opacity());
+    shaded.bsdf.count = 0;
+    shaded.bsdf.complete();
+    shaded.emission = glm::vec3(0.0f);
+    return shaded.passes();
+  }
+  result.alpha -= shaded.holdout * mean(weight);
+  return shaded.holdout < 1.0f;
+}
+
+void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
+                 const Surface &surface, const Shaded &shaded, const glm::vec3 &weight, SampleResult &result) {
+  if (!passes.data())
+    return;
+  result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * shaded.opacity());
+  for (uint32_t component = 0; component < 3 && passes.wanted(); ++component)
+    result.light[kLightComponents + 3 * component + 2] += weight * shaded.bsdf.albedo(Component(component));
+}
+
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface) {
-  const double distance = glm::length(surface.p - camera.to_world.translation) / scene.normalisation.scale;
+  // Parallel rays count along the axis.
+  const bool parallel = camera.kind == CameraKind::Orthographic;
+  const double way = parallel ? std::abs(camera.depth(surface.p)) : glm::length(surface.p - camera.to_world.translation);
+  const double distance = way / scene.normalisation.scale;
   // Without a depth there is none, as in Cycles.
   if (!(settings.mist_depth > 0.0f))
     return 0.0f;

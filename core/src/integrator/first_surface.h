@@ -1,6 +1,7 @@
 // What the passes tell about the surfaces that the camera sees.
 #pragma once
 
+#include "integrator/light_passes.h"
 #include "integrator/sample.h"
 #include "integrator/shading.h"
 
@@ -13,6 +14,14 @@ void forget_place(SampleResult &result);
 // Fills all that the first surface says about the pixel.
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
                           double t, SampleResult &result);
+
+// Takes what a holdout leaves out of the picture: a hole of `weight`. False where nothing of the surface is left, not even what
+// passes straight through it.
+bool cut_hole(const Scene &scene, const Surface &surface, const glm::vec3 &weight, Shaded &shaded, SampleResult &result);
+
+// Adds to the passes of mist and colours what the picture shows of a surface: `weight` of what light brings from there.
+void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
+                 const Surface &surface, const Shaded &shaded, const glm::vec3 &weight, SampleResult &result);
 
 // How much mist covers a point: 0 near, 1 far.
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface);

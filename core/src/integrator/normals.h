@@ -1,6 +1,7 @@
 // The course's first picture: the normal as a colour, the sky where nothing is.
 #pragma once
 
+#include "integrator/denoising_features.h"
 #include "integrator/first_surface.h"
 #include "integrator/light_passes.h"
 #include "integrator/sample.h"
@@ -10,49 +11,63 @@ namespace lancer {
 class NormalsIntegrator final : public Integrator {
 public:
   NormalsIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-      : scene_(scene), settings_(settings), generator_(camera, settings), shader_(scene, &camera) {}
+      : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
+        passes_(settings) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override {
     rays_.clear();
-    for (const SampleAddress &address : addresses) {
-      rays_.push_back(generator_.ray(address, generator_.sampler(address)));
-      rays_.back().kinds = LANCER_RAY_CAMERA;
+    slots_.clear();
+    for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
+      Ray ray;
+      if (!generator_.start(addresses[slot], generator_.sampler(addresses[slot]), passes_.wanted(), results[slot], ray))
+        continue;
+      rays_.push_back(ray);
+      slots_.push_back(slot);
     }
     hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
     counts_.camera += rays_.size();
     for (size_t i = 0; i < rays_.size(); ++i) {
       const Ray &ray = rays_[i];
-      results[i] = SampleResult(LightPasses(settings_).wanted());
-      // Outside a panorama's picture there is no direction to look in: it is black, and as solid as Cycles has it.
-      results[i].alpha = ray.tmax < 0.0 ? 1.0f : 0.0f;
-      if (ray.tmax < 0.0)
-        continue;
+      SampleResult &result = results[slots_[i]];
       if (!hits_[i].valid()) {
-        if (!settings_.film_transparent) {
-          results[i].radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), shader_.values());
-          results[i].alpha = 1.0f;
-        }
+        miss(ray, result);
+        add_sky_features(begin_features(settings_, passes_.features()), result);
         continue;
       }
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-      shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .camera_ray = true}, point_);
-      record_first_surface(scene_, settings_, surface, point_, hits_[i].t, results[i]);
-      results[i].radiance = 0.5f * surface.ns + 0.5f;
-      results[i].alpha = 1.0f;
+      shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d))}, point_);
+      // This picture shows every surface whole.
+      point_.transmittance = glm::vec3(0.0f);
+      record_first_surface(scene_, settings_, surface, point_, hits_[i].t, result);
+      record_seen(scene_, camera_, settings_, passes_, surface, point_, glm::vec3(1.0f), result);
+      DenoisingFeatures features = begin_features(settings_, passes_.features());
+      if (features.open)
+        add_denoising_features(scene_, camera_, point_, hits_[i].t * glm::length(ray.d), features, result);
+      result.radiance = 0.5f * surface.ns + 0.5f;
       if (trace)
         trace->push_back({scene_.normalisation.to_world(surface.p), hits_[i].t / scene_.normalisation.scale, surface.ns,
-                          glm::vec3(1.0f), results[i].radiance, surface.instance, surface.primitive, surface.material, 0});
+                          glm::vec3(1.0f), result.radiance, surface.instance, surface.primitive, surface.material, 0});
     }
   }
   const char *kernel() const override { return "normals"; }
 
 private:
+  void miss(const Ray &ray, SampleResult &result) {
+    if (settings_.film_transparent)
+      result.alpha = 0.0f;
+    else if (!(scene_.world.hidden_from & LANCER_RAY_CAMERA))
+      result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), shader_.values(), &camera_, &ray.o);
+  }
+
   const Scene &scene_;
+  const Camera &camera_;
   IntegratorSettings settings_;
   RayGenerator generator_;
   Shader shader_;
+  LightPasses passes_;
   Shaded point_;
+  std::vector<uint32_t> slots_; // rays_[i] is of results[slots_[i]]
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
 };

@@ -1,5 +1,7 @@
 #include "integrator/path.h"
 
+#include "sampling/color.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,9 +14,6 @@ float mis_weight(double pdf, double other) {
   const double ratio = other / pdf;
   return float(1.0 / (1.0 + ratio * ratio));
 }
-
-float largest(const glm::vec3 &v) { return std::max({v.x, v.y, v.z}); }
-float mean(const glm::vec3 &v) { return (v.x + v.y + v.z) / 3.0f; }
 
 // Roulette starts where most of the light has been gathered.
 constexpr uint32_t kRouletteAfter = 3;
@@ -78,17 +77,13 @@ void PathIntegrator<Shapes, Layers>::generate(std::span<const SampleAddress> add
   rays_.clear();
   indirect_.assign(addresses.size(), glm::vec3(0.0f));
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
-    results[slot] = SampleResult(passes_.wanted());
     Path path{.sampler = generator_.sampler(addresses[slot]), .slot = slot};
-    path.features.open = passes_.features();
-    const Ray ray = generator_.ray(addresses[slot], path.sampler);
-    // Outside a panorama's picture there is no direction to look in: it is black, and as solid as Cycles has it.
-    results[slot].alpha = 1.0f;
-    if (ray.tmax < 0.0)
+    path.features = begin_features(settings_, passes_.features());
+    Ray ray;
+    if (!generator_.start(addresses[slot], path.sampler, passes_.wanted(), results[slot], ray))
       continue;
     path.from = ray.o;
     rays_.push_back(ray);
-    rays_.back().kinds = path.kinds;
     paths_.push_back(path);
   }
   counts_.camera += paths_.size();
@@ -112,10 +107,7 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
     // Ask the material what it does to light that goes back along the ray.
     const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
     const double way = path.length + t * glm::length(ray.d);
-    shader_.shade(surface,
-                  {.wo = glm::vec3(-glm::normalize(ray.d)),
-                   .footprint = float(cone_.base + way * cone_.spread),
-                   .camera_ray = path.scatterings == 0},
+    shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .footprint = float(cone_.base + way * cone_.spread)},
                   point_);
     if (trace) {
       const glm::vec3 so_far = result.radiance + indirect_[path.slot];
@@ -123,7 +115,7 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
                         surface.instance, surface.primitive, surface.material, path.scatterings});
     }
     // Holes end what the camera sees.
-    if (path.in_view && !cut_hole(path, surface, result))
+    if (path.in_view && !cut_hole(scene_, surface, path.beta, point_, result))
       continue;
     if (path.in_view)
       record(path, surface, t, result);
@@ -142,10 +134,12 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
       if (through > 0.0f)
         pass = through / (through + rest);
     }
+    VertexNumbers u;
     if (!ends) {
-      sample_light(path, surface, double(pass));
-      if (path.in_view && passes_.occlusion())
-        sample_occlusion(path, surface);
+      u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
+      sample_light(path, surface, double(pass), u);
+      if (path.scatterings == 0 && passes_.occlusion())
+        sample_occlusion(path, surface, u);
     }
     if constexpr (Layers) {
       const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
@@ -161,7 +155,7 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
       continue;
     Ray next;
     path.length = way;
-    if (scatter(path, surface, double(pass), next) && survives(path)) {
+    if (scatter(path, surface, double(pass), u, next) && survives(path, u[kVertexRoulette])) {
       next_paths_.push_back(path);
       next_rays_.push_back(next);
     }
@@ -170,8 +164,9 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
 
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment) {
-  // Light that was scattered at most once is direct; clamping never touches it.
-  const bool indirect = path.scatterings > 1;
+  // Light that was scattered at most once is direct, and what the camera sees, if through clear glass; clamping never touches
+  // it.
+  const bool indirect = path.scatterings > 1 && !path.in_view;
   if (path.features.open)
     result.albedo += path.features.beta * radiance;
   if (indirect)
@@ -188,6 +183,8 @@ template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, SampleResult &result) {
   if (path.in_view && !path.seen)
     forget_place(result);
+  if (path.scatterings == 0)
+    add_sky_features(path.features, result);
   // A transparent film does not show the environment itself, only what it lights.
   if (path.in_view && settings_.film_transparent) {
     result.alpha -= mean(path.beta);
@@ -205,7 +202,8 @@ void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, Samp
   float weight = 1.0f;
   if (path.pdf > 0.0)
     weight = mis_weight(path.pdf, environment.pdf(wi) * scene_.lights.probability(scene_.lights.environment_light()));
-  add(path, result, path.beta * environment.radiance(wi, shader_.values()) * weight, true);
+  const glm::dvec3 *eye = path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr;
+  add(path, result, path.beta * environment.radiance(wi, shader_.values(), &camera_, eye) * weight, true);
 }
 
 template <uint32_t Shapes, bool Layers>
@@ -213,14 +211,16 @@ void PathIntegrator<Shapes, Layers>::add_lights_met(const Path &path, const Ray 
   if (scene_.lights.with_extent().empty())
     return;
   // Look from the last scattering, as sampling does, at what lies on this stretch of the way.
-  const double length = glm::length(ray.d), end = path.passed + t * length;
+  const double length = glm::length(ray.d);
+  const double begin = path.passed + ray.tmin * length, end = path.passed + std::min(t, ray.tmax) * length;
   const glm::dvec3 wi = ray.d / length;
   for (uint32_t number : scene_.lights.with_extent()) {
     const Light &light = scene_.lights.lights()[number];
     if (!(path.kinds & ~light.hidden_from))
       continue;
     const LightHit met = meet(light, path.from, wi);
-    const bool here = met.distance >= path.passed && (met.distance < end || std::isinf(end));
+    // A sun lies behind all surfaces, wherever the view ends.
+    const bool here = std::isinf(met.distance) ? std::isinf(t) : met.distance >= begin && met.distance < end;
     if (!(met.pdf > 0.0) || !here)
       continue;
     const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(number)) : 1.0f;
@@ -242,54 +242,30 @@ void PathIntegrator<Shapes, Layers>::add_emission(const Path &path, const Surfac
   add(path, result, path.beta * point_.emission * weight, false);
 }
 
-// Takes a hole out of the picture; false where nothing else is left of the surface.
-template <uint32_t Shapes, bool Layers>
-bool PathIntegrator<Shapes, Layers>::cut_hole(Path &path, const Surface &surface, SampleResult &result) {
-  if (scene_.geometry.instances[surface.instance].holdout) {
-    // All that the object would show becomes the hole; only what passes straight through it is left.
-    const glm::vec3 hole = glm::max(1.0f - point_.transmittance, 0.0f);
-    result.alpha -= mean(hole * path.beta);
-    point_.bsdf.count = 0;
-    point_.bsdf.complete();
-    point_.emission = glm::vec3(0.0f);
-    return point_.passes();
-  }
-  if (point_.holdout > 0.0f) {
-    result.alpha -= point_.holdout * mean(path.beta);
-    return point_.holdout < 1.0f;
-  }
-  return true;
-}
-
 // Fills the passes that describe what the camera sees.
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::record(Path &path, const Surface &surface, double t, SampleResult &result) {
-  const glm::vec3 opacity = glm::clamp(1.0f - point_.transmittance, 0.0f, 1.0f);
   // A surface that is hardly there gives way to the next one, unless the path ends on it.
-  if (!path.seen && mean(opacity) >= settings_.alpha_threshold) {
+  if (!path.seen && mean(point_.opacity()) >= settings_.alpha_threshold) {
     record_first_surface(scene_, settings_, surface, point_, path.depth + t, result);
     path.seen = true;
   } else if (!path.seen) {
     record_place(scene_, surface, point_, path.depth + t, result);
   }
-  if (!passes_.data())
-    return;
-  result.mist += (1.0f - mist_at(scene_, camera_, settings_, surface)) * mean(path.beta * opacity);
-  for (uint32_t component = 0; component < 3 && passes_.wanted(); ++component)
-    result.light[kLightComponents + 3 * component + 2] += path.beta * point_.bsdf.albedo(Component(component));
+  record_seen(scene_, camera_, settings_, passes_, surface, point_, path.beta, result);
 }
 
 template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surface &surface, double pass) {
+void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surface &surface, double pass,
+                                                  const VertexNumbers &u) {
   if (scene_.lights.empty() || !point_.bsdf.smooth)
     return;
   // Choose a light and a point of it.
-  const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
-  const LightSet::Choice choice = scene_.lights.choose(path.sampler.get1(dimension + kVertexLightChoice));
+  const LightSet::Choice choice = scene_.lights.choose(u[kVertexLightChoice]);
   if (!(choice.probability > 0.0))
     return;
-  const glm::vec2 u = path.sampler.get2(dimension + kVertexLight);
-  const LightSample light = sample_scene_light(scene_, choice.light, surface.p, u, shader_);
+  const LightSample light =
+      sample_scene_light(scene_, choice.light, surface.p, {u[kVertexLight], u[kVertexLight + 1]}, shader_);
   if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
     return;
   // Ask the surface how much of it goes towards the viewer, without what the light is hidden from.
@@ -320,21 +296,19 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
 }
 
 template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::sample_occlusion(const Path &path, const Surface &surface) {
+void PathIntegrator<Shapes, Layers>::sample_occlusion(const Path &path, const Surface &surface, const VertexNumbers &u) {
   // Look around the normal of what is diffuse, with the weight of a cosine.
   glm::vec3 n(0.0f);
   for (int i = 0; i < point_.bsdf.count; ++i)
     if (point_.bsdf.lobes[i].component == Component::Diffuse)
       n += point_.bsdf.frames[point_.bsdf.lobes[i].frame].n * mean(point_.bsdf.lobes[i].color);
   n = n == glm::vec3(0.0f) ? point_.bsdf.ns : glm::normalize(n);
-  const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
-  const glm::vec3 local = warp_cosine_hemisphere(path.sampler.get2(dimension + kVertexBsdf));
+  const glm::vec3 local = warp_cosine_hemisphere({u[kVertexBsdf], u[kVertexBsdf + 1]});
   const double distance = settings_.occlusion_distance * scene_.normalisation.scale;
   Ray ray =
       leave(surface, glm::dvec3(Frame(n).to_world(local)), distance > 0.0 ? distance : std::numeric_limits<double>::infinity());
   ray.kinds = LANCER_RAY_SHADOW;
-  const glm::vec3 opacity = glm::clamp(1.0f - point_.transmittance, 0.0f, 1.0f);
-  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, path.beta * opacity, path.passed_through);
+  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, path.beta * point_.opacity(), path.passed_through);
 }
 
 template <uint32_t Shapes, bool Layers>
@@ -354,11 +328,10 @@ Ray PathIntegrator<Shapes, Layers>::pass_straight_on(Path &path, const Surface &
 }
 
 template <uint32_t Shapes, bool Layers>
-bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface, double pass, Ray &next) const {
+bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u,
+                                             Ray &next) const {
   // Draw a direction from the BSDF.
-  const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
-  const BsdfSample sample = point_.bsdf.template sample<Shapes>(path.sampler.get1(dimension + kVertexLobe),
-                                                                path.sampler.get2(dimension + kVertexBsdf));
+  const BsdfSample sample = point_.bsdf.template sample<Shapes>(u[kVertexLobe], {u[kVertexBsdf], u[kVertexBsdf + 1]});
   if (sample.weight == glm::vec3(0.0f) || !(sample.pdf > 0.0f))
     return false;
   // Glass that does not count leaves the picture what it was.
@@ -382,13 +355,12 @@ bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface,
   return true;
 }
 
-template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::survives(Path &path) const {
+template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::survives(Path &path, float u) const {
   if (path.scatterings <= kRouletteAfter)
     return true;
   // End dark paths early; what survives is brightened by exactly that.
   const float q = std::min(1.0f, largest(path.beta));
-  const uint32_t dimension = kDimensionVertex + (path.scatterings - 1) * kVertexStride;
-  if (path.sampler.get1(dimension + kVertexRoulette) >= q)
+  if (u >= q)
     return false;
   path.beta /= q;
   return true;

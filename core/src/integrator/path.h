@@ -24,6 +24,9 @@ public:
   const char *kernel() const override { return kernel_; }
 
 private:
+  // By VertexDimension.
+  using VertexNumbers = std::array<float, kVertexStride>;
+
   struct Path {
     Sampler sampler;
     glm::vec3 beta{1.0f};
@@ -49,13 +52,12 @@ private:
   void miss(const Path &path, const Ray &ray, SampleResult &result);
   void add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result);
   void add_emission(const Path &path, const Surface &surface, SampleResult &result);
-  bool cut_hole(Path &path, const Surface &surface, SampleResult &result);
   void record(Path &path, const Surface &surface, double t, SampleResult &result);
-  void sample_light(const Path &path, const Surface &surface, double pass);
-  void sample_occlusion(const Path &path, const Surface &surface);
-  bool scatter(Path &path, const Surface &surface, double pass, Ray &next) const;
+  void sample_light(const Path &path, const Surface &surface, double pass, const VertexNumbers &u);
+  void sample_occlusion(const Path &path, const Surface &surface, const VertexNumbers &u);
+  bool scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u, Ray &next) const;
   Ray pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight) const;
-  bool survives(Path &path) const;
+  bool survives(Path &path, float u) const;
   void add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment);
 
   const Scene &scene_;

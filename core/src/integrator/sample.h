@@ -31,7 +31,8 @@ struct IntegratorSettings {
   bool environment_reflections = false; // CLASSIC
   double occlusion_distance = 0.0;      // scene units; 0 = any
   float mist_start = 5.0f, mist_depth = 25.0f, mist_falloff = 2.0f;
-  uint32_t passes = 1; // bits 1u << Pass of film.h
+  bool blended_features = false; // denoising features as Blender 5.2 has them
+  uint32_t passes = 1;           // bits 1u << Pass of render/pass.h
   bool all_features = false;
   const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with results that are worth nothing
 
@@ -117,7 +118,7 @@ enum VertexDimension : uint32_t {
 };
 // Layers of opacity at one vertex have numbers of their own, far behind the others.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
-inline constexpr uint32_t kMaxLayers = 256;
+inline constexpr uint32_t kMaxLayers = 1025;
 
 // Turns addresses into camera rays.
 class RayGenerator {
@@ -133,6 +134,17 @@ public:
 
   // One sample of a recursive ray tracer goes through the middle of the pixel and of the lens.
   bool middle() const { return middle_; }
+
+  // Begins a sample with its camera ray. False where there is no direction to look in: outside a panorama's picture it is
+  // black, and as solid as Cycles has it.
+  bool start(const SampleAddress &address, const Sampler &sampler, bool with_light, SampleResult &result,
+             Ray &camera_ray) const {
+    result = SampleResult(with_light);
+    result.alpha = 1.0f;
+    camera_ray = ray(address, sampler);
+    camera_ray.kinds = LANCER_RAY_CAMERA;
+    return !(camera_ray.tmax < 0.0);
+  }
 
   Ray ray(const SampleAddress &address, const Sampler &sampler) const {
     glm::dvec2 raster(double(camera_.x + address.x) + 0.5, double(camera_.y + address.y) + 0.5);

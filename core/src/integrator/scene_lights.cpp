@@ -7,7 +7,7 @@ LightSample sample_scene_light(const Scene &scene, uint32_t light, const glm::dv
   if (light < described)
     return sample(scene.lights.lights()[light], p, u);
   if (light - described >= scene.lights.emitters().size())
-    return scene.lights.environment().sample(u, shader.values());
+    return scene.lights.environment().sample(u, shader.values(), shader.camera());
   // Ask the material of the emitter's surface what it sends towards p.
   Surface surface;
   LightSample result =

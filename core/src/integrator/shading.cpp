@@ -27,16 +27,24 @@ glm::vec3 visible_normal(const glm::vec3 &ns, const glm::vec3 &ng, const glm::ve
 }
 
 // Makes a lobe once where neither wo nor the place changes it.
-ReadyLobe make_ready(const LobeInputs &inputs) {
+ReadyLobe make_ready(const LobeInputs &inputs, const PrincipledInputs *principled) {
   ReadyLobe ready;
-  const bool matte = inputs.kind == LobeKind::Lambert || (inputs.kind == LobeKind::Diffuse && inputs.roughness == 0.0f);
+  bool matte = inputs.kind == LobeKind::Lambert || (inputs.kind == LobeKind::Diffuse && inputs.roughness == 0.0f);
   const bool course = inputs.kind == LobeKind::Mirror || inputs.kind == LobeKind::Phong || inputs.kind == LobeKind::BlinnPhong;
+  if (principled && principled->rules != Rules::Blender3) {
+    LayerPlan &plan = ready.layers.emplace(plan_layers(inputs, *principled, Sides::Both));
+    keep_rows(plan);
+    matte = plan.only_diffuse(*principled) && principled->diffuse_roughness == 0.0f;
+  }
   if ((!matte && !course) || inputs.normal != glm::vec3(0.0f))
     return ready;
   const auto bsdf = std::make_unique<Bsdf>();
   const glm::vec3 up(0.0f, 0.0f, 1.0f);
   bsdf->begin(up, up, up, false, true);
-  add_lobe(*bsdf, inputs);
+  if (principled)
+    add_principled(*bsdf, inputs, *principled);
+  else
+    add_lobe(*bsdf, inputs);
   if (bsdf->count != 1)
     return ready;
   ready.lobe = bsdf->lobes[0];
@@ -55,8 +63,8 @@ Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values
   context_.camera = camera;
   for (const Material &material : scene.materials) {
     std::vector<ReadyLobe> &ready = ready_.emplace_back();
-    for (const LobeInputs &inputs : material.fixed)
-      ready.push_back(make_ready(inputs));
+    for (size_t i = 0; i < material.fixed.size(); ++i)
+      ready.push_back(make_ready(material.fixed[i], material.lobes[i].principled ? &material.fixed_principled[i] : nullptr));
   }
 }
 
@@ -119,7 +127,6 @@ void Shader::run_nodes(const Material &material, const Schedule &schedule, const
   context_.surface = &surface;
   context_.wo = view.wo;
   context_.footprint = view.footprint;
-  context_.is_camera_ray = view.camera_ray;
   run(material.program, schedule, context_, values_);
 }
 
@@ -144,6 +151,8 @@ void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
     for (size_t i = 0; i < material.fixed.size(); ++i) {
       if (ready[i].usable && (bsdf.flat || !ready[i].flat_only))
         add(bsdf, ready[i].lobe);
+      else if (ready[i].layers)
+        add_layers(bsdf, material.fixed[i], material.fixed_principled[i], *ready[i].layers);
       else if (material.lobes[i].principled)
         add_principled(bsdf, material.fixed[i], material.fixed_principled[i]);
       else

@@ -1,7 +1,7 @@
 // From a hit to what the integrators ask of it: the BSDF, what it emits, what passes straight through.
 #pragma once
 
-#include "bsdf/build.h"
+#include "bsdf/principled.h"
 #include "lights/light.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
@@ -20,20 +20,22 @@ struct Shaded {
   float holdout = 0.0f;          // share that becomes a hole in the picture
 
   bool passes() const { return transmittance != glm::vec3(0.0f); }
+  // The share that is there.
+  glm::vec3 opacity() const { return glm::clamp(1.0f - transmittance, 0.0f, 1.0f); }
 };
 
 // How the viewer sees the surface that a material is evaluated for.
 struct View {
   glm::vec3 wo{0, 0, 1};  // unit, world, away from the surface
   float footprint = 0.0f; // radius that a pixel covers there, normalised units
-  bool camera_ray = false;
 };
 
-// A lobe that is the same wherever its material is met.
+// What of a described lobe can be made once, where its numbers are the same wherever its material is met.
 struct ReadyLobe {
-  Lobe lobe;
+  Lobe lobe; // all of it
   bool usable = false;
-  bool flat_only = false; // only where the shading normal is the geometric one
+  bool flat_only = false;          // only where the shading normal is the geometric one
+  std::optional<LayerPlan> layers; // of Principled
 };
 
 // Evaluates materials at surfaces. One object per thread: it keeps the nodes' values.
@@ -47,6 +49,7 @@ public:
   glm::vec3 transmittance(const Surface &surface, const glm::vec3 &wo);
   glm::vec3 emission(const Surface &surface, const glm::vec3 &wo);
   std::span<glm::vec4> values() { return values_; }
+  const Camera *camera() const { return context_.camera; }
   // Looks at surfaces of this geometry instead of the scene's; it must outlive the shader.
   void set_geometry(const Geometry &geometry) { context_.geometry = &geometry; }
   // The value of one node of a material at a surface.

@@ -13,15 +13,12 @@ struct SmoothTriangle {
 
 // False where the triangle has no normals of its own.
 bool read_triangle(const Mesh &mesh, const Instance &instance, uint32_t triangle, SmoothTriangle &smooth) {
-  if (instance.shading == Shading::Flat)
-    return false;
-  const bool corners = mesh.normal_domain == NormalDomain::Corner;
-  const std::vector<glm::vec3> &normals = mesh.normals.empty() ? mesh.smooth_normals : mesh.normals;
-  if (normals.empty())
+  glm::vec3 n[3];
+  if (!corner_normals(mesh, instance.shading, triangle, n))
     return false;
   for (int i = 0; i < 3; ++i) {
     smooth.v[i] = glm::dvec3(mesh.vertex(triangle, i));
-    smooth.n[i] = glm::dvec3(normals[corners ? size_t(triangle) * 3 + size_t(i) : mesh.triangles[triangle][i]]);
+    smooth.n[i] = glm::dvec3(n[i]);
   }
   // A flat face among smooth ones has one normal at all of its corners.
   return smooth.n[0] != smooth.n[1] || smooth.n[1] != smooth.n[2];

@@ -1,6 +1,7 @@
 #include "lights/emitter.h"
 
 #include "accel/quadric.h"
+#include "sampling/color.h"
 #include "sampling/warp.h"
 
 #include <cmath>
@@ -8,8 +9,6 @@
 namespace lancer {
 
 namespace {
-
-double brightest(const glm::vec3 &v) { return std::max({0.0, double(v.x), double(v.y), double(v.z)}); }
 
 bool sampled(const Material &material) { return material.emits() && !(material.flags & LANCER_MATERIAL_NOT_A_LIGHT); }
 

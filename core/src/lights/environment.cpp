@@ -1,6 +1,7 @@
 #include "lights/environment.h"
 
 #include "accel/parallel.h"
+#include "sampling/color.h"
 
 #include <cmath>
 #include <numeric>
@@ -12,11 +13,15 @@ namespace {
 // Width of the map where neither the user nor an image says, and the most that is stored: a finer image is looked at texel by
 // texel and its cells joined.
 constexpr uint32_t kPlainWidth = 1024, kLargestWidth = 2048;
+// The most looks at all directions together: some seconds of one processor. It is a look for each texel of an image 8192 wide;
+// of one of 16384 the looks fall on the corners between texels, where interpolation still sees each of them.
+constexpr uint32_t kMostLooks = 1u << 25;
 // Share of the samples that go evenly to all directions: a bright speck that the map has missed is found by these.
 constexpr float kEvenShare = 0.05f;
 
-float brightest(const glm::vec3 &v) {
-  const float top = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+// What a direction counts for; nodes may give any number.
+float weight_of(const glm::vec3 &radiance) {
+  const float top = largest(glm::abs(radiance));
   return std::isfinite(top) ? top : 0.0f;
 }
 
@@ -38,32 +43,41 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
 
 } // namespace
 
+MapSize map_size(uint32_t resolution, uint32_t widest) {
+  const uint32_t wanted = resolution > 0 ? resolution : widest > 0 ? widest : kPlainWidth;
+  MapSize size;
+  size.width = std::clamp(wanted + (wanted & 1), 4u, kLargestWidth);
+  size.height = size.width / 2;
+  // A look for each texel, and two along each side at least: interpolation spreads a single bright texel over two.
+  const uint32_t needed = (std::max(wanted, widest) + size.width - 1) / size.width;
+  const auto most = uint32_t(std::sqrt(double(kMostLooks) / (double(size.width) * size.height)));
+  size.looks = std::clamp(needed, 2u, most);
+  return size;
+}
+
 Environment::Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,
                          const BuildContext &context)
     : world_(&world), images_(&images), normalisation_(&normalisation), constant_(world.radiance.value),
-      mean_(double(brightest(world.radiance.value))), hidden_from_(world.hidden_from) {
+      mean_(double(weight_of(world.radiance.value))), hidden_from_(world.hidden_from) {
   if (world.varies())
     make_map(context);
 }
 
 glm::vec3 Environment::evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
-                                bool is_camera_ray) const {
+                                const glm::dvec3 *eye) const {
   NodeContext context;
   context.images = images_;
   context.normalisation = normalisation_;
   context.camera = camera;
   context.wo = glm::vec3(-wi);
-  context.is_camera_ray = is_camera_ray;
+  context.eye = eye;
   run(world_->program, world_->schedule, context, values);
   return value_of(world_->radiance, values);
 }
 
 void Environment::make_map(const BuildContext &context) {
-  const uint32_t detail = world_->map_resolution > 0 ? world_->map_resolution : image_width(*world_, *images_);
-  const uint32_t wanted = detail > 0 ? detail : kPlainWidth;
-  const uint32_t width = std::clamp(wanted + (wanted & 1), 4u, kLargestWidth), height = width / 2;
-  // A look for each texel, and two along each side at least: interpolation spreads a single bright texel over two.
-  const uint32_t looks = std::max(2u, (std::max(wanted, image_width(*world_, *images_)) + width - 1) / width);
+  const MapSize size = map_size(world_->map_resolution, image_width(*world_, *images_));
+  const uint32_t width = size.width, height = size.height, looks = size.looks;
   const DirectionMap grid(width, height, std::vector<float>(size_t(width) * height, 1.0f));
   std::vector<float> weights(size_t(width) * height);
   std::vector<double> totals(height);
@@ -73,7 +87,7 @@ void Environment::make_map(const BuildContext &context) {
       float sum = 0.0f;
       for (uint32_t look = 0; look < looks * looks; ++look) {
         const double x = column + (look % looks + 0.5) / looks, y = double(row) + (look / looks + 0.5) / looks;
-        sum += brightest(evaluate(grid.direction(x, y), values, nullptr, false));
+        sum += weight_of(evaluate(grid.direction(x, y), values, nullptr, nullptr));
       }
       const float mean = sum / float(looks * looks);
       weights[row * width + column] = std::isfinite(mean) ? mean : 0.0f;
@@ -88,7 +102,7 @@ void Environment::make_map(const BuildContext &context) {
   map_ = DirectionMap(width, height, weights);
 }
 
-LightSample Environment::sample(const glm::vec2 &u, std::span<glm::vec4> values) const {
+LightSample Environment::sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera) const {
   LightSample sample;
   sample.distance = std::numeric_limits<double>::infinity();
   if (!varies())
@@ -97,7 +111,7 @@ LightSample Environment::sample(const glm::vec2 &u, std::span<glm::vec4> values)
   sample.wi = found.direction;
   sample.pdf = found.pdf;
   if (sample.pdf > 0.0)
-    sample.radiance = evaluate(sample.wi, values, nullptr, false);
+    sample.radiance = evaluate(sample.wi, values, camera, nullptr);
   return sample;
 }
 

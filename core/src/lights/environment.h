@@ -8,12 +8,20 @@
 
 namespace lancer {
 
+// The map by which directions are sampled: its cells, and how often each is looked at along each of its sides.
+struct MapSize {
+  uint32_t width = 0, height = 0, looks = 0;
+};
+// resolution: the user's, 0 = by the images; widest: the width of the widest of them, 0 = none.
+MapSize map_size(uint32_t resolution, uint32_t widest);
+
 class Environment {
 public:
   // Black.
   Environment() = default;
   // The world, images and normalisation must outlive it; they may still be filled while it is made. Where the radiance varies,
-  // looks at all directions for the map that they are sampled by.
+  // looks at all directions for the map that they are sampled by. No camera is known then: where nodes ask for it the map is
+  // only a guess, and the even share of the samples carries the rest.
   Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,
               const BuildContext &context);
 
@@ -24,20 +32,21 @@ public:
   // Mean over all directions, of the brightest channel.
   double mean() const { return mean_; }
 
-  // wi: unit, world. values: room for all nodes of the world. camera (may be null) and is_camera_ray: for the nodes.
-  glm::vec3 radiance(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera = nullptr,
-                     bool is_camera_ray = false) const {
-    return varies() ? evaluate(wi, values, camera, is_camera_ray) : constant_;
+  // wi: unit, world. values: room for all nodes of the world. camera: for the nodes, may be null. eye: where a camera ray
+  // starts; null for other rays.
+  glm::vec3 radiance(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
+                     const glm::dvec3 *eye = nullptr) const {
+    return varies() ? evaluate(wi, values, camera, eye) : constant_;
   }
   // No sample where it does not vary.
-  LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values) const;
+  LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera) const;
   // Density per solid angle with which sample() gives wi.
   double pdf(const glm::dvec3 &wi) const { return varies() ? map_.pdf(wi) : 0.0; }
 
   size_t bytes() const { return map_.bytes(); }
 
 private:
-  glm::vec3 evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, bool is_camera_ray) const;
+  glm::vec3 evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye) const;
   void make_map(const BuildContext &context);
 
   const World *world_ = nullptr;

@@ -1,12 +1,12 @@
 #include "lights/light_set.h"
 
+#include "sampling/color.h"
+
 #include <algorithm>
 
 namespace lancer {
 
 namespace {
-
-double brightest(const glm::dvec3 &v) { return std::max({v.x, v.y, v.z}); }
 
 // Rough power in normalised units: only the choice of lights depends on it, never the picture.
 double power(const Light &light, double scene_radius) {

@@ -79,6 +79,7 @@ SessionSettings read_settings(const lancer_settings &source) {
   settings.integrator.mist_start = source.mist_start;
   settings.integrator.mist_depth = source.mist_depth;
   settings.integrator.mist_falloff = source.mist_falloff;
+  settings.integrator.blended_features = source.blended_features != 0;
   settings.integrator.passes = source.passes;
   settings.integrator.all_features = source.features == LANCER_FEATURES_ALL;
   settings.passes = source.passes;

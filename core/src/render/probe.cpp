@@ -110,6 +110,7 @@ void probe_light(const Scene &scene, uint32_t light, uint32_t count, const doubl
 
 void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const double *points, const double *wi, float *pdf) {
   check_light(scene, light);
+  check_directions(wi, count);
   const size_t described = scene.lights.lights().size();
   const double infinity = std::numeric_limits<double>::infinity();
   for (uint32_t i = 0; i < count; ++i) {

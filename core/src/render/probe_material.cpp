@@ -35,8 +35,7 @@ public:
     square.high = {1, 1, 0};
     geometry_.meshes.push_back(std::move(square));
     Instance instance;
-    instance.to_world = scene.normalisation.to_normalised(Affine{});
-    instance.to_object = inverse(instance.to_world);
+    instance.place(scene.normalisation.to_normalised(Affine{}));
     geometry_.instances.push_back(instance);
     shader_.set_geometry(geometry_);
   }
@@ -160,11 +159,12 @@ void probe_node(const Scene &scene, uint32_t material, uint32_t node, uint32_t c
 }
 
 void probe_world(const Scene &scene, uint32_t count, const double *directions, float *radiance, float *pdf) {
+  check_directions(directions, count);
   const Environment &environment = scene.lights.environment();
   std::vector<glm::vec4> values(scene.world.program.nodes.size());
   for (uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 wi(directions[3 * i], directions[3 * i + 1], directions[3 * i + 2]);
-    store(radiance + size_t(3) * i, environment.radiance(wi, values));
+    store(radiance + size_t(3) * i, environment.radiance(wi, values, nullptr));
     pdf[i] = environment.varies() ? float(environment.pdf(wi)) : 0.0f;
   }
 }

@@ -35,7 +35,7 @@ uint32_t tile_size(const SessionSettings &settings) {
 
 // Nothing but where the camera ray ended.
 SampleResult place_of(const SampleResult &result) {
-  SampleResult place;
+  SampleResult place(true);
   place.depth = result.depth;
   place.position = result.position;
   place.object_index = result.object_index;

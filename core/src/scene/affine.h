@@ -44,4 +44,15 @@ inline Affine inverse(const Affine &a) {
   return {m, -(m * a.translation)};
 }
 
+// A vector without length stays 0.
+template <class T> glm::vec<3, T> unit_or_zero(const glm::vec<3, T> &v) {
+  const T length = glm::length(v);
+  return length > T(0) ? v / length : glm::vec<3, T>(T(0));
+}
+
+// A normal on the other side of a map, whose way back is given; unit, 0 stays 0.
+inline glm::vec3 carried_normal(const Affine &back, const glm::dvec3 &n) {
+  return glm::vec3(unit_or_zero(glm::transpose(back.linear) * n));
+}
+
 } // namespace lancer

@@ -5,6 +5,10 @@
 
 namespace lancer {
 
+// The number under which a mesh keeps its vertices as they were before displacement: it stands for no name, so that nobody can
+// give it or ask for it by mistake.
+inline constexpr uint32_t kUndisplaced = UINT32_MAX;
+
 // The attribute with this number of a name; null where the mesh has none.
 const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name);
 

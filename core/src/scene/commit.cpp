@@ -129,8 +129,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->images = std::move(description.images);
   scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {
-    instance.to_world = scene->normalisation.to_normalised(instance.to_world);
-    instance.to_object = inverse(instance.to_world);
+    instance.place(scene->normalisation.to_normalised(instance.to_world));
     if (instance.kind != ShapeKind::Mesh)
       continue;
     Mesh &mesh = scene->geometry.meshes[instance.mesh];
@@ -142,7 +141,6 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   }
   scene->lights = make_lights(*scene, description, context);
   scene->accelerator = build_accelerator(kind, scene->geometry, context);
-  scene->instances_given = description.instances_given;
   scene->messages = description.messages.text();
   scene->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return scene;

@@ -2,13 +2,19 @@
 
 namespace lancer {
 
-void Messages::add(const std::string &object, const std::string &what) {
-  const std::string text = object + ": " + what;
+void Messages::add(const std::string &object, const std::string &what) { add_line(object + ": " + what, 1); }
+
+void Messages::add(const Messages &others) {
+  for (const Line &line : others.lines_)
+    add_line(line.text, line.count);
+}
+
+void Messages::add_line(const std::string &text, uint64_t count) {
   const auto [known, fresh] = numbers_.emplace(text, lines_.size());
   if (fresh)
-    lines_.push_back({text, 1});
+    lines_.push_back({text, count});
   else
-    ++lines_[known->second].count;
+    lines_[known->second].count += count;
 }
 
 std::string Messages::text() const {

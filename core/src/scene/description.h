@@ -18,6 +18,7 @@ namespace lancer {
 class Messages {
 public:
   void add(const std::string &object, const std::string &what);
+  void add(const Messages &others);
   // All lines, each ended by a newline.
   std::string text() const;
 
@@ -26,6 +27,8 @@ private:
     std::string text;
     uint64_t count;
   };
+  void add_line(const std::string &text, uint64_t count);
+
   std::vector<Line> lines_;
   std::unordered_map<std::string, size_t> numbers_; // of a line, by its text
 };
@@ -55,8 +58,7 @@ void set_world(Description &description, const lancer_world &world);
 Program read_program(Description &description, const std::string &owner, const lancer_node *nodes, uint32_t count);
 void check_reference(const std::string &owner, const char *what, const lancer_parameter &parameter, const Program &program);
 
-// The number of a name among attribute_names; a new name gets the next one. kUndisplaced: the vertices before displacement.
-inline constexpr const char *kUndisplaced = "undisplaced position ";
+// The number of a name among attribute_names; a new name gets the next one.
 uint32_t attribute_name(Description &description, const std::string &name);
 
 // "name", or "#number" where there is no name.

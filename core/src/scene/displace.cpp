@@ -1,47 +1,16 @@
 #include "scene/displace.h"
 
 #include "accel/parallel.h"
+#include "scene/attribute.h"
+#include "scene/mesh_faces.h"
+#include "scene/mesh_normals.h"
 #include "scene/scene.h"
 
-#include <cmath>
 #include <map>
-#include <tuple>
 
 namespace lancer {
 
 namespace {
-
-bool finite(const glm::dvec3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-glm::dvec3 unit_or_zero(const glm::dvec3 &v) {
-  const double length = glm::length(v);
-  return length > 0.0 ? v / length : glm::dvec3(0.0);
-}
-
-glm::dvec3 face_normal(const Mesh &mesh, uint32_t triangle) {
-  const glm::dvec3 v0(mesh.vertex(triangle, 0)), v1(mesh.vertex(triangle, 1)), v2(mesh.vertex(triangle, 2));
-  return unit_or_zero(glm::cross(v1 - v0, v2 - v0));
-}
-
-// Normals at vertices of a closed skin, whatever the shading: the faces' by their angles, so that nothing tears apart.
-std::vector<glm::vec3> vertex_normals(const Mesh &mesh) {
-  if (mesh.normal_domain == NormalDomain::Vertex)
-    return mesh.normals;
-  std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
-  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const glm::dvec3 n = face_normal(mesh, i);
-    for (int corner = 0; corner < 3; ++corner) {
-      const glm::dvec3 p(mesh.vertex(i, corner));
-      const glm::dvec3 a = unit_or_zero(glm::dvec3(mesh.vertex(i, (corner + 1) % 3)) - p);
-      const glm::dvec3 b = unit_or_zero(glm::dvec3(mesh.vertex(i, (corner + 2) % 3)) - p);
-      sums[mesh.triangles[i][corner]] += std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * n;
-    }
-  }
-  std::vector<glm::vec3> normals(sums.size());
-  for (size_t i = 0; i < sums.size(); ++i)
-    normals[i] = glm::vec3(unit_or_zero(sums[i]));
-  return normals;
-}
 
 // A corner at which a material is asked for its displacement.
 struct Place {
@@ -49,7 +18,7 @@ struct Place {
   int corner;
 };
 
-// One mesh, moved as its first instance's materials say.
+// One mesh, moved as the materials of an instance say.
 class Displacement {
 public:
   Displacement(Description &description, const BuildContext &context, uint32_t instance)
@@ -62,10 +31,8 @@ public:
       return;
     keep_positions();
     move_vertices();
-    if (mesh_.normal_domain == NormalDomain::Vertex)
-      renew_vertex_normals();
-    else if (mesh_.normal_domain == NormalDomain::Corner)
-      renew_corner_normals();
+    drop_flat_faces();
+    renew_normals(mesh_, renews_);
   }
 
 private:
@@ -96,7 +63,7 @@ private:
     if (!keeps_)
       return;
     MeshAttribute attribute;
-    attribute.name = attribute_name(description_, kUndisplaced);
+    attribute.name = kUndisplaced;
     attribute.domain = Domain::Vertex;
     attribute.channels = 3;
     for (const glm::vec3 &p : mesh_.positions)
@@ -112,11 +79,11 @@ private:
     surface.material = place.material;
     surface.p = instance_.to_world.point(glm::dvec3(mesh_.positions[place.vertex]));
     surface.bary = {place.corner == 1 ? 1.0 : 0.0, place.corner == 2 ? 1.0 : 0.0};
-    const auto to_world = [&](const glm::dvec3 &n) {
-      return glm::vec3(unit_or_zero(glm::transpose(instance_.to_object.linear) * n));
-    };
-    surface.ng = to_world(face_normal(mesh_, place.triangle));
-    surface.ns = to_world(glm::dvec3(normals[place.vertex]));
+    surface.ng = carried_normal(instance_.to_object, face_normal(mesh_, place.triangle));
+    surface.ns = carried_normal(instance_.to_object, glm::dvec3(normals[place.vertex]));
+    // Faces that look opposite ways leave a vertex without a normal.
+    if (surface.ns == glm::vec3(0.0f))
+      surface.ns = surface.ng;
     static const Normalisation unchanged;
     NodeContext context;
     context.geometry = &description_.geometry;
@@ -125,8 +92,7 @@ private:
     context.surface = &surface;
     context.wo = surface.ng;
     lancer::run(material.program, material.displacement_nodes, context, values);
-    const glm::dvec3 moved(value_of(material.displacement, values));
-    return finite(moved) ? moved : glm::dvec3(0.0);
+    return glm::dvec3(value_of(material.displacement, values));
   }
 
   void move_vertices() {
@@ -144,45 +110,46 @@ private:
     // A vertex of several materials goes to the mean.
     std::vector<glm::dvec3> sums(mesh_.positions.size(), glm::dvec3(0.0));
     std::vector<uint32_t> counts(mesh_.positions.size());
+    std::map<uint32_t, size_t> refused; // by material
     for (size_t i = 0; i < places_.size(); ++i) {
-      sums[places_[i].vertex] += offsets[i];
-      ++counts[places_[i].vertex];
+      const Place &place = places_[i];
+      ++counts[place.vertex];
+      if (is_usable(glm::vec3(glm::dvec3(mesh_.positions[place.vertex]) + offsets[i])))
+        sums[place.vertex] += offsets[i];
+      else
+        ++refused[place.material];
     }
+    tell(refused, "vertices", "whose displacement is not finite or too far were not moved");
     for (size_t i = 0; i < sums.size(); ++i)
       if (counts[i])
         mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) + sums[i] / double(counts[i]));
   }
 
-  // The mean of the faces' normals, those that follow.
-  void renew_vertex_normals() {
-    std::vector<glm::dvec3> sums(mesh_.positions.size(), glm::dvec3(0.0));
-    for (uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-      if (renews_[i])
-        for (int corner = 0; corner < 3; ++corner)
-          sums[mesh_.triangles[i][corner]] += face_normal(mesh_, i);
-    for (size_t i = 0; i < sums.size(); ++i)
-      if (sums[i] != glm::dvec3(0.0))
-        mesh_.normals[i] = glm::vec3(unit_or_zero(sums[i]));
+  // The faces that displacement has folded up: nothing can hit them.
+  void drop_flat_faces() {
+    std::vector<uint32_t> kept;
+    std::map<uint32_t, size_t> flat; // by material
+    for (uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+      if (has_area(mesh_.vertex(i, 0), mesh_.vertex(i, 1), mesh_.vertex(i, 2))) {
+        renews_[kept.size()] = renews_[i];
+        kept.push_back(i);
+      } else {
+        ++flat[material_of(description_.geometry, description_.slots, number_, i)];
+      }
+    }
+    if (flat.empty())
+      return;
+    keep_faces(mesh_, kept);
+    tell(flat, "faces", "that displacement leaves without area were left out");
   }
 
-  // Corners that had one normal at a vertex get one again; where the skin was creased it stays so.
-  void renew_corner_normals() {
-    using Key = std::tuple<uint32_t, float, float, float>;
-    std::map<Key, glm::dvec3> sums;
-    const auto key = [&](uint32_t triangle, int corner) {
-      const glm::vec3 &n = mesh_.normals[size_t(triangle) * 3 + size_t(corner)];
-      return Key{mesh_.triangles[triangle][corner], n.x, n.y, n.z};
-    };
-    for (uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-      if (renews_[i])
-        for (int corner = 0; corner < 3; ++corner)
-          sums[key(i, corner)] += face_normal(mesh_, i);
-    std::vector<glm::vec3> normals = mesh_.normals;
-    for (uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-      if (renews_[i])
-        for (int corner = 0; corner < 3; ++corner)
-          normals[size_t(i) * 3 + size_t(corner)] = glm::vec3(unit_or_zero(sums[key(i, corner)]));
-    mesh_.normals = std::move(normals);
+  void tell(const std::map<uint32_t, size_t> &counts, const char *things, const char *what) const {
+    const std::string object = label("mesh", mesh_.name.c_str(), instance_.mesh);
+    for (const auto &[material, count] : counts) {
+      const std::string of =
+          material == kNone ? "" : "of " + label("material", description_.materials[material].name.c_str(), material) + " ";
+      description_.messages.add(object, std::to_string(count) + " " + things + " " + of + what);
+    }
   }
 
   Description &description_;
@@ -195,17 +162,62 @@ private:
   std::vector<Place> places_;
 };
 
+// A triangle for each slot that occurs.
+std::vector<uint32_t> parts_of(const Mesh &mesh) {
+  std::map<uint16_t, uint32_t> first;
+  for (uint32_t i = 0; i < mesh.material_slots.size(); ++i)
+    first.emplace(mesh.material_slots[i], i);
+  if (mesh.material_slots.empty() && !mesh.triangles.empty())
+    first.emplace(uint16_t(0), 0);
+  std::vector<uint32_t> parts;
+  for (const auto &[slot, triangle] : first)
+    parts.push_back(triangle);
+  return parts;
+}
+
+// Copies a mesh for each further list of materials by which instances move it; those that move nothing are one list, too. The
+// first instance of each.
+std::vector<uint32_t> separate(Description &description, const BuildContext &context) {
+  Geometry &geometry = description.geometry;
+  std::vector<std::vector<uint32_t>> parts;
+  for (const Mesh &mesh : geometry.meshes) {
+    poll_cancel(context);
+    parts.push_back(parts_of(mesh));
+  }
+  std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> meshes; // by the mesh as given and the materials that move it
+  std::vector<bool> taken(geometry.meshes.size());
+  std::vector<uint32_t> firsts;
+  for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
+    Instance &instance = geometry.instances[i];
+    if (instance.kind != ShapeKind::Mesh)
+      continue;
+    std::vector<uint32_t> movers;
+    for (const uint32_t triangle : parts[instance.mesh]) {
+      const uint32_t material = material_of(geometry, description.slots, i, triangle);
+      movers.push_back(material != kNone && description.materials[material].displaces() ? material : kNone);
+    }
+    const auto [known, fresh] = meshes.emplace(std::pair(instance.mesh, std::move(movers)), instance.mesh);
+    if (fresh) {
+      poll_cancel(context);
+      firsts.push_back(i);
+      if (taken[instance.mesh]) {
+        known->second = uint32_t(geometry.meshes.size());
+        geometry.meshes.push_back(Mesh(geometry.meshes[instance.mesh]));
+      }
+      taken[known->first.first] = true;
+    }
+    instance.mesh = known->second;
+  }
+  return firsts;
+}
+
 } // namespace
 
 void displace(Description &description, const BuildContext &context) {
-  std::vector<bool> done(description.geometry.meshes.size());
-  std::vector<Instance> &instances = description.geometry.instances;
-  for (uint32_t i = 0; i < instances.size(); ++i) {
-    Instance &instance = instances[i];
-    if (instance.kind != ShapeKind::Mesh || done[instance.mesh])
-      continue;
-    done[instance.mesh] = true;
-    instance.to_object = inverse(instance.to_world);
+  for (const uint32_t i : separate(description, context)) {
+    poll_cancel(context);
+    Instance &instance = description.geometry.instances[i];
+    instance.place(instance.to_world);
     Displacement(description, context, i).run();
   }
 }

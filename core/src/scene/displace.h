@@ -6,7 +6,8 @@
 
 namespace lancer {
 
-// Moves the vertices of every mesh whose materials displace, and makes their normals anew.
+// Moves the vertices of every mesh whose materials displace, and makes their normals anew. A mesh that instances show with
+// different displacing materials is copied for each list of them.
 void displace(Description &description, const BuildContext &context);
 
 } // namespace lancer

@@ -32,12 +32,17 @@ bool uses_images(const Program &program) {
   return false;
 }
 
-bool is_glass(LobeKind kind) {
-  return kind == LobeKind::Dielectric || kind == LobeKind::Glass || kind == LobeKind::Refraction ||
-         kind == LobeKind::Principled;
+bool is_glass(const LobeDescription &lobe) {
+  return lobe.kind == LobeKind::Dielectric || lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction ||
+         (lobe.principled && may_be_positive(lobe.principled->transmission));
 }
 
-bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
+// Whether some layer of it may have facets.
+bool may_reflect(const PrincipledDescription &principled) {
+  const bool plastic = may_be_positive(principled.specular) && (principled.ior.varies() || principled.ior.value.x != 1.0f);
+  return plastic || may_be_positive(principled.metallic) || may_be_positive(principled.transmission) ||
+         may_be_positive(principled.coat);
+}
 
 // What a Principled lobe can become, without the layers that it has not.
 uint32_t principled_shapes(const PrincipledDescription &principled) {
@@ -45,6 +50,8 @@ uint32_t principled_shapes(const PrincipledDescription &principled) {
   if (principled.constants.rules == Rules::Blender3)
     return shapes;
   shapes &= ~shape_bit(LobeShape::Ashikhmin);
+  if (!may_reflect(principled))
+    shapes &= ~shape_bit(LobeShape::Microfacet);
   if (!may_be_positive(principled.diffuse_roughness))
     shapes &= ~shape_bit(LobeShape::Matte);
   if (!may_be_positive(principled.sheen))
@@ -55,7 +62,7 @@ uint32_t principled_shapes(const PrincipledDescription &principled) {
 void add_material(const Material &material, Features &features) {
   for (const LobeDescription &lobe : material.lobes) {
     features.shapes |= lobe.principled ? principled_shapes(*lobe.principled) : shapes_of(lobe.kind);
-    if (is_glass(lobe.kind))
+    if (is_glass(lobe))
       features.bits |= kFeatureGlass;
   }
   if (material.transmits())

@@ -1,6 +1,8 @@
 // Checks and copies pictures; colours are multiplied by a straight alpha here, once, in the depth in which they are stored.
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/fill.h"
+#include "scene/memory.h"
 
 #include <cmath>
 #include <cstring>
@@ -61,7 +63,7 @@ void check_image(const std::string &object, const lancer_image &source) {
     bad_argument(object + ": texels is NULL");
   for (int i = 0; i < 9; ++i)
     if (!std::isfinite(source.matrix[i]))
-      bad_argument(object + ": matrix holds " + std::to_string(source.matrix[i]));
+      bad_argument(object + ": matrix holds " + to_text(source.matrix[i]));
 }
 
 } // namespace
@@ -82,7 +84,13 @@ void add_image(Description &description, const lancer_image &source) {
     for (int column = 0; column < 3; ++column)
       image.matrix[column][row] = source.matrix[3 * row + column];
   image.has_matrix = image.matrix != glm::mat3(1.0f);
-  image.texels = allocate_texels(image.bytes());
+  const std::string texels = object + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) + " texels";
+  check_memory(texels, double(image.bytes()));
+  try {
+    image.texels = allocate_texels(image.bytes());
+  } catch (const std::bad_alloc &) {
+    throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, which are not free");
+  }
   std::memcpy(image.texels.get(), source.texels, image.bytes());
   if (image.kind == TexelKind::Float)
     if (const size_t cleared = clear_not_finite(image))

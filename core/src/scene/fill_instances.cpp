@@ -1,6 +1,7 @@
 // Checks and copies placements: known meshes and materials, maps that can be inverted.
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/fill.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,6 @@ namespace {
 
 // Scales beyond these would leave the range in which squares of squares are finite in double.
 constexpr double kLargestScale = 1.2676506002282294e30; // 2^100
-
-constexpr uint32_t kRays = 2 * LANCER_RAY_VOLUME - 1;
 
 // Why a placement cannot be traced; empty if it can.
 std::string fault_of(const Affine &map) {
@@ -43,10 +42,8 @@ void check_instance(const Description &description, const std::string &object, c
                  " meshes");
   if (given.shading > LANCER_SHADING_PHONG)
     bad_argument(object + ": shading " + std::to_string(given.shading) + " is not one of 0 ... 3");
-  if (given.hidden_from & ~kRays)
-    bad_argument(object + ": hidden_from " + std::to_string(given.hidden_from) + " has bits beyond the last kind of ray");
-  if (given.flags & ~uint32_t(LANCER_INSTANCE_HOLDOUT))
-    bad_argument(object + ": flags " + std::to_string(given.flags) + " has bits beyond the last flag");
+  check_rays(object, given.hidden_from);
+  check_flags(object + ": ", given.flags, LANCER_INSTANCE_HOLDOUT);
   if (uint64_t(given.first_slot) + given.slot_count > slot_count)
     bad_argument(object + ": slots " + std::to_string(given.first_slot) + " + " + std::to_string(given.slot_count) + " > " +
                  std::to_string(slot_count) + " slots");

@@ -1,17 +1,15 @@
 // Checks and copies lights; a value that no light can have is replaced and said.
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/fill.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/gtc/constants.hpp>
 
 namespace lancer {
 
 namespace {
-
-constexpr float kBrightest = 1e30f;
 
 class LightReader {
 public:
@@ -20,9 +18,7 @@ public:
   float read(const char *what, float value, float low, float high) {
     const float used = std::isnan(value) ? low : std::clamp(value, low, high);
     if (!(value == used)) {
-      char text[128];
-      std::snprintf(text, sizeof text, "%s %g was replaced by %g", what, double(value), double(used));
-      messages_.add(object_, text);
+      messages_.add(object_, std::string(what) + " " + to_text(value) + " was replaced by " + to_text(used));
     }
     return used;
   }
@@ -47,6 +43,7 @@ void add_light(Description &description, const lancer_light &source) {
     bad_argument(object + ": shape " + std::to_string(source.shape) + " is not one of 0, 1");
   if (source.falloff > LANCER_FALLOFF_GAUSSIAN)
     bad_argument(object + ": falloff " + std::to_string(source.falloff) + " is not one of 0 ... 5");
+  check_rays(object, source.hidden_from);
 
   LightDescription light;
   light.name = source.name ? source.name : "";

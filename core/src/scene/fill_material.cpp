@@ -2,22 +2,15 @@
 #include "bsdf/lobe.h"
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/fill.h"
+#include "scene/material_room.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace lancer {
 
 namespace {
-
-constexpr float kBrightest = 1e30f;
-
-std::string number(float value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", double(value));
-  return text;
-}
 
 class MaterialReader {
 public:
@@ -35,7 +28,7 @@ public:
       const float value = given.value[i];
       const float used = std::isnan(value) ? fallback : std::clamp(value, low, high);
       if (!(value == used))
-        messages_.add(object_, std::string(what) + " " + number(value) + " was replaced by " + number(used));
+        messages_.add(object_, std::string(what) + " " + to_text(value) + " was replaced by " + to_text(used));
       parameter.value[i] = used;
     }
     return parameter;
@@ -62,7 +55,7 @@ public:
     const float value = given.value[0];
     lancer_parameter checked = given;
     if (given.node < 0 && !(value > 0.0f)) {
-      messages_.add(object_, std::string(what) + " " + number(value) + " was replaced by 1.45");
+      messages_.add(object_, std::string(what) + " " + to_text(value) + " was replaced by 1.45");
       checked.value[0] = 1.45f;
     }
     return read_scalar(what, checked, 0.0f, INFINITY, 1.45f);
@@ -229,13 +222,17 @@ void add_material(Description &description, const lancer_material &source) {
     bad_argument(object + ": lobes is NULL for " + std::to_string(source.lobe_count) + " lobes");
   for (uint32_t i = 0; i < source.lobe_count; ++i)
     check_lobe(object, source.lobes[i], i);
+  check_flags(object + ": ", source.flags,
+              LANCER_MATERIAL_NO_BUMP_CORRECTION | LANCER_MATERIAL_NOT_A_LIGHT | LANCER_MATERIAL_OPAQUE_SHADOWS |
+                  LANCER_MATERIAL_KEEP_NORMALS);
 
   Material material;
   material.name = source.name ? source.name : "";
   material.index = source.material_index;
   material.flags = source.flags;
   material.program = read_program(description, object, source.nodes, source.node_count);
-  const MaterialReader reader(object, material.program, description.messages);
+  Messages messages; // kept only if nothing refuses the material
+  const MaterialReader reader(object, material.program, messages);
   for (uint32_t i = 0; i < source.lobe_count; ++i)
     material.lobes.push_back(read_lobe(reader, source.lobes[i]));
   material.emission = reader.read_color("emission", source.emission);
@@ -246,6 +243,8 @@ void add_material(Description &description, const lancer_material &source) {
   material.normal = reader.read_vector("normal", source.normal);
   make_schedules(material);
   fix_inputs(material);
+  tell_room(object, material, messages);
+  description.messages.add(messages);
   description.materials.push_back(std::move(material));
 }
 

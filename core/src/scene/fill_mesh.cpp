@@ -1,9 +1,9 @@
 // Checks and copies meshes: every index in range, every kept face of finite and non-zero area.
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/mesh_faces.h"
 
 #include <cmath>
-#include <numeric>
 
 namespace lancer {
 
@@ -19,31 +19,19 @@ void check_indices(const std::string &object, const lancer_mesh &mesh) {
   }
 }
 
-// A vertex beyond 2^60 squares out of float's range; no scene is measured so.
-bool usable(const glm::vec3 &v) {
-  constexpr float limit = 1152921504606846976.0f;
-  return finite(v) && std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
-}
-
 // The faces that can be hit: finite corners, and an area that is not zero in double.
-std::vector<uint32_t> kept_faces(const std::string &object, const lancer_mesh &mesh, Messages &messages) {
+std::vector<uint32_t> kept_faces(const std::string &object, const Mesh &mesh, Messages &messages) {
   std::vector<uint32_t> kept;
-  kept.reserve(mesh.triangle_count);
-  const auto *positions = reinterpret_cast<const glm::vec3 *>(mesh.positions);
+  kept.reserve(mesh.triangles.size());
   size_t not_finite = 0, flat = 0;
-  for (uint32_t face = 0; face < mesh.triangle_count; ++face) {
-    const uint32_t *corner = mesh.triangles + size_t(face) * 3;
-    const glm::vec3 &a = positions[corner[0]], &b = positions[corner[1]], &c = positions[corner[2]];
-    if (!usable(a) || !usable(b) || !usable(c)) {
+  for (uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+    const glm::vec3 a = mesh.vertex(face, 0), b = mesh.vertex(face, 1), c = mesh.vertex(face, 2);
+    if (!is_usable(a) || !is_usable(b) || !is_usable(c))
       ++not_finite;
-      continue;
-    }
-    const glm::dvec3 area = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-    if (area == glm::dvec3(0.0)) {
+    else if (!has_area(a, b, c))
       ++flat;
-      continue;
-    }
-    kept.push_back(face);
+    else
+      kept.push_back(face);
   }
   if (not_finite)
     messages.add(object, std::to_string(not_finite) + " faces with vertices that are not finite were left out");
@@ -52,29 +40,23 @@ std::vector<uint32_t> kept_faces(const std::string &object, const lancer_mesh &m
   return kept;
 }
 
-// Copies an array of three entries per face, kept faces only.
-template <class Out> void copy_corners(const float *source, const std::vector<uint32_t> &kept, std::vector<Out> &target) {
-  if (!source)
-    return;
-  const auto *in = reinterpret_cast<const Out *>(source);
-  target.resize(kept.size() * 3);
-  for (size_t i = 0; i < kept.size(); ++i)
-    for (size_t corner = 0; corner < 3; ++corner)
-      target[3 * i + corner] = in[3 * size_t(kept[i]) + corner];
+// Copies an array of so many vectors; NULL stands for none.
+template <class Vector> void copy(const float *source, size_t count, std::vector<Vector> &target) {
+  const auto *in = reinterpret_cast<const Vector *>(source);
+  if (in)
+    target.assign(in, in + count);
 }
 
-void copy_normals(const std::string &object, const lancer_mesh &source, const std::vector<uint32_t> &kept, Mesh &mesh,
-                  Messages &messages) {
+void copy_normals(const lancer_mesh &source, Mesh &mesh) {
   if (!source.normals || source.normal_domain == LANCER_NORMALS_NONE)
     return;
   mesh.normal_domain = static_cast<NormalDomain>(source.normal_domain);
-  if (mesh.normal_domain == NormalDomain::Corner) {
-    copy_corners(source.normals, kept, mesh.normals);
-  } else {
-    const auto *normals = reinterpret_cast<const glm::vec3 *>(source.normals);
-    mesh.normals.assign(normals, normals + source.vertex_count);
-  }
-  // A zero normal makes the surface take its geometric one; so does one that is not finite.
+  const bool corners = mesh.normal_domain == NormalDomain::Corner;
+  copy(source.normals, corners ? size_t(source.triangle_count) * 3 : source.vertex_count, mesh.normals);
+}
+
+// A zero normal makes the surface take its geometric one; so does one that is not finite.
+void check_normals(const std::string &object, Mesh &mesh, Messages &messages) {
   size_t replaced = 0;
   for (glm::vec3 &n : mesh.normals) {
     if (!finite(n)) {
@@ -127,21 +109,15 @@ void check_attributes(const std::string &object, const lancer_mesh &mesh) {
   }
 }
 
-// Copies an attribute, of kept faces only where it stands for faces.
-MeshAttribute copy_attribute(Description &description, const lancer_attribute &source, uint32_t vertex_count,
-                             const std::vector<uint32_t> &kept) {
+MeshAttribute copy_attribute(Description &description, const lancer_attribute &source, const lancer_mesh &mesh) {
   MeshAttribute attribute;
   attribute.name = attribute_name(description, source.name);
   attribute.domain = static_cast<Domain>(source.domain);
   attribute.channels = source.channels;
-  if (attribute.domain == Domain::Vertex) {
-    attribute.values.assign(source.values, source.values + size_t(vertex_count) * source.channels);
-    return attribute;
-  }
-  const size_t size = size_t(source.channels) * (attribute.domain == Domain::Corner ? 3 : 1);
-  attribute.values.reserve(kept.size() * size);
-  for (const uint32_t face : kept)
-    attribute.values.insert(attribute.values.end(), source.values + face * size, source.values + (face + 1) * size);
+  const size_t count = attribute.domain == Domain::Vertex ? mesh.vertex_count
+                       : attribute.domain == Domain::Face ? mesh.triangle_count
+                                                          : size_t(mesh.triangle_count) * 3;
+  attribute.values.assign(source.values, source.values + count * source.channels);
   return attribute;
 }
 
@@ -149,7 +125,7 @@ MeshAttribute copy_attribute(Description &description, const lancer_attribute &s
 void find_bounds(Mesh &mesh) {
   glm::vec3 low(INFINITY), high(-INFINITY);
   for (const glm::vec3 &p : mesh.positions) {
-    if (!usable(p))
+    if (!is_usable(p))
       continue;
     low = glm::min(low, p);
     high = glm::max(high, p);
@@ -174,36 +150,32 @@ void add_mesh(Description &description, const lancer_mesh &source) {
   check_indices(object, source);
   check_attributes(object, source);
 
-  // Keep the faces that can be hit, with their attributes.
-  const std::vector<uint32_t> kept = kept_faces(object, source, description.messages);
+  // Copy all of it, then leave the faces that can be hit.
   Mesh mesh;
   mesh.name = source.name ? source.name : "";
-  const auto *positions = reinterpret_cast<const glm::vec3 *>(source.positions);
-  mesh.positions.assign(positions, positions + source.vertex_count);
-  mesh.triangles.resize(kept.size());
-  for (size_t i = 0; i < kept.size(); ++i) {
-    const uint32_t *corner = source.triangles + size_t(kept[i]) * 3;
-    mesh.triangles[i] = {corner[0], corner[1], corner[2]};
-  }
-  if (kept.size() != source.triangle_count)
-    mesh.face_of = kept;
-  copy_normals(object, source, kept, mesh, description.messages);
-  copy_corners(source.uvs, kept, mesh.uvs);
-  copy_corners(source.colors, kept, mesh.colors);
+  copy(source.positions, source.vertex_count, mesh.positions);
+  const auto *triangles = reinterpret_cast<const glm::uvec3 *>(source.triangles);
+  mesh.triangles.assign(triangles, triangles + source.triangle_count);
+  copy_normals(source, mesh);
+  copy(source.uvs, size_t(source.triangle_count) * 3, mesh.uvs);
+  copy(source.colors, size_t(source.triangle_count) * 3, mesh.colors);
+  if (source.material_slots)
+    mesh.material_slots.assign(source.material_slots, source.material_slots + source.triangle_count);
+  for (uint32_t i = 0; i < source.attribute_count; ++i)
+    mesh.attributes.push_back(copy_attribute(description, source.attributes[i], source));
+  const std::vector<uint32_t> kept = kept_faces(object, mesh, description.messages);
+  if (kept.size() != mesh.triangles.size())
+    keep_faces(mesh, kept);
   find_bounds(mesh);
+
+  // Replace what is no number.
+  check_normals(object, mesh, description.messages);
   size_t replaced = zero_where_not_finite(mesh.uvs) + zero_where_not_finite(mesh.colors);
-  for (uint32_t i = 0; i < source.attribute_count; ++i) {
-    mesh.attributes.push_back(copy_attribute(description, source.attributes[i], source.vertex_count, kept));
-    replaced += zero_where_not_finite(mesh.attributes.back().values);
-  }
+  for (MeshAttribute &attribute : mesh.attributes)
+    replaced += zero_where_not_finite(attribute.values);
   if (replaced)
     description.messages.add(object,
                              std::to_string(replaced) + " texture coordinates or colours that are not finite were set to 0");
-  if (source.material_slots) {
-    mesh.material_slots.resize(kept.size());
-    for (size_t i = 0; i < kept.size(); ++i)
-      mesh.material_slots[i] = source.material_slots[kept[i]];
-  }
   description.geometry.meshes.push_back(std::move(mesh));
 }
 

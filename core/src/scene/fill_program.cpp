@@ -1,10 +1,11 @@
 // Checks and copies nodes: all that the machine relies on when it runs them.
+#include "scene/attribute.h"
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/fill.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace lancer {
 
@@ -66,10 +67,23 @@ Shape shape_of(const lancer_node &node) {
   }
 }
 
-std::string number(float value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", double(value));
-  return text;
+// The flags that a kind knows.
+uint32_t flags_of(uint32_t kind) {
+  switch (kind) {
+  case LANCER_NODE_COORDINATE:
+  case LANCER_NODE_MATH:
+  case LANCER_NODE_NORMAL_MAP:
+    return 1;
+  case LANCER_NODE_MIX:
+    return 1 | 2;
+  case LANCER_NODE_BUMP:
+    return 1 | 2 | 4;
+  case LANCER_NODE_IMAGE:
+  case LANCER_NODE_ENVIRONMENT:
+    return 0xff | 256;
+  default:
+    return 0;
+  }
 }
 
 class ProgramReader {
@@ -83,6 +97,7 @@ public:
     const Shape shape = shape_of(given);
     if (shape.options && given.option >= shape.options)
       bad_argument(where_ + "option " + std::to_string(given.option) + " >= " + std::to_string(shape.options) + " options");
+    check_flags(where_, given.flags, flags_of(given.kind));
     Node node;
     node.kind = given.kind;
     node.option = given.option;
@@ -113,7 +128,7 @@ private:
       return result;
     for (int k = 0; k < 3; ++k) {
       if (!std::isfinite(given.value[k]))
-        bad_argument(where_ + input + "is " + number(given.value[k]));
+        bad_argument(where_ + input + "is " + to_text(given.value[k]));
       result.value[k] = given.value[k];
     }
     return result;
@@ -122,7 +137,7 @@ private:
   void read_matrix(const lancer_node &given, Node &node) const {
     for (int i = 0; i < 12; ++i) {
       if (!std::isfinite(given.matrix[i]))
-        bad_argument(where_ + "matrix holds " + number(given.matrix[i]));
+        bad_argument(where_ + "matrix holds " + to_text(given.matrix[i]));
       node.matrix[i] = given.matrix[i];
     }
   }
@@ -136,6 +151,8 @@ private:
       bad_argument(where_ + "extension " + std::to_string(given.flags & 0xf) + " is not one of 0 ... 3");
     if ((given.flags >> 4 & 0xf) > LANCER_INTERPOLATE_CUBIC)
       bad_argument(where_ + "interpolation " + std::to_string(given.flags >> 4 & 0xf) + " is not one of 0, 1, 2");
+    if (given.kind == LANCER_NODE_ENVIRONMENT && given.option == LANCER_ENVIRONMENT_CUBE && given.image_count != 6)
+      bad_argument(where_ + std::to_string(given.image_count) + " images for the 6 sides of a cube");
     node.image = given.image;
     node.image_count = given.image_count;
   }
@@ -145,9 +162,8 @@ private:
     const std::string name = given.name ? given.name : "";
     const bool generated = (node.kind == LANCER_NODE_COORDINATE && node.option == LANCER_COORDINATE_GENERATED) ||
                            (node.kind == LANCER_NODE_TANGENT && node.option < 3);
-    // The position before displacement is kept under a name that no user can give: it ends with a blank.
     const bool undisplaced = node.kind == LANCER_NODE_BUMP && (node.flags & 2);
-    node.name = attribute_name(description_, generated ? "generated" : undisplaced ? kUndisplaced : name);
+    node.name = undisplaced ? kUndisplaced : attribute_name(description_, generated ? "generated" : name);
     if (node.kind == LANCER_NODE_NORMAL_MAP || node.kind == LANCER_NODE_TANGENT)
       node.tangent = attribute_name(description_, "tangent:" + name);
   }
@@ -169,10 +185,9 @@ Schedule height_schedule(const Program &program, uint32_t bump) {
   for (size_t i = bump; i-- > owner.first;) {
     if (!needed[i])
       continue;
-    // A bump within it only hands on its normal.
     const Node &node = program.nodes[i];
     for (int k = 0; k < 5; ++k)
-      if (node.kind != LANCER_NODE_BUMP || k == 3)
+      if (is_read_in_height(node, k))
         mark(node.inputs[k]);
   }
   Schedule schedule;

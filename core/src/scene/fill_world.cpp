@@ -1,6 +1,7 @@
 // Checks and copies the world.
 #include "scene/description.h"
 #include "scene/error.h"
+#include "scene/fill.h"
 
 #include <cmath>
 
@@ -10,13 +11,14 @@ void set_world(Description &description, const lancer_world &source) {
   constexpr uint32_t widest = 1u << 16;
   if (source.map_resolution > widest)
     bad_argument("world: map resolution " + std::to_string(source.map_resolution) + " is above " + std::to_string(widest));
+  check_rays("world", source.hidden_from);
   World world;
   world.program = read_program(description, "world", source.nodes, source.node_count);
   check_reference("world", "radiance", source.radiance, world.program);
   for (int i = 0; i < 3; ++i) {
     const float value = source.radiance.value[i];
     if (source.radiance.node < 0 && (!std::isfinite(value) || value < 0.0f))
-      bad_argument("world: radiance " + std::to_string(value) + " must be finite and not negative");
+      bad_argument("world: radiance " + to_text(value) + " must be finite and not negative");
     world.radiance.value[i] = value;
   }
   world.radiance.node = source.radiance.node;

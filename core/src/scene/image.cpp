@@ -201,7 +201,7 @@ glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpol
   const Taps across = taps(uv.x, image.width, extension, interpolation);
   const Taps up = taps(uv.y, image.height, extension, interpolation);
   glm::vec4 texel = gather_any(image, across, up);
-  // A picture without a fourth number is solid even where it is clipped.
+  // A picture of one number is solid even where it is clipped; one of three is clear there, as in Blender.
   if (image.channels == 1)
     texel.w = 1.0f;
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;

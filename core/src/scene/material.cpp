@@ -6,8 +6,6 @@ namespace lancer {
 
 namespace {
 
-constexpr float kBrightest = 1e30f;
-
 // Comparisons are turned so that NaN gives low.
 float within(float value, float low, float high) { return value > low ? (value < high ? value : high) : low; }
 

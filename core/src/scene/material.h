@@ -10,6 +10,9 @@
 
 namespace lancer {
 
+// No colour, level or length of a material or a light is taken as larger.
+inline constexpr float kBrightest = 1e30f;
+
 struct PrincipledDescription {
   PrincipledInputs constants; // rules, distribution, option, and what is not in parameters
   Parameter base_color, metallic, roughness, ior, diffuse_roughness, specular, specular_tint, anisotropic, anisotropic_rotation,
@@ -50,6 +53,9 @@ struct Material {
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
   bool transmits() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }
 };
+
+// Of a scalar.
+inline bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
 
 // A described lobe with its values of one place, brought into the ranges that the models know; what is no number becomes 0.
 LobeInputs evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values);

@@ -34,7 +34,7 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
     for (const uint16_t number : heights[node.heights]) {
       const Node &inner = nodes[number];
       for (int k = 0; k < 5; ++k)
-        if ((inner.kind != LANCER_NODE_BUMP || k == 3) && inner.inputs[k].node < int32_t(node.first))
+        if (is_read_in_height(inner, k) && inner.inputs[k].node < int32_t(node.first))
           mark(inner.inputs[k], needed);
     }
   }

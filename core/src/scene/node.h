@@ -24,12 +24,15 @@ struct Parameter {
 struct Node {
   uint32_t kind = 0, option = 0, flags = 0;
   uint32_t image = 0, image_count = 0, first = 0;
-  uint32_t name = 0;    // number of the name among Description::attribute_names; 0 is ""
+  uint32_t name = 0;    // number of the name among Description::attribute_names; 0 is "", kUndisplaced is none of them
   uint32_t tangent = 0; // likewise, of the tangents that belong to the UV map of that name
   uint32_t heights = 0; // BUMP: number of its schedule among Program::heights
   Parameter inputs[5];
   float matrix[12] = {};
 };
+
+// Within the height of a bump another bump only hands on its normal.
+inline bool is_read_in_height(const Node &node, int input) { return node.kind != LANCER_NODE_BUMP || input == 3; }
 
 // Numbers of nodes in the order in which to compute them.
 using Schedule = std::vector<uint16_t>;
@@ -51,7 +54,7 @@ struct NodeContext {
   const Surface *surface = nullptr; // null: a direction of the world
   glm::vec3 wo{0, 0, 1};            // unit, towards the viewer; for the world minus the direction
   float footprint = 0.0f;           // radius of what a pixel covers here, in normalised units: the step of BUMP; 0: no bumps
-  bool is_camera_ray = false;
+  const glm::dvec3 *eye = nullptr;  // for the world: where the camera ray starts; null: any other ray
 };
 
 // Computes the scheduled nodes into values, which has room for all nodes of the program.

@@ -61,10 +61,24 @@ Site height_site(const Site &site, const Steps &steps, const glm::dvec3 &offset)
   return place;
 }
 
+// The normal input; on a flat face that was displaced its normal before that.
+glm::vec3 flat_normal_before(const Inputs &in, const Site &site) {
+  const glm::vec3 normal = in.normal(3, site);
+  const MeshAttribute *before = site.mesh() ? find_attribute(*site.mesh(), kUndisplaced) : nullptr;
+  if (!before || normal != site.ng)
+    return normal;
+  const auto corner = [&](double u, double v) {
+    return glm::vec3(attribute_at(*site.mesh(), *before, site.surface()->primitive, {u, v}));
+  };
+  const glm::vec3 v0 = corner(0.0, 0.0);
+  const glm::vec3 flat = site.normal_to_world(glm::cross(corner(1.0, 0.0) - v0, corner(0.0, 1.0) - v0));
+  return glm::dot(flat, site.ng) < 0.0f ? -flat : flat;
+}
+
 } // namespace
 
 glm::vec3 bump(const Program &program, const Inputs &in, const Site &site, std::span<glm::vec4> values) {
-  const glm::vec3 normal = in.normal(3, site);
+  const glm::vec3 normal = in.node.flags & 4 ? flat_normal_before(in, site) : in.normal(3, site);
   const float filter = in.scalar(4);
   // The height of a bump does not see other bumps: each would look at its own three times as often.
   if (site.in_height || !site.surface() || !(site.context->footprint > 0.0f) || !(filter > 0.0f))

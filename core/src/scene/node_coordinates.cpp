@@ -5,6 +5,8 @@
 #include "scene/node_site.h"
 #include "scene/scene.h"
 
+#include <cmath>
+
 namespace lancer {
 
 namespace {
@@ -75,13 +77,26 @@ glm::vec3 camera(const Site &site) {
   return glm::vec3(glm::dvec3(camera->to_camera(site.p)) / scale);
 }
 
+// The point that stands for a site in the picture.
+glm::dvec3 seen_at(const Site &site, const Camera &camera) {
+  if (site.surface())
+    return site.p;
+  if (camera.kind != CameraKind::Orthographic)
+    return camera.to_world.translation + site.p;
+  // All parallel rays look the same way: one of the camera's is where it starts; any other's direction is taken for a point of
+  // the user's world, as Cycles has it.
+  if (site.context->eye)
+    return *site.context->eye;
+  return site.context->normalisation ? site.context->normalisation->to_normalised(site.p) : site.p;
+}
+
 glm::vec3 window(const Site &site) {
   const Camera *camera = site.context->camera;
   if (!camera)
     return glm::vec3(position(site));
-  glm::vec3 place = camera->to_window(site.surface() ? site.p : camera->to_world.translation + site.p);
-  place.z = 0.0f;
-  return place;
+  const glm::vec3 place = camera->to_window(seen_at(site, *camera));
+  // Nothing right beside a perspective camera has a place in its picture.
+  return std::isfinite(place.x) && std::isfinite(place.y) ? place : glm::vec3(0.0f);
 }
 
 } // namespace

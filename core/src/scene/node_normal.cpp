@@ -17,8 +17,8 @@ struct Tangent {
   float sign = 1.0f;
 };
 
+// Outwards, of any length: maps stand in the interpolated frame as it is.
 glm::vec3 object_normal(const Site &site) {
-  // Of any length, and outwards: maps stand in the interpolated frame as it is.
   if (const Mesh *mesh = site.mesh()) {
     const glm::vec3 n = interpolated_normal(*mesh, site.instance()->shading, site.surface()->primitive, site.bary);
     if (n != glm::vec3(0.0f))
@@ -82,7 +82,8 @@ glm::vec3 normal_map(const Inputs &in, const Site &site) {
   float strength = in.scalar(0);
   glm::vec3 color = 2.0f * (in[1] - 0.5f), n;
   if (in.node.option == 0) {
-    const glm::vec3 normal = object_normal(site);
+    const glm::vec3 interpolated = object_normal(site);
+    const glm::vec3 normal = in.node.flags & 1 ? unit_or_zero(interpolated) : interpolated;
     const std::optional<Tangent> frame = tangent_at(in.node, site, normal);
     if (!frame)
       return site.ns;

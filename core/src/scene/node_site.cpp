@@ -4,11 +4,6 @@ namespace lancer {
 
 namespace {
 
-glm::vec3 unit(const glm::dvec3 &v) {
-  const double length = glm::length(v);
-  return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
-}
-
 // The weights of vertex 1 and 2 that an offset in the triangle's plane adds.
 glm::dvec2 bary_offset(const Instance &instance, const Mesh &mesh, uint32_t triangle, const glm::dvec3 &offset) {
   const glm::dvec3 v0(mesh.vertex(triangle, 0));
@@ -56,11 +51,11 @@ const Mesh *Site::mesh() const {
 }
 
 glm::vec3 Site::normal_to_object(const glm::vec3 &n) const {
-  return instance() ? unit(glm::transpose(instance()->to_world.linear) * glm::dvec3(n)) : n;
+  return instance() ? carried_normal(instance()->to_world, glm::dvec3(n)) : n;
 }
 
 glm::vec3 Site::normal_to_world(const glm::vec3 &n) const {
-  return instance() ? unit(glm::transpose(instance()->to_object.linear) * glm::dvec3(n)) : n;
+  return instance() ? carried_normal(instance()->to_object, glm::dvec3(n)) : n;
 }
 
 } // namespace lancer

@@ -45,12 +45,6 @@ struct Inputs {
 inline glm::vec4 solid(const glm::vec3 &v) { return {v, 1.0f}; }
 inline glm::vec4 scalar(float value) { return {value, value, value, 1.0f}; }
 
-// A vector without length stays 0.
-inline glm::vec3 unit_or_zero(const glm::vec3 &v) {
-  const float length = glm::length(v);
-  return length > 0.0f ? v / length : glm::vec3(0.0f);
-}
-
 // The families.
 glm::vec4 coordinate(const Node &node, const Site &site);
 glm::vec4 attribute(const Node &node, const Site &site);

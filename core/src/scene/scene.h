@@ -31,7 +31,6 @@ struct Scene {
   uint32_t shapes = 0;   // of lobes, as Features has them
   std::unique_ptr<Accelerator> accelerator;
   std::string messages;
-  uint32_t instances_given = 0;
   uint64_t triangles = 0; // over all instances
   double build_seconds = 0.0;
 

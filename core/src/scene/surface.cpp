@@ -9,29 +9,22 @@ namespace lancer {
 
 namespace {
 
-double largest(const glm::dvec3 &v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
-
-// The largest sum of absolute values in a row: how much a map can enlarge the largest component.
-double row_norm(const glm::dmat3 &m) {
-  double norm = 0.0;
-  for (int row = 0; row < 3; ++row)
-    norm = std::max(norm, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
-  return norm;
-}
-
 // Bound of the distance between the computed point and the surface, seen through the maps there and back again.
 // Each coordinate of M p + T is three products and three sums: at most gamma(4) of the sum of absolute values, and the ray that
 // leaves is mapped back with the same kind of error, enlarged again by M. 2^-49 is eight times the unit roundoff of double.
 double position_bound(const Instance &instance, const glm::dvec3 &p_object, const glm::dvec3 &p_world) {
-  const double m = row_norm(instance.to_world.linear), inverse = row_norm(instance.to_object.linear);
-  const double there = m * largest(p_object) + largest(instance.to_world.translation);
-  const double back = m * (inverse * largest(p_world) + largest(instance.to_object.translation));
+  const Reach &reach = instance.reach;
+  const double there = reach.there * largest_coordinate(p_object) + reach.moved;
+  const double back = reach.there * (reach.back * largest_coordinate(p_world) + reach.moved_back);
   return std::ldexp(there + back, -49);
 }
 
 glm::vec3 unit(const glm::dvec3 &v) {
-  // Scale by the largest component first: squares of very small or large normals leave the range of double.
-  const double scale = largest(v);
+  const double length2 = glm::dot(v, v);
+  if (length2 > 1e-200 && length2 < 1e200)
+    return glm::vec3(v * (1.0 / std::sqrt(length2)));
+  // Squares of very small or large normals leave the range of double: scale by the largest component first.
+  const double scale = largest_coordinate(v);
   return glm::vec3(glm::normalize(v / scale));
 }
 
@@ -47,18 +40,24 @@ template <class Vector> Vector interpolate(const std::vector<Vector> &corners, u
 
 } // namespace
 
-glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary) {
-  const glm::dvec3 b(1.0 - bary.x - bary.y, bary.x, bary.y);
+bool corner_normals(const Mesh &mesh, Shading shading, uint32_t triangle, glm::vec3 (&n)[3]) {
   if (shading == Shading::Flat)
-    return glm::vec3(0.0f);
-  if (mesh.normal_domain == NormalDomain::Corner)
-    return interpolate(mesh.normals, triangle, b);
+    return false;
   const bool smooth = mesh.normal_domain == NormalDomain::None && shading != Shading::AsMesh;
   const std::vector<glm::vec3> &normals = smooth ? mesh.smooth_normals : mesh.normals;
   if (normals.empty())
+    return false;
+  const bool corners = mesh.normal_domain == NormalDomain::Corner;
+  for (int i = 0; i < 3; ++i)
+    n[i] = normals[corners ? size_t(triangle) * 3 + size_t(i) : mesh.triangles[triangle][i]];
+  return true;
+}
+
+glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary) {
+  glm::vec3 n[3];
+  if (!corner_normals(mesh, shading, triangle, n))
     return glm::vec3(0.0f);
-  const glm::uvec3 &t = mesh.triangles[triangle];
-  return float(b.x) * normals[t.x] + float(b.y) * normals[t.y] + float(b.z) * normals[t.z];
+  return float(1.0 - bary.x - bary.y) * n[0] + float(bary.x) * n[1] + float(bary.y) * n[2];
 }
 
 namespace {

@@ -27,7 +27,9 @@ struct SurfaceAttributes {
 };
 SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface);
 
-// The interpolated normal in the object's space, of any length; 0 where the surface is flat. bary: as Surface::bary.
+// The normals at a triangle's corners in the object's space, of any length; false where it is flat.
+bool corner_normals(const Mesh &mesh, Shading shading, uint32_t triangle, glm::vec3 (&n)[3]);
+// The normal between them; 0 where the surface is flat. bary: as Surface::bary.
 glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triangle, const glm::dvec2 &bary);
 
 // A ray that leaves the surface towards d (need not be unit): it starts on the side of d and cannot meet its own primitive.

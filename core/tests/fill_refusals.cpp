@@ -1,0 +1,140 @@
+// What filling refuses or says, beyond what nodes and pictures have tests of their own for.
+#include "nodes_lab.h"
+
+#include "bsdf/lobe.h"
+#include "scene/features.h"
+#include "scene/material_room.h"
+#include "tiny_scene.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace lancer_test;
+
+namespace {
+
+// The sentence of a refusal; empty where there was none.
+template <class Fill> std::string refusal(Fill &&fill) {
+  Description description;
+  try {
+    fill(description);
+  } catch (const Error &error) {
+    EXPECT_EQ(error.fault(), Fault::Argument);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FillRefusals, UnknownBits) {
+  const auto world = [](uint32_t hidden_from) {
+    return refusal([&](Description &description) {
+      lancer_world w = {};
+      w.radiance = constant(1.0f);
+      w.hidden_from = hidden_from;
+      set_world(description, w);
+    });
+  };
+  EXPECT_EQ(world(63), "");
+  EXPECT_EQ(world(64), "world: hidden_from 64 has bits beyond the last kind of ray");
+  const auto light = [](uint32_t hidden_from) {
+    return refusal([&](Description &description) {
+      lancer_light l = point_light();
+      l.hidden_from = hidden_from;
+      add_light(description, l);
+    });
+  };
+  EXPECT_EQ(light(63), "");
+  EXPECT_EQ(light(0x80000000u), "light 'lamp': hidden_from 2147483648 has bits beyond the last kind of ray");
+  const auto material = [](uint32_t flags) {
+    return refusal([&](Description &description) {
+      lancer_material m = black();
+      m.name = "Wood";
+      m.flags = flags;
+      lancer::add_material(description, m);
+    });
+  };
+  EXPECT_EQ(material(15), "");
+  EXPECT_EQ(material(16), "material 'Wood': flags 16 has bits beyond the last flag");
+}
+
+TEST(FillRefusals, TheLongestListOfFeaturesFits) {
+  const std::string all = feature_names({UINT32_MAX, UINT32_MAX}) + " lens";
+  EXPECT_NE(all.find("glass"), std::string::npos);
+  EXPECT_LT(all.size(), sizeof(lancer_statistics::features));
+}
+
+TEST(FillRefusals, ProbesWantFiniteDirections) {
+  const lancer_scene scene = make_scene();
+  const double points[3] = {0, 0, 1};
+  float radiance[3], pdf = 0.0f;
+  for (const double bad : {double(NAN), double(INFINITY)}) {
+    const double wi[3] = {0.0, bad, 0.0};
+    EXPECT_EQ(lancer_probe_world(scene, 1, wi, radiance, &pdf), LANCER_ERROR_ARGUMENT);
+    EXPECT_EQ(std::string(lancer_last_error()).rfind("probe: direction 0 holds ", 0), 0u) << lancer_last_error();
+    EXPECT_EQ(lancer_probe_light_pdf(scene, 0, 1, points, wi, &pdf), LANCER_ERROR_ARGUMENT);
+  }
+  const double up[3] = {0.0, 0.0, 1.0};
+  EXPECT_EQ(lancer_probe_world(scene, 1, up, radiance, &pdf), LANCER_OK);
+  lancer_scene_destroy(scene);
+}
+
+// A material of lobes of one kind, each with a normal of its own.
+Material many(uint32_t count, const lancer_lobe &lobe, Description &description) {
+  std::vector<lancer_lobe> lobes(count, lobe);
+  for (uint32_t i = 0; i < count; ++i)
+    lobes[i].normal = constant(1.0f, 0.0f, float(i));
+  lancer_material material = black();
+  material.name = "Wood";
+  material.lobes = lobes.data();
+  material.lobe_count = count;
+  lancer::add_material(description, material);
+  return description.materials.back();
+}
+
+TEST(MaterialRoom, MoreNormalsThanABsdfHoldsAreSaid) {
+  // The shading normal is there in any case.
+  Description few;
+  EXPECT_EQ(room_of(many(kMaxFrames - 1, lobe(LANCER_DIFFUSE, 0.5f), few)).frames, size_t(kMaxFrames));
+  EXPECT_EQ(few.messages.text(), "");
+  Description description;
+  const Room room = room_of(many(kMaxFrames, lobe(LANCER_GLOSSY, 0.5f), description));
+  EXPECT_EQ(room.frames, size_t(kMaxFrames) + 1);
+  EXPECT_EQ(room.lobes, size_t(kMaxFrames));
+  const std::string most = std::to_string(kMaxFrames), more = std::to_string(kMaxFrames + 1);
+  EXPECT_EQ(description.messages.text(), "material 'Wood': " + more +
+                                             " normals may meet in one place, lobes of those beyond the first " + most +
+                                             " get the shading normal\n");
+}
+
+lancer_principled all_layers(uint32_t rules) {
+  lancer_principled p;
+  std::memset(&p, 0, sizeof p);
+  for (lancer_parameter *parameter = &p.base_color; parameter <= &p.emission; ++parameter)
+    *parameter = constant(0.5f);
+  p.rules = rules;
+  p.coat_normal = constant(0.0f);
+  p.coat_ior = p.ior = constant(1.5f);
+  return p;
+}
+
+TEST(MaterialRoom, PrincipledCountsItsLayers) {
+  for (const uint32_t rules : {LANCER_RULES_3, LANCER_RULES_45}) {
+    const lancer_principled principled = all_layers(rules);
+    lancer_lobe layered = lobe(LANCER_PRINCIPLED, 0.5f);
+    layered.rules = rules;
+    layered.principled = &principled;
+    Description description;
+    // Sheen, coat, metal, glass, plastic and matte; 3: matte, sheen, gloss, two of glass, coat.
+    EXPECT_EQ(room_of(many(1, layered, description)).lobes, 6u);
+    EXPECT_EQ(description.messages.text(), "");
+    // Frames: the shading normal; 4: the cloth's, the coat's, the stretched, the matte; 3: the coat's, the stretched, the
+    // glass's.
+    EXPECT_EQ(room_of(description.materials[0]).frames, rules == LANCER_RULES_3 ? 4u : 5u);
+    const Material twelve = many(12, layered, description);
+    EXPECT_EQ(room_of(twelve).lobes, 72u);
+    EXPECT_NE(description.messages.text().find("material 'Wood': 72 lobes may meet in one place, the first 64 are kept\n"),
+              std::string::npos);
+  }
+}
+
+} // namespace

@@ -1,0 +1,316 @@
+// How a picture splits into passes and its alpha: closed forms of small scenes.
+#include "picture_lab.h"
+
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace lancer_test {
+namespace {
+
+lancer_material pane(float transmittance) {
+  lancer_material material = black();
+  material.transmittance = constant(transmittance);
+  return material;
+}
+
+lancer_material glow(float radiance, uint32_t flags = 0) {
+  lancer_material material = black();
+  material.emission = constant(radiance);
+  material.flags = flags;
+  return material;
+}
+
+lancer_lobe newest(uint32_t kind, float color, float roughness = 0.3f) {
+  lancer_lobe result = lobe(kind, color, roughness);
+  result.rules = LANCER_RULES_45;
+  return result;
+}
+
+// Without metal, glass, sheen, coat and light.
+lancer_principled plain_principled() {
+  lancer_principled p = {};
+  p.rules = LANCER_RULES_45;
+  for (lancer_parameter *input :
+       {&p.metallic, &p.diffuse_roughness, &p.specular, &p.anisotropic, &p.anisotropic_rotation, &p.transmission,
+        &p.transmission_roughness, &p.coat, &p.coat_roughness, &p.coat_normal, &p.sheen, &p.emission})
+    *input = constant(0.0f);
+  p.base_color = p.sheen_tint = p.coat_tint = p.specular_tint = constant(0.8f);
+  p.roughness = p.sheen_roughness = constant(0.5f);
+  p.ior = p.coat_ior = constant(1.5f);
+  return p;
+}
+
+// Nothing in the picture but the light of these passes and the environment's and emission's.
+void expect_light(const Studio &studio, float emission, float environment, const glm::vec3 &direct, const glm::vec3 &indirect,
+                  float tolerance = 1e-6f) {
+  EXPECT_NEAR(studio.color(LANCER_PASS_EMISSION).x, emission, tolerance);
+  EXPECT_NEAR(studio.color(LANCER_PASS_ENVIRONMENT).x, environment, tolerance);
+  float sum = emission + environment;
+  for (int component = 0; component < 3; ++component) {
+    const uint32_t first = LANCER_PASS_DIFFUSE_DIRECT + 3 * uint32_t(component);
+    const float color = studio.color(first + 2).x;
+    EXPECT_NEAR(color * studio.color(first).x, direct[component], tolerance) << component;
+    EXPECT_NEAR(color * studio.color(first + 1).x, indirect[component], tolerance) << component;
+    sum += direct[component] + indirect[component];
+  }
+  EXPECT_NEAR(studio.color().x, sum, tolerance);
+}
+
+// Within a ball that glows and scatters half.
+std::unique_ptr<Studio> furnace(float clamp, bool sampled) {
+  auto studio = std::make_unique<Studio>();
+  studio->settings.max_bounces = 2;
+  studio->settings.clamp_indirect = clamp;
+  studio->settings.samples = sampled ? 1u << 14 : 1;
+  studio->place(LANCER_SPHERE,
+                studio->add({lobe(LANCER_LAMBERT, 0.5f)}, glow(1.0f, sampled ? 0 : LANCER_MATERIAL_NOT_A_LIGHT)));
+  studio->look({0, 0, 0.5}, {0, 0, 0});
+  studio->render();
+  return studio;
+}
+
+TEST(Passes, OfAFurnace) {
+  // Own light, once scattered, twice and three times.
+  expect_light(*furnace(0.0f, false), 1.0f, 0.0f, {0.5f, 0, 0}, {0.25f + 0.125f, 0, 0});
+  // Clamping takes indirect light only, and takes it from its pass.
+  expect_light(*furnace(0.1f, false), 1.0f, 0.0f, {0.5f, 0, 0}, {0.1f, 0, 0});
+  // Sampled as a light it is the same, but for noise: a sample's spread is below its mean, 4 / 128 of 0.5.
+  expect_light(*furnace(0.0f, true), 1.0f, 0.0f, {0.5f, 0, 0}, {0.375f, 0, 0}, 0.02f);
+}
+
+TEST(Passes, OfWhatAMirrorShows) {
+  // What a wall of half under a sun sends by a mirror of 0.8 is the mirror's light, not the wall's kind.
+  Studio studio;
+  studio.settings.max_bounces = 1;
+  studio.place(LANCER_PLANE, studio.add({newest(LANCER_MIRROR, 0.8f)}), turned(45.0, 0, 1, 0));
+  studio.place(LANCER_PLANE, studio.add({lobe(LANCER_LAMBERT, 0.5f)}), moved(3, 0, 0) * turned(-90.0, 0, 1, 0));
+  studio.add(studio.sun({-1, 0, 3}, std::numbers::pi_v<float>));
+  studio.look({0, 0, 1}, {0, 0, 0});
+  studio.render();
+  expect_light(studio, 0.0f, 0.0f, {0, 0, 0}, {0, 0.8f * 0.5f / std::sqrt(10.0f), 0});
+}
+
+TEST(Passes, OfTheSky) {
+  Studio seen;
+  seen.sky(0.5f, 0.5f, 0.5f);
+  seen.render();
+  expect_light(seen, 0.0f, 0.5f, {0, 0, 0}, {0, 0, 0});
+  // Through a pane it is still itself; scattered it is direct light of the component that scatters.
+  Studio through;
+  through.sky(0.5f, 0.5f, 0.5f);
+  through.place(LANCER_PLANE, through.add({}, pane(0.25f)));
+  through.render();
+  expect_light(through, 0.0f, 0.125f, {0, 0, 0}, {0, 0, 0});
+  const std::pair<lancer_lobe, glm::vec3> senders[] = {{lobe(LANCER_LAMBERT, 0.8f), {0.4f, 0, 0}},
+                                                       {newest(LANCER_MIRROR, 0.8f), {0, 0.4f, 0}},
+                                                       {newest(LANCER_REFRACTION, 0.8f, 0.0f), {0, 0, 0.4f}}};
+  for (const auto &[sender, direct] : senders) {
+    Studio studio;
+    studio.sky(0.5f, 0.5f, 0.5f);
+    studio.place(LANCER_PLANE, studio.add({sender}));
+    studio.render();
+    expect_light(studio, 0.0f, 0.0f, direct, {0, 0, 0});
+  }
+}
+
+// A pane of a half at height 2 over a white floor, seen from 10, with mist from 6 that is full 8 further.
+std::unique_ptr<Studio> pane_over_floor(float mist_depth = 8.0f) {
+  auto studio = std::make_unique<Studio>();
+  studio->settings.mist_start = 6.0f;
+  studio->settings.mist_depth = mist_depth;
+  studio->settings.mist_falloff = 1.0f;
+  studio->place(LANCER_PLANE, studio->add({}, pane(0.5f)), moved(0, 0, 2));
+  studio->place(LANCER_PLANE, studio->add({lobe(LANCER_LAMBERT, 0.8f)}));
+  studio->look({0, 0, 10}, {0, 0, 0});
+  studio->render();
+  return studio;
+}
+
+TEST(Passes, CountWhatAPaneLeaves) {
+  const auto studio = pane_over_floor();
+  EXPECT_FLOAT_EQ(studio->color(LANCER_PASS_DIFFUSE_COLOR).x, 0.4f);
+  // 2/8 and 4/8 of mist, half each.
+  EXPECT_NEAR(studio->number(LANCER_PASS_MIST), 0.375f, 1e-6f);
+  EXPECT_EQ(pane_over_floor(0.0f)->number(LANCER_PASS_MIST), 0.0f);
+  // Occlusion: nothing is above the pane; the floor looks through it, seen through it.
+  EXPECT_NEAR(studio->color(LANCER_PASS_AMBIENT_OCCLUSION).x, 0.5f + 0.5f * 0.5f, 1e-6f);
+}
+
+TEST(Passes, OcclusionIsOfWhatTheCameraSees) {
+  // A lid at height 10 is met from within a million, or from anywhere where the distance is 0.
+  for (const float distance : {5.0f, 1e6f, 0.0f}) {
+    Studio studio;
+    studio.settings.max_bounces = 2;
+    studio.settings.occlusion_distance = distance;
+    // The mirror's own occlusion, and nothing of the lid's, which it shows.
+    studio.place(LANCER_PLANE, studio.add({newest(LANCER_MIRROR, 1.0f)}));
+    studio.place(LANCER_PLANE, studio.add({lobe(LANCER_LAMBERT, 1.0f)}), moved(0, 0, 10));
+    studio.look({0, 0, 1}, {0, 0, 0});
+    studio.render();
+    EXPECT_EQ(studio.color(LANCER_PASS_AMBIENT_OCCLUSION).x, distance == 5.0f ? 1.0f : 0.0f);
+  }
+}
+
+TEST(Passes, NormalsAreWeightedByColor) {
+  Studio studio;
+  lancer_lobe red = newest(LANCER_LAMBERT, 0.3f), blue = newest(LANCER_LAMBERT, 0.6f);
+  red.normal = constant(0.6f, 0.0f, 0.8f);
+  blue.normal = constant(0.0f, 0.0f, 1.0f);
+  studio.place(LANCER_PLANE, studio.add({red, blue}));
+  studio.render();
+  expect_near(studio.color(LANCER_PASS_NORMAL), glm::normalize(glm::vec3(0.6f, 0.0f, 0.8f + 2.0f)));
+}
+
+TEST(Holdout, OfAnObject) {
+  for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC}) {
+    const auto studio = [&](bool hole, float veil, float clear, bool mirrored) {
+      auto result = std::make_unique<Studio>();
+      result->settings.integrator = integrator;
+      result->settings.max_bounces = 1;
+      result->sky(0.5f, 0.5f, 0.5f);
+      // The thing glows and is white; below it lies another that glows.
+      lancer_material thing = glow(1.0f);
+      thing.transmittance = constant(clear);
+      lancer_instance &instance =
+          result->place(LANCER_PLANE, result->add({lobe(LANCER_LAMBERT, 1.0f)}, thing), moved(0, 0, mirrored ? 2 : 0));
+      instance.flags = hole ? LANCER_INSTANCE_HOLDOUT : 0;
+      if (mirrored)
+        result->place(LANCER_PLANE, result->add({newest(LANCER_MIRROR, 1.0f)}));
+      else
+        result->place(LANCER_PLANE, result->add({}, glow(8.0f)), moved(0, 0, -1));
+      if (veil < 1.0f)
+        result->place(LANCER_PLANE, result->add({}, pane(veil)), moved(0, 0, 0.5));
+      result->render();
+      return result;
+    };
+    const auto solid = studio(true, 1.0f, 0.0f, false), veiled = studio(true, 0.25f, 0.0f, false);
+    EXPECT_EQ(solid->alpha(), 0.0f);
+    EXPECT_EQ(solid->color().x, 0.0f);
+    EXPECT_EQ(veiled->alpha(), 0.75f);
+    EXPECT_EQ(veiled->color().x, 0.0f);
+    // What it lets pass is seen, and solid.
+    const auto clear = studio(true, 1.0f, 0.25f, false);
+    EXPECT_EQ(clear->alpha(), 0.25f);
+    EXPECT_EQ(clear->color().x, 2.0f);
+    EXPECT_EQ(studio(false, 1.0f, 0.0f, false)->alpha(), 1.0f);
+    // A mirror shows it as any other thing.
+    const auto mirrored = studio(true, 1.0f, 0.0f, true);
+    EXPECT_EQ(mirrored->alpha(), 1.0f);
+    EXPECT_GE(mirrored->color().x, 1.0f);
+  }
+}
+
+TEST(Holdout, OfAMaterial) {
+  for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC})
+    for (const float veil : {1.0f, 0.5f})
+      for (const float share : {0.25f, 1.0f}) {
+        Studio studio;
+        studio.settings.integrator = integrator;
+        lancer_material thing = glow(1.0f - share);
+        thing.holdout = constant(share);
+        studio.place(LANCER_PLANE, studio.add({}, thing));
+        if (veil < 1.0f)
+          studio.place(LANCER_PLANE, studio.add({}, pane(veil)), moved(0, 0, 0.5));
+        studio.render();
+        EXPECT_FLOAT_EQ(studio.alpha(), 1.0f - veil * share);
+        EXPECT_FLOAT_EQ(studio.color().x, veil * (1.0f - share));
+      }
+}
+
+TEST(Film, TransparentWhereTheSkyIsSeen) {
+  const auto studio = [](uint32_t integrator, std::vector<lancer_lobe> lobes, float transmittance, bool glass,
+                         float roughness) {
+    auto result = std::make_unique<Studio>();
+    result->settings.integrator = integrator;
+    result->settings.max_bounces = 1;
+    result->settings.film_transparent = 1;
+    result->settings.transparent_glass = glass;
+    result->settings.glass_roughness = roughness;
+    result->sky(0.5f, 0.5f, 0.5f);
+    result->place(LANCER_PLANE, result->add(std::move(lobes), pane(transmittance)));
+    result->render();
+    return std::pair(result->alpha(), result->color().x);
+  };
+  for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC}) {
+    EXPECT_EQ(studio(integrator, {}, 0.75f, false, 0.0f), std::pair(0.25f, 0.0f));
+    // In a mirror the sky is light as any other.
+    EXPECT_EQ(studio(integrator, {newest(LANCER_MIRROR, 1.0f)}, 0.0f, true, 1.0f), std::pair(1.0f, 0.5f));
+  }
+  // Glass up to a roughness counts as clear, where it is asked for.
+  const auto glass = [&](float roughness, bool asked, float limit) {
+    return studio(LANCER_PATH, {newest(LANCER_REFRACTION, 1.0f, roughness)}, 0.0f, asked, limit);
+  };
+  EXPECT_EQ(glass(0.0f, false, 1.0f), std::pair(1.0f, 0.5f));
+  EXPECT_EQ(glass(0.0f, true, 0.0f), std::pair(0.0f, 0.0f));
+  // alpha is the square of the lobe's roughness.
+  EXPECT_EQ(glass(0.5f, true, 0.24f).first, 1.0f);
+  EXPECT_LT(glass(0.5f, true, 0.26f).first, 0.1f);
+}
+
+TEST(Film, SolidBlackBesideAPanorama) {
+  for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC, LANCER_NORMALS})
+    for (const uint32_t transparent : {0u, 1u}) {
+      Studio studio;
+      studio.settings.integrator = integrator;
+      studio.settings.film_transparent = transparent;
+      studio.sky(1, 1, 1);
+      studio.look({0, 0, 1}, {0, 0, 0}, 2);
+      studio.camera.kind = LANCER_FISHEYE_EQUIDISTANT;
+      studio.camera.panorama[0] = 0.1;
+      // Four pixels outside of the circle.
+      const double window[4] = {-1, 2, -1, 2};
+      std::copy(window, window + 4, studio.camera.window);
+      studio.render();
+      EXPECT_EQ(studio.color(), glm::vec3(0.0f));
+      EXPECT_EQ(studio.alpha(), 1.0f);
+    }
+}
+
+TEST(Passes, ALampUnderACoatIsSampledAsItShines) {
+  // The emission of a layered material lights a floor the same whether it is sampled or found by chance.
+  const auto level = [](uint32_t flags) {
+    Studio studio;
+    lancer_principled principled = plain_principled();
+    principled.emission = constant(4.0f);
+    principled.coat = constant(1.0f);
+    principled.coat_tint = constant(0.25f);
+    lancer_lobe layered = newest(LANCER_PRINCIPLED, 1.0f);
+    layered.principled = &principled;
+    studio.settings.samples = 1u << 14;
+    studio.place(LANCER_PLANE, studio.add({lobe(LANCER_LAMBERT, 1.0f)}));
+    studio.place(LANCER_SPHERE, studio.add({layered}, glow(0.0f, flags)), moved(0, 0, 1.5));
+    studio.look({2, 0, 1}, {0, 0, 0});
+    studio.render();
+    return studio.color().x;
+  };
+  // Chance finds the ball with a half of the samples: their spread is that of the mean, 4 / 128 of it.
+  EXPECT_NEAR(level(0) / level(LANCER_MATERIAL_NOT_A_LIGHT), 1.0, 4.0 / 128.0);
+}
+
+TEST(Kernels, HaveTheLayersThatAPrincipledHas) {
+  // A special kernel leaves out what cannot occur; the picture is that of the general one.
+  const auto picture = [](float diffuse_roughness, float sheen, uint32_t features) {
+    Studio studio;
+    lancer_principled principled = plain_principled();
+    principled.diffuse_roughness = constant(diffuse_roughness);
+    principled.sheen = constant(sheen);
+    lancer_lobe layered = newest(LANCER_PRINCIPLED, 1.0f);
+    layered.principled = &principled;
+    studio.settings.features = features;
+    studio.settings.samples = 64;
+    studio.settings.max_bounces = 2;
+    studio.sky(0.5f, 0.7f, 0.9f);
+    studio.place(LANCER_SPHERE, studio.add({layered}));
+    studio.add(studio.sun({1, 1, 2}));
+    studio.look({0, 0, 3}, {0, 0, 0}, 8, 2.0);
+    studio.render();
+    return studio.read(LANCER_PASS_COMBINED, 4);
+  };
+  for (const float diffuse_roughness : {0.0f, 0.5f})
+    for (const float sheen : {0.0f, 0.5f})
+      EXPECT_EQ(picture(diffuse_roughness, sheen, LANCER_FEATURES_SCENE),
+                picture(diffuse_roughness, sheen, LANCER_FEATURES_ALL));
+}
+
+} // namespace
+} // namespace lancer_test

@@ -1,0 +1,51 @@
+// One mesh may be placed flat and smooth at once: what is shaded flat has no curved surface to start shadow rays from.
+#include "integrator/terminator.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace lancer {
+namespace {
+
+// A triangle without normals of its own, and the ones that a smooth placement made for it.
+Geometry one_triangle(NormalDomain domain) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const float r = std::sqrt(0.5f);
+  const std::vector<glm::vec3> bent = {{-r, 0, r}, {r, 0, r}, {0, r, r}};
+  mesh.normal_domain = domain;
+  (domain == NormalDomain::None ? mesh.smooth_normals : mesh.normals) = bent;
+  Geometry geometry;
+  geometry.meshes = {mesh};
+  for (const Shading shading : {Shading::AsMesh, Shading::Flat, Shading::Gouraud, Shading::Phong}) {
+    Instance instance;
+    instance.place(Affine{});
+    instance.shading = shading;
+    instance.terminator = 0.5f;
+    geometry.instances.push_back(instance);
+  }
+  return geometry;
+}
+
+TEST(SurfaceNormals, OnlyWhatIsShadedSmoothIsLifted) {
+  for (const NormalDomain domain : {NormalDomain::None, NormalDomain::Vertex, NormalDomain::Corner}) {
+    const Geometry geometry = one_triangle(domain);
+    for (uint32_t i = 0; i < 4; ++i) {
+      const Shading shading = geometry.instances[i].shading;
+      SCOPED_TRACE(int(shading));
+      Surface surface;
+      surface.instance = i;
+      surface.primitive = 0;
+      surface.bary = {0.25, 0.25};
+      // At grazing light, where the lift is whole.
+      const glm::vec3 up(0, 0, 1), wi = glm::normalize(glm::vec3(1.0f, 0.0f, 0.01f));
+      const bool smooth = interpolated_normal(geometry.meshes[0], shading, 0, surface.bary) != glm::vec3(0.0f);
+      EXPECT_EQ(smooth, shading != Shading::Flat && (domain != NormalDomain::None || shading != Shading::AsMesh));
+      EXPECT_EQ(terminator_offset(geometry, surface, up, up, wi) != glm::dvec3(0.0), smooth);
+    }
+  }
+}
+
+} // namespace
+} // namespace lancer
