@@ -9,6 +9,7 @@ import bpy
 from . import passes
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled, Session
+from .export import main_thread
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
 from .waves import Waves
@@ -33,22 +34,37 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     # Blender runs __init__ twice and __del__ at odd times, so the class has neither; what lives longer than a call starts here.
     _snapshot = None
     _messages = None
+    _exported = None
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
 
     def update(self, data=None, depsgraph=None):
-        # One engine serves all view layers of a render, one after the other: its messages add up.
-        if self._messages is None:
-            self._messages = Messages()
-            last_messages.pop(depsgraph.scene.name, None)
-            last_statistics.pop(depsgraph.scene.name, None)
+        self._begin(depsgraph)
         self._guarded(self._export, depsgraph)
 
     def render(self, depsgraph):
         if self._snapshot is not None:
             self._guarded(self._render, depsgraph)
         self._snapshot = None
+        if self.test_break():
+            # The layers that were to follow do not come any more.
+            self._exported = None
+
+    def _begin(self, depsgraph):
+        """Starts the account anew with each picture.
+
+        One engine serves all view layers of a picture, one after the other, whose messages add up; with Persistent Data it
+        serves one picture after the other too, which tell themselves by another frame, or by a layer that is there again.
+        """
+        scene, layer = depsgraph.scene, depsgraph.view_layer.name
+        picture = (scene.name, scene.frame_current_final)
+        if self._exported is None or self._exported[0] != picture or layer in self._exported[1]:
+            self._exported = picture, set()
+            self._messages = Messages()
+            last_messages.pop(scene.name, None)
+            last_statistics.pop(scene.name, None)
+        self._exported[1].add(layer)
 
     def _guarded(self, work, depsgraph):
         """Whatever goes wrong becomes an error that Blender shows, and that ends a headless render with failure."""
@@ -56,7 +72,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             work(depsgraph)
             return
         except Cancelled:
-            self._snapshot = None
+            self._snapshot = self._exported = None
             return
         except LancerError as error:
             text = str(error)
@@ -88,7 +104,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         with Session.upload(self._snapshot, poll=self.test_break) as session:
             # The library holds its own copy from here on.
             self._snapshot = None
-            self._tell(scene, session.messages())
+            self._tell(scene, Messages(session.messages()))
             camera = session.camera
             result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=view_layer.name)
             if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
@@ -153,14 +169,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         remaining = elapsed * (samples - done) / done if done > 0.0 else 0.0
         self.update_stats("", f"Sample {int(done)}/{samples} | {rate:.2f} M rays/s | Remaining {_clock(remaining)}")
 
-    def _tell(self, scene, lines):
+    def _tell(self, scene, messages):
         """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
-        known = set(self._messages)
-        for line in lines:
-            self._messages.add(line)
+        room = max(0, _MAX_REPORTS - len(self._messages))
+        new = self._messages.merge(messages).lines()
         last_messages[scene.name] = self._messages.lines()
-        new = [line for line in lines if line not in known]
-        room = max(0, _MAX_REPORTS - len(known))
         for line in new[:room]:
             self.report({"WARNING"}, f"Lancer: {line}")
         if len(new) > room:
@@ -171,7 +184,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if statistics.invalid_samples:
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
             count = statistics.invalid_samples
-            self._tell(scene, [f"{count} samples were not finite and are left out, the first at pixel {place}"])
+            text = f"{count} samples were not finite and are left out, the first at pixel {place}"
+            self._tell(scene, Messages([text]))
         numbers = dataclasses.asdict(statistics)
         pixels = session.camera.region_width * session.camera.region_height
         numbers["pixel_samples"] = numbers["samples"]
@@ -193,9 +207,11 @@ def _clock(seconds):
 
 def register():
     bpy.utils.register_class(LancerRenderEngine)
+    main_thread.register()
 
 
 def unregister():
+    main_thread.unregister()
     bpy.utils.unregister_class(LancerRenderEngine)
     last_statistics.clear()
     last_messages.clear()

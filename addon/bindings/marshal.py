@@ -236,6 +236,7 @@ def settings(s):
         mist_start=s.mist_start,
         mist_depth=s.mist_depth,
         mist_falloff=s.mist_falloff,
+        blended_features=int(s.blended_features),
         features=int(s.features),
         passes=sum(1 << p for p in set(s.passes)),
         threads=s.threads,

@@ -259,6 +259,7 @@ class Settings(Record):
     mist_start: float = 5.0
     mist_depth: float = 25.0
     mist_falloff: float = 2.0
+    blended_features: bool = False  # what denoisers are told, as Blender 5.2 tells it
     features: int = Features.SCENE
     passes: tuple = (Pass.COMBINED,)
     threads: int = 0

@@ -226,6 +226,7 @@ class Settings(Structure):
         ("mist_start", c_float),
         ("mist_depth", c_float),
         ("mist_falloff", c_float),
+        ("blended_features", c_uint32),
         ("features", c_uint32),
         ("passes", c_uint32),
         ("threads", c_uint32),
@@ -256,7 +257,7 @@ class Statistics(Structure):
         ("geometry_bytes", c_uint64),
         ("accelerator_bytes", c_uint64),
         ("film_bytes", c_uint64),
-        ("features", c_char * 256),
+        ("features", c_char * 512),
         ("kernel", c_char * 64),
         ("instruction_set", c_char * 32),
     ]

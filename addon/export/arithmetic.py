@@ -4,6 +4,7 @@ import math
 
 from ..bindings.shading import NodeRef
 
+THIRDS = (1.0 / 3.0,) * 3  # the mean of three numbers is their dot product with these
 _LARGEST = (2.0 - 2.0**-23) * 2.0**127
 
 
@@ -31,6 +32,10 @@ def single(value):
 
 def divide(a, b):
     return a / b if b != 0.0 else 0.0
+
+
+def fraction(value):
+    return value - math.floor(value)
 
 
 def clamp(value, low=0.0, high=1.0):

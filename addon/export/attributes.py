@@ -4,8 +4,10 @@ import numpy as np
 
 from ..bindings.enums import Domain
 from ..bindings.snapshot import MeshAttribute
+from .tangents import corner_tangents
 
 _TANGENT = "tangent:"
+_NAMED = "named:"
 _DOMAINS = {"POINT": Domain.VERTEX, "FACE": Domain.FACE, "CORNER": Domain.CORNER}
 # Blender's types of attributes: the field that holds a value, its numbers, and how many of them are used.
 _TYPES = {
@@ -20,15 +22,37 @@ _TYPES = {
 }
 
 
-def read_attributes(mesh, wanted, corners, faces, poll):
-    """Those of the wanted names that the mesh has. corners and faces: of each triangle; None where they are Blender's own."""
+def attribute_name(name):
+    """What an attribute of Blender's is called in a snapshot, where some names have a meaning of their own."""
+    is_taken = name == "generated" or name.startswith((_TANGENT, _NAMED)) or name.endswith(" ")
+    return _NAMED + name if is_taken else name
+
+
+def tangents_name(uv_map):
+    return _TANGENT + attribute_name(uv_map)
+
+
+def named_attributes(wanted):
+    """Those of the wanted that have names of Blender's, as Blender has them."""
+    return sorted(_name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(_TANGENT))
+
+
+def _name_in_blender(name):
+    return name[len(_NAMED) :] if name.startswith(_NAMED) else name
+
+
+def read_attributes(mesh, data, wanted, corners, faces, poll):
+    """Those of the wanted names that the mesh has; data is what was read of it before.
+
+    corners and faces: of each triangle; None where they are Blender's own.
+    """
     found = []
     for name in sorted(wanted):
         poll()
         if name == "generated":
             found.append(_generated(mesh))
         elif name.startswith(_TANGENT):
-            found.append(_tangents(mesh, name, corners))
+            found.append(_tangents(mesh, data, name, corners, poll))
         else:
             found.append(_named(mesh, name, corners, faces))
     return tuple(attribute for attribute in found if attribute is not None)
@@ -43,35 +67,33 @@ def _generated(mesh):
     return MeshAttribute("generated", (places.reshape(-1, 3) - middle) / (2.0 * half) + 0.5, Domain.VERTEX)
 
 
-def _tangents(mesh, name, corners):
-    """(x, y, z, sign) along u at each corner; None where Blender cannot tell, as for faces of more than four corners."""
-    uv_map = name[len(_TANGENT) :]
-    layer = mesh.uv_layers.get(uv_map) if uv_map else next((item for item in mesh.uv_layers if item.active_render), None)
+def _tangents(mesh, data, name, corners, poll):
+    """(x, y, z, sign) along u at each corner; None where the mesh has no such UV map."""
+    uv_map = _name_in_blender(name[len(_TANGENT) :])
+    layer = mesh.uv_layers.get(uv_map) if uv_map else render_uv_map(mesh)
     if layer is None:
         return None
-    try:
-        mesh.calc_tangents(uvmap=layer.name)
-    except RuntimeError:
-        return None
-    values = np.empty((len(mesh.loops), 4), np.float32)
-    tangents, signs = np.empty(3 * len(mesh.loops), np.float32), np.empty(len(mesh.loops), np.float32)
-    mesh.loops.foreach_get("tangent", tangents)
-    mesh.loops.foreach_get("bitangent_sign", signs)
-    mesh.free_tangents()
-    values[:, :3], values[:, 3] = tangents.reshape(-1, 3), signs
-    return MeshAttribute(name, _at_corners(values, corners), Domain.CORNER)
+    uvs = _at_corners(read_uv_map(layer), corners).reshape(-1, 3, 2)
+    return MeshAttribute(name, corner_tangents(data.positions, data.triangles, data.normals, uvs, poll), Domain.CORNER)
+
+
+def render_uv_map(mesh):
+    return next((layer for layer in mesh.uv_layers if layer.active_render), None)
+
+
+def read_uv_map(layer):
+    """(corners of Blender's, 2)"""
+    data, field = (layer.uv, "vector") if hasattr(layer, "uv") else (layer.data, "uv")
+    values = np.empty(2 * len(data), np.float32)
+    data.foreach_get(field, values)
+    return values.reshape(-1, 2)
 
 
 def _named(mesh, name, corners, faces):
-    layer = mesh.uv_layers.get(name)
+    layer = mesh.uv_layers.get(_name_in_blender(name))
     if layer is not None:
-        values = np.empty(2 * len(mesh.loops), np.float32)
-        if hasattr(layer, "uv"):
-            layer.uv.foreach_get("vector", values)
-        else:
-            layer.data.foreach_get("uv", values)
-        return MeshAttribute(name, _at_corners(values.reshape(-1, 2), corners), Domain.CORNER)
-    attribute = mesh.attributes.get(name)
+        return MeshAttribute(name, _at_corners(read_uv_map(layer), corners), Domain.CORNER)
+    attribute = mesh.attributes.get(_name_in_blender(name))
     if attribute is None or attribute.data_type not in _TYPES or attribute.domain not in _DOMAINS or not len(attribute.data):
         return None
     field, dtype, width = _TYPES[attribute.data_type]

@@ -1,5 +1,8 @@
 """What a scene asks for that has no counterpart: each thing becomes a message that names its owner."""
 
+from ..bindings.enums import Pass
+from .cycles_settings import check_cycles
+
 # As passes.py renders them, by the names of a view layer's switches.
 _COMPONENTS = ("diffuse", "glossy", "transmission")
 _PASSES_HERE = {f"{component}_{part}" for component in _COMPONENTS for part in ("direct", "indirect", "color")} | {
@@ -8,6 +11,13 @@ _PASSES_HERE = {f"{component}_{part}" for component in _COMPONENTS for part in (
 }  # fmt: skip
 # No picture of its own, and one that Blender draws itself.
 _NO_PASSES = {"cryptomatte_accurate", "grease_pencil"}
+# What stays black with an integrator, whatever the scene is.
+_LIT = {Pass[f"{component}_{part}".upper()] for component in _COMPONENTS for part in ("direct", "indirect")}
+EMPTY_PASSES = {
+    "PATH": frozenset(),
+    "CLASSIC": frozenset({Pass.AMBIENT_OCCLUSION, *_LIT}),
+    "NORMALS": frozenset({Pass.EMISSION, Pass.ENVIRONMENT, Pass.AMBIENT_OCCLUSION, *_LIT}),
+}
 
 
 def check_scene(scene, messages):
@@ -16,10 +26,16 @@ def check_scene(scene, messages):
         messages.add(f"{who}: motion blur is not supported, the frame is rendered sharp")
     if scene.render.use_multiview:
         messages.add(f"{who}: stereoscopy is not supported, every view shows the scene's camera")
-    # Cycles is an add-on and may be off; 1 is its neutral exposure.
-    exposure = getattr(getattr(scene, "cycles", None), "film_exposure", 1.0)
-    if exposure != 1.0:
-        messages.add(f"{who}: Cycles' film exposure ({exposure:g}) is not supported, use the exposure of colour management")
+    check_cycles(scene, messages)
+
+
+def check_passes(scene, passes, messages):
+    """passes: of enums.Pass, those that are asked for."""
+    empty = sorted(EMPTY_PASSES[scene.lancer.integrator].intersection(passes))
+    if empty:
+        title = scene.lancer.bl_rna.properties["integrator"].enum_items[scene.lancer.integrator].name
+        names = ", ".join(item.name.replace("_", " ").capitalize() for item in empty)
+        messages.add(f"scene '{scene.name}': these passes stay empty with {title}, Path Tracing fills them: {names}")
 
 
 def check_view_layer(scene, view_layer, messages):
@@ -45,14 +61,32 @@ def _missing_passes(view_layer):
     return names + [f"light group '{group.name}'" for group in view_layer.lightgroups]
 
 
-def check_object(thing, messages):
+def check_object(thing, scene, messages):
     who = f"object '{thing.name}'"
-    _check_linking(thing, who, messages)
+    check_linking(thing, who, messages)
     if getattr(thing, "is_shadow_catcher", False):
         messages.add(f"{who}: shadow catchers are not supported, it is rendered as any other object")
-    name = "shadow_terminator_shading_offset"
-    if getattr(thing, name, getattr(getattr(thing, "cycles", None), name, 0.0)) > 0.0:
+    # Before 4.5 it is a property of the Cycles add-on, which may be off.
+    cycles = getattr(thing, "cycles", None)
+    if getattr(thing, "shadow_terminator_shading_offset", getattr(cycles, "shadow_terminator_offset", 0.0)) > 0.0:
         messages.add(f"{who}: the shading offset of the shadow terminator is not supported")
+    if getattr(cycles, "is_caustics_receiver", False):
+        messages.add(f"{who}: shadow caustics are not supported, it receives those that paths find by themselves")
+    _check_subdivision(thing, scene, who, messages)
+
+
+def _check_subdivision(thing, scene, who, messages):
+    """Cycles divides by the camera's distance where the last modifier says so; Blender itself by the modifier's levels."""
+    last = thing.modifiers[-1] if thing.modifiers else None
+    if last is None or last.type != "SUBSURF" or not last.show_render:
+        return
+    adaptive = getattr(last, "use_adaptive_subdivision", None)
+    if adaptive is None:
+        # Before 5.0 it is an experiment of the Cycles add-on, which may be off.
+        experiments = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
+        adaptive = experiments and thing.cycles.use_adaptive_subdivision
+    if adaptive:
+        messages.add(f"{who}: adaptive subdivision is not supported, '{last.name}' divides by its {last.render_levels} levels")
 
 
 def check_hair(thing, messages):
@@ -65,11 +99,7 @@ def check_hair(thing, messages):
             messages.add(f"object '{thing.name}': hair of particle system '{system.name}' is not supported, it is left out")
 
 
-def check_light_object(thing, who, messages):
-    _check_linking(thing, who, messages)
-
-
-def _check_linking(thing, who, messages):
+def check_linking(thing, who, messages):
     linking = getattr(thing, "light_linking", None)
     if getattr(linking, "receiver_collection", None) is not None:
         messages.add(f"{who}: light linking ('{linking.receiver_collection.name}') is not supported, it lights everything")

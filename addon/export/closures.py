@@ -9,12 +9,11 @@ from .arithmetic import is_constant, triple
 from .coordinates import default_tangent
 from .graph import NodeGraph
 from .principled import read_principled
-from .sockets import DIFFUSE_OPTION, RULES, output_node
+from .sockets import DIFFUSE_OPTION, RULES, SMALLEST_IOR, output_node
 from .walk import Site
 
 _MAX_LOBES = 64  # of the core
 _NONE = (0.0, 0.0, 0.0)  # a normal or tangent: the surface's own
-_SMALLEST_IOR = 1e-5  # as Cycles takes smaller ones
 # Twice the colour is twice the light for these, so that a constant weight is a part of the colour.
 _LINEAR = {LobeKind.LAMBERT, LobeKind.DIFFUSE, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN}
 _DISTRIBUTIONS = {
@@ -194,7 +193,7 @@ def _glass(surface, site, weight):
         weight,
         surface.color(site, default=(1.0, 1.0, 1.0)),
         roughness=_roughness(surface, site, 0.0),
-        ior=surface.graph.parameter(site, ("IOR",), 1.5, low=_SMALLEST_IOR),
+        ior=surface.graph.parameter(site, ("IOR",), 1.5, low=SMALLEST_IOR),
         normal=surface.normal(site),
         distribution=_DISTRIBUTIONS[site.node.distribution],
     )

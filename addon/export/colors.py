@@ -1,5 +1,9 @@
 """Colour nodes: each reader takes (graph, site, output) and gives a value, None where it cannot."""
 
+import math
+
+from mathutils import Color
+
 from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from . import fold_colors
@@ -8,6 +12,14 @@ from .maths import smooth_step
 
 _NEUTRAL_HUE = 0.5  # of Hue Saturation Value: the socket that turns nothing
 _CONVERSIONS = {"HSV": (fold_colors.to_hsv, fold_colors.from_hsv), "HSL": (fold_colors.to_hsl, fold_colors.from_hsl)}
+_COLDEST, _HOTTEST = 800.0, 12000.0  # kelvin; beyond them the colour stays
+# Rec. 709 colours of glowing bodies as polynomials, constants first, over the logarithm of the temperature, -1 at the coldest
+# and 1 at the hottest. They were fitted to what Blender shows, and are off by 8e-4 of the larger of 1 and the channel.
+_GLOW = (
+    (1.72398, 0.85585, 0.29827), (-1.90935, 0.45323, 1.12889), (1.51980, -0.52949, 0.72547), (-0.61215, 0.23330, -0.47111),
+    (0.02951, 0.04540, -0.38149), (0.23415, -0.09815, 0.22852), (-0.19899, 0.02570, 0.10929), (-0.00728, 0.01068, -0.06209),
+    (0.04678, -0.00206, -0.00932),
+)  # fmt: skip
 
 
 def _rgb(graph, site, output):
@@ -148,6 +160,17 @@ def _ramp(graph, site, output):
     return graph.component(result, 0) if is_alpha else result
 
 
+def _blackbody(graph, site, output):
+    m, v = MathOperation, VectorOperation
+    kelvin = graph.emit(NodeKind.CLAMP, graph.input(site, site.node.inputs[0]), _COLDEST, _HOTTEST)
+    scale = 2.0 / math.log(_HOTTEST / _COLDEST)
+    place = graph.op(m.MULTIPLY_ADD, graph.op(m.LOGARITHM, kelvin, math.e), scale, -1.0 - scale * math.log(_COLDEST))
+    *others, color = (tuple(Color(coefficients).from_rec709_linear_to_scene_linear()) for coefficients in _GLOW)
+    for coefficients in reversed(others):
+        color = graph.vector_op(v.MULTIPLY_ADD, color, _spread(place), coefficients)
+    return graph.vector_op(v.MAXIMUM, color, (0.0,) * 3)
+
+
 def _curves(graph, site, output):
     node = site.node
     factor, color = graph.input(site, node.inputs[0]), graph.input(site, node.inputs[1])
@@ -162,6 +185,7 @@ def _curves(graph, site, output):
 
 
 READERS = {
+    "BLACKBODY": _blackbody,
     "BRIGHTCONTRAST": _brightness,
     "COMBHSV": _combine_color,
     "COMBINE_COLOR": _combine_color,

@@ -1,8 +1,10 @@
 """Blender's own conversions to the scene's working space, as curves and matrices that the core applies."""
 
 import contextlib
+import ctypes
 import functools
 import os
+import sys
 import tempfile
 
 import bpy
@@ -10,11 +12,13 @@ import numpy as np
 from mathutils import Color
 
 from ..bindings.enums import Transfer
+from . import main_thread
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 # OpenColorIO works in single precision, with curves that are off by 2.4e-5: a matrix or curve this near is that one. An eighth
 # of it is what one step of 8 bits is worth at most to a colour between 0 and 1.
 _NEAR = 2.0**-12
+_TEXELS_AT_ONCE = 1 << 18  # converted in one piece, between which Blender answers
 
 
 def _working_space():
@@ -56,31 +60,60 @@ def _conversion(name, working_space):
 
 
 def convert(pixels, name):
-    """(height, width, 4) in a colour space to the working space: written to a file as it is, and read as that space."""
-    height, width = pixels.shape[:2]
-    with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+    """(height, width, 4) in a colour space to the working space."""
+    rows = max(1, _TEXELS_AT_ONCE // pixels.shape[1])
+    converted = [_convert(pixels[first : first + rows], name) for first in range(0, len(pixels), rows)]
+    return np.concatenate(converted)
+
+
+def _convert(pixels, name):
+    """Writes pixels to a file as they are and reads them as those of a colour space."""
+    with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "pixels.exr")
-        written = bpy.data.images.new("Lancer", width, height, alpha=True, float_buffer=True, is_data=True)
-        stack.callback(bpy.data.images.remove, written)
-        written.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
-        written.filepath_raw, written.file_format = path, "OPEN_EXR"
-        written.save()
-        read = stack.enter_context(loaded(path, name, "CHANNEL_PACKED"))
-        return floats(read)
+        main_thread.run(lambda: _write(pixels, path))
+        with loaded(path, name, "CHANNEL_PACKED") as read:
+            return floats(read)
+
+
+def _write(pixels, path):
+    height, width = pixels.shape[:2]
+    with _own_data() as data:
+        image = data.images.new("Lancer", width, height, alpha=True, float_buffer=True, is_data=True)
+        image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
+        image.filepath_raw, image.file_format = path, "OPEN_EXR"
+        image.save()
 
 
 @contextlib.contextmanager
 def loaded(path, name, alpha_mode):
-    """A file as an image of Blender's, for as long as it is looked at."""
-    image = bpy.data.images.load(path, check_existing=False)
+    """A file as an image of Blender's, beside the user's data, for as long as it is looked at."""
+    main_thread.look()
+    image, held = main_thread.run(lambda: _load(path, name, alpha_mode))
     try:
+        yield image
+    finally:
+        main_thread.post(held.close)
+
+
+def _load(path, name, alpha_mode):
+    """The image, whose pixels are read when they are asked for, and what to close for it to go."""
+    with contextlib.ExitStack() as stack:
+        image = stack.enter_context(_own_data()).images.load(path, check_existing=False)
         # Empty for what Blender has not looked at yet, a set of tiles: it then chooses by the file.
         if name:
             image.colorspace_settings.name = name
         image.alpha_mode = alpha_mode
-        yield image
-    finally:
-        bpy.data.images.remove(image)
+        return image, stack.pop_all()
+
+
+@contextlib.contextmanager
+def _own_data():
+    """Data beside the user's, freed in the end."""
+    with bpy.data.temp_data() as data:
+        # Blender holds this object twice and counts one: the name, this call's argument and the holder would be three.
+        if sys.getrefcount(data) < 3:
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(data))
+        yield data
 
 
 def floats(image):

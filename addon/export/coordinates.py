@@ -4,11 +4,11 @@ import numpy as np
 
 from ..bindings.enums import Coordinate, MappingType, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
-from .arithmetic import divide
+from .arithmetic import THIRDS, divide
+from .attributes import attribute_name, tangents_name
 from .fold import rotation
 from .maths import transformed
 
-_THIRD = (1.0 / 3.0,) * 3
 _RADIAL = {"X": 0, "Y": 1, "Z": 2}
 _ALONG_U = 3
 
@@ -35,8 +35,8 @@ def coordinate(graph, which, name=""):
     if which == Coordinate.GENERATED:
         graph.attributes.add("generated")
     if which == Coordinate.UV and name:
-        graph.attributes.add(name)
-    return graph.emit(NodeKind.COORDINATE, option=which, name=name)
+        graph.attributes.add(attribute_name(name))
+    return graph.emit(NodeKind.COORDINATE, option=which, name=attribute_name(name))
 
 
 def _texture_coordinate(graph, site, output):
@@ -64,9 +64,11 @@ def _uv_map(graph, site, output):
 
 
 def _named(graph, name):
+    # To Cycles this name is that of Generated coordinates, whatever attribute a mesh has under it.
+    key = name if name == "generated" else attribute_name(name)
     if name:
-        graph.attributes.add(name)
-    return graph.emit(NodeKind.ATTRIBUTE, name=name)
+        graph.attributes.add(key)
+    return graph.emit(NodeKind.ATTRIBUTE, name=key)
 
 
 def _attribute(graph, site, output):
@@ -75,7 +77,7 @@ def _attribute(graph, site, output):
         return None
     value = _named(graph, node.attribute_name)
     if output.identifier == "Fac":
-        return graph.vector_op(VectorOperation.DOT_PRODUCT, value, _THIRD)
+        return graph.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS)
     return graph.emit(NodeKind.ALPHA, value) if output.identifier == "Alpha" else value
 
 
@@ -106,13 +108,13 @@ def _tangent(graph, site, output):
         graph.attributes.add("generated")
         return graph.emit(NodeKind.TANGENT, option=_RADIAL[node.axis])
     want_tangents(graph, node.uv_map)
-    return graph.emit(NodeKind.TANGENT, option=_ALONG_U, name=node.uv_map)
+    return graph.emit(NodeKind.TANGENT, option=_ALONG_U, name=attribute_name(node.uv_map))
 
 
 def want_tangents(graph, uv_map):
-    graph.attributes.add("tangent:" + uv_map)
+    graph.attributes.add(tangents_name(uv_map))
     if uv_map:
-        graph.attributes.add(uv_map)
+        graph.attributes.add(attribute_name(uv_map))
 
 
 def _mapping(graph, site, output):

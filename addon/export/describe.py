@@ -1,10 +1,14 @@
 """What a material becomes, in lines for its panel."""
 
+import math
+
 from ..bindings.enums import LobeKind
 from ..bindings.shading import NodeRef
 from .arithmetic import is_constant
+from .images import NoPictures
 from .materials import Materials
 from .messages import Messages
+from .probe import probe
 
 _NAMES = {
     LobeKind.LAMBERT: "Diffuse Kd",
@@ -23,6 +27,7 @@ _NAMES = {
     LobeKind.PRINCIPLED: "Principled",
 }
 _ROUGH = {LobeKind.DIFFUSE, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR, LobeKind.SHEEN}
+_FACETS = {LobeKind.BECKMANN, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR}
 _REFRACTIVE = {LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION}
 # Inputs of the Principled BSDF that are shown where they are not neutral, with their names.
 _PRINCIPLED = (
@@ -37,10 +42,17 @@ _PRINCIPLED = (
 
 def describe_material(material):
     messages = Messages()
-    materials = Materials(messages, images=_NoPictures())
+    # A panel is drawn often, and must not read files.
+    materials = Materials(messages, images=NoPictures())
     exported = materials.list[materials.number(material, None)]
-    lines = [line for lobe in exported.lobes for line in _lobe(lobe)]
-    for value, name in ((exported.emission, "Emission"), (exported.transmittance, "Passes"), (exported.holdout, "Hole")):
+    # The other lobes are what they are told to be.
+    layered = any(lobe.kind == LobeKind.PRINCIPLED for lobe in exported.lobes)
+    seen = probe(exported) if layered else None
+    if seen is None:
+        seen, lines = exported, [line for lobe in exported.lobes for line in _lobe(lobe)]
+    else:
+        lines = [_probed(lobe) for lobe in seen.lobes]
+    for value, name in ((seen.emission, "Emission"), (seen.transmittance, "Passes"), (exported.holdout, "Hole")):
         if not is_constant(value, 0.0):
             lines.append(f"{name}: {_told(value)}")
     if not is_constant(exported.displacement, 0.0):
@@ -48,11 +60,14 @@ def describe_material(material):
     return (lines or ["Black"]) + messages.lines()
 
 
-class _NoPictures:
-    """Stands for the pictures of a render: a panel is drawn often, and must not read files."""
-
-    def numbers(self, image, user, tell):
-        return 0, 1
+def _probed(lobe):
+    """Its share of the light, and what shapes it; roughness as shader nodes have it."""
+    text = f"{_NAMES[lobe.kind]}: {_told(lobe.albedo)}"
+    if lobe.kind in _FACETS:
+        text += f", roughness {_told(math.sqrt(lobe.alpha))}"
+    if lobe.kind in _FACETS and lobe.ior != 1.0:
+        text += f", IOR {_told(lobe.ior)}"
+    return text
 
 
 def _lobe(lobe):

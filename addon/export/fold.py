@@ -6,7 +6,7 @@ Scalars are floats, colours and vectors are tuples of three. Every function take
 import math
 
 from ..bindings.enums import MappingType, MathOperation, NodeKind, VectorOperation
-from .arithmetic import clamp, divide, each, mix, scalar, triple
+from .arithmetic import clamp, divide, each, fraction, mix, scalar, triple
 from .fold_colors import fold_mix
 
 _SMALLEST_DIFFERENCE = 2.0**-23  # of two single precision numbers about 1, which COMPARE always forgives
@@ -31,17 +31,13 @@ def _smooth_minimum(a, b, distance):
     return min(a, b) - h**3 * distance / 6.0
 
 
-def _fraction(a):
-    return a - math.floor(a)
-
-
 def _wrap(value, high, low):
     span = high - low
     return value - span * math.floor((value - low) / span) if span != 0.0 else low
 
 
 def _pingpong(a, b):
-    return abs(_fraction((a - b) / (b * 2.0)) * b * 2.0 - b) if b != 0.0 else 0.0
+    return abs(fraction((a - b) / (b * 2.0)) * b * 2.0 - b) if b != 0.0 else 0.0
 
 
 def _modulo(a, b):
@@ -76,7 +72,7 @@ _MATH = {
     MathOperation.FLOOR: lambda a, b, c: math.floor(a) + 0.0,
     MathOperation.CEIL: lambda a, b, c: math.ceil(a) + 0.0,
     MathOperation.TRUNC: lambda a, b, c: math.trunc(a) + 0.0,
-    MathOperation.FRACT: lambda a, b, c: _fraction(a),
+    MathOperation.FRACT: lambda a, b, c: fraction(a),
     MathOperation.MODULO: lambda a, b, c: _modulo(a, b),
     MathOperation.FLOORED_MODULO: lambda a, b, c: a - math.floor(a / b) * b if b != 0.0 else 0.0,
     MathOperation.WRAP: _wrap,
@@ -149,7 +145,7 @@ _VECTOR = {
     VectorOperation.MAXIMUM: lambda a, b, c, s: each(max, a, b),
     VectorOperation.FLOOR: lambda a, b, c, s: each(lambda x: math.floor(x) + 0.0, a),
     VectorOperation.CEIL: lambda a, b, c, s: each(lambda x: math.ceil(x) + 0.0, a),
-    VectorOperation.FRACTION: lambda a, b, c, s: each(_fraction, a),
+    VectorOperation.FRACTION: lambda a, b, c, s: each(fraction, a),
     VectorOperation.MODULO: lambda a, b, c, s: each(_modulo, a, b),
     VectorOperation.SNAP: lambda a, b, c, s: each(lambda x, y: math.floor(divide(x, y)) * y, a, b),
     VectorOperation.SINE: lambda a, b, c, s: each(math.sin, a),

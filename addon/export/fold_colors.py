@@ -3,11 +3,7 @@
 import math
 
 from ..bindings.enums import MixMode
-from .arithmetic import clamp, divide, each, mix, scalar, triple
-
-
-def _fraction(a):
-    return a - math.floor(a)
+from .arithmetic import clamp, divide, each, fraction, mix, scalar, triple
 
 
 def to_hsv(color):
@@ -23,7 +19,7 @@ def to_hsv(color):
         hue = 2.0 + (b - r) / span
     else:
         hue = 4.0 + (r - g) / span
-    return _fraction(hue / 6.0), saturation, high
+    return fraction(hue / 6.0), saturation, high
 
 
 def from_hsv(hsv):

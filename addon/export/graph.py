@@ -17,7 +17,7 @@ from ..bindings import snapshot
 from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from . import colors, coordinates, maths, normals, textures
-from .arithmetic import is_constant, single, triple
+from .arithmetic import THIRDS, is_constant, single, triple
 from .colorspace import luminance_weights
 from .fold import FOLD, gives_number
 from .sockets import find
@@ -27,12 +27,11 @@ _READERS = {**maths.READERS, **colors.READERS, **coordinates.READERS, **normals.
 _OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}
-_GREY = (0.5, 0.5, 0.5)
+_UNKNOWN = {"mid-grey": (0.5, 0.5, 0.5), "white": (1.0, 1.0, 1.0)}
 _DEEPEST = 150  # nodes read one within the other; each takes a handful of Python's thousand calls
 _STRIDE = 100  # nodes one behind the other, after which the value of one is computed ahead
 _MOST_NODES = 4096  # of the core
 _CONVERTS_ENDS_ONLY = bpy.app.version >= (5, 0)
-_THIRD = (1.0 / 3.0,) * 3
 
 
 class _Scope:
@@ -44,11 +43,13 @@ class _Scope:
 
 
 class NodeGraph:
-    def __init__(self, owner, messages, images=None, depsgraph=None):
+    def __init__(self, owner, messages, images=None, depsgraph=None, unknown="mid-grey"):
+        """unknown: what a colour that cannot be told is taken for; mid-grey for what reflects, white for what shines."""
         self.owner = owner
         self.messages = messages
         self.images = images
         self.depsgraph = depsgraph
+        self.unknown = unknown
         self.attributes = set()  # names of mesh attributes that the nodes read
         self.normal = (0.0, 0.0, 0.0)  # what takes the place of the shading normal where it is bumped as a whole
         self.walker = Walker()
@@ -78,8 +79,8 @@ class NodeGraph:
         key = (kind, option, flags, name, image, image_count, first, node.inputs, node.matrix)
         if key not in numbers:
             if len(self._nodes) >= _MOST_NODES:
-                self.messages.add(f"{self.owner}: has more than {_MOST_NODES} nodes, mid-grey is used for the rest")
-                return _GREY
+                self.messages.add(f"{self.owner}: has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest")
+                return _UNKNOWN[self.unknown]
             numbers[key] = len(self._nodes)
             self._nodes.append(node)
         return NodeRef(numbers[key])
@@ -218,11 +219,11 @@ class NodeGraph:
         return value
 
     def color_of(self, origin):
-        """The value of an origin as a colour; mid-grey where it has none."""
+        """The value of an origin as a colour; the unknown one where it has none."""
         value = self._output(origin.site, origin.output)
         if value is None:
-            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, mid-grey is used")
-            return _GREY
+            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used")
+            return _UNKNOWN[self.unknown]
         return _three(value)
 
     def _output(self, site, output):
@@ -265,8 +266,8 @@ class NodeGraph:
         """What is used for an input whose source cannot be computed."""
         source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
         if socket.type == "RGBA":
-            self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, mid-grey is used")
-            return _GREY
+            self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used")
+            return _UNKNOWN[self.unknown]
         value = _constant(socket)
         told = f"{value:g}" if isinstance(value, float) else ", ".join(f"{x:g}" for x in value)
         self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, the constant {told} is used")
@@ -274,7 +275,7 @@ class NodeGraph:
 
     def _convert(self, value, source, target):
         if target in _SCALARS and source not in _SCALARS:
-            return self.grey(value) if source == "RGBA" else self.vector_op(VectorOperation.DOT_PRODUCT, value, _THIRD)
+            return self.grey(value) if source == "RGBA" else self.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS)
         return _three(value) if target not in _SCALARS else value
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Transfer
+from . import main_thread
 from .colorspace import IDENTITY, conversion, convert, floats, loaded
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one piece, which stays in the cache
@@ -16,46 +17,62 @@ _WHITE = 65535.0
 class Images:
     """Numbers the pictures that nodes ask for."""
 
-    def __init__(self):
+    def __init__(self, obey=None):
+        """obey is called before each file; it raises Cancelled when the user has enough."""
         self.list = []
+        self._obey = obey
         self._ranges = {}
 
     def numbers(self, image, user, tell):
         """(first, count) of a Blender image, more than one for tiles; None where there is none. tell(text) takes messages."""
-        path = _frame_path(image, user)
+        path = _frame_path(image, user, tell)
         key = (image.as_pointer(), image.colorspace_settings.name, image.alpha_mode, path)
         if key not in self._ranges:
             first = len(self.list)
-            self.list += _read_all(image, path, tell)
+            with main_thread.obeying(self._obey):
+                self.list += _read_all(image, path, tell)
             self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
         if self._ranges[key] is None:
             tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used")
         return self._ranges[key]
 
 
-def _frame_path(image, user):
+class NoPictures:
+    """Stands for Images where only whether there is a picture matters."""
+
+    def numbers(self, image, user, tell):
+        return 0, 1
+
+
+def _frame_path(image, user, tell):
     """The file of the current frame of a sequence; "" for what has one picture only."""
     if image.source != "SEQUENCE":
         return ""
-    return bpy.path.abspath(image.filepath_from_user(image_user=user), library=image.library)
+    if user is None:
+        # Which file belongs to a frame is kept by the nodes that show it; without one Blender would name that of frame 0.
+        tell(f"image '{image.name}' is a sequence, of which only the file that it was made from is used")
+        path = image.filepath
+    else:
+        path = image.filepath_from_user(image_user=user)
+    return bpy.path.abspath(path, library=image.library)
 
 
 def _read_all(image, path, tell):
     if image.source == "TILED":
         return [picture for tile in image.tiles for picture in _read_tile(image, tile.number, tell)]
     if path:
-        return _read_file(image, path)
+        return _read_file(image, path, tell)
     if image.source == "MOVIE":
         tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used")
     if _divided(image) and image.source == "FILE" and image.packed_file is None and not image.is_dirty:
-        pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library))
+        pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library), tell)
         if pictures:
             return pictures
     # What Blender had not loaded before, it need not keep.
     had_data = image.has_data
-    pictures = _read(image, image)
+    pictures = _read(image, image, tell)
     if not had_data and not image.is_dirty:
-        image.buffers_free()
+        main_thread.run(image.buffers_free)
     return pictures
 
 
@@ -64,12 +81,12 @@ def _divided(image):
     return image.alpha_mode == "PREMUL" and not image.is_float
 
 
-def _read_file(image, path, tile=0):
+def _read_file(image, path, tell, tile=0):
     if not os.path.isfile(path):
         return []
     try:
         with loaded(path, image.colorspace_settings.name, "STRAIGHT" if _divided(image) else image.alpha_mode) as source:
-            return _read(image, source, tile)
+            return _read(image, source, tell, tile)
     except RuntimeError:
         return []
 
@@ -80,15 +97,15 @@ def _read_tile(image, number, tell):
     column, row = (number - 1001) % 10, (number - 1001) // 10
     path = image.filepath.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
     path = bpy.path.abspath(path, library=image.library)
-    pictures = _read_packed(image, number) or _read_file(image, path, number)
+    pictures = _read_packed(image, number, tell) or _read_file(image, path, tell, number)
     if not pictures and len(image.tiles) == 1:
-        pictures = _read(image, image, number)
+        pictures = _read(image, image, tell, number)
     if not pictures:
         tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out")
     return pictures
 
 
-def _read_packed(image, number):
+def _read_packed(image, number, tell):
     """A tile that lies in the .blend: its bytes are a file."""
     packed = next((item for item in image.packed_files if getattr(item, "tile_number", 0) == number), None)
     if packed is None or packed.packed_file is None:
@@ -97,15 +114,19 @@ def _read_packed(image, number):
     try:
         with open(path, "wb") as file:
             file.write(packed.packed_file.data)
-        return _read_file(image, path, number)
+        return _read_file(image, path, tell, number)
     finally:
         if os.path.exists(path):
             os.remove(path)
 
 
-def _read(image, source, tile=0):
+def _read(image, source, tell, tile=0):
     """The picture of source under the settings of image, in a list; empty where it has no pixels."""
     if min(source.size) < 1 or source.channels < 1:
+        # Only now Blender has looked at the file. It gives scripts no pixels of its layers.
+        if source.type == "MULTILAYER":
+            tell(f"image '{image.name}' is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used")
+            return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
         return []
     values = floats(source)
     is_data = image.colorspace_settings.is_data

@@ -2,10 +2,13 @@
 
 from itertools import chain
 
+import bpy
 import numpy as np
 
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
 from ..bindings.snapshot import InstanceTable
+from .arithmetic import is_constant
+from .attributes import named_attributes
 from .checks import check_hair, check_object
 from .lights import export_light
 from .mesh import export_mesh, read_positions
@@ -13,7 +16,10 @@ from .visibility import hidden_from
 
 # Types whose surface arrives as a MESH entry of its own, beside the original.
 _SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}
-_SHOWS_NOTHING = {"ARMATURE", "CAMERA", "EMPTY", "LATTICE", "LIGHT_PROBE", "SPEAKER"}
+# Strokes are drawn by Blender itself, over the picture.
+_SHOWS_NOTHING = {"ARMATURE", "CAMERA", "EMPTY", "GPENCIL", "GREASEPENCIL", "LATTICE", "LIGHT_PROBE", "SPEAKER"}
+# Before 4.5 what brings a light in did not narrow which rays see it.
+_LIGHTS_ARE_OBJECTS = bpy.app.version >= (4, 5)
 _POLL_EVERY = 256
 _MATRICES_AT_ONCE = 4096
 
@@ -27,8 +33,9 @@ class _Object:
 class Instances:
     """Collects entries; to_table() and meshes give the snapshot's parts, lights the lamps met on the way."""
 
-    def __init__(self, view_layer, materials, messages):
-        self.view_layer = view_layer
+    def __init__(self, depsgraph, materials, messages):
+        self.depsgraph = depsgraph
+        self.view_layer = depsgraph.view_layer
         self.materials = materials
         self.messages = messages
         self.meshes = []
@@ -42,8 +49,9 @@ class Instances:
         self._rows = []
         self._matrices = []
 
-    def collect(self, depsgraph, poll):
-        for number, entry in enumerate(depsgraph.object_instances):
+    def collect(self, poll):
+        shows_surfaces = self.view_layer.use_solid
+        for number, entry in enumerate(self.depsgraph.object_instances):
             if number % _POLL_EVERY == 0:
                 poll()
             thing = entry.object
@@ -51,11 +59,13 @@ class Instances:
                 self._check_hair(thing)
             if not entry.show_self:
                 continue
+            instancer = entry.parent if entry.is_instance else None
             if thing.type == "MESH":
-                sight = self._sight(thing, entry.parent if entry.is_instance else None)
-                self._add_mesh(thing, entry.matrix_world, sight, poll)
+                if shows_surfaces:
+                    self._add_mesh(thing, entry.matrix_world, self._sight(thing, instancer), poll)
             elif thing.type == "LIGHT":
-                light = export_light(thing, entry.matrix_world, self.messages)
+                hidden = self._sight(thing, instancer)[0] if _LIGHTS_ARE_OBJECTS else None
+                light = export_light(thing, entry.matrix_world, self.messages, self.depsgraph, hidden)
                 if light is not None:
                     self.lights.append(light)
             elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
@@ -151,6 +161,7 @@ class Instances:
             if item.local is None:
                 self.messages.add(f"object '{thing.name}': has no vertices to place its exact shape by, it is left out")
                 return -1
+            self._tell_exact(thing, item.slots)
         self._check_slots(thing, used)
         self._list.append(item)
         return len(self._list) - 1
@@ -182,7 +193,17 @@ class Instances:
         materials = [slot.material for slot in thing.material_slots] or list(thing.data.materials) or [None]
         return tuple(self.materials.number(material, thing.name) for material in materials)
 
+    def _tell_exact(self, thing, slots):
+        """Says what materials ask for that only a mesh has."""
+        lost = [f"attribute '{name}'" for name in named_attributes(self.materials.attributes(slots))]
+        if any(not is_constant(self.materials.list[slot].displacement, 0.0) for slot in slots):
+            lost.insert(0, "displacement")
+        if lost:
+            self.messages.add(f"object '{thing.name}': its exact shape is without what its mesh would have: {', '.join(lost)}")
+
     def _check_slots(self, thing, used):
+        if self.materials.override is not None:
+            return
         last = len(thing.material_slots) - 1
         for number in sorted({min(slot, last) for slot in used}) if last >= 0 else ():
             if thing.material_slots[number].material is None:
@@ -200,7 +221,7 @@ class Instances:
         if key in self._checked:
             return
         self._checked.add(key)
-        check_object(thing, self.messages)
+        check_object(thing, self.depsgraph.scene, self.messages)
 
 
 def _terminator(thing):

@@ -8,16 +8,17 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
-from .checks import check_light_object
+from .checks import check_linking
 from .closures import emission_of
 from .graph import NodeGraph
+from .images import NoPictures
 from .visibility import hidden_from
 
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
 
 
-def export_light(thing, matrix_world, messages):
-    """The light of an object; None, with a message, where it cannot shine."""
+def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
+    """The light of an object; None, with a message, where it cannot shine. hidden: Ray bits in place of the object's own."""
     light = thing.data
     who = f"light '{thing.name}'"
     matrix = np.array(matrix_world, float)
@@ -39,15 +40,15 @@ def export_light(thing, matrix_world, messages):
     if kind == LightKind.AREA and not size[0] * size[1] > 0.0:
         messages.add(f"{who}: its area is zero, it is left out")
         return None
+    # A picture varies, so that none is read.
+    graph = NodeGraph(who, messages, NoPictures(), depsgraph, unknown="white")
     own = light.lancer
     separate = own.use_separate_colors
     return snapshot.Light(
         name=thing.name,
         matrix=_rotation(matrix),
         kind=kind,
-        emission=tuple(
-            c * _watts_to_emission(light, kind, radius, sun_angle, shape, size) for c in _power(light, who, messages)
-        ),
+        emission=tuple(c * _watts_to_emission(light, kind, radius, sun_angle, shape, size) for c in _power(light, graph)),
         radius=radius if kind in (LightKind.POINT, LightKind.SPOT) else 0.0,
         soft_falloff=getattr(light, "use_soft_falloff", True),
         spot_angle=messages.number(getattr(light, "spot_size", math.pi), who, "spot size", 0.785, 1e-3, math.pi),
@@ -57,7 +58,7 @@ def export_light(thing, matrix_world, messages):
         size=size,
         shape=shape,
         spread=messages.number(getattr(light, "spread", math.pi), who, "spread", math.pi, 0.0, math.pi),
-        hidden_from=hidden_from(thing, "visible_") & ~int(Ray.SHADOW),
+        hidden_from=(hidden_from(thing, "visible_") if hidden is None else hidden) & ~int(Ray.SHADOW),
         no_shadow=not _casts_shadow(light),
         falloff=Falloff[own.falloff],
         falloff_radius=messages.number(own.radius, who, "falloff radius", 10.0, 1e-12),
@@ -89,14 +90,15 @@ def _casts_shadow(light):
     return getattr(getattr(light, "cycles", None), "cast_shadow", light.use_shadow)
 
 
-def _power(light, who, messages):
+def _power(light, graph):
     """Watts a channel: energy, colour, temperature, exposure and constant nodes together."""
+    who, messages = graph.owner, graph.messages
     energy = messages.number(light.energy, who, "power", 0.0, 0.0)
     color = messages.color(light.color, who, "colour", 1.0)
     if getattr(light, "use_temperature", False):
         color = tuple(c * t for c, t in zip(color, light.temperature_color, strict=True))
     energy *= 2.0 ** messages.number(getattr(light, "exposure", 0.0), who, "exposure", 0.0)
-    node_color = _nodes(light, who, messages)
+    node_color = _nodes(light, graph)
     return tuple(energy * c * n for c, n in zip(color, node_color, strict=True))
 
 
@@ -133,20 +135,20 @@ def _area(light, matrix, who, messages):
     return shape, (x * float(lengths[0]), y * float(lengths[1]))
 
 
-def _nodes(light, who, messages):
+def _nodes(light, graph):
     """Colour times strength of the light's own nodes where they are constant; (1, 1, 1) without nodes."""
     neutral = (1.0, 1.0, 1.0)
     if light.node_tree is None or (bpy.app.version < (5, 2) and not light.use_nodes):
         return neutral
-    emission = emission_of(NodeGraph(who, messages), light.node_tree, "OUTPUT_LIGHT")
+    emission = emission_of(graph, light.node_tree, "OUTPUT_LIGHT")
     if isinstance(emission, NodeRef):
-        messages.add(f"{who}: light that varies with place or direction is not supported, its own power is used")
+        graph.messages.add(f"{graph.owner}: light that varies with place or direction is not supported, its own power is used")
         return neutral
     return emission
 
 
 def _check(thing, light, who, messages):
-    check_light_object(thing, who, messages)
+    check_linking(thing, who, messages)
     cycles = getattr(light, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
         messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported")
@@ -159,7 +161,9 @@ def _check(thing, light, who, messages):
 
 
 def _sheared(matrix):
-    """Whether the axes are not upright to one another: products of float matrices are to some 1e-6, parents to 1e-5."""
+    """Whether the axes are not upright to one another. Under parents float matrices are so to 1e-5; ten times that, a cone
+    bent by 0.006 degrees, is not seen.
+    """
     columns = matrix[:3, :3].T
     lengths = np.linalg.norm(columns, axis=1)
     if not lengths.all():

@@ -9,11 +9,16 @@ from .closures import Surface
 from .graph import NodeGraph
 from .images import Images
 from .normals import bump, displacement_height
-from .sockets import output_node
+from .sockets import RULES, output_node
 from .walk import Site
 
-_BLACK = (0.0, 0.0, 0.0)
-_DEFAULT = snapshot.Material(name="default grey", lobes=(snapshot.Lobe(LobeKind.LAMBERT, (0.8, 0.8, 0.8)),))
+# What Cycles shows where there is no material: since 5.0 its Principled BSDF as it comes.
+_DEFAULT_LOBE = (
+    snapshot.Lobe(LobeKind.LAMBERT, (0.8, 0.8, 0.8))
+    if bpy.app.version < (5, 0)
+    else snapshot.Lobe(LobeKind.PRINCIPLED, (1.0, 1.0, 1.0), rules=RULES, principled=snapshot.Principled(rules=RULES))
+)
+_DEFAULT = snapshot.Material(name="default grey", lobes=(_DEFAULT_LOBE,))
 # Cycles' filter width of the bump that stands for displacement, in pixels; before it was one pixel.
 _BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
 
@@ -104,7 +109,7 @@ def _from_nodes(material, graph):
     who, messages, tree = graph.owner, graph.messages, material.node_tree
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
-        messages.add(f"{who}: has no Material Output node, black is used")
+        messages.add(f"{who}: has no Material Output node that Cycles takes, black is used")
         return {"lobes": ()}
     site = Site(output)
     has_surface = graph.is_linked(site, ("Surface",))

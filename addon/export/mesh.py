@@ -1,10 +1,12 @@
 """Evaluated Blender meshes as arrays, by foreach_get only."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 
 from ..bindings.snapshot import MeshData
-from .attributes import read_attributes
+from .attributes import read_attributes, read_uv_map, render_uv_map
 
 _TRIANGLES_AT_ONCE = 1 << 18
 
@@ -26,8 +28,8 @@ def _attribute(mesh, name, domain):
 def export_mesh(mesh, name, poll, wanted=frozenset()):
     """The mesh with the normals that Blender shades with, its render UV map and colours, and the attributes that are wanted.
 
-    wanted: names of further UV maps and attributes, "tangent:" with that of a UV map, "generated". poll ends the export by an
-    exception; one array of Blender's is the least that it can wait for.
+    wanted: names of further UV maps and attributes as attribute_name gives them, tangents_name's, "generated". poll ends the
+    export by an exception; one array of Blender's is the least that it can wait for.
     """
     positions = read_positions(mesh)
     poll()
@@ -53,7 +55,7 @@ def export_mesh(mesh, name, poll, wanted=frozenset()):
     poll()
     slots = _material_slots(mesh, corners)
     faces = None if corners is None or not wanted else _read(mesh.loop_triangles, "polygon_index", np.int32, 1)
-    return MeshData(
+    data = MeshData(
         name=name,
         positions=positions,
         triangles=triangles.view(np.uint32),
@@ -61,8 +63,8 @@ def export_mesh(mesh, name, poll, wanted=frozenset()):
         uvs=uvs,
         colors=colors,
         material_slots=slots,
-        attributes=read_attributes(mesh, wanted, corners, faces, poll) if wanted else (),
     )
+    return replace(data, attributes=read_attributes(mesh, data, wanted, corners, faces, poll)) if wanted else data
 
 
 def read_positions(mesh):
@@ -126,13 +128,10 @@ def _corner_normals(mesh):
 
 
 def _uvs(mesh, corners, poll):
-    layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+    layer = render_uv_map(mesh)
     if layer is None:
         return None
-    if hasattr(layer, "uv"):
-        values = _read(layer.uv, "vector", np.float32, 2)
-    else:
-        values = _read(layer.data, "uv", np.float32, 2)
+    values = read_uv_map(layer)
     return _at_corners(values, corners, poll) if len(values) else None
 
 

@@ -6,11 +6,22 @@ import math
 class Messages:
     """Sentences in order of their first arrival; a sentence met again is only counted."""
 
-    def __init__(self):
+    def __init__(self, lines=()):
         self._counts = {}
+        for text in lines:
+            self.add(text)
 
     def add(self, text):
         self._counts[text] = self._counts.get(text, 0) + 1
+
+    def merge(self, other):
+        """Adds what another holds. Gives of it what is new here."""
+        new = Messages()
+        for text, count in other._counts.items():
+            if text not in self._counts:
+                new._counts[text] = count
+            self._counts[text] = self._counts.get(text, 0) + count
+        return new
 
     def __len__(self):
         return len(self._counts)

@@ -1,15 +1,19 @@
 """Nodes about normals: maps, bumps, displacement, and what depends on the angle of view."""
 
+import bpy
+
 from ..bindings.enums import Coordinate, MathOperation, NodeKind, Rules, VectorOperation
 from ..bindings.shading import NodeRef
 from .arithmetic import is_constant
+from .attributes import attribute_name, tangents_name
 from .coordinates import coordinate, want_tangents
 from .sockets import RULES
 
 _SPACES = {"TANGENT": 0, "OBJECT": 1, "WORLD": 2, "BLENDER_OBJECT": 3, "BLENDER_WORLD": 4}
 _FRESNEL, _FACING = 0, 1
-_INVERTED = 1
-_UNDISPLACED = 2
+_INVERTED, _UNDISPLACED, _FLAT_BEFORE = 1, 2, 4  # flags of BUMP
+# Of NORMAL_MAP: from Blender 5.2 on the interpolated normal is made unit first.
+_UNIT_NORMAL = 1 if bpy.app.version >= (5, 2) else 0
 _WHOLE_PIXEL = 1.0  # the filter width of Blenders whose Bump node has no input for it
 _ORIGIN = (0.0, 0.0, 0.0)
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -28,10 +32,12 @@ def _normal_map(graph, site, output):
         return graph.emit(NodeKind.NORMAL_MAP, strength, color, option=space)
     want_tangents(graph, node.uv_map)
     if RULES != Rules.BLENDER_3 or is_constant(strength, 1.0):
-        return graph.emit(NodeKind.NORMAL_MAP, strength, color, option=space, name=node.uv_map)
+        return graph.emit(
+            NodeKind.NORMAL_MAP, strength, color, option=space, name=attribute_name(node.uv_map), flags=_UNIT_NORMAL
+        )
     # Blender 3 tilts the normal by a share of the way to the mapped one.
     v = VectorOperation
-    mapped = graph.emit(NodeKind.NORMAL_MAP, 1.0, color, option=space, name=node.uv_map)
+    mapped = graph.emit(NodeKind.NORMAL_MAP, 1.0, color, option=space, name=attribute_name(node.uv_map))
     plain = graph.normal if isinstance(graph.normal, NodeRef) else coordinate(graph, Coordinate.SHADING_NORMAL)
     share = graph.op(MathOperation.MAXIMUM, strength, 0.0)
     way = graph.vector_op(v.SCALE, graph.vector_op(v.SUBTRACT, mapped, plain), scale=share)
@@ -53,6 +59,8 @@ def bump(graph, first, height, strength, distance, normal, width, invert=False, 
     if not isinstance(height, NodeRef):
         return normal
     flags = (_INVERTED if invert else 0) | (_UNDISPLACED if undisplaced else 0)
+    if undisplaced and bpy.app.version >= (5, 0):
+        flags |= _FLAT_BEFORE
     return graph.emit(NodeKind.BUMP, strength, distance, height, normal, width, first=first, flags=flags)
 
 
@@ -101,7 +109,7 @@ def _from_tangents(graph, vector):
     """A vector along tangent, normal and bitangent, in this order, as the object has it."""
     v = VectorOperation
     want_tangents(graph, "")
-    tangent = graph.emit(NodeKind.ATTRIBUTE, name="tangent:")
+    tangent = graph.emit(NodeKind.ATTRIBUTE, name=tangents_name(""))
     normal = graph.emit(NodeKind.DISPLACEMENT, 1.0, 0.0, 1.0, _ORIGIN, option=_OBJECT)
     turned = graph.vector_op(v.NORMALIZE, graph.vector_op(v.CROSS_PRODUCT, normal, tangent))
     bitangent = graph.vector_op(v.SCALE, turned, scale=graph.emit(NodeKind.ALPHA, tangent))

@@ -4,9 +4,8 @@ from ..bindings import snapshot
 from ..bindings.enums import Distribution, LobeKind, Rules
 from ..bindings.shading import NodeRef
 from .arithmetic import is_constant
-from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, find
+from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, SMALLEST_IOR, find
 
-_SMALLEST_IOR = 1e-5  # as Cycles takes smaller ones
 _WHITE = (1.0, 1.0, 1.0)
 # Inputs between 0 and 1, with what they are where a version lacks them.
 _SHARES = (
@@ -40,14 +39,14 @@ def read_principled(surface, site, weight):
             graph.tell(site, f"input '{PRINCIPLED[name][0]}' is not supported, {meaning}")
     values = {name: number(name, default, 0.0, 1.0) for name, default in _SHARES}
     values["base_color"] = _base_color(surface, site, values)
-    values["ior"] = number("ior", 1.5, _SMALLEST_IOR)
+    values["ior"] = number("ior", 1.5, SMALLEST_IOR)
     values["specular"] = number("specular", 0.5, 0.0)
     values["specular_tint"] = _tint(surface, site, "specular_tint")
     if not is_constant(values["anisotropic"], 0.0):
         values["anisotropic_rotation"] = number("anisotropic_rotation", 0.0)
     if not is_constant(values["coat"], 0.0):
         values["coat_roughness"] = number("coat_roughness", 0.03, 0.0, 1.0)
-        values["coat_ior"] = number("coat_ior", 1.5, _SMALLEST_IOR)
+        values["coat_ior"] = number("coat_ior", 1.5, SMALLEST_IOR)
         values["coat_tint"] = surface.color(site, PRINCIPLED["coat_tint"], _WHITE)
         values["coat_normal"] = surface.normal(site, PRINCIPLED["coat_normal"])
     if not is_constant(values["sheen"], 0.0):

@@ -6,7 +6,7 @@ from ..bindings.enums import Pass
 from ..bindings.session import Cancelled
 from ..bindings.snapshot import SceneSnapshot
 from .camera import export_camera
-from .checks import check_scene, check_view_layer
+from .checks import check_passes, check_scene, check_view_layer
 from .images import Images
 from .instances import Instances
 from .materials import Materials
@@ -35,15 +35,18 @@ def export_scene(depsgraph, options=None, poll=None):
     view_layer = depsgraph.view_layer
     # Ask for camera and settings first: what is missing there should not cost an export.
     camera = export_camera(options.camera or scene.camera, depsgraph, messages)
-    world = getattr(view_layer, "world_override", None) or scene.world
+    # Scene and view layer are the user's own, in which nothing of the animation has arrived.
+    world = _evaluated(getattr(view_layer, "world_override", None) or scene.world, depsgraph)
+    override = _evaluated(view_layer.material_override, depsgraph)
     settings = export_settings(depsgraph, options.passes, world, messages)
     check_scene(scene, messages)
+    check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
-    images = Images()
-    materials = Materials(messages, view_layer.material_override, images, depsgraph)
-    instances = Instances(view_layer, materials, messages)
-    instances.collect(depsgraph, obey)
-    sky = export_world(world, images, depsgraph, messages)
+    images = Images(obey)
+    materials = Materials(messages, override, images, depsgraph)
+    instances = Instances(depsgraph, materials, messages)
+    instances.collect(obey)
+    sky = export_world(world if view_layer.use_sky else None, images, depsgraph, messages)
     snapshot = SceneSnapshot(
         meshes=tuple(instances.meshes),
         instances=instances.to_table(obey),
@@ -56,3 +59,7 @@ def export_scene(depsgraph, options=None, poll=None):
     )
     obey()
     return snapshot, messages
+
+
+def _evaluated(data, depsgraph):
+    return None if data is None else data.evaluated_get(depsgraph)

@@ -7,6 +7,9 @@ from ..bindings.enums import Rules
 RULES = Rules.BLENDER_3 if bpy.app.version < (4, 0) else Rules.BLENDER_4 if bpy.app.version < (4, 5) else Rules.BLENDER_45
 # Before 4.3 Blender's rough diffuse surface loses light: option of DIFFUSE and of the Principled BSDF.
 DIFFUSE_OPTION = int(bpy.app.version >= (4, 3))
+SMALLEST_IOR = 1e-5  # as Cycles takes smaller ones
+
+_MUTED_OUTPUTS_ARE_OFF = bpy.app.version < (5, 0)
 
 # Identifiers of the Principled BSDF, newest first; a name that a version lacks is simply not found.
 PRINCIPLED = {
@@ -48,10 +51,9 @@ def find(node, identifiers):
 
 
 def output_node(tree, kind):
-    """The output node that renders use: the active one of its type, as Cycles takes it."""
-    if hasattr(tree, "get_output_node"):
-        node = tree.get_output_node("CYCLES")
-        if node is not None and node.type == kind:
-            return node
-    nodes = [node for node in tree.nodes if node.type == kind and not node.mute]
-    return next((node for node in nodes if node.is_active_output), nodes[0] if nodes else None)
+    """The output node that Cycles takes: the active one of its type that is not for EEVEE alone; None where there is none."""
+    node = tree.get_output_node("CYCLES")
+    if node is not None and node.type != kind:
+        nodes = [other for other in tree.nodes if other.type == kind and getattr(other, "target", "ALL") != "EEVEE"]
+        node = next((other for other in nodes if other.is_active_output), nodes[0] if nodes else None)
+    return None if node is None or (node.mute and _MUTED_OUTPUTS_ARE_OFF) else node

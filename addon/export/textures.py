@@ -1,6 +1,16 @@
 """Image nodes: what picture, where on it, and how it is read."""
 
-from ..bindings.enums import Coordinate, Environment, Extension, Interpolation, MappingType, NodeKind, Projection
+from ..bindings.enums import (
+    Coordinate,
+    Environment,
+    Extension,
+    Interpolation,
+    MappingType,
+    NodeKind,
+    Projection,
+    VectorOperation,
+)
+from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
 from .maths import transformed
 
@@ -11,6 +21,7 @@ _INTERPOLATION = {
     "Smart": Interpolation.CUBIC,
 }
 _STRAIGHT_COLOR = 256
+_AXES = {"NONE": None, "X": 0, "Y": 1, "Z": 2}
 _MAGENTA = (1.0, 0.0, 1.0)
 
 
@@ -71,10 +82,19 @@ def _has_color_under_alpha(image):
 
 
 def _legacy_mapping(graph, site, vector):
-    """The mapping that nodes of old files carry within themselves."""
+    """The mapping that nodes of old files carry within themselves: axes chosen first, then moved."""
     own = site.node.texture_mapping
-    kind = MappingType[own.vector_type]
-    return transformed(graph, vector, mapping_matrix(kind, tuple(own.translation), tuple(own.rotation), tuple(own.scale)))
+    kind, location, scale = MappingType[own.vector_type], tuple(own.translation), tuple(own.scale)
+    if kind in (MappingType.VECTOR, MappingType.NORMAL):
+        location = (0.0, 0.0, 0.0)
+    if kind == MappingType.NORMAL:
+        scale = each(lambda x: divide(1.0, x), scale)
+    rows = mapping_matrix(kind, location, tuple(own.rotation), scale)
+    sources = [_AXES[getattr(own, f"mapping_{axis}")] for axis in "xyz"]
+    rows = [(*(sum(row[i] for i in range(3) if sources[i] == axis) for axis in range(3)), row[3]) for row in rows]
+    moved = transformed(graph, vector, rows)
+    # Where the mapping changes nothing, normals keep their length.
+    return graph.vector_op(VectorOperation.NORMALIZE, moved) if kind == MappingType.NORMAL and moved is not vector else moved
 
 
 READERS = {"TEX_ENVIRONMENT": _environment_texture, "TEX_IMAGE": _image_texture}

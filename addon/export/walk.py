@@ -6,6 +6,8 @@ import bpy
 
 # A reroute or muted node that nothing feeds is no link at all from 5.0 on; before, it gave 0.
 _LOOSE_ENDS_ARE_ZERO = bpy.app.version < (5, 0)
+# The latter are nodes of add-ons, which bring a tree along.
+_GROUPS = {"GROUP", "CUSTOM GROUP"}
 _LONGEST = 10000  # hops; a ring of reroutes has no end
 
 
@@ -50,7 +52,7 @@ class Walker:
             node, output = link.from_node, link.from_socket
             if node.mute or node.type == "REROUTE":
                 onward = _passed_through(node, output)
-            elif node.type == "GROUP":
+            elif node.type in _GROUPS:
                 onward, path = _group_result(node, output), (*path, node)
             elif node.type == "GROUP_INPUT" and path:
                 onward, path = _by_identifier(path[-1].inputs, output.identifier), path[:-1]

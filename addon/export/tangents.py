@@ -1,0 +1,92 @@
+"""MikkTSpace tangents of triangles, as Cycles computes them: Blender's own stop at faces of more than four corners.
+
+The tangent of a triangle points where u grows. A corner takes the mean of those of the triangles that share its place, normal
+and texture coordinate, each laid across the normal and weighted by the angle at its corner; mirrored triangles stay apart.
+Where mirrored and plain triangles take turns round a vertex, MikkTSpace has a tangent for each run; here each hand has one.
+"""
+
+import numpy as np
+
+_SMALLEST = np.finfo(np.float32).tiny
+
+
+def corner_tangents(positions, triangles, normals, uvs, poll):
+    """(3 triangles, 4): x, y, z and the hand of the frame, 1 or -1. normals: None (flat), of vertices or of corners."""
+    places = positions[triangles]
+    if normals is None:
+        flat = _unit(np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]))
+        normals = np.repeat(flat[:, None], 3, axis=1)
+    shared = _shared(positions, triangles, normals, uvs)
+    normals = normals if normals.ndim == 3 else normals[triangles]
+    poll()
+    tangents, area, usable = _along_u(places, uvs)
+    poll()
+    # Sum the triangles' tangents at what they share, mirrored ones in a second row.
+    count = int(shared.max()) + 1
+    hands = (area <= 0.0).astype(np.intp)
+    rows = 2 * shared + hands[:, None]
+    across = _across(tangents[:, None], normals)
+    poll()
+    across *= np.where(usable[:, None], _angles(places, normals), 0.0)[..., None]
+    poll()
+    sums = np.stack([np.bincount(rows.ravel(), across[..., axis].ravel(), 2 * count) for axis in range(3)], axis=1)
+    known = np.zeros(2 * count, bool)
+    known[rows[usable]] = True
+    poll()
+    # A triangle without a tangent takes its neighbours', one without neighbours x.
+    other = ~usable[:, None] & ~known[rows]
+    rows = np.where(other, rows ^ 1, rows)
+    result = np.empty((*rows.shape, 4), np.float32)
+    result[..., :3] = np.where(known[rows][..., None], _unit(sums)[rows], (1.0, 0.0, 0.0))
+    result[..., 3] = np.where((rows & 1) | ~known[rows], -1.0, 1.0)
+    return result.reshape(-1, 4)
+
+
+def _along_u(places, uvs):
+    """Of each triangle: the unit vector along which u grows, the signed area of its texture, whether it has both."""
+    e1, e2 = places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]
+    d1, d2 = uvs[:, 1] - uvs[:, 0], uvs[:, 2] - uvs[:, 0]
+    area = d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0]
+    along = e1 * d2[:, 1:] - e2 * d1[:, 1:]
+    usable = (np.abs(area) > _SMALLEST) & (_dot(along, along) > 0.0)
+    return _unit(along) * np.where(area > 0.0, 1.0, -1.0)[:, None], area, usable
+
+
+def _shared(positions, triangles, normals, uvs):
+    """(triangles, 3): equal numbers for corners of equal place, normal and texture coordinate."""
+    at_vertices = normals.ndim == 2
+    keys = _hashes(np.zeros(len(positions), np.uint64), positions, *([normals] if at_vertices else []))[triangles]
+    keys = _hashes(keys, uvs, *([] if at_vertices else [normals]))
+    _, numbers = np.unique(keys, return_inverse=True)
+    return numbers.reshape(keys.shape)
+
+
+def _hashes(keys, *values):
+    """Numbers of 64 bits; among ten million rows two different ones have the same with a chance of 3e-6."""
+    for array in values:
+        # Adding 0 makes one zero of both.
+        bits = (array.astype(np.float32) + np.float32(0.0)).view(np.uint32)
+        for axis in range(array.shape[-1]):
+            keys = (keys ^ bits[..., axis]) * np.uint64(0x9E3779B97F4A7C15)
+            keys ^= keys >> np.uint64(29)
+    return keys
+
+
+def _angles(places, normals):
+    """Of each corner, between its two sides as they are seen along its normal."""
+    onward = _across(np.roll(places, -1, axis=1) - places, normals)
+    back = _across(np.roll(places, 1, axis=1) - places, normals)
+    return np.arccos(np.clip(_dot(onward, back), -1.0, 1.0))
+
+
+def _across(vectors, normals):
+    return _unit(vectors - normals * _dot(vectors, normals)[..., None])
+
+
+def _unit(vectors):
+    lengths = np.sqrt(_dot(vectors, vectors))
+    return vectors / np.where(lengths > 0.0, lengths, 1.0)[..., None]
+
+
+def _dot(a, b):
+    return np.einsum("...i,...i->...", a, b)

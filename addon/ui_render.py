@@ -1,0 +1,166 @@
+"""Panels of the render and of the view layer, and what all of Lancer's panels share."""
+
+import bpy
+
+from . import engine
+from .bindings.enums import Pass
+from .export.checks import EMPTY_PASSES
+
+_ID = engine.LancerRenderEngine.bl_idname
+
+# What an artist who comes from Cycles should know before the first render.
+_REPLACED = (
+    "They replace Cycles' bounces and clamping,",
+    "which are not read. Filter Glossy and limits",
+    "of single kinds of bounces are not there.",
+)
+
+
+class LancerPanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = {_ID}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+    def _column(self):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+class LANCER_RENDER_PT_sampling(LancerPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+    bl_context = "render"
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.prop(settings, "integrator")
+        column.prop(settings, "quality")
+        column.prop(settings, "samples")
+        column.prop(settings, "time_limit")
+        column.prop(settings, "seed")
+        column.prop(settings, "use_animated_seed")
+
+
+class LANCER_RENDER_PT_light_paths(LancerPanel, bpy.types.Panel):
+    bl_label = "Light Paths"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.prop(settings, "max_bounces")
+        column.prop(settings, "transparent_bounces")
+        row = column.row()
+        row.active = settings.integrator == "PATH"
+        row.prop(settings, "clamp_indirect")
+        row = column.column()
+        row.active = settings.integrator == "CLASSIC"
+        row.prop(settings, "contribution_threshold")
+        row.prop(settings, "environment_reflections")
+        column.separator()
+        for text in _REPLACED:
+            column.label(text=text)
+
+
+class LANCER_RENDER_PT_film(LancerPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.prop(context.scene.render, "film_transparent", text="Transparent")
+        glass = column.column()
+        glass.active = context.scene.render.film_transparent
+        glass.prop(settings, "film_transparent_glass")
+        row = glass.row()
+        row.active = settings.film_transparent_glass
+        row.prop(settings, "film_transparent_roughness")
+        column.prop(settings, "pixel_filter")
+        row = column.row()
+        row.active = settings.pixel_filter == "BLACKMAN_HARRIS"
+        row.prop(settings, "filter_width")
+
+
+class LANCER_RENDER_PT_performance(LancerPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        render = context.scene.render
+        column = self._column()
+        column.prop(render, "threads_mode")
+        row = column.row()
+        row.enabled = render.threads_mode == "FIXED"
+        row.prop(render, "threads")
+        column.prop(context.scene.lancer, "accelerator")
+        column.prop(context.scene.lancer, "features")
+
+
+class LANCER_RENDER_PT_messages(LancerPanel, bpy.types.Panel):
+    bl_label = "Messages of the Last Render"
+    bl_context = "render"
+
+    def draw(self, context):
+        lines = engine.last_messages.get(context.scene.name)
+        column = self.layout.column(align=True)
+        statistics = engine.last_statistics.get(context.scene.name)
+        if statistics is not None:
+            column.label(text=f"{statistics['samples']} samples, {statistics['seconds']:.1f} s")
+            column.label(text=f"{statistics['rays_per_second'] / 1e6:.2f} M rays/s, {statistics['instruction_set']}")
+            column.label(text=f"Uses: {statistics['features']}")
+        if lines is None:
+            column.label(text="Nothing rendered yet")
+        elif not lines:
+            column.label(text="All of the scene was rendered as it is", icon="CHECKMARK")
+        for line in lines or ():
+            column.label(text=line, icon="ERROR")
+
+
+class LANCER_VIEWLAYER_PT_passes(LancerPanel, bpy.types.Panel):
+    bl_label = "Passes"
+    bl_context = "view_layer"
+
+    def draw(self, context):
+        layer = context.view_layer
+        column = self._column()
+        for name in ("z", "mist", "position", "normal", "uv", "object_index", "material_index"):
+            column.prop(layer, "use_pass_" + name)
+        empty = EMPTY_PASSES[context.scene.lancer.integrator]
+        for component in ("diffuse", "glossy", "transmission"):
+            row = column.row(heading=component.capitalize(), align=True)
+            for part in ("direct", "indirect", "color"):
+                cell = row.row(align=True)
+                cell.active = Pass[f"{component}_{part}".upper()] not in empty
+                cell.prop(layer, f"use_pass_{component}_{part}", text=part.capitalize(), toggle=True)
+        for name, source in (("emit", Pass.EMISSION), ("environment", Pass.ENVIRONMENT)):
+            _switch(column, layer, name, source not in empty)
+        _switch(column, layer, "ambient_occlusion", Pass.AMBIENT_OCCLUSION not in empty)
+        if hasattr(layer, "cycles"):
+            column.prop(layer.cycles, "denoising_store_passes", text="Denoising Data")
+        column.prop(context.scene.lancer, "use_pass_albedo")
+        column.prop(layer, "pass_alpha_threshold")
+
+
+def _switch(column, layer, name, active):
+    row = column.row()
+    row.active = active
+    row.prop(layer, "use_pass_" + name)
+
+
+CLASSES = (
+    LANCER_RENDER_PT_sampling,
+    LANCER_RENDER_PT_light_paths,
+    LANCER_RENDER_PT_film,
+    LANCER_RENDER_PT_performance,
+    LANCER_RENDER_PT_messages,
+    LANCER_VIEWLAYER_PT_passes,
+)
