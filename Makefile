@@ -15,6 +15,7 @@ BLEND ?=
 ONLY ?=
 QUICK ?=
 BLENDER ?=
+BEFORE ?=
 
 python := $(VENV)/bin/python
 core := build/core
@@ -62,8 +63,15 @@ sanitize: packages-test ## the C++ tests under AddressSanitizer and UndefinedBeh
 	@$(call logged,build/ctest-sanitize.log,ctest --test-dir build/sanitize -j $(JOBS) --output-on-failure)
 	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest-sanitize.log
 
-bench: packages-run python-run build ## measure speed and memory, next to Cycles: a table, and build/bench.json
-	@$(python) blender_tests/bench.py
+bench: packages-run python-run build ## measure speed and memory, next to Cycles, or another revision: make bench [BEFORE=revision]
+ifneq ($(BEFORE),)
+	@rm -rf build/before && mkdir -p build/before
+	@git archive $(BEFORE) | tar -x -C build/before
+	@echo "== core of $(BEFORE)"
+	@$(call logged,build/configure-before.log,cmake -S build/before/core -B build/before/build -G Ninja)
+	@cmake --build build/before/build --target lancer $(compile)
+endif
+	@$(python) blender_tests/bench.py $(if $(BEFORE),--before build/before)
 
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
 	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P scenes/parity/run.py --,$(python) scenes/parity/run.py) \

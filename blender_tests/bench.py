@@ -18,9 +18,10 @@ WORKER = Path(__file__).with_name("bench_worker.py")
 ENGINES = ("LANCER", "CYCLES")
 
 
-def measure(task, **arguments):
-    command = [sys.executable, str(WORKER), task, json.dumps(arguments)]
-    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+def measure(task, root=ROOT, **arguments):
+    """root: the tree that is measured; one of another revision has its own worker."""
+    command = [sys.executable, str(root / WORKER.relative_to(ROOT)), task, json.dumps(arguments)]
+    result = subprocess.run(command, cwd=root, capture_output=True, text=True)
     if result.returncode:
         sys.exit(f"{task} {arguments} failed:\n{result.stdout[-2000:]}{result.stderr[-2000:]}")
     return json.loads(result.stdout.strip().splitlines()[-1])
@@ -100,10 +101,29 @@ def bench_accelerators(rounds, threads):
     return result
 
 
+def bench_before(rounds, threads, before):
+    """F12 of this tree and of another revision's, by turns."""
+    result = {}
+    for name, samples in (("balls", 16), ("default_cube", 32), ("cornell", 16), ("spheres600", 16)):
+        seconds = {"before": [], "now": []}
+        for _ in range(rounds):
+            for key, root in (("before", before), ("now", ROOT)):
+                answer = measure("f12", root, engine="LANCER", name=name, threads=threads, samples=samples)
+                seconds[key].append({"seconds": answer["seconds"]})
+        pairs = [{"ratio": a["seconds"] / b["seconds"]} for a, b in zip(seconds["before"], seconds["now"], strict=True)]
+        result[name] = {key: middle(answers, "seconds") for key, answers in seconds.items()}
+        result[name]["times_faster"] = middle(pairs, "ratio")
+        for key in seconds:
+            row(f"{name}, {samples} samples, {key}", result[name][key], "s")
+        row(f"{name}, time before / now", result[name]["times_faster"], "")
+    return result
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--before", type=Path, help="the built tree of another revision, to be compared with")
     arguments = parser.parse_args()
     rounds, threads = arguments.rounds, arguments.threads
     facts = {**machine(), **measure("versions"), "threads": threads, "rounds": rounds}
@@ -120,6 +140,8 @@ def main():
         "instances": bench_prepare(rounds, threads, "instances"),
         "spheres600": bench_accelerators(rounds, threads),
     }
+    if arguments.before:
+        figures["before"] = bench_before(rounds, threads, arguments.before.resolve())
     path = ROOT / "build" / "bench.json"
     path.parent.mkdir(exist_ok=True)
     path.write_text(json.dumps(figures, indent=2) + "\n")

@@ -8,27 +8,10 @@ import pytest
 import reference
 import tiny_scenes
 from bindings.abi import Falloff, Integrator, LightKind, LobeKind, Shading
-from bindings.enums import Coordinate, Environment, NodeKind
+from bindings.enums import Coordinate, Environment, NodeKind, Ray
 from bindings.snapshot import Image, Instance, Light, Lobe, Material, MeshData, Node, NodeRef, World
+from course import EXACT, EYE, LAMP, classic, color, lamp, mirrored_sky, specular
 from tiny_scenes import lambert, move, pencil, plane, rgb, rotate_x, scale, sphere
-
-# One sample through the middle of everything has no noise: only float32 products, a dozen at 6e-8.
-EXACT = 2e-6
-EYE = (3.0, 0.0, 4.0)  # v = (0.6, 0, 0.8) at the origin
-LAMP = (-1.0, 2.0, 2.0)  # l = (-1, 2, 2)/3, distance 3
-
-
-def lamp(position=LAMP, intensity=(9.0, 18.0, 27.0), **fields):
-    return Light("lamp", move(*position), LightKind.POINT, emission=rgb(intensity), **fields)
-
-
-def classic(instances, materials, lights=(), camera=None, **settings):
-    settings = {"integrator": Integrator.CLASSIC, "samples": 1, "max_bounces": 10, **settings}
-    return tiny_scenes.scene(instances, materials, lights, camera=camera or pencil(EYE), **settings)
-
-
-def color(*arguments, **fields):
-    return tiny_scenes.render(classic(*arguments, **fields))[0, 0, :3]
 
 
 def test_diffuse():
@@ -74,10 +57,6 @@ def test_lab_bsdf(alpha, ior):
         h = (wi + wo) / np.linalg.norm(wi + wo)
         sensitivity = 4e-7 * (1 + np.hypot(h[0], h[1]) / h[2] / alpha**2)
         assert np.allclose(got, f * wi[2] * 9 / distance**2, rtol=EXACT + sensitivity), position
-
-
-def specular(kind, shininess):
-    return Material("shiny", lobes=(Lobe(color=rgb(0.25)), Lobe(kind, color=(0.5, 0.25, 1.0), shininess=shininess)))
 
 
 @pytest.mark.parametrize("shininess", [1.0, 10.0, 200.0])
@@ -154,19 +133,6 @@ def test_spot_edges(blend):
 def test_sun():
     light = Light("sun", rotate_x(math.acos(0.5)), LightKind.SUN, emission=(2, 4, 6))
     assert np.allclose(color([plane()], [lambert()], [light]), np.array([2, 4, 6]) * 0.5 / math.pi, rtol=EXACT)
-
-
-def mirrored_sky(material, **settings):
-    snapshot = tiny_scenes.scene(
-        [plane()],
-        [material],
-        world=(1, 2, 3),
-        camera=pencil(EYE),
-        integrator=Integrator.CLASSIC,
-        samples=1,
-        **{"max_bounces": 10, **settings},
-    )
-    return tiny_scenes.render(snapshot)[0, 0, :3]
 
 
 def test_reflection():
@@ -313,6 +279,8 @@ def test_normals_view():
     assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :3], (0.8, 0.5, 0.9), atol=1e-6)
     missed = tiny_scenes.scene(world=(0.1, 0.2, 0.3), integrator=Integrator.NORMALS)
     assert np.allclose(tiny_scenes.render(missed)[0, 0, :3], (0.1, 0.2, 0.3), rtol=1e-7)
+    hidden = dataclasses.replace(missed, world=World((0.1, 0.2, 0.3), hidden_from=int(Ray.CAMERA)))
+    assert tiny_scenes.render(hidden)[0, 0].tolist() == [0, 0, 0, 1]
 
 
 def test_one_sample_is_deterministic():

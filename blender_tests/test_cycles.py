@@ -22,7 +22,7 @@ SCENES = {
     "orthographic": (2, 256),
     "background": (1, 64),
 }
-# Of the picture's mean level: what an artist could just see side by side, and what the issue asks for.
+# Of the picture's mean level: what an artist could just see side by side.
 LIMIT = 0.01
 
 

@@ -271,3 +271,12 @@ def test_export(which, tmp_path):
     assert np.allclose(got["nodes"], np.array((0.5, 0.25, 1.0)) * 3.0)
     assert got["messages"] == []
     assert any("not supported, its own power is used" in line for line in got["textured"]), got["textured"]
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_lights_that_are_not_known_keep_their_power(which, tmp_path):
+    got = blenders.run(which, tmp_path, "light_cases", "unknown")
+    share, messages = got["TexImage"]
+    assert share == 1.0 and len(messages) == 1 and "its own power is used" in messages[0]
+    share, messages = got["TexNoise"]
+    assert share == 1.0 and len(messages) == 1 and "white is used" in messages[0]

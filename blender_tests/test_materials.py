@@ -277,3 +277,21 @@ def test_random_trees_never_fail(case):
     # As many as a blind chance gives; none of them refers to what comes later, or holds what the core cannot take.
     assert got["kinds"] > 80 and got["lobes"] > 20 and got["nodes"] > 20
     assert got["backward"] == got["wild"] == 0
+
+
+def test_the_panel_tells_the_lobes_of_principled(case):
+    """As the core has them, straight on; it is asked once for each change."""
+    got = case("panel")
+    assert got["asked"] == ["matt", "metal", "coated", "coated"]
+    said = got["said"]
+    assert all(line == lines[0] for lines in said.values() for line in lines)
+    (matt,), (metal,), coated = (said[name][0] for name in ("matt", "metal", "coated"))
+    assert matt.endswith("iffuse Kd: 0.8 0.4 0.2")
+    # Metal gives its base colour straight on, less what its facets shadow: about half of alpha^2, 0.09^2.
+    name, told = metal.split(": ")
+    albedo, roughness, *_ = told.split(", ")
+    assert name.endswith("Ks") and 0.5 * (1.0 - 0.09**2) < float(albedo) <= 0.5 and roughness == "roughness 0.3"
+    # By version the coat takes light from what lies below.
+    coat, diffuse = sorted(coated, key=lambda line: "Kd" in line)
+    assert "roughness 0.1, IOR 1.5" in coat and 0.7 < float(diffuse.split("Kd: ")[1]) <= 0.8
+    assert "Passes: 0.75" in said["veil"][0]

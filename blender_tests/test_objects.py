@@ -50,3 +50,11 @@ def test_settings(case):
     assert got["first"] == [False, False, pytest.approx(0.01), 8, 0.5, 0.0, 0.0, 100.0, 1.0]
     # A roughness of 0.5 is an alpha of 0.25.
     assert got["second"] == [True, True, 0.25, 3, 0.25, 4.0, 2.0, 30.0, 0.5]
+
+
+def test_messages(case):
+    got = case("told")
+    assert got["empty slot"] == ["object 'Cube': material slot 1 is empty, grey is used"] and got["override"] == []
+    assert got["strokes"] == [True, []]
+    lost = "displacement, attribute 'Map'"
+    assert got["exact"] == [f"object 'SPHERE': its exact shape is without what its mesh would have: {lost}"]

@@ -77,3 +77,9 @@ def test_tiles_sequences_and_what_is_missing(case):
     assert len(told) == 3 and "tile 1012 of image 'tiles'" in told[0]
     assert "material 'Lost'" in told[1] and "image 'lost'" in told[1] and "has no image" in told[2]
     assert got["unchanged"]
+
+
+def test_multilayer_files_are_told(case):
+    got = case("layered")
+    assert [np.array(picture["texels"]).tolist() for picture in got["images"]] == [[[[0.5, 0.5, 0.5]]]]
+    assert len(got["messages"]) == 1 and "'layers' is a multilayer EXR, save its layer" in got["messages"][0]

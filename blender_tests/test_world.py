@@ -7,9 +7,10 @@ import blenders
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.enums import AlphaMode, Coordinate, Environment, Extension, Interpolation, NodeKind, Ray
+from bindings.enums import AlphaMode, CameraKind, Coordinate, Environment, Extension, Integrator, Interpolation, NodeKind, Ray
 from bindings.session import Scene
 from bindings.shading import Image, Material, Node, NodeRef, World
+from bindings.snapshot import Camera
 from blenders import MODULE, PROGRAM
 from charts import unit
 from significance import LEVEL, chi_square, uniforms
@@ -166,6 +167,50 @@ def test_hidden_world(library):
             assert np.allclose(tiny_scenes.radiance(up), seen, rtol=1e-6), (varying, hidden)
 
 
+@pytest.mark.parametrize("integrator", Integrator)
+def test_a_world_that_asks_for_the_window(library, integrator):
+    """Cycles 5.0.1: every camera ray finds its own place in the picture."""
+    world = World(radiance=NodeRef(0), nodes=(Node(kind=NodeKind.COORDINATE, option=Coordinate.WINDOW),))
+    middles = (np.arange(4) + 0.5) / 4
+    x, y = np.meshgrid(middles, middles)
+    for kind in (CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC, CameraKind.EQUIRECTANGULAR):
+        camera = Camera(
+            matrix=tiny_scenes.look_at((1, -6, 3), (0, 0, 0.5)),
+            kind=kind,
+            panorama=(-1.2, 1.2, -2.0, 2.0, 0, 0, 0, 0),
+            width=4,
+            height=4,
+            window=(0, 1, 0, 1) if kind == CameraKind.EQUIRECTANGULAR else (-1, 1, -1, 1),
+        )
+        got = tiny_scenes.render(scene(world, (), camera=camera, integrator=integrator, samples=1))
+        # One sample of PATH lies anywhere in its pixel, the others' in the middle; float knows directions to 1e-7.
+        apart = 0.125 if integrator == Integrator.PATH else 2e-6
+        assert np.allclose(got[..., 0], x, rtol=0, atol=apart + 1e-6) and np.allclose(got[..., 1], y, rtol=0, atol=apart + 1e-6)
+
+
+# The red and green that Cycles 5.0.1 shows at the pixel's middle for a mirror on the ground: parallel rays take the mirrored
+# direction for a point of the world.
+@pytest.mark.parametrize("integrator", [Integrator.PATH, Integrator.CLASSIC])
+@pytest.mark.parametrize(
+    "kind, seen", [(CameraKind.PERSPECTIVE, (0.338729, 1.646432)), (CameraKind.ORTHOGRAPHIC, (0.5, 0.620373))]
+)
+def test_a_mirror_asks_the_window_of_its_ray(library, integrator, kind, seen):
+    world = World(radiance=NodeRef(0), nodes=(Node(kind=NodeKind.COORDINATE, option=Coordinate.WINDOW),))
+    mirror = Material("mirror", lobes=(tiny_scenes.Lobe(tiny_scenes.LobeKind.MIRROR, color=(1, 1, 1)),))
+    # The picture is 2 wide at distance 1 over the focal length of 50 mm and the sensor of 36: 0.36; parallel rays 1.
+    half = 0.36 if kind == CameraKind.PERSPECTIVE else 1.0
+    camera = Camera(
+        matrix=tiny_scenes.look_at((1, -6, 3), (0, 0, 0.5)), kind=kind, width=4000, height=4000, window=(-half, half) * 2,
+        x=1500, y=2500, region_width=1, region_height=1,
+    )  # fmt: skip
+    snapshot = scene(
+        world, (), instances=[tiny_scenes.plane()], materials=[mirror], camera=camera, integrator=integrator, max_bounces=1
+    )
+    # The pixel reaches 1/8000 to either side, Cycles looked 1.3e-4 beside its middle; the mirrored place moves less than twice
+    # as fast.
+    assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :2], seen, rtol=0, atol=2 * (1 / 8000 + 1.3e-4))
+
+
 def test_a_texture_shines_as_it_looks(library):
     """A square lamp, half of it dark by its texture, against the bright half alone."""
     texels = np.zeros((1, 2, 1), np.float32)
@@ -220,3 +265,11 @@ def test_export(which, tmp_path):
     assert got["cube"] == [3, 2, 6] and got["cube images"] == 6
     assert got["cube without a picture"] == 1
     assert got["messages"] == []
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_a_cube_of_sequences_shows_their_first_files(which, tmp_path):
+    got = blenders.run(which, tmp_path, "world_cases", "sequence")
+    # A tenth, two tenths ... of 255.
+    assert got["red"] == [26, 51, 77, 102, 128, 153]
+    assert len(got["messages"]) == 6 and all("is a sequence, of which only the file" in line for line in got["messages"])

@@ -166,3 +166,14 @@ def files():
     show(packed)
     os.remove(os.path.join(folder, "frame_003.png"))
     return answer()
+
+
+def layered():
+    """A file of many layers, of which Blender gives scripts none."""
+    scene = stage.room(width=8, height=8)
+    path = stage.write_exr(scene, layers=True)
+    stage.empty()
+    item = bpy.data.images.load(path)
+    item.name = "layers"
+    show(item)
+    return answer()

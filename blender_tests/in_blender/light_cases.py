@@ -61,3 +61,20 @@ def export():
     _export(textured, lost)
     result["textured"] = lost.lines()
     return result
+
+
+def unknown():
+    """What a light shines whose nodes hold a picture, or a colour that nobody knows: [watts of the plain lamp's, messages]."""
+    result = {}
+    for kind in ("TexImage", "TexNoise"):
+        stage.empty()
+        plain, shown = stage.light("POINT"), stage.light("POINT")
+        tree, emission = _nodes(shown)
+        node = tree.nodes.new("ShaderNode" + kind)
+        if kind == "TexImage":
+            node.image = bpy.data.images.new("picture", 4, 4)
+        tree.links.new(node.outputs["Color"], emission.inputs["Color"])
+        messages = Messages()
+        share = _export(shown, messages).emission[0] / _export(plain, Messages()).emission[0]
+        result[kind] = [share, messages.lines()]
+    return result

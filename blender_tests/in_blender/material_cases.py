@@ -362,3 +362,33 @@ def _fill(rng, tree, kinds, count, picture, group):
         if alike and rng.random() < 0.7:
             tree.links.new(rng.choice(alike), socket)
     return nodes
+
+
+def panel():
+    """What a panel says of Principled by its core, and how often it asks the core while nothing changes."""
+    from addon.export import probe
+
+    asked, ask = [], probe._ask
+    probe._ask = lambda material: asked.append(material.name) or ask(material)
+    said = {}
+
+    def say(name, **inputs):
+        material = stage.shader("ShaderNodeBsdfPrincipled", name)
+        node = next(item for item in material.node_tree.nodes if item.type == "BSDF_PRINCIPLED")
+        for socket, value in inputs.items():
+            # Named otherwise before 4.0.
+            socket = next(known for known in (socket, *_OLDER.get(socket, ())) if known in node.inputs)
+            node.inputs[socket].default_value = value
+        said[name] = [describe_material(material) for _ in range(3)]
+        return node
+
+    say("matt", **{"Base Color": (0.8, 0.4, 0.2, 1.0), "Specular IOR Level": 0.0})
+    say("metal", **{"Base Color": (0.5, 0.5, 0.5, 1.0), "Metallic": 1.0, "Roughness": 0.3})
+    node = say("coated", **{"Specular IOR Level": 0.0, "Coat Weight": 1.0, "Coat Roughness": 0.1})
+    node.inputs["Alpha"].default_value = 0.25
+    said["veil"] = [describe_material(bpy.data.materials["coated"])]
+    probe._ask = ask
+    return {"said": said, "asked": asked}
+
+
+_OLDER = {"Specular IOR Level": ("Specular",), "Coat Weight": ("Clearcoat",), "Coat Roughness": ("Clearcoat Roughness",)}

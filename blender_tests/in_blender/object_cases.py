@@ -113,3 +113,34 @@ def _facts(record):
     names = ("film_transparent", "transparent_glass", "glass_roughness", "transparent_shadows", "alpha_threshold")
     names += ("occlusion_distance", "mist_start", "mist_depth", "mist_falloff")
     return [getattr(record, name) for name in names]
+
+
+def told():
+    """Messages about empty slots without and with an override, strokes that Blender draws itself, and exact shapes."""
+    result = {}
+    for name in ("empty slot", "override"):
+        stage.empty()
+        stage.cube().data.materials.append(None)
+        if name == "override":
+            bpy.context.view_layer.material_override = stage.shader()
+        result[name] = export_told()[1].lines()
+    stage.empty()
+    old = bpy.app.version < (4, 3)
+    kind = "grease_pencils_v3" if hasattr(bpy.data, "grease_pencils_v3") else "grease_pencils"
+    strokes = stage.link("Strokes", getattr(bpy.data, kind).new("Strokes"))
+    result["strokes"] = [strokes.type == ("GPENCIL" if old else "GREASEPENCIL"), export_told()[1].lines()]
+    stage.empty()
+    material = _textured("reader", "Map")
+    tree = material.node_tree
+    owner = material if hasattr(material, "displacement_method") else material.cycles
+    owner.displacement_method = "DISPLACEMENT"
+    node = tree.nodes.new("ShaderNodeDisplacement")
+    place = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(place.outputs["Generated"], node.inputs["Height"])
+    output = next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL")
+    tree.links.new(node.outputs[0], output.inputs["Displacement"])
+    for shape in ("MESH", "SPHERE"):
+        item = stage.cube(material=material)
+        item.name, item.lancer.shape = shape, shape
+    result["exact"] = export_told()[1].lines()
+    return result

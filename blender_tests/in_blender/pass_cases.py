@@ -124,7 +124,8 @@ def known_numbers():
     for falloff in ("QUADRATIC", "LINEAR", "INVERSE_QUADRATIC"):
         mist.falloff = falloff
         pictures, _ = _read(scene)
-        result["mist"][falloff] = float(pictures["Mist"][4, 4, 0])
+        # In the middle, and two thirds of a metre beside it: the plane reaches 1 m far.
+        result["mist"][falloff] = [float(pictures["Mist"][4, column, 0]) for column in (4, 5)]
     result["sky mist"] = float(pictures["Mist"][0, 0, 0])
     for name in ("Depth", "Position", "Normal", "UV", "Denoising Normal", "Denoising Albedo", "Denoising Depth"):
         result[name] = [pictures[name][4, 4].tolist(), pictures[name][0, 0].tolist()]

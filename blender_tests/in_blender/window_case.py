@@ -1,7 +1,8 @@
 """Inside a real window: a scene that takes minutes, and a clock that shows whether Blender still answers.
 
-Started by the program itself: blender --factory-startup -P window_case.py -- FOLDER. What happens is written to FOLDER/log.txt,
-a line each: seconds, word.
+Started by the program itself: blender --factory-startup -P window_case.py -- FOLDER [pictures]. What happens is written to
+FOLDER/log.txt, a line each: seconds, word. With pictures it is a scene of those instead, which a
+file called compare has rendered again by a script.
 """
 
 import os
@@ -14,10 +15,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [os.path.dirname(os.path.dirname(HERE)), HERE]
 
 import stage  # noqa: E402
+import window_pictures  # noqa: E402
 
 import addon  # noqa: E402
 
-FOLDER = sys.argv[sys.argv.index("--") + 1]
+FOLDER, *KIND = sys.argv[sys.argv.index("--") + 1 :]
 LOG = open(os.path.join(FOLDER, "log.txt"), "w", encoding="utf-8", buffering=1)
 
 
@@ -25,9 +27,21 @@ def say(word):
     LOG.write(f"{time.time():.4f} {word}\n")
 
 
+def told(word):
+    """Whether the test has put a file of that name into the folder, once."""
+    path = os.path.join(FOLDER, word)
+    if not os.path.exists(path):
+        return False
+    os.remove(path)
+    return True
+
+
 def tick():
     say("tick")
-    if os.path.exists(os.path.join(FOLDER, "quit")):
+    if told("compare"):
+        window_pictures.compare(FOLDER)
+        say("compared")
+    if told("quit"):
         addon.unregister()
         bpy.ops.wm.quit_blender()
     return 0.05
@@ -41,8 +55,6 @@ def prepare():
 
 def build():
     scene = bpy.context.scene
-    for item in list(bpy.data.objects):
-        bpy.data.objects.remove(item)
     stage.plane(material=stage.shader(Color=(0.6, 0.6, 0.6)))
     stage.cube(material=stage.shader("ShaderNodeEmission", Strength=8.0), location=(-1, 0, 0.8))
     stage.ball(0.8, stage.shader(Color=(0.9, 0.3, 0.2)), location=(1, 0, 0.8))
@@ -57,7 +69,13 @@ def build():
 
 
 addon.register()
-build()
+for item in list(bpy.data.objects):
+    bpy.data.objects.remove(item)
+if KIND == ["pictures"]:
+    window_pictures.build(FOLDER)
+    window_pictures.watch(say)
+else:
+    build()
 for name in ("render_init", "render_pre", "render_post", "render_cancel", "render_complete"):
     getattr(bpy.app.handlers, name).append(lambda *_, word=name: say(word))
 bpy.context.preferences.view.show_splash = False

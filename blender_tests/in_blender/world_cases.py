@@ -1,5 +1,8 @@
 """Worlds of every kind as they arrive in a snapshot."""
 
+import os
+import tempfile
+
 import bpy
 import numpy as np
 import stage
@@ -81,3 +84,23 @@ def export():
     _exported(lost)
     result["cube without a picture"] = sum("+Z" in line for line in lost.lines())
     return result
+
+
+def sequence():
+    """A cube of six files that are numbered as frames; nothing is at hand that tells a frame."""
+    stage.empty()
+    stage.sky()
+    folder = tempfile.mkdtemp()
+    own = bpy.context.scene.world.lancer
+    own.use_cube = True
+    for number, side in enumerate(CUBE_SIDES):
+        image = bpy.data.images.new(side, 4, 4)
+        image.generated_color = (0.1 * (number + 1), 0.0, 0.0, 1.0)
+        image.filepath_raw, image.file_format = os.path.join(folder, f"{side}0007.png"), "PNG"
+        image.save()
+        shown = bpy.data.images.load(image.filepath_raw)
+        shown.source = "SEQUENCE"
+        setattr(own, side, shown)
+    messages, images = Messages(), Images()
+    _exported(messages, images)
+    return {"red": [int(picture.texels[0, 0, 0]) for picture in images.list], "messages": messages.lines()}

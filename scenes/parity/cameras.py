@@ -31,11 +31,11 @@ def _look(scene, location=(0, -6, 2.5), target=(0, 0, 0.6), **fields):
     return eye
 
 
-def seen(quick=False, position=True, position_until=(99, 0), **fields):
-    """Enters the scene twice: its picture, and its positions in a picture four times finer.
+def seen(quick=False, position=True, position_until=(99, 0), finer=12, **fields):
+    """Enters the scene twice: its picture, and its positions in a picture many times finer.
 
     Cycles keeps the position of one sample, which lies within 0.005 pixels of the middle: in a coarse picture that alone is
-    1e-4 of the distance where a floor is seen aslant.
+    1e-4 of the distance where a floor is seen aslant, and in this one less than a third of it.
     """
 
     def enter(build):
@@ -47,9 +47,9 @@ def seen(quick=False, position=True, position_until=(99, 0), **fields):
                 passes=("Position",),
                 filter_width=0.01,
                 bounces=0,
-                samples=16,
+                samples=1,
                 until=position_until,
-                **{**fields, "size": tuple(4 * side for side in fields.get("size", (96, 64)))},
+                **{**fields, "size": tuple(finer * side for side in fields.get("size", (96, 64)))},
             )(build)
         return build
 
@@ -140,7 +140,7 @@ def scaled_object(scene):
 
 
 def _panorama(scene, kind, **fields):
-    eye = _look(scene, (0.2, -0.3, 1.1), (1, 2, 1.0), type="PANO")
+    eye = _look(scene, (0.2, -0.3, 2.2), (1, 2, 1.7), type="PANO")
     # These settings moved from Cycles to the camera itself.
     owner = eye.data if hasattr(eye.data, "panorama_type") else eye.data.cycles
     owner.panorama_type = kind
@@ -148,7 +148,7 @@ def _panorama(scene, kind, **fields):
         setattr(owner, name, value)
 
 
-@seen(quick=True)
+@seen(quick=True, finer=16)
 def equirectangular(scene):
     _panorama(scene, "EQUIRECTANGULAR")
 
@@ -165,64 +165,112 @@ def equirectangular_part(scene):
     )
 
 
-@seen(size=(72, 72))
+@seen(size=(72, 72), finer=16)
 def fisheye_equidistant(scene):
     _panorama(scene, "FISHEYE_EQUIDISTANT", fisheye_fov=math.radians(200))
 
 
-@seen()
+@seen(finer=16)
 def fisheye_equidistant_wide_picture(scene):
     _panorama(scene, "FISHEYE_EQUIDISTANT", fisheye_fov=math.radians(150))
 
 
-@seen()
+@seen(finer=16)
 def fisheye_equisolid(scene):
     _panorama(scene, "FISHEYE_EQUISOLID", fisheye_fov=math.radians(180), fisheye_lens=10.5)
 
 
+# Its rim holds half of all directions, where no picture is fine enough for the position of one sample.
+@seen(position=False)
+def mirror_ball(scene):
+    _panorama(scene, "MIRRORBALL")
+
+
+@seen(finer=16)
+def fisheye_polynomial(scene):
+    fields = {f"fisheye_polynomial_k{i}": k for i, k in enumerate((0.0, -0.06, 0.0, 0.0, 0.0))}
+    _panorama(scene, "FISHEYE_LENS_POLYNOMIAL", fisheye_fov=math.radians(160), **fields)
+
+
+# From 4.1 on.
+@seen(finer=16, since=(4, 1))
+def cylindrical(scene):
+    _panorama(scene, "CENTRAL_CYLINDRICAL", central_cylindrical_range_v_min=-0.8, central_cylindrical_range_v_max=0.9)
+
+
+def _glows(scene):
+    """Small bright squares before and behind the focus, which the lens draws as its own outline, before an even wall."""
+    wall = shader("ShaderNodeEmission", Color=(0.5, 0.7, 0.9), Strength=2.0)
+    parts.place(scene, "Wall", parts.plane_mesh("Wall", 200.0), wall, (0, 20, 0), rotation=(math.pi / 2, 0, 0))
+    for index, (x, depth, side) in enumerate(((-1.7, 8.0, 0.9), (0.35, 2.0, 0.16))):
+        glow = shader("ShaderNodeEmission", Color=(1.0, 0.7 - 0.4 * index, 0.3 + 0.6 * index), Strength=10.0)
+        square = parts.plane_mesh("Glow", side)
+        parts.place(scene, f"Glow {index}", square, glow, (x, depth, 0), rotation=(math.pi / 2, 0, 0))
+
+
 def _focus(scene, **fields):
-    eye = _look(scene)
+    """Focus at 3 with a lens of nearly 2 in diameter: an outline is as wide as half the picture is high."""
+    _glows(scene)
+    eye = parts.add_camera(scene, (0, 0, 0), (0, 1, 0))
+    return _open(eye, focus_distance=3.0, **fields)
+
+
+def _open(eye, **fields):
     lens = eye.data.dof
-    lens.use_dof, lens.focus_distance, lens.aperture_fstop = True, 4.5, 0.15
+    lens.use_dof, lens.aperture_fstop = True, 0.03
     for name, value in fields.items():
         setattr(lens, name, value)
     return eye
 
 
-@seen(position=False, quick=True)
+def blurred(quick=False):
+    """Enters the scene by its picture alone: of what is out of focus no position says anything."""
+    return seen(quick=quick, position=False)
+
+
+@blurred(quick=True)
 def focus_round(scene):
     _focus(scene)
 
 
-@seen(position=False)
+@blurred()
 def focus_blades(scene):
     _focus(scene, aperture_blades=3)
 
 
-@seen(position=False)
+@blurred()
 def focus_blades_turned(scene):
-    _focus(scene, aperture_blades=5, aperture_rotation=0.5)
+    _focus(scene, aperture_blades=3, aperture_rotation=0.5)
 
 
-@seen(position=False)
+@blurred()
 def focus_ratio(scene):
     _focus(scene, aperture_ratio=2.0)
 
 
-@seen(position=False)
+@blurred()
 def focus_orthographic(scene):
     eye = _focus(scene)
-    eye.data.type, eye.data.ortho_scale = "ORTHO", 7.0
+    eye.data.type, eye.data.ortho_scale = "ORTHO", 5.0
 
 
-@seen(position=False)
+@blurred()
 def focus_object(scene):
-    eye = _focus(scene)
-    eye.data.dof.focus_object = bpy.data.objects["Block 3"]
+    """An object to focus on, in place of the distance."""
+    target = bpy.data.objects.new("Target", None)
+    target.location = (0.5, 3.0, 0.3)
+    scene.collection.objects.link(target)
+    _focus(scene, focus_object=target).data.dof.focus_distance = 20.0
 
 
-@seen(position=False)
+@blurred()
 def focus_panorama(scene):
-    _panorama(scene, "EQUIRECTANGULAR")
-    lens = scene.camera.data.dof
-    lens.use_dof, lens.focus_distance, lens.aperture_fstop = True, 2.0, 0.1
+    _glows(scene)
+    eye = parts.add_camera(scene, (0, 0, 0), (0, 1, 0))
+    eye.data.type = "PANO"
+    # These settings moved from Cycles to the camera itself.
+    owner = eye.data if hasattr(eye.data, "panorama_type") else eye.data.cycles
+    owner.panorama_type = "EQUIRECTANGULAR"
+    owner.latitude_min, owner.latitude_max = -0.25, 0.25
+    owner.longitude_min, owner.longitude_max = -0.375, 0.375
+    _open(eye, focus_distance=3.0)

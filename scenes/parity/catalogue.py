@@ -17,6 +17,7 @@ SUBJECTS = (
     "textures_normals",
     "lights_shapes",
     "lights_switches",
+    "lights_exact",
     "worlds",
     "cameras",
     "objects",
@@ -47,7 +48,8 @@ class Case:
     passes: tuple = ("Combined",)  # by the names of Blender 5
     needs: object = None  # needs() gives "" or the sentence that tells what is absent here
     sum_of_passes: bool = False  # compare the sum of our passes with our Combined
-    may_differ: bool = False  # a message of Lancer excuses a difference
+    announced: str = ""  # words that one of Lancer's messages must contain; they excuse no difference
+    exposure: float = 1.0  # of Cycles' film; Lancer has none, so its picture is brought to that here
     quick: bool = False  # belongs to the subset of `make test`
 
     @property
@@ -118,6 +120,8 @@ def select(pattern="", quick=False):
 
 
 def smaller(item):
-    """The case as `make test` renders it: a quarter of the pixels' blocks, few samples."""
+    """The case as `make test` renders it: a quarter of the blocks where there are many, few samples."""
     width, height = item.size
-    return item if item.kind.relative else replace(item, size=(width // 2 // 8 * 8, height // 2 // 8 * 8))
+    if item.kind.relative or not item.kind.averages:
+        return item
+    return replace(item, size=(width // 2 // 8 * 8, height // 2 // 8 * 8))

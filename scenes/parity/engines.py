@@ -48,10 +48,14 @@ def unbias(scene, case, samples, seed):
     scene.render.resolution_x, scene.render.resolution_y = case.size
     scene.render.resolution_percentage = 100
     scene.render.use_compositing = scene.render.use_sequencer = False
+    scene.render.use_motion_blur = scene.render.use_simplify = False
+    layer = bpy.context.view_layer
+    # 0: the scene's number.
+    layer.samples = 0
     # One pass less: Blender 5.0 cannot write two of them where pixels are not square.
-    bpy.context.view_layer.use_pass_combined = "Combined" in case.passes
+    layer.use_pass_combined = "Combined" in case.passes
     for name in case.passes:
-        _ask_for(bpy.context.view_layer, scene, PASSES[name][0])
+        _ask_for(layer, scene, PASSES[name][0])
 
 
 def _ask_for(view_layer, scene, switch):
@@ -72,6 +76,7 @@ def _set_cycles(cycles, case, samples, seed):
     cycles.use_animated_seed = cycles.use_auto_tile = False
     cycles.pixel_filter_type = "BLACKMAN_HARRIS" if case.filter_width else "BOX"
     cycles.filter_width = case.filter_width or 1.0
+    cycles.film_exposure = case.exposure
     cycles.max_bounces = case.bounces
     for kind in ("diffuse", "glossy", "transmission"):
         setattr(cycles, kind + "_bounces", case.bounces)
@@ -123,5 +128,7 @@ def render(scene, engine, case, samples, seed, folder):
         if name == "Combined":
             result["Alpha"] = picture[..., 3:4]
             picture = picture[..., :3]
+            if engine == "LANCER":
+                picture = case.exposure * picture
         result[name] = picture
     return result

@@ -27,6 +27,8 @@ class Kind(NamedTuple):
 KINDS = {
     # The same mathematics in both engines.
     "EXACT": Kind(Limit(0.005, 0.02), 8, False),
+    # The same, where what is shown lies within a few pixels and has no noise.
+    "EDGES": Kind(Limit(0.005, 0.02), 1, False),
     # Tables stand for parts of the mathematics: Principled, multiple scattering.
     "LOBES": Kind(Limit(0.01, 0.04), 8, False),
     # Data at pixel centres. Single precision keeps 1e-7 of a coordinate, the ray at the edge of the narrow filter 1e-4;
@@ -34,7 +36,13 @@ KINDS = {
     "PIXELS": Kind(Limit(0.005, 1e-4), 1, False, averages=False),
     # One tile of 16 pixels for each angle and roughness.
     "FURNACE": Kind(Limit(0.003, 0.003), 16, True),
+    # One square that a lamp lights.
+    "LIGHT": Kind(Limit(1e-3, 1e-3), 8, True),
 }
+# Below so many blocks one hundredth is no more than one or two, and a fault would hide there: then all of them count.
+FEW_BLOCKS = 200
+# What a renderer stores as the depth of nothing, and more than any distance of a scene here.
+_NOWHERE = 1e9
 
 
 class Figures(NamedTuple):
@@ -43,12 +51,17 @@ class Figures(NamedTuple):
     noise_mean: float  # what the noise alone gives
     noise_p99: float
     sigma: float  # standard deviation of a block's noise
-    level: float  # mean of Cycles' picture
+    level: float  # what differences are a share of: the mean of Cycles' picture
+    # The same of each block by its own level, and by a common one where it is darker than that: one that no bright part raises.
+    dim: "Figures | None" = None
 
 
 class Verdict(NamedTuple):
     name: str  # "pass", "fail", or "noise": beyond the limit, but no farther than the noise reaches
     quiet: bool  # the noise is below a third of the limit
+
+
+_WORST_FIRST = ("fail", "noise", "pass")
 
 
 def blocks(picture, size):
@@ -72,19 +85,63 @@ def measure(ours, theirs, kind, scale=None):
         raise ValueError(f"pictures of different shapes: {sorted(shapes)}")
     ours, theirs = ([blocks(half, kind.block) for half in pair] for pair in (ours, theirs))
     if not all(np.isfinite(half).all() for half in (*ours, *theirs)):
-        return Figures(math.inf, math.inf, 0.0, 0.0, 0.0, math.nan)
-    reference = (theirs[0] + theirs[1]) / 2
-    level = float(np.abs(reference).mean())
-    difference = (ours[0] + ours[1]) / 2 - reference
+        return _HOPELESS
+    if not kind.averages:
+        seen = _seen(ours, theirs)
+        if seen is None:
+            return _HOPELESS
+        # What neither shows is no agreement; and where but one shows something, the other has 0 of it.
+        ours, theirs = ([np.where(_shows(half), half, 0.0)[seen][:, None] for half in pair] for pair in (ours, theirs))
+        scale = None if scale is None else np.broadcast_to(scale, (*seen.shape, 1))[seen][:, None]
+    reference = np.abs(theirs[0] + theirs[1]) / 2
+    level = float(reference.mean()) if reference.size else 0.0
+    difference = (ours[0] + ours[1]) / 2 - (theirs[0] + theirs[1]) / 2
     noise = ((ours[0] - ours[1]) - (theirs[0] - theirs[1])) / 2
-    if scale is None:
-        scale = np.abs(reference) if kind.relative else np.full_like(reference, level)
-    return Figures(
-        *_sizes(_ratio(difference, scale)),
-        *_sizes(_ratio(noise, scale)),
-        float(np.sqrt(np.mean(_ratio(noise, scale) ** 2))),
-        level,
-    )
+    even = np.full_like(reference, level)
+    if scale is not None:
+        return _figures(difference, noise, scale, level)
+    if kind.relative:
+        return _figures(difference, noise, reference, level)
+    if not kind.averages:
+        return _figures(difference, noise, even, level)
+    dim = _dim_level(reference)
+    return _figures(difference, noise, even, level)._replace(dim=_figures(difference, noise, np.maximum(reference, dim), dim))
+
+
+_HOPELESS = Figures(math.inf, math.inf, 0.0, 0.0, 0.0, math.nan)
+
+
+def _dim_level(reference):
+    """The mean of a picture in which nothing is brighter than twice the middle of what is not black."""
+    lit = reference[reference > 0.0]
+    return float(np.minimum(reference, 2.0 * np.median(lit)).mean()) if lit.size else 0.0
+
+
+def _seen(ours, theirs):
+    """Where either picture shows a surface, (rows, columns); None if they disagree elsewhere than on an outline of both."""
+    one, other = (np.any(_shows(pair[0]) | _shows(pair[1]), axis=-1) for pair in (ours, theirs))
+    return None if np.any((one != other) & ~(_outline(one) & _outline(other))) else one | other
+
+
+def _outline(mask):
+    """Where a pixel or one of its eight neighbours differs from another of these."""
+    around = np.pad(mask, 1, mode="edge")
+    rows, columns = mask.shape
+    near = np.stack([around[y : y + rows, x : x + columns] for y in range(3) for x in range(3)])
+    return near.any(axis=0) & ~near.all(axis=0)
+
+
+def _shows(picture):
+    return (picture != 0.0) & (np.abs(picture) < _NOWHERE)
+
+
+def _figures(difference, noise, scale, level):
+    ratio = _ratio(noise, scale)
+    return Figures(*_sizes(_ratio(difference, scale)), *_sizes(ratio), _root_mean_square(ratio), level)
+
+
+def _root_mean_square(ratio):
+    return float(np.sqrt(np.mean(ratio**2))) if ratio.size else 0.0
 
 
 def _ratio(value, scale):
@@ -94,8 +151,13 @@ def _ratio(value, scale):
 
 
 def _sizes(ratio):
+    """The mean, and the 99th percentile over blocks of their worst channel: of few blocks the greatest."""
     ratio = np.abs(ratio)
-    return float(ratio.mean()), float(np.percentile(ratio, 99, method="higher"))
+    if not ratio.size:
+        return 0.0, 0.0
+    worst = ratio.max(axis=-1)
+    percentile = 99 if worst.size >= FEW_BLOCKS else 100
+    return float(ratio.mean()), float(np.percentile(worst, percentile, method="higher"))
 
 
 def allowance(figures):
@@ -109,12 +171,29 @@ def allowance(figures):
 
 
 def judge(figures, limit):
+    """The worse of the verdicts by both levels."""
+    verdicts = [_judge(numbers, limit) for numbers in (figures, figures.dim) if numbers]
+    name = next(name for name in _WORST_FIRST if any(verdict.name == name for verdict in verdicts))
+    return Verdict(name, all(verdict.quiet for verdict in verdicts))
+
+
+def _judge(figures, limit):
     quiet = 3.0 * figures.noise_mean <= limit.mean and 3.0 * figures.noise_p99 <= limit.p99
     if figures.mean <= limit.mean and figures.p99 <= limit.p99:
         return Verdict("pass", quiet)
     more = allowance(figures)
     within = figures.mean <= limit.mean + more.mean and figures.p99 <= limit.p99 + more.p99
     return Verdict("noise" if within else "fail", quiet)
+
+
+def share(figures, limit):
+    """How much of its limits a difference takes; beyond 1 it is too large."""
+    return max(figures.mean / limit.mean, figures.p99 / limit.p99)
+
+
+def decisive(figures, limit):
+    """Of the two levels' figures those nearer to the limits, or farther beyond them."""
+    return max((numbers for numbers in (figures, figures.dim) if numbers), key=lambda numbers: share(numbers, limit))
 
 
 def hopeless(figures, limit):

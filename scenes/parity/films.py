@@ -1,9 +1,9 @@
 """The film: its alpha with and without glass, and the filter between pixels."""
 
 from .. import parts
-from .catalogue import case
+from .catalogue import case, variants
 from .nodes import shader
-from .stages import ball, camera, floor, lamp, sky
+from .stages import ball, camera, sky
 
 
 def _things(scene, glass_roughness=0.0):
@@ -39,24 +39,29 @@ def film_transparent_glass_rough(scene):
     scene.cycles.film_transparent_roughness = 0.1
 
 
-@case(may_differ=True)
+@case(announced="film exposure", exposure=2.0)
 def film_exposure(scene):
-    """Cycles' exposure of the film scales the picture; Lancer may say that it does not."""
+    """Cycles' exposure of the film scales the picture. Lancer says that it does not, and but for that it is the same."""
     _things(scene)
-    scene.cycles.film_exposure = 2.0
 
 
-@case(filter_width=1.5)
-def film_filter(scene):
-    floor(scene)
-    ball(scene, shader("ShaderNodeEmission", Color=(1, 0.8, 0.6), Strength=2.0), segments=12, radius=0.8)
-    parts.place(
-        scene, "Bars", parts.cube_mesh("Bars", 0.3), shader("ShaderNodeEmission", Color=(0.2, 1, 0.4)), (1.2, -0.6, 0.5)
-    )
-    lamp(scene)
-    camera(scene)
-
-
-@case(filter_width=4.0)
-def film_filter_wide(scene):
-    film_filter(scene)
+@variants(
+    "EDGES",
+    values={
+        "narrow": (0.6, {"filter_width": 0.6}),
+        "usual": (1.5, {"filter_width": 1.5}),
+        "wide": (4.0, {"filter_width": 4.0}),
+    },
+    bounces=0,
+)
+def film_filter(scene, width):
+    """Slanted bars before a wall, all of light alone: every pixel at their edges is what the filter makes of it."""
+    wall = shader("ShaderNodeEmission", Color=(0.8, 0.9, 1.0), Strength=1.5)
+    parts.place(scene, "Wall", parts.plane_mesh("Wall", 20.0), wall, (0, 0, -1))
+    for index in range(9):
+        color = (1.0, 0.2 + 0.08 * index, 0.9 - 0.1 * index)
+        glow = shader("ShaderNodeEmission", Color=color, Strength=3.0)
+        mesh = parts.plane_mesh("Bar", 1.0)
+        parts.place(scene, f"Bar {index}", mesh, glow, (0.5 * index - 2.0, 0, 0), (0.2, 4.0, 1.0), rotation=(0, 0, 0.25))
+    eye = camera(scene, (0, 0, 5), (0, 0, 0))
+    eye.rotation_euler = (0, 0, 0)

@@ -37,7 +37,7 @@ def spot_wide(scene):
     )
 
 
-@variants(values={"hard": 0.0, "soft": (0.2, {"quick": True}), "wide": 1.5}, bounces=0)
+@variants(values={"hard": 0.0, "soft": (0.6, {"quick": True}), "wide": 1.5}, bounces=0)
 def sun(scene, angle):
     floor_and_block(scene)
     parts.add_light(scene, "Light", "SUN", 3.0, (1.5, -1, 2.5), angle=angle)

@@ -58,7 +58,7 @@ def temperature(scene, kelvin):
 @variants(values=_KINDS, bounces=0)
 def light_nodes(scene, kind):
     floor_and_block(scene)
-    _emission(_light(scene, kind).data, lambda nodes: {"Color": (0.3, 0.9, 0.5), "Strength": 2.5})
+    emission_nodes(_light(scene, kind).data, lambda nodes: {"Color": (0.3, 0.9, 0.5), "Strength": 2.5})
 
 
 @case(bounces=0)
@@ -70,10 +70,10 @@ def light_nodes_computed(scene):
         warm.outputs[0].default_value = (1.0, 0.6, 0.3, 1.0)
         return {"Color": warm, "Strength": nodes.add("ShaderNodeMath", 0.7, 2.0, props={"operation": "MULTIPLY"})}
 
-    _emission(_light(scene, "AREA").data, inputs)
+    emission_nodes(_light(scene, "AREA").data, inputs)
 
 
-def _emission(light, inputs):
+def emission_nodes(light, inputs):
     if bpy.app.version < (5, 2):
         light.use_nodes = True
     nodes = Nodes(parts.enable_nodes(light))

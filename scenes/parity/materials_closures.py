@@ -1,5 +1,6 @@
 """Every closure beside Principled, on a ball in a small studio."""
 
+import bmesh
 import bpy
 
 from .. import parts
@@ -31,12 +32,20 @@ def glossy_mirror(scene):
         "beckmann_low": ("BECKMANN", 0.1),
         "beckmann_high": ("BECKMANN", 0.7),
         "ashikhmin_low": ("ASHIKHMIN_SHIRLEY", 0.1),
-        "ashikhmin_high": ("ASHIKHMIN_SHIRLEY", 0.7),
     }
 )
 def glossy(scene, value):
     distribution, roughness = value
     studio(scene, shader(_GLOSSY, {"distribution": distribution}, Color=_STEEL, Roughness=roughness))
+
+
+@case(bounces=0)
+def glossy_ashikhmin_high(scene):
+    """Under a point of light, which no ray meets by chance: what Cycles' sampler does with this lobe is no part of it."""
+    floor(scene)
+    ball(scene, shader(_GLOSSY, {"distribution": "ASHIKHMIN_SHIRLEY"}, Color=_STEEL, Roughness=0.7))
+    parts.add_light(scene, "Light", "POINT", 300.0, (1.5, -2.5, 3.5), shadow_soft_size=0.0)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), lens=60.0)
 
 
 @variants("LOBES", values={"low": 0.2, "high": 0.9})
@@ -175,13 +184,20 @@ def holdout_half(scene):
     studio(scene, material(build))
 
 
-@case()
+@case(bounces=1)
 def back_of_a_material(scene):
-    """A closure that turns itself by which side is seen: an open bowl of mirror outside and inside."""
+    """A closure that turns itself by which side is seen: an open bowl of gloss, outside and inside."""
     floor(scene)
-    bowl = parts.plane_mesh("Wall", 2.0)
-    parts.place(scene, "Wall", bowl, shader(_GLOSSY, Color=_STEEL, Roughness=0.0), (0, 0.6, 1), rotation=(-1.4, 0, 0.2))
-    parts.place(scene, "Side", bowl, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.3, 0.2)), (0.6, 0, 1), rotation=(0, 1.4, 0))
-    lamp(scene)
-    sky(scene)
+    bowl = parts.mesh_from_bmesh("Bowl", _make_bowl, smooth=True)
+    steel = shader(_GLOSSY, {"distribution": "GGX"}, Color=_STEEL, Roughness=0.3)
+    parts.place(scene, "Bowl", bowl, steel, (0, 0, 0.9), 0.9, rotation=(0.5, 0.3, 0))
+    parts.add_light(scene, "Light", "POINT", 200.0, (1, -1.5, 3), shadow_soft_size=0.0)
+    sky(scene, strength=1.0)
     camera(scene)
+
+
+def _make_bowl(bm):
+    """The lower half of a ball."""
+    bmesh.ops.create_uvsphere(bm, u_segments=64, v_segments=32, radius=1.0)
+    upper = [vert for vert in bm.verts if vert.co.z > 0.01]
+    bmesh.ops.delete(bm, geom=upper, context="VERTS")

@@ -95,6 +95,20 @@ def mix_color(scene, blend):
 
 
 @case()
+def mix_color_textured_factor(scene):
+    def build(nodes):
+        picture = nodes.add("ShaderNodeTexImage", props={"image": gradient(colorspace="Non-Color")})
+        mix = nodes.add("ShaderNodeMix", props={"data_type": "RGBA"})
+        sockets = [socket for socket in mix.inputs if socket.enabled]
+        nodes.link(picture.outputs["Color"], sockets[0])
+        sockets[1].default_value = (0.8, 0.1, 0.1, 1.0)
+        sockets[2].default_value = (0.1, 0.3, 0.9, 1.0)
+        return nodes.add("ShaderNodeBsdfDiffuse", Color=first_output(mix))
+
+    card(scene, material(build))
+
+
+@case()
 def folded_values(scene):
     """Constants through Value, RGB, Math, Mix and a reroute give a plain colour and roughness."""
 

@@ -143,9 +143,9 @@ def principled_diffuse_roughness(scene):
 
 @case(
     "LOBES",
-    limit=(1.0, 4.0),
-    reason="a diffuse surface stands in for light under the skin, and a message says so",
-    may_differ=True,
+    limit=(0.05, 0.25),
+    reason="a diffuse surface stands in for light under the skin, which softens the edge of the shadow; a message says so",
+    announced="is not supported, a diffuse surface is used",
 )
 def principled_subsurface(scene):
     studio(scene, principled(Base_Color=(0.8, 0.5, 0.4), Subsurface_Weight=1.0, Roughness=0.5))

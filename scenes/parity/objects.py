@@ -42,10 +42,20 @@ def object_hidden_from_all_rays(scene):
         setattr(thing, f"visible_{ray}", False)
 
 
-@case(quick=True)
+@case()
 def object_holdout(scene):
     scene.render.film_transparent = True
     _gallery(scene).is_holdout = True
+
+
+@case(quick=True, bounces=1)
+def object_holdout_alone(scene):
+    """The hole in the floor's picture, and the shadow on it that stays."""
+    scene.render.film_transparent = True
+    floor(scene, size=6.0)
+    ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.9, 0.15, 0.1)), radius=0.6, location=(0, 0.2, 0.6)).is_holdout = True
+    parts.add_light(scene, "Light", "POINT", 300.0, (1.5, -1, 2.5), shadow_soft_size=0.2)
+    camera(scene, (0, -4.5, 1.8), (0, 0, 0.7))
 
 
 @case()
@@ -123,6 +133,16 @@ def transparent_counts_no_bounce(scene):
     lamp(scene)
     sky(scene)
     camera(scene)
+
+
+@case(quick=True)
+def no_material(scene):
+    """What is shown where nobody chose a material."""
+    floor(scene)
+    ball(scene, None, radius=0.8, location=(0, 0, 0.8))
+    lamp(scene)
+    sky(scene)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
 
 
 @case()

@@ -2,6 +2,7 @@
 
 import html
 import json
+import math
 import os
 
 import numpy as np
@@ -34,7 +35,9 @@ def write(outcomes, folder, title):
 def summary(outcomes):
     names = ("pass", "fail", "noise", "error", "absent")
     counts = {name: sum(outcome.verdict == name for outcome in outcomes) for name in names}
-    return f"{len(outcomes)} scenes: " + ", ".join(f"{counts[name]} {name}" for name in names if counts[name])
+    reasons = sorted({outcome.note for outcome in outcomes if outcome.verdict == "absent"})
+    text = f"{len(outcomes)} scenes: " + ", ".join(f"{counts[name]} {name}" for name in names if counts[name])
+    return text + (f" ({'; '.join(reasons)})" if reasons else "")
 
 
 def _row(outcome, folder):
@@ -58,6 +61,9 @@ def _lines(outcome):
         yield f'<b>{html.escape(name)}</b> <span class="{verdict.name}">{verdict.name}</span>'
         yield f"mean {numbers.mean:.3%} of {limit.mean:.3%}, noise {numbers.noise_mean:.3%}"
         yield f"p99 {numbers.p99:.3%} of {limit.p99:.3%}, noise {numbers.noise_p99:.3%}"
+        if numbers.dim:
+            yield f"dim parts: mean {numbers.dim.mean:.3%}, noise {numbers.dim.noise_mean:.3%}"
+            yield f"p99 {numbers.dim.p99:.3%}, noise {numbers.dim.noise_p99:.3%}"
     yield f"{outcome.samples} samples; " + ", ".join(f"{engine} {time:.1f} s" for engine, time in outcome.seconds.items())
 
 
@@ -87,6 +93,12 @@ def _record(outcome):
         "note": outcome.note,
         "samples": outcome.samples,
         "seconds": outcome.seconds,
-        "passes": {name: {**numbers._asdict(), "verdict": verdict.name} for name, (numbers, verdict) in outcome.parts.items()},
+        "passes": {name: {**_numbers(numbers), "verdict": verdict.name} for name, (numbers, verdict) in outcome.parts.items()},
         "messages": outcome.messages,
     }
+
+
+def _numbers(figures):
+    """JSON knows no infinity."""
+    plain = {key: value if math.isfinite(value) else None for key, value in figures._asdict().items() if key != "dim"}
+    return {**plain, "dim": _numbers(figures.dim)} if figures.dim else plain

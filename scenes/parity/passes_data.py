@@ -43,7 +43,7 @@ def _plain(color, index=2):
     values={
         "depth": ("Depth", {"passes": ("Depth",), **_ONE_SAMPLE}),
         "normal": ("Normal", {"passes": ("Normal",), **_ONE_SAMPLE}),
-        "position": ("Position", {"passes": ("Position",), "quick": True}),
+        "position": ("Position", {"passes": ("Position",), "quick": True, "size": (288, 192)}),
         "uv": ("UV", {"passes": ("UV",), **_ONE_SAMPLE}),
         "object_index": ("Object Index", {"passes": ("Object Index",)}),
         "material_index": ("Material Index", {"passes": ("Material Index",)}),
@@ -71,7 +71,7 @@ def pass_mist(scene, falloff):
     mist.start, mist.depth, mist.falloff = 3.0, 9.0, falloff
 
 
-@case("PIXELS", passes=("Normal",), filter_width=0.01, bounces=0, samples=16, **_ONE_SAMPLE)
+@case("PIXELS", passes=("Normal",), filter_width=0.01, bounces=0, samples=16, size=(192, 128), **_ONE_SAMPLE)
 def pass_normal_mapped(scene):
     """With the map's lean, as the shader sees it."""
 
@@ -86,7 +86,11 @@ def pass_normal_mapped(scene):
 
 @case("PIXELS", passes=("Depth", "Position", "Normal"), filter_width=0.01, bounces=2, samples=16, **_ONE_SAMPLE)
 def pass_data_through_panes(scene):
-    """A pane of alpha before the scene: which surface the data tell of."""
+    """Two panes before the scene, one of alpha 0 and one of alpha 1: which surface the data tell of.
+
+    Of what lies between, Cycles keeps a path that it chose by chance.
+    """
     _corner(scene)
-    clear = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.7, 0.3), Alpha=0.3)
-    parts.place(scene, "Pane", parts.plane_mesh("Pane", 1.5), clear, (0.8, -2.5, 1.6), rotation=(1.3, 0, 0.3))
+    for name, alpha, x in (("Clear", 0.0, -0.1), ("Solid", 1.0, 1.7)):
+        surface = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.7, 0.3), Alpha=alpha)
+        parts.place(scene, name, parts.plane_mesh("Pane", 1.2), surface, (x, -2.5, 1.6), rotation=(1.3, 0, 0.3))

@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT))
 import bpy  # noqa: E402
 
 import addon  # noqa: E402
-from scenes.parity import catalogue, contest, page  # noqa: E402
+from scenes.parity import catalogue, contest, figures, page  # noqa: E402
 from scenes.render import captured_output  # noqa: E402
 
 # What `make test` renders each half with: the limits then allow for the noise.
@@ -26,7 +26,11 @@ QUICK_SAMPLES = 32
 def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", default="", help="comma-separated patterns of scene names or subjects, as 'lights*'")
-    parser.add_argument("--quick", action="store_true", help="few samples; what their noise explains is no failure")
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="few samples; what their noise explains is no failure, as long as that is at most three limits",
+    )
     parser.add_argument("--subset", action="store_true", help="the scenes of `make test` alone")
     parser.add_argument("--most-samples", type=int, default=1024, help="of each half of each engine")
     parser.add_argument("--self-check", action="store_true", help="Cycles against Cycles: the judge must find no difference")
@@ -53,7 +57,8 @@ def line(outcome):
     worst = outcome.worst
     text = f"{outcome.verdict:6} {outcome.case.name:38}"
     if worst is not None:
-        numbers, limit = outcome.parts[worst][0], outcome.case.limits
+        limit = outcome.case.limits
+        numbers = figures.decisive(outcome.parts[worst][0], limit)
         text += (
             f" mean {numbers.mean:8.3%} of {limit.mean:.2%} (noise {numbers.noise_mean:.3%})"
             f"  p99 {numbers.p99:8.3%} of {limit.p99:.2%} (noise {numbers.noise_p99:.3%})"

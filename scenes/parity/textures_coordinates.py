@@ -45,10 +45,13 @@ def coordinate_default(scene):
     """An image without a vector takes the map; a picture in a box takes the generated coordinates."""
     image = images.gradient()
 
-    def flat(nodes):
-        return nodes.add("ShaderNodeBsdfDiffuse", Color=nodes.add("ShaderNodeTexImage", props={"image": image}))
+    def build(nodes, projection):
+        picture = nodes.add("ShaderNodeTexImage", props={"image": image, "projection": projection})
+        return nodes.add("ShaderNodeBsdfDiffuse", Color=picture)
 
-    _turned_ball(scene, material(flat))
+    _turned_ball(scene, material(lambda nodes: build(nodes, "FLAT"))).location.x = -0.8
+    box = material(lambda nodes: build(nodes, "BOX"))
+    parts.place(scene, "Cube", parts.cube_mesh("Cube", 1.2), box, (1.0, 0, 1), rotation=(0.3, 0.5, 0.4))
 
 
 @case()
@@ -123,11 +126,14 @@ def attribute_by_name(scene):
 
 @case()
 def mesh_of_several_materials(scene):
-    """Faces with slots of their own, one of them empty."""
-    thing = parts.place(scene, "Cube", parts.cube_mesh("Cube", 1.4), rotation=(0.3, 0.5, 0.4))
-    for color in ((0.8, 0.2, 0.1), (0.2, 0.7, 0.2), (0.2, 0.3, 0.9)):
-        thing.data.materials.append(material(lambda nodes, color=color: nodes.add("ShaderNodeBsdfDiffuse", Color=color)))
-    for face in thing.data.polygons:
-        face.material_index = face.index % 3
+    """Faces with slots of their own, one of them empty; of each cube three are seen."""
+    for x, first in ((-1.0, 0), (1.0, 2)):
+        mesh = parts.cube_mesh("Cube", 1.2)
+        for color in ((0.8, 0.2, 0.1), (0.2, 0.7, 0.2), (0.2, 0.3, 0.9)):
+            mesh.materials.append(material(lambda nodes, color=color: nodes.add("ShaderNodeBsdfDiffuse", Color=color)))
+        mesh.materials.append(None)
+        for face in mesh.polygons:
+            face.material_index = (face.index + first) % 4
+        parts.place(scene, "Cube", mesh, location=(x, 0, 0), rotation=(0.3, 0.5, 0.4 + x))
     sky(scene, (0.8, 0.8, 0.8), 1.0)
     camera(scene, (0, -4, 1.5), (0, 0, 0))

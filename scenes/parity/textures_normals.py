@@ -55,6 +55,24 @@ def normal_map(scene, value):
 
 
 @case()
+def normal_map_on_barrel(scene):
+    """Smooth sides between two faces of twelve corners."""
+    thing = studio(scene, _leaning("TANGENT"))
+    mesh = parts.cone_mesh("Barrel", 0.7, 0.7, 1.4, segments=12)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    layer = mesh.uv_layers.new(name="UVMap")
+    for face in mesh.polygons:
+        # Sides are unrolled, each from its own edge on, the ends are seen from above.
+        start = np.floor(np.arctan2(face.center.y, face.center.x) / (np.pi / 6))
+        for corner in face.loop_indices:
+            x, y, z = mesh.vertices[mesh.loops[corner].vertex_index].co
+            ahead = np.rint(np.arctan2(y, x) / (np.pi / 6) - start) % 12
+            layer.data[corner].uv = (x, y) if abs(face.normal.z) > 0.5 else ((start + ahead) / 4, z)
+    mesh.materials.append(thing.data.materials[0])
+    thing.data, thing.rotation_euler = mesh, (0.5, 0.2, 0.0)
+
+
+@case()
 def normal_map_on_ball(scene):
     """Tangents of a map that turns and shrinks over a round mesh."""
     thing = studio(scene, _leaning("TANGENT"))
@@ -73,10 +91,11 @@ def normal_map_in_gloss(scene):
     _tilted_card(scene, material(build))
 
 
-def _heights():
+def _heights(ripples=0.0):
     x, y = np.meshgrid(np.linspace(0, 1, 64), np.linspace(0, 1, 64))
     pixels = np.ones((64, 64, 4))
-    pixels[..., :3] = (0.5 + 0.25 * np.sin(9 * x) + 0.25 * np.cos(8 * y))[..., None]
+    height = 0.5 + 0.25 * np.sin(9 * x) + 0.25 * np.cos(8 * y) + ripples * np.sin(60 * x)
+    pixels[..., :3] = height[..., None]
     return images.image("Heights", pixels, "Non-Color")
 
 
@@ -109,14 +128,16 @@ def _displace(surface, method):
 
 @variants(values={"true": "DISPLACEMENT", "both": "BOTH", "bump": "BUMP"})
 def displacement(scene, method):
+    """Hills that the mesh can follow, with ripples finer than its faces, which only bump shows whole."""
+
     def build(nodes):
-        picture = nodes.add("ShaderNodeTexImage", props={"image": _heights()})
+        picture = nodes.add("ShaderNodeTexImage", props={"image": _heights(0.06)})
         height = nodes.add("ShaderNodeDisplacement", Height=picture.outputs["Color"], Midlevel=0.5, Scale=0.4)
         return nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)), height
 
     surface = material(build)
     _displace(surface, method)
-    mesh = _grid(48, 3.0)
+    mesh = _grid(24, 3.0)
     parts.place(scene, "Grid", mesh, surface, rotation=(0.15, 0.1, 0.3))
     lamp(scene)
     sky(scene)

@@ -101,12 +101,12 @@ def world_seam_and_pole(scene):
     """Straight up and to the seam, with few texels: how they blend across the borders."""
     scene.world = None
     _pictured(scene, _heaven(8, 4), strength=0.8)
-    eye = camera(scene, (0, 0, 0), (-0.4, 0.02, 1), lens=12.0)
-    eye.data.lens = 10.0
+    camera(scene, (0, 0, 0), (-0.4, 0.02, 1), lens=10.0)
 
 
 @variants(values={name: name for name in ("camera", "diffuse", "glossy", "transmission", "shadow")})
 def world_invisible_to(scene, ray):
+    """The sky kept from one kind of ray. Its switch for shadows does nothing: in front of it there is no place for one."""
     _things(scene)
     glass = shader("ShaderNodeBsdfRefraction", Color=(1, 1, 1), Roughness=0.0, IOR=1.3)
     parts.place(scene, "Pane", parts.plane_mesh("Pane", 1.2), glass, (0, -0.9, 0.9), rotation=(1.4, 0, 0))

@@ -1,0 +1,37 @@
+"""What stands in for inputs and features that Lancer lacks, and what it says about them."""
+
+import bpy
+from material_cases import Tree, answer
+
+# By the first Blender that has the input.
+THIN = {"Thin Film Thickness": (4, 2), "Thin Wall": (5, 2)}
+
+
+def thin():
+    """{input: messages} of a Principled node for each that this Blender shall have, and of a plain one."""
+    result = {}
+    for name, since in {"": (0, 0), **THIN}.items():
+        if bpy.app.version < since:
+            continue
+        tree = Tree(name or "plain")
+        node = tree.node("BsdfPrincipled")
+        if name:
+            socket = node.inputs[name]
+            socket.default_value = True if socket.type == "BOOLEAN" else 300.0
+        tree.show(node.outputs[0])
+        result[name] = answer(tree.material)[tree.material.name]["messages"]
+    return result
+
+
+def unknown_sources():
+    """Inputs of every type that a texture feeds which Lancer does not know."""
+    tree = Tree("fed")
+    noise = tree.node("TexNoise")
+    node = tree.node("BsdfGlossy", distribution="GGX", Color=(0.9, 0.1, 0.1), Roughness=0.37)
+    factor = next(socket for socket in noise.outputs if socket.type == "VALUE")
+    color = next(socket for socket in noise.outputs if socket.type == "RGBA")
+    tree.tree.links.new(factor, node.inputs["Roughness"])
+    tree.tree.links.new(color, node.inputs["Color"])
+    tree.show(node.outputs[0])
+    got = answer(tree.material)["fed"]
+    return {"lobes": got["lobes"], "messages": got["messages"]}

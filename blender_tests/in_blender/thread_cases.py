@@ -1,0 +1,100 @@
+"""Work for the main thread, asked for by another one, with the looks of the window's timer made by hand."""
+
+import os
+import tempfile
+import threading
+import time
+
+import bpy
+from image_cases import ramp, write
+
+from addon.bindings.session import Cancelled
+from addon.export import colorspace, main_thread
+from addon.export.images import Images
+
+
+class _Asker(threading.Thread):
+    """Asks in its own thread; outcome is what came back, or the error's name."""
+
+    def __init__(self, work, obey=None):
+        super().__init__()
+        self.work, self.obey, self.outcome = work, obey, None
+        self.start()
+
+    def run(self):
+        try:
+            with main_thread.obeying(self.obey):
+                self.outcome = main_thread.run(self.work)
+        except Exception as error:
+            self.outcome = type(error).__name__
+
+
+def _who():
+    return threading.current_thread() is threading.main_thread()
+
+
+def asked():
+    """Whether each kind of work came back, and who did it."""
+    result = {"here": main_thread.run(_who)}
+    main_thread._serving = True
+    done = []
+
+    def serve(asker):
+        while asker.is_alive():
+            main_thread._serve()
+            time.sleep(0.01)
+        return asker.outcome
+
+    result["by main"] = serve(_Asker(_who))
+    result["error"] = serve(_Asker(lambda: 1 / 0))
+    looks = []
+
+    def obey():
+        looks.append(1)
+        if len(looks) > 3:
+            raise Cancelled
+
+    # Nobody serves: the user's Esc ends the wait, and what was asked for is never done.
+    asker = _Asker(lambda: done.append("cancelled"), obey)
+    asker.join()
+    main_thread._serve()
+    result["cancelled"] = asker.outcome
+    poster = threading.Thread(target=main_thread.post, args=(lambda: done.append("posted"),))
+    poster.start()
+    poster.join()
+    result["before"] = list(done)
+    main_thread._serve()
+    result["done"] = done
+    main_thread._serving = False
+    return result
+
+
+def stopped():
+    """How many of nine tiles are read when the user has enough after the third, and what the reading ends with."""
+    folder = tempfile.mkdtemp()
+    for number in range(1001, 1010):
+        write(os.path.join(folder, f"tile.{number}.png"), ramp(3))
+    image = bpy.data.images.load(os.path.join(folder, "tile.1001.png"))
+    image.source, image.filepath = "TILED", os.path.join(folder, "tile.<UDIM>.png")
+    known = [tile.number for tile in image.tiles]
+    for number in range(1001, 1010):
+        if number not in known:
+            image.tiles.new(number)
+    read, load = [], colorspace._load
+
+    def counted(path, *arguments):
+        read.append(os.path.basename(path))
+        return load(path, *arguments)
+
+    def obey():
+        if sum(name.startswith("tile") for name in read) == 3:
+            raise Cancelled
+
+    colorspace._load = counted
+    try:
+        Images(obey).numbers(image, None, lambda text: None)
+        end = "read"
+    except Cancelled:
+        end = "cancelled"
+    colorspace._load = load
+    return {"tiles": sum(name.startswith("tile") for name in read), "end": end}

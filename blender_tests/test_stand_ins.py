@@ -1,0 +1,30 @@
+"""What Lancer does not support is named, and something plain stands in for it: never black, and never silently."""
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_thin_surfaces_are_told(which, tmp_path):
+    got = blenders.run(which, tmp_path, "stand_in_cases", "thin")
+    assert got.pop("") == []
+    got.pop("console")
+    said = {
+        "Thin Film Thickness": "input 'Thin Film Thickness' is not supported, the surface has no film",
+        "Thin Wall": "input 'Thin Wall' is not supported, the surface bounds a solid",
+    }
+    assert bool(got) == (which == MODULE)
+    for name, messages in got.items():
+        assert len(messages) == 1 and said[name] in messages[0] and messages[0].startswith(f"material '{name}'")
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_a_value_stands_in_by_its_constant_and_a_colour_by_grey(which, tmp_path):
+    got = blenders.run(which, tmp_path, "stand_in_cases", "unknown_sources")
+    (lobe,) = got["lobes"]
+    assert lobe["roughness"] == pytest.approx(0.37)
+    assert lobe["color"] == [0.5, 0.5, 0.5]
+    assert len(got["messages"]) == 2
+    assert any("input 'Roughness'" in text and "the constant 0.37 is used" in text for text in got["messages"])
+    assert any("input 'Color'" in text and "mid-grey is used" in text for text in got["messages"])

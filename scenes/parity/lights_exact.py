@@ -1,0 +1,122 @@
+"""Every kind of lamp and every switch of it, on one matt spot: the number of its light, to a thousandth."""
+
+import math
+
+import bpy
+
+from .. import parts
+from .catalogue import variants
+from .lights_switches import emission_nodes, with_light_field
+from .nodes import shader
+
+_FIELDS = {"bounces": 0, "size": (32, 32), "quick": True}
+
+
+def _spot(scene):
+    """A camera that sees two hundredths of a plane, so that nothing changes over the picture but the noise."""
+    grey = shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.8, 0.8))
+    parts.place(scene, "Plane", parts.plane_mesh("Plane", 2.0), grey)
+    eye = parts.add_camera(scene, (0, 0, 1), (0, 0, 0))
+    eye.rotation_euler = (0, 0, 0)
+    eye.data.type, eye.data.ortho_scale = "ORTHO", 0.02
+
+
+def _lamp(scene, kind, scale=(1, 1, 1), **fields):
+    _spot(scene)
+    energy = 3.0 if kind == "SUN" else 200.0
+    thing = parts.add_light(scene, "Light", kind, energy, (1.2, -0.8, 2.5), **fields)
+    thing.scale = scale
+    return thing
+
+
+_LAMPS = {
+    "point_hard": {"kind": "POINT", "shadow_soft_size": 0.0},
+    "point_soft": {"kind": "POINT", "shadow_soft_size": 0.5},
+    "point_colour": {"kind": "POINT", "shadow_soft_size": 0.1, "color": (1.0, 0.4, 0.1)},
+    "point_scaled": {"kind": "POINT", "shadow_soft_size": 0.4, "scale": (2.0, 2.0, 2.0)},
+    "spot_hard": {"kind": "SPOT", "shadow_soft_size": 0.0, "spot_size": 1.0, "spot_blend": 0.0},
+    "spot_soft": {"kind": "SPOT", "shadow_soft_size": 0.5, "spot_size": 1.0, "spot_blend": 0.0},
+    "spot_wide": {"kind": "SPOT", "shadow_soft_size": 0.2, "spot_size": math.radians(175), "spot_blend": 0.3},
+    "sun_hard": {"kind": "SUN", "angle": 0.0},
+    "sun_soft": {"kind": "SUN", "angle": 0.2},
+    # With few samples it is noisier than its limit, as glowing meshes are.
+    "sun_wide": ({"kind": "SUN", "angle": 1.5}, {"quick": False}),
+    "area_square": {"kind": "AREA", "shape": "SQUARE", "size": 1.2},
+    "area_rectangle": {"kind": "AREA", "shape": "RECTANGLE", "size": 2.0, "size_y": 0.5},
+    "area_disk": {"kind": "AREA", "shape": "DISK", "size": 1.2},
+    "area_ellipse": {"kind": "AREA", "shape": "ELLIPSE", "size": 2.0, "size_y": 0.7},
+    "area_scaled": {"kind": "AREA", "shape": "ELLIPSE", "size": 1.0, "size_y": 1.0, "scale": (2.0, 0.5, 3.0)},
+    "area_spread": {"kind": "AREA", "shape": "SQUARE", "size": 0.8, "spread": math.radians(60)},
+    "area_spread_disk": {"kind": "AREA", "shape": "DISK", "size": 0.8, "spread": math.radians(100)},
+}
+
+
+@variants("LIGHT", values=_LAMPS, **_FIELDS)
+def light(scene, fields):
+    _lamp(scene, **fields)
+
+
+@variants("LIGHT", values={"half": (0.5, 0.35), "full": (1.0, 0.3)}, **_FIELDS)
+def light_spot_blend(scene, value):
+    """Between the edge of the cone and where it is fully lit."""
+    blend, aside = value
+    _spot(scene)
+    lamp = parts.add_light(scene, "Light", "SPOT", 200.0, (1.2, -0.8, 2.5), (aside, 0, 0), shadow_soft_size=0.0)
+    lamp.data.spot_size, lamp.data.spot_blend = 0.5, blend
+
+
+@variants("LIGHT", values={"point": "POINT", "spot": "SPOT"}, since=(4, 0), **_FIELDS)
+def light_true_sphere(scene, kind):
+    light = _lamp(scene, kind, shadow_soft_size=0.5).data
+    # Blender 4.0 had nothing else, and no switch.
+    if hasattr(light, "use_soft_falloff"):
+        light.use_soft_falloff = False
+
+
+_KINDS = {
+    "point": {"kind": "POINT", "shadow_soft_size": 0.3},
+    "spot": {"kind": "SPOT", "shadow_soft_size": 0.3, "spot_size": 1.2},
+    "sun": {"kind": "SUN", "angle": 0.3},
+    "area": {"kind": "AREA", "size": 0.8},
+}
+
+
+@variants("LIGHT", values=_KINDS, needs=with_light_field("normalize"), **_FIELDS)
+def light_normalize_off(scene, fields):
+    _lamp(scene, normalize=False, **fields)
+
+
+@variants("LIGHT", values=_KINDS, needs=with_light_field("exposure"), **_FIELDS)
+def light_exposure(scene, fields):
+    _lamp(scene, exposure=-1.5, **fields)
+
+
+@variants("LIGHT", values=_KINDS, needs=with_light_field("use_temperature"), **_FIELDS)
+def light_temperature(scene, fields):
+    _lamp(scene, use_temperature=True, temperature=2700.0, **fields)
+
+
+@variants("LIGHT", values=_KINDS, **_FIELDS)
+def light_own_nodes(scene, fields):
+    emission_nodes(_lamp(scene, **fields).data, lambda nodes: {"Color": (0.3, 0.9, 0.5), "Strength": 2.5})
+
+
+@variants("LIGHT", values=_KINDS, **_FIELDS)
+def light_shadow_off(scene, fields):
+    """A card in the way, which such light passes."""
+    light = _lamp(scene, **fields).data
+    grey = shader("ShaderNodeBsdfDiffuse", Color=(0.5, 0.5, 0.5))
+    parts.place(scene, "Card", parts.plane_mesh("Card", 0.4), grey, (0.4, -0.27, 0.83))
+    if bpy.app.version >= (4, 2):
+        light.use_shadow = False
+    else:
+        light.cycles.cast_shadow = False
+
+
+@variants(
+    "LIGHT", values={"plain": (1, 1, 1), "scaled": (0.5, 1.5, 1.0), "mirrored": (-1.0, 0.7, 1.0)}, **{**_FIELDS, "quick": False}
+)
+def light_mesh(scene, scale):
+    _spot(scene)
+    glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=20.0)
+    parts.place(scene, "Glow", parts.plane_mesh("Glow", 1.0), glow, (1.0, -0.6, 1.8), scale, rotation=(0.4, 0.5, 0))
