@@ -156,6 +156,16 @@ def _switch(column, layer, name, active):
     row.prop(layer, "use_pass_" + name)
 
 
+class LANCER_VIEWLAYER_PT_filter(LancerPanel, bpy.types.Panel):
+    bl_label = "Filter"
+    bl_context = "view_layer"
+
+    def draw(self, context):
+        column = self._column()
+        column.prop(context.view_layer, "use_sky", text="Environment")
+        column.prop(context.view_layer, "use_solid", text="Surfaces")
+
+
 CLASSES = (
     LANCER_RENDER_PT_sampling,
     LANCER_RENDER_PT_light_paths,
@@ -163,4 +173,5 @@ CLASSES = (
     LANCER_RENDER_PT_performance,
     LANCER_RENDER_PT_messages,
     LANCER_VIEWLAYER_PT_passes,
+    LANCER_VIEWLAYER_PT_filter,
 )

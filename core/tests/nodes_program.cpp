@@ -89,7 +89,7 @@ TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   bad.image_count = 1;
   EXPECT_EQ(refusal(bad), "material 'Wood': node 1: 1 images for the 6 sides of a cube");
   EXPECT_EQ(refusal(flagged(node(LANCER_NODE_IMAGE), 512)), "material 'Wood': node 1: flags 512 has bits beyond the last flag");
-  EXPECT_NE(refusal(flagged(node(LANCER_NODE_BUMP), 4)), "");
+  EXPECT_NE(refusal(flagged(node(LANCER_NODE_BUMP), 8)), "");
   EXPECT_NE(refusal(flagged(node(LANCER_NODE_SEPARATE), 1)), "");
   bad = node(LANCER_NODE_BUMP);
   bad.first = 2;

@@ -4,6 +4,8 @@ import fnmatch
 import importlib
 from dataclasses import dataclass, replace
 
+import bpy
+
 from .figures import KINDS, Kind, Limit
 
 # One file for each subject.
@@ -61,8 +63,10 @@ class Case:
         return self.limit or self.kind.limit
 
 
-def case(kind_name="EXACT", *, name=None, limit=None, reason="", **fields):
-    """Decorates build(scene); the scene's name is the function's."""
+def case(kind_name="EXACT", *, name=None, limit=None, reason="", blender3=None, **fields):
+    """Decorates build(scene); the scene's name is the function's. blender3: (limit, reason) of its own for Blender 3."""
+    if blender3 and bpy.app.version < (4, 0):
+        limit, reason = blender3
     if (limit is None) != (not reason):
         raise ValueError(f"{name}: a limit of its own and the reason for it go together")
 

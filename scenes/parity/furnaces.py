@@ -80,10 +80,26 @@ _WALTER = {
 }
 
 
+_DRAWN_WITHOUT_MASK = (
+    "Cycles 3 draws stretched facets of Beckmann as if none were hidden: brighter under a sky. Under a sun both agree "
+    "(sun_anisotropic_beckmann)"
+)
+_WALK = (
+    "Cycles 3 walks from facet to facet at random; the compensated lobe of Blender 4 stands in, and does not know the stretch"
+)
+_BLENDER3 = {
+    "anisotropic_beckmann": {"blender3": ((0.135, 0.70), _DRAWN_WITHOUT_MASK)},
+    "anisotropic_multiple": {"blender3": ((0.105, 0.49), _WALK)},
+}
+
+
 @variants(
     "FURNACE",
     values={
-        name: (value, {"needs": with_node(value[0]), **(_WALTER if "beckmann" in name else {})})
+        name: (
+            value,
+            {"needs": with_node(value[0]), **(_WALTER if "beckmann" in name else {}), **_BLENDER3.get(name, {})},
+        )
         for name, value in _CLOSURES.items()
     },
     size=_SIZE,
@@ -92,6 +108,19 @@ _WALTER = {
 def furnace(scene, value):
     kind, props, inputs = value
     _furnace(scene, lambda roughness: shader(kind, props, Roughness=roughness, **inputs))
+
+
+@case("EXACT", size=_SIZE, bounces=0)
+def sun_anisotropic_beckmann(scene):
+    """The same plates, lit from one direction only: what the lobe is worth, whoever draws it."""
+    kind, props, inputs = _CLOSURES["anisotropic_beckmann"]
+    _furnace(scene, lambda roughness: shader(kind, props, Roughness=roughness, **inputs))
+    parts.set_world(scene, (0, 0, 0))
+    sun = parts.add_light(scene, "Sun", "SUN", math.pi, (0, 0, 30), angle=0.0)
+    sun.rotation_euler = Euler((0.9, 0.4, 0))
+    for thing in scene.objects:
+        if thing.type == "MESH":
+            thing.visible_shadow = False
 
 
 # Where velvet reflects a ten thousandth of the light and less, too few samples meet it to tell its albedo.
@@ -110,6 +139,9 @@ def furnace_translucent(scene):
 
 
 # Seen from the denser side smooth surfaces reflect all light beyond 50 degrees; the last angle shows what facets still pass.
+_SAME_SIDE = (
+    "Cycles 3 counts refraction that ends on the viewer's side of the surface, too, which light inside a glass cannot do"
+)
 _INSIDE = {0.1: _ANGLES[:3], 0.3: _ANGLES[:3], 0.6: _ANGLES[:4], 1.0: _ANGLES}
 
 
@@ -117,8 +149,8 @@ _INSIDE = {0.1: _ANGLES[:3], 0.3: _ANGLES[:3], 0.6: _ANGLES[:4], 1.0: _ANGLES}
     "FURNACE",
     values={
         "glass": ("ShaderNodeBsdfGlass", "GGX"),
-        "refraction": ("ShaderNodeBsdfRefraction", "GGX"),
-        "refraction_beckmann": ("ShaderNodeBsdfRefraction", "BECKMANN"),
+        "refraction": (("ShaderNodeBsdfRefraction", "GGX"), {"blender3": ((0.018, 0.26), _SAME_SIDE)}),
+        "refraction_beckmann": (("ShaderNodeBsdfRefraction", "BECKMANN"), {"blender3": ((0.06, 0.86), _SAME_SIDE)}),
     },
     size=_size(_INSIDE),
     bounces=1,

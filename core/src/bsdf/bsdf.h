@@ -67,7 +67,8 @@ struct Bsdf {
   void begin(const glm::vec3 &wo, const glm::vec3 &ns, const glm::vec3 &ng, bool inside, bool bump_correction);
   void complete();
 
-  template <uint32_t Shapes = kAllShapes> BsdfValue eval(const glm::vec3 &wi) const;
+  // drawn: the lobe that drew wi, as sample() weighs it; -1: none.
+  template <uint32_t Shapes = kAllShapes> BsdfValue eval(const glm::vec3 &wi, int drawn = -1) const;
   // u_lobe picks the lobe, and what it says beyond that picks reflection or refraction; u the direction; all in [0, 1).
   template <uint32_t Shapes = kAllShapes> BsdfSample sample(float u_lobe, glm::vec2 u) const;
 

@@ -121,10 +121,10 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
   return value;
 }
 
-template <uint32_t Shapes> BsdfValue Bsdf::eval(const glm::vec3 &wi) const {
+template <uint32_t Shapes> BsdfValue Bsdf::eval(const glm::vec3 &wi, int drawn) const {
   Local local;
   turn_to_frames(wi, -1, wi, local);
-  return sum<Shapes>(local, {});
+  return sum<Shapes>(local, {.lobe = drawn});
 }
 
 // The lobe that u falls on, and in u what remains of it, again in [0, 1). A lobe of probability 0 is never picked, even where

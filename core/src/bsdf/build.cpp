@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "bsdf/ashikhmin.h"
 #include "bsdf/coating.h"
@@ -14,11 +13,6 @@
 namespace lancer {
 
 namespace {
-
-glm::vec3 unit_or(const glm::vec3 &v, const glm::vec3 &otherwise) {
-  const float length2 = glm::dot(v, v);
-  return length2 > 0.0f && std::isfinite(length2) ? v / std::sqrt(length2) : otherwise;
-}
 
 // The normal of lobes that need not reflect: as it is given; Blender 3.x bent it, too.
 glm::vec3 wide_normal(const Bsdf &bsdf, const LobeInputs &inputs) {
@@ -188,10 +182,6 @@ void add_translucent(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weig
   add(bsdf, lobe);
 }
 
-bool scatters_beyond_albedo(const Lobe &lobe) {
-  return lobe.shape == LobeShape::Microfacet && !reflects(lobe) && !lobe.delta && !lobe.delta_through;
-}
-
 } // namespace
 
 uint32_t shapes_of(LobeKind kind) {
@@ -262,104 +252,6 @@ void add_lobe(Bsdf &bsdf, const LobeInputs &inputs) {
   Lobe lobe = course_lobe(shape, Component::Glossy, frame, inputs, weight);
   lobe.delta = shape == LobeShape::Mirror;
   add(bsdf, lobe);
-}
-
-uint8_t add_frame(Bsdf &bsdf, const glm::vec3 &n, const glm::vec3 &t) {
-  if (n == glm::vec3(0.0f) && t == glm::vec3(0.0f))
-    return 0;
-  const glm::vec3 normal = normal_or_shading(bsdf, n);
-  const bool any_tangent = t == glm::vec3(0.0f);
-  const Frame frame = any_tangent ? Frame() : Frame(normal, t);
-  // One that is there already will do.
-  for (int i = 0; i < bsdf.frame_count; ++i)
-    if (bsdf.frames[i].n == normal && (any_tangent || bsdf.frames[i].t == frame.t))
-      return static_cast<uint8_t>(i);
-  if (bsdf.frame_count == kMaxFrames)
-    return 0;
-  const int i = bsdf.frame_count++;
-  bsdf.frames[i] = any_tangent ? Frame(normal) : frame;
-  bsdf.wo_local[i] = bsdf.frames[i].to_local(bsdf.wo);
-  return static_cast<uint8_t>(i);
-}
-
-glm::vec3 normal_or_shading(const Bsdf &bsdf, const glm::vec3 &n) {
-  // To normalise once more might move it by a bit, and make a second frame of the first.
-  return n == bsdf.ns ? n : unit_or(n, bsdf.ns);
-}
-
-glm::vec3 reflecting_normal(const Bsdf &bsdf, const glm::vec3 &n) {
-  const glm::vec3 normal = normal_or_shading(bsdf, n);
-  if (!bsdf.bump_correction || normal == bsdf.ng)
-    return normal;
-  // The mirrored direction shall rise above the surface by this cosine, or nearly as much as wo does.
-  const float cos_o = glm::dot(bsdf.wo, bsdf.ng), least = std::min(0.9f * cos_o, 0.01f);
-  const glm::vec3 mirrored = 2.0f * glm::dot(normal, bsdf.wo) * normal - bsdf.wo;
-  if (glm::dot(bsdf.ng, mirrored) >= least)
-    return normal;
-  // In the plane of both normals wo is (x, z). The normal at angle t from ng mirrors its z to x sin(2t) + z cos(2t), which is
-  // to be least: the sine and cosine of the two angles where it is, taken on the side towards the given normal.
-  const glm::vec3 side = unit_or(normal - glm::dot(normal, bsdf.ng) * bsdf.ng, normal);
-  const float x = glm::dot(bsdf.wo, side), z = cos_o;
-  const float length2 = x * x + z * z;
-  const float reach = std::sqrt(std::max(0.0f, length2 - least * least));
-  // cos(2t) of the solution; the tilt is the largest that still works.
-  const float cos_2t = (z * least - x * reach) / length2;
-  const float cos_t = std::sqrt(std::clamp(0.5f * (1.0f + cos_2t), 0.0f, 1.0f));
-  const float sin_t = std::sqrt(std::clamp(0.5f * (1.0f - cos_2t), 0.0f, 1.0f));
-  return glm::normalize(sin_t * side + cos_t * bsdf.ng);
-}
-
-glm::vec3 turn_about(const glm::vec3 &t, const glm::vec3 &axis, float turns) {
-  const float angle = 2.0f * std::numbers::pi_v<float> * turns, c = std::cos(angle), s = std::sin(angle);
-  return c * t + s * glm::cross(axis, t) + (1.0f - c) * glm::dot(axis, t) * axis;
-}
-
-void Bsdf::begin(const glm::vec3 &wo_, const glm::vec3 &ns_, const glm::vec3 &ng_, bool inside_, bool bump_correction_) {
-  wo = wo_;
-  ns = ns_;
-  ng = ng_;
-  inside = inside_;
-  bump_correction = bump_correction_;
-  flat = ns == ng;
-  smooth = false;
-  frames[0] = Frame(ns);
-  wo_local[0] = frames[0].to_local(wo);
-  frame_count = 1;
-  count = 0;
-  shapes = 0;
-  emission = glm::vec3(0.0f);
-}
-
-void Bsdf::complete() {
-  // Lobes are picked by the light that they are expected to scatter.
-  float sum = 0.0f;
-  smooth = false;
-  for (int i = 0; i < count; ++i) {
-    // The albedo of rough refraction is that of the smooth surface, which may reflect all where tilted facets do not.
-    const glm::vec3 &expected = scatters_beyond_albedo(lobes[i]) ? lobes[i].color : lobes[i].albedo;
-    sum += lobes[i].probability = std::max({expected.x, expected.y, expected.z, 0.0f});
-    smooth = smooth || !lobes[i].delta;
-  }
-  for (int i = 0; i < count; ++i)
-    lobes[i].probability = sum > 0.0f ? lobes[i].probability / sum : 0.0f;
-}
-
-glm::vec3 Bsdf::albedo(Component component) const {
-  glm::vec3 sum(0.0f);
-  for (int i = 0; i < count; ++i) {
-    if (lobes[i].component == component)
-      sum += lobes[i].albedo - lobes[i].through;
-    if (component == Component::Transmission)
-      sum += lobes[i].through;
-  }
-  return sum;
-}
-
-glm::vec3 Bsdf::albedo() const {
-  glm::vec3 sum(0.0f);
-  for (int i = 0; i < count; ++i)
-    sum += lobes[i].albedo;
-  return sum;
 }
 
 } // namespace lancer

@@ -38,7 +38,7 @@ enum class FresnelKind : uint8_t {
   Principled3 = 5 // the same as Blender 3.x has it
 };
 
-inline constexpr int kMaxFrames = 8;
+inline constexpr int kMaxFrames = 16;
 inline constexpr int kMaxLobes = 64;
 
 struct Lobe {

@@ -1,8 +1,7 @@
 #include "render/session.h"
 
 #include "scene/error.h"
-
-#include <unistd.h>
+#include "scene/memory.h"
 
 namespace lancer {
 
@@ -18,14 +17,10 @@ Camera normalised(Camera camera, const Normalisation &normalisation) {
   return camera;
 }
 
-// Refuses a film that the machine cannot hold, before it takes the machine down.
+// Refuses a film that the machine cannot hold.
 const Camera &checked_memory(const Camera &camera, const SessionSettings &settings) {
-  const double needed = Film::bytes_needed(camera.region_width, camera.region_height, settings.passes);
-  const double present = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-  if (needed > 0.8 * present)
-    throw Error(Fault::Memory, "film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) +
-                                   " pixels need " + std::to_string(uint64_t(needed / 1e6)) + " MB, this machine has " +
-                                   std::to_string(uint64_t(present / 1e6)) + " MB");
+  check_memory("film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) + " pixels",
+               Film::bytes_needed(camera.region_width, camera.region_height, settings.passes));
   return camera;
 }
 
