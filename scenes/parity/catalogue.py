@@ -44,7 +44,7 @@ class Case:
     until: tuple = (99, 0)  # the first that lacks it again
     bounces: int = 2
     transparent_bounces: int = 32
-    samples: int = 128  # of each half of each engine, at first
+    samples: int = 32  # of each half of each engine, at first
     size: tuple = (96, 64)
     filter_width: float = 0.0  # 0: the box of one pixel; else the width of a Blackman-Harris filter
     passes: tuple = ("Combined",)  # by the names of Blender 5

@@ -30,6 +30,10 @@ glm::vec3 through_coat(const glm::vec3 &tint, float cos_o, float ior, float coat
   return glm::mix(glm::vec3(1.0f), glm::pow(tint, glm::vec3(depth)), coat);
 }
 
+Grain base_grain(const LobeInputs &lobe, const PrincipledInputs &in) {
+  return grain_of(lobe, unit(in.roughness), unit(in.anisotropic));
+}
+
 MicrofacetPlan plan_coat(const PrincipledInputs &in) {
   const float alpha = unit(in.coat_roughness) * unit(in.coat_roughness);
   Lobe lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), alpha, alpha, in.rules);
@@ -78,20 +82,20 @@ Lobe placed(const MicrofacetPlan &plan, const Bsdf &bsdf, uint8_t frame, const g
 
 } // namespace
 
-LayerPlan plan_layers(const LobeInputs &lobe, const PrincipledInputs &in, Sides sides) {
+LayerPlan plan_layers(const LobeInputs &lobe, const PrincipledInputs &in, Sides sides, const LayerPlan &kept) {
   LayerPlan plan;
-  plan.grain = grain_of(lobe, unit(in.roughness), unit(in.anisotropic));
+  const Grain grain = base_grain(lobe, in);
   const float metallic = unit(in.metallic), transmission = unit(in.transmission);
-  if (in.coat > kNothing)
+  if (in.coat > kNothing && !kept.coat)
     plan.coat = plan_coat(in);
-  if (metallic > kNothing)
-    plan.metal = plan_metal(in, plan.grain);
+  if (metallic > kNothing && !kept.metal)
+    plan.metal = plan_metal(in, grain);
   if (metallic < 1.0f && transmission > kNothing)
     for (const bool inside : {false, true})
-      if (sides == Sides::Both || inside == (sides == Sides::Inside))
+      if (!kept.glass[inside] && (sides == Sides::Both || inside == (sides == Sides::Inside)))
         plan.glass[inside] = plan_glass(in, inside);
-  if (metallic < 1.0f && transmission < 1.0f)
-    plan.gloss = plan_gloss(in, plan.grain);
+  if (metallic < 1.0f && transmission < 1.0f && !kept.gloss)
+    plan.gloss = plan_gloss(in, grain);
   return plan;
 }
 
@@ -101,7 +105,11 @@ void keep_rows(LayerPlan &plan) {
       keep_rows(**layer);
 }
 
-void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, const LayerPlan &plan) {
+void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, const LayerPlan &kept) {
+  const LayerPlan planned = plan_layers(lobe, in, bsdf.inside ? Sides::Inside : Sides::Outside, kept);
+  const auto layer = [](const std::optional<MicrofacetPlan> &first, const std::optional<MicrofacetPlan> &second) {
+    return first ? &*first : second ? &*second : nullptr;
+  };
   const glm::vec3 n = normal_or_shading(bsdf, lobe.normal), n_reflect = reflecting_normal(bsdf, lobe.normal);
   const glm::vec3 n_coat = normal_or_shading(bsdf, in.coat_normal);
   const glm::vec3 color = positive(in.base_color);
@@ -118,34 +126,35 @@ void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, 
   }
 
   // The coat reflects, and colours what passes it twice.
-  if (plan.coat) {
+  if (in.coat > kNothing) {
+    const MicrofacetPlan *coat = layer(kept.coat, planned.coat);
     const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, n_coat), glm::vec3(0.0f));
-    const Lobe reflection = placed(*plan.coat, bsdf, frame, in.coat * weight);
+    const Lobe reflection = placed(*coat, bsdf, frame, in.coat * weight);
     add(bsdf, reflection);
     weight = below(weight, reflection.albedo);
     if (in.coat_tint != glm::vec3(1.0f))
-      weight *= through_coat(positive(in.coat_tint), cos_in(bsdf, frame), plan.coat->lobe.ior, in.coat);
+      weight *= through_coat(positive(in.coat_tint), cos_in(bsdf, frame), coat->lobe.ior, in.coat);
   }
 
   bsdf.emission += in.emission * weight;
 
   // Metal, glass and plastic share what is left.
-  const glm::vec3 tangent = plan.grain.stretched ? turn_about(lobe.tangent, n, in.anisotropic_rotation) : glm::vec3(0.0f);
+  const bool stretched = base_grain(lobe, in).stretched;
+  const glm::vec3 tangent = stretched ? turn_about(lobe.tangent, n, in.anisotropic_rotation) : glm::vec3(0.0f);
   const uint8_t frame = add_frame(bsdf, n_reflect, tangent);
-  if (plan.metal) {
-    const float metallic = unit(in.metallic);
-    add(bsdf, placed(*plan.metal, bsdf, frame, metallic * weight));
+  const float metallic = unit(in.metallic), transmission = unit(in.transmission);
+  if (metallic > kNothing) {
+    add(bsdf, placed(*layer(kept.metal, planned.metal), bsdf, frame, metallic * weight));
     weight *= 1.0f - metallic;
   }
-  if (plan.glass[bsdf.inside]) {
-    const float transmission = unit(in.transmission);
-    add(bsdf, placed(*plan.glass[bsdf.inside], bsdf, frame, transmission * weight));
+  if (metallic < 1.0f && transmission > kNothing) {
+    add(bsdf, placed(*layer(kept.glass[bsdf.inside], planned.glass[bsdf.inside]), bsdf, frame, transmission * weight));
     weight *= 1.0f - transmission;
   }
   if (weight == glm::vec3(0.0f))
     return;
-  if (plan.gloss) {
-    const Lobe gloss = placed(*plan.gloss, bsdf, frame, weight);
+  if (const MicrofacetPlan *plastic = layer(kept.gloss, planned.gloss)) {
+    const Lobe gloss = placed(*plastic, bsdf, frame, weight);
     add(bsdf, gloss);
     weight = below(weight, gloss.albedo);
   }
@@ -160,7 +169,7 @@ void add_principled(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &
   if (principled.rules == Rules::Blender3)
     add_sum3(bsdf, lobe, principled);
   else
-    add_layers(bsdf, lobe, principled, plan_layers(lobe, principled, bsdf.inside ? Sides::Inside : Sides::Outside));
+    add_layers(bsdf, lobe, principled, {});
 }
 
 } // namespace lancer

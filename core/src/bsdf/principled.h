@@ -33,9 +33,9 @@ inline float cos_in(const Bsdf &bsdf, uint8_t frame) { return std::max(0.0f, bsd
 // The sides of the surface that a plan is for.
 enum class Sides { Outside, Inside, Both };
 
-// The layers of Blender 4 and newer, as far as neither wo nor what lies above changes them.
+// The layers of Blender 4 and newer, as far as neither wo nor what lies above changes them. A layer that is not there is
+// planned where it is needed.
 struct LayerPlan {
-  Grain grain;
   std::optional<MicrofacetPlan> coat, metal, glass[2], gloss; // glass: from outside, from inside
 
   // Nothing lies above the diffuse base, and nothing shines below.
@@ -43,10 +43,11 @@ struct LayerPlan {
     return !coat && !metal && !glass[0] && !glass[1] && !gloss && !(in.sheen > kNothing) && in.emission == glm::vec3(0.0f);
   }
 };
-LayerPlan plan_layers(const LobeInputs &lobe, const PrincipledInputs &in, Sides sides);
+// What is kept already is left out.
+LayerPlan plan_layers(const LobeInputs &lobe, const PrincipledInputs &in, Sides sides, const LayerPlan &kept = {});
 // For plans that are looked at many times.
 void keep_rows(LayerPlan &plan);
-void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, const LayerPlan &plan);
+void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, const LayerPlan &kept);
 
 // Blender 3.
 void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in);

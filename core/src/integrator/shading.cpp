@@ -54,6 +54,33 @@ ReadyLobe make_ready(const LobeInputs &inputs, const PrincipledInputs *principle
   return ready;
 }
 
+bool vary(std::initializer_list<const Parameter *> parameters) {
+  return std::any_of(parameters.begin(), parameters.end(), [](const Parameter *parameter) { return parameter->varies(); });
+}
+
+// The layers of a Principled that its nodes leave as they are.
+LayerPlan unvarying_layers(const LobeDescription &lobe, std::span<const glm::vec4> values) {
+  const PrincipledDescription &p = *lobe.principled;
+  // Where a share varies plan what it may be the share of.
+  PrincipledInputs in = evaluate(p, values);
+  for (const auto &[share, value] :
+       {std::pair(&p.coat, &in.coat), {&p.metallic, &in.metallic}, {&p.transmission, &in.transmission}})
+    if (share->varies())
+      *value = 0.5f;
+  LayerPlan plan = plan_layers(evaluate(lobe, values), in, Sides::Both);
+  const bool grain = vary({&p.roughness, &p.anisotropic, &lobe.tangent});
+  if (vary({&p.coat_roughness, &p.coat_ior}))
+    plan.coat.reset();
+  if (grain || vary({&p.base_color, &p.specular_tint}))
+    plan.metal.reset();
+  if (vary({&p.roughness, &p.ior, &p.specular_tint, &p.base_color}))
+    plan.glass[0].reset(), plan.glass[1].reset();
+  if (grain || vary({&p.ior, &p.specular, &p.specular_tint}))
+    plan.gloss.reset();
+  keep_rows(plan);
+  return plan;
+}
+
 } // namespace
 
 Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values_(most_nodes(scene)) {
@@ -65,6 +92,11 @@ Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values
     std::vector<ReadyLobe> &ready = ready_.emplace_back();
     for (size_t i = 0; i < material.fixed.size(); ++i)
       ready.push_back(make_ready(material.fixed[i], material.lobes[i].principled ? &material.fixed_principled[i] : nullptr));
+    if (!material.fixed.empty())
+      continue;
+    for (const LobeDescription &lobe : material.lobes)
+      if (ready.emplace_back(); lobe.principled && lobe.principled->constants.rules != Rules::Blender3)
+        ready.back().layers = unvarying_layers(lobe, values_);
   }
 }
 
@@ -146,8 +178,8 @@ void Shader::begin(const Material &material, const Surface &surface, const glm::
 }
 
 void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
+  const std::vector<ReadyLobe> &ready = ready_[size_t(&material - scene_.materials.data())];
   if (!material.fixed.empty()) {
-    const std::vector<ReadyLobe> &ready = ready_[size_t(&material - scene_.materials.data())];
     for (size_t i = 0; i < material.fixed.size(); ++i) {
       if (ready[i].usable && (bsdf.flat || !ready[i].flat_only))
         add(bsdf, ready[i].lobe);
@@ -160,11 +192,14 @@ void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
     }
     return;
   }
-  for (const LobeDescription &lobe : material.lobes) {
+  for (size_t i = 0; i < material.lobes.size(); ++i) {
+    const LobeDescription &lobe = material.lobes[i];
     const LobeInputs inputs = evaluate(lobe, values_);
     if (inputs.weight == glm::vec3(0.0f))
       continue;
-    if (lobe.principled)
+    if (ready[i].layers)
+      add_layers(bsdf, inputs, evaluate(*lobe.principled, values_), *ready[i].layers);
+    else if (lobe.principled)
       add_principled(bsdf, inputs, evaluate(*lobe.principled, values_));
     else
       add_lobe(bsdf, inputs);
