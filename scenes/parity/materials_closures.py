@@ -98,7 +98,7 @@ def glass(scene, roughness):
 @case(bounces=4)
 def glass_under_a_lamp(scene):
     """The lamp's own light through glass, on what stands behind it."""
-    studio(scene, shader("ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.95), Roughness=0.0, IOR=1.45))
+    studio(scene, shader("ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.95), Roughness=0.0, IOR=1.45), caustics=True)
     # Paths meet the lamp behind glass by chance alone.
     scene.objects["Lamp"].data.size = 8.0
 

@@ -96,8 +96,8 @@ def principled_coat_normal(scene):
 @case(
     "LOBES",
     limit=(0.01, 0.055),
-    reason="the coat mirrors the lamp right at the horizon, where the smooth normal sees it and the facet does not: Cycles weighs "
-    "that light by a chance of finding it that its sampler does not have, and loses a tenth of the highlight",
+    reason="the coat mirrors the lamp right at the horizon, where the smooth normal sees it and the facet does not: Cycles "
+    "weighs that light by a chance of finding it that its sampler does not have, and loses a tenth of the highlight",
 )
 def principled_coat_normal_horizon(scene):
     _coat_leaning(scene, (0.8, 0.5, 0.9))
