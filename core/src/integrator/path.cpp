@@ -94,6 +94,8 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
   next_paths_.clear();
   next_rays_.clear();
   for (size_t i = 0; i < paths_.size(); ++i) {
+    if (i + 1 < paths_.size())
+      textures_.ahead(hits_[i + 1]);
     Path path = paths_[i];
     const Ray &ray = rays_[i];
     const double t = hits_[i].t;

@@ -8,6 +8,7 @@
 #include "integrator/scene_lights.h"
 #include "integrator/shading.h"
 #include "integrator/shadow.h"
+#include "integrator/texture_prefetch.h"
 
 namespace lancer {
 
@@ -16,7 +17,7 @@ template <uint32_t Shapes, bool Layers> class PathIntegrator final : public Inte
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), cone_(camera), passes_(settings), kernel_(kernel) {
+        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel) {
     point_.bsdf.shares = passes_.wanted();
   }
 
@@ -66,6 +67,7 @@ private:
   RayGenerator generator_;
   Shader shader_;
   ShadowQueue shadows_;
+  TexturePrefetch textures_;
   PixelCone cone_;
   LightPasses passes_;
   const char *kernel_;

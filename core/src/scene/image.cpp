@@ -195,6 +195,18 @@ glm::vec3 decode_bytes(const glm::vec3 &c) {
 
 size_t Image::bytes() const { return size_t(width) * height * channels * texel_bytes(kind); }
 
+void prefetch(const Image &image, const glm::vec2 &uv, Extension extension) {
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+    return;
+  const Taps across = taps(uv.x, image.width, extension, Interpolation::Linear);
+  const Taps up = taps(uv.y, image.height, extension, Interpolation::Linear);
+  const size_t texel = image.channels * texel_bytes(image.kind);
+  // A row's neighbours mostly share a line of the cache.
+  for (const int64_t y : {up.at[0], up.at[1]})
+    if (y >= 0 && across.at[0] >= 0)
+      __builtin_prefetch(image.texels.get() + (size_t(y) * image.width + size_t(across.at[0])) * texel);
+}
+
 glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight) {
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
     return glm::vec4(0.0f);
