@@ -42,6 +42,26 @@ LobeInputs about(LobeKind kind, const glm::vec3 &n, Rules rules = Rules::Blender
 
 const glm::vec3 kUp(0.0f, 0.0f, 1.0f);
 
+// Where an interpolated normal looks away from the viewer, wide lobes stay what they are about it, and those that reflect are
+// bent until they are seen.
+TEST(BsdfBump, FromBehindTheSmoothNormal) {
+  const glm::vec3 wo = direction(0.1, 0.0), ns = tilted(40.0, std::numbers::pi);
+  const Place place{wo, ns, kUp};
+  ASSERT_LT(glm::dot(wo, ns), 0.0f);
+  const glm::vec3 wi = direction(0.9, 2.0);
+  const double cos_i = glm::dot(wi, ns);
+  // Cosines of unit vectors of floats, times a few factors.
+  EXPECT_NEAR(at(place, about(LobeKind::Lambert, glm::vec3(0.0f))).eval(wi).f().x, cos_i / std::numbers::pi, 8.0 * kUlp);
+  LobeInputs clay = about(LobeKind::Diffuse, glm::vec3(0.0f));
+  const double a = 1.0 / (std::numbers::pi + 0.5 * (0.5 * std::numbers::pi - 2.0 / 3.0)), b = 0.5 * a;
+  const double t = glm::dot(wi, wo), term = t > 0.0 ? t / cos_i : t;
+  EXPECT_NEAR(at(place, clay).eval(wi).f().x, cos_i * (a + b * term), 8.0 * kUlp);
+  const Bsdf gloss = at(place, about(LobeKind::Glossy, glm::vec3(0.0f)));
+  ASSERT_EQ(gloss.count, 1);
+  EXPECT_GT(gloss.wo_local[gloss.lobes[0].frame].z, 0.0f);
+  EXPECT_GT(gloss.albedo().x, 0.0f);
+}
+
 TEST(BsdfBump, NothingIsSampledThroughTheSurface) {
   Random random(1);
   for (LobeKind kind : {LobeKind::Lambert, LobeKind::Diffuse, LobeKind::Beckmann, LobeKind::Phong, LobeKind::BlinnPhong,

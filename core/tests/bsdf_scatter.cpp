@@ -154,6 +154,8 @@ std::vector<Case> cases() {
   LobeInputs bumped_gloss = rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f);
   bumped_gloss.normal = glm::normalize(glm::vec3(-0.4f, 0.3f, 1.0f));
   all.push_back({"bumped", {bumped, bumped_gloss, leaf}, 0.0, 1.5f, glm::normalize(glm::vec3(0.2f, 0.3f, 1.0f)), 1});
+  // A coarse mesh: seen at a grazing angle the interpolated normal looks away from the viewer.
+  all.push_back({"behind", {clay, cloth}, 0.0, 1.5f, glm::normalize(glm::vec3(-0.5f, -0.5f, 1.0f))});
   return all;
 }
 

@@ -6,8 +6,8 @@ import numpy as np
 from .. import parts
 from . import images
 from .catalogue import case, variants
-from .nodes import material
-from .stages import add_uv, camera, card, lamp, sky, studio
+from .nodes import material, shader
+from .stages import add_uv, ball, camera, card, lamp, sky, studio
 
 
 def _waves(space):
@@ -165,3 +165,20 @@ def smooth_and_sharp(scene):
     lamp(scene)
     sky(scene)
     camera(scene)
+
+
+@variants(
+    "LOBES",
+    values={
+        "glossy": ("ShaderNodeBsdfAnisotropic", {"distribution": "GGX"}, {"Anisotropy": 0.0, "Roughness": 0.5}),
+        "principled": ("ShaderNodeBsdfPrincipled", {}, {"Roughness": 0.4}),
+        "clay": ("ShaderNodeBsdfDiffuse", {}, {"Roughness": 1.0}),
+    },
+)
+def coarse(scene, value):
+    """Few smooth faces, whose interpolated normals look away from the viewer at the rim."""
+    kind, props, inputs = value
+    ball(scene, shader(kind, props, **inputs), segments=12)
+    lamp(scene)
+    sky(scene)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), lens=60.0)

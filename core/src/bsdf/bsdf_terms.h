@@ -202,6 +202,8 @@ template <uint32_t Shapes> BsdfSample Bsdf::sample_smooth(int chosen, float u_si
     direction.wi = lambert_sample(u);
   } else if (is<Shapes>(lobe, LobeShape::Matte)) {
     direction.wi = matte_sample(lobe, u);
+  } else if (is<Shapes>(lobe, LobeShape::Sheen)) {
+    direction.wi = sheen_sample(lobe, wo_l, u);
   } else if (!(wo_l.z > 0.0f)) {
     return {};
   } else if (is<Shapes>(lobe, LobeShape::Microfacet)) {
@@ -212,9 +214,7 @@ template <uint32_t Shapes> BsdfSample Bsdf::sample_smooth(int chosen, float u_si
     has_half_vector = true;
   } else {
     // What is left reflects.
-    if (is<Shapes>(lobe, LobeShape::Sheen)) {
-      direction.wi = sheen_sample(lobe, wo_l, u);
-    } else if (is<Shapes>(lobe, LobeShape::Ashikhmin)) {
+    if (is<Shapes>(lobe, LobeShape::Ashikhmin)) {
       direction.wi = gloss_sample(lobe, wo_l, u);
     } else {
       if (is<Shapes>(lobe, LobeShape::Beckmann))

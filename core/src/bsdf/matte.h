@@ -93,9 +93,10 @@ inline bool matte_transmits(const Lobe &lobe) { return lobe.variant == static_ca
 
 inline ColorValue oren_nayar_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
   const float a = lobe.alpha_x, b = lobe.alpha_y;
-  float t = glm::dot(wi, wo) - wi.z * wo.z;
+  const float cos_o = std::max(wo.z, 0.0f);
+  float t = glm::dot(wi, wo) - wi.z * cos_o;
   if (t > 0.0f)
-    t /= std::max(wi.z, wo.z);
+    t /= std::max(wi.z, cos_o);
   glm::vec3 f(a + b * t);
   if (lobe.f0 != glm::vec3(0.0f))
     f += lobe.f0 * (1.0f - (a * kPi + b * oren_nayar_g(wi.z)));
@@ -130,13 +131,14 @@ inline ColorValue dust_sheen_eval(const glm::vec3 &wo, const glm::vec3 &wi) {
   return {glm::vec3(schlick_weight(cos_h) * wi.z), warp_cosine_hemisphere_pdf(wi.z)};
 }
 
-// 0 where wi is on the wrong side: above for translucency, below for all others.
+// 0 where wi is on the wrong side: above for translucency, below for all others. Velvet and dust are also 0 where wo is behind
+// the normal; the others go on as at the horizon, as where a coarse mesh's interpolated normal looks away from the viewer.
 inline ColorValue matte_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
   if (matte_transmits(lobe)) {
     const float value = std::max(-wi.z, 0.0f) * kInvPi;
     return {glm::vec3(value), value};
   }
-  if (!(wi.z > 0.0f && wo.z > 0.0f))
+  if (!(wi.z > 0.0f))
     return {};
   switch (static_cast<Matte>(lobe.variant)) {
   case Matte::OrenNayar:
@@ -144,9 +146,9 @@ inline ColorValue matte_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::v
   case Matte::Burley:
     return burley_eval(lobe, wo, wi);
   case Matte::Velvet:
-    return velvet_eval(lobe, wo, wi);
+    return wo.z > 0.0f ? velvet_eval(lobe, wo, wi) : ColorValue{};
   case Matte::DustSheen:
-    return dust_sheen_eval(wo, wi);
+    return wo.z > 0.0f ? dust_sheen_eval(wo, wi) : ColorValue{};
   case Matte::Translucent:
     break;
   }

@@ -57,7 +57,7 @@ inline glm::vec3 sheen_turn(const glm::vec3 &wo, const glm::vec3 &w, float sign)
 
 // Value and density are the same.
 inline ColorValue sheen_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
-  if (!(wi.z > 0.0f && wo.z > 0.0f))
+  if (!(wi.z > 0.0f))
     return {};
   const float a = lobe.alpha_x, b = lobe.alpha_y;
   const glm::vec3 w = sheen_turn(wo, wi, 1.0f);

@@ -111,10 +111,12 @@ glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const
       frame = lobe.frame;
       wi = bsdf.frames[frame].to_local(wi_world);
     }
-    if (!(wi.z > 0.0f) || !(wo.z > 0.0f))
+    if (!(wi.z > 0.0f))
       continue;
     if (lobe.shape == LobeShape::Lambert)
       diffuse += lobe.color * (kInvPi * wi.z);
+    else if (!(wo.z > 0.0f))
+      continue;
     else if (lobe.shape == LobeShape::Beckmann && !lobe.delta)
       specular += lobe.color * (coating_eval_pdf(lobe, wo, wi, half_vector(wo, wi)).f * wi.z);
     else if (lobe.shape == LobeShape::Phong)

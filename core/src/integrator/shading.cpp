@@ -16,16 +16,6 @@ size_t most_nodes(const Scene &scene) {
   return most;
 }
 
-// The shading normal as the viewer sees it. Where interpolation lets it look away from him it is tilted just so far that it
-// sees him at a grazing angle, as the smooth surface that it stands for would.
-glm::vec3 visible_normal(const glm::vec3 &ns, const glm::vec3 &ng, const glm::vec3 &wo) {
-  const float cosine = glm::dot(wo, ns);
-  constexpr float grazing = 1.0f / 1024.0f;
-  if (cosine >= grazing || glm::dot(wo, ng) < grazing)
-    return cosine > 0.0f ? ns : ng;
-  return glm::normalize(ns + (grazing - cosine) * wo);
-}
-
 // Makes a lobe once where neither wo nor the place changes it.
 ReadyLobe make_ready(const LobeInputs &inputs, const PrincipledInputs *principled) {
   ReadyLobe ready;
@@ -174,7 +164,7 @@ void Shader::begin(const Material &material, const Surface &surface, const glm::
     if (length2 > 0.0f && std::isfinite(length2))
       ns = bumped / std::sqrt(length2);
   }
-  bsdf.begin(wo, visible_normal(ns, ng, wo), ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
+  bsdf.begin(wo, ns, ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
 }
 
 void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
