@@ -73,9 +73,12 @@ _CLOSURES = {
 }
 
 
+# Where Cycles' fit of Beckmann's masking shows: for smoother surfaces and steeper angles it is exact.
+_FITTED = {0.3: (80,), 0.6: (65, 80), 1.0: (45, 65, 80)}
+_EXACT = {roughness: tuple(a for a in _ANGLES if a not in _FITTED.get(roughness, ())) for roughness in _ROUGHNESS}
 _WALTER = {
     "limit": (0.003, 0.0035),
-    "reason": "Cycles divides by the chance of a facet as Walter's fit of the masking tells it, which is up to 0.35 % off; "
+    "reason": "Cycles divides by the chance of a facet as Walter's fit of the masking tells it, which is up to 0.31 % off; "
     "ours is the one that the facets are really drawn with",
 }
 
@@ -93,21 +96,35 @@ _BLENDER3 = {
 }
 
 
-@variants(
-    "FURNACE",
-    values={
-        name: (
-            value,
-            {"needs": with_node(value[0]), **(_WALTER if "beckmann" in name else {}), **_BLENDER3.get(name, {})},
-        )
-        for name, value in _CLOSURES.items()
-    },
-    size=_SIZE,
-    bounces=1,
-)
-def furnace(scene, value):
+def _closures(tiles, fields, names):
+    """Their values with the fields that each scene has of its own."""
+    shared = {"size": _size(tiles), **fields}
+    return {
+        name: (_CLOSURES[name], {"needs": with_node(_CLOSURES[name][0]), **shared, **_BLENDER3.get(name, {})}) for name in names
+    }
+
+
+_BECKMANN = tuple(name for name in _CLOSURES if "beckmann" in name)
+
+
+def _closure(scene, value, tiles):
     kind, props, inputs = value
-    _furnace(scene, lambda roughness: shader(kind, props, Roughness=roughness, **inputs))
+    _furnace(scene, lambda roughness: shader(kind, props, Roughness=roughness, **inputs), tiles)
+
+
+@variants("FURNACE", values=_closures(_TILES, {}, tuple(name for name in _CLOSURES if name not in _BECKMANN)), bounces=1)
+def furnace(scene, value):
+    _closure(scene, value, _TILES)
+
+
+@variants("FURNACE", values=_closures(_EXACT, {}, _BECKMANN), bounces=1)
+def furnace_exact(scene, value):
+    _closure(scene, value, _EXACT)
+
+
+@variants("FURNACE", values=_closures(_FITTED, _WALTER, _BECKMANN), bounces=1)
+def furnace_fitted(scene, value):
+    _closure(scene, value, _FITTED)
 
 
 @case("EXACT", size=_SIZE, bounces=0)
@@ -143,24 +160,41 @@ _SAME_SIDE = (
     "Cycles 3 counts refraction that ends on the viewer's side of the surface, too, which light inside a glass cannot do"
 )
 _INSIDE = {0.1: _ANGLES[:3], 0.3: _ANGLES[:3], 0.6: _ANGLES[:4], 1.0: _ANGLES}
+_INSIDE_EXACT = {roughness: tuple(a for a in angles if a in _EXACT[roughness]) for roughness, angles in _INSIDE.items()}
+_INSIDE_FITTED = {0.6: (65,), 1.0: (45, 65, 80)}
+
+
+def _inside(scene, kind, distribution, tiles):
+    _furnace(scene, lambda r: shader(kind, {"distribution": distribution}, Roughness=r, Color=(1, 1, 1), IOR=1.3), tiles)
+    for thing in scene.objects:
+        if thing.type == "MESH":
+            thing.data.flip_normals()
 
 
 @variants(
     "FURNACE",
     values={
-        "glass": ("ShaderNodeBsdfGlass", "GGX"),
-        "refraction": (("ShaderNodeBsdfRefraction", "GGX"), {"blender3": ((0.018, 0.26), _SAME_SIDE)}),
-        "refraction_beckmann": (("ShaderNodeBsdfRefraction", "BECKMANN"), {"blender3": ((0.06, 0.86), _SAME_SIDE)}),
+        "glass": "ShaderNodeBsdfGlass",
+        "refraction": ("ShaderNodeBsdfRefraction", {"blender3": ((0.018, 0.26), _SAME_SIDE)}),
     },
     size=_size(_INSIDE),
     bounces=1,
 )
-def furnace_inside(scene, value):
-    kind, distribution = value
-    _furnace(scene, lambda r: shader(kind, {"distribution": distribution}, Roughness=r, Color=(1, 1, 1), IOR=1.3), _INSIDE)
-    for thing in scene.objects:
-        if thing.type == "MESH":
-            thing.data.flip_normals()
+def furnace_inside(scene, kind):
+    _inside(scene, kind, "GGX", _INSIDE)
+
+
+@variants(
+    "FURNACE",
+    values={
+        "exact": (_INSIDE_EXACT, {"size": _size(_INSIDE_EXACT)}),
+        "fitted": (_INSIDE_FITTED, {"size": _size(_INSIDE_FITTED), **_WALTER}),
+    },
+    bounces=1,
+    blender3=((0.06, 0.86), _SAME_SIDE),
+)
+def furnace_inside_beckmann(scene, tiles):
+    _inside(scene, "ShaderNodeBsdfRefraction", "BECKMANN", tiles)
 
 
 _PHONG = {0.1: _ANGLES, 0.3: _ANGLES, 0.6: _ANGLES[:-1], 1.0: _ANGLES[:-2]}

@@ -58,10 +58,11 @@ def area(scene, value):
     parts.add_light(scene, "Light", "AREA", 150.0, (1.2, -0.8, 2.2), shape=shape, size=x, size_y=y)
 
 
-@variants(values={"square": ("SQUARE", 60), "disk": ("DISK", 60), "narrow": ("SQUARE", 5)}, bounces=0)
+@variants(values={"square": ("SQUARE", 60, 80.0), "disk": ("DISK", 60, 80.0), "narrow": ("SQUARE", 5, 120.0)}, bounces=0)
 def area_spread(scene, value):
-    shape, degrees = value
+    shape, degrees, lens = value
     floor_and_block(scene)
+    camera(scene, lens=lens)
     parts.add_light(scene, "Light", "AREA", 100.0, (0.6, -0.6, 2.2), shape=shape, size=1.0, spread=math.radians(degrees))
 
 
@@ -98,14 +99,15 @@ def spot_scaled(scene):
     light.scale = (2.0, 1.0, 1.0)
 
 
-@case()
+@case(bounces=1)
 def lamp_in_mirror(scene):
-    """Lamps as a mirror shows them."""
+    """Lamps as a mirror shows them; what it throws on the floor is not the matter here, and noisy."""
     floor(scene)
     mirror = shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.9, 0.9), Roughness=0.0)
     parts.place(scene, "Mirror", parts.plane_mesh("Mirror", 3.0), mirror, (0, 1.2, 1.2), rotation=(1.3, 0, 0))
-    parts.add_light(scene, "Area", "AREA", 60.0, (-0.8, -1, 2.2), (0, 1, 1), size=0.8)
-    parts.add_light(scene, "Ball", "POINT", 60.0, (0.9, -0.8, 1.8), shadow_soft_size=0.3)
+    parts.add_light(scene, "Area", "AREA", 60.0, (-0.8, -1, 2.2), (0, 1, 1), size=1.2)
+    parts.add_light(scene, "Ball", "POINT", 60.0, (0.9, -0.8, 1.8), shadow_soft_size=0.5)
+    sky(scene, strength=1.0)
     camera(scene, (0, -4, 1.6), (0, 0, 1))
 
 
