@@ -28,3 +28,16 @@ def test_a_value_stands_in_by_its_constant_and_a_colour_by_grey(which, tmp_path)
     assert len(got["messages"]) == 2
     assert any("input 'Roughness'" in text and "the constant 0.37 is used" in text for text in got["messages"])
     assert any("input 'Color'" in text and "mid-grey is used" in text for text in got["messages"])
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_light_between_facets_is_told_where_it_is_computed_differently(which, tmp_path):
+    got = blenders.run(which, tmp_path, "stand_in_cases", "facets")
+    got.pop("console")
+    assert got.pop("BsdfRefraction") == []
+    for kind, messages in got.items():
+        if which == MODULE:
+            assert messages == []
+        else:
+            (text,) = messages
+            assert text.startswith(f"material '{kind}'") and "Multiscatter GGX is computed as in Blender 4" in text

@@ -7,6 +7,7 @@ from ..bindings.enums import Distribution, LobeKind, MathOperation
 from ..bindings.shading import NodeRef
 from .arithmetic import is_constant, triple
 from .coordinates import default_tangent
+from .distributions import read_distribution
 from .graph import NodeGraph
 from .principled import read_principled
 from .sockets import DIFFUSE_OPTION, RULES, SMALLEST_IOR, output_node
@@ -16,13 +17,6 @@ _MAX_LOBES = 64  # of the core
 _NONE = (0.0, 0.0, 0.0)  # a normal or tangent: the surface's own
 # Twice the colour is twice the light for these, so that a constant weight is a part of the colour.
 _LINEAR = {LobeKind.LAMBERT, LobeKind.DIFFUSE, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN}
-_DISTRIBUTIONS = {
-    "SHARP": Distribution.GGX,
-    "BECKMANN": Distribution.BECKMANN,
-    "GGX": Distribution.GGX,
-    "ASHIKHMIN_SHIRLEY": Distribution.ASHIKHMIN_SHIRLEY,
-    "MULTI_GGX": Distribution.MULTI_GGX,
-}
 
 
 class Surface:
@@ -181,7 +175,7 @@ def _glossy(surface, site, weight):
         surface.color(site),
         roughness=_roughness(surface, site, 0.5),
         normal=surface.normal(site),
-        distribution=_DISTRIBUTIONS[site.node.distribution],
+        distribution=read_distribution(surface.graph, site),
         **_stretch(surface, site),
     )
 
@@ -195,7 +189,7 @@ def _glass(surface, site, weight):
         roughness=_roughness(surface, site, 0.0),
         ior=surface.graph.parameter(site, ("IOR",), 1.5, low=SMALLEST_IOR),
         normal=surface.normal(site),
-        distribution=_DISTRIBUTIONS[site.node.distribution],
+        distribution=read_distribution(surface.graph, site),
     )
 
 
@@ -220,7 +214,7 @@ def _metallic(surface, site, weight):
         option=int(physical),
         roughness=_roughness(surface, site, 0.5),
         normal=surface.normal(site),
-        distribution=_DISTRIBUTIONS[site.node.distribution],
+        distribution=read_distribution(surface.graph, site),
         **_stretch(surface, site),
     )
 

@@ -1,9 +1,10 @@
 """The Principled BSDF as its record: each Blender's inputs under their newest names."""
 
 from ..bindings import snapshot
-from ..bindings.enums import Distribution, LobeKind, Rules
+from ..bindings.enums import LobeKind, Rules
 from ..bindings.shading import NodeRef
 from .arithmetic import is_constant
+from .distributions import read_distribution
 from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, SMALLEST_IOR, find
 
 _WHITE = (1.0, 1.0, 1.0)
@@ -59,7 +60,7 @@ def read_principled(surface, site, weight):
         values["emission"] = emission
     record = snapshot.Principled(
         rules=RULES,
-        distribution=Distribution[site.node.distribution],
+        distribution=read_distribution(graph, site),
         option=DIFFUSE_OPTION,
         **values,
     )

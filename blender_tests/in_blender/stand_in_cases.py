@@ -35,3 +35,19 @@ def unknown_sources():
     tree.show(node.outputs[0])
     got = answer(tree.material)["fed"]
     return {"lobes": got["lobes"], "messages": got["messages"]}
+
+
+def facets():
+    """{node: messages} of each that lights facets by one another, and of one that does not."""
+    kinds = {
+        "BsdfPrincipled": "MULTI_GGX",
+        "BsdfGlass": "MULTI_GGX",
+        "BsdfAnisotropic": "MULTI_GGX",
+        "BsdfRefraction": "GGX",
+    }
+    result = {}
+    for kind, distribution in kinds.items():
+        tree = Tree(kind)
+        tree.show(tree.node(kind, distribution=distribution).outputs[0])
+        result[kind] = answer(tree.material)[kind]["messages"]
+    return result

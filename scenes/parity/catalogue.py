@@ -64,9 +64,14 @@ class Case:
 
 
 def case(kind_name="EXACT", *, name=None, limit=None, reason="", blender3=None, **fields):
-    """Decorates build(scene); the scene's name is the function's. blender3: (limit, reason) of its own for Blender 3."""
+    """Decorates build(scene); the scene's name is the function's.
+
+    blender3: (limit, reason) of its own for Blender 3, and what a message there must say if one must.
+    """
     if blender3 and bpy.app.version < (4, 0):
-        limit, reason = blender3
+        limit, reason, *words = blender3
+        if words:
+            fields["announced"] = words[0]
     if (limit is None) != (not reason):
         raise ValueError(f"{name}: a limit of its own and the reason for it go together")
 

@@ -33,7 +33,22 @@ def principled_half_metal(scene):
     studio(scene, principled(Base_Color=_GOLD, Metallic=0.5, Roughness=0.3))
 
 
-@variants("LOBES", values={"single": "GGX", "multiple": "MULTI_GGX"})
+@variants(
+    "LOBES",
+    values={
+        "single": "GGX",
+        "multiple": (
+            "MULTI_GGX",
+            {
+                "blender3": (
+                    (0.025, 0.13),
+                    "Cycles 3 walks from facet to facet at random; the compensated lobe of Blender 4 stands in",
+                    "Multiscatter GGX is computed as in Blender 4",
+                )
+            },
+        ),
+    },
+)
 def principled_distribution(scene, distribution):
     def build(nodes):
         props = {"distribution": distribution}
@@ -73,7 +88,15 @@ def principled_half_transmission(scene):
     open_air(scene, principled(Base_Color=_RED, Transmission_Weight=0.5, Roughness=0.2))
 
 
-@case("LOBES", quick=True)
+@case(
+    "LOBES",
+    quick=True,
+    blender3=(
+        (0.015, 0.16),
+        "Cycles 3 weighs the base's light by a chance of the clear coat that its sampler does not have "
+        "(sun_on_principled_coat)",
+    ),
+)
 def principled_coat(scene):
     studio(scene, principled(Base_Color=_RED, Roughness=0.8, Coat_Weight=1.0, Coat_Roughness=0.1))
 

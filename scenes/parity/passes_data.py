@@ -94,3 +94,11 @@ def pass_data_through_panes(scene):
     for name, alpha, x in (("Clear", 0.0, -0.1), ("Solid", 1.0, 1.7)):
         surface = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.7, 0.3), Alpha=alpha)
         parts.place(scene, name, parts.plane_mesh("Pane", 1.2), surface, (x, -2.5, 1.6), rotation=(1.3, 0, 0.3))
+
+
+@case("PIXELS", passes=("Denoising Depth",), filter_width=0.01, samples=16, size=(192, 128), **_ONE_SAMPLE)
+def pass_denoising_depth_of_the_sky(scene):
+    """From 5.2 as far as a number reaches, before that 0."""
+    ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.3, 0.2)))
+    sky(scene)
+    camera(scene, (0, -4.5, 1.5), (0, 0, 0.9))

@@ -131,4 +131,6 @@ def pass_denoising(scene):
 def pass_denoising_depth(scene):
     """Along the ray, from where the camera begins to see."""
     _still_life(scene)
+    white = shader("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7))
+    parts.place(scene, "Back", parts.plane_mesh("Back", 40.0), white, (0, 6, 0), rotation=(1.5708, 0, 0))
     scene.camera.data.clip_start = 0.5
