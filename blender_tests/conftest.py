@@ -20,3 +20,11 @@ def library():
     from bindings import abi
 
     return abi.load_library()
+
+
+@pytest.fixture
+def raw(library):
+    """The C interface itself, with records that are right until a test spoils them."""
+    from raw import Raw
+
+    return Raw(library)

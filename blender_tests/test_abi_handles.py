@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 from bindings import abi
 from bindings.abi import Status
-from raw import FOREIGN, Raw, add, refused
-
-
-@pytest.fixture
-def raw(library):
-    return Raw(library)
+from raw import FOREIGN, add, refused
 
 
 def calls_on_scenes(raw):

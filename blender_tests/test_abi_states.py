@@ -4,15 +4,9 @@ import ctypes
 import threading
 
 import numpy as np
-import pytest
 from bindings import abi
 from bindings.abi import Accelerator, Status
 from raw import Raw
-
-
-@pytest.fixture
-def raw(library):
-    return Raw(library)
 
 
 def refused(result, status=Status.ERROR_STATE):

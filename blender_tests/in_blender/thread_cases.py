@@ -40,6 +40,7 @@ def asked():
     done = []
 
     def serve(asker):
+        # Look by hand, as the timer does in a window; the pause lets the asking thread run in between.
         while asker.is_alive():
             main_thread._serve()
             time.sleep(0.01)

@@ -1,28 +1,18 @@
 // Panoramas against closed forms and their own inverses, and what a lens of blades looks like.
-#include "scene/camera.h"
 #include "scene/panorama.h"
+
+#include "camera_lab.h"
 
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 #include <random>
 
-namespace lancer {
+namespace lancer_test {
 namespace {
 
-constexpr double kPiD = glm::pi<double>();
+using namespace lancer;
 
-Camera camera(CameraKind kind, std::array<double, 8> panorama) {
-  Camera result;
-  result.kind = kind;
-  result.panorama = panorama;
-  result.width = 200;
-  result.height = 100;
-  result.left = result.bottom = 0.0;
-  result.right = result.top = 1.0;
-  result.clip_start = 0.1;
-  result.clip_end = 50.0;
-  return result;
-}
+constexpr double kPiD = glm::pi<double>();
 
 const std::vector<Camera> &panoramas() {
   static const std::vector<Camera> all = {
@@ -182,4 +172,4 @@ TEST(Camera, WindowUndoesRay) {
 }
 
 } // namespace
-} // namespace lancer
+} // namespace lancer_test

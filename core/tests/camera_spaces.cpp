@@ -1,6 +1,5 @@
 // What nodes ask of a camera: its space, its window and its distance, panoramas' too.
-#include "scene/camera.h"
-
+#include "camera_lab.h"
 #include "nodes_lab.h"
 
 #include <glm/gtc/constants.hpp>
@@ -9,16 +8,10 @@
 namespace lancer_test {
 namespace {
 
+// Moved and turned.
 Camera camera(CameraKind kind) {
-  Camera result;
-  result.kind = kind;
-  result.panorama = {-0.5 * glm::pi<double>(), 0.5 * glm::pi<double>(), -glm::pi<double>(), glm::pi<double>()};
-  result.width = 200;
-  result.height = 100;
-  result.left = result.bottom = 0.0;
-  result.right = result.top = 1.0;
-  result.clip_start = 0.1;
-  result.clip_end = 50.0;
+  Camera result =
+      lancer_test::camera(kind, {-0.5 * glm::pi<double>(), 0.5 * glm::pi<double>(), -glm::pi<double>(), glm::pi<double>()});
   // Its x, y, z are the world's y, z, x.
   result.to_world.linear = glm::dmat3(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0);
   result.to_world.translation = {3.0, -2.0, 7.0};

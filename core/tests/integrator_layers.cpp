@@ -7,18 +7,6 @@
 namespace lancer_test {
 namespace {
 
-lancer_material pane(float transmittance) {
-  lancer_material material = black();
-  material.transmittance = constant(transmittance);
-  return material;
-}
-
-lancer_material glow(float radiance) {
-  lancer_material material = black();
-  material.emission = constant(radiance);
-  return material;
-}
-
 lancer_light sun_above(const Studio &studio) { return studio.sun({0, 0, 1}, std::numbers::pi_v<float>); }
 
 // Halves of light through so many panes onto a floor that shines, or is white under a sun.

@@ -7,19 +7,6 @@
 namespace lancer_test {
 namespace {
 
-lancer_material pane(float transmittance) {
-  lancer_material material = black();
-  material.transmittance = constant(transmittance);
-  return material;
-}
-
-lancer_material glow(float radiance, uint32_t flags = 0) {
-  lancer_material material = black();
-  material.emission = constant(radiance);
-  material.flags = flags;
-  return material;
-}
-
 lancer_lobe newest(uint32_t kind, float color, float roughness = 0.3f) {
   lancer_lobe result = lobe(kind, color, roughness);
   result.rules = LANCER_RULES_45;

@@ -149,4 +149,18 @@ private:
   std::vector<uint32_t> slots_;
 };
 
+// Lets so much light pass straight on, and scatters none.
+inline lancer_material pane(float transmittance) {
+  lancer_material material = black();
+  material.transmittance = constant(transmittance);
+  return material;
+}
+
+inline lancer_material glow(float radiance, uint32_t flags = 0) {
+  lancer_material material = black();
+  material.emission = constant(radiance);
+  material.flags = flags;
+  return material;
+}
+
 } // namespace lancer_test
