@@ -144,26 +144,6 @@ TEST(BsdfPhysics, BothSidesAreAlike) {
     }
 }
 
-TEST(BsdfPhysics, SpecialisedKernelsGiveTheSameBits) {
-  constexpr uint32_t shapes = shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Beckmann);
-  Lobes lobes = single(LobeKind::Beckmann, 0.2f);
-  lobes.push_back(described(LobeKind::Lambert, 0, 1, 0, {0.3f, 0.2f, 0.1f}));
-  Random random(6);
-  for (int k = 0; k < 2000; ++k) {
-    const Bsdf bsdf = seen(lobes, direction(2.0 * random.uniform() - 1.0, 1.0));
-    const glm::vec3 wi = direction(2.0 * random.uniform() - 1.0, 4.0);
-    ASSERT_EQ(bsdf.eval<shapes>(wi).f(), bsdf.eval(wi).f());
-    ASSERT_EQ(bsdf.eval<shapes>(wi).pdf, bsdf.eval(wi).pdf);
-    const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-    const BsdfSample special = bsdf.sample<shapes>(u, {x, y}), general = bsdf.sample(u, {x, y});
-    ASSERT_EQ(special.wi, general.wi);
-    ASSERT_EQ(special.weight, general.weight);
-    ASSERT_EQ(special.pdf, general.pdf);
-    ASSERT_EQ(special.share[0], general.share[0]);
-    ASSERT_EQ(special.component, general.component);
-  }
-}
-
 bool finite(const glm::vec3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 TEST(BsdfPhysics, StaysFiniteAtEveryExtreme) {

@@ -180,26 +180,5 @@ TEST(BsdfScatter, AWrongIndexIsSeen) {
   EXPECT_LT(judge(right, direction(0.6), false, 1, &wrong).p, 1e-6);
 }
 
-TEST(BsdfScatter, SpecialisedKernelsGiveTheSameBits) {
-  constexpr uint32_t shapes = shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Microfacet) | shape_bit(LobeShape::Matte);
-  const std::vector<LobeInputs> lobes{rough(LobeKind::Glass, Facets::MultiGgx, 0.5f), described(LobeKind::Lambert, 0.4f),
-                                      described(LobeKind::Diffuse, 0.4f), rough(LobeKind::Glossy, Facets::Beckmann, 0.0f)};
-  Random random(6);
-  for (int k = 0; k < 2000; ++k) {
-    const Bsdf bsdf = testing::seen(lobes, direction(2.0 * random.uniform() - 1.0, 1.0));
-    const glm::vec3 wi = direction(2.0 * random.uniform() - 1.0, 4.0);
-    ASSERT_EQ(bsdf.eval<shapes>(wi).f(), bsdf.eval(wi).f());
-    ASSERT_EQ(bsdf.eval<shapes>(wi).pdf, bsdf.eval(wi).pdf);
-    const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-    const BsdfSample special = bsdf.sample<shapes>(u, {x, y}), general = bsdf.sample(u, {x, y});
-    ASSERT_EQ(special.wi, general.wi);
-    ASSERT_EQ(special.weight, general.weight);
-    ASSERT_EQ(special.share[0], general.share[0]);
-    ASSERT_EQ(special.share[1], general.share[1]);
-    ASSERT_EQ(special.pdf, general.pdf);
-    ASSERT_EQ(special.delta, general.delta);
-  }
-}
-
 } // namespace
 } // namespace lancer
