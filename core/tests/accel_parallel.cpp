@@ -1,29 +1,10 @@
-// The loop over threads, where the system has no memory for one: allocations of one thread can be made to fail.
+// The loop over threads, also where the system has no memory for one.
+#include "allocations.h"
+
 #include "accel/parallel.h"
 
-#include <cstdlib>
 #include <gtest/gtest.h>
-#include <limits>
 #include <stdexcept>
-
-namespace {
-
-// Allocations of this thread that still succeed.
-thread_local long allowed = std::numeric_limits<long>::max();
-
-} // namespace
-
-void *operator new(std::size_t size) {
-  if (allowed <= 0)
-    throw std::bad_alloc();
-  if (allowed != std::numeric_limits<long>::max())
-    --allowed;
-  if (void *memory = std::malloc(size > 0 ? size : 1))
-    return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void *memory) noexcept { std::free(memory); }
-void operator delete(void *memory, std::size_t) noexcept { std::free(memory); }
 
 namespace lancer {
 namespace {
@@ -31,16 +12,15 @@ namespace {
 TEST(Parallel, WithoutMemoryForAThreadTheOthersWork) {
   const BuildContext context{.threads = 64};
   // From no thread at all to some of them: what is missing is noticed before the first, or work goes on with fewer.
-  for (long left = 0; left < 12; ++left) {
+  for (uint64_t left = 0; left < 12; ++left) {
     std::atomic<int> done{0};
     bool refused = false;
-    allowed = left;
     try {
+      const lancer_test::Allocations allocations(left);
       parallel_for(context, 1000, [&](size_t) { ++done; });
     } catch (const std::bad_alloc &) {
       refused = true;
     }
-    allowed = std::numeric_limits<long>::max();
     EXPECT_EQ(done, refused ? 0 : 1000) << left;
     EXPECT_EQ(refused, left == 0);
   }

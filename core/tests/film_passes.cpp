@@ -120,11 +120,11 @@ TEST(FilmPasses, AreKeptOnlyWhereAskedFor) {
   EXPECT_TRUE(film.has(Pass::Combined));
   // The divisor is there, but nobody asked to read it.
   EXPECT_FALSE(film.has(pass(LANCER_PASS_GLOSSY_COLOR)));
-  EXPECT_EQ(Film::bytes_needed(1, 1, 0), 4 * sizeof(double));
-  EXPECT_EQ(Film::bytes_needed(1, 1, direct), (4 + 6) * sizeof(double));
-  EXPECT_EQ(Film::bytes_needed(1, 1, direct | 1u << LANCER_PASS_GLOSSY_COLOR), (4 + 6) * sizeof(double));
-  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Depth)), 4 * sizeof(double) + sizeof(float));
-  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Position)), 4 * sizeof(double) + 3 * sizeof(float));
+  EXPECT_EQ(Film::bytes_needed(1, 1, 0, 1), 4 * sizeof(double));
+  EXPECT_EQ(Film::bytes_needed(1, 1, direct, 1), (4 + 6) * sizeof(double));
+  EXPECT_EQ(Film::bytes_needed(1, 1, direct | 1u << LANCER_PASS_GLOSSY_COLOR, 1), (4 + 6) * sizeof(double));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Depth), 1), 4 * sizeof(double) + sizeof(float));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Position), 1), 4 * sizeof(double) + 3 * sizeof(float));
 }
 
 TEST(FilmPasses, AChannelWithoutColorIsGrey) {
@@ -147,7 +147,7 @@ TEST(FilmPasses, MistIsWhatIsNotClear) {
 TEST(FilmPasses, FiniteMeansEveryNumberThatIsSummed) {
   const float nan = std::nanf("");
   const Film plain(1, 1, 1, 0), all(1, 1, 1, kAll);
-  SampleResult result;
+  SampleResult result(true);
   EXPECT_TRUE(plain.finite(result) && all.finite(result));
   result.light[kLightPasses - 1].y = nan;
   EXPECT_TRUE(plain.finite(result));

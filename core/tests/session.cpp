@@ -1,8 +1,10 @@
 // Whole renders through the C interface: determinism, cancelling, lifetime of handles, replay.
 #include "tiny_scene.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <thread>
+#include <unistd.h>
 
 namespace {
 
@@ -159,6 +161,25 @@ TEST(Session, RefusesWhatNoFilmCanHave) {
   camera.region_width = 0;
   EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_ERROR_ARGUMENT);
   EXPECT_EQ(lancer_session_create(scene, nullptr, &settings, &session), LANCER_ERROR_ARGUMENT);
+  lancer_scene_destroy(scene);
+}
+
+TEST(Session, RefusesSamplesWhoseSumsNoFilmCanKeep) {
+  // One sum of every pixel takes half of what a film may have; seven samples wait in three.
+  const double most = 0.8 * double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  const auto side = uint32_t(std::sqrt(most / 2.0 / (4 * sizeof(double))));
+  const lancer_scene scene = make_scene();
+  const lancer_camera camera = make_camera(side, side);
+  lancer_settings settings = make_settings();
+  settings.passes = 1u << LANCER_PASS_COMBINED;
+  settings.tile_size = 256;
+  settings.samples = 1;
+  lancer_session session = 0;
+  EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_OK) << lancer_last_error();
+  lancer_session_destroy(session);
+  settings.samples = 7;
+  EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_ERROR_MEMORY);
+  EXPECT_NE(std::string(lancer_last_error()).find(", 7 samples need"), std::string::npos) << lancer_last_error();
   lancer_scene_destroy(scene);
 }
 

@@ -1,6 +1,7 @@
 #include "render/film.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace lancer {
@@ -40,9 +41,12 @@ Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes)
   }
 }
 
-double Film::bytes_needed(double width, double height, uint32_t passes) {
+double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t samples) {
   const Layout layout(passes);
-  return width * height * (double(layout.summed_channels) * sizeof(double) + double(layout.first_channels) * sizeof(float));
+  // The worst count on the way has nothing but ones.
+  const int levels = std::bit_width(uint64_t(samples) + 1) - 1;
+  return width * height *
+         (double(layout.summed_channels) * sizeof(double) * levels + double(layout.first_channels) * sizeof(float));
 }
 
 void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> results) {
@@ -52,22 +56,24 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
     keep_first(tile, results);
   std::vector<double> carry;
   for (uint32_t s = 0; s < samples; ++s) {
+    // Make all room first: where there is none, what has been counted stays as it is.
+    const uint32_t level = uint32_t(std::countr_one(tile.count));
+    if (tile.levels.size() <= level)
+      tile.levels.resize(level + 1);
     carry.resize(size_t(pixels) * layout_.summed_channels);
     gather(results.subspan(size_t(s) * pixels, pixels), carry.data());
     // A new leaf joins every complete neighbour, the smaller numbers first. All pixels stand at the same leaf.
-    uint32_t level = 0;
-    for (uint32_t count = tile.count++; count & 1u; count >>= 1, ++level) {
-      const std::vector<double> &waiting = tile.levels[level];
+    for (uint32_t joined = 0; joined < level; ++joined) {
+      const std::vector<double> &waiting = tile.levels[joined];
       for (size_t i = 0; i < carry.size(); ++i)
         carry[i] = waiting[i] + carry[i];
     }
-    if (tile.levels.size() <= level)
-      tile.levels.resize(level + 1);
     tile.levels[level].swap(carry);
+    ++tile.count;
   }
   // Sums that have been joined are not needed any more.
   for (uint32_t level = 0; level < tile.levels.size(); ++level)
-    if (!(tile.count >> level & 1u))
+    if (!tile.waits(level))
       std::vector<double>().swap(tile.levels[level]);
 }
 
@@ -128,9 +134,9 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
   const auto mean = [&](Pass of, uint32_t channel) {
     // Join the waiting sums, later and smaller ones first, as the tree would.
     double sum = 0.0;
-    for (const std::vector<double> &level : tile.levels)
-      if (!level.empty())
-        sum = level[place + layout_.at[uint32_t(of)] + channel] + sum;
+    for (uint32_t level = 0; level < tile.levels.size(); ++level)
+      if (tile.waits(level))
+        sum = tile.levels[level][place + layout_.at[uint32_t(of)] + channel] + sum;
     return sum / double(tile.count);
   };
   const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };

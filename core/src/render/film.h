@@ -17,24 +17,27 @@ public:
   // passes: bits 1u << Pass; Combined is always kept, and with a light pass the colour that it is divided by.
   Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes);
 
-  // What a film of this size takes for a dyadic number of samples.
-  static double bytes_needed(double width, double height, uint32_t passes);
+  // The most that a film of this size takes on its way to so many samples.
+  static double bytes_needed(double width, double height, uint32_t passes, uint32_t samples);
 
   struct Tile {
     uint32_t x, y, width, height;
     uint32_t count = 0; // samples of each of its pixels
-    // By bit of count, where it is set: [pixel][summed channel].
+    // By bit of count: [pixel][summed channel]. Where the bit is not set there is nothing, or what nobody may read.
     std::vector<std::vector<double>> levels;
     std::vector<float> first; // [pixel][channel of sample 0]
     std::mutex mutex;
 
     uint32_t pixels() const { return width * height; }
+    // Whether the sum of a level waits for its neighbour.
+    bool waits(uint32_t level) const { return (count >> level & 1u) != 0; }
   };
 
   size_t tile_count() const { return tiles_.size(); }
   Tile &tile(size_t i) { return *tiles_[i]; }
 
-  // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel.
+  // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel. Where memory ends the tile
+  // keeps those that it has counted.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
   // Whether all that would be summed is finite.
   bool finite(const SampleResult &result) const;

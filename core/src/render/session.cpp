@@ -19,8 +19,10 @@ Camera normalised(Camera camera, const Normalisation &normalisation) {
 
 // Refuses a film that the machine cannot hold.
 const Camera &checked_memory(const Camera &camera, const SessionSettings &settings) {
-  check_memory("film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) + " pixels",
-               Film::bytes_needed(camera.region_width, camera.region_height, settings.passes));
+  const uint32_t samples = std::max(settings.integrator.samples, 1u);
+  check_memory("film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) + " pixels, " +
+                   std::to_string(samples) + " samples",
+               Film::bytes_needed(camera.region_width, camera.region_height, settings.passes, samples));
   return camera;
 }
 
