@@ -1,4 +1,5 @@
 // Displacement where meshes are shared, where it gives what no vertex can have, and where it folds faces up.
+#include "allocations.h"
 #include "nodes_lab.h"
 
 #include "scene/attribute.h"
@@ -100,6 +101,50 @@ TEST(DisplaceMeshes, WhatNoVertexCanHaveIsSaid) {
   EXPECT_EQ(description.messages.text(),
             "mesh 'square': 3 vertices of material 'wild' whose displacement is not finite or too far were not moved\n"
             "mesh 'square': 3 vertices of material 'far' whose displacement is not finite or too far were not moved\n");
+}
+
+TEST(DisplaceMeshes, MessagesNameTheMeshAsGiven) {
+  // What the third instance moves is a copy of the first mesh.
+  Description description;
+  add_moving(description, "up", constant(0, 0, 2));
+  add_moving(description, "far", constant(0, 0, 1e30f));
+  lancer_mesh mesh = square();
+  mesh.name = nullptr;
+  add_mesh(description, mesh);
+  add_mesh(description, mesh);
+  for (const uint32_t material : {0, 0, 1}) {
+    place(description, {material});
+    description.geometry.instances.back().mesh = description.geometry.instances.size() == 2 ? 1 : 0;
+  }
+  displace(description, BuildContext{});
+  EXPECT_EQ(description.geometry.meshes.size(), 3u);
+  EXPECT_EQ(description.messages.text(),
+            "mesh #0: 4 vertices of material 'far' whose displacement is not finite or too far were not moved\n");
+}
+
+TEST(DisplaceMeshes, AMeshThatDoesNotMoveCostsNoAllocationForEachFace) {
+  std::vector<uint64_t> counts;
+  for (const uint32_t faces : {2u, 2000u}) {
+    // The two halves again and again, in two materials by turns.
+    std::vector<uint32_t> triangles;
+    std::vector<uint16_t> slots;
+    for (uint32_t i = 0; i < faces; ++i) {
+      triangles.insert(triangles.end(), kHalves + i % 2 * 3, kHalves + i % 2 * 3 + 3);
+      slots.push_back(uint16_t(i % 2));
+    }
+    lancer_mesh mesh = square();
+    mesh.triangles = triangles.data();
+    mesh.triangle_count = faces;
+    mesh.material_slots = slots.data();
+    Description description;
+    add_moving(description, "still", constant(0.0f));
+    add_mesh(description, mesh);
+    place(description, {0, 0});
+    const Allocations allocations;
+    displace(description, BuildContext{});
+    counts.push_back(allocations.count());
+  }
+  EXPECT_EQ(counts[0], counts[1]);
 }
 
 TEST(DisplaceMeshes, FoldedFacesAreLeftOutWithAllThatIsTheirs) {

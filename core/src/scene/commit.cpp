@@ -1,7 +1,9 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
+#include "accel/parallel.h"
 #include "integrator/shading.h"
 #include "lights/place_light.h"
 #include "scene/displace.h"
+#include "scene/mesh_normals.h"
 #include "scene/scene.h"
 
 #include <chrono>
@@ -26,16 +28,11 @@ void add_box(Box &world, const Affine &map, const glm::dvec3 &low, const glm::dv
     world.add(map.point({corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z}));
 }
 
-void poll(const BuildContext &context) {
-  if (context.cancel && *context.cancel)
-    throw BuildCancelled{};
-}
-
 Box world_bounds(const Description &description, const BuildContext &context) {
   const Geometry &geometry = description.geometry;
   std::vector<Box> meshes(geometry.meshes.size());
   for (size_t i = 0; i < meshes.size(); ++i) {
-    poll(context);
+    poll_cancel(context);
     for (const glm::uvec3 &triangle : geometry.meshes[i].triangles)
       for (int corner = 0; corner < 3; ++corner)
         meshes[i].add(glm::dvec3(geometry.meshes[i].positions[triangle[corner]]));
@@ -69,22 +66,6 @@ Normalisation normalise(const Box &bounds) {
   return result;
 }
 
-// Normals at vertices: the sum of the faces' normals by area, as the course's Gouraud shading has it.
-void make_smooth_normals(Mesh &mesh) {
-  std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
-  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const glm::dvec3 v0(mesh.vertex(i, 0)), v1(mesh.vertex(i, 1)), v2(mesh.vertex(i, 2));
-    const glm::dvec3 n = glm::cross(v1 - v0, v2 - v0);
-    for (int corner = 0; corner < 3; ++corner)
-      sums[mesh.triangles[i][corner]] += n;
-  }
-  mesh.smooth_normals.resize(sums.size());
-  for (size_t i = 0; i < sums.size(); ++i) {
-    const double length = glm::length(sums[i]);
-    mesh.smooth_normals[i] = length > 0.0 ? glm::vec3(sums[i] / length) : glm::vec3(0.0f);
-  }
-}
-
 LightSet make_lights(const Scene &scene, const Description &description, const BuildContext &context) {
   std::vector<Light> lights;
   for (const LightDescription &light : description.lights)
@@ -99,7 +80,7 @@ LightSet make_lights(const Scene &scene, const Description &description, const B
       emits |= scene.materials[scene.slots[instance.first_slot + slot]].emits();
     if (!emits)
       continue;
-    poll(context);
+    poll_cancel(context);
     Emitter emitter(scene.geometry, scene.slots, scene.materials, i, emission);
     if (!emitter.empty())
       emitters.push_back(std::move(emitter));
@@ -135,9 +116,9 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
     Mesh &mesh = scene->geometry.meshes[instance.mesh];
     scene->triangles += mesh.triangles.size();
     const bool smooth = instance.shading == Shading::Gouraud || instance.shading == Shading::Phong;
-    poll(context);
+    poll_cancel(context);
     if (smooth && mesh.normal_domain == NormalDomain::None && mesh.smooth_normals.empty())
-      make_smooth_normals(mesh);
+      mesh.smooth_normals = normals_by_area(mesh);
   }
   scene->lights = make_lights(*scene, description, context);
   scene->accelerator = build_accelerator(kind, scene->geometry, context);

@@ -12,6 +12,11 @@ namespace lancer {
 
 namespace {
 
+// An instance whose mesh is to be moved, and that mesh's number as it was given.
+struct Move {
+  uint32_t instance, given_mesh;
+};
+
 // A corner at which a material is asked for its displacement.
 struct Place {
   uint32_t vertex, triangle, material;
@@ -21,9 +26,9 @@ struct Place {
 // One mesh, moved as the materials of an instance say.
 class Displacement {
 public:
-  Displacement(Description &description, const BuildContext &context, uint32_t instance)
-      : description_(description), context_(context), number_(instance), instance_(description.geometry.instances[instance]),
-        mesh_(description.geometry.meshes[instance_.mesh]) {}
+  Displacement(Description &description, const BuildContext &context, const Move &move)
+      : description_(description), context_(context), number_(move.instance), given_mesh_(move.given_mesh),
+        instance_(description.geometry.instances[number_]), mesh_(description.geometry.meshes[instance_.mesh]) {}
 
   void run() {
     find_places();
@@ -144,7 +149,7 @@ private:
   }
 
   void tell(const std::map<uint32_t, size_t> &counts, const char *things, const char *what) const {
-    const std::string object = label("mesh", mesh_.name.c_str(), instance_.mesh);
+    const std::string object = label("mesh", mesh_.name.c_str(), given_mesh_);
     for (const auto &[material, count] : counts) {
       const std::string of =
           material == kNone ? "" : "of " + label("material", description_.materials[material].name.c_str(), material) + " ";
@@ -154,7 +159,7 @@ private:
 
   Description &description_;
   const BuildContext &context_;
-  uint32_t number_;
+  uint32_t number_, given_mesh_;
   const Instance &instance_;
   Mesh &mesh_;
   std::vector<bool> renews_; // per triangle: it moves, and its normals follow
@@ -163,12 +168,19 @@ private:
 };
 
 // A triangle for each slot that occurs.
-std::vector<uint32_t> parts_of(const Mesh &mesh) {
+std::vector<uint32_t> parts_of(const Mesh &mesh, const BuildContext &context) {
+  constexpr uint32_t between_polls = 1u << 16;
+  const std::vector<uint16_t> &slots = mesh.material_slots;
   std::map<uint16_t, uint32_t> first;
-  for (uint32_t i = 0; i < mesh.material_slots.size(); ++i)
-    first.emplace(mesh.material_slots[i], i);
-  if (mesh.material_slots.empty() && !mesh.triangles.empty())
-    first.emplace(uint16_t(0), 0);
+  for (uint32_t i = 0; i < slots.size(); ++i) {
+    if (i % between_polls == 0)
+      poll_cancel(context);
+    // Neighbours mostly share a slot.
+    if (i == 0 || slots[i] != slots[i - 1])
+      first.try_emplace(slots[i], i);
+  }
+  if (slots.empty() && !mesh.triangles.empty())
+    first.try_emplace(uint16_t(0), 0u);
   std::vector<uint32_t> parts;
   for (const auto &[slot, triangle] : first)
     parts.push_back(triangle);
@@ -177,16 +189,16 @@ std::vector<uint32_t> parts_of(const Mesh &mesh) {
 
 // Copies a mesh for each further list of materials by which instances move it; those that move nothing are one list, too. The
 // first instance of each.
-std::vector<uint32_t> separate(Description &description, const BuildContext &context) {
+std::vector<Move> separate(Description &description, const BuildContext &context) {
   Geometry &geometry = description.geometry;
   std::vector<std::vector<uint32_t>> parts;
   for (const Mesh &mesh : geometry.meshes) {
     poll_cancel(context);
-    parts.push_back(parts_of(mesh));
+    parts.push_back(parts_of(mesh, context));
   }
   std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> meshes; // by the mesh as given and the materials that move it
   std::vector<bool> taken(geometry.meshes.size());
-  std::vector<uint32_t> firsts;
+  std::vector<Move> firsts;
   for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
     Instance &instance = geometry.instances[i];
     if (instance.kind != ShapeKind::Mesh)
@@ -199,7 +211,7 @@ std::vector<uint32_t> separate(Description &description, const BuildContext &con
     const auto [known, fresh] = meshes.emplace(std::pair(instance.mesh, std::move(movers)), instance.mesh);
     if (fresh) {
       poll_cancel(context);
-      firsts.push_back(i);
+      firsts.push_back({i, instance.mesh});
       if (taken[instance.mesh]) {
         known->second = uint32_t(geometry.meshes.size());
         geometry.meshes.push_back(Mesh(geometry.meshes[instance.mesh]));
@@ -214,11 +226,11 @@ std::vector<uint32_t> separate(Description &description, const BuildContext &con
 } // namespace
 
 void displace(Description &description, const BuildContext &context) {
-  for (const uint32_t i : separate(description, context)) {
+  for (const Move &move : separate(description, context)) {
     poll_cancel(context);
-    Instance &instance = description.geometry.instances[i];
+    Instance &instance = description.geometry.instances[move.instance];
     instance.place(instance.to_world);
-    Displacement(description, context, i).run();
+    Displacement(description, context, move).run();
   }
 }
 

@@ -9,6 +9,19 @@ namespace lancer {
 
 namespace {
 
+// Along a face's normal, of the length of twice its area.
+glm::dvec3 twice_area(const Mesh &mesh, uint32_t triangle) {
+  const glm::dvec3 v0(mesh.vertex(triangle, 0)), v1(mesh.vertex(triangle, 1)), v2(mesh.vertex(triangle, 2));
+  return glm::cross(v1 - v0, v2 - v0);
+}
+
+std::vector<glm::vec3> units(const std::vector<glm::dvec3> &sums) {
+  std::vector<glm::vec3> normals(sums.size());
+  for (size_t i = 0; i < sums.size(); ++i)
+    normals[i] = glm::vec3(unit_or_zero(sums[i]));
+  return normals;
+}
+
 // The faces' normals by their angles.
 std::vector<glm::vec3> normals_by_angle(const Mesh &mesh) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
@@ -21,10 +34,7 @@ std::vector<glm::vec3> normals_by_angle(const Mesh &mesh) {
       sums[mesh.triangles[i][corner]] += std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * n;
     }
   }
-  std::vector<glm::vec3> normals(sums.size());
-  for (size_t i = 0; i < sums.size(); ++i)
-    normals[i] = glm::vec3(unit_or_zero(sums[i]));
-  return normals;
+  return units(sums);
 }
 
 // The mean of the faces' normals.
@@ -61,9 +71,16 @@ void renew_at_corners(Mesh &mesh, const std::vector<bool> &triangles) {
 
 } // namespace
 
-glm::dvec3 face_normal(const Mesh &mesh, uint32_t triangle) {
-  const glm::dvec3 v0(mesh.vertex(triangle, 0)), v1(mesh.vertex(triangle, 1)), v2(mesh.vertex(triangle, 2));
-  return unit_or_zero(glm::cross(v1 - v0, v2 - v0));
+glm::dvec3 face_normal(const Mesh &mesh, uint32_t triangle) { return unit_or_zero(twice_area(mesh, triangle)); }
+
+std::vector<glm::vec3> normals_by_area(const Mesh &mesh) {
+  std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const glm::dvec3 n = twice_area(mesh, i);
+    for (int corner = 0; corner < 3; ++corner)
+      sums[mesh.triangles[i][corner]] += n;
+  }
+  return units(sums);
 }
 
 std::vector<glm::vec3> vertex_normals(const Mesh &mesh) {
