@@ -521,8 +521,9 @@ typedef struct lancer_world {
   uint32_t node_count;
   uint32_t hidden_from;      /* LANCER_RAY_* bits */
   lancer_parameter radiance; /* RGB */
-  uint32_t map_resolution;   /* width of the map by which directions are sampled where the radiance varies; 0 = by its images.
-                                At most 65536; at most 2048 are stored, what is finer is looked at and joined */
+  uint32_t map_resolution;   /* width of the map by which directions are sampled where the radiance varies; 0 = by its images,
+                                1024 without any. At most 65536, but no map is wider than 2048: what is finer is looked at in
+                                up to 8192 x 4096 places and joined */
   uint32_t reserved;
 } lancer_world;
 /* Black until set. */

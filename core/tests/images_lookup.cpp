@@ -120,11 +120,20 @@ TEST(ImagesLookup, CurveIsDecodedAfterInterpolation) {
   for (int i = 0; i < 256; ++i) {
     const Image one = picture<uint8_t>(1, 1, 3, {uint8_t(i), 0, 255}, LANCER_TRANSFER_SRGB);
     const glm::vec4 closest = lookup(one, glm::vec2(0.5f), Extension::Repeat, Interpolation::Closest, false);
-    // Between bytes the curve is lines, 2.4e-8 from it at most, which the curve's own rounding exceeds.
+    // Between bytes the curve is lines, 7.4e-8 from it at most, which the curve's own rounding near white exceeds.
     const glm::vec4 linear = lookup(one, glm::vec2(0.5f), Extension::Repeat, Interpolation::Linear, false);
     EXPECT_NEAR(closest.x, linear.x, kCurve);
     EXPECT_NEAR(closest.x, srgb(i / 255.0), kCurve);
     EXPECT_EQ(closest.z, 1.0f);
+  }
+}
+
+TEST(ImagesLookup, CurveIsFarthestFromItsLinesWhereItsPartsMeet) {
+  for (const float c : {0.04045f, std::nextafter(0.04045f, 0.0f), 0.0404f, 0.0405f}) {
+    const float got =
+        grey(picture<float>(1, 1, 1, {c}, LANCER_TRANSFER_SRGB), 0.5f, 0.5f, Extension::Repeat, Interpolation::Linear);
+    // The lines' distance there, and of numbers near 0.0033 the roundings of the curve and of three steps along a line.
+    EXPECT_NEAR(got, srgb(double(c)), 7.4e-8 + 0.0033 * (kCurve + 3 * 0x1p-24)) << c;
   }
 }
 

@@ -1,5 +1,6 @@
 // What lets light pass straight on: how many layers, what they keep of it, and what passes tell about what lies behind.
 #include "picture_lab.h"
+#include "roundings.h"
 
 #include <gtest/gtest.h>
 #include <numbers>
@@ -36,7 +37,7 @@ TEST(Layers, APathPassesSoMany) {
         EXPECT_EQ(through(panes, limit, true, 8, true, 0, integrator), panes <= limit ? std::ldexp(1.0f, -int(panes)) : 0.0f)
             << panes << " " << limit << " " << integrator;
       // Light from above passes as many panes again.
-      EXPECT_NEAR(through(panes, limit, false), panes < limit ? std::ldexp(1.0f, -2 * int(panes)) : 0.0f, 1e-6f)
+      EXPECT_NEAR(through(panes, limit, false), panes < limit ? std::ldexp(1.0f, -2 * int(panes)) : 0.0f, kWhiteFloor)
           << panes << " " << limit;
     }
 }
@@ -44,9 +45,9 @@ TEST(Layers, APathPassesSoMany) {
 TEST(Layers, AShadowRayPassesSoMany) {
   for (const uint32_t panes : {1u, 2u, 3u})
     for (const uint32_t limit : {0u, 1u, 2u, 3u, 4u, 6u}) {
-      EXPECT_NEAR(through(panes, 8, false, limit, false), panes <= limit ? std::ldexp(1.0f, -int(panes)) : 0.0f, 1e-6f);
+      EXPECT_NEAR(through(panes, 8, false, limit, false), panes <= limit ? std::ldexp(1.0f, -int(panes)) : 0.0f, kWhiteFloor);
       // Together with those that the path has passed.
-      EXPECT_NEAR(through(panes, 8, false, limit), 2 * panes <= limit ? std::ldexp(1.0f, -2 * int(panes)) : 0.0f, 1e-6f);
+      EXPECT_NEAR(through(panes, 8, false, limit), 2 * panes <= limit ? std::ldexp(1.0f, -2 * int(panes)) : 0.0f, kWhiteFloor);
     }
 }
 
@@ -69,7 +70,8 @@ TEST(Layers, AShadowRayEndsAtItsLamp) {
     std::fill(lamp.emission, lamp.emission + 3, 16.0f * std::numbers::pi_v<float>);
     studio.add(lamp);
     studio.render();
-    EXPECT_NEAR(studio.color().x, 1.0f, 1e-6f);
+    // The lamp's 16 pi over 4^2 is that irradiance.
+    EXPECT_NEAR(studio.color().x, 1.0f, kWhiteFloor);
   }
 }
 
@@ -131,7 +133,8 @@ TEST(Layers, TheFirstThatIsDenseEnoughIsTheOneOfThePasses) {
       EXPECT_FLOAT_EQ(studio->number(LANCER_PASS_DEPTH), depth);
       EXPECT_EQ(studio->number(LANCER_PASS_OBJECT_INDEX), float(number));
       EXPECT_EQ(studio->number(LANCER_PASS_MATERIAL_INDEX), float(10 + number));
-      EXPECT_NEAR(studio->color(LANCER_PASS_POSITION).z, 10.0f - depth, 1e-5f);
+      // A place is made by some ten roundings to double of numbers up to 10; 5, 3 and 0 are floats.
+      EXPECT_NEAR(studio->color(LANCER_PASS_POSITION).z, 10.0f - depth, double_roundings(10, 10.0));
       expect_near(studio->color(LANCER_PASS_NORMAL), {0, 0, 1});
     }
   // Where nothing is, nothing is told of panes that are too faint.

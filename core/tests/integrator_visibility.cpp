@@ -1,5 +1,6 @@
 // Which rays see what: lamps, the sky and things that are hidden from rays of one kind are there for all others.
 #include "picture_lab.h"
+#include "roundings.h"
 
 #include <gtest/gtest.h>
 #include <numbers>
@@ -112,13 +113,13 @@ float under_a_ball(uint32_t hidden_from, bool pane, bool no_shadow = false, uint
 TEST(Visibility, OfWhatCastsShadows) {
   for (const bool pane : {false, true}) {
     EXPECT_EQ(under_a_ball(0, pane), 0.0f);
-    EXPECT_NEAR(under_a_ball(LANCER_RAY_SHADOW, pane), 1.0f, 1e-6f);
+    EXPECT_NEAR(under_a_ball(LANCER_RAY_SHADOW, pane), 1.0f, kWhiteFloor);
     // Nothing else keeps it from that.
     EXPECT_EQ(under_a_ball(LANCER_RAY_CAMERA | LANCER_RAY_DIFFUSE | LANCER_RAY_GLOSSY | LANCER_RAY_TRANSMISSION, pane), 0.0f);
     // Nothing stands in the way of a lamp without shadows.
     for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC}) {
       EXPECT_EQ(under_a_ball(0, pane, false, integrator), 0.0f);
-      EXPECT_NEAR(under_a_ball(0, pane, true, integrator), 1.0f, 1e-6f);
+      EXPECT_NEAR(under_a_ball(0, pane, true, integrator), 1.0f, kWhiteFloor);
     }
   }
 }

@@ -1,5 +1,6 @@
 // The normal of a whole material, which displacement as a bump makes: it takes the shading normal's place.
 #include "picture_lab.h"
+#include "roundings.h"
 
 #include <gtest/gtest.h>
 #include <numbers>
@@ -91,17 +92,20 @@ std::unique_ptr<Studio> aslant(lancer_lobe look) {
   return studio;
 }
 
+// Made unit where it is met, and again for the pass: seven roundings each, of a square's sum, its root, and what they divide.
+constexpr float kNormal = float_roundings(14);
+
 // What scatters widely keeps the interpolated normal even where it looks away from the viewer, as a coarse mesh's does.
 TEST(MaterialNormal, WideLobesKeepOneThatLooksAway) {
   const glm::vec3 n = aslant(lobe(LANCER_LAMBERT, 1.0f))->color(LANCER_PASS_NORMAL);
-  EXPECT_NEAR(n.x, 0.6f, 1e-6f);
-  EXPECT_NEAR(n.z, 0.8f, 1e-6f);
+  EXPECT_NEAR(n.x, 0.6f, kNormal);
+  EXPECT_NEAR(n.z, 0.8f, kNormal);
 }
 
 TEST(MaterialNormal, WhatReflectsIsNeverSeenFromBehind) {
   lancer_lobe gloss = lobe(LANCER_GLOSSY, 1.0f);
   const glm::vec3 wo = glm::normalize(glm::vec3(-4, 0, 1)), n = aslant(gloss)->color(LANCER_PASS_NORMAL);
-  EXPECT_NEAR(glm::length(n), 1.0f, 1e-6f);
+  EXPECT_NEAR(glm::length(n), 1.0f, kNormal);
   EXPECT_GT(glm::dot(n, wo), 0.0f);
 }
 

@@ -1,5 +1,6 @@
 // Where shadow rays of smooth meshes start: the offset against closed forms, and what it does to a coarse ball.
 #include "picture_lab.h"
+#include "roundings.h"
 
 #include "integrator/terminator.h"
 
@@ -101,8 +102,8 @@ TEST(Terminator, LiftsToTheParaboloidWhereThatIsHigher) {
   for (int i = 0; i < 3; ++i)
     for (int j = i + 1; j < 3; ++j)
       height += 0.5 * b[i] * b[j] * glm::dot(glm::dvec3(t.n[j]) - glm::dvec3(t.n[i]), glm::dvec3(t.v[j]) - glm::dvec3(t.v[i]));
-  // 0.5 (0.15 * 0.6 + 0.1 * 0.6 + 0.06 * 1.2)
-  EXPECT_NEAR(height, 0.111, 1e-7);
+  // 0.5 (0.15 * 0.6 + 0.1 * 0.6 + 0.06 * 1.2), of a 0.6 that is rounded to float.
+  EXPECT_NEAR(height, 0.111, float_roundings(1, 0.111));
   expect_offset(Lifted(t, b).offset(kGrazing), height * interpolated(t, b));
 }
 
@@ -133,11 +134,13 @@ TEST(Terminator, FadesInTowardsGrazing) {
   // Both cosines below the limit of 0.1: 2 minus their sum over it; else 1 minus the geometric one over it.
   EXPECT_EQ(share(0.5f, 0.5f), 0.0);
   EXPECT_EQ(share(0.11f, 0.1f), 0.0);
-  EXPECT_NEAR(share(0.075f, 0.075f), 0.5, 1e-5);
-  EXPECT_NEAR(share(0.09f, 0.02f), 0.9, 1e-5);
-  EXPECT_NEAR(share(0.02f, 0.02f), 1.0, 1e-5);
-  EXPECT_NEAR(share(0.5f, 0.025f), 0.75, 1e-5);
-  EXPECT_NEAR(share(0.5f, -0.3f), 1.0, 1e-5);
+  // Each cosine is made by an angle of up to 2, its sine and cosine and a product: 7 roundings, and 10 times that over 0.1.
+  constexpr double rounding = float_roundings(2 * 7 * 10);
+  EXPECT_NEAR(share(0.075f, 0.075f), 0.5, rounding);
+  EXPECT_NEAR(share(0.09f, 0.02f), 0.9, rounding);
+  EXPECT_NEAR(share(0.02f, 0.02f), 1.0, rounding);
+  EXPECT_NEAR(share(0.5f, 0.025f), 0.75, rounding);
+  EXPECT_NEAR(share(0.5f, -0.3f), 1.0, rounding);
 }
 
 TEST(Terminator, StandsAsTheInstanceStands) {

@@ -35,19 +35,25 @@ TexturePrefetch::Picture TexturePrefetch::find(const Scene &scene, const Materia
   return {};
 }
 
-void TexturePrefetch::ask(const Hit &hit) const {
+ComingLookup TexturePrefetch::coming(const Hit &hit) const {
   const Instance &instance = scene_.geometry.instances[hit.instance];
   if (instance.kind != ShapeKind::Mesh)
-    return;
+    return {};
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   if (material == kNone || !pictures_[material].image)
-    return;
+    return {};
   const Picture &picture = pictures_[material];
   glm::vec2 uv[3];
   if (!corner_uvs(scene_.geometry.meshes[instance.mesh], picture.uv_map, hit.primitive, uv))
-    return;
+    return {};
   const float u = float(hit.u), v = float(hit.v);
-  prefetch(*picture.image, (1.0f - u - v) * uv[0] + u * uv[1] + v * uv[2], picture.extension);
+  return {picture.image, (1.0f - u - v) * uv[0] + u * uv[1] + v * uv[2], picture.extension};
+}
+
+void TexturePrefetch::ask(const Hit &hit) const {
+  const ComingLookup next = coming(hit);
+  if (next.image)
+    prefetch(*next.image, next.uv, next.extension);
 }
 
 } // namespace lancer
