@@ -86,11 +86,11 @@ LayerPlan plan_layers(const LobeInputs &lobe, const PrincipledInputs &in, Sides 
   LayerPlan plan;
   const Grain grain = base_grain(lobe, in);
   const float metallic = unit(in.metallic), transmission = unit(in.transmission);
-  if (in.coat > kNothing && !kept.coat)
+  if (in.coat > kLeastLayer && !kept.coat)
     plan.coat = plan_coat(in);
-  if (metallic > kNothing && !kept.metal)
+  if (metallic > kLeastLayer && !kept.metal)
     plan.metal = plan_metal(in, grain);
-  if (metallic < 1.0f && transmission > kNothing)
+  if (metallic < 1.0f && transmission > kLeastLayer)
     for (const bool inside : {false, true})
       if (!kept.glass[inside] && (sides == Sides::Both || inside == (sides == Sides::Inside)))
         plan.glass[inside] = plan_glass(in, inside);
@@ -116,7 +116,7 @@ void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, 
   glm::vec3 weight = lobe.weight;
 
   // Cloth on top of all, its normal between the base's and the coat's.
-  if (in.sheen > kNothing) {
+  if (in.sheen > kLeastLayer) {
     const glm::vec3 n_cloth = n_coat == n ? n : glm::mix(n, n_coat, unit(in.coat));
     const uint8_t frame = add_frame(bsdf, n_cloth, glm::vec3(0.0f));
     Lobe sheen = make_sheen(in.sheen * positive(in.sheen_tint) * weight, unit(in.sheen_roughness), cos_in(bsdf, frame));
@@ -126,7 +126,7 @@ void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, 
   }
 
   // The coat reflects, and colours what passes it twice.
-  if (in.coat > kNothing) {
+  if (in.coat > kLeastLayer) {
     const MicrofacetPlan *coat = layer(kept.coat, planned.coat);
     const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, n_coat), glm::vec3(0.0f));
     const Lobe reflection = placed(*coat, bsdf, frame, in.coat * weight);
@@ -143,11 +143,11 @@ void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, 
   const glm::vec3 tangent = stretched ? turn_about(lobe.tangent, n, in.anisotropic_rotation) : glm::vec3(0.0f);
   const uint8_t frame = add_frame(bsdf, n_reflect, tangent);
   const float metallic = unit(in.metallic), transmission = unit(in.transmission);
-  if (metallic > kNothing) {
+  if (metallic > kLeastLayer) {
     add(bsdf, placed(*layer(kept.metal, planned.metal), bsdf, frame, metallic * weight));
     weight *= 1.0f - metallic;
   }
-  if (metallic < 1.0f && transmission > kNothing) {
+  if (metallic < 1.0f && transmission > kLeastLayer) {
     add(bsdf, placed(*layer(kept.glass[bsdf.inside], planned.glass[bsdf.inside]), bsdf, frame, transmission * weight));
     weight *= 1.0f - transmission;
   }

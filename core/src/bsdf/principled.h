@@ -10,7 +10,7 @@
 namespace lancer {
 
 // Layers and shares smaller than this are not there, as in Cycles.
-inline constexpr float kNothing = 1e-5f;
+inline constexpr float kLeastLayer = 1e-5f;
 
 inline float unit(float x) { return std::clamp(x, 0.0f, 1.0f); }
 inline glm::vec3 unit(const glm::vec3 &x) { return glm::clamp(x, 0.0f, 1.0f); }
@@ -40,7 +40,7 @@ struct LayerPlan {
 
   // Nothing lies above the diffuse base, and nothing shines below.
   bool only_diffuse(const PrincipledInputs &in) const {
-    return !coat && !metal && !glass[0] && !glass[1] && !gloss && !(in.sheen > kNothing) && in.emission == glm::vec3(0.0f);
+    return !coat && !metal && !glass[0] && !glass[1] && !gloss && !(in.sheen > kLeastLayer) && in.emission == glm::vec3(0.0f);
   }
 };
 // What is kept already is left out.

@@ -63,12 +63,12 @@ void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in) {
 
   bsdf.emission += in.emission * lobe.weight;
 
-  if (diffuse > kNothing) {
+  if (diffuse > kLeastLayer) {
     Lobe burley = make_burley(diffuse * in.base_color * lobe.weight, in.roughness);
     burley.frame = frame;
     add(bsdf, burley);
   }
-  if (diffuse > kNothing && in.sheen > kNothing) {
+  if (diffuse > kLeastLayer && in.sheen > kLeastLayer) {
     const glm::vec3 hue = hue_of(in.base_color, {0.2126729f, 0.7151522f, 0.0721750f});
     Lobe dust =
         make_matte(Matte::DustSheen, diffuse * in.sheen * glm::mix(glm::vec3(1.0f), hue, in.sheen_tint.x) * lobe.weight);
@@ -77,7 +77,7 @@ void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in) {
   }
 
   // One reflection for plastic and metal: what it does at the normal goes from a level to the base colour.
-  if (1.0f - glass > kNothing && (in.specular > kNothing || in.metallic > kNothing)) {
+  if (1.0f - glass > kLeastLayer && (in.specular > kLeastLayer || in.metallic > kLeastLayer)) {
     const glm::vec3 hue = hue_of(in.base_color, {0.3f, 0.6f, 0.1f});
     const glm::vec3 plastic = 0.08f * in.specular * glm::mix(glm::vec3(1.0f), hue, in.specular_tint.x);
     const float ior = 2.0f / (1.0f - std::sqrt(std::max(0.0f, 0.08f * in.specular))) - 1.0f;
@@ -88,13 +88,13 @@ void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in) {
     complete_microfacet(gloss, cos_o, several);
     add(bsdf, gloss);
   }
-  if (glass > kNothing) {
+  if (glass > kLeastLayer) {
     const float ior = std::max(in.ior, 1e-5f);
     const uint8_t plain = !grain.stretched ? frame : add_frame(bsdf, n, glm::vec3(0.0f));
     add_glass3(bsdf, plain, glass * lobe.weight, in, bsdf.inside ? 1.0f / ior : ior);
   }
 
-  if (in.coat > kNothing) {
+  if (in.coat > kLeastLayer) {
     const uint8_t coat_frame = add_frame(bsdf, reflecting_normal(bsdf, in.coat_normal), glm::vec3(0.0f));
     Lobe coat = make_clear_coat(in.coat * lobe.weight, in.coat_roughness * in.coat_roughness, cos_in(bsdf, coat_frame));
     coat.frame = coat_frame;

@@ -155,8 +155,9 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
     const uint32_t hidden = scene_.lights.hidden_from(i);
     // Illuminate each lit point as if nothing stood between.
     glm::vec3 light(0.0f);
+    LightSample s;
     for (int k = 0; k < lit_count; ++k) {
-      const LightSample s = sample_scene_light(scene_, i, lit[k].p, u, shader_);
+      s = sample_scene_light(scene_, i, lit[k].p, u, shader_);
       if (!(s.pdf > 0.0))
         continue;
       const glm::vec3 irradiance = course_irradiance(course, s);
@@ -167,7 +168,8 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
     if (light == glm::vec3(0.0f))
       continue;
     // Ask whether the lamp is seen from the hit point, on the viewer's side of the surface.
-    const LightSample s = sample_scene_light(scene_, i, surface.p, u, shader_);
+    if (lit_count > 1)
+      s = sample_scene_light(scene_, i, surface.p, u, shader_);
     const bool same_side = glm::dot(glm::vec3(s.wi), point_.bsdf.ng) > 0.0f;
     if (!(s.pdf > 0.0) || !same_side)
       continue;

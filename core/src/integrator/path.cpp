@@ -166,19 +166,23 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
 
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment) {
-  // Light that was scattered at most once is direct, and what the camera sees, if through clear glass; clamping never touches
-  // it.
-  const bool indirect = path.scatterings > 1 && !path.in_view;
+  // Light that was scattered at most once is direct; clamping never touches it.
+  const bool indirect = path.scatterings > 1;
   if (path.features.open)
     result.albedo += path.features.beta * radiance;
+  // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
+  if (path.in_view) {
+    const float top = largest(radiance), limit = settings_.clamp_indirect;
+    const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
+    result.radiance += seen;
+    passes_.add_seen(result, seen, environment);
+    return;
+  }
   if (indirect)
     indirect_[path.slot] += radiance;
   else
     result.radiance += radiance;
-  if (path.in_view)
-    passes_.add_seen(result, radiance, environment);
-  else
-    passes_.add(result, radiance, path.share, indirect);
+  passes_.add(result, radiance, path.share, indirect);
 }
 
 template <uint32_t Shapes, bool Layers>

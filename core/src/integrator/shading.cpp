@@ -16,61 +16,6 @@ size_t most_nodes(const Scene &scene) {
   return most;
 }
 
-// Makes a lobe once where neither wo nor the place changes it.
-ReadyLobe make_ready(const LobeInputs &inputs, const PrincipledInputs *principled) {
-  ReadyLobe ready;
-  bool matte = inputs.kind == LobeKind::Lambert || (inputs.kind == LobeKind::Diffuse && inputs.roughness == 0.0f);
-  const bool course = inputs.kind == LobeKind::Mirror || inputs.kind == LobeKind::Phong || inputs.kind == LobeKind::BlinnPhong;
-  if (principled && principled->rules != Rules::Blender3) {
-    LayerPlan &plan = ready.layers.emplace(plan_layers(inputs, *principled, Sides::Both));
-    keep_rows(plan);
-    matte = plan.only_diffuse(*principled) && principled->diffuse_roughness == 0.0f;
-  }
-  if ((!matte && !course) || inputs.normal != glm::vec3(0.0f))
-    return ready;
-  const auto bsdf = std::make_unique<Bsdf>();
-  const glm::vec3 up(0.0f, 0.0f, 1.0f);
-  bsdf->begin(up, up, up, false, true);
-  if (principled)
-    add_principled(*bsdf, inputs, *principled);
-  else
-    add_lobe(*bsdf, inputs);
-  if (bsdf->count != 1)
-    return ready;
-  ready.lobe = bsdf->lobes[0];
-  ready.usable = true;
-  // About an interpolated normal reflecting lobes, and in Blender 3.x all, may be bent.
-  ready.flat_only = course || inputs.rules == Rules::Blender3;
-  return ready;
-}
-
-bool vary(std::initializer_list<const Parameter *> parameters) {
-  return std::any_of(parameters.begin(), parameters.end(), [](const Parameter *parameter) { return parameter->varies(); });
-}
-
-// The layers of a Principled that its nodes leave as they are.
-LayerPlan unvarying_layers(const LobeDescription &lobe, std::span<const glm::vec4> values) {
-  const PrincipledDescription &p = *lobe.principled;
-  // Where a share varies plan what it may be the share of.
-  PrincipledInputs in = evaluate(p, values);
-  for (const auto &[share, value] :
-       {std::pair(&p.coat, &in.coat), {&p.metallic, &in.metallic}, {&p.transmission, &in.transmission}})
-    if (share->varies())
-      *value = 0.5f;
-  LayerPlan plan = plan_layers(evaluate(lobe, values), in, Sides::Both);
-  const bool grain = vary({&p.roughness, &p.anisotropic, &lobe.tangent});
-  if (vary({&p.coat_roughness, &p.coat_ior}))
-    plan.coat.reset();
-  if (grain || vary({&p.base_color, &p.specular_tint}))
-    plan.metal.reset();
-  if (vary({&p.roughness, &p.ior, &p.specular_tint, &p.base_color}))
-    plan.glass[0].reset(), plan.glass[1].reset();
-  if (grain || vary({&p.ior, &p.specular, &p.specular_tint}))
-    plan.gloss.reset();
-  keep_rows(plan);
-  return plan;
-}
-
 } // namespace
 
 Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values_(most_nodes(scene)) {
@@ -78,16 +23,6 @@ Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values
   context_.images = &scene.images;
   context_.normalisation = &scene.normalisation;
   context_.camera = camera;
-  for (const Material &material : scene.materials) {
-    std::vector<ReadyLobe> &ready = ready_.emplace_back();
-    for (size_t i = 0; i < material.fixed.size(); ++i)
-      ready.push_back(make_ready(material.fixed[i], material.lobes[i].principled ? &material.fixed_principled[i] : nullptr));
-    if (!material.fixed.empty())
-      continue;
-    for (const LobeDescription &lobe : material.lobes)
-      if (ready.emplace_back(); lobe.principled && lobe.principled->constants.rules != Rules::Blender3)
-        ready.back().layers = unvarying_layers(lobe, values_);
-  }
 }
 
 void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
@@ -168,17 +103,16 @@ void Shader::begin(const Material &material, const Surface &surface, const glm::
 }
 
 void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
-  const std::vector<ReadyLobe> &ready = ready_[size_t(&material - scene_.materials.data())];
-  if (!material.fixed.empty()) {
-    for (size_t i = 0; i < material.fixed.size(); ++i) {
-      if (ready[i].usable && (bsdf.flat || !ready[i].flat_only))
-        add(bsdf, ready[i].lobe);
-      else if (ready[i].layers)
-        add_layers(bsdf, material.fixed[i], material.fixed_principled[i], *ready[i].layers);
-      else if (material.lobes[i].principled)
-        add_principled(bsdf, material.fixed[i], material.fixed_principled[i]);
+  if (material.fixed()) {
+    for (const ReadyLobe &ready : material.ready) {
+      if (ready.whole && (bsdf.flat || !ready.flat_only))
+        add(bsdf, ready.lobe);
+      else if (ready.layers)
+        add_layers(bsdf, ready.inputs, ready.principled, *ready.layers);
+      else if (ready.inputs.kind == LobeKind::Principled)
+        add_principled(bsdf, ready.inputs, ready.principled);
       else
-        add_lobe(bsdf, material.fixed[i]);
+        add_lobe(bsdf, ready.inputs);
     }
     return;
   }
@@ -187,8 +121,8 @@ void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
     const LobeInputs inputs = evaluate(lobe, values_);
     if (inputs.weight == glm::vec3(0.0f))
       continue;
-    if (ready[i].layers)
-      add_layers(bsdf, inputs, evaluate(*lobe.principled, values_), *ready[i].layers);
+    if (const auto &layers = material.ready[i].layers)
+      add_layers(bsdf, inputs, evaluate(*lobe.principled, values_), *layers);
     else if (lobe.principled)
       add_principled(bsdf, inputs, evaluate(*lobe.principled, values_));
     else

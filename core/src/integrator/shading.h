@@ -30,14 +30,6 @@ struct View {
   float footprint = 0.0f; // radius that a pixel covers there, normalised units
 };
 
-// What of a described lobe can be made once, because it is the same wherever its material is met.
-struct ReadyLobe {
-  Lobe lobe; // all of it
-  bool usable = false;
-  bool flat_only = false;          // only where the shading normal is the geometric one
-  std::optional<LayerPlan> layers; // of Principled: those that are the same
-};
-
 // Evaluates materials at surfaces. One object per thread: it keeps the nodes' values.
 class Shader {
 public:
@@ -62,9 +54,8 @@ private:
 
   const Scene &scene_;
   NodeContext context_;
-  std::vector<std::vector<ReadyLobe>> ready_; // by number of material and lobe
-  std::vector<glm::vec4> values_;             // of the nodes of one material at a time
-  Shaded layered_;                            // scratch for emission below layers
+  std::vector<glm::vec4> values_; // of the nodes of one material at a time
+  Shaded layered_;                // scratch for emission below layers
 };
 
 // The size of a pixel's view: at distance 0, and what it grows by per unit of distance; normalised units.

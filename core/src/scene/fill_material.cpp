@@ -203,15 +203,6 @@ void make_schedules(Material &material) {
   material.displacement_nodes = schedule({material.displacement});
 }
 
-void fix_inputs(Material &material) {
-  if (!material.program.nodes.empty())
-    return;
-  for (const LobeDescription &lobe : material.lobes) {
-    material.fixed.push_back(evaluate(lobe, {}));
-    material.fixed_principled.push_back(lobe.principled ? evaluate(*lobe.principled, {}) : PrincipledInputs{});
-  }
-}
-
 } // namespace
 
 void add_material(Description &description, const lancer_material &source) {
@@ -242,7 +233,7 @@ void add_material(Description &description, const lancer_material &source) {
   material.displacement = reader.read_vector("displacement", source.displacement);
   material.normal = reader.read_vector("normal", source.normal);
   make_schedules(material);
-  fix_inputs(material);
+  material.ready = make_ready_lobes(material);
   tell_room(object, material, messages);
   description.messages.add(messages);
   description.materials.push_back(std::move(material));

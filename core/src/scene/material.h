@@ -3,6 +3,7 @@
 
 #include "bsdf/inputs.h"
 #include "scene/node.h"
+#include "scene/ready_lobes.h"
 
 #include <memory>
 #include <string>
@@ -38,9 +39,7 @@ struct Material {
   uint32_t index = 0;
   uint32_t flags = 0; // LANCER_MATERIAL_*
 
-  // Where no node has a say the lobes' inputs are made once, principled ones by the number of their lobe; else both are empty.
-  std::vector<LobeInputs> fixed;
-  std::vector<PrincipledInputs> fixed_principled;
+  std::vector<ReadyLobe> ready; // by number of lobe
 
   // Which nodes each question needs.
   Schedule surface_nodes;       // lobes, emission, transmittance, holdout, ambient, normal
@@ -48,7 +47,8 @@ struct Material {
   Schedule emission_nodes;      // for light samples, with those of layered emission
   Schedule displacement_nodes;
 
-  bool layered_emission = false; // some Principled lobe emits
+  bool layered_emission = false;                       // some Principled lobe emits
+  bool fixed() const { return program.nodes.empty(); } // no node has a say
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
   bool transmits() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }

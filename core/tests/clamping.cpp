@@ -1,0 +1,37 @@
+// What clamping of indirect light takes, and what it leaves.
+#include "picture_lab.h"
+
+#include <gtest/gtest.h>
+
+namespace lancer_test {
+namespace {
+
+// A wall that shines with 10 behind so many panes of clear glass, or of glass that is none of the film's.
+float seen_through(int panes, float clamp, bool clear) {
+  Studio studio;
+  studio.settings.max_bounces = 4;
+  studio.settings.clamp_indirect = clamp;
+  studio.settings.film_transparent = studio.settings.transparent_glass = clear;
+  lancer_lobe glass = lobe(LANCER_REFRACTION, 1.0f, 0.0f);
+  glass.ior = constant(1.0f);
+  glass.rules = LANCER_RULES_45;
+  const uint32_t wall = studio.add({}, glow(10.0f)), pane = studio.add({glass});
+  studio.place(LANCER_PLANE, wall);
+  for (int i = 0; i < panes; ++i)
+    studio.place(LANCER_PLANE, pane, moved(0, 0, 0.2 * (i + 1)));
+  studio.render();
+  return studio.color().x;
+}
+
+TEST(Clamping, TakesWhatCameByMoreThanOneScattering) {
+  for (const bool clear : {false, true}) {
+    EXPECT_FLOAT_EQ(seen_through(0, 1.0f, clear), 10.0f);
+    EXPECT_FLOAT_EQ(seen_through(1, 1.0f, clear), 10.0f);
+    EXPECT_FLOAT_EQ(seen_through(2, 1.0f, clear), 1.0f);
+    EXPECT_FLOAT_EQ(seen_through(2, 0.0f, clear), 10.0f);
+    EXPECT_FLOAT_EQ(seen_through(2, 20.0f, clear), 10.0f);
+  }
+}
+
+} // namespace
+} // namespace lancer_test
