@@ -14,6 +14,7 @@ SUBJECTS = (
     "materials_closures",
     "materials_mixes",
     "furnaces",
+    "furnaces_principled",
     "textures_images",
     "textures_coordinates",
     "textures_normals",
@@ -48,6 +49,7 @@ class Case:
     size: tuple = (96, 64)
     filter_width: float = 0.0  # 0: the box of one pixel; else the width of a Blackman-Harris filter
     passes: tuple = ("Combined",)  # by the names of Blender 5
+    dark: tuple = ()  # the passes that must show nothing
     needs: object = None  # needs() gives "" or the sentence that tells what is absent here
     sum_of_passes: bool = False  # compare the sum of our passes with our Combined
     announced: str = ""  # words that one of Lancer's messages must contain; they excuse no difference

@@ -8,7 +8,6 @@ import numpy as np
 
 from . import engines, figures
 
-_WORST_FIRST = ("fail", "noise", "pass")
 # Where few samples must do: what noise may add to a limit, in limits. A fault that `make test` shall find is larger.
 MOST_ADDED = 3.0
 
@@ -31,7 +30,7 @@ class Outcome:
 
         def badness(name):
             numbers, verdict = self.parts[name]
-            return _WORST_FIRST[::-1].index(verdict.name), figures.share(figures.decisive(numbers, limit), limit)
+            return figures.WORST_FIRST[::-1].index(verdict.name), figures.share(figures.decisive(numbers, limit), limit)
 
         return max(self.parts, key=badness, default=None)
 
@@ -132,7 +131,7 @@ def _contest(case, outcome, folder, engine_pair, most_samples, first_seed):
         if settled or not case.kind.averages or outcome.samples > most_samples:
             break
     names = [verdict.name for verdict in verdicts]
-    outcome.verdict = next(name for name in _WORST_FIRST if name in names)
+    outcome.verdict = next(name for name in figures.WORST_FIRST if name in names)
     if not all(verdict.quiet for verdict in verdicts) and outcome.verdict != "fail":
         outcome.note = "the noise is above a third of the limit"
         if not case.kind.averages:
@@ -145,6 +144,9 @@ def _judge(case, outcome, scene, ours, theirs):
     missing = set(case.passes) - set(theirs)
     if missing:
         raise ValueError(f"Cycles wrote no pass {', '.join(sorted(missing))}")
+    dark = [name for name, (one, other) in theirs.items() if not (one.any() or other.any()) and name not in case.dark]
+    if dark:
+        raise ValueError(f"Cycles shows nothing in {', '.join(sorted(dark))}")
     if case.sum_of_passes:
         ours, theirs = {"Sum": _sum_of_passes(ours)}, {"Sum": ours["Combined"]}
     for name, pair in theirs.items():

@@ -61,7 +61,7 @@ class Verdict(NamedTuple):
     quiet: bool  # the noise is below a third of the limit, or far too little to reach it from what was measured
 
 
-_WORST_FIRST = ("fail", "noise", "pass")
+WORST_FIRST = ("fail", "noise", "pass")
 
 
 def blocks(picture, size):
@@ -173,7 +173,7 @@ def allowance(figures):
 def judge(figures, limit):
     """The worse of the verdicts by both levels."""
     verdicts = [_judge(numbers, limit) for numbers in (figures, figures.dim) if numbers]
-    name = next(name for name in _WORST_FIRST if any(verdict.name == name for verdict in verdicts))
+    name = next(name for name in WORST_FIRST if any(verdict.name == name for verdict in verdicts))
     return Verdict(name, all(verdict.quiet for verdict in verdicts))
 
 

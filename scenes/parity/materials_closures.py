@@ -144,15 +144,18 @@ def metallic_physical(scene):
 
 
 @variants(
-    "LOBES", values={"microfiber": ("MICROFIBER", 0.5), "ashikhmin": ("ASHIKHMIN", 0.5), "microfiber_low": ("MICROFIBER", 0.2)}
+    "LOBES",
+    values={"microfiber": ("MICROFIBER", 0.5), "ashikhmin": ("ASHIKHMIN", 0.5), "microfiber_low": ("MICROFIBER", 0.2)},
+    since=(4, 0),
 )
 def sheen(scene, value):
     distribution, roughness = value
-    if _NEW:
-        fabric = shader("ShaderNodeBsdfSheen", {"distribution": distribution}, Color=(0.8, 0.5, 0.6), Roughness=roughness)
-    else:
-        fabric = shader("ShaderNodeBsdfVelvet", Color=(0.8, 0.5, 0.6), Sigma=roughness)
-    studio(scene, fabric)
+    studio(scene, shader("ShaderNodeBsdfSheen", {"distribution": distribution}, Color=(0.8, 0.5, 0.6), Roughness=roughness))
+
+
+@case("LOBES", until=(4, 0))
+def velvet(scene):
+    studio(scene, shader("ShaderNodeBsdfVelvet", Color=(0.8, 0.5, 0.6), Sigma=0.5))
 
 
 @case(quick=True)

@@ -6,6 +6,7 @@ import bpy
 
 from .catalogue import case, variants
 from .nodes import material, principled, with_socket
+from .reasons import CLEAR_COAT3, WALK3, WALK3_TOLD
 from .stages import open_air, studio
 
 _RED = (0.8, 0.2, 0.1)
@@ -15,7 +16,7 @@ _KIND = "ShaderNodeBsdfPrincipled"
 
 @case("LOBES", quick=True)
 def principled_default(scene):
-    studio(scene, principled())
+    studio(scene, principled(), caustics=True)
 
 
 @variants("LOBES", values={"smooth": 0.0, "low": 0.15, "middle": 0.5, "full": 1.0})
@@ -42,8 +43,8 @@ def principled_half_metal(scene):
             {
                 "blender3": (
                     (0.025, 0.13),
-                    "Cycles 3 walks from facet to facet at random; the compensated lobe of Blender 4 stands in",
-                    "Multiscatter GGX is computed as in Blender 4",
+                    WALK3,
+                    WALK3_TOLD,
                 )
             },
         ),
@@ -93,8 +94,7 @@ def principled_half_transmission(scene):
     quick=True,
     blender3=(
         (0.015, 0.16),
-        "Cycles 3 weighs the base's light by a chance of the clear coat that its sampler does not have "
-        "(sun_on_principled_coat)",
+        CLEAR_COAT3,
     ),
 )
 def principled_coat(scene):
@@ -149,7 +149,7 @@ def principled_sheen_tint(scene):
 
 @case("LOBES")
 def principled_emission(scene):
-    studio(scene, principled(Base_Color=(0.5, 0.5, 0.5), Emission_Color=(1.0, 0.5, 0.2), Emission_Strength=0.7))
+    studio(scene, principled(Base_Color=(0.5, 0.5, 0.5), Emission_Color=(1.0, 0.5, 0.2), Emission_Strength=0.7), caustics=True)
 
 
 @case("LOBES", quick=True)
@@ -175,7 +175,7 @@ def principled_anisotropic_tangent(scene):
 
 @case("LOBES", needs=with_socket(_KIND, "Diffuse Roughness"))
 def principled_diffuse_roughness(scene):
-    studio(scene, principled(Base_Color=_RED, Diffuse_Roughness=1.0, Specular_IOR_Level=0.0))
+    studio(scene, principled(Base_Color=_RED, Diffuse_Roughness=1.0, Specular_IOR_Level=0.0), caustics=True)
 
 
 @case(
@@ -185,4 +185,4 @@ def principled_diffuse_roughness(scene):
     announced="is not supported, a diffuse surface is used",
 )
 def principled_subsurface(scene):
-    studio(scene, principled(Base_Color=(0.8, 0.5, 0.4), Subsurface_Weight=1.0, Roughness=0.5))
+    studio(scene, principled(Base_Color=(0.8, 0.5, 0.4), Subsurface_Weight=1.0, Roughness=0.5), caustics=True)

@@ -36,14 +36,18 @@ def ball(scene, material, segments=128, radius=1.0, location=(0, 0, 1)):
     return parts.place(scene, "Ball", parts.sphere_mesh("Ball", segments, segments // 2), material, location, radius)
 
 
+# Whose light on other things comes by chance, as caustics.
+_MIRRORING = {"BSDF_GLOSSY", "BSDF_ANISOTROPIC", "BSDF_GLASS", "BSDF_REFRACTION", "BSDF_METALLIC", "BSDF_PRINCIPLED"}
+
+
 def studio(scene, material, light_energy=150.0, caustics=False):
     """A ball of the material on a floor, under a lamp and a dim sky, filling most of the picture.
 
-    caustics: the floor gets what the ball throws at it, too, which is the noisiest light there is.
+    caustics: the floor gets what a mirroring ball throws at it, too, which is the noisiest light there is.
     """
     floor(scene)
     thing = ball(scene, material)
-    thing.visible_diffuse = caustics
+    thing.visible_diffuse = caustics or not any(node.type in _MIRRORING for node in material.node_tree.nodes)
     lamp(scene, light_energy)
     sky(scene)
     camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), lens=60.0)
