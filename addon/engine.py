@@ -85,7 +85,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
         self._snapshot = None
-        last_messages.setdefault(depsgraph.scene.name, []).append(text)
+        self._messages.add(text)
+        last_messages[depsgraph.scene.name] = self._messages.lines()
         self.error_set(f"Lancer: {text}")
         self.report({"ERROR"}, f"Lancer: {text}")
 

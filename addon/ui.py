@@ -18,7 +18,6 @@ _EXCLUDED = {
     "NODE_DATA_PT_spot",
     "RENDER_PT_freestyle",
     "RENDER_PT_gpencil",
-    "RENDER_PT_simplify",
     "SCENE_PT_audio",
     "TEXTURE_PT_preview",
     "VIEWLAYER_PT_filter",

@@ -10,9 +10,10 @@ _ID = engine.LancerRenderEngine.bl_idname
 
 # What an artist who comes from Cycles should know before the first render.
 _REPLACED = (
-    "They replace Cycles' bounces and clamping,",
-    "which are not read. Filter Glossy and limits",
-    "of single kinds of bounces are not there.",
+    "They replace Cycles' bounces and clamping.",
+    "Filter Glossy and limits of single kinds of",
+    "bounces are not there. Where light differs by",
+    "any of them, the messages tell.",
 )
 
 

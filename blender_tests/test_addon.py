@@ -26,7 +26,7 @@ stage.write_exr(stage.room(), {picture!r})
 
 @pytest.fixture
 def case(which, tmp_path):
-    return lambda name, *arguments: blenders.run(which, tmp_path, "addon_cases", name, *arguments)
+    return lambda name, *arguments, where="addon_cases": blenders.run(which, tmp_path, where, name, *arguments)
 
 
 @both
@@ -88,7 +88,7 @@ def test_broken_library(which, kind, word, tmp_path):
 
 @both
 def test_panels(case):
-    got = case("panels")
+    got = case("panels", where="panel_cases")
     assert got["errors"] == [] and got["polls"] == [] and got["foreign"] == []
     shown = got["shown"]
     assert "LANCER_RENDER_PT_sampling" in shown and all(all(texts.values()) for texts in shown.values())
@@ -103,6 +103,14 @@ def test_panels(case):
     lamp = shown["LANCER_DATA_PT_light"]
     assert "angle" in lamp["SUN"] and "spot_blend" in lamp["SPOT"] and "shadow_soft_size" in lamp["POINT"]
     assert "size_y" in lamp["RECTANGLE"] and "size_y" not in lamp["DISK"]
+
+
+@both
+def test_simplify_is_shown(case):
+    """It acts on what Lancer renders, so that the switch must be in sight."""
+    got = case("simplify", where="panel_cases")
+    assert got["RENDER_PT_simplify"] == ["use_simplify"]
+    assert "simplify_subdivision_render" in got["RENDER_PT_simplify_render"]
 
 
 @both

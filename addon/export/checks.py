@@ -69,7 +69,7 @@ def check_object(thing, scene, messages):
     # Before 4.5 it is a property of the Cycles add-on, which may be off.
     cycles = getattr(thing, "cycles", None)
     if getattr(thing, "shadow_terminator_shading_offset", getattr(cycles, "shadow_terminator_offset", 0.0)) > 0.0:
-        messages.add(f"{who}: the shading offset of the shadow terminator is not supported")
+        messages.add(f"{who}: the shading offset of the shadow terminator is left out, use the geometry offset")
     if getattr(cycles, "is_caustics_receiver", False):
         messages.add(f"{who}: shadow caustics are not supported, it receives those that paths find by themselves")
     _check_subdivision(thing, scene, who, messages)

@@ -169,14 +169,16 @@ def _stretch(surface, site):
 
 
 def _glossy(surface, site, weight):
+    color, roughness, normal = surface.color(site), _roughness(surface, site, 0.5), surface.normal(site)
+    stretch = _stretch(surface, site)
     surface.add(
         LobeKind.GLOSSY,
         weight,
-        surface.color(site),
-        roughness=_roughness(surface, site, 0.5),
-        normal=surface.normal(site),
-        distribution=read_distribution(surface.graph, site),
-        **_stretch(surface, site),
+        color,
+        roughness=roughness,
+        normal=normal,
+        distribution=read_distribution(surface.graph, site, roughness, stretch["anisotropy"]),
+        **stretch,
     )
 
 

@@ -1,7 +1,8 @@
-"""Cycles' own settings of a scene that change its light and have no counterpart: each that is not as it comes is told.
+"""Cycles' own settings of a scene that change its light and that Lancer does not follow.
 
-Those that Lancer's settings stand for (samples, all bounces together, clamping of indirect light, filter, seed) are not read,
-and those that change noise and time only need not be.
+Its light paths are told in one line wherever they limit the light otherwise than Lancer's, as they do when Blender starts; each
+other setting where it is not as it comes. Those that Lancer's settings stand for (samples, filter, seed, transparent bounces)
+are not read, and those that change noise and time only need not be.
 """
 
 _KINDS = ("diffuse", "glossy", "transmission")
@@ -12,11 +13,35 @@ def check_cycles(scene, messages):
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
         return
-    for text in (*_light(scene, cycles), *_simplified(scene, cycles)):
+    for text in (*_light_paths(scene.lancer, cycles), *_light(cycles), *_simplified(scene, cycles)):
         messages.add(f"scene '{scene.name}': {text}")
 
 
-def _light(scene, cycles):
+def _light_paths(own, cycles):
+    # The other integrators show pictures of their own.
+    if own.integrator != "PATH":
+        return
+    theirs = [f"Total {cycles.max_bounces}"] if cycles.max_bounces != own.max_bounces else []
+    # A kind that may bounce as often as a path at all is not limited.
+    deepest = min(cycles.max_bounces, own.max_bounces)
+    limits = {kind: getattr(cycles, f"{kind}_bounces") for kind in _KINDS}
+    theirs += [f"{kind.capitalize()} {limit}" for kind, limit in limits.items() if limit < deepest]
+    if cycles.blur_glossy > 0.0:
+        theirs.append(f"Filter Glossy {cycles.blur_glossy:g}")
+    if cycles.sample_clamp_indirect > 0.0 and cycles.sample_clamp_indirect != own.clamp_indirect:
+        theirs.append(f"Clamp Indirect {cycles.sample_clamp_indirect:g}")
+    ours = [f"Max Bounces {own.max_bounces}"]
+    if own.clamp_indirect > 0.0:
+        ours.append(f"Clamp Indirect {own.clamp_indirect:g}")
+    if theirs:
+        yield f"Cycles limits light by {_listed(theirs)}, Lancer by {_listed(ours)}: set Light Paths alike to compare"
+
+
+def _listed(words):
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
+
+
+def _light(cycles):
     if cycles.film_exposure != 1.0:
         told = f"Cycles' film exposure ({cycles.film_exposure:g})"
         yield f"{told} is not supported, use the exposure of colour management"
@@ -27,14 +52,6 @@ def _light(scene, cycles):
     for name in ("reflective", "refractive"):
         if not getattr(cycles, f"caustics_{name}"):
             yield f"Cycles' {name} caustics are off, which is not supported, Lancer shows them"
-    # 0 is as Lancer shows it.
-    if cycles.blur_glossy > 0.0 and _changed(cycles, "blur_glossy"):
-        yield f"Cycles' Filter Glossy ({cycles.blur_glossy:g}) is not supported, reflections after a bounce stay sharp"
-    for kind in _KINDS:
-        name = f"{kind}_bounces"
-        limit = getattr(cycles, name)
-        if _changed(cycles, name) and limit < scene.lancer.max_bounces:
-            yield f"Cycles' limit of {limit} {kind} bounces is not supported, use Max Bounces of all kinds together"
 
 
 def _simplified(scene, cycles):

@@ -69,7 +69,7 @@ class Instances:
                 if light is not None:
                     self.lights.append(light)
             elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
-                self.messages.add(f"object '{thing.name}': type {thing.type} is not supported")
+                self.messages.add(f"object '{thing.name}': type {thing.type} is not supported, it is left out")
 
     def to_table(self, poll):
         objects = self._list

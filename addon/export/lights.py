@@ -151,9 +151,9 @@ def _check(thing, light, who, messages):
     check_linking(thing, who, messages)
     cycles = getattr(light, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported")
+        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")
     if getattr(light, "use_custom_distance", False) and bpy.app.version < (4, 2):
-        messages.add(f"{who}: custom distance is not supported")
+        messages.add(f"{who}: custom distance is not supported, its light reaches on as in Cycles")
     if not getattr(cycles, "use_multiple_importance_sampling", True):
         messages.add(f"{who}: without multiple importance sampling Cycles hides it from mirrors and glass, here they show it")
     if light.type == "SPOT" and _sheared(np.array(thing.matrix_world, float)):

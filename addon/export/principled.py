@@ -50,6 +50,9 @@ def read_principled(surface, site, weight):
         values["coat_ior"] = number("coat_ior", 1.5, SMALLEST_IOR)
         values["coat_tint"] = surface.color(site, PRINCIPLED["coat_tint"], _WHITE)
         values["coat_normal"] = surface.normal(site, PRINCIPLED["coat_normal"])
+        if RULES == Rules.BLENDER_3:
+            # Cycles 3 weighs the base by a chance of the coat that its sampler does not have.
+            graph.tell(site, "Clearcoat leaves the base its light, which is brighter under a sky than in Cycles 3")
     if not is_constant(values["sheen"], 0.0):
         values["sheen_roughness"] = number("sheen_roughness", 0.5, 0.0, 1.0)
         values["sheen_tint"] = _tint(surface, site, "sheen_tint")

@@ -22,7 +22,7 @@ def export_world(world, images, depsgraph, messages):
     graph = NodeGraph(who, messages, images, depsgraph)
     cycles = getattr(world, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported")
+        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")
     radiance = _cube(world.lancer, graph, who, messages) if world.lancer.use_cube else _nodes(world, graph, who, messages)
     return snapshot.World(
         radiance=radiance,
@@ -39,7 +39,7 @@ def _nodes(world, graph, who, messages):
     if output is None:
         return 0.0, 0.0, 0.0
     if output.inputs["Volume"].is_linked:
-        messages.add(f"{who}: volumes are not supported")
+        messages.add(f"{who}: volumes are not supported, its background alone is shown")
     return emission_of(graph, world.node_tree, "OUTPUT_WORLD")
 
 

@@ -1,8 +1,7 @@
-"""The add-on as a guest in Blender: what it adds, takes away, shows and obeys. Each function returns numbers to judge."""
+"""The add-on as a guest in Blender: what it adds, takes away and obeys. Each function returns numbers to judge."""
 
 import ctypes
 import sys
-import types
 
 import bpy
 import numpy as np
@@ -81,119 +80,6 @@ def other_library(folder):
         text = str(error)
     addon.unregister()
     return {"error": text, "from": addon.__file__}
-
-
-class _Layout:
-    """Takes a panel's calls and judges them as Blender would: a property must exist, an icon must have a name known to it."""
-
-    def __init__(self, shown=None):
-        self.shown = [] if shown is None else shown
-
-    def row(self, **_):
-        return _Layout(self.shown)
-
-    def column(self, **_):
-        return _Layout(self.shown)
-
-    def separator(self, **_):
-        pass
-
-    def prop(self, data, name, **options):
-        if name not in data.bl_rna.properties:
-            raise KeyError(f"{data.bl_rna.identifier}.{name}")
-        self._judge("prop", options)
-        self.shown.append(name)
-
-    def label(self, **options):
-        self._judge("label", options)
-        self.shown.append(options["text"])
-
-    def template_node_view(self, tree, node, socket):
-        if socket.node != node or node.id_data != tree:
-            raise ValueError("the socket is of another node")
-        self.shown.append("nodes")
-
-    @staticmethod
-    def _judge(name, options):
-        parameters = bpy.types.UILayout.bl_rna.functions[name].parameters
-        for option, value in options.items():
-            if option not in parameters:
-                raise TypeError(f"{name} has no option {option}")
-            if option == "icon" and value not in parameters["icon"].enum_items:
-                raise TypeError(f"no icon {value}")
-
-
-def _draw(cls, context):
-    """Calls draw as Blender does, on a stand-in: a panel exists only within a window."""
-    members = {name: value for base in reversed(cls.__mro__[:2]) for name, value in vars(base).items()}
-    panel = types.SimpleNamespace(layout=_Layout())
-    panel._column = types.MethodType(members["_column"], panel)
-    if "_draw_nodes" in members:
-        panel._draw_nodes = members["_draw_nodes"].__get__(None, cls)
-    cls.draw(panel, context)
-    return panel.layout.shown
-
-
-def _variants(context):
-    """The context again and again, with other choices made."""
-    yield "plain"
-    bpy.ops.render.render()
-    yield "rendered"
-    own = context.scene.lancer
-    for integrator in own.bl_rna.properties["integrator"].enum_items.keys():
-        own.integrator = integrator
-        yield integrator
-    for model in ("KD_KS", "PHONG", "BLINN_PHONG", "NODES"):
-        context.material.lancer.model = model
-        yield model
-    context.material.node_tree.nodes.clear()
-    yield "material without output"
-    context.world.node_tree.nodes.clear()
-    yield "world without output"
-    context.light.lancer.use_separate_colors = True
-    if "use_temperature" in context.light.bl_rna.properties:
-        context.light.use_temperature = True
-    lamp = next(item for item in bpy.data.objects if item.type == "LIGHT")
-    for kind in ("SUN", "SPOT", "AREA", "POINT"):
-        lamp.data.type = kind
-        # The type of the data-block's Python object follows its kind only when asked for anew.
-        context.light = lamp.data
-        yield kind
-        if kind == "AREA":
-            for shape in ("SQUARE", "RECTANGLE", "DISK", "ELLIPSE"):
-                lamp.data.shape = shape
-                yield shape
-
-
-def panels():
-    """Draws every panel in many states: what was shown, and what went wrong."""
-    from addon import ui
-
-    scene = stage.room(width=16, height=16, samples=1)
-    cube = bpy.data.objects["Cube"]
-    context = types.SimpleNamespace(
-        engine="LANCER",
-        scene=scene,
-        view_layer=scene.view_layers[0],
-        object=cube,
-        material=cube.data.materials[0],
-        light=next(item.data for item in bpy.data.objects if item.type == "LIGHT"),
-        world=scene.world,
-    )
-    shown, errors, polls = {cls.__name__: {} for cls in ui._CLASSES}, [], []
-    for variant in _variants(context):
-        for cls in ui._CLASSES:
-            try:
-                if not cls.poll(context):
-                    polls.append(f"{cls.__name__}: hidden, {variant}")
-                shown[cls.__name__][variant] = _draw(cls, context)
-            except Exception as error:
-                errors.append(f"{cls.__name__}, {variant}: {type(error).__name__}: {error}")
-    nothing = types.SimpleNamespace(engine="LANCER", object=None, material=None, light=None, world=None)
-    hidden = [cls.__name__ for cls in ui._CLASSES if not cls.poll(nothing)]
-    context.engine = "CYCLES"
-    foreign = [cls.__name__ for cls in ui._CLASSES if cls.poll(context)]
-    return {"shown": shown, "errors": errors, "polls": polls, "hidden": hidden, "foreign": foreign}
 
 
 def _statistics(scene):

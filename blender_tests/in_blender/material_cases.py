@@ -388,7 +388,7 @@ def panel():
     node.inputs["Alpha"].default_value = 0.25
     said["veil"] = [describe_material(bpy.data.materials["coated"])]
     probe._ask = ask
-    return {"said": said, "asked": asked}
+    return {"said": said, "asked": asked, "version": list(bpy.app.version)}
 
 
 _OLDER = {"Specular IOR Level": ("Specular",), "Coat Weight": ("Clearcoat",), "Coat Roughness": ("Clearcoat Roughness",)}

@@ -1,5 +1,6 @@
-"""What a render tells: how often, of which render, and of which settings."""
+"""What a render tells: how often, of which render, and of what it leaves out."""
 
+import json
 import os
 import tempfile
 
@@ -64,102 +65,65 @@ def layers():
     return result
 
 
-# Each of these differs from what Blender starts with, and says so by a word.
-_SETTINGS = {
-    "film_exposure": (2.0, "exposure"),
-    "use_fast_gi": (True, "Fast GI"),
-    "sample_clamp_direct": (1.0, "Clamp Direct"),
-    "caustics_reflective": (False, "reflective caustics"),
-    "caustics_refractive": (False, "refractive caustics"),
-    "blur_glossy": (2.0, "Filter Glossy"),
-    "diffuse_bounces": (0, "diffuse bounces"),
-    "glossy_bounces": (1, "glossy bounces"),
-    "transmission_bounces": (2, "transmission bounces"),
-}
-# And these change noise or time alone, are Lancer's own, or mean the same here.
-_NEUTRAL = {
-    "samples": 7, "seed": 5, "max_bounces": 3, "transparent_max_bounces": 3, "sample_clamp_indirect": 0.0, "blur_glossy": 0.0,
-    "diffuse_bounces": 64, "pixel_filter_type": "BOX", "use_adaptive_sampling": False, "light_sampling_threshold": 0.1,
-    "min_light_bounces": 3, "use_camera_cull": True, "texture_limit_render": "128", "ao_bounces_render": 3,
-}  # fmt: skip
+def failed_layer(path):
+    """Two view layers, of which the first fails. Writes what the panel says then, for the program ends with the render."""
+    from addon import engine
+    from addon.bindings.abi import LancerError
+
+    scene = _faulty(1)
+    scene.view_layers[0].name = "First"
+    scene.view_layers.new("Second")
+    genuine = engine.export_scene
+
+    def export(depsgraph, *arguments):
+        if depsgraph.view_layer.name == "First":
+            raise LancerError("the first layer fails")
+        return genuine(depsgraph, *arguments)
+
+    def say(*_):
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(engine.last_messages[scene.name], file)
+
+    engine.export_scene = export
+    bpy.app.handlers.render_post.append(say)
+    try:
+        bpy.ops.render.render()
+    except RuntimeError as error:
+        return str(error)
+    finally:
+        bpy.app.handlers.render_post.remove(say)
+        engine.export_scene = genuine
 
 
-def settings():
-    """Messages of the settings that Blender starts with, of neutral changes, and of each other change by itself."""
-    from addon.export.checks import check_scene
-    from addon.export.messages import Messages
-
-    def told():
-        messages = Messages()
-        check_scene(bpy.context.scene, messages)
-        return messages.lines()
-
-    bpy.ops.wm.read_factory_settings(use_empty=False)
-    result = {"start": told(), "words": {}}
-    for name, value in _NEUTRAL.items():
-        setattr(bpy.context.scene.cycles, name, value)
-    result["neutral"] = told()
-    bpy.ops.wm.read_factory_settings(use_empty=False)
-    cycles = bpy.context.scene.cycles
-    for name, (value, word) in _SETTINGS.items():
-        start = getattr(cycles, name)
-        setattr(cycles, name, value)
-        result["words"][word] = told()
-        setattr(cycles, name, start)
-    render, cube = bpy.context.scene.render, bpy.data.objects["Cube"]
-    render.use_simplify = True
-    result["simplify"] = told()
-    for switch in ("use_camera_cull", "use_distance_cull"):
-        setattr(cycles, switch, True)
-        result["nobody culled"] = told()
-        setattr(cube.cycles, switch, True)
-        result["words"][switch.split("_")[1] + " culling"] = told()
-        setattr(cycles, switch, False)
-    bpy.context.scene.camera.data.type = "PANO"
-    cycles.use_camera_cull = True
-    result["panorama"] = told()
-    cycles.use_camera_cull = False
-    cycles.texture_limit_render = "256"
-    result["words"]["Texture Limit"] = told()
-    return result
-
-
-def objects():
-    """Messages of single objects: plain, then with each setting that is not supported."""
-    from addon.export.checks import check_object
-    from addon.export.messages import Messages
-
-    def told(thing):
-        messages = Messages()
-        check_object(thing, scene, messages)
-        return messages.lines()
+def left_out():
+    """One of each thing that is left out, all in one scene: what is told."""
+    from export_cases import export_told
 
     scene = stage.empty()
-    cube = stage.cube()
-    result = {"plain": told(cube)}
-    new = hasattr(cube, "shadow_terminator_shading_offset")
-    owner, name = (cube, "shadow_terminator_shading_offset") if new else (cube.cycles, "shadow_terminator_offset")
-    setattr(owner, name, 0.2)
-    result["terminator"] = told(cube)
-    setattr(owner, name, 0.0)
-    cube.cycles.is_caustics_receiver = True
-    result["caustics"] = told(cube)
-    cube.cycles.is_caustics_receiver = False
-    modifier = cube.modifiers.new("Round", "SUBSURF")
-    result["divided"] = told(cube)
-    if hasattr(modifier, "use_adaptive_subdivision"):
-        modifier.use_adaptive_subdivision = True
-    else:
-        cube.cycles.use_adaptive_subdivision = True
-        result["supported features"] = told(cube)
-        scene.cycles.feature_set = "EXPERIMENTAL"
-    result["adaptive"] = told(cube)
-    modifier.show_render = False
-    result["not rendered"] = told(cube)
-    modifier.show_render = True
-    cube.modifiers.new("Last", "SMOOTH")
-    result["not last"] = told(cube)
-    return result
+    stage.link("Smoke", bpy.data.volumes.new("Smoke"))
+    for name, kinds in (("Fog", ("VolumeScatter",)), ("Milk", ("BsdfDiffuse", "VolumeScatter"))):
+        material = bpy.data.materials.new(name)
+        material.use_nodes = True
+        _show(material.node_tree, kinds, "OutputMaterial")
+        stage.cube(material=material)
+    lamp = stage.light().data
+    lamp.cycles.max_bounces = 3
+    if hasattr(lamp, "use_custom_distance"):
+        lamp.use_custom_distance = True
+    world = stage.sky()
+    world.cycles.max_bounces = 4
+    _show(world.node_tree, ("Background", "VolumeScatter"), "OutputWorld")
+    scene.world = world
+    return {"version": list(bpy.app.version), "told": export_told()[1].lines()}
+
+
+def _show(tree, kinds, output):
+    """Shader nodes of these kinds under a new output node."""
+    tree.nodes.clear()
+    end = tree.nodes.new("ShaderNode" + output)
+    for kind in kinds:
+        node = tree.nodes.new("ShaderNode" + kind)
+        tree.links.new(node.outputs[0], end.inputs["Volume" if kind.startswith("Volume") else "Surface"])
 
 
 def custom_group():

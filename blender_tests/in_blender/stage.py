@@ -22,7 +22,15 @@ def empty(width=32, height=32, samples=4, engine="LANCER"):
         scene.lancer.quality = "CUSTOM"
         scene.lancer.samples = samples
         scene.lancer.pixel_filter = "BOX"
+        light_paths_alike(scene)
     return scene
+
+
+def light_paths_alike(scene):
+    """Cycles' light paths as Lancer's, of which nothing is told then."""
+    cycles = scene.cycles
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = scene.lancer.max_bounces
+    cycles.blur_glossy = cycles.sample_clamp_indirect = 0.0
 
 
 def link(name, data, location=(0, 0, 0), rotation=(0, 0, 0)):

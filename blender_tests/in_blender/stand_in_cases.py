@@ -37,6 +37,33 @@ def unknown_sources():
     return {"lobes": got["lobes"], "messages": got["messages"]}
 
 
+def samplers():
+    """{name: messages} of surfaces on either side of where Cycles' own samplers weigh the sky otherwise."""
+    old = bpy.app.version < (4, 0)
+    stretched = "BsdfAnisotropic" if old else "BsdfGlossy"
+    coat = "Clearcoat" if old else "Coat_Weight"
+    cases = {
+        "smooth lacquer": ("BsdfGlossy", {"distribution": "ASHIKHMIN_SHIRLEY", "Roughness": 0.25}),
+        "rough lacquer": ("BsdfGlossy", {"distribution": "ASHIKHMIN_SHIRLEY", "Roughness": 0.3}),
+        "varying lacquer": ("BsdfGlossy", {"distribution": "ASHIKHMIN_SHIRLEY", "Roughness": None}),
+        "matt": ("BsdfGlossy", {"distribution": "BECKMANN", "Roughness": 0.9}),
+        "even": (stretched, {"distribution": "BECKMANN", "Roughness": 0.9, "Anisotropy": 0.0}),
+        "mirror": (stretched, {"distribution": "BECKMANN", "Roughness": 0.0, "Anisotropy": 0.5}),
+        "brushed ggx": (stretched, {"distribution": "GGX", "Roughness": 0.4, "Anisotropy": 0.5}),
+        "brushed": (stretched, {"distribution": "BECKMANN", "Roughness": 0.4, "Anisotropy": -0.5}),
+        "varying brushed": (stretched, {"distribution": "BECKMANN", "Roughness": 0.4, "Anisotropy": None}),
+        "bare": ("BsdfPrincipled", {"distribution": "GGX", coat: 0.0}),
+        "coated": ("BsdfPrincipled", {"distribution": "GGX", coat: 0.1}),
+        "varying coat": ("BsdfPrincipled", {"distribution": "GGX", coat: None}),
+    }
+    result = {}
+    for name, (kind, inputs) in cases.items():
+        tree = Tree(name)
+        inputs = {key: tree.varying() if value is None else value for key, value in inputs.items()}
+        result[name] = answer(tree.show(tree.node(kind, **inputs).outputs[0]))[name]["messages"]
+    return result
+
+
 def facets():
     """{node: messages} of each that lights facets by one another, and of one that does not."""
     kinds = {
