@@ -3,7 +3,7 @@
 from .catalogue import case, variants
 from .nodes import shader, with_socket
 from .plates import SIZE, set_plates
-from .reasons import CLEAR_COAT3
+from .reasons import CLEAR_COAT3, CLEAR_COAT3_TOLD
 
 _PRINCIPLED = "ShaderNodeBsdfPrincipled"
 _INPUTS = {
@@ -13,7 +13,7 @@ _INPUTS = {
     "black": {"Base_Color": (0.0, 0.0, 0.0)},
     "glass": {"Transmission_Weight": 1.0},
     "half_glass": {"Transmission_Weight": 0.5},
-    "coat": ({"Coat_Weight": 1.0}, {"blender3": ((0.033, 0.065), CLEAR_COAT3)}),
+    "coat": ({"Coat_Weight": 1.0}, {"blender3": ((0.033, 0.065), CLEAR_COAT3, CLEAR_COAT3_TOLD)}),
     "specular": {"Specular_IOR_Level": 1.0},
     "anisotropic": {"Metallic": 1.0, "Anisotropic": 0.7},
 }

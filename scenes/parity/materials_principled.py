@@ -6,7 +6,7 @@ import bpy
 
 from .catalogue import case, variants
 from .nodes import material, principled, with_socket
-from .reasons import CLEAR_COAT3, WALK3, WALK3_TOLD
+from .reasons import CLEAR_COAT3, CLEAR_COAT3_TOLD, WALK3, WALK3_TOLD
 from .stages import open_air, studio
 
 _RED = (0.8, 0.2, 0.1)
@@ -95,6 +95,7 @@ def principled_half_transmission(scene):
     blender3=(
         (0.015, 0.16),
         CLEAR_COAT3,
+        CLEAR_COAT3_TOLD,
     ),
 )
 def principled_coat(scene):

@@ -6,3 +6,4 @@ CLEAR_COAT3 = (
     "Cycles 3 weighs what the base throws by a chance of the clear coat that its sampler does not have, and loses a part of it "
     "under a sky; under a sun both agree (sun_on_principled_coat)"
 )
+CLEAR_COAT3_TOLD = "Clearcoat leaves the base its light"
