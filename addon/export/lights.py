@@ -9,9 +9,9 @@ from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
 from .checks import check_linking
-from .closures import emission_of
 from .graph import NodeGraph
 from .images import NoPictures
+from .surface import emission_of
 from .visibility import hidden_from
 
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}

@@ -5,11 +5,11 @@ import bpy
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag
 from .arithmetic import is_constant, triple
-from .closures import Surface
 from .graph import NodeGraph
 from .images import Images
 from .normals import bump, displacement_height
 from .sockets import RULES, output_node
+from .surface import Surface
 from .walk import Site
 
 # What Cycles shows where there is no material: since 5.0 its Principled BSDF as it comes.

@@ -5,9 +5,9 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind
-from .closures import emission_of
 from .graph import NodeGraph
 from .sockets import output_node
+from .surface import emission_of
 from .visibility import hidden_from
 
 # In the order of lancer.h.

@@ -123,7 +123,9 @@ def _contest(case, outcome, folder, engine_pair, most_samples, first_seed):
         verdicts = [verdict for _, verdict in outcome.parts.values()]
         limit = case.limits
         settled = all(
-            verdict.name == "pass" and verdict.quiet or any(figures.hopeless(n, limit) for n in (numbers, numbers.dim) if n)
+            verdict.name == "pass"
+            and (verdict.quiet or all(figures.enough(n, limit) for n in (numbers, numbers.dim) if n))
+            or any(figures.hopeless(n, limit) for n in (numbers, numbers.dim) if n)
             for numbers, verdict in outcome.parts.values()
         )
         # The next round doubles what there is.

@@ -196,6 +196,14 @@ def decisive(figures, limit):
     return max((numbers for numbers in (figures, figures.dim) if numbers), key=lambda numbers: share(numbers, limit))
 
 
+def enough(figures, limit):
+    """Whether a pass needs no more samples: noise widens what lies between two pictures, it does not hide it.
+
+    The mean of |d + n| is no less than |d|; half of the limit keeps chance from saying otherwise.
+    """
+    return 2.0 * figures.noise_mean <= limit.mean and 2.0 * figures.noise_p99 <= limit.p99
+
+
 def hopeless(figures, limit):
     """Whether more samples cannot change the verdict: far beyond the limit, or far beyond what noise explains."""
     more = allowance(figures)

@@ -10,7 +10,7 @@ from .. import parts
 from .catalogue import case, variants
 from .nodes import shader, with_node
 from .plates import ANGLES, ROUGHNESS, SIZE, TILES, set_plates, size_of
-from .reasons import WALK3, WALK3_TOLD
+from .reasons import BECKMANN3, WALK3, WALK3_TOLD
 
 # Under this name the node of all glossy lobes exists in every version.
 _GLOSSY = "ShaderNodeBsdfAnisotropic"
@@ -54,11 +54,7 @@ _DRAWN_WITHOUT_MASK = (
     "(sun_on_anisotropic_beckmann)"
 )
 _STRETCHED_TOLD = "stretched Beckmann keeps to its model"
-_TABLE = (
-    "Cycles 3 draws Beckmann's facets by a table that it interpolates, up to 0.74 % off under a sky; under a sun both agree "
-    "(sun_on_beckmann)"
-)
-_TABLE3 = {"blender3": ((0.003, 0.008), _TABLE)}
+_TABLE3 = {"blender3": ((0.003, 0.008), BECKMANN3)}
 # What Blender 3 does differently in both parts.
 _EXACT3 = {"anisotropic_beckmann": {"blender3": ((0.07, 0.30), _DRAWN_WITHOUT_MASK, _STRETCHED_TOLD)}}
 _FITTED3 = {

@@ -7,3 +7,7 @@ CLEAR_COAT3 = (
     "under a sky; under a sun both agree (sun_on_principled_coat)"
 )
 CLEAR_COAT3_TOLD = "Clearcoat leaves the base its light"
+BECKMANN3 = (
+    "Cycles 3 draws Beckmann's facets by a table that it interpolates, up to 0.74 % off under a sky; under a sun both agree "
+    "(sun_on_beckmann)"
+)

@@ -1,0 +1,157 @@
+"""Shader nodes as weighted lobes, light, passage and holes: the walk through Mix and Add Shaders down to closures."""
+
+from dataclasses import fields, replace
+
+from ..bindings import snapshot
+from ..bindings.enums import LobeKind, MathOperation
+from ..bindings.shading import NodeRef
+from .arithmetic import is_constant, triple
+from .closures import CLOSURES, read_unknown
+from .coordinates import default_tangent
+from .graph import NodeGraph
+from .sockets import RULES, output_node
+from .walk import Site
+
+_MAX_LOBES = 64  # of the core
+_NONE = (0.0, 0.0, 0.0)  # a normal or tangent: the surface's own
+# Twice the colour is twice the light for these, so that a constant weight is a part of the colour.
+_LINEAR = {LobeKind.LAMBERT, LobeKind.DIFFUSE, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN}
+
+
+class Surface:
+    """Walks from a shader socket upstream; the weights of Mix and Add Shaders become those of the closures below them."""
+
+    def __init__(self, graph):
+        self.graph = graph
+        self.emission = 0.0
+        self.transmittance = 0.0
+        self.holdout = 0.0
+        self._lobes = []
+
+    @property
+    def lobes(self):
+        if len(self._lobes) > _MAX_LOBES:
+            graph = self.graph
+            graph.messages.add(f"{graph.owner}: has {len(self._lobes)} lobes, the first {_MAX_LOBES} are used")
+        return tuple(self._lobes[:_MAX_LOBES])
+
+    def read(self, site, socket):
+        """Adds all that shines or scatters above a shader socket."""
+        walker = self.graph.walker
+        root = walker.origin(site, socket)
+        if root.site is None:
+            return
+        weights = {_key(root): 1.0}
+        for origin in self._in_order(root):
+            weight = weights.get(_key(origin), 0.0)
+            if is_constant(weight, 0.0):
+                continue
+            for source, share in self._read_one(origin, weight):
+                if source.site is not None:
+                    key = _key(source)
+                    weights[key] = self.graph.add(weights.get(key, 0.0), share)
+
+    def _in_order(self, root):
+        """The closures under root, each before those that it mixes; without recursion, for chains of any length."""
+        done, order, open_ = set(), [], [(root, False)]
+        while open_:
+            origin, finished = open_.pop()
+            key = _key(origin)
+            if finished:
+                order.append(origin)
+            elif key not in done:
+                done.add(key)
+                open_.append((origin, True))
+                if origin.site.node.type in ("MIX_SHADER", "ADD_SHADER"):
+                    sources = (self.graph.walker.origin(origin.site, socket) for socket in _shader_inputs(origin.site))
+                    open_.extend((source, False) for source in sources if source.site is not None)
+        return reversed(order)
+
+    def _read_one(self, origin, weight):
+        """Adds one closure; gives those that a Mix or Add Shader passes its weight on to."""
+        graph, site, node = self.graph, origin.site, origin.site.node
+        if origin.output.type != "SHADER":
+            # A colour where a shader belongs shines.
+            self.emit(graph.multiply(graph.color_of(origin), weight))
+            return ()
+        if node.type == "MIX_SHADER":
+            first, second = (graph.walker.origin(site, socket) for socket in _shader_inputs(site))
+            factor = graph.parameter(site, ("Fac", "Factor"), 0.5, low=0.0, high=1.0)
+            if isinstance(factor, NodeRef):
+                factor = graph.op(MathOperation.ADD, factor, 0.0, clamped=True)
+            rest = graph.subtract(1.0, factor)
+            return ((first, graph.multiply(weight, rest)), (second, graph.multiply(weight, factor)))
+        if node.type == "ADD_SHADER":
+            return tuple((graph.walker.origin(site, socket), weight) for socket in _shader_inputs(site))
+        CLOSURES.get(node.type, read_unknown)(self, site, weight)
+        return ()
+
+    # ---- what closures add ----
+
+    def emit(self, radiance):
+        self.emission = self.graph.add(self.emission, radiance)
+
+    def transmit(self, share):
+        self.transmittance = self.graph.add(self.transmittance, share)
+
+    def add(self, kind, weight, color=(1.0, 1.0, 1.0), **values):
+        """Equal lobes become one, and black ones none: the scene pays for what it shows."""
+        weight, color = (value if isinstance(value, NodeRef) else triple(value) for value in (weight, color))
+        if is_constant(color, 0.0) and kind != LobeKind.CONDUCTOR or is_constant(weight, 0.0):
+            return
+        if kind in _LINEAR and not isinstance(weight, NodeRef) and not isinstance(color, NodeRef):
+            color, weight = self.graph.multiply(color, weight), (1.0, 1.0, 1.0)
+        lobe = snapshot.Lobe(kind=kind, color=color, weight=weight, rules=RULES, **values)
+        field = "color" if kind in _LINEAR else "weight"
+        for number, other in enumerate(self._lobes):
+            if _same_but(lobe, other, field):
+                total = tuple(x + y for x, y in zip(getattr(lobe, field), getattr(other, field), strict=True))
+                self._lobes[number] = replace(other, **{field: total})
+                return
+        self._lobes.append(lobe)
+
+    def normal(self, site, names=("Normal",)):
+        return self.graph.linked(site, names, self.graph.normal)
+
+    def tangent(self, site, anisotropy):
+        """Matters to lobes that are stretched."""
+        if is_constant(anisotropy, 0.0):
+            return _NONE
+        tangent = self.graph.linked(site, ("Tangent",), None)
+        return default_tangent(self.graph) if tangent is None else tangent
+
+    def color(self, site, names=("Color",), default=(0.8, 0.8, 0.8)):
+        return self.graph.parameter(site, names, default, kind="color")
+
+    def share(self, site, names, default=0.0):
+        return self.graph.parameter(site, names, default, low=0.0, high=1.0)
+
+
+def _shader_inputs(site):
+    return [socket for socket in site.node.inputs if socket.type == "SHADER"][:2]
+
+
+def _key(origin):
+    return (*origin.site.key, origin.output.as_pointer())
+
+
+def _same_but(lobe, other, field):
+    """Whether two lobes differ in one field at most, which is constant in both."""
+    if any(isinstance(getattr(item, field), NodeRef) for item in (lobe, other)):
+        return False
+    return all(getattr(lobe, f.name) == getattr(other, f.name) for f in fields(lobe) if f.name != field)
+
+
+def emission_of(graph: NodeGraph, tree, kind):
+    """What the output node of that type (OUTPUT_WORLD, OUTPUT_LIGHT) shines: RGB, or a NodeRef.
+
+    Black where nothing is linked; closures that do not shine are told and left out.
+    """
+    output = output_node(tree, kind) if tree is not None else None
+    if output is None:
+        return _NONE
+    surface = Surface(graph)
+    surface.read(Site(output), output.inputs["Surface"])
+    if surface.lobes or not is_constant(surface.transmittance, 0.0) or not is_constant(surface.holdout, 0.0):
+        graph.messages.add(f"{graph.owner}: only Background and Emission shine, other shaders are left out")
+    return surface.emission if isinstance(surface.emission, NodeRef) else triple(surface.emission)
