@@ -25,6 +25,11 @@ def test_a_pass_that_is_not_written_is_an_error(judged):
     assert judged["theirs is missing"] == ["error", "ValueError: Cycles wrote no pass Mist"]
 
 
+def test_a_picture_of_nothing_is_an_error(judged):
+    assert judged["shows nothing"] == ["error", "ValueError: Cycles shows nothing in Combined"]
+    assert judged["shows nothing and must"][0] == "pass"
+
+
 def test_data_that_change_with_the_seed_are_refused(judged):
     """Noise of 2e-5 in a pixel: within the limit, and more than a third of it in one pixel of a hundred."""
     assert judged["data"][0] == "pass"

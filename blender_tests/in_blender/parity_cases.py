@@ -63,6 +63,9 @@ def _contests():
 
         return picture
 
+    def black(seed):
+        return {"Combined": 0.0 * _GREY}
+
     announced = {"announced": "film exposure"}
     data = {"kind_name": "PIXELS", "passes": ("Mist",)}
     return (
@@ -71,6 +74,8 @@ def _contests():
         ("not announced, equal", announced, grey, grey, False),
         ("ours is missing", {"passes": ("Combined", "Mist")}, grey, lambda seed: {**grey(seed), **mist(seed)}, False),
         ("theirs is missing", {"passes": ("Combined", "Mist")}, lambda seed: {**grey(seed), **mist(seed)}, grey, False),
+        ("shows nothing", {}, black, black, False),
+        ("shows nothing and must", {"dark": ("Combined",)}, black, black, False),
         ("data", data, mist, mist, False),
         ("noisy data", data, noisy(1e-5, "Mist", 1), noisy(1e-5, "Mist", 1), False),
         ("noisy data, few samples", data, noisy(1e-5, "Mist", 1), noisy(1e-5, "Mist", 1), True),

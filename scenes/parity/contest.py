@@ -146,11 +146,11 @@ def _judge(case, outcome, scene, ours, theirs):
     missing = set(case.passes) - set(theirs)
     if missing:
         raise ValueError(f"Cycles wrote no pass {', '.join(sorted(missing))}")
+    if case.sum_of_passes:
+        ours, theirs = {"Sum": _sum_of_passes(ours)}, {"Sum": ours["Combined"]}
     dark = [name for name, (one, other) in theirs.items() if not (one.any() or other.any()) and name not in case.dark]
     if dark:
         raise ValueError(f"Cycles shows nothing in {', '.join(sorted(dark))}")
-    if case.sum_of_passes:
-        ours, theirs = {"Sum": _sum_of_passes(ours)}, {"Sum": ours["Combined"]}
     for name, pair in theirs.items():
         if name not in ours:
             raise ValueError(f"Lancer wrote no pass {name}")
