@@ -31,6 +31,7 @@ LIGHTS = {
     "spot disk": Light("lamp", move(0.2, 0, 2), LightKind.SPOT, emission=(1, 1, 1), radius=0.3, spot_angle=1.5),
     "sun": Light("lamp", rotate_x(0.3), LightKind.SUN, emission=(1, 1, 1), sun_angle=0.3),
     "small sun": Light("lamp", rotate_x(0.3), LightKind.SUN, emission=(1, 1, 1), sun_angle=0.0093),
+    "flat sun": Light("lamp", rotate_x(0.3), LightKind.SUN, emission=(1, 1, 1), sun_angle=1.5, sun_flat=True),
     "rectangle": area(AreaShape.RECTANGLE),
     "large rectangle": area(AreaShape.RECTANGLE, (30.0, 20.0)),
     "small rectangle": area(AreaShape.RECTANGLE, (1e-3, 2e-3)),

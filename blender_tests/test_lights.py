@@ -81,6 +81,7 @@ CLOSED_FORMS = {
     "sun": (Light("sun", kind=LightKind.SUN, emission=(3, 3, 3)), 3.0),
     "sun with a disk": (Light("sun", kind=LightKind.SUN, emission=(3, 3, 3), sun_angle=0.2), 3.0),
     "small sun": (Light("sun", kind=LightKind.SUN, emission=(3, 3, 3), sun_angle=1e-4), 3.0),
+    "flat sun": (Light("sun", kind=LightKind.SUN, emission=(3, 3, 3), sun_angle=1.5, sun_flat=True), 3.0),
     "slanting sun": (Light("sun", rotate_x(1.0), LightKind.SUN, emission=(3, 3, 3), sun_angle=0.1), 3 * math.cos(1.0)),
     "square": (area(), 3 * float(reference.rectangle_irradiance(1, 1, 2))),
     "rectangle": (area(size=(3, 0.5)), 3 * float(reference.rectangle_irradiance(3, 0.5, 2))),

@@ -180,6 +180,7 @@ def light(li):
         spot_blend=li.spot_blend,
         spot_cosine=li.spot_cosine,
         sun_angle=li.sun_angle,
+        sun_flat=li.sun_flat,
         size=li.size,
         shape=int(li.shape),
         spread=li.spread,

@@ -189,6 +189,7 @@ class Light(Record):
     spot_blend: float = 0.15
     spot_cosine: bool = False
     sun_angle: float = 0.0
+    sun_flat: bool = False
     size: tuple = (1.0, 1.0)
     shape: int = AreaShape.RECTANGLE
     spread: float = math.pi

@@ -170,6 +170,7 @@ class Light(Structure):
         ("spot_blend", c_float),
         ("spot_cosine", c_uint32),
         ("sun_angle", c_float),
+        ("sun_flat", c_uint32),
         ("size", c_float * 2),
         ("shape", c_uint32),
         ("spread", c_float),

@@ -55,6 +55,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
         spot_blend=messages.number(getattr(light, "spot_blend", 0.0), who, "spot blend", 0.15, 0.0, 1.0),
         spot_cosine=bpy.app.version < (4, 0),
         sun_angle=sun_angle if kind == LightKind.SUN else 0.0,
+        sun_flat=bpy.app.version < (4, 0),
         size=size,
         shape=shape,
         spread=messages.number(getattr(light, "spread", math.pi), who, "spread", math.pi, 0.0, math.pi),

@@ -482,9 +482,10 @@ typedef struct lancer_light {
   float spot_blend;      /* SPOT: 0 hard edge ... 1 all of the cone softened */
   uint32_t spot_cosine;  /* SPOT: 1 = intensity also falls with the cosine of the angle to the axis, as in Blender before 4.0 */
   float sun_angle;       /* SUN: full angle of the disk in the sky; 0 is exactly parallel light */
-  float size[2];  /* AREA: full lengths along local x and y. SPOT: what widens the cone along them; 1, 1 (and 0, 0): round */
-  uint32_t shape; /* AREA: LANCER_RECTANGLE or LANCER_ELLIPSE */
-  float spread;   /* AREA: full angle of emission, pi = all of the front side */
+  uint32_t sun_flat; /* SUN: 1 = radiance grows to the rim as 1 / cos^3, a flat disk's, as in Blender before 4.0; 0 = even */
+  float size[2];     /* AREA: full lengths along local x and y. SPOT: what widens the cone along them; 1, 1 (and 0, 0): round */
+  uint32_t shape;    /* AREA: LANCER_RECTANGLE or LANCER_ELLIPSE */
+  float spread;      /* AREA: full angle of emission, pi = all of the front side */
   uint32_t hidden_from;   /* LANCER_RAY_* bits; SHADOW has no meaning here */
   uint32_t no_shadow;     /* 1: nothing stands in its way */
   uint32_t falloff;       /* CLASSIC: LANCER_FALLOFF_* */

@@ -29,6 +29,7 @@ struct Light {
   bool spot_cosine = false;
   double stretch_x = 1.0, stretch_y = 1.0;       // SPOT: of the cone's section
   double one_minus_cos_sun = 0.0;                // SUN: 1 - cos of half its angle
+  double flat_radius = 0.0;                      // SUN: of the flat disk at distance 1; 0 = even radiance
   double half_x = 0.0, half_y = 0.0, area = 0.0; // AREA
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit

@@ -40,9 +40,12 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
     light.stretch_x = double(from.size.x);
     light.stretch_y = double(from.size.y);
   }
+  // A flat disk cannot fill half of the sky.
+  const double sun_angle = from.sun_flat ? std::min(double(from.sun_angle), glm::radians(179.9)) : double(from.sun_angle);
   // 1 - cos(a) = 2 sin^2(a / 2), exact for the smallest suns.
-  const double s = std::sin(0.25 * double(from.sun_angle));
+  const double s = std::sin(0.25 * sun_angle);
   light.one_minus_cos_sun = 2.0 * s * s;
+  light.flat_radius = from.sun_flat ? std::tan(0.5 * sun_angle) : 0.0;
   // A disk that is smaller than a float direction can tell is a direction.
   if (0.5 * double(from.sun_angle) < 0x1p-24)
     light.one_minus_cos_sun = 0.0;

@@ -61,6 +61,7 @@ void add_light(Description &description, const lancer_light &source) {
     light.spot_blend = reader.read("spot blend", source.spot_blend, 0.0f, 1.0f);
     light.spot_cosine = source.spot_cosine != 0;
     light.sun_angle = reader.read("sun angle", source.sun_angle, 0.0f, glm::pi<float>());
+    light.sun_flat = source.sun_flat != 0;
     // A spot needs some stretch; whoever leaves it 0 has a round one in mind.
     const float smallest = light.kind == LightKind::Spot ? 1e-6f : 0.0f;
     const bool round = light.kind == LightKind::Spot && source.size[0] == 0.0f && source.size[1] == 0.0f;

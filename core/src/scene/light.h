@@ -22,6 +22,7 @@ struct LightDescription {
   float spot_angle = 0.0f, spot_blend = 0.0f;
   bool spot_cosine = false;
   float sun_angle = 0.0f;
+  bool sun_flat = false;
   glm::vec2 size{0.0f};
   AreaShape shape = AreaShape::Rectangle;
   float spread = 3.14159265f;
