@@ -111,7 +111,9 @@ def mesh_emission(scene, value):
     size, strength = value
     floor_and_block(scene)
     glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=strength)
-    parts.place(scene, "Glow", parts.cube_mesh("Glow", size), glow, (1.1, -0.4, 1.3), rotation=(0.4, 0.3, 0))
+    lamp = parts.place(scene, "Glow", parts.cube_mesh("Glow", size), glow, (1.1, -0.4, 1.3), rotation=(0.4, 0.3, 0))
+    # The outline of a small and bright one would be all of the picture's noise.
+    lamp.visible_camera = size > 0.5
 
 
 @case(bounces=1)
@@ -121,6 +123,7 @@ def mesh_emission_scaled(scene):
     glow = shader("ShaderNodeEmission", Color=(0.4, 0.7, 1.0), Strength=8.0)
     thing = ball(scene, glow, segments=24, radius=0.3, location=(1.1, -0.4, 1.3))
     thing.scale = (0.5, -0.2, 0.3)
+    sky(scene, strength=0.3)
 
 
 @case(bounces=2)
