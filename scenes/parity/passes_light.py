@@ -73,7 +73,7 @@ def pass_transmission_cut_lamp(scene):
     _behind_pane(scene, -1.9)
 
 
-@case(passes=_LIGHT)
+@case(passes=_LIGHT, dark=_LIGHT[3:])
 def pass_translucent(scene):
     """In which of the passes the light through a leaf is counted: the lamp's straight, and the floor's."""
     floor(scene)
