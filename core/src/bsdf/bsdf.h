@@ -33,6 +33,8 @@ struct BsdfSample {
 //             its own. It acts on the side of its normal and scatters through to the other; lobes that need wo there are 0
 //             where wo is behind their normal.
 //   eval      f |cos| of smooth lobes, single directions are 0; the cosine is that of the lobe's own normal.
+//   eval_lit  the same as a sample of a light is weighed, as in Cycles: rough boundaries also pass light between directions
+//             that lie on one side of their half vector. No facet does that, and sample() never draws it.
 //   pdf       per solid angle; it integrates to 1 minus the probability of single directions minus what is lost at the horizon.
 //   Sides     A lobe decides by its own normal whether wi is reflected or goes through. Two other normals have a say:
 //             - ns, where the lobe's normal differs from it (bump): a direction on the other side of ns than the lobe says
@@ -69,6 +71,8 @@ struct Bsdf {
 
   // drawn: the lobe that drew wi, as sample() weighs it; -1: none.
   template <uint32_t Shapes = kAllShapes> BsdfValue eval(const glm::vec3 &wi, int drawn = -1) const;
+  // For light samples.
+  template <uint32_t Shapes = kAllShapes> BsdfValue eval_lit(const glm::vec3 &wi) const;
   // u_lobe picks the lobe, and what it says beyond that picks reflection or refraction; u the direction; all in [0, 1).
   template <uint32_t Shapes = kAllShapes> BsdfSample sample(float u_lobe, glm::vec2 u) const;
 
@@ -91,7 +95,7 @@ private:
 
   template <uint32_t Shapes> static bool is(const Lobe &lobe, LobeShape shape);
   template <uint32_t Shapes> static bool is_delta(const Lobe &lobe);
-  template <uint32_t Shapes> BsdfValue sum(const Local &local, const Drawn &drawn) const;
+  template <uint32_t Shapes> BsdfValue sum(const Local &local, const Drawn &drawn, bool lit) const;
   template <uint32_t Shapes> BsdfSample sample_delta(const Lobe &lobe, float u) const;
   template <uint32_t Shapes> BsdfSample sample_smooth(int chosen, float u_side, glm::vec2 u) const;
   BsdfSample single(const Lobe &lobe, const glm::vec3 &wi, const glm::vec3 &weight, float probability) const;

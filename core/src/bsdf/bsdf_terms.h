@@ -58,7 +58,7 @@ inline void Bsdf::turn_to_frames(const glm::vec3 &wi, int known, const glm::vec3
   local.cos_ng = flat ? local.wi[0].z : glm::dot(ng, wi);
 }
 
-template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &drawn) const {
+template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &drawn, bool lit) const {
   BsdfValue value;
   // The half vector of a frame serves all lobes that reflect in it.
   int half_frame = drawn.has_h && local.wi[lobes[drawn.lobe].frame].z > 0.0f ? lobes[drawn.lobe].frame : -1;
@@ -94,8 +94,8 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
     } else if (is<Shapes>(lobe, LobeShape::Ashikhmin)) {
       term = gloss_eval(lobe, wo_l, wi);
     } else if (is<Shapes>(lobe, LobeShape::Microfacet) && through) {
-      term = microfacet_eval_through(lobe, wo_l, wi,
-                                     i == drawn.lobe && drawn.has_h ? drawn.h : refraction_half_vector(wo_l, wi, lobe.ior));
+      term = microfacet_eval_through(
+          lobe, wo_l, wi, i == drawn.lobe && drawn.has_h ? drawn.h : refraction_half_vector(wo_l, wi, lobe.ior), lit);
     } else if (wo_l.z > 0.0f && wi.z > 0.0f) {
       // What is left reflects about the half vector.
       if (half_frame != lobe.frame) {
@@ -124,7 +124,13 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
 template <uint32_t Shapes> BsdfValue Bsdf::eval(const glm::vec3 &wi, int drawn) const {
   Local local;
   turn_to_frames(wi, -1, wi, local);
-  return sum<Shapes>(local, {.lobe = drawn});
+  return sum<Shapes>(local, {.lobe = drawn}, false);
+}
+
+template <uint32_t Shapes> BsdfValue Bsdf::eval_lit(const glm::vec3 &wi) const {
+  Local local;
+  turn_to_frames(wi, -1, wi, local);
+  return sum<Shapes>(local, {}, true);
 }
 
 // The lobe that u falls on, and in u what remains of it, again in [0, 1). A lobe of probability 0 is never picked, even where
@@ -238,7 +244,7 @@ template <uint32_t Shapes> BsdfSample Bsdf::sample_smooth(int chosen, float u_si
   if (direction.wi.z == 0.0f || (local.cos_ng < 0.0f) != through)
     return {};
   // Weigh with the sum over all smooth lobes, whichever was picked; h goes along with all digits of the sampler.
-  const BsdfValue value = sum<Shapes>(local, {chosen, has_half_vector, direction.h});
+  const BsdfValue value = sum<Shapes>(local, {chosen, has_half_vector, direction.h}, false);
   if (!(value.pdf > 0.0f))
     return {};
   const glm::vec3 f = value.f();

@@ -83,18 +83,22 @@ inline glm::vec3 refraction_half_vector(const glm::vec3 &wo, const glm::vec3 &wi
   return std::copysign(1.0f / std::sqrt(length2), sum.z) * sum;
 }
 
-inline ColorValue microfacet_eval_through(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi, const glm::vec3 &h) {
+// any_sides: also where both directions lie on one side of h, as no facet sends light; see Bsdf::eval_lit.
+inline ColorValue microfacet_eval_through(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi, const glm::vec3 &h,
+                                          bool any_sides = false) {
   const float cos_oh = glm::dot(wo, h), cos_ih = glm::dot(wi, h);
+  if (!refracts(lobe) || lobe.delta_through || !(wo.z > 0.0f && h.z > 0.0f))
+    return {};
   // A facet has both directions on its two sides.
-  if (!refracts(lobe) || lobe.delta_through || !(wo.z > 0.0f && h.z > 0.0f && cos_oh > 0.0f && cos_ih < 0.0f))
+  if (!any_sides && !(cos_oh > 0.0f && cos_ih < 0.0f))
     return {};
   const float d = facet_d(lobe, h);
   if (d == 0.0f)
     return {};
-  const FacetResponse response = facet_response(lobe, cos_oh);
+  const FacetResponse response = facet_response(lobe, std::abs(cos_oh));
   // Solid angle of normals per solid angle of wi: eta^2 |wi.h| / (wo.h + eta wi.h)^2.
   const float stretch = cos_oh / lobe.ior + cos_ih;
-  const float common = d * cos_oh * -cos_ih / (stretch * stretch);
+  const float common = d * std::abs(cos_oh * cos_ih) / (stretch * stretch);
   if (!std::isfinite(common))
     return {};
   return {response.through * (lobe.energy * common * facet_g2(lobe, wo, wi)),

@@ -126,7 +126,7 @@ glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const
   }
   // Lobes that the course does not know answer as they do in PATH.
   if (bsdf.shapes & ~kCourseShapes) {
-    const BsdfValue rest = bsdf.eval<kAllShapes & ~kCourseShapes>(wi_world);
+    const BsdfValue rest = bsdf.eval_lit<kAllShapes & ~kCourseShapes>(wi_world);
     diffuse += rest.part[size_t(Component::Diffuse)];
     specular += rest.part[size_t(Component::Glossy)];
   }

@@ -275,7 +275,7 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
   if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
     return;
   // Ask the surface how much of it goes towards the viewer, without what the light is hidden from.
-  BsdfValue value = point_.bsdf.template eval<Shapes>(glm::vec3(light.wi));
+  BsdfValue value = point_.bsdf.template eval_lit<Shapes>(glm::vec3(light.wi));
   const uint32_t hidden = scene_.lights.hidden_from(choice.light);
   if (hidden & LANCER_RAY_DIFFUSE)
     value.part[size_t(Component::Diffuse)] = glm::vec3(0.0f);
