@@ -200,10 +200,10 @@ TEST(BsdfPhysics, KnowsItsLobes) {
   lobes.push_back(described(LobeKind::Mirror, 0, 1, 0, {0.25f, 0.5f, 0.0f}));
   const Bsdf bsdf = seen(lobes, {0, 0, 1});
   EXPECT_TRUE(bsdf.smooth);
-  EXPECT_EQ(bsdf.albedo(Component::Diffuse), glm::vec3(0.5f, 0.0f, 0.25f));
-  EXPECT_EQ(bsdf.albedo(Component::Transmission), glm::vec3(0.0f));
+  EXPECT_EQ(bsdf.shown(Component::Diffuse), glm::vec3(0.5f, 0.0f, 0.25f));
+  EXPECT_EQ(bsdf.shown(Component::Transmission), glm::vec3(0.0f));
   // A coating seen along n reflects F = 0.04, exact but for its roundings.
-  EXPECT_NEAR(bsdf.albedo(Component::Glossy).y, 0.54f, 4.0f * 0x1p-24f);
+  EXPECT_NEAR(bsdf.shown(Component::Glossy).y, 0.54f, 4.0f * 0x1p-24f);
 }
 
 TEST(Frame, IsOrthonormalEverywhere) {

@@ -1,58 +1,25 @@
-// Principled: which lobes its sliders make, with which shares, in the layers of Blender 4 and in the sum of Blender 3.
+// Principled: what its sliders do to the light, in the layers of Blender 4 and in the sum of Blender 3.
 #include <cmath>
-#include <functional>
 #include <gtest/gtest.h>
 #include <numbers>
 
 #include "bsdf/ashikhmin.h"
-#include "bsdf/principled.h"
 #include "bsdf/sheen.h"
-#include "bsdf_seen.h"
+#include "principled_lab.h"
 #include "statistics.h"
 
 namespace lancer {
 namespace {
 
 using testing::direction;
+using testing::emitted;
+using testing::expect_near;
+using testing::kAllRules;
+using testing::kRounding;
+using testing::look;
+using testing::plain;
 using testing::Random;
-
-constexpr Rules kAllRules[] = {Rules::Blender3, Rules::Blender4, Rules::Blender45};
-
-PrincipledInputs plain(Rules rules) {
-  PrincipledInputs in;
-  in.rules = rules;
-  in.base_color = {0.8f, 0.5f, 0.2f};
-  if (rules == Rules::Blender3) {
-    in.distribution = Facets::Ggx;
-    in.specular_tint = in.sheen_tint = glm::vec3(0.0f);
-  }
-  return in;
-}
-
-void look(Bsdf &bsdf, const PrincipledInputs &in, const glm::vec3 &wo, const glm::vec3 &weight = glm::vec3(1.0f)) {
-  const bool inside = wo.z < 0.0f;
-  const glm::vec3 n(0.0f, 0.0f, inside ? -1.0f : 1.0f);
-  bsdf.begin(wo, n, n, inside, true);
-  LobeInputs lobe = testing::described(LobeKind::Principled);
-  lobe.rules = in.rules;
-  lobe.weight = weight;
-  lobe.tangent = {1.0f, 0.0f, 0.0f};
-  add_principled(bsdf, lobe, in);
-  bsdf.complete();
-}
-
-glm::vec3 value(const PrincipledInputs &in, const glm::vec3 &wo, const glm::vec3 &wi,
-                const glm::vec3 &weight = glm::vec3(1.0f)) {
-  Bsdf bsdf;
-  look(bsdf, in, wo, weight);
-  return bsdf.eval(wi).f();
-}
-
-glm::vec3 emitted(const PrincipledInputs &in, const glm::vec3 &wo) {
-  Bsdf bsdf;
-  look(bsdf, in, wo);
-  return bsdf.emission;
-}
+using testing::value;
 
 struct Mean {
   glm::dvec3 value{0.0}, error{0.0};
@@ -81,14 +48,6 @@ Mean under_sky(const PrincipledInputs &in, const glm::vec3 &wo, uint64_t seed) {
   mean.error = glm::sqrt(glm::max(squares - mean.value * mean.value, 0.0) / double{kRows - 1});
   return mean;
 }
-
-void expect_near(const glm::vec3 &a, const glm::vec3 &b, float relative, const char *what) {
-  for (int i = 0; i < 3; ++i)
-    EXPECT_NEAR(a[i], b[i], relative * std::max(std::abs(a[i]), std::abs(b[i]))) << what << " channel " << i;
-}
-
-// A few dozen float roundings.
-constexpr float kRounding = 4e-6f;
 
 TEST(Principled, WeightScalesAll) {
   const glm::vec3 wo = direction(0.6), wi = direction(0.4, 3.0), weight(0.3f, 0.6f, 0.9f);
@@ -242,96 +201,6 @@ TEST(Principled, LevelScalesTheReflectionAtTheNormal) {
     const Mean mean = under_sky(in, n, 9);
     EXPECT_NEAR(mean.value.x, 0.04 * 2.0 * level, 1e-3 * level + 5.0 * mean.error.x) << level;
   }
-}
-
-TEST(Principled, GlassKnowsItsInside) {
-  PrincipledInputs in = plain(Rules::Blender45);
-  in.base_color = glm::vec3(1.0f);
-  in.transmission = 1.0f;
-  in.roughness = 0.0f;
-  // Beyond the critical angle of 41.8 degrees all is reflected from inside, and not from outside.
-  const float cosine = 0.7f;
-  Bsdf bsdf;
-  look(bsdf, in, direction(-cosine));
-  for (const float u : {0.01f, 0.5f, 0.99f}) {
-    const BsdfSample sample = bsdf.sample(u, {0.5f, 0.5f});
-    EXPECT_TRUE(sample.delta);
-    EXPECT_LT(sample.wi.z, 0.0f);
-    EXPECT_NEAR(sample.weight.x, 1.0f, 2e-3f);
-  }
-  look(bsdf, in, direction(cosine));
-  const BsdfSample through = bsdf.sample(0.99f, {0.5f, 0.5f});
-  EXPECT_LT(through.wi.z, 0.0f);
-  EXPECT_TRUE(through.transmitted);
-  // Snell: the sine of cosine 0.7 is divided by 1.5.
-  EXPECT_NEAR(std::hypot(through.wi.x, through.wi.y), std::sqrt(1.0f - cosine * cosine) / 1.5f, 1e-6f);
-}
-
-// Lobes without normals of their own share the shading frame to the bit: no bump is taken for one that is not there.
-TEST(Principled, HasOneFrameWithoutOtherNormals) {
-  Random random(5);
-  for (int k = 0; k < 200; ++k) {
-    const glm::vec3 n = glm::normalize(direction(0.1 + 0.9 * random.uniform(), 6.28 * random.uniform()));
-    for (const Rules rules : kAllRules) {
-      PrincipledInputs in = plain(rules);
-      in.coat = in.sheen = in.metallic = in.transmission = 0.5f;
-      LobeInputs lobe = testing::described(LobeKind::Principled);
-      lobe.rules = rules;
-      Bsdf bsdf;
-      bsdf.begin(n, n, n, false, true);
-      add_principled(bsdf, lobe, in);
-      EXPECT_EQ(bsdf.frame_count, 1);
-    }
-  }
-}
-
-// Layers that were planned ahead, with their tables read ahead, are the same layers.
-TEST(Principled, KeptLayersAreThoseMadeInPlace) {
-  Random random(11);
-  for (int k = 0; k < 2000; ++k) {
-    PrincipledInputs in = plain(k % 2 ? Rules::Blender4 : Rules::Blender45);
-    in.roughness = random.uniform();
-    in.coat_roughness = random.uniform();
-    in.ior = 0.8f + random.uniform();
-    in.specular = random.uniform();
-    in.anisotropic = k % 3 ? 0.0f : random.uniform();
-    in.coat = k % 4 ? 0.0f : random.uniform();
-    in.metallic = k % 5 ? 0.0f : random.uniform();
-    in.transmission = k % 7 ? 0.0f : random.uniform();
-    LobeInputs lobe = testing::described(LobeKind::Principled);
-    lobe.rules = in.rules;
-    lobe.tangent = {1.0f, 0.0f, 0.0f};
-    LayerPlan kept = plan_layers(lobe, in, Sides::Both);
-    keep_rows(kept);
-    const bool inside = k % 2;
-    const glm::vec3 wo = direction(random.uniform()), wi = direction(random.uniform(), 6.28 * random.uniform()), n(0, 0, 1);
-    Bsdf planned, in_place;
-    for (Bsdf *bsdf : {&planned, &in_place}) {
-      bsdf->begin(wo, n, n, inside, true);
-      bsdf == &planned ? add_layers(*bsdf, lobe, in, kept) : add_principled(*bsdf, lobe, in);
-      bsdf->complete();
-    }
-    ASSERT_EQ(planned.count, in_place.count);
-    // Tables are read in another order: a product of ten factors, each off by a few roundings, times what 1 / (1 - albedo) of
-    // the layers above enlarges them by.
-    const glm::vec3 a = planned.eval(wi).f(), b = in_place.eval(wi).f();
-    for (int c = 0; c < 3; ++c)
-      ASSERT_NEAR(a[c], b[c], 64.0f * 0x1p-24f * std::max(b[c], 1.0f)) << k;
-  }
-}
-
-// Bad numbers of sockets are kept within what they mean.
-TEST(Principled, StaysFiniteForAnyInput) {
-  const glm::vec3 wo = direction(0.6), wi = direction(0.4, 3.0);
-  for (const Rules rules : kAllRules)
-    for (const float x : {-1.0f, 0.0f, 1.0f, 2.0f, 1e6f}) {
-      PrincipledInputs in = plain(rules);
-      in.metallic = in.roughness = in.specular = in.transmission = in.coat = in.sheen = in.ior = in.coat_ior = x;
-      in.anisotropic = in.coat_roughness = in.sheen_roughness = in.diffuse_roughness = in.transmission_roughness = x;
-      const glm::vec3 f = value(in, wo, wi);
-      EXPECT_TRUE(std::isfinite(f.x) && std::isfinite(f.y) && std::isfinite(f.z)) << x;
-      EXPECT_GE(std::min({f.x, f.y, f.z}), 0.0f) << x;
-    }
 }
 
 } // namespace

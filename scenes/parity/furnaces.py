@@ -137,12 +137,33 @@ def furnace_fitted(scene, value):
 def sun_on(scene, value):
     """The same plates, lit from one direction only: what a lobe is worth, whoever draws it."""
     _closure(scene, value, TILES)
+    _one_sun(scene, (0.9, 0.4, 0))
+
+
+def _one_sun(scene, turn):
     parts.set_world(scene, (0, 0, 0))
-    light = parts.add_light(scene, "Sun", "SUN", math.pi, (0, 0, 30), angle=0.0)
-    light.rotation_euler = Euler((0.9, 0.4, 0))
+    parts.add_light(scene, "Sun", "SUN", math.pi, (0, 0, 30), angle=0.0).rotation_euler = Euler(turn)
     for thing in scene.objects:
         if thing.type == "MESH":
             thing.visible_shadow = False
+
+
+@variants(
+    "EXACT",
+    values={
+        "refraction": ("ShaderNodeBsdfRefraction", {"distribution": "GGX"}, {"IOR": 1.45}),
+        "refraction_beckmann": ("ShaderNodeBsdfRefraction", {"distribution": "BECKMANN"}, {"IOR": 1.45}),
+        "refraction_thinner": ("ShaderNodeBsdfRefraction", {"distribution": "GGX"}, {"IOR": 0.7}),
+        "glass": ("ShaderNodeBsdfGlass", {"distribution": "GGX"}, {"IOR": 1.45}),
+        "principled_glass": (_PRINCIPLED, {}, {"Transmission_Weight": 1.0, "IOR": 1.45}),
+    },
+    size=SIZE,
+    bounces=0,
+)
+def sun_behind(scene, value):
+    """The same plates with a sun aslant behind them, which no facet bends to the viewer from most."""
+    _closure(scene, value, TILES)
+    _one_sun(scene, (math.pi - 0.6, 0.3, 0))
 
 
 # Where velvet reflects a ten thousandth of the light and less, too few samples meet it to tell its albedo.

@@ -112,6 +112,14 @@ def glass_rough(scene, value):
     open_air(scene, shader("ShaderNodeBsdfGlass", props, Color=(0.9, 1.0, 0.95), Roughness=roughness, IOR=1.45))
 
 
+@variants(values={"refraction": "ShaderNodeBsdfRefraction", "glass": "ShaderNodeBsdfGlass"}, bounces=4)
+def rough_under_a_lamp(scene, kind):
+    """Light from a lamp and not from a sky alone."""
+    studio(scene, shader(kind, {"distribution": "GGX"}, Color=(0.9, 1.0, 0.95), Roughness=0.7, IOR=1.45))
+    # Large, so that little of the light comes by chance.
+    scene.objects["Lamp"].data.size = 8.0
+
+
 @variants(
     "LOBES",
     values={

@@ -42,21 +42,22 @@ void Bsdf::complete() {
     lobes[i].probability = sum > 0.0f ? lobes[i].probability / sum : 0.0f;
 }
 
-glm::vec3 Bsdf::albedo(Component component) const {
-  glm::vec3 sum(0.0f);
-  for (int i = 0; i < count; ++i) {
-    if (lobes[i].component == component)
-      sum += lobes[i].albedo - lobes[i].through;
-    if (component == Component::Transmission)
-      sum += lobes[i].through;
-  }
-  return sum;
-}
-
 glm::vec3 Bsdf::albedo() const {
   glm::vec3 sum(0.0f);
   for (int i = 0; i < count; ++i)
     sum += lobes[i].albedo;
+  return sum;
+}
+
+glm::vec3 Bsdf::shown(Component component) const {
+  glm::vec3 sum(0.0f);
+  for (int i = 0; i < count; ++i) {
+    const Lobe &lobe = lobes[i];
+    if (lobe.component == component)
+      sum += lobe.shown > 0.0f ? lobe.shown * lobe.color : lobe.albedo - lobe.through;
+    if (component == Component::Transmission)
+      sum += lobe.through;
+  }
   return sum;
 }
 

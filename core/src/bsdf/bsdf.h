@@ -76,9 +76,10 @@ struct Bsdf {
   // u_lobe picks the lobe, and what it says beyond that picks reflection or refraction; u the direction; all in [0, 1).
   template <uint32_t Shapes = kAllShapes> BsdfSample sample(float u_lobe, glm::vec2 u) const;
 
-  // Sum of the lobes' albedos of one component.
-  glm::vec3 albedo(Component component) const;
+  // Sum of the lobes' albedos.
   glm::vec3 albedo() const;
+  // What the passes call the colour of a component: the albedo, except for lobes that Cycles 3 shows without Fresnel.
+  glm::vec3 shown(Component component) const;
 
 private:
   // Directions of one wi in all frames.

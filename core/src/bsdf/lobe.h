@@ -57,6 +57,7 @@ struct Lobe {
   float ior = 1.5f;                     // seen from wo's side: beyond over before
   float shininess = 0.0f;
   float energy = 1.0f; // what multiple scattering multiplies the single one with
+  float shown = 0.0f;  // the colour of the passes is color times this; 0: it is the albedo
   glm::vec3 f0{0.0f}, f90{1.0f}, b{0.0f};
   float lowest = 0.0f, per_range = 1.0f;          // Schlick: of ior, at the normal, and 1 over what is left to 1
   glm::vec3 reflection{1.0f}, transmission{1.0f}; // tints

@@ -149,6 +149,7 @@ Lobe make_microfacet(Scatter scatter, uint8_t frame, const glm::vec3 &color, flo
   lobe.frame = frame;
   lobe.rules = rules;
   lobe.color = color;
+  lobe.shown = rules == Rules::Blender3 && scatter != Scatter::Both ? 1.0f : 0.0f;
   lobe.alpha_x = std::clamp(alpha_x, 0.0f, 1.0f);
   lobe.alpha_y = std::clamp(alpha_y, 0.0f, 1.0f);
   lobe.ior = 1.0f;

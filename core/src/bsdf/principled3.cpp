@@ -86,6 +86,7 @@ void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in) {
                                  several ? kSeveralBounces : in.rules);
     set_principled3(gloss, unit(glm::mix(plastic, in.base_color, in.metallic)), ior);
     complete_microfacet(gloss, cos_o, several);
+    gloss.shown = 1.0f;
     add(bsdf, gloss);
   }
   if (glass > kLeastLayer) {
@@ -98,6 +99,8 @@ void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in) {
     const uint8_t coat_frame = add_frame(bsdf, reflecting_normal(bsdf, in.coat_normal), glm::vec3(0.0f));
     Lobe coat = make_clear_coat(in.coat * lobe.weight, in.coat_roughness * in.coat_roughness, cos_in(bsdf, coat_frame));
     coat.frame = coat_frame;
+    // The passes show it whole, whatever its weight.
+    coat.shown = 4.0f / in.coat;
     add(bsdf, coat);
   }
 }

@@ -60,7 +60,7 @@ void record_seen(const Scene &scene, const Camera &camera, const IntegratorSetti
     return;
   result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * shaded.opacity());
   for (uint32_t component = 0; component < 3 && passes.wanted(); ++component)
-    result.light[kLightComponents + 3 * component + 2] += weight * shaded.bsdf.albedo(Component(component));
+    result.light[kLightComponents + 3 * component + 2] += weight * shaded.bsdf.shown(Component(component));
 }
 
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface) {
