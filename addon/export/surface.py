@@ -14,8 +14,9 @@ from .walk import Site
 
 _MAX_LOBES = 64  # of the core
 _NONE = (0.0, 0.0, 0.0)  # a normal or tangent: the surface's own
-# Twice the colour is twice the light for these, so that a constant weight is a part of the colour.
-_LINEAR = {LobeKind.LAMBERT, LobeKind.DIFFUSE, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN}
+# Twice the colour is twice the light for these, so that a constant weight is a part of the colour. Rough diffuse is none of
+# them: what its bounces between facets bring back goes with powers of the colour.
+_LINEAR = {LobeKind.LAMBERT, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN}
 
 
 class Surface:

@@ -35,9 +35,10 @@ struct Case {
   float ior = 1.5f;   // by which what goes through is bent, from outside
   // Of the shading normal and of a lobe's own, against the surface.
   glm::vec3 ns{0.0f, 0.0f, 1.0f};
-  int beyond = -1; // the one lobe that reflects beyond ns what it draws itself
+  // The one lobe that keeps what it draws itself beyond ns: above the surface, and below.
+  int beyond = -1, beneath = -1;
 
-  int drawn(const glm::vec3 &wi) const { return wi.z > 0.0f ? beyond : -1; }
+  int drawn(const glm::vec3 &wi) const { return wi.z > 0.0f ? beyond : beneath; }
 };
 
 // Directions above the plane and below it, each laid out on its own square.
@@ -57,7 +58,7 @@ struct Sides {
 
 struct Verdict {
   double p = 0.0;        // chi-square of directions and rejected samples
-  double weight_p = 0.0; // z-test of the mean weight against the integral of f cos where samples may go
+  double weight_p = 0.0; // z-test of the mean weight against the integral of what samples find of f cos
 };
 
 // wo above the plane, seen in the case's own frame: inside turns the surface over.
@@ -87,8 +88,11 @@ Verdict judge(const Case &c, const glm::vec3 &wo, bool inside, uint64_t seed, co
         inside_mass += mass;
       }
     const auto value = domain->density([&](const glm::vec3 &wi) {
-      const BsdfValue v = bsdf.eval(wi, c.drawn(wi));
-      return v.pdf > 0.0f ? double{v.f().x} : 0.0;
+      const BsdfValue drawn = bsdf.eval(wi, c.drawn(wi));
+      // What no facet connects weighs where another lobe draws it, and stands in the density that it is divided by.
+      const BsdfValue lit = bsdf.eval_lit(wi), facets = bsdf.eval(wi);
+      const double f = drawn.f().x + lit.f().x - facets.f().x, density = drawn.pdf + lit.pdf - facets.pdf;
+      return drawn.pdf > 0.0f ? f * drawn.pdf / density : 0.0;
     });
     albedo += testing::integrate_square(value, 16, 1e-6);
   }
@@ -154,6 +158,13 @@ std::vector<Case> cases() {
   LobeInputs bumped_gloss = rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f);
   bumped_gloss.normal = glm::normalize(glm::vec3(-0.4f, 0.3f, 1.0f));
   all.push_back({"bumped", {bumped, bumped_gloss, leaf}, 0.0, 1.5f, glm::normalize(glm::vec3(0.2f, 0.3f, 1.0f)), 1});
+  LobeInputs bent_leaf = leaf;
+  bent_leaf.normal = bumped.normal;
+  all.push_back({"bumped leaf", {bent_leaf, clay}, 0.0, 1.5f, glm::normalize(glm::vec3(-0.2f, 0.3f, 1.0f)), -1, 0});
+  // A normal map that does not turn with the surface: the lobe faces inwards and gives nothing above, where it still draws.
+  LobeInputs turned = clay;
+  turned.normal = glm::normalize(glm::vec3(0.9f, 0.1f, -0.4f));
+  all.push_back({"turned away", {turned, rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f)}});
   // A coarse mesh: seen at a grazing angle the interpolated normal looks away from the viewer.
   all.push_back({"behind", {clay, cloth}, 0.0, 1.5f, glm::normalize(glm::vec3(-0.5f, -0.5f, 1.0f))});
   return all;

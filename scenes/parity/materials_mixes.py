@@ -35,6 +35,34 @@ def mix_shader(scene):
 
 
 @case()
+def mix_shader_rough(scene):
+    """The light between the facets of a rough surface goes with its own colour, however small its share."""
+
+    def build(nodes):
+        clay = nodes.add("ShaderNodeBsdfDiffuse", Color=(0.3, 0.1, 0.95), Roughness=1.0)
+        return _mix(nodes, 0.5, clay, nodes.add("ShaderNodeBsdfDiffuse", Color=(0.2, 0.2, 0.2)))
+
+    studio(scene, material(build))
+
+
+@case(
+    limit=(0.005, 0.03),
+    reason="from 5.0 Cycles counts some of what the other layer reflects twice there: its pictures of the two layers alone do "
+    "not add up to that of the mix by as much; ours do",
+)
+def mix_shader_turned_away(scene):
+    """One of two layers faces inwards on half of the ball: a normal that does not turn with the surface."""
+
+    def build(nodes):
+        fixed = nodes.add("ShaderNodeNormalMap", props={"space": "WORLD"}, Color=(0.3, 0.4, 0.9))
+        matt = nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.5, 0.2), Normal=fixed)
+        gloss = nodes.add("ShaderNodeBsdfGlossy", props={"distribution": "GGX"}, Color=(0.7, 0.8, 0.9), Roughness=0.5)
+        return _mix(nodes, 0.5, matt, gloss)
+
+    studio(scene, material(build))
+
+
+@case()
 def mix_shader_beyond_one(scene):
     """A factor outside 0 to 1 is clamped."""
     studio(scene, material(lambda nodes: _mix(nodes, nodes.add("ShaderNodeMath", 0.9, 0.6), *_two(nodes))))

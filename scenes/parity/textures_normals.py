@@ -1,5 +1,7 @@
 """Surfaces that lean without bending: normal maps, bump, and true displacement."""
 
+import math
+
 import bmesh
 import numpy as np
 
@@ -99,9 +101,10 @@ def _heights(ripples=0.0):
     return images.image("Heights", pixels, "Non-Color")
 
 
-def _bump(strength=1.0, distance=0.3, invert=False, kind="ShaderNodeBsdfDiffuse"):
+def _bump(strength=1.0, distance=0.3, invert=False, kind="ShaderNodeBsdfDiffuse", coordinate="UV"):
     def build(nodes):
-        picture = nodes.add("ShaderNodeTexImage", props={"image": _heights(), "interpolation": "Cubic"})
+        where = nodes.add("ShaderNodeTexCoord").outputs[coordinate]
+        picture = nodes.add("ShaderNodeTexImage", props={"image": _heights(), "interpolation": "Cubic"}, Vector=where)
         bump = nodes.add(
             "ShaderNodeBump", props={"invert": invert}, Strength=strength, Distance=distance, Height=picture.outputs["Color"]
         )
@@ -113,6 +116,24 @@ def _bump(strength=1.0, distance=0.3, invert=False, kind="ShaderNodeBsdfDiffuse"
 @variants(values={"plain": {}, "weak": {"strength": 0.3}, "inverted": {"invert": True}})
 def bump(scene, settings):
     _tilted_card(scene, _bump(**settings))
+
+
+@variants(values={"leaf": "ShaderNodeBsdfTranslucent", "cloth": "ShaderNodeBsdfSheen"})
+def normal_map_turned_away(scene, kind):
+    """A normal that does not turn with the surface, on what does not reflect about it."""
+
+    def build(nodes):
+        fixed = nodes.add("ShaderNodeNormalMap", props={"space": "WORLD"}, Color=(0.7, 0.6, 0.9), Strength=0.5)
+        return nodes.add(kind, Color=(0.6, 0.8, 0.3), Normal=fixed)
+
+    studio(scene, material(build))
+
+
+@variants(values={"uv": "UV", "generated": "Generated", "object": "Object"})
+def bump_from_behind(scene, coordinate):
+    """What is painted on the mesh stands out to the other side there, what lies in space does not."""
+    thing = _tilted_card(scene, _bump(coordinate=coordinate))
+    thing.rotation_euler.rotate_axis("X", math.pi)
 
 
 @case()

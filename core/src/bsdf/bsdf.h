@@ -33,13 +33,16 @@ struct BsdfSample {
 //             its own. It acts on the side of its normal and scatters through to the other; lobes that need wo there are 0
 //             where wo is behind their normal.
 //   eval      f |cos| of smooth lobes, single directions are 0; the cosine is that of the lobe's own normal.
-//   eval_lit  the same as a sample of a light is weighed, as in Cycles: rough boundaries also pass light between directions
-//             that lie on one side of their half vector. No facet does that, and sample() never draws it.
-//   pdf       per solid angle; it integrates to 1 minus the probability of single directions minus what is lost at the horizon.
+//   eval_lit  the same as samples of lights are weighed, as in Cycles: rough boundaries also pass light between directions
+//             that lie on one side of their half vector. No facet does that: their own sampler never draws it, so that what
+//             it shows depends on the other technique's density, here as there. sample() weighs with it, too, where another
+//             lobe draws such a direction. Its pdf also counts directions that pass the surface the wrong way by ng.
+//   pdf       per solid angle; that of eval integrates to 1 minus the probability of single directions minus what is lost at
+//             the horizon.
 //   Sides     A lobe decides by its own normal whether wi is reflected or goes through. Two other normals have a say:
 //             - ns, where the lobe's normal differs from it (bump): a direction on the other side of ns than the lobe says
 //               is 0, and diffuse lobes end smoothly before it where bump_correction is set.
-//               A lobe that reflects keeps what it draws itself beyond ns, as in Cycles.
+//               A lobe that reflects, and one that lets through, keep what they draw themselves beyond ns, as in Cycles.
 //             - ng: sample() never takes a direction that would pass the surface the wrong way, so its pdf is 0. The value
 //               stays: lights are met as on the smooth surface that interpolated normals stand for, and what is in the way
 //               of the shadow ray decides.

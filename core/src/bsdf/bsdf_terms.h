@@ -69,16 +69,19 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
       continue;
     const glm::vec3 &wi = local.wi[lobe.frame];
     const bool through = wi.z < 0.0f;
-    const bool sampled = (local.cos_ng < 0.0f) == through;
+    const bool counts = lit || (local.cos_ng < 0.0f) == through;
     if (is<Shapes>(lobe, LobeShape::Lambert) && lobe.frame == 0) {
       const float value_pdf = lambert_eval(wi);
       value.part[0] += lobe.color * value_pdf;
-      value.pdf += sampled ? lobe.probability * value_pdf : 0.0f;
+      value.pdf += counts ? lobe.probability * value_pdf : 0.0f;
       continue;
     }
     float bump = 1.0f;
-    if (lobe.frame != 0 && (i != drawn.lobe || ends_smoothly(lobe))) {
+    if (lobe.frame != 0 && bump_acts(lobe, i == drawn.lobe)) {
       bump = bump_factor(lobe, frames[lobe.frame].n, ns, local.wi[0].z, wi.z, bump_correction);
+      // Where the lobe that drew wi gives nothing the sample is lost: its density is not in the sum either.
+      if (bump == 0.0f && i == drawn.lobe)
+        return {};
       if (bump == 0.0f)
         continue;
     }
@@ -116,7 +119,7 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
       }
     }
     value.part[static_cast<int>(component_of(lobe, through))] += lobe.color * term.f * bump;
-    value.pdf += sampled ? lobe.probability * term.pdf : 0.0f;
+    value.pdf += counts ? lobe.probability * term.pdf : 0.0f;
   }
   return value;
 }
@@ -244,7 +247,7 @@ template <uint32_t Shapes> BsdfSample Bsdf::sample_smooth(int chosen, float u_si
   if (direction.wi.z == 0.0f || (local.cos_ng < 0.0f) != through)
     return {};
   // Weigh with the sum over all smooth lobes, whichever was picked; h goes along with all digits of the sampler.
-  const BsdfValue value = sum<Shapes>(local, {chosen, has_half_vector, direction.h}, false);
+  const BsdfValue value = sum<Shapes>(local, {chosen, has_half_vector, direction.h}, true);
   if (!(value.pdf > 0.0f))
     return {};
   const glm::vec3 f = value.f();

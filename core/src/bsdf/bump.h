@@ -5,12 +5,23 @@
 #include <cmath>
 
 #include "bsdf/lobe.h"
+#include "bsdf/matte.h"
 
 namespace lancer {
 
 // Whether the lit side of a bump ends smoothly: lobes that scatter widely.
 inline bool ends_smoothly(const Lobe &lobe) {
   return lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen;
+}
+
+// Whether bump takes light from a direction, as Cycles asks it: of what a lobe draws itself only where it reflects widely, of
+// all other light of every lobe but velvet.
+inline bool bump_acts(const Lobe &lobe, bool drawn) {
+  if (lobe.shape == LobeShape::Matte && matte_transmits(lobe))
+    return !drawn;
+  if (lobe.shape == LobeShape::Matte && lobe.variant == static_cast<uint8_t>(Matte::Velvet))
+    return drawn;
+  return !drawn || ends_smoothly(lobe);
 }
 
 // Chiang, Li, Burley, "Taming the shadow terminator", 2019: a cubic in the ratio of cosines.

@@ -17,12 +17,13 @@ constexpr uint32_t kPlainWidth = 1024, kLargestWidth = 2048;
 // of one of 16384 the looks fall on the corners between texels, where interpolation still sees each of them.
 constexpr uint32_t kMostLooks = 1u << 25;
 // Share of the samples that go evenly to all directions: a bright speck that the map has missed is found by these.
-constexpr float kEvenShare = 0.05f;
+constexpr float kEvenShare = 0.01f;
 
-// What a direction counts for; nodes may give any number.
+// What a direction counts for: the mean of its channels, as in Cycles. What rough boundaries pass on where no facet connects
+// (Bsdf::eval_lit) depends on this density. Nodes may give any number.
 float weight_of(const glm::vec3 &radiance) {
-  const float top = largest(glm::abs(radiance));
-  return std::isfinite(top) ? top : 0.0f;
+  const float level = mean(glm::abs(radiance));
+  return std::isfinite(level) ? level : 0.0f;
 }
 
 // The width of the largest image that the radiance needs; a cube's six sides go once around in four.

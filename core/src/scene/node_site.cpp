@@ -36,8 +36,10 @@ Site::Site(const NodeContext &given) : context(&given) {
 Site Site::moved(const glm::dvec3 &offset) const {
   Site site = *this;
   site.p += offset;
+  // What is painted on a mesh goes the other way on a face that is seen from behind, as in Cycles: there the derivatives of
+  // the parametrisation are turned together with the normal.
   if (mesh())
-    site.bary += bary_offset(*instance(), *mesh(), surface()->primitive, offset);
+    site.bary += bary_offset(*instance(), *mesh(), surface()->primitive, backfacing ? -offset : offset);
   return site;
 }
 

@@ -14,7 +14,7 @@ struct Site {
   bool in_height = false; // a BUMP is looking at its own nodes
 
   explicit Site(const NodeContext &context);
-  // The same surface, moved by an offset in its tangent plane (normalised world).
+  // The same surface, moved by an offset in its tangent plane (normalised world); its attributes as bump finds them there.
   Site moved(const glm::dvec3 &offset) const;
 
   const Surface *surface() const { return context->surface; }
