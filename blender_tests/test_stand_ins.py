@@ -55,3 +55,15 @@ def test_where_samplers_of_cycles_weigh_a_sky_otherwise(which, tmp_path):
         said |= {"brushed": brushed, "varying brushed": brushed, "coated": coated, "varying coat": coated}
     for name, messages in got.items():
         assert len(messages) == (name in said) and all(text.endswith(said[name]) for text in messages), (name, messages)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_what_stands_beside_transparent(which, tmp_path):
+    got = blenders.run(which, tmp_path, "stand_in_cases", "clear_beside")
+    got.pop("console")
+    for name, material in got.items():
+        told = ["which Cycles 3 mixes with theirs" in text for text in material["messages"]]
+        assert told == ([True] if which == PROGRAM and name in ("leaf", "frosted") else []), name
+    # Half of it: its light between facets goes with powers of its own colour, which stays whole.
+    (clay,) = got["clay"]["lobes"]
+    assert clay["color"] == pytest.approx([0.5, 0.25, 0.125]) and clay["weight"] == pytest.approx([0.5] * 3)

@@ -3,7 +3,7 @@
 from dataclasses import fields, replace
 
 from ..bindings import snapshot
-from ..bindings.enums import LobeKind, MathOperation
+from ..bindings.enums import LobeKind, MathOperation, Rules
 from ..bindings.shading import NodeRef
 from .arithmetic import is_constant, triple
 from .closures import CLOSURES, read_unknown
@@ -51,6 +51,12 @@ class Surface:
                 if source.site is not None:
                     key = _key(source)
                     weights[key] = self.graph.add(weights.get(key, 0.0), share)
+        if RULES == Rules.BLENDER_3 and not is_constant(self.transmittance, 0.0) and any(map(_lets_through, self._lobes)):
+            # Cycles 3 takes the one direction of Transparent for one of many, and adds what the other lobe sends there.
+            self.graph.messages.add(
+                f"{self.graph.owner}: beside Translucent, rough Glass or Refraction a Transparent part shows what is behind "
+                "in its own colour, which Cycles 3 mixes with theirs"
+            )
 
     def _in_order(self, root):
         """The closures under root, each before those that it mixes; without recursion, for chains of any length."""
@@ -134,6 +140,14 @@ def _shader_inputs(site):
 
 def _key(origin):
     return (*origin.site.key, origin.output.as_pointer())
+
+
+def _lets_through(lobe):
+    """Whether light goes through it in more than one direction."""
+    if lobe.kind == LobeKind.PRINCIPLED:
+        return not is_constant(lobe.principled.transmission, 0.0)
+    rough = not is_constant(lobe.roughness, 0.0)
+    return lobe.kind == LobeKind.TRANSLUCENT or lobe.kind in (LobeKind.GLASS, LobeKind.REFRACTION) and rough
 
 
 def _same_but(lobe, other, field):

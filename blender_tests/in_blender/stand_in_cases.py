@@ -64,6 +64,23 @@ def samplers():
     return result
 
 
+def clear_beside():
+    """{name: messages} of what stands beside a Transparent part, and the lobe of a rough Diffuse in a mix."""
+    cases = {
+        "leaf": ("BsdfTranslucent", {}),
+        "frosted": ("BsdfGlass", {"Roughness": 0.3}),
+        "clear": ("BsdfGlass", {"Roughness": 0.0}),
+        "wall": ("BsdfDiffuse", {}),
+        "clay": ("BsdfDiffuse", {"Roughness": 0.5, "Color": (0.5, 0.25, 0.125)}),
+    }
+    result = {}
+    for name, (kind, inputs) in cases.items():
+        tree = Tree(name)
+        pane = tree.node("BsdfTransparent").outputs[0]
+        result[name] = answer(tree.show(tree.shaders("MixShader", pane, tree.node(kind, **inputs).outputs[0])))[name]
+    return result
+
+
 def facets():
     """{node: messages} of each that lights facets by one another, and of one that does not."""
     kinds = {

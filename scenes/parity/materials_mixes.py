@@ -5,6 +5,7 @@ import bpy
 from .catalogue import case, variants
 from .images import checker, gradient
 from .nodes import Nodes, find, first_output, material
+from .reasons import CLEAR3, CLEAR3_TOLD
 from .stages import card, lamp, studio
 
 
@@ -32,6 +33,17 @@ def _add(nodes, first, second):
 @case()
 def mix_shader(scene):
     studio(scene, material(lambda nodes: _mix(nodes, 0.3, *_two(nodes))))
+
+
+@case(blender3=((0.05, 0.2), CLEAR3, CLEAR3_TOLD))
+def mix_shader_clear_leaf(scene):
+    """Two ways through a surface: straight on, and spread."""
+
+    def build(nodes):
+        clear = nodes.add("ShaderNodeBsdfTransparent", Color=(0.9, 0.6, 0.3))
+        return _mix(nodes, 0.5, clear, nodes.add("ShaderNodeBsdfTranslucent", Color=(0.3, 0.8, 0.2)))
+
+    studio(scene, material(build))
 
 
 @case()

@@ -92,11 +92,7 @@ def principled_half_transmission(scene):
 @case(
     "LOBES",
     quick=True,
-    blender3=(
-        (0.015, 0.16),
-        CLEAR_COAT3,
-        CLEAR_COAT3_TOLD,
-    ),
+    blender3=((0.015, 0.16), CLEAR_COAT3, CLEAR_COAT3_TOLD),
 )
 def principled_coat(scene):
     studio(scene, principled(Base_Color=_RED, Roughness=0.8, Coat_Weight=1.0, Coat_Roughness=0.1))

@@ -7,6 +7,11 @@ CLEAR_COAT3 = (
     "under a sky; under a sun both agree (sun_on_principled_coat)"
 )
 CLEAR_COAT3_TOLD = "Clearcoat leaves the base its light"
+CLEAR3 = (
+    "Cycles 3 takes the one direction of Transparent for one of many and adds what the other lobe sends there; ours keeps them "
+    "apart, as newer Cycles does"
+)
+CLEAR3_TOLD = "which Cycles 3 mixes with theirs"
 BECKMANN3 = (
     "Cycles 3 draws Beckmann's facets by a table that it interpolates, up to 0.74 % off under a sky; under a sun both agree "
     "(sun_on_beckmann)"
