@@ -73,13 +73,14 @@ def test_texels_stand_where_cycles_puts_them(library):
 def test_density_is_one_in_all_and_nowhere_zero(library, rotation, resolution):
     world, images = sky(gradient(), rotation=rotation, map_resolution=resolution)
     with Scene.upload(scene(world, images), library) as uploaded:
-        radiance, pdf = uploaded.world(even_directions(400))
+        radiance, pdf = uploaded.world(even_directions(1000))
     assert np.all(pdf > 0)
-    # The sum over 320 000 cells knows the map's own cells to a fraction of their rims.
-    assert abs(pdf.mean() * 4 * np.pi - 1) < 5e-3
+    # Each row of the map ends within a row of the sum, of which a half, 1/2000 of the sphere, may count for its neighbour. At
+    # the two poles that is 10 times as bright or dark, elsewhere it is as often one as the other.
+    assert abs(pdf.mean() * 4 * np.pi - 1) < 2 * 10 / 2000
     if resolution != 12:
-        # Where the map is as fine as the picture the density follows the brightest channel, as well as a cell's mean can.
-        level = radiance.max(axis=1) / radiance.max(axis=1).mean()
+        # Where the map is as fine as the picture the density follows the channels' mean, as well as a cell's own can.
+        level = radiance.mean(axis=1) / radiance.mean(axis=1).mean()
         assert np.corrcoef(pdf * 4 * np.pi, level)[0, 1] > 0.8
 
 
