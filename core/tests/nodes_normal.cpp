@@ -116,6 +116,13 @@ TEST(NodesNormal, BumpFollowsEveryCoordinate) {
         {node(LANCER_NODE_COORDINATE, option), node(LANCER_NODE_SEPARATE, 0, {result_of(0)}),
          node(LANCER_NODE_BUMP, 0, {constant(1.0f), constant(factor), result_of(1), constant(0.0f), constant(1.0f)})}));
     expect_near(n, glm::normalize(glm::vec3(-1.0f, 0.0f, 1.0f)), kRough);
+    // From behind what is painted on the mesh stands out to the other side; this mesh has no attribute for GENERATED.
+    stage.wo = {0, 0, -1};
+    const bool painted = option == LANCER_COORDINATE_UV;
+    const glm::vec3 behind(stage.value(
+        {node(LANCER_NODE_COORDINATE, option), node(LANCER_NODE_SEPARATE, 0, {result_of(0)}),
+         node(LANCER_NODE_BUMP, 0, {constant(1.0f), constant(factor), result_of(1), constant(0.0f), constant(1.0f)})}));
+    expect_near(behind, glm::normalize(glm::vec3(painted ? 1.0f : -1.0f, 0.0f, -1.0f)), kRough);
   }
 }
 
