@@ -186,7 +186,7 @@ TEST(Environment, ShinesNowhereWithoutAChance) {
   std::normal_distribution<double> normal;
   for (int i = 0; i < 10000; ++i) {
     const glm::dvec3 w = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    EXPECT_GT(environment.pdf(w), 0.009 * 0.25 / glm::pi<double>());
+    EXPECT_GT(environment.pdf(w), 0.04 * 0.25 / glm::pi<double>());
   }
 }
 

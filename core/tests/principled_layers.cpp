@@ -11,15 +11,7 @@
 namespace lancer {
 namespace {
 
-using testing::direction;
-using testing::emitted;
-using testing::expect_near;
-using testing::kAllRules;
-using testing::kRounding;
-using testing::look;
-using testing::plain;
-using testing::Random;
-using testing::value;
+using namespace testing;
 
 struct Mean {
   glm::dvec3 value{0.0}, error{0.0};

@@ -10,14 +10,7 @@
 namespace lancer {
 namespace {
 
-using testing::direction;
-using testing::expect_near;
-using testing::kAllRules;
-using testing::kRounding;
-using testing::look;
-using testing::plain;
-using testing::Random;
-using testing::value;
+using namespace testing;
 
 // Cycles 3 shows the weights of its closures in the passes, newer ones what they scatter.
 TEST(Principled, PassesOfBlender3ShowNoFresnel) {

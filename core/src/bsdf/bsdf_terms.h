@@ -79,11 +79,12 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
     float bump = 1.0f;
     if (lobe.frame != 0 && bump_acts(lobe, i == drawn.lobe)) {
       bump = bump_factor(lobe, frames[lobe.frame].n, ns, local.wi[0].z, wi.z, bump_correction);
-      // Where the lobe that drew wi gives nothing the sample is lost: its density is not in the sum either.
-      if (bump == 0.0f && i == drawn.lobe)
-        return {};
-      if (bump == 0.0f)
+      if (bump == 0.0f) {
+        // Where the lobe that drew wi gives nothing the sample is lost: its density is not in the sum either.
+        if (i == drawn.lobe)
+          return {};
         continue;
+      }
     }
     const glm::vec3 &wo_l = wo_local[lobe.frame];
     ColorValue term;

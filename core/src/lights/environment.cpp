@@ -17,7 +17,7 @@ constexpr uint32_t kPlainWidth = 1024, kLargestWidth = 2048;
 // of one of 16384 the looks fall on the corners between texels, where interpolation still sees each of them.
 constexpr uint32_t kMostLooks = 1u << 25;
 // Share of the samples that go evenly to all directions: a bright speck that the map has missed is found by these.
-constexpr float kEvenShare = 0.01f;
+constexpr float kEvenShare = 0.05f;
 
 // What a direction counts for: the mean of its channels, as in Cycles. What rough boundaries pass on where no facet connects
 // (Bsdf::eval_lit) depends on this density. Nodes may give any number.
