@@ -33,8 +33,9 @@ inline glm::vec3 ggx_sample_visible(const glm::vec3 &wo, float alpha_x, float al
   const glm::vec3 w = glm::normalize(glm::vec3(alpha_x * wo.x, alpha_y * wo.y, wo.z));
   // 1 - cos of the angle on the cap, so that its apex keeps its digits.
   const float s = u.x * (1.0f + w.z);
-  const float sin_theta = std::sqrt(std::max(0.0f, s * (2.0f - s))), phi = 2.0f * kPi * u.y;
-  const glm::vec3 h(sin_theta * std::cos(phi) + w.x, sin_theta * std::sin(phi) + w.y, (1.0f - u.x) * (1.0f + w.z));
+  const float sin_theta = std::sqrt(std::max(0.0f, s * (2.0f - s)));
+  const SinCos phi = sin_cos_turn(u.y);
+  const glm::vec3 h(sin_theta * phi.cos + w.x, sin_theta * phi.sin + w.y, (1.0f - u.x) * (1.0f + w.z));
   return glm::normalize(glm::vec3(alpha_x * h.x, alpha_y * h.y, h.z));
 }
 

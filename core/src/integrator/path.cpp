@@ -106,61 +106,74 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
       miss(path, ray, result);
       continue;
     }
-    // Ask the material what it does to light that goes back along the ray.
     const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-    const double way = path.length + t * glm::length(ray.d);
-    shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .footprint = float(cone_.base + way * cone_.spread)},
-                  point_);
-    if (trace) {
-      const glm::vec3 so_far = result.radiance + indirect_[path.slot];
-      trace->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta, so_far,
-                        surface.instance, surface.primitive, surface.material, path.scatterings});
-    }
-    // Holes end what the camera sees.
-    if (path.in_view && !cut_hole(scene_, surface, path.beta, point_, result))
-      continue;
-    if (path.in_view)
-      record(path, surface, t, result);
-    add_emission(path, surface, result);
-    if (path.features.open)
-      add_denoising_features(scene_, camera_, point_, t * glm::length(ray.d), path.features, result);
-    if (path.last)
-      continue;
+    if (!trace && for_lanes(surface))
+      put_in_lane(i, surface);
+    else
+      shade_surface(path, ray, t, surface, results, trace);
+    if (waiting_count_ == kBlockLanes)
+      shade_lanes(results);
+  }
+  shade_lanes(results);
+}
 
-    const bool ends = path.scatterings > settings_.max_bounces;
-    // Share the path between what passes straight on and what the surface scatters.
-    float pass = 0.0f;
-    if constexpr (Layers) {
-      const float through = mean(point_.transmittance);
-      const float rest = ends ? 0.0f : mean(point_.bsdf.albedo());
-      if (through > 0.0f)
-        pass = through / (through + rest);
-    }
-    VertexNumbers u;
-    if (!ends) {
-      u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
-      sample_light(path, surface, double(pass), u);
-      if (path.scatterings == 0 && passes_.occlusion())
-        sample_occlusion(path, surface, u);
-    }
-    if constexpr (Layers) {
-      const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
-      if (pass > 0.0f && (pass >= 1.0f || path.sampler.get1(dimension) < pass)) {
-        if (path.layers + 1 < kMaxLayers) {
-          next_rays_.push_back(pass_straight_on(path, surface, ray, t, point_.transmittance / pass));
-          next_paths_.push_back(path);
-        }
-        continue;
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::shade_surface(Path &path, const Ray &ray, double t, const Surface &surface,
+                                                   std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+  // Ask the material what it does to light that goes back along the ray.
+  SampleResult &result = results[path.slot];
+  const double way = path.length + t * glm::length(ray.d);
+  shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .footprint = float(cone_.base + way * cone_.spread)},
+                point_);
+  if (trace) {
+    const glm::vec3 so_far = result.radiance + indirect_[path.slot];
+    trace->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta, so_far,
+                      surface.instance, surface.primitive, surface.material, path.scatterings});
+  }
+  // Holes end what the camera sees.
+  if (path.in_view && !cut_hole(scene_, surface, path.beta, point_, result))
+    return;
+  if (path.in_view)
+    record(path, surface, t, result);
+  add_emission(path, surface, point_.emission, result);
+  if (path.features.open)
+    add_denoising_features(scene_, camera_, point_, t * glm::length(ray.d), path.features, result);
+  if (path.last)
+    return;
+
+  const bool ends = path.scatterings > settings_.max_bounces;
+  // Share the path between what passes straight on and what the surface scatters.
+  float pass = 0.0f;
+  if constexpr (Layers) {
+    const float through = mean(point_.transmittance);
+    const float rest = ends ? 0.0f : mean(point_.bsdf.albedo());
+    if (through > 0.0f)
+      pass = through / (through + rest);
+  }
+  VertexNumbers u;
+  if (!ends) {
+    u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
+    sample_light(path, surface, double(pass), u);
+    if (path.scatterings == 0 && passes_.occlusion())
+      sample_occlusion(path, surface, u);
+  }
+  if constexpr (Layers) {
+    const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
+    if (pass > 0.0f && (pass >= 1.0f || path.sampler.get1(dimension) < pass)) {
+      if (path.layers + 1 < kMaxLayers) {
+        next_rays_.push_back(pass_straight_on(path, surface, ray, t, point_.transmittance / pass));
+        next_paths_.push_back(path);
       }
+      return;
     }
-    if (ends)
-      continue;
-    Ray next;
-    path.length = way;
-    if (scatter(path, surface, double(pass), u, next) && survives(path, u[kVertexRoulette])) {
-      next_paths_.push_back(path);
-      next_rays_.push_back(next);
-    }
+  }
+  if (ends)
+    return;
+  Ray next;
+  path.length = way;
+  if (scatter(path, surface, double(pass), u, next) && survives(path, u[kVertexRoulette])) {
+    next_paths_.push_back(path);
+    next_rays_.push_back(next);
   }
 }
 
@@ -235,8 +248,9 @@ void PathIntegrator<Shapes, Layers>::add_lights_met(const Path &path, const Ray 
 }
 
 template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::add_emission(const Path &path, const Surface &surface, SampleResult &result) {
-  if (point_.emission == glm::vec3(0.0f))
+void PathIntegrator<Shapes, Layers>::add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission,
+                                                  SampleResult &result) {
+  if (emission == glm::vec3(0.0f))
     return;
   float weight = 1.0f;
   const uint32_t light = scene_.lights.emitter_light(surface.instance);
@@ -245,7 +259,7 @@ void PathIntegrator<Shapes, Layers>::add_emission(const Path &path, const Surfac
     const double pdf = emitter.pdf(scene_.geometry, scene_.materials, path.from, surface);
     weight = mis_weight(path.pdf, pdf * scene_.lights.probability(light));
   }
-  add(path, result, path.beta * point_.emission * weight, false);
+  add(path, result, path.beta * emission * weight, false);
 }
 
 // Fills the passes that describe what the camera sees.
@@ -261,22 +275,42 @@ void PathIntegrator<Shapes, Layers>::record(Path &path, const Surface &surface, 
   record_seen(scene_, camera_, settings_, passes_, surface, point_, path.beta, result);
 }
 
+// A light and a point of it, with the probability of both in pdf.
+template <uint32_t Shapes, bool Layers>
+LightSample PathIntegrator<Shapes, Layers>::ask_light(const Surface &surface, const VertexNumbers &u, uint32_t &number) {
+  const LightSet::Choice choice = scene_.lights.choose(u[kVertexLightChoice]);
+  if (!(choice.probability > 0.0))
+    return {};
+  number = choice.light;
+  LightSample light = sample_scene_light(scene_, choice.light, surface.p, {u[kVertexLight], u[kVertexLight + 1]}, shader_);
+  if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
+    return {};
+  light.pdf *= choice.probability;
+  return light;
+}
+
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::send_shadow(const Path &path, const Surface &surface, const glm::vec3 &ns,
+                                                 const glm::vec3 &ng, const LightSample &light, uint32_t number,
+                                                 const WaitingLight &waiting, const glm::vec3 &contribution) {
+  if (scene_.lights.no_shadow(number))
+    shadows_.push_lit(waiting, contribution);
+  else
+    shadows_.push(shadow_ray(scene_.geometry, surface, ns, ng, light), waiting, contribution, path.passed_through);
+}
+
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surface &surface, double pass,
                                                   const VertexNumbers &u) {
   if (scene_.lights.empty() || !point_.bsdf.smooth)
     return;
-  // Choose a light and a point of it.
-  const LightSet::Choice choice = scene_.lights.choose(u[kVertexLightChoice]);
-  if (!(choice.probability > 0.0))
-    return;
-  const LightSample light =
-      sample_scene_light(scene_, choice.light, surface.p, {u[kVertexLight], u[kVertexLight + 1]}, shader_);
-  if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
+  uint32_t number = 0;
+  const LightSample light = ask_light(surface, u, number);
+  if (!(light.pdf > 0.0))
     return;
   // Ask the surface how much of it goes towards the viewer, without what the light is hidden from.
   BsdfValue value = point_.bsdf.template eval_lit<Shapes>(glm::vec3(light.wi));
-  const uint32_t hidden = scene_.lights.hidden_from(choice.light);
+  const uint32_t hidden = scene_.lights.hidden_from(number);
   if (hidden & LANCER_RAY_DIFFUSE)
     value.part[size_t(Component::Diffuse)] = glm::vec3(0.0f);
   if (hidden & LANCER_RAY_GLOSSY)
@@ -287,18 +321,103 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
   if (f == glm::vec3(0.0f))
     return;
   // The BSDF finds the same light by the samples that do not pass straight on.
-  const double pdf = light.pdf * choice.probability;
-  const float weight = light.delta ? 1.0f : mis_weight(pdf, double(value.pdf) * (1.0 - pass));
-  const glm::vec3 contribution = path.beta * f * light.radiance * float(double(weight) / pdf);
+  const float weight = light.delta ? 1.0f : mis_weight(light.pdf, double(value.pdf) * (1.0 - pass));
+  const glm::vec3 contribution = path.beta * f * light.radiance * float(double(weight) / light.pdf);
   WaitingLight waiting{.slot = path.slot, .indirect = path.scatterings > 0};
   if (passes_.wanted()) {
     for (size_t component = 0; component < 2; ++component)
       waiting.share[component] = path.in_view ? divided(value.part[component], f) : path.share[component];
   }
-  if (scene_.lights.no_shadow(choice.light))
-    shadows_.push_lit(waiting, contribution);
-  else
-    shadows_.push(shadow_ray(scene_.geometry, surface, point_.bsdf, light), waiting, contribution, path.passed_through);
+  send_shadow(path, surface, point_.bsdf.ns, point_.bsdf.ng, light, number, waiting, contribution);
+}
+
+// Whether a kernel of many lanes shades the surface.
+template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::for_lanes(const Surface &surface) const {
+  return wide_ && surface.material != kNone && scene_.wide[surface.material].count > 0 &&
+         !scene_.geometry.instances[surface.instance].holdout;
+}
+
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, const Surface &surface) {
+  const Path &path = paths_[number];
+  const uint32_t lane = waiting_count_++;
+  Waiting &waiting = waiting_[lane];
+  waiting.number = number;
+  waiting.surface = surface;
+  // Look at the side of the viewer.
+  const glm::vec3 wo(-glm::normalize(rays_[number].d));
+  const float side = glm::dot(wo, surface.ng) < 0.0f ? -1.0f : 1.0f;
+  const bool ends = path.scatterings > settings_.max_bounces || path.last;
+  waiting.light = {};
+  waiting.light_number = 0;
+  if (!ends) {
+    waiting.u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
+    if (!scene_.lights.empty())
+      waiting.light = ask_light(surface, waiting.u, waiting.light_number);
+  }
+  const LightSample &light = waiting.light;
+  const glm::vec3 wi(light.wi);
+  for (int i = 0; i < 3; ++i) {
+    block_.wo[i][lane] = wo[i];
+    block_.ns[i][lane] = side * surface.ns[i];
+    block_.ng[i][lane] = side * surface.ng[i];
+    block_.beta[i][lane] = path.beta[i];
+    block_.light_wi[i][lane] = wi[i];
+    block_.light_radiance[i][lane] = light.radiance[i];
+  }
+  block_.material[lane] = &scene_.wide[surface.material];
+  block_.u_lobe[lane] = waiting.u[kVertexLobe];
+  block_.u_bsdf[0][lane] = waiting.u[kVertexBsdf];
+  block_.u_bsdf[1][lane] = waiting.u[kVertexBsdf + 1];
+  block_.light_pdf[lane] = light.pdf;
+  block_.light_delta[lane] = light.delta;
+  block_.light_hidden[lane] = light.pdf > 0.0 ? scene_.lights.hidden_from(waiting.light_number) : 0u;
+}
+
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::shade_lanes(std::span<SampleResult> results) {
+  if (waiting_count_ == 0)
+    return;
+  for (uint32_t lane = waiting_count_; lane < kBlockLanes; ++lane)
+    block_.material[lane] = block_.material[0];
+  lanes_.shade(block_);
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    Waiting &waiting = waiting_[lane];
+    Path &path = paths_[waiting.number];
+    const Ray &ray = rays_[waiting.number];
+    const double t = hits_[waiting.number].t;
+    const Surface &surface = waiting.surface;
+    SampleResult &result = results[path.slot];
+    const auto read = [lane](const VertexBlock::Floats(&v)[3]) { return glm::vec3(v[0][lane], v[1][lane], v[2][lane]); };
+    if (block_.bent >> lane & 1) {
+      shade_surface(path, ray, t, surface, results, nullptr);
+      continue;
+    }
+    add_emission(path, surface, scene_.materials[surface.material].emission.value, result);
+    if (path.last || path.scatterings > settings_.max_bounces)
+      continue;
+    if (block_.lit >> lane & 1)
+      send_shadow(path, surface, read(block_.ns), read(block_.ng), waiting.light, waiting.light_number,
+                  {.slot = path.slot, .indirect = path.scatterings > 0}, read(block_.contribution));
+    if (!(block_.sampled >> lane & 1))
+      continue;
+    // Go on from here.
+    path.in_view = false;
+    path.length += t * glm::length(ray.d);
+    path.beta *= read(block_.weight);
+    path.pdf = double(block_.pdf[lane]);
+    path.from = surface.p;
+    path.kinds = block_.glossy >> lane & 1 ? LANCER_RAY_GLOSSY : LANCER_RAY_DIFFUSE;
+    path.layers = 0;
+    path.passed = 0.0;
+    ++path.scatterings;
+    if (!survives(path, waiting.u[kVertexRoulette]))
+      continue;
+    Ray next = leave(surface, glm::dvec3(read(block_.wi)), std::numeric_limits<double>::infinity());
+    next.kinds = path.kinds;
+    next_paths_.push_back(path);
+    next_rays_.push_back(next);
+  }
+  waiting_count_ = 0;
 }
 
 template <uint32_t Shapes, bool Layers>

@@ -9,6 +9,7 @@
 #include "integrator/shading.h"
 #include "integrator/shadow.h"
 #include "integrator/texture_prefetch.h"
+#include "integrator/vertex_kernel.h"
 
 namespace lancer {
 
@@ -17,7 +18,8 @@ template <uint32_t Shapes, bool Layers> class PathIntegrator final : public Inte
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel) {
+        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
+        lanes_(vertex_kernel()), wide_(settings.passes == 1u) {
     point_.bsdf.shares = passes_.wanted();
   }
 
@@ -48,12 +50,29 @@ private:
     glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // of the light that came by a diffuse, glossy first scattering
   };
 
+  // A vertex that waits for the others of its block.
+  struct Waiting {
+    size_t number; // of its path
+    Surface surface;
+    VertexNumbers u;
+    LightSample light;
+    uint32_t light_number;
+  };
+
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
+  bool for_lanes(const Surface &surface) const;
+  void put_in_lane(size_t number, const Surface &surface);
+  void shade_lanes(std::span<SampleResult> results);
+  void shade_surface(Path &path, const Ray &ray, double t, const Surface &surface, std::span<SampleResult> results,
+                     std::vector<PathVertex> *trace);
   void shade(std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void miss(const Path &path, const Ray &ray, SampleResult &result);
   void add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result);
-  void add_emission(const Path &path, const Surface &surface, SampleResult &result);
+  void add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission, SampleResult &result);
   void record(Path &path, const Surface &surface, double t, SampleResult &result);
+  LightSample ask_light(const Surface &surface, const VertexNumbers &u, uint32_t &number);
+  void send_shadow(const Path &path, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng, const LightSample &light,
+                   uint32_t number, const WaitingLight &waiting, const glm::vec3 &contribution);
   void sample_light(const Path &path, const Surface &surface, double pass, const VertexNumbers &u);
   void sample_occlusion(const Path &path, const Surface &surface, const VertexNumbers &u);
   bool scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u, Ray &next) const;
@@ -71,6 +90,11 @@ private:
   PixelCone cone_;
   LightPasses passes_;
   const char *kernel_;
+  const VertexKernel &lanes_;
+  bool wide_; // vertices may be shaded in lanes
+  VertexBlock block_;
+  Waiting waiting_[kBlockLanes];
+  uint32_t waiting_count_ = 0;
   Shaded point_; // of the surface at hand
   // The queue: paths_[i] travels along rays_[i].
   std::vector<Path> paths_, next_paths_;

@@ -130,15 +130,16 @@ void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
   }
 }
 
-Ray shadow_ray(const Geometry &geometry, const Surface &surface, const Bsdf &bsdf, const LightSample &sample) {
+Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,
+               const LightSample &sample) {
   const bool far = std::isinf(sample.distance);
   const glm::vec3 wi(sample.wi);
   Ray ray = leave(surface, sample.wi, far ? std::numeric_limits<double>::infinity() : 1.0);
-  const glm::dvec3 lift = terminator_offset(geometry, surface, bsdf.ns, bsdf.ng, wi);
+  const glm::dvec3 lift = terminator_offset(geometry, surface, ns, ng, wi);
   if (lift != glm::dvec3(0.0)) {
     // From below the triangle's own plane it may be met; from above it cannot.
     ray.o = surface.p + lift;
-    if (!((glm::dot(wi, bsdf.ng) > 0.0f) == (glm::dot(wi, bsdf.ns) > 0.0f)))
+    if (!((glm::dot(wi, ng) > 0.0f) == (glm::dot(wi, ns) > 0.0f)))
       ray.skip_instance = ray.skip_primitive = kNone;
   }
   if (!far)

@@ -64,7 +64,8 @@ struct PixelCone {
   double base = 0.0, spread = 0.0;
 };
 
-// A shadow ray to a light's sample; bsdf: of the surface.
-Ray shadow_ray(const Geometry &geometry, const Surface &surface, const Bsdf &bsdf, const LightSample &sample);
+// A shadow ray to a light's sample; ns, ng: of the surface's Bsdf.
+Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,
+               const LightSample &sample);
 
 } // namespace lancer

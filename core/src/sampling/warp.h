@@ -6,6 +6,8 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
+#include "sampling/octant.h"
+
 namespace lancer {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
@@ -18,10 +20,10 @@ inline glm::vec2 warp_disk(glm::vec2 u) {
     return {0.0f, 0.0f};
   if (std::abs(a) > std::abs(b)) {
     const float phi = 0.25f * kPi * (b / a);
-    return {a * std::cos(phi), a * std::sin(phi)};
+    return {a * cos_octant(phi), a * sin_octant(phi)};
   }
   const float phi = 0.25f * kPi * (a / b);
-  return {b * std::sin(phi), b * std::cos(phi)};
+  return {b * sin_octant(phi), b * cos_octant(phi)};
 }
 
 // Directions around +z with a density proportional to the cosine.

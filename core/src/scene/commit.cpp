@@ -107,6 +107,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->geometry = std::move(description.geometry);
   scene->slots = std::move(description.slots);
   scene->materials = std::move(description.materials);
+  scene->wide = make_wide_materials(scene->materials);
   scene->images = std::move(description.images);
   scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {

@@ -5,6 +5,7 @@
 #include "lights/light_set.h"
 #include "scene/description.h"
 #include "scene/features.h"
+#include "scene/wide_materials.h"
 
 namespace lancer {
 
@@ -23,6 +24,7 @@ struct Scene {
   Geometry geometry; // normalised
   std::vector<uint32_t> slots;
   std::vector<Material> materials;
+  std::vector<WideMaterial> wide; // by material
   std::vector<Image> images;
   World world;
   LightSet lights;

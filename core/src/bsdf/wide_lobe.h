@@ -1,0 +1,44 @@
+// The lobes of a material as kernels read them for many lanes at once: plain numbers, in the order in which they are added.
+#pragma once
+
+#include <cstdint>
+
+namespace lancer {
+
+inline constexpr int kWideLobes = 4;
+
+// How a lobe's colour comes from what the lobes before it have left.
+enum class WideMode : uint32_t {
+  Own = 0,   // it does not: color alone
+  Share = 1, // share of what is left, which the others lose
+  Layer = 2, // share of what is left, and those below lose what it scatters
+  Base = 3   // color times what is left
+};
+
+enum class WideShape : uint32_t { Nothing = 0, Lambert = 1, Microfacet = 2 };
+
+// Fields as in Lobe and MicrofacetPlan.
+struct WideLobe {
+  WideShape shape = WideShape::Nothing;
+  WideMode mode = WideMode::Own;
+  float share = 1.0f;
+  float color[3] = {};
+  float alpha_x = 0.0f, alpha_y = 0.0f;
+  uint32_t fresnel = 0; // FresnelKind
+  float f0[3] = {}, f90[3] = {}, b[3] = {};
+  float ior = 1.0f, lowest = 0.0f, per_range = 1.0f; // lowest of FresnelKind::Dielectric: the reflectance at the normal
+  float reflection[3] = {};
+  uint32_t preserving = 0;
+  uint32_t averaged = 0; // the albedo is the mean over the facets, read from rows
+  float further[3] = {};
+  const float *single = nullptr, *mix = nullptr; // rows of AlbedoRows
+};
+
+struct WideMaterial {
+  uint32_t count = 0; // 0: not for kernels
+  uint32_t bends = 0; // its lobes may want a bent normal
+  float weight[3] = {};
+  WideLobe lobes[kWideLobes];
+};
+
+} // namespace lancer

@@ -1,0 +1,113 @@
+#include "scene/wide_materials.h"
+
+#include "bsdf/albedo_tables.h"
+#include "bsdf/matte.h"
+#include "bsdf/microfacet_fresnel.h"
+#include "bsdf/principled.h"
+#include "lancer.h"
+
+namespace lancer {
+
+namespace {
+
+void copy(const glm::vec3 &from, float (&to)[3]) {
+  for (int i = 0; i < 3; ++i)
+    to[i] = from[i];
+}
+
+WideLobe *next(WideMaterial &material) {
+  return material.count < uint32_t(kWideLobes) ? &material.lobes[material.count++] : nullptr;
+}
+
+bool add_facets(WideMaterial &material, const MicrofacetPlan &plan, WideMode mode, float share) {
+  const Lobe &lobe = plan.lobe;
+  const bool known =
+      lobe.fresnel == FresnelKind::Dielectric || lobe.fresnel == FresnelKind::F82 || lobe.fresnel == FresnelKind::Schlick;
+  WideLobe *wide = next(material);
+  if (!wide || !known || refracts(lobe) || lobe.delta || lobe.beckmann || !plan.rows)
+    return false;
+  wide->shape = WideShape::Microfacet;
+  wide->mode = mode;
+  wide->share = share;
+  wide->alpha_x = lobe.alpha_x;
+  wide->alpha_y = lobe.alpha_y;
+  wide->fresnel = uint32_t(lobe.fresnel);
+  copy(lobe.f0, wide->f0);
+  copy(lobe.f90, wide->f90);
+  copy(lobe.b, wide->b);
+  copy(lobe.reflection, wide->reflection);
+  copy(plan.further, wide->further);
+  wide->ior = lobe.ior;
+  wide->per_range = lobe.per_range;
+  const bool dielectric = lobe.fresnel == FresnelKind::Dielectric;
+  wide->lowest = dielectric ? f0_of_ior(lobe.ior) : lobe.lowest;
+  wide->preserving = plan.preserving;
+  wide->averaged = !dielectric || (lobe.ior > 1.0f && lobe.rules == Rules::Blender45);
+  wide->single = plan.rows->single;
+  wide->mix = plan.rows->mix;
+  material.bends = 1;
+  return true;
+}
+
+bool add_lambert(WideMaterial &material, WideMode mode, const glm::vec3 &color) {
+  WideLobe *wide = next(material);
+  if (!wide)
+    return false;
+  wide->shape = WideShape::Lambert;
+  wide->mode = mode;
+  copy(color, wide->color);
+  return true;
+}
+
+// The layers of add_layers(), as far as kernels know them.
+bool add_principled(WideMaterial &material, const ReadyLobe &ready) {
+  const PrincipledInputs &in = ready.principled;
+  if (!ready.layers || in.rules == Rules::Blender3 || ready.inputs.normal != glm::vec3(0.0f) ||
+      in.coat_normal != glm::vec3(0.0f) || in.sheen > kLeastLayer || in.emission != glm::vec3(0.0f) ||
+      in.diffuse_roughness >= kLambertRoughness)
+    return false;
+  if (grain_of(ready.inputs, unit(in.roughness), unit(in.anisotropic)).stretched)
+    return false;
+  const LayerPlan &layers = *ready.layers;
+  const float metallic = unit(in.metallic), transmission = unit(in.transmission);
+  copy(ready.inputs.weight, material.weight);
+  if (in.coat > kLeastLayer &&
+      (in.coat_tint != glm::vec3(1.0f) || !add_facets(material, *layers.coat, WideMode::Layer, in.coat)))
+    return false;
+  if (metallic > kLeastLayer && !add_facets(material, *layers.metal, WideMode::Share, metallic))
+    return false;
+  if (metallic < 1.0f && transmission > kLeastLayer)
+    return false;
+  if (metallic >= 1.0f)
+    return true;
+  if (layers.gloss && !add_facets(material, *layers.gloss, WideMode::Layer, 1.0f))
+    return false;
+  return add_lambert(material, WideMode::Base, glm::max(in.base_color, 0.0f));
+}
+
+bool fill(const Material &material, WideMaterial &wide) {
+  if (!material.fixed() || material.transmits() || material.layered_emission || material.ready.size() != 1 ||
+      material.normal.varies() || material.holdout.value != glm::vec3(0.0f))
+    return false;
+  const ReadyLobe &ready = material.ready.front();
+  if (ready.inputs.kind == LobeKind::Principled)
+    return add_principled(wide, ready);
+  return ready.whole && !ready.flat_only && ready.lobe.shape == LobeShape::Lambert &&
+         add_lambert(wide, WideMode::Own, ready.lobe.color);
+}
+
+} // namespace
+
+std::vector<WideMaterial> make_wide_materials(const std::vector<Material> &materials) {
+  std::vector<WideMaterial> all;
+  for (const Material &material : materials) {
+    WideMaterial &wide = all.emplace_back();
+    if (!fill(material, wide))
+      wide = {};
+    else if (material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION)
+      wide.bends = 0;
+  }
+  return all;
+}
+
+} // namespace lancer
