@@ -106,13 +106,11 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
       miss(path, ray, result);
       continue;
     }
-    const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-    if (!trace && for_lanes(surface))
-      put_in_lane(i, surface);
+    const uint32_t material = material_of(scene_.geometry, scene_.slots, hits_[i].instance, hits_[i].primitive);
+    if (const WideMaterial *wide = trace ? nullptr : for_lanes(material, hits_[i].instance))
+      put_in_lane(i, material, *wide, results);
     else
-      shade_surface(path, ray, t, surface, results, trace);
-    if (waiting_count_ == kBlockLanes)
-      shade_lanes(results);
+      shade_surface(path, ray, t, surface_at(scene_.geometry, scene_.slots, ray, hits_[i]), results, trace);
   }
   shade_lanes(results);
 }
@@ -331,93 +329,215 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
   send_shadow(path, surface, point_.bsdf.ns, point_.bsdf.ng, light, number, waiting, contribution);
 }
 
-// Whether a kernel of many lanes shades the surface.
-template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::for_lanes(const Surface &surface) const {
-  return wide_ && surface.material != kNone && scene_.wide[surface.material].count > 0 &&
-         !scene_.geometry.instances[surface.instance].holdout;
+// The record of a surface that kernels of many lanes shade; null for the others.
+template <uint32_t Shapes, bool Layers>
+const WideMaterial *PathIntegrator<Shapes, Layers>::for_lanes(uint32_t material, uint32_t instance) const {
+  if (!wide_ || material == kNone || scene_.wide[material].count == 0 || scene_.geometry.instances[instance].holdout)
+    return nullptr;
+  return &scene_.wide[material];
+}
+
+inline void put(const glm::vec3 &v, VertexBlock::Floats (&lanes)[3], uint32_t lane) {
+  for (int i = 0; i < 3; ++i)
+    lanes[i][lane] = v[i];
+}
+inline void put(const glm::dvec3 &v, VertexBlock::Doubles (&lanes)[3], uint32_t lane) {
+  for (int i = 0; i < 3; ++i)
+    lanes[i][lane] = v[i];
+}
+inline glm::vec3 get(const VertexBlock::Floats (&lanes)[3], uint32_t lane) {
+  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
+}
+inline glm::dvec3 get(const VertexBlock::Doubles (&lanes)[3], uint32_t lane) {
+  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
 }
 
 template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, const Surface &surface) {
+void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t material, const WideMaterial &wide,
+                                                 std::span<SampleResult> results) {
   const Path &path = paths_[number];
-  const uint32_t lane = waiting_count_++;
-  Waiting &waiting = waiting_[lane];
-  waiting.number = number;
-  waiting.surface = surface;
-  // Look at the side of the viewer.
-  const glm::vec3 wo(-glm::normalize(rays_[number].d));
-  const float side = glm::dot(wo, surface.ng) < 0.0f ? -1.0f : 1.0f;
-  const bool ends = path.scatterings > settings_.max_bounces || path.last;
-  waiting.light = {};
-  waiting.light_number = 0;
-  if (!ends) {
-    waiting.u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
-    if (!scene_.lights.empty())
-      waiting.light = ask_light(surface, waiting.u, waiting.light_number);
+  const bool ends = path.last || path.scatterings > settings_.max_bounces;
+  if (ends && scene_.materials[material].emission.value == glm::vec3(0.0f))
+    return;
+  const Hit &hit = hits_[number];
+  const Instance &instance = scene_.geometry.instances[hit.instance];
+  const uint32_t lane = waiting_count_++, bit = 1u << lane;
+  waiting_[lane] = {number, ends, 0, false};
+  block_.used |= bit;
+  block_.placement[lane] = &instance.to_world.linear[0][0];
+  if (instance.kind == ShapeKind::Mesh) {
+    const Mesh &mesh = scene_.geometry.meshes[instance.mesh];
+    const glm::uvec3 &triangle = mesh.triangles[hit.primitive];
+    for (int corner = 0; corner < 3; ++corner)
+      put(mesh.positions[triangle[corner]], block_.corner[corner], lane);
+    glm::vec3 n[3];
+    if (corner_normals(mesh, instance.shading, hit.primitive, n)) {
+      for (int corner = 0; corner < 3; ++corner)
+        put(n[corner], block_.normal[corner], lane);
+      block_.smooth |= bit;
+    }
+    block_.on_mesh |= bit;
+    block_.bary[0][lane] = hit.u;
+    block_.bary[1][lane] = hit.v;
   }
-  const LightSample &light = waiting.light;
-  const glm::vec3 wi(light.wi);
-  for (int i = 0; i < 3; ++i) {
-    block_.wo[i][lane] = wo[i];
-    block_.ns[i][lane] = side * surface.ns[i];
-    block_.ng[i][lane] = side * surface.ng[i];
-    block_.beta[i][lane] = path.beta[i];
-    block_.light_wi[i][lane] = wi[i];
-    block_.light_radiance[i][lane] = light.radiance[i];
+  put(rays_[number].d, block_.d, lane);
+  put(path.beta, block_.beta, lane);
+  block_.terminator[lane] = instance.kind == ShapeKind::Mesh ? instance.terminator : 0.0f;
+  block_.material[lane] = &wide;
+  block_.pixel[lane] = path.sampler.pixel();
+  // Lanes of one sample and one bounce share the digits that their numbers are made of.
+  const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
+  if (lane == 0) {
+    block_.dimension = dimension;
+    first_sample_ = path.sampler.sample();
+    block_.numbers_given = 0;
+  } else if (dimension != block_.dimension || path.sampler.sample() != first_sample_) {
+    block_.numbers_given = 1;
   }
-  block_.material[lane] = &scene_.wide[surface.material];
-  block_.u_lobe[lane] = waiting.u[kVertexLobe];
-  block_.u_bsdf[0][lane] = waiting.u[kVertexBsdf];
-  block_.u_bsdf[1][lane] = waiting.u[kVertexBsdf + 1];
-  block_.light_pdf[lane] = light.pdf;
-  block_.light_delta[lane] = light.delta;
-  block_.light_hidden[lane] = light.pdf > 0.0 ? scene_.lights.hidden_from(waiting.light_number) : 0u;
+  if (waiting_count_ == kBlockLanes)
+    shade_lanes(results);
+}
+
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::draw_numbers() {
+  const Sampler &sampler = paths_[waiting_[0].number].sampler;
+  if (!block_.numbers_given) {
+    block_.reversed_sample = sampler.reversed_sample();
+    for (uint32_t i = 0; i < 8 && block_.dimension + i < kJointDimensions; ++i)
+      block_.reversed_point[i] = sobol::reversed_point(sampler.sample(), block_.dimension + i);
+    return;
+  }
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    const Path &path = paths_[waiting_[lane].number];
+    const VertexNumbers u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
+    for (uint32_t i = 0; i < 8; ++i)
+      block_.u[i][lane] = u[i];
+  }
+}
+
+// Chooses a light for every lane; samples those that kernels do not know.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_lights() {
+  static const WideLamp nothing;
+  block_.asked = 0;
+  for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+    block_.lamp[lane] = &nothing;
+    block_.light_pdf[lane] = 0.0;
+    block_.light_delta[lane] = block_.light_hidden[lane] = 0;
+    if (lane >= waiting_count_ || waiting_[lane].ends || scene_.lights.empty())
+      continue;
+    const LightSet::Choice choice = scene_.lights.choose(block_.u[kVertexLightChoice][lane]);
+    if (!(choice.probability > 0.0))
+      continue;
+    waiting_[lane].light = choice.light;
+    block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
+    if (const WideLamp *lamp = scene_.lights.wide_lamp(choice.light)) {
+      block_.lamp[lane] = lamp;
+      block_.light_pdf[lane] = choice.probability;
+      block_.asked |= 1u << lane;
+      continue;
+    }
+    const LightSample light = sample_scene_light(scene_, choice.light, get(block_.p, lane),
+                                                 {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]}, shader_);
+    if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
+      continue;
+    waiting_[lane].far = std::isinf(light.distance);
+    put(light.wi, block_.light_wi, lane);
+    put(light.target, block_.light_target, lane);
+    put(light.radiance, block_.light_radiance, lane);
+    block_.light_pdf[lane] = light.pdf * choice.probability;
+    block_.light_delta[lane] = light.delta;
+  }
+}
+
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::send_shadow_of(uint32_t lane) {
+  const Waiting &waiting = waiting_[lane];
+  const Path &path = paths_[waiting.number];
+  const WaitingLight light{.slot = path.slot, .indirect = path.scatterings > 0};
+  const glm::vec3 contribution = get(block_.contribution, lane);
+  if (scene_.lights.no_shadow(waiting.light))
+    return shadows_.push_lit(light, contribution);
+  const double infinity = std::numeric_limits<double>::infinity();
+  Ray ray;
+  if (block_.lifted >> lane & 1) {
+    LightSample sample;
+    sample.wi = get(block_.light_wi, lane);
+    sample.target = get(block_.light_target, lane);
+    sample.distance = waiting.far ? infinity : 1.0;
+    const Surface surface = surface_at(scene_.geometry, scene_.slots, rays_[waiting.number], hits_[waiting.number]);
+    ray = shadow_ray(scene_.geometry, surface, get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
+  } else {
+    ray.o = get(block_.shadow_origin, lane);
+    ray.d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - ray.o;
+    ray.tmax = waiting.far ? infinity : 1.0;
+    ray.skip_instance = hits_[waiting.number].instance;
+    ray.skip_primitive = hits_[waiting.number].primitive;
+    ray.kinds = LANCER_RAY_SHADOW;
+  }
+  shadows_.push(ray, light, contribution, path.passed_through);
 }
 
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::shade_lanes(std::span<SampleResult> results) {
   if (waiting_count_ == 0)
     return;
-  for (uint32_t lane = waiting_count_; lane < kBlockLanes; ++lane)
+  for (uint32_t lane = waiting_count_; lane < kBlockLanes; ++lane) {
     block_.material[lane] = block_.material[0];
+    block_.placement[lane] = block_.placement[0];
+  }
+  draw_numbers();
+  lanes_.surfaces(block_);
+  const auto surface_of = [this](uint32_t lane) {
+    return surface_at(scene_.geometry, scene_.slots, rays_[waiting_[lane].number], hits_[waiting_[lane].number]);
+  };
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+    if (!(block_.on_mesh >> lane & 1)) {
+      const Surface surface = surface_of(lane);
+      put(surface.p, block_.p, lane);
+      put(surface.ng, block_.ng, lane);
+      put(surface.ns, block_.ns, lane);
+      block_.offset[lane] = surface.offset;
+    }
+  ask_lights();
   lanes_.shade(block_);
   for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    Waiting &waiting = waiting_[lane];
+    const Waiting &waiting = waiting_[lane];
     Path &path = paths_[waiting.number];
-    const Ray &ray = rays_[waiting.number];
-    const double t = hits_[waiting.number].t;
-    const Surface &surface = waiting.surface;
-    SampleResult &result = results[path.slot];
-    const auto read = [lane](const VertexBlock::Floats(&v)[3]) { return glm::vec3(v[0][lane], v[1][lane], v[2][lane]); };
-    if (block_.bent >> lane & 1) {
-      shade_surface(path, ray, t, surface, results, nullptr);
+    const Hit &hit = hits_[waiting.number];
+    if (block_.odd >> lane & 1) {
+      shade_surface(path, rays_[waiting.number], hit.t, surface_of(lane), results, nullptr);
       continue;
     }
-    add_emission(path, surface, scene_.materials[surface.material].emission.value, result);
-    if (path.last || path.scatterings > settings_.max_bounces)
+    const glm::vec3 &emission =
+        scene_.materials[material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive)].emission.value;
+    if (emission != glm::vec3(0.0f))
+      add_emission(path, surface_of(lane), emission, results[path.slot]);
+    if (waiting.ends)
       continue;
     if (block_.lit >> lane & 1)
-      send_shadow(path, surface, read(block_.ns), read(block_.ng), waiting.light, waiting.light_number,
-                  {.slot = path.slot, .indirect = path.scatterings > 0}, read(block_.contribution));
+      send_shadow_of(lane);
     if (!(block_.sampled >> lane & 1))
       continue;
     // Go on from here.
     path.in_view = false;
-    path.length += t * glm::length(ray.d);
-    path.beta *= read(block_.weight);
+    path.length += hit.t * block_.length[lane];
+    path.beta = get(block_.beta, lane);
     path.pdf = double(block_.pdf[lane]);
-    path.from = surface.p;
+    path.from = get(block_.p, lane);
     path.kinds = block_.glossy >> lane & 1 ? LANCER_RAY_GLOSSY : LANCER_RAY_DIFFUSE;
     path.layers = 0;
     path.passed = 0.0;
     ++path.scatterings;
-    if (!survives(path, waiting.u[kVertexRoulette]))
+    if (!survives(path, block_.u[kVertexRoulette][lane]))
       continue;
-    Ray next = leave(surface, glm::dvec3(read(block_.wi)), std::numeric_limits<double>::infinity());
+    Ray next;
+    next.o = get(block_.next_origin, lane);
+    next.d = glm::dvec3(get(block_.wi, lane));
+    next.skip_instance = hit.instance;
+    next.skip_primitive = hit.primitive;
     next.kinds = path.kinds;
     next_paths_.push_back(path);
     next_rays_.push_back(next);
   }
   waiting_count_ = 0;
+  block_.used = block_.on_mesh = block_.smooth = 0;
 }
 
 template <uint32_t Shapes, bool Layers>

@@ -53,15 +53,17 @@ private:
   // A vertex that waits for the others of its block.
   struct Waiting {
     size_t number; // of its path
-    Surface surface;
-    VertexNumbers u;
-    LightSample light;
-    uint32_t light_number;
+    bool ends;     // it is only asked for its emission
+    uint32_t light;
+    bool far; // the light has no end
   };
 
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
-  bool for_lanes(const Surface &surface) const;
-  void put_in_lane(size_t number, const Surface &surface);
+  const WideMaterial *for_lanes(uint32_t material, uint32_t instance) const;
+  void put_in_lane(size_t number, uint32_t material, const WideMaterial &wide, std::span<SampleResult> results);
+  void draw_numbers();
+  void ask_lights();
+  void send_shadow_of(uint32_t lane);
   void shade_lanes(std::span<SampleResult> results);
   void shade_surface(Path &path, const Ray &ray, double t, const Surface &surface, std::span<SampleResult> results,
                      std::vector<PathVertex> *trace);
@@ -94,6 +96,7 @@ private:
   bool wide_; // vertices may be shaded in lanes
   VertexBlock block_;
   Waiting waiting_[kBlockLanes];
+  uint32_t first_sample_ = 0; // of the block's first lane
   uint32_t waiting_count_ = 0;
   Shaded point_; // of the surface at hand
   // The queue: paths_[i] travels along rays_[i].

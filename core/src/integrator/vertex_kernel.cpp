@@ -3,6 +3,9 @@
 
 #include "bsdf/wide_bsdf.h"
 #include "lancer.h"
+#include "lights/wide_lamps.h"
+#include "sampling/wide_numbers.h"
+#include "scene/wide_surface.h"
 
 #ifndef LANCER_ISA
 #define LANCER_ISA generic
@@ -12,6 +15,109 @@
 
 namespace lancer {
 namespace {
+
+constexpr uint32_t kWideJointDimensions = 16;
+constexpr uint32_t kPointLamp = 0, kSpotLamp = 1, kAreaLamp = 3;
+
+LANCER_LANE M some(uint32_t lanes, int first) { return mask_of(lanes >> first & ((1u << kLanes) - 1u)); }
+LANCER_LANE uint32_t placed_bits(M m, int first) { return bits(m) << first; }
+
+template <class T> LANCER_LANE bool all_same(const T *const *of) {
+  bool same = true;
+  for (int i = 1; i < kLanes; ++i)
+    same = same && of[i] == of[0];
+  return same;
+}
+
+// The eight numbers of the vertex.
+LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
+  const U pixel = load(block.pixel + first);
+  for (uint32_t i = 0; i < 8; i += 2) {
+    const uint32_t dimension = block.dimension + i;
+    F a, b;
+    if (dimension < kWideJointDimensions) {
+      a = joint_number(pixel, dimension, block.reversed_point[i]);
+      b = joint_number(pixel, dimension + 1, block.reversed_point[i + 1]);
+    } else {
+      pair_numbers(pixel, dimension, block.reversed_sample, a, b);
+    }
+    store(block.u[i] + first, a);
+    store(block.u[i + 1] + first, b);
+  }
+}
+
+[[gnu::flatten]] void surfaces(VertexBlock &block) {
+  block.odd = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    if (!block.numbers_given)
+      draw_numbers(block, first);
+    // Back along the ray.
+    const D3 d = load3(block.d, first);
+    const D length = sqrt(dot(d, d));
+    const D scale = D(1.0) / length;
+    store(block.length + first, length);
+    store3(block.wo, first, narrow(D3{-(d.x * scale), -(d.y * scale), -(d.z * scale)}));
+    const M on_mesh = some(block.on_mesh, first);
+    if (!any(on_mesh))
+      continue;
+    V3 v[3], n[3];
+    for (int corner = 0; corner < 3; ++corner) {
+      v[corner] = load3(block.corner[corner], first);
+      n[corner] = load3(block.normal[corner], first);
+    }
+    const double *const *placements = block.placement + first;
+    const WideSurface surface = mesh_surface(placements, all_same(placements), v, n, some(block.smooth, first),
+                                             load(block.bary[0] + first), load(block.bary[1] + first));
+    store3(block.p, first, surface.p);
+    store(block.offset + first, surface.offset);
+    store3(block.ng, first, surface.ng);
+    store3(block.ns, first, surface.ns);
+    block.odd |= placed_bits(surface.odd & on_mesh, first);
+  }
+}
+
+// Samples of lamps, beside those that are given.
+LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
+  const M asked = some(block.asked, first);
+  if (!any(asked))
+    return;
+  const WideLamp *const *lamps = block.lamp + first;
+  alignas(64) uint32_t kinds[kLanes], softs[kLanes], ellipses[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    kinds[i] = lamps[i]->kind;
+    softs[i] = lamps[i]->soft;
+    ellipses[i] = lamps[i]->ellipse;
+  }
+  const U kind = load(kinds);
+  const M area = asked & equal(kind, U(kAreaLamp)), spot = asked & equal(kind, U(kSpotLamp));
+  const M round = spot | (asked & equal(kind, U(kPointLamp)));
+  const F u = load(block.u[2] + first), v = load(block.u[3] + first);
+  F disk_x, disk_y;
+  warp_disk(u, v, disk_x, disk_y);
+  WideLight light;
+  light.target = load3(block.light_target, first);
+  light.wi = load3(block.light_wi, first);
+  light.radiance = load3(block.light_radiance, first);
+  light.delta = !equal(load(block.light_delta + first), U(0u));
+  const D probability = load(block.light_pdf + first);
+  light.pdf = select(asked, D(0.0), probability);
+  if (any(area))
+    sample_area(lamps, p, u, v, disk_x, disk_y, area, area & equal(load(ellipses), U(1u)), light);
+  if (any(round)) {
+    M inside;
+    sample_round(lamps, p, disk_x, disk_y, round, equal(load(softs), U(1u)), spot, light, inside);
+    block.odd |= placed_bits(inside, first);
+  }
+  // Dark ones are none.
+  light.pdf = select(asked & black(light.radiance), D(0.0), light.pdf);
+  store3(block.light_target, first, light.target);
+  store3(block.light_wi, first, light.wi);
+  store3(block.light_radiance, first, light.radiance);
+  store(block.light_delta + first, select(light.delta, U(1u), U(0u)));
+  store(block.light_pdf + first, select(asked, light.pdf * probability, light.pdf));
+}
 
 // Lanes whose reflecting lobes want a normal that sends the mirrored direction above the surface: reflecting_normal().
 LANCER_LANE M bent_lanes(const Records &records, const V3 &wo, const V3 &ns, const V3 &ng) {
@@ -32,51 +138,76 @@ LANCER_LANE F mis_weight(D pdf, D other) {
 
 LANCER_LANE M has_bit(const uint32_t *words, uint32_t bit) { return !equal(load(words) & U(bit), U(0u)); }
 
+// Where a ray towards wi leaves the surface: leave().
+LANCER_LANE D3 origin(const D3 &p, D offset, const D3 &ng, const D3 &wi) {
+  const D side = select(dot(ng, wi) < D(0.0), D(-1.0), D(1.0));
+  return p + side * offset * ng;
+}
+
+// Whether the shadow ray may start on the curved surface: amount of terminator_offset().
+LANCER_LANE M lifted(F limit, const V3 &ns, const V3 &ng, const V3 &wi) {
+  const F facing = dot(ns, wi), cos_n = abs(facing), cos_g = select(facing < F(0.0f), dot(-ng, wi), dot(ng, wi));
+  const F amount = select(cos_n < limit, F(2.0f) - (cos_g + cos_n) / limit, F(1.0f) - cos_g / limit);
+  return (limit > F(0.0f)) & (amount > F(0.0f));
+}
+
 // What the light's sample brings to the viewer where nothing is in its way.
-LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, const V3 &beta) {
+LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, const V3 &ns, const V3 &ng) {
   const F zero(0.0f);
   const V3 dark{zero, zero, zero};
   const D pdf = load(block.light_pdf + first);
-  const WideValue value = eval_lit(bsdf, load3(block.light_wi, first));
+  const V3 wi = narrow(load3(block.light_wi, first));
+  const WideValue value = eval_lit(bsdf, wi);
   const uint32_t *hidden = block.light_hidden + first;
   const V3 f = select(has_bit(hidden, LANCER_RAY_DIFFUSE), dark, value.diffuse) +
                select(has_bit(hidden, LANCER_RAY_GLOSSY), dark, value.glossy);
   // The BSDF finds the same light, unless it is a single direction.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf)));
-  const V3 contribution = beta * f * load3(block.light_radiance, first) * narrow(widen(weight) / pdf);
-  const M lit = (pdf > D(0.0)) & !black(f);
+  const V3 contribution = load3(block.beta, first) * f * load3(block.light_radiance, first) * narrow(widen(weight) / pdf);
   store3(block.contribution, first, contribution);
-  block.lit |= bits(lit) << first;
+  block.lit |= placed_bits((pdf > D(0.0)) & !black(f), first);
+  block.lifted |= placed_bits(lifted(load(block.terminator + first), ns, ng, wi), first);
 }
 
 [[gnu::flatten]] void shade(VertexBlock &block) {
-  block.bent = block.lit = block.sampled = block.glossy = 0;
+  block.lit = block.lifted = block.sampled = block.glossy = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
-    Records records{block.material + first, true};
+    if (!(block.used >> first))
+      return;
+    const D3 p = load3(block.p, first);
+    ask_lamps(block, first, p);
+    // Look from the viewer's side.
+    const V3 wo = load3(block.wo, first), out_ns = load3(block.ns, first), out_ng = load3(block.ng, first);
+    const M behind = dot(wo, out_ng) < F(0.0f);
+    const V3 ns = select(behind, -out_ns, out_ns), ng = select(behind, -out_ng, out_ng);
+    store3(block.viewer_ns, first, ns);
+    store3(block.viewer_ng, first, ng);
+    Records records{block.material + first, all_same(block.material + first)};
     uint32_t count = 0;
-    for (int i = 0; i < kLanes; ++i) {
-      records.same = records.same && records.of[i] == records.of[0];
+    for (int i = 0; i < kLanes; ++i)
       count = records.of[i]->count > count ? records.of[i]->count : count;
-    }
-    const V3 wo = load3(block.wo, first), ns = load3(block.ns, first), ng = load3(block.ng, first);
+    block.odd |= placed_bits(bent_lanes(records, wo, ns, ng), first);
     WideBsdf bsdf;
     make_bsdf(records, static_cast<int>(count), wo, ns, ng, bsdf);
-    block.bent |= bits(bent_lanes(records, wo, ns, ng)) << first;
-    light(block, first, bsdf, load3(block.beta, first));
-    const WideSample sample =
-        sample_bsdf(bsdf, load(block.u_lobe + first), load(block.u_bsdf[0] + first), load(block.u_bsdf[1] + first));
+    light(block, first, bsdf, ns, ng);
+    const D offset = load(block.offset + first);
+    const D3 outwards = widen(out_ng);
+    store3(block.shadow_origin, first, origin(p, offset, outwards, load3(block.light_wi, first)));
+    // Go on in a direction of the BSDF.
+    const WideSample sample = sample_bsdf(bsdf, load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
+    store3(block.next_origin, first, origin(p, offset, outwards, widen(sample.wi)));
     store3(block.wi, first, sample.wi);
-    store3(block.weight, first, sample.weight);
+    store3(block.beta, first, load3(block.beta, first) * sample.weight);
     store(block.pdf + first, sample.pdf);
-    block.sampled |= bits(sample.valid) << first;
-    block.glossy |= bits(sample.glossy) << first;
+    block.sampled |= placed_bits(sample.valid, first);
+    block.glossy |= placed_bits(sample.glossy, first);
   }
 }
 
 } // namespace
 
 namespace LANCER_ISA {
-const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), shade};
+const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), surfaces, shade};
 }
 
 } // namespace lancer

@@ -25,14 +25,45 @@ double power(const Light &light, double scene_radius) {
   return 0.0;
 }
 
+void copy(const glm::dvec3 &from, double (&to)[3]) {
+  for (int i = 0; i < 3; ++i)
+    to[i] = from[i];
+}
+
+WideLamp make_wide(const Light &light) {
+  WideLamp lamp;
+  lamp.kind = uint32_t(light.kind);
+  lamp.soft = light.soft_falloff;
+  lamp.spot_cosine = light.spot_cosine;
+  lamp.ellipse = light.ellipse;
+  copy(light.position, lamp.position);
+  copy(light.x, lamp.x);
+  copy(light.y, lamp.y);
+  copy(light.z, lamp.z);
+  copy(light.emission, lamp.emission);
+  lamp.radius = light.radius;
+  lamp.cos_half_angle = light.cos_half_angle;
+  lamp.blend_width = light.blend_width;
+  lamp.stretch_x = light.stretch_x;
+  lamp.stretch_y = light.stretch_y;
+  lamp.half_x = light.half_x;
+  lamp.half_y = light.half_y;
+  lamp.area = light.area;
+  lamp.tan_half_spread = light.tan_half_spread;
+  lamp.spread_scale = light.spread_scale;
+  return lamp;
+}
+
 } // namespace
 
 LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
                    double radius)
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
   std::vector<double> powers;
-  for (const Light &light : lights_)
+  for (const Light &light : lights_) {
     powers.push_back(power(light, radius));
+    wide_lamps_.push_back(make_wide(light));
+  }
   for (const Emitter &emitter : emitters_)
     powers.push_back(2.0 * glm::pi<double>() * emitter.weight());
   // Beyond the scene's bounds nothing is lit: what passes through their disk from all directions.
@@ -74,7 +105,8 @@ uint32_t LightSet::hidden_from(uint32_t light) const {
 }
 
 size_t LightSet::bytes() const {
-  size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) + emitter_of_.size() * sizeof(uint32_t);
+  size_t bytes =
+      environment_.bytes() + lights_.size() * (sizeof(Light) + sizeof(WideLamp)) + emitter_of_.size() * sizeof(uint32_t);
   for (const Emitter &emitter : emitters_)
     bytes += sizeof(Emitter) + emitter.bytes();
   return bytes;

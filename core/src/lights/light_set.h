@@ -3,6 +3,7 @@
 
 #include "lights/emitter.h"
 #include "lights/environment.h"
+#include "lights/wide_lamp.h"
 
 namespace lancer {
 
@@ -33,6 +34,11 @@ public:
   Choice choose(float u) const;
   double probability(uint32_t light) const { return choice_.size() > 0 ? double(choice_.pmf(light)) : 0.0; }
 
+  // The numbers of a light for kernels that sample it; null where only the general code does.
+  const WideLamp *wide_lamp(uint32_t light) const {
+    return light < lights_.size() && lights_[light].kind != LightKind::Sun ? &wide_lamps_[light] : nullptr;
+  }
+
   // The emitter of an instance, as a light's number; kNone if it has none.
   uint32_t emitter_light(uint32_t instance) const { return emitter_of_.empty() ? kNone : emitter_of_[instance]; }
   // Lights as described that a ray can run into.
@@ -41,6 +47,7 @@ public:
 
 private:
   std::vector<Light> lights_;
+  std::vector<WideLamp> wide_lamps_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> with_extent_, emitter_of_;
   WeightedChoice choice_;

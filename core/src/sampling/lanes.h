@@ -239,7 +239,17 @@ LANCER_LANE F abs(F a) { return as_float(as_word(a) & U(0x7fffffffu)); }
 LANCER_LANE F copysign(F magnitude, F sign) {
   return as_float((as_word(magnitude) & U(0x7fffffffu)) | (as_word(sign) & U(0x80000000u)));
 }
-LANCER_LANE D abs(D a) { return select(a < D(0.0), -a, a); }
+using LongWordVector = uint64_t __attribute__((vector_size(4 * kLanes)));
+LANCER_LANE DoubleVector sign_and(DoubleVector a, uint64_t others) {
+  return (DoubleVector)((LongWordVector)a & (others - LongWordVector{}));
+}
+LANCER_LANE D abs(D a) { return {sign_and(a.lo, ~(1ull << 63)), sign_and(a.hi, ~(1ull << 63))}; }
+// 1 with the sign of a.
+LANCER_LANE D sign(D a) {
+  const LongWordVector one = (LongWordVector)(1.0 - DoubleVector{});
+  return {(DoubleVector)((LongWordVector)sign_and(a.lo, 1ull << 63) | one),
+          (DoubleVector)((LongWordVector)sign_and(a.hi, 1ull << 63) | one)};
+}
 
 // Towards zero, of what an int32 holds; and back.
 LANCER_LANE U truncate(F a) { return U((WordVector) __builtin_convertvector(a.v, IntVector)); }
@@ -335,6 +345,12 @@ LANCER_LANE D3 operator*(const D3 &a, D s) { return {a.x * s, a.y * s, a.z * s};
 LANCER_LANE D3 operator/(const D3 &a, D s) { return {a.x / s, a.y / s, a.z / s}; }
 LANCER_LANE D dot(const D3 &a, const D3 &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 LANCER_LANE D3 select(M m, const D3 &a, const D3 &b) { return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)}; }
+LANCER_LANE D3 load3(const double (*p)[16], int first) { return {load(p[0] + first), load(p[1] + first), load(p[2] + first)}; }
+LANCER_LANE void store3(double (*p)[16], int first, const D3 &a) {
+  store(p[0] + first, a.x);
+  store(p[1] + first, a.y);
+  store(p[2] + first, a.z);
+}
 LANCER_LANE D3 widen(const V3 &a) { return {widen(a.x), widen(a.y), widen(a.z)}; }
 LANCER_LANE V3 narrow(const D3 &a) { return {narrow(a.x), narrow(a.y), narrow(a.z)}; }
 

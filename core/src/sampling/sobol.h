@@ -52,6 +52,11 @@ public:
     return numbers;
   }
 
+  // What the numbers come from, for kernels that draw those of many pixels.
+  uint32_t pixel() const { return pixel_; }
+  uint32_t sample() const { return sample_; }
+  uint32_t reversed_sample() const { return reversed_; }
+
 private:
   // Owen's nested scrambling on reversed digits: each digit is flipped by a hash of the digits before it. Sums, and products
   // with even numbers, carry upwards only, which is exactly that dependence.

@@ -1,0 +1,58 @@
+// Vertices of paths side by side, from the hit to the rays that leave. Plain numbers: kernels read and write it.
+#pragma once
+
+#include "bsdf/wide_lobe.h"
+#include "lights/wide_lamp.h"
+
+#include <cstdint>
+
+namespace lancer {
+
+inline constexpr int kBlockLanes = 16;
+
+struct alignas(64) VertexBlock {
+  using Floats = float[kBlockLanes];
+  using Doubles = double[kBlockLanes];
+  using Words = uint32_t[kBlockLanes];
+
+  // Given: triangles, and how they were met. d: of the ray, of any length.
+  const double *placement[kBlockLanes]; // Instance::to_world and what follows
+  Floats corner[3][3], normal[3][3];    // of a triangle's corners, object space; by corner, axis
+  Doubles bary[2], d[3];
+  Floats terminator; // Instance::terminator
+  // Given: what the sampler makes its numbers of. All lanes share the sample and its dimension.
+  Words pixel;
+  uint32_t dimension = 0, reversed_sample = 0, reversed_point[8] = {};
+  uint32_t numbers_given = 0; // 1: u is given instead
+  alignas(64) const WideMaterial *material[kBlockLanes];
+  Floats beta[3];
+
+  // surfaces(): both normals outwards, wo unit. Lanes of other shapes are filled in by hand.
+  Doubles p[3], offset, length; // of d
+  Floats ng[3], ns[3], wo[3];
+  Floats u[8];
+
+  // Given: the lamp to ask, or the sample of another light, with the probability of its choice in pdf either way.
+  const WideLamp *lamp[kBlockLanes];
+  Doubles light_wi[3], light_target[3], light_pdf;
+  Floats light_radiance[3];
+  Words light_delta, light_hidden; // bits LANCER_RAY_*
+
+  // shade(): rays start at origin, on the side of their direction. Shadow rays end at light_target, or nowhere.
+  Floats contribution[3];
+  Doubles shadow_origin[3], next_origin[3];
+  Floats viewer_ns[3], viewer_ng[3];
+  Floats wi[3], pdf; // beta then is that of the next ray
+
+  // Bits of lanes.
+  uint32_t used = 0;
+  uint32_t on_mesh = 0, smooth = 0; // given: triangles; those with normals of their own
+  uint32_t asked = 0;               // given: lamp is to be sampled
+  uint32_t odd = 0;                 // only the general code can do them: nothing else holds
+  uint32_t lit = 0;                 // contribution is not black
+  uint32_t lifted = 0;              // the shadow ray may have to start on the curved surface
+  uint32_t sampled = 0;             // there is a next direction
+  uint32_t glossy = 0;              // drawn by a glossy lobe
+};
+
+} // namespace lancer
