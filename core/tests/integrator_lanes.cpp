@@ -80,16 +80,29 @@ lancer_principled principled(Random &random) {
 
 uint32_t add_some_material(Studio &studio, Random &random) {
   lancer_material material = black();
+  // A place in the object, as a colour.
+  std::vector<lancer_node> nodes;
+  const bool by_nodes = random() % 2;
+  if (by_nodes)
+    nodes = {node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_GENERATED)};
   if (random() % 6 == 0)
-    material.emission = constant(0.5f);
+    material.emission = by_nodes ? result_of(0) : constant(0.5f);
+  if (random() % 4 == 0)
+    material.transmittance = by_nodes && random() % 2 ? result_of(0) : constant(0.3f, 0.2f, 0.5f);
   if (random() % 4 == 0) {
     lancer_lobe matte = lobe(LANCER_DIFFUSE, number(random), random() % 2 ? 0.0f : 0.7f);
-    return studio.add({matte}, material);
+    if (by_nodes)
+      matte.color = result_of(0);
+    return studio.add({matte}, material, nodes);
   }
-  const lancer_principled p = principled(random);
+  lancer_principled p = principled(random);
+  if (by_nodes)
+    p.base_color = result_of(0);
   lancer_lobe layered = lobe(LANCER_PRINCIPLED, 1.0f);
+  if (by_nodes && random() % 2)
+    layered.weight = result_of(0);
   layered.principled = &p;
-  return studio.add({layered}, material);
+  return studio.add({layered}, material, nodes);
 }
 
 void add_lights(Studio &studio, Random &random) {

@@ -183,7 +183,7 @@ LANCER_LANE V3 below(const V3 &weight, const V3 &albedo) {
 }
 
 // The terms of one lobe number, and what is left for the next.
-LANCER_LANE void add_term(const Records &records, int k, WideBsdf &bsdf, V3 &left) {
+LANCER_LANE void add_term(const Records &records, int k, const V3 &base_color, WideBsdf &bsdf, V3 &left) {
   WideTerm &term = bsdf.terms[k];
   const U shape = LANCER_WORD(shape), mode = LANCER_WORD(mode), fresnel = LANCER_WORD(fresnel);
   term.lambert = equal(shape, U(1u));
@@ -191,10 +191,9 @@ LANCER_LANE void add_term(const Records &records, int k, WideBsdf &bsdf, V3 &lef
   term.dielectric = term.facets & equal(fresnel, U(1u));
   term.f82 = term.facets & equal(fresnel, U(3u));
   term.schlick = term.facets & equal(fresnel, U(4u));
-  const V3 own = LANCER_FIELD3(color);
   const F share = LANCER_FIELD(share);
   const M shares = equal(mode, U(1u)), layers = equal(mode, U(2u)), base = equal(mode, U(3u));
-  term.color = select(shares | layers, share * left, select(base, own * left, own));
+  term.color = select(shares | layers, share * left, select(base, base_color * left, base_color));
   term.color = select(term.lambert | term.facets, term.color, V3{F(0.0f), F(0.0f), F(0.0f)});
   if (any(term.facets)) {
     term.alpha_x = LANCER_FIELD(alpha_x);
@@ -216,21 +215,17 @@ LANCER_LANE void add_term(const Records &records, int k, WideBsdf &bsdf, V3 &lef
 }
 
 // The lobes of all lanes: add_layers() and Bsdf::complete().
-LANCER_LANE void make_bsdf(const Records &records, int count, const V3 &wo, const V3 &ns, const V3 &ng, WideBsdf &bsdf) {
+// left: the weight of all lobes together; base: of WideMaterial.
+LANCER_LANE void make_bsdf(const Records &records, int count, const V3 &wo, const V3 &ns, const V3 &ng, V3 left, const V3 &base,
+                           WideBsdf &bsdf) {
   bsdf.frame = make_frame(ns);
   bsdf.wo = to_local(bsdf.frame, wo);
   bsdf.ng = ng;
   bsdf.flat = (ns.x == ng.x) & (ns.y == ng.y) & (ns.z == ng.z);
   bsdf.count = count;
-  V3 left{field(
-              records, [](const WideMaterial &m) __attribute__((always_inline)) { return m.weight[0]; }),
-          field(
-              records, [](const WideMaterial &m) __attribute__((always_inline)) { return m.weight[1]; }),
-          field(
-              records, [](const WideMaterial &m) __attribute__((always_inline)) { return m.weight[2]; })};
   F sum(0.0f);
   for (int k = 0; k < count; ++k) {
-    add_term(records, k, bsdf, left);
+    add_term(records, k, base, bsdf, left);
     WideTerm &term = bsdf.terms[k];
     term.probability = max(max(max(term.albedo.x, term.albedo.y), term.albedo.z), F(0.0f));
     // What has no colour is not there.
@@ -239,6 +234,17 @@ LANCER_LANE void make_bsdf(const Records &records, int count, const V3 &wo, cons
   }
   for (int k = 0; k < count; ++k)
     bsdf.terms[k].probability = select(sum > F(0.0f), bsdf.terms[k].probability / sum, F(0.0f));
+}
+
+// Sum of the lobes' albedos.
+LANCER_LANE V3 albedo(const WideBsdf &bsdf) {
+  const F zero(0.0f);
+  V3 sum{zero, zero, zero};
+  for (int k = 0; k < bsdf.count; ++k) {
+    const WideTerm &term = bsdf.terms[k];
+    sum = select(black(term.color), sum, sum + term.albedo);
+  }
+  return sum;
 }
 
 // BsdfValue for light samples: parts that are diffuse and glossy.

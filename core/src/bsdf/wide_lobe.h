@@ -9,10 +9,10 @@ inline constexpr int kWideLobes = 4;
 
 // How a lobe's colour comes from what the lobes before it have left.
 enum class WideMode : uint32_t {
-  Own = 0,   // it does not: color alone
+  Own = 0,   // it does not: the material's base alone
   Share = 1, // share of what is left, which the others lose
   Layer = 2, // share of what is left, and those below lose what it scatters
-  Base = 3   // color times what is left
+  Base = 3   // the material's base times what is left
 };
 
 enum class WideShape : uint32_t { Nothing = 0, Lambert = 1, Microfacet = 2 };
@@ -22,7 +22,6 @@ struct WideLobe {
   WideShape shape = WideShape::Nothing;
   WideMode mode = WideMode::Own;
   float share = 1.0f;
-  float color[3] = {};
   float alpha_x = 0.0f, alpha_y = 0.0f;
   uint32_t fresnel = 0; // FresnelKind
   float f0[3] = {}, f90[3] = {}, b[3] = {};
@@ -37,7 +36,9 @@ struct WideLobe {
 struct WideMaterial {
   uint32_t count = 0; // 0: not for kernels
   uint32_t bends = 0; // its lobes may want a bent normal
-  float weight[3] = {};
+  // Of all lobes together, and the colour of the matt one; where nodes say them they are those of the place.
+  float weight[3] = {}, base[3] = {};
+  uint32_t nodes = 0; // 1: nodes say these, what it emits or what it lets pass
   WideLobe lobes[kWideLobes];
 };
 

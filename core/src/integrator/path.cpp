@@ -357,13 +357,16 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
                                                  std::span<SampleResult> results) {
   const Path &path = paths_[number];
   const bool ends = path.last || path.scatterings > settings_.max_bounces;
-  if (ends && scene_.materials[material].emission.value == glm::vec3(0.0f))
+  const Material &described = scene_.materials[material];
+  if (ends && !described.emits() && !described.transmits())
     return;
   const Hit &hit = hits_[number];
   const Instance &instance = scene_.geometry.instances[hit.instance];
   const uint32_t lane = waiting_count_++, bit = 1u << lane;
-  waiting_[lane] = {number, ends, 0, false};
+  waiting_[lane] = {number, ends, 0, false, described.emission.value, glm::max(described.transmittance.value, 0.0f)};
   block_.used |= bit;
+  if (ends)
+    block_.ends |= bit;
   block_.placement[lane] = &instance.to_world.linear[0][0];
   if (instance.kind == ShapeKind::Mesh) {
     const Mesh &mesh = scene_.geometry.meshes[instance.mesh];
@@ -384,6 +387,11 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
   put(path.beta, block_.beta, lane);
   block_.terminator[lane] = instance.kind == ShapeKind::Mesh ? instance.terminator : 0.0f;
   block_.material[lane] = &wide;
+  for (int i = 0; i < 3; ++i) {
+    block_.weight[i][lane] = wide.weight[i];
+    block_.base[i][lane] = wide.base[i];
+  }
+  block_.through[lane] = described.transmits() ? mean(waiting_[lane].transmittance) : 0.0f;
   block_.pixel[lane] = path.sampler.pixel();
   // Lanes of one sample and one bounce share the digits that their numbers are made of.
   const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
@@ -411,6 +419,50 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::dra
     const VertexNumbers u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
     for (uint32_t i = 0; i < 8; ++i)
       block_.u[i][lane] = u[i];
+  }
+}
+
+template <uint32_t Shapes, bool Layers> Surface PathIntegrator<Shapes, Layers>::surface_of(uint32_t lane) const {
+  return surface_at(scene_.geometry, scene_.slots, rays_[waiting_[lane].number], hits_[waiting_[lane].number]);
+}
+
+// Where each lane's hit is, and what the surface is like there.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::find_surfaces() {
+  lanes_.surfaces(block_);
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+    if (!(block_.on_mesh >> lane & 1)) {
+      const Surface surface = surface_of(lane);
+      put(surface.p, block_.p, lane);
+      put(surface.ng, block_.ng, lane);
+      put(surface.ns, block_.ns, lane);
+      block_.offset[lane] = surface.offset;
+    }
+}
+
+// Colours that nodes say.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_nodes() {
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    if (!block_.material[lane]->nodes)
+      continue;
+    Waiting &waiting = waiting_[lane];
+    const Hit &hit = hits_[waiting.number];
+    Surface surface;
+    surface.p = get(block_.p, lane);
+    surface.offset = block_.offset[lane];
+    surface.ng = get(block_.ng, lane);
+    surface.ns = get(block_.ns, lane);
+    surface.bary = block_.on_mesh >> lane & 1 ? glm::dvec2(hit.u, hit.v) : glm::dvec2(0.0);
+    surface.instance = hit.instance;
+    surface.primitive = hit.primitive;
+    surface.material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+    const double way = paths_[waiting.number].length + hit.t * block_.length[lane];
+    const NodeColors colors =
+        shader_.colors(surface, {.wo = get(block_.wo, lane), .footprint = float(cone_.base + way * cone_.spread)});
+    put(colors.weight, block_.weight, lane);
+    put(colors.base, block_.base, lane);
+    block_.through[lane] = mean(colors.transmittance);
+    waiting.emission = colors.emission;
+    waiting.transmittance = colors.transmittance;
   }
 }
 
@@ -462,8 +514,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::sen
     sample.wi = get(block_.light_wi, lane);
     sample.target = get(block_.light_target, lane);
     sample.distance = waiting.far ? infinity : 1.0;
-    const Surface surface = surface_at(scene_.geometry, scene_.slots, rays_[waiting.number], hits_[waiting.number]);
-    ray = shadow_ray(scene_.geometry, surface, get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
+    ray = shadow_ray(scene_.geometry, surface_of(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
   } else {
     ray.o = get(block_.shadow_origin, lane);
     ray.d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - ray.o;
@@ -483,61 +534,65 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::sha
     block_.placement[lane] = block_.placement[0];
   }
   draw_numbers();
-  lanes_.surfaces(block_);
-  const auto surface_of = [this](uint32_t lane) {
-    return surface_at(scene_.geometry, scene_.slots, rays_[waiting_[lane].number], hits_[waiting_[lane].number]);
-  };
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
-    if (!(block_.on_mesh >> lane & 1)) {
-      const Surface surface = surface_of(lane);
-      put(surface.p, block_.p, lane);
-      put(surface.ng, block_.ng, lane);
-      put(surface.ns, block_.ns, lane);
-      block_.offset[lane] = surface.offset;
-    }
+  find_surfaces();
+  ask_nodes();
   ask_lights();
   lanes_.shade(block_);
   for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    const Waiting &waiting = waiting_[lane];
-    Path &path = paths_[waiting.number];
-    const Hit &hit = hits_[waiting.number];
-    if (block_.odd >> lane & 1) {
-      shade_surface(path, rays_[waiting.number], hit.t, surface_of(lane), results, nullptr);
-      continue;
-    }
-    const glm::vec3 &emission =
-        scene_.materials[material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive)].emission.value;
-    if (emission != glm::vec3(0.0f))
-      add_emission(path, surface_of(lane), emission, results[path.slot]);
-    if (waiting.ends)
-      continue;
-    if (block_.lit >> lane & 1)
-      send_shadow_of(lane);
-    if (!(block_.sampled >> lane & 1))
-      continue;
-    // Go on from here.
-    path.in_view = false;
-    path.length += hit.t * block_.length[lane];
-    path.beta = get(block_.beta, lane);
-    path.pdf = double(block_.pdf[lane]);
-    path.from = get(block_.p, lane);
-    path.kinds = block_.glossy >> lane & 1 ? LANCER_RAY_GLOSSY : LANCER_RAY_DIFFUSE;
-    path.layers = 0;
-    path.passed = 0.0;
-    ++path.scatterings;
-    if (!survives(path, block_.u[kVertexRoulette][lane]))
-      continue;
-    Ray next;
-    next.o = get(block_.next_origin, lane);
-    next.d = glm::dvec3(get(block_.wi, lane));
-    next.skip_instance = hit.instance;
-    next.skip_primitive = hit.primitive;
-    next.kinds = path.kinds;
-    next_paths_.push_back(path);
-    next_rays_.push_back(next);
+    const size_t number = waiting_[lane].number;
+    if (block_.odd >> lane & 1)
+      shade_surface(paths_[number], rays_[number], hits_[number].t, surface_of(lane), results, nullptr);
+    else
+      leave_lane(lane, results[paths_[number].slot]);
   }
   waiting_count_ = 0;
-  block_.used = block_.on_mesh = block_.smooth = 0;
+  block_.used = block_.on_mesh = block_.smooth = block_.ends = 0;
+}
+
+// What follows from a shaded lane: its light, its shadow ray, its next ray.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::leave_lane(uint32_t lane, SampleResult &result) {
+  const Waiting &waiting = waiting_[lane];
+  Path &path = paths_[waiting.number];
+  const Hit &hit = hits_[waiting.number];
+  if (waiting.emission != glm::vec3(0.0f))
+    add_emission(path, surface_of(lane), waiting.emission, result);
+  if (path.last)
+    return;
+  if (!waiting.ends && (block_.lit >> lane & 1))
+    send_shadow_of(lane);
+  if constexpr (Layers) {
+    const float pass = block_.pass[lane];
+    const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
+    if (pass > 0.0f && (pass >= 1.0f || path.sampler.get1(dimension) < pass)) {
+      if (path.layers + 1 < kMaxLayers) {
+        next_rays_.push_back(
+            pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass));
+        next_paths_.push_back(path);
+      }
+      return;
+    }
+  }
+  if (waiting.ends || !(block_.sampled >> lane & 1))
+    return;
+  path.in_view = false;
+  path.length += hit.t * block_.length[lane];
+  path.beta = get(block_.beta, lane);
+  path.pdf = block_.pdf[lane];
+  path.from = get(block_.p, lane);
+  path.kinds = block_.glossy >> lane & 1 ? LANCER_RAY_GLOSSY : LANCER_RAY_DIFFUSE;
+  path.layers = 0;
+  path.passed = 0.0;
+  ++path.scatterings;
+  if (!survives(path, block_.u[kVertexRoulette][lane]))
+    return;
+  Ray next;
+  next.o = get(block_.next_origin, lane);
+  next.d = glm::dvec3(get(block_.wi, lane));
+  next.skip_instance = hit.instance;
+  next.skip_primitive = hit.primitive;
+  next.kinds = path.kinds;
+  next_paths_.push_back(path);
+  next_rays_.push_back(next);
 }
 
 template <uint32_t Shapes, bool Layers>

@@ -56,14 +56,19 @@ private:
     bool ends;     // it is only asked for its emission
     uint32_t light;
     bool far; // the light has no end
+    glm::vec3 emission, transmittance;
   };
 
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   const WideMaterial *for_lanes(uint32_t material, uint32_t instance) const;
   void put_in_lane(size_t number, uint32_t material, const WideMaterial &wide, std::span<SampleResult> results);
   void draw_numbers();
+  void find_surfaces();
+  void ask_nodes();
   void ask_lights();
+  Surface surface_of(uint32_t lane) const;
   void send_shadow_of(uint32_t lane);
+  void leave_lane(uint32_t lane, SampleResult &result);
   void shade_lanes(std::span<SampleResult> results);
   void shade_surface(Path &path, const Ray &ray, double t, const Surface &surface, std::span<SampleResult> results,
                      std::vector<PathVertex> *trace);

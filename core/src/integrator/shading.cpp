@@ -47,6 +47,22 @@ void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
   result.holdout = std::clamp(value_of(material.holdout, values_).x, 0.0f, 1.0f);
 }
 
+NodeColors Shader::colors(const Surface &surface, const View &view) {
+  const Material &material = scene_.materials[surface.material];
+  run_nodes(material, material.surface_nodes, surface, view);
+  const LobeDescription &lobe = material.lobes.front();
+  NodeColors colors;
+  colors.weight = evaluate(lobe.weight, values_);
+  if (lobe.principled)
+    colors.base = evaluate(lobe.principled->base_color, values_);
+  else
+    colors.base = colors.weight * evaluate(lobe.color, values_);
+  colors.emission = value_of(material.emission, values_);
+  if (material.transmits())
+    colors.transmittance = glm::max(value_of(material.transmittance, values_), 0.0f);
+  return colors;
+}
+
 glm::vec3 Shader::transmittance(const Surface &surface, const glm::vec3 &wo) {
   if (surface.material == kNone)
     return glm::vec3(0.0f);

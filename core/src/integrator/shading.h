@@ -24,6 +24,12 @@ struct Shaded {
   glm::vec3 opacity() const { return glm::clamp(1.0f - transmittance, 0.0f, 1.0f); }
 };
 
+// What nodes say of a material that kernels shade.
+struct NodeColors {
+  glm::vec3 weight{1.0f}, base{0.0f}; // as in WideMaterial
+  glm::vec3 emission{0.0f}, transmittance{0.0f};
+};
+
 // How the viewer sees the surface that a material is evaluated for.
 struct View {
   glm::vec3 wo{0, 0, 1};  // unit, world, away from the surface
@@ -37,6 +43,8 @@ public:
   Shader(const Scene &scene, const Camera *camera);
 
   void shade(const Surface &surface, const View &view, Shaded &result);
+  // Of a material whose WideMaterial has nodes.
+  NodeColors colors(const Surface &surface, const View &view);
   // By themselves, for shadow rays and light samples.
   glm::vec3 transmittance(const Surface &surface, const glm::vec3 &wo);
   glm::vec3 emission(const Surface &surface, const glm::vec3 &wo);

@@ -25,6 +25,8 @@ struct alignas(64) VertexBlock {
   uint32_t dimension = 0, reversed_sample = 0, reversed_point[8] = {};
   uint32_t numbers_given = 0; // 1: u is given instead
   alignas(64) const WideMaterial *material[kBlockLanes];
+  Floats weight[3], base[3]; // of WideMaterial
+  Floats through;            // mean of what passes straight on
   Floats beta[3];
 
   // surfaces(): both normals outwards, wo unit. Lanes of other shapes are filled in by hand.
@@ -38,16 +40,20 @@ struct alignas(64) VertexBlock {
   Floats light_radiance[3];
   Words light_delta, light_hidden; // bits LANCER_RAY_*
 
-  // shade(): rays start at origin, on the side of their direction. Shadow rays end at light_target, or nowhere.
+  // shade(): the share of paths that pass straight on; what follows is of the others. Rays start at origin, on the side of
+  // their direction. Shadow rays end at light_target, or nowhere.
+  Floats pass;
   Floats contribution[3];
   Doubles shadow_origin[3], next_origin[3];
   Floats viewer_ns[3], viewer_ng[3];
-  Floats wi[3], pdf; // beta then is that of the next ray
+  Floats wi[3]; // beta then is that of the next ray
+  Doubles pdf;
 
   // Bits of lanes.
   uint32_t used = 0;
   uint32_t on_mesh = 0, smooth = 0; // given: triangles; those with normals of their own
   uint32_t asked = 0;               // given: lamp is to be sampled
+  uint32_t ends = 0;                // given: nothing is scattered any more
   uint32_t odd = 0;                 // only the general code can do them: nothing else holds
   uint32_t lit = 0;                 // contribution is not black
   uint32_t lifted = 0;              // the shadow ray may have to start on the curved surface

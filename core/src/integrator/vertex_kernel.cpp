@@ -151,8 +151,23 @@ LANCER_LANE M lifted(F limit, const V3 &ns, const V3 &ng, const V3 &wi) {
   return (limit > F(0.0f)) & (amount > F(0.0f));
 }
 
-// What the light's sample brings to the viewer where nothing is in its way.
-LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, const V3 &ns, const V3 &ng) {
+// Shares paths between what passes straight on and what the surface scatters.
+LANCER_LANE F share_passing(VertexBlock &block, int first, const WideBsdf &bsdf) {
+  const F zero(0.0f), through = load(block.through + first);
+  F pass = zero;
+  const M passes = through > zero;
+  if (any(passes)) {
+    const V3 sum = albedo(bsdf);
+    const F mean = (sum.x + sum.y + sum.z) / F(3.0f);
+    pass = select(passes, through / (through + select(some(block.ends, first), zero, mean)), zero);
+  }
+  store(block.pass + first, pass);
+  return pass;
+}
+
+// What the light's sample brings to the viewer where nothing is in its way. scatters: share of paths that do not pass straight
+// on: they find the same light.
+LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, const V3 &ns, const V3 &ng, D scatters) {
   const F zero(0.0f);
   const V3 dark{zero, zero, zero};
   const D pdf = load(block.light_pdf + first);
@@ -162,7 +177,7 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
   const V3 f = select(has_bit(hidden, LANCER_RAY_DIFFUSE), dark, value.diffuse) +
                select(has_bit(hidden, LANCER_RAY_GLOSSY), dark, value.glossy);
   // The BSDF finds the same light, unless it is a single direction.
-  const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf)));
+  const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
   const V3 contribution = load3(block.beta, first) * f * load3(block.light_radiance, first) * narrow(widen(weight) / pdf);
   store3(block.contribution, first, contribution);
   block.lit |= placed_bits((pdf > D(0.0)) & !black(f), first);
@@ -188,8 +203,9 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
       count = records.of[i]->count > count ? records.of[i]->count : count;
     block.odd |= placed_bits(bent_lanes(records, wo, ns, ng), first);
     WideBsdf bsdf;
-    make_bsdf(records, static_cast<int>(count), wo, ns, ng, bsdf);
-    light(block, first, bsdf, ns, ng);
+    make_bsdf(records, static_cast<int>(count), wo, ns, ng, load3(block.weight, first), load3(block.base, first), bsdf);
+    const D scatters = D(1.0) - widen(share_passing(block, first, bsdf));
+    light(block, first, bsdf, ns, ng, scatters);
     const D offset = load(block.offset + first);
     const D3 outwards = widen(out_ng);
     store3(block.shadow_origin, first, origin(p, offset, outwards, load3(block.light_wi, first)));
@@ -197,8 +213,8 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
     const WideSample sample = sample_bsdf(bsdf, load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
     store3(block.next_origin, first, origin(p, offset, outwards, widen(sample.wi)));
     store3(block.wi, first, sample.wi);
-    store3(block.beta, first, load3(block.beta, first) * sample.weight);
-    store(block.pdf + first, sample.pdf);
+    store3(block.beta, first, load3(block.beta, first) * (sample.weight / narrow(scatters)));
+    store(block.pdf + first, widen(sample.pdf) * scatters);
     block.sampled |= placed_bits(sample.valid, first);
     block.glossy |= placed_bits(sample.glossy, first);
   }

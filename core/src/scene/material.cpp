@@ -43,6 +43,8 @@ constexpr float kSmallestIor = 1e-5f;
 
 } // namespace
 
+glm::vec3 evaluate(const Parameter &color, std::span<const glm::vec4> values) { return Reader(values).color(color); }
+
 LobeInputs evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values) {
   const Reader read(values);
   LobeInputs inputs;

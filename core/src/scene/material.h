@@ -58,6 +58,7 @@ struct Material {
 inline bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
 
 // A described lobe with its values of one place, brought into the ranges that the models know; what is no number becomes 0.
+glm::vec3 evaluate(const Parameter &color, std::span<const glm::vec4> values);
 LobeInputs evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values);
 PrincipledInputs evaluate(const PrincipledDescription &principled, std::span<const glm::vec4> values);
 

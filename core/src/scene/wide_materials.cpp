@@ -49,51 +49,83 @@ bool add_facets(WideMaterial &material, const MicrofacetPlan &plan, WideMode mod
   return true;
 }
 
-bool add_lambert(WideMaterial &material, WideMode mode, const glm::vec3 &color) {
+bool add_lambert(WideMaterial &material, WideMode mode) {
   WideLobe *wide = next(material);
   if (!wide)
     return false;
   wide->shape = WideShape::Lambert;
   wide->mode = mode;
-  copy(color, wide->color);
   return true;
 }
 
 // The layers of add_layers(), as far as kernels know them.
-bool add_principled(WideMaterial &material, const ReadyLobe &ready) {
-  const PrincipledInputs &in = ready.principled;
-  if (!ready.layers || in.rules == Rules::Blender3 || ready.inputs.normal != glm::vec3(0.0f) ||
-      in.coat_normal != glm::vec3(0.0f) || in.sheen > kLeastLayer || in.emission != glm::vec3(0.0f) ||
-      in.diffuse_roughness >= kLambertRoughness)
+bool add_principled(WideMaterial &material, const LobeInputs &inputs, const PrincipledInputs &in,
+                    const std::optional<LayerPlan> &layers) {
+  if (!layers || in.rules == Rules::Blender3 || inputs.normal != glm::vec3(0.0f) || in.coat_normal != glm::vec3(0.0f) ||
+      in.sheen > kLeastLayer || in.emission != glm::vec3(0.0f) || in.diffuse_roughness >= kLambertRoughness)
     return false;
-  if (grain_of(ready.inputs, unit(in.roughness), unit(in.anisotropic)).stretched)
+  if (grain_of(inputs, unit(in.roughness), unit(in.anisotropic)).stretched)
     return false;
-  const LayerPlan &layers = *ready.layers;
   const float metallic = unit(in.metallic), transmission = unit(in.transmission);
-  copy(ready.inputs.weight, material.weight);
-  if (in.coat > kLeastLayer &&
-      (in.coat_tint != glm::vec3(1.0f) || !add_facets(material, *layers.coat, WideMode::Layer, in.coat)))
+  copy(inputs.weight, material.weight);
+  copy(glm::max(in.base_color, 0.0f), material.base);
+  const auto add = [&](const std::optional<MicrofacetPlan> &plan, WideMode mode, float share) {
+    return plan && add_facets(material, *plan, mode, share);
+  };
+  if (in.coat > kLeastLayer && (in.coat_tint != glm::vec3(1.0f) || !add(layers->coat, WideMode::Layer, in.coat)))
     return false;
-  if (metallic > kLeastLayer && !add_facets(material, *layers.metal, WideMode::Share, metallic))
+  if (metallic > kLeastLayer && !add(layers->metal, WideMode::Share, metallic))
     return false;
   if (metallic < 1.0f && transmission > kLeastLayer)
     return false;
   if (metallic >= 1.0f)
     return true;
-  if (layers.gloss && !add_facets(material, *layers.gloss, WideMode::Layer, 1.0f))
+  if (layers->gloss && !add(layers->gloss, WideMode::Layer, 1.0f))
     return false;
-  return add_lambert(material, WideMode::Base, glm::max(in.base_color, 0.0f));
+  return add_lambert(material, WideMode::Base);
+}
+
+// Whether nodes have a say in nothing of a Principled but its weight and base colour.
+bool only_colors_vary(const LobeDescription &lobe) {
+  const PrincipledDescription &p = *lobe.principled;
+  for (const Parameter *parameter :
+       {&p.metallic,    &p.roughness,    &p.ior,   &p.diffuse_roughness,    &p.specular,       &p.specular_tint,
+        &p.anisotropic, &p.transmission, &p.coat,  &p.anisotropic_rotation, &p.coat_roughness, &p.coat_ior,
+        &p.coat_tint,   &p.coat_normal,  &p.sheen, &p.sheen_roughness,      &p.sheen_tint,     &p.emission,
+        &lobe.normal,   &lobe.tangent})
+    if (parameter->varies())
+      return false;
+  return true;
+}
+
+bool fill_by_nodes(const Material &material, WideMaterial &wide) {
+  const LobeDescription &lobe = material.lobes.front();
+  const std::vector<glm::vec4> nothing(material.program.nodes.size(), glm::vec4(0.0f));
+  const LobeInputs inputs = evaluate(lobe, nothing);
+  wide.nodes = 1;
+  if (lobe.principled) {
+    // Metal and glass are made of the base colour.
+    const PrincipledInputs in = evaluate(*lobe.principled, nothing);
+    if (!only_colors_vary(lobe) || (in.metallic > kLeastLayer && lobe.principled->base_color.varies()))
+      return false;
+    return add_principled(wide, inputs, in, material.ready.front().layers);
+  }
+  const bool matte = lobe.kind == LobeKind::Lambert || lobe.kind == LobeKind::Diffuse;
+  return matte && lobe.rules != Rules::Blender3 && !lobe.normal.varies() && inputs.normal == glm::vec3(0.0f) &&
+         !lobe.roughness.varies() && inputs.roughness < kLambertRoughness && add_lambert(wide, WideMode::Own);
 }
 
 bool fill(const Material &material, WideMaterial &wide) {
-  if (!material.fixed() || material.transmits() || material.layered_emission || material.ready.size() != 1 ||
-      material.normal.varies() || material.holdout.value != glm::vec3(0.0f))
+  if (material.layered_emission || material.lobes.size() != 1 || material.normal.varies() || material.holdout.varies() ||
+      material.holdout.value != glm::vec3(0.0f))
     return false;
+  if (!material.fixed())
+    return fill_by_nodes(material, wide);
   const ReadyLobe &ready = material.ready.front();
   if (ready.inputs.kind == LobeKind::Principled)
-    return add_principled(wide, ready);
-  return ready.whole && !ready.flat_only && ready.lobe.shape == LobeShape::Lambert &&
-         add_lambert(wide, WideMode::Own, ready.lobe.color);
+    return add_principled(wide, ready.inputs, ready.principled, ready.layers);
+  copy(ready.lobe.color, wide.base);
+  return ready.whole && !ready.flat_only && ready.lobe.shape == LobeShape::Lambert && add_lambert(wide, WideMode::Own);
 }
 
 } // namespace
