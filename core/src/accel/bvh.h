@@ -23,9 +23,10 @@ enum BvhKind : uint32_t {
   kBvhInstance = 3,  // an instance
   kBvhLeave = 4,     // the end of the instance's tree
   kBvhUnbounded = 5, // what has no box
-  kBvhDone = 6,      // the end of everything
+  kBvhSpheres = 6,   // a block of BvhScene::spheres
+  kBvhDone = 7,      // the end of everything
 };
-inline constexpr uint32_t kBvhKinds = 7;
+inline constexpr uint32_t kBvhKinds = 8;
 inline constexpr uint32_t kBvhKindShift = 29;
 inline constexpr uint32_t kBvhPlace = (1u << kBvhKindShift) - 1;
 inline constexpr size_t kBvhStep = 32;
@@ -45,6 +46,12 @@ struct alignas(32) TriangleBlock {
   uint32_t primitive[4];
 };
 
+// Four spheres: their maps to unit spheres. Unused lanes hold no number and are never met.
+struct alignas(32) SphereBlock {
+  double to_object[4][3][4]; // column, row, lane
+  uint32_t instance[4];
+};
+
 struct BvhView {
   const BvhNode *nodes; // the root is the first; null where there is nothing
   const TriangleBlock *blocks;
@@ -59,6 +66,7 @@ struct BvhScene {
   const BvhNode *top;
   const TriangleBlock *blocks;
   const uint32_t *block_instance;
+  const SphereBlock *spheres;
   const uint32_t *unbounded;
   uint32_t unbounded_count;
 };

@@ -50,6 +50,7 @@ public:
              .top = world.view().nodes,
              .blocks = world.blocks.data(),
              .block_instance = world.owners.data(),
+             .spheres = world.spheres.data(),
              .unbounded = placed.unbounded.data(),
              .unbounded_count = static_cast<uint32_t>(placed.unbounded.size())};
   }

@@ -12,6 +12,8 @@ namespace {
 constexpr uint32_t kBins = 16;
 // An owner that is an instance by itself, not a triangle's.
 constexpr uint32_t kWholeInstance = 0xffffffffu;
+// The owner of all spheres; their numbers are those of instances.
+constexpr uint32_t kSpheres = 0xfffffffeu;
 
 struct Range {
   uint32_t begin = 0, end = 0;
@@ -285,12 +287,25 @@ uint32_t entry(uint32_t kind, size_t number, uint32_t steps) {
   return kind << kBvhKindShift | static_cast<uint32_t>(number * steps);
 }
 
+SphereBlock sphere_block(const PlacedShape *shapes, const BuildRef *refs, uint32_t count) {
+  SphereBlock block;
+  for (uint32_t lane = 0; lane < 4; ++lane) {
+    const uint32_t instance = refs[lane < count ? lane : 0].id();
+    block.instance[lane] = lane < count ? instance : kNone;
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 3; ++row)
+        block.to_object[column][row][lane] = shapes[instance].to_object[column][row];
+  }
+  return block;
+}
+
 // Makes blocks of a finished tree's leaves.
 template <class MeshOf>
-MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &mesh_of, const BuildContext &context) {
+MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &mesh_of, const PlacedShape *shapes,
+                      const BuildContext &context) {
   // Number the blocks in the order of the nodes that hold them.
   MeshBvh bvh;
-  std::vector<uint32_t> firsts;
+  std::vector<uint32_t> firsts, sphere_leaves;
   for (BvhNode &node : tree.nodes)
     for (uint32_t &child : node.child) {
       if (child == kBuildEmpty)
@@ -303,6 +318,11 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
       const BuildRef &first = tree.refs[leaf >> 2];
       if (first.owner() == kWholeInstance) {
         child = entry(kBvhInstance, first.id(), kBvhSteps<PlacedShape>);
+        continue;
+      }
+      if (first.owner() == kSpheres) {
+        child = entry(kBvhSpheres, sphere_leaves.size(), kBvhSteps<SphereBlock>);
+        sphere_leaves.push_back(leaf);
         continue;
       }
       child = entry(kind, firsts.size(), kBvhSteps<TriangleBlock>);
@@ -331,6 +351,9 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
       }
     }
   });
+  bvh.spheres.resize(sphere_leaves.size());
+  for (size_t b = 0; b < sphere_leaves.size(); ++b)
+    bvh.spheres[b] = sphere_block(shapes, &tree.refs[sphere_leaves[b] >> 2], (sphere_leaves[b] & 3) + 1);
   bvh.nodes = std::move(tree.nodes);
   return bvh;
 }
@@ -355,7 +378,7 @@ MeshBvh build_mesh_bvh(const Mesh &mesh, const PlacementFrame &frame, const Buil
       refs, 0, count, 0, [&](uint32_t i) { return triangle_box(mesh, frame, i); }, context);
   WideTree tree = build_wide_tree(std::move(refs), kBvhLeafSize, context);
   return gather_blocks(
-      std::move(tree), kBvhTriangles, false, [&](uint32_t) -> const Mesh & { return mesh; }, context);
+      std::move(tree), kBvhTriangles, false, [&](uint32_t) -> const Mesh & { return mesh; }, nullptr, context);
 }
 
 MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
@@ -366,10 +389,13 @@ MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, con
     count += unfolded[instance] ? mesh_of(instance).triangles.size() : 1;
   HugeVector<BuildRef> refs(count);
   size_t filled = 0;
+  bool groups = false;
   for (size_t i = 0; i < placed.bounded.size(); ++i) {
     const uint32_t number = placed.bounded[i];
     if (!unfolded[number]) {
-      refs[filled++] = BuildRef(placed.boxes[i], number, kWholeInstance);
+      const bool sphere = geometry.instances[number].kind == ShapeKind::Sphere;
+      refs[filled++] = BuildRef(placed.boxes[i], number, sphere ? kSpheres : kWholeInstance);
+      groups |= sphere;
       continue;
     }
     const Instance &instance = geometry.instances[number];
@@ -380,10 +406,10 @@ MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, con
         refs, filled, triangles, number,
         [&](uint32_t t) { return placed_triangle_box(mesh, instance, reach, placed.world, t); }, context);
     filled += triangles;
+    groups = true;
   }
-  const bool triangles = std::find(unfolded.begin(), unfolded.end(), 1) != unfolded.end();
-  WideTree tree = build_wide_tree(std::move(refs), triangles ? kBvhLeafSize : 1, context);
-  return gather_blocks(std::move(tree), kBvhPlaced, true, mesh_of, context);
+  WideTree tree = build_wide_tree(std::move(refs), groups ? kBvhLeafSize : 1, context);
+  return gather_blocks(std::move(tree), kBvhPlaced, true, mesh_of, placed.shapes.data(), context);
 }
 
 } // namespace lancer

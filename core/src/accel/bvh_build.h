@@ -24,16 +24,17 @@ struct WideTree {
 // depends on refs alone.
 WideTree build_wide_tree(HugeVector<BuildRef> refs, uint32_t group, const BuildContext &context);
 
-// A tree whose leaves are blocks of triangles or, where refs have owners that say so, instances.
+// A tree whose leaves are blocks of triangles; in the world's also blocks of spheres, and instances.
 struct MeshBvh {
   HugeVector<BvhNode> nodes;
   HugeVector<TriangleBlock> blocks;
   HugeVector<uint32_t> owners; // of blocks; empty where all have the same
+  HugeVector<SphereBlock> spheres;
 
   BvhView view() const { return {nodes.empty() ? nullptr : nodes.data(), blocks.data()}; }
   size_t bytes() const {
     return nodes.capacity() * sizeof(BvhNode) + blocks.capacity() * sizeof(TriangleBlock) +
-           owners.capacity() * sizeof(uint32_t);
+           owners.capacity() * sizeof(uint32_t) + spheres.capacity() * sizeof(SphereBlock);
   }
 };
 

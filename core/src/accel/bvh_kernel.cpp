@@ -7,6 +7,7 @@
 #include "accel/kernel_block.h"
 #include "accel/kernel_enter.h"
 #include "accel/kernel_slot.h"
+#include "accel/kernel_sphere.h"
 
 #ifndef LANCER_ISA
 #define LANCER_ISA generic
@@ -46,10 +47,9 @@ LANCER_SIMD void become_mesh_ray(const BvhScene &scene, uint32_t instance, const
   s.usable = visible(shape, ray) && enter_mesh(shape, ray, s.ray);
 }
 
-template <bool any> LANCER_SIMD void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, Slot &s) {
-  double t;
-  if (!visible(shape, ray) || !intersect_quadric(shape, ray, ray.skip_instance == instance, t) ||
-      !closer(t, instance, 0, s.best))
+// Keeps the place of an exact surface if it is closer.
+template <bool any> LANCER_SIMD void keep_quadric(double t, uint32_t instance, Slot &s) {
+  if (!closer(t, instance, 0, s.best))
     return;
   s.best.t = t;
   s.best.u = s.best.v = 0.0;
@@ -59,6 +59,27 @@ template <bool any> LANCER_SIMD void try_quadric(const PlacedShape &shape, uint3
     done(s);
   else
     shorten(s);
+}
+
+template <bool any> LANCER_SIMD void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, Slot &s) {
+  double t;
+  if (visible(shape, ray) && intersect_quadric(shape, ray, ray.skip_instance == instance, t))
+    keep_quadric<any>(t, instance, s);
+}
+
+template <bool any> LANCER_SIMD void visit_spheres(const BvhScene &scene, const Ray &ray, Slot &s) {
+  const SphereBlock &block = *reinterpret_cast<const SphereBlock *>(s.at);
+  SphereTerms terms;
+  for (uint32_t met = intersect_spheres(block, ray, terms); met != 0; met &= met - 1) {
+    const int i = __builtin_ctz(met);
+    const uint32_t instance = block.instance[i];
+    if (instance == kNone)
+      return;
+    const PlacedShape &shape = scene.shapes[instance];
+    double t;
+    if (visible(shape, ray) && choose_root(terms, i, shape.slack, ray.skip_instance == instance, s.tmin, s.tmax, t))
+      keep_quadric<any>(t, instance, s);
+  }
 }
 
 // Enters an instance, if the ray can meet it at all.
@@ -215,6 +236,7 @@ template <bool any> LANCER_SIMD void trace(const BvhScene &scene, const Ray *ray
 
   for (Slot &s : slots) {
     s.arrays[kBvhTriangles] = s.arrays[kBvhPlaced] = reinterpret_cast<const char *>(scene.blocks);
+    s.arrays[kBvhSpheres] = reinterpret_cast<const char *>(scene.spheres);
     s.arrays[kBvhInstance] = reinterpret_cast<const char *>(scene.shapes);
     s.arrays[kBvhLeave] = s.arrays[kBvhUnbounded] = s.arrays[kBvhDone] = reinterpret_cast<const char *>(&s);
     refill(s);
@@ -257,6 +279,10 @@ template <bool any> LANCER_SIMD void trace(const BvhScene &scene, const Ray *ray
     case kBvhPlaced:
       each(
           kBvhPlaced, [&](Slot & s) __attribute__((always_inline)) { visit_placed<any>(scene, rays[s.number], s); });
+      break;
+    case kBvhSpheres:
+      each(
+          kBvhSpheres, [&](Slot & s) __attribute__((always_inline)) { visit_spheres<any>(scene, rays[s.number], s); });
       break;
     case kBvhInstance:
       each(

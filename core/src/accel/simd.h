@@ -72,6 +72,14 @@ LANCER_SIMD D4 operator*(D4 a, D4 b) { return {_mm256_mul_pd(a.v, b.v)}; }
 LANCER_SIMD D4 operator/(D4 a, D4 b) { return {_mm256_div_pd(a.v, b.v)}; }
 LANCER_SIMD D4 min4(D4 a, D4 b) { return {_mm256_min_pd(a.v, b.v)}; }
 LANCER_SIMD D4 max4(D4 a, D4 b) { return {_mm256_max_pd(a.v, b.v)}; }
+LANCER_SIMD D4 root4(D4 a) { return {_mm256_sqrt_pd(a.v)}; }
+LANCER_SIMD D4 magnitude4(D4 a) { return {_mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v)}; }
+// power_of_two() of object_ray.h.
+LANCER_SIMD void power_of_two4(D4 a, D4 &power, D4 &inverse) {
+  const __m256i bits = _mm256_and_si256(_mm256_castpd_si256(a.v), _mm256_set1_epi64x(0x7ffll << 52));
+  power.v = _mm256_castsi256_pd(bits);
+  inverse.v = _mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(2046ll << 52), bits));
+}
 LANCER_SIMD uint32_t less_equal(D4 a, D4 b) {
   return static_cast<uint32_t>(_mm256_movemask_pd(_mm256_cmp_pd(a.v, b.v, _CMP_LE_OQ)));
 }
@@ -120,6 +128,18 @@ LANCER_SIMD D4 operator*(D4 a, D4 b) { return {_mm_mul_pd(a.lo, b.lo), _mm_mul_p
 LANCER_SIMD D4 operator/(D4 a, D4 b) { return {_mm_div_pd(a.lo, b.lo), _mm_div_pd(a.hi, b.hi)}; }
 LANCER_SIMD D4 min4(D4 a, D4 b) { return {_mm_min_pd(a.lo, b.lo), _mm_min_pd(a.hi, b.hi)}; }
 LANCER_SIMD D4 max4(D4 a, D4 b) { return {_mm_max_pd(a.lo, b.lo), _mm_max_pd(a.hi, b.hi)}; }
+LANCER_SIMD D4 root4(D4 a) { return {_mm_sqrt_pd(a.lo), _mm_sqrt_pd(a.hi)}; }
+LANCER_SIMD D4 magnitude4(D4 a) {
+  const __m128d sign = _mm_set1_pd(-0.0);
+  return {_mm_andnot_pd(sign, a.lo), _mm_andnot_pd(sign, a.hi)};
+}
+// power_of_two() of object_ray.h.
+LANCER_SIMD void power_of_two4(D4 a, D4 &power, D4 &inverse) {
+  const __m128i exponent = _mm_set1_epi64x(0x7ffll << 52), most = _mm_set1_epi64x(2046ll << 52);
+  const __m128i lo = _mm_and_si128(_mm_castpd_si128(a.lo), exponent), hi = _mm_and_si128(_mm_castpd_si128(a.hi), exponent);
+  power = {_mm_castsi128_pd(lo), _mm_castsi128_pd(hi)};
+  inverse = {_mm_castsi128_pd(_mm_sub_epi64(most, lo)), _mm_castsi128_pd(_mm_sub_epi64(most, hi))};
+}
 LANCER_SIMD uint32_t less_equal(D4 a, D4 b) {
   return static_cast<uint32_t>(_mm_movemask_pd(_mm_cmple_pd(a.lo, b.lo)) | _mm_movemask_pd(_mm_cmple_pd(a.hi, b.hi)) << 2);
 }
@@ -192,6 +212,24 @@ LANCER_SIMD D4 widen4(const float *p) {
   for (int i = 0; i < 4; ++i)
     r.v[i] = static_cast<double>(p[i]);
   return r;
+}
+LANCER_SIMD D4 root4(D4 a) {
+  for (double &lane : a.v)
+    lane = __builtin_sqrt(lane);
+  return a;
+}
+LANCER_SIMD D4 magnitude4(D4 a) {
+  for (double &lane : a.v)
+    lane = __builtin_fabs(lane);
+  return a;
+}
+// power_of_two() of object_ray.h.
+LANCER_SIMD void power_of_two4(D4 a, D4 &power, D4 &inverse) {
+  for (int i = 0; i < 4; ++i) {
+    const uint64_t bits = __builtin_bit_cast(uint64_t, a.v[i]) & 0x7ffull << 52;
+    power.v[i] = __builtin_bit_cast(double, bits);
+    inverse.v[i] = __builtin_bit_cast(double, (2046ull << 52) - bits);
+  }
 }
 LANCER_SIMD void store8(float *p, F8 a) {
   for (int i = 0; i < 8; ++i)
