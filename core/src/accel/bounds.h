@@ -23,9 +23,9 @@ inline Float4 max4(Float4 a, Float4 b) { return a > b ? a : b; }
 #endif
 
 // How far boxes are widened in their frame, where coordinates are at most 1. The slab test of bvh_kernel.cpp works in float,
-// u = 2^-24; a ray that meets the contents starts within sqrt(3) of the centre (placed_shape.h), so b - q is at most 2.74.
-// Its errors, as displacements of the box's planes: rounding of q 1.74u; of b 0.5u; of b - q 2.74u; of the direction, its
-// inverse and the product 3 * 2.74u; in all 13.2u < 16u = 2^-20.
+// u = 2^-24, as b / d - q / d; a ray that meets the contents starts within sqrt(3) of the centre (placed_shape.h), so b - q is
+// at most 2.74. Its errors, as displacements of the box's planes: rounding of q 1.74u; of b 0.5u; of both products 1.74u and
+// 1u; of the difference 2.74u; of the direction and its inverse 2 * 2.74u; in all 13.2u < 16u = 2^-20.
 inline constexpr float kBoxPad = 0x1p-20f;
 
 // Lane 3 is free for the builder; min and max of it mean nothing.
@@ -52,13 +52,17 @@ struct Box {
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 };
 
-// A box and the number of what it holds, kept in the free lane: 32 bytes.
+// A box, the number of what it holds and whose that is, kept in the free lanes: 32 bytes.
 struct BuildRef {
   Box box;
 
   BuildRef() = default;
-  BuildRef(const Box &b, uint32_t id) : box(b) { box.lo[3] = std::bit_cast<float>(id); }
+  BuildRef(const Box &b, uint32_t id, uint32_t owner = 0) : box(b) {
+    box.lo[3] = std::bit_cast<float>(id);
+    box.hi[3] = std::bit_cast<float>(owner);
+  }
   uint32_t id() const { return std::bit_cast<Int4>(box.lo)[3]; }
+  uint32_t owner() const { return std::bit_cast<Int4>(box.hi)[3]; }
 };
 
 } // namespace lancer

@@ -3,6 +3,8 @@
 
 #include "accel/placed_shape.h"
 
+#include <cstddef>
+
 namespace lancer {
 
 inline constexpr uint32_t kBvhWidth = 8;
@@ -10,21 +12,44 @@ inline constexpr uint32_t kBvhLeafSize = 4;
 // Below this depth nodes are halved by count, so a path is at most kBvhSahDepth + log8(2^32) < 48 nodes long, and each node
 // on it leaves at most 7 siblings on the stack.
 inline constexpr uint32_t kBvhSahDepth = 36;
-inline constexpr uint32_t kBvhStackSize = 7 * 48 + 8;
+inline constexpr uint32_t kBvhTreeStack = 7 * 48 + 8;
 
-// child: a node's number; or, with kBvhLeaf set, (first << 2 | count - 1) into the order of primitives, which for triangles
-// becomes the number of a block. Unused children have empty boxes.
-inline constexpr uint32_t kBvhLeaf = 0x80000000u;
+// What waits on a ray's stack: the kind in the upper three bits, a place in its array in the others, in steps of kBvhStep
+// bytes.
+enum BvhKind : uint32_t {
+  kBvhInner = 0,     // a node of the tree that the ray is in
+  kBvhTriangles = 1, // a block of the mesh that the ray is in
+  kBvhPlaced = 2,    // a block of BvhScene::blocks
+  kBvhInstance = 3,  // an instance
+  kBvhLeave = 4,     // the end of the instance's tree
+  kBvhUnbounded = 5, // what has no box
+  kBvhSpheres = 6,   // a block of BvhScene::spheres
+  kBvhDone = 7,      // the end of everything
+};
+inline constexpr uint32_t kBvhKinds = 8;
+inline constexpr uint32_t kBvhKindShift = 29;
+inline constexpr uint32_t kBvhPlace = (1u << kBvhKindShift) - 1;
+inline constexpr size_t kBvhStep = 32;
+template <class T> inline constexpr uint32_t kBvhSteps = sizeof(T) / kBvhStep;
 
+// Unused children have empty boxes.
 struct alignas(64) BvhNode {
-  float bounds[6][kBvhWidth]; // lo x, y, z, hi x, y, z
+  float bounds[3][2][kBvhWidth]; // axis; low, high
   uint32_t child[kBvhWidth];
+  // Children from far to near for a ray that goes down the axes whose bits are set: three bits each.
+  uint32_t order[8];
 };
 
 // Four triangles, corner by corner. Unused lanes repeat one point, which no ray meets.
 struct alignas(32) TriangleBlock {
   float corner[3][3][4]; // corner, axis, lane
   uint32_t primitive[4];
+};
+
+// Four spheres: their maps to unit spheres. Unused lanes hold no number and are never met.
+struct alignas(32) SphereBlock {
+  double to_object[4][3][4]; // column, row, lane
+  uint32_t instance[4];
 };
 
 struct BvhView {
@@ -37,8 +62,11 @@ struct BvhScene {
   PlacementFrame world;
   const PlacedShape *shapes;
   const BvhView *meshes;
+  // The tree of the world: over instances, and over the triangles of the meshes that are placed once.
   const BvhNode *top;
-  const uint32_t *top_order; // leaf entries of top -> instance
+  const TriangleBlock *blocks;
+  const uint32_t *block_instance;
+  const SphereBlock *spheres;
   const uint32_t *unbounded;
   uint32_t unbounded_count;
 };

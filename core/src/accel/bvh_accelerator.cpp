@@ -5,6 +5,8 @@
 #include "accel/parallel.h"
 #include "accel/placed_scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string_view>
 
@@ -35,18 +37,22 @@ class BvhAccelerator final : public Accelerator {
 public:
   BvhAccelerator(const Geometry &geometry, const BuildContext &context)
       : kernel(choose_kernel()), placed(place_scene(geometry)), meshes(geometry.meshes.size()) {
-    build_meshes(geometry, context);
-    build_top(context);
+    const std::vector<uint8_t> unfolded = choose_unfolded(geometry);
+    build_meshes(geometry, unfolded, context);
+    world = build_world_bvh(geometry, placed, unfolded, context);
+    placed.boxes = {};
 
     for (const MeshBvh &mesh : meshes)
       views.push_back(mesh.view());
-    scene = {placed.world,
-             placed.shapes.data(),
-             views.data(),
-             top.nodes.empty() ? nullptr : top.nodes.data(),
-             top.order.data(),
-             placed.unbounded.data(),
-             static_cast<uint32_t>(placed.unbounded.size())};
+    scene = {.world = placed.world,
+             .shapes = placed.shapes.data(),
+             .meshes = views.data(),
+             .top = world.view().nodes,
+             .blocks = world.blocks.data(),
+             .block_instance = world.owners.data(),
+             .spheres = world.spheres.data(),
+             .unbounded = placed.unbounded.data(),
+             .unbounded_count = static_cast<uint32_t>(placed.unbounded.size())};
   }
   BvhAccelerator(const BvhAccelerator &) = delete;
   BvhAccelerator &operator=(const BvhAccelerator &) = delete;
@@ -58,8 +64,7 @@ public:
     kernel.any(scene, rays.data(), occluded.data(), rays.size());
   }
   size_t bytes() const override {
-    size_t sum = placed.bytes() + views.capacity() * sizeof(BvhView) + top.nodes.capacity() * sizeof(BvhNode) +
-                 top.order.capacity() * sizeof(uint32_t);
+    size_t sum = placed.bytes() + views.capacity() * sizeof(BvhView) + world.bytes();
     for (const MeshBvh &mesh : meshes)
       sum += mesh.bytes();
     return sum;
@@ -67,11 +72,48 @@ public:
   const char *instruction_set() const override { return kernel.name; }
 
 private:
+  // Instances whose triangles stand in the world's own tree: those of meshes that are placed once, and copies of small ones.
+  std::vector<uint8_t> choose_unfolded(const Geometry &geometry) const {
+    std::vector<uint32_t> uses(geometry.meshes.size(), 0);
+    size_t triangles = 0;
+    for (const uint32_t number : placed.bounded)
+      if (geometry.instances[number].kind == ShapeKind::Mesh && uses[geometry.instances[number].mesh]++ == 0)
+        triangles += geometry.meshes[geometry.instances[number].mesh].triangles.size();
+    std::vector<uint8_t> unfolded(geometry.instances.size(), 0);
+    size_t copies = 0;
+    for (size_t i = 0; i < placed.bounded.size(); ++i) {
+      const uint32_t number = placed.bounded[i];
+      const Instance &instance = geometry.instances[number];
+      if (instance.kind != ShapeKind::Mesh)
+        continue;
+      // Boxes in the world's frame are widened by kBoxPad: triangles should be larger than that.
+      const size_t count = geometry.meshes[instance.mesh].triangles.size();
+      const Float4 size = placed.boxes[i].hi - placed.boxes[i].lo;
+      const float largest = std::max({size[0], size[1], size[2]});
+      if (largest < 16.0f * kBoxPad * std::sqrt(static_cast<float>(count)))
+        continue;
+      // Copies may take an eighth of the memory.
+      if (uses[instance.mesh] > 1) {
+        if ((copies + count) * 8 > triangles + 8192)
+          continue;
+        copies += count;
+      }
+      unfolded[number] = 1;
+    }
+    return unfolded;
+  }
+
   // Large meshes one after the other, each on all threads; then the small ones side by side.
-  void build_meshes(const Geometry &geometry, const BuildContext &context) {
+  void build_meshes(const Geometry &geometry, const std::vector<uint8_t> &unfolded, const BuildContext &context) {
+    std::vector<uint8_t> wanted(meshes.size(), 0);
+    for (uint32_t i = 0; i < geometry.instances.size(); ++i)
+      if (geometry.instances[i].kind == ShapeKind::Mesh && !unfolded[i])
+        wanted[geometry.instances[i].mesh] = 1;
     constexpr size_t kLarge = 65536;
     std::vector<uint32_t> small;
     for (uint32_t i = 0; i < meshes.size(); ++i) {
+      if (!wanted[i])
+        continue;
       if (geometry.meshes[i].triangles.size() < kLarge)
         small.push_back(i);
       else
@@ -84,23 +126,11 @@ private:
     });
   }
 
-  void build_top(const BuildContext &context) {
-    // A tree over so few instances sorts out less than it costs.
-    if (placed.bounded.size() <= 2) {
-      placed.unbounded.insert(placed.unbounded.end(), placed.bounded.begin(), placed.bounded.end());
-      return;
-    }
-    std::vector<BuildRef> refs;
-    for (size_t i = 0; i < placed.bounded.size(); ++i)
-      refs.emplace_back(placed.boxes[i], placed.bounded[i]);
-    top = build_wide_tree(std::move(refs), 1, context);
-  }
-
   const BvhKernel &kernel;
   PlacedScene placed;
   std::vector<MeshBvh> meshes;
   std::vector<BvhView> views;
-  WideTree top;
+  MeshBvh world;
   BvhScene scene;
 };
 

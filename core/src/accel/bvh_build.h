@@ -4,28 +4,44 @@
 #include "accel/accelerator.h"
 #include "accel/bounds.h"
 #include "accel/bvh.h"
+#include "accel/huge_pages.h"
+#include "accel/placed_scene.h"
 
 #include <vector>
 
 namespace lancer {
 
+// Children of a tree under construction that are no nodes: (first << 2 | count - 1) into refs.
+inline constexpr uint32_t kBuildLeaf = 0x80000000u;
+inline constexpr uint32_t kBuildEmpty = 0xffffffffu;
+
 struct WideTree {
-  std::vector<BvhNode> nodes;
-  std::vector<uint32_t> order; // ids of the refs, leaf after leaf
+  HugeVector<BvhNode> nodes;
+  HugeVector<BuildRef> refs; // leaf after leaf
 };
 
-// refs is used up. group: how many primitives are tested at the price of one, and the most that a leaf holds. The result
+// group: how many primitives are tested at the price of one, and the most that a leaf holds; all of one owner. The result
 // depends on refs alone.
-WideTree build_wide_tree(std::vector<BuildRef> refs, uint32_t group, const BuildContext &context);
+WideTree build_wide_tree(HugeVector<BuildRef> refs, uint32_t group, const BuildContext &context);
 
+// A tree whose leaves are blocks of triangles; in the world's also blocks of spheres, and instances.
 struct MeshBvh {
-  std::vector<BvhNode> nodes;
-  std::vector<TriangleBlock> blocks;
+  HugeVector<BvhNode> nodes;
+  HugeVector<TriangleBlock> blocks;
+  HugeVector<uint32_t> owners; // of blocks; empty where all have the same
+  HugeVector<SphereBlock> spheres;
 
   BvhView view() const { return {nodes.empty() ? nullptr : nodes.data(), blocks.data()}; }
-  size_t bytes() const { return nodes.capacity() * sizeof(BvhNode) + blocks.capacity() * sizeof(TriangleBlock); }
+  size_t bytes() const {
+    return nodes.capacity() * sizeof(BvhNode) + blocks.capacity() * sizeof(TriangleBlock) +
+           owners.capacity() * sizeof(uint32_t) + spheres.capacity() * sizeof(SphereBlock);
+  }
 };
 
 MeshBvh build_mesh_bvh(const Mesh &mesh, const PlacementFrame &frame, const BuildContext &context);
+
+// The tree of the world. unfolded: instances whose triangles are in it themselves; all other bounded instances are leaves.
+MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
+                        const BuildContext &context);
 
 } // namespace lancer

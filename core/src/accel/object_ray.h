@@ -67,9 +67,9 @@ LANCER_INLINE bool enter_frame(const PlacementFrame &frame, const double o[3], c
 // Origin and direction in the shape's object space; t is unchanged.
 LANCER_INLINE void to_object_space(const PlacedShape &shape, const Ray &ray, double o[3], double d[3]) {
   for (int i = 0; i < 3; ++i) {
-    const double *row = shape.to_object + 4 * i;
-    o[i] = row[0] * ray.o.x + row[1] * ray.o.y + row[2] * ray.o.z + row[3];
-    d[i] = row[0] * ray.d.x + row[1] * ray.d.y + row[2] * ray.d.z;
+    const double(&m)[4][4] = shape.to_object;
+    o[i] = m[0][i] * ray.o.x + m[1][i] * ray.o.y + m[2][i] * ray.o.z + m[3][i];
+    d[i] = m[0][i] * ray.d.x + m[1][i] * ray.d.y + m[2][i] * ray.d.z;
   }
 }
 

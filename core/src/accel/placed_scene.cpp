@@ -77,10 +77,10 @@ glm::dvec3 world_half(const Instance &instance, const glm::dvec3 &half) {
 
 PlacedShape make_shape(const Instance &instance, const std::vector<PlacementFrame> &mesh_frames) {
   PlacedShape shape;
-  for (int row = 0; row < 3; ++row) {
+  for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 3; ++column)
-      shape.to_object[4 * row + column] = instance.to_object.linear[column][row];
-    shape.to_object[4 * row + 3] = instance.to_object.translation[row];
+      shape.to_object[column][row] = row < 3 ? instance.to_object.linear[column][row] : 0.0;
+    shape.to_object[3][row] = row < 3 ? instance.to_object.translation[row] : 0.0;
   }
   const bool mesh = instance.kind == ShapeKind::Mesh;
   const glm::dvec3 moved = round_trip(instance, glm::dvec3(1.0));
@@ -100,6 +100,7 @@ PlacedScene place_scene(const Geometry &geometry) {
   for (const Mesh &mesh : geometry.meshes) {
     mesh_extents.push_back(mesh_extent(mesh));
     scene.mesh_frames.push_back(mesh.triangles.empty() ? PlacementFrame{} : make_frame(mesh_extents.back()));
+    scene.mesh_reach.push_back(glm::max(glm::abs(mesh_extents.back().lo), glm::abs(mesh_extents.back().hi)));
   }
 
   // Place every instance; find the world box of those that have one.
@@ -131,6 +132,17 @@ PlacedScene place_scene(const Geometry &geometry) {
   for (const Extent &extent : extents)
     scene.boxes.push_back(make_box(scene.world, extent));
   return scene;
+}
+
+Box placed_triangle_box(const Mesh &mesh, const Instance &instance, const glm::dvec3 &reach, const PlacementFrame &world,
+                        uint32_t triangle) {
+  const glm::dvec3 moved = magnitudes(instance.to_world.linear) * round_trip(instance, reach);
+  Extent e;
+  for (int corner = 0; corner < 3; ++corner)
+    e.grow(instance.to_world.point(glm::dvec3(mesh.vertex(triangle, corner))));
+  e.lo -= moved;
+  e.hi += moved;
+  return make_box(world, e);
 }
 
 Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangle) {

@@ -12,6 +12,7 @@ namespace lancer {
 struct PlacedScene {
   std::vector<PlacedShape> shapes;         // one per instance of the geometry
   std::vector<PlacementFrame> mesh_frames; // one per mesh
+  std::vector<glm::dvec3> mesh_reach;      // and the largest coordinates, without sign
   std::vector<uint32_t> unbounded; // instances without a finite box, infinite planes above all: tested against every ray
   std::vector<uint32_t> bounded;   // all others that have anything to hit
   std::vector<Box> boxes;          // of bounded, in the frame world
@@ -24,5 +25,9 @@ PlacedScene place_scene(const Geometry &geometry);
 
 // The box of a triangle in its mesh's frame, widened by kBoxPad.
 Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangle);
+
+// Its box in the frame of the world, as instance places it. reach: the largest coordinates of the mesh.
+Box placed_triangle_box(const Mesh &mesh, const Instance &instance, const glm::dvec3 &reach, const PlacementFrame &world,
+                        uint32_t triangle);
 
 } // namespace lancer

@@ -14,10 +14,10 @@ struct PlacementFrame {
   double scale = 1.0;
 };
 
-struct PlacedShape {
-  double to_object[12]; // 3 x 4, row-major
-  PlacementFrame frame; // box frame in object space; unit for exact surfaces
-  double slack;         // exact surfaces: how far rounding may lift a stored surface point off the surface, object space
+struct alignas(32) PlacedShape {
+  double to_object[4][4]; // the columns of a 3 x 4 matrix, each with a 0 behind it
+  PlacementFrame frame;   // box frame in object space; unit for exact surfaces
+  double slack;           // exact surfaces: how far rounding may lift a stored surface point off the surface, object space
   ShapeKind kind;
   uint32_t mesh;        // kNone for exact surfaces
   uint32_t hidden_from; // bits of Ray::kinds

@@ -1,0 +1,108 @@
+// Rays that a thread traces side by side know nothing of each other.
+#include "accel_scenes.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numeric>
+
+namespace lancer::test {
+namespace {
+
+// Meshes in the world's own tree, instances, exact surfaces with and without a box, and a mesh hidden from some rays.
+Geometry everything(Random &random) {
+  Geometry geometry;
+  geometry.meshes.push_back(bumpy_sphere(1.0, 40, 30, 0.2));
+  geometry.meshes.push_back(triangle_soup(random, 3000, 1.0));
+  geometry.meshes.push_back(bumpy_sphere(1.0, 9, 6, 0.2));
+  const auto add = [&](ShapeKind kind, double scale, uint32_t mesh) {
+    geometry.instances.push_back(placed(kind, glm::dmat3(scale), random.in_box(8.0), mesh));
+  };
+  for (int i = 0; i < 12; ++i) {
+    add(ShapeKind::Mesh, 1.0, 0);
+    add(ShapeKind::Sphere, 1.0, 0);
+    add(ShapeKind::Cone, 0.7, 0);
+  }
+  add(ShapeKind::Mesh, 6.0, 1);
+  add(ShapeKind::Mesh, 3.0, 2);
+  geometry.instances.back().hidden_from = 1;
+  add(ShapeKind::Plane, 1.0, 0);
+  add(ShapeKind::Plane, 2.0, 0);
+  return geometry;
+}
+
+std::vector<Ray> some_rays(Random &random, size_t count) {
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < count; ++i) {
+    Ray ray = make_ray(random.in_box(12.0), random.direction());
+    ray.kinds = 1 + random.below(3);
+    if (random.below(3) == 0)
+      ray.tmax = random.uniform(-1.0, 10.0);
+    if (random.below(9) == 0)
+      ray.d = glm::dvec3(0.0);
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+const char *const kInstructionSets[] = {"sse4", "avx2", "avx512"};
+
+TEST(AcceleratorInterleaved, AnyBatchSizeAndOrderGiveTheSame) {
+  Random random(11);
+  const Geometry geometry = everything(random);
+  for (const char *instruction_set : kInstructionSets) {
+    const auto bvh = build_bvh_for(instruction_set, geometry, 1);
+    const std::vector<Ray> rays = some_rays(random, 400);
+    std::vector<Hit> alone(rays.size());
+    std::vector<uint8_t> alone_occluded(rays.size());
+    size_t found = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      alone[i] = closest(*bvh, rays[i]);
+      alone_occluded[i] = occluded(*bvh, rays[i]);
+      found += alone[i].valid();
+      ASSERT_EQ(alone[i].valid(), alone_occluded[i] == 1);
+    }
+    EXPECT_GT(found, rays.size() / 4);
+    EXPECT_LT(found, rays.size());
+    std::vector<size_t> order(rays.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    for (size_t size = 0; size <= 100; size += size < 17 ? 1 : 83) {
+      for (size_t i = order.size(); i > 1; --i)
+        std::swap(order[i - 1], order[random.below(static_cast<uint32_t>(i))]);
+      for (size_t first = 0; first < rays.size(); first += std::max<size_t>(size, 100)) {
+        std::vector<Ray> batch;
+        for (size_t i = 0; i < size; ++i)
+          batch.push_back(rays[order[first + i]]);
+        // One more place at the end must stay as it is.
+        std::vector<Hit> hits(size + 1);
+        std::vector<uint8_t> occlusion(size + 1, 7);
+        hits[size].instance = 12345;
+        bvh->closest_hit(batch, {hits.data(), size});
+        bvh->any_hit(batch, {occlusion.data(), size});
+        for (size_t i = 0; i < size; ++i) {
+          ASSERT_TRUE(same_bits(hits[i], alone[order[first + i]])) << instruction_set << ", " << i << " of " << size;
+          ASSERT_EQ(occlusion[i], alone_occluded[order[first + i]]) << instruction_set << ", " << i << " of " << size;
+        }
+        ASSERT_EQ(hits[size].instance, 12345u);
+        ASSERT_EQ(occlusion[size], 7);
+      }
+    }
+  }
+}
+
+// More things without a box than any stack holds.
+TEST(AcceleratorInterleaved, AnyNumberOfPlanes) {
+  Geometry geometry;
+  geometry.meshes.push_back(bumpy_sphere(1.0, 9, 6, 0.0));
+  for (int i = 0; i < 3000; ++i)
+    geometry.instances.push_back(placed(ShapeKind::Plane, glm::dmat3(1.0), {0.0, 0.0, -3.0 - i}));
+  geometry.instances.push_back(placed(ShapeKind::Mesh, glm::dmat3(1.0), {0.0, 0.0, 0.0}, 0));
+  for (const char *instruction_set : kInstructionSets) {
+    const auto bvh = build_bvh_for(instruction_set, geometry, 1);
+    EXPECT_EQ(closest(*bvh, make_ray({0.1, 0.1, 9.0}, {0, 0, -1})).instance, 3000u);
+    EXPECT_EQ(closest(*bvh, make_ray({5.0, 0.1, 9.0}, {0, 0, -1})).t, 12.0);
+    EXPECT_EQ(closest(*bvh, make_ray({5.0, 0.1, -4000.0}, {0, 0, 1})).t, 1.0 + 4000.0 - 3003.0);
+  }
+}
+
+} // namespace
+} // namespace lancer::test
