@@ -55,7 +55,7 @@ TEST(Lights, ALightThatIsNeverChosenIsNeverMet) {
   Light spot = ball(0.1, true);
   spot.kind = LightKind::Spot;
   spot.cos_half_angle = 1.0;
-  const LightSet lights({spot}, {}, 0, Environment(), 100.0);
+  const LightSet lights({spot}, {}, 0, Environment());
   EXPECT_TRUE(lights.with_extent().empty());
 }
 

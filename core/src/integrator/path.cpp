@@ -207,7 +207,8 @@ void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, Samp
   const glm::dvec3 wi = glm::normalize(ray.d);
   float weight = 1.0f;
   if (path.pdf > 0.0)
-    weight = mis_weight(path.pdf, environment.pdf(wi) * scene_.lights.probability(scene_.lights.environment_light()));
+    weight =
+        mis_weight(path.pdf, environment.pdf(wi) * scene_.lights.probability(query(path), scene_.lights.environment_light()));
   const glm::dvec3 *eye = path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr;
   add(path, result, path.beta * environment.radiance(wi, shader_.values(), &camera_, eye) * weight, true);
 }
@@ -229,7 +230,7 @@ void PathIntegrator<Shapes, Layers>::add_lights_met(const Path &path, const Ray 
     const bool here = std::isinf(met.distance) ? std::isinf(t) : met.distance >= begin && met.distance < end;
     if (!(met.pdf > 0.0) || !here)
       continue;
-    const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(number)) : 1.0f;
+    const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(query(path), number)) : 1.0f;
     add(path, result, path.beta * met.radiance * weight, false);
   }
 }
@@ -239,11 +240,10 @@ void PathIntegrator<Shapes, Layers>::add_emission(const Path &path, const Surfac
   if (point_.emission == glm::vec3(0.0f))
     return;
   float weight = 1.0f;
-  const uint32_t light = scene_.lights.emitter_light(surface.instance);
-  if (path.pdf > 0.0 && light != kNone) {
-    const Emitter &emitter = scene_.lights.emitters()[light - scene_.lights.lights().size()];
-    const double pdf = emitter.pdf(scene_.geometry, scene_.materials, path.from, surface);
-    weight = mis_weight(path.pdf, pdf * scene_.lights.probability(light));
+  const Emitter *emitter = path.pdf > 0.0 ? scene_.lights.emitter_of(surface.instance) : nullptr;
+  if (emitter) {
+    const double pdf = emitter->face_pdf(scene_.geometry, path.from, surface);
+    weight = mis_weight(path.pdf, pdf * scene_.lights.probability(scene_.geometry, query(path), *emitter, surface.primitive));
   }
   add(path, result, path.beta * point_.emission * weight, false);
 }
@@ -267,11 +267,12 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
   if (scene_.lights.empty() || !point_.bsdf.smooth)
     return;
   // Choose a light and a point of it.
-  const LightSet::Choice choice = scene_.lights.choose(u[kVertexLightChoice]);
+  const LightQuery here(surface.p, point_.bsdf.ns, point_.bsdf.transmits);
+  const double u_choice = double(u[kVertexLightChoice]) + 0x1p-24 * double(u[kVertexLightDigits]);
+  const LightSet::Choice choice = scene_.lights.choose(scene_.geometry, here, u_choice);
   if (!(choice.probability > 0.0))
     return;
-  const LightSample light =
-      sample_scene_light(scene_, choice.light, surface.p, {u[kVertexLight], u[kVertexLight + 1]}, shader_);
+  const LightSample light = sample_scene_light(scene_, choice, surface.p, {u[kVertexLight], u[kVertexLight + 1]}, shader_);
   if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
     return;
   // Ask the surface how much of it goes towards the viewer, without what the light is hidden from.
@@ -352,6 +353,8 @@ bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface,
   path.beta *= sample.weight / float(1.0 - pass);
   path.pdf = sample.delta ? 0.0 : double(sample.pdf) * (1.0 - pass);
   path.from = surface.p;
+  path.normal = point_.bsdf.ns;
+  path.transmits = point_.bsdf.transmits;
   path.kinds = ray_kind(sample);
   path.layers = 0;
   path.passed = 0.0;

@@ -31,9 +31,11 @@ private:
   struct Path {
     Sampler sampler;
     glm::vec3 beta{1.0f};
-    glm::dvec3 from{0.0}; // last scattering point
-    double pdf = 0.0;     // of the BSDF sample that made the ray; 0 after the camera or a single direction
-    uint32_t slot;        // of its result
+    glm::dvec3 from{0.0};   // last scattering point
+    glm::vec3 normal{0.0f}; // there, and whether light may come through: what light samples are chosen by
+    bool transmits = false;
+    double pdf = 0.0; // of the BSDF sample that made the ray; 0 after the camera or a single direction
+    uint32_t slot;    // of its result
     uint32_t scatterings = 0;
     uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
     uint32_t layers = 0;                // passed straight through since the last scattering
@@ -48,6 +50,8 @@ private:
     glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // of the light that came by a diffuse, glossy first scattering
   };
 
+  // As the last scattering asked for light.
+  static LightQuery query(const Path &path) { return LightQuery(path.from, path.normal, path.transmits); }
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void miss(const Path &path, const Ray &ray, SampleResult &result);

@@ -1,69 +1,43 @@
 #include "lights/light_set.h"
 
-#include "sampling/color.h"
-
 #include <algorithm>
+#include <set>
 
 namespace lancer {
 
-namespace {
-
-// Rough power in normalised units: only the choice of lights depends on it, never the picture.
-double power(const Light &light, double scene_radius) {
-  constexpr double pi = glm::pi<double>();
-  const double e = brightest(light.emission);
-  switch (light.kind) {
-  case LightKind::Point:
-    return 4.0 * pi * e;
-  case LightKind::Spot:
-    return 2.0 * pi * (1.0 - light.cos_half_angle) * e;
-  case LightKind::Sun:
-    return pi * scene_radius * scene_radius * e;
-  case LightKind::Area:
-    return pi * light.area * e;
-  }
-  return 0.0;
-}
-
-} // namespace
-
-LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
-                   double radius)
+LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment)
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
-  std::vector<double> powers;
-  for (const Light &light : lights_)
-    powers.push_back(power(light, radius));
+  std::vector<DescribedLight> described;
+  described.reserve(size());
+  for (uint32_t i = 0; i < lights_.size(); ++i)
+    described.push_back(describe(lights_[i], i));
   for (const Emitter &emitter : emitters_)
-    powers.push_back(2.0 * glm::pi<double>() * emitter.weight());
-  // Beyond the scene's bounds nothing is lit: what passes through their disk from all directions.
+    described.push_back(describe_cluster(emitter.bounds(), uint32_t(described.size())));
   if (environment_.varies())
-    powers.push_back(4.0 * glm::pi<double>() * environment_.mean() * glm::pi<double>() * radius * radius);
-  double total = 0.0;
-  size_t shining = 0;
-  for (double p : powers) {
-    total += p;
-    shining += p > 0.0;
-  }
-  // Half of the choice by power, half evenly among the lights that shine: power knows nothing of distance.
-  if (total > 0.0) {
-    for (double &p : powers)
-      p = p > 0.0 ? 0.5 * p / total + 0.5 / double(shining) : 0.0;
-    choice_ = WeightedChoice(powers);
-  }
+    described.push_back(describe_sky(environment_.mean(), environment_light()));
   // One that is never chosen is never met either: both techniques know the same lights.
   for (uint32_t i = 0; i < lights_.size(); ++i)
-    if (has_extent(lights_[i]) && powers[i] > 0.0)
+    if (has_extent(lights_[i]) && described[i].bounds.energy > 0.0)
       with_extent_.push_back(i);
+  tree_ = LightTree(std::move(described), uint32_t(size()));
   if (!emitters_.empty()) {
     emitter_of_.assign(instance_count, kNone);
     for (uint32_t i = 0; i < emitters_.size(); ++i)
-      emitter_of_[emitters_[i].instance()] = uint32_t(lights_.size()) + i;
+      emitter_of_[emitters_[i].instance()] = i;
   }
 }
 
-LightSet::Choice LightSet::choose(float u) const {
-  const auto choice = choice_.sample(u);
-  return {choice.index, double(choice.pmf)};
+LightSet::Choice LightSet::choose(const Geometry &geometry, const LightQuery &query, double u) const {
+  const LightTree::Choice light = tree_.choose(query, u);
+  if (!(light.probability > 0.0) || light.number < lights_.size() || light.number - lights_.size() >= emitters_.size())
+    return {light.number, 0, light.probability};
+  const LightTree::Choice face = emitters_[light.number - lights_.size()].choose_face(geometry, query, light.u);
+  return {light.number, face.number, light.probability * face.probability};
+}
+
+double LightSet::probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const {
+  const double of_face = emitter.face_probability(geometry, query, face);
+  return of_face > 0.0 ? of_face * probability(query, uint32_t(lights_.size() + (&emitter - emitters_.data()))) : 0.0;
 }
 
 uint32_t LightSet::hidden_from(uint32_t light) const {
@@ -74,9 +48,13 @@ uint32_t LightSet::hidden_from(uint32_t light) const {
 }
 
 size_t LightSet::bytes() const {
-  size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) + emitter_of_.size() * sizeof(uint32_t);
-  for (const Emitter &emitter : emitters_)
-    bytes += sizeof(Emitter) + emitter.bytes();
+  size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) + emitter_of_.size() * sizeof(uint32_t) + tree_.bytes();
+  std::set<const EmissiveFaces *> counted;
+  for (const Emitter &emitter : emitters_) {
+    bytes += sizeof(Emitter);
+    if (emitter.faces() && counted.insert(emitter.faces().get()).second)
+      bytes += emitter.faces()->bytes();
+  }
   return bytes;
 }
 

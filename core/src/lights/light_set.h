@@ -9,10 +9,8 @@ namespace lancer {
 class LightSet {
 public:
   LightSet() = default;
-  // Lights as described come first, then one per emitting instance, then the environment where it varies. radius: of the
-  // scene's bounds, normalised.
-  LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
-           double radius);
+  // Lights as described come first, then one per emitting instance, then the environment where it varies.
+  LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment);
 
   size_t size() const { return lights_.size() + emitters_.size() + (environment_.varies() ? 1 : 0); }
   bool empty() const { return size() == 0; }
@@ -26,15 +24,19 @@ public:
   bool no_shadow(uint32_t light) const { return light < lights_.size() && lights_[light].no_shadow; }
 
   struct Choice {
-    uint32_t light;
-    double probability;
+    uint32_t light = 0, face = 0; // face: of an emitter
+    double probability = 0.0;     // 0: nothing to ask
   };
-  // Chooses a light by its power, mixed with an even choice so that no light is forgotten. The set is not empty.
-  Choice choose(float u) const;
-  double probability(uint32_t light) const { return choice_.size() > 0 ? double(choice_.pmf(light)) : 0.0; }
+  // Chooses a light, and a face of it, by what the point may get from each. u in [0, 1); the set is not empty.
+  Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
+  // With which choose() returns this light; of an emitter, this face of it.
+  double probability(const LightQuery &query, uint32_t light) const { return tree_.probability(query, light); }
+  double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 
-  // The emitter of an instance, as a light's number; kNone if it has none.
-  uint32_t emitter_light(uint32_t instance) const { return emitter_of_.empty() ? kNone : emitter_of_[instance]; }
+  // The emitter of an instance; null if it has none.
+  const Emitter *emitter_of(uint32_t instance) const {
+    return emitter_of_.empty() || emitter_of_[instance] == kNone ? nullptr : &emitters_[emitter_of_[instance]];
+  }
   // Lights as described that a ray can run into.
   const std::vector<uint32_t> &with_extent() const { return with_extent_; }
   size_t bytes() const;
@@ -43,7 +45,7 @@ private:
   std::vector<Light> lights_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> with_extent_, emitter_of_;
-  WeightedChoice choice_;
+  LightTree tree_;
   Environment environment_;
 };
 
