@@ -1,4 +1,6 @@
-// The light tree: its probabilities are those of its choices, they add up to one, and no light that contributes is left out.
+// Choosing lights, few and many: probabilities are those of its choices, they add up to one, and no light that contributes is
+// left out.
+#include "lights/few_lights.h"
 #include "lights/light_tree.h"
 #include "picture_lab.h"
 #include "statistics.h"
@@ -55,25 +57,27 @@ std::vector<Light> any_lights(Random &random, uint32_t count, double size = 400.
   return lights;
 }
 
-LightTree tree_of(const std::vector<Light> &lights, bool sky = false) {
+// What has no place is for the few only.
+template <class Tree> Tree tree_of(const std::vector<Light> &lights, bool sky = false) {
+  constexpr bool few = std::is_same_v<Tree, FewLights>;
   std::vector<DescribedLight> described;
   for (uint32_t i = 0; i < lights.size(); ++i)
-    described.push_back(describe(lights[i], i));
-  if (sky)
+    if (few || lights[i].kind != LightKind::Sun)
+      described.push_back(describe(lights[i], i));
+  if (sky && few)
     described.push_back(describe_sky(0.01, uint32_t(lights.size())));
-  const uint32_t count = uint32_t(described.size());
-  return LightTree(std::move(described), count);
+  return Tree(std::move(described), uint32_t(lights.size()) + 1);
 }
 
-// A cube of triangles as a tree of faces.
-LightTree tree_of_faces(Random &random, uint32_t count) {
+// Triangles in a cube.
+template <class Tree> Tree tree_of_faces(Random &random, uint32_t count) {
   std::vector<DescribedLight> faces;
   for (uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 p = somewhere(random, 500.0);
     const glm::dvec3 corners[3] = {p, p + somewhere(random, 20.0), p + somewhere(random, 20.0)};
     faces.push_back(describe_triangle(corners, double(random.uniform()) + 0.01, i));
   }
-  return LightTree(std::move(faces), count);
+  return Tree(std::move(faces), count);
 }
 
 LightQuery any_query(Random &random, double size = 500.0) {
@@ -84,7 +88,7 @@ LightQuery any_query(Random &random, double size = 500.0) {
 constexpr double kSumError = 1e-13;
 
 // Clusters may promise what none of their lights keeps: then there is no choice, and the sum stays below 1.
-double sum_of(const LightTree &tree, uint32_t count, const LightQuery &query) {
+template <class Tree> double sum_of(const Tree &tree, uint32_t count, const LightQuery &query) {
   double sum = 0.0;
   for (uint32_t i = 0; i < count; ++i) {
     const double p = tree.probability(query, i);
@@ -95,38 +99,43 @@ double sum_of(const LightTree &tree, uint32_t count, const LightQuery &query) {
   return sum;
 }
 
-void expect_sum_of_one(const LightTree &tree, uint32_t count, const LightQuery &query) {
+template <class Tree> void expect_sum_of_one(const Tree &tree, uint32_t count, const LightQuery &query) {
   EXPECT_NEAR(sum_of(tree, count, query), 1.0, kSumError * std::sqrt(double(count)));
 }
 
-TEST(LightTree, ProbabilitiesAddUpToOne) {
+template <class Tree> class LightTrees : public ::testing::Test {};
+using BothTrees = ::testing::Types<FewLights, LightTree>;
+TYPED_TEST_SUITE(LightTrees, BothTrees);
+
+TYPED_TEST(LightTrees, ProbabilitiesAddUpToOne) {
   Random random(1);
   for (const uint32_t count : {1u, 2u, 3u, 8u, 9u, 30u, 200u, 3000u, 100000u}) {
     // Lamps that shine everywhere, seen through a surface that lets light through: no promise is broken.
     std::vector<Light> points = any_lights(random, count);
     for (Light &light : points)
       light.kind = LightKind::Point;
-    const uint32_t with_sky = count + count % 2;
-    const LightTree lamps = tree_of(points, count % 2), all = tree_of(any_lights(random, count), count % 2);
-    const LightTree faces = tree_of_faces(random, count);
+    const uint32_t with_sky = count + 1;
+    const TypeParam lamps = tree_of<TypeParam>(points, count % 2),
+                    all = tree_of<TypeParam>(any_lights(random, count), count % 2);
+    const TypeParam faces = tree_of_faces<TypeParam>(random, count);
     for (int i = 0; i < (count < 10000 ? 50 : 2); ++i) {
       const LightQuery query = any_query(random), through(query.p, query.n, true);
       expect_sum_of_one(lamps, with_sky, through);
       expect_sum_of_one(faces, count, through);
-      for (const LightTree *tree : {&lamps, &all, &faces})
+      for (const TypeParam *tree : {&lamps, &all, &faces})
         sum_of(*tree, with_sky, query);
     }
   }
 }
 
-TEST(LightTree, TheProbabilityOfAChoiceIsThatOfItsLight) {
+TYPED_TEST(LightTrees, TheProbabilityOfAChoiceIsThatOfItsLight) {
   Random random(2);
   for (const uint32_t count : {1u, 2u, 5u, 40u, 1000u}) {
-    const LightTree tree = tree_of(any_lights(random, count), true), faces = tree_of_faces(random, count);
-    for (const LightTree *each : {&tree, &faces})
+    const TypeParam tree = tree_of<TypeParam>(any_lights(random, count), true), faces = tree_of_faces<TypeParam>(random, count);
+    for (const TypeParam *each : {&tree, &faces})
       for (int i = 0; i < 500; ++i) {
         const LightQuery query = any_query(random);
-        const LightTree::Choice choice = each->choose(query, double(random.uniform()));
+        const LightChoice choice = each->choose(query, double(random.uniform()));
         ASSERT_GE(choice.u, 0.0);
         ASSERT_LT(choice.u, 1.0);
         // The same factors in the other order: a rounding for each level, of which there are some dozens.
@@ -137,11 +146,11 @@ TEST(LightTree, TheProbabilityOfAChoiceIsThatOfItsLight) {
   }
 }
 
-TEST(LightTree, ChoicesFollowTheirProbabilities) {
+TYPED_TEST(LightTrees, ChoicesFollowTheirProbabilities) {
   Random random(3);
   constexpr int kQueries = 24, kChoices = 50000;
   for (const uint32_t count : {2u, 7u, 25u, 200u}) {
-    const LightTree tree = tree_of(any_lights(random, count), true);
+    const TypeParam tree = tree_of<TypeParam>(any_lights(random, count), true);
     for (int k = 0; k < kQueries; ++k) {
       const LightQuery query = any_query(random);
       std::vector<double> expected(count + 2), observed(count + 2);
@@ -150,7 +159,7 @@ TEST(LightTree, ChoicesFollowTheirProbabilities) {
         sum += expected[i] = kChoices * tree.probability(query, i);
       expected[count + 1] = std::max(0.0, kChoices - sum) > 0.5 ? kChoices - sum : 0.0;
       for (int i = 0; i < kChoices; ++i) {
-        const LightTree::Choice choice = tree.choose(query, (i + double(random.uniform())) / kChoices);
+        const LightChoice choice = tree.choose(query, (i + double(random.uniform())) / kChoices);
         ++observed[choice.probability > 0.0 ? choice.number : count + 1];
       }
       // Even numbers, one in each slice, vary less than the law supposes: a high statistic is a fault all the more.
@@ -159,13 +168,13 @@ TEST(LightTree, ChoicesFollowTheirProbabilities) {
   }
 }
 
-TEST(LightTree, WhatIsLeftOfTheNumberIsUniform) {
+TYPED_TEST(LightTrees, WhatIsLeftOfTheNumberIsUniform) {
   Random random(4);
-  const LightTree tree = tree_of(any_lights(random, 50), true);
+  const TypeParam tree = tree_of<TypeParam>(any_lights(random, 50), true);
   const LightQuery query({0, 0, 0}, {0, 0, 1}, true);
   std::vector<double> counts(20), expected(20);
   for (int i = 0; i < 100000; ++i) {
-    const LightTree::Choice choice = tree.choose(query, double(random.uniform()) + 0x1p-24 * double(random.uniform()));
+    const LightChoice choice = tree.choose(query, double(random.uniform()) + 0x1p-24 * double(random.uniform()));
     if (!(choice.probability > 0.0))
       continue;
     ++counts[size_t(20.0 * choice.u)];
@@ -175,12 +184,12 @@ TEST(LightTree, WhatIsLeftOfTheNumberIsUniform) {
   EXPECT_GT(testing::chi_square_test(counts, expected), testing::kSignificance);
 }
 
-TEST(LightTree, WhateverContributesHasAChance) {
+TYPED_TEST(LightTrees, WhateverContributesHasAChance) {
   Random random(5);
   int contributing = 0;
   for (int round = 0; round < 60; ++round) {
     const std::vector<Light> lights = any_lights(random, round < 30 ? 3 : 60);
-    const LightTree tree = tree_of(lights);
+    const TypeParam tree = tree_of<TypeParam>(lights);
     for (int i = 0; i < 400; ++i) {
       // Points near a light and surfaces that see it at the very edge, too.
       const Light &near = lights[random.next() % lights.size()];
@@ -191,6 +200,8 @@ TEST(LightTree, WhateverContributesHasAChance) {
       const LightQuery query(p, glm::vec3(glm::normalize(n)), false);
       for (uint32_t k = 0; k < lights.size(); ++k) {
         const LightSample s = sample(lights[k], p, {random.uniform(), random.uniform()});
+        if (lights[k].kind == LightKind::Sun && std::is_same_v<TypeParam, LightTree>)
+          continue;
         if (!(s.pdf > 0.0) || s.radiance == glm::vec3(0.0f) || !(glm::dot(glm::vec3(s.wi), query.n) > 0.0f))
           continue;
         ++contributing;
@@ -201,7 +212,7 @@ TEST(LightTree, WhateverContributesHasAChance) {
   EXPECT_GT(contributing, 10000);
 }
 
-TEST(LightTree, FacesThatAreSeenHaveAChance) {
+TYPED_TEST(LightTrees, FacesThatAreSeenHaveAChance) {
   Random random(6);
   for (int round = 0; round < 300; ++round) {
     std::vector<DescribedLight> faces;
@@ -212,7 +223,7 @@ TEST(LightTree, FacesThatAreSeenHaveAChance) {
       const glm::dvec3 c[3] = {corners[i][0], corners[i][1], corners[i][2]};
       faces.push_back(describe_triangle(c, 1.0, i));
     }
-    const LightTree tree(faces, 20);
+    const TypeParam tree(faces, 20);
     for (int k = 0; k < 20; ++k) {
       const LightQuery query = any_query(random);
       for (uint32_t i = 0; i < 20; ++i) {
@@ -227,16 +238,18 @@ TEST(LightTree, FacesThatAreSeenHaveAChance) {
   }
 }
 
-TEST(LightTree, OneLightIsCertain) {
+TYPED_TEST(LightTrees, OneLightIsCertain) {
   Random random(7);
   for (int i = 0; i < 100; ++i) {
-    const LightTree tree = tree_of(any_lights(random, 1));
-    EXPECT_EQ(tree.probability(any_query(random), 0), 1.0);
-    EXPECT_EQ(tree.choose(any_query(random), 0.9).probability, 1.0);
+    const TypeParam tree = tree_of_faces<TypeParam>(random, 1);
+    LightQuery query = any_query(random);
+    query.transmits = true;
+    EXPECT_EQ(tree.probability(query, 0), 1.0);
+    EXPECT_EQ(tree.choose(query, 0.9).probability, 1.0);
   }
 }
 
-TEST(LightTree, StandsWhatIsDegenerate) {
+TYPED_TEST(LightTrees, StandsWhatIsDegenerate) {
   Random random(8);
   const auto light = [](const glm::dvec3 &p, double emission) {
     Light result;
@@ -248,8 +261,7 @@ TEST(LightTree, StandsWhatIsDegenerate) {
   std::vector<Light> lights;
   for (int i = 0; i < 5000; ++i)
     lights.push_back(light({1.0, 2.0, 3.0}, i % 10 ? 1.0 : 0.0));
-  const LightTree heap = tree_of(lights);
-  EXPECT_EQ(heap.size(), 4500u);
+  const TypeParam heap = tree_of<TypeParam>(lights);
   for (const glm::dvec3 &p : {glm::dvec3(0.0), glm::dvec3(1.0, 2.0, 3.0), glm::dvec3(1e9, 0.0, 0.0)})
     for (const glm::vec3 &n : {glm::vec3(0.0f, 0.0f, 1.0f), glm::vec3(0.0f)})
       expect_sum_of_one(heap, 5000, LightQuery(p, n, true));
@@ -258,10 +270,10 @@ TEST(LightTree, StandsWhatIsDegenerate) {
   lights.clear();
   for (int i = 0; i < 1000; ++i)
     lights.push_back(light({std::ldexp(500.0, -i), 0.0, 1.0}, 1.0));
-  expect_sum_of_one(tree_of(lights), 1000, LightQuery(glm::dvec3(0.0), {0, 0, 1}, false));
+  expect_sum_of_one(tree_of<TypeParam>(lights), 1000, LightQuery(glm::dvec3(0.0), {0, 0, 1}, false));
   // A star beside a spark: neither loses its chance, wherever they are.
   for (const double away : {1.0, 1e4, 1e8}) {
-    const LightTree tree = tree_of({light({0.0, 0.0, 1.0}, 1e12), light({0.0, away, 1.0}, 1e-6)});
+    const TypeParam tree = tree_of<TypeParam>({light({0.0, 0.0, 1.0}, 1e12), light({0.0, away, 1.0}, 1e-6)});
     for (const glm::dvec3 &p : {glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, away, 0.0)}) {
       const LightQuery query(p, {0, 0, 1}, true);
       EXPECT_GT(tree.probability(query, 0), 0.0);
@@ -269,7 +281,7 @@ TEST(LightTree, StandsWhatIsDegenerate) {
       expect_sum_of_one(tree, 2, query);
     }
   }
-  EXPECT_EQ(tree_of({}).choose(any_query(random), 0.5).probability, 0.0);
+  EXPECT_EQ(tree_of<TypeParam>({}).choose(any_query(random), 0.5).probability, 0.0);
 }
 
 // Level of a floor of albedo 0.8 at its middle under point lamps of unequal power.

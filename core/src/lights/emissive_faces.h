@@ -30,7 +30,7 @@ public:
   // By power, for those who know no normal.
   const WeightedChoice &by_power() const { return by_power_; }
   // By what a point may get from each.
-  LightTree::Choice choose(const Instance &placed, const LightQuery &query, double u) const {
+  LightChoice choose(const Instance &placed, const LightQuery &query, double u) const {
     return tree_.choose(to_tree(placed, query), u);
   }
   double probability(const Instance &placed, const LightQuery &query, uint32_t face) const {

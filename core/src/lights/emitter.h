@@ -23,8 +23,8 @@ public:
   const std::shared_ptr<const EmissiveFaces> &faces() const { return faces_; }
 
   // A face for a point to ask, and with which probability; of an exact surface there is one only, number 0.
-  LightTree::Choice choose_face(const Geometry &geometry, const LightQuery &query, double u) const {
-    return faces_ ? faces_->choose(geometry.instances[instance_], query, u) : LightTree::Choice{0, 1.0, u};
+  LightChoice choose_face(const Geometry &geometry, const LightQuery &query, double u) const {
+    return faces_ ? faces_->choose(geometry.instances[instance_], query, u) : LightChoice{0, 1.0, u};
   }
   double face_probability(const Geometry &geometry, const LightQuery &query, uint32_t face) const {
     return faces_ ? faces_->probability(geometry.instances[instance_], query, face) : double(!empty());

@@ -5,6 +5,13 @@
 
 namespace lancer {
 
+namespace {
+
+// As many lights with a place are chosen from as in Cycles, which costs more for each and leaves more noise.
+constexpr size_t kFew = 4;
+
+} // namespace
+
 LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment)
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
   std::vector<DescribedLight> described;
@@ -19,7 +26,16 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   for (uint32_t i = 0; i < lights_.size(); ++i)
     if (has_extent(lights_[i]) && described[i].bounds.energy > 0.0)
       with_extent_.push_back(i);
-  tree_ = LightTree(std::move(described), uint32_t(size()));
+  const uint32_t count = uint32_t(size());
+  std::vector<DescribedLight> near;
+  std::copy_if(described.begin(), described.end(), std::back_inserter(near),
+               [](const DescribedLight &light) { return !light.distant() && light.bounds.energy > 0.0; });
+  if (near.size() > kFew) {
+    std::erase_if(described, [](const DescribedLight &light) { return !light.distant(); });
+    many_ = LightTree(std::move(near), count);
+    described.push_back(describe_cluster(many_.bounds(), count));
+  }
+  few_ = FewLights(std::move(described), count + 1);
   if (!emitters_.empty()) {
     emitter_of_.assign(instance_count, kNone);
     for (uint32_t i = 0; i < emitters_.size(); ++i)
@@ -28,11 +44,21 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
 }
 
 LightSet::Choice LightSet::choose(const Geometry &geometry, const LightQuery &query, double u) const {
-  const LightTree::Choice light = tree_.choose(query, u);
+  LightChoice light = few_.choose(query, u);
+  if (light.number == size() && light.probability > 0.0) {
+    const double of_many = light.probability;
+    light = many_.choose(query, light.u);
+    light.probability *= of_many;
+  }
   if (!(light.probability > 0.0) || light.number < lights_.size() || light.number - lights_.size() >= emitters_.size())
     return {light.number, 0, light.probability};
-  const LightTree::Choice face = emitters_[light.number - lights_.size()].choose_face(geometry, query, light.u);
+  const LightChoice face = emitters_[light.number - lights_.size()].choose_face(geometry, query, light.u);
   return {light.number, face.number, light.probability * face.probability};
+}
+
+double LightSet::probability(const LightQuery &query, uint32_t light) const {
+  const double of_many = many_.empty() ? 0.0 : many_.probability(query, light);
+  return of_many > 0.0 ? of_many * few_.probability(query, uint32_t(size())) : few_.probability(query, light);
 }
 
 double LightSet::probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const {
@@ -48,7 +74,8 @@ uint32_t LightSet::hidden_from(uint32_t light) const {
 }
 
 size_t LightSet::bytes() const {
-  size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) + emitter_of_.size() * sizeof(uint32_t) + tree_.bytes();
+  size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) + emitter_of_.size() * sizeof(uint32_t) + few_.bytes() +
+                 many_.bytes();
   std::set<const EmissiveFaces *> counted;
   for (const Emitter &emitter : emitters_) {
     bytes += sizeof(Emitter);

@@ -3,6 +3,7 @@
 
 #include "lights/emitter.h"
 #include "lights/environment.h"
+#include "lights/few_lights.h"
 
 namespace lancer {
 
@@ -30,7 +31,7 @@ public:
   // Chooses a light, and a face of it, by what the point may get from each. u in [0, 1); the set is not empty.
   Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
   // With which choose() returns this light; of an emitter, this face of it.
-  double probability(const LightQuery &query, uint32_t light) const { return tree_.probability(query, light); }
+  double probability(const LightQuery &query, uint32_t light) const;
   double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 
   // The emitter of an instance; null if it has none.
@@ -45,7 +46,9 @@ private:
   std::vector<Light> lights_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> with_extent_, emitter_of_;
-  LightTree tree_;
+  // Few lights are chosen from as in Cycles; of many, those with a place are one of the few.
+  FewLights few_;
+  LightTree many_;
   Environment environment_;
 };
 

@@ -1,5 +1,4 @@
-// Which light to ask at a point: a binary tree over lights, each choice weighted by what may arrive.
-// At each node the children's shares of the upper and of the lower bounds are averaged; so are those of the lights of a leaf.
+// Which of many lights to ask at a point: a tree of clusters, eight to a node, chosen by the most that may arrive from each.
 #pragma once
 
 #include "lights/tree_light.h"
@@ -8,62 +7,50 @@
 
 namespace lancer {
 
-// The most lights of a leaf.
-inline constexpr uint32_t kLeafLights = 8;
-
 class LightTree {
 public:
-  struct Choice {
-    uint32_t number = 0;
-    double probability = 0.0; // 0: no light can contribute
-    double u = 0.0;           // what is left of the random number, uniform in [0, 1)
-  };
-
   LightTree() = default;
-  // count: numbers are below it. Lights without energy are never chosen. Coordinates should be about 1024 at most.
+  // count: numbers are below it. Lights without energy are never chosen, and none is distant. Coordinates should be about 1024
+  // at most.
   LightTree(std::vector<DescribedLight> lights, uint32_t count);
 
-  bool empty() const { return lights_.empty(); }
-  size_t size() const { return lights_.size(); }
+  bool empty() const { return nodes_.empty(); }
   // Of all of it; energy in the user's units.
   const LightBounds &bounds() const { return bounds_; }
 
   // u in [0, 1): one number for the whole way down.
-  Choice choose(const LightQuery &query, double u) const;
+  LightChoice choose(const LightQuery &query, double u) const;
   // With which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
-  size_t bytes() const {
-    return lights_.size() * sizeof(TreeLight) + nodes_.size() * sizeof(Node) + (node_of_.size() + place_of_.size()) * 4;
-  }
+  size_t bytes() const { return nodes_.size() * (sizeof(Node) + sizeof(uint32_t)) + place_of_.size() * sizeof(uint32_t); }
 
 private:
-  // Children stand side by side from an even number on; a leaf holds a stretch of lights.
-  struct Node {
-    ClusterShape shape;
-    uint32_t first = 0;      // child, or light of a leaf
-    uint32_t count : 31 = 0; // lights of a leaf; 0: it has children
-    uint32_t distant : 1 = 0;
+  static constexpr int kWidth = 8;
+  static constexpr uint32_t kLight = 1u << 31;
+
+  // Of its children, side by side: they are weighed in vector registers.
+  struct alignas(64) Node {
+    float centre[3][kWidth] = {}, half[3][kWidth] = {}, axis[3][kWidth] = {};
+    float cos_o[kWidth] = {}, sin_o[kWidth] = {}, cos_all[kWidth] = {};
+    float energy[kWidth] = {};   // 0: no child
+    uint32_t child[kWidth] = {}; // a node, or kLight and the number of a light
+  };
+  struct Weights {
+    alignas(16) float most[kWidth];
+    double sum = 0.0;
   };
   struct Part {
-    uint32_t node, begin, end;
-    bool distant;
+    uint32_t begin, end, slot; // slot: of the parent, kWidth times its number and the child's
   };
 
-  Importance weigh(const LightQuery &query, uint32_t node) const;
-  // Of the two nodes of a pair; both 0 where neither can contribute.
-  glm::dvec2 shares(const LightQuery &query, uint32_t pair) const;
-  Choice choose_of_leaf(const LightQuery &query, const Node &node, double u) const;
-  double share_of_leaf(const LightQuery &query, const Node &node, uint32_t place) const;
-  void split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
+  static Weights weigh(const Node &node, const LightQuery &query);
+  void add_node(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
 
-  std::vector<Node> nodes_; // 0 and 1 are what is near and what is distant
-  std::vector<TreeLight> lights_;
-  std::vector<uint32_t> node_of_;  // of each light
-  std::vector<uint32_t> parent_;   // of each pair of nodes; unused for the first
-  std::vector<uint32_t> place_of_; // by number; kNone: never chosen
+  std::vector<Node> nodes_;        // 0 is the root
+  std::vector<uint32_t> slot_of_;  // of each node in its parent
+  std::vector<uint32_t> place_of_; // slot by number of light; kNone: never chosen
   LightBounds bounds_;
-  uint32_t root_ = 0; // the pair of 0 and 1 where both have lights: kNone
 };
 
 } // namespace lancer

@@ -1,5 +1,6 @@
 #include "lights/tree_light.h"
 
+#include "lights/float4.h"
 #include "sampling/color.h"
 
 #include <glm/gtc/constants.hpp>
@@ -63,58 +64,31 @@ Importance round_importance(const LightQuery &query, const TreeLight &light, con
   return importance(query, view, cone, cos_theta, std::max(light.energy * t * t * (3.0f - 2.0f * t), kLeastImportance));
 }
 
-// Takes a corner into the cone around view.to, at its distance, and returns how far it stands above the surface.
-float add_corner(const LightQuery &query, const glm::vec3 &corner, LightView &view, float &one_minus_cos) {
-  const float d2 = glm::dot(corner, corner);
-  const glm::vec3 apart = (d2 > 0.0f ? corner / std::sqrt(d2) : glm::vec3(0.0f)) - view.to;
-  one_minus_cos = std::max(one_minus_cos, 0.5f * glm::dot(apart, apart));
-  view.far2 = std::max(view.far2, d2);
-  return glm::dot(query.n, corner);
-}
-
-void set_angle(float one_minus_cos, LightView &view) {
-  view.cos_u = 1.0f - one_minus_cos;
-  view.sin_u = std::sqrt(std::max(0.0f, one_minus_cos * (2.0f - one_minus_cos)));
-}
+float largest_of(Float4 x) { return std::max(std::max(x[0], x[1]), std::max(x[2], x[3])); }
 
 Importance area_importance(const LightQuery &query, const TreeLight &light, const glm::vec3 &to, float d, const glm::vec3 &v) {
+  // Look at the four corners.
+  const Float4 along_u{1.0f, -1.0f, 1.0f, -1.0f}, along_v{1.0f, 1.0f, -1.0f, -1.0f};
+  const Float4 x = v.x + along_u * light.u.x + along_v * light.v.x, y = v.y + along_u * light.u.y + along_v * light.v.y,
+               z = v.z + along_u * light.u.z + along_v * light.v.z;
+  const Float4 d2 = x * x + y * y + z * z, per_d = 1.0f / sqrt4(larger4(d2, all4(kNearest2)));
+  const Float4 ax = x * per_d - to.x, ay = y * per_d - to.y, az = z * per_d - to.z, apart = ax * ax + ay * ay + az * az;
+  const Float4 above = query.n.x * x + query.n.y * y + query.n.z * z;
+  // |a - b|^2 = 2 (1 - cos): no cancellation however small the light.
+  const float one_minus_cos = 0.5f * largest_of(apart);
   LightView view;
   view.to = to;
-  view.near2 = view.far2 = d * d;
-  float one_minus_cos = 0.0f, above = glm::dot(query.n, v);
-  for (int corner = 0; corner < 4; ++corner)
-    above = std::max(above, add_corner(query, v + (corner & 1 ? light.u : -light.u) + (corner & 2 ? light.v : -light.v), view,
-                                       one_minus_cos));
-  set_angle(one_minus_cos, view);
+  view.near2 = d * d;
+  view.far2 = std::max(view.near2, largest_of(d2));
+  view.cos_u = 1.0f - one_minus_cos;
+  view.sin_u = std::sqrt(std::max(0.0f, one_minus_cos * (2.0f - one_minus_cos)));
   const float facing = glm::dot(light.axis, to), slack = kCosineSlack * std::sqrt(view.far2);
-  if (!query.transmits && !(facing < kCosineSlack && above > -slack))
+  if (!query.transmits && !(facing < kCosineSlack && largest_of(above) > -slack))
     return {};
   ShineCone cone;
   cone.axis = light.axis;
   cone.cos_all = cone.cos_full = light.cos_e;
   return importance(query, view, cone, -facing, light.energy);
-}
-
-Importance triangle_importance(const LightQuery &query, const TreeLight &light, const glm::vec3 &to, float d,
-                               const glm::vec3 &v) {
-  LightView view;
-  view.to = to;
-  view.near2 = view.far2 = d * d;
-  float one_minus_cos = 0.0f;
-  float above = add_corner(query, v + light.u, view, one_minus_cos);
-  above = std::max(above, add_corner(query, v + light.v, view, one_minus_cos));
-  above = std::max(above, add_corner(query, v - light.u - light.v, view, one_minus_cos));
-  set_angle(one_minus_cos, view);
-  if (!query.transmits && !(above > -kCosineSlack * std::sqrt(view.far2)))
-    return {};
-  // Both sides shine: normals anywhere around a direction of the plane.
-  ShineCone cone;
-  cone.axis = light.axis;
-  cone.cos_o = 0.0f;
-  cone.sin_o = 1.0f;
-  cone.cos_all = -2.0f;
-  cone.cos_full = 1.0f;
-  return importance(query, view, cone, -glm::dot(light.axis, to), light.energy);
 }
 
 } // namespace
@@ -146,8 +120,6 @@ Importance importance(const LightQuery &query, const TreeLight &light) {
   const glm::vec3 to = d > 0.0f ? v / d : glm::vec3(0.0f);
   if (light.kind == TreeLight::Kind::Area)
     return area_importance(query, light, to, d, v);
-  if (light.kind == TreeLight::Kind::Triangle)
-    return triangle_importance(query, light, to, d, v);
   return round_importance(query, light, to, d);
 }
 
@@ -234,22 +206,14 @@ DescribedLight describe_sky(double mean, uint32_t number) {
 }
 
 DescribedLight describe_triangle(const glm::dvec3 (&corners)[3], double energy, uint32_t number) {
-  DescribedLight result;
-  TreeLight &known = result.light;
-  known.kind = TreeLight::Kind::Triangle;
-  known.number = number;
-  known.centre = (corners[0] + corners[1] + corners[2]) / 3.0;
-  const glm::dvec3 side = corners[0] - corners[1];
-  const double length = glm::length(side);
-  const glm::dvec3 axis = length > 0.0 ? side / length : glm::dvec3(0.0, 0.0, 1.0);
-  known.axis = glm::vec3(axis);
-  known.u = glm::vec3(corners[0] - known.centre);
-  known.v = glm::vec3(corners[1] - known.centre);
+  LightBounds bounds;
   for (const glm::dvec3 &corner : corners)
-    result.bounds.grow(corner);
-  result.bounds.cone = {axis, 0.5 * kPi, 0.5 * kPi};
-  result.bounds.energy = energy;
-  return result;
+    bounds.grow(corner);
+  // Both sides shine: as in Cycles, any direction of the plane stands for that.
+  const glm::dvec3 side = corners[0] - corners[1];
+  bounds.cone = {glm::length(side) > 0.0 ? glm::normalize(side) : glm::dvec3(0.0, 0.0, 1.0), 0.5 * kPi, 0.5 * kPi};
+  bounds.energy = energy;
+  return describe_cluster(bounds, number);
 }
 
 DescribedLight describe_cluster(const LightBounds &bounds, uint32_t number) {

@@ -7,6 +7,13 @@
 
 namespace lancer {
 
+// A light, or a face of one, that was chosen.
+struct LightChoice {
+  uint32_t number = 0;      // as the tree's user counts
+  double probability = 0.0; // 0: no light can contribute
+  double u = 0.0;           // what is left of the random number, uniform in [0, 1)
+};
+
 // A box of lights. A distant one lies beyond everything, towards -axis.
 struct ClusterShape {
   glm::vec3 centre{0.0f}, half{0.0f};
@@ -15,16 +22,16 @@ struct ClusterShape {
 };
 
 struct TreeLight {
-  enum class Kind : uint32_t { Disk, Ball, Area, Triangle, Sun, Sky, Cluster };
+  enum class Kind : uint32_t { Disk, Ball, Area, Sun, Sky, Cluster };
 
   Kind kind = Kind::Disk;
   bool spot = false;
   uint32_t number = 0; // as the tree's user counts
   float energy = 0.0f; // relative to the brightest of the tree
   glm::dvec3 centre{0.0};
-  // Disk, Ball of a spot; Area: direction of light. Sun: the other way. Triangle: any direction of its plane.
+  // Disk, Ball of a spot; Area: direction of light. Sun: the other way.
   glm::vec3 axis{0, 0, 1};
-  glm::vec3 u{0.0f}, v{0.0f};       // Area: half its sides; Triangle: two corners, from the centre; Cluster: u is half of it
+  glm::vec3 u{0.0f}, v{0.0f};       // Area: half its sides; Cluster: u is half of it
   float radius = 0.0f;              // Disk, Ball
   float cos_e = 0.0f, blend = 0.0f; // Disk, Ball of a spot: end and width of its rim; Area, Sun: cos_e
   ShineCone cone;                   // Cluster
@@ -34,6 +41,9 @@ struct TreeLight {
 struct DescribedLight {
   TreeLight light;
   LightBounds bounds; // energy in the user's units
+
+  // Beyond everything, without a place.
+  bool distant() const { return light.kind == TreeLight::Kind::Sun || light.kind == TreeLight::Kind::Sky; }
 };
 
 DescribedLight describe(const Light &light, uint32_t number);
