@@ -215,24 +215,24 @@ void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, Samp
 
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result) {
-  if (scene_.lights.with_extent().empty())
+  if (!scene_.lights.any_on_the_way())
     return;
   // Look from the last scattering, as sampling does, at what lies on this stretch of the way.
   const double length = glm::length(ray.d);
   const double begin = path.passed + ray.tmin * length, end = path.passed + std::min(t, ray.tmax) * length;
   const glm::dvec3 wi = ray.d / length;
-  for (uint32_t number : scene_.lights.with_extent()) {
+  scene_.lights.on_the_way(path.from, wi, end, [&](uint32_t number) {
     const Light &light = scene_.lights.lights()[number];
     if (!(path.kinds & ~light.hidden_from))
-      continue;
+      return;
     const LightHit met = meet(light, path.from, wi);
     // A sun lies behind all surfaces, wherever the view ends.
     const bool here = std::isinf(met.distance) ? std::isinf(t) : met.distance >= begin && met.distance < end;
     if (!(met.pdf > 0.0) || !here)
-      continue;
+      return;
     const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(query(path), number)) : 1.0f;
     add(path, result, path.beta * met.radiance * weight, false);
-  }
+  });
 }
 
 template <uint32_t Shapes, bool Layers>

@@ -4,6 +4,8 @@
 #include "lights/emitter.h"
 #include "lights/environment.h"
 #include "lights/few_lights.h"
+#include "lights/light_finder.h"
+#include "lights/light_tree.h"
 
 namespace lancer {
 
@@ -38,17 +40,24 @@ public:
   const Emitter *emitter_of(uint32_t instance) const {
     return emitter_of_.empty() || emitter_of_[instance] == kNone ? nullptr : &emitters_[emitter_of_[instance]];
   }
-  // Lights as described that a ray can run into.
-  const std::vector<uint32_t> &with_extent() const { return with_extent_; }
+  // Whether a ray can run into a light as described.
+  bool any_on_the_way() const { return !always_.empty() || !finder_.empty(); }
+  // Calls visit(number) for those that may lie on the way from o along the unit wi, up to the distance end.
+  template <class Visit> void on_the_way(const glm::dvec3 &o, const glm::dvec3 &wi, double end, Visit &&visit) const {
+    for (const uint32_t number : always_)
+      visit(number);
+    finder_.along(o, wi, end, visit);
+  }
   size_t bytes() const;
 
 private:
   std::vector<Light> lights_;
   std::vector<Emitter> emitters_;
-  std::vector<uint32_t> with_extent_, emitter_of_;
+  std::vector<uint32_t> always_, emitter_of_;
   // Few lights are chosen from as in Cycles; of many, those with a place are one of the few.
   FewLights few_;
   LightTree many_;
+  LightFinder finder_;
   Environment environment_;
 };
 
