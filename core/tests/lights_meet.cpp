@@ -55,8 +55,46 @@ TEST(Lights, ALightThatIsNeverChosenIsNeverMet) {
   Light spot = ball(0.1, true);
   spot.kind = LightKind::Spot;
   spot.cos_half_angle = 1.0;
-  const LightSet lights({spot}, {}, 0, Environment(), 100.0);
-  EXPECT_TRUE(lights.with_extent().empty());
+  const LightSet lights({spot}, {}, 0, Environment());
+  EXPECT_FALSE(lights.any_on_the_way());
+}
+
+TEST(Lights, ManyAreMetAsOneByOne) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<Light> lights;
+  for (int i = 0; i < 300; ++i) {
+    Light light = ball(20.0 * std::abs(uniform(random)) + 1e-3, i % 2);
+    light.position = 400.0 * glm::dvec3(uniform(random), uniform(random), uniform(random));
+    if (i % 3 == 0) {
+      light.kind = LightKind::Area;
+      light.half_x = light.radius;
+      light.half_y = 0.5 * light.radius;
+      light.area = 4.0 * light.half_x * light.half_y;
+      light.ellipse = i % 2;
+    }
+    lights.push_back(light);
+  }
+  const LightSet set(lights, {}, 0, Environment());
+  int met = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const glm::dvec3 o = 500.0 * glm::dvec3(uniform(random), uniform(random), uniform(random));
+    // Aim at lights, and along the axes, where a slab of the boxes is parallel.
+    glm::dvec3 wi = glm::normalize(lights[size_t(i) % 300].position + 20.0 * glm::dvec3(uniform(random)) - o);
+    if (i % 5 == 0)
+      wi = i % 2 ? glm::dvec3(0.0, -1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+    const double end = 600.0 * std::abs(uniform(random));
+    std::vector<bool> candidates(300);
+    set.on_the_way(o, wi, end, [&](uint32_t number) { candidates[number] = true; });
+    for (size_t k = 0; k < 300; ++k) {
+      const LightHit hit = meet(lights[k], o, wi);
+      if (!(hit.pdf > 0.0) || !(hit.distance < end))
+        continue;
+      ++met;
+      EXPECT_TRUE(candidates[k]);
+    }
+  }
+  EXPECT_GT(met, 1000);
 }
 
 TEST(Lights, ATinyDiskIsAPoint) {

@@ -6,6 +6,11 @@ namespace lancer {
 
 namespace {
 
+bool lets_through(const Lobe &lobe) {
+  return (lobe.shape == LobeShape::Microfacet && refracts(lobe)) || lobe.shape == LobeShape::Dielectric ||
+         (lobe.shape == LobeShape::Matte && lobe.variant == static_cast<uint8_t>(Matte::Translucent));
+}
+
 bool scatters_beyond_albedo(const Lobe &lobe) {
   return lobe.shape == LobeShape::Microfacet && !reflects(lobe) && !lobe.delta && !lobe.delta_through;
 }
@@ -31,12 +36,13 @@ void Bsdf::begin(const glm::vec3 &wo_, const glm::vec3 &ns_, const glm::vec3 &ng
 void Bsdf::complete() {
   // Lobes are picked by the light that they are expected to scatter.
   float sum = 0.0f;
-  smooth = false;
+  smooth = transmits = false;
   for (int i = 0; i < count; ++i) {
     // The albedo of rough refraction is that of the smooth surface, which may reflect all where tilted facets do not.
     const glm::vec3 &expected = scatters_beyond_albedo(lobes[i]) ? lobes[i].color : lobes[i].albedo;
     sum += lobes[i].probability = std::max({expected.x, expected.y, expected.z, 0.0f});
     smooth = smooth || !lobes[i].delta;
+    transmits = transmits || lets_through(lobes[i]);
   }
   for (int i = 0; i < count; ++i)
     lobes[i].probability = sum > 0.0f ? lobes[i].probability / sum : 0.0f;

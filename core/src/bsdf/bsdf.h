@@ -51,10 +51,11 @@ struct Bsdf {
   glm::vec3 wo{0, 0, 1}, ns{0, 0, 1}, ng{0, 0, 1};
   bool inside = false;
   bool bump_correction = true;
-  bool flat = true;    // ns is ng
-  bool smooth = false; // some lobe is more than single directions; set by complete()
-  bool shares = true;  // samples say their shares by component
-  uint32_t shapes = 0; // shape_bit of the lobes that are there
+  bool flat = true;       // ns is ng
+  bool smooth = false;    // some lobe is more than single directions; set by complete()
+  bool transmits = false; // some lobe lets light through; set by complete()
+  bool shares = true;     // samples say their shares by component
+  uint32_t shapes = 0;    // shape_bit of the lobes that are there
   int frame_count = 0;
   int count = 0;
   glm::vec3 emission{0.0f}; // what layered lobes emit towards wo

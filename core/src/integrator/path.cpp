@@ -218,31 +218,32 @@ void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, Samp
   const glm::dvec3 wi = glm::normalize(ray.d);
   float weight = 1.0f;
   if (path.pdf > 0.0)
-    weight = mis_weight(path.pdf, environment.pdf(wi) * scene_.lights.probability(scene_.lights.environment_light()));
+    weight =
+        mis_weight(path.pdf, environment.pdf(wi) * scene_.lights.probability(query(path), scene_.lights.environment_light()));
   const glm::dvec3 *eye = path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr;
   add(path, result, path.beta * environment.radiance(wi, shader_.values(), &camera_, eye) * weight, true);
 }
 
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result) {
-  if (scene_.lights.with_extent().empty())
+  if (!scene_.lights.any_on_the_way())
     return;
   // Look from the last scattering, as sampling does, at what lies on this stretch of the way.
   const double length = glm::length(ray.d);
   const double begin = path.passed + ray.tmin * length, end = path.passed + std::min(t, ray.tmax) * length;
   const glm::dvec3 wi = ray.d / length;
-  for (uint32_t number : scene_.lights.with_extent()) {
+  scene_.lights.on_the_way(path.from, wi, end, [&](uint32_t number) {
     const Light &light = scene_.lights.lights()[number];
     if (!(path.kinds & ~light.hidden_from))
-      continue;
+      return;
     const LightHit met = meet(light, path.from, wi);
     // A sun lies behind all surfaces, wherever the view ends.
     const bool here = std::isinf(met.distance) ? std::isinf(t) : met.distance >= begin && met.distance < end;
     if (!(met.pdf > 0.0) || !here)
-      continue;
-    const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(number)) : 1.0f;
+      return;
+    const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(query(path), number)) : 1.0f;
     add(path, result, path.beta * met.radiance * weight, false);
-  }
+  });
 }
 
 template <uint32_t Shapes, bool Layers>
@@ -251,11 +252,10 @@ void PathIntegrator<Shapes, Layers>::add_emission(const Path &path, const Surfac
   if (emission == glm::vec3(0.0f))
     return;
   float weight = 1.0f;
-  const uint32_t light = scene_.lights.emitter_light(surface.instance);
-  if (path.pdf > 0.0 && light != kNone) {
-    const Emitter &emitter = scene_.lights.emitters()[light - scene_.lights.lights().size()];
-    const double pdf = emitter.pdf(scene_.geometry, scene_.materials, path.from, surface);
-    weight = mis_weight(path.pdf, pdf * scene_.lights.probability(light));
+  const Emitter *emitter = path.pdf > 0.0 ? scene_.lights.emitter_of(surface.instance) : nullptr;
+  if (emitter) {
+    const double pdf = emitter->face_pdf(scene_.geometry, path.from, surface);
+    weight = mis_weight(path.pdf, pdf * scene_.lights.probability(scene_.geometry, query(path), *emitter, surface.primitive));
   }
   add(path, result, path.beta * emission * weight, false);
 }
@@ -275,12 +275,14 @@ void PathIntegrator<Shapes, Layers>::record(Path &path, const Surface &surface, 
 
 // A light and a point of it, with the probability of both in pdf.
 template <uint32_t Shapes, bool Layers>
-LightSample PathIntegrator<Shapes, Layers>::ask_light(const Surface &surface, const VertexNumbers &u, uint32_t &number) {
-  const LightSet::Choice choice = scene_.lights.choose(u[kVertexLightChoice]);
+LightSample PathIntegrator<Shapes, Layers>::ask_light(const Surface &surface, const VertexNumbers &u,
+                                                      LightSet::Choice &choice) {
+  const LightQuery here(surface.p, point_.bsdf.ns, point_.bsdf.transmits);
+  const double u_choice = double(u[kVertexLightChoice]) + 0x1p-24 * double(u[kVertexLightDigits]);
+  choice = scene_.lights.choose(scene_.geometry, here, u_choice);
   if (!(choice.probability > 0.0))
     return {};
-  number = choice.light;
-  LightSample light = sample_scene_light(scene_, choice.light, surface.p, {u[kVertexLight], u[kVertexLight + 1]}, shader_);
+  LightSample light = sample_scene_light(scene_, choice, surface.p, {u[kVertexLight], u[kVertexLight + 1]}, shader_);
   if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
     return {};
   light.pdf *= choice.probability;
@@ -302,13 +304,13 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
                                                   const VertexNumbers &u) {
   if (scene_.lights.empty() || !point_.bsdf.smooth)
     return;
-  uint32_t number = 0;
-  const LightSample light = ask_light(surface, u, number);
+  LightSet::Choice choice;
+  const LightSample light = ask_light(surface, u, choice);
   if (!(light.pdf > 0.0))
     return;
   // Ask the surface how much of it goes towards the viewer, without what the light is hidden from.
   BsdfValue value = point_.bsdf.template eval_lit<Shapes>(glm::vec3(light.wi));
-  const uint32_t hidden = scene_.lights.hidden_from(number);
+  const uint32_t hidden = scene_.lights.hidden_from(choice.light);
   if (hidden & LANCER_RAY_DIFFUSE)
     value.part[size_t(Component::Diffuse)] = glm::vec3(0.0f);
   if (hidden & LANCER_RAY_GLOSSY)
@@ -326,7 +328,7 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
     for (size_t component = 0; component < 2; ++component)
       waiting.share[component] = path.in_view ? divided(value.part[component], f) : path.share[component];
   }
-  send_shadow(path, surface, point_.bsdf.ns, point_.bsdf.ng, light, number, waiting, contribution);
+  send_shadow(path, surface, point_.bsdf.ns, point_.bsdf.ng, light, choice.light, waiting, contribution);
 }
 
 // The record of a surface that kernels of many lanes shade; null for the others.
@@ -476,7 +478,12 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     block_.light_delta[lane] = block_.light_hidden[lane] = 0;
     if (lane >= waiting_count_ || waiting_[lane].ends || scene_.lights.empty())
       continue;
-    const LightSet::Choice choice = scene_.lights.choose(block_.u[kVertexLightChoice][lane]);
+    // Seen from the viewer's side, as the light comes.
+    const glm::vec3 ns = get(block_.ns, lane);
+    const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
+    const LightQuery here(get(block_.p, lane), behind ? -ns : ns, false);
+    const double u = double(block_.u[kVertexLightChoice][lane]) + 0x1p-24 * double(block_.u[kVertexLightDigits][lane]);
+    const LightSet::Choice choice = scene_.lights.choose(scene_.geometry, here, u);
     if (!(choice.probability > 0.0))
       continue;
     waiting_[lane].light = choice.light;
@@ -487,7 +494,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
       block_.asked |= 1u << lane;
       continue;
     }
-    const LightSample light = sample_scene_light(scene_, choice.light, get(block_.p, lane),
+    const LightSample light = sample_scene_light(scene_, choice, get(block_.p, lane),
                                                  {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]}, shader_);
     if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
       continue;
@@ -579,6 +586,8 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
   path.beta = get(block_.beta, lane);
   path.pdf = block_.pdf[lane];
   path.from = get(block_.p, lane);
+  path.normal = get(block_.viewer_ns, lane);
+  path.transmits = false;
   path.kinds = block_.glossy >> lane & 1 ? LANCER_RAY_GLOSSY : LANCER_RAY_DIFFUSE;
   path.layers = 0;
   path.passed = 0.0;
@@ -646,6 +655,8 @@ bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface,
   path.beta *= sample.weight / float(1.0 - pass);
   path.pdf = sample.delta ? 0.0 : double(sample.pdf) * (1.0 - pass);
   path.from = surface.p;
+  path.normal = point_.bsdf.ns;
+  path.transmits = point_.bsdf.transmits;
   path.kinds = ray_kind(sample);
   path.layers = 0;
   path.passed = 0.0;

@@ -33,9 +33,11 @@ private:
   struct Path {
     Sampler sampler;
     glm::vec3 beta{1.0f};
-    glm::dvec3 from{0.0}; // last scattering point
-    double pdf = 0.0;     // of the BSDF sample that made the ray; 0 after the camera or a single direction
-    uint32_t slot;        // of its result
+    glm::dvec3 from{0.0};   // last scattering point
+    glm::vec3 normal{0.0f}; // there, and whether light may come through: what light samples are chosen by
+    bool transmits = false;
+    double pdf = 0.0; // of the BSDF sample that made the ray; 0 after the camera or a single direction
+    uint32_t slot;    // of its result
     uint32_t scatterings = 0;
     uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
     uint32_t layers = 0;                // passed straight through since the last scattering
@@ -59,6 +61,8 @@ private:
     glm::vec3 emission, transmittance;
   };
 
+  // As the last scattering asked for light.
+  static LightQuery query(const Path &path) { return LightQuery(path.from, path.normal, path.transmits); }
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   const WideMaterial *for_lanes(uint32_t material, uint32_t instance) const;
   void put_in_lane(size_t number, uint32_t material, const WideMaterial &wide, std::span<SampleResult> results);
@@ -77,7 +81,7 @@ private:
   void add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result);
   void add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission, SampleResult &result);
   void record(Path &path, const Surface &surface, double t, SampleResult &result);
-  LightSample ask_light(const Surface &surface, const VertexNumbers &u, uint32_t &number);
+  LightSample ask_light(const Surface &surface, const VertexNumbers &u, LightSet::Choice &choice);
   void send_shadow(const Path &path, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng, const LightSample &light,
                    uint32_t number, const WaitingLight &waiting, const glm::vec3 &contribution);
   void sample_light(const Path &path, const Surface &surface, double pass, const VertexNumbers &u);

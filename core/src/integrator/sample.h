@@ -114,6 +114,7 @@ enum VertexDimension : uint32_t {
   kVertexLightChoice = 4,
   kVertexLobe = 5,
   kVertexRoulette = 6,
+  kVertexLightDigits = 7, // more digits of the choice: a million faces need them
   kVertexStride = 8
 };
 // Layers of opacity at one vertex have numbers of their own, far behind the others.

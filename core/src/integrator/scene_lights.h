@@ -5,7 +5,10 @@
 
 namespace lancer {
 
-// light is a number of scene.lights; see LightSample.
+// choice: of scene.lights; see LightSample. pdf is that of the point once light and face are chosen.
+LightSample sample_scene_light(const Scene &scene, const LightSet::Choice &choice, const glm::dvec3 &p, const glm::vec2 &u,
+                               Shader &shader);
+// All of a light by itself, number light of scene.lights: of an emitter, a face by its power.
 LightSample sample_scene_light(const Scene &scene, uint32_t light, const glm::dvec3 &p, const glm::vec2 &u, Shader &shader);
 
 } // namespace lancer

@@ -1,7 +1,6 @@
 #include "lights/emitter.h"
 
 #include "accel/quadric.h"
-#include "sampling/color.h"
 #include "sampling/warp.h"
 
 #include <cmath>
@@ -9,10 +8,6 @@
 namespace lancer {
 
 namespace {
-
-bool sampled(const Material &material) { return material.emits() && !(material.flags & LANCER_MATERIAL_NOT_A_LIGHT); }
-
-bool varies(const Material &material) { return material.emission.varies() || material.layered_emission; }
 
 double face_area(const Geometry &geometry, const Instance &instance, uint32_t face) {
   const Mesh &mesh = geometry.meshes[instance.mesh];
@@ -86,111 +81,64 @@ Surface part_point(const Geometry &geometry, const std::vector<uint32_t> &slots,
   return surface_at(geometry, slots, ray, hit);
 }
 
-// Seen straight on, from the brighter side.
-double brightness_at(const EmissionAt &emission, const Surface &surface) {
-  const double both = std::max(brightest(emission(surface, surface.ng)), brightest(emission(surface, -surface.ng)));
-  return std::isfinite(both) ? both : 0.0;
-}
-
-// Where a face is looked at: middle, and halfway from there to each corner.
-constexpr double kLooks[4][2] = {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}};
-// What a face counts for at least, as a share of the mean over all: a texture may shine between the looks.
-constexpr double kLeastShare = 0.05;
-
 } // namespace
+
+Emitter::Emitter(const Geometry &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces)
+    : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from),
+      bounds_(faces->bounds(geometry.instances[instance])), faces_(std::move(faces)) {}
 
 Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
                  uint32_t instance, const EmissionAt &emission)
     : instance_(instance), hidden_from_(geometry.instances[instance].hidden_from) {
-  const ShapeKind kind = geometry.instances[instance].kind;
-  if (kind == ShapeKind::Mesh)
-    add_faces(geometry, slots, materials, emission);
-  else if (kind != ShapeKind::Plane)
-    add_parts(geometry, slots, materials, emission);
-}
-
-void Emitter::add_faces(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
-                        const EmissionAt &emission) {
-  const Instance &placed = geometry.instances[instance_];
-  const uint32_t faces = uint32_t(geometry.meshes[placed.mesh].triangles.size());
-  std::vector<double> weights(faces);
-  std::vector<bool> textured(faces);
-  double looked_at = 0.0, seen = 0.0;
-  for (uint32_t face = 0; face < faces; ++face) {
-    const uint32_t number = material_of(geometry, slots, instance_, face);
-    if (number == kNone || !sampled(materials[number]))
-      continue;
-    const Material &material = materials[number];
-    const double area = face_area(geometry, placed, face);
-    double level = brightest(material.emission.value);
-    if (varies(material)) {
-      // Look at a few points; at one where nothing but the direction matters.
-      const bool by_nodes = !material.emission_nodes.empty();
-      level = 0.0;
-      const int looks = by_nodes ? 4 : 1;
-      for (int i = 0; i < looks; ++i)
-        level += brightness_at(emission, face_point(geometry, slots, instance_, face, {kLooks[i][0], kLooks[i][1]})) / looks;
-      brightness_.resize(faces);
-      brightness_[face] = float(level);
-      textured[face] = by_nodes;
-      looked_at += by_nodes ? area : 0.0;
-      seen += by_nodes ? level * area : 0.0;
-    }
-    weights[face] = level * area;
-  }
-  // Give the dark faces of a texture their least share.
-  const double least = looked_at > 0.0 ? kLeastShare * seen / looked_at : 0.0;
-  for (uint32_t face = 0; face < faces; ++face) {
-    if (textured[face] && double(brightness_[face]) < least) {
-      brightness_[face] = float(least);
-      weights[face] = double(brightness_[face]) * face_area(geometry, placed, face);
-    }
-    weight_ += weights[face];
-  }
-  if (weight_ > 0.0)
-    faces_ = WeightedChoice(weights);
-}
-
-void Emitter::add_parts(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
-                        const EmissionAt &emission) {
   const Instance &placed = geometry.instances[instance_];
   const uint32_t number = material_of(geometry, slots, instance_, 0);
-  if (number == kNone || !sampled(materials[number]))
+  if (placed.kind == ShapeKind::Plane || number == kNone || !is_light(materials[number]))
     return;
-  double level = brightest(materials[number].emission.value);
-  if (varies(materials[number])) {
+  double level = emission_level(materials[number].emission.value);
+  if (emission_varies(materials[number])) {
     // Look at 8 x 8 points of the curved side; the parts are covered evenly whatever is seen.
     level = 0.0;
     for (int i = 0; i < 64; ++i) {
       const glm::vec2 u((float(i % 8) + 0.5f) / 8.0f, (float(i / 8) + 0.5f) / 8.0f);
-      level += brightness_at(emission, part_point(geometry, slots, instance_, 0, u)) / 64.0;
+      level += emission_level(emission, part_point(geometry, slots, instance_, 0, u)) / 64.0;
     }
   }
   // Parts are weighted by their unit areas; the density accounts for what the map does to them.
   std::vector<double> weights;
   for (int part = 0; part < 3; ++part)
     weights.push_back(part_area(placed.kind, part));
-  weight_ = level * part_area(placed.kind, 0) * std::pow(std::abs(glm::determinant(placed.to_world.linear)), 2.0 / 3.0);
-  if (weight_ > 0.0)
-    faces_ = WeightedChoice(weights);
+  parts_ = WeightedChoice(weights);
+  // Light goes anywhere from the box of the shape.
+  for (int corner = 0; corner < 8; ++corner)
+    bounds_.grow(placed.to_world.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
+  bounds_.cone = {{0.0, 0.0, 1.0}, glm::pi<double>(), glm::half_pi<double>()};
+  bounds_.energy = level * part_area(placed.kind, 0) * std::pow(std::abs(glm::determinant(placed.to_world.linear)), 2.0 / 3.0);
 }
 
-double Emitter::brightness(const Material &material, uint32_t face) const {
-  if (!sampled(material))
-    return 0.0;
-  return varies(material) ? double(brightness_[face]) : brightest(material.emission.value);
+LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p,
+                            const glm::vec2 &u, Surface &surface) const {
+  if (!faces_)
+    return sample_face(geometry, slots, 0, p, u, surface);
+  // What is left of the number places the point on the face.
+  const auto choice = faces_->by_power().sample(u.x);
+  LightSample sample = sample_face(geometry, slots, choice.index, p, {choice.u, u.y}, surface);
+  sample.pdf *= double(choice.pmf);
+  return sample;
 }
 
-LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                            const std::vector<Material> &materials, const glm::dvec3 &p, const glm::vec2 &u,
-                            Surface &surface) const {
-  // Choose a face; what is left of the number places the point on it.
-  const auto choice = faces_.sample(u.x);
-  const glm::vec2 rest(choice.u, u.y);
-  if (geometry.instances[instance_].kind == ShapeKind::Mesh)
-    surface = face_point(geometry, slots, instance_, choice.index, glm::dvec2(warp_triangle(rest)));
-  else
-    surface = part_point(geometry, slots, instance_, int(choice.index), rest);
+double Emitter::pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const {
+  const double pdf = face_pdf(geometry, p, surface);
+  return faces_ ? double(faces_->by_power().pmf(surface.primitive)) * pdf : pdf;
+}
+
+LightSample Emitter::sample_face(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t face,
+                                 const glm::dvec3 &p, const glm::vec2 &u, Surface &surface) const {
+  if (faces_) {
+    surface = face_point(geometry, slots, instance_, face, glm::dvec2(warp_triangle(u)));
+  } else {
+    const auto part = parts_.sample(u.x);
+    surface = part_point(geometry, slots, instance_, int(part.index), {part.u, u.y});
+  }
 
   LightSample sample;
   const glm::dvec3 v = surface.p - p;
@@ -201,29 +149,25 @@ LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t
   // End on the side that p sees, off the surface by its own bound.
   const double side = glm::dot(glm::dvec3(surface.ng), sample.wi) < 0.0 ? 1.0 : -1.0;
   sample.target = surface.p + (side * surface.offset) * glm::dvec3(surface.ng);
-  sample.pdf = pdf(geometry, materials, p, surface);
+  sample.pdf = face_pdf(geometry, p, surface);
   return sample;
 }
 
-double Emitter::pdf(const Geometry &geometry, const std::vector<Material> &materials, const glm::dvec3 &p,
-                    const Surface &surface) const {
+double Emitter::face_pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const {
   const Instance &placed = geometry.instances[instance_];
   const glm::dvec3 v = surface.p - p;
   const double d2 = glm::dot(v, v), cosine = std::abs(glm::dot(glm::dvec3(surface.ng), v)) / std::sqrt(d2);
-  if (!(cosine > 0.0) || !(d2 > 0.0) || surface.material == kNone || !(weight_ > 0.0))
+  if (!(cosine > 0.0) || !(d2 > 0.0) || empty())
     return 0.0;
-  double per_area;
-  if (placed.kind == ShapeKind::Mesh) {
-    // A face is chosen by emission times area and covered evenly: its area cancels.
-    per_area = brightness(materials[surface.material], surface.primitive) / weight_;
+  double area = 0.0;
+  if (faces_) {
+    area = face_area(geometry, placed, surface.primitive);
   } else {
-    double unit_area = 0.0;
     for (int part = 0; part < 3; ++part)
-      unit_area += part_area(placed.kind, part);
-    const glm::dvec3 n = glm::normalize(glm::transpose(placed.to_world.linear) * glm::dvec3(surface.ng));
-    per_area = 1.0 / (unit_area * area_scale(placed, n));
+      area += part_area(placed.kind, part);
+    area *= area_scale(placed, glm::normalize(glm::transpose(placed.to_world.linear) * glm::dvec3(surface.ng)));
   }
-  return per_area * d2 / cosine;
+  return d2 / (cosine * area);
 }
 
 } // namespace lancer

@@ -1,29 +1,14 @@
 #include "lights/light_set.h"
 
-#include "sampling/color.h"
-
 #include <algorithm>
+#include <set>
 
 namespace lancer {
 
 namespace {
 
-// Rough power in normalised units: only the choice of lights depends on it, never the picture.
-double power(const Light &light, double scene_radius) {
-  constexpr double pi = glm::pi<double>();
-  const double e = brightest(light.emission);
-  switch (light.kind) {
-  case LightKind::Point:
-    return 4.0 * pi * e;
-  case LightKind::Spot:
-    return 2.0 * pi * (1.0 - light.cos_half_angle) * e;
-  case LightKind::Sun:
-    return pi * scene_radius * scene_radius * e;
-  case LightKind::Area:
-    return pi * light.area * e;
-  }
-  return 0.0;
-}
+// As many lights with a place are chosen from as in Cycles, which costs more for each and leaves more noise.
+constexpr size_t kFew = 4;
 
 void copy(const glm::dvec3 &from, double (&to)[3]) {
   for (int i = 0; i < 3; ++i)
@@ -56,45 +41,72 @@ WideLamp make_wide(const Light &light) {
 
 } // namespace
 
-LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
-                   double radius)
+LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment)
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
-  std::vector<double> powers;
-  for (const Light &light : lights_) {
-    powers.push_back(power(light, radius));
+  for (const Light &light : lights_)
     wide_lamps_.push_back(make_wide(light));
-  }
-  for (const Emitter &emitter : emitters_)
-    powers.push_back(2.0 * glm::pi<double>() * emitter.weight());
-  // Beyond the scene's bounds nothing is lit: what passes through their disk from all directions.
-  if (environment_.varies())
-    powers.push_back(4.0 * glm::pi<double>() * environment_.mean() * glm::pi<double>() * radius * radius);
-  double total = 0.0;
-  size_t shining = 0;
-  for (double p : powers) {
-    total += p;
-    shining += p > 0.0;
-  }
-  // Half of the choice by power, half evenly among the lights that shine: power knows nothing of distance.
-  if (total > 0.0) {
-    for (double &p : powers)
-      p = p > 0.0 ? 0.5 * p / total + 0.5 / double(shining) : 0.0;
-    choice_ = WeightedChoice(powers);
-  }
-  // One that is never chosen is never met either: both techniques know the same lights.
+  std::vector<DescribedLight> described;
+  described.reserve(size());
   for (uint32_t i = 0; i < lights_.size(); ++i)
-    if (has_extent(lights_[i]) && powers[i] > 0.0)
-      with_extent_.push_back(i);
+    described.push_back(describe(lights_[i], i));
+  for (const Emitter &emitter : emitters_)
+    described.push_back(describe_cluster(emitter.bounds(), uint32_t(described.size())));
+  if (environment_.varies())
+    described.push_back(describe_sky(environment_.mean(), environment_light()));
+  // One that is never chosen is never met either: both techniques know the same lights.
+  std::vector<LightFinder::Box> boxes;
+  for (uint32_t i = 0; i < lights_.size(); ++i) {
+    if (!has_extent(lights_[i]) || !(described[i].bounds.energy > 0.0))
+      continue;
+    if (described[i].distant())
+      always_.push_back(i);
+    else
+      boxes.push_back({described[i].bounds.low, described[i].bounds.high, i});
+  }
+  // A few are asked one by one.
+  if (boxes.size() <= kFew)
+    for (const LightFinder::Box &box : boxes)
+      always_.push_back(box.light);
+  else
+    finder_ = LightFinder(std::move(boxes));
+  const uint32_t count = uint32_t(size());
+  std::vector<DescribedLight> near;
+  std::copy_if(described.begin(), described.end(), std::back_inserter(near),
+               [](const DescribedLight &light) { return !light.distant() && light.bounds.energy > 0.0; });
+  if (near.size() > kFew) {
+    std::erase_if(described, [](const DescribedLight &light) { return !light.distant(); });
+    many_ = LightTree(std::move(near), count);
+    described.push_back(describe_cluster(many_.bounds(), count));
+  }
+  few_ = FewLights(std::move(described), count + 1);
   if (!emitters_.empty()) {
     emitter_of_.assign(instance_count, kNone);
     for (uint32_t i = 0; i < emitters_.size(); ++i)
-      emitter_of_[emitters_[i].instance()] = uint32_t(lights_.size()) + i;
+      emitter_of_[emitters_[i].instance()] = i;
   }
 }
 
-LightSet::Choice LightSet::choose(float u) const {
-  const auto choice = choice_.sample(u);
-  return {choice.index, double(choice.pmf)};
+LightSet::Choice LightSet::choose(const Geometry &geometry, const LightQuery &query, double u) const {
+  LightChoice light = few_.choose(query, u);
+  if (light.number == size() && light.probability > 0.0) {
+    const double of_many = light.probability;
+    light = many_.choose(query, light.u);
+    light.probability *= of_many;
+  }
+  if (!(light.probability > 0.0) || light.number < lights_.size() || light.number - lights_.size() >= emitters_.size())
+    return {light.number, 0, light.probability};
+  const LightChoice face = emitters_[light.number - lights_.size()].choose_face(geometry, query, light.u);
+  return {light.number, face.number, light.probability * face.probability};
+}
+
+double LightSet::probability(const LightQuery &query, uint32_t light) const {
+  const double of_many = many_.empty() ? 0.0 : many_.probability(query, light);
+  return of_many > 0.0 ? of_many * few_.probability(query, uint32_t(size())) : few_.probability(query, light);
+}
+
+double LightSet::probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const {
+  const double of_face = emitter.face_probability(geometry, query, face);
+  return of_face > 0.0 ? of_face * probability(query, uint32_t(lights_.size() + (&emitter - emitters_.data()))) : 0.0;
 }
 
 uint32_t LightSet::hidden_from(uint32_t light) const {
@@ -105,10 +117,14 @@ uint32_t LightSet::hidden_from(uint32_t light) const {
 }
 
 size_t LightSet::bytes() const {
-  size_t bytes =
-      environment_.bytes() + lights_.size() * (sizeof(Light) + sizeof(WideLamp)) + emitter_of_.size() * sizeof(uint32_t);
-  for (const Emitter &emitter : emitters_)
-    bytes += sizeof(Emitter) + emitter.bytes();
+  size_t bytes = environment_.bytes() + lights_.size() * (sizeof(Light) + sizeof(WideLamp)) +
+                 emitter_of_.size() * sizeof(uint32_t) + few_.bytes() + finder_.bytes() + many_.bytes();
+  std::set<const EmissiveFaces *> counted;
+  for (const Emitter &emitter : emitters_) {
+    bytes += sizeof(Emitter);
+    if (emitter.faces() && counted.insert(emitter.faces().get()).second)
+      bytes += emitter.faces()->bytes();
+  }
   return bytes;
 }
 

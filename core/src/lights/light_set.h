@@ -3,6 +3,9 @@
 
 #include "lights/emitter.h"
 #include "lights/environment.h"
+#include "lights/few_lights.h"
+#include "lights/light_finder.h"
+#include "lights/light_tree.h"
 #include "lights/wide_lamp.h"
 
 namespace lancer {
@@ -10,10 +13,8 @@ namespace lancer {
 class LightSet {
 public:
   LightSet() = default;
-  // Lights as described come first, then one per emitting instance, then the environment where it varies. radius: of the
-  // scene's bounds, normalised.
-  LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
-           double radius);
+  // Lights as described come first, then one per emitting instance, then the environment where it varies.
+  LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment);
 
   size_t size() const { return lights_.size() + emitters_.size() + (environment_.varies() ? 1 : 0); }
   bool empty() const { return size() == 0; }
@@ -27,30 +28,43 @@ public:
   bool no_shadow(uint32_t light) const { return light < lights_.size() && lights_[light].no_shadow; }
 
   struct Choice {
-    uint32_t light;
-    double probability;
+    uint32_t light = 0, face = 0; // face: of an emitter
+    double probability = 0.0;     // 0: nothing to ask
   };
-  // Chooses a light by its power, mixed with an even choice so that no light is forgotten. The set is not empty.
-  Choice choose(float u) const;
-  double probability(uint32_t light) const { return choice_.size() > 0 ? double(choice_.pmf(light)) : 0.0; }
+  // Chooses a light, and a face of it, by what the point may get from each. u in [0, 1); the set is not empty.
+  Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
+  // With which choose() returns this light; of an emitter, this face of it.
+  double probability(const LightQuery &query, uint32_t light) const;
+  double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 
   // The numbers of a light for kernels that sample it; null where only the general code does.
   const WideLamp *wide_lamp(uint32_t light) const {
     return light < lights_.size() && lights_[light].kind != LightKind::Sun ? &wide_lamps_[light] : nullptr;
   }
 
-  // The emitter of an instance, as a light's number; kNone if it has none.
-  uint32_t emitter_light(uint32_t instance) const { return emitter_of_.empty() ? kNone : emitter_of_[instance]; }
-  // Lights as described that a ray can run into.
-  const std::vector<uint32_t> &with_extent() const { return with_extent_; }
+  // The emitter of an instance; null if it has none.
+  const Emitter *emitter_of(uint32_t instance) const {
+    return emitter_of_.empty() || emitter_of_[instance] == kNone ? nullptr : &emitters_[emitter_of_[instance]];
+  }
+  // Whether a ray can run into a light as described.
+  bool any_on_the_way() const { return !always_.empty() || !finder_.empty(); }
+  // Calls visit(number) for those that may lie on the way from o along the unit wi, up to the distance end.
+  template <class Visit> void on_the_way(const glm::dvec3 &o, const glm::dvec3 &wi, double end, Visit &&visit) const {
+    for (const uint32_t number : always_)
+      visit(number);
+    finder_.along(o, wi, end, visit);
+  }
   size_t bytes() const;
 
 private:
   std::vector<Light> lights_;
   std::vector<WideLamp> wide_lamps_;
   std::vector<Emitter> emitters_;
-  std::vector<uint32_t> with_extent_, emitter_of_;
-  WeightedChoice choice_;
+  std::vector<uint32_t> always_, emitter_of_;
+  // Few lights are chosen from as in Cycles; of many, those with a place are one of the few.
+  FewLights few_;
+  LightTree many_;
+  LightFinder finder_;
   Environment environment_;
 };
 

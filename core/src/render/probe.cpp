@@ -137,7 +137,7 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
         break;
       const Surface surface = surface_at(scene.geometry, scene.slots, ray, hit);
       if (surface.instance == emitter.instance())
-        sum += emitter.pdf(scene.geometry, scene.materials, p, surface);
+        sum += emitter.pdf(scene.geometry, p, surface);
       ray = leave(surface, w, infinity);
       hit = Hit{};
     }

@@ -1,6 +1,7 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
 #include "accel/parallel.h"
 #include "integrator/shading.h"
+#include "lights/make_emitters.h"
 #include "lights/place_light.h"
 #include "scene/displace.h"
 #include "scene/mesh_normals.h"
@@ -72,23 +73,8 @@ LightSet make_lights(const Scene &scene, const Description &description, const B
     lights.push_back(place_light(light, scene.normalisation));
   Shader shader(scene, nullptr);
   const EmissionAt emission = [&](const Surface &surface, const glm::vec3 &wo) { return shader.emission(surface, wo); };
-  std::vector<Emitter> emitters;
-  for (uint32_t i = 0; i < scene.geometry.instances.size(); ++i) {
-    const Instance &instance = scene.geometry.instances[i];
-    bool emits = false;
-    for (uint32_t slot = 0; slot < instance.slot_count; ++slot)
-      emits |= scene.materials[scene.slots[instance.first_slot + slot]].emits();
-    if (!emits)
-      continue;
-    poll_cancel(context);
-    Emitter emitter(scene.geometry, scene.slots, scene.materials, i, emission);
-    if (!emitter.empty())
-      emitters.push_back(std::move(emitter));
-  }
-  // Half the diagonal of a cube of 1024: what the normalised scene fits into.
-  constexpr double radius = 887.0;
-  return LightSet(std::move(lights), std::move(emitters), scene.geometry.instances.size(),
-                  Environment(scene.world, scene.images, scene.normalisation, context), radius);
+  return LightSet(std::move(lights), make_emitters(scene.geometry, scene.slots, scene.materials, emission, context),
+                  scene.geometry.instances.size(), Environment(scene.world, scene.images, scene.normalisation, context));
 }
 
 } // namespace

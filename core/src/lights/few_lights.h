@@ -1,0 +1,61 @@
+// Which of a few lights to ask at a point: a binary tree, each choice weighted by what may arrive.
+// Between lights, and between what is near and what is distant, shares of the upper and of the lower bounds are averaged, as in
+// Cycles; between clusters the upper bounds decide.
+#pragma once
+
+#include "lights/tree_light.h"
+
+#include <vector>
+
+namespace lancer {
+
+// The most lights of a leaf.
+inline constexpr uint32_t kLeafLights = 8;
+
+class FewLights {
+public:
+  FewLights() = default;
+  // count: numbers are below it. Lights without energy are never chosen.
+  FewLights(std::vector<DescribedLight> lights, uint32_t count);
+
+  bool empty() const { return lights_.empty(); }
+  size_t size() const { return lights_.size(); }
+
+  // u in [0, 1): one number for the whole way down.
+  LightChoice choose(const LightQuery &query, double u) const;
+  // With which choose() returns a light.
+  double probability(const LightQuery &query, uint32_t number) const;
+
+  size_t bytes() const {
+    return lights_.size() * sizeof(TreeLight) + nodes_.size() * sizeof(Node) + (node_of_.size() + place_of_.size()) * 4;
+  }
+
+private:
+  // Children stand side by side from an even number on; a leaf holds a stretch of lights.
+  struct Node {
+    ClusterShape shape;
+    uint32_t first = 0;      // child, or light of a leaf
+    uint32_t count : 31 = 0; // lights of a leaf; 0: it has children
+    uint32_t distant : 1 = 0;
+  };
+  struct Part {
+    uint32_t node, begin, end;
+    bool distant;
+  };
+
+  Importance weigh(const LightQuery &query, uint32_t node) const;
+  // Of the two nodes of a pair; both 0 where neither can contribute.
+  glm::dvec2 shares(const LightQuery &query, uint32_t pair) const;
+  LightChoice choose_of_leaf(const LightQuery &query, const Node &node, double u) const;
+  double share_of_leaf(const LightQuery &query, const Node &node, uint32_t place) const;
+  void split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
+
+  std::vector<Node> nodes_; // 0 and 1 are what is near and what is distant
+  std::vector<TreeLight> lights_;
+  std::vector<uint32_t> node_of_;  // of each light
+  std::vector<uint32_t> parent_;   // of each pair of nodes; unused for the first
+  std::vector<uint32_t> place_of_; // by number; kNone: never chosen
+  uint32_t root_ = 0;              // the pair of 0 and 1 where both have lights: kNone
+};
+
+} // namespace lancer
