@@ -117,6 +117,16 @@ def mesh_emission(scene, value):
 
 
 @case(bounces=1)
+def mesh_emission_weak(scene):
+    """Too weak to be sampled as a light: what is hidden from shadow rays alone stands in its way all the same."""
+    floor_and_block(scene)
+    glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=0.5)
+    parts.place(scene, "Glow", parts.plane_mesh("Glow", 6.0), glow, (0, 0, 3.0))
+    thing = ball(scene, shader("ShaderNodeBsdfDiffuse"), segments=24, radius=0.5, location=(1.1, -0.4, 1.3))
+    thing.visible_shadow = False
+
+
+@case(bounces=1)
 def mesh_emission_scaled(scene):
     """A glowing ball under an uneven, mirroring scale."""
     floor_and_block(scene)
