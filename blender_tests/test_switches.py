@@ -37,6 +37,12 @@ def test_flags_of_materials(case):
     }
 
 
+def test_weak_emission_is_no_light(case):
+    got = case("weak_lights")
+    dim = not got.pop("decides")
+    assert got == {"dim": dim, "bright": True, "textured": dim, "strong texture": True, "asked for": True}
+
+
 def test_overrides_of_the_view_layer(case):
     got = case("overrides")
     assert got["materials"] == ["clay"] * len(got["materials"]) and got["materials"] and got["samples"] == 9

@@ -104,9 +104,12 @@ def _transparent(surface, site, weight):
 
 def _emission(surface, site, weight):
     graph = surface.graph
-    strength = graph.multiply(graph.parameter(site, ("Strength",), 1.0), weight)
-    if not is_constant(strength, 0.0):
-        surface.emit(graph.multiply(surface.color(site), strength))
+    strength = graph.parameter(site, ("Strength",), 1.0)
+    if is_constant(strength, 0.0):
+        return
+    color = surface.color(site)
+    surface.estimate(color, strength)
+    surface.emit(graph.multiply(color, graph.multiply(strength, weight)))
 
 
 def _holdout(surface, site, weight):

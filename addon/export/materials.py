@@ -87,6 +87,12 @@ def _flags(material):
     return int(flags)
 
 
+def _is_weak(material, surface):
+    """Whether Cycles leaves the emission to be found by chance: so it decides by itself from Blender 3.5 on."""
+    automatic = getattr(getattr(material, "cycles", None), "emission_sampling", "") == "AUTO"
+    return automatic and 0.0 < max(map(abs, surface.estimated)) <= 0.5
+
+
 def _own_model(own, who, messages):
     kd = messages.color(own.kd, who, "diffuse colour")
     ks = messages.color(own.ks, who, "specular colour")
@@ -121,6 +127,8 @@ def _from_nodes(material, graph):
     values = _displacement(material, graph, site)
     surface = Surface(graph)
     surface.read(site, output.inputs["Surface"])
+    if _is_weak(material, surface):
+        values["flags"] = values.get("flags", 0) | int(MaterialFlag.NOT_A_LIGHT)
     return {
         **values,
         "lobes": surface.lobes,

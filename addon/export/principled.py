@@ -104,7 +104,9 @@ def _emission(surface, site):
     strength = graph.parameter(site, PRINCIPLED["emission_strength"], 1.0)
     if is_constant(strength, 0.0):
         return (0.0, 0.0, 0.0)
-    return graph.multiply(surface.color(site, PRINCIPLED["emission_color"], (0.0, 0.0, 0.0)), strength)
+    color = surface.color(site, PRINCIPLED["emission_color"], (0.0, 0.0, 0.0))
+    surface.estimate(color, strength)
+    return graph.multiply(color, strength)
 
 
 def _is_bare(values):

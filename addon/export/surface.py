@@ -27,6 +27,9 @@ class Surface:
         self.emission = 0.0
         self.transmittance = 0.0
         self.holdout = 0.0
+        # What Cycles takes the emission for when it asks whether to sample it: all that is linked counts as 1.
+        self.estimated = _NONE
+        self._share = 1.0  # of the closure at hand, in the same way
         self._lobes = []
 
     @property
@@ -42,15 +45,20 @@ class Surface:
         root = walker.origin(site, socket)
         if root.site is None:
             return
-        weights = {_key(root): 1.0}
+        weights, shares = {_key(root): 1.0}, {_key(root): 1.0}
+        # A colour in place of the whole shader is a preview, which Cycles samples as a light only where it is very bright.
+        if root.output.type != "SHADER":
+            shares[_key(root)] = 0.1
         for origin in self._in_order(root):
             weight = weights.get(_key(origin), 0.0)
             if is_constant(weight, 0.0):
                 continue
-            for source, share in self._read_one(origin, weight):
+            self._share = shares[_key(origin)]
+            for source, part in self._read_one(origin, weight):
                 if source.site is not None:
                     key = _key(source)
-                    weights[key] = self.graph.add(weights.get(key, 0.0), share)
+                    weights[key] = self.graph.add(weights.get(key, 0.0), self.graph.multiply(weight, part))
+                    shares[key] = shares.get(key, 0.0) + self._share * (1.0 if isinstance(part, NodeRef) else part)
         if RULES == Rules.BLENDER_3 and not is_constant(self.transmittance, 0.0) and any(map(_lets_through, self._lobes)):
             # Cycles 3 takes the one direction of Transparent for one of many, and adds what the other lobe sends there.
             self.graph.messages.add(
@@ -75,11 +83,13 @@ class Surface:
         return reversed(order)
 
     def _read_one(self, origin, weight):
-        """Adds one closure; gives those that a Mix or Add Shader passes its weight on to."""
+        """Adds one closure; gives those that a Mix or Add Shader passes its weight on to, and which part of it."""
         graph, site, node = self.graph, origin.site, origin.site.node
         if origin.output.type != "SHADER":
             # A colour where a shader belongs shines.
-            self.emit(graph.multiply(graph.color_of(origin), weight))
+            color = graph.color_of(origin)
+            self.estimate(color, 1.0)
+            self.emit(graph.multiply(color, weight))
             return ()
         if node.type == "MIX_SHADER":
             first, second = (graph.walker.origin(site, socket) for socket in _shader_inputs(site))
@@ -87,9 +97,9 @@ class Surface:
             if isinstance(factor, NodeRef):
                 factor = graph.op(MathOperation.ADD, factor, 0.0, clamped=True)
             rest = graph.subtract(1.0, factor)
-            return ((first, graph.multiply(weight, rest)), (second, graph.multiply(weight, factor)))
+            return ((first, rest), (second, factor))
         if node.type == "ADD_SHADER":
-            return tuple((graph.walker.origin(site, socket), weight) for socket in _shader_inputs(site))
+            return tuple((graph.walker.origin(site, socket), 1.0) for socket in _shader_inputs(site))
         CLOSURES.get(node.type, read_unknown)(self, site, weight)
         return ()
 
@@ -97,6 +107,11 @@ class Surface:
 
     def emit(self, radiance):
         self.emission = self.graph.add(self.emission, radiance)
+
+    def estimate(self, color, strength):
+        level = [1.0 if isinstance(value, NodeRef) else value for value in (color, strength)]
+        parts = zip(self.estimated, triple(level[0]), triple(level[1]), strict=True)
+        self.estimated = tuple(sum_ + self._share * x * y for sum_, x, y in parts)
 
     def transmit(self, share):
         self.transmittance = self.graph.add(self.transmittance, share)

@@ -44,6 +44,28 @@ def flags():
     return {**told, "has correction": correction}
 
 
+def weak_lights():
+    """Which materials are lights, by what shines there."""
+    stage.empty()
+    stage.cube(material=stage.shader("ShaderNodeEmission", name="dim", Color=(1.0, 0.2, 0.2, 1.0), Strength=0.5))
+    stage.cube(material=stage.shader("ShaderNodeEmission", name="bright", Color=(1.0, 0.2, 0.2, 1.0), Strength=0.51))
+    textured = stage.shader("ShaderNodeEmission", name="textured", Strength=0.5)
+    strong = stage.shader("ShaderNodeEmission", name="strong texture", Strength=0.6)
+    for material in (textured, strong):
+        tree = material.node_tree
+        picture = tree.nodes.new("ShaderNodeTexCoord")
+        emission = next(node for node in tree.nodes if node.type == "EMISSION")
+        tree.links.new(picture.outputs["Generated"], emission.inputs["Color"])
+        stage.cube(material=material)
+    asked = stage.shader("ShaderNodeEmission", name="asked for", Strength=0.1)
+    if hasattr(asked.cycles, "emission_sampling"):
+        asked.cycles.emission_sampling = "FRONT_BACK"
+    stage.cube(material=asked)
+    materials = export_told()[0].materials
+    lights = {material.name: not material.flags & MaterialFlag.NOT_A_LIGHT for material in materials}
+    return {**lights, "decides": hasattr(asked.cycles, "emission_sampling")}
+
+
 def overrides():
     scene = stage.empty(samples=4)
     stage.cube(material=stage.shader(name="own"))

@@ -81,14 +81,17 @@ def emission_nodes(light, inputs):
     nodes.link(emission, nodes.add("ShaderNodeOutputLight").inputs["Surface"])
 
 
-@variants(values=_KINDS, bounces=0)
-def shadow_off(scene, kind):
-    floor_and_block(scene)
-    light = _light(scene, kind).data
+def _cast_no_shadow(light):
     if bpy.app.version >= (4, 2):
         light.use_shadow = False
     else:
         light.cycles.cast_shadow = False
+
+
+@variants(values=_KINDS, bounces=0)
+def shadow_off(scene, kind):
+    floor_and_block(scene)
+    _cast_no_shadow(_light(scene, kind).data)
 
 
 @variants(values={"camera": "camera", "diffuse": "diffuse", "glossy": "glossy", "transmission": "transmission"})
@@ -114,6 +117,25 @@ def mesh_emission(scene, value):
     lamp = parts.place(scene, "Glow", parts.cube_mesh("Glow", size), glow, (1.1, -0.4, 1.3), rotation=(0.4, 0.3, 0))
     # The outline of a small and bright one would be all of the picture's noise.
     lamp.visible_camera = size > 0.5
+
+
+@case(bounces=1)
+def shadowless_beside_others(scene):
+    """A large lamp without shadow is met by chance only where nothing is in the way: how often it is asked shows."""
+    floor_and_block(scene)
+    large = parts.add_light(scene, "Large", "POINT", 150.0, (1.2, -0.8, 2.5), shadow_soft_size=0.8)
+    _cast_no_shadow(large.data)
+    parts.add_light(scene, "Other", "POINT", 80.0, (-1.5, -1.5, 2.0), shadow_soft_size=0.2)
+
+
+@case(bounces=1)
+def mesh_emission_weak(scene):
+    """Too weak to be sampled as a light: what is hidden from shadow rays alone stands in its way all the same."""
+    floor_and_block(scene)
+    glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=0.5)
+    parts.place(scene, "Glow", parts.plane_mesh("Glow", 6.0), glow, (0, 0, 3.0))
+    thing = ball(scene, shader("ShaderNodeBsdfDiffuse"), segments=24, radius=0.5, location=(1.1, -0.4, 1.3))
+    thing.visible_shadow = False
 
 
 @case(bounces=1)

@@ -65,6 +65,16 @@ def _pictured(scene, image, rotation=None, projection="EQUIRECTANGULAR", strengt
     world(scene, build)
 
 
+@case(bounces=1)
+def world_and_lamp_hidden_from_shadows(scene):
+    floor(scene, size=6.0)
+    thing = ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.7, 0.6, 0.5)))
+    thing.visible_shadow = False
+    _pictured(scene, _heaven())
+    parts.add_light(scene, "Lamp", "POINT", 200.0, (1, -2, 3), shadow_soft_size=0.5)
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.85), lens=60.0)
+
+
 @case(quick=True)
 def world_equirectangular(scene):
     _things(scene)
