@@ -53,6 +53,15 @@ def test_node_instances_share_their_mesh(case):
     assert got["places"] == near(np.array([[0, 0, 0], [0, 9, 0], [2, 0, 0], [4, 0, 0], [6, 0, 0], [8, 0, 0]]))
 
 
+def test_rows_are_what_blender_tells_of_each_entry(case):
+    """The matrices too, to the last bit: a plane's is moved by whole metres."""
+    got = case("walked")
+    names = [row[0] for row in got["told"]]
+    assert {"Child 0", "Copy", "Piece", "Other", "Ground", "Flat"} < set(names) and len(names) > 20
+    assert "Gone" not in names and "Bare" not in names
+    assert got["rows"] == got["told"]
+
+
 def test_curve_text_and_metaball_come_once_each(case):
     got = case("surfaces")
     assert got["names"] == ["Curve", "Meta", "Text"] and sorted(got["mesh of"]) == [0, 1, 2]
