@@ -19,6 +19,8 @@ last_statistics = {}
 last_messages = {}
 
 _STEP = 0.05
+# As long as there is nothing to see.
+_FIRST_STEP = 0.01
 _TELL_EVERY = 0.25
 _MAX_REPORTS = 30
 
@@ -132,13 +134,14 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _run(self, session, samples, time_limit, show):
         """Renders samples in waves, shows each, and stops for Esc or for the time limit."""
         waves = Waves(samples)
-        started = shown = told = time.monotonic()
+        started = told = time.monotonic()
+        shown = None
         while not waves.done:
             first, count = waves.next()
             session.render(first, count)
             wave_started = time.monotonic()
             while True:
-                progress = session.wait(_STEP)
+                progress = session.wait(_FIRST_STEP if shown is None else _STEP)
                 now = time.monotonic()
                 if progress.finished:
                     break
@@ -146,9 +149,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     told = now
                     self._show_progress(first + progress.fraction * count, samples, progress, now - started)
                 late = 0.0 < time_limit <= now - started and first > 0
+                # At first whatever there is, tiles of the first sample too.
+                due = progress.samples > 0 if shown is None else now - shown > waves.interval
                 if self.test_break() or late:
                     session.cancel()
-                elif now - shown > waves.interval:
+                elif due:
                     shown = self._timed(waves, show)
             waves.took(count, now - wave_started)
             if waves.done or now - told > _TELL_EVERY:
