@@ -60,11 +60,14 @@ class Instances:
             if not (shows_surfaces and entry.show_self):
                 continue
             # Evaluated data lives as long as the depsgraph, while the objects of entries are reused: keep addresses only.
-            narrowed = self._narrowed_by(entry.parent) if entry.is_instance else None
-            key = thing.original.as_pointer(), thing.data.as_pointer(), narrowed
-            row = rows.get(key)
-            if row is None:
-                row = rows[key] = self._new_row(thing, key, poll)
+            if entry.is_instance:
+                key = thing.original.as_pointer(), thing.data.as_pointer(), self._narrowed_by(entry.parent)
+                row = rows.get(key)
+                if row is None:
+                    row = rows[key] = self._new_row(thing, *key, poll)
+            else:
+                # What nobody brings in comes once: there is nothing to remember.
+                row = self._new_row(thing, thing.original.as_pointer(), thing.data.as_pointer(), None, poll)
             if row >= 0:
                 row_of.append(row)
                 entries.append(number)
@@ -85,14 +88,10 @@ class Instances:
                 starts[look.slots] = len(slots)
                 slots.extend(look.slots)
         poll()
-        matrices = self._matrices()
+        matrices = self._matrices(column([look.placement for look in looks], np.int32))
         poll()
-        placements = column([look.placement for look in looks], np.int32)
-        exact = np.flatnonzero(placements >= 0)
-        if len(exact):
-            matrices[exact] = matrices[exact] @ np.array(self._objects.placements)[placements[exact]]
         return InstanceTable(
-            matrices=matrices[:, :3],
+            matrices=matrices,
             kinds=column([look.kind for look in looks]),
             meshes=column([look.mesh for look in looks]),
             first_slots=column([starts[look.slots] for look in looks]),
@@ -107,12 +106,17 @@ class Instances:
             slots=slots,
         )
 
-    def _matrices(self):
-        """(rows, 4, 4). A second walk over the same entries is faster than an object of Python's for each."""
+    def _matrices(self, placements):
+        """(rows, 3, 4). A second walk over the same entries is faster than an object of Python's for each."""
         columns = np.empty(16 * self._entry_count, np.float32)
         self.depsgraph.object_instances.foreach_get("matrix_world", columns)
-        taken = columns.reshape(-1, 4, 4)[np.frombuffer(self._entries, np.uint32)]
-        return taken.transpose(0, 2, 1).astype(float)
+        columns, entries = columns.reshape(-1, 4, 4), np.frombuffer(self._entries, np.uint32)
+        matrices = columns[entries, :, :3].transpose(0, 2, 1).astype(float, "C")
+        exact = np.flatnonzero(placements >= 0)
+        if len(exact):
+            whole = columns[entries[exact]].transpose(0, 2, 1).astype(float)
+            matrices[exact] = (whole @ np.array(self._objects.placements)[placements[exact]])[:, :3]
+        return matrices
 
     def _narrowed_by(self, instancer):
         if instancer is None:
@@ -123,8 +127,8 @@ class Instances:
             narrowed = self._narrowed[key] = self._objects.narrowed_by(instancer)
         return narrowed
 
-    def _new_row(self, thing, key, poll):
-        look, name = self._objects.look(thing, *key, poll)
+    def _new_row(self, thing, original_key, data_key, narrowed, poll):
+        look, name = self._objects.look(thing, original_key, data_key, narrowed, poll)
         if look < 0:
             return -1
         self._looks.append(look)
