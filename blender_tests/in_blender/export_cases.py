@@ -5,6 +5,7 @@ import numpy as np
 import stage
 
 from addon.bindings.enums import InstanceKind, LightKind, Ray, Shading
+from addon.export.mesh import _triangle_corners, _triangle_faces
 from addon.export.scene import export_scene
 
 
@@ -337,3 +338,20 @@ def hidden():
     group.hide_render = True
     snapshot = export()
     return sorted([*snapshot.instances.names, *(light.name for light in snapshot.lights)])
+
+
+def triangulation():
+    """Corners and faces of the triangles of a quad, a triangle and a pentagon: as read at once, and as Blender tells them."""
+    stage.empty()
+    places = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (1, 4, 0), (3, 4, 0), (5, 2, 1), (5, 0, 1)]
+    data = stage.mesh("Faces", places, [(0, 1, 2, 3), (3, 2, 4), (2, 1, 7, 6, 5)]).data
+    data.calc_loop_triangles()
+    corners = root = _triangle_corners(data, len(data.loop_triangles))
+    while isinstance(root.base, np.ndarray):
+        root = root.base
+    return {
+        "corners": corners.tolist(),
+        "copied": root.flags.owndata,
+        "faces": _triangle_faces(data).tolist(),
+        "told": [[list(triangle.loops), triangle.polygon_index] for triangle in data.loop_triangles],
+    }
