@@ -19,6 +19,8 @@ last_statistics = {}
 last_messages = {}
 
 _STEP = 0.05
+# As long as there is nothing to see.
+_FIRST_STEP = 0.01
 _TELL_EVERY = 0.25
 _MAX_REPORTS = 30
 
@@ -41,11 +43,16 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def update(self, data=None, depsgraph=None):
         self._begin(depsgraph)
-        self._guarded(self._export, depsgraph)
+        self._guarded(depsgraph.scene, self._export, depsgraph)
 
     def render(self, depsgraph):
         if self._snapshot is not None:
-            self._guarded(self._render, depsgraph)
+            scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
+            layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
+            # The snapshot has all of it, and what Blender evaluated may be larger than the render. From here on there is no
+            # depsgraph, unless Blender wants to keep it.
+            self.free_blender_memory()
+            self._guarded(scene, self._render, scene, layer, wanted)
         self._snapshot = None
         if self.test_break():
             # The layers that were to follow do not come any more.
@@ -66,10 +73,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             last_statistics.pop(scene.name, None)
         self._exported[1].add(layer)
 
-    def _guarded(self, work, depsgraph):
+    def _guarded(self, scene, work, *arguments):
         """Whatever goes wrong becomes an error that Blender shows, and that ends a headless render with failure."""
         try:
-            work(depsgraph)
+            work(*arguments)
             return
         except Cancelled:
             self._snapshot = self._exported = None
@@ -86,7 +93,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             text = f"{type(error).__name__}: {error}"
         self._snapshot = None
         self._messages.add(text)
-        last_messages[depsgraph.scene.name] = self._messages.lines()
+        last_messages[scene.name] = self._messages.lines()
         self.error_set(f"Lancer: {text}")
         self.report({"ERROR"}, f"Lancer: {text}")
 
@@ -99,20 +106,18 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
         self._tell(depsgraph.scene, messages)
 
-    def _render(self, depsgraph):
-        scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
+    def _render(self, scene, layer, wanted):
         self.update_stats("", "Building the scene")
-        with Session.upload(self._snapshot, poll=self.test_break) as session:
+        with Session.upload(self._snapshot, poll=self.test_break, release=True) as session:
             # The library holds its own copy from here on.
             self._snapshot = None
             self._tell(scene, Messages(session.messages()))
             camera = session.camera
-            result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=view_layer.name)
+            result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=layer)
             if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
                 expected = f"{camera.region_width} x {camera.region_height}"
                 self.end_result(result, cancel=True)
                 raise LancerError(f"Blender wants {result.resolution_x} x {result.resolution_y} pixels, not {expected}")
-            wanted = list(passes.render_passes(scene, view_layer))
 
             def show():
                 passes.fill(result.layers[0], session.read, wanted)
@@ -129,13 +134,14 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _run(self, session, samples, time_limit, show):
         """Renders samples in waves, shows each, and stops for Esc or for the time limit."""
         waves = Waves(samples)
-        started = shown = told = time.monotonic()
+        started = told = time.monotonic()
+        shown = None
         while not waves.done:
             first, count = waves.next()
             session.render(first, count)
             wave_started = time.monotonic()
             while True:
-                progress = session.wait(_STEP)
+                progress = session.wait(_FIRST_STEP if shown is None else _STEP)
                 now = time.monotonic()
                 if progress.finished:
                     break
@@ -143,9 +149,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     told = now
                     self._show_progress(first + progress.fraction * count, samples, progress, now - started)
                 late = 0.0 < time_limit <= now - started and first > 0
+                # At first whatever there is, tiles of the first sample too.
+                due = progress.samples > 0 if shown is None else now - shown > waves.interval
                 if self.test_break() or late:
                     session.cancel()
-                elif now - shown > waves.interval:
+                elif due:
                     shown = self._timed(waves, show)
             waves.took(count, now - wave_started)
             if waves.done or now - told > _TELL_EVERY:

@@ -106,3 +106,10 @@ def test_progress_is_told(case, which):
     texts = got["texts"] if which == MODULE else got["console"].splitlines()
     told = [text for text in texts if "Sample" in text and "/256" in text and "rays/s" in text and "Remaining" in text]
     assert len(told) >= 2, texts[-5:]
+
+
+def test_the_first_picture_comes_before_the_first_sample_is_done(case):
+    """Whole tiles of 32 x 32 pixels, and no need for all of the 240."""
+    got = case("first_picture")
+    assert got["blank"] + got["done"] == 640 * 360 and got["shown"] >= 2
+    assert got["blank"] > 0 and got["done"] > 0

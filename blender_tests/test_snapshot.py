@@ -1,6 +1,7 @@
 """A snapshot in a file is the snapshot: it loads equal, compares by every number, and renders the same bits."""
 
 import dataclasses
+import weakref
 
 import numpy as np
 import pytest
@@ -147,3 +148,15 @@ def test_the_loaded_snapshot_renders_the_same_bits(saved):
     assert [name for name in first if first[name] != again[name]] == []
     # Equal zeros would prove nothing.
     assert np.frombuffer(first["COMBINED"], np.float32).std() > 0.01
+
+
+def test_a_released_snapshot_renders_the_same_bits_and_is_let_go():
+    kept, given = showroom(), showroom()
+    arrays = [weakref.ref(mesh.positions) for mesh in given.meshes]
+    assert arrays and given == kept
+    with Session.upload(kept) as first, Session.upload(given, release=True) as second:
+        assert (given.meshes, given.materials, given.lights, len(given.instances)) == ((), (), (), 0)
+        assert not any(array() is not None for array in arrays)
+        assert first.render_all(2) and second.render_all(2)
+        assert np.array_equal(first.read(Pass.COMBINED), second.read(Pass.COMBINED))
+    assert given != kept and len(kept.meshes) == len(arrays)

@@ -17,6 +17,7 @@ import numpy as np
 from . import abi, marshal
 from .abi import LancerError, Pass, Status, check, load_library
 from .probes import SceneProbes, SessionProbes, microfacet, pixel_filter, sampler
+from .snapshot import InstanceTable
 
 __all__ = ["Cancelled", "LancerError", "Progress", "Scene", "Session", "Statistics", "microfacet", "pixel_filter", "sampler"]
 
@@ -100,33 +101,43 @@ class Scene(_Handle, SceneProbes):
         self._own(library, library.lancer_scene_destroy, handle.value)
 
     @classmethod
-    def upload(cls, snapshot, library=None, poll=None):
-        """A committed scene from a snapshot; its settings give accelerator and threads."""
+    def upload(cls, snapshot, library=None, poll=None, release=False):
+        """A committed scene from a snapshot; its settings give accelerator and threads. release: see fill."""
         scene = cls(library)
         try:
-            scene.fill(snapshot, poll)
+            scene.fill(snapshot, poll, release)
             scene.commit(snapshot.settings.accelerator, snapshot.settings.threads, poll)
         except BaseException:
             scene.close()
             raise
         return scene
 
-    def fill(self, snapshot, poll=None):
+    def fill(self, snapshot, poll=None, release=False):
+        """Copies the snapshot into the library. release: takes out of it what has been copied, so that none is held twice."""
         library, handle = self.library, self.handle
         # What refers to another thing comes after it.
-        for add, to_struct, records in (
-            (library.lancer_scene_add_image, marshal.image, snapshot.images),
-            (library.lancer_scene_add_mesh, marshal.mesh, snapshot.meshes),
-            (library.lancer_scene_add_material, marshal.material, snapshot.materials),
-            (library.lancer_scene_add_light, marshal.light, snapshot.lights),
-            (library.lancer_scene_set_world, marshal.world, (snapshot.world,)),
+        for add, to_struct, name in (
+            (library.lancer_scene_add_image, marshal.image, "images"),
+            (library.lancer_scene_add_mesh, marshal.mesh, "meshes"),
+            (library.lancer_scene_add_material, marshal.material, "materials"),
+            (library.lancer_scene_add_light, marshal.light, "lights"),
         ):
-            for record in records:
+            records = list(reversed(getattr(snapshot, name)))
+            if release:
+                snapshot.set(name, ())
+            while records:
+                # The struct holds addresses only, of what must live until the call is over.
+                record = records.pop()
                 self._check(add(handle, ctypes.byref(to_struct(record))))
                 _obey(poll)
+            record = None
+        self._check(library.lancer_scene_set_world(handle, ctypes.byref(marshal.world(snapshot.world))))
+        _obey(poll)
         if len(snapshot.instances):
             self._check(library.lancer_scene_add_instances(handle, *marshal.instances(snapshot.instances)))
             _obey(poll)
+        if release:
+            snapshot.set("instances", InstanceTable())
 
     def commit(self, accelerator=abi.Accelerator.BVH, threads=0, poll=None):
         self._check(self.library.lancer_scene_commit(self.handle, int(accelerator), int(threads)))
@@ -161,9 +172,9 @@ class Session(_Handle, SessionProbes):
         self._owns_scene = False
 
     @classmethod
-    def upload(cls, snapshot, library=None, poll=None):
-        """Scene and session of a snapshot in one; close() frees both."""
-        scene = Scene.upload(snapshot, library, poll)
+    def upload(cls, snapshot, library=None, poll=None, release=False):
+        """Scene and session of a snapshot in one; close() frees both. release: see Scene.fill."""
+        scene = Scene.upload(snapshot, library, poll, release)
         try:
             session = cls(scene, snapshot.camera, snapshot.settings)
         except BaseException:

@@ -1,5 +1,7 @@
 """What a scene asks for that has no counterpart: each thing becomes a message that names its owner."""
 
+import bpy
+
 from ..bindings.enums import Pass
 from .cycles_settings import check_cycles
 
@@ -18,6 +20,11 @@ EMPTY_PASSES = {
     "CLASSIC": frozenset({Pass.AMBIENT_OCCLUSION, *_LIT}),
     "NORMALS": frozenset({Pass.EMISSION, Pass.ENVIRONMENT, Pass.AMBIENT_OCCLUSION, *_LIT}),
 }
+# To look in vain for what other Blenders have, or keep in the Cycles add-on, takes as long as all the rest.
+_OF_OBJECTS = bpy.types.Object.bl_rna.properties
+_HAS_LINKING = "light_linking" in _OF_OBJECTS
+_HAS_CATCHER = "is_shadow_catcher" in _OF_OBJECTS
+_HAS_OFFSET = "shadow_terminator_shading_offset" in _OF_OBJECTS
 
 
 def check_scene(scene, messages):
@@ -62,23 +69,26 @@ def _missing_passes(view_layer):
 
 
 def check_object(thing, scene, messages):
-    who = f"object '{thing.name}'"
-    check_linking(thing, who, messages)
-    if getattr(thing, "is_shadow_catcher", False):
-        messages.add(f"{who}: shadow catchers are not supported, it is rendered as any other object")
-    # Before 4.5 it is a property of the Cycles add-on, which may be off.
+    check_linking(thing, "object", messages)
+    if _HAS_CATCHER and thing.is_shadow_catcher:
+        messages.add(f"object '{thing.name}': shadow catchers are not supported, it is rendered as any other object")
+    # An add-on, which may be off.
     cycles = getattr(thing, "cycles", None)
-    if getattr(thing, "shadow_terminator_shading_offset", getattr(cycles, "shadow_terminator_offset", 0.0)) > 0.0:
+    offset = thing.shadow_terminator_shading_offset if _HAS_OFFSET else getattr(cycles, "shadow_terminator_offset", 0.0)
+    if offset > 0.0:
+        who = f"object '{thing.name}'"
         messages.add(f"{who}: the shading offset of the shadow terminator is left out, use the geometry offset")
     if getattr(cycles, "is_caustics_receiver", False):
+        who = f"object '{thing.name}'"
         messages.add(f"{who}: shadow caustics are not supported, it receives those that paths find by themselves")
-    _check_subdivision(thing, scene, who, messages)
+    if thing.modifiers:
+        _check_subdivision(thing, scene, f"object '{thing.name}'", messages)
 
 
 def _check_subdivision(thing, scene, who, messages):
     """Cycles divides by the camera's distance where the last modifier says so; Blender itself by the modifier's levels."""
-    last = thing.modifiers[-1] if thing.modifiers else None
-    if last is None or last.type != "SUBSURF" or not last.show_render:
+    last = thing.modifiers[-1]
+    if last.type != "SUBSURF" or not last.show_render:
         return
     adaptive = getattr(last, "use_adaptive_subdivision", None)
     if adaptive is None:
@@ -99,9 +109,12 @@ def check_hair(thing, messages):
             messages.add(f"object '{thing.name}': hair of particle system '{system.name}' is not supported, it is left out")
 
 
-def check_linking(thing, who, messages):
-    linking = getattr(thing, "light_linking", None)
-    if getattr(linking, "receiver_collection", None) is not None:
-        messages.add(f"{who}: light linking ('{linking.receiver_collection.name}') is not supported, it lights everything")
-    if getattr(linking, "blocker_collection", None) is not None:
-        messages.add(f"{who}: shadow linking ('{linking.blocker_collection.name}') is not supported, everything casts shadow")
+def check_linking(thing, kind, messages):
+    if not _HAS_LINKING:
+        return
+    linking = thing.light_linking
+    receiver, blocker = linking.receiver_collection, linking.blocker_collection
+    if receiver is not None:
+        messages.add(f"{kind} '{thing.name}': light linking ('{receiver.name}') is not supported, it lights everything")
+    if blocker is not None:
+        messages.add(f"{kind} '{thing.name}': shadow linking ('{blocker.name}') is not supported, everything casts shadow")

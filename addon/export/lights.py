@@ -12,7 +12,7 @@ from .checks import check_linking
 from .graph import NodeGraph
 from .images import NoPictures
 from .surface import emission_of
-from .visibility import hidden_from
+from .visibility import object_hidden_from
 
 _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN, "AREA": LightKind.AREA}
 
@@ -59,7 +59,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
         size=size,
         shape=shape,
         spread=messages.number(getattr(light, "spread", math.pi), who, "spread", math.pi, 0.0, math.pi),
-        hidden_from=(hidden_from(thing, "visible_") if hidden is None else hidden) & ~int(Ray.SHADOW),
+        hidden_from=(object_hidden_from(thing) if hidden is None else hidden) & ~int(Ray.SHADOW),
         no_shadow=not _casts_shadow(light),
         falloff=Falloff[own.falloff],
         falloff_radius=messages.number(own.radius, who, "falloff radius", 10.0, 1e-12),
@@ -149,7 +149,7 @@ def _nodes(light, graph):
 
 
 def _check(thing, light, who, messages):
-    check_linking(thing, who, messages)
+    check_linking(thing, "light", messages)
     cycles = getattr(light, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
         messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")

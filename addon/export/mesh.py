@@ -1,5 +1,6 @@
-"""Evaluated Blender meshes as arrays, by foreach_get only."""
+"""Evaluated Blender meshes as arrays, by foreach_get, which copies whole arrays where Blender holds them so."""
 
+import ctypes
 from dataclasses import replace
 
 import bpy
@@ -9,6 +10,7 @@ from ..bindings.snapshot import MeshData
 from .attributes import read_attributes, read_uv_map, render_uv_map
 
 _TRIANGLES_AT_ONCE = 1 << 18
+_SAMPLE = 8
 
 
 def _read(collection, attribute, dtype, width):
@@ -42,7 +44,7 @@ def export_mesh(mesh, name, poll, wanted=frozenset()):
     if count == len(mesh.polygons) and len(mesh.loops) == 3 * count:
         corners = None
     else:
-        corners = _read(mesh.loop_triangles, "loops", np.int32, 3)
+        corners = _triangle_corners(mesh, count)
         poll()
     vertices = _corner_vertices(mesh)
     triangles = vertices.reshape(-1, 3) if corners is None else _gather(vertices, corners, poll)
@@ -54,7 +56,7 @@ def export_mesh(mesh, name, poll, wanted=frozenset()):
     colors = _colors(mesh, corners, triangles, poll)
     poll()
     slots = _material_slots(mesh, corners)
-    faces = None if corners is None or not wanted else _read(mesh.loop_triangles, "polygon_index", np.int32, 1)
+    faces = None if corners is None or not wanted else _triangle_faces(mesh)
     data = MeshData(
         name=name,
         positions=positions,
@@ -81,13 +83,38 @@ def _corner_vertices(mesh):
     return _read(mesh.loops, "vertex_index", np.int32, 1)
 
 
+def _triangle_corners(mesh, count):
+    """(count, 3): which corners of Blender's faces make the triangles. Use it up before anything changes the mesh.
+
+    Blender has them in one array, but calls a function for each when asked by name. So look at the array itself, where its
+    stride and a sample of its values are those that Blender tells.
+    """
+    triangles = mesh.loop_triangles
+    first, last = triangles[0].as_pointer(), triangles[count - 1].as_pointer()
+    # Blender 3 keeps the number of the face beside the three.
+    width = 4 if bpy.app.version < (4, 1) else 3
+    if count > 1 and last - first == 4 * width * (count - 1):
+        view = np.ctypeslib.as_array((ctypes.c_int32 * (width * count)).from_address(first)).reshape(count, width)[:, :3]
+        if all(view[i].tolist() == list(triangles[i].loops) for i in range(0, count, max(1, count // _SAMPLE))):
+            return view
+    return _read(triangles, "loops", np.int32, 3)
+
+
+def _triangle_faces(mesh):
+    """Of which face each triangle is a part."""
+    if hasattr(mesh, "loop_triangle_polygons"):
+        return _read(mesh.loop_triangle_polygons, "value", np.int32, 1)
+    return _read(mesh.loop_triangles, "polygon_index", np.int32, 1)
+
+
 def _gather(values, indices, poll):
     """values[indices], in parts short enough to be stopped between."""
     result = np.empty(indices.shape + values.shape[1:], values.dtype)
     for first in range(0, len(indices), _TRIANGLES_AT_ONCE):
         poll()
         part = slice(first, first + _TRIANGLES_AT_ONCE)
-        result[part] = values[indices[part]]
+        # Clipping takes less time than looking for indices out of range, and there are none.
+        np.take(values, indices[part], axis=0, out=result[part], mode="clip")
     return result
 
 
@@ -159,6 +186,6 @@ def _material_slots(mesh, corners):
     if not slots.any():
         return None
     if corners is not None:
-        slots = slots[_read(mesh.loop_triangles, "polygon_index", np.int32, 1)]
+        slots = slots[_triangle_faces(mesh)]
     # Faces may point anywhere; the core takes the last slot for one beyond it.
     return np.clip(slots, 0, 0xFFFF).astype(np.uint16)

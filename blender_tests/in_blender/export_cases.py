@@ -4,7 +4,8 @@ import bpy
 import numpy as np
 import stage
 
-from addon.bindings.enums import InstanceKind, LightKind, Shading
+from addon.bindings.enums import InstanceKind, LightKind, Ray, Shading
+from addon.export.mesh import _triangle_corners, _triangle_faces
 from addon.export.scene import export_scene
 
 
@@ -14,9 +15,12 @@ class ExportProbe(bpy.types.RenderEngine):
     bl_idname = "EXPORT_PROBE"
     bl_label = "Export Probe"
     caught = None
+    look = None  # at the depsgraph, where set
 
     def render(self, depsgraph):
         ExportProbe.caught = export_scene(depsgraph)
+        if ExportProbe.look is not None:
+            ExportProbe.look = ExportProbe.look(depsgraph)
 
 
 def export():
@@ -103,9 +107,8 @@ def particle_instances():
     return counts(export())
 
 
-def node_instances():
-    """Five cubes on a line of points, beside a plain cube."""
-    stage.empty()
+def _row_of_cubes():
+    """Node instances: five cubes on a line of points."""
     tree = bpy.data.node_groups.new("Row", "GeometryNodeTree")
     if hasattr(tree, "interface"):
         tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
@@ -118,9 +121,80 @@ def node_instances():
     tree.links.new(line.outputs["Mesh"], spread.inputs["Points"])
     tree.links.new(box.outputs["Mesh"], spread.inputs["Instance"])
     tree.links.new(spread.outputs["Instances"], output.inputs[0])
-    stage.plane().modifiers.new("Row", "NODES").node_group = tree
+    item = stage.plane()
+    item.modifiers.new("Row", "NODES").node_group = tree
+    return item
+
+
+def node_instances():
+    """Five cubes on a line of points, beside a plain cube."""
+    stage.empty()
+    _row_of_cubes()
     stage.cube(location=(0, 9, 0))
     return counts(export())
+
+
+def _walk(depsgraph):
+    """[name, matrix, who does not see it, pass index] of each mesh that is shown, as Blender tells it entry by entry."""
+    rows = []
+    for entry in depsgraph.object_instances:
+        thing = entry.object
+        if thing.type != "MESH" or not entry.show_self or not thing.data.polygons:
+            continue
+        owners = [thing, entry.parent] if entry.is_instance else [thing]
+        hidden = sorted({ray for ray in ("camera", "shadow") if not all(getattr(x, "visible_" + ray) for x in owners)})
+        matrix = np.array(entry.matrix_world, float)
+        # A plane is traced from its middle, where its mesh is 2 m to the side.
+        if thing.lancer.shape == "PLANE":
+            matrix = matrix @ np.array([[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], float)
+        rows.append([thing.name, matrix[:3].tolist(), hidden, thing.pass_index])
+    return rows
+
+
+def walked():
+    """All ways in which Blender brings meshes in, in one scene: as the snapshot has them, and as Blender tells them."""
+    scene = stage.empty()
+    top = stage.link("Top", None, (1, 2, 3), (0.3, 0.2, 0.1))
+    top.scale = (1.0, -2.0, 0.5)
+    for number in range(3):
+        child = named(stage.cube(location=(number, 0, 0), rotation=(0.1 * number, 0.7, 0)), f"Child {number}")
+        child.parent, child.pass_index, child.visible_camera = top, number, number != 1
+    copy = stage.link("Copy", child.data, (0, -5, 0))
+    copy.visible_shadow = False
+    named(stage.cube(), "Gone").hide_render = True
+    stage.link("Bare", bpy.data.meshes.new("Bare"))
+    stage.light("POINT", location=(0, 0, 5))
+    group = bpy.data.collections.new("Group")
+    scene.collection.children.link(group)
+    for name in ("Piece", "Other"):
+        item = named(stage.cube(0.3, location=(0, 0, 1)), name)
+        scene.collection.objects.unlink(item)
+        group.objects.link(item)
+    for number in range(3):
+        holder = stage.link(f"Holder {number}", None, (number, 4, 0), (0, 0, number))
+        holder.instance_type, holder.instance_collection, holder.visible_camera = "COLLECTION", group, number != 2
+    ground = named(stage.plane(2.0), "Ground")
+    ground.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = ground.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 7, "OBJECT", item
+    settings.size_random = 0.5
+    _row_of_cubes()
+    corners = [(1, -1, 0), (3, -1, 0), (3, 1, 0), (1, 1, 0)]
+    stage.mesh("Flat", corners, [(0, 1, 2, 3)], location=(0, 0, -1)).lancer.shape = "PLANE"
+    ExportProbe.look = _walk
+    table = export().instances
+    told, ExportProbe.look = ExportProbe.look, None
+    rays = {"camera": Ray.CAMERA, "shadow": Ray.SHADOW}
+    rows = [
+        [
+            table.names[table.name_indices[i]],
+            table.matrices[i].tolist(),
+            [name for name, ray in rays.items() if table.hidden_from[i] & ray],
+            int(table.object_indices[i]),
+        ]
+        for i in range(len(table))
+    ]
+    return {"rows": rows, "told": told}
 
 
 def surfaces():
@@ -264,3 +338,20 @@ def hidden():
     group.hide_render = True
     snapshot = export()
     return sorted([*snapshot.instances.names, *(light.name for light in snapshot.lights)])
+
+
+def triangulation():
+    """Corners and faces of the triangles of a quad, a triangle and a pentagon: as read at once, and as Blender tells them."""
+    stage.empty()
+    places = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (1, 4, 0), (3, 4, 0), (5, 2, 1), (5, 0, 1)]
+    data = stage.mesh("Faces", places, [(0, 1, 2, 3), (3, 2, 4), (2, 1, 7, 6, 5)]).data
+    data.calc_loop_triangles()
+    corners = root = _triangle_corners(data, len(data.loop_triangles))
+    while isinstance(root.base, np.ndarray):
+        root = root.base
+    return {
+        "corners": corners.tolist(),
+        "copied": root.flags.owndata,
+        "faces": _triangle_faces(data).tolist(),
+        "told": [[list(triangle.loops), triangle.polygon_index] for triangle in data.loop_triangles],
+    }

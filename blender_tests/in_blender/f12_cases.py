@@ -208,3 +208,24 @@ def progress():
     # Blender 4.5 as a module never ends with a handler left behind.
     bpy.app.handlers.render_stats.remove(note)
     return {"texts": texts}
+
+
+def first_picture():
+    """The alpha of what is shown first, and how often the picture is handed to Blender."""
+    from addon import passes
+    from addon.bindings.enums import Pass
+
+    stage.room(width=640, height=360, samples=2)
+    pictures = []
+    fill = passes.fill
+
+    def note(layer, read, wanted):
+        pictures.append(read(Pass.COMBINED)[..., 3].copy() if not pictures else None)
+        fill(layer, read, wanted)
+
+    passes.fill = note
+    try:
+        bpy.ops.render.render()
+    finally:
+        passes.fill = fill
+    return {"blank": int((pictures[0] == 0).sum()), "done": int((pictures[0] == 1).sum()), "shown": len(pictures)}

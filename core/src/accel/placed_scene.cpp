@@ -106,6 +106,9 @@ PlacedScene place_scene(const Geometry &geometry) {
   // Place every instance; find the world box of those that have one.
   std::vector<Extent> extents;
   Extent all;
+  scene.shapes.reserve(geometry.instances.size());
+  scene.bounded.reserve(geometry.instances.size());
+  extents.reserve(geometry.instances.size());
   for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
     const Instance &instance = geometry.instances[i];
     scene.shapes.push_back(make_shape(instance, scene.mesh_frames));
@@ -129,6 +132,7 @@ PlacedScene place_scene(const Geometry &geometry) {
 
   if (!extents.empty())
     scene.world = make_frame(all);
+  scene.boxes.reserve(extents.size());
   for (const Extent &extent : extents)
     scene.boxes.push_back(make_box(scene.world, extent));
   return scene;

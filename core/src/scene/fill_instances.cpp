@@ -80,7 +80,6 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
   for (uint32_t i = 0; i < count; ++i) {
     const lancer_instance &given = instances[i];
     Instance instance;
-    instance.name = name_of(given);
     instance.number = description.instances_given + i;
     instance.to_world = Affine::from_rows(given.matrix);
     const std::string fault = fault_of(instance.to_world);

@@ -61,7 +61,6 @@ struct Instance {
   bool holdout = false;
   float terminator = 0.0f; // cosine below which shadow rays start on the curved surface
   uint32_t number = 0;     // in the user's order of adding
-  std::string name;
 
   // Puts the shape there; the map has an inverse.
   void place(const Affine &map);

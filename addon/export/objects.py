@@ -1,0 +1,190 @@
+"""What an object of the depsgraph is apart from its place: its mesh, its materials, who sees it. Looks that agree are one."""
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
+from .arithmetic import is_constant
+from .attributes import named_attributes
+from .checks import check_object
+from .mesh import export_mesh, read_positions
+from .visibility import object_hidden_from
+
+_TERMINATOR = "shadow_terminator_geometry_offset"
+# Before 4.5 it belongs to Cycles, an add-on that may be off.
+_HAS_TERMINATOR = _TERMINATOR in bpy.types.Object.bl_rna.properties
+_HAS_HOLDOUT = "is_holdout" in bpy.types.Object.bl_rna.properties
+
+
+class Look(NamedTuple):
+    """A row of the instance table without its place and its name."""
+
+    kind: int
+    mesh: int
+    slots: tuple  # of material numbers
+    index: int
+    shading: int
+    hidden: int  # Ray bits
+    flags: int  # InstanceFlag bits
+    terminator: float
+    placement: int  # of Objects.placements; -1 for none
+
+
+class Objects:
+    """Reads each object once; meshes, looks and placements are lists in the order of their numbers."""
+
+    def __init__(self, depsgraph, materials, messages):
+        self.scene = depsgraph.scene
+        self.view_layer = depsgraph.view_layer
+        self.materials = materials
+        self.messages = messages
+        self.meshes = []
+        self.looks = []
+        self.placements = []
+        self._numbers = {}
+        self._meshes = {}
+        self._placed = {}
+        self._wanted = {}
+        self._checked = set()
+        # To ask Blender about each object takes longer than everything else.
+        self._asks_layer = _has_special_collections(self.view_layer)
+
+    def sight(self, thing, narrowed):
+        """(Ray bits that do not see it, InstanceFlag bits) of an object, as what brings it in narrows them; see narrowed_by."""
+        hidden, holdout = object_hidden_from(thing), self._is_holdout(thing)
+        if narrowed is None:
+            indirect = self._is_indirect(thing)
+        else:
+            hidden |= narrowed[0]
+            holdout = holdout or narrowed[1]
+            indirect = narrowed[2]
+        if indirect and not holdout:
+            hidden |= int(Ray.CAMERA)
+        return hidden, int(InstanceFlag.HOLDOUT) if holdout else 0
+
+    def narrowed_by(self, instancer):
+        """What an object that brings others in does to their sight: (Ray bits, a hole or not, seen indirectly only or not)."""
+        return object_hidden_from(instancer), self._is_holdout(instancer), self._is_indirect(instancer)
+
+    def _is_holdout(self, thing):
+        if _HAS_HOLDOUT and (thing.is_holdout or thing.original.is_holdout):
+            return True
+        return self._asks_layer and thing.original.holdout_get(view_layer=self.view_layer)
+
+    def _is_indirect(self, thing):
+        return self._asks_layer and thing.original.indirect_only_get(view_layer=self.view_layer)
+
+    def look(self, thing, original_key, data_key, narrowed, poll):
+        """(Number of the look, name) of an object that shows a mesh; (-1, "") where there is nothing to see."""
+        poll()
+        name = thing.name
+        if original_key not in self._checked:
+            self._checked.add(original_key)
+            check_object(thing, self.scene, self.messages)
+        sight = self.sight(thing, narrowed)
+        materials = [slot.material for slot in thing.material_slots]
+        slots = tuple([self.materials.number(material, name) for material in materials or list(thing.data.materials) or [None]])
+        own = thing.lancer
+        kind = InstanceKind[own.shape]
+        mesh, placement = 0, -1
+        if kind == InstanceKind.MESH:
+            mesh, used = self._mesh(thing, name, data_key, slots, poll)
+            if mesh < 0:
+                return -1, ""
+        else:
+            placement, used = self._placement(thing, name, kind, data_key), (0,)
+            if placement < 0:
+                return -1, ""
+            self._tell_exact(name, slots)
+        if None in materials:
+            self._tell_empty(name, materials, used)
+        index, shading = max(0, thing.pass_index), Shading[own.shading]
+        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(thing), placement)
+        number = self._numbers.setdefault(look, len(self.looks))
+        if number == len(self.looks):
+            self.looks.append(look)
+        return number, name
+
+    def _mesh(self, thing, name, data_key, slots, poll):
+        """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces.
+
+        Objects that share a mesh may show it with materials that read different attributes of it.
+        """
+        wanted = self._wanted.get(slots)
+        if wanted is None:
+            wanted = self._wanted[slots] = self.materials.attributes(slots)
+        copies = self._meshes.setdefault(data_key, [])
+        found = next((copy for copy in copies if copy[0] >= wanted), None)
+        if found is None:
+            original = thing.original.data
+            data = export_mesh(thing.data, name if original is None else original.name, poll, wanted)
+            poll()
+            used = (0,) if data.material_slots is None else tuple(np.unique(data.material_slots).tolist())
+            number = -1
+            if len(data.triangles):
+                self.meshes.append(data)
+                number = len(self.meshes) - 1
+            found = wanted, number, used
+            copies.append(found)
+        _, number, used = found
+        if number < 0:
+            self.messages.add(f"object '{name}': has no faces, it is left out")
+        return number, used
+
+    def _placement(self, thing, name, kind, data_key):
+        """The number of what brings the unit shape to where the object's mesh is; -1 where the mesh has no vertices."""
+        number = self._placed.get((kind, data_key))
+        if number is None:
+            placement = _placement(kind, read_positions(thing.data))
+            number = -1 if placement is None else len(self.placements)
+            self._placed[kind, data_key] = number
+            if placement is not None:
+                self.placements.append(placement)
+        if number < 0:
+            self.messages.add(f"object '{name}': has no vertices to place its exact shape by, it is left out")
+        return number
+
+    def _tell_exact(self, name, slots):
+        """Says what materials ask for that only a mesh has."""
+        lost = [f"attribute '{attribute}'" for attribute in named_attributes(self.materials.attributes(slots))]
+        if any(not is_constant(self.materials.list[slot].displacement, 0.0) for slot in slots):
+            lost.insert(0, "displacement")
+        if lost:
+            self.messages.add(f"object '{name}': its exact shape is without what its mesh would have: {', '.join(lost)}")
+
+    def _tell_empty(self, name, materials, used):
+        if self.materials.override is not None:
+            return
+        for number in sorted({min(slot, len(materials) - 1) for slot in used}):
+            if materials[number] is None:
+                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used")
+
+
+def _has_special_collections(view_layer):
+    """Whether any collection holds its objects out or shows them indirectly only."""
+    waiting = [view_layer.layer_collection]
+    while waiting:
+        collection = waiting.pop()
+        if collection.holdout or collection.indirect_only:
+            return True
+        waiting.extend(collection.children)
+    return False
+
+
+def _terminator(thing):
+    """Blender's geometry offset of the shadow terminator."""
+    return float(getattr(thing if _HAS_TERMINATOR else getattr(thing, "cycles", None), _TERMINATOR, 0.1))
+
+
+def _placement(kind, positions):
+    """Unit frame of an exact surface to the object's frame: bounds' centre and half extents; a plane has no extent."""
+    if len(positions) == 0:
+        return None
+    low, high = positions.min(axis=0).astype(float), positions.max(axis=0).astype(float)
+    local = np.eye(4)
+    local[:3, 3] = 0.5 * (low + high)
+    if kind != InstanceKind.PLANE:
+        local[:3, :3] = np.diag(0.5 * (high - low))
+    return local
