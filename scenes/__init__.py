@@ -14,6 +14,7 @@ BUILDERS = {
     "spheres600": spheres.build_spheres600,
     "default_cube": rooms.build_default_cube,
     "cornell": rooms.build_cornell,
+    "room": rooms.build_room,
     "triangle": rooms.build_triangle,
     "glass_metal": vitrine.build,
     "lights2": lamps.build_lights2,

@@ -41,6 +41,13 @@ def build_cornell(scene):
     parts.add_camera(scene, (0, -2.95, 1), (0, 1, 0.98), lens=38.0)
 
 
+def build_room(scene):
+    """The closed box with a true shade under its lamp, so that no renderer sees the lamp itself, or light behind it."""
+    build_cornell(scene)
+    shade = parts.principled("Shade", base_color=(0.2, 0.2, 0.2), roughness=1.0, specular_ior_level=0.0)
+    parts.place(scene, "Shade", parts.plane_mesh("Shade", 0.54), shade, (0, 0, 1.49))
+
+
 def build_triangle(scene):
     """One grey triangle before a grey sky: what is left is what a renderer does for each sample anyway."""
     parts.set_size(scene, 640, 480, 64)
