@@ -130,7 +130,7 @@ def get_dict(figures, *keys):
 
 
 def _build(figures):
-    ratio = over(get(figures, "rays", "embree", "build_seconds"), get(figures, "million", "commit_seconds"))
+    ratio = over(get(figures, "build", "embree_seconds"), get(figures, "build", "lancer_seconds"))
     held = get(figures, "million", "held_bytes_per_triangle")
     return _all(
         "BVH build, 1 million triangles",

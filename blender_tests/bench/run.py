@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests")]
 
-from bench import chart, contest, extras, goals, jobs, page, plan  # noqa: E402
+from bench import chart, contest, extras, goals, jobs, page, plan, rays  # noqa: E402
 
 
 def read_arguments():
@@ -72,6 +72,14 @@ def measure_rest(figures, arguments, say):
     attempt(figures, "million", say, extras.prepare, rounds, "million", threads)
     attempt(figures, "instances", say, extras.prepare, rounds, "instances", threads)
     attempt(figures, "threads_scaling", say, extras.threads_scaling, rounds, arguments.quick)
+    for name in ("balls", "million"):
+        path = str(jobs.OUTPUT / "scenes" / f"{name}-rays.npz")
+        size = {"width": 640, "height": 480, "samples": 1}
+        attempt(figures, f"{name}_snapshot", say, jobs.in_blender, "snapshot", path=path, name=name, threads=threads, **size)
+    count, leaks = (200_000, 1_000_000) if arguments.quick else (1_000_000, 100_000_000)
+    balls, million = (jobs.OUTPUT / "scenes" / f"{name}-rays.npz" for name in ("balls", "million"))
+    attempt(figures, "rays", say, rays.measure, balls, count, rounds, threads, leaks)
+    attempt(figures, "build", say, rays.build_times, million, rounds, threads)
     if not arguments.quick:
         attempt(figures, "accelerators", say, extras.accelerators, rounds, threads)
 
