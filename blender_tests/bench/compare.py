@@ -26,4 +26,4 @@ def difference(ours, theirs):
 
 def is_same(figures, tolerance):
     """A tenth of the blocks may lie four times as far apart, where highlights, edges and noise gather."""
-    return figures["median"] <= tolerance and figures["p90"] <= 4.0 * tolerance
+    return bool(figures["median"] <= tolerance and figures["p90"] <= 4.0 * tolerance)

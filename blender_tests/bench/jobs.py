@@ -30,6 +30,13 @@ def run(command, root=ROOT, environment=None):
     return json.loads(lines[-1])
 
 
+def build(*command):
+    """Runs a compiler, silent where it goes well."""
+    result = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True)
+    if result.returncode:
+        raise Failed((result.stderr or result.stdout or f"{command[0]} failed").strip().splitlines()[-1][:300])
+
+
 def in_blender(task, root=ROOT, **arguments):
     """root: the tree that is measured; one of another revision has its own worker."""
     places = [root / "blender_tests" / name for name in ("bench/worker.py", "bench_worker.py")]

@@ -27,8 +27,10 @@ def write(figures, folder, chart_names):
         *(_scene(name, scene, figures) for name, scene in figures["scenes"].items()),
         "<h2>Rays</h2>",
         _rays(figures.get("rays", {})),
+        "<h2>Beside the scenes</h2>",
+        _rest(figures),
         "<h2>Roofline</h2>",
-        _roofline(figures.get("roofline")),
+        _roofline(figures),
     ]
     head = f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>Benchmark</title><style>{_STYLE}</style></head><body>'
     (folder / "index.html").write_text(head + "\n".join(parts) + "</body></html>\n", encoding="utf-8")
@@ -123,21 +125,59 @@ def _rays(rays):
     kinds = ("primary", "diffuse", "shadow")
     ours = ["Lancer", *(f"{rays['lancer'][kind]['median'] / 1e6:.2f}" for kind in kinds)]
     rows.append(ours)
-    for quality, record in rays.get("embree", {}).items():
-        if quality in ("fast", "robust"):
-            for mode in ("single", "4", "8", "16"):
-                values = [record[kind].get(mode) for kind in kinds]
-                rows.append([f"Embree {quality} {mode}", *(f"{v['median'] / 1e6:.2f}" if v else "" for v in values)])
-    return _table(["million rays/s", *kinds], rows)
+    embree = rays.get("embree", {})
+    for quality in ("fast", "robust"):
+        for mode in embree.get(quality, {}).get("primary", {}):
+            values = [embree[quality][kind][mode]["median"] / 1e6 for kind in kinds]
+            rows.append([f"Embree {embree['version']} {quality}, {mode}", *(f"{value:.2f}" for value in values)])
+    told = f"<p>Embree: {html.escape(embree['missing'])}</p>" if "missing" in embree else ""
+    return told + _table(["million rays/s", *kinds], rows)
 
 
-def _roofline(roofline):
-    if not roofline:
-        return "<p>no counters</p>"
-    rows = [
-        [row["what"], *(f"{row[key]:.3g}" for key in ("nodes", "leaves", "bound", "measured", "fraction"))] for row in roofline
+def _rest(figures):
+    """What is measured beside scenes and rays: a line for each figure that has a median."""
+    rows = []
+
+    def walk(name, value):
+        if isinstance(value, dict) and "median" in value:
+            rows.append([name, *(f"{value[key]:.4g}" for key in ("median", "min", "max"))])
+        elif isinstance(value, dict) and "missing" in value:
+            rows.append([name, (f"not measured: {value['missing']}", "no"), "", ""])
+        elif isinstance(value, dict):
+            for key, inner in value.items():
+                walk(f"{name}, {key.replace('_', ' ')}", inner)
+
+    for name in (
+        "first_look",
+        "first_shown",
+        "million",
+        "instances",
+        "build",
+        "threads_scaling",
+        "classic",
+        "accelerators",
+        "before",
+    ):
+        walk(name.replace("_", " "), figures.get(name))
+    return _table(["what", "median", "smallest", "largest"], rows) if rows else "<p>not measured</p>"
+
+
+def _roofline(figures):
+    """What the machine can do, and how near the library's rays come to it where their nodes and leaves are counted."""
+    limits, rows = figures.get("limits", {}), figures.get("roofline", [])
+    if "clock" not in limits:
+        return "<p>not measured</p>"
+    told = f"<p>Clock {limits['clock'] / 1e9:.2f} GHz, by additions that wait for one another.</p>"
+    levels = [
+        [n, f"{limits[n]['latency'] * 1e9:.1f}", f"{limits[n]['bandwidth'] / 1e9:.1f}"] for n in ("l1", "l2", "l3", "memory")
     ]
-    return _table(["rays", "nodes a ray", "leaves a ray", "bound, million rays/s", "measured", "fraction"], rows)
+    told += _table(["memory", "latency, ns", "reading, GB/s, all threads"], levels)
+    if not rows:
+        return told + "<p>Nodes and leaves a ray: no counters.</p>"
+    head = ["rays", "nodes a ray", "leaves a ray", "bound, million rays/s", "measured", "fraction"]
+    million = {"bound": 1e-6, "measured": 1e-6}
+    keys = ("nodes", "leaves", "bound", "measured", "fraction")
+    return told + _table(head, [[row["what"], *(f"{row[key] * million.get(key, 1.0):.3g}" for key in keys)] for row in rows])
 
 
 def readme_table(figures):

@@ -69,8 +69,10 @@ _QUICK_RENDERERS = ("lancer", "cycles", "mitsuba_llvm")
 def _quick(scene):
     small = replace(scene, width=128, height=96, samples=max(16, scene.samples // 2))
     if scene.name in _QUICK_ERRORS:
-        return replace(small, reference=512, renderers=_QUICK_RENDERERS)
-    renderers = ("lancer",) if scene.name in ("lights2", "lights10k") else scene.renderers
+        return replace(small, reference=256, renderers=_QUICK_RENDERERS)
+    renderers = {"lights2": ("lancer",), "lights10k": ("lancer",), "instances": _QUICK_RENDERERS}.get(
+        scene.name, scene.renderers
+    )
     return replace(small, rounds=1, reference=0, renderers=renderers)
 
 

@@ -1,7 +1,6 @@
 """Bare rays: Embree's and ours on the same triangles and rays, and the time that each takes to build."""
 
 import json
-import subprocess
 import sys
 from pathlib import Path
 
@@ -19,19 +18,13 @@ def find_embree():
     return str(found[0])
 
 
-def _run(*command):
-    result = subprocess.run([str(word) for word in command], cwd=jobs.ROOT, capture_output=True, text=True)
-    if result.returncode:
-        raise jobs.Failed((result.stderr or result.stdout).strip().splitlines()[-1][:300])
-
-
 def build_drivers():
     """(our driver, Embree's), compiled with the system's compiler."""
     ours = jobs.ROOT / "build" / "core"
-    _run("cmake", "-S", "core", "-B", ours, "-G", "Ninja", "-DLANCER_BENCH=ON")
-    _run("cmake", "--build", ours, "--target", "lancer_rays")
+    jobs.build("cmake", "-S", "core", "-B", ours, "-G", "Ninja", "-DLANCER_BENCH=ON")
+    jobs.build("cmake", "--build", ours, "--target", "lancer_rays")
     theirs = jobs.OUTPUT / "embree_rays"
-    _run("c++", "-O3", "-std=c++20", "-pthread", _SOURCES / "embree.cpp", "-o", theirs, "-ldl")
+    jobs.build("c++", "-O3", "-std=c++20", "-pthread", _SOURCES / "embree.cpp", "-o", theirs, "-ldl")
     return ours / "lancer_rays", theirs
 
 
@@ -59,6 +52,9 @@ def measure(snapshot, count, rounds, threads, leak_rays):
             embree.append(jobs.run([str(theirs), library, str(work), str(threads), str(_PASSES)]))
     result["lancer"] = {kind: estimates.middle(answer[kind]["rate"] for answer in mine) for kind in _KINDS}
     result["lancer"]["instruction_set"] = mine[0]["instruction_set"]
+    # What a ray asks of the tree, where the driver counts it.
+    counted = {kind: {name: mine[0][kind][name] for name in ("nodes", "leaves")} for kind in _KINDS if "nodes" in mine[0][kind]}
+    result["counts"] = counted
     result["hits"] = {kind: mine[0][kind]["hits"] for kind in _KINDS}
     if embree:
         result["embree"] = {quality: _embree(embree, quality) for quality in ("fast", "robust")}

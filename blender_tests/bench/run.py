@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests")]
 
-from bench import chart, contest, extras, goals, jobs, page, plan, rays  # noqa: E402
+from bench import chart, classic, contest, extras, goals, jobs, page, plan, rays, roofline  # noqa: E402
 
 
 def read_arguments():
@@ -80,6 +80,10 @@ def measure_rest(figures, arguments, say):
     balls, million = (jobs.OUTPUT / "scenes" / f"{name}-rays.npz" for name in ("balls", "million"))
     attempt(figures, "rays", say, rays.measure, balls, count, rounds, threads, leaks)
     attempt(figures, "build", say, rays.build_times, million, rounds, threads)
+    attempt(figures, "limits", say, roofline.measure, threads)
+    if "lancer" in figures["rays"] and "clock" in figures["limits"]:
+        figures["roofline"] = roofline.rows(figures["limits"], figures["rays"], threads)
+    attempt(figures, "classic", say, classic.measure, rounds, threads, arguments.quick)
     if not arguments.quick:
         attempt(figures, "accelerators", say, extras.accelerators, rounds, threads)
 
