@@ -8,8 +8,8 @@ from . import chart, compare, estimates, jobs, plan, references
 class Contest:
     """What all scenes share: who takes part, in which version, on how many threads."""
 
-    def __init__(self, versions, missing, threads, say):
-        self.versions, self.missing, self.threads, self.say = versions, missing, threads, say
+    def __init__(self, versions, missing, threads, limit, say):
+        self.versions, self.missing, self.threads, self.limit, self.say = versions, missing, threads, limit, say
         self.snapshots = {}
 
     def measure(self, scene):
@@ -62,7 +62,9 @@ class Contest:
             size = {"width": scene.width, "height": scene.height}
             return jobs.in_blender("render", engine=renderer.engine, name=scene.name, **size, **arguments)
         snapshot = self.snapshots[scene.name]
-        return jobs.with_peer("render", module=renderer.module, option=renderer.option, snapshot=snapshot, **arguments)
+        return jobs.with_peer(
+            "render", module=renderer.module, option=renderer.option, snapshot=snapshot, limit=self.limit, **arguments
+        )
 
     def _references(self, scene, snapshot, able, records):
         """By key: (reference, variance) of those that have one."""
@@ -78,6 +80,7 @@ class Contest:
                 found[renderer.key] = references.find(renderer, self.versions[renderer.key], scene, snapshot, self.render)
             except jobs.Failed as reason:
                 records[renderer.key]["failed"] = str(reason)
+                self.say(f"{scene.name}: {renderer.title} failed: {reason}")
         return found
 
     def _compare(self, scene, pictures, records):
@@ -109,6 +112,7 @@ class Contest:
                     figures = self.render(renderer, scene, scene.samples, seed=number + 1, picture=str(path))
                 except jobs.Failed as reason:
                     record["failed"] = str(reason)
+                    self.say(f"{scene.name}: {renderer.title} failed: {reason}")
                     continue
                 figures["samples_per_second"] = figures["samples"] / figures["render_seconds"]
                 record.setdefault("rounds", []).append(figures)

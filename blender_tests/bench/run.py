@@ -14,6 +14,9 @@ sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests")]
 
 from bench import chart, classic, contest, extras, goals, jobs, page, plan, rays, roofline  # noqa: E402
 
+# Seconds that a short run waits for another renderer.
+_QUICK_LIMIT = 45.0
+
 
 def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -102,7 +105,7 @@ def main():
     if arguments.before:
         figures["before"] = extras.before(arguments.rounds, arguments.threads, arguments.before.resolve(), say)
     else:
-        everyone = contest.Contest(versions, missing, arguments.threads, say)
+        everyone = contest.Contest(versions, missing, arguments.threads, _QUICK_LIMIT if arguments.quick else None, say)
         for scene in plan.scenes(arguments.only, arguments.quick):
             figures["scenes"][scene.name] = everyone.measure(scene)
         if not arguments.only:
@@ -111,7 +114,7 @@ def main():
     figures["goals"] = [verdict.as_dict() for verdict in verdicts]
     names = chart.write(figures, jobs.OUTPUT) if figures["scenes"] else []
     page.write(figures, jobs.OUTPUT, names)
-    for verdict in verdicts:
+    for verdict in verdicts if figures["scenes"] else ():
         state = {True: "reached", False: "missed", None: ""}[verdict.reached]
         print(f"{verdict.what:<88} {verdict.measured:<60} {state}")
     if arguments.readme:
