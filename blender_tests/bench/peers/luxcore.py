@@ -116,9 +116,11 @@ class Renderer:
         self._set("camera.lookat.orig", view.origin.tolist())
         self._set("camera.lookat.target", (view.origin + view.forward).tolist())
         self._set("camera.up", view.up.tolist())
-        # At 90 degrees the window is the one at distance 1.
+        # At 90 degrees the window is the one at distance 1. Its rows lie one lower than those of other renderers.
+        left, right, bottom, top = view.window
+        row = (top - bottom) / view.height
         self._set("camera.fieldofview", 90.0)
-        self._set("camera.screenwindow", [float(edge) for edge in view.window])
+        self._set("camera.screenwindow", [left, right, bottom - row, top - row])
         self._set("camera.autofocus.enable", False)
         self._set("camera.cliphither", snapshot.camera.clip_start)
         surfaces = [read_surface(material) for material in snapshot.materials]
