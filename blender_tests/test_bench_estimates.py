@@ -123,6 +123,37 @@ def test_plans():
     assert quick["balls"].rounds == 5 and quick["models"].rounds == 1
 
 
+def test_page_shows_what_was_measured_and_what_was_not(tmp_path):
+    triple = {"median": 3.5e6, "min": 3e6, "max": 4e6}
+    kinds = dict.fromkeys(("primary", "diffuse", "shadow"), triple)
+    level = {"bytes": 1, "latency": 1e-9, "bandwidth": 1e9}
+    figures = {
+        "machine": {"processor": "a processor", "processors": 2, "memory_gib": 4.0, "system": "Linux"},
+        "threads": 2,
+        "quick": True,
+        "commit": "abc",
+        "renderers": {"lancer": {"title": "Lancer", "version": "1", "missing": None}},
+        "scenes": {"gone": {"title": "a scene", "size": [8, 8], "samples": 1, "failed": "no models", "renderers": {}}},
+        "rays": {"lancer": {**kinds, "instruction_set": "avx2"}, "embree": {"missing": "no wheel"}},
+        "limits": {"clock": 3e9, **dict.fromkeys(("l1", "l2", "l3", "memory"), level)},
+        "classic": {"lancer": {"seconds": triple}, "difference": {"median": 0.1, "p90": 0.2, "level": 0.0}},
+        "build": {"missing": "no compiler"},
+        "goals": [],
+    }
+    page.write(figures, tmp_path, [])
+    text = (tmp_path / "index.html").read_text()
+    for words in (
+        "no models",
+        "Embree: no wheel",
+        "no counters",
+        "3.00 GHz",
+        "not measured: no compiler",
+        "classic, lancer, seconds",
+    ):
+        assert words in text
+    assert (tmp_path / "bench.json").exists()
+
+
 def test_readme_table_replaces_what_is_between_the_marks(tmp_path):
     readme = tmp_path / "README.md"
     readme.write_text(f"before\n{page.BEGIN}\nold\n{page.END}\nafter\n")

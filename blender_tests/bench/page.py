@@ -139,7 +139,7 @@ def _rest(figures):
     rows = []
 
     def walk(name, value):
-        if isinstance(value, dict) and "median" in value:
+        if isinstance(value, dict) and {"median", "min", "max"} <= value.keys():
             rows.append([name, *(f"{value[key]:.4g}" for key in ("median", "min", "max"))])
         elif isinstance(value, dict) and "missing" in value:
             rows.append([name, (f"not measured: {value['missing']}", "no"), "", ""])

@@ -55,15 +55,15 @@ def find_renderers(say):
     return versions, missing
 
 
-def attempt(figures, name, say, measure, *arguments, **settings):
-    """figures[name] = measure(...), or why it could not be measured."""
+def attempt(figures, key, say, measure, *arguments, **settings):
+    """figures[key] = measure(...), or why it could not be measured."""
     try:
-        figures[name] = measure(*arguments, **settings)
+        figures[key] = measure(*arguments, **settings)
     except jobs.Failed as reason:
-        figures[name] = {"missing": str(reason)}
-        say(f"{name}: not measured: {reason}")
+        figures[key] = {"missing": str(reason)}
+        say(f"{key}: not measured: {reason}")
     else:
-        say(f"{name}: measured")
+        say(f"{key}: measured")
 
 
 def measure_rest(figures, arguments, say):
