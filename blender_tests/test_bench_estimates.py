@@ -114,6 +114,12 @@ def test_goals_of_several_figures_need_them_all():
     assert verdict().reached is False
 
 
+@pytest.mark.parametrize(("rays", "leaks", "reached"), [(1e8, 0, True), (1e6, 0, None), (1e6, 3, False)])
+def test_no_leaks_among_few_rays_prove_nothing(rays, leaks, reached):
+    verdicts = goals.judge({"rays": {"leak_rays": rays, "leaks": leaks}})
+    assert next(verdict for verdict in verdicts if verdict.goal == "0 in 1e8").reached is reached
+
+
 def test_plans():
     names = [scene.name for scene in plan.scenes()]
     assert names[:2] == ["balls", "balls_exact"] and len(names) == len(set(names))
