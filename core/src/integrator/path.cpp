@@ -468,22 +468,33 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
   }
 }
 
+template <uint32_t Shapes, bool Layers> LightSet::Choice PathIntegrator<Shapes, Layers>::choose_light(uint32_t lane) const {
+  // Seen from the viewer's side, as the light comes.
+  const glm::vec3 ns = get(block_.ns, lane);
+  const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
+  const LightQuery here(get(block_.p, lane), behind ? -ns : ns, false);
+  const double u = double(block_.u[kVertexLightChoice][lane]) + 0x1p-24 * double(block_.u[kVertexLightDigits][lane]);
+  return scene_.lights.choose(scene_.geometry, here, u);
+}
+
 // Chooses a light for every lane; samples those that kernels do not know.
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_lights() {
   static const WideLamp nothing;
   block_.asked = 0;
+  const bool row = !scene_.lights.row().empty();
+  if (row) {
+    block_.row = scene_.lights.row().data();
+    block_.row_count = uint32_t(scene_.lights.row().size());
+    lanes_.choose(block_);
+  }
   for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
     block_.lamp[lane] = &nothing;
     block_.light_pdf[lane] = 0.0;
     block_.light_delta[lane] = block_.light_hidden[lane] = 0;
     if (lane >= waiting_count_ || waiting_[lane].ends || scene_.lights.empty())
       continue;
-    // Seen from the viewer's side, as the light comes.
-    const glm::vec3 ns = get(block_.ns, lane);
-    const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
-    const LightQuery here(get(block_.p, lane), behind ? -ns : ns, false);
-    const double u = double(block_.u[kVertexLightChoice][lane]) + 0x1p-24 * double(block_.u[kVertexLightDigits][lane]);
-    const LightSet::Choice choice = scene_.lights.choose(scene_.geometry, here, u);
+    const LightSet::Choice choice = row ? LightSet::Choice{block_.chosen[lane], 0, block_.chosen_probability[lane]}
+                                        : choose_light(lane);
     if (!(choice.probability > 0.0))
       continue;
     waiting_[lane].light = choice.light;

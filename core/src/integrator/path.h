@@ -69,6 +69,7 @@ private:
   void draw_numbers();
   void find_surfaces();
   void ask_nodes();
+  LightSet::Choice choose_light(uint32_t lane) const;
   void ask_lights();
   Surface surface_of(uint32_t lane) const;
   void send_shadow_of(uint32_t lane);

@@ -8,6 +8,8 @@
 
 namespace lancer {
 
+struct TreeLight;
+
 inline constexpr int kBlockLanes = 16;
 
 struct alignas(64) VertexBlock {
@@ -33,6 +35,12 @@ struct alignas(64) VertexBlock {
   Doubles p[3], offset, length; // of d
   Floats ng[3], ns[3], wo[3];
   Floats u[8];
+
+  // Given: LightSet::row(). choose(): one of them for each lane.
+  const TreeLight *row = nullptr;
+  uint32_t row_count = 0;
+  alignas(64) Words chosen;
+  Doubles chosen_probability;
 
   // Given: the lamp to ask, or the sample of another light, with the probability of its choice in pdf either way.
   const WideLamp *lamp[kBlockLanes];
