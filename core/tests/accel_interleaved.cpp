@@ -2,6 +2,7 @@
 #include "accel_scenes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
 
@@ -85,6 +86,83 @@ TEST(AcceleratorInterleaved, AnyBatchSizeAndOrderGiveTheSame) {
         ASSERT_EQ(hits[size].instance, 12345u);
         ASSERT_EQ(occlusion[size], 7);
       }
+    }
+  }
+}
+
+// Rays of a small camera: neighbours lie next to each other, four samples a pixel. Some differ in all that a ray may say.
+std::vector<Ray> camera_rays(Random &random, const glm::dvec3 &eye, const glm::dvec3 &to, double spread, size_t count) {
+  const glm::dvec3 forward = glm::normalize(to - eye), right = glm::normalize(glm::cross(forward, glm::dvec3(0.1, 0.2, 1.0))),
+                   up = glm::cross(right, forward);
+  const double length = std::exp2(random.uniform(-3.0, 3.0));
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < count; ++i) {
+    const double x = static_cast<double>(i % 64) / 64.0 - 0.5, y = static_cast<double>(i / 64) / 64.0 - 0.5;
+    Ray ray = make_ray(eye, length * (forward + spread * (x * right + y * up)));
+    switch (random.below(16)) {
+    case 0:
+      ray.kinds = 1;
+      break;
+    case 1:
+      ray.tmax = random.uniform(5.0, 20.0) / length;
+      break;
+    case 2:
+      ray.tmin = random.uniform(5.0, 20.0) / length;
+      break;
+    case 3:
+      ray.o += 0.01 * random.direction();
+      break;
+    case 4:
+      ray.d *= random.uniform(0.1, 9.0);
+      break;
+    default:
+      break;
+    }
+    if (random.below(200) == 0)
+      ray.d = glm::dvec3(0.0);
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+// Neighbours that go down the tree together: through instances mirrored, turned and flattened, too.
+TEST(AcceleratorInterleaved, NeighboursGiveTheSameAsEachAlone) {
+  Random random(12);
+  Geometry geometry = everything(random);
+  for (int i = 0; i < 60; ++i) {
+    const glm::dmat3 turned(random.direction(), 0.7 * random.direction(), -random.direction());
+    geometry.instances.push_back(placed(ShapeKind::Mesh, turned, random.in_box(8.0), i % 3 == 0 ? 2 : 0));
+    if (i % 7 == 0)
+      geometry.instances.back().hidden_from = 1;
+    geometry.instances.push_back(placed(ShapeKind::Sphere, glm::dmat3(0.3), random.in_box(8.0)));
+  }
+  for (const char *instruction_set : kInstructionSets) {
+    const auto bvh = build_bvh_for(instruction_set, geometry, 1);
+    for (int view = 0; view < 60; ++view) {
+      const double spread = std::exp2(-(view % 12));
+      const glm::dvec3 eye = view % 3 == 0 ? random.in_box(8.0) : 20.0 * random.direction();
+      std::vector<Ray> rays = camera_rays(random, eye, random.in_box(4.0), spread, 1000);
+      size_t found = 0;
+      for (int round = 0; round < 2; ++round) {
+        std::vector<Hit> hits(rays.size());
+        std::vector<uint8_t> occlusion(rays.size());
+        bvh->closest_hit(rays, hits);
+        bvh->any_hit(rays, occlusion);
+        for (size_t i = 0; i < rays.size(); ++i) {
+          ASSERT_TRUE(same_bits(hits[i], closest(*bvh, rays[i]))) << instruction_set << ", " << i << " of view " << view;
+          ASSERT_EQ(occlusion[i], hits[i].valid()) << instruction_set << ", " << i << " of view " << view;
+          found += hits[i].valid();
+        }
+        // The second time through what was met, from the same places and, for some, from where it was met.
+        for (size_t i = 0; i < rays.size(); ++i)
+          if (hits[i].valid()) {
+            rays[i].skip_instance = hits[i].instance;
+            rays[i].skip_primitive = hits[i].primitive;
+            if (view % 2 == 0)
+              rays[i].o += hits[i].t * rays[i].d;
+          }
+      }
+      EXPECT_GT(found, rays.size() / 8);
     }
   }
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "accel/kernel_slot.h"
-#include "accel/simd.h"
+#include "accel/simd_transpose.h"
 
 namespace lancer {
 namespace {
@@ -47,29 +47,60 @@ LANCER_SIMD bool enter_mesh(const PlacedShape &shape, const Ray &ray, MeshRay &r
   return magnitude(r.t0) + magnitude(r.q[0]) + magnitude(r.q[1]) + magnitude(r.q[2]) < __builtin_inf();
 }
 
-// Rays as they enter the world, some at a time: plain loops over lanes, which the compiler turns into vectors.
-struct Entering {
-  static constexpr uint32_t kLanes = 8;
-  alignas(64) double t0[kLanes], inverse_unit[kLanes];
-  alignas(64) float inverse[3][kLanes], shift[3][kLanes], tau_min[kLanes], tau_max[kLanes];
-  alignas(64) uint64_t usable[kLanes];
+// Rays that are handled at a time when they enter a space.
+constexpr uint32_t kPacket = 16;
+
+// Rays as the box test reads them, a lane a ray: see Slab.
+struct alignas(64) PacketSlabs {
+  float inverse[3][kPacket], shift[3][kPacket], tau_min[kPacket], tau_max[kPacket];
+  double t0[kPacket], inverse_unit[kPacket];
+  double scale;
 };
 
-// enter_world() of object_ray.h.
-LANCER_SIMD void enter_world8(const PlacementFrame &world, const Ray *rays, size_t count, Entering &e) {
-  constexpr uint32_t n = Entering::kLanes;
-  alignas(64) double d[3][n], f[3][n], tmin[n], tmax[n], largest[n], sum[n], tau0[n];
-  for (uint32_t i = 0; i < n; ++i) {
-    const Ray &ray = rays[i < count ? i : 0];
-    f[0][i] = ray.o.x;
-    f[1][i] = ray.o.y;
-    f[2][i] = ray.o.z;
-    d[0][i] = ray.d.x;
-    d[1][i] = ray.d.y;
-    d[2][i] = ray.d.z;
-    tmin[i] = ray.tmin;
-    tmax[i] = ray.tmax;
+// Rays as they enter the world, some at a time: plain loops over lanes, which the compiler turns into vectors.
+struct Entering : PacketSlabs {
+  const Ray *rays[kPacket];
+  uint32_t number[kPacket];                                                                   // in the batch
+  alignas(64) double origin[3][kPacket], tmin[kPacket], direction[3][kPacket], tmax[kPacket]; // as they come
+  alignas(64) double d[3][kPacket], q[3][kPacket], length2[kPacket];
+  alignas(64) uint64_t usable[kPacket];
+};
+
+// Turns rays into lanes.
+LANCER_SIMD void gather(Entering &e) {
+  for (uint32_t i = 0; i < kPacket; i += 4) {
+    D4 o[4], d[4];
+    for (uint32_t k = 0; k < 4; ++k) {
+      const double *ray = reinterpret_cast<const double *>(e.rays[i + k]);
+      o[k] = load4_anywhere(ray);
+      d[k] = load4_anywhere(ray + 4);
+    }
+    transpose4(o[0], o[1], o[2], o[3]);
+    transpose4(d[0], d[1], d[2], d[3]);
+    for (uint32_t k = 0; k < 3; ++k) {
+      store4(e.origin[k] + i, o[k]);
+      store4(e.direction[k] + i, d[k]);
+    }
+    store4(e.tmin + i, o[3]);
+    store4(e.tmax + i, d[3]);
   }
+}
+static_assert(offsetof(Ray, o) == 0 && offsetof(Ray, tmin) == 24 && offsetof(Ray, d) == 32 && offsetof(Ray, tmax) == 56);
+
+// enter_world() of object_ray.h for each lane.
+LANCER_SIMD void enter_world_packet(const PlacementFrame &frame, Entering &e) {
+  constexpr uint32_t n = kPacket;
+  const PlacementFrame world = frame; // a copy, which no store to a lane can change
+  e.scale = world.scale;
+  alignas(64) double largest[n], sum[n], tau0[n];
+  gather(e);
+  const auto &tmin = e.tmin, &tmax = e.tmax;
+  auto &d = e.d, &f = e.q;
+  for (uint32_t k = 0; k < 3; ++k)
+    for (uint32_t i = 0; i < n; ++i) {
+      d[k][i] = e.direction[k][i];
+      f[k][i] = e.origin[k][i];
+    }
   for (uint32_t i = 0; i < n; ++i) {
     largest[i] = larger(larger(magnitude(d[0][i]), magnitude(d[1][i])), magnitude(d[2][i]));
     sum[i] = magnitude(d[0][i]) + magnitude(d[1][i]) + magnitude(d[2][i]);
@@ -88,8 +119,8 @@ LANCER_SIMD void enter_world8(const PlacementFrame &world, const Ray *rays, size
     f[1][i] -= world.centre[1];
     f[2][i] -= world.centre[2];
     const double along = f[0][i] * d[0][i] + f[1][i] * d[1][i] + f[2][i] * d[2][i];
-    const double length2 = d[0][i] * d[0][i] + d[1][i] * d[1][i] + d[2][i] * d[2][i];
-    tau0[i] = -along / length2;
+    e.length2[i] = d[0][i] * d[0][i] + d[1][i] * d[1][i] + d[2][i] * d[2][i];
+    tau0[i] = -along / e.length2[i];
     f[0][i] += tau0[i] * d[0][i];
     f[1][i] += tau0[i] * d[1][i];
     f[2][i] += tau0[i] * d[2][i];
