@@ -12,7 +12,7 @@ struct BvhKernel {
   const char *name;
   void (*closest)(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count);
   void (*any)(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count);
-  // Adds up the work of the one or the other.
+  // Adds up the work of the one or the other, where each ray goes alone.
   void (*count)(const BvhScene &scene, const Ray *rays, size_t count, bool any, TraversalCounts &counts);
 };
 
