@@ -69,4 +69,9 @@ struct alignas(64) VertexBlock {
   uint32_t glossy = 0;              // drawn by a glossy lobe
 };
 
+// Stretches of rays side by side: from the last scattering along unit wi, up to the distance end.
+struct alignas(64) WayBlock {
+  VertexBlock::Doubles from[3], d[3], end; // d: of any length
+};
+
 } // namespace lancer

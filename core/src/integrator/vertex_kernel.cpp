@@ -5,6 +5,7 @@
 #include "lancer.h"
 #include "lights/wide_choice.h"
 #include "lights/wide_lamps.h"
+#include "lights/wide_meets.h"
 #include "sampling/wide_numbers.h"
 #include "scene/wide_surface.h"
 
@@ -239,10 +240,20 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
   }
 }
 
+[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const WideLamp &lamp) {
+  uint32_t met = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    const D3 d = load3(ways.d, first);
+    const D3 wi = d / sqrt(dot(d, d));
+    met |= placed_bits(may_meet(lamp, load3(ways.from, first), wi, load(ways.end + first)), first);
+  }
+  return met;
+}
+
 } // namespace
 
 namespace LANCER_ISA {
-const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), surfaces, choose, shade};
+const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), surfaces, choose, shade, meets};
 }
 
 } // namespace lancer

@@ -36,6 +36,7 @@ WideLamp make_wide(const Light &light) {
   lamp.area = light.area;
   lamp.tan_half_spread = light.tan_half_spread;
   lamp.spread_scale = light.spread_scale;
+  lamp.one_minus_cos_sun = light.one_minus_cos_sun;
   return lamp;
 }
 
@@ -81,8 +82,8 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   few_ = FewLights(std::move(described), count + 1);
   // Among several, kernels weigh lamps with a place.
   const auto known = [&](const TreeLight &light) {
-    const bool placed = light.kind == TreeLight::Kind::Disk || light.kind == TreeLight::Kind::Ball ||
-                        light.kind == TreeLight::Kind::Area;
+    const bool placed =
+        light.kind == TreeLight::Kind::Disk || light.kind == TreeLight::Kind::Ball || light.kind == TreeLight::Kind::Area;
     return light.number < lights_.size() && (placed || few_.row().size() == 1);
   };
   if (std::ranges::all_of(few_.row(), known))

@@ -50,12 +50,11 @@ public:
   }
   // Whether a ray can run into a light as described.
   bool any_on_the_way() const { return !always_.empty() || !finder_.empty(); }
-  // Calls visit(number) for those that may lie on the way from o along the unit wi, up to the distance end.
-  template <class Visit> void on_the_way(const glm::dvec3 &o, const glm::dvec3 &wi, double end, Visit &&visit) const {
-    for (const uint32_t number : always_)
-      visit(number);
-    finder_.along(o, wi, end, visit);
-  }
+  // A few, each to be asked about every ray.
+  const std::vector<uint32_t> &always_on_the_way() const { return always_; }
+  const WideLamp &plain_numbers(uint32_t light) const { return wide_lamps_[light]; }
+  // Finds the others.
+  const LightFinder &finder() const { return finder_; }
   size_t bytes() const;
 
 private:

@@ -83,7 +83,8 @@ LANCER_LANE WideImportance area_importance(const WideQuery &query, const TreeLig
   F apart[4], d2[4], above[4];
   for (int corner = 0; corner < 4; ++corner) {
     const F along_u(corner & 1 ? -1.0f : 1.0f), along_v(corner & 2 ? -1.0f : 1.0f);
-    const F x = v.x + along_u * F(light.u.x) + along_v * F(light.v.x), y = v.y + along_u * F(light.u.y) + along_v * F(light.v.y),
+    const F x = v.x + along_u * F(light.u.x) + along_v * F(light.v.x),
+            y = v.y + along_u * F(light.u.y) + along_v * F(light.v.y),
             z = v.z + along_u * F(light.u.z) + along_v * F(light.v.z);
     d2[corner] = x * x + y * y + z * z;
     const F per_d = one / sqrt(max(d2[corner], F(kNearest2)));
