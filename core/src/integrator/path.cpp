@@ -378,6 +378,9 @@ template <uint32_t Shapes, bool Layers>
 const WideMaterial *PathIntegrator<Shapes, Layers>::for_lanes(uint32_t material, uint32_t instance) const {
   if (!wide_ || material == kNone || scene_.wide[material].count == 0 || scene_.geometry.instances[instance].holdout)
     return nullptr;
+  // Only the general code knows what stays in view behind glass.
+  if (settings_.transparent_glass && scene_.wide[material].transmits)
+    return nullptr;
   return &scene_.wide[material];
 }
 
@@ -416,6 +419,8 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
   put(path.beta, block_.beta, lane);
   block_.terminator[lane] = instance.kind == ShapeKind::Mesh ? instance.terminator : 0.0f;
   block_.material[lane] = &wide;
+  if (wide.transmits)
+    block_.transmits |= bit;
   for (int i = 0; i < 3; ++i) {
     block_.weight[i][lane] = wide.weight[i];
     block_.base[i][lane] = wide.base[i];
@@ -466,6 +471,10 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::fin
       put(surface.ns, block_.ns, lane);
       block_.offset[lane] = surface.offset;
     }
+  // Glass looks different from inside.
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+    if (block_.material[lane]->inside && glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f)
+      block_.material[lane] += block_.material[lane]->inside;
 }
 
 // Colours that nodes say.
@@ -499,7 +508,7 @@ template <uint32_t Shapes, bool Layers> LightSet::Choice PathIntegrator<Shapes, 
   // Seen from the viewer's side, as the light comes.
   const glm::vec3 ns = get(block_.ns, lane);
   const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
-  const LightQuery here(get(block_.p, lane), behind ? -ns : ns, false);
+  const LightQuery here(get(block_.p, lane), behind ? -ns : ns, block_.transmits >> lane & 1);
   const double u = double(block_.u[kVertexLightChoice][lane]) + 0x1p-24 * double(block_.u[kVertexLightDigits][lane]);
   return scene_.lights.choose(scene_.geometry, here, u);
 }
@@ -518,7 +527,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     block_.lamp[lane] = &nothing;
     block_.light_pdf[lane] = 0.0;
     block_.light_delta[lane] = block_.light_hidden[lane] = 0;
-    if (lane >= waiting_count_ || waiting_[lane].ends || scene_.lights.empty())
+    if (lane >= waiting_count_ || waiting_[lane].ends || scene_.lights.empty() || !block_.material[lane]->smooth)
       continue;
     const LightSet::Choice choice =
         row ? LightSet::Choice{block_.chosen[lane], 0, block_.chosen_probability[lane]} : choose_light(lane);
@@ -591,7 +600,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::sha
       leave_lane(lane, results[paths_[number].slot]);
   }
   waiting_count_ = 0;
-  block_.used = block_.on_mesh = block_.smooth = block_.ends = 0;
+  block_.used = block_.on_mesh = block_.smooth = block_.ends = block_.transmits = 0;
 }
 
 // What follows from a shaded lane: its light, its shadow ray, its next ray.
@@ -625,8 +634,10 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
   path.pdf = block_.pdf[lane];
   path.from = get(block_.p, lane);
   path.normal = get(block_.viewer_ns, lane);
-  path.transmits = false;
-  path.kinds = block_.glossy >> lane & 1 ? LANCER_RAY_GLOSSY : LANCER_RAY_DIFFUSE;
+  path.transmits = block_.transmits >> lane & 1;
+  path.kinds = block_.transmitted >> lane & 1 ? LANCER_RAY_TRANSMISSION
+               : block_.glossy >> lane & 1    ? LANCER_RAY_GLOSSY
+                                              : LANCER_RAY_DIFFUSE;
   path.layers = 0;
   path.passed = 0.0;
   ++path.scatterings;
