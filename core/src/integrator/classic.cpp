@@ -54,12 +54,13 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
   samplers_.clear();
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
     samplers_.push_back(generator_.sampler(addresses[slot]));
-    Ray ray;
-    if (!generator_.start(addresses[slot], samplers_.back(), passes_.wanted(), results[slot], ray))
+    if (!generator_.start(addresses[slot], samplers_.back(), passes_.wanted(), results[slot], rays_.emplace_back())) {
+      rays_.pop_back();
       continue;
-    rays_.push_back(ray);
-    branches_.push_back({.slot = slot});
-    branches_.back().features = begin_features(settings_, passes_.features());
+    }
+    Branch &branch = branches_.emplace_back();
+    branch.slot = slot;
+    branch.features = begin_features(settings_, passes_.features());
   }
   counts_.camera += rays_.size();
 }

@@ -43,7 +43,7 @@ private:
   // A ray of the recursion; all of one depth are traced together.
   struct Branch {
     glm::vec3 weight{1.0f}; // of what it brings back
-    uint32_t slot;
+    uint32_t slot = 0;
     uint32_t depth = 0;
     uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
     uint32_t layers = 0;                // passed straight through

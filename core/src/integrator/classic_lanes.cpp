@@ -190,14 +190,13 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const Branch
     return shadows_.push(shadow_ray(scene_.geometry, surface, get(block.viewer_ns, lane), get(block.viewer_ng, lane), sample),
                          waiting, contribution);
   }
-  Ray shadow;
+  Ray &shadow = shadows_.push(waiting, contribution);
   shadow.o = get(lit.origin, lane);
   shadow.d = get(lit.d, lane);
   shadow.tmax = end;
   shadow.skip_instance = hit.instance;
   shadow.skip_primitive = hit.primitive;
   shadow.kinds = LANCER_RAY_SHADOW;
-  shadows_.push(shadow, waiting, contribution);
 }
 
 // What follows from a shaded lane: its light, its shadow rays, its mirrored ray.

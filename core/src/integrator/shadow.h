@@ -16,15 +16,21 @@ public:
   // contribution reaches the waiting sum where nothing stands between. passed: surfaces that the path already passed straight
   // through; they count against the same limit.
   void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
-    rays_.push_back(ray);
-    waiting_.push_back({waiting, contribution, passed});
+    push(waiting, contribution, passed) = ray;
+  }
+  // The same; the ray is written where it stands.
+  Ray &push(const WaitingLight &light, const glm::vec3 &contribution, uint32_t passed = 0) {
+    Waiting &waiting = waiting_.emplace_back();
+    waiting.light = light;
+    waiting.contribution = contribution;
+    waiting.passed = passed;
+    return rays_.emplace_back();
   }
 
   // Light that nothing can stop.
   void push_lit(const WaitingLight &waiting, const glm::vec3 &contribution) {
-    Ray ray;
+    Ray &ray = push(waiting, contribution);
     ray.tmax = ray.tmin;
-    push(ray, waiting, contribution);
   }
 
   // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing, and empties the queue.
