@@ -23,7 +23,7 @@ struct ClassicLanes {
   CourseBlock block;
   std::vector<CourseLit> lit;         // by lamp
   uint32_t material_of[kCourseLanes]; // number
-  std::vector<bool> known;            // of the rays that fill the block: it took them
+  std::vector<uint8_t> known;         // of the rays that fill the block: it took them
 };
 
 class ClassicIntegrator final : public Integrator {
@@ -61,6 +61,7 @@ private:
   void light_lanes(size_t begin, size_t end);
   void sample_lamp(uint32_t number, const Branch &branch, uint32_t lane, CourseLit &lit);
   void send_shadow(uint32_t number, uint32_t lane, const Branch &branch, const Hit &hit);
+  void add_own_light(uint32_t lane, const Branch &branch, const Material &material, SampleResult &result);
   Surface surface_of(uint32_t lane, const Hit &hit) const;
   void leave_lane(uint32_t lane, const Branch &branch, const Hit &hit, SampleResult &result);
   void miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result);

@@ -173,10 +173,9 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const Branch
   const CourseLit &lit = lanes_->lit[number];
   if (!(lit.lit >> lane & 1))
     return;
-  const WaitingLight waiting{.slot = branch.slot};
   const glm::vec3 contribution = get(lit.contribution, lane);
   if (scene_.lights.no_shadow(number))
-    return shadows_.push_lit(waiting, contribution);
+    return shadows_.push_lit({.slot = branch.slot}, contribution);
   const double end = lit.far >> lane & 1 ? std::numeric_limits<double>::infinity() : 1.0;
   const Instance &instance = scene_.geometry.instances[hit.instance];
   if (instance.kind == ShapeKind::Mesh && instance.terminator > 0.0f) {
@@ -188,9 +187,9 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const Branch
     const CourseBlock &block = lanes_->block;
     const Surface surface = surface_of(lane, hit);
     return shadows_.push(shadow_ray(scene_.geometry, surface, get(block.viewer_ns, lane), get(block.viewer_ng, lane), sample),
-                         waiting, contribution);
+                         {.slot = branch.slot}, contribution);
   }
-  Ray &shadow = shadows_.push(waiting, contribution);
+  Ray &shadow = shadows_.push(branch.slot, contribution);
   shadow.o = get(lit.origin, lane);
   shadow.d = get(lit.d, lane);
   shadow.tmax = end;
@@ -199,28 +198,36 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const Branch
   shadow.kinds = LANCER_RAY_SHADOW;
 }
 
+// What the material emits, and Ka of what comes from everywhere and from the lamps.
+void ClassicIntegrator::add_own_light(uint32_t lane, const Branch &branch, const Material &material, SampleResult &result) {
+  const auto &lights = scene_.lights.lights();
+  const glm::vec3 ambient = branch.weight * value_of(material.ambient, shader_.values());
+  result.radiance += branch.weight * value_of(material.emission, shader_.values());
+  result.radiance += ambient * ambient_;
+  for (uint32_t number = 0; number < lights.size(); ++number) {
+    const CourseLit &lit = lanes_->lit[number];
+    if (lit.there >> lane & 1)
+      result.radiance += ambient * lights[number].course.ambient_color * get(lit.irradiance, lane) * kInvPi;
+  }
+}
+
 // What follows from a shaded lane: its light, its shadow rays, its mirrored ray.
 void ClassicIntegrator::leave_lane(uint32_t lane, const Branch &branch, const Hit &hit, SampleResult &result) {
   const CourseBlock &block = lanes_->block;
-  const auto &lights = scene_.lights.lights();
   const Material &material = scene_.materials[lanes_->material_of[lane]];
   const bool first = branch.depth == 0 && !branch.seen && settings_.alpha_threshold <= 1.0f;
-  if (first) {
+  // The picture alone asks for nothing that it says.
+  if (first && settings_.passes != 1u << LANCER_PASS_COMBINED) {
     // The lobes' normals, each with its weight.
     const glm::vec3 ns = get(block.viewer_ns, lane);
     const glm::vec3 sum = ns * mean(get(block.kd, lane)) + ns * mean(get(block.ks, lane));
     record_first_surface(scene_, settings_, surface_of(lane, hit), &material, sum == glm::vec3(0.0f) ? ns : glm::normalize(sum),
                          branch.passed + hit.t, result);
   }
-  const glm::vec3 ambient = branch.weight * value_of(material.ambient, shader_.values());
-  result.radiance += branch.weight * value_of(material.emission, shader_.values());
-  result.radiance += ambient * ambient_;
-  for (uint32_t number = 0; number < lanes_->lamps.size(); ++number) {
-    const CourseLit &lit = lanes_->lit[number];
-    if (ambient != glm::vec3(0.0f) && number < lights.size() && (lit.there >> lane & 1))
-      result.radiance += ambient * lights[number].course.ambient_color * get(lit.irradiance, lane) * kInvPi;
+  if (lanes_->materials[lanes_->material_of[lane]].shines)
+    add_own_light(lane, branch, material, result);
+  for (uint32_t number = 0; number < lanes_->lamps.size(); ++number)
     send_shadow(number, lane, branch, hit);
-  }
   // Beyond the depth limit a ray is black: it need not be traced.
   if (branch.depth >= settings_.max_bounces || !(block.goes_on >> lane & 1))
     return;

@@ -12,6 +12,7 @@ inline constexpr int kCourseLanes = 16;
 struct WideCourse {
   bool known = false; // else only the general code does it
   bool matte = false, coated = false;
+  bool shines = false; // it emits, or has Ka
   float kd[3] = {}, ks[3] = {};
   float alpha = 1.0f, ior = 1.5f; // of the coating
 };

@@ -45,6 +45,7 @@ void fill(const Material &material, Bsdf &bsdf, WideCourse &wide) {
       wide.ior = lobe.ior;
     }
   }
+  wide.shines = material.emits() || material.ambient.value != glm::vec3(0.0f);
   wide.known = true;
 }
 

@@ -16,21 +16,23 @@ public:
   // contribution reaches the waiting sum where nothing stands between. passed: surfaces that the path already passed straight
   // through; they count against the same limit.
   void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
-    push(waiting, contribution, passed) = ray;
+    rays_.push_back(ray);
+    waiting_.push_back({waiting, contribution, passed});
   }
-  // The same; the ray is written where it stands.
-  Ray &push(const WaitingLight &light, const glm::vec3 &contribution, uint32_t passed = 0) {
+  // The same for a sum that keeps no account of the way. The ray is the caller's to write where it stands: it would not be
+  // copied before it has left the processor's stores.
+  Ray &push(uint32_t slot, const glm::vec3 &contribution) {
     Waiting &waiting = waiting_.emplace_back();
-    waiting.light = light;
+    waiting.light.slot = slot;
     waiting.contribution = contribution;
-    waiting.passed = passed;
     return rays_.emplace_back();
   }
 
   // Light that nothing can stop.
   void push_lit(const WaitingLight &waiting, const glm::vec3 &contribution) {
-    Ray &ray = push(waiting, contribution);
+    Ray ray;
     ray.tmax = ray.tmin;
+    push(ray, waiting, contribution);
   }
 
   // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing, and empties the queue.
@@ -48,8 +50,8 @@ public:
 private:
   struct Waiting {
     WaitingLight light;
-    glm::vec3 contribution; // what arrives of it
-    uint32_t passed;        // surfaces on the way so far
+    glm::vec3 contribution{0.0f}; // what arrives of it
+    uint32_t passed = 0;          // surfaces on the way so far
   };
 
   // Everything blocks: any hit answers.
