@@ -171,7 +171,7 @@ void PathIntegrator<Shapes, Layers>::record(Path &path, const Surface &surface, 
     record_first_surface(scene_, settings_, surface, point_, path.depth + t, result);
     path.seen = true;
   } else if (!path.seen) {
-    record_place(scene_, surface, point_, path.depth + t, result);
+    record_place(scene_, surface, point_.material, path.depth + t, result);
   }
   record_seen(scene_, camera_, settings_, passes_, surface, point_, path.beta, result);
 }
