@@ -72,7 +72,7 @@ LANCER_LANE void find_surfaces(CourseBlock &block, int first) {
     store(block.masked + first, masked_over_cosine(wo, alpha));
     block.odd |= bits(bent_lanes(wo_world, ns, ng)) << first;
     // What the coating mirrors: course_branches() and spawn().
-    const V3 reflected = load3(block.ks, first) * fresnel_dielectric(wo.z, ior);
+    const V3 reflected = load3(block.ks, first) * fresnel_dielectric(wo.z, ior).reflectance;
     const V3 mirrored = to_world(frame, {-wo.x, -wo.y, wo.z});
     const V3 weight = load3(block.weight, first) * reflected;
     const F share = max(max(weight.x, weight.y), weight.z);
