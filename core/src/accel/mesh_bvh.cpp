@@ -10,6 +10,8 @@ namespace lancer {
 namespace {
 
 constexpr uint32_t kPiece = 16384;
+// How many blocks ahead triangles are asked for; their corners at half of it.
+constexpr size_t kAhead = 16;
 
 // What a traversal reads of a child.
 uint32_t entry(uint32_t kind, size_t number, uint32_t steps) {
@@ -60,12 +62,27 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
       firsts.push_back(leaf);
     }
 
-  // Gather the corners of each block.
+  // Gather the corners of each block, which are spread over the mesh: ask for them some blocks ahead.
+  const auto prefetch_block = [&](const LeafRef *leaf, uint32_t last, bool indices) {
+    const Mesh &mesh = mesh_of(leaf->owner);
+    for (uint32_t lane = 0; lane <= last; ++lane) {
+      const glm::uvec3 &triangle = mesh.triangles[leaf[lane].id];
+      if (indices)
+        __builtin_prefetch(&triangle);
+      else
+        for (int corner = 0; corner < 3; ++corner)
+          __builtin_prefetch(&mesh.positions[triangle[corner]]);
+    }
+  };
   bvh.blocks.resize(firsts.size());
   bvh.owners.resize(owned ? firsts.size() : 0);
   parallel_for(context, (firsts.size() + kPiece - 1) / kPiece, [&](size_t piece) {
     const size_t begin = piece * kPiece;
     for (size_t b = begin; b < std::min(begin + kPiece, firsts.size()); ++b) {
+      if (b + kAhead < firsts.size())
+        prefetch_block(&tree.leaves[firsts[b + kAhead] >> 2], firsts[b + kAhead] & 3, true);
+      if (b + kAhead / 2 < firsts.size())
+        prefetch_block(&tree.leaves[firsts[b + kAhead / 2] >> 2], firsts[b + kAhead / 2] & 3, false);
       TriangleBlock &block = bvh.blocks[b];
       const uint32_t first = firsts[b] >> 2, used = (firsts[b] & 3) + 1;
       const Mesh &mesh = mesh_of(tree.leaves[first].owner);
@@ -132,10 +149,8 @@ MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, con
     const Instance &instance = geometry.instances[number];
     const Mesh &mesh = mesh_of(number);
     const uint32_t triangles = static_cast<uint32_t>(mesh.triangles.size());
-    const glm::dvec3 reach = placed.mesh_reach[instance.mesh];
-    add_triangles(
-        refs, filled, triangles, number,
-        [&](uint32_t t) { return placed_triangle_box(mesh, instance, reach, placed.world, t); }, context);
+    const PlacedTriangleBoxes boxes(mesh, instance, placed.mesh_reach[instance.mesh], placed.world);
+    add_triangles(refs, filled, triangles, number, boxes, context);
     filled += triangles;
     groups = true;
   }
