@@ -28,34 +28,45 @@ struct Binning {
   Int4 bins(Float4 centroid) const { return __builtin_convertvector((centroid - origin) * scale, Int4); }
 };
 
+// Unset until cleared: only as many as are used.
 struct Bins {
-  Box boxes[kMaxBins][3];
-  alignas(16) uint32_t counts[kMaxBins][4];
+  struct Bounds {
+    Float4 lo, hi;
+  };
+  Bounds bounds[kMaxBins][3];
+  alignas(16) std::array<uint32_t, 4> counts[kMaxBins];
 
-  Int4 count(uint32_t bin) const { return *reinterpret_cast<const Int4 *>(counts[bin]); }
+  Box box(uint32_t bin, int axis) const { return {bounds[bin][axis].lo, bounds[bin][axis].hi}; }
+  Int4 count(uint32_t bin) const { return std::bit_cast<Int4>(counts[bin]); }
   void clear(uint32_t used) {
+    constexpr Box kEmpty;
     for (uint32_t bin = 0; bin < used; ++bin) {
-      for (Box &box : boxes[bin])
-        box = {};
-      for (uint32_t &number : counts[bin])
-        number = 0;
+      for (Bounds &b : bounds[bin])
+        b = {kEmpty.lo, kEmpty.hi};
+      counts[bin] = {};
     }
+  }
+  void grow(uint32_t bin, int axis, const Box &by) {
+    Bounds &b = bounds[bin][axis];
+    b.lo = min4(b.lo, by.lo);
+    b.hi = max4(b.hi, by.hi);
   }
   void add(const BuildRef *refs, uint32_t begin, uint32_t end, const Binning &binning) {
     for (uint32_t i = begin; i < end; ++i) {
-      const Box box = refs[i].box();
-      const Int4 bin = binning.bins(refs[i].centroid());
+      const Box by = refs[i].box();
+      const Int4 bins = binning.bins(refs[i].centroid());
       for (int axis = 0; axis < 3; ++axis) {
-        boxes[bin[axis]][axis].grow(box);
-        ++counts[bin[axis]][axis];
+        const uint32_t bin = static_cast<uint32_t>(bins[axis]);
+        grow(bin, axis, by);
+        ++counts[bin][static_cast<size_t>(axis)];
       }
     }
   }
   void add(const Bins &other, uint32_t used) {
     for (uint32_t bin = 0; bin < used; ++bin)
       for (int axis = 0; axis < 3; ++axis) {
-        boxes[bin][axis].grow(other.boxes[bin][axis]);
-        counts[bin][axis] += other.counts[bin][axis];
+        grow(bin, axis, other.box(bin, axis));
+        counts[bin][static_cast<size_t>(axis)] += other.counts[bin][static_cast<size_t>(axis)];
       }
   }
 };
@@ -80,7 +91,7 @@ Plane find_plane(const Bins &bins, uint32_t used, uint32_t group) {
   Int4 right_count{}, left_count{};
   for (uint32_t bin = used - 1; bin > 0; --bin) {
     for (int axis = 0; axis < 3; ++axis)
-      right[axis].grow(bins.boxes[bin][axis]);
+      right[axis].grow(bins.box(bin, axis));
     right_count += bins.count(bin);
     right_cost[bin] = cost(right, right_count, group);
   }
@@ -88,7 +99,7 @@ Plane find_plane(const Bins &bins, uint32_t used, uint32_t group) {
   Int4 best_bin{};
   for (uint32_t bin = 1; bin < used; ++bin) {
     for (int axis = 0; axis < 3; ++axis)
-      left[axis].grow(bins.boxes[bin - 1][axis]);
+      left[axis].grow(bins.box(bin - 1, axis));
     left_count += bins.count(bin - 1);
     const Float4 sum = cost(left, left_count, group) + right_cost[bin];
     const Int4 better = sum < best;
@@ -196,11 +207,11 @@ bool RangeSplitter::split_by_area(const BuildRange &range, BuildRange sides[2]) 
   const auto count_left = [&](const Bins &bins) {
     uint32_t count = 0;
     for (int32_t bin = 0; bin < plane.bin; ++bin)
-      count += bins.counts[bin][plane.axis];
+      count += bins.counts[bin][static_cast<size_t>(plane.axis)];
     return count;
   };
   for (int32_t bin = 0; bin < static_cast<int32_t>(used); ++bin)
-    sides[bin >= plane.bin].box.grow(sum.boxes[bin][plane.axis]);
+    sides[bin >= plane.bin].box.grow(sum.box(static_cast<uint32_t>(bin), plane.axis));
   const uint32_t middle = range.begin + count_left(sum);
   sides[0].begin = range.begin;
   sides[0].end = sides[1].begin = middle;
