@@ -16,6 +16,7 @@ ONLY ?=
 QUICK ?=
 BLENDER ?=
 BEFORE ?=
+README ?=
 
 python := $(VENV)/bin/python
 core := build/core
@@ -27,7 +28,8 @@ compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
 logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 
 .PHONY: build render test test-slow bench parity sanitize addon format clean help
-.PHONY: packages-build packages-run packages-test packages-format python-run python-test python-dev core-tests
+.PHONY: packages-build packages-run packages-test packages-format packages-bench
+.PHONY: python-run python-test python-dev python-bench core-tests
 
 build: packages-build ## build the core; the library lands in addon/lib, where the add-on loads it
 	@mkdir -p build
@@ -63,7 +65,7 @@ sanitize: packages-test ## the C++ tests under AddressSanitizer and UndefinedBeh
 	@$(call logged,build/ctest-sanitize.log,ctest --test-dir build/sanitize -j $(JOBS) --output-on-failure)
 	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest-sanitize.log
 
-bench: packages-run python-run build ## measure speed and memory, next to Cycles, or another revision: make bench [BEFORE=revision]
+bench: packages-run packages-bench python-bench build ## every renderer side by side: make bench [QUICK=1] [ONLY='balls*'] [README=1] [BEFORE=revision]
 ifneq ($(BEFORE),)
 	@rm -rf build/before && mkdir -p build/before
 	@git archive $(BEFORE) | tar -x -C build/before
@@ -71,7 +73,8 @@ ifneq ($(BEFORE),)
 	@$(call logged,build/configure-before.log,cmake -S build/before/core -B build/before/build -G Ninja)
 	@cmake --build build/before/build --target lancer $(compile)
 endif
-	@$(python) blender_tests/bench.py $(if $(BEFORE),--before build/before)
+	@$(python) blender_tests/bench/run.py $(if $(BEFORE),--before build/before) $(if $(QUICK),--quick) \
+	  $(if $(ONLY),--only '$(ONLY)') $(if $(README),--readme)
 
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
 	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P scenes/parity/run.py --,$(python) scenes/parity/run.py) \
@@ -93,6 +96,13 @@ help: ## this list
 
 packages-build packages-run packages-test packages-format: packages-%:
 	@PYTHON='$(PYTHON)' .ci/packages.sh $*
+
+# What only a peer of the benchmark needs may be missing: the benchmark names that peer as missing.
+packages-bench: packages-run
+	@for set in povray llvm; do PYTHON='$(PYTHON)' .ci/packages.sh $$set || true; done
+
+python-bench: packages-run
+	@$(PYTHON) .ci/environment.py $(VENV) run bench --optional bench-mitsuba bench-luxcore bench-embree
 
 python-run: packages-run
 	@$(PYTHON) .ci/environment.py $(VENV) run

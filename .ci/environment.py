@@ -1,7 +1,8 @@
-"""environment.py FOLDER GROUP...: a virtual environment that holds the named groups of pyproject.toml.
+"""environment.py FOLDER GROUP... [--optional GROUP...]: a virtual environment that holds the named groups of pyproject.toml.
 
-Does nothing where it already does. A changed pyproject.toml or another Python makes it anew. Any Python 3 must get as far
-as the sentence that refuses them, so this file keeps to plain syntax.
+Does nothing where it already does. A changed pyproject.toml or another Python makes it anew. A group after --optional that
+cannot be installed is told, and is no failure. Any Python 3 must get as far as the sentence that refuses them, so this file
+keeps to plain syntax.
 """
 
 import hashlib
@@ -34,7 +35,7 @@ def read_record(path):
         return {}
 
 
-def main(folder, wanted):
+def main(folder, wanted, optional):
     if sys.version_info[:2] not in SUPPORTED:
         sys.exit(
             f"Blender's Python module needs Python {' or '.join(map(dotted, SUPPORTED))}, and {sys.executable} is "
@@ -46,22 +47,29 @@ def main(folder, wanted):
     record = read_record(record_path)
     installed = record.get("groups", []) if record.get("identity") == identity else []
     missing = [name for name in wanted if name not in installed]
-    if not missing:
+    missing_optional = [name for name in optional if name not in installed]
+    if not missing and not missing_optional:
         return
 
-    python = os.path.join(folder, "bin", "python")
     if not installed:
         print(f"== python: new environment {folder} ({dotted(sys.version_info[:2])})", flush=True)
         shutil.rmtree(folder, ignore_errors=True)
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-    requirements = [line for name in missing for line in groups[name]]
-    names = ", ".join(line.split(";")[0] for line in requirements if applies(line))
-    print(f"== python: {names}", flush=True)
-    install = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"] + requirements
-    if subprocess.run(install).returncode:
+    if missing and not install(folder, [line for name in missing for line in groups[name]]):
         sys.exit("pip could not install the Python packages above: see its message, then run the same command again.")
+    for name in missing_optional:
+        if install(folder, groups[name]):
+            missing.append(name)
+        else:
+            print(f"== python: {name} could not be installed, what needs it is left out", flush=True)
     with open(record_path, "w", encoding="utf-8") as file:
         json.dump({"identity": identity, "groups": sorted(set(installed + missing))}, file)
+
+
+def install(folder, requirements):
+    print("== python: " + ", ".join(line.split(";")[0] for line in requirements if applies(line)), flush=True)
+    pip = [os.path.join(folder, "bin", "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    return subprocess.run(pip + requirements).returncode == 0
 
 
 def applies(requirement):
@@ -70,4 +78,6 @@ def applies(requirement):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2:])
+    names = sys.argv[2:]
+    split = names.index("--optional") if "--optional" in names else len(names)
+    main(sys.argv[1], names[:split], names[split + 1 :])

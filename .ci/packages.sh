@@ -1,5 +1,6 @@
 #!/bin/sh
-# packages.sh SET...    installs what is missing of the named sets (build, run, test, format) with one call of apt-get.
+# packages.sh SET...    installs what is missing of the named sets (build, run, test, format, and of the benchmark's peers
+# povray, llvm) with one call of apt-get.
 # Each thing is looked for by what it gives (a command, a library, a header), so that a copy from elsewhere is good enough.
 set -eu
 
@@ -53,6 +54,15 @@ want_test() {
   want xdotool command_is_there xdotool
   want imagemagick command_is_there import
   want libgl1-mesa-dri file_is_there "/usr/lib/*/dri/*_dri.so /usr/lib/dri/*_dri.so"
+}
+
+want_povray() {
+  want povray command_is_there povray
+}
+
+# What Mitsuba compiles its kernels with.
+want_llvm() {
+  want libllvm19 library_is_there libLLVM.so.19.1
 }
 
 want_format() {

@@ -5,14 +5,23 @@ A builder fills the current, empty Blender scene and works in Blender 3.4 to 5.2
 
 import bpy
 
-from . import heavy, lab, rooms, showcase, spheres
+from . import heavy, lab, lamps, outdoors, rooms, showcase, spheres, vitrine
 
 BUILDERS = {
     "showcase": showcase.build,
     "balls": spheres.build_balls,
+    "balls_exact": spheres.build_balls_exact,
     "spheres600": spheres.build_spheres600,
     "default_cube": rooms.build_default_cube,
     "cornell": rooms.build_cornell,
+    "room": rooms.build_room,
+    "triangle": rooms.build_triangle,
+    "glass_metal": vitrine.build,
+    "lights2": lamps.build_lights2,
+    "lights200": lamps.build_lights200,
+    "lights10k": lamps.build_lights10k,
+    "models": outdoors.build_models,
+    "leaves": outdoors.build_leaves,
     "lab": lab.build,
     "million": heavy.build_million,
     "instances": heavy.build_instances,

@@ -30,6 +30,12 @@ def mesh_from_bmesh(name, make, smooth):
     return mesh
 
 
+def mesh_from_points(name, points, faces):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(points, [], faces)
+    return mesh
+
+
 def sphere_mesh(name, segments=64, rings=32, radius=1.0):
     def make(bm):
         bmesh.ops.create_uvsphere(bm, u_segments=segments, v_segments=rings, radius=radius)

@@ -1,4 +1,4 @@
-"""Small scenes: Blender's default cube, and a closed room where most of the light arrives indirectly."""
+"""Small scenes: Blender's default cube, one triangle, and a closed room where most of the light arrives indirectly."""
 
 import math
 
@@ -39,3 +39,19 @@ def build_cornell(scene):
     parts.add_light(scene, "Lamp", "AREA", 40.0, (0, 0, 1.5), (0, 0, 2), (1.0, 0.85, 0.6), size=0.5)
     parts.set_world(scene, (0, 0, 0))
     parts.add_camera(scene, (0, -2.95, 1), (0, 1, 0.98), lens=38.0)
+
+
+def build_room(scene):
+    """The closed box with a true shade under its lamp, so that no renderer sees the lamp itself, or light behind it."""
+    build_cornell(scene)
+    shade = parts.principled("Shade", base_color=(0.2, 0.2, 0.2), roughness=1.0, specular_ior_level=0.0)
+    parts.place(scene, "Shade", parts.plane_mesh("Shade", 0.54), shade, (0, 0, 1.49))
+
+
+def build_triangle(scene):
+    """One grey triangle before a grey sky: what is left is what a renderer does for each sample anyway."""
+    parts.set_size(scene, 640, 480, 64)
+    grey = parts.principled("Grey", base_color=(0.6, 0.6, 0.6), roughness=1.0, specular_ior_level=0.0)
+    parts.place(scene, "Triangle", parts.mesh_from_points("Triangle", [(-1, 0, -1), (1, 0, -1), (0, 0, 1)], [(0, 1, 2)]), grey)
+    parts.set_world(scene, (0.5, 0.6, 0.7))
+    parts.add_camera(scene, (0, -4, 0), (0, 0, 0))

@@ -18,7 +18,12 @@ def scatter(random_source, count, half_width, radii, clearance=1.02):
     return circles
 
 
-def build_balls(scene):
+def build_balls_exact(scene):
+    """The same balls as exact spheres; the plane stays a mesh."""
+    build_balls(scene, shape="SPHERE")
+
+
+def build_balls(scene, shape="MESH"):
     """60 smooth UV spheres, 64 x 32, of mixed Principled materials on a plane, an area light, a point light, a dim sky."""
     source = random.Random(60)
     parts.set_size(scene, 640, 480, 16)
@@ -28,7 +33,7 @@ def build_balls(scene):
             f"Ball {index}", base_color=color, metallic=float(index % 2), roughness=source.uniform(0.1, 0.8), ior=1.5
         )
         mesh = parts.sphere_mesh(f"Ball {index}")
-        parts.place(scene, f"Ball {index}", mesh, material, (x, y, radius), radius)
+        parts.place(scene, f"Ball {index}", mesh, material, (x, y, radius), radius, shape=shape)
     ground = parts.principled("Ground", base_color=(0.5, 0.5, 0.5), roughness=0.6, ior=1.5)
     parts.place(scene, "Ground", parts.plane_mesh("Ground", 40.0), ground)
     parts.add_light(scene, "Area", "AREA", 1200.0, (5, -4, 8), size=3.0)

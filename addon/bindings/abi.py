@@ -41,6 +41,7 @@ _CALLS = {
     "lancer_debug_sample": (_u64, _u32, _u32, _u32, _Array, _Array, _u32, POINTER(_u32)),
     "lancer_probe_intersect": (_u64, _u32, _Array, _Array, _Array, _Array, _Array),
     "lancer_probe_occluded": (_u64, _u32, _Array, _Array, _Array, _Array, _Array),
+    "lancer_probe_traversal": (_u64, _u32, _Array, _Array, _Array, _Array, _u32, _Array),
     "lancer_probe_bsdf": (_u64, _u32, _u32, _Array, _Array, _Array, _Array),
     "lancer_probe_bsdf_sample": (_u64, _u32, _u32, _Array, _Array, _Array),
     "lancer_probe_lobes": (_u64, _u32, _Array, _Array, _u32, POINTER(_u32), _Array, _Array),

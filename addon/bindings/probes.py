@@ -42,6 +42,16 @@ class SceneProbes:
         check(self.library.lancer_probe_occluded(self.handle, count, *addresses), self.library)
         return occluded.astype(bool)
 
+    def traversal(self, origins, directions, tmin=0.0, tmax=np.inf, any_hit=False):
+        """What the wide BVH looks at for all rays together: nodes, triangle blocks, sphere blocks, instances."""
+        count, rays = self._rays(origins, directions, tmin, tmax)
+        counts = np.zeros(4, np.uint64)
+        addresses = [a.ctypes.data for a in rays]
+        check(
+            self.library.lancer_probe_traversal(self.handle, count, *addresses, int(any_hit), counts.ctypes.data), self.library
+        )
+        return dict(zip(("nodes", "triangle_blocks", "sphere_blocks", "instances"), counts.tolist(), strict=True))
+
     def bsdf(self, material, wo, wi):
         """f (count, 3) without cosine and pdf (count,) per solid angle, in the local frame."""
         count = _count(wo, wi)

@@ -713,6 +713,13 @@ LANCER_API lancer_status lancer_probe_occluded(lancer_scene scene, uint32_t coun
                                                const double *directions, const double *tmin, const double *tmax,
                                                uint8_t *occluded);
 
+/* What the wide BVH looks at to answer lancer_probe_occluded (any = 1) or lancer_probe_intersect (any = 0) for all these rays
+ * together; zeros with another accelerator. counts[4]: nodes of eight boxes (256 bytes each); blocks of four triangles (160);
+ * blocks of four exact spheres (416); trees of meshes that were entered and single exact surfaces. */
+LANCER_API lancer_status lancer_probe_traversal(lancer_scene scene, uint32_t count, const double *origins,
+                                                const double *directions, const double *tmin, const double *tmax, uint32_t any,
+                                                uint64_t *counts);
+
 /* f[count][3] and pdf[count] of a material for local directions wo, wi [count][3] (n = +z, tangent +x; nodes see the middle of
  * a unit square); f without cosine, pdf per solid angle; lobes that are a single direction give 0 here. */
 LANCER_API lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo,

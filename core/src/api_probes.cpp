@@ -47,6 +47,14 @@ lancer_status lancer_probe_occluded(lancer_scene scene, uint32_t count, const do
                      [&](const Scene &s) { probe_occluded(s, count, origins, directions, tmin, tmax, occluded); });
 }
 
+lancer_status lancer_probe_traversal(lancer_scene scene, uint32_t count, const double *origins, const double *directions,
+                                     const double *tmin, const double *tmax, uint32_t any, uint64_t *counts) {
+  return probe_scene(scene, count, {origins, directions, tmin, tmax}, [&](const Scene &s) {
+    require(counts, "probe: an array");
+    probe_traversal(s, count, origins, directions, tmin, tmax, any != 0, counts);
+  });
+}
+
 lancer_status lancer_probe_bsdf(lancer_scene scene, uint32_t material, uint32_t count, const float *wo, const float *wi,
                                 float *f, float *pdf) {
   return probe_scene(scene, count, {wo, wi, f, pdf}, [&](const Scene &s) { probe_bsdf(s, material, count, wo, wi, f, pdf); });

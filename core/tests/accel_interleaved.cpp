@@ -89,6 +89,28 @@ TEST(AcceleratorInterleaved, AnyBatchSizeAndOrderGiveTheSame) {
   }
 }
 
+// One quad of two triangles: a ray that meets it looks at one node and one block; what misses its box at the node alone.
+TEST(AcceleratorInterleaved, WorkIsCounted) {
+  Geometry geometry;
+  Mesh mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  geometry.meshes.push_back(mesh);
+  geometry.instances.push_back(placed(ShapeKind::Mesh, glm::dmat3(1.0), glm::dvec3(0.0)));
+  geometry.instances.push_back(placed(ShapeKind::Sphere, glm::dmat3(1.0), {0.0, 8.0, 0.0}));
+  geometry.instances.push_back(placed(ShapeKind::Cone, glm::dmat3(1.0), {0.0, 16.0, 0.0}));
+  const std::vector<Ray> rays = {make_ray({0.3, 0.1, 5.0}, {0, 0, -1}), make_ray({0.3, 4.0, 5.0}, {0, 0, -1}),
+                                 make_ray({0.1, 8.0, 5.0}, {0, 0, -1}), make_ray({0.1, 15.5, 5.0}, {0, 0, -1})};
+  for (const char *instruction_set : kInstructionSets)
+    for (const bool any : {false, true}) {
+      const TraversalCounts counts = build_bvh_for(instruction_set, geometry, 1)->count(rays, any);
+      EXPECT_EQ(counts.nodes, 4u);
+      EXPECT_EQ(counts.triangle_blocks, 1u);
+      EXPECT_EQ(counts.sphere_blocks, 1u);
+      EXPECT_EQ(counts.instances, 1u);
+    }
+}
+
 // More things without a box than any stack holds.
 TEST(AcceleratorInterleaved, AnyNumberOfPlanes) {
   Geometry geometry;

@@ -21,6 +21,8 @@ public:
   virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
   // occluded[i]: 1 where rays[i] meets anything at all.
   virtual void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const = 0;
+  // The work of closest_hit() or any_hit() on these rays, counted by the wide BVH; zeros from the others.
+  virtual TraversalCounts count(std::span<const Ray>, [[maybe_unused]] bool any) const { return {}; }
   virtual size_t bytes() const = 0;
   // The instruction set that the traversal was compiled for and runs with, e.g. "AVX2".
   virtual const char *instruction_set() const = 0;

@@ -63,6 +63,11 @@ public:
   void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override {
     kernel.any(scene, rays.data(), occluded.data(), rays.size());
   }
+  TraversalCounts count(std::span<const Ray> rays, bool any) const override {
+    TraversalCounts counts;
+    kernel.count(scene, rays.data(), rays.size(), any, counts);
+    return counts;
+  }
   size_t bytes() const override {
     size_t sum = placed.bytes() + views.capacity() * sizeof(BvhView) + world.bytes();
     for (const MeshBvh &mesh : meshes)

@@ -188,8 +188,11 @@ LANCER_SIMD bool start(const BvhScene &scene, const Ray &ray, const Entering &e,
   return e.usable[lane] != 0 && s.size > 1;
 }
 
-template <bool any> LANCER_SIMD void store_answer(const Slot &s, Hit *hits, uint8_t *occluded) {
-  if constexpr (any)
+// Nobody wants the answers of rays whose work is counted.
+template <bool any, bool counted> LANCER_SIMD void store_answer(const Slot &s, Hit *hits, uint8_t *occluded) {
+  if constexpr (counted)
+    return;
+  else if constexpr (any)
     occluded[s.number] = s.best.instance != kNone;
   else
     hits[s.number] = s.best;
@@ -201,7 +204,9 @@ struct Queue {
   Slot *slots[kSlots];
 };
 
-template <bool any> LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count) {
+template <bool any, bool counted>
+LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count,
+                       TraversalCounts *counts) {
   Slot slots[kSlots];
   Queue queues[kBvhKinds];
   Slot *others[kSlots];
@@ -220,7 +225,7 @@ template <bool any> LANCER_SIMD void trace(const BvhScene &scene, const Ray *ray
         others[other_count++] = &s;
         return;
       }
-      store_answer<any>(s, hits, occluded);
+      store_answer<any, counted>(s, hits, occluded);
     }
   };
   // Does the work of one kind for all that wait for it.
@@ -228,6 +233,11 @@ template <bool any> LANCER_SIMD void trace(const BvhScene &scene, const Ray *ray
     Queue &queue = queues[kind];
     other_count = queue.count;
     queue.count = 0;
+    if (counted) {
+      counts->triangle_blocks += kind == kBvhTriangles || kind == kBvhPlaced ? other_count : 0;
+      counts->sphere_blocks += kind == kBvhSpheres ? other_count : 0;
+      counts->instances += kind == kBvhInstance ? other_count : 0;
+    }
     for (uint32_t i = 0; i < other_count; ++i)
       work(*queue.slots[i]);
     for (uint32_t i = 0; i < other_count; ++i)
@@ -257,6 +267,8 @@ template <bool any> LANCER_SIMD void trace(const BvhScene &scene, const Ray *ray
       const uint32_t waiting = queue.count;
       if (waiting == 0)
         return;
+      if (counted)
+        counts->nodes += waiting;
       for (uint32_t i = 0; i < waiting; ++i)
         visit_node(*queue.slots[i]);
       // Those that come to another node stay.
@@ -301,7 +313,7 @@ template <bool any> LANCER_SIMD void trace(const BvhScene &scene, const Ray *ray
       const uint32_t waiting = queue.count;
       queue.count = 0;
       for (uint32_t i = 0; i < waiting; ++i) {
-        store_answer<any>(*queue.slots[i], hits, occluded);
+        store_answer<any, counted>(*queue.slots[i], hits, occluded);
         refill(*queue.slots[i]);
       }
       break;
@@ -311,17 +323,24 @@ template <bool any> LANCER_SIMD void trace(const BvhScene &scene, const Ray *ray
 }
 
 [[gnu::flatten]] void closest(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count) {
-  trace<false>(scene, rays, hits, nullptr, count);
+  trace<false, false>(scene, rays, hits, nullptr, count, nullptr);
 }
 
 [[gnu::flatten]] void any_hit(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count) {
-  trace<true>(scene, rays, nullptr, occluded, count);
+  trace<true, false>(scene, rays, nullptr, occluded, count, nullptr);
+}
+
+[[gnu::flatten]] void count_work(const BvhScene &scene, const Ray *rays, size_t count, bool any, TraversalCounts &counts) {
+  if (any)
+    trace<true, true>(scene, rays, nullptr, nullptr, count, &counts);
+  else
+    trace<false, true>(scene, rays, nullptr, nullptr, count, &counts);
 }
 
 } // namespace
 
 namespace LANCER_ISA {
-const BvhKernel kernel = {LANCER_NAME(LANCER_ISA), closest, any_hit};
+const BvhKernel kernel = {LANCER_NAME(LANCER_ISA), closest, any_hit, count_work};
 }
 
 } // namespace lancer

@@ -12,6 +12,8 @@ struct BvhKernel {
   const char *name;
   void (*closest)(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count);
   void (*any)(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count);
+  // Adds up the work of the one or the other.
+  void (*count)(const BvhScene &scene, const Ray *rays, size_t count, bool any, TraversalCounts &counts);
 };
 
 // Each is the same source, bvh_kernel.cpp, compiled with LANCER_ISA set to the name.

@@ -34,6 +34,11 @@ struct Hit {
   bool valid() const { return instance != kNone; }
 };
 
+// What a batch of rays had to look at on its way.
+struct TraversalCounts {
+  uint64_t nodes = 0, triangle_blocks = 0, sphere_blocks = 0, instances = 0;
+};
+
 // The rule that makes "closest" unique: smaller t, then smaller instance, then smaller primitive.
 [[gnu::always_inline]] inline bool closer(double t, uint32_t instance, uint32_t primitive, const Hit &best) {
   if (t != best.t)

@@ -176,7 +176,8 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
     if (scene_.lights.no_shadow(i))
       shadows_.push_lit({.slot = branch.slot}, branch.weight * light);
     else
-      shadows_.push(shadow_ray(scene_.geometry, surface, point_.bsdf.ns, point_.bsdf.ng, s), {.slot = branch.slot}, branch.weight * light);
+      shadows_.push(shadow_ray(scene_.geometry, surface, point_.bsdf.ns, point_.bsdf.ng, s), {.slot = branch.slot},
+                    branch.weight * light);
   }
 }
 

@@ -3,6 +3,7 @@
 #include "sampling/color.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace lancer {
@@ -27,6 +28,19 @@ uint32_t ray_kind(const BsdfSample &sample) {
   if (sample.transmitted)
     return LANCER_RAY_TRANSMISSION;
   return sample.component == Component::Diffuse ? LANCER_RAY_DIFFUSE : LANCER_RAY_GLOSSY;
+}
+
+void put(const glm::vec3 &v, VertexBlock::Floats (&lanes)[3], uint32_t lane) {
+  for (int i = 0; i < 3; ++i)
+    lanes[i][lane] = v[i];
+}
+void put(const glm::dvec3 &v, VertexBlock::Doubles (&lanes)[3], uint32_t lane) {
+  for (int i = 0; i < 3; ++i)
+    lanes[i][lane] = v[i];
+}
+glm::vec3 get(const VertexBlock::Floats (&lanes)[3], uint32_t lane) { return {lanes[0][lane], lanes[1][lane], lanes[2][lane]}; }
+glm::dvec3 get(const VertexBlock::Doubles (&lanes)[3], uint32_t lane) {
+  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
 }
 
 } // namespace
@@ -93,6 +107,7 @@ template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
   next_paths_.clear();
   next_rays_.clear();
+  add_lights_met(results);
   for (size_t i = 0; i < paths_.size(); ++i) {
     if (i + 1 < paths_.size())
       textures_.ahead(hits_[i + 1]);
@@ -100,8 +115,6 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
     const Ray &ray = rays_[i];
     const double t = hits_[i].t;
     SampleResult &result = results[path.slot];
-    // Lights stand in no one's way: add all that the ray passes before it ends.
-    add_lights_met(path, ray, t, result);
     if (!hits_[i].valid()) {
       miss(path, ray, result);
       continue;
@@ -224,26 +237,55 @@ void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, Samp
   add(path, result, path.beta * environment.radiance(wi, shader_.values(), &camera_, eye) * weight, true);
 }
 
-template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result) {
-  if (!scene_.lights.any_on_the_way())
+// Lights stand in no one's way: adds all that the rays pass before they end.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::add_lights_met(std::span<SampleResult> results) {
+  const LightSet &lights = scene_.lights;
+  if (!lights.any_on_the_way())
     return;
-  // Look from the last scattering, as sampling does, at what lies on this stretch of the way.
+  for (size_t first = 0; first < paths_.size(); first += kBlockLanes) {
+    // Look from the last scattering, as sampling does.
+    const uint32_t count = uint32_t(std::min<size_t>(kBlockLanes, paths_.size() - first));
+    for (uint32_t lane = 0; lane < count; ++lane) {
+      const Ray &ray = rays_[first + lane];
+      put(paths_[first + lane].from, ways_.from, lane);
+      put(ray.d, ways_.d, lane);
+      ways_.end[lane] = way_end(first + lane);
+    }
+    for (const uint32_t number : lights.always_on_the_way()) {
+      const uint32_t met = lanes_.meets(ways_, lights.plain_numbers(number)) & ((1u << count) - 1u);
+      for (uint32_t rest = met; rest != 0; rest &= rest - 1)
+        add_light_met(first + size_t(std::countr_zero(rest)), number, results);
+    }
+  }
+  if (lights.finder().empty())
+    return;
+  for (size_t i = 0; i < paths_.size(); ++i)
+    lights.finder().along(paths_[i].from, rays_[i].d / glm::length(rays_[i].d), way_end(i),
+                          [&](uint32_t number) { add_light_met(i, number, results); });
+}
+
+template <uint32_t Shapes, bool Layers> double PathIntegrator<Shapes, Layers>::way_end(size_t i) const {
+  return paths_[i].passed + std::min(hits_[i].t, rays_[i].tmax) * glm::length(rays_[i].d);
+}
+
+// One light, if the ray meets it on this stretch of the way.
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::add_light_met(size_t i, uint32_t number, std::span<SampleResult> results) {
+  const Path &path = paths_[i];
+  const Ray &ray = rays_[i];
+  const Light &light = scene_.lights.lights()[number];
+  if (!(path.kinds & ~light.hidden_from))
+    return;
   const double length = glm::length(ray.d);
-  const double begin = path.passed + ray.tmin * length, end = path.passed + std::min(t, ray.tmax) * length;
-  const glm::dvec3 wi = ray.d / length;
-  scene_.lights.on_the_way(path.from, wi, end, [&](uint32_t number) {
-    const Light &light = scene_.lights.lights()[number];
-    if (!(path.kinds & ~light.hidden_from))
-      return;
-    const LightHit met = meet(light, path.from, wi);
-    // A sun lies behind all surfaces, wherever the view ends.
-    const bool here = std::isinf(met.distance) ? std::isinf(t) : met.distance >= begin && met.distance < end;
-    if (!(met.pdf > 0.0) || !here)
-      return;
-    const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(query(path), number)) : 1.0f;
-    add(path, result, path.beta * met.radiance * weight, false);
-  });
+  const LightHit met = meet(light, path.from, ray.d / length);
+  // A sun lies behind all surfaces, wherever the view ends.
+  const double begin = path.passed + ray.tmin * length;
+  const bool far = std::isinf(met.distance);
+  const bool here = far ? std::isinf(hits_[i].t) : met.distance >= begin && met.distance < way_end(i);
+  if (!(met.pdf > 0.0) || !here)
+    return;
+  const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(query(path), number)) : 1.0f;
+  add(path, results[path.slot], path.beta * met.radiance * weight, false);
 }
 
 template <uint32_t Shapes, bool Layers>
@@ -340,21 +382,6 @@ const WideMaterial *PathIntegrator<Shapes, Layers>::for_lanes(uint32_t material,
   if (settings_.transparent_glass && scene_.wide[material].transmits)
     return nullptr;
   return &scene_.wide[material];
-}
-
-inline void put(const glm::vec3 &v, VertexBlock::Floats (&lanes)[3], uint32_t lane) {
-  for (int i = 0; i < 3; ++i)
-    lanes[i][lane] = v[i];
-}
-inline void put(const glm::dvec3 &v, VertexBlock::Doubles (&lanes)[3], uint32_t lane) {
-  for (int i = 0; i < 3; ++i)
-    lanes[i][lane] = v[i];
-}
-inline glm::vec3 get(const VertexBlock::Floats (&lanes)[3], uint32_t lane) {
-  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
-}
-inline glm::dvec3 get(const VertexBlock::Doubles (&lanes)[3], uint32_t lane) {
-  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
 }
 
 template <uint32_t Shapes, bool Layers>
@@ -477,22 +504,33 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
   }
 }
 
+template <uint32_t Shapes, bool Layers> LightSet::Choice PathIntegrator<Shapes, Layers>::choose_light(uint32_t lane) const {
+  // Seen from the viewer's side, as the light comes.
+  const glm::vec3 ns = get(block_.ns, lane);
+  const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
+  const LightQuery here(get(block_.p, lane), behind ? -ns : ns, block_.transmits >> lane & 1);
+  const double u = double(block_.u[kVertexLightChoice][lane]) + 0x1p-24 * double(block_.u[kVertexLightDigits][lane]);
+  return scene_.lights.choose(scene_.geometry, here, u);
+}
+
 // Chooses a light for every lane; samples those that kernels do not know.
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_lights() {
   static const WideLamp nothing;
   block_.asked = 0;
+  const bool row = !scene_.lights.row().empty();
+  if (row) {
+    block_.row = scene_.lights.row().data();
+    block_.row_count = uint32_t(scene_.lights.row().size());
+    lanes_.choose(block_);
+  }
   for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
     block_.lamp[lane] = &nothing;
     block_.light_pdf[lane] = 0.0;
     block_.light_delta[lane] = block_.light_hidden[lane] = 0;
     if (lane >= waiting_count_ || waiting_[lane].ends || scene_.lights.empty() || !block_.material[lane]->smooth)
       continue;
-    // Seen from the viewer's side, as the light comes.
-    const glm::vec3 ns = get(block_.ns, lane);
-    const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
-    const LightQuery here(get(block_.p, lane), behind ? -ns : ns, block_.transmits >> lane & 1);
-    const double u = double(block_.u[kVertexLightChoice][lane]) + 0x1p-24 * double(block_.u[kVertexLightDigits][lane]);
-    const LightSet::Choice choice = scene_.lights.choose(scene_.geometry, here, u);
+    const LightSet::Choice choice =
+        row ? LightSet::Choice{block_.chosen[lane], 0, block_.chosen_probability[lane]} : choose_light(lane);
     if (!(choice.probability > 0.0))
       continue;
     waiting_[lane].light = choice.light;

@@ -8,6 +8,8 @@
 
 namespace lancer {
 
+struct TreeLight;
+
 inline constexpr int kBlockLanes = 16;
 
 struct alignas(64) VertexBlock {
@@ -33,6 +35,12 @@ struct alignas(64) VertexBlock {
   Doubles p[3], offset, length; // of d
   Floats ng[3], ns[3], wo[3];
   Floats u[8];
+
+  // Given: LightSet::row(). choose(): one of them for each lane.
+  const TreeLight *row = nullptr;
+  uint32_t row_count = 0;
+  alignas(64) Words chosen;
+  Doubles chosen_probability;
 
   // Given: the lamp to ask, or the sample of another light, with the probability of its choice in pdf either way.
   const WideLamp *lamp[kBlockLanes];
@@ -61,6 +69,11 @@ struct alignas(64) VertexBlock {
   uint32_t sampled = 0;             // there is a next direction
   uint32_t glossy = 0;              // drawn by a glossy lobe
   uint32_t transmitted = 0;         // it goes through the surface; glossy says nothing then
+};
+
+// Stretches of rays side by side: from the last scattering along unit wi, up to the distance end.
+struct alignas(64) WayBlock {
+  VertexBlock::Doubles from[3], d[3], end; // d: of any length
 };
 
 } // namespace lancer

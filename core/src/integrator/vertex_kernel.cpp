@@ -3,7 +3,9 @@
 
 #include "bsdf/wide_bsdf.h"
 #include "lancer.h"
+#include "lights/wide_choice.h"
 #include "lights/wide_lamps.h"
+#include "lights/wide_meets.h"
 #include "sampling/wide_numbers.h"
 #include "scene/wide_surface.h"
 
@@ -75,6 +77,24 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
     store3(block.ng, first, surface.ng);
     store3(block.ns, first, surface.ns);
     block.odd |= placed_bits(surface.odd & on_mesh, first);
+  }
+}
+
+// The normal on the viewer's side.
+LANCER_LANE V3 seen_normal(const VertexBlock &block, int first) {
+  const V3 ns = load3(block.ns, first);
+  return select(dot(load3(block.wo, first), load3(block.ng, first)) < F(0.0f), -ns, ns);
+}
+
+[[gnu::flatten]] void choose(VertexBlock &block) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const WideQuery query{load3(block.p, first), seen_normal(block, first), some(block.transmits, first)};
+    const D u = widen(load(block.u[4] + first)) + D(0x1p-24) * widen(load(block.u[7] + first));
+    const WideChoice choice = choose_lamp(query, block.row, block.row_count, u);
+    store(block.chosen + first, choice.number);
+    store(block.chosen_probability + first, choice.probability);
   }
 }
 
@@ -224,10 +244,20 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
   }
 }
 
+[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const WideLamp &lamp) {
+  uint32_t met = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    const D3 d = load3(ways.d, first);
+    const D3 wi = d / sqrt(dot(d, d));
+    met |= placed_bits(may_meet(lamp, load3(ways.from, first), wi, load(ways.end + first)), first);
+  }
+  return met;
+}
+
 } // namespace
 
 namespace LANCER_ISA {
-const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), surfaces, shade};
+const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), surfaces, choose, shade, meets};
 }
 
 } // namespace lancer

@@ -92,6 +92,16 @@ LightChoice FewLights::choose(const LightQuery &query, double u) const {
   return choice;
 }
 
+std::span<const TreeLight> FewLights::row() const {
+  if (empty() || root_ == kNone)
+    return {};
+  // A leaf, or two leaves of one light each.
+  const Node &root = nodes_[root_];
+  const bool leaf = root.count > 0;
+  const bool two = !leaf && nodes_[root.first].count == 1 && nodes_[root.first + 1].count == 1;
+  return leaf ? std::span(lights_).subspan(root.first, root.count) : two ? std::span(lights_) : std::span<const TreeLight>();
+}
+
 double FewLights::share_of_leaf(const LightQuery &query, const Node &node, uint32_t place) const {
   if (node.count == 1)
     return 1.0;

@@ -5,6 +5,7 @@
 
 #include "lights/tree_light.h"
 
+#include <span>
 #include <vector>
 
 namespace lancer {
@@ -23,6 +24,9 @@ public:
 
   // u in [0, 1): one number for the whole way down.
   LightChoice choose(const LightQuery &query, double u) const;
+  // The lights where sums over them alone decide, without clusters: choose() takes the first whose share u falls into. Empty
+  // where there is more to it.
+  std::span<const TreeLight> row() const;
   // With which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 

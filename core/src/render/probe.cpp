@@ -76,6 +76,15 @@ void probe_occluded(const Scene &scene, uint32_t count, const double *origins, c
   scene.accelerator->any_hit(rays, std::span(occluded, count));
 }
 
+void probe_traversal(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
+                     const double *tmax, bool any, uint64_t counts[4]) {
+  const TraversalCounts all = scene.accelerator->count(rays_of(scene, count, origins, directions, tmin, tmax), any);
+  counts[0] = all.nodes;
+  counts[1] = all.triangle_blocks;
+  counts[2] = all.sphere_blocks;
+  counts[3] = all.instances;
+}
+
 void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv, const float *alpha,
                       const float *ior, float *d, float *f, float *g1) {
   // A direction with the given cosine, in the plane y = 0.

@@ -11,6 +11,8 @@ void probe_intersect(const Scene &scene, uint32_t count, const double *origins, 
                      const double *tmax, lancer_hit *hits);
 void probe_occluded(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
                     const double *tmax, uint8_t *occluded);
+void probe_traversal(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
+                     const double *tmax, bool any, uint64_t counts[4]);
 void probe_microfacet(uint32_t count, const float *cos_nh, const float *cos_lh, const float *cos_nv, const float *alpha,
                       const float *ior, float *d, float *f, float *g1);
 void probe_light(const Scene &scene, uint32_t light, uint32_t count, const double *points, const float *u,

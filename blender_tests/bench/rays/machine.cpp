@@ -1,0 +1,90 @@
+// machine: what this processor does at best, as JSON: its clock, the latency of its memories, and how fast it reads them.
+#include "work.h"
+
+#include <numeric>
+#include <random>
+
+namespace {
+
+// Passes take about a millisecond, so that some are not disturbed.
+constexpr int kPasses = 100;
+
+// Least seconds of some passes: nothing makes a pass faster than it is.
+template <class Pass> double least(Pass &&pass) {
+  double best = 1e30;
+  for (int i = 0; i < kPasses; ++i) {
+    const double started = now();
+    pass();
+    best = std::min(best, now() - started);
+  }
+  return best;
+}
+
+// Additions that wait for one another take a cycle each.
+double clock_rate() {
+  constexpr uint64_t count = 2'000'000;
+  const double seconds = least([] {
+    uint64_t x = 1;
+    for (uint64_t i = 0; i < count / 8; ++i)
+      asm volatile("add %0, %0\n add %0, %0\n add %0, %0\n add %0, %0\n"
+                   "add %0, %0\n add %0, %0\n add %0, %0\n add %0, %0\n"
+                   : "+r"(x));
+  });
+  return double(count) / seconds;
+}
+
+// Seconds a load from somewhere in so many bytes, where each load tells the place of the next.
+double latency(size_t bytes) {
+  constexpr size_t line = 64 / sizeof(uint32_t);
+  const size_t lines = bytes / 64;
+  std::vector<uint32_t> order(lines), chain(lines * line);
+  std::iota(order.begin(), order.end(), 0u);
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
+  // One ring through all lines.
+  for (size_t i = 0; i < lines; ++i)
+    chain[order[i] * line] = uint32_t(order[(i + 1) % lines] * line);
+  constexpr size_t count = 20'000;
+  uint32_t at = 0;
+  const double seconds = least([&] {
+    for (size_t i = 0; i < count; ++i)
+      at = chain[at];
+    asm volatile("" : : "r"(at));
+  });
+  return seconds / count;
+}
+
+// Bytes a second that all threads read together, each over and over from its own so many bytes.
+double bandwidth(size_t bytes, unsigned threads) {
+  const size_t words = bytes / sizeof(uint64_t);
+  const size_t rounds = std::max<size_t>(1, (size_t(1) << 23) / bytes);
+  std::vector<std::vector<uint64_t>> memory(threads, std::vector<uint64_t>(words, 1));
+  const int passes = rounds > 1 ? kPasses : 5;
+  double best = 1e30;
+  for (int pass = 0; pass < passes; ++pass)
+    best = std::min(best, timed(threads, threads, 1, [&](size_t first, size_t) {
+                      const uint64_t *const values = memory[first].data();
+                      for (size_t round = 0; round < rounds; ++round) {
+                        uint64_t sums[8] = {};
+                        for (size_t i = 0; i + 8 <= words; i += 8)
+                          for (size_t k = 0; k < 8; ++k)
+                            sums[k] += values[i + k];
+                        asm volatile("" : : "r"(sums) : "memory");
+                      }
+                    }));
+  return double(threads) * double(rounds) * double(bytes) / best;
+}
+
+} // namespace
+
+int main(int count, char **words) {
+  const unsigned threads = count > 1 ? unsigned(std::atoi(words[1])) : 1;
+  std::printf("{\"clock\": %g", clock_rate());
+  // Well inside the first and second cache, and well beyond the second; a shared third one may be of any size.
+  const std::pair<const char *, size_t> sizes[] = {
+      {"l1", size_t(16) << 10}, {"l2", size_t(512) << 10}, {"l3", size_t(12) << 20}, {"memory", size_t(128) << 20}};
+  for (const auto &[name, bytes] : sizes)
+    std::printf(", \"%s\": {\"bytes\": %zu, \"latency\": %g, \"bandwidth\": %g}", name, bytes, latency(bytes),
+                bandwidth(bytes, threads));
+  std::printf("}\n");
+  return 0;
+}
