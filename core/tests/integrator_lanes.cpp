@@ -61,7 +61,8 @@ lancer_principled principled(Random &random) {
   p.option = 1;
   p.base_color = color(random);
   p.metallic = constant(share(random));
-  p.roughness = constant(random() % 4 ? number(random, 0.02f, 1.0f) : 0.0f);
+  // Also smooth, and so nearly smooth that only what is reflected counts as rough.
+  p.roughness = constant(random() % 4 ? number(random, 0.02f, 1.0f) : random() % 2 ? 0.0f : 0.007f);
   // Also what bends nothing, or so little that rough glass sends it straight on, and what bends outwards.
   const float indices[] = {1.0f, 1.00005f, 1.001f, 0.7f};
   p.ior = constant(random() % 2 ? number(random, 1.0f, 2.5f) : indices[random() % 4]);
