@@ -1,7 +1,7 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "integrator/vertex_kernel.h"
 
-#include "bsdf/wide_bsdf.h"
+#include "bsdf/wide_sample.h"
 #include "lancer.h"
 #include "lights/wide_choice.h"
 #include "lights/wide_lamps.h"
