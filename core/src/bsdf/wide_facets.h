@@ -2,7 +2,7 @@
 // microfacet_fresnel.h and microfacet_terms.h. For kernels only, like sampling/lanes.h.
 #pragma once
 
-#include "sampling/lanes.h"
+#include "sampling/lane_vectors.h"
 
 namespace lancer {
 namespace {

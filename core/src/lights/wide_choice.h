@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lights/tree_light.h"
-#include "sampling/lanes.h"
+#include "sampling/lane_vectors.h"
 
 namespace lancer {
 namespace {

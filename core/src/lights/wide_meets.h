@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lights/wide_lamp.h"
-#include "sampling/lanes.h"
+#include "sampling/lane_vectors.h"
 
 namespace lancer {
 namespace {

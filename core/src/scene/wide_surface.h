@@ -2,7 +2,7 @@
 // sampling/lanes.h.
 #pragma once
 
-#include "sampling/lanes.h"
+#include "sampling/lane_vectors.h"
 
 namespace lancer {
 namespace {
