@@ -139,32 +139,34 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
 }
 
 template <uint32_t Shapes, bool Layers> LightSet::Choice PathIntegrator<Shapes, Layers>::choose_light(uint32_t lane) const {
+  const LightChoice few{block_.chosen[lane], block_.chosen_probability[lane], block_.chosen_rest[lane]};
+  if (!(few.probability > 0.0) || scene_.lights.decided(few.number))
+    return {few.number, 0, few.probability};
   // Seen from the viewer's side, as the light comes.
   const glm::vec3 ns = get(block_.ns, lane);
   const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
   const LightQuery here(get(block_.p, lane), behind ? -ns : ns, block_.transmits >> lane & 1);
-  const double u = double(block_.u[kVertexLightChoice][lane]) + 0x1p-24 * double(block_.u[kVertexLightDigits][lane]);
-  return scene_.lights.choose(scene_.geometry, here, u);
+  return scene_.lights.choose_within(scene_.geometry, here, few);
 }
 
 // Chooses a light for every lane; samples those that kernels do not know.
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_lights() {
   static const WideLamp nothing;
   block_.asked = 0;
-  const bool row = !scene_.lights.row().empty();
-  if (row) {
-    block_.row = scene_.lights.row().data();
-    block_.row_count = uint32_t(scene_.lights.row().size());
+  const FewLights &few = scene_.lights.few();
+  if (!few.empty()) {
+    block_.light_nodes = few.nodes().data();
+    block_.tree_lights = few.lights().data();
+    block_.light_root = few.root();
     lanes_.choose(block_);
   }
   for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
     block_.lamp[lane] = &nothing;
     block_.light_pdf[lane] = 0.0;
     block_.light_delta[lane] = block_.light_hidden[lane] = 0;
-    if (lane >= waiting_count_ || waiting_[lane].ends || scene_.lights.empty() || !block_.material[lane]->smooth)
+    if (lane >= waiting_count_ || waiting_[lane].ends || few.empty() || !block_.material[lane]->smooth)
       continue;
-    const LightSet::Choice choice =
-        row ? LightSet::Choice{block_.chosen[lane], 0, block_.chosen_probability[lane]} : choose_light(lane);
+    const LightSet::Choice choice = choose_light(lane);
     if (!(choice.probability > 0.0))
       continue;
     waiting_[lane].light = choice.light;

@@ -8,6 +8,7 @@
 
 namespace lancer {
 
+struct LightNode;
 struct TreeLight;
 
 inline constexpr int kBlockLanes = 16;
@@ -36,11 +37,12 @@ struct alignas(64) VertexBlock {
   Floats ng[3], ns[3], wo[3];
   Floats u[8];
 
-  // Given: LightSet::row(). choose(): one of them for each lane.
-  const TreeLight *row = nullptr;
-  uint32_t row_count = 0;
+  // Given: the tree of LightSet::few(). choose(): one of its lights for each lane, as LightChoice.
+  const LightNode *light_nodes = nullptr;
+  const TreeLight *tree_lights = nullptr;
+  uint32_t light_root = 0;
   alignas(64) Words chosen;
-  Doubles chosen_probability;
+  Doubles chosen_probability, chosen_rest;
 
   // Given: the lamp to ask, or the sample of another light, with the probability of its choice in pdf either way.
   const WideLamp *lamp[kBlockLanes];

@@ -92,9 +92,10 @@ LANCER_LANE V3 seen_normal(const VertexBlock &block, int first) {
       return;
     const WideQuery query{load3(block.p, first), seen_normal(block, first), some(block.transmits, first)};
     const D u = widen(load(block.u[4] + first)) + D(0x1p-24) * widen(load(block.u[7] + first));
-    const WideChoice choice = choose_lamp(query, block.row, block.row_count, u);
+    const WideChoice choice = choose_light(query, {block.light_nodes, block.tree_lights, block.light_root}, u);
     store(block.chosen + first, choice.number);
     store(block.chosen_probability + first, choice.probability);
+    store(block.chosen_rest + first, choice.u);
   }
 }
 
