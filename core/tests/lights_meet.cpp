@@ -1,7 +1,9 @@
 // Lights on a ray's way: met where sampling would have put them, and only by those that sampling can choose.
 #include "tiny_scene.h"
 
+#include "integrator/vertex_kernel.h"
 #include "lights/light_set.h"
+#include "lights/point_light.h"
 
 #include <gtest/gtest.h>
 #include <random>
@@ -85,7 +87,9 @@ TEST(Lights, ManyAreMetAsOneByOne) {
       wi = i % 2 ? glm::dvec3(0.0, -1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
     const double end = 600.0 * std::abs(uniform(random));
     std::vector<bool> candidates(300);
-    set.on_the_way(o, wi, end, [&](uint32_t number) { candidates[number] = true; });
+    for (const uint32_t number : set.always_on_the_way())
+      candidates[number] = true;
+    set.finder().along(o, wi, end, [&](uint32_t number) { candidates[number] = true; });
     for (size_t k = 0; k < 300; ++k) {
       const LightHit hit = meet(lights[k], o, wi);
       if (!(hit.pdf > 0.0) || !(hit.distance < end))
@@ -95,6 +99,54 @@ TEST(Lights, ManyAreMetAsOneByOne) {
     }
   }
   EXPECT_GT(met, 1000);
+}
+
+TEST(Lights, KernelsMeetWhatTheGeneralCodeMeets) {
+  std::mt19937 random(5);
+  const auto uniform = [&](double) { return 2.0 * double(random()) / 4294967296.0 - 1.0; };
+  const auto vector = [&] { return glm::dvec3(uniform(0), uniform(0), uniform(0)); };
+  std::vector<Light> lights;
+  for (int i = 0; i < 60; ++i) {
+    Light light = ball(0.2 + 2.0 * std::abs(uniform(0)), i % 2 == 0);
+    light.kind = i % 3 == 0 ? LightKind::Area : i % 3 == 1 ? LightKind::Point : LightKind::Sun;
+    light.position = 4.0 * vector();
+    light.z = glm::normalize(vector());
+    complete_frame(light.z, light.x, light.y);
+    light.half_x = 0.5 + std::abs(uniform(0));
+    light.half_y = 0.5 + std::abs(uniform(0));
+    light.area = 4.0 * light.half_x * light.half_y;
+    light.one_minus_cos_sun = 0.1;
+    lights.push_back(light);
+  }
+  const LightSet set(lights, {}, 0, Environment());
+  int met = 0;
+  for (int round = 0; round < 400; ++round) {
+    WayBlock ways{};
+    glm::dvec3 o[kBlockLanes], d[kBlockLanes];
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      o[lane] = 6.0 * vector();
+      // Of any length, mostly towards a light.
+      d[lane] = lane % 4 ? lights[size_t(round % 60)].position + vector() - o[lane] : vector();
+      for (int axis = 0; axis < 3; ++axis) {
+        ways.from[axis][lane] = o[lane][axis];
+        ways.d[axis][lane] = d[lane][axis];
+      }
+      ways.end[lane] = 12.0 * std::abs(uniform(0));
+    }
+    for (uint32_t number = 0; number < 60; ++number) {
+      const uint32_t bits = vertex_kernel().meets(ways, set.plain_numbers(number));
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
+        const LightHit hit = meet(lights[number], o[lane], d[lane] / glm::length(d[lane]));
+        const bool here = hit.pdf > 0.0 && (std::isinf(hit.distance) || hit.distance < ways.end[lane]);
+        met += here;
+        // Of balls the end is left to the general code.
+        const bool exact = lights[number].kind != LightKind::Point || lights[number].soft_falloff;
+        const bool told = bits >> lane & 1;
+        EXPECT_TRUE(exact ? told == here : told || !here) << number;
+      }
+    }
+  }
+  EXPECT_GT(met, 10000);
 }
 
 TEST(Lights, ATinyDiskIsAPoint) {

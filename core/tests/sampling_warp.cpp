@@ -128,6 +128,27 @@ TEST(WeightedChoice, FollowsItsWeights) {
   EXPECT_GT(testing::chi_square_test(observed, expected), testing::kSignificance);
 }
 
+TEST(WeightedChoice, FindsTheEntryThatHoldsTheNumber) {
+  Random random(11);
+  for (const std::size_t count : {1u, 2u, 5u, 64u, 1000u}) {
+    // Powers of two, whose sums are exact; most of the weight on few.
+    std::vector<double> weights(count), sums(1, 0.0);
+    for (double &w : weights)
+      w = random.next() % 3 ? std::ldexp(1.0, static_cast<int>(random.next() % 20)) : 0.0;
+    weights[count / 2] = 1.0;
+    for (const double w : weights)
+      sums.push_back(sums.back() + w);
+    const WeightedChoice choice(weights);
+    for (int k = 0; k < 4000; ++k) {
+      const double u = static_cast<double>(random.next() >> 11) * 0x1p-53;
+      const uint32_t i = choice.sample(u).index;
+      ASSERT_GT(weights[i], 0.0);
+      // The division by the sum rounds once.
+      EXPECT_LE(sums[i], u * sums.back() * (1.0 + 0x1p-51));
+      EXPECT_GE(sums[i + 1], u * sums.back() * (1.0 - 0x1p-51));
+    }
+  }
+}
 TEST(WeightedChoice, TakesBadWeights) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(WeightedChoice().sample(0.5).pmf, 0.0f);

@@ -58,8 +58,9 @@ std::vector<Ray> rays_of(const Scene &scene, const RaySet &set) {
   return result;
 }
 
-double measure(const Scene &scene, const RaySet &set, unsigned threads, int passes, size_t &hits) {
+double measure(const Scene &scene, const RaySet &set, unsigned threads, int passes, size_t &hits, TraversalCounts &counts) {
   const std::vector<Ray> rays = rays_of(scene, set);
+  counts = scene.accelerator->count(rays, set.any);
   std::vector<Hit> found(set.any ? 0 : rays.size());
   std::vector<uint8_t> occluded(set.any ? rays.size() : 0);
   const double rate = best_rate(rays.size(), passes, [&] {
@@ -126,8 +127,10 @@ int main(int count, char **words) {
   std::printf("{\"build_seconds\": %g, \"instruction_set\": \"%s\"", seconds, scene->accelerator->instruction_set());
   for (const RaySet &set : work.sets) {
     size_t hits = 0;
-    const double rate = measure(*scene, set, threads, passes, hits);
-    std::printf(", \"%s\": {\"rate\": %g, \"hits\": %zu}", set.name.c_str(), rate, hits);
+    TraversalCounts counts;
+    const double rate = measure(*scene, set, threads, passes, hits, counts), rays = double(set.rays.size());
+    std::printf(", \"%s\": {\"rate\": %g, \"hits\": %zu, \"nodes\": %g, \"leaves\": %g}", set.name.c_str(), rate, hits,
+                double(counts.nodes) / rays, double(counts.triangle_blocks) / rays);
   }
   if (count == 5) {
     const size_t rays = size_t(std::atof(words[4]));

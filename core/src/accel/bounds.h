@@ -46,7 +46,7 @@ struct Box {
     const Float4 d = hi - lo;
     return d[0] >= 0.0f ? d[0] * d[1] + d[1] * d[2] + d[2] * d[0] : 0.0f;
   }
-  // Twice the middle: what splits are judged by.
+  // Twice the middle.
   Float4 centroid() const { return lo + hi; }
 
   static constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -54,15 +54,21 @@ struct Box {
 
 // A box, the number of what it holds and whose that is, kept in the free lanes: 32 bytes.
 struct BuildRef {
-  Box box;
+  Float4 lo, hi;
 
   BuildRef() = default;
-  BuildRef(const Box &b, uint32_t id, uint32_t owner = 0) : box(b) {
-    box.lo[3] = std::bit_cast<float>(id);
-    box.hi[3] = std::bit_cast<float>(owner);
+  BuildRef(const Box &box, uint32_t id, uint32_t owner = 0) : lo(box.lo), hi(box.hi) {
+    lo[3] = std::bit_cast<float>(id);
+    hi[3] = std::bit_cast<float>(owner);
   }
-  uint32_t id() const { return std::bit_cast<Int4>(box.lo)[3]; }
-  uint32_t owner() const { return std::bit_cast<Int4>(box.hi)[3]; }
+  uint32_t id() const { return static_cast<uint32_t>(std::bit_cast<Int4>(lo)[3]); }
+  uint32_t owner() const { return static_cast<uint32_t>(std::bit_cast<Int4>(hi)[3]); }
+  Box box() const { return {lo, hi}; }
+  // Twice the middle: what splits are judged by. The free lane is 0, for numbers read as floats are denormal and slow.
+  Float4 centroid() const {
+    constexpr Int4 kAxes{-1, -1, -1, 0};
+    return std::bit_cast<Float4>(std::bit_cast<Int4>(lo + hi) & kAxes);
+  }
 };
 
 } // namespace lancer

@@ -1,7 +1,8 @@
 #include "accel/bvh_accelerator.h"
 
-#include "accel/bvh_build.h"
 #include "accel/bvh_kernel.h"
+#include "accel/huge_pages.h"
+#include "accel/mesh_bvh.h"
 #include "accel/parallel.h"
 #include "accel/placed_scene.h"
 
@@ -40,7 +41,7 @@ public:
     const std::vector<uint8_t> unfolded = choose_unfolded(geometry);
     build_meshes(geometry, unfolded, context);
     world = build_world_bvh(geometry, placed, unfolded, context);
-    placed.boxes = {};
+    release(placed.boxes);
 
     for (const MeshBvh &mesh : meshes)
       views.push_back(mesh.view());

@@ -5,43 +5,25 @@
 #include "accel/bounds.h"
 #include "accel/bvh.h"
 #include "accel/huge_pages.h"
-#include "accel/placed_scene.h"
-
-#include <vector>
 
 namespace lancer {
 
-// Children of a tree under construction that are no nodes: (first << 2 | count - 1) into refs.
+// Children of a tree under construction that are no nodes: (first << 2 | count - 1) into leaves.
 inline constexpr uint32_t kBuildLeaf = 0x80000000u;
 inline constexpr uint32_t kBuildEmpty = 0xffffffffu;
 
+// What is left of a BuildRef once its box has found its place.
+struct LeafRef {
+  uint32_t id, owner;
+};
+
 struct WideTree {
   HugeVector<BvhNode> nodes;
-  HugeVector<BuildRef> refs; // leaf after leaf
+  HugeVector<LeafRef> leaves; // one after the other
 };
 
-// group: how many primitives are tested at the price of one, and the most that a leaf holds; all of one owner. The result
-// depends on refs alone.
+// group: how many primitives are tested at the price of one (1 or kBvhLeafSize), and the most that a leaf holds; all of one
+// owner. The result depends on refs alone.
 WideTree build_wide_tree(HugeVector<BuildRef> refs, uint32_t group, const BuildContext &context);
-
-// A tree whose leaves are blocks of triangles; in the world's also blocks of spheres, and instances.
-struct MeshBvh {
-  HugeVector<BvhNode> nodes;
-  HugeVector<TriangleBlock> blocks;
-  HugeVector<uint32_t> owners; // of blocks; empty where all have the same
-  HugeVector<SphereBlock> spheres;
-
-  BvhView view() const { return {nodes.empty() ? nullptr : nodes.data(), blocks.data()}; }
-  size_t bytes() const {
-    return nodes.capacity() * sizeof(BvhNode) + blocks.capacity() * sizeof(TriangleBlock) +
-           owners.capacity() * sizeof(uint32_t) + spheres.capacity() * sizeof(SphereBlock);
-  }
-};
-
-MeshBvh build_mesh_bvh(const Mesh &mesh, const PlacementFrame &frame, const BuildContext &context);
-
-// The tree of the world. unfolded: instances whose triangles are in it themselves; all other bounded instances are leaves.
-MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
-                        const BuildContext &context);
 
 } // namespace lancer

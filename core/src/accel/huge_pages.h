@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <new>
+#include <utility>
 #include <vector>
 
 #if defined(__linux__)
@@ -37,10 +38,18 @@ template <class T> struct HugePageAllocator {
 #endif
     return static_cast<T *>(memory);
   }
+  // Elements that are not given a value have none: threads touch their own parts of new memory first.
+  template <class U> void construct(U *element) { ::new (static_cast<void *>(element)) U; }
+  template <class U, class... Values> void construct(U *element, Values &&...values) {
+    ::new (static_cast<void *>(element)) U(std::forward<Values>(values)...);
+  }
   void deallocate(T *memory, size_t) { std::free(memory); }
   template <class U> bool operator==(const HugePageAllocator<U> &) const { return true; }
 };
 
 template <class T> using HugeVector = std::vector<T, HugePageAllocator<T>>;
+
+// Gives a vector's memory back; to assign {} would keep it.
+template <class Vector> void release(Vector &vector) { Vector().swap(vector); }
 
 } // namespace lancer

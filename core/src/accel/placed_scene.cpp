@@ -138,12 +138,15 @@ PlacedScene place_scene(const Geometry &geometry) {
   return scene;
 }
 
-Box placed_triangle_box(const Mesh &mesh, const Instance &instance, const glm::dvec3 &reach, const PlacementFrame &world,
-                        uint32_t triangle) {
-  const glm::dvec3 moved = magnitudes(instance.to_world.linear) * round_trip(instance, reach);
+PlacedTriangleBoxes::PlacedTriangleBoxes(const Mesh &m, const Instance &instance, const glm::dvec3 &reach,
+                                         const PlacementFrame &w)
+    : mesh(m), to_world(instance.to_world), moved(magnitudes(instance.to_world.linear) * round_trip(instance, reach)),
+      world(w) {}
+
+Box PlacedTriangleBoxes::operator()(uint32_t triangle) const {
   Extent e;
   for (int corner = 0; corner < 3; ++corner)
-    e.grow(instance.to_world.point(glm::dvec3(mesh.vertex(triangle, corner))));
+    e.grow(to_world.point(glm::dvec3(mesh.vertex(triangle, corner))));
   e.lo -= moved;
   e.hi += moved;
   return make_box(world, e);

@@ -26,8 +26,18 @@ PlacedScene place_scene(const Geometry &geometry);
 // The box of a triangle in its mesh's frame, widened by kBoxPad.
 Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangle);
 
-// Its box in the frame of the world, as instance places it. reach: the largest coordinates of the mesh.
-Box placed_triangle_box(const Mesh &mesh, const Instance &instance, const glm::dvec3 &reach, const PlacementFrame &world,
-                        uint32_t triangle);
+// Boxes of a mesh's triangles in the frame of the world, as an instance places them.
+class PlacedTriangleBoxes {
+public:
+  // reach: the largest coordinates of the mesh.
+  PlacedTriangleBoxes(const Mesh &mesh, const Instance &instance, const glm::dvec3 &reach, const PlacementFrame &world);
+  Box operator()(uint32_t triangle) const;
+
+private:
+  const Mesh &mesh;
+  const Affine to_world;
+  const glm::dvec3 moved; // how far rounding may move a point
+  const PlacementFrame world;
+};
 
 } // namespace lancer

@@ -1,17 +1,13 @@
-// Bsdf for many lanes at once: Lambert and reflecting GGX about the shading normal, in layers or side by side. The same
-// operations in the same order as bsdf_terms.h, microfacet.cpp and principled.cpp, so that each lane has their bits.
-// For kernels only, like sampling/lanes.h.
+// Bsdf for many lanes at once: Lambert and GGX about the shading normal, reflecting or glass, rough or smooth, in layers or
+// side by side. The same operations in the same order as bsdf_terms.h, microfacet.cpp and principled.cpp, so that each lane has
+// their bits. For kernels only, like sampling/lanes.h.
 #pragma once
 
+#include "bsdf/wide_facets.h"
 #include "bsdf/wide_lobe.h"
-#include "sampling/lanes.h"
-#include "sampling/octant.h"
 
 namespace lancer {
 namespace {
-
-constexpr float kWideInvPi = 0.318309886183790671537767526745028724f;
-constexpr float kWideQuarterPi = 0.25f * 3.14159265358979323846f;
 
 struct WideFrame {
   V3 t, b, n;
@@ -25,9 +21,6 @@ LANCER_LANE WideFrame make_frame(const V3 &n) {
 }
 LANCER_LANE V3 to_local(const WideFrame &f, const V3 &w) { return {dot(w, f.t), dot(w, f.b), dot(w, f.n)}; }
 LANCER_LANE V3 to_world(const WideFrame &f, const V3 &w) { return w.x * f.t + w.y * f.b + w.z * f.n; }
-
-LANCER_LANE F clamp01(F x) { return min(max(x, F(0.0f)), F(1.0f)); }
-LANCER_LANE V3 clamp01(const V3 &x) { return {clamp01(x.x), clamp01(x.y), clamp01(x.z)}; }
 
 // A field of the records of all lanes.
 struct Records {
@@ -59,19 +52,6 @@ template <class Get> LANCER_LANE U word(const Records &records, Get get) {
   word(                                                                                                                        \
       records, [=](const WideMaterial &m) __attribute__((always_inline)) { return static_cast<uint32_t>(m.lobes[k].name); })
 
-// A lobe as wo sees it.
-struct WideTerm {
-  M lambert, facets; // what it is
-  M f82, schlick, dielectric;
-  V3 color, albedo;
-  F probability;
-  F alpha_x, alpha_y, energy;
-  V3 f0, f90, b, reflection;
-  F ior, lowest, per_range;
-  F g1; // of wo: 1 / (wo.z + hidden), and what is hidden
-  F hidden;
-};
-
 struct WideBsdf {
   WideFrame frame;
   V3 wo; // local
@@ -81,51 +61,10 @@ struct WideBsdf {
   WideTerm terms[kWideLobes];
 };
 
-LANCER_LANE F ggx_hidden(const V3 &w, F alpha_x, F alpha_y) {
-  const F x = alpha_x * w.x, y = alpha_y * w.y;
-  const F along = sqrt(x * x + y * y), z = abs(w.z);
-  const F all = z + sqrt(z * z + along * along);
-  return select(all > F(0.0f), F(0.5f) * along * (along / all), F(0.0f));
-}
-
-// Reflectance of a dielectric, as fresnel() of fresnel.h.
-LANCER_LANE F fresnel_dielectric(F cos_i, F eta) {
-  const D c = min(max(widen(cos_i), D(0.0)), D(1.0));
-  const D n = widen(eta), e = D(1.0) / n;
-  const D cos2_t = (n - D(1.0)) * e * ((n + D(1.0)) * e) + (e * c) * (e * c);
-  const D g = sqrt(cos2_t);
-  const D rs = (e * c - g) / (e * c + g);
-  const D rp = (c - e * g) / (c + e * g);
-  F f = narrow(D(0.5) * (rs * rs + rp * rp));
-  // Grazing, totally reflecting, and what bends nothing at all or everything.
-  f = select((c == D(0.0)) | !(cos2_t > D(0.0)) | (eta == F(__builtin_inff())), F(1.0f), f);
-  return select(eta == F(1.0f), F(0.0f), f);
-}
-
-LANCER_LANE V3 fresnel_f82(F cos_i, const V3 &f0, const V3 &b) {
-  const F s = clamp01(F(1.0f) - cos_i), s2 = s * s, s5 = s2 * s2 * s;
-  const F edge = cos_i * s5 * s;
-  const V3 one{F(1.0f), F(1.0f), F(1.0f)};
-  return clamp01(f0 + (one - f0) * s5 - b * edge);
-}
-
-// What facets reflect, by the cosine of wo against them.
-LANCER_LANE V3 facet_reflected(const WideTerm &term, F cos_i) {
-  V3 r{F(1.0f), F(1.0f), F(1.0f)};
-  if (any(term.schlick | term.dielectric)) {
-    const F f = fresnel_dielectric(cos_i, term.ior);
-    const F along = clamp01((f - term.lowest) * term.per_range);
-    const V3 curve = (term.f0 + (term.f90 - term.f0) * along) * term.reflection;
-    r = select(term.schlick, curve, select(term.dielectric, f * term.reflection, r));
-  }
-  if (any(term.f82))
-    r = select(term.f82, fresnel_f82(cos_i, term.f0, term.b), r);
-  return r;
-}
-
-LANCER_LANE F read_row(const Records &records, int k, bool mixes, int n, F x) {
-  x = clamp01(x) * F(static_cast<float>(n - 1));
-  const U last(static_cast<uint32_t>(n - 2));
+// steps: entries of the row less one.
+LANCER_LANE F read_row(const Records &records, int k, bool mixes, F steps, F x) {
+  x = clamp01(x) * steps;
+  const U last = truncate(steps - F(1.0f));
   U i = truncate(x);
   i = select(to_float(i) > to_float(last), last, i);
   alignas(64) uint32_t index[kLanes];
@@ -144,10 +83,11 @@ LANCER_LANE F read_row(const Records &records, int k, bool mixes, int n, F x) {
 // The lobe's energy, colour and albedo from wo: finish() of microfacet.cpp.
 LANCER_LANE void finish(const Records &records, int k, F cos_o, WideTerm &term) {
   const V3 one{F(1.0f), F(1.0f), F(1.0f)};
+  constexpr float fine = 31.0f, coarse = 15.0f;
   term.energy = F(1.0f);
   const M preserving = equal(LANCER_WORD(preserving), U(1u)) & term.facets;
   if (any(preserving)) {
-    const F single = read_row(records, k, false, 32, cos_o);
+    const F single = read_row(records, k, false, select(term.glass, F(coarse), F(fine)), cos_o);
     const V3 further = LANCER_FIELD3(further);
     term.energy = select(preserving, F(1.0f) / single, term.energy);
     const M colored = preserving & !((further.x == F(1.0f)) & (further.y == F(1.0f)) & (further.z == F(1.0f)));
@@ -155,12 +95,16 @@ LANCER_LANE void finish(const Records &records, int k, F cos_o, WideTerm &term) 
     term.color = select(colored, term.color * V3{single + kept.x, single + kept.y, single + kept.z}, term.color);
   }
   const M averaged = equal(LANCER_WORD(averaged), U(1u)) & term.facets;
-  const M smooth = term.facets & !(term.schlick & !black(term.f0));
-  V3 reflected = one;
-  if (any(smooth))
-    reflected = select(smooth, facet_reflected(term, cos_o), one);
+  // Where nothing but the mean over the facets is asked for, and a smooth surface would not be black either, it is not asked.
+  const M smooth = term.facets & (term.glass | !(term.schlick & !black(term.f0)));
+  V3 reflected = one, through = one - one;
+  if (any(smooth)) {
+    const WideResponse response = facet_response(term, cos_o);
+    reflected = select(smooth, response.reflected, one);
+    through = response.through;
+  }
   if (any(averaged)) {
-    const F mix = read_row(records, k, true, 16, cos_o);
+    const F mix = read_row(records, k, true, F(coarse), cos_o);
     const V3 schlick = (term.f0 + (term.f90 - term.f0) * mix) * term.reflection;
     const V3 f82 = term.f0 + (one - term.f0) * mix;
     const F dielectric = term.lowest + (F(1.0f) - term.lowest) * mix;
@@ -168,6 +112,7 @@ LANCER_LANE void finish(const Records &records, int k, F cos_o, WideTerm &term) 
     reflected = select(averaged & !black(reflected), mean, reflected);
   }
   term.albedo = select(term.facets, term.color * reflected, term.color);
+  term.albedo = select(term.glass, term.albedo + term.color * through, term.albedo);
 }
 
 // What a layer leaves for those below it.
@@ -202,6 +147,11 @@ LANCER_LANE void add_term(const Records &records, int k, const V3 &base_color, W
     term.f90 = LANCER_FIELD3(f90);
     term.b = LANCER_FIELD3(b);
     term.reflection = LANCER_FIELD3(reflection);
+    term.glass = term.facets & equal(LANCER_WORD(through), U(1u));
+    term.delta = term.facets & equal(LANCER_WORD(delta), U(1u));
+    term.delta_through = term.facets & equal(LANCER_WORD(delta_through), U(1u));
+    if (any(term.glass))
+      term.transmission = LANCER_FIELD3(transmission);
     term.ior = LANCER_FIELD(ior);
     term.lowest = LANCER_FIELD(lowest);
     term.per_range = LANCER_FIELD(per_range);
@@ -236,6 +186,15 @@ LANCER_LANE void make_bsdf(const Records &records, int count, const V3 &wo, cons
     bsdf.terms[k].probability = select(sum > F(0.0f), bsdf.terms[k].probability / sum, F(0.0f));
 }
 
+// Lanes in which some lobe lets light through.
+LANCER_LANE M transmits(const WideBsdf &bsdf) {
+  M found = bsdf.wo.x != bsdf.wo.x;
+  for (int k = 0; k < bsdf.count; ++k)
+    if (any(bsdf.terms[k].facets))
+      found = found | (bsdf.terms[k].glass & !black(bsdf.terms[k].color));
+  return found;
+}
+
 // Sum of the lobes' albedos.
 LANCER_LANE V3 albedo(const WideBsdf &bsdf) {
   const F zero(0.0f);
@@ -247,17 +206,33 @@ LANCER_LANE V3 albedo(const WideBsdf &bsdf) {
   return sum;
 }
 
-// BsdfValue for light samples: parts that are diffuse and glossy.
+// BsdfValue for light samples, by Component.
 struct WideValue {
-  V3 diffuse, glossy;
+  V3 diffuse, glossy, transmission;
   F pdf;
 };
 
-// h: the half vector of lanes that have one; wi local.
-LANCER_LANE WideValue sum_terms(const WideBsdf &bsdf, const V3 &wi, const V3 &h) {
+// microfacet_eval_through(), also where both directions lie on one side of h.
+LANCER_LANE void add_through(const WideBsdf &bsdf, const WideTerm &term, M crossing, const V3 &wi, const V3 &h,
+                             WideValue &value) {
+  const F zero(0.0f), one(1.0f), cos_oh = dot(bsdf.wo, h), cos_ih = dot(wi, h);
+  const F d = facet_d(term, h);
+  const WideResponse response = facet_response(term, abs(cos_oh));
+  const F stretch = cos_oh / term.ior + cos_ih;
+  const F common = d * abs(cos_oh * cos_ih) / (stretch * stretch);
+  const M counts = crossing & (h.z > zero) & (d != zero) & (abs(common) < F(__builtin_inff()));
+  const V3 f = response.through * (term.energy * common * facet_g2(term, bsdf.wo, wi));
+  value.transmission = select(counts, value.transmission + term.color * f, value.transmission);
+  const F pdf = (one - reflected_share(response)) * common * term.g1;
+  value.pdf = select(counts, value.pdf + term.probability * pdf, value.pdf);
+}
+
+// h: the half vector of lanes that have one; wi local. drawn: the lobe that drew h, where light goes through.
+LANCER_LANE WideValue sum_terms(const WideBsdf &bsdf, const V3 &wi, const V3 &h, U drawn) {
   const F zero(0.0f);
-  WideValue value{{zero, zero, zero}, {zero, zero, zero}, zero};
+  WideValue value{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero};
   const F cos_oh = dot(bsdf.wo, h);
+  const M beyond = (bsdf.wo.z > zero) & (wi.z < zero);
   const M above = (bsdf.wo.z > zero) & (wi.z > zero) & (h.z > zero) & (cos_oh > zero);
   for (int k = 0; k < bsdf.count; ++k) {
     const WideTerm &term = bsdf.terms[k];
@@ -268,21 +243,25 @@ LANCER_LANE WideValue sum_terms(const WideBsdf &bsdf, const V3 &wi, const V3 &h)
       value.diffuse = select(lambert, value.diffuse + term.color * cosine, value.diffuse);
       value.pdf = select(lambert, value.pdf + term.probability * cosine, value.pdf);
     }
-    const M facets = term.facets & there & above;
+    if (!any(term.facets))
+      continue;
+    const M rough = term.facets & there & !term.delta;
+    const M facets = rough & above;
     if (any(facets)) {
-      const F x = h.x / term.alpha_x, y = h.y / term.alpha_y, length2 = x * x + y * y + h.z * h.z;
-      const F d = F(kWideInvPi) / (term.alpha_x * term.alpha_y * length2 * length2);
-      const V3 reflected = facet_reflected(term, cos_oh);
+      const F d = facet_d(term, h);
+      const WideResponse response = facet_response(term, cos_oh);
       const F common = F(0.25f) * d;
-      const F z = abs(wi.z), i = ggx_hidden(wi, term.alpha_x, term.alpha_y);
-      const F seen = (bsdf.wo.z + term.hidden) * z + bsdf.wo.z * i;
-      const F g2 = select(seen > zero, z / seen, zero);
       const M counts = facets & (d != zero);
-      const V3 f = reflected * (term.energy * common * g2);
+      const V3 f = response.reflected * (term.energy * common * facet_g2(term, bsdf.wo, wi));
       // Facets that reflect nothing are never chosen.
-      const F share = select(black(reflected), zero, F(1.0f));
+      const F share = reflected_share(response);
       value.glossy = select(counts, value.glossy + term.color * f, value.glossy);
       value.pdf = select(counts, value.pdf + term.probability * (share * common * term.g1), value.pdf);
+    }
+    const M crossing = rough & beyond & term.glass & !term.delta_through;
+    if (any(crossing)) {
+      const M known = equal(drawn, U(static_cast<uint32_t>(k)));
+      add_through(bsdf, term, crossing, wi, select(known, h, refraction_half_vector(bsdf.wo, wi, term.ior)), value);
     }
   }
   return value;
@@ -299,94 +278,7 @@ LANCER_LANE V3 half_vector(const V3 &wo, const V3 &wi) {
 // wi: world.
 LANCER_LANE WideValue eval_lit(const WideBsdf &bsdf, const V3 &wi) {
   const V3 local = to_local(bsdf.frame, wi);
-  return sum_terms(bsdf, local, half_vector(bsdf.wo, local));
-}
-
-LANCER_LANE V3 sample_cosine(F u, F v) {
-  // warp_disk() and the height above it.
-  const F a = F(2.0f) * u - F(1.0f), b = F(2.0f) * v - F(1.0f);
-  const M wide = abs(a) > abs(b), middle = (a == F(0.0f)) & (b == F(0.0f));
-  const F phi = F(kWideQuarterPi) * select(wide, b / a, a / b);
-  const F s = sin_octant(phi), c = cos_octant(phi);
-  const F zero(0.0f), x = select(wide, a * c, b * s), y = select(wide, a * s, b * c);
-  const F r = max(abs(a), abs(b));
-  return {select(middle, zero, x), select(middle, zero, y), sqrt((F(1.0f) - r) * (F(1.0f) + r))};
-}
-
-LANCER_LANE V3 sample_visible(const V3 &wo, F alpha_x, F alpha_y, F u, F v) {
-  const V3 w = normalize(V3{alpha_x * wo.x, alpha_y * wo.y, wo.z});
-  const F s = u * (F(1.0f) + w.z), sin_theta = sqrt(max(F(0.0f), s * (F(2.0f) - s)));
-  // sin_cos_turn()
-  const U quarter = truncate(F(4.0f) * v + F(0.5f));
-  const F x = F(6.28318531f) * (v - F(0.25f) * to_float(quarter));
-  const F so = sin_octant(x), co = cos_octant(x);
-  const M odd = equal(quarter & U(1u), U(1u));
-  const F sine = as_float(as_word(select(odd, co, so)) ^ ((quarter & U(2u)) << 30));
-  const F cosine = as_float(as_word(select(odd, so, co)) ^ (((quarter + U(1u)) & U(2u)) << 30));
-  const V3 h{sin_theta * cosine + w.x, sin_theta * sine + w.y, (F(1.0f) - u) * (F(1.0f) + w.z)};
-  return normalize(V3{alpha_x * h.x, alpha_y * h.y, h.z});
-}
-
-struct WideSample {
-  V3 wi, weight; // world
-  F pdf;
-  M valid, glossy;
-};
-
-// Bsdf::sample().
-LANCER_LANE WideSample sample_bsdf(const WideBsdf &bsdf, F u_lobe, F u, F v) {
-  const F zero(0.0f);
-  // Pick a lobe by its probability.
-  M open = zero == zero, glossy = zero != zero, matte = glossy;
-  F alpha_x(1.0f), alpha_y(1.0f);
-  M last_facets = glossy, last_matte = glossy;
-  F last_x(1.0f), last_y(1.0f);
-  for (int k = 0; k < bsdf.count; ++k) {
-    const WideTerm &term = bsdf.terms[k];
-    const M there = open & (term.probability > zero);
-    const M chosen = there & (u_lobe < term.probability);
-    const M facets = term.facets;
-    // Rounding may leave u beyond the last sum: then the last one is meant.
-    last_facets = (last_facets & !there) | (there & facets);
-    last_matte = (last_matte & !there) | (there & !facets);
-    if (any(facets)) {
-      last_x = select(there & facets, term.alpha_x, last_x);
-      last_y = select(there & facets, term.alpha_y, last_y);
-    }
-    u_lobe = select(there & !chosen, u_lobe - term.probability, u_lobe);
-    open = open & !chosen;
-  }
-  glossy = last_facets;
-  matte = last_matte;
-  alpha_x = last_x;
-  alpha_y = last_y;
-
-  // Draw a direction from it.
-  V3 wi{zero, zero, zero}, h{zero, zero, zero};
-  M valid = matte;
-  if (any(matte))
-    wi = sample_cosine(u, v);
-  if (any(glossy)) {
-    const V3 facet = sample_visible(bsdf.wo, alpha_x, alpha_y, u, v);
-    const V3 mirrored = F(2.0f) * dot(bsdf.wo, facet) * facet - bsdf.wo;
-    wi = select(glossy, mirrored, wi);
-    h = facet;
-    valid = valid | (glossy & (bsdf.wo.z > zero) & (mirrored.z > zero));
-  }
-  h = select(glossy, h, half_vector(bsdf.wo, wi));
-  WideSample sample;
-  sample.wi = to_world(bsdf.frame, wi);
-  const F cos_ng = select(bsdf.flat, wi.z, dot(bsdf.ng, sample.wi));
-  const M through = wi.z < zero;
-  valid = valid & (wi.z != zero) & !((cos_ng < zero) != through);
-  // Weigh with the sum over all lobes.
-  const WideValue value = sum_terms(bsdf, wi, h);
-  const V3 f = value.diffuse + value.glossy;
-  sample.valid = valid & (value.pdf > zero) & !black(f);
-  sample.weight = f / value.pdf;
-  sample.pdf = value.pdf;
-  sample.glossy = glossy;
-  return sample;
+  return sum_terms(bsdf, local, half_vector(bsdf.wo, local), U(~0u));
 }
 
 #undef LANCER_FIELD

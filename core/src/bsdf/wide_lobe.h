@@ -5,7 +5,7 @@
 
 namespace lancer {
 
-inline constexpr int kWideLobes = 4;
+inline constexpr int kWideLobes = 5;
 
 // How a lobe's colour comes from what the lobes before it have left.
 enum class WideMode : uint32_t {
@@ -26,7 +26,9 @@ struct WideLobe {
   uint32_t fresnel = 0; // FresnelKind
   float f0[3] = {}, f90[3] = {}, b[3] = {};
   float ior = 1.0f, lowest = 0.0f, per_range = 1.0f; // lowest of FresnelKind::Dielectric: the reflectance at the normal
-  float reflection[3] = {};
+  float reflection[3] = {}, transmission[3] = {};
+  uint32_t delta = 0, delta_through = 0;
+  uint32_t through = 0; // Scatter::Both
   uint32_t preserving = 0;
   uint32_t averaged = 0; // the albedo is the mean over the facets, read from rows
   float further[3] = {};
@@ -34,8 +36,10 @@ struct WideLobe {
 };
 
 struct WideMaterial {
-  uint32_t count = 0; // 0: not for kernels
-  uint32_t bends = 0; // its lobes may want a bent normal
+  uint32_t count = 0;                 // 0: not for kernels
+  uint32_t bends = 0;                 // its lobes may want a bent normal
+  uint32_t smooth = 0, transmits = 0; // as of Bsdf, where no lobe is black
+  uint32_t inside = 0;                // the record for the inner side lies this far behind this one; 0: there is but one
   // Of all lobes together, and the colour of the matt one; where nodes say them they are those of the place.
   float weight[3] = {}, base[3] = {};
   uint32_t nodes = 0; // 1: nodes say these, what it emits or what it lets pass

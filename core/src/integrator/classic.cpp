@@ -36,7 +36,9 @@ void ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     scene_.accelerator->closest_hit(rays_, hits_);
     next_branches_.clear();
     next_rays_.clear();
-    for (size_t i = 0; i < rays_.size(); ++i)
+    if (lanes_ && !trace)
+      shade_lanes(results);
+    for (size_t i = 0; i < rays_.size() && (trace || !lanes_); ++i)
       shade(branches_[i], rays_[i], hits_[i], results[branches_[i].slot], trace);
     counts_.shadow +=
         shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { results[waiting.slot].radiance += light; });
@@ -52,12 +54,13 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
   samplers_.clear();
   for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
     samplers_.push_back(generator_.sampler(addresses[slot]));
-    Ray ray;
-    if (!generator_.start(addresses[slot], samplers_.back(), passes_.wanted(), results[slot], ray))
+    if (!generator_.start(addresses[slot], samplers_.back(), passes_.wanted(), results[slot], rays_.emplace_back())) {
+      rays_.pop_back();
       continue;
-    rays_.push_back(ray);
-    branches_.push_back({.slot = slot});
-    branches_.back().features = begin_features(settings_, passes_.features());
+    }
+    Branch &branch = branches_.emplace_back();
+    branch.slot = slot;
+    branch.features = begin_features(settings_, passes_.features());
   }
   counts_.camera += rays_.size();
 }
@@ -126,6 +129,13 @@ void ClassicIntegrator::add(const Branch &branch, const glm::vec3 &light, bool e
     passes_.add_seen(result, light, environment);
 }
 
+// Which point of the lamp to take: its middle when there is one sample only.
+glm::vec2 ClassicIntegrator::lamp_numbers(const Branch &branch, uint32_t light) const {
+  if (generator_.middle())
+    return glm::vec2(0.5f);
+  return samplers_[branch.slot].get2(kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + light));
+}
+
 void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &surface, const glm::dvec3 &eye, const Hit &hit,
                                          SampleResult &result) {
   static const CourseLight plain;
@@ -147,9 +157,7 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
   }
   const auto &lights = scene_.lights.lights();
   for (uint32_t i = 0; i < scene_.lights.size(); ++i) {
-    // Take a point of the lamp: its middle when there is one sample only.
-    const uint32_t dimension = kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + i);
-    const glm::vec2 u = generator_.middle() ? glm::vec2(0.5f) : samplers_[branch.slot].get2(dimension);
+    const glm::vec2 u = lamp_numbers(branch, i);
     const bool lamp = i < lights.size();
     const CourseLight &course = lamp ? lights[i].course : plain;
     const uint32_t hidden = scene_.lights.hidden_from(i);
@@ -176,7 +184,8 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
     if (scene_.lights.no_shadow(i))
       shadows_.push_lit({.slot = branch.slot}, branch.weight * light);
     else
-      shadows_.push(shadow_ray(scene_.geometry, surface, point_.bsdf.ns, point_.bsdf.ng, s), {.slot = branch.slot}, branch.weight * light);
+      shadows_.push(shadow_ray(scene_.geometry, surface, point_.bsdf.ns, point_.bsdf.ng, s), {.slot = branch.slot},
+                    branch.weight * light);
   }
 }
 

@@ -19,11 +19,11 @@ glm::vec3 mean_normal(const Bsdf &bsdf) {
 
 } // namespace
 
-void record_place(const Scene &scene, const Surface &surface, const Shaded &shaded, double t, SampleResult &result) {
+void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result) {
   result.depth = float(t / scene.normalisation.scale);
   result.position = glm::vec3(scene.normalisation.to_world(surface.p));
   result.object_index = float(scene.geometry.instances[surface.instance].object_index);
-  result.material_index = shaded.material ? float(shaded.material->index) : 0.0f;
+  result.material_index = material ? float(material->index) : 0.0f;
 }
 
 void forget_place(SampleResult &result) {
@@ -35,8 +35,13 @@ void forget_place(SampleResult &result) {
 
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
                           double t, SampleResult &result) {
-  record_place(scene, surface, shaded, t, result);
-  result.normal = mean_normal(shaded.bsdf);
+  record_first_surface(scene, settings, surface, shaded.material, mean_normal(shaded.bsdf), t, result);
+}
+
+void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
+                          const Material *material, const glm::vec3 &normal, double t, SampleResult &result) {
+  record_place(scene, surface, material, t, result);
+  result.normal = normal;
   if (settings.passes & 1u << LANCER_PASS_UV)
     result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
 }

@@ -79,7 +79,9 @@ private:
                      std::vector<PathVertex> *trace);
   void shade(std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void miss(const Path &path, const Ray &ray, SampleResult &result);
-  void add_lights_met(const Path &path, const Ray &ray, double t, SampleResult &result);
+  void add_lights_met(std::span<SampleResult> results);
+  void add_light_met(size_t i, uint32_t number, std::span<SampleResult> results);
+  double way_end(size_t i) const; // distance from the last scattering to where the ray ends
   void add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission, SampleResult &result);
   void record(Path &path, const Surface &surface, double t, SampleResult &result);
   LightSample ask_light(const Surface &surface, const VertexNumbers &u, LightSet::Choice &choice);
@@ -105,6 +107,7 @@ private:
   const VertexKernel &lanes_;
   bool wide_; // vertices may be shaded in lanes
   VertexBlock block_;
+  WayBlock ways_{};
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane
   uint32_t waiting_count_ = 0;

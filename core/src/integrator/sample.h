@@ -142,7 +142,8 @@ public:
              Ray &camera_ray) const {
     result = SampleResult(with_light);
     result.alpha = 1.0f;
-    camera_ray = ray(address, sampler);
+    // Made where it stands: a copy would wait until its parts have left the processor's stores.
+    ::new (&camera_ray) Ray(ray(address, sampler));
     camera_ray.kinds = LANCER_RAY_CAMERA;
     return !(camera_ray.tmax < 0.0);
   }

@@ -10,7 +10,7 @@ uint64_t ShadowQueue::trace_solid() {
   scene_.accelerator->any_hit(rays_, occluded_);
   for (size_t i = 0; i < rays_.size(); ++i)
     if (occluded_[i])
-      contributions_[i] = glm::vec3(0.0f);
+      waiting_[i].contribution = glm::vec3(0.0f);
   return rays_.size();
 }
 
@@ -32,8 +32,8 @@ uint64_t ShadowQueue::trace_layers() {
       const uint32_t number = under_way_[i];
       const Ray &ray = under_way_rays_[i];
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-      glm::vec3 &contribution = contributions_[number];
-      if (passed_[number]++ >= deepest_)
+      glm::vec3 &contribution = waiting_[number].contribution;
+      if (waiting_[number].passed++ >= deepest_)
         contribution = glm::vec3(0.0f);
       else
         contribution *= shader_.transmittance(surface, glm::vec3(-glm::normalize(ray.d)));

@@ -17,9 +17,15 @@ public:
   // through; they count against the same limit.
   void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
     rays_.push_back(ray);
-    waiting_.push_back(waiting);
-    contributions_.push_back(contribution);
-    passed_.push_back(passed);
+    waiting_.push_back({waiting, contribution, passed});
+  }
+  // The same for a sum that keeps no account of the way. The ray is the caller's to write where it stands: it would not be
+  // copied before it has left the processor's stores.
+  Ray &push(uint32_t slot, const glm::vec3 &contribution) {
+    Waiting &waiting = waiting_.emplace_back();
+    waiting.light.slot = slot;
+    waiting.contribution = contribution;
+    return rays_.emplace_back();
   }
 
   // Light that nothing can stop.
@@ -33,17 +39,21 @@ public:
   // Returns how many rays it took.
   template <class Arrive> uint64_t trace(Arrive &&arrive) {
     const uint64_t count = layers_ ? trace_layers() : trace_solid();
-    for (size_t i = 0; i < waiting_.size(); ++i)
-      if (contributions_[i] != glm::vec3(0.0f))
-        arrive(waiting_[i], contributions_[i]);
+    for (const Waiting &waiting : waiting_)
+      if (waiting.contribution != glm::vec3(0.0f))
+        arrive(waiting.light, waiting.contribution);
     rays_.clear();
     waiting_.clear();
-    contributions_.clear();
-    passed_.clear();
     return count;
   }
 
 private:
+  struct Waiting {
+    WaitingLight light;
+    glm::vec3 contribution{0.0f}; // what arrives of it
+    uint32_t passed = 0;          // surfaces on the way so far
+  };
+
   // Everything blocks: any hit answers.
   uint64_t trace_solid();
   // Some surfaces let a share pass: go from hit to hit.
@@ -54,9 +64,7 @@ private:
   uint32_t deepest_; // surfaces that a ray may pass
   bool layers_;
   std::vector<Ray> rays_;
-  std::vector<WaitingLight> waiting_;
-  std::vector<glm::vec3> contributions_;
-  std::vector<uint32_t> passed_;
+  std::vector<Waiting> waiting_;
   std::vector<uint8_t> occluded_;
   std::vector<Hit> hits_;
   std::vector<uint32_t> under_way_;

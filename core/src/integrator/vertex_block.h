@@ -8,6 +8,7 @@
 
 namespace lancer {
 
+struct LightNode;
 struct TreeLight;
 
 inline constexpr int kBlockLanes = 16;
@@ -36,11 +37,12 @@ struct alignas(64) VertexBlock {
   Floats ng[3], ns[3], wo[3];
   Floats u[8];
 
-  // Given: LightSet::row(). choose(): one of them for each lane.
-  const TreeLight *row = nullptr;
-  uint32_t row_count = 0;
+  // Given: the tree of LightSet::few(). choose(): one of its lights for each lane, as LightChoice.
+  const LightNode *light_nodes = nullptr;
+  const TreeLight *tree_lights = nullptr;
+  uint32_t light_root = 0;
   alignas(64) Words chosen;
-  Doubles chosen_probability;
+  Doubles chosen_probability, chosen_rest;
 
   // Given: the lamp to ask, or the sample of another light, with the probability of its choice in pdf either way.
   const WideLamp *lamp[kBlockLanes];
@@ -61,12 +63,19 @@ struct alignas(64) VertexBlock {
   uint32_t used = 0;
   uint32_t on_mesh = 0, smooth = 0; // given: triangles; those with normals of their own
   uint32_t asked = 0;               // given: lamp is to be sampled
+  uint32_t transmits = 0;           // given: light is asked for as where light may come through
   uint32_t ends = 0;                // given: nothing is scattered any more
   uint32_t odd = 0;                 // only the general code can do them: nothing else holds
   uint32_t lit = 0;                 // contribution is not black
   uint32_t lifted = 0;              // the shadow ray may have to start on the curved surface
   uint32_t sampled = 0;             // there is a next direction
   uint32_t glossy = 0;              // drawn by a glossy lobe
+  uint32_t transmitted = 0;         // it goes through the surface; glossy says nothing then
+};
+
+// Stretches of rays side by side: from the last scattering along unit wi, up to the distance end.
+struct alignas(64) WayBlock {
+  VertexBlock::Doubles from[3], d[3], end; // d: of any length
 };
 
 } // namespace lancer

@@ -1,10 +1,11 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "integrator/vertex_kernel.h"
 
-#include "bsdf/wide_bsdf.h"
+#include "bsdf/wide_sample.h"
 #include "lancer.h"
 #include "lights/wide_choice.h"
 #include "lights/wide_lamps.h"
+#include "lights/wide_meets.h"
 #include "sampling/wide_numbers.h"
 #include "scene/wide_surface.h"
 
@@ -89,11 +90,12 @@ LANCER_LANE V3 seen_normal(const VertexBlock &block, int first) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    const WideQuery query{load3(block.p, first), seen_normal(block, first), mask_of(0)};
+    const WideQuery query{load3(block.p, first), seen_normal(block, first), some(block.transmits, first)};
     const D u = widen(load(block.u[4] + first)) + D(0x1p-24) * widen(load(block.u[7] + first));
-    const WideChoice choice = choose_lamp(query, block.row, block.row_count, u);
+    const WideChoice choice = choose_light(query, {block.light_nodes, block.tree_lights, block.light_root}, u);
     store(block.chosen + first, choice.number);
     store(block.chosen_probability + first, choice.probability);
+    store(block.chosen_rest + first, choice.u);
   }
 }
 
@@ -194,7 +196,8 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
   const WideValue value = eval_lit(bsdf, wi);
   const uint32_t *hidden = block.light_hidden + first;
   const V3 f = select(has_bit(hidden, LANCER_RAY_DIFFUSE), dark, value.diffuse) +
-               select(has_bit(hidden, LANCER_RAY_GLOSSY), dark, value.glossy);
+               select(has_bit(hidden, LANCER_RAY_GLOSSY), dark, value.glossy) +
+               select(has_bit(hidden, LANCER_RAY_TRANSMISSION), dark, value.transmission);
   // The BSDF finds the same light, unless it is a single direction.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
   const V3 contribution = load3(block.beta, first) * f * load3(block.light_radiance, first) * narrow(widen(weight) / pdf);
@@ -204,7 +207,7 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
 }
 
 [[gnu::flatten]] void shade(VertexBlock &block) {
-  block.lit = block.lifted = block.sampled = block.glossy = 0;
+  block.lit = block.lifted = block.sampled = block.glossy = block.transmitted = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
@@ -223,6 +226,8 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
     block.odd |= placed_bits(bent_lanes(records, wo, ns, ng), first);
     WideBsdf bsdf;
     make_bsdf(records, static_cast<int>(count), wo, ns, ng, load3(block.weight, first), load3(block.base, first), bsdf);
+    // Glass of which nothing is left asks for light as other surfaces do.
+    block.odd |= placed_bits(transmits(bsdf) != some(block.transmits, first), first);
     const D scatters = D(1.0) - widen(share_passing(block, first, bsdf));
     light(block, first, bsdf, ns, ng, scatters);
     const D offset = load(block.offset + first);
@@ -236,13 +241,24 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
     store(block.pdf + first, widen(sample.pdf) * scatters);
     block.sampled |= placed_bits(sample.valid, first);
     block.glossy |= placed_bits(sample.glossy, first);
+    block.transmitted |= placed_bits(sample.transmitted, first);
   }
+}
+
+[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const WideLamp &lamp) {
+  uint32_t met = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    const D3 d = load3(ways.d, first);
+    const D3 wi = d / sqrt(dot(d, d));
+    met |= placed_bits(may_meet(lamp, load3(ways.from, first), wi, load(ways.end + first)), first);
+  }
+  return met;
 }
 
 } // namespace
 
 namespace LANCER_ISA {
-const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), surfaces, choose, shade};
+const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), surfaces, choose, shade, meets};
 }
 
 } // namespace lancer

@@ -30,7 +30,7 @@ constexpr double kBelowOne = 1.0 - 0x1p-53;
 } // namespace
 
 Importance FewLights::weigh(const LightQuery &query, uint32_t number) const {
-  const Node &node = nodes_[number];
+  const LightNode &node = nodes_[number];
   if (node.count == 1)
     return importance(query, lights_[node.first]);
   return node.distant ? importance_far(query, node.shape) : importance(query, node.shape);
@@ -49,7 +49,7 @@ glm::dvec2 FewLights::shares(const LightQuery &query, uint32_t pair) const {
   return {sums.share(left), sums.share(right)};
 }
 
-LightChoice FewLights::choose_of_leaf(const LightQuery &query, const Node &node, double u) const {
+LightChoice FewLights::choose_of_leaf(const LightQuery &query, const LightNode &node, double u) const {
   if (node.count == 1)
     return {lights_[node.first].number, 1.0, u};
   std::array<Importance, kLeafLights> parts;
@@ -92,17 +92,7 @@ LightChoice FewLights::choose(const LightQuery &query, double u) const {
   return choice;
 }
 
-std::span<const TreeLight> FewLights::row() const {
-  if (empty() || root_ == kNone)
-    return {};
-  // A leaf, or two leaves of one light each.
-  const Node &root = nodes_[root_];
-  const bool leaf = root.count > 0;
-  const bool two = !leaf && nodes_[root.first].count == 1 && nodes_[root.first + 1].count == 1;
-  return leaf ? std::span(lights_).subspan(root.first, root.count) : two ? std::span(lights_) : std::span<const TreeLight>();
-}
-
-double FewLights::share_of_leaf(const LightQuery &query, const Node &node, uint32_t place) const {
+double FewLights::share_of_leaf(const LightQuery &query, const LightNode &node, uint32_t place) const {
   if (node.count == 1)
     return 1.0;
   Sums sums;

@@ -5,13 +5,20 @@
 
 #include "lights/tree_light.h"
 
-#include <span>
 #include <vector>
 
 namespace lancer {
 
 // The most lights of a leaf.
 inline constexpr uint32_t kLeafLights = 8;
+
+// Children stand side by side from an even number on; a leaf holds a stretch of lights.
+struct LightNode {
+  ClusterShape shape;
+  uint32_t first = 0;      // child, or light of a leaf
+  uint32_t count : 31 = 0; // lights of a leaf; 0: it has children
+  uint32_t distant : 1 = 0;
+};
 
 class FewLights {
 public:
@@ -24,24 +31,18 @@ public:
 
   // u in [0, 1): one number for the whole way down.
   LightChoice choose(const LightQuery &query, double u) const;
-  // The lights where sums over them alone decide, without clusters: choose() takes the first whose share u falls into. Empty
-  // where there is more to it.
-  std::span<const TreeLight> row() const;
+  // The tree itself, for kernels. root: a node, or kNone for the pair of 0 and 1.
+  const std::vector<LightNode> &nodes() const { return nodes_; }
+  const std::vector<TreeLight> &lights() const { return lights_; }
+  uint32_t root() const { return root_; }
   // With which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
   size_t bytes() const {
-    return lights_.size() * sizeof(TreeLight) + nodes_.size() * sizeof(Node) + (node_of_.size() + place_of_.size()) * 4;
+    return lights_.size() * sizeof(TreeLight) + nodes_.size() * sizeof(LightNode) + (node_of_.size() + place_of_.size()) * 4;
   }
 
 private:
-  // Children stand side by side from an even number on; a leaf holds a stretch of lights.
-  struct Node {
-    ClusterShape shape;
-    uint32_t first = 0;      // child, or light of a leaf
-    uint32_t count : 31 = 0; // lights of a leaf; 0: it has children
-    uint32_t distant : 1 = 0;
-  };
   struct Part {
     uint32_t node, begin, end;
     bool distant;
@@ -50,11 +51,11 @@ private:
   Importance weigh(const LightQuery &query, uint32_t node) const;
   // Of the two nodes of a pair; both 0 where neither can contribute.
   glm::dvec2 shares(const LightQuery &query, uint32_t pair) const;
-  LightChoice choose_of_leaf(const LightQuery &query, const Node &node, double u) const;
-  double share_of_leaf(const LightQuery &query, const Node &node, uint32_t place) const;
+  LightChoice choose_of_leaf(const LightQuery &query, const LightNode &node, double u) const;
+  double share_of_leaf(const LightQuery &query, const LightNode &node, uint32_t place) const;
   void split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
 
-  std::vector<Node> nodes_; // 0 and 1 are what is near and what is distant
+  std::vector<LightNode> nodes_; // 0 and 1 are what is near and what is distant
   std::vector<TreeLight> lights_;
   std::vector<uint32_t> node_of_;  // of each light
   std::vector<uint32_t> parent_;   // of each pair of nodes; unused for the first

@@ -36,6 +36,7 @@ WideLamp make_wide(const Light &light) {
   lamp.area = light.area;
   lamp.tan_half_spread = light.tan_half_spread;
   lamp.spread_scale = light.spread_scale;
+  lamp.one_minus_cos_sun = light.one_minus_cos_sun;
   return lamp;
 }
 
@@ -79,14 +80,6 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
     described.push_back(describe_cluster(many_.bounds(), count));
   }
   few_ = FewLights(std::move(described), count + 1);
-  // Among several, kernels weigh lamps with a place.
-  const auto known = [&](const TreeLight &light) {
-    const bool placed = light.kind == TreeLight::Kind::Disk || light.kind == TreeLight::Kind::Ball ||
-                        light.kind == TreeLight::Kind::Area;
-    return light.number < lights_.size() && (placed || few_.row().size() == 1);
-  };
-  if (std::ranges::all_of(few_.row(), known))
-    row_.assign(few_.row().begin(), few_.row().end());
   if (!emitters_.empty()) {
     emitter_of_.assign(instance_count, kNone);
     for (uint32_t i = 0; i < emitters_.size(); ++i)
@@ -95,7 +88,10 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
 }
 
 LightSet::Choice LightSet::choose(const Geometry &geometry, const LightQuery &query, double u) const {
-  LightChoice light = few_.choose(query, u);
+  return choose_within(geometry, query, few_.choose(query, u));
+}
+
+LightSet::Choice LightSet::choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const {
   if (light.number == size() && light.probability > 0.0) {
     const double of_many = light.probability;
     light = many_.choose(query, light.u);

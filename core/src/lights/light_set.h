@@ -33,8 +33,13 @@ public:
   };
   // Chooses a light, and a face of it, by what the point may get from each. u in [0, 1); the set is not empty.
   Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
-  // The lamps that kernels choose from as choose() does; empty where only the general code can.
-  std::span<const TreeLight> row() const { return row_; }
+  // The same in two steps, for kernels that do the first: among the few, then, with what is left of u, within the one chosen.
+  const FewLights &few() const { return few_; }
+  Choice choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const;
+  // Whether the second step changes nothing.
+  bool decided(uint32_t few_number) const {
+    return few_number < lights_.size() || (few_number >= lights_.size() + emitters_.size() && few_number < size());
+  }
   // With which choose() returns this light; of an emitter, this face of it.
   double probability(const LightQuery &query, uint32_t light) const;
   double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
@@ -50,12 +55,11 @@ public:
   }
   // Whether a ray can run into a light as described.
   bool any_on_the_way() const { return !always_.empty() || !finder_.empty(); }
-  // Calls visit(number) for those that may lie on the way from o along the unit wi, up to the distance end.
-  template <class Visit> void on_the_way(const glm::dvec3 &o, const glm::dvec3 &wi, double end, Visit &&visit) const {
-    for (const uint32_t number : always_)
-      visit(number);
-    finder_.along(o, wi, end, visit);
-  }
+  // A few, each to be asked about every ray.
+  const std::vector<uint32_t> &always_on_the_way() const { return always_; }
+  const WideLamp &plain_numbers(uint32_t light) const { return wide_lamps_[light]; }
+  // Finds the others.
+  const LightFinder &finder() const { return finder_; }
   size_t bytes() const;
 
 private:
@@ -65,7 +69,6 @@ private:
   std::vector<uint32_t> always_, emitter_of_;
   // Few lights are chosen from as in Cycles; of many, those with a place are one of the few.
   FewLights few_;
-  std::vector<TreeLight> row_;
   LightTree many_;
   LightFinder finder_;
   Environment environment_;

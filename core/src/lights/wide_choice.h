@@ -1,9 +1,9 @@
-// FewLights::choose() for many lanes at once where all lights stand in one leaf, with the bits of few_lights.cpp and
-// tree_light.cpp. For kernels only, like sampling/lanes.h.
+// FewLights::choose() for many lanes at once, with the bits of few_lights.cpp and tree_light.cpp. For kernels only, like
+// sampling/lanes.h.
 #pragma once
 
-#include "lights/tree_light.h"
-#include "sampling/lanes.h"
+#include "lights/few_lights.h"
+#include "sampling/lane_vectors.h"
 
 namespace lancer {
 namespace {
@@ -83,7 +83,8 @@ LANCER_LANE WideImportance area_importance(const WideQuery &query, const TreeLig
   F apart[4], d2[4], above[4];
   for (int corner = 0; corner < 4; ++corner) {
     const F along_u(corner & 1 ? -1.0f : 1.0f), along_v(corner & 2 ? -1.0f : 1.0f);
-    const F x = v.x + along_u * F(light.u.x) + along_v * F(light.v.x), y = v.y + along_u * F(light.u.y) + along_v * F(light.v.y),
+    const F x = v.x + along_u * F(light.u.x) + along_v * F(light.v.x),
+            y = v.y + along_u * F(light.u.y) + along_v * F(light.v.y),
             z = v.z + along_u * F(light.u.z) + along_v * F(light.v.z);
     d2[corner] = x * x + y * y + z * z;
     const F per_d = one / sqrt(max(d2[corner], F(kNearest2)));
@@ -107,8 +108,60 @@ LANCER_LANE WideImportance area_importance(const WideQuery &query, const TreeLig
   return {select(able, all.most, zero), select(able, all.least, zero)};
 }
 
-// Of lights with a place that are no clusters.
-LANCER_LANE WideImportance lamp_importance(const WideQuery &query, const TreeLight &light) {
+LANCER_LANE V3 splat3(const glm::vec3 &v) { return {F(v.x), F(v.y), F(v.z)}; }
+LANCER_LANE WideCone splat_cone(const ShineCone &cone) {
+  return {F(cone.cos_o), F(cone.sin_o), F(cone.cos_all), F(cone.cos_full)};
+}
+
+// Of a box of lights.
+LANCER_LANE WideImportance cluster_importance(const WideQuery &query, const V3 &centre, const V3 &half, const ShineCone &cone,
+                                              float energy) {
+  const F zero(0.0f), one(1.0f);
+  const V3 p = narrow(query.p);
+  const F slack = F(0x1p-22f) * (abs(p.x) + abs(p.y) + abs(p.z));
+  const V3 v = centre - p;
+  const F d2 = dot(v, v), r2 = dot(half, half), d = sqrt(d2);
+  const F reach = dot(V3{abs(query.n.x), abs(query.n.y), abs(query.n.z)}, half) + slack;
+  const M able = query.transmits | (dot(query.n, v) + reach > zero);
+  const M outside = d2 > r2;
+  const F sin2 = select(outside, r2 / d2, zero);
+  WideView view;
+  view.to = select(d > zero, v / d, V3{zero, zero, zero});
+  view.sin_u = sqrt(sin2);
+  view.cos_u = select(outside, sqrt(one - sin2), F(-1.0f));
+  view.near2 = view.far2 = max(d2, F(0.25f) * r2);
+  const WideImportance all = wide_importance(query, view, splat_cone(cone), -dot(splat3(cone.axis), view.to), F(energy));
+  return {select(able, all.most, zero), select(able, all.least, zero)};
+}
+
+// Of distant ones: a disk of the sky at distance 1.
+LANCER_LANE WideImportance far_importance(const WideQuery &query, const ClusterShape &cluster) {
+  WideView view;
+  view.to = -splat3(cluster.cone.axis);
+  view.cos_u = max(F(cluster.cone.cos_all), F(-1.0f));
+  view.sin_u = wide_sine(view.cos_u);
+  view.near2 = view.far2 = F(1.0f);
+  return wide_importance(query, view, splat_cone(cluster.cone), F(1.0f), F(cluster.energy));
+}
+
+LANCER_LANE WideImportance light_importance(const WideQuery &query, const TreeLight &light) {
+  if (light.kind == TreeLight::Kind::Sun) {
+    WideView view;
+    view.to = splat3(light.axis);
+    view.cos_u = F(light.cos_e);
+    view.sin_u = wide_sine(view.cos_u);
+    view.near2 = F(1.0f);
+    view.far2 = F(1.0f) / max(view.cos_u * view.cos_u, F(0x1p-40f));
+    const WideCone cone{F(1.0f), F(0.0f), F(light.cos_e), F(light.cos_e)};
+    return wide_importance(query, view, cone, F(1.0f), F(light.energy));
+  }
+  if (light.kind == TreeLight::Kind::Sky)
+    return {F(light.energy), F(0.0f)};
+  if (light.kind == TreeLight::Kind::Cluster) {
+    const V3 centre{F(static_cast<float>(light.centre.x)), F(static_cast<float>(light.centre.y)),
+                    F(static_cast<float>(light.centre.z))};
+    return cluster_importance(query, centre, splat3(light.u), light.cone, light.energy);
+  }
   const V3 v = narrow(D3{D(light.centre.x) - query.p.x, D(light.centre.y) - query.p.y, D(light.centre.z) - query.p.z});
   const F d = sqrt(dot(v, v)), zero(0.0f);
   const V3 to = select(d > zero, v / d, V3{zero, zero, zero});
@@ -117,37 +170,116 @@ LANCER_LANE WideImportance lamp_importance(const WideQuery &query, const TreeLig
   return round_importance(query, light, to, d);
 }
 
-constexpr uint32_t kWideLeafLights = 8;
+struct WideTree {
+  const LightNode *nodes;
+  const TreeLight *lights;
+  uint32_t root;
+};
 
 struct WideChoice {
   U number;
-  D probability;
+  D probability, u; // as LightChoice
 };
 
-// choose_of_leaf().
-LANCER_LANE WideChoice choose_lamp(const WideQuery &query, const TreeLight *lights, uint32_t count, D u) {
-  WideChoice choice{U(lights[0].number), D(1.0)};
-  if (count == 1)
-    return choice;
-  const D zero(0.0), half(0.5);
-  WideImportance parts[kWideLeafLights];
-  D most = zero, least = zero, able = zero;
-  for (uint32_t i = 0; i < count; ++i) {
-    parts[i] = lamp_importance(query, lights[i]);
-    most = most + widen(parts[i].most);
-    least = least + widen(parts[i].least);
-    able = select(parts[i].most > F(0.0f), able + D(1.0), able);
+LANCER_LANE WideImportance weigh(const WideQuery &query, const WideTree &tree, uint32_t number) {
+  const LightNode &node = tree.nodes[number];
+  if (node.count == 1)
+    return light_importance(query, tree.lights[node.first]);
+  return node.distant ? far_importance(query, node.shape)
+                      : cluster_importance(query, splat3(node.shape.centre), splat3(node.shape.half), node.shape.cone,
+                                           node.shape.energy);
+}
+
+// Shares of the sum of upper and of lower bounds, averaged.
+struct WideSums {
+  D most = D(0.0), least = D(0.0), able = D(0.0);
+
+  LANCER_LANE void add(const WideImportance &part) {
+    most = most + widen(part.most);
+    least = least + widen(part.least);
+    able = select(part.most > F(0.0f), able + D(1.0), able);
   }
-  choice.probability = zero;
-  M open = mask_of((1u << kLanes) - 1u);
-  for (uint32_t i = 0; i < count; ++i) {
-    const D lower = select(least > zero, widen(parts[i].least) / least, D(1.0) / able);
-    const D share = select(parts[i].most > F(0.0f), half * (widen(parts[i].most) / most + lower), zero);
+  LANCER_LANE D share(const WideImportance &part) const {
+    const D lower = select(least > D(0.0), widen(part.least) / least, D(1.0) / able);
+    return select(part.most > F(0.0f), D(0.5) * (widen(part.most) / most + lower), D(0.0));
+  }
+};
+
+constexpr double kWideBelowOne = 1.0 - 0x1p-53;
+constexpr uint32_t kWideLeafLights = 8;
+
+// choose_of_leaf(), of the lanes that have come to it.
+LANCER_LANE void choose_of_leaf(const WideQuery &query, const WideTree &tree, const LightNode &node, M here,
+                                WideChoice &choice) {
+  const D zero(0.0);
+  if (node.count == 1) {
+    choice.number = select(here, U(tree.lights[node.first].number), choice.number);
+    return;
+  }
+  WideImportance parts[kWideLeafLights];
+  WideSums sums;
+  for (uint32_t i = 0; i < node.count; ++i)
+    sums.add(parts[i] = light_importance(query, tree.lights[node.first + i]));
+  D probability = zero, rest = choice.u;
+  D left = choice.u;
+  M open = here;
+  for (uint32_t i = 0; i < node.count; ++i) {
+    const D share = sums.share(parts[i]);
     const M there = open & (share > zero);
-    choice.number = select(there, U(lights[i].number), choice.number);
-    choice.probability = select(there, share, choice.probability);
-    open = open & !(there & (u < share));
-    u = select(there, u - share, u);
+    choice.number = select(there, U(tree.lights[node.first + i].number), choice.number);
+    probability = select(there, share, probability);
+    rest = select(there, min(left / share, D(kWideBelowOne)), rest);
+    const M last = there & (left < share);
+    left = select(there & !last, left - share, left);
+    open = open & !last;
+  }
+  choice.probability = select(here, probability * choice.probability, choice.probability);
+  choice.u = select(here, rest, choice.u);
+}
+
+LANCER_LANE WideChoice choose_light(const WideQuery &query, const WideTree &tree, D u) {
+  struct Waiting {
+    uint32_t number;
+    M lanes;
+  };
+  constexpr uint32_t kPairs = 0xffffffffu;
+  WideChoice choice{U(0u), D(1.0), u};
+  const D zero(0.0);
+  // Each node at most once, with the lanes that go there.
+  Waiting waiting[64];
+  uint32_t size = 0;
+  waiting[size++] = {tree.root, mask_of((1u << kLanes) - 1u)};
+  while (size > 0) {
+    const Waiting at = waiting[--size];
+    if (at.number != kPairs && tree.nodes[at.number].count > 0) {
+      choose_of_leaf(query, tree, tree.nodes[at.number], at.lanes, choice);
+      continue;
+    }
+    const uint32_t pair = at.number == kPairs ? 0 : tree.nodes[at.number].first;
+    const WideImportance first = weigh(query, tree, pair), second = weigh(query, tree, pair + 1);
+    D x, y;
+    if (pair != 0 && (tree.nodes[pair].count != 1 || tree.nodes[pair + 1].count != 1)) {
+      // Between clusters the upper bounds decide.
+      const D a = widen(first.most), b = widen(second.most), sum = a + b;
+      x = select(sum > zero, a / sum, zero);
+      y = select(sum > zero, b / sum, zero);
+    } else {
+      WideSums sums;
+      sums.add(first);
+      sums.add(second);
+      x = sums.share(first);
+      y = sums.share(second);
+    }
+    const M right = (y > zero) & !(choice.u < x), none = !((x > zero) | right);
+    const D share = select(right, y, x);
+    const D rest = min(select(right, choice.u - x, choice.u) / share, D(kWideBelowOne));
+    choice.u = select(at.lanes & !none, rest, choice.u);
+    choice.probability = select(at.lanes, select(none, zero, choice.probability * share), choice.probability);
+    const M lanes = at.lanes & !none;
+    if (any(lanes & right))
+      waiting[size++] = {pair + 1, lanes & right};
+    if (any(lanes & !right))
+      waiting[size++] = {pair, lanes & !right};
   }
   return choice;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lights/wide_lamp.h"
-#include "sampling/lanes.h"
+#include "sampling/lane_vectors.h"
 #include "sampling/octant.h"
 
 namespace lancer {

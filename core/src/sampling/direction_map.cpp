@@ -6,6 +6,13 @@ namespace lancer {
 
 DirectionMap::DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights)
     : width_(width), height_(height) {
+  const uint32_t half = (height + 1) / 2;
+  for (uint32_t row = 0; row <= half; ++row) {
+    const double s = std::sin(0.5 * glm::pi<double>() * (double(row) / height));
+    versines_.push_back(2.0 * s * s);
+  }
+  for (uint32_t row = 0; row < half; ++row)
+    solid_angles_.push_back(2.0 * glm::pi<double>() / width * (versines_[row + 1] - versines_[row]));
   std::vector<double> columns(width), totals(height);
   rows_.reserve(height);
   for (uint32_t row = 0; row < height; ++row) {
@@ -49,21 +56,18 @@ glm::dvec3 DirectionMap::direction(double column, double row) const {
 glm::dvec3 DirectionMap::inside_cell(uint32_t column, uint32_t row, const glm::dvec2 &inside) const {
   // Even steps of the cosine are even steps of the solid angle. Count from the nearer pole.
   const bool upper = 2 * row < height_;
-  const double from = versine(upper ? row : height_ - row - 1), to = versine(upper ? row + 1 : height_ - row);
+  const double from = versines_[from_pole(row)], to = versines_[from_pole(row) + 1];
   const double x = glm::mix(from, to, upper ? inside.y : 1.0 - inside.y);
   const double sine = std::sqrt(x * (2.0 - x)), cosine = upper ? 1.0 - x : x - 1.0;
   const double phi = 2.0 * glm::pi<double>() * ((column + inside.x) / width_) - glm::pi<double>();
   return {sine * std::cos(phi), sine * std::sin(phi), cosine};
 }
 
-double DirectionMap::solid_angle(uint32_t row) const {
-  const uint32_t from_pole = 2 * row < height_ ? row : height_ - row - 1;
-  return 2.0 * glm::pi<double>() / width_ * (versine(from_pole + 1) - versine(from_pole));
-}
-
-double DirectionMap::versine(double row) const {
-  const double s = std::sin(0.5 * glm::pi<double>() * (row / height_));
-  return 2.0 * s * s;
+size_t DirectionMap::bytes() const {
+  size_t bytes = choice_.bytes() + (versines_.size() + solid_angles_.size()) * sizeof(double);
+  for (const WeightedChoice &row : rows_)
+    bytes += row.bytes();
+  return bytes;
 }
 
 } // namespace lancer

@@ -26,16 +26,19 @@ public:
   // The direction at a place of the grid, (0, 0) its first corner, even in the angles.
   glm::dvec3 direction(double column, double row) const;
   // Solid angle of each cell of a row.
-  double solid_angle(uint32_t row) const;
-  size_t bytes() const { return rows_.size() * (size_t(width_) + 1) * sizeof(double); }
+  double solid_angle(uint32_t row) const { return solid_angles_[from_pole(row)]; }
+  size_t bytes() const;
 
 private:
   // The direction at (x, y) in [0, 1)^2 of a cell, even in the solid angle.
   glm::dvec3 inside_cell(uint32_t column, uint32_t row, const glm::dvec2 &inside) const;
-  // 1 - cos of the angle to +z of a row's upper edge: it keeps its digits at the pole, where cos has none left.
-  double versine(double row) const;
+  // Rows count from the nearer pole.
+  uint32_t from_pole(uint32_t row) const { return 2 * row < height_ ? row : height_ - row - 1; }
 
   uint32_t width_ = 0, height_ = 0;
+  // By row: 1 - cos of the angle to the pole of the edge towards it, which keeps its digits there, where cos has none left; and
+  // the solid angle of a cell.
+  std::vector<double> versines_, solid_angles_;
   WeightedChoice choice_;            // of a row
   std::vector<WeightedChoice> rows_; // of a column in it
 };

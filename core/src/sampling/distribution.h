@@ -33,6 +33,14 @@ public:
     const double total = cdf_.back();
     for (double &c : cdf_)
       c /= total;
+    // Note for even steps of the number which entry it falls on, so that looking for one begins beside it.
+    guide_.resize(weights.size() / kPerStep + 1);
+    uint32_t entry = 0;
+    for (std::size_t step = 0; step < guide_.size(); ++step) {
+      while (entry + 1 < weights.size() && !(cdf_[entry + 1] > static_cast<double>(step) / static_cast<double>(guide_.size())))
+        ++entry;
+      guide_[step] = entry;
+    }
   }
 
   std::size_t size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
@@ -42,8 +50,12 @@ public:
     if (size() == 0 || cdf_.back() == 0.0)
       return {};
     // Find the interval cdf[i] <= u < cdf[i + 1]: an entry of weight 0 has none.
-    const auto above = std::upper_bound(cdf_.begin(), cdf_.end(), u);
-    const auto i = static_cast<uint32_t>(above - cdf_.begin() - 1);
+    const double steps = static_cast<double>(guide_.size());
+    uint32_t i = guide_[std::min(static_cast<std::size_t>(u * steps), guide_.size() - 1)];
+    while (i > 0 && cdf_[i] > u)
+      --i;
+    while (!(cdf_[i + 1] > u))
+      ++i;
     const double width = cdf_[i + 1] - cdf_[i];
     const float below_one = std::nextafter(1.0f, 0.0f);
     return {i, static_cast<float>(width), std::min(static_cast<float>((u - cdf_[i]) / width), below_one)};
@@ -52,8 +64,12 @@ public:
   // The probability of index i, exactly that with which sample returns it.
   float pmf(std::size_t i) const { return static_cast<float>(cdf_[i + 1] - cdf_[i]); }
 
+  std::size_t bytes() const { return cdf_.size() * sizeof(double) + guide_.size() * sizeof(uint32_t); }
+
 private:
+  static constexpr std::size_t kPerStep = 4; // entries to a step of the guide
   std::vector<double> cdf_;
+  std::vector<uint32_t> guide_;
 };
 
 } // namespace lancer

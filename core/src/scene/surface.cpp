@@ -16,7 +16,7 @@ double position_bound(const Instance &instance, const glm::dvec3 &p_object, cons
   const Reach &reach = instance.reach;
   const double there = reach.there * largest_coordinate(p_object) + reach.moved;
   const double back = reach.there * (reach.back * largest_coordinate(p_world) + reach.moved_back);
-  return std::ldexp(there + back, -49);
+  return (there + back) * 0x1p-49;
 }
 
 glm::vec3 unit(const glm::dvec3 &v) {

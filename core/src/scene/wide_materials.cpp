@@ -21,10 +21,10 @@ WideLobe *next(WideMaterial &material) {
 
 bool add_facets(WideMaterial &material, const MicrofacetPlan &plan, WideMode mode, float share) {
   const Lobe &lobe = plan.lobe;
-  const bool known =
-      lobe.fresnel == FresnelKind::Dielectric || lobe.fresnel == FresnelKind::F82 || lobe.fresnel == FresnelKind::Schlick;
+  const bool glass = refracts(lobe), schlick = lobe.fresnel == FresnelKind::Schlick;
+  const bool known = schlick || (!glass && (lobe.fresnel == FresnelKind::Dielectric || lobe.fresnel == FresnelKind::F82));
   WideLobe *wide = next(material);
-  if (!wide || !known || refracts(lobe) || lobe.delta || lobe.beckmann || !plan.rows)
+  if (!wide || !known || !reflects(lobe) || lobe.beckmann || !plan.rows)
     return false;
   wide->shape = WideShape::Microfacet;
   wide->mode = mode;
@@ -36,6 +36,10 @@ bool add_facets(WideMaterial &material, const MicrofacetPlan &plan, WideMode mod
   copy(lobe.f90, wide->f90);
   copy(lobe.b, wide->b);
   copy(lobe.reflection, wide->reflection);
+  copy(lobe.transmission, wide->transmission);
+  wide->delta = lobe.delta;
+  wide->delta_through = lobe.delta_through;
+  wide->through = glass;
   copy(plan.further, wide->further);
   wide->ior = lobe.ior;
   wide->per_range = lobe.per_range;
@@ -46,6 +50,8 @@ bool add_facets(WideMaterial &material, const MicrofacetPlan &plan, WideMode mod
   wide->single = plan.rows->single;
   wide->mix = plan.rows->mix;
   material.bends = 1;
+  material.smooth |= !lobe.delta;
+  material.transmits |= glass;
   return true;
 }
 
@@ -55,12 +61,13 @@ bool add_lambert(WideMaterial &material, WideMode mode) {
     return false;
   wide->shape = WideShape::Lambert;
   wide->mode = mode;
+  material.smooth = 1;
   return true;
 }
 
 // The layers of add_layers(), as far as kernels know them.
 bool add_principled(WideMaterial &material, const LobeInputs &inputs, const PrincipledInputs &in,
-                    const std::optional<LayerPlan> &layers) {
+                    const std::optional<LayerPlan> &layers, bool inside) {
   if (!layers || in.rules == Rules::Blender3 || inputs.normal != glm::vec3(0.0f) || in.coat_normal != glm::vec3(0.0f) ||
       in.sheen > kLeastLayer || in.emission != glm::vec3(0.0f) || in.diffuse_roughness >= kLambertRoughness)
     return false;
@@ -76,9 +83,9 @@ bool add_principled(WideMaterial &material, const LobeInputs &inputs, const Prin
     return false;
   if (metallic > kLeastLayer && !add(layers->metal, WideMode::Share, metallic))
     return false;
-  if (metallic < 1.0f && transmission > kLeastLayer)
+  if (metallic < 1.0f && transmission > kLeastLayer && !add(layers->glass[inside], WideMode::Share, transmission))
     return false;
-  if (metallic >= 1.0f)
+  if (metallic >= 1.0f || transmission >= 1.0f)
     return true;
   if (layers->gloss && !add(layers->gloss, WideMode::Layer, 1.0f))
     return false;
@@ -98,7 +105,7 @@ bool only_colors_vary(const LobeDescription &lobe) {
   return true;
 }
 
-bool fill_by_nodes(const Material &material, WideMaterial &wide) {
+bool fill_by_nodes(const Material &material, bool inside, WideMaterial &wide) {
   const LobeDescription &lobe = material.lobes.front();
   const std::vector<glm::vec4> nothing(material.program.nodes.size(), glm::vec4(0.0f));
   const LobeInputs inputs = evaluate(lobe, nothing);
@@ -106,39 +113,50 @@ bool fill_by_nodes(const Material &material, WideMaterial &wide) {
   if (lobe.principled) {
     // Metal and glass are made of the base colour.
     const PrincipledInputs in = evaluate(*lobe.principled, nothing);
-    if (!only_colors_vary(lobe) || (in.metallic > kLeastLayer && lobe.principled->base_color.varies()))
+    const bool made = in.metallic > kLeastLayer || in.transmission > kLeastLayer;
+    if (!only_colors_vary(lobe) || (made && lobe.principled->base_color.varies()))
       return false;
-    return add_principled(wide, inputs, in, material.ready.front().layers);
+    return add_principled(wide, inputs, in, material.ready.front().layers, inside);
   }
   const bool matte = lobe.kind == LobeKind::Lambert || lobe.kind == LobeKind::Diffuse;
   return matte && lobe.rules != Rules::Blender3 && !lobe.normal.varies() && inputs.normal == glm::vec3(0.0f) &&
          !lobe.roughness.varies() && inputs.roughness < kLambertRoughness && add_lambert(wide, WideMode::Own);
 }
 
-bool fill(const Material &material, WideMaterial &wide) {
+bool fill(const Material &material, bool inside, WideMaterial &wide) {
   if (material.layered_emission || material.lobes.size() != 1 || material.normal.varies() || material.holdout.varies() ||
       material.holdout.value != glm::vec3(0.0f))
     return false;
   if (!material.fixed())
-    return fill_by_nodes(material, wide);
+    return fill_by_nodes(material, inside, wide);
   const ReadyLobe &ready = material.ready.front();
   if (ready.inputs.kind == LobeKind::Principled)
-    return add_principled(wide, ready.inputs, ready.principled, ready.layers);
+    return add_principled(wide, ready.inputs, ready.principled, ready.layers, inside);
   copy(ready.lobe.color, wide.base);
   return ready.whole && !ready.flat_only && ready.lobe.shape == LobeShape::Lambert && add_lambert(wide, WideMode::Own);
+}
+
+WideMaterial record(const Material &material, bool inside) {
+  WideMaterial wide;
+  if (!fill(material, inside, wide))
+    return {};
+  if (material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION)
+    wide.bends = 0;
+  return wide;
 }
 
 } // namespace
 
 std::vector<WideMaterial> make_wide_materials(const std::vector<Material> &materials) {
   std::vector<WideMaterial> all;
-  for (const Material &material : materials) {
-    WideMaterial &wide = all.emplace_back();
-    if (!fill(material, wide))
-      wide = {};
-    else if (material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION)
-      wide.bends = 0;
-  }
+  for (const Material &material : materials)
+    all.push_back(record(material, false));
+  // Glass bends light by another index on its way out.
+  for (size_t i = 0; i < materials.size(); ++i)
+    if (all[i].transmits) {
+      all[i].inside = uint32_t(all.size() - i);
+      all.push_back(record(materials[i], true));
+    }
   return all;
 }
 

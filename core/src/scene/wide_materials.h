@@ -8,7 +8,8 @@
 
 namespace lancer {
 
-// By number of material; count 0 where the general code has to do it. The records point into the materials' tables.
+// By number of material; count 0 where the general code has to do it. Records of inner sides follow. All point into the
+// materials' tables.
 std::vector<WideMaterial> make_wide_materials(const std::vector<Material> &materials);
 
 } // namespace lancer

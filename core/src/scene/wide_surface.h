@@ -1,7 +1,8 @@
-// surface_at() for triangles of many lanes at once, with the bits of surface.cpp. For kernels only, like sampling/lanes.h.
+// surface_at() for triangles, spheres and planes of many lanes at once, with the bits of surface.cpp. For kernels only, like
+// sampling/lanes.h.
 #pragma once
 
-#include "sampling/lanes.h"
+#include "sampling/lane_vectors.h"
 
 namespace lancer {
 namespace {
@@ -45,6 +46,15 @@ LANCER_LANE V3 unit(const D3 &v, M &odd) {
   return narrow(v * (D(1.0) / sqrt(length2)));
 }
 
+// position_bound()
+LANCER_LANE D reach_bound(const double *const *placements, bool same, const D3 &p_object, const D3 &p_world) {
+  const D reach_there = placed(placements, same, 24), moved = placed(placements, same, 25);
+  const D reach_back = placed(placements, same, 26), moved_back = placed(placements, same, 27);
+  const D there = reach_there * largest_coordinate(p_object) + moved;
+  const D back = reach_there * (reach_back * largest_coordinate(p_world) + moved_back);
+  return (there + back) * D(0x1p-49);
+}
+
 struct WideSurface {
   D3 p;
   D offset;
@@ -66,11 +76,7 @@ LANCER_LANE WideSurface mesh_surface(const double *const *placements, bool same,
   // How far it may lie from the surface.
   const D3 corner{max(abs(v0.x), max(abs(v1.x), abs(v2.x))), max(abs(v0.y), max(abs(v1.y), abs(v2.y))),
                   max(abs(v0.z), max(abs(v1.z), abs(v2.z)))};
-  const D reach_there = placed(placements, same, 24), moved = placed(placements, same, 25);
-  const D reach_back = placed(placements, same, 26), moved_back = placed(placements, same, 27);
-  const D there = reach_there * largest_coordinate(corner) + moved;
-  const D back = reach_there * (reach_back * largest_coordinate(surface.p) + moved_back);
-  surface.offset = (there + back) * D(0x1p-49);
+  surface.offset = reach_bound(placements, same, corner, surface.p);
   // Both normals.
   const D3 a = v1 - v0, b = v2 - v0;
   const D3 across{a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
@@ -85,6 +91,24 @@ LANCER_LANE WideSurface mesh_surface(const double *const *placements, bool same,
     surface.ns = select(there_is, ns, surface.ng);
     surface.odd = surface.odd | (odd & there_is);
   }
+  return surface;
+}
+
+// Spheres, and in the lanes of plane unit planes. o, d: the ray; t: where it met them.
+LANCER_LANE WideSurface round_surface(const double *const *placements, bool same, const D3 &o, const D3 &d, D t, M plane) {
+  const WideMap to_world = placed_map(placements, same, 0), to_object = placed_map(placements, same, 12);
+  const D zero(0.0), one(1.0);
+  WideSurface surface;
+  surface.odd = mask_of(0);
+  // Move the point to the nearest place on the surface: quadric_point().
+  D3 p = map_point(to_object, o) + t * map_vector(to_object, d);
+  const D length = sqrt(dot(p, p));
+  const M centre = !(length > zero);
+  const D3 up{zero, zero, one}, on_sphere = select(centre, up, p / length);
+  p = select(plane, D3{p.x, p.y, zero}, on_sphere);
+  surface.p = map_point(to_world, p);
+  surface.offset = reach_bound(placements, same, D3{max(abs(p.x), one), max(abs(p.y), one), max(abs(p.z), one)}, surface.p);
+  surface.ng = surface.ns = unit(map_transposed(to_object, select(plane, up, on_sphere)), surface.odd);
   return surface;
 }
 

@@ -1,0 +1,140 @@
+// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+#include "integrator/course_kernel.h"
+
+#include "bsdf/wide_coating.h"
+#include "scene/wide_surface.h"
+
+#ifndef LANCER_ISA
+#define LANCER_ISA generic
+#endif
+
+namespace lancer {
+namespace {
+
+LANCER_LANE M some(uint32_t lanes, int first) { return mask_of(lanes >> first & ((1u << kLanes) - 1u)); }
+
+// Where a ray towards d leaves the surface: leave().
+LANCER_LANE D3 origin(const CourseBlock &block, int first, const D3 &d) {
+  const D3 ng = widen(load3(block.ng, first));
+  const D side = select(dot(ng, d) < D(0.0), D(-1.0), D(1.0));
+  return load3(block.p, first) + side * load(block.offset + first) * ng;
+}
+
+// Lanes whose reflecting lobes might want another normal than ns: reflecting_normal().
+LANCER_LANE M bent_lanes(const V3 &wo, const V3 &ns, const V3 &ng) {
+  const M flat = (ns.x == ng.x) & (ns.y == ng.y) & (ns.z == ng.z);
+  const F cos_o = dot(wo, ng), least = min(F(0.9f) * cos_o, F(0.01f));
+  const V3 mirrored = F(2.0f) * dot(ns, wo) * ns - wo;
+  return (!flat) & !(dot(ng, mirrored) >= least);
+}
+
+template <class T> LANCER_LANE bool all_same(const T *const *of) {
+  bool same = true;
+  for (int i = 1; i < kLanes; ++i)
+    same = same && of[i] == of[0];
+  return same;
+}
+
+// Surfaces of spheres and planes, beside those that are given.
+LANCER_LANE void find_surfaces(CourseBlock &block, int first) {
+  const M plane = some(block.plane, first), exact = plane | some(block.sphere, first);
+  if (!any(exact))
+    return;
+  const double *const *placements = block.placement + first;
+  const WideSurface surface = round_surface(placements, all_same(placements), load3(block.o, first), load3(block.d, first),
+                                            load(block.t + first), plane);
+  block.odd |= bits(surface.odd & exact) << first;
+  store3(block.p, first, select(exact, surface.p, load3(block.p, first)));
+  store(block.offset + first, select(exact, surface.offset, load(block.offset + first)));
+  store3(block.ng, first, select(exact, surface.ng, load3(block.ng, first)));
+  store3(block.ns, first, select(exact, surface.ns, load3(block.ns, first)));
+}
+
+[[gnu::flatten]] void look(CourseBlock &block) {
+  const F zero(0.0f);
+  block.odd = block.goes_on = 0;
+  for (int first = 0; first < static_cast<int>(block.count); first += kLanes) {
+    find_surfaces(block, first);
+    // Back along the ray, and both normals to the viewer's side.
+    const D3 d = load3(block.d, first);
+    const V3 wo_world = -narrow(d * (D(1.0) / sqrt(dot(d, d))));
+    const V3 out_ns = load3(block.ns, first), out_ng = load3(block.ng, first);
+    const M inside = dot(wo_world, out_ng) < zero;
+    const V3 ns = select(inside, -out_ns, out_ns), ng = select(inside, -out_ng, out_ng);
+    const WideFrame frame = make_frame(ns);
+    const V3 wo = to_local(frame, wo_world);
+    const F alpha = load(block.alpha + first), ior = load(block.ior + first);
+    store3(block.viewer_ng, first, ng);
+    store3(block.viewer_ns, first, ns);
+    store3(block.tangent, first, frame.t);
+    store3(block.bitangent, first, frame.b);
+    store3(block.wo, first, wo);
+    store(block.masked + first, masked_over_cosine(wo, alpha));
+    block.odd |= bits(bent_lanes(wo_world, ns, ng)) << first;
+    // What the coating mirrors: course_branches() and spawn().
+    const V3 reflected = load3(block.ks, first) * fresnel_dielectric(wo.z, ior).reflectance;
+    const V3 mirrored = to_world(frame, {-wo.x, -wo.y, wo.z});
+    const V3 weight = load3(block.weight, first) * reflected;
+    const F share = max(max(weight.x, weight.y), weight.z);
+    const M mirrors = some(block.coated, first) & (wo.z > zero) & ((reflected.x + reflected.y + reflected.z) / F(3.0f) > zero) &
+                      (dot(mirrored, ng) > zero);
+    block.goes_on |= bits(mirrors & (share > zero) & !(share <= F(block.threshold))) << first;
+    store3(block.mirrored, first, mirrored);
+    store3(block.next_weight, first, weight);
+    store3(block.next_origin, first, origin(block, first, widen(mirrored)));
+  }
+}
+
+// sample_true_point() and course_irradiance().
+LANCER_LANE void ask_point(const CourseBlock &block, int first, const CourseLamp &lamp, CourseLit &lit) {
+  const D3 position{D(lamp.position[0]), D(lamp.position[1]), D(lamp.position[2])};
+  const D3 emission{D(lamp.emission[0]), D(lamp.emission[1]), D(lamp.emission[2])};
+  const D3 to_light = position - load3(block.p, first);
+  const D distance = sqrt(dot(to_light, to_light));
+  store3(lit.wi, first, to_light / distance);
+  store3(lit.target, first, position);
+  store3(lit.irradiance, first, narrow(emission * (D(1.0) / (distance * distance))));
+  lit.there |= bits(distance > D(0.0)) << first;
+}
+
+LANCER_LANE V3 color(const float (&of)[3]) { return {F(of[0]), F(of[1]), F(of[2])}; }
+
+[[gnu::flatten]] void light(const CourseBlock &block, const CourseLamp &lamp, CourseLit &lit) {
+  const F zero(0.0f);
+  const V3 dark{zero, zero, zero};
+  lit.lit = 0;
+  if (lamp.point)
+    lit.there = lit.far = 0;
+  for (int first = 0; first < static_cast<int>(block.count); first += kLanes) {
+    if (lamp.point)
+      ask_point(block, first, lamp, lit);
+    const D3 wi_exact = load3(lit.wi, first);
+    const V3 wi_world = narrow(wi_exact), wo = load3(block.wo, first);
+    const WideFrame frame{load3(block.tangent, first), load3(block.bitangent, first), load3(block.viewer_ns, first)};
+    const V3 wi = to_local(frame, wi_world);
+    // course_illumination()
+    const M above = some(lit.there, first) & (wi.z > zero);
+    const V3 kd = load3(block.kd, first) * (F(kWideInvPi) * wi.z);
+    const V3 diffuse = select(above & some(block.matte, first), kd, dark);
+    const F f = coating_value(wo, load(block.masked + first), wi, load(block.alpha + first), load(block.ior + first),
+                              above & some(block.coated, first) & (wo.z > zero));
+    const V3 specular = load3(block.ks, first) * (f * wi.z);
+    const V3 seen = diffuse * color(lamp.diffuse) + select(f != zero, specular, dark) * color(lamp.specular);
+    const V3 sum = load3(lit.irradiance, first) * seen;
+    store3(lit.contribution, first, load3(block.weight, first) * sum);
+    // The lamp has to be on the viewer's side of the surface.
+    const M same_side = dot(wi_world, load3(block.viewer_ng, first)) > zero;
+    lit.lit |= bits(some(lit.there, first) & same_side & !black(sum)) << first;
+    const D3 o = origin(block, first, wi_exact);
+    store3(lit.origin, first, o);
+    store3(lit.d, first, select(some(lit.far, first), wi_exact, load3(lit.target, first) - o));
+  }
+}
+
+} // namespace
+
+namespace LANCER_ISA {
+const CourseKernel course_kernel = {look, light};
+}
+
+} // namespace lancer

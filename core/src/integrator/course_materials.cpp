@@ -1,0 +1,62 @@
+#include "integrator/course_materials.h"
+
+#include "bsdf/build.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace lancer {
+
+namespace {
+
+void copy(const glm::vec3 &from, float (&to)[3]) {
+  for (int i = 0; i < 3; ++i)
+    to[i] = from[i];
+}
+
+// Neither nodes nor normals of its own have a say; nothing passes straight on.
+bool is_plain(const Material &material) {
+  return material.fixed() && !material.layered_emission && !material.transmits() && !material.normal.varies() &&
+         material.holdout.value.x <= 0.0f &&
+         std::all_of(material.ready.begin(), material.ready.end(), [](const ReadyLobe &ready) {
+           const bool course = ready.inputs.kind == LobeKind::Lambert || ready.inputs.kind == LobeKind::Beckmann;
+           return course && ready.inputs.normal == glm::vec3(0.0f) && ready.inputs.tangent == glm::vec3(0.0f);
+         });
+}
+
+void fill(const Material &material, Bsdf &bsdf, WideCourse &wide) {
+  if (!is_plain(material))
+    return;
+  // Colour, roughness and index are the same from everywhere: look from above.
+  const glm::vec3 up(0.0f, 0.0f, 1.0f);
+  bsdf.begin(up, up, up, false, true);
+  for (const ReadyLobe &ready : material.ready)
+    add_lobe(bsdf, ready.inputs);
+  for (int i = 0; i < bsdf.count; ++i) {
+    const Lobe &lobe = bsdf.lobes[i];
+    const bool matte = lobe.shape == LobeShape::Lambert;
+    // One of each at most, so that their order has no say.
+    if (lobe.delta || (matte ? wide.matte : wide.coated))
+      return;
+    (matte ? wide.matte : wide.coated) = true;
+    copy(lobe.color, matte ? wide.kd : wide.ks);
+    if (!matte) {
+      wide.alpha = lobe.alpha_x;
+      wide.ior = lobe.ior;
+    }
+  }
+  wide.shines = material.emits() || material.ambient.value != glm::vec3(0.0f);
+  wide.known = true;
+}
+
+} // namespace
+
+std::vector<WideCourse> make_course_materials(const std::vector<Material> &materials) {
+  const auto bsdf = std::make_unique<Bsdf>();
+  std::vector<WideCourse> all(materials.size());
+  for (size_t i = 0; i < materials.size(); ++i)
+    fill(materials[i], *bsdf, all[i]);
+  return all;
+}
+
+} // namespace lancer

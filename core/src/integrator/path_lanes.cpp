@@ -1,0 +1,299 @@
+// Vertices of paths that are shaded side by side: into the lanes of a block, through the kernels, and out again.
+#include "integrator/lane_access.h"
+#include "integrator/path_kinds.h"
+#include "sampling/color.h"
+
+#include <cmath>
+
+namespace lancer {
+
+// The record of a surface that kernels of many lanes shade; null for the others.
+template <uint32_t Shapes, bool Layers>
+const WideMaterial *PathIntegrator<Shapes, Layers>::for_lanes(uint32_t material, uint32_t instance) const {
+  if (!wide_ || material == kNone || scene_.wide[material].count == 0 || scene_.geometry.instances[instance].holdout)
+    return nullptr;
+  // Only the general code knows what stays in view behind glass.
+  if (settings_.transparent_glass && scene_.wide[material].transmits)
+    return nullptr;
+  return &scene_.wide[material];
+}
+
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t material, const WideMaterial &wide,
+                                                 std::span<SampleResult> results) {
+  const Path &path = paths_[number];
+  const bool ends = path.last || path.scatterings > settings_.max_bounces;
+  const Material &described = scene_.materials[material];
+  if (ends && !described.emits() && !described.transmits())
+    return;
+  const Hit &hit = hits_[number];
+  const Instance &instance = scene_.geometry.instances[hit.instance];
+  const uint32_t lane = waiting_count_++, bit = 1u << lane;
+  waiting_[lane] = {number, ends, 0, false, described.emission.value, glm::max(described.transmittance.value, 0.0f)};
+  block_.used |= bit;
+  if (ends)
+    block_.ends |= bit;
+  block_.placement[lane] = &instance.to_world.linear[0][0];
+  if (instance.kind == ShapeKind::Mesh) {
+    const Mesh &mesh = scene_.geometry.meshes[instance.mesh];
+    const glm::uvec3 &triangle = mesh.triangles[hit.primitive];
+    for (int corner = 0; corner < 3; ++corner)
+      put(mesh.positions[triangle[corner]], block_.corner[corner], lane);
+    glm::vec3 n[3];
+    if (corner_normals(mesh, instance.shading, hit.primitive, n)) {
+      for (int corner = 0; corner < 3; ++corner)
+        put(n[corner], block_.normal[corner], lane);
+      block_.smooth |= bit;
+    }
+    block_.on_mesh |= bit;
+    block_.bary[0][lane] = hit.u;
+    block_.bary[1][lane] = hit.v;
+  }
+  put(rays_[number].d, block_.d, lane);
+  put(path.beta, block_.beta, lane);
+  block_.terminator[lane] = instance.kind == ShapeKind::Mesh ? instance.terminator : 0.0f;
+  block_.material[lane] = &wide;
+  if (wide.transmits)
+    block_.transmits |= bit;
+  for (int i = 0; i < 3; ++i) {
+    block_.weight[i][lane] = wide.weight[i];
+    block_.base[i][lane] = wide.base[i];
+  }
+  block_.through[lane] = described.transmits() ? mean(waiting_[lane].transmittance) : 0.0f;
+  block_.pixel[lane] = path.sampler.pixel();
+  // Lanes of one sample and one bounce share the digits that their numbers are made of.
+  const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
+  if (lane == 0) {
+    block_.dimension = dimension;
+    first_sample_ = path.sampler.sample();
+    block_.numbers_given = 0;
+  } else if (dimension != block_.dimension || path.sampler.sample() != first_sample_) {
+    block_.numbers_given = 1;
+  }
+  if (waiting_count_ == kBlockLanes)
+    shade_lanes(results);
+}
+
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::draw_numbers() {
+  const Sampler &sampler = paths_[waiting_[0].number].sampler;
+  if (!block_.numbers_given) {
+    block_.reversed_sample = sampler.reversed_sample();
+    for (uint32_t i = 0; i < 8 && block_.dimension + i < kJointDimensions; ++i)
+      block_.reversed_point[i] = sobol::reversed_point(sampler.sample(), block_.dimension + i);
+    return;
+  }
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    const Path &path = paths_[waiting_[lane].number];
+    const VertexNumbers u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
+    for (uint32_t i = 0; i < 8; ++i)
+      block_.u[i][lane] = u[i];
+  }
+}
+
+template <uint32_t Shapes, bool Layers> Surface PathIntegrator<Shapes, Layers>::surface_of(uint32_t lane) const {
+  return surface_at(scene_.geometry, scene_.slots, rays_[waiting_[lane].number], hits_[waiting_[lane].number]);
+}
+
+// Where each lane's hit is, and what the surface is like there.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::find_surfaces() {
+  lanes_.surfaces(block_);
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+    if (!(block_.on_mesh >> lane & 1)) {
+      const Surface surface = surface_of(lane);
+      put(surface.p, block_.p, lane);
+      put(surface.ng, block_.ng, lane);
+      put(surface.ns, block_.ns, lane);
+      block_.offset[lane] = surface.offset;
+    }
+  // Glass looks different from inside.
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+    if (block_.material[lane]->inside && glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f)
+      block_.material[lane] += block_.material[lane]->inside;
+}
+
+// Colours that nodes say.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_nodes() {
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    if (!block_.material[lane]->nodes)
+      continue;
+    Waiting &waiting = waiting_[lane];
+    const Hit &hit = hits_[waiting.number];
+    Surface surface;
+    surface.p = get(block_.p, lane);
+    surface.offset = block_.offset[lane];
+    surface.ng = get(block_.ng, lane);
+    surface.ns = get(block_.ns, lane);
+    surface.bary = block_.on_mesh >> lane & 1 ? glm::dvec2(hit.u, hit.v) : glm::dvec2(0.0);
+    surface.instance = hit.instance;
+    surface.primitive = hit.primitive;
+    surface.material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+    const double way = paths_[waiting.number].length + hit.t * block_.length[lane];
+    const NodeColors colors =
+        shader_.colors(surface, {.wo = get(block_.wo, lane), .footprint = float(cone_.base + way * cone_.spread)});
+    put(colors.weight, block_.weight, lane);
+    put(colors.base, block_.base, lane);
+    block_.through[lane] = mean(colors.transmittance);
+    waiting.emission = colors.emission;
+    waiting.transmittance = colors.transmittance;
+  }
+}
+
+template <uint32_t Shapes, bool Layers> LightSet::Choice PathIntegrator<Shapes, Layers>::choose_light(uint32_t lane) const {
+  const LightChoice few{block_.chosen[lane], block_.chosen_probability[lane], block_.chosen_rest[lane]};
+  if (!(few.probability > 0.0) || scene_.lights.decided(few.number))
+    return {few.number, 0, few.probability};
+  // Seen from the viewer's side, as the light comes.
+  const glm::vec3 ns = get(block_.ns, lane);
+  const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
+  const LightQuery here(get(block_.p, lane), behind ? -ns : ns, block_.transmits >> lane & 1);
+  return scene_.lights.choose_within(scene_.geometry, here, few);
+}
+
+// Chooses a light for every lane; samples those that kernels do not know.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_lights() {
+  static const WideLamp nothing;
+  block_.asked = 0;
+  const FewLights &few = scene_.lights.few();
+  if (!few.empty()) {
+    block_.light_nodes = few.nodes().data();
+    block_.tree_lights = few.lights().data();
+    block_.light_root = few.root();
+    lanes_.choose(block_);
+  }
+  for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+    block_.lamp[lane] = &nothing;
+    block_.light_pdf[lane] = 0.0;
+    block_.light_delta[lane] = block_.light_hidden[lane] = 0;
+    if (lane >= waiting_count_ || waiting_[lane].ends || few.empty() || !block_.material[lane]->smooth)
+      continue;
+    const LightSet::Choice choice = choose_light(lane);
+    if (!(choice.probability > 0.0))
+      continue;
+    waiting_[lane].light = choice.light;
+    block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
+    if (const WideLamp *lamp = scene_.lights.wide_lamp(choice.light)) {
+      block_.lamp[lane] = lamp;
+      block_.light_pdf[lane] = choice.probability;
+      block_.asked |= 1u << lane;
+      continue;
+    }
+    const LightSample light = sample_scene_light(scene_, choice, get(block_.p, lane),
+                                                 {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]}, shader_);
+    if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
+      continue;
+    waiting_[lane].far = std::isinf(light.distance);
+    put(light.wi, block_.light_wi, lane);
+    put(light.target, block_.light_target, lane);
+    put(light.radiance, block_.light_radiance, lane);
+    block_.light_pdf[lane] = light.pdf * choice.probability;
+    block_.light_delta[lane] = light.delta;
+  }
+}
+
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::send_shadow_of(uint32_t lane) {
+  const Waiting &waiting = waiting_[lane];
+  const Path &path = paths_[waiting.number];
+  const WaitingLight light{.slot = path.slot, .indirect = path.scatterings > 0};
+  const glm::vec3 contribution = get(block_.contribution, lane);
+  if (scene_.lights.no_shadow(waiting.light))
+    return shadows_.push_lit(light, contribution);
+  const double infinity = std::numeric_limits<double>::infinity();
+  Ray ray;
+  if (block_.lifted >> lane & 1) {
+    LightSample sample;
+    sample.wi = get(block_.light_wi, lane);
+    sample.target = get(block_.light_target, lane);
+    sample.distance = waiting.far ? infinity : 1.0;
+    ray = shadow_ray(scene_.geometry, surface_of(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
+  } else {
+    ray.o = get(block_.shadow_origin, lane);
+    ray.d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - ray.o;
+    ray.tmax = waiting.far ? infinity : 1.0;
+    ray.skip_instance = hits_[waiting.number].instance;
+    ray.skip_primitive = hits_[waiting.number].primitive;
+    ray.kinds = LANCER_RAY_SHADOW;
+  }
+  shadows_.push(ray, light, contribution, path.passed_through);
+}
+
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::shade_lanes(std::span<SampleResult> results) {
+  if (waiting_count_ == 0)
+    return;
+  for (uint32_t lane = waiting_count_; lane < kBlockLanes; ++lane) {
+    block_.material[lane] = block_.material[0];
+    block_.placement[lane] = block_.placement[0];
+  }
+  draw_numbers();
+  find_surfaces();
+  ask_nodes();
+  ask_lights();
+  lanes_.shade(block_);
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    const size_t number = waiting_[lane].number;
+    if (block_.odd >> lane & 1)
+      shade_surface(paths_[number], rays_[number], hits_[number].t, surface_of(lane), results, nullptr);
+    else
+      leave_lane(lane, results[paths_[number].slot]);
+  }
+  waiting_count_ = 0;
+  block_.used = block_.on_mesh = block_.smooth = block_.ends = block_.transmits = 0;
+}
+
+// What follows from a shaded lane: its light, its shadow ray, its next ray.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::leave_lane(uint32_t lane, SampleResult &result) {
+  const Waiting &waiting = waiting_[lane];
+  Path &path = paths_[waiting.number];
+  const Hit &hit = hits_[waiting.number];
+  if (waiting.emission != glm::vec3(0.0f))
+    add_emission(path, surface_of(lane), waiting.emission, result);
+  if (path.last)
+    return;
+  if (!waiting.ends && (block_.lit >> lane & 1))
+    send_shadow_of(lane);
+  if constexpr (Layers) {
+    const float pass = block_.pass[lane];
+    const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
+    if (pass > 0.0f && (pass >= 1.0f || path.sampler.get1(dimension) < pass)) {
+      if (path.layers + 1 < kMaxLayers) {
+        next_rays_.push_back(
+            pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass));
+        next_paths_.push_back(path);
+      }
+      return;
+    }
+  }
+  if (waiting.ends || !(block_.sampled >> lane & 1))
+    return;
+  path.in_view = false;
+  path.length += hit.t * block_.length[lane];
+  path.beta = get(block_.beta, lane);
+  path.pdf = block_.pdf[lane];
+  path.from = get(block_.p, lane);
+  path.normal = get(block_.viewer_ns, lane);
+  path.transmits = block_.transmits >> lane & 1;
+  path.kinds = block_.transmitted >> lane & 1 ? LANCER_RAY_TRANSMISSION
+               : block_.glossy >> lane & 1    ? LANCER_RAY_GLOSSY
+                                              : LANCER_RAY_DIFFUSE;
+  path.layers = 0;
+  path.passed = 0.0;
+  ++path.scatterings;
+  if (!survives(path, block_.u[kVertexRoulette][lane]))
+    return;
+  Ray next;
+  next.o = get(block_.next_origin, lane);
+  next.d = glm::dvec3(get(block_.wi, lane));
+  next.skip_instance = hit.instance;
+  next.skip_primitive = hit.primitive;
+  next.kinds = path.kinds;
+  next_paths_.push_back(path);
+  next_rays_.push_back(next);
+}
+
+#define LANCER_PATH(shapes, layers)                                                                                            \
+  template const WideMaterial *PathIntegrator<shapes, layers>::for_lanes(uint32_t, uint32_t) const;                            \
+  template void PathIntegrator<shapes, layers>::put_in_lane(size_t, uint32_t, const WideMaterial &, std::span<SampleResult>);  \
+  template void PathIntegrator<shapes, layers>::shade_lanes(std::span<SampleResult>);
+LANCER_PATH_KINDS(LANCER_PATH)
+#undef LANCER_PATH
+
+} // namespace lancer
