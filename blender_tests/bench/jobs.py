@@ -66,7 +66,7 @@ def machine():
     facts = {
         "processor": platform.machine(),
         "processors": os.cpu_count(),
-        "system": f"{platform.system()} {platform.release()}",
+        "system": platform.system(),
     }
     for line in Path("/proc/cpuinfo").read_text().splitlines():
         if line.startswith("model name"):
