@@ -2,33 +2,27 @@
 
 #include "accel/bvh_kernel.h"
 #include "accel/huge_pages.h"
+#include "accel/instruction_set.h"
 #include "accel/mesh_bvh.h"
 #include "accel/parallel.h"
 #include "accel/placed_scene.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <string_view>
 
 namespace lancer {
 namespace {
 
-// The best kernel that this processor runs, or the lesser one that LANCER_ISA asks for.
 const BvhKernel &choose_kernel() {
 #if defined(__x86_64__)
-  const char *asked = std::getenv("LANCER_ISA");
-  const std::string_view limit = asked ? asked : "";
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-                    __builtin_cpu_supports("bmi2");
-  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                      __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-                      __builtin_cpu_supports("avx512vl");
-  if (avx512 && limit != "avx2" && limit != "sse4")
+  switch (instruction_set()) {
+  case InstructionSet::Avx512:
     return avx512::kernel;
-  if (avx2 && limit != "sse4")
+  case InstructionSet::Avx2:
     return avx2::kernel;
-  return sse4::kernel;
+  default:
+    return sse4::kernel;
+  }
 #else
   return generic::kernel;
 #endif

@@ -4,14 +4,9 @@
 // inlining, and no call of an inline function of another header out of line.
 #include "accel/bvh_kernel.h"
 
+#include "accel/kernel_name.h"
 #include "accel/kernel_packet.h"
 #include "accel/kernel_visit.h"
-
-#ifndef LANCER_ISA
-#define LANCER_ISA generic
-#endif
-#define LANCER_TEXT(x) #x
-#define LANCER_NAME(x) LANCER_TEXT(x)
 
 namespace lancer {
 
@@ -227,7 +222,7 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
 } // namespace
 
 namespace LANCER_ISA {
-const BvhKernel kernel = {LANCER_NAME(LANCER_ISA), closest, any_hit, count_work};
+const BvhKernel kernel = {LANCER_ISA_NAME, closest, any_hit, count_work};
 }
 
 } // namespace lancer

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "accel/bvh.h"
+#include "accel/kernel_edges.h"
 #include "accel/kernel_slot.h"
 #include "accel/simd.h"
 
@@ -25,21 +26,15 @@ LANCER_SIMD uint32_t intersect_block(const TriangleBlock &block, const MeshRay &
     x[corner] = (widen4(block.corner[corner][s.kx]) - ox) - sx * z[corner];
     y[corner] = (widen4(block.corner[corner][s.ky]) - oy) - sy * z[corner];
   }
-  const D4 wa = x[2] * y[1] - y[2] * x[1];
-  const D4 wb = x[0] * y[2] - y[0] * x[2];
-  const D4 wc = x[1] * y[0] - y[1] * x[0];
-  const D4 zero = splat4(0.0);
-  const uint32_t front = less_equal(zero, wa) & less_equal(zero, wb) & less_equal(zero, wc);
-  const uint32_t back = less_equal(wa, zero) & less_equal(wb, zero) & less_equal(wc, zero);
-  const D4 det = wa + wb + wc;
-  uint32_t met = (front | back) & not_equal(det, zero);
+  const Edges<D4> e = edges_of(x, y, splat4(0.0));
+  uint32_t met = e.met;
   if (met == 0)
     return 0;
-  const D4 depth = wa * (sz * z[0]) + wb * (sz * z[1]) + wc * (sz * z[2]);
-  store4(hits.t, splat4(s.t0) + (depth / det) * splat4(s.unit));
-  store4(hits.wb, wb);
-  store4(hits.wc, wc);
-  store4(hits.det, det);
+  const D4 depth = e.wa * (sz * z[0]) + e.wb * (sz * z[1]) + e.wc * (sz * z[2]);
+  store4(hits.t, splat4(s.t0) + (depth / e.det) * splat4(s.unit));
+  store4(hits.wb, e.wb);
+  store4(hits.wc, e.wc);
+  store4(hits.det, e.det);
   for (uint32_t rest = met; rest != 0; rest &= rest - 1) {
     const int i = __builtin_ctz(rest);
     const double t = hits.t[i];

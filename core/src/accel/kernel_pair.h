@@ -2,6 +2,7 @@
 // Part of bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 
+#include "accel/kernel_edges.h"
 #include "accel/kernel_enter_packet.h"
 #include "accel/simd16.h"
 
@@ -26,23 +27,17 @@ LANCER_SIMD uint32_t intersect_pair(const D8 corner[3][3], const PacketRays &r, 
     x[i] = (corner[i][0] - ox) - sx * z[i];
     y[i] = (corner[i][1] - oy) - sy * z[i];
   }
-  const D8 wa = x[2] * y[1] - y[2] * x[1];
-  const D8 wb = x[0] * y[2] - y[0] * x[2];
-  const D8 wc = x[1] * y[0] - y[1] * x[0];
-  const D8 zero = splat8(0.0);
-  const uint32_t front = less_equal(zero, wa) & less_equal(zero, wb) & less_equal(zero, wc);
-  const uint32_t back = less_equal(wa, zero) & less_equal(wb, zero) & less_equal(wc, zero);
-  const D8 det = wa + wb + wc;
-  const uint32_t met = (front | back) & not_equal(det, zero);
+  const Edges<D8> edge = edges_of(x, y, splat8(0.0));
+  const uint32_t met = edge.met;
   if (met == 0)
     return 0;
   const D8 sz = join(r.upright, lanes);
-  const D8 depth = wa * (sz * z[0]) + wb * (sz * z[1]) + wc * (sz * z[2]);
-  const D8 t = join(r.t0, lanes) + (depth / det) * join(r.unit, lanes);
+  const D8 depth = edge.wa * (sz * z[0]) + edge.wb * (sz * z[1]) + edge.wc * (sz * z[2]);
+  const D8 t = join(r.t0, lanes) + (depth / edge.det) * join(r.unit, lanes);
   store8(hits.t, t);
-  store8(hits.wb, wb);
-  store8(hits.wc, wc);
-  store8(hits.det, det);
+  store8(hits.wb, edge.wb);
+  store8(hits.wc, edge.wc);
+  store8(hits.det, edge.det);
   return met & less(join(e.tmin, lanes), t) & less(t, join(e.tmax, lanes)) & less_equal(t, join(limit, lanes));
 }
 

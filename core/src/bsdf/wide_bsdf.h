@@ -3,6 +3,7 @@
 // their bits. For kernels only, like sampling/lanes.h.
 #pragma once
 
+#include "bsdf/lobe.h"
 #include "bsdf/wide_facets.h"
 #include "bsdf/wide_lobe.h"
 
@@ -127,17 +128,19 @@ LANCER_LANE V3 below(const V3 &weight, const V3 &albedo) {
   return weight * select(left < zero, zero, select(F(1.0f) < left, F(1.0f), left));
 }
 
+template <class Enum> LANCER_LANE M is(U value, Enum which) { return equal(value, U(static_cast<uint32_t>(which))); }
+
 // The terms of one lobe number, and what is left for the next.
 LANCER_LANE void add_term(const Records &records, int k, const V3 &base_color, WideBsdf &bsdf, V3 &left) {
   WideTerm &term = bsdf.terms[k];
   const U shape = LANCER_WORD(shape), mode = LANCER_WORD(mode), fresnel = LANCER_WORD(fresnel);
-  term.lambert = equal(shape, U(1u));
-  term.facets = equal(shape, U(2u));
-  term.dielectric = term.facets & equal(fresnel, U(1u));
-  term.f82 = term.facets & equal(fresnel, U(3u));
-  term.schlick = term.facets & equal(fresnel, U(4u));
+  term.lambert = is(shape, WideShape::Lambert);
+  term.facets = is(shape, WideShape::Microfacet);
+  term.dielectric = term.facets & is(fresnel, FresnelKind::Dielectric);
+  term.f82 = term.facets & is(fresnel, FresnelKind::F82);
+  term.schlick = term.facets & is(fresnel, FresnelKind::Schlick);
   const F share = LANCER_FIELD(share);
-  const M shares = equal(mode, U(1u)), layers = equal(mode, U(2u)), base = equal(mode, U(3u));
+  const M shares = is(mode, WideMode::Share), layers = is(mode, WideMode::Layer), base = is(mode, WideMode::Base);
   term.color = select(shares | layers, share * left, select(base, base_color * left, base_color));
   term.color = select(term.lambert | term.facets, term.color, V3{F(0.0f), F(0.0f), F(0.0f)});
   if (any(term.facets)) {
@@ -239,7 +242,7 @@ LANCER_LANE WideValue sum_terms(const WideBsdf &bsdf, const V3 &wi, const V3 &h,
     const M there = term.probability != zero;
     const M lambert = term.lambert & there;
     if (any(lambert)) {
-      const F cosine = max(zero, wi.z) * F(kWideInvPi);
+      const F cosine = max(zero, wi.z) * F(kInvPi);
       value.diffuse = select(lambert, value.diffuse + term.color * cosine, value.diffuse);
       value.pdf = select(lambert, value.pdf + term.probability * cosine, value.pdf);
     }

@@ -34,7 +34,7 @@ LANCER_LANE F coating_value(const V3 &wo, F masked, const V3 &wi, F alpha, F ior
   if (!any(m))
     return zero;
   const F sec2 = F(1.0f) + tan2;
-  const F d = exp_of(-tan2 / alpha2, m) * sec2 * sec2 * F(kWideInvPi) / alpha2;
+  const F d = exp_of(-tan2 / alpha2, m) * sec2 * sec2 * F(kInvPi) / alpha2;
   const F f = F(0.25f) * d * fresnel_dielectric(cos_oh, ior).reflectance * masked * masked_over_cosine(wi, alpha);
   return select(m & (d != zero), f, zero);
 }

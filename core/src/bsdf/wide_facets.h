@@ -3,11 +3,10 @@
 #pragma once
 
 #include "sampling/lane_vectors.h"
+#include "sampling/warp.h"
 
 namespace lancer {
 namespace {
-
-constexpr float kWideInvPi = 0.318309886183790671537767526745028724f;
 
 LANCER_LANE F clamp01(F x) { return min(max(x, F(0.0f)), F(1.0f)); }
 LANCER_LANE V3 clamp01(const V3 &x) { return {clamp01(x.x), clamp01(x.y), clamp01(x.z)}; }
@@ -105,7 +104,7 @@ LANCER_LANE F reflected_share(const WideResponse &response) {
 
 LANCER_LANE F facet_d(const WideTerm &term, const V3 &h) {
   const F x = h.x / term.alpha_x, y = h.y / term.alpha_y, length2 = x * x + y * y + h.z * h.z;
-  return F(kWideInvPi) / (term.alpha_x * term.alpha_y * length2 * length2);
+  return F(kInvPi) / (term.alpha_x * term.alpha_y * length2 * length2);
 }
 
 // facet_g2() of microfacet_terms.h.

@@ -2,22 +2,17 @@
 #pragma once
 
 #include "bsdf/wide_bsdf.h"
-#include "sampling/octant.h"
+#include "sampling/wide_warp.h"
 
 namespace lancer {
 namespace {
 
-constexpr float kWideQuarterPi = 0.25f * 3.14159265358979323846f;
-
 LANCER_LANE V3 sample_cosine(F u, F v) {
-  // warp_disk() and the height above it.
-  const F a = F(2.0f) * u - F(1.0f), b = F(2.0f) * v - F(1.0f);
-  const M wide = abs(a) > abs(b), middle = (a == F(0.0f)) & (b == F(0.0f));
-  const F phi = F(kWideQuarterPi) * select(wide, b / a, a / b);
-  const F s = sin_octant(phi), c = cos_octant(phi);
-  const F zero(0.0f), x = select(wide, a * c, b * s), y = select(wide, a * s, b * c);
-  const F r = max(abs(a), abs(b));
-  return {select(middle, zero, x), select(middle, zero, y), sqrt((F(1.0f) - r) * (F(1.0f) + r))};
+  F x, y;
+  warp_disk(u, v, x, y);
+  // The disk's radius is known before it is rotated.
+  const F r = max(abs(F(2.0f) * u - F(1.0f)), abs(F(2.0f) * v - F(1.0f)));
+  return {x, y, sqrt((F(1.0f) - r) * (F(1.0f) + r))};
 }
 
 LANCER_LANE V3 sample_visible(const V3 &wo, F alpha_x, F alpha_y, F u, F v) {

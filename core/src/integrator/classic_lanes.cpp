@@ -2,6 +2,7 @@
 #include "integrator/classic.h"
 
 #include "integrator/first_surface.h"
+#include "integrator/lane_access.h"
 #include "sampling/color.h"
 
 #include <algorithm>
@@ -11,14 +12,6 @@ namespace lancer {
 
 namespace {
 
-template <class Vector, class Lanes> void put(const Vector &v, Lanes (&lanes)[3], uint32_t lane) {
-  for (int i = 0; i < 3; ++i)
-    lanes[i][lane] = v[i];
-}
-glm::vec3 get(const CourseBlock::Floats (&lanes)[3], uint32_t lane) { return {lanes[0][lane], lanes[1][lane], lanes[2][lane]}; }
-glm::dvec3 get(const CourseBlock::Doubles (&lanes)[3], uint32_t lane) {
-  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
-}
 void copy(const float (&from)[3], CourseBlock::Floats (&lanes)[3], uint32_t lane) {
   for (int i = 0; i < 3; ++i)
     lanes[i][lane] = from[i];

@@ -1,12 +1,9 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "integrator/course_kernel.h"
 
+#include "accel/kernel_name.h"
 #include "bsdf/wide_coating.h"
 #include "scene/wide_surface.h"
-
-#ifndef LANCER_ISA
-#define LANCER_ISA generic
-#endif
 
 namespace lancer {
 namespace {
@@ -114,7 +111,7 @@ LANCER_LANE V3 color(const float (&of)[3]) { return {F(of[0]), F(of[1]), F(of[2]
     const V3 wi = to_local(frame, wi_world);
     // course_illumination()
     const M above = some(lit.there, first) & (wi.z > zero);
-    const V3 kd = load3(block.kd, first) * (F(kWideInvPi) * wi.z);
+    const V3 kd = load3(block.kd, first) * (F(kInvPi) * wi.z);
     const V3 diffuse = select(above & some(block.matte, first), kd, dark);
     const F f = coating_value(wo, load(block.masked + first), wi, load(block.alpha + first), load(block.ior + first),
                               above & some(block.coated, first) & (wo.z > zero));

@@ -19,7 +19,7 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
-        lanes_(vertex_kernel()), wide_(settings.passes == 1u) {
+        lanes_(vertex_kernel()), wide_(settings.passes == 1u << LANCER_PASS_COMBINED) {
     point_.bsdf.shares = passes_.wanted();
   }
 
@@ -106,7 +106,7 @@ private:
   const char *kernel_;
   const VertexKernel &lanes_;
   bool wide_; // vertices may be shaded in lanes
-  VertexBlock block_;
+  VertexBlock block_{};
   WayBlock ways_{};
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane

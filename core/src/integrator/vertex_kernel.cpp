@@ -1,26 +1,21 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "integrator/vertex_kernel.h"
 
+#include "accel/kernel_name.h"
 #include "bsdf/wide_sample.h"
 #include "lancer.h"
 #include "lights/wide_choice.h"
 #include "lights/wide_lamps.h"
 #include "lights/wide_meets.h"
+#include "sampling/sobol_table.h"
 #include "sampling/wide_numbers.h"
+#include "sampling/wide_warp.h"
 #include "scene/wide_surface.h"
-
-#ifndef LANCER_ISA
-#define LANCER_ISA generic
-#endif
-#define LANCER_TEXT(x) #x
-#define LANCER_NAME(x) LANCER_TEXT(x)
 
 namespace lancer {
 namespace {
 
-constexpr uint32_t kWideJointDimensions = 16;
-constexpr uint32_t kPointLamp = 0, kSpotLamp = 1, kAreaLamp = 3;
-
+template <class Enum> LANCER_LANE U number_of(Enum value) { return U(static_cast<uint32_t>(value)); }
 LANCER_LANE M some(uint32_t lanes, int first) { return mask_of(lanes >> first & ((1u << kLanes) - 1u)); }
 LANCER_LANE uint32_t placed_bits(M m, int first) { return bits(m) << first; }
 
@@ -37,7 +32,7 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
   for (uint32_t i = 0; i < 8; i += 2) {
     const uint32_t dimension = block.dimension + i;
     F a, b;
-    if (dimension < kWideJointDimensions) {
+    if (dimension < kJointDimensions) {
       a = joint_number(pixel, dimension, block.reversed_point[i]);
       b = joint_number(pixel, dimension + 1, block.reversed_point[i + 1]);
     } else {
@@ -112,8 +107,8 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
     ellipses[i] = lamps[i]->ellipse;
   }
   const U kind = load(kinds);
-  const M area = asked & equal(kind, U(kAreaLamp)), spot = asked & equal(kind, U(kSpotLamp));
-  const M round = spot | (asked & equal(kind, U(kPointLamp)));
+  const M area = asked & equal(kind, number_of(LightKind::Area)), spot = asked & equal(kind, number_of(LightKind::Spot));
+  const M round = spot | (asked & equal(kind, number_of(LightKind::Point)));
   const F u = load(block.u[2] + first), v = load(block.u[3] + first);
   F disk_x, disk_y;
   warp_disk(u, v, disk_x, disk_y);
@@ -258,7 +253,7 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
 } // namespace
 
 namespace LANCER_ISA {
-const VertexKernel vertex_kernel = {LANCER_NAME(LANCER_ISA), surfaces, choose, shade, meets};
+const VertexKernel vertex_kernel = {LANCER_ISA_NAME, surfaces, choose, shade, meets};
 }
 
 } // namespace lancer

@@ -25,8 +25,6 @@ struct Sums {
   }
 };
 
-constexpr double kBelowOne = 1.0 - 0x1p-53;
-
 } // namespace
 
 Importance FewLights::weigh(const LightQuery &query, uint32_t number) const {

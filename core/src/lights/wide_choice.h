@@ -205,9 +205,6 @@ struct WideSums {
   }
 };
 
-constexpr double kWideBelowOne = 1.0 - 0x1p-53;
-constexpr uint32_t kWideLeafLights = 8;
-
 // choose_of_leaf(), of the lanes that have come to it.
 LANCER_LANE void choose_of_leaf(const WideQuery &query, const WideTree &tree, const LightNode &node, M here,
                                 WideChoice &choice) {
@@ -216,7 +213,7 @@ LANCER_LANE void choose_of_leaf(const WideQuery &query, const WideTree &tree, co
     choice.number = select(here, U(tree.lights[node.first].number), choice.number);
     return;
   }
-  WideImportance parts[kWideLeafLights];
+  WideImportance parts[kLeafLights];
   WideSums sums;
   for (uint32_t i = 0; i < node.count; ++i)
     sums.add(parts[i] = light_importance(query, tree.lights[node.first + i]));
@@ -228,7 +225,7 @@ LANCER_LANE void choose_of_leaf(const WideQuery &query, const WideTree &tree, co
     const M there = open & (share > zero);
     choice.number = select(there, U(tree.lights[node.first + i].number), choice.number);
     probability = select(there, share, probability);
-    rest = select(there, min(left / share, D(kWideBelowOne)), rest);
+    rest = select(there, min(left / share, D(kBelowOne)), rest);
     const M last = there & (left < share);
     left = select(there & !last, left - share, left);
     open = open & !last;
@@ -272,7 +269,7 @@ LANCER_LANE WideChoice choose_light(const WideQuery &query, const WideTree &tree
     }
     const M right = (y > zero) & !(choice.u < x), none = !((x > zero) | right);
     const D share = select(right, y, x);
-    const D rest = min(select(right, choice.u - x, choice.u) / share, D(kWideBelowOne));
+    const D rest = min(select(right, choice.u - x, choice.u) / share, D(kBelowOne));
     choice.u = select(at.lanes & !none, rest, choice.u);
     choice.probability = select(at.lanes, select(none, zero, choice.probability * share), choice.probability);
     const M lanes = at.lanes & !none;

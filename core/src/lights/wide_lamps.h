@@ -4,12 +4,11 @@
 
 #include "lights/wide_lamp.h"
 #include "sampling/lane_vectors.h"
-#include "sampling/octant.h"
+
+#include <numbers>
 
 namespace lancer {
 namespace {
-
-constexpr double kWidePi = 3.14159265358979323846264338327950288;
 
 #define LANCER_LAMP(name)                                                                                                      \
   lamp_number(                                                                                                                 \
@@ -29,17 +28,6 @@ struct WideLight {
   D pdf;
   M delta;
 };
-
-LANCER_LANE void warp_disk(F u, F v, F &x, F &y) {
-  const F a = F(2.0f) * u - F(1.0f), b = F(2.0f) * v - F(1.0f);
-  const M wide = abs(a) > abs(b), middle = (a == F(0.0f)) & (b == F(0.0f));
-  const F phi = F(0.25f * 3.14159265358979323846f) * select(wide, b / a, a / b);
-  const F s = sin_octant(phi), c = cos_octant(phi);
-  x = select(middle, F(0.0f), select(wide, a * c, b * s));
-  y = select(middle, F(0.0f), select(wide, a * s, b * c));
-}
-
-LANCER_LANE D clamp(D x, D low, D high) { return min(max(x, low), high); }
 
 // sample_area().
 LANCER_LANE void sample_area(const WideLamp *const *lamps, const D3 &p, F u, F v, F disk_x, F disk_y, M which, M ellipse,
@@ -144,7 +132,7 @@ LANCER_LANE void sample_round(const WideLamp *const *lamps, const D3 &p, F disk_
     const D cosine = dot(w, axis);
     target = select(disk, at, target);
     wi = select(disk, w, wi);
-    pdf = select(disk, far * far / (cosine * D(kWidePi) * radius * radius), pdf);
+    pdf = select(disk, far * far / (cosine * D(std::numbers::pi) * radius * radius), pdf);
   }
   if (any(ball)) {
     const D ratio = radius / distance, sin2 = ratio * ratio;
@@ -162,10 +150,10 @@ LANCER_LANE void sample_round(const WideLamp *const *lamps, const D3 &p, F disk_
     const D reach = max(along - half, D(0.5) * along);
     target = select(ball, p + reach * w, target);
     wi = select(ball, w, wi);
-    pdf = select(ball, one / (D(2.0 * kWidePi) * cone), pdf);
+    pdf = select(ball, one / (D(2.0 * std::numbers::pi) * cone), pdf);
   }
   const D attenuation = spot_attenuation(lamps, wi, spot & which);
-  const D scale = select(point, attenuation / (distance * distance), attenuation / (D(kWidePi) * radius * radius));
+  const D scale = select(point, attenuation / (distance * distance), attenuation / (D(std::numbers::pi) * radius * radius));
   light.target = select(which, target, light.target);
   light.wi = select(which, wi, light.wi);
   light.radiance = select(which, narrow(emission * scale), light.radiance);

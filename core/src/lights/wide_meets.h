@@ -3,6 +3,7 @@
 
 #include "lights/wide_lamp.h"
 #include "sampling/lane_vectors.h"
+#include "scene/light.h"
 
 namespace lancer {
 namespace {
@@ -12,12 +13,12 @@ LANCER_LANE D3 splat3(const double (&v)[3]) { return {D(v[0]), D(v[1]), D(v[2])}
 // Lanes whose way from o along unit wi meets the lamp before end; suns have no distance.
 LANCER_LANE M may_meet(const WideLamp &lamp, const D3 &o, const D3 &wi, D end) {
   const D zero(0.0), one(1.0);
-  if (lamp.kind == 2) {
+  if (lamp.kind == static_cast<uint32_t>(LightKind::Sun)) {
     const D3 apart = wi - splat3(lamp.z);
     return D(0.5) * dot(apart, apart) <= D(lamp.one_minus_cos_sun);
   }
   const D3 to = splat3(lamp.position) - o;
-  if (lamp.kind == 3) {
+  if (lamp.kind == static_cast<uint32_t>(LightKind::Area)) {
     // The plane of the area, then its sides.
     const D3 z = splat3(lamp.z);
     const D cosine = dot(wi, z), t = dot(to, z) / cosine;
