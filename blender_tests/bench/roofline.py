@@ -13,6 +13,7 @@ def measure(threads):
     """Clock, latencies and bandwidths of this machine."""
     program = jobs.OUTPUT / "machine_limits"
     source = jobs.HERE / "rays" / "machine.cpp"
+    # It runs here and now, and is to show what this very processor can do.
     jobs.build("c++", "-O3", "-std=c++20", "-march=native", "-pthread", source, "-o", program)
     return jobs.run([str(program), str(threads)])
 

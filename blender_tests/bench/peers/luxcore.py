@@ -94,6 +94,7 @@ class Renderer:
         session = self.lux.RenderSession(self.lux.RenderConfig(properties, self.scene))
         session.Start()
         started = time.perf_counter()
+        # It offers no call that waits.
         while not session.HasDone():
             time.sleep(_POLL)
             session.UpdateStats()
