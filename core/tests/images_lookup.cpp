@@ -240,4 +240,30 @@ TEST(ImagesLookup, TexelsThatAreNoNumberAreCleared) {
   EXPECT_EQ(description.messages.text(), "image 'holes': 1 texels that are not finite were set to 0\n");
 }
 
+TEST(ImagesLookup, TheAlphaAloneIsThatOfTheWhole) {
+  std::vector<float> texels;
+  for (uint32_t i = 0; i < 5 * 3 * 4; ++i)
+    texels.push_back(float(i * 37 % 61) / 60.0f);
+  std::vector<uint8_t> bytes;
+  for (const float texel : texels)
+    bytes.push_back(uint8_t(texel * 255.0f));
+  bool varied = false;
+  for (const uint32_t channels : {1u, 3u, 4u})
+    for (const uint32_t alpha :
+         {LANCER_ALPHA_ASSOCIATED, LANCER_ALPHA_STRAIGHT, LANCER_ALPHA_CHANNEL_PACKED, LANCER_ALPHA_NONE})
+      for (const bool small : {false, true}) {
+        const Image image = small ? picture<uint8_t>(5, 3, channels, bytes, LANCER_TRANSFER_SRGB, alpha)
+                                  : picture<float>(5, 3, channels, texels, LANCER_TRANSFER_LINEAR, alpha);
+        for (const Extension extension : {Extension::Repeat, Extension::Extend, Extension::Clip, Extension::Mirror})
+          for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Closest, Interpolation::Cubic})
+            for (const glm::vec2 uv :
+                 {glm::vec2(0.3f, 0.7f), {0.01f, 0.99f}, {1.3f, -0.4f}, {9e9f, 0.5f}, {NAN, 0.5f}, {0.5f, INFINITY}}) {
+              const float a = lookup_alpha(image, uv, extension, interpolation);
+              EXPECT_EQ(a, lookup(image, uv, extension, interpolation, true).w);
+              varied |= a > 0.0f && a < 1.0f;
+            }
+      }
+  EXPECT_TRUE(varied);
+}
+
 } // namespace

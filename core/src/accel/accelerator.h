@@ -21,6 +21,9 @@ public:
   virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
   // occluded[i]: 1 where rays[i] meets anything at all.
   virtual void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const = 0;
+  // The same of the hits that count.
+  virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const = 0;
+  virtual void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const = 0;
   // The work of closest_hit() or any_hit() on these rays, counted by the wide BVH; zeros from the others.
   virtual TraversalCounts count(std::span<const Ray>, [[maybe_unused]] bool any) const { return {}; }
   virtual size_t bytes() const = 0;

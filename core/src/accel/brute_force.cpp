@@ -10,21 +10,29 @@ class BruteForce final : public Accelerator {
 public:
   explicit BruteForce(const Geometry &g) : geometry(g), scene(place_scene(g)) {}
 
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override {
-    for (size_t i = 0; i < rays.size(); ++i)
-      hits[i] = closest(rays[i]);
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override { find(rays, hits, nullptr); }
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override { find(rays, occluded, nullptr); }
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const override {
+    find(rays, hits, &filter);
   }
-
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override {
-    for (size_t i = 0; i < rays.size(); ++i)
-      occluded[i] = closest(rays[i]).valid();
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const override {
+    find(rays, occluded, &filter);
   }
 
   size_t bytes() const override { return scene.bytes(); }
   const char *instruction_set() const override { return "baseline"; }
 
 private:
-  Hit closest(const Ray &ray) const {
+  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const {
+    for (size_t i = 0; i < rays.size(); ++i)
+      hits[i] = closest(rays[i], {filter, i});
+  }
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const {
+    for (size_t i = 0; i < rays.size(); ++i)
+      occluded[i] = closest(rays[i], {filter, i}).valid();
+  }
+
+  Hit closest(const Ray &ray, const Counting &counting) const {
     Hit best;
     ObjectRay world_ray;
     if (!enter_world(scene.world, ray, world_ray))
@@ -34,7 +42,7 @@ private:
       if (!visible(shape, ray))
         continue;
       if (shape.mesh == kNone) {
-        try_quadric(ray, shape, instance, best);
+        try_quadric(ray, shape, instance, counting, best);
         continue;
       }
       ObjectRay object_ray;
@@ -43,7 +51,7 @@ private:
       const Shear shear = make_shear(object_ray);
       const Mesh &mesh = geometry.meshes[shape.mesh];
       for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
-        try_triangle(ray, object_ray, shear, mesh, instance, triangle, best);
+        try_triangle(ray, object_ray, shear, mesh, instance, triangle, counting, best);
     }
     return best;
   }

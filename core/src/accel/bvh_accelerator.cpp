@@ -58,6 +58,12 @@ public:
   void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override {
     kernel.any(scene, rays.data(), occluded.data(), rays.size());
   }
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const override {
+    kernel.closest_filtered(scene, rays.data(), hits.data(), rays.size(), filter);
+  }
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const override {
+    kernel.any_filtered(scene, rays.data(), occluded.data(), rays.size(), filter);
+  }
   TraversalCounts count(std::span<const Ray> rays, bool any) const override {
     TraversalCounts counts;
     kernel.count(scene, rays.data(), rays.size(), any, counts);

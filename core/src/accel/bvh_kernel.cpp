@@ -43,10 +43,10 @@ LANCER_SIMD bool start(const BvhScene &scene, const Ray &ray, const Entering &e,
 }
 
 // Nobody wants the answers of rays whose work is counted.
-template <bool any, bool counted> LANCER_SIMD void store_answer(const Hit &best, size_t number, Hit *hits, uint8_t *occluded) {
-  if constexpr (counted)
+template <Question q> LANCER_SIMD void store_answer(const Hit &best, size_t number, Hit *hits, uint8_t *occluded) {
+  if constexpr (q.counted)
     return;
-  else if constexpr (any)
+  else if constexpr (q.any)
     occluded[number] = best.instance != kNone;
   else
     hits[number] = best;
@@ -58,14 +58,14 @@ struct Queue {
   Slot *slots[kSlots];
 };
 
-template <bool any, bool counted>
+template <Question q>
 LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count,
-                       TraversalCounts *counts) {
+                       const HitFilter *filter, TraversalCounts *counts) {
   Slot slots[kSlots];
   Queue queues[kBvhKinds];
   Slot *others[kSlots];
   uint32_t other_count = 0;
-  size_t next = 0, row = any || counted ? 4 : find_row(rays, count);
+  size_t next = 0, row = q.any || q.counted ? 4 : find_row(rays, count);
   Entering entering;
   Leftovers leftovers;
   uint32_t waiting = 0; // the lanes of what is entering that no slot has taken up yet
@@ -85,7 +85,7 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
           others[other_count++] = &s;
           return;
         }
-        store_answer<any, counted>(s.best, s.number, hits, occluded);
+        store_answer<q>(s.best, s.number, hits, occluded);
       }
       if (next == count)
         return;
@@ -101,12 +101,12 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       next += taken;
       waiting = (1u << taken) - 1;
       enter_world_packet(scene.world, entering);
-      together =
-          !any && !counted && taken == kPacket && scene.unbounded_count < kLeftovers && stay_together(scene.world, entering);
+      together = !q.any && !q.counted && taken == kPacket && scene.unbounded_count < kLeftovers &&
+                 stay_together(scene.world, entering);
       if (together) {
-        waiting = trace_packet(scene, entering, leftovers);
+        waiting = trace_packet<q>(scene, entering, filter, leftovers);
         for (uint32_t i = 0; i < kPacket; ++i)
-          store_answer<any, counted>(leftovers.best[i], entering.number[i], hits, occluded);
+          store_answer<q>(leftovers.best[i], entering.number[i], hits, occluded);
       }
     }
   };
@@ -115,7 +115,7 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
     Queue &queue = queues[kind];
     other_count = queue.count;
     queue.count = 0;
-    if (counted) {
+    if (q.counted) {
       counts->triangle_blocks += kind == kBvhTriangles || kind == kBvhPlaced ? other_count : 0;
       counts->sphere_blocks += kind == kBvhSpheres ? other_count : 0;
       counts->instances += kind == kBvhInstance ? other_count : 0;
@@ -149,7 +149,7 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       const uint32_t present = queue.count;
       if (present == 0)
         return;
-      if (counted)
+      if (q.counted)
         counts->nodes += present;
       for (uint32_t i = 0; i < present; ++i)
         visit_node(*queue.slots[i]);
@@ -168,23 +168,24 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
     }
     case kBvhTriangles:
       each(
-          kBvhTriangles, [&](Slot & s) __attribute__((always_inline)) { visit_triangles<any>(s); });
+          kBvhTriangles, [&](Slot & s) __attribute__((always_inline)) { visit_triangles<q>(filter, s); });
       break;
     case kBvhPlaced:
       each(
-          kBvhPlaced, [&](Slot & s) __attribute__((always_inline)) { visit_placed<any>(scene, rays[s.number], s); });
+          kBvhPlaced, [&](Slot & s) __attribute__((always_inline)) { visit_placed<q>(scene, rays[s.number], filter, s); });
       break;
     case kBvhSpheres:
       each(
-          kBvhSpheres, [&](Slot & s) __attribute__((always_inline)) { visit_spheres<any>(scene, rays[s.number], s); });
+          kBvhSpheres, [&](Slot & s) __attribute__((always_inline)) { visit_spheres<q>(scene, rays[s.number], filter, s); });
       break;
     case kBvhInstance:
       each(
-          kBvhInstance, [&](Slot & s) __attribute__((always_inline)) { enter_instance<any>(scene, rays[s.number], s); });
+          kBvhInstance, [&](Slot & s) __attribute__((always_inline)) { enter_instance<q>(scene, rays[s.number], filter, s); });
       break;
     case kBvhUnbounded:
       each(
-          kBvhUnbounded, [&](Slot & s) __attribute__((always_inline)) { visit_unbounded<any>(scene, rays[s.number], s); });
+          kBvhUnbounded, [&](Slot & s)
+                             __attribute__((always_inline)) { visit_unbounded<q>(scene, rays[s.number], filter, s); });
       break;
     case kBvhLeave:
       each(
@@ -195,7 +196,7 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       const uint32_t present = queue.count;
       queue.count = 0;
       for (uint32_t i = 0; i < present; ++i) {
-        store_answer<any, counted>(queue.slots[i]->best, queue.slots[i]->number, hits, occluded);
+        store_answer<q>(queue.slots[i]->best, queue.slots[i]->number, hits, occluded);
         refill(*queue.slots[i]);
       }
       break;
@@ -205,24 +206,34 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
 }
 
 [[gnu::flatten]] void closest(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count) {
-  trace<false, false>(scene, rays, hits, nullptr, count, nullptr);
+  trace<Question{}>(scene, rays, hits, nullptr, count, nullptr, nullptr);
 }
 
 [[gnu::flatten]] void any_hit(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count) {
-  trace<true, false>(scene, rays, nullptr, occluded, count, nullptr);
+  trace<Question{.any = true}>(scene, rays, nullptr, occluded, count, nullptr, nullptr);
+}
+
+[[gnu::flatten]] void closest_filtered(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count,
+                                       const HitFilter &filter) {
+  trace<Question{.filtered = true}>(scene, rays, hits, nullptr, count, &filter, nullptr);
+}
+
+[[gnu::flatten]] void any_filtered(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count,
+                                   const HitFilter &filter) {
+  trace<Question{.any = true, .filtered = true}>(scene, rays, nullptr, occluded, count, &filter, nullptr);
 }
 
 [[gnu::flatten]] void count_work(const BvhScene &scene, const Ray *rays, size_t count, bool any, TraversalCounts &counts) {
   if (any)
-    trace<true, true>(scene, rays, nullptr, nullptr, count, &counts);
+    trace<Question{.any = true, .counted = true}>(scene, rays, nullptr, nullptr, count, nullptr, &counts);
   else
-    trace<false, true>(scene, rays, nullptr, nullptr, count, &counts);
+    trace<Question{.counted = true}>(scene, rays, nullptr, nullptr, count, nullptr, &counts);
 }
 
 } // namespace
 
 namespace LANCER_ISA {
-const BvhKernel kernel = {LANCER_ISA_NAME, closest, any_hit, count_work};
+const BvhKernel kernel = {LANCER_ISA_NAME, closest, any_hit, closest_filtered, any_filtered, count_work};
 }
 
 } // namespace lancer

@@ -28,14 +28,13 @@ public:
     top = build_kdtree(placed.boxes, kInstanceCost, context);
   }
 
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override {
-    for (size_t i = 0; i < rays.size(); ++i)
-      hits[i] = intersect<false>(rays[i]);
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override { find(rays, hits, nullptr); }
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override { find(rays, occluded, nullptr); }
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const override {
+    find(rays, hits, &filter);
   }
-
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override {
-    for (size_t i = 0; i < rays.size(); ++i)
-      occluded[i] = intersect<true>(rays[i]).valid();
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const override {
+    find(rays, occluded, &filter);
   }
 
   size_t bytes() const override {
@@ -47,7 +46,16 @@ public:
   const char *instruction_set() const override { return "baseline"; }
 
 private:
-  template <bool any> Hit intersect(const Ray &ray) const {
+  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const {
+    for (size_t i = 0; i < rays.size(); ++i)
+      hits[i] = intersect<false>(rays[i], {filter, i});
+  }
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const {
+    for (size_t i = 0; i < rays.size(); ++i)
+      occluded[i] = intersect<true>(rays[i], {filter, i}).valid();
+  }
+
+  template <bool any> Hit intersect(const Ray &ray, const Counting &counting) const {
     Hit best;
     ObjectRay world_ray;
     if (!enter_world(placed.world, ray, world_ray))
@@ -55,21 +63,21 @@ private:
 
     // Try what has no box, then the instances on the way.
     for (const uint32_t instance : placed.unbounded)
-      if (intersect_instance<any>(ray, instance, best))
+      if (intersect_instance<any>(ray, instance, counting, best))
         return best;
     const auto limit = [&] { return box_tau_above(world_ray, placed.world, std::min(ray.tmax, best.t)); };
     top.traverse(world_ray, placed.world, box_tau_below(world_ray, placed.world, ray.tmin), limit,
-                 [&](uint32_t item) { return intersect_instance<any>(ray, placed.bounded[item], best); });
+                 [&](uint32_t item) { return intersect_instance<any>(ray, placed.bounded[item], counting, best); });
     return best;
   }
 
   // True where the search may end.
-  template <bool any> bool intersect_instance(const Ray &ray, uint32_t instance, Hit &best) const {
+  template <bool any> bool intersect_instance(const Ray &ray, uint32_t instance, const Counting &counting, Hit &best) const {
     const PlacedShape &shape = placed.shapes[instance];
     if (!visible(shape, ray))
       return false;
     if (shape.mesh == kNone) {
-      try_quadric(ray, shape, instance, best);
+      try_quadric(ray, shape, instance, counting, best);
       return any && best.valid();
     }
     ObjectRay object_ray;
@@ -80,7 +88,7 @@ private:
     const auto limit = [&] { return box_tau_above(object_ray, shape.frame, std::min(ray.tmax, best.t)); };
     meshes[shape.mesh].traverse(object_ray, shape.frame, box_tau_below(object_ray, shape.frame, ray.tmin), limit,
                                 [&](uint32_t triangle) {
-                                  try_triangle(ray, object_ray, shear, mesh, instance, triangle, best);
+                                  try_triangle(ray, object_ray, shear, mesh, instance, triangle, counting, best);
                                   return any && best.valid();
                                 });
     return any && best.valid();

@@ -31,31 +31,46 @@ LANCER_SIMD uint32_t lanes_down(const float *inverse) {
   return down;
 }
 
-LANCER_SIMD void keep_hit(Leftovers &l, PacketSlabs &slabs, uint32_t lane, double t, double u, double v, uint32_t instance,
-                          uint32_t primitive) {
-  l.best[lane] = {t, u, v, instance, primitive};
-  l.best_t[lane] = t;
-  slabs.tau_max[lane] = slab_end(slabs, lane, t);
+// Which ray each lane carries, and what is asked of it.
+struct PacketAsks {
+  const Ray *const *rays;
+  const uint32_t *number; // in the batch
+  const HitFilter *filter;
+};
+
+// Keeps a hit that is closer, if it counts.
+template <Question q>
+LANCER_SIMD bool keep_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &slabs, uint32_t lane, const Hit &hit) {
+  if (left_out<q>(asks.filter, asks.number[lane], hit))
+    return false;
+  l.best[lane] = hit;
+  l.best_t[lane] = hit.t;
+  slabs.tau_max[lane] = slab_end(slabs, lane, hit.t);
+  return true;
 }
 
-LANCER_SIMD void try_quadric(const BvhScene &scene, uint32_t instance, const Ray *const *rays, uint32_t active,
+template <Question q>
+LANCER_SIMD void try_quadric(const BvhScene &scene, uint32_t instance, const PacketAsks &asks, uint32_t active,
                              PacketSlabs &slabs, Leftovers &l) {
   const PlacedShape &shape = scene.shapes[instance];
   for (; active != 0; active &= active - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(active));
-    const Ray &ray = *rays[lane];
-    double t;
-    if (visible(shape, ray) && intersect_quadric(shape, ray, ray.skip_instance == instance, t) &&
-        closer(t, instance, 0, l.best[lane]))
-      keep_hit(l, slabs, lane, t, 0.0, 0.0, instance, 0);
+    const Ray &ray = *asks.rays[lane];
+    if (!visible(shape, ray))
+      continue;
+    double t = ray.tmin;
+    while (next_place(shape, instance, ray, t) && closer(t, instance, 0, l.best[lane]) &&
+           !keep_hit<q>(asks, l, slabs, lane, {t, 0.0, 0.0, instance, 0})) {
+    }
   }
 }
 
-LANCER_SIMD void visit_spheres(const BvhScene &scene, const SphereBlock &block, const Ray *const *rays, uint32_t active,
+template <Question q>
+LANCER_SIMD void visit_spheres(const BvhScene &scene, const SphereBlock &block, const PacketAsks &asks, uint32_t active,
                                const Entering &e, PacketSlabs &slabs, Leftovers &l) {
   for (; active != 0; active &= active - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(active));
-    const Ray &ray = *rays[lane];
+    const Ray &ray = *asks.rays[lane];
     SphereTerms terms;
     for (uint32_t met = intersect_spheres(block, ray, terms); met != 0; met &= met - 1) {
       const int i = __builtin_ctz(met);
@@ -63,16 +78,18 @@ LANCER_SIMD void visit_spheres(const BvhScene &scene, const SphereBlock &block, 
       if (instance == kNone)
         break;
       const PlacedShape &shape = scene.shapes[instance];
-      double t;
-      if (visible(shape, ray) &&
-          choose_root(terms, i, shape.slack, ray.skip_instance == instance, e.tmin[lane], e.tmax[lane], t) &&
-          closer(t, instance, 0, l.best[lane]))
-        keep_hit(l, slabs, lane, t, 0.0, 0.0, instance, 0);
+      if (!visible(shape, ray))
+        continue;
+      double t = e.tmin[lane];
+      while (choose_root(terms, i, shape.slack, ray.skip_instance == instance, t, e.tmax[lane], t) &&
+             closer(t, instance, 0, l.best[lane]) && !keep_hit<q>(asks, l, slabs, lane, {t, 0.0, 0.0, instance, 0})) {
+      }
     }
   }
 }
 
-LANCER_SIMD void visit_triangles(const TriangleBlock &block, const Ray *const *rays, uint32_t active, const Entering &e,
+template <Question q>
+LANCER_SIMD void visit_triangles(const TriangleBlock &block, const PacketAsks &asks, uint32_t active, const Entering &e,
                                  Packet &p, PacketSlabs &slabs, Leftovers &l) {
   for (uint32_t longest = 0; longest < 3; ++longest) {
     uint32_t rest = active & p.longest[longest];
@@ -93,9 +110,10 @@ LANCER_SIMD void visit_triangles(const TriangleBlock &block, const Ray *const *r
       for (uint32_t met = intersect_pair(corner, p.rays, longest, lanes, e, l.best_t, hits); met != 0; met &= met - 1) {
         const uint32_t i = static_cast<uint32_t>(__builtin_ctz(met)), lane = lanes[i >> 2];
         const uint32_t primitive = block.primitive[i & 3];
-        const bool skipped = rays[lane]->skip_instance == p.instance && rays[lane]->skip_primitive == primitive;
+        const bool skipped = asks.rays[lane]->skip_instance == p.instance && asks.rays[lane]->skip_primitive == primitive;
         if (!skipped && closer(hits.t[i], p.instance, primitive, l.best[lane]))
-          keep_hit(l, slabs, lane, hits.t[i], hits.wb[i] / hits.det[i], hits.wc[i] / hits.det[i], p.instance, primitive);
+          keep_hit<q>(asks, l, slabs, lane,
+                      {hits.t[i], hits.wb[i] / hits.det[i], hits.wc[i] / hits.det[i], p.instance, primitive});
       }
     }
   }
@@ -163,7 +181,8 @@ LANCER_SIMD void walk(const BvhNode *nodes, uint32_t octant, const F16 &entry, c
   }
 }
 
-LANCER_SIMD void walk_mesh(const BvhView &bvh, const Ray *const *rays, uint32_t active, const Entering &e, Packet &p,
+template <Question q>
+LANCER_SIMD void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t active, const Entering &e, Packet &p,
                            Leftovers &l) {
   const uint32_t x = lanes_down(p.inner.inverse[0]), y = lanes_down(p.inner.inverse[1]), z = lanes_down(p.inner.inverse[2]);
   const char *const arrays[kBvhKinds] = {reinterpret_cast<const char *>(bvh.nodes), reinterpret_cast<const char *>(bvh.blocks)};
@@ -182,16 +201,18 @@ LANCER_SIMD void walk_mesh(const BvhView &bvh, const Ray *const *rays, uint32_t 
           if (child >> kBvhKindShift == kBvhInner)
             return false;
           const char *at = reinterpret_cast<const char *>(bvh.blocks) + size_t{child & kBvhPlace} * kBvhStep;
-          visit_triangles(*reinterpret_cast<const TriangleBlock *>(at), rays, lanes, e, p, p.inner, l);
+          visit_triangles<q>(*reinterpret_cast<const TriangleBlock *>(at), asks, lanes, e, p, p.inner, l);
           return true;
         });
   }
 }
 
 // Traces rays that stay together, all but what is left over. Returns the lanes that have something left.
-[[gnu::noinline, gnu::flatten]] uint32_t trace_packet(const BvhScene &scene, Entering &e, Leftovers &l) {
+template <Question q>
+[[gnu::noinline, gnu::flatten]] uint32_t trace_packet(const BvhScene &scene, Entering &e, const HitFilter *filter,
+                                                      Leftovers &l) {
   constexpr uint32_t all = (1u << kPacket) - 1;
-  const Ray *const *rays = e.rays;
+  const PacketAsks asks{e.rays, e.number, filter};
   Packet p;
   p.size = 0;
   p.instance = kNone;
@@ -204,7 +225,7 @@ LANCER_SIMD void walk_mesh(const BvhView &bvh, const Ray *const *rays, uint32_t 
   for (uint32_t i = 0; i < scene.unbounded_count; ++i) {
     const uint32_t instance = scene.unbounded[i];
     if (scene.shapes[instance].mesh == kNone)
-      try_quadric(scene, instance, rays, all, e, l);
+      try_quadric<q>(scene, instance, asks, all, e, l);
     else
       leave_over(kBvhInstance << kBvhKindShift | instance * kBvhSteps<PlacedShape>, all, nullptr, l);
   }
@@ -232,23 +253,24 @@ LANCER_SIMD void walk_mesh(const BvhView &bvh, const Ray *const *rays, uint32_t 
                 *reinterpret_cast<const TriangleBlock *>(reinterpret_cast<const char *>(scene.blocks) + place);
             const uint32_t instance = scene.block_instance[&block - scene.blocks];
             if (instance != p.instance)
-              enter_instance(scene, instance, rays, e, p);
-            visit_triangles(block, rays, active & p.seeing, e, p, e, l);
+              enter_instance(scene, instance, e.rays, e, p);
+            visit_triangles<q>(block, asks, active & p.seeing, e, p, e, l);
           } else if (kind == kBvhSpheres) {
-            visit_spheres(scene, *reinterpret_cast<const SphereBlock *>(reinterpret_cast<const char *>(scene.spheres) + place),
-                          rays, active, e, e, l);
+            visit_spheres<q>(scene,
+                             *reinterpret_cast<const SphereBlock *>(reinterpret_cast<const char *>(scene.spheres) + place),
+                             asks, active, e, e, l);
           } else {
             const uint32_t instance = (child & kBvhPlace) / kBvhSteps<PlacedShape>;
             const PlacedShape &shape = scene.shapes[instance];
             if (shape.mesh == kNone) {
-              try_quadric(scene, instance, rays, active, e, l);
+              try_quadric<q>(scene, instance, asks, active, e, l);
             } else if (const BvhView &bvh = scene.meshes[shape.mesh]; bvh.nodes) {
-              enter_instance(scene, instance, rays, e, p);
+              enter_instance(scene, instance, e.rays, e, p);
               alignas(64) double limit[kPacket];
               for (uint32_t i = 0; i < kPacket; ++i)
                 limit[i] = e.tmax[i] < l.best[i].t ? e.tmax[i] : l.best[i].t;
               make_slabs(shape.frame, p.rays, e.tmin, limit, p.inner);
-              walk_mesh(bvh, rays, active & p.seeing, e, p, l);
+              walk_mesh<q>(bvh, asks, active & p.seeing, e, p, l);
               for (uint32_t i = 0; i < kPacket; ++i)
                 if (l.best[i].instance == instance)
                   e.tau_max[i] = slab_end(e, i, l.best[i].t);

@@ -7,7 +7,35 @@
 #include "accel/simd.h"
 
 namespace lancer {
+
+// quadric.cpp, compiled once for all.
+bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
+
 namespace {
+
+// What is asked of a traversal: its variants share one source.
+struct Question {
+  bool any = false;      // anything answers, not the closest alone
+  bool filtered = false; // some hits do not count
+  bool counted = false;  // how much work it is
+};
+
+// Whether a hit does not count.
+template <Question q> LANCER_SIMD bool left_out(const HitFilter *filter, size_t number, const Hit &hit) {
+  if constexpr (q.filtered)
+    return filter->instances[hit.instance] != 0 && !filter->counts(filter->context, number, hit);
+  else
+    return false;
+}
+
+// The next place of a ray on an exact surface, beyond t.
+LANCER_SIMD bool next_place(const PlacedShape &shape, uint32_t instance, const Ray &ray, double &t) {
+  if (t == ray.tmin)
+    return intersect_quadric(shape, ray, ray.skip_instance == instance, t);
+  Ray rest = ray;
+  rest.tmin = t;
+  return intersect_quadric(shape, rest, ray.skip_instance == instance, t);
+}
 
 // Rays that a thread has under way at once: while one waits for its node or block, the others go on.
 constexpr uint32_t kSlots = 32;

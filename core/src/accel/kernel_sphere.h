@@ -7,10 +7,6 @@
 #include "accel/simd.h"
 
 namespace lancer {
-
-// quadric.cpp, compiled once for all.
-bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
-
 namespace {
 
 // What is known of four spheres and a ray: the terms of a t^2 - 2 b t + c = 0, in units of the scaled direction.

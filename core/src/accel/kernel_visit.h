@@ -36,27 +36,30 @@ LANCER_SIMD void become_mesh_ray(const BvhScene &scene, uint32_t instance, const
   s.usable = visible(shape, ray) && enter_mesh(shape, ray, s.ray);
 }
 
-// Keeps the place of an exact surface if it is closer.
-template <bool any> LANCER_SIMD void keep_quadric(double t, uint32_t instance, Slot &s) {
-  if (!closer(t, instance, 0, s.best))
+// Keeps the first place of an exact surface that counts, if it is closer. find(t): the next place beyond t.
+template <Question q, class Find> LANCER_SIMD void try_places(uint32_t instance, const HitFilter *filter, Slot &s, Find find) {
+  double t = s.tmin;
+  while (find(t) && closer(t, instance, 0, s.best)) {
+    const Hit hit{t, 0.0, 0.0, instance, 0};
+    if (left_out<q>(filter, s.number, hit))
+      continue;
+    s.best = hit;
+    if (q.any)
+      done(s);
+    else
+      shorten(s);
     return;
-  s.best.t = t;
-  s.best.u = s.best.v = 0.0;
-  s.best.instance = instance;
-  s.best.primitive = 0;
-  if (any)
-    done(s);
-  else
-    shorten(s);
+  }
 }
 
-template <bool any> LANCER_SIMD void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, Slot &s) {
-  double t;
-  if (visible(shape, ray) && intersect_quadric(shape, ray, ray.skip_instance == instance, t))
-    keep_quadric<any>(t, instance, s);
+template <Question q>
+LANCER_SIMD void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, const HitFilter *filter, Slot &s) {
+  if (visible(shape, ray))
+    try_places<q>(
+        instance, filter, s, [&](double &t) __attribute__((always_inline)) { return next_place(shape, instance, ray, t); });
 }
 
-template <bool any> LANCER_SIMD void visit_spheres(const BvhScene &scene, const Ray &ray, Slot &s) {
+template <Question q> LANCER_SIMD void visit_spheres(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   const SphereBlock &block = *reinterpret_cast<const SphereBlock *>(s.at);
   SphereTerms terms;
   for (uint32_t met = intersect_spheres(block, ray, terms); met != 0; met &= met - 1) {
@@ -65,18 +68,20 @@ template <bool any> LANCER_SIMD void visit_spheres(const BvhScene &scene, const 
     if (instance == kNone)
       return;
     const PlacedShape &shape = scene.shapes[instance];
-    double t;
-    if (visible(shape, ray) && choose_root(terms, i, shape.slack, ray.skip_instance == instance, s.tmin, s.tmax, t))
-      keep_quadric<any>(t, instance, s);
+    if (visible(shape, ray))
+      try_places<q>(
+          instance, filter, s, [&](double &t) __attribute__((always_inline)) {
+            return choose_root(terms, i, shape.slack, ray.skip_instance == instance, t, s.tmax, t);
+          });
   }
 }
 
 // Enters an instance, if the ray can meet it at all.
-template <bool any> LANCER_SIMD void enter_instance(const BvhScene &scene, const Ray &ray, Slot &s) {
+template <Question q> LANCER_SIMD void enter_instance(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   const PlacedShape &shape = *reinterpret_cast<const PlacedShape *>(s.at);
   const uint32_t instance = static_cast<uint32_t>(&shape - scene.shapes);
   if (shape.mesh == kNone)
-    return try_quadric<any>(shape, instance, ray, s);
+    return try_quadric<q>(shape, instance, ray, filter, s);
   const BvhView &bvh = scene.meshes[shape.mesh];
   if (!bvh.nodes)
     return;
@@ -100,7 +105,7 @@ LANCER_SIMD void leave_instance(const BvhScene &scene, Slot &s) {
     shorten(s);
 }
 
-template <bool any> LANCER_SIMD void visit_triangles(Slot &s) {
+template <Question q> LANCER_SIMD void visit_triangles(const HitFilter *filter, Slot &s) {
   const TriangleBlock &block = *reinterpret_cast<const TriangleBlock *>(s.at);
   BlockHits hits;
   bool found = false;
@@ -109,15 +114,14 @@ template <bool any> LANCER_SIMD void visit_triangles(Slot &s) {
     const uint32_t primitive = block.primitive[i];
     if (primitive == s.skip || !closer(hits.t[i], s.instance, primitive, s.best))
       continue;
-    s.best.t = hits.t[i];
-    s.best.u = hits.wb[i] / hits.det[i];
-    s.best.v = hits.wc[i] / hits.det[i];
-    s.best.instance = s.instance;
-    s.best.primitive = primitive;
+    const Hit hit{hits.t[i], hits.wb[i] / hits.det[i], hits.wc[i] / hits.det[i], s.instance, primitive};
+    if (left_out<q>(filter, s.number, hit))
+      continue;
+    s.best = hit;
     found = true;
   }
   if (found) {
-    if (any)
+    if (q.any)
       done(s);
     else
       shorten(s);
@@ -125,20 +129,21 @@ template <bool any> LANCER_SIMD void visit_triangles(Slot &s) {
 }
 
 // A block of the world's own tree: it has its instance's space to itself.
-template <bool any> LANCER_SIMD void visit_placed(const BvhScene &scene, const Ray &ray, Slot &s) {
+template <Question q> LANCER_SIMD void visit_placed(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   const uint32_t instance = scene.block_instance[reinterpret_cast<const TriangleBlock *>(s.at) - scene.blocks];
   if (instance != s.instance)
     become_mesh_ray(scene, instance, ray, s);
   if (s.usable)
-    visit_triangles<any>(s);
+    visit_triangles<q>(filter, s);
 }
 
 // Tries what has no box, up to the next mesh.
-template <bool any> LANCER_SIMD void visit_unbounded(const BvhScene &scene, const Ray &ray, Slot &s) {
-  while (s.unbounded > 0 && !(any && s.best.instance != kNone)) {
+template <Question q>
+LANCER_SIMD void visit_unbounded(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+  while (s.unbounded > 0 && !(q.any && s.best.instance != kNone)) {
     const uint32_t instance = scene.unbounded[--s.unbounded];
     if (scene.shapes[instance].mesh == kNone) {
-      try_quadric<any>(scene.shapes[instance], instance, ray, s);
+      try_quadric<q>(scene.shapes[instance], instance, ray, filter, s);
       continue;
     }
     push(s, -__builtin_inff(), kBvhUnbounded << kBvhKindShift);

@@ -34,6 +34,17 @@ struct Hit {
   bool valid() const { return instance != kNone; }
 };
 
+// Decides whether what a ray meets counts. Other hits are left out as if they were not there: the ray goes on within the same
+// traversal, and an exact surface is met again where the ray leaves it.
+struct HitFilter {
+  const uint8_t *instances; // by instance: 0 where every hit counts, unasked
+  // Of rays[ray] of the batch; the answer may depend on nothing else. Asked in any order and maybe more than once about
+  // - every hit that is closer than the closest that counts, by closer(), and some that are not;
+  // - any hit at all: all hits of a ray that is not occluded.
+  bool (*counts)(void *context, size_t ray, const Hit &hit);
+  void *context;
+};
+
 // What a batch of rays had to look at on its way.
 struct TraversalCounts {
   uint64_t nodes = 0, triangle_blocks = 0, sphere_blocks = 0, instances = 0;

@@ -27,8 +27,7 @@ void PathIntegrator<Shapes, Layers>::run(std::span<const SampleAddress> addresse
   generate(addresses, results);
   while (!paths_.empty() && !settings_.cancelled()) {
     // Find where every path goes next.
-    hits_.resize(rays_.size());
-    scene_.accelerator->closest_hit(rays_, hits_);
+    find_hits(results, trace);
     // Gather emission, ask a light, choose how each path goes on.
     shade(results, trace);
     // Add the light that was not in shadow.
@@ -108,11 +107,8 @@ void PathIntegrator<Shapes, Layers>::shade_surface(Path &path, const Ray &ray, d
   const double way = path.length + t * glm::length(ray.d);
   shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .footprint = float(cone_.base + way * cone_.spread)},
                 point_);
-  if (trace) {
-    const glm::vec3 so_far = result.radiance + indirect_[path.slot];
-    trace->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta, so_far,
-                      surface.instance, surface.primitive, surface.material, path.scatterings});
-  }
+  if (trace)
+    keep_vertex(path, surface, t, result, *trace);
   // Holes end what the camera sees.
   if (path.in_view && !cut_hole(scene_, surface, path.beta, point_, result))
     return;
@@ -158,6 +154,14 @@ void PathIntegrator<Shapes, Layers>::shade_surface(Path &path, const Ray &ray, d
     next_paths_.push_back(path);
     next_rays_.push_back(next);
   }
+}
+
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::keep_vertex(const Path &path, const Surface &surface, double t, const SampleResult &result,
+                                                 std::vector<PathVertex> &trace) const {
+  const glm::vec3 so_far = result.radiance + indirect_[path.slot];
+  trace.push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta, so_far,
+                   surface.instance, surface.primitive, surface.material, path.scatterings});
 }
 
 // Fills the passes that describe what the camera sees.

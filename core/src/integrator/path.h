@@ -4,6 +4,7 @@
 #include "integrator/camera_rays.h"
 #include "integrator/denoising_features.h"
 #include "integrator/first_surface.h"
+#include "integrator/layers_met.h"
 #include "integrator/light_passes.h"
 #include "integrator/sample.h"
 #include "integrator/scene_lights.h"
@@ -11,6 +12,8 @@
 #include "integrator/shadow.h"
 #include "integrator/texture_prefetch.h"
 #include "integrator/vertex_kernel.h"
+
+#include <algorithm>
 
 namespace lancer {
 
@@ -20,7 +23,8 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
-        lanes_(vertex_kernel()), picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED) {
+        lanes_(vertex_kernel()), picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
+        any_clear_(Layers && !passes_.features() && std::ranges::find(scene.clearing, 1) != scene.clearing.end()) {
     point_.bsdf.shares = passes_.wanted();
   }
 
@@ -85,11 +89,16 @@ private:
   void shade_surface(Path &path, const Ray &ray, double t, const Surface &surface, std::span<SampleResult> results,
                      std::vector<PathVertex> *trace);
   void shade(std::span<SampleResult> results, std::vector<PathVertex> *trace);
+  void find_hits(std::span<SampleResult> results, std::vector<PathVertex> *trace);
+  bool is_there(size_t ray, const Hit &hit);
+  void pass_clear(size_t number, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void miss(const Path &path, const Ray &ray, SampleResult &result);
   void add_lights_met(std::span<SampleResult> results);
   void add_light_met(size_t i, uint32_t number, std::span<SampleResult> results);
   double way_end(size_t i) const; // distance from the last scattering to where the ray ends
   void add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission, SampleResult &result);
+  void keep_vertex(const Path &path, const Surface &surface, double t, const SampleResult &result,
+                   std::vector<PathVertex> &trace) const;
   void record(const Path &path, const Surface &surface, double t, SampleResult &result);
   LightSample ask_light(const Surface &surface, const VertexNumbers &u, LightSet::Choice &choice);
   void send_shadow(const Path &path, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng, const LightSample &light,
@@ -113,6 +122,8 @@ private:
   const char *kernel_;
   const VertexKernel &lanes_;
   bool picture_alone_; // no other pass is asked for: vertices may be shaded in lanes, records stay as they begin
+  LayersMet clear_;    // surfaces on the way of which nothing is there
+  bool any_clear_;
   VertexBlock block_{};
   WayBlock ways_{};
   Waiting waiting_[kBlockLanes];

@@ -63,13 +63,22 @@ NodeColors Shader::colors(const Surface &surface, const View &view) {
   return colors;
 }
 
-glm::vec3 Shader::transmittance(const Surface &surface, const glm::vec3 &wo) {
-  if (surface.material == kNone)
+glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
+  const uint32_t number = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+  if (number == kNone)
     return glm::vec3(0.0f);
-  const Material &material = scene_.materials[surface.material];
+  const Material &material = scene_.materials[number];
   if (!material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
     return glm::vec3(0.0f);
-  run_nodes(material, material.transmittance_nodes, surface, {.wo = wo});
+  // Look no further than the answer needs.
+  if (!material.transmittance.varies())
+    return glm::max(material.transmittance.value, 0.0f);
+  const Instance &instance = scene_.geometry.instances[hit.instance];
+  if (const Cutout &cutout = scene_.cutouts[number]; cutout.known() && instance.kind == ShapeKind::Mesh)
+    return glm::vec3(
+        cutout_transmittance(cutout, scene_.images, scene_.geometry.meshes[instance.mesh], hit.primitive, {hit.u, hit.v}));
+  const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+  run_nodes(material, material.transmittance_nodes, surface, {.wo = glm::vec3(-glm::normalize(ray.d))});
   return glm::max(value_of(material.transmittance, values_), 0.0f);
 }
 

@@ -45,8 +45,9 @@ public:
   void shade(const Surface &surface, const View &view, Shaded &result);
   // Of a material whose WideMaterial has nodes.
   NodeColors colors(const Surface &surface, const View &view);
-  // By themselves, for shadow rays and light samples.
-  glm::vec3 transmittance(const Surface &surface, const glm::vec3 &wo);
+  // Share of a shadow ray's light that passes straight on.
+  glm::vec3 transmittance(const Ray &ray, const Hit &hit);
+  // By itself, for light samples.
   glm::vec3 emission(const Surface &surface, const glm::vec3 &wo);
   std::span<glm::vec4> values() { return values_; }
   const Camera *camera() const { return context_.camera; }

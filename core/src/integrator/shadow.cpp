@@ -1,8 +1,5 @@
 #include "integrator/shadow.h"
 
-#include <cmath>
-#include <numeric>
-
 namespace lancer {
 
 uint64_t ShadowQueue::trace_solid() {
@@ -15,44 +12,36 @@ uint64_t ShadowQueue::trace_solid() {
 }
 
 uint64_t ShadowQueue::trace_layers() {
-  uint64_t count = 0;
-  under_way_.resize(rays_.size());
-  std::iota(under_way_.begin(), under_way_.end(), 0u);
-  under_way_rays_ = rays_;
-  while (!under_way_.empty()) {
-    // Find the next surface of every ray that is still under way.
-    hits_.assign(under_way_.size(), Hit{});
-    scene_.accelerator->closest_hit(under_way_rays_, hits_);
-    count += under_way_.size();
-    size_t kept = 0;
-    for (size_t i = 0; i < under_way_.size(); ++i) {
-      if (!hits_[i].valid())
-        continue;
-      // Keep what the surface lets pass; beyond the last one nothing does.
-      const uint32_t number = under_way_[i];
-      const Ray &ray = under_way_rays_[i];
-      const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-      glm::vec3 &contribution = waiting_[number].contribution;
-      if (waiting_[number].passed++ >= deepest_)
-        contribution = glm::vec3(0.0f);
-      else
-        contribution *= shader_.transmittance(surface, glm::vec3(-glm::normalize(ray.d)));
-      if (contribution == glm::vec3(0.0f))
-        continue;
-      // Go on to the same end from behind it.
-      Ray next = leave(surface, ray.d, ray.tmax);
-      if (std::isfinite(next.tmax)) {
-        next.d = ray.o + ray.d * ray.tmax - next.o;
-        next.tmax = 1.0;
-      }
-      next.kinds = ray.kinds;
-      under_way_[kept] = number;
-      under_way_rays_[kept++] = next;
-    }
-    under_way_.resize(kept);
-    under_way_rays_.resize(kept);
+  layers_.begin(rays_.size());
+  occluded_.assign(rays_.size(), 0);
+  const HitFilter filter{
+      scene_.passing.data(),
+      [](void *queue, size_t ray, const Hit &hit) { return static_cast<ShadowQueue *>(queue)->stops(ray, hit); }, this};
+  scene_.accelerator->any_hit(rays_, occluded_, filter);
+  for (size_t i = 0; i < rays_.size(); ++i) {
+    glm::vec3 &contribution = waiting_[i].contribution;
+    if (occluded_[i])
+      contribution = glm::vec3(0.0f);
+    else if (layers_.count(i) > 0)
+      // Lose light on the way, in the same order whatever the order of finding.
+      for (const Layer &layer : layers_.in_order(i))
+        contribution *= layer.transmittance;
   }
-  return count;
+  return rays_.size();
+}
+
+bool ShadowQueue::stops(size_t ray, const Hit &hit) {
+  Layer *known = layers_.find(ray, hit);
+  if (known && known->hit.primitive == hit.primitive)
+    return false;
+  // Beyond the last layer nothing passes.
+  if (!known && waiting_[ray].passed + layers_.count(ray) >= deepest_)
+    return true;
+  const glm::vec3 transmittance = shader_.transmittance(rays_[ray], hit);
+  if (transmittance == glm::vec3(0.0f))
+    return true;
+  layers_.put(known, ray, hit, transmittance);
+  return false;
 }
 
 } // namespace lancer

@@ -1,6 +1,7 @@
 // Shadow rays, kept in a queue and traced as a batch: how much of a light's contribution arrives.
 #pragma once
 
+#include "integrator/layers_met.h"
 #include "integrator/light_passes.h"
 #include "integrator/sample.h"
 #include "integrator/shading.h"
@@ -11,7 +12,7 @@ class ShadowQueue {
 public:
   ShadowQueue(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), shader_(scene, &camera), deepest_(settings.transparent_shadows),
-        layers_(settings.all_features || (scene.features & kFeatureTransparency)) {}
+        any_layers_(settings.all_features || (scene.features & kFeatureTransparency)), layers_(scene.geometry) {}
 
   // contribution reaches the waiting sum where nothing stands between. passed: surfaces that the path already passed straight
   // through; they count against the same limit.
@@ -40,7 +41,7 @@ public:
   // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing, and empties the queue.
   // Returns how many rays it took.
   template <class Arrive> uint64_t trace(Arrive &&arrive) {
-    const uint64_t count = layers_ ? trace_layers() : trace_solid();
+    const uint64_t count = any_layers_ ? trace_layers() : trace_solid();
     for (const Waiting &waiting : waiting_)
       if (waiting.contribution != glm::vec3(0.0f))
         arrive(waiting.light, waiting.contribution);
@@ -58,19 +59,19 @@ private:
 
   // Everything blocks: any hit answers.
   uint64_t trace_solid();
-  // Some surfaces let a share pass: go from hit to hit.
+  // Some surfaces let a share pass.
   uint64_t trace_layers();
+  // Whether a surface that a ray meets ends it; keeps what passes, if not.
+  bool stops(size_t ray, const Hit &hit);
 
   const Scene &scene_;
   Shader shader_;
   uint32_t deepest_; // surfaces that a ray may pass
-  bool layers_;
+  bool any_layers_;
+  LayersMet layers_; // that the rays have passed
   std::vector<Ray> rays_;
   std::vector<Waiting> waiting_;
   std::vector<uint8_t> occluded_;
-  std::vector<Hit> hits_;
-  std::vector<uint32_t> under_way_;
-  std::vector<Ray> under_way_rays_;
 };
 
 } // namespace lancer

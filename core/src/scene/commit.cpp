@@ -67,6 +67,18 @@ Normalisation normalise(const Box &bounds) {
   return result;
 }
 
+// Instances that any of their materials makes so.
+template <class Predicate> std::vector<uint8_t> find_instances(const Scene &scene, Predicate &&predicate) {
+  std::vector<uint8_t> found;
+  for (const Instance &instance : scene.geometry.instances) {
+    bool any = false;
+    for (uint32_t slot = 0; slot < instance.slot_count; ++slot)
+      any = any || predicate(instance, scene.slots[instance.first_slot + slot]);
+    found.push_back(any);
+  }
+  return found;
+}
+
 LightSet make_lights(const Scene &scene, const Description &description, const BuildContext &context) {
   std::vector<Light> lights;
   for (const LightDescription &light : description.lights)
@@ -95,6 +107,12 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->materials = std::move(description.materials);
   scene->wide = make_wide_materials(scene->materials);
   scene->images = std::move(description.images);
+  scene->cutouts = make_cutouts(scene->materials, scene->images);
+  scene->passing =
+      find_instances(*scene, [&](const Instance &, uint32_t material) { return scene->materials[material].transmits(); });
+  scene->clearing = find_instances(*scene, [&](const Instance &instance, uint32_t material) {
+    return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].nothing_beside;
+  });
   scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {
     instance.place(scene->normalisation.to_normalised(instance.to_world));

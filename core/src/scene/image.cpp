@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 namespace lancer {
 
@@ -41,6 +42,14 @@ template <class Texel, int Channels> glm::vec4 fetch(const Image &image, int64_t
   }
   const float alpha = Channels == 4 && image.alpha != AlphaMode::None ? unit(t[Channels - 1]) : 1.0f;
   return {unit(t[0]), unit(t[1]), unit(t[2]), alpha};
+}
+
+// Its alpha alone.
+template <class Texel, int Channels> float fetch_alpha(const Image &image, int64_t x, int64_t y) {
+  if (Channels < 4 || image.alpha == AlphaMode::None)
+    return 1.0f;
+  const auto *texels = reinterpret_cast<const Texel *>(image.texels.get());
+  return unit(texels[size_t(y * int64_t(image.width) + x) * Channels + 3]);
 }
 
 // The curve between 0 and 1 by straight lines between 4097 points. Its second derivative is at most 3.02, so that they leave it
@@ -136,41 +145,48 @@ Taps taps(float u, uint32_t size, Extension extension, Interpolation interpolati
   return result;
 }
 
-template <class Texel, int Channels> glm::vec4 gather(const Image &image, const Taps &across, const Taps &up) {
+// Value: glm::vec4, or float for the alpha alone.
+template <class Value, class Texel, int Channels> Value gather(const Image &image, const Taps &across, const Taps &up) {
+  const auto at = [&](int64_t x, int64_t y) {
+    if constexpr (std::is_same_v<Value, float>)
+      return fetch_alpha<Texel, Channels>(image, x, y);
+    else
+      return fetch<Texel, Channels>(image, x, y);
+  };
   if (across.count == 1)
-    return across.at[0] < 0 || up.at[0] < 0 ? glm::vec4(0.0f) : fetch<Texel, Channels>(image, across.at[0], up.at[0]);
-  glm::vec4 sum(0.0f);
+    return across.at[0] < 0 || up.at[0] < 0 ? Value(0.0f) : at(across.at[0], up.at[0]);
+  Value sum(0.0f);
   for (size_t y = 0; y < size_t(up.count); ++y) {
-    glm::vec4 row(0.0f);
+    Value row(0.0f);
     for (size_t x = 0; x < size_t(across.count); ++x)
       if (across.at[x] >= 0 && up.at[y] >= 0)
-        row += across.weight[x] * fetch<Texel, Channels>(image, across.at[x], up.at[y]);
+        row += across.weight[x] * at(across.at[x], up.at[y]);
     sum += up.weight[y] * row;
   }
   return sum;
 }
 
-template <class Texel> glm::vec4 gather_kind(const Image &image, const Taps &across, const Taps &up) {
+template <class Value, class Texel> Value gather_kind(const Image &image, const Taps &across, const Taps &up) {
   switch (image.channels) {
   case 1:
-    return gather<Texel, 1>(image, across, up);
+    return gather<Value, Texel, 1>(image, across, up);
   case 3:
-    return gather<Texel, 3>(image, across, up);
+    return gather<Value, Texel, 3>(image, across, up);
   default:
-    return gather<Texel, 4>(image, across, up);
+    return gather<Value, Texel, 4>(image, across, up);
   }
 }
 
-glm::vec4 gather_any(const Image &image, const Taps &across, const Taps &up) {
+template <class Value> Value gather_any(const Image &image, const Taps &across, const Taps &up) {
   switch (image.kind) {
   case TexelKind::U8:
-    return gather_kind<uint8_t>(image, across, up);
+    return gather_kind<Value, uint8_t>(image, across, up);
   case TexelKind::U16:
-    return gather_kind<uint16_t>(image, across, up);
+    return gather_kind<Value, uint16_t>(image, across, up);
   case TexelKind::Float:
     break;
   }
-  return gather_kind<float>(image, across, up);
+  return gather_kind<Value, float>(image, across, up);
 }
 
 glm::vec3 decode(const glm::vec3 &c) {
@@ -208,12 +224,21 @@ void prefetch(const Image &image, const glm::vec2 &uv, Extension extension) {
       __builtin_prefetch(image.texels.get() + (size_t(y) * image.width + size_t(across.at[0])) * texel);
 }
 
+float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension, Interpolation interpolation) {
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+    return 0.0f;
+  if (image.channels == 1)
+    return 1.0f;
+  return gather_any<float>(image, taps(uv.x, image.width, extension, interpolation),
+                           taps(uv.y, image.height, extension, interpolation));
+}
+
 glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight) {
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
     return glm::vec4(0.0f);
   const Taps across = taps(uv.x, image.width, extension, interpolation);
   const Taps up = taps(uv.y, image.height, extension, interpolation);
-  glm::vec4 texel = gather_any(image, across, up);
+  glm::vec4 texel = gather_any<glm::vec4>(image, across, up);
   // A picture of one number is solid even where it is clipped; one of three is clear there, as in Blender.
   if (image.channels == 1)
     texel.w = 1.0f;

@@ -3,6 +3,7 @@
 
 #include "accel/accelerator.h"
 #include "lights/light_set.h"
+#include "scene/cutout.h"
 #include "scene/description.h"
 #include "scene/features.h"
 #include "scene/wide_materials.h"
@@ -25,6 +26,9 @@ struct Scene {
   std::vector<uint32_t> slots;
   std::vector<Material> materials;
   std::vector<WideMaterial> wide; // by material
+  std::vector<Cutout> cutouts;    // by material
+  std::vector<uint8_t> passing;   // by instance: some of its materials may let light pass straight on
+  std::vector<uint8_t> clearing;  // by instance: parts of it may not be there at all, by cutouts
   std::vector<Image> images;
   World world;
   LightSet lights;

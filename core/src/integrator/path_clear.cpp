@@ -1,0 +1,76 @@
+// Where paths go next: past surfaces that a picture has cut away, all within one traversal.
+#include "integrator/path_kinds.h"
+
+namespace lancer {
+
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::find_hits(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+  hits_.resize(rays_.size());
+  if (!any_clear_)
+    return scene_.accelerator->closest_hit(rays_, hits_);
+  clear_.begin(rays_.size());
+  const auto ask = [](void *paths, size_t ray, const Hit &hit) {
+    return static_cast<PathIntegrator *>(paths)->is_there(ray, hit);
+  };
+  scene_.accelerator->closest_hit(rays_, hits_, {scene_.clearing.data(), ask, this});
+  for (size_t i = 0; i < rays_.size(); ++i)
+    if (clear_.count(i) > 0)
+      pass_clear(i, results, trace);
+}
+
+// Whether there is anything of a surface that a ray meets. Where not, its vertex would choose to pass straight on with weight
+// 1, and ask no light for anything.
+template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::is_there(size_t ray, const Hit &hit) {
+  const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+  const Cutout &cutout = scene_.cutouts[material];
+  if (!cutout.nothing_beside)
+    return true;
+  Layer *known = clear_.find(ray, hit);
+  if (known && known->hit.primitive == hit.primitive)
+    return false;
+  const Mesh &mesh = scene_.geometry.meshes[scene_.geometry.instances[hit.instance].mesh];
+  if (cutout_transmittance(cutout, scene_.images, mesh, hit.primitive, {hit.u, hit.v}) != 1.0f)
+    return true;
+  clear_.put(known, ray, hit, glm::vec3(1.0f));
+  return false;
+}
+
+// Counts the layers before a path's hit, as if it had gone from one to the next.
+template <uint32_t Shapes, bool Layers>
+void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleResult> results,
+                                                std::vector<PathVertex> *trace) {
+  Path &path = paths_[number];
+  const Ray &ray = rays_[number];
+  const Hit end = hits_[number];
+  for (const Layer &layer : clear_.in_order(number)) {
+    const Hit &hit = layer.hit;
+    if (!closer(hit.t, hit.instance, hit.primitive, end))
+      return;
+    // The path may pass no more: it ends here.
+    if (path.last || path.layers + 1 >= kMaxLayers) {
+      hits_[number] = hit;
+      return;
+    }
+    // Passes tell of places where little is seen, too.
+    SampleResult &result = results[path.slot];
+    const bool recorded = path.in_view && !picture_alone_ && !records_[path.slot].seen;
+    if (recorded || trace) {
+      const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+      if (trace)
+        keep_vertex(path, surface, hit.t, result, *trace);
+      if (recorded) {
+        shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d))}, point_);
+        record(path, surface, hit.t, result);
+      }
+    }
+    ++path.layers;
+    path.last = ++path.passed_through >= settings_.transparent_bounces;
+  }
+}
+
+#define LANCER_PATH(shapes, layers)                                                                                            \
+  template void PathIntegrator<shapes, layers>::find_hits(std::span<SampleResult>, std::vector<PathVertex> *);
+LANCER_PATH_KINDS(LANCER_PATH)
+#undef LANCER_PATH
+
+} // namespace lancer

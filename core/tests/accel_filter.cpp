@@ -1,0 +1,155 @@
+// Hits that do not count: every accelerator leaves them out within one traversal, and asks about all that stand in the way.
+#include "accel_scenes.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <set>
+#include <tuple>
+
+namespace lancer::test {
+namespace {
+
+// A place that a ray was asked about.
+using Place = std::tuple<double, uint32_t, uint32_t>;
+Place place_of(const Hit &hit) { return {hit.t, hit.instance, hit.primitive}; }
+
+// Lets some surfaces count, chosen by their numbers, and keeps what it was asked.
+struct Chooser {
+  uint32_t share; // one in so many counts; 0: none
+  std::vector<uint8_t> instances;
+  std::vector<std::set<Place>> asked;
+
+  Chooser(const Geometry &geometry, uint32_t one_in, size_t rays) : share(one_in), asked(rays) {
+    for (uint32_t i = 0; i < geometry.instances.size(); ++i)
+      instances.push_back(i % 5 != 4);
+  }
+  bool counts(const Hit &hit) const {
+    return !instances[hit.instance] || (share > 0 && (hit.instance * 2654435761u + hit.primitive * 40503u) / 7 % share == 0);
+  }
+  HitFilter filter() {
+    return {instances.data(),
+            [](void *context, size_t ray, const Hit &hit) {
+              Chooser &chooser = *static_cast<Chooser *>(context);
+              chooser.asked[ray].insert(place_of(hit));
+              return chooser.counts(hit);
+            },
+            this};
+  }
+};
+
+// All that a ray meets, from hit to hit of the same ray.
+std::vector<Hit> all_hits(const Accelerator &accelerator, Ray ray) {
+  std::vector<Hit> hits;
+  for (Hit hit = closest(accelerator, ray); hit.valid(); hit = closest(accelerator, ray)) {
+    hits.push_back(hit);
+    ray.tmin = hit.t;
+  }
+  return hits;
+}
+
+// Meshes in the world's own tree, instances, exact surfaces with and without a box.
+Geometry everything(Random &random) {
+  Geometry geometry;
+  geometry.meshes.push_back(bumpy_sphere(1.0, 24, 16, 0.2));
+  geometry.meshes.push_back(triangle_soup(random, 300, 1.0));
+  geometry.meshes.push_back(bumpy_sphere(1.0, 9, 6, 0.2));
+  const auto add = [&](ShapeKind kind, double scale, uint32_t mesh) {
+    geometry.instances.push_back(placed(kind, glm::dmat3(scale), random.in_box(6.0), mesh));
+  };
+  for (int i = 0; i < 12; ++i) {
+    add(ShapeKind::Mesh, 1.5, 0);
+    add(ShapeKind::Sphere, 1.0, 0);
+    add(ShapeKind::Cone, 0.7, 0);
+    add(ShapeKind::Cylinder, 0.7, 0);
+  }
+  add(ShapeKind::Mesh, 6.0, 1);
+  add(ShapeKind::Mesh, 3.0, 2);
+  geometry.instances.back().hidden_from = 1;
+  add(ShapeKind::Plane, 1.0, 0);
+  add(ShapeKind::Plane, 2.0, 0);
+  return geometry;
+}
+
+// Rays from everywhere, and the neighbours of a small picture.
+std::vector<Ray> some_rays(Random &random, const Geometry &geometry) {
+  std::vector<Ray> rays;
+  for (uint32_t i = 0; i < 1024; ++i)
+    rays.push_back(
+        make_ray({0.1 * (i % 32) - 1.6, 0.1 * (i / 32.0) - 1.6, 12.0}, {0.001 * (i % 32), 0.002 * (i / 32.0), -1.0}));
+  for (int i = 0; i < 1000; ++i) {
+    Ray ray = make_ray(random.in_box(9.0), random.direction() * std::exp2(random.uniform(-9.0, 9.0)));
+    ray.kinds = 1 + random.below(3);
+    if (random.below(4) == 0)
+      ray.tmin = random.uniform(-3.0, 3.0) / glm::length(ray.d);
+    if (random.below(4) == 0)
+      ray.tmax = random.uniform(0.0, 12.0) / glm::length(ray.d);
+    if (random.below(4) == 0) {
+      ray.skip_instance = random.below(static_cast<uint32_t>(geometry.instances.size()));
+      ray.skip_primitive = random.below(4);
+    }
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+TEST(AcceleratorFilter, GoesOnPastWhatDoesNotCount) {
+  Random random(21);
+  const Geometry geometry = everything(random);
+  const std::vector<Ray> rays = some_rays(random, geometry);
+  const std::vector<Contestant> all = all_accelerators(geometry);
+  std::vector<std::vector<Hit>> met;
+  size_t layers = 0;
+  for (const Ray &ray : rays) {
+    met.push_back(all_hits(*all[0].accelerator, ray));
+    layers += met.back().size();
+  }
+  EXPECT_GT(layers, 3 * rays.size());
+  for (const uint32_t one_in : {1u, 3u, 40u, 0u})
+    for (const Contestant &c : all) {
+      Chooser near(geometry, one_in, rays.size()), any(geometry, one_in, rays.size());
+      std::vector<Hit> hits(rays.size());
+      std::vector<uint8_t> occlusion(rays.size(), 7);
+      c.accelerator->closest_hit(rays, hits, near.filter());
+      c.accelerator->any_hit(rays, occlusion, any.filter());
+      for (size_t i = 0; i < rays.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << c.name << ", ray " << i << ", one in " << one_in);
+        const auto end = std::ranges::find_if(met[i], [&](const Hit &hit) { return near.counts(hit); });
+        ASSERT_TRUE(same_bits(hits[i], end == met[i].end() ? Hit{} : *end));
+        ASSERT_EQ(occlusion[i], end != met[i].end());
+        // Each layer was asked about, as the chain meets it; and of a ray that nothing stops nothing else was.
+        std::set<Place> passed;
+        for (auto hit = met[i].begin(); hit != end; ++hit) {
+          passed.insert(place_of(*hit));
+          ASSERT_TRUE(near.asked[i].contains(place_of(*hit)));
+        }
+        if (end == met[i].end()) {
+          ASSERT_EQ(near.asked[i], passed);
+          ASSERT_EQ(any.asked[i], passed);
+        }
+      }
+    }
+}
+
+TEST(AcceleratorFilter, CoincidentSurfacesAreAllAskedAbout) {
+  // The same square by three instances, one upside down, and twice within the mesh.
+  Geometry geometry;
+  Mesh mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}};
+  geometry.meshes.push_back(mesh);
+  for (int i = 0; i < 3; ++i)
+    geometry.instances.push_back(
+        placed(ShapeKind::Mesh, i == 1 ? glm::dmat3(1, 0, 0, 0, -1, 0, 0, 0, -1) : glm::dmat3(1.0), glm::dvec3(0.0)));
+  const Ray ray = make_ray({0.5, 0.25, 2.0}, {0, 0, -1});
+  for (const Contestant &c : all_accelerators(geometry)) {
+    Chooser chooser(geometry, 0, 1);
+    chooser.instances.assign(3, 1);
+    uint8_t occluded = 7;
+    c.accelerator->any_hit({&ray, 1}, {&occluded, 1}, chooser.filter());
+    EXPECT_EQ(occluded, 0) << c.name;
+    EXPECT_EQ(chooser.asked[0].size(), 6u) << c.name;
+  }
+}
+
+} // namespace
+} // namespace lancer::test

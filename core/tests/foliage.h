@@ -1,0 +1,147 @@
+// Squares that a picture cuts out, panes, and things that let nothing pass, placed by chance.
+#pragma once
+
+#include "nodes_lab.h"
+#include "tiny_scene.h"
+
+#include "scene/fill.h"
+
+#include <random>
+
+namespace lancer_test {
+
+// How the leaves' nodes are written: as an exporter does, or with a product by 1 in between so that only the nodes themselves
+// know what they say.
+enum class Writing { Plain, Disguised };
+
+// Sides of the leaves' picture.
+inline constexpr uint32_t kLeafSide = 16;
+
+// Clear outside of a disk, solid within, and a rim that is neither.
+inline void add_leaf_picture(Description &description) {
+  std::vector<uint8_t> texels;
+  for (uint32_t y = 0; y < kLeafSide; ++y)
+    for (uint32_t x = 0; x < kLeafSide; ++x) {
+      const double r = std::hypot(double(x) - 7.5, double(y) - 7.5);
+      texels.insert(texels.end(), {uint8_t(40 + 3 * x), uint8_t(150 - 2 * y), 50, uint8_t(r < 4 ? 255 : r < 6 ? 128 : 0)});
+    }
+  lancer_image image = {};
+  image.name = "leaf";
+  image.texels = texels.data();
+  image.width = image.height = kLeafSide;
+  image.channels = 4;
+  image.kind = LANCER_TEXEL_U8;
+  image.transfer = LANCER_TRANSFER_SRGB;
+  image.alpha = LANCER_ALPHA_STRAIGHT;
+  image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
+  add_image(description, image);
+}
+
+inline std::vector<lancer_node> leaf_nodes(Writing writing) {
+  lancer_node look = flagged(node(LANCER_NODE_IMAGE, LANCER_PROJECT_FLAT, {result_of(1)}), LANCER_INTERPOLATE_LINEAR << 4);
+  look.image_count = 1;
+  std::vector<lancer_node> nodes = {
+      node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV),
+      node(LANCER_NODE_VECTOR_MATH, LANCER_VECTOR_MULTIPLY, {result_of(0), constant(1.0f)}), look,
+      node(LANCER_NODE_ALPHA, 0, {result_of(2)}),
+      node(LANCER_NODE_MATH, LANCER_MATH_SUBTRACT, {constant(1.0f), result_of(3), constant(0.0f)})};
+  if (writing == Writing::Plain)
+    nodes[2].inputs[0] = result_of(0);
+  return nodes;
+}
+
+// Materials 0: leaf, 1: half a pane, 2: solid. shines: what the leaf emits beside its alpha.
+inline void add_foliage_materials(Description &description, Writing writing, float shines = 0.0f, uint32_t flags = 0) {
+  const std::vector<lancer_node> nodes = leaf_nodes(writing);
+  lancer_lobe matt = lobe(LANCER_LAMBERT, 1.0f);
+  matt.color = result_of(2);
+  matt.weight = result_of(3);
+  lancer_material leaf = black(), pane = black(), solid = black();
+  leaf.name = pane.name = solid.name = "material";
+  leaf.lobes = &matt;
+  leaf.lobe_count = 1;
+  leaf.nodes = nodes.data();
+  leaf.node_count = uint32_t(nodes.size());
+  leaf.transmittance = result_of(4);
+  leaf.emission = constant(shines);
+  leaf.flags = flags;
+  pane.transmittance = constant(0.5f, 0.75f, 1.0f);
+  lancer_lobe grey = lobe(LANCER_LAMBERT, 0.5f);
+  solid.lobes = &grey;
+  solid.lobe_count = 1;
+  for (const lancer_material *material : {&leaf, &pane, &solid})
+    add_material(description, *material);
+}
+
+inline std::shared_ptr<const Scene> foliage(Writing writing, AcceleratorKind kind = AcceleratorKind::Bvh, float shines = 0.0f) {
+  Description description;
+  add_leaf_picture(description);
+  add_foliage_materials(description, writing, shines);
+  std::mt19937 random(5);
+  const auto number = [&](double low, double high) { return low + (high - low) * double(random() >> 8) * 0x1p-24; };
+  // Leaves, most of them level so that many lie behind each other; every seventh is solid.
+  std::vector<float> positions, uvs;
+  std::vector<uint32_t> triangles;
+  std::vector<uint16_t> slots;
+  for (uint32_t i = 0; i < 300; ++i) {
+    const glm::dvec3 middle(number(-2, 2), number(-2, 2), number(-1, 3));
+    const glm::dvec3 across(number(0.2, 0.8), number(-0.3, 0.3), number(-0.2, 0.2)),
+        along(number(-0.3, 0.3), number(0.2, 0.8), number(-0.2, 0.2));
+    for (const auto &[u, v] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
+      for (int axis = 0; axis < 3; ++axis)
+        positions.push_back(float((middle + (2.0 * u - 1.0) * across + (2.0 * v - 1.0) * along)[axis]));
+    for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) {
+      triangles.push_back(4 * i + corner);
+      uvs.push_back(corner == 1 || corner == 2 ? 1.0f : 0.0f);
+      uvs.push_back(corner >= 2 ? 1.0f : 0.0f);
+    }
+    slots.insert(slots.end(), 2, i % 7 == 0 ? 1 : 0);
+  }
+  lancer_mesh mesh = {};
+  mesh.name = "leaves";
+  mesh.positions = positions.data();
+  mesh.triangles = triangles.data();
+  mesh.uvs = uvs.data();
+  mesh.material_slots = slots.data();
+  mesh.vertex_count = uint32_t(positions.size() / 3);
+  mesh.triangle_count = uint32_t(triangles.size() / 3);
+  add_mesh(description, mesh);
+  // The leaves twice, panes of all kinds, a ball that is cut out, and a floor.
+  struct Placed {
+    uint32_t kind, first_slot, slot_count;
+    double x, y, z, scale;
+  };
+  const Placed things[] = {{LANCER_MESH, 0, 2, 0, 0, 0, 1},          {LANCER_MESH, 0, 2, 0.3, 0.2, 1, 0.7},
+                           {LANCER_SPHERE, 2, 1, 1, 1, 1, 0.6},      {LANCER_CYLINDER, 2, 1, -1, 1, 1, 0.5},
+                           {LANCER_CONE, 2, 1, -1, -1, 1, 0.7},      {LANCER_PLANE, 2, 1, 0, 0, 0.4, 1},
+                           {LANCER_SPHERE, 0, 1, 1.2, -1, 0.5, 0.6}, {LANCER_PLANE, 3, 1, 0, 0, -1.5, 1}};
+  const uint32_t all_slots[] = {0, 2, 1, 2};
+  std::vector<lancer_instance> instances;
+  for (const Placed &thing : things) {
+    lancer_instance &instance = instances.emplace_back();
+    place(instance.matrix, thing.x, thing.y, thing.z, thing.scale);
+    instance.kind = thing.kind;
+    instance.first_slot = thing.first_slot;
+    instance.slot_count = thing.slot_count;
+  }
+  add_instances(description, uint32_t(instances.size()), instances.data(), 4, all_slots, nullptr, 0);
+  description.world.radiance.value = glm::vec3(0.8f, 0.9f, 1.0f);
+  return commit(std::move(description), kind, {});
+}
+
+// Straight down on all of it.
+inline Camera camera_above(const Scene &scene, uint32_t pixels) {
+  Camera camera;
+  camera.kind = CameraKind::Orthographic;
+  camera.to_world.translation = {0.0, 0.0, 6.0};
+  camera.width = camera.region_width = camera.height = camera.region_height = pixels;
+  camera.left = camera.bottom = -2.5;
+  camera.right = camera.top = 2.5;
+  camera.clip_end = 20.0;
+  camera.to_world = scene.normalisation.to_normalised(camera.to_world);
+  camera.to_world.linear = glm::dmat3(1.0);
+  camera.scale_lengths(scene.normalisation.scale);
+  return camera;
+}
+
+} // namespace lancer_test

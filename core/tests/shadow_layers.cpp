@@ -1,0 +1,130 @@
+// Shadow rays through layers: within one traversal as from hit to hit, and the same bits whoever traverses.
+#include "foliage.h"
+
+#include "integrator/shadow.h"
+
+#include <cstdlib>
+
+namespace lancer_test {
+namespace {
+
+constexpr uint32_t kRays = 3000;
+
+// From all sides, endless or up to a lamp; some have passed layers before.
+struct Question {
+  Ray ray;
+  uint32_t passed;
+};
+std::vector<Question> questions(const Scene &scene) {
+  std::mt19937 random(9);
+  const auto number = [&](double low, double high) { return low + (high - low) * double(random() >> 8) * 0x1p-24; };
+  const auto anywhere = [&](double size) {
+    const double x = number(-size, size), y = number(-size, size), z = number(-size, size);
+    return glm::dvec3(x, y, z);
+  };
+  std::vector<Question> all;
+  for (uint32_t i = 0; i < kRays; ++i) {
+    Ray ray;
+    const glm::dvec3 from = scene.normalisation.to_normalised(anywhere(2.5)),
+                     to = scene.normalisation.to_normalised(anywhere(2.5));
+    ray.o = from;
+    ray.d = i % 3 == 0 ? glm::dvec3(0.01, 0.02, 1.0) : to - from;
+    ray.tmax = i % 2 == 0 ? 1.0 : std::numeric_limits<double>::infinity();
+    if (i % 3 == 0)
+      ray.tmax = std::numeric_limits<double>::infinity();
+    ray.kinds = LANCER_RAY_SHADOW;
+    all.push_back({ray, i % 5 == 0 ? 3u : 0u});
+  }
+  return all;
+}
+
+// What arrives of (1, 1, 1).
+std::vector<glm::vec3> one_traversal(const Scene &scene, uint32_t deepest) {
+  IntegratorSettings settings;
+  settings.transparent_shadows = deepest;
+  const Camera camera = camera_above(scene, 1);
+  ShadowQueue queue(scene, camera, settings);
+  uint32_t slot = 0;
+  for (const Question &question : questions(scene))
+    queue.push(question.ray, {.slot = slot++}, glm::vec3(1.0f), question.passed);
+  std::vector<glm::vec3> arrived(slot, glm::vec3(0.0f));
+  EXPECT_EQ(queue.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { arrived[waiting.slot] = light; }), slot);
+  return arrived;
+}
+
+// The same from hit to hit, by nodes alone.
+glm::vec3 from_hit_to_hit(const Scene &scene, Shader &shader, Question question, uint32_t deepest, uint32_t &layers) {
+  glm::vec3 light(1.0f);
+  Ray ray = question.ray;
+  for (layers = 0;; ++layers) {
+    Hit hit;
+    scene.accelerator->closest_hit({&ray, 1}, {&hit, 1});
+    if (!hit.valid())
+      return light;
+    const Surface surface = surface_at(scene.geometry, scene.slots, ray, hit);
+    const Material &material = scene.materials[surface.material];
+    if (question.passed + layers >= deepest || !material.transmits())
+      return glm::vec3(0.0f);
+    light *=
+        material.transmittance.varies()
+            ? glm::vec3(shader.node_value(surface, uint32_t(material.transmittance.node), glm::vec3(-glm::normalize(ray.d))))
+            : material.transmittance.value;
+    if (light == glm::vec3(0.0f))
+      return light;
+    Ray next = leave(surface, ray.d, ray.tmax);
+    if (std::isfinite(next.tmax))
+      next.d = ray.o + ray.d * ray.tmax - next.o;
+    next.kinds = ray.kinds;
+    ray = next;
+  }
+}
+
+TEST(ShadowLayers, OneTraversalIsTheChainOfClosestHits) {
+  const auto scene = foliage(Writing::Disguised, AcceleratorKind::BruteForce);
+  const Camera camera = camera_above(*scene, 1);
+  for (const uint32_t deepest : {0u, 1u, 4u, 64u}) {
+    const std::vector<glm::vec3> arrived = one_traversal(*scene, deepest);
+    Shader shader(*scene, &camera);
+    const std::vector<Question> asked = questions(*scene);
+    uint32_t some = 0, most = 0, lit = 0;
+    for (uint32_t i = 0; i < kRays; ++i) {
+      uint32_t layers = 0;
+      const glm::vec3 expected = from_hit_to_hit(*scene, shader, asked[i], deepest, layers);
+      some += expected != glm::vec3(0.0f) && expected != glm::vec3(1.0f);
+      lit += expected != glm::vec3(0.0f);
+      most = std::max(most, layers);
+      // A hit's weights differ by roundings of double, so texture coordinates by one of float, 2^-24 of the picture's 16
+      // texels; from one texel to the next alpha changes by 1 at most, along two axes: 2^-19 a layer. Products add one more.
+      const float bound = float(layers + 1) * (0x1p-19f + 0x1p-24f);
+      for (int k = 0; k < 3; ++k)
+        ASSERT_NEAR(arrived[i][k], expected[k], bound) << "ray " << i << ", at most " << deepest << " layers";
+    }
+    EXPECT_GT(lit, 100u);
+    if (deepest > 1) {
+      EXPECT_GT(some, 100u);
+      EXPECT_GE(most, 4u);
+    }
+  }
+}
+
+TEST(ShadowLayers, EveryAcceleratorGivesTheSameBits) {
+  const std::vector<glm::vec3> expected = one_traversal(*foliage(Writing::Plain, AcceleratorKind::BruteForce), 8);
+  EXPECT_EQ(one_traversal(*foliage(Writing::Plain, AcceleratorKind::KdTree), 8), expected);
+  const char *before = std::getenv("LANCER_ISA");
+  const std::string kept = before ? before : "";
+  for (const char *instruction_set : {"sse4", "avx2", "avx512"}) {
+    setenv("LANCER_ISA", instruction_set, 1);
+    EXPECT_EQ(one_traversal(*foliage(Writing::Plain), 8), expected) << instruction_set;
+  }
+  if (before)
+    setenv("LANCER_ISA", kept.c_str(), 1);
+  else
+    unsetenv("LANCER_ISA");
+}
+
+TEST(ShadowLayers, APicturesAlphaAloneSaysWhatItsNodesSay) {
+  EXPECT_EQ(one_traversal(*foliage(Writing::Plain), 8), one_traversal(*foliage(Writing::Disguised), 8));
+}
+
+} // namespace
+} // namespace lancer_test
