@@ -34,6 +34,27 @@ lancer_principled principled(Random &random) {
   return p;
 }
 
+// Nodes of one lobe each, mixed; some of them are left to the general code.
+std::vector<lancer_lobe> mixture(Random &random) {
+  std::vector<lancer_lobe> lobes(1 + random() % 4);
+  for (lancer_lobe &one : lobes) {
+    const uint32_t kinds[] = {LANCER_DIFFUSE, LANCER_GLOSSY, LANCER_GLASS, LANCER_CONDUCTOR};
+    one = lobe(kinds[random() % 4], 0.0f, random() % 4 ? number(random, 0.02f, 1.0f) : 0.0f);
+    if (one.kind == LANCER_DIFFUSE)
+      one.roughness = constant(random() % 6 ? 0.0f : 0.5f);
+    const uint32_t distributions[] = {LANCER_GGX, LANCER_MULTI_GGX, LANCER_MULTI_GGX, LANCER_BECKMANN_DISTRIBUTION};
+    one.distribution = distributions[random() % 8 ? random() % 3 : 3];
+    one.rules = random() % 2 ? LANCER_RULES_4 : LANCER_RULES_45;
+    one.color = random() % 8 ? color(random) : constant(0.0f);
+    one.edge = color(random);
+    one.ior = constant(random() % 2 ? number(random, 1.0f, 2.5f) : random() % 2 ? 1.0f : 0.7f);
+    one.anisotropy = constant(random() % 12 ? 0.0f : 0.4f);
+    const float weight = number(random, 0.1f, 1.0f) / float(lobes.size());
+    one.weight = constant(weight, 0.7f * weight, weight);
+  }
+  return lobes;
+}
+
 uint32_t add_some_material(Studio &studio, Random &random, bool may_shine) {
   lancer_material material = black();
   // A place in the object, as a colour.
@@ -51,6 +72,8 @@ uint32_t add_some_material(Studio &studio, Random &random, bool may_shine) {
       matte.color = result_of(0);
     return studio.add({matte}, material, nodes);
   }
+  if (random() % 3 == 0)
+    return studio.add(mixture(random), material, nodes);
   lancer_principled p = principled(random);
   if (by_nodes)
     p.base_color = result_of(0);

@@ -5,6 +5,7 @@
 
 #include "bsdf/ashikhmin.h"
 #include "bsdf/coating.h"
+#include "bsdf/facet_plans.h"
 #include "bsdf/matte.h"
 #include "bsdf/microfacet.h"
 #include "bsdf/microfacet_fresnel.h"
@@ -103,29 +104,16 @@ void add_glossy(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
     add(bsdf, lobe);
     return;
   }
-  Lobe lobe = make_microfacet(Scatter::Reflect, s.frame, weight, s.alpha_x, s.alpha_y, inputs.rules);
-  lobe.beckmann = inputs.distribution == Facets::Beckmann;
-  set_constant(lobe, inputs.color);
+  Lobe lobe = glossy_facets(inputs, s.frame, s.alpha_x, s.alpha_y);
   complete_microfacet(lobe, bsdf.wo_local[s.frame].z, inputs.distribution == Facets::MultiGgx);
   add(bsdf, lobe);
 }
 
 void add_conductor(Bsdf &bsdf, const LobeInputs &inputs) {
   const Stretched s = conductor_roughness(bsdf, inputs, reflecting_normal(bsdf, inputs.normal));
-  Lobe lobe = make_microfacet(Scatter::Reflect, s.frame, inputs.weight, s.alpha_x, s.alpha_y, inputs.rules);
-  lobe.beckmann = inputs.distribution == Facets::Beckmann;
-  if (inputs.option == 0)
-    set_f82(lobe, glm::clamp(inputs.color, 0.0f, 1.0f), glm::clamp(inputs.edge, 0.0f, 1.0f));
-  else
-    set_conductor(lobe, glm::max(inputs.color, 0.0f), glm::max(inputs.edge, 0.0f));
+  Lobe lobe = conductor_facets(inputs, s.frame, s.alpha_x, s.alpha_y);
   complete_microfacet(lobe, bsdf.wo_local[s.frame].z, inputs.distribution == Facets::MultiGgx);
   add(bsdf, lobe);
-}
-
-// The index from wo's side; Cycles keeps the node's away from 0.
-float index_from(const Bsdf &bsdf, float ior) {
-  const float outside = std::max(ior, 1e-5f);
-  return bsdf.inside ? 1.0f / outside : outside;
 }
 
 void add_refraction(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
@@ -133,34 +121,31 @@ void add_refraction(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weigh
   const float alpha = inputs.roughness * inputs.roughness;
   Lobe lobe = make_microfacet(Scatter::Refract, frame, weight, alpha, alpha, inputs.rules);
   lobe.beckmann = inputs.distribution == Facets::Beckmann;
-  lobe.ior = index_from(bsdf, inputs.ior);
+  lobe.ior = index_from(bsdf.inside, inputs.ior);
   complete_microfacet(lobe, bsdf.wo_local[frame].z, false);
   add(bsdf, lobe);
 }
 
 void add_glass(Bsdf &bsdf, const LobeInputs &inputs) {
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
-  const float cos_o = bsdf.wo_local[frame].z, eta = index_from(bsdf, inputs.ior);
-  const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f), alpha = roughness * roughness;
-  const glm::vec3 color = glm::max(inputs.color, 0.0f);
-  const bool beckmann = inputs.distribution == Facets::Beckmann;
+  const float cos_o = bsdf.wo_local[frame].z;
   const bool preserving = inputs.distribution == Facets::MultiGgx;
   if (inputs.rules == Rules::Blender3 && !preserving) {
     // Blender 3.x: Fresnel of the smooth surface shares the light between two lobes of facets without Fresnel.
-    const float f = fresnel_dielectric(cos_o, eta);
+    const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f), alpha = roughness * roughness;
+    const float eta = index_from(bsdf.inside, inputs.ior), f = fresnel_dielectric(cos_o, eta);
     for (Scatter scatter : {Scatter::Reflect, Scatter::Refract}) {
       const float share = scatter == Scatter::Reflect ? f : 1.0f - f;
-      Lobe lobe = make_microfacet(scatter, frame, inputs.weight * color * share, alpha, alpha, inputs.rules);
-      lobe.beckmann = beckmann;
+      Lobe lobe =
+          make_microfacet(scatter, frame, inputs.weight * glm::max(inputs.color, 0.0f) * share, alpha, alpha, inputs.rules);
+      lobe.beckmann = inputs.distribution == Facets::Beckmann;
       lobe.ior = eta;
       complete_microfacet(lobe, cos_o, false);
       add(bsdf, lobe);
     }
     return;
   }
-  Lobe lobe = make_microfacet(Scatter::Both, frame, inputs.weight, alpha, alpha, inputs.rules);
-  lobe.beckmann = beckmann;
-  set_schlick(lobe, glm::vec3(f0_of_ior(eta)), glm::vec3(1.0f), eta, color, color);
+  Lobe lobe = glass_facets(inputs, frame, bsdf.inside);
   complete_microfacet(lobe, cos_o, preserving);
   add(bsdf, lobe);
 }

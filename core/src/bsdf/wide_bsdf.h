@@ -142,6 +142,9 @@ LANCER_LANE void add_term(const Records &records, int k, const V3 &base_color, W
   const F share = LANCER_FIELD(share);
   const M shares = is(mode, WideMode::Share), layers = is(mode, WideMode::Layer), base = is(mode, WideMode::Base);
   term.color = select(shares | layers, share * left, select(base, base_color * left, base_color));
+  const M given = is(mode, WideMode::Given);
+  if (any(given))
+    term.color = select(given, LANCER_FIELD3(color), term.color);
   term.color = select(term.lambert | term.facets, term.color, V3{F(0.0f), F(0.0f), F(0.0f)});
   if (any(term.facets)) {
     term.alpha_x = LANCER_FIELD(alpha_x);

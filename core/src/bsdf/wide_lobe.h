@@ -12,7 +12,8 @@ enum class WideMode : uint32_t {
   Own = 0,   // it does not: the material's base alone
   Share = 1, // share of what is left, which the others lose
   Layer = 2, // share of what is left, and those below lose what it scatters
-  Base = 3   // the material's base times what is left
+  Base = 3,  // the material's base times what is left
+  Given = 4  // neither the one nor the other: its own
 };
 
 enum class WideShape : uint32_t { Nothing = 0, Lambert = 1, Microfacet = 2 };
@@ -22,6 +23,7 @@ struct WideLobe {
   WideShape shape = WideShape::Nothing;
   WideMode mode = WideMode::Own;
   float share = 1.0f;
+  float color[3] = {}; // of WideMode::Given
   float alpha_x = 0.0f, alpha_y = 0.0f;
   uint32_t fresnel = 0; // FresnelKind
   float f0[3] = {}, f90[3] = {}, b[3] = {};

@@ -134,6 +134,8 @@ void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
         add(bsdf, ready.lobe);
       else if (ready.layers)
         add_layers(bsdf, ready.inputs, ready.principled, *ready.layers);
+      else if (ready.facets)
+        add_facets(bsdf, *ready.facets);
       else if (ready.inputs.kind == LobeKind::Principled)
         add_principled(bsdf, ready.inputs, ready.principled);
       else

@@ -78,6 +78,7 @@ std::vector<ReadyLobe> make_ready_lobes(const Material &material) {
       if (lobe.principled)
         ready.principled = evaluate(*lobe.principled, nothing);
       make_whole(lobe.principled ? &ready.principled : nullptr, ready);
+      ready.facets = plan_facets(ready.inputs);
     } else if (lobe.principled && lobe.principled->constants.rules != Rules::Blender3)
       ready.layers = unvarying_layers(lobe, nothing);
   }

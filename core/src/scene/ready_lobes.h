@@ -1,6 +1,7 @@
 // What of a material's lobes is the same wherever the material is met, made once when the material is added.
 #pragma once
 
+#include "bsdf/facet_plans.h"
 #include "bsdf/principled.h"
 
 #include <optional>
@@ -15,10 +16,11 @@ struct ReadyLobe {
   LobeInputs inputs;
   PrincipledInputs principled;
 
-  bool whole = false;              // `lobe` is all of it
-  bool flat_only = false;          // only where the shading normal is the geometric one
-  Lobe lobe;                       // where it is whole
-  std::optional<LayerPlan> layers; // of Principled: those that are the same
+  bool whole = false;               // `lobe` is all of it
+  bool flat_only = false;           // only where the shading normal is the geometric one
+  Lobe lobe;                        // where it is whole
+  std::optional<LayerPlan> layers;  // of Principled: those that are the same
+  std::optional<FacetPlans> facets; // of a node of facets, where the material has no nodes
 };
 
 // One for each lobe.

@@ -22,7 +22,8 @@ WideLobe *next(WideMaterial &material) {
 bool add_facets(WideMaterial &material, const MicrofacetPlan &plan, WideMode mode, float share) {
   const Lobe &lobe = plan.lobe;
   const bool glass = refracts(lobe), schlick = lobe.fresnel == FresnelKind::Schlick;
-  const bool known = schlick || (!glass && (lobe.fresnel == FresnelKind::Dielectric || lobe.fresnel == FresnelKind::F82));
+  const bool known = schlick || (!glass && (lobe.fresnel == FresnelKind::None || lobe.fresnel == FresnelKind::Dielectric ||
+                                            lobe.fresnel == FresnelKind::F82));
   WideLobe *wide = next(material);
   if (!wide || !known || !reflects(lobe) || lobe.beckmann || !plan.rows)
     return false;
@@ -46,7 +47,8 @@ bool add_facets(WideMaterial &material, const MicrofacetPlan &plan, WideMode mod
   const bool dielectric = lobe.fresnel == FresnelKind::Dielectric;
   wide->lowest = dielectric ? f0_of_ior(lobe.ior) : lobe.lowest;
   wide->preserving = plan.preserving;
-  wide->averaged = !dielectric || (lobe.ior > 1.0f && lobe.rules == Rules::Blender45);
+  wide->averaged =
+      schlick || lobe.fresnel == FresnelKind::F82 || (dielectric && lobe.ior > 1.0f && lobe.rules == Rules::Blender45);
   wide->single = plan.rows->single;
   wide->mix = plan.rows->mix;
   material.bends = 1;
@@ -123,17 +125,35 @@ bool fill_by_nodes(const Material &material, bool inside, WideMaterial &wide) {
          !lobe.roughness.varies() && inputs.roughness < kLambertRoughness && add_lambert(wide, WideMode::Own);
 }
 
+// A lobe that owes nothing to others.
+bool add_alone(WideMaterial &material, const ReadyLobe &ready, bool inside) {
+  const MicrofacetPlan *facets = ready.facets ? &ready.facets->side[inside] : nullptr;
+  const bool matte = ready.whole && !ready.flat_only && ready.lobe.shape == LobeShape::Lambert;
+  const glm::vec3 color = facets ? facets->lobe.color : ready.lobe.color;
+  if (!facets && !matte)
+    return false;
+  if (color == glm::vec3(0.0f))
+    return true;
+  if (!(facets ? add_facets(material, *facets, WideMode::Given, 1.0f) : add_lambert(material, WideMode::Given)))
+    return false;
+  copy(color, material.lobes[material.count - 1].color);
+  return true;
+}
+
 bool fill(const Material &material, bool inside, WideMaterial &wide) {
-  if (material.layered_emission || material.lobes.size() != 1 || material.normal.varies() || material.holdout.varies() ||
+  if (material.layered_emission || material.lobes.empty() || material.normal.varies() || material.holdout.varies() ||
       material.holdout.value != glm::vec3(0.0f))
     return false;
   if (!material.fixed())
-    return fill_by_nodes(material, inside, wide);
-  const ReadyLobe &ready = material.ready.front();
-  if (ready.inputs.kind == LobeKind::Principled)
-    return add_principled(wide, ready.inputs, ready.principled, ready.layers, inside);
-  copy(ready.lobe.color, wide.base);
-  return ready.whole && !ready.flat_only && ready.lobe.shape == LobeShape::Lambert && add_lambert(wide, WideMode::Own);
+    return material.lobes.size() == 1 && fill_by_nodes(material, inside, wide);
+  const ReadyLobe &first = material.ready.front();
+  if (material.ready.size() == 1 && first.inputs.kind == LobeKind::Principled)
+    return add_principled(wide, first.inputs, first.principled, first.layers, inside);
+  // Nodes side by side, each with a weight of its own.
+  for (const ReadyLobe &ready : material.ready)
+    if (!add_alone(wide, ready, inside))
+      return false;
+  return true;
 }
 
 WideMaterial record(const Material &material, bool inside) {
