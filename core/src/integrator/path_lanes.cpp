@@ -55,6 +55,10 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
     block_.on_mesh |= bit;
     block_.bary[0][lane] = hit.u;
     block_.bary[1][lane] = hit.v;
+  } else if (instance.kind == ShapeKind::Sphere || instance.kind == ShapeKind::Plane) {
+    (instance.kind == ShapeKind::Sphere ? block_.on_sphere : block_.on_plane) |= bit;
+    put(rays_[number].o, block_.o, lane);
+    block_.t[lane] = hit.t;
   }
   put(rays_[number].d, block_.d, lane);
   put(path.beta, block_.beta, lane);
@@ -105,7 +109,7 @@ template <uint32_t Shapes, bool Layers> Surface PathIntegrator<Shapes, Layers>::
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::find_surfaces() {
   lanes_.surfaces(block_);
   for (uint32_t lane = 0; lane < waiting_count_; ++lane)
-    if (!(block_.on_mesh >> lane & 1)) {
+    if (!((block_.on_mesh | block_.on_sphere | block_.on_plane) >> lane & 1)) {
       const Surface surface = surface_of(lane);
       put(surface.p, block_.p, lane);
       put(surface.ng, block_.ng, lane);
@@ -242,7 +246,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::sha
       leave_lane(lane, results[paths_[number].slot]);
   }
   waiting_count_ = 0;
-  block_.used = block_.on_mesh = block_.smooth = block_.ends = block_.transmits = 0;
+  block_.used = block_.on_mesh = block_.on_sphere = block_.on_plane = block_.smooth = block_.ends = block_.transmits = 0;
 }
 
 // What follows from a shaded lane: its light, its shadow ray, its next ray.

@@ -18,10 +18,11 @@ struct alignas(64) VertexBlock {
   using Doubles = double[kBlockLanes];
   using Words = uint32_t[kBlockLanes];
 
-  // Given: triangles, and how they were met. d: of the ray, of any length.
+  // Given: triangles, spheres and planes, and how they were met. o, d: of the ray, d of any length; o and t of spheres and
+  // planes alone.
   const double *placement[kBlockLanes]; // Instance::to_world and what follows
   Floats corner[3][3], normal[3][3];    // of a triangle's corners, object space; by corner, axis
-  Doubles bary[2], d[3];
+  Doubles bary[2], d[3], o[3], t;
   Floats terminator; // Instance::terminator
   // Given: what the sampler makes its numbers of. All lanes share the sample and its dimension.
   Words pixel;
@@ -61,16 +62,17 @@ struct alignas(64) VertexBlock {
 
   // Bits of lanes.
   uint32_t used = 0;
-  uint32_t on_mesh = 0, smooth = 0; // given: triangles; those with normals of their own
-  uint32_t asked = 0;               // given: lamp is to be sampled
-  uint32_t transmits = 0;           // given: light is asked for as where light may come through
-  uint32_t ends = 0;                // given: nothing is scattered any more
-  uint32_t odd = 0;                 // only the general code can do them: nothing else holds
-  uint32_t lit = 0;                 // contribution is not black
-  uint32_t lifted = 0;              // the shadow ray may have to start on the curved surface
-  uint32_t sampled = 0;             // there is a next direction
-  uint32_t glossy = 0;              // drawn by a glossy lobe
-  uint32_t transmitted = 0;         // it goes through the surface; glossy says nothing then
+  uint32_t on_mesh = 0, smooth = 0;     // given: triangles; those with normals of their own
+  uint32_t on_sphere = 0, on_plane = 0; // given
+  uint32_t asked = 0;                   // given: lamp is to be sampled
+  uint32_t transmits = 0;               // given: light is asked for as where light may come through
+  uint32_t ends = 0;                    // given: nothing is scattered any more
+  uint32_t odd = 0;                     // only the general code can do them: nothing else holds
+  uint32_t lit = 0;                     // contribution is not black
+  uint32_t lifted = 0;                  // the shadow ray may have to start on the curved surface
+  uint32_t sampled = 0;                 // there is a next direction
+  uint32_t glossy = 0;                  // drawn by a glossy lobe
+  uint32_t transmitted = 0;             // it goes through the surface; glossy says nothing then
 };
 
 // Stretches of rays side by side: from the last scattering along unit wi, up to the distance end.

@@ -43,6 +43,14 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
   }
 }
 
+LANCER_LANE void store_surface(VertexBlock &block, int first, const WideSurface &surface, M lanes) {
+  store3(block.p, first, select(lanes, surface.p, load3(block.p, first)));
+  store(block.offset + first, select(lanes, surface.offset, load(block.offset + first)));
+  store3(block.ng, first, select(lanes, surface.ng, load3(block.ng, first)));
+  store3(block.ns, first, select(lanes, surface.ns, load3(block.ns, first)));
+  block.odd |= placed_bits(surface.odd & lanes, first);
+}
+
 [[gnu::flatten]] void surfaces(VertexBlock &block) {
   block.odd = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
@@ -56,22 +64,25 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
     const D scale = D(1.0) / length;
     store(block.length + first, length);
     store3(block.wo, first, narrow(D3{-(d.x * scale), -(d.y * scale), -(d.z * scale)}));
-    const M on_mesh = some(block.on_mesh, first);
-    if (!any(on_mesh))
-      continue;
-    V3 v[3], n[3];
-    for (int corner = 0; corner < 3; ++corner) {
-      v[corner] = load3(block.corner[corner], first);
-      n[corner] = load3(block.normal[corner], first);
-    }
+    const M on_mesh = some(block.on_mesh, first), on_plane = some(block.on_plane, first);
+    const M round = some(block.on_sphere, first) | on_plane;
     const double *const *placements = block.placement + first;
-    const WideSurface surface = mesh_surface(placements, all_same(placements), v, n, some(block.smooth, first),
-                                             load(block.bary[0] + first), load(block.bary[1] + first));
-    store3(block.p, first, surface.p);
-    store(block.offset + first, surface.offset);
-    store3(block.ng, first, surface.ng);
-    store3(block.ns, first, surface.ns);
-    block.odd |= placed_bits(surface.odd & on_mesh, first);
+    const bool same = all_same(placements);
+    WideSurface surface;
+    if (any(on_mesh)) {
+      V3 v[3], n[3];
+      for (int corner = 0; corner < 3; ++corner) {
+        v[corner] = load3(block.corner[corner], first);
+        n[corner] = load3(block.normal[corner], first);
+      }
+      surface = mesh_surface(placements, same, v, n, some(block.smooth, first), load(block.bary[0] + first),
+                             load(block.bary[1] + first));
+      store_surface(block, first, surface, on_mesh);
+    }
+    if (any(round)) {
+      surface = round_surface(placements, same, load3(block.o, first), d, load(block.t + first), on_plane);
+      store_surface(block, first, surface, round);
+    }
   }
 }
 
