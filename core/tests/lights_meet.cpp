@@ -78,25 +78,45 @@ TEST(Lights, ManyAreMetAsOneByOne) {
     lights.push_back(light);
   }
   const LightSet set(lights, {}, 0, Environment());
+  ASSERT_TRUE(set.finds());
   int met = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const glm::dvec3 o = 500.0 * glm::dvec3(uniform(random), uniform(random), uniform(random));
-    // Aim at lights, and along the axes, where a slab of the boxes is parallel.
-    glm::dvec3 wi = glm::normalize(lights[size_t(i) % 300].position + 20.0 * glm::dvec3(uniform(random)) - o);
-    if (i % 5 == 0)
-      wi = i % 2 ? glm::dvec3(0.0, -1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
-    const double end = 600.0 * std::abs(uniform(random));
-    std::vector<bool> candidates(300);
-    for (const uint32_t number : set.always_on_the_way())
-      candidates[number] = true;
-    set.finder().along(o, wi, end, [&](uint32_t number) { candidates[number] = true; });
-    for (size_t k = 0; k < 300; ++k) {
-      const LightHit hit = meet(lights[k], o, wi);
-      if (!(hit.pdf > 0.0) || !(hit.distance < end))
-        continue;
-      ++met;
-      EXPECT_TRUE(candidates[k]);
+  for (int round = 0; round < 1500; ++round) {
+    WayBlock ways{};
+    glm::dvec3 o[kWays], wi[kWays];
+    for (int lane = 0; lane < kWays; ++lane) {
+      const int i = round * kWays + lane;
+      // From afar, too.
+      o[lane] = (i % 7 ? 500.0 : 1e7) * glm::dvec3(uniform(random), uniform(random), uniform(random));
+      // Aim at lights, and along the axes, where a slab of the boxes is parallel.
+      wi[lane] = glm::normalize(lights[size_t(i) % 300].position + 20.0 * glm::dvec3(uniform(random)) - o[lane]);
+      if (i % 5 == 0)
+        wi[lane] = i % 2 ? glm::dvec3(0.0, -1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+      ways.end[lane] = i % 7 ? 600.0 * std::abs(uniform(random)) : std::numeric_limits<double>::infinity();
+      for (int axis = 0; axis < 3; ++axis) {
+        ways.from[axis][lane] = o[lane][axis];
+        ways.d[axis][lane] = 3.0 * wi[lane][axis];
+      }
     }
+    const int count = round % 2 ? kWays : 5;
+    std::vector<bool> candidates(size_t(kWays) * 300);
+    set.many().along(ways, uint32_t(count), [&](uint32_t lane, uint32_t number) {
+      EXPECT_FALSE(candidates[lane * 300 + number]);
+      candidates[lane * 300 + number] = true;
+      // What is told is near the way. Areas reach sqrt(1.25) radii from their middle, the corners of that ball's box sqrt(3)
+      // times as far, below 2; float loses less than 1 within the scene.
+      const glm::dvec3 to = lights[number].position - o[lane];
+      const double reach = 2.0 * lights[number].radius + 1.0;
+      const bool near = glm::length(to - glm::dot(to, wi[lane]) * wi[lane]) < reach;
+      EXPECT_TRUE(near || glm::length(o[lane]) > 1000.0);
+    });
+    for (int lane = 0; lane < count; ++lane)
+      for (size_t k = 0; k < 300; ++k) {
+        const LightHit hit = meet(lights[k], o[lane], wi[lane]);
+        if (!(hit.pdf > 0.0) || !(hit.distance < ways.end[lane]))
+          continue;
+        ++met;
+        EXPECT_TRUE(candidates[size_t(lane) * 300 + k]);
+      }
   }
   EXPECT_GT(met, 1000);
 }

@@ -55,21 +55,14 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   if (environment_.varies())
     described.push_back(describe_sky(environment_.mean(), environment_light()));
   // One that is never chosen is never met either: both techniques know the same lights.
-  std::vector<LightFinder::Box> boxes;
-  for (uint32_t i = 0; i < lights_.size(); ++i) {
-    if (!has_extent(lights_[i]) || !(described[i].bounds.energy > 0.0))
-      continue;
-    if (described[i].distant())
-      always_.push_back(i);
-    else
-      boxes.push_back({described[i].bounds.low, described[i].bounds.high, i});
-  }
+  std::vector<uint32_t> met;
+  for (uint32_t i = 0; i < lights_.size(); ++i)
+    if (described[i].met && described[i].bounds.energy > 0.0)
+      (described[i].distant() ? always_ : met).push_back(i);
   // A few are asked one by one.
-  if (boxes.size() <= kFew)
-    for (const LightFinder::Box &box : boxes)
-      always_.push_back(box.light);
-  else
-    finder_ = LightFinder(std::move(boxes));
+  find_ = met.size() > kFew;
+  if (!find_)
+    always_.insert(always_.end(), met.begin(), met.end());
   const uint32_t count = uint32_t(size());
   std::vector<DescribedLight> near;
   std::copy_if(described.begin(), described.end(), std::back_inserter(near),
@@ -122,7 +115,7 @@ uint32_t LightSet::hidden_from(uint32_t light) const {
 
 size_t LightSet::bytes() const {
   size_t bytes = environment_.bytes() + lights_.size() * (sizeof(Light) + sizeof(WideLamp)) +
-                 emitter_of_.size() * sizeof(uint32_t) + few_.bytes() + finder_.bytes() + many_.bytes();
+                 emitter_of_.size() * sizeof(uint32_t) + few_.bytes() + many_.bytes();
   std::set<const EmissiveFaces *> counted;
   for (const Emitter &emitter : emitters_) {
     bytes += sizeof(Emitter);

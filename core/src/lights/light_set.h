@@ -4,7 +4,6 @@
 #include "lights/emitter.h"
 #include "lights/environment.h"
 #include "lights/few_lights.h"
-#include "lights/light_finder.h"
 #include "lights/light_tree.h"
 #include "lights/wide_lamp.h"
 
@@ -35,6 +34,8 @@ public:
   Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
   // The same in two steps, for kernels that do the first: among the few, then, with what is left of u, within the one chosen.
   const FewLights &few() const { return few_; }
+  // The one that stands for all of many() has the number size().
+  const LightTree &many() const { return many_; }
   Choice choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const;
   // Whether the second step changes nothing.
   bool decided(uint32_t few_number) const {
@@ -54,12 +55,12 @@ public:
     return emitter_of_.empty() || emitter_of_[instance] == kNone ? nullptr : &emitters_[emitter_of_[instance]];
   }
   // Whether a ray can run into a light as described.
-  bool any_on_the_way() const { return !always_.empty() || !finder_.empty(); }
+  bool any_on_the_way() const { return !always_.empty() || find_; }
   // A few, each to be asked about every ray.
   const std::vector<uint32_t> &always_on_the_way() const { return always_; }
   const WideLamp &plain_numbers(uint32_t light) const { return wide_lamps_[light]; }
-  // Finds the others.
-  const LightFinder &finder() const { return finder_; }
+  // Whether there are others, which the tree of many finds.
+  bool finds() const { return find_; }
   size_t bytes() const;
 
 private:
@@ -70,7 +71,7 @@ private:
   // Few lights are chosen from as in Cycles; of many, those with a place are one of the few.
   FewLights few_;
   LightTree many_;
-  LightFinder finder_;
+  bool find_ = false;
   Environment environment_;
 };
 
