@@ -105,9 +105,9 @@ template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::add_light_met(size_t i, uint32_t number, std::span<SampleResult> results) {
   const Path &path = paths_[i];
   const Ray &ray = rays_[i];
-  const Light &light = scene_.lights.lights()[number];
-  if (!(path.kinds & ~light.hidden_from))
+  if (!(path.kinds & ~scene_.lights.hidden_from(number)))
     return;
+  const Light &light = scene_.lights.lights()[number];
   const double length = glm::length(ray.d);
   const LightHit met = meet(light, path.from, ray.d / length);
   // A sun lies behind all surfaces, wherever the view ends.

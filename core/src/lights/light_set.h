@@ -23,8 +23,8 @@ public:
   // The environment's number among the lights; only where it varies.
   uint32_t environment_light() const { return uint32_t(lights_.size() + emitters_.size()); }
   // Bits LANCER_RAY_* of the rays that do not see a light, and whether nothing stands in its way.
-  uint32_t hidden_from(uint32_t light) const;
-  bool no_shadow(uint32_t light) const { return light < lights_.size() && lights_[light].no_shadow; }
+  uint32_t hidden_from(uint32_t light) const { return switches_[light] & ~kNoShadow; }
+  bool no_shadow(uint32_t light) const { return switches_[light] & kNoShadow; }
 
   struct Choice {
     uint32_t light = 0, face = 0; // face: of an emitter
@@ -64,8 +64,12 @@ public:
   size_t bytes() const;
 
 private:
+  static constexpr uint32_t kNoShadow = 1u << 31;
+
   std::vector<Light> lights_;
   std::vector<WideLamp> wide_lamps_;
+  // hidden_from() and no_shadow() of all: asked for more lights than anything else, they stay in the cache.
+  std::vector<uint32_t> switches_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> always_, emitter_of_;
   // Few lights are chosen from as in Cycles; of many, those with a place are one of the few.
