@@ -47,7 +47,7 @@ public:
 
   // The numbers of a light for kernels that sample it; null where only the general code does.
   const WideLamp *wide_lamp(uint32_t light) const {
-    return light < lights_.size() && lights_[light].kind != LightKind::Sun ? &wide_lamps_[light] : nullptr;
+    return light < lights_.size() && wide_lamps_[light].kind != uint32_t(LightKind::Sun) ? &wide_lamps_[light] : nullptr;
   }
 
   // The emitter of an instance; null if it has none.
