@@ -121,6 +121,32 @@ TEST(Lights, ManyAreMetAsOneByOne) {
   EXPECT_GT(met, 1000);
 }
 
+TEST(Lights, TheDeepestTreeIsSearchedToItsEnd) {
+  // Thirty in each place of a geometric row, which ends in a heap.
+  std::vector<Light> lights;
+  for (int i = 0; i < 3000; ++i) {
+    lights.push_back(ball(1e-3, true));
+    lights.back().position = std::ldexp(1.0, -i / 30) * glm::dvec3(500.0, i % 30, 0.0);
+  }
+  const LightSet set(lights, {}, 0, Environment());
+  const glm::dvec3 o(-1.0, -1.0, 5.0);
+  // Look at every one.
+  for (uint32_t first = 0; first < lights.size(); first += kWays) {
+    const uint32_t count = std::min(uint32_t(kWays), uint32_t(lights.size()) - first);
+    WayBlock ways{};
+    for (uint32_t lane = 0; lane < count; ++lane) {
+      for (int axis = 0; axis < 3; ++axis) {
+        ways.from[axis][lane] = o[axis];
+        ways.d[axis][lane] = lights[first + lane].position[axis] - o[axis];
+      }
+      ways.end[lane] = 1e3;
+    }
+    uint32_t told = 0;
+    set.many().along(ways, count, [&](uint32_t lane, uint32_t number) { told |= uint32_t(number == first + lane) << lane; });
+    EXPECT_EQ(told, (1u << count) - 1u);
+  }
+}
+
 TEST(Lights, KernelsMeetWhatTheGeneralCodeMeets) {
   std::mt19937 random(5);
   const auto uniform = [&](double) { return 2.0 * double(random()) / 4294967296.0 - 1.0; };
