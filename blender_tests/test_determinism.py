@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import Accelerator, Features, Integrator, LancerError, Pass, PixelFilter, Status
+from bindings.abi import Accelerator, Features, Integrator, LancerError, LightKind, Pass, PixelFilter, Status
 from bindings.session import Scene, Session
 from conftest import HERE, ROOT
 from tiny_scenes import showroom
@@ -193,6 +193,20 @@ def test_reading_while_rendering():
         assert session.statistics().invalid_samples == 0
 
 
+def under_many_lamps():
+    """Lamps that are chosen from, and found on the way of rays, through a tree of several levels."""
+    room = picture(passes=(Pass.COMBINED,))
+    lamp = room.lights[0]
+    lights = []
+    for index in range(300):
+        matrix = lamp.matrix.copy()
+        matrix[:3, 3] = index % 20 / 2 - 5, index // 20 / 2 - 4, 2.0 + index % 7 / 4
+        kind = LightKind.POINT if index % 3 else LightKind.SPOT
+        emission = (0.1 * (index % 5 + 1),) * 3
+        lights.append(dataclasses.replace(lamp, matrix=matrix, kind=kind, spot_angle=1.0, emission=emission))
+    return dataclasses.replace(room, lights=tuple(lights))
+
+
 ISA_SCRIPT = """
 import sys
 sys.path[:0] = sys.argv[2:]
@@ -203,6 +217,9 @@ for integrator in test_determinism.INTEGRATORS:
     snapshot = test_determinism.picture(integrator=integrator)
     for data in test_determinism.bits(snapshot).values():
         h.update(data)
+with Session.upload(test_determinism.under_many_lamps()) as session:
+    session.render_all()
+    h.update(session.read().tobytes())
 with Session.upload(snapshot) as session:
     name = session.statistics().instruction_set
 open(sys.argv[1], "w").write(name + " " + h.hexdigest())

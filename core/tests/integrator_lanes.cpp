@@ -120,6 +120,18 @@ void add_lights(Studio &studio, Random &random, bool few) {
   studio.add(lamp);
 }
 
+// So many that the tree of all of them has several levels.
+void add_crowd(Studio &studio, Random &random) {
+  for (int i = 0; i < 60; ++i) {
+    lancer_light lamp = point_light();
+    lamp.radius = i % 3 ? 0.1f : 0.0f;
+    std::fill(lamp.emission, lamp.emission + 3, 0.05f * float(1 + i % 7));
+    place(lamp.matrix, double(number(random, -4.0f, 4.0f)), double(number(random, -4.0f, 4.0f)),
+          double(number(random, 1.0f, 3.0f)));
+    studio.add(lamp);
+  }
+}
+
 std::vector<float> picture(uint32_t seed, uint32_t passes, float clamp) {
   Random random(seed);
   Studio studio;
@@ -144,6 +156,8 @@ std::vector<float> picture(uint32_t seed, uint32_t passes, float clamp) {
     thing.mesh = random() % 2;
   }
   add_lights(studio, random, few);
+  if (seed % 3 == 0)
+    add_crowd(studio, random);
   studio.sky(0.1f, 0.2f, 0.3f, 0, seed % 2);
   studio.look({2, -9, 6}, {0, 0, -0.5}, 48, 9.0);
   studio.render();

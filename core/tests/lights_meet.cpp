@@ -78,27 +78,74 @@ TEST(Lights, ManyAreMetAsOneByOne) {
     lights.push_back(light);
   }
   const LightSet set(lights, {}, 0, Environment());
+  ASSERT_TRUE(set.finds());
   int met = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const glm::dvec3 o = 500.0 * glm::dvec3(uniform(random), uniform(random), uniform(random));
-    // Aim at lights, and along the axes, where a slab of the boxes is parallel.
-    glm::dvec3 wi = glm::normalize(lights[size_t(i) % 300].position + 20.0 * glm::dvec3(uniform(random)) - o);
-    if (i % 5 == 0)
-      wi = i % 2 ? glm::dvec3(0.0, -1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
-    const double end = 600.0 * std::abs(uniform(random));
-    std::vector<bool> candidates(300);
-    for (const uint32_t number : set.always_on_the_way())
-      candidates[number] = true;
-    set.finder().along(o, wi, end, [&](uint32_t number) { candidates[number] = true; });
-    for (size_t k = 0; k < 300; ++k) {
-      const LightHit hit = meet(lights[k], o, wi);
-      if (!(hit.pdf > 0.0) || !(hit.distance < end))
-        continue;
-      ++met;
-      EXPECT_TRUE(candidates[k]);
+  for (int round = 0; round < 1500; ++round) {
+    WayBlock ways{};
+    glm::dvec3 o[kWays], wi[kWays];
+    for (int lane = 0; lane < kWays; ++lane) {
+      const int i = round * kWays + lane;
+      // From where float no longer tells small lamps from their neighbourhood, too.
+      o[lane] = (i % 7 ? 500.0 : 1e7) * glm::dvec3(uniform(random), uniform(random), uniform(random));
+      // Aim at lights, and along the axes, where a slab of the boxes is parallel.
+      const double beside = i % 7 ? 20.0 * uniform(random) : 0.0;
+      wi[lane] = glm::normalize(lights[size_t(i) % 300].position + glm::dvec3(beside) - o[lane]);
+      if (i % 5 == 0)
+        wi[lane] = i % 2 ? glm::dvec3(0.0, -1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+      ways.end[lane] = i % 7 ? 600.0 * std::abs(uniform(random)) : std::numeric_limits<double>::infinity();
+      for (int axis = 0; axis < 3; ++axis) {
+        ways.from[axis][lane] = o[lane][axis];
+        ways.d[axis][lane] = 3.0 * wi[lane][axis];
+      }
     }
+    const int count = round % 2 ? kWays : 5;
+    std::vector<bool> candidates(size_t(kWays) * 300);
+    set.many().along(ways, uint32_t(count), [&](uint32_t lane, uint32_t number) {
+      EXPECT_FALSE(candidates[lane * 300 + number]);
+      candidates[lane * 300 + number] = true;
+      // What is told is near the way. Areas reach sqrt(1.25) radii from their middle, the corners of that ball's box sqrt(3)
+      // times as far, below 2; float loses less than 1 within the scene.
+      const glm::dvec3 to = lights[number].position - o[lane];
+      const double reach = 2.0 * lights[number].radius + 1.0;
+      const bool near = glm::length(to - glm::dot(to, wi[lane]) * wi[lane]) < reach;
+      EXPECT_TRUE(near || glm::length(o[lane]) > 1000.0);
+    });
+    for (int lane = 0; lane < count; ++lane)
+      for (size_t k = 0; k < 300; ++k) {
+        const LightHit hit = meet(lights[k], o[lane], wi[lane]);
+        if (!(hit.pdf > 0.0) || !(hit.distance < ways.end[lane]))
+          continue;
+        ++met;
+        EXPECT_TRUE(candidates[size_t(lane) * 300 + k]);
+      }
   }
   EXPECT_GT(met, 1000);
+}
+
+TEST(Lights, TheDeepestTreeIsSearchedToItsEnd) {
+  // Thirty in each place of a geometric row, which ends in a heap.
+  std::vector<Light> lights;
+  for (int i = 0; i < 3000; ++i) {
+    lights.push_back(ball(1e-3, true));
+    lights.back().position = std::ldexp(1.0, -i / 30) * glm::dvec3(500.0, i % 30, 0.0);
+  }
+  const LightSet set(lights, {}, 0, Environment());
+  const glm::dvec3 o(-1.0, -1.0, 5.0);
+  // Look at every one.
+  for (uint32_t first = 0; first < lights.size(); first += kWays) {
+    const uint32_t count = std::min(uint32_t(kWays), uint32_t(lights.size()) - first);
+    WayBlock ways{};
+    for (uint32_t lane = 0; lane < count; ++lane) {
+      for (int axis = 0; axis < 3; ++axis) {
+        ways.from[axis][lane] = o[axis];
+        ways.d[axis][lane] = lights[first + lane].position[axis] - o[axis];
+      }
+      ways.end[lane] = 1e3;
+    }
+    uint32_t told = 0;
+    set.many().along(ways, count, [&](uint32_t lane, uint32_t number) { told |= uint32_t(number == first + lane) << lane; });
+    EXPECT_EQ(told, (1u << count) - 1u);
+  }
 }
 
 TEST(Lights, KernelsMeetWhatTheGeneralCodeMeets) {

@@ -80,7 +80,9 @@ private:
   void draw_numbers();
   void find_surfaces();
   void ask_nodes();
+  LightQuery query(uint32_t lane) const;
   LightSet::Choice choose_light(uint32_t lane) const;
+  void choose_of_many();
   void ask_lights();
   Surface surface_of(uint32_t lane) const;
   void send_shadow_of(uint32_t lane);

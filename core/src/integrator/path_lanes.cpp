@@ -149,15 +149,37 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
   }
 }
 
+// Seen from the viewer's side, as the light comes.
+template <uint32_t Shapes, bool Layers> LightQuery PathIntegrator<Shapes, Layers>::query(uint32_t lane) const {
+  const glm::vec3 ns = get(block_.ns, lane);
+  const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
+  return LightQuery(get(block_.p, lane), behind ? -ns : ns, block_.transmits >> lane & 1);
+}
+
 template <uint32_t Shapes, bool Layers> LightSet::Choice PathIntegrator<Shapes, Layers>::choose_light(uint32_t lane) const {
   const LightChoice few{block_.chosen[lane], block_.chosen_probability[lane], block_.chosen_rest[lane]};
   if (!(few.probability > 0.0) || scene_.lights.decided(few.number))
     return {few.number, 0, few.probability};
-  // Seen from the viewer's side, as the light comes.
-  const glm::vec3 ns = get(block_.ns, lane);
-  const bool behind = glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f;
-  const LightQuery here(get(block_.p, lane), behind ? -ns : ns, block_.transmits >> lane & 1);
-  return scene_.lights.choose_within(scene_.geometry, here, few);
+  return scene_.lights.choose_within(scene_.geometry, query(lane), few);
+}
+
+// Goes on with the lanes that have chosen the cluster of all lights with a place.
+template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::choose_of_many() {
+  if (scene_.lights.many().empty())
+    return;
+  LightWalk walks[kBlockLanes];
+  uint32_t lanes[kBlockLanes], count = 0;
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+    if (block_.chosen[lane] == scene_.lights.size() && block_.chosen_probability[lane] > 0.0 && !waiting_[lane].ends) {
+      walks[count] = LightTree::walk(query(lane), block_.chosen_rest[lane]);
+      lanes[count++] = lane;
+    }
+  scene_.lights.many().choose({walks, count});
+  for (uint32_t i = 0; i < count; ++i) {
+    block_.chosen[lanes[i]] = walks[i].number;
+    block_.chosen_probability[lanes[i]] *= walks[i].probability;
+    block_.chosen_rest[lanes[i]] = walks[i].u;
+  }
 }
 
 // Chooses a light for every lane; samples those that kernels do not know.
@@ -170,6 +192,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     block_.tree_lights = few.lights().data();
     block_.light_root = few.root();
     lanes_.choose(block_);
+    choose_of_many();
   }
   for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
     block_.lamp[lane] = &nothing;

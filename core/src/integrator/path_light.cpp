@@ -77,9 +77,9 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::add
   const LightSet &lights = scene_.lights;
   if (!lights.any_on_the_way())
     return;
-  for (size_t first = 0; first < paths_.size(); first += kBlockLanes) {
+  for (size_t first = 0; first < paths_.size(); first += kWays) {
     // Look from the last scattering, as sampling does.
-    const uint32_t count = uint32_t(std::min<size_t>(kBlockLanes, paths_.size() - first));
+    const uint32_t count = uint32_t(std::min<size_t>(kWays, paths_.size() - first));
     for (uint32_t lane = 0; lane < count; ++lane) {
       const Ray &ray = rays_[first + lane];
       put(paths_[first + lane].from, ways_.from, lane);
@@ -91,12 +91,9 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::add
       for (uint32_t rest = met; rest != 0; rest &= rest - 1)
         add_light_met(first + size_t(std::countr_zero(rest)), number, results);
     }
+    if (lights.finds())
+      lights.many().along(ways_, count, [&](uint32_t lane, uint32_t number) { add_light_met(first + lane, number, results); });
   }
-  if (lights.finder().empty())
-    return;
-  for (size_t i = 0; i < paths_.size(); ++i)
-    lights.finder().along(paths_[i].from, rays_[i].d / glm::length(rays_[i].d), way_end(i),
-                          [&](uint32_t number) { add_light_met(i, number, results); });
 }
 
 template <uint32_t Shapes, bool Layers> double PathIntegrator<Shapes, Layers>::way_end(size_t i) const {
@@ -108,9 +105,9 @@ template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::add_light_met(size_t i, uint32_t number, std::span<SampleResult> results) {
   const Path &path = paths_[i];
   const Ray &ray = rays_[i];
-  const Light &light = scene_.lights.lights()[number];
-  if (!(path.kinds & ~light.hidden_from))
+  if (!(path.kinds & ~scene_.lights.hidden_from(number)))
     return;
+  const Light &light = scene_.lights.lights()[number];
   const double length = glm::length(ray.d);
   const LightHit met = meet(light, path.from, ray.d / length);
   // A sun lies behind all surfaces, wherever the view ends.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bsdf/wide_lobe.h"
+#include "lights/way_block.h"
 #include "lights/wide_lamp.h"
 
 #include <cstdint>
@@ -11,7 +12,7 @@ namespace lancer {
 struct LightNode;
 struct TreeLight;
 
-inline constexpr int kBlockLanes = 16;
+inline constexpr int kBlockLanes = kWays;
 
 struct alignas(64) VertexBlock {
   using Floats = float[kBlockLanes];
@@ -73,11 +74,6 @@ struct alignas(64) VertexBlock {
   uint32_t sampled = 0;                 // there is a next direction
   uint32_t glossy = 0;                  // drawn by a glossy lobe
   uint32_t transmitted = 0;             // it goes through the surface; glossy says nothing then
-};
-
-// Stretches of rays side by side: from the last scattering along unit wi, up to the distance end.
-struct alignas(64) WayBlock {
-  VertexBlock::Doubles from[3], d[3], end; // d: of any length
 };
 
 } // namespace lancer

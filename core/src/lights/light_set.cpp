@@ -44,8 +44,14 @@ WideLamp make_wide(const Light &light) {
 
 LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment)
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
-  for (const Light &light : lights_)
+  for (const Light &light : lights_) {
     wide_lamps_.push_back(make_wide(light));
+    switches_.push_back(light.hidden_from | (light.no_shadow ? kNoShadow : 0));
+  }
+  for (const Emitter &emitter : emitters_)
+    switches_.push_back(emitter.hidden_from());
+  if (environment_.varies())
+    switches_.push_back(environment_.hidden_from());
   std::vector<DescribedLight> described;
   described.reserve(size());
   for (uint32_t i = 0; i < lights_.size(); ++i)
@@ -55,21 +61,14 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   if (environment_.varies())
     described.push_back(describe_sky(environment_.mean(), environment_light()));
   // One that is never chosen is never met either: both techniques know the same lights.
-  std::vector<LightFinder::Box> boxes;
-  for (uint32_t i = 0; i < lights_.size(); ++i) {
-    if (!has_extent(lights_[i]) || !(described[i].bounds.energy > 0.0))
-      continue;
-    if (described[i].distant())
-      always_.push_back(i);
-    else
-      boxes.push_back({described[i].bounds.low, described[i].bounds.high, i});
-  }
+  std::vector<uint32_t> met;
+  for (uint32_t i = 0; i < lights_.size(); ++i)
+    if (described[i].met && described[i].bounds.energy > 0.0)
+      (described[i].distant() ? always_ : met).push_back(i);
   // A few are asked one by one.
-  if (boxes.size() <= kFew)
-    for (const LightFinder::Box &box : boxes)
-      always_.push_back(box.light);
-  else
-    finder_ = LightFinder(std::move(boxes));
+  find_ = met.size() > kFew;
+  if (!find_)
+    always_.insert(always_.end(), met.begin(), met.end());
   const uint32_t count = uint32_t(size());
   std::vector<DescribedLight> near;
   std::copy_if(described.begin(), described.end(), std::back_inserter(near),
@@ -113,16 +112,9 @@ double LightSet::probability(const Geometry &geometry, const LightQuery &query, 
   return of_face > 0.0 ? of_face * probability(query, uint32_t(lights_.size() + (&emitter - emitters_.data()))) : 0.0;
 }
 
-uint32_t LightSet::hidden_from(uint32_t light) const {
-  if (light < lights_.size())
-    return lights_[light].hidden_from;
-  const size_t emitter = light - lights_.size();
-  return emitter < emitters_.size() ? emitters_[emitter].hidden_from() : environment_.hidden_from();
-}
-
 size_t LightSet::bytes() const {
   size_t bytes = environment_.bytes() + lights_.size() * (sizeof(Light) + sizeof(WideLamp)) +
-                 emitter_of_.size() * sizeof(uint32_t) + few_.bytes() + finder_.bytes() + many_.bytes();
+                 (emitter_of_.size() + switches_.size()) * sizeof(uint32_t) + few_.bytes() + many_.bytes();
   std::set<const EmissiveFaces *> counted;
   for (const Emitter &emitter : emitters_) {
     bytes += sizeof(Emitter);

@@ -4,7 +4,6 @@
 #include "lights/emitter.h"
 #include "lights/environment.h"
 #include "lights/few_lights.h"
-#include "lights/light_finder.h"
 #include "lights/light_tree.h"
 #include "lights/wide_lamp.h"
 
@@ -24,8 +23,8 @@ public:
   // The environment's number among the lights; only where it varies.
   uint32_t environment_light() const { return uint32_t(lights_.size() + emitters_.size()); }
   // Bits LANCER_RAY_* of the rays that do not see a light, and whether nothing stands in its way.
-  uint32_t hidden_from(uint32_t light) const;
-  bool no_shadow(uint32_t light) const { return light < lights_.size() && lights_[light].no_shadow; }
+  uint32_t hidden_from(uint32_t light) const { return switches_[light] & ~kNoShadow; }
+  bool no_shadow(uint32_t light) const { return switches_[light] & kNoShadow; }
 
   struct Choice {
     uint32_t light = 0, face = 0; // face: of an emitter
@@ -35,6 +34,8 @@ public:
   Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
   // The same in two steps, for kernels that do the first: among the few, then, with what is left of u, within the one chosen.
   const FewLights &few() const { return few_; }
+  // The one that stands for all of many() has the number size().
+  const LightTree &many() const { return many_; }
   Choice choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const;
   // Whether the second step changes nothing.
   bool decided(uint32_t few_number) const {
@@ -46,7 +47,7 @@ public:
 
   // The numbers of a light for kernels that sample it; null where only the general code does.
   const WideLamp *wide_lamp(uint32_t light) const {
-    return light < lights_.size() && lights_[light].kind != LightKind::Sun ? &wide_lamps_[light] : nullptr;
+    return light < lights_.size() && wide_lamps_[light].kind != uint32_t(LightKind::Sun) ? &wide_lamps_[light] : nullptr;
   }
 
   // The emitter of an instance; null if it has none.
@@ -54,23 +55,27 @@ public:
     return emitter_of_.empty() || emitter_of_[instance] == kNone ? nullptr : &emitters_[emitter_of_[instance]];
   }
   // Whether a ray can run into a light as described.
-  bool any_on_the_way() const { return !always_.empty() || !finder_.empty(); }
+  bool any_on_the_way() const { return !always_.empty() || find_; }
   // A few, each to be asked about every ray.
   const std::vector<uint32_t> &always_on_the_way() const { return always_; }
   const WideLamp &plain_numbers(uint32_t light) const { return wide_lamps_[light]; }
-  // Finds the others.
-  const LightFinder &finder() const { return finder_; }
+  // Whether there are others, which the tree of many finds.
+  bool finds() const { return find_; }
   size_t bytes() const;
 
 private:
+  static constexpr uint32_t kNoShadow = 1u << 31;
+
   std::vector<Light> lights_;
   std::vector<WideLamp> wide_lamps_;
+  // hidden_from() and no_shadow() of all: asked for more lights than anything else, they stay in the cache.
+  std::vector<uint32_t> switches_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> always_, emitter_of_;
   // Few lights are chosen from as in Cycles; of many, those with a place are one of the few.
   FewLights few_;
   LightTree many_;
-  LightFinder finder_;
+  bool find_ = false;
   Environment environment_;
 };
 

@@ -1,8 +1,11 @@
-// Which of many lights to ask at a point: a tree of clusters, eight to a node, chosen by the most that may arrive from each.
+// Which of many lights to ask at a point, and which ones a ray may run into: a tree of clusters, sixteen to a branch. Clusters
+// are chosen by the most that may arrive from each.
 #pragma once
 
+#include "lights/light_kernel.h"
 #include "lights/tree_light.h"
 
+#include <span>
 #include <vector>
 
 namespace lancer {
@@ -14,43 +17,55 @@ public:
   // at most.
   LightTree(std::vector<DescribedLight> lights, uint32_t count);
 
-  bool empty() const { return nodes_.empty(); }
+  bool empty() const { return branches_.empty(); }
   // Of all of it; energy in the user's units.
   const LightBounds &bounds() const { return bounds_; }
 
   // u in [0, 1): one number for the whole way down.
   LightChoice choose(const LightQuery &query, double u) const;
+  // The same for several at once.
+  static LightWalk walk(const LightQuery &query, double u);
+  void choose(std::span<LightWalk> walks) const { kernel_->choose(tree(), walks.data(), uint32_t(walks.size())); }
   // With which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
-  size_t bytes() const { return nodes_.size() * (sizeof(Node) + sizeof(uint32_t)) + place_of_.size() * sizeof(uint32_t); }
+  // Calls visit(way, light) for all lights that the first ways may meet before they end. The tree is not empty.
+  template <class Visit> void along(const WayBlock &ways, uint32_t count, Visit &&visit) const {
+    kernel_->along(
+        tree(), ways, count,
+        [](void *context, uint32_t way, uint32_t light) {
+          (*static_cast<std::remove_reference_t<Visit> *>(context))(way, light);
+        },
+        &visit);
+  }
+
+  size_t bytes() const {
+    return branches_.size() * (sizeof(LightBranch) + sizeof(uint32_t)) + aims_.size() * sizeof(LightAim) +
+           place_of_.size() * sizeof(uint32_t);
+  }
 
 private:
-  static constexpr int kWidth = 8;
-  static constexpr uint32_t kLight = 1u << 31;
-
-  // Of its children, side by side: they are weighed in vector registers.
-  struct alignas(64) Node {
-    float centre[3][kWidth] = {}, half[3][kWidth] = {}, axis[3][kWidth] = {};
-    float cos_o[kWidth] = {}, sin_o[kWidth] = {}, cos_all[kWidth] = {};
-    float energy[kWidth] = {};   // 0: no child
-    uint32_t child[kWidth] = {}; // a node, or kLight and the number of a light
-  };
-  struct Weights {
-    alignas(16) float most[kWidth];
-    double sum = 0.0;
-  };
   struct Part {
-    uint32_t begin, end, slot; // slot: of the parent, kWidth times its number and the child's
+    uint32_t begin, end, slot, depth; // slot: of the parent
+  };
+  struct Child {
+    uint32_t begin, end;
+    LightBounds bounds;
+    double cost;
   };
 
-  static Weights weigh(const Node &node, const LightQuery &query);
-  void add_node(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
+  LightBranches tree() const { return {branches_.data(), aims_.empty() ? nullptr : aims_.data(), slot_of_.data()}; }
+  void add_branch(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
+  static void set(const Child &child, uint32_t i, const std::vector<DescribedLight> &lights, LightBranch &branch,
+                  LightAim &aim);
 
-  std::vector<Node> nodes_;        // 0 is the root
-  std::vector<uint32_t> slot_of_;  // of each node in its parent
+  const LightKernel *kernel_ = nullptr;
+  std::vector<LightBranch> branches_;
+  std::vector<LightAim> aims_; // of each branch; empty where nothing is aimed
+  std::vector<uint32_t> slot_of_;
   std::vector<uint32_t> place_of_; // slot by number of light; kNone: never chosen
   LightBounds bounds_;
+  bool crowded_ = false;
 };
 
 } // namespace lancer

@@ -149,6 +149,7 @@ DescribedLight describe(const Light &light, uint32_t number) {
   DescribedLight result;
   TreeLight &known = result.light;
   LightBounds &bounds = result.bounds;
+  result.met = has_extent(light);
   known.number = number;
   known.centre = light.position;
   known.axis = glm::vec3(-light.z);

@@ -41,6 +41,7 @@ struct TreeLight {
 struct DescribedLight {
   TreeLight light;
   LightBounds bounds; // energy in the user's units
+  bool met = false;   // a ray may run into it
 
   // Beyond everything, without a place.
   bool distant() const { return light.kind == TreeLight::Kind::Sun || light.kind == TreeLight::Kind::Sky; }

@@ -1,0 +1,154 @@
+// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+#include "lights/light_kernel.h"
+
+#include "accel/kernel_name.h"
+#include "lights/few_lights.h"
+#include "lights/wide_weights.h"
+#include "sampling/lane_vectors.h"
+
+namespace lancer {
+namespace {
+
+// One step down. Returns the child's word; 0 where nothing can arrive.
+LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWalk &walk) {
+  WideWeights weights;
+  weigh_all(tree, number, walk, weights);
+  if (weights.able == 0) {
+    walk.probability = 0.0;
+    return 0;
+  }
+  // Go along the weights; rounding at the end stays with the last that has one.
+  const double target = walk.u * weights.sum;
+  alignas(64) double up_to[kChildren];
+  uint32_t beyond = 0;
+  for (int i = 0; i < kParts; i += 2) {
+    const D sums{weights.up_to[i], weights.up_to[i + 1]};
+    store(up_to + i * kHalf, sums);
+    beyond |= bits(D(target) < sums) << (i * kHalf);
+  }
+  beyond &= weights.able;
+  const int child = beyond ? __builtin_ctz(beyond) : 31 - __builtin_clz(weights.able);
+  const double left = child > 0 ? target - up_to[child - 1] : target, most = static_cast<double>(weights.most[child]);
+  const double rest = left > 0.0 ? left / most : 0.0;
+  walk.u = rest < kBelowOne ? rest : kBelowOne;
+  walk.probability *= most / weights.sum;
+  return tree.branches[number].child[child];
+}
+
+[[gnu::flatten]] void choose(const LightBranches &tree, LightWalk *walks, uint32_t count) {
+  // Go down level by level: the next walk starts before the last one's step has ended.
+  constexpr uint32_t kMost = kWays;
+  for (uint32_t begin = 0; begin < count; begin += kMost) {
+    uint32_t at[kMost], open[kMost], open_count = count - begin < kMost ? count - begin : kMost;
+    for (uint32_t i = 0; i < open_count; ++i) {
+      at[i] = 0;
+      open[i] = i;
+      walks[begin + i].probability = 1.0;
+    }
+    while (open_count > 0) {
+      uint32_t left = 0;
+      for (uint32_t k = 0; k < open_count; ++k) {
+        const uint32_t i = open[k], child = go_down(tree, at[i], walks[begin + i]);
+        at[i] = walks[begin + i].number = child & LightBranch::kNumber;
+        open[left] = i;
+        left += !(child & LightBranch::kLight) && child != 0;
+      }
+      open_count = left;
+    }
+  }
+}
+
+[[gnu::flatten]] double probability(const LightBranches &tree, const LightWalk &walk, uint32_t slot) {
+  // Go up from the light.
+  double result = 1.0;
+  for (; slot != LightBranches::kRoot; slot = tree.slot_of[slot / kBranchWidth]) {
+    WideWeights weights;
+    weigh_all(tree, slot / kBranchWidth, walk, weights);
+    if (!(weights.able >> slot % kBranchWidth & 1))
+      return 0.0;
+    result *= static_cast<double>(weights.most[slot % kBranchWidth]) / weights.sum;
+  }
+  return result;
+}
+
+// A way in float, and how far its place may be wrong by that.
+struct FloatWay {
+  F o[3], inverse[3], slack, end;
+};
+
+// What a coordinate of a box may lose in the seven roundings of its two distances, as a share of itself.
+constexpr float kLost = 0x1p-21f;
+
+// A direction of 0 stands for this one: what it adds to a place is lost in the padding of the boxes.
+constexpr float kLeastDirection = 0x1p-64f;
+
+LANCER_LANE F inverse_of(F wi) { return F(1.0f) / copysign(max(abs(wi), F(kLeastDirection)), wi); }
+
+// Bits of the children that the way may meet.
+LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
+  uint32_t passed = 0;
+  for (int first = 0; first < kChildren; first += kLanes) {
+    F begin(0.0f), end = way.end;
+    for (int axis = 0; axis < 3; ++axis) {
+      const F x = load(branch.centre[axis] + first) - way.o[axis], half = load(branch.half[axis] + first);
+      const F wide = half + (F(kLost) * (half + abs(x)) + way.slack);
+      const F middle = x * way.inverse[axis], reach = wide * abs(way.inverse[axis]);
+      begin = max(begin, middle - reach);
+      end = min(end, middle + reach);
+    }
+    const M may = !equal(load(branch.child + first) & U(LightBranch::kMet), U(0u));
+    passed |= bits((begin <= end) & may) << first;
+  }
+  return passed;
+}
+
+[[gnu::flatten]] void along(const LightBranches &tree, const WayBlock &ways, uint32_t count, LightKernel::Visit visit,
+                            void *context) {
+  // Round the ways to float.
+  alignas(64) float o[3][kWays], inverse[3][kWays], slack[kWays], end[kWays];
+  for (int first = 0; first < kWays; first += kLanes) {
+    const D3 d = load3(ways.d, first);
+    const V3 from = narrow(load3(ways.from, first)), wi = narrow(d / sqrt(dot(d, d)));
+    store3(o, first, from);
+    store3(inverse, first, V3{inverse_of(wi.x), inverse_of(wi.y), inverse_of(wi.z)});
+    store(slack + first, F(kLost) * (abs(from.x) + abs(from.y) + abs(from.z)));
+    store(end + first, narrow(load(ways.end + first)) * F(1.0f + kLost));
+  }
+  struct Waiting {
+    uint32_t number, children;
+  };
+  Waiting waiting[LightBranches::kDeepest];
+  for (uint32_t lane = 0; lane < count; ++lane) {
+    const FloatWay way{{F(o[0][lane]), F(o[1][lane]), F(o[2][lane])},
+                       {F(inverse[0][lane]), F(inverse[1][lane]), F(inverse[2][lane])},
+                       F(slack[lane]),
+                       F(end[lane])};
+    uint32_t depth = 0;
+    Waiting at{0, pass(tree.branches[0], way)};
+    for (;;) {
+      if (at.children == 0) {
+        if (depth == 0)
+          break;
+        at = waiting[--depth];
+      }
+      const LightBranch &branch = tree.branches[at.number];
+      const uint32_t child = branch.child[__builtin_ctz(at.children)], number = child & LightBranch::kNumber;
+      at.children &= at.children - 1;
+      if (child & LightBranch::kLight) {
+        visit(context, lane, number);
+        continue;
+      }
+      if (at.children != 0)
+        waiting[depth++] = at;
+      at = {number, pass(tree.branches[number], way)};
+    }
+  }
+}
+
+} // namespace
+
+namespace LANCER_ISA {
+const LightKernel light_kernel = {LANCER_ISA_NAME, choose, probability, along};
+}
+
+} // namespace lancer

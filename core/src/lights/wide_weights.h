@@ -1,0 +1,102 @@
+// What the children of a branch are worth at a point, side by side: the upper bound of importance(), of clusters. For kernels
+// only, like sampling/lanes.h.
+#pragma once
+
+#include "lights/light_branch.h"
+#include "lights/light_importance.h"
+#include "sampling/lanes.h"
+
+namespace lancer {
+namespace {
+
+constexpr int kChildren = static_cast<int>(kBranchWidth);
+// Registers of doubles that hold one number of each child.
+constexpr int kParts = kChildren / kHalf;
+
+LANCER_LANE F sine(F cosine) { return sqrt(max((F(1.0f) - cosine) * (F(1.0f) + cosine), F(0.0f))); }
+
+// Of kLanes children from the first on; 0 where nothing can arrive.
+LANCER_LANE F weigh(const LightBranch &branch, const LightAim *aim, const LightWalk &walk, int first) {
+  const F zero(0.0f), one(1.0f), little(kCosineSlack);
+  const F n[3] = {F(walk.n[0]), F(walk.n[1]), F(walk.n[2])};
+  const F x = load(branch.centre[0] + first) - F(walk.p[0]), y = load(branch.centre[1] + first) - F(walk.p[1]),
+          z = load(branch.centre[2] + first) - F(walk.p[2]);
+  const F d2 = x * x + y * y + z * z, per_d = one / sqrt(max(d2, F(kNearest2)));
+  // Nothing of the box is above the surface.
+  const F reach = abs(n[0]) * load(branch.half[0] + first) + abs(n[1]) * load(branch.half[1] + first) +
+                  abs(n[2]) * load(branch.half[2] + first) + F(walk.slack);
+  const F along = n[0] * x + n[1] * y + n[2] * z, energy = load(branch.energy + first);
+  M kept = energy > zero;
+  if (!walk.transmits)
+    kept = kept & (along + reach > zero);
+  // The half angle that it fills.
+  const F radius = load(branch.radius + first);
+  const M outside = d2 > radius * radius;
+  const F sin_u = select(outside, radius * per_d, zero), cos_u = select(outside, sine(sin_u), F(-1.0f));
+  // The smallest angle at which light may arrive.
+  const F one_side = along * per_d, cos_i = walk.transmits ? abs(one_side) : one_side;
+  const F arrives = select(cos_i >= cos_u, one, cos_i * cos_u + sine(cos_i) * sin_u);
+  F most = energy * max(arrives, little) * min(per_d * per_d, load(branch.per_near2 + first));
+  if (any(!equal(load(branch.child + first) & U(LightBranch::kAimed), U(0u)))) {
+    // The smallest angle at which it may leave.
+    const F cos_theta =
+        -(load(aim->axis[0] + first) * x + load(aim->axis[1] + first) * y + load(aim->axis[2] + first) * z) * per_d;
+    const F inner = cos_theta * cos_u + sine(cos_theta) * sin_u, cos_o = load(aim->cos_o + first);
+    const F turned = inner * cos_o + sine(inner) * load(aim->sin_o + first);
+    const M within = (cos_theta >= cos_u) | (inner >= cos_o);
+    most = most * select(within, one, max(turned, little));
+    kept = kept & ((cos_theta >= cos_u) | (inner > load(aim->cos_all + first) - little));
+  }
+  return select(kept, max(most, F(kLeastImportance)), zero);
+}
+
+// The lanes of b, a number of places to the right, and before them the last of a.
+template <int By> LANCER_LANE DoubleVector shifted(DoubleVector a, DoubleVector b) {
+#if defined(__AVX512F__)
+  return __builtin_shufflevector(a, b, 8 - By, 9 - By, 10 - By, 11 - By, 12 - By, 13 - By, 14 - By, 15 - By);
+#elif defined(__AVX__)
+  return __builtin_shufflevector(a, b, 4 - By, 5 - By, 6 - By, 7 - By);
+#else
+  return __builtin_shufflevector(a, b, 2 - By, 3 - By);
+#endif
+}
+
+// Adds to each child's number that of the child so many places before it.
+template <int By> LANCER_LANE void add_before(DoubleVector (&of)[kParts]) {
+  const DoubleVector none{};
+  for (int i = kParts - 1; i >= 0; --i) {
+    if constexpr (By < kHalf)
+      of[i] = of[i] + shifted<By>(i > 0 ? of[i - 1] : none, of[i]);
+    else if (i >= By / kHalf)
+      of[i] = of[i] + of[i - By / kHalf];
+  }
+}
+
+struct WideWeights {
+  alignas(64) float most[kChildren];
+  // Of the children up to each: the same sums in every instruction set.
+  DoubleVector up_to[kParts];
+  uint32_t able = 0; // bits of those that have a weight
+  double sum = 0.0;
+};
+
+LANCER_LANE void weigh_all(const LightBranches &tree, uint32_t number, const LightWalk &walk, WideWeights &weights) {
+  const LightBranch &branch = tree.branches[number];
+  const LightAim *aim = tree.aims + (tree.aims ? number : 0);
+  for (int first = 0; first < kChildren; first += kLanes) {
+    const F most = weigh(branch, aim, walk, first);
+    store(weights.most + first, most);
+    weights.able |= bits(most > F(0.0f)) << first;
+    const D wide = widen(most);
+    weights.up_to[first / kHalf] = wide.lo;
+    weights.up_to[first / kHalf + 1] = wide.hi;
+  }
+  add_before<1>(weights.up_to);
+  add_before<2>(weights.up_to);
+  add_before<4>(weights.up_to);
+  add_before<8>(weights.up_to);
+  weights.sum = weights.up_to[kParts - 1][kHalf - 1];
+}
+
+} // namespace
+} // namespace lancer
