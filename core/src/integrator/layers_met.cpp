@@ -63,6 +63,8 @@ void LayersMet::put(Layer *known, size_t ray, const Hit &hit, const glm::vec3 &t
 }
 
 std::span<const Layer> LayersMet::in_order(size_t ray) {
+  if (rays_[ray].count == 1)
+    return {&layers_[rays_[ray].first], 1};
   sorted_.clear();
   for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next)
     sorted_.push_back(layers_[number]);

@@ -22,14 +22,12 @@ void PathIntegrator<Shapes, Layers>::find_hits(std::span<SampleResult> results, 
 // 1, and ask no light for anything.
 template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::is_there(size_t ray, const Hit &hit) {
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
-  const Cutout &cutout = scene_.cutouts[material];
-  if (!cutout.nothing_beside)
+  if (!scene_.cutouts[material].may_end)
     return true;
   Layer *known = clear_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
-  const Mesh &mesh = scene_.geometry.meshes[scene_.geometry.instances[hit.instance].mesh];
-  if (cutout_transmittance(cutout, scene_.images, mesh, hit.primitive, {hit.u, hit.v}) != 1.0f)
+  if (shader_.is_there(material, hit))
     return true;
   clear_.put(known, ray, hit, glm::vec3(1.0f));
   return false;

@@ -111,7 +111,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->passing =
       find_instances(*scene, [&](const Instance &, uint32_t material) { return scene->materials[material].transmits(); });
   scene->clearing = find_instances(*scene, [&](const Instance &instance, uint32_t material) {
-    return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].nothing_beside;
+    return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].may_end;
   });
   scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {
