@@ -40,6 +40,16 @@ void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleR
   Path &path = paths_[number];
   const Ray &ray = rays_[number];
   const Hit end = hits_[number];
+  // Mostly they are few, and nobody wants to know more than how many.
+  const uint32_t count = clear_.count_before(number, end);
+  if (count == 0)
+    return;
+  if (wide_ && !trace && path.layers + count < kMaxLayers && path.passed_through + count <= settings_.transparent_bounces) {
+    path.layers += count;
+    path.passed_through += count;
+    path.last = path.passed_through >= settings_.transparent_bounces;
+    return;
+  }
   for (const Layer &layer : clear_.in_order(number)) {
     const Hit &hit = layer.hit;
     if (!closer(hit.t, hit.instance, hit.primitive, end))
