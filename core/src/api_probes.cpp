@@ -3,6 +3,7 @@
 #include "render/fill_settings.h"
 #include "render/probe.h"
 #include "render/probe_material.h"
+#include "sampling/sobol.h"
 
 namespace {
 

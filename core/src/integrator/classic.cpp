@@ -52,16 +52,14 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
   branches_.clear();
   rays_.clear();
   samplers_.clear();
-  for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
-    samplers_.push_back(generator_.sampler(addresses[slot]));
-    if (!generator_.start(addresses[slot], samplers_.back(), passes_.wanted(), results[slot], rays_.emplace_back())) {
-      rays_.pop_back();
-      continue;
-    }
+  samplers_.assign(addresses.size(), Sampler(0, 0));
+  generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
+    samplers_[slot] = sampler;
     Branch &branch = branches_.emplace_back();
     branch.slot = slot;
     branch.features = begin_features(settings_, passes_.features());
-  }
+    return rays_.emplace_back();
+  });
   counts_.camera += rays_.size();
 }
 

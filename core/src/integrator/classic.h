@@ -1,6 +1,7 @@
 // The course's recursive ray tracer: direct light of every lamp, mirror reflection and refraction, nothing left to chance.
 #pragma once
 
+#include "integrator/camera_rays.h"
 #include "integrator/course_kernel.h"
 #include "integrator/course_light.h"
 #include "integrator/course_materials.h"

@@ -1,6 +1,7 @@
 // The course's first picture: the normal as a colour, the sky where nothing is.
 #pragma once
 
+#include "integrator/camera_rays.h"
 #include "integrator/denoising_features.h"
 #include "integrator/first_surface.h"
 #include "integrator/light_passes.h"
@@ -17,13 +18,10 @@ public:
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override {
     rays_.clear();
     slots_.clear();
-    for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
-      Ray ray;
-      if (!generator_.start(addresses[slot], generator_.sampler(addresses[slot]), passes_.wanted(), results[slot], ray))
-        continue;
-      rays_.push_back(ray);
+    generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &) -> Ray & {
       slots_.push_back(slot);
-    }
+      return rays_.emplace_back();
+    });
     hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
     counts_.camera += rays_.size();

@@ -64,16 +64,16 @@ void PathIntegrator<Shapes, Layers>::generate(std::span<const SampleAddress> add
   paths_.clear();
   rays_.clear();
   indirect_.assign(addresses.size(), glm::vec3(0.0f));
-  for (uint32_t slot = 0; slot < addresses.size(); ++slot) {
-    Path path{.sampler = generator_.sampler(addresses[slot]), .slot = slot};
-    path.features = begin_features(settings_, passes_.features());
-    Ray ray;
-    if (!generator_.start(addresses[slot], path.sampler, passes_.wanted(), results[slot], ray))
-      continue;
-    path.from = ray.o;
-    rays_.push_back(ray);
-    paths_.push_back(path);
-  }
+  Record record;
+  record.features = begin_features(settings_, passes_.features());
+  if (!picture_alone_ || records_.size() != addresses.size())
+    records_.assign(addresses.size(), record);
+  generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
+    paths_.emplace_back(sampler, slot);
+    return rays_.emplace_back();
+  });
+  for (size_t i = 0; i < paths_.size(); ++i)
+    paths_[i].from = rays_[i].o;
   counts_.camera += paths_.size();
 }
 
@@ -85,19 +85,16 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
   for (size_t i = 0; i < paths_.size(); ++i) {
     if (i + 1 < paths_.size())
       textures_.ahead(hits_[i + 1]);
-    Path path = paths_[i];
-    const Ray &ray = rays_[i];
-    const double t = hits_[i].t;
-    SampleResult &result = results[path.slot];
     if (!hits_[i].valid()) {
-      miss(path, ray, result);
+      miss(paths_[i], rays_[i], results[paths_[i].slot]);
       continue;
     }
     const uint32_t material = material_of(scene_.geometry, scene_.slots, hits_[i].instance, hits_[i].primitive);
     if (const WideMaterial *wide = trace ? nullptr : for_lanes(material, hits_[i].instance))
       put_in_lane(i, material, *wide, results);
     else
-      shade_surface(path, ray, t, surface_at(scene_.geometry, scene_.slots, ray, hits_[i]), results, trace);
+      shade_surface(paths_[i], rays_[i], hits_[i].t, surface_at(scene_.geometry, scene_.slots, rays_[i], hits_[i]), results,
+                    trace);
   }
   shade_lanes(results);
 }
@@ -115,11 +112,11 @@ void PathIntegrator<Shapes, Layers>::shade_surface(Path &path, const Ray &ray, d
   // Holes end what the camera sees.
   if (path.in_view && !cut_hole(scene_, surface, path.beta, point_, result))
     return;
-  if (path.in_view)
+  if (path.in_view && !picture_alone_)
     record(path, surface, t, result);
   add_emission(path, surface, point_.emission, result);
-  if (path.features.open)
-    add_denoising_features(scene_, camera_, point_, t * glm::length(ray.d), path.features, result);
+  if (DenoisingFeatures &features = records_[path.slot].features; features.open)
+    add_denoising_features(scene_, camera_, point_, t * glm::length(ray.d), features, result);
   if (path.last)
     return;
 
@@ -153,7 +150,7 @@ void PathIntegrator<Shapes, Layers>::shade_surface(Path &path, const Ray &ray, d
     return;
   Ray next;
   path.length = way;
-  if (scatter(path, surface, double(pass), u, next) && survives(path, u[kVertexRoulette])) {
+  if (scatter(path, surface, double(pass), u, next) && survives(path.scatterings, u[kVertexRoulette], path.beta)) {
     next_paths_.push_back(path);
     next_rays_.push_back(next);
   }
@@ -169,13 +166,14 @@ void PathIntegrator<Shapes, Layers>::keep_vertex(const Path &path, const Surface
 
 // Fills the passes that describe what the camera sees.
 template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::record(Path &path, const Surface &surface, double t, SampleResult &result) {
+void PathIntegrator<Shapes, Layers>::record(const Path &path, const Surface &surface, double t, SampleResult &result) {
   // A surface that is hardly there gives way to the next one, unless the path ends on it.
-  if (!path.seen && mean(point_.opacity()) >= settings_.alpha_threshold) {
-    record_first_surface(scene_, settings_, surface, point_, path.depth + t, result);
-    path.seen = true;
-  } else if (!path.seen) {
-    record_place(scene_, surface, point_.material, path.depth + t, result);
+  Record &record = records_[path.slot];
+  if (!record.seen && mean(point_.opacity()) >= settings_.alpha_threshold) {
+    record_first_surface(scene_, settings_, surface, point_, record.depth + t, result);
+    record.seen = true;
+  } else if (!record.seen) {
+    record_place(scene_, surface, point_.material, record.depth + t, result);
   }
   record_seen(scene_, camera_, settings_, passes_, surface, point_, path.beta, result);
 }
@@ -198,12 +196,12 @@ void PathIntegrator<Shapes, Layers>::sample_occlusion(const Path &path, const Su
 
 template <uint32_t Shapes, bool Layers>
 Ray PathIntegrator<Shapes, Layers>::pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t,
-                                                     const glm::vec3 &weight) const {
+                                                     const glm::vec3 &weight) {
   const double length = t * glm::length(ray.d);
   path.beta *= weight;
   path.passed += length;
   path.length += length;
-  path.depth += t;
+  records_[path.slot].depth += t;
   ++path.layers;
   // Beyond the last layer the next surface shows its own light only.
   path.last = ++path.passed_through >= settings_.transparent_bounces;
@@ -214,7 +212,7 @@ Ray PathIntegrator<Shapes, Layers>::pass_straight_on(Path &path, const Surface &
 
 template <uint32_t Shapes, bool Layers>
 bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u,
-                                             Ray &next) const {
+                                             Ray &next) {
   // Draw a direction from the BSDF.
   const BsdfSample sample = point_.bsdf.template sample<Shapes>(u[kVertexLobe], {u[kVertexBsdf], u[kVertexBsdf + 1]});
   if (sample.weight == glm::vec3(0.0f) || !(sample.pdf > 0.0f))
@@ -225,7 +223,7 @@ bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface,
   if (path.in_view && !clear) {
     path.in_view = false;
     for (int component = 0; component < 2; ++component)
-      path.share[component] = sample.share[component];
+      records_[path.slot].share[component] = sample.share[component];
   }
   // Go on from here.
   path.beta *= sample.weight / float(1.0 - pass);
@@ -242,14 +240,15 @@ bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface,
   return true;
 }
 
-template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::survives(Path &path, float u) const {
-  if (path.scatterings <= kRouletteAfter)
+template <uint32_t Shapes, bool Layers>
+bool PathIntegrator<Shapes, Layers>::survives(uint32_t scatterings, float u, glm::vec3 &beta) {
+  if (scatterings <= kRouletteAfter)
     return true;
   // End dark paths early; what survives is brightened by exactly that.
-  const float q = std::min(1.0f, largest(path.beta));
+  const float q = std::min(1.0f, largest(beta));
   if (u >= q)
     return false;
-  path.beta /= q;
+  beta /= q;
   return true;
 }
 

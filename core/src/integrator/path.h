@@ -1,6 +1,7 @@
 // Path tracing: global illumination with next-event estimation, multiple importance sampling and Russian roulette.
 #pragma once
 
+#include "integrator/camera_rays.h"
 #include "integrator/denoising_features.h"
 #include "integrator/first_surface.h"
 #include "integrator/layers_met.h"
@@ -22,7 +23,7 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
-        lanes_(vertex_kernel()), wide_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
+        lanes_(vertex_kernel()), picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
         any_clear_(Layers && !passes_.features() && std::ranges::find(scene.clearing, 1) != scene.clearing.end()) {
     point_.bsdf.shares = passes_.wanted();
   }
@@ -35,6 +36,8 @@ private:
   using VertexNumbers = std::array<float, kVertexStride>;
 
   struct Path {
+    Path(const Sampler &numbers, uint32_t result) : sampler(numbers), slot(result) {}
+
     Sampler sampler;
     glm::vec3 beta{1.0f};
     glm::dvec3 from{0.0};   // last scattering point
@@ -46,12 +49,16 @@ private:
     uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
     uint32_t layers = 0;                // passed straight through since the last scattering
     uint32_t passed_through = 0;        // and in all
-    bool seen = false;                  // the first surface has been recorded
     bool in_view = true;                // what it meets is still the picture itself: nothing reflected, no glass that counts
     bool last = false;                  // the next surface ends it
     double passed = 0.0;                // length of the way since the last scattering, through layers
-    double depth = 0.0;                 // t of the camera ray up to its last layer
     double length = 0.0;                // of the whole way
+  };
+
+  // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
+  struct Record {
+    bool seen = false;  // the first surface has been recorded
+    double depth = 0.0; // t of the camera ray up to its last layer
     DenoisingFeatures features{};
     glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // of the light that came by a diffuse, glossy first scattering
   };
@@ -92,15 +99,15 @@ private:
   void add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission, SampleResult &result);
   void keep_vertex(const Path &path, const Surface &surface, double t, const SampleResult &result,
                    std::vector<PathVertex> &trace) const;
-  void record(Path &path, const Surface &surface, double t, SampleResult &result);
+  void record(const Path &path, const Surface &surface, double t, SampleResult &result);
   LightSample ask_light(const Surface &surface, const VertexNumbers &u, LightSet::Choice &choice);
   void send_shadow(const Path &path, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng, const LightSample &light,
                    uint32_t number, const WaitingLight &waiting, const glm::vec3 &contribution);
   void sample_light(const Path &path, const Surface &surface, double pass, const VertexNumbers &u);
   void sample_occlusion(const Path &path, const Surface &surface, const VertexNumbers &u);
-  bool scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u, Ray &next) const;
-  Ray pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight) const;
-  bool survives(Path &path, float u) const;
+  bool scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u, Ray &next);
+  Ray pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
+  static bool survives(uint32_t scatterings, float u, glm::vec3 &beta);
   void add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment);
 
   const Scene &scene_;
@@ -114,8 +121,8 @@ private:
   LightPasses passes_;
   const char *kernel_;
   const VertexKernel &lanes_;
-  bool wide_;       // vertices may be shaded in lanes
-  LayersMet clear_; // surfaces on the way of which nothing is there
+  bool picture_alone_; // no other pass is asked for: vertices may be shaded in lanes, records stay as they begin
+  LayersMet clear_;    // surfaces on the way of which nothing is there
   bool any_clear_;
   VertexBlock block_{};
   WayBlock ways_{};
@@ -128,6 +135,7 @@ private:
   std::vector<Ray> rays_, next_rays_;
   std::vector<Hit> hits_;
   std::vector<glm::vec3> indirect_; // per slot, kept back until the path ends
+  std::vector<Record> records_;     // per slot
 };
 
 std::unique_ptr<Integrator> make_path(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);

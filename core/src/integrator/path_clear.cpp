@@ -44,7 +44,8 @@ void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleR
   const uint32_t count = clear_.count_before(number, end);
   if (count == 0)
     return;
-  if (wide_ && !trace && path.layers + count < kMaxLayers && path.passed_through + count <= settings_.transparent_bounces) {
+  if (picture_alone_ && !trace && path.layers + count < kMaxLayers &&
+      path.passed_through + count <= settings_.transparent_bounces) {
     path.layers += count;
     path.passed_through += count;
     path.last = path.passed_through >= settings_.transparent_bounces;
@@ -61,7 +62,7 @@ void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleR
     }
     // Passes tell of places where little is seen, too.
     SampleResult &result = results[path.slot];
-    const bool recorded = path.in_view && !path.seen && !wide_;
+    const bool recorded = path.in_view && !picture_alone_ && !records_[path.slot].seen;
     if (recorded || trace) {
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
       if (trace)

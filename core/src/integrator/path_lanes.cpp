@@ -10,7 +10,7 @@ namespace lancer {
 // The record of a surface that kernels of many lanes shade; null for the others.
 template <uint32_t Shapes, bool Layers>
 const WideMaterial *PathIntegrator<Shapes, Layers>::for_lanes(uint32_t material, uint32_t instance) const {
-  if (!wide_ || material == kNone || scene_.wide[material].count == 0 || scene_.geometry.instances[instance].holdout)
+  if (!picture_alone_ || material == kNone || scene_.wide[material].count == 0 || scene_.geometry.instances[instance].holdout)
     return nullptr;
   // Only the general code knows what stays in view behind glass.
   if (settings_.transparent_glass && scene_.wide[material].transmits)
@@ -29,7 +29,14 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
   const Hit &hit = hits_[number];
   const Instance &instance = scene_.geometry.instances[hit.instance];
   const uint32_t lane = waiting_count_++, bit = 1u << lane;
-  waiting_[lane] = {number, ends, 0, false, described.emission.value, glm::max(described.transmittance.value, 0.0f)};
+  // Part by part: a copy of the whole would wait until they have left the processor's stores.
+  Waiting &waiting = waiting_[lane];
+  waiting.number = number;
+  waiting.ends = ends;
+  waiting.light = 0;
+  waiting.far = false;
+  waiting.emission = described.emission.value;
+  waiting.transmittance = glm::max(described.transmittance.value, 0.0f);
   block_.used |= bit;
   if (ends)
     block_.ends |= bit;
@@ -59,7 +66,7 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
     block_.weight[i][lane] = wide.weight[i];
     block_.base[i][lane] = wide.base[i];
   }
-  block_.through[lane] = described.transmits() ? mean(waiting_[lane].transmittance) : 0.0f;
+  block_.through[lane] = described.transmits() ? mean(waiting.transmittance) : 0.0f;
   block_.pixel[lane] = path.sampler.pixel();
   // Lanes of one sample and one bounce share the digits that their numbers are made of.
   const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
@@ -193,12 +200,11 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::send_shadow_of(uint32_t lane) {
   const Waiting &waiting = waiting_[lane];
   const Path &path = paths_[waiting.number];
-  const WaitingLight light{.slot = path.slot, .indirect = path.scatterings > 0};
   const glm::vec3 contribution = get(block_.contribution, lane);
   if (scene_.lights.no_shadow(waiting.light))
-    return shadows_.push_lit(light, contribution);
+    return shadows_.push_lit({.slot = path.slot, .indirect = path.scatterings > 0}, contribution);
   const double infinity = std::numeric_limits<double>::infinity();
-  Ray ray;
+  Ray &ray = shadows_.push(path.slot, contribution, path.scatterings > 0, path.passed_through);
   if (block_.lifted >> lane & 1) {
     LightSample sample;
     sample.wi = get(block_.light_wi, lane);
@@ -206,14 +212,14 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::sen
     sample.distance = waiting.far ? infinity : 1.0;
     ray = shadow_ray(scene_.geometry, surface_of(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
   } else {
-    ray.o = get(block_.shadow_origin, lane);
-    ray.d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - ray.o;
+    const glm::dvec3 o = get(block_.shadow_origin, lane);
+    ray.o = o;
+    ray.d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o;
     ray.tmax = waiting.far ? infinity : 1.0;
     ray.skip_instance = hits_[waiting.number].instance;
     ray.skip_primitive = hits_[waiting.number].primitive;
     ray.kinds = LANCER_RAY_SHADOW;
   }
-  shadows_.push(ray, light, contribution, path.passed_through);
 }
 
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::shade_lanes(std::span<SampleResult> results) {
@@ -264,29 +270,29 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
   }
   if (waiting.ends || !(block_.sampled >> lane & 1))
     return;
-  path.in_view = false;
-  path.length += hit.t * block_.length[lane];
-  path.beta = get(block_.beta, lane);
-  path.pdf = block_.pdf[lane];
-  path.from = get(block_.p, lane);
-  path.normal = get(block_.viewer_ns, lane);
-  path.transmits = block_.transmits >> lane & 1;
-  path.kinds = block_.transmitted >> lane & 1 ? LANCER_RAY_TRANSMISSION
+  const uint32_t scatterings = path.scatterings + 1;
+  glm::vec3 beta = get(block_.beta, lane);
+  if (!survives(scatterings, block_.u[kVertexRoulette][lane], beta))
+    return;
+  Path &next = next_paths_.emplace_back(path.sampler, path.slot);
+  next.beta = beta;
+  next.from = get(block_.p, lane);
+  next.normal = get(block_.viewer_ns, lane);
+  next.transmits = block_.transmits >> lane & 1;
+  next.pdf = block_.pdf[lane];
+  next.scatterings = scatterings;
+  next.kinds = block_.transmitted >> lane & 1 ? LANCER_RAY_TRANSMISSION
                : block_.glossy >> lane & 1    ? LANCER_RAY_GLOSSY
                                               : LANCER_RAY_DIFFUSE;
-  path.layers = 0;
-  path.passed = 0.0;
-  ++path.scatterings;
-  if (!survives(path, block_.u[kVertexRoulette][lane]))
-    return;
-  Ray next;
-  next.o = get(block_.next_origin, lane);
-  next.d = glm::dvec3(get(block_.wi, lane));
-  next.skip_instance = hit.instance;
-  next.skip_primitive = hit.primitive;
-  next.kinds = path.kinds;
-  next_paths_.push_back(path);
-  next_rays_.push_back(next);
+  next.passed_through = path.passed_through;
+  next.in_view = false;
+  next.length = path.length + hit.t * block_.length[lane];
+  Ray &ray = next_rays_.emplace_back();
+  ray.o = get(block_.next_origin, lane);
+  ray.d = glm::dvec3(get(block_.wi, lane));
+  ray.skip_instance = hit.instance;
+  ray.skip_primitive = hit.primitive;
+  ray.kinds = next.kinds;
 }
 
 #define LANCER_PATH(shapes, layers)                                                                                            \

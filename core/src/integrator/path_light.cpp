@@ -27,8 +27,8 @@ template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment) {
   // Light that was scattered at most once is direct; clamping never touches it.
   const bool indirect = path.scatterings > 1;
-  if (path.features.open)
-    result.albedo += path.features.beta * radiance;
+  if (const DenoisingFeatures &features = records_[path.slot].features; features.open)
+    result.albedo += features.beta * radiance;
   // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
   if (path.in_view) {
     const float top = largest(radiance), limit = settings_.clamp_indirect;
@@ -41,15 +41,15 @@ void PathIntegrator<Shapes, Layers>::add(const Path &path, SampleResult &result,
     indirect_[path.slot] += radiance;
   else
     result.radiance += radiance;
-  passes_.add(result, radiance, path.share, indirect);
+  passes_.add(result, radiance, records_[path.slot].share, indirect);
 }
 
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, SampleResult &result) {
-  if (path.in_view && !path.seen)
+  if (path.in_view && !picture_alone_ && !records_[path.slot].seen)
     forget_place(result);
-  if (path.scatterings == 0)
-    add_sky_features(path.features, result);
+  if (path.scatterings == 0 && !picture_alone_)
+    add_sky_features(records_[path.slot].features, result);
   // A transparent film does not show the environment itself, only what it lights.
   if (path.in_view && settings_.film_transparent) {
     result.alpha -= mean(path.beta);
@@ -190,7 +190,7 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
   WaitingLight waiting{.slot = path.slot, .indirect = path.scatterings > 0};
   if (passes_.wanted()) {
     for (size_t component = 0; component < 2; ++component)
-      waiting.share[component] = path.in_view ? divided(value.part[component], f) : path.share[component];
+      waiting.share[component] = path.in_view ? divided(value.part[component], f) : records_[path.slot].share[component];
   }
   send_shadow(path, surface, point_.bsdf.ns, point_.bsdf.ng, light, choice.light, waiting, contribution);
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "sampling/pixel_filter.h"
-#include "sampling/sobol.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -120,51 +119,5 @@ enum VertexDimension : uint32_t {
 // Layers of opacity at one vertex have numbers of their own, far behind the others.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
 inline constexpr uint32_t kMaxLayers = 1025;
-
-// Turns addresses into camera rays.
-class RayGenerator {
-public:
-  RayGenerator(const Camera &camera, const IntegratorSettings &settings)
-      : camera_(camera), filter_(settings.filter, settings.filter_width), seed_(settings.seed),
-        middle_(settings.kind != IntegratorKind::Path && settings.samples == 1) {}
-
-  Sampler sampler(const SampleAddress &address) const {
-    // The region's place in the image is part of the address: a border render repeats the full image's numbers.
-    return Sampler(seed_, camera_.x + address.x, camera_.y + address.y, address.sample);
-  }
-
-  // One sample of a recursive ray tracer goes through the middle of the pixel and of the lens.
-  bool middle() const { return middle_; }
-
-  // Begins a sample with its camera ray. False where there is no direction to look in: outside a panorama's picture it is
-  // black, and as solid as Cycles has it.
-  bool start(const SampleAddress &address, const Sampler &sampler, bool with_light, SampleResult &result,
-             Ray &camera_ray) const {
-    result = SampleResult(with_light);
-    result.alpha = 1.0f;
-    // Made where it stands: a copy would wait until its parts have left the processor's stores.
-    ::new (&camera_ray) Ray(ray(address, sampler));
-    camera_ray.kinds = LANCER_RAY_CAMERA;
-    return !(camera_ray.tmax < 0.0);
-  }
-
-  Ray ray(const SampleAddress &address, const Sampler &sampler) const {
-    glm::dvec2 raster(double(camera_.x + address.x) + 0.5, double(camera_.y + address.y) + 0.5);
-    if (middle_)
-      return camera_.ray(raster, glm::dvec2(0.0));
-    const glm::vec2 u = sampler.get2(kDimensionPixel);
-    raster += glm::dvec2(filter_.sample(u.x), filter_.sample(u.y));
-    glm::dvec2 lens(0.0);
-    if (camera_.lens_radius > 0.0)
-      lens = camera_.aperture(sampler.get2(kDimensionLens));
-    return camera_.ray(raster, lens);
-  }
-
-private:
-  const Camera &camera_;
-  PixelFilter filter_;
-  uint32_t seed_;
-  bool middle_;
-};
 
 } // namespace lancer

@@ -9,7 +9,9 @@ namespace {
 
 // A batch of paths that fills the queues without leaving the second-level cache.
 constexpr uint32_t kBatch = 1024;
-constexpr uint32_t kTileSize = 32, kLargestTile = 256;
+constexpr uint32_t kTileSize = 32, kSmallestTile = 8, kLargestTile = 256;
+// At the end threads wait for the last tile: so many for each keep that below a hundredth of the time.
+constexpr uint64_t kTilesEach = 64;
 
 Camera normalised(Camera camera, const Normalisation &normalisation) {
   camera.to_world.translation = normalisation.to_normalised(camera.to_world.translation);
@@ -26,8 +28,14 @@ const Camera &checked_memory(const Camera &camera, const SessionSettings &settin
   return camera;
 }
 
-uint32_t tile_size(const SessionSettings &settings) {
-  return settings.tile_size ? std::min(settings.tile_size, kLargestTile) : kTileSize;
+uint32_t tile_size(const Camera &camera, const SessionSettings &settings, uint32_t threads) {
+  if (settings.tile_size)
+    return std::min(settings.tile_size, kLargestTile);
+  uint32_t size = kTileSize;
+  const auto tiles = [&](uint64_t length) { return (length + size - 1) / size; };
+  while (size > kSmallestTile && tiles(camera.region_width) * tiles(camera.region_height) < kTilesEach * threads)
+    size /= 2;
+  return size;
 }
 
 // Nothing but where the camera ray ended.
@@ -44,7 +52,8 @@ SampleResult place_of(const SampleResult &result) {
 
 Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
     : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_->normalisation)),
-      settings_(settings), film_(camera.region_width, camera.region_height, tile_size(settings), settings.passes),
+      settings_(settings), film_(camera.region_width, camera.region_height,
+                                 tile_size(camera, settings, ThreadPool::resolved(settings.threads)), settings.passes),
       pool_(settings.threads) {
   settings_.integrator.cancel = &cancel_;
   for (uint32_t i = 0; i < pool_.size(); ++i) {

@@ -19,10 +19,8 @@ FloatEnvironment::~FloatEnvironment() = default;
 #endif
 
 ThreadPool::ThreadPool(uint32_t count) {
-  if (count == 0)
-    count = std::max(1u, std::thread::hardware_concurrency());
   try {
-    for (uint32_t i = 0; i < count; ++i)
+    for (uint32_t i = 0; i < resolved(count); ++i)
       threads_.emplace_back([this, i] { loop(i); });
   } catch (...) {
     // Not all threads could be had: end those that were, then tell.

@@ -1,6 +1,7 @@
 // Threads that wait for work and can be watched from outside.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -16,6 +17,7 @@ class ThreadPool {
 public:
   // count 0: one per processor.
   explicit ThreadPool(uint32_t count);
+  static uint32_t resolved(uint32_t count) { return count ? count : std::max(1u, std::thread::hardware_concurrency()); }
   ~ThreadPool();
   ThreadPool(const ThreadPool &) = delete;
   ThreadPool &operator=(const ThreadPool &) = delete;

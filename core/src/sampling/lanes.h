@@ -312,6 +312,15 @@ LANCER_LANE F gather(const float *table, U index) {
   return r;
 #endif
 }
+LANCER_LANE U gather(const uint32_t *table, U index) { return as_word(gather(reinterpret_cast<const float *>(table), index)); }
+LANCER_LANE D gather(const double *table, U index) {
+  D r;
+  for (int i = 0; i < kHalf; ++i) {
+    r.lo[i] = table[index.v[i]];
+    r.hi[i] = table[index.v[i + kHalf]];
+  }
+  return r;
+}
 
 } // namespace
 } // namespace lancer

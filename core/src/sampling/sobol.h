@@ -20,6 +20,9 @@ public:
   Sampler(uint32_t seed, uint32_t x, uint32_t y, uint32_t sample)
       : pixel_(hash_combine(hash_combine(hash(seed), x), y)), sample_(sample), reversed_(sobol::reverse_bits(sample)) {}
 
+  // Of a pixel() that is known already.
+  Sampler(uint32_t pixel, uint32_t sample) : pixel_(pixel), sample_(sample), reversed_(sobol::reverse_bits(sample)) {}
+
   float get1(uint32_t dimension) const { return scrambled(unscrambled(dimension), dimension); }
 
   // Dimensions d and d + 1; from 16 on d is even.
