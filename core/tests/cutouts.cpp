@@ -15,27 +15,35 @@ Cutout cutout_of(Writing writing, float shines = 0.0f, void (*change)(Material &
     change(description.materials[0]);
   return make_cutouts(description.materials, description.images)[0];
 }
+Cutout changed(void (*change)(Material &)) { return cutout_of(Writing::Plain, 0.0f, change); }
 
 TEST(Cutouts, KnownByTheirNodes) {
   const Cutout plain = cutout_of(Writing::Plain);
-  EXPECT_TRUE(plain.known());
-  EXPECT_TRUE(plain.nothing_beside);
-  EXPECT_EQ(plain.image, 0u);
-  EXPECT_FALSE(cutout_of(Writing::Disguised).known());
-  // Something is left where alpha is 0: the surface shines, scatters by another weight, or cuts a hole.
-  EXPECT_FALSE(cutout_of(Writing::Plain, 1.0f).nothing_beside);
-  EXPECT_FALSE(cutout_of(Writing::Plain, 0.0f, [](Material &material) { material.lobes[0].weight.node = -1; }).nothing_beside);
-  EXPECT_FALSE(
-      cutout_of(Writing::Plain, 0.0f, [](Material &material) { material.holdout.value = glm::vec3(1.0f); }).nothing_beside);
-  // Another formula than 1 - alpha.
-  EXPECT_FALSE(
-      cutout_of(Writing::Plain, 0.0f, [](Material &material) { material.program.nodes[4].option = LANCER_MATH_ADD; }).known());
-  EXPECT_FALSE(cutout_of(Writing::Plain, 0.0f, [](Material &material) {
-                 material.program.nodes[4].inputs[0].value = glm::vec3(0.5f);
-               }).known());
-  EXPECT_FALSE(cutout_of(Writing::Plain, 0.0f, [](Material &material) {
-                 material.program.nodes[2].option = LANCER_PROJECT_BOX;
-               }).known());
+  EXPECT_TRUE(plain.alpha.known() && plain.painted && plain.may_end && plain.ends_with_alpha);
+  EXPECT_EQ(plain.alpha.image, 0u);
+  EXPECT_FALSE(plain.alpha.clamped);
+  const Cutout mixed = cutout_of(Writing::Mixed);
+  EXPECT_TRUE(mixed.alpha.known() && mixed.alpha.clamped && mixed.may_end && mixed.ends_with_alpha);
+  // What the nodes say, at a place of a triangle; and more than that.
+  const Cutout disguised = cutout_of(Writing::Disguised), anywhere = cutout_of(Writing::Unknown);
+  EXPECT_TRUE(!disguised.alpha.known() && disguised.painted && disguised.may_end);
+  EXPECT_TRUE(!anywhere.alpha.known() && !anywhere.painted && !anywhere.may_end);
+}
+
+TEST(Cutouts, SomethingMayBeLeftWhereAlphaIs0) {
+  // The surface shines, scatters by another weight, or cuts a hole.
+  EXPECT_FALSE(cutout_of(Writing::Plain, 1.0f).may_end);
+  EXPECT_FALSE(changed([](Material &material) { material.lobes[0].weight.node = -1; }).may_end);
+  EXPECT_FALSE(changed([](Material &material) { material.lobes[0].weight.node = 2; }).ends_with_alpha);
+  EXPECT_FALSE(changed([](Material &material) { material.holdout.value = glm::vec3(1.0f); }).may_end);
+}
+
+TEST(Cutouts, OtherFormulas) {
+  EXPECT_FALSE(changed([](Material &m) { m.program.nodes[5].option = LANCER_MATH_ADD; }).alpha.known());
+  EXPECT_FALSE(changed([](Material &m) { m.program.nodes[5].flags = 1; }).alpha.known());
+  EXPECT_FALSE(changed([](Material &m) { m.program.nodes[5].inputs[0].value = glm::vec3(0.5f); }).alpha.known());
+  EXPECT_FALSE(changed([](Material &m) { m.program.nodes[2].option = LANCER_PROJECT_BOX; }).alpha.known());
+  EXPECT_FALSE(changed([](Material &m) { m.program.nodes[2].option = LANCER_PROJECT_BOX; }).painted);
 }
 
 struct Picture {
@@ -79,24 +87,27 @@ double mean_difference(const Picture &a, const Picture &b) {
 }
 
 TEST(Cutouts, PathsGoPastWhatIsNotThereAsIfTheyHadStopped) {
-  const auto plain = foliage(Writing::Plain), disguised = foliage(Writing::Disguised);
+  const auto stopping = foliage(Writing::Unknown);
   IntegratorSettings settings;
   settings.max_bounces = 3;
-  for (const uint32_t limit : {0u, 1u, 3u, 8u}) {
-    settings.transparent_bounces = limit;
-    const Picture fast = picture(*plain, settings), slow = picture(*disguised, settings);
-    // A ray that starts again behind a layer meets the next within roundings of double. They reach a sample's floats as a last
-    // digit here and there, 2^-24 of radiances up to 1, in each of some 2^6 operations.
-    EXPECT_LE(mean_difference(fast, slow), 0x1p-18) << limit;
-    if (limit == 8) {
-      EXPECT_LT(fast.counts.bounce, slow.counts.bounce * 3 / 4);
+  for (const Writing writing : {Writing::Plain, Writing::Mixed, Writing::Disguised}) {
+    const auto scene = foliage(writing);
+    for (const uint32_t limit : {0u, 1u, 3u, 8u}) {
+      settings.transparent_bounces = limit;
+      const Picture fast = picture(*scene, settings), slow = picture(*stopping, settings);
+      // A ray that starts again behind a layer meets the next within roundings of double. They reach a sample's floats as a
+      // last digit here and there, 2^-24 of radiances up to 1, in each of some 2^6 operations.
+      EXPECT_LE(mean_difference(fast, slow), 0x1p-18) << limit;
       EXPECT_EQ(fast.counts.camera, slow.counts.camera);
+      if (limit == 8) {
+        EXPECT_LT(fast.counts.bounce, slow.counts.bounce * 3 / 4);
+      }
     }
   }
   settings.transparent_bounces = 0;
-  const Picture none = picture(*plain, settings);
+  const Picture none = picture(*stopping, settings);
   settings.transparent_bounces = 8;
-  EXPECT_GT(mean_difference(none, picture(*plain, settings)), 0.01);
+  EXPECT_GT(mean_difference(none, picture(*stopping, settings)), 0.01);
 }
 
 TEST(Cutouts, AReplayedSampleIsTheSame) {
@@ -107,13 +118,13 @@ TEST(Cutouts, AReplayedSampleIsTheSame) {
 }
 
 TEST(Cutouts, PassesTellTheSameOfThem) {
-  const auto plain = foliage(Writing::Plain), disguised = foliage(Writing::Disguised);
+  const auto plain = foliage(Writing::Plain), stopping = foliage(Writing::Unknown);
   IntegratorSettings settings;
   settings.max_bounces = 1;
   settings.passes |= 1u << LANCER_PASS_DEPTH | 1u << LANCER_PASS_OBJECT_INDEX | 1u << LANCER_PASS_POSITION;
   for (const float threshold : {0.0f, 0.5f}) {
     settings.alpha_threshold = threshold;
-    const Picture fast = picture(*plain, settings), slow = picture(*disguised, settings);
+    const Picture fast = picture(*plain, settings), slow = picture(*stopping, settings);
     for (size_t i = 0; i < fast.results.size(); ++i) {
       const SampleResult &a = fast.results[i], &b = slow.results[i];
       ASSERT_EQ(a.object_index, b.object_index) << i;

@@ -10,9 +10,9 @@
 
 namespace lancer_test {
 
-// How the leaves' nodes are written: as an exporter does, or with a product by 1 in between so that only the nodes themselves
-// know what they say.
-enum class Writing { Plain, Disguised };
+// How the leaves' nodes are written. Plain: as an alpha. Mixed: as the factor of a mix. Disguised: with a product by 1 in
+// between, so that only the nodes know what they say. Unknown: with what looks at more than the place within a triangle.
+enum class Writing { Plain, Mixed, Disguised, Unknown };
 
 // Sides of the leaves' picture.
 inline constexpr uint32_t kLeafSide = 16;
@@ -38,16 +38,18 @@ inline void add_leaf_picture(Description &description) {
 }
 
 inline std::vector<lancer_node> leaf_nodes(Writing writing) {
-  lancer_node look = flagged(node(LANCER_NODE_IMAGE, LANCER_PROJECT_FLAT, {result_of(1)}), LANCER_INTERPOLATE_LINEAR << 4);
+  const bool in_between = writing == Writing::Disguised || writing == Writing::Unknown;
+  lancer_node look =
+      flagged(node(LANCER_NODE_IMAGE, LANCER_PROJECT_FLAT, {result_of(in_between ? 1 : 0)}), LANCER_INTERPOLATE_LINEAR << 4);
   look.image_count = 1;
-  std::vector<lancer_node> nodes = {
-      node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV),
-      node(LANCER_NODE_VECTOR_MATH, LANCER_VECTOR_MULTIPLY, {result_of(0), constant(1.0f)}), look,
-      node(LANCER_NODE_ALPHA, 0, {result_of(2)}),
-      node(LANCER_NODE_MATH, LANCER_MATH_SUBTRACT, {constant(1.0f), result_of(3), constant(0.0f)})};
-  if (writing == Writing::Plain)
-    nodes[2].inputs[0] = result_of(0);
-  return nodes;
+  return {node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV),
+          writing == Writing::Unknown ? node(LANCER_NODE_TRANSFORM, 0, {result_of(0)})
+                                      : node(LANCER_NODE_VECTOR_MATH, LANCER_VECTOR_MULTIPLY, {result_of(0), constant(1.0f)}),
+          look,
+          node(LANCER_NODE_ALPHA, 0, {result_of(2)}),
+          flagged(node(LANCER_NODE_MATH, LANCER_MATH_ADD, {result_of(3), constant(0.0f), constant(0.0f)}), 1),
+          node(LANCER_NODE_MATH, LANCER_MATH_SUBTRACT,
+               {constant(1.0f), result_of(writing == Writing::Mixed ? 4 : 3), constant(0.0f)})};
 }
 
 // Materials 0: leaf, 1: half a pane, 2: solid. shines: what the leaf emits beside its alpha.
@@ -55,14 +57,14 @@ inline void add_foliage_materials(Description &description, Writing writing, flo
   const std::vector<lancer_node> nodes = leaf_nodes(writing);
   lancer_lobe matt = lobe(LANCER_LAMBERT, 1.0f);
   matt.color = result_of(2);
-  matt.weight = result_of(3);
+  matt.weight = result_of(writing == Writing::Mixed ? 4 : 3);
   lancer_material leaf = black(), pane = black(), solid = black();
   leaf.name = pane.name = solid.name = "material";
   leaf.lobes = &matt;
   leaf.lobe_count = 1;
   leaf.nodes = nodes.data();
   leaf.node_count = uint32_t(nodes.size());
-  leaf.transmittance = result_of(4);
+  leaf.transmittance = result_of(5);
   leaf.emission = constant(shines);
   leaf.flags = flags;
   pane.transmittance = constant(0.5f, 0.75f, 1.0f);

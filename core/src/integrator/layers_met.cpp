@@ -62,12 +62,23 @@ void LayersMet::put(Layer *known, size_t ray, const Hit &hit, const glm::vec3 &t
   ++rays_[ray].count;
 }
 
-std::span<const Layer> LayersMet::in_order(size_t ray) {
+uint32_t LayersMet::count_before(size_t ray, const Hit &hit) const {
+  uint32_t count = 0;
+  for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next) {
+    const Hit &layer = layers_[number].hit;
+    count += closer(layer.t, layer.instance, layer.primitive, hit);
+  }
+  return count;
+}
+
+std::span<const Layer> LayersMet::sort(size_t ray, bool clear) {
   sorted_.clear();
   for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next)
-    sorted_.push_back(layers_[number]);
-  std::sort(sorted_.begin(), sorted_.end(),
-            [](const Layer &a, const Layer &b) { return closer(a.hit.t, a.hit.instance, a.hit.primitive, b.hit); });
+    if (clear || layers_[number].transmittance != glm::vec3(1.0f))
+      sorted_.push_back(layers_[number]);
+  if (sorted_.size() > 1)
+    std::sort(sorted_.begin(), sorted_.end(),
+              [](const Layer &a, const Layer &b) { return closer(a.hit.t, a.hit.instance, a.hit.primitive, b.hit); });
   return sorted_;
 }
 

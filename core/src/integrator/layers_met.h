@@ -31,13 +31,18 @@ public:
   Layer *find(size_t ray, const Hit &hit);
   // known: what find() has found for it. Where triangles meet, the closest stands for all.
   void put(Layer *known, size_t ray, const Hit &hit, const glm::vec3 &transmittance);
-  // Those of a ray, the closest first, until the next call.
-  std::span<const Layer> in_order(size_t ray);
+  // Those of a ray that are closer than a hit.
+  uint32_t count_before(size_t ray, const Hit &hit) const;
+  // Those of a ray, the closest first, until the next call; or only those that take some light.
+  std::span<const Layer> in_order(size_t ray) { return sort(ray, true); }
+  std::span<const Layer> dimming_in_order(size_t ray) { return sort(ray, false); }
 
 private:
   struct RayLayers {
     uint32_t first = kNone, count = 0;
   };
+
+  std::span<const Layer> sort(size_t ray, bool clear);
 
   const Geometry &geometry_;
   std::vector<RayLayers> rays_;

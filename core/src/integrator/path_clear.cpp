@@ -22,14 +22,12 @@ void PathIntegrator<Shapes, Layers>::find_hits(std::span<SampleResult> results, 
 // 1, and ask no light for anything.
 template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::is_there(size_t ray, const Hit &hit) {
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
-  const Cutout &cutout = scene_.cutouts[material];
-  if (!cutout.nothing_beside)
+  if (!scene_.cutouts[material].may_end)
     return true;
   Layer *known = clear_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
-  const Mesh &mesh = scene_.geometry.meshes[scene_.geometry.instances[hit.instance].mesh];
-  if (cutout_transmittance(cutout, scene_.images, mesh, hit.primitive, {hit.u, hit.v}) != 1.0f)
+  if (shader_.is_there(material, hit))
     return true;
   clear_.put(known, ray, hit, glm::vec3(1.0f));
   return false;
@@ -42,6 +40,17 @@ void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleR
   Path &path = paths_[number];
   const Ray &ray = rays_[number];
   const Hit end = hits_[number];
+  // Mostly they are few, and nobody wants to know more than how many.
+  const uint32_t count = clear_.count_before(number, end);
+  if (count == 0)
+    return;
+  if (picture_alone_ && !trace && path.layers + count < kMaxLayers &&
+      path.passed_through + count <= settings_.transparent_bounces) {
+    path.layers += count;
+    path.passed_through += count;
+    path.last = path.passed_through >= settings_.transparent_bounces;
+    return;
+  }
   for (const Layer &layer : clear_.in_order(number)) {
     const Hit &hit = layer.hit;
     if (!closer(hit.t, hit.instance, hit.primitive, end))

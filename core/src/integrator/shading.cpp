@@ -74,12 +74,31 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
   if (!material.transmittance.varies())
     return glm::max(material.transmittance.value, 0.0f);
   const Instance &instance = scene_.geometry.instances[hit.instance];
-  if (const Cutout &cutout = scene_.cutouts[number]; cutout.known() && instance.kind == ShapeKind::Mesh)
-    return glm::vec3(
-        cutout_transmittance(cutout, scene_.images, scene_.geometry.meshes[instance.mesh], hit.primitive, {hit.u, hit.v}));
-  const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-  run_nodes(material, material.transmittance_nodes, surface, {.wo = glm::vec3(-glm::normalize(ray.d))});
+  const Cutout &cutout = scene_.cutouts[number];
+  const bool on_mesh = instance.kind == ShapeKind::Mesh;
+  if (on_mesh && cutout.alpha.known())
+    return glm::vec3(glm::max(
+        1.0f - alpha_at(cutout.alpha, scene_.images, scene_.geometry.meshes[instance.mesh], hit.primitive, {hit.u, hit.v}),
+        0.0f));
+  if (on_mesh && cutout.painted) {
+    run_painted(material, material.transmittance_nodes, hit);
+  } else {
+    const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+    run_nodes(material, material.transmittance_nodes, surface, {.wo = glm::vec3(-glm::normalize(ray.d))});
+  }
   return glm::max(value_of(material.transmittance, values_), 0.0f);
+}
+
+bool Shader::is_there(uint32_t number, const Hit &hit) {
+  const Material &material = scene_.materials[number];
+  const Cutout &cutout = scene_.cutouts[number];
+  if (cutout.ends_with_alpha) {
+    const Mesh &mesh = scene_.geometry.meshes[scene_.geometry.instances[hit.instance].mesh];
+    return alpha_at(cutout.alpha, scene_.images, mesh, hit.primitive, {hit.u, hit.v}) != 0.0f;
+  }
+  run_painted(material, cutout.nodes, hit);
+  const auto none = [&](const LobeDescription &lobe) { return evaluate(lobe.weight, values_) == glm::vec3(0.0f); };
+  return value_of(material.transmittance, values_) != glm::vec3(1.0f) || !std::ranges::all_of(material.lobes, none);
 }
 
 glm::vec3 Shader::emission(const Surface &surface, const glm::vec3 &wo) {
@@ -101,6 +120,15 @@ glm::vec4 Shader::node_value(const Surface &surface, uint32_t node, const glm::v
   parameter.node = int32_t(node);
   run_nodes(material, material.program.schedule(std::span(&parameter, 1)), surface, {.wo = wo});
   return values_[node];
+}
+
+// Nodes that ask a mesh for nothing but the triangle and the place within it.
+void Shader::run_painted(const Material &material, const Schedule &schedule, const Hit &hit) {
+  Surface surface;
+  surface.instance = hit.instance;
+  surface.primitive = hit.primitive;
+  surface.bary = {hit.u, hit.v};
+  run_nodes(material, schedule, surface, {});
 }
 
 void Shader::run_nodes(const Material &material, const Schedule &schedule, const Surface &surface, const View &view) {

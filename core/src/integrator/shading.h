@@ -47,6 +47,8 @@ public:
   NodeColors colors(const Surface &surface, const View &view);
   // Share of a shadow ray's light that passes straight on.
   glm::vec3 transmittance(const Ray &ray, const Hit &hit);
+  // Whether there is anything of a surface of a mesh whose cutout may end; where not, light passes as if there were no surface.
+  bool is_there(uint32_t material, const Hit &hit);
   // By itself, for light samples.
   glm::vec3 emission(const Surface &surface, const glm::vec3 &wo);
   std::span<glm::vec4> values() { return values_; }
@@ -58,6 +60,7 @@ public:
 
 private:
   void add_lobes(const Material &material, Bsdf &bsdf);
+  void run_painted(const Material &material, const Schedule &schedule, const Hit &hit);
   void run_nodes(const Material &material, const Schedule &schedule, const Surface &surface, const View &view);
   void begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf &bsdf) const;
 

@@ -24,7 +24,7 @@ uint64_t ShadowQueue::trace_layers() {
       contribution = glm::vec3(0.0f);
     else if (layers_.count(i) > 0)
       // Lose light on the way, in the same order whatever the order of finding.
-      for (const Layer &layer : layers_.in_order(i))
+      for (const Layer &layer : layers_.dimming_in_order(i))
         contribution *= layer.transmittance;
   }
   return rays_.size();

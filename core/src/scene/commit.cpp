@@ -111,7 +111,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->passing =
       find_instances(*scene, [&](const Instance &, uint32_t material) { return scene->materials[material].transmits(); });
   scene->clearing = find_instances(*scene, [&](const Instance &instance, uint32_t material) {
-    return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].nothing_beside;
+    return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].may_end;
   });
   scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {
@@ -139,7 +139,8 @@ uint32_t Scene::face_number(uint32_t instance, uint32_t primitive) const {
 }
 
 size_t Scene::geometry_bytes() const {
-  size_t bytes = geometry.instances.size() * sizeof(Instance) + slots.size() * sizeof(uint32_t) + lights.bytes();
+  size_t bytes = geometry.instances.size() * sizeof(Instance) + slots.size() * sizeof(uint32_t) + passing.size() +
+                 clearing.size() + lights.bytes();
   for (const Mesh &mesh : geometry.meshes) {
     bytes += mesh.positions.size() * sizeof(glm::vec3) + mesh.triangles.size() * sizeof(glm::uvec3) +
              (mesh.normals.size() + mesh.smooth_normals.size() + mesh.colors.size()) * sizeof(glm::vec3) +

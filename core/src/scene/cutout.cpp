@@ -16,27 +16,79 @@ const Node *source(const Program &program, const Parameter &parameter, uint32_t 
   return node.kind == kind ? &node : nullptr;
 }
 
-Cutout recognise(const Material &material, const std::vector<Image> &images) {
-  // Follow 1 - alpha back to the picture and its UV map.
+const Node *math_source(const Program &program, const Parameter &parameter, uint32_t operation, uint32_t flags) {
+  const Node *node = source(program, parameter, LANCER_NODE_MATH);
+  return node && node->option == operation && node->flags == flags ? node : nullptr;
+}
+
+// Follows 1 - alpha back to the picture and its UV map. share: what stands for alpha.
+AlphaPicture find_alpha(const Material &material, const std::vector<Image> &images, Parameter &share) {
   const Program &program = material.program;
-  const Node *rest = source(program, material.transmittance, LANCER_NODE_MATH);
-  if (!rest || rest->option != LANCER_MATH_SUBTRACT || (rest->flags & 1) || rest->inputs[0].varies() ||
-      rest->inputs[0].value.x != 1.0f)
+  const Node *rest = math_source(program, material.transmittance, LANCER_MATH_SUBTRACT, 0);
+  if (!rest || rest->inputs[0].varies() || rest->inputs[0].value.x != 1.0f)
     return {};
-  const Parameter &alpha = rest->inputs[1];
-  const Node *alpha_node = source(program, alpha, LANCER_NODE_ALPHA);
-  const Node *picture = alpha_node ? source(program, alpha_node->inputs[0], LANCER_NODE_IMAGE) : nullptr;
+  share = rest->inputs[1];
+  const Node *clamp = math_source(program, share, LANCER_MATH_ADD, 1);
+  if (clamp && (clamp->inputs[1].varies() || clamp->inputs[1].value.x != 0.0f))
+    return {};
+  const Node *alpha = source(program, clamp ? clamp->inputs[0] : share, LANCER_NODE_ALPHA);
+  const Node *picture = alpha ? source(program, alpha->inputs[0], LANCER_NODE_IMAGE) : nullptr;
   if (!picture || picture->option != LANCER_PROJECT_FLAT || picture->image_count != 1 || images[picture->image].tile != 0)
     return {};
   const Node *place = source(program, picture->inputs[0], LANCER_NODE_COORDINATE);
   if (!place || place->option != LANCER_COORDINATE_UV)
     return {};
-  Cutout cutout{picture->image, place->name, static_cast<Extension>(picture->flags & 0xf),
-                static_cast<Interpolation>(picture->flags >> 4 & 0xf), true};
-  // All that it scatters is weighted by the same alpha.
-  for (const LobeDescription &lobe : material.lobes)
-    cutout.nothing_beside &= lobe.weight.node == alpha.node;
-  cutout.nothing_beside &= !material.emits() && !material.holdout.varies() && material.holdout.value == glm::vec3(0.0f);
+  return {picture->image, place->name, static_cast<Extension>(picture->flags & 0xf),
+          static_cast<Interpolation>(picture->flags >> 4 & 0xf), clamp != nullptr};
+}
+
+// Whether a node looks at nothing but its inputs, the triangle and the place within it.
+bool is_painted(const Node &node) {
+  switch (node.kind) {
+  case LANCER_NODE_COORDINATE:
+    return node.option == LANCER_COORDINATE_UV || node.option == LANCER_COORDINATE_PARAMETRIC;
+  case LANCER_NODE_IMAGE:
+    return node.option != LANCER_PROJECT_BOX;
+  case LANCER_NODE_ATTRIBUTE:
+  case LANCER_NODE_ALPHA:
+  case LANCER_NODE_MAPPING:
+  case LANCER_NODE_MATH:
+  case LANCER_NODE_VECTOR_MATH:
+  case LANCER_NODE_MIX:
+  case LANCER_NODE_SEPARATE:
+  case LANCER_NODE_COMBINE:
+  case LANCER_NODE_GREY:
+  case LANCER_NODE_CLAMP:
+  case LANCER_NODE_GAMMA:
+  case LANCER_NODE_INVERT:
+    return true;
+  default:
+    return false;
+  }
+}
+
+bool all_painted(const Program &program, const Schedule &schedule) {
+  return std::ranges::all_of(schedule, [&](uint16_t node) { return is_painted(program.nodes[node]); });
+}
+
+Cutout recognise(const Material &material, const std::vector<Image> &images) {
+  Cutout cutout;
+  if (!material.transmittance.varies())
+    return cutout;
+  Parameter share;
+  cutout.alpha = find_alpha(material, images, share);
+  cutout.painted = all_painted(material.program, material.transmittance_nodes);
+  cutout.ends_with_alpha = cutout.alpha.known();
+  // Nothing shines or cuts a hole there, and every lobe has a weight that can end.
+  std::vector<Parameter> deciding{material.transmittance};
+  cutout.may_end = !material.emits() && !material.holdout.varies() && material.holdout.value == glm::vec3(0.0f);
+  for (const LobeDescription &lobe : material.lobes) {
+    cutout.may_end &= lobe.weight.varies();
+    deciding.push_back(lobe.weight);
+    cutout.ends_with_alpha &= lobe.weight.node == share.node;
+  }
+  cutout.nodes = material.program.schedule(deciding);
+  cutout.may_end &= all_painted(material.program, cutout.nodes);
   return cutout;
 }
 
@@ -49,12 +101,13 @@ std::vector<Cutout> make_cutouts(const std::vector<Material> &materials, const s
   return cutouts;
 }
 
-float cutout_transmittance(const Cutout &cutout, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
-                           const glm::dvec2 &bary) {
+float alpha_at(const AlphaPicture &picture, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
+               const glm::dvec2 &bary) {
   glm::vec2 corner[3], uv(0.0f);
-  if (corner_uvs(mesh, cutout.uv_map, triangle, corner))
+  if (corner_uvs(mesh, picture.uv_map, triangle, corner))
     uv = (1.0 - bary.x - bary.y) * glm::dvec2(corner[0]) + bary.x * glm::dvec2(corner[1]) + bary.y * glm::dvec2(corner[2]);
-  return std::max(1.0f - lookup_alpha(images[cutout.image], uv, cutout.extension, cutout.interpolation), 0.0f);
+  const float alpha = lookup_alpha(images[picture.image], uv, picture.extension, picture.interpolation);
+  return picture.clamped ? glm::clamp(alpha, 0.0f, 1.0f) : alpha;
 }
 
 } // namespace lancer

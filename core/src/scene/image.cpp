@@ -118,7 +118,7 @@ struct Taps {
   int count = 0;
 };
 
-Taps taps(float u, uint32_t size, Extension extension, Interpolation interpolation) {
+[[gnu::always_inline]] inline Taps taps(float u, uint32_t size, Extension extension, Interpolation interpolation) {
   Taps result;
   const float x = near_picture(u, extension) * float(size);
   // Texels are centred at halves: the place between two centres is half a texel lower.
@@ -146,7 +146,8 @@ Taps taps(float u, uint32_t size, Extension extension, Interpolation interpolati
 }
 
 // Value: glm::vec4, or float for the alpha alone.
-template <class Value, class Texel, int Channels> Value gather(const Image &image, const Taps &across, const Taps &up) {
+template <class Value, class Texel, int Channels>
+[[gnu::always_inline]] inline Value gather(const Image &image, const Taps &across, const Taps &up) {
   const auto at = [&](int64_t x, int64_t y) {
     if constexpr (std::is_same_v<Value, float>)
       return fetch_alpha<Texel, Channels>(image, x, y);
@@ -229,6 +230,10 @@ float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension,
     return 0.0f;
   if (image.channels == 1)
     return 1.0f;
+  // What most leaves are: nothing is left to decide but where the texels are.
+  if (interpolation == Interpolation::Linear && image.kind == TexelKind::U8 && image.channels == 4)
+    return gather<float, uint8_t, 4>(image, taps(uv.x, image.width, extension, Interpolation::Linear),
+                                     taps(uv.y, image.height, extension, Interpolation::Linear));
   return gather_any<float>(image, taps(uv.x, image.width, extension, interpolation),
                            taps(uv.y, image.height, extension, interpolation));
 }

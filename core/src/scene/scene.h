@@ -28,7 +28,7 @@ struct Scene {
   std::vector<WideMaterial> wide; // by material
   std::vector<Cutout> cutouts;    // by material
   std::vector<uint8_t> passing;   // by instance: some of its materials may let light pass straight on
-  std::vector<uint8_t> clearing;  // by instance: parts of it may not be there at all, by cutouts
+  std::vector<uint8_t> clearing;  // by instance: there may be nothing of it at some places, as cutouts say
   std::vector<Image> images;
   World world;
   LightSet lights;
