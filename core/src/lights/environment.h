@@ -40,8 +40,8 @@ public:
   }
   // No sample where it does not vary.
   LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera) const;
-  // Density per solid angle with which sample() gives wi.
-  double pdf(const glm::dvec3 &wi) const { return varies() ? map_.pdf(wi) : 0.0; }
+  // Density per solid angle with which sample() gives wi; of the direction that nodes see, in floats.
+  double pdf(const glm::dvec3 &wi) const { return varies() ? map_.pdf(glm::dvec3(glm::vec3(wi))) : 0.0; }
 
   size_t bytes() const { return map_.bytes(); }
 

@@ -43,9 +43,9 @@ template <class Texel, int Channels> glm::vec4 fetch(const Image &image, int64_t
   return {unit(t[0]), unit(t[1]), unit(t[2]), alpha};
 }
 
-// The curve between 0 and 1 by straight lines between 4097 points. Its second derivative is at most 3.02, so that they leave it
-// by no more than 3.02 / 8 / 4096^2 = 2.3e-8; but for the line across 0.04045, where the slope jumps from 0.0774 to 0.0787 and
-// the curve lies up to 7.4e-8 beneath.
+// The curve between 0 and 1, and a step beyond, where sums of weighted bytes may round to, by straight lines between points.
+// Its second derivative is at most 3.02, so that they leave it by no more than 3.02 / 8 / 4096^2 = 2.3e-8; but for the line
+// across 0.04045, where the slope jumps from 0.0774 to 0.0787 and the curve lies up to 7.4e-8 beneath.
 constexpr size_t kSrgbSteps = 4096;
 const std::array<float, kSrgbSteps + 2> &srgb_lines() {
   static const std::array<float, kSrgbSteps + 2> table = [] {
@@ -176,7 +176,7 @@ glm::vec4 gather_any(const Image &image, const Taps &across, const Taps &up) {
 glm::vec3 decode(const glm::vec3 &c) {
   const auto &lines = srgb_lines();
   const auto at = [&](float value) {
-    if (!(value >= 0.0f && value <= 1.0f))
+    if (!(value >= 0.0f && value < 1.0f + 1.0f / float(kSrgbSteps)))
       return srgb_to_linear(value);
     const float place = value * float(kSrgbSteps);
     const size_t i = size_t(place);
