@@ -89,9 +89,8 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
     Path path = paths_[i];
     const Ray &ray = rays_[i];
     const double t = hits_[i].t;
-    SampleResult &result = results[path.slot];
     if (!hits_[i].valid()) {
-      miss(path, ray, result);
+      miss(i, results);
       continue;
     }
     const uint32_t material = material_of(scene_.geometry, scene_.slots, hits_[i].instance, hits_[i].primitive);
@@ -100,6 +99,7 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
     else
       shade_surface(path, ray, t, surface_at(scene_.geometry, scene_.slots, ray, hits_[i]), results, trace);
   }
+  add_missed(results);
   shade_lanes(results);
 }
 

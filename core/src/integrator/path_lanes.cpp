@@ -113,8 +113,9 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::fin
 
 // Colours that nodes say.
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_nodes() {
+  const uint32_t pictured = ask_pictures();
   for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    if (!block_.material[lane]->nodes)
+    if (!block_.material[lane]->nodes || (pictured >> lane & 1))
       continue;
     Waiting &waiting = waiting_[lane];
     const Hit &hit = hits_[waiting.number];
@@ -153,6 +154,7 @@ template <uint32_t Shapes, bool Layers> LightSet::Choice PathIntegrator<Shapes, 
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_lights() {
   static const WideLamp nothing;
   block_.asked = 0;
+  uint32_t skies = 0;
   const FewLights &few = scene_.lights.few();
   if (!few.empty()) {
     block_.light_nodes = few.nodes().data();
@@ -177,6 +179,11 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
       block_.asked |= 1u << lane;
       continue;
     }
+    if (choice.light == scene_.lights.environment_light()) {
+      block_.light_pdf[lane] = choice.probability;
+      skies |= 1u << lane;
+      continue;
+    }
     const LightSample light = sample_scene_light(scene_, choice, get(block_.p, lane),
                                                  {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]}, shader_);
     if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
@@ -188,6 +195,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     block_.light_pdf[lane] = light.pdf * choice.probability;
     block_.light_delta[lane] = light.delta;
   }
+  ask_sky(skies);
 }
 
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::send_shadow_of(uint32_t lane) {

@@ -8,7 +8,9 @@ namespace lancer {
 
 namespace {
 
-// As WeightedChoice::Choice.
+constexpr double kBelowOne = 1.0 - 0x1p-53;
+
+// As WeightedChoice::Choice, but in double.
 struct Entry {
   uint32_t index;
   double width; // of its interval
@@ -28,8 +30,7 @@ Entry find(const double *sums, const uint32_t *guide, size_t steps, float number
       low = middle + 1;
   }
   const double width = sums[low + 1] - sums[low];
-  const float below_one = std::nextafter(1.0f, 0.0f);
-  return {low, width, double(std::min(float((u - sums[low]) / width), below_one))};
+  return {low, width, std::min((u - sums[low]) / width, kBelowOne)};
 }
 
 } // namespace
@@ -78,9 +79,9 @@ DirectionMap::Sample DirectionMap::sample(const glm::vec2 &u) const {
   return {inside_cell(column.index, row.index, {column.u, row.u}), density(column.index, row.index)};
 }
 
-double DirectionMap::pdf(const glm::dvec3 &direction) const {
-  const double across = std::sqrt(direction.x * direction.x + direction.y * direction.y);
-  const MapPlace<double> place = place_on_map(direction.x, direction.y, direction.z, across);
+double DirectionMap::pdf(const glm::vec3 &direction) const {
+  const glm::dvec3 d(direction);
+  const MapPlace<double> place = place_on_map(d.x, d.y, d.z, std::sqrt(d.x * d.x + d.y * d.y));
   const auto row = uint32_t(std::min(height_ - 1.0, (0.5 - place.y) * height_));
   const auto column = uint32_t(std::min(width_ - 1.0, (0.5 + place.x) * width_));
   return density(column, row);
@@ -88,8 +89,7 @@ double DirectionMap::pdf(const glm::dvec3 &direction) const {
 
 double DirectionMap::density(uint32_t column, uint32_t row) const {
   const double *columns = column_sums_.data() + size_t(row) * (width_ + 1);
-  const auto of_row = float(row_sums_[row + 1] - row_sums_[row]), of_column = float(columns[column + 1] - columns[column]);
-  return double(of_row) * double(of_column) / solid_angle(row);
+  return (row_sums_[row + 1] - row_sums_[row]) * (columns[column + 1] - columns[column]) / solid_angle(row);
 }
 
 glm::dvec3 DirectionMap::direction(double column, double row) const {

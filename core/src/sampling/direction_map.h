@@ -33,7 +33,8 @@ public:
     double pdf = 0.0;          // per solid angle; 0 = no sample
   };
   Sample sample(const glm::vec2 &u) const;
-  double pdf(const glm::dvec3 &direction) const;
+  // Of a direction in floats, as the nodes of a world see it.
+  double pdf(const glm::vec3 &direction) const;
 
   // The direction at a place of the grid, (0, 0) its first corner, even in the angles.
   glm::dvec3 direction(double column, double row) const;

@@ -1,5 +1,7 @@
 #include "scene/image.h"
 
+#include "scene/wide_image.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +48,6 @@ template <class Texel, int Channels> glm::vec4 fetch(const Image &image, int64_t
 // The curve between 0 and 1, and a step beyond, where sums of weighted bytes may round to, by straight lines between points.
 // Its second derivative is at most 3.02, so that they leave it by no more than 3.02 / 8 / 4096^2 = 2.3e-8; but for the line
 // across 0.04045, where the slope jumps from 0.0774 to 0.0787 and the curve lies up to 7.4e-8 beneath.
-constexpr size_t kSrgbSteps = 4096;
 const std::array<float, kSrgbSteps + 2> &srgb_lines() {
   static const std::array<float, kSrgbSteps + 2> table = [] {
     std::array<float, kSrgbSteps + 2> values{};
@@ -206,6 +207,30 @@ void prefetch(const Image &image, const glm::vec2 &uv, Extension extension) {
   for (const int64_t y : {up.at[0], up.at[1]})
     if (y >= 0 && across.at[0] >= 0)
       __builtin_prefetch(image.texels.get() + (size_t(y) * image.width + size_t(across.at[0])) * texel);
+}
+
+std::optional<WideImage> wide_image(const Image &image, uint32_t flags) {
+  const auto extension = static_cast<Extension>(flags & 0xf);
+  const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
+  const bool divided = (flags & 256) && multiplied && image.channels > 1;
+  const bool bytes = image.kind != TexelKind::Float;
+  if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || divided || image.tile != 0 ||
+      (extension != Extension::Repeat && extension != Extension::Extend) || (image.transfer == Transfer::Srgb && !bytes) ||
+      image.bytes() >= size_t(1) << 31 || std::max(image.width, image.height) > 1u << 20)
+    return {};
+  WideImage wide;
+  wide.texels = image.texels.get();
+  wide.lines = image.transfer == Transfer::Srgb ? srgb_lines().data() : nullptr;
+  wide.width = image.width;
+  wide.height = image.height;
+  wide.channels = image.channels;
+  wide.texel_bytes = uint32_t(texel_bytes(image.kind));
+  wide.repeats = extension == Extension::Repeat;
+  wide.has_matrix = image.has_matrix;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row)
+      wide.matrix[column][row] = image.matrix[column][row];
+  return wide;
 }
 
 glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight) {
