@@ -94,7 +94,8 @@ std::vector<float> picture(uint32_t seed, uint32_t passes) {
   }
   lancer_light sun = studio.sun({0.5, -0.3, 1.0}, 0.7f);
   sun.sun_angle = seed % 4 ? 0.3f : 0.0f;
-  if (seed % 2)
+  sun.sun_flat = seed % 8 < 4;
+  if (seed % 3)
     studio.add(sun);
   add_sky(studio, seed);
   studio.look({2, -9, 6}, {0, 0, -0.5}, 48, 12.0);

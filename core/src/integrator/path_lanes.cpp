@@ -175,6 +175,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
     if (const WideLamp *lamp = scene_.lights.wide_lamp(choice.light)) {
       block_.lamp[lane] = lamp;
+      waiting_[lane].far = lamp->kind == uint32_t(LightKind::Sun);
       block_.light_pdf[lane] = choice.probability;
       block_.asked |= 1u << lane;
       continue;

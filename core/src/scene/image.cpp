@@ -36,7 +36,7 @@ const std::array<float, 256> &srgb_table() {
 // A texel with four numbers, whatever is stored.
 template <class Texel, int Channels> glm::vec4 fetch(const Image &image, int64_t x, int64_t y) {
   const auto *texels = reinterpret_cast<const Texel *>(image.texels.get());
-  const Texel *t = texels + size_t(y * int64_t(image.width) + x) * Channels;
+  const Texel *t = texels + (size_t(y) * image.width + size_t(x)) * Channels;
   if constexpr (Channels == 1) {
     const float value = unit(t[0]);
     return {value, value, value, 1.0f};
@@ -103,43 +103,53 @@ std::array<float, 4> spline_weights(float t) {
   return {s2 * s / 6.0f, 2.0f / 3.0f - t2 + 0.5f * t2 * t, 2.0f / 3.0f - s2 + 0.5f * s2 * s, t2 * t / 6.0f};
 }
 
-// Neighbours along one axis, with their weights.
+// Neighbours along one axis, with their weights; what is beyond count is not set.
 struct Taps {
-  std::array<int64_t, 4> at{};
-  std::array<float, 4> weight{};
-  int count = 0;
+  std::array<int64_t, 4> at;
+  std::array<float, 4> weight;
+  int count;
 };
 
-Taps taps(float u, uint32_t size, Extension extension, Interpolation interpolation) {
+inline Taps taps(float u, uint32_t size, Extension extension, Interpolation interpolation) {
   Taps result;
   const float x = near_picture(u, extension) * float(size);
   // Texels are centred at halves: the place between two centres is half a texel lower.
   const float place = interpolation == Interpolation::Closest ? x : x - 0.5f;
   const float whole = std::floor(place), part = place - whole;
-  int64_t first = int64_t(whole);
+  const auto first = int64_t(whole);
   switch (interpolation) {
   case Interpolation::Closest:
     result.count = 1;
-    result.weight = {1.0f};
-    break;
+    result.at[0] = wrap(first, size, extension);
+    return result;
   case Interpolation::Linear:
     result.count = 2;
-    result.weight = {1.0f - part, part};
-    break;
+    result.at[0] = wrap(first, size, extension);
+    result.at[1] = wrap(first + 1, size, extension);
+    result.weight[0] = 1.0f - part;
+    result.weight[1] = part;
+    return result;
   case Interpolation::Cubic:
-    result.count = 4;
-    result.weight = spline_weights(part);
-    --first;
     break;
   }
-  for (int i = 0; i < result.count; ++i)
-    result.at[size_t(i)] = wrap(first + i, size, extension);
+  result.count = 4;
+  result.weight = spline_weights(part);
+  for (int i = 0; i < 4; ++i)
+    result.at[size_t(i)] = wrap(first + i - 1, size, extension);
   return result;
 }
 
 template <class Texel, int Channels> glm::vec4 gather(const Image &image, const Taps &across, const Taps &up) {
   if (across.count == 1)
     return across.at[0] < 0 || up.at[0] < 0 ? glm::vec4(0.0f) : fetch<Texel, Channels>(image, across.at[0], up.at[0]);
+  if (across.count == 2 && across.at[0] >= 0 && across.at[1] >= 0 && up.at[0] >= 0 && up.at[1] >= 0) {
+    const auto row = [&](int64_t y) {
+      return across.weight[0] * fetch<Texel, Channels>(image, across.at[0], y) +
+             across.weight[1] * fetch<Texel, Channels>(image, across.at[1], y);
+    };
+    return up.weight[0] * row(up.at[0]) + up.weight[1] * row(up.at[1]);
+  }
+  // More of them, or some beyond the edge of a clipped picture.
   glm::vec4 sum(0.0f);
   for (size_t y = 0; y < size_t(up.count); ++y) {
     glm::vec4 row(0.0f);
