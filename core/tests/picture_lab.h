@@ -92,6 +92,8 @@ public:
     std::fill(light.emission, light.emission + 3, irradiance);
     return light;
   }
+  void add(const lancer_image &image) { EXPECT_EQ(lancer_scene_add_image(scene_, &image), LANCER_OK) << lancer_last_error(); }
+  void add(const lancer_world &world) { EXPECT_EQ(lancer_scene_set_world(scene_, &world), LANCER_OK) << lancer_last_error(); }
   void add(const lancer_light &light) { EXPECT_EQ(lancer_scene_add_light(scene_, &light), LANCER_OK) << lancer_last_error(); }
 
   // by_nodes: the same radiance as the result of a node, which is sampled as a light.

@@ -86,7 +86,7 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
     if (i + 1 < paths_.size())
       textures_.ahead(hits_[i + 1]);
     if (!hits_[i].valid()) {
-      miss(paths_[i], rays_[i], results[paths_[i].slot]);
+      miss(i, results);
       continue;
     }
     const uint32_t material = material_of(scene_.geometry, scene_.slots, hits_[i].instance, hits_[i].primitive);
@@ -96,6 +96,7 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
       shade_surface(paths_[i], rays_[i], hits_[i].t, surface_at(scene_.geometry, scene_.slots, rays_[i], hits_[i]), results,
                     trace);
   }
+  add_missed(results);
   shade_lanes(results);
 }
 

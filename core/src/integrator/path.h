@@ -2,10 +2,12 @@
 #pragma once
 
 #include "integrator/camera_rays.h"
+#include "integrator/color_pictures.h"
 #include "integrator/denoising_features.h"
 #include "integrator/first_surface.h"
 #include "integrator/layers_met.h"
 #include "integrator/light_passes.h"
+#include "integrator/picture_kernel.h"
 #include "integrator/sample.h"
 #include "integrator/scene_lights.h"
 #include "integrator/shading.h"
@@ -24,7 +26,10 @@ public:
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
         lanes_(vertex_kernel()), picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
-        any_clear_(Layers && !passes_.features() && std::ranges::find(scene.clearing, 1) != scene.clearing.end()) {
+        any_clear_(Layers && !passes_.features() && std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
+        picture_lanes_(picture_kernel()), pictures_(scene) {
+    if (scene.lights.environment().varies())
+      sky_ = scene.lights.environment().wide();
     point_.bsdf.shares = passes_.wanted();
   }
 
@@ -94,7 +99,12 @@ private:
   void find_hits(std::span<SampleResult> results, std::vector<PathVertex> *trace);
   bool is_there(size_t ray, const Hit &hit);
   void pass_clear(size_t number, std::span<SampleResult> results, std::vector<PathVertex> *trace);
-  void miss(const Path &path, const Ray &ray, SampleResult &result);
+  void miss(size_t number, std::span<SampleResult> results);
+  glm::vec3 environment_towards(const Path &path, const glm::dvec3 &wi);
+  void add_environment(const Path &path, double pdf, const glm::vec3 &radiance, SampleResult &result);
+  void add_missed(std::span<SampleResult> results);
+  void ask_sky(uint32_t lanes);
+  uint32_t ask_pictures();
   void add_lights_met(std::span<SampleResult> results);
   void add_light_met(size_t i, uint32_t number, std::span<SampleResult> results);
   double way_end(size_t i) const; // distance from the last scattering to where the ray ends
@@ -131,6 +141,13 @@ private:
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane
   uint32_t waiting_count_ = 0;
+  const PictureKernel &picture_lanes_;
+  WideSky sky_;
+  ColorPictures pictures_;
+  ColorBlock colors_{};
+  SkyBlock misses_{};
+  size_t missed_[kBlockLanes]; // numbers of paths
+  uint32_t missed_count_ = 0;
   Shaded point_; // of the surface at hand
   // The queue: paths_[i] travels along rays_[i].
   std::vector<Path> paths_, next_paths_;

@@ -124,8 +124,9 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::fin
 
 // Colours that nodes say.
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_nodes() {
+  const uint32_t pictured = ask_pictures();
   for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    if (!block_.material[lane]->nodes)
+    if (!block_.material[lane]->nodes || (pictured >> lane & 1))
       continue;
     Waiting &waiting = waiting_[lane];
     const Hit &hit = hits_[waiting.number];
@@ -186,6 +187,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::cho
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_lights() {
   static const WideLamp nothing;
   block_.asked = 0;
+  uint32_t skies = 0;
   const FewLights &few = scene_.lights.few();
   if (!few.empty()) {
     block_.light_nodes = few.nodes().data();
@@ -207,8 +209,14 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
     if (const WideLamp *lamp = scene_.lights.wide_lamp(choice.light)) {
       block_.lamp[lane] = lamp;
+      waiting_[lane].far = lamp->kind == uint32_t(LightKind::Sun);
       block_.light_pdf[lane] = choice.probability;
       block_.asked |= 1u << lane;
+      continue;
+    }
+    if (choice.light == scene_.lights.environment_light()) {
+      block_.light_pdf[lane] = choice.probability;
+      skies |= 1u << lane;
       continue;
     }
     const LightSample light = sample_scene_light(scene_, choice, get(block_.p, lane),
@@ -222,6 +230,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     block_.light_pdf[lane] = light.pdf * choice.probability;
     block_.light_delta[lane] = light.delta;
   }
+  ask_sky(skies);
 }
 
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::send_shadow_of(uint32_t lane) {

@@ -1,5 +1,6 @@
 // The light that paths gather: what they run into, and what they ask for.
 #include "integrator/lane_access.h"
+#include "integrator/mis_weight.h"
 #include "integrator/path_kinds.h"
 #include "sampling/color.h"
 
@@ -10,12 +11,6 @@
 namespace lancer {
 
 namespace {
-
-// The power heuristic in ratio form: infinite densities give 0 or 1, never NaN.
-float mis_weight(double pdf, double other) {
-  const double ratio = other / pdf;
-  return float(1.0 / (1.0 + ratio * ratio));
-}
 
 constexpr glm::vec3 divided(const glm::vec3 &a, const glm::vec3 &b) {
   return {b.x != 0.0f ? a.x / b.x : 0.0f, b.y != 0.0f ? a.y / b.y : 0.0f, b.z != 0.0f ? a.z / b.z : 0.0f};
@@ -42,34 +37,6 @@ void PathIntegrator<Shapes, Layers>::add(const Path &path, SampleResult &result,
   else
     result.radiance += radiance;
   passes_.add(result, radiance, records_[path.slot].share, indirect);
-}
-
-template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::miss(const Path &path, const Ray &ray, SampleResult &result) {
-  if (path.in_view && !picture_alone_ && !records_[path.slot].seen)
-    forget_place(result);
-  if (path.scatterings == 0 && !picture_alone_)
-    add_sky_features(records_[path.slot].features, result);
-  // A transparent film does not show the environment itself, only what it lights.
-  if (path.in_view && settings_.film_transparent) {
-    result.alpha -= mean(path.beta);
-    return;
-  }
-  if (!(path.kinds & ~scene_.world.hidden_from))
-    return;
-  const Environment &environment = scene_.lights.environment();
-  if (!environment.varies()) {
-    add(path, result, path.beta * environment.constant(), true);
-    return;
-  }
-  // The environment is sampled as a light, too.
-  const glm::dvec3 wi = glm::normalize(ray.d);
-  float weight = 1.0f;
-  if (path.pdf > 0.0)
-    weight =
-        mis_weight(path.pdf, environment.pdf(wi) * scene_.lights.probability(query(path), scene_.lights.environment_light()));
-  const glm::dvec3 *eye = path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr;
-  add(path, result, path.beta * environment.radiance(wi, shader_.values(), &camera_, eye) * weight, true);
 }
 
 // Lights stand in no one's way: adds all that the rays pass before they end.
@@ -193,7 +160,7 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
 }
 
 #define LANCER_PATH(shapes, layers)                                                                                            \
-  template void PathIntegrator<shapes, layers>::miss(const Path &, const Ray &, SampleResult &);                               \
+  template void PathIntegrator<shapes, layers>::add(const Path &, SampleResult &, const glm::vec3 &, bool);                    \
   template void PathIntegrator<shapes, layers>::add_lights_met(std::span<SampleResult>);                                       \
   template void PathIntegrator<shapes, layers>::add_emission(const Path &, const Surface &, const glm::vec3 &,                 \
                                                              SampleResult &);                                                  \

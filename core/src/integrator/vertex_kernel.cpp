@@ -137,6 +137,9 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
     sample_round(lamps, p, disk_x, disk_y, round, equal(load(softs), U(1u)), spot, light, inside);
     block.odd |= placed_bits(inside, first);
   }
+  const M sun = asked & equal(kind, number_of(LightKind::Sun));
+  if (any(sun))
+    sample_sun(lamps, disk_x, disk_y, sun, light);
   // Dark ones are none.
   light.pdf = select(asked & black(light.radiance), D(0.0), light.pdf);
   store3(block.light_target, first, light.target);

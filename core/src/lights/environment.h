@@ -3,7 +3,7 @@
 
 #include "accel/accelerator.h"
 #include "lights/light.h"
-#include "sampling/direction_map.h"
+#include "lights/wide_sky.h"
 #include "scene/world.h"
 
 namespace lancer {
@@ -40,8 +40,11 @@ public:
   }
   // No sample where it does not vary.
   LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera) const;
-  // Density per solid angle with which sample() gives wi.
-  double pdf(const glm::dvec3 &wi) const { return varies() ? map_.pdf(wi) : 0.0; }
+  // Density per solid angle with which sample() gives wi; of the direction that nodes see, in floats.
+  double pdf(const glm::dvec3 &wi) const { return varies() ? map_.pdf(glm::vec3(wi)) : 0.0; }
+
+  // For kernels, as long as this is neither changed nor moved; only where it varies.
+  WideSky wide() const { return make_wide_sky(*world_, *images_, map_); }
 
   size_t bytes() const { return map_.bytes(); }
 

@@ -37,6 +37,7 @@ WideLamp make_wide(const Light &light) {
   lamp.tan_half_spread = light.tan_half_spread;
   lamp.spread_scale = light.spread_scale;
   lamp.one_minus_cos_sun = light.one_minus_cos_sun;
+  lamp.flat_radius = light.flat_radius;
   return lamp;
 }
 

@@ -46,9 +46,7 @@ public:
   double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 
   // The numbers of a light for kernels that sample it; null where only the general code does.
-  const WideLamp *wide_lamp(uint32_t light) const {
-    return light < lights_.size() && wide_lamps_[light].kind != uint32_t(LightKind::Sun) ? &wide_lamps_[light] : nullptr;
-  }
+  const WideLamp *wide_lamp(uint32_t light) const { return light < lights_.size() ? &wide_lamps_[light] : nullptr; }
 
   // The emitter of an instance; null if it has none.
   const Emitter *emitter_of(uint32_t instance) const {

@@ -1,5 +1,5 @@
-// Samples of area, point and spot lights for many lanes at once, with the bits of area_light.h and point_light.h. For kernels
-// only, like sampling/lanes.h.
+// Samples of lights as described for many lanes at once, with the bits of area_light.h, point_light.h and sun_light.h. For
+// kernels only, like sampling/lanes.h.
 #pragma once
 
 #include "lights/wide_lamp.h"
@@ -109,6 +109,13 @@ LANCER_LANE void complete_frame(const D3 &n, D3 &s, D3 &t) {
   t = {b, side + n.y * n.y * a, -n.y};
 }
 
+LANCER_LANE D3 unit_of(const D3 &v) { return v * (D(1.0) / sqrt(dot(v, v))); }
+LANCER_LANE D3 cone_direction(const D3 &axis, const D3 &s, const D3 &t, D cone, F disk_x, F disk_y) {
+  const D one(1.0), dx = widen(disk_x), dy = widen(disk_y);
+  const D r2 = min(one, dx * dx + dy * dy), x = r2 * cone, spread = sqrt(cone * (D(2.0) - x));
+  return unit_of((one - x) * axis + dx * spread * s + dy * spread * t);
+}
+
 // sample_point(): true points, disks that face p, and balls seen from outside; inside: lanes within their ball.
 LANCER_LANE void sample_round(const WideLamp *const *lamps, const D3 &p, F disk_x, F disk_y, M which, M soft, M spot,
                               WideLight &light, M &inside) {
@@ -138,11 +145,7 @@ LANCER_LANE void sample_round(const WideLamp *const *lamps, const D3 &p, F disk_
     const D ratio = radius / distance, sin2 = ratio * ratio;
     const D cos2 = (distance - radius) * (distance + radius) / (distance * distance);
     const D cone = sin2 / (one + sqrt(max(zero, cos2)));
-    // cone_direction()
-    const D dx = widen(disk_x), dy = widen(disk_y);
-    const D r2 = min(one, dx * dx + dy * dy), x = r2 * cone, spread = sqrt(cone * (D(2.0) - x));
-    const D3 v = (one - x) * axis + dx * spread * s + dy * spread * t;
-    const D3 w = v * (one / sqrt(dot(v, v)));
+    const D3 w = cone_direction(axis, s, t, cone, disk_x, disk_y);
     const D along = dot(to_light, w);
     const D3 closest = along * w - to_light;
     const D miss = sqrt(dot(closest, closest));
@@ -159,6 +162,34 @@ LANCER_LANE void sample_round(const WideLamp *const *lamps, const D3 &p, F disk_
   light.radiance = select(which, narrow(emission * scale), light.radiance);
   light.pdf = select(which & (distance > zero), pdf, light.pdf);
   light.delta = light.delta | point;
+}
+
+// sample_sun(): single directions, even disks and flat ones.
+LANCER_LANE void sample_sun(const WideLamp *const *lamps, F disk_x, F disk_y, M which, WideLight &light) {
+  const D one(1.0), zero(0.0), pi(std::numbers::pi);
+  const D size = LANCER_LAMP(one_minus_cos_sun), radius = LANCER_LAMP(flat_radius);
+  const D3 x = LANCER_LAMP3(x), y = LANCER_LAMP3(y), z = LANCER_LAMP3(z), emission = LANCER_LAMP3(emission);
+  const M single = which & (size == zero), flat = which & !single & (radius != zero), even = which & !single & !flat;
+  D3 wi = z;
+  V3 radiance = narrow(emission);
+  D pdf = one;
+  // sun_disk()
+  if (any(even)) {
+    wi = select(even, cone_direction(z, x, y, size, disk_x, disk_y), wi);
+    radiance = select(even, narrow(emission / (pi * (size * (D(2.0) - size)))), radiance);
+    pdf = select(even, one / (D(2.0 * std::numbers::pi) * size), pdf);
+  }
+  if (any(flat)) {
+    const D3 w = unit_of(z + radius * widen(disk_x) * x + radius * widen(disk_y) * y);
+    const D cosine = dot(w, z), r2 = radius * radius, density = one / (pi * r2 * cosine * cosine * cosine);
+    wi = select(flat, w, wi);
+    radiance = select(flat, narrow(emission * (D(0.5) * (sqrt(one + r2) + one) * density)), radiance);
+    pdf = select(flat, density, pdf);
+  }
+  light.wi = select(which, wi, light.wi);
+  light.radiance = select(which, radiance, light.radiance);
+  light.pdf = select(which, pdf, light.pdf);
+  light.delta = light.delta | single;
 }
 
 #undef LANCER_LAMP

@@ -7,6 +7,18 @@
 
 namespace lancer {
 
+// The map's numbers, which kernels read as well. Sums and guides are those of WeightedChoice, a guide with the last entry
+// behind it: the entry for a number lies between two of the guide. A line of the columns' for each row, then one of the rows'
+// own.
+struct DirectionTable {
+  uint32_t width = 0, height = 0, column_steps = 0, row_steps = 0;
+  // By row: 1 - cos of the angle to the pole of the edge towards it, which keeps its digits there, where cos has none left; and
+  // the solid angle of a cell. Rows count from the nearer pole.
+  const double *versines = nullptr, *solid_angles = nullptr;
+  const double *row_sums = nullptr, *column_sums = nullptr;
+  const uint32_t *row_guide = nullptr, *column_guide = nullptr;
+};
+
 // Row 0 holds the directions around +z; column 0 begins at -x and columns run with the angle about z. Within a cell the density
 // is constant per solid angle, so that neither the poles nor the seam are special.
 class DirectionMap {
@@ -15,32 +27,33 @@ public:
   // weights[row * width + column]: what to be proportional to, per solid angle; 0 where never.
   DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights);
 
-  bool empty() const { return rows_.empty(); }
+  bool empty() const { return height_ == 0; }
   struct Sample {
     glm::dvec3 direction{0.0}; // unit
     double pdf = 0.0;          // per solid angle; 0 = no sample
   };
   Sample sample(const glm::vec2 &u) const;
-  double pdf(const glm::dvec3 &direction) const;
+  // Of a direction in floats, as the nodes of a world see it.
+  double pdf(const glm::vec3 &direction) const;
 
   // The direction at a place of the grid, (0, 0) its first corner, even in the angles.
   glm::dvec3 direction(double column, double row) const;
   // Solid angle of each cell of a row.
   double solid_angle(uint32_t row) const { return solid_angles_[from_pole(row)]; }
+  // As long as the map is neither changed nor moved.
+  DirectionTable table() const;
   size_t bytes() const;
 
 private:
+  void append(const WeightedChoice &choice, std::vector<double> &sums, std::vector<uint32_t> &guide, uint32_t size) const;
   // The direction at (x, y) in [0, 1)^2 of a cell, even in the solid angle.
   glm::dvec3 inside_cell(uint32_t column, uint32_t row, const glm::dvec2 &inside) const;
-  // Rows count from the nearer pole.
+  double density(uint32_t column, uint32_t row) const;
   uint32_t from_pole(uint32_t row) const { return 2 * row < height_ ? row : height_ - row - 1; }
 
   uint32_t width_ = 0, height_ = 0;
-  // By row: 1 - cos of the angle to the pole of the edge towards it, which keeps its digits there, where cos has none left; and
-  // the solid angle of a cell.
-  std::vector<double> versines_, solid_angles_;
-  WeightedChoice choice_;            // of a row
-  std::vector<WeightedChoice> rows_; // of a column in it
+  std::vector<double> versines_, solid_angles_, row_sums_, column_sums_;
+  std::vector<uint32_t> row_guide_, column_guide_;
 };
 
 } // namespace lancer

@@ -34,7 +34,7 @@ public:
     for (double &c : cdf_)
       c /= total;
     // Note for even steps of the number which entry it falls on, so that looking for one begins beside it.
-    guide_.resize(weights.size() / kPerStep + 1);
+    guide_.resize(guide_steps(weights.size()));
     uint32_t entry = 0;
     for (std::size_t step = 0; step < guide_.size(); ++step) {
       while (entry + 1 < weights.size() && !(cdf_[entry + 1] > static_cast<double>(step) / static_cast<double>(guide_.size())))
@@ -42,6 +42,13 @@ public:
       guide_[step] = entry;
     }
   }
+
+  // How many steps the guide of so many weights has.
+  static constexpr std::size_t guide_steps(std::size_t size) { return size / kPerStep + 1; }
+  // For other ways to look: sums of weights up to each entry, the last 1; and the entries that even steps of the number fall
+  // on. Where nothing can be chosen the sums are 0 and there is no guide.
+  const std::vector<double> &sums() const { return cdf_; }
+  const std::vector<uint32_t> &guide() const { return guide_; }
 
   std::size_t size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
 

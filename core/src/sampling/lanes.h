@@ -255,6 +255,38 @@ LANCER_LANE D sign(D a) {
 LANCER_LANE U truncate(F a) { return U((WordVector) __builtin_convertvector(a.v, IntVector)); }
 LANCER_LANE F to_float(U a) { return F(__builtin_convertvector((IntVector)a.v, FloatVector)); }
 
+// The largest whole number that is not above.
+LANCER_LANE F floor(F a) {
+#if defined(__AVX512F__)
+  return F((FloatVector)_mm512_maskz_roundscale_ps(kAllLanes, (__m512)a.v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
+#elif defined(__AVX__)
+  return F((FloatVector)_mm256_floor_ps((__m256)a.v));
+#elif defined(__SSE4_1__)
+  return F((FloatVector)_mm_floor_ps((__m128)a.v));
+#else
+  for (int i = 0; i < kLanes; ++i)
+    a.v[i] = __builtin_floorf(a.v[i]);
+  return a;
+#endif
+}
+
+// Towards zero, of what an int32 holds.
+LANCER_LANE U truncate(D a) {
+#if defined(__AVX512F__)
+  const __m256i lo = _mm512_maskz_cvttpd_epi32(kHalfLanes, (__m512d)a.lo);
+  const __m256i hi = _mm512_maskz_cvttpd_epi32(kHalfLanes, (__m512d)a.hi);
+  return U((WordVector)_mm512_maskz_inserti32x8(kAllLanes, _mm512_castsi256_si512(lo), hi, 1));
+#else
+  U r;
+  for (int i = 0; i < kHalf; ++i) {
+    r.v[i] = static_cast<uint32_t>(static_cast<int32_t>(a.lo[i]));
+    r.v[i + kHalf] = static_cast<uint32_t>(static_cast<int32_t>(a.hi[i]));
+  }
+  return r;
+#endif
+}
+
+// By intrinsics: GCC 12 takes a vector's conversion to floats and back for none at all.
 LANCER_LANE D widen(F a) {
 #if defined(__AVX512F__)
   const __m512 v = (__m512)a.v;
@@ -263,6 +295,9 @@ LANCER_LANE D widen(F a) {
 #elif defined(__AVX__)
   const __m256 v = (__m256)a.v;
   return {(DoubleVector)_mm256_cvtps_pd(_mm256_castps256_ps128(v)), (DoubleVector)_mm256_cvtps_pd(_mm256_extractf128_ps(v, 1))};
+#elif defined(__SSE2__)
+  const __m128 v = (__m128)a.v;
+  return {(DoubleVector)_mm_cvtps_pd(v), (DoubleVector)_mm_cvtps_pd(_mm_movehl_ps(v, v))};
 #else
   D r;
   for (int i = 0; i < kHalf; ++i) {
@@ -280,6 +315,8 @@ LANCER_LANE F narrow(D a) {
 #elif defined(__AVX__)
   return F((FloatVector)_mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps((__m256d)a.lo)),
                                              _mm256_cvtpd_ps((__m256d)a.hi), 1));
+#elif defined(__SSE2__)
+  return F((FloatVector)_mm_movelh_ps(_mm_cvtpd_ps((__m128d)a.lo), _mm_cvtpd_ps((__m128d)a.hi)));
 #else
   F r;
   for (int i = 0; i < kHalf; ++i) {
@@ -312,14 +349,45 @@ LANCER_LANE F gather(const float *table, U index) {
   return r;
 #endif
 }
-LANCER_LANE U gather(const uint32_t *table, U index) { return as_word(gather(reinterpret_cast<const float *>(table), index)); }
+LANCER_LANE U gather(const uint32_t *table, U index) {
+#if defined(__AVX512F__)
+  return U((WordVector)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), kAllLanes, (__m512i)index.v, table, 4));
+#else
+  U r;
+  for (int i = 0; i < kLanes; ++i)
+    r.v[i] = table[index.v[i]];
+  return r;
+#endif
+}
 LANCER_LANE D gather(const double *table, U index) {
+#if defined(__AVX512F__)
+  const __m512i all = (__m512i)index.v;
+  const __m256i lo = _mm512_maskz_extracti32x8_epi32(kHalfLanes, all, 0),
+                hi = _mm512_maskz_extracti32x8_epi32(kHalfLanes, all, 1);
+  return {(DoubleVector)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), kHalfLanes, lo, table, 8),
+          (DoubleVector)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), kHalfLanes, hi, table, 8)};
+#else
   D r;
   for (int i = 0; i < kHalf; ++i) {
     r.lo[i] = table[index.v[i]];
     r.hi[i] = table[index.v[i + kHalf]];
   }
   return r;
+#endif
+}
+// The words that begin at each of these bytes.
+LANCER_LANE U gather_bytes(const void *table, U offset) {
+#if defined(__AVX512F__)
+  return U((WordVector)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), kAllLanes, (__m512i)offset.v, table, 1));
+#else
+  U r;
+  for (int i = 0; i < kLanes; ++i) {
+    uint32_t word;
+    __builtin_memcpy(&word, static_cast<const unsigned char *>(table) + offset.v[i], 4);
+    r.v[i] = word;
+  }
+  return r;
+#endif
 }
 
 } // namespace

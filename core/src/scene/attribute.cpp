@@ -41,6 +41,14 @@ glm::vec4 attribute_at(const Mesh &mesh, const MeshAttribute &attribute, uint32_
   return float(1.0 - bary.x - bary.y) * a + float(bary.x) * b + float(bary.y) * c;
 }
 
+glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
+  glm::vec2 corner[3];
+  if (!corner_uvs(mesh, name, triangle, corner))
+    return glm::vec2(0.0f);
+  return glm::vec2((1.0 - bary.x - bary.y) * glm::dvec2(corner[0]) + bary.x * glm::dvec2(corner[1]) +
+                   bary.y * glm::dvec2(corner[2]));
+}
+
 bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 uvs[3]) {
   const MeshAttribute *attribute = find_attribute(mesh, name);
   if (!attribute && (name != 0 || mesh.uvs.empty()))

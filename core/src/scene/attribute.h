@@ -16,6 +16,7 @@ const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name);
 glm::vec4 attribute_at(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, const glm::dvec2 &bary);
 
 // The texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute; false where there are none.
+glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
 bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 uvs[3]);
 
 } // namespace lancer

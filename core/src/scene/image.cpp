@@ -1,5 +1,7 @@
 #include "scene/image.h"
 
+#include "scene/wide_image.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,7 +37,7 @@ const std::array<float, 256> &srgb_table() {
 // A texel with four numbers, whatever is stored.
 template <class Texel, int Channels> glm::vec4 fetch(const Image &image, int64_t x, int64_t y) {
   const auto *texels = reinterpret_cast<const Texel *>(image.texels.get());
-  const Texel *t = texels + size_t(y * int64_t(image.width) + x) * Channels;
+  const Texel *t = texels + (size_t(y) * image.width + size_t(x)) * Channels;
   if constexpr (Channels == 1) {
     const float value = unit(t[0]);
     return {value, value, value, 1.0f};
@@ -52,10 +54,9 @@ template <class Texel, int Channels> float fetch_alpha(const Image &image, int64
   return unit(texels[size_t(y * int64_t(image.width) + x) * Channels + 3]);
 }
 
-// The curve between 0 and 1 by straight lines between 4097 points. Its second derivative is at most 3.02, so that they leave it
-// by no more than 3.02 / 8 / 4096^2 = 2.3e-8; but for the line across 0.04045, where the slope jumps from 0.0774 to 0.0787 and
-// the curve lies up to 7.4e-8 beneath.
-constexpr size_t kSrgbSteps = 4096;
+// The curve between 0 and 1, and a step beyond, where sums of weighted bytes may round to, by straight lines between points.
+// Its second derivative is at most 3.02, so that they leave it by no more than 3.02 / 8 / 4096^2 = 2.3e-8; but for the line
+// across 0.04045, where the slope jumps from 0.0774 to 0.0787 and the curve lies up to 7.4e-8 beneath.
 const std::array<float, kSrgbSteps + 2> &srgb_lines() {
   static const std::array<float, kSrgbSteps + 2> table = [] {
     std::array<float, kSrgbSteps + 2> values{};
@@ -111,11 +112,11 @@ std::array<float, 4> spline_weights(float t) {
   return {s2 * s / 6.0f, 2.0f / 3.0f - t2 + 0.5f * t2 * t, 2.0f / 3.0f - s2 + 0.5f * s2 * s, t2 * t / 6.0f};
 }
 
-// Neighbours along one axis, with their weights.
+// Neighbours along one axis, with their weights; what is beyond count is not set.
 struct Taps {
-  std::array<int64_t, 4> at{};
-  std::array<float, 4> weight{};
-  int count = 0;
+  std::array<int64_t, 4> at;
+  std::array<float, 4> weight;
+  int count;
 };
 
 [[gnu::always_inline]] inline Taps taps(float u, uint32_t size, Extension extension, Interpolation interpolation) {
@@ -124,24 +125,26 @@ struct Taps {
   // Texels are centred at halves: the place between two centres is half a texel lower.
   const float place = interpolation == Interpolation::Closest ? x : x - 0.5f;
   const float whole = std::floor(place), part = place - whole;
-  int64_t first = int64_t(whole);
+  const auto first = int64_t(whole);
   switch (interpolation) {
   case Interpolation::Closest:
     result.count = 1;
-    result.weight = {1.0f};
-    break;
+    result.at[0] = wrap(first, size, extension);
+    return result;
   case Interpolation::Linear:
     result.count = 2;
-    result.weight = {1.0f - part, part};
-    break;
+    result.at[0] = wrap(first, size, extension);
+    result.at[1] = wrap(first + 1, size, extension);
+    result.weight[0] = 1.0f - part;
+    result.weight[1] = part;
+    return result;
   case Interpolation::Cubic:
-    result.count = 4;
-    result.weight = spline_weights(part);
-    --first;
     break;
   }
-  for (int i = 0; i < result.count; ++i)
-    result.at[size_t(i)] = wrap(first + i, size, extension);
+  result.count = 4;
+  result.weight = spline_weights(part);
+  for (int i = 0; i < 4; ++i)
+    result.at[size_t(i)] = wrap(first + i - 1, size, extension);
   return result;
 }
 
@@ -156,6 +159,11 @@ template <class Value, class Texel, int Channels>
   };
   if (across.count == 1)
     return across.at[0] < 0 || up.at[0] < 0 ? Value(0.0f) : at(across.at[0], up.at[0]);
+  if (across.count == 2 && across.at[0] >= 0 && across.at[1] >= 0 && up.at[0] >= 0 && up.at[1] >= 0) {
+    const auto row = [&](int64_t y) { return across.weight[0] * at(across.at[0], y) + across.weight[1] * at(across.at[1], y); };
+    return up.weight[0] * row(up.at[0]) + up.weight[1] * row(up.at[1]);
+  }
+  // More of them, or some beyond the edge of a clipped picture.
   Value sum(0.0f);
   for (size_t y = 0; y < size_t(up.count); ++y) {
     Value row(0.0f);
@@ -193,7 +201,7 @@ template <class Value> Value gather_any(const Image &image, const Taps &across, 
 glm::vec3 decode(const glm::vec3 &c) {
   const auto &lines = srgb_lines();
   const auto at = [&](float value) {
-    if (!(value >= 0.0f && value <= 1.0f))
+    if (!(value >= 0.0f && value < 1.0f + 1.0f / float(kSrgbSteps)))
       return srgb_to_linear(value);
     const float place = value * float(kSrgbSteps);
     const size_t i = size_t(place);
@@ -236,6 +244,30 @@ float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension,
                                      taps(uv.y, image.height, extension, Interpolation::Linear));
   return gather_any<float>(image, taps(uv.x, image.width, extension, interpolation),
                            taps(uv.y, image.height, extension, interpolation));
+}
+
+std::optional<WideImage> wide_image(const Image &image, uint32_t flags) {
+  const auto extension = static_cast<Extension>(flags & 0xf);
+  const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
+  const bool divided = (flags & 256) && multiplied && image.channels > 1;
+  const bool bytes = image.kind != TexelKind::Float;
+  if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || divided || image.tile != 0 ||
+      (extension != Extension::Repeat && extension != Extension::Extend) || (image.transfer == Transfer::Srgb && !bytes) ||
+      image.bytes() >= size_t(1) << 31 || std::max(image.width, image.height) > 1u << 20)
+    return {};
+  WideImage wide;
+  wide.texels = image.texels.get();
+  wide.lines = image.transfer == Transfer::Srgb ? srgb_lines().data() : nullptr;
+  wide.width = image.width;
+  wide.height = image.height;
+  wide.channels = image.channels;
+  wide.texel_bytes = uint32_t(texel_bytes(image.kind));
+  wide.repeats = extension == Extension::Repeat;
+  wide.has_matrix = image.has_matrix;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row)
+      wide.matrix[column][row] = image.matrix[column][row];
+  return wide;
 }
 
 glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight) {

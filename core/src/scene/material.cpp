@@ -9,14 +9,17 @@ namespace {
 // Comparisons are turned so that NaN gives low.
 float within(float value, float low, float high) { return value > low ? (value < high ? value : high) : low; }
 
+glm::vec3 within(const glm::vec3 &c, float high) {
+  return {within(c.x, 0.0f, high), within(c.y, 0.0f, high), within(c.z, 0.0f, high)};
+}
+
 // Reads the parameters of one lobe at one place.
 class Reader {
 public:
   explicit Reader(std::span<const glm::vec4> values) : values_(values) {}
 
   glm::vec3 color(const Parameter &parameter, float high = kBrightest) const {
-    const glm::vec3 c = value_of(parameter, values_);
-    return {within(c.x, 0.0f, high), within(c.y, 0.0f, high), within(c.z, 0.0f, high)};
+    return within(value_of(parameter, values_), high);
   }
   float scalar(const Parameter &parameter, float low, float high) const {
     return within(value_of(parameter, values_).x, low, high);
@@ -44,6 +47,8 @@ constexpr float kSmallestIor = 1e-5f;
 } // namespace
 
 glm::vec3 evaluate(const Parameter &color, std::span<const glm::vec4> values) { return Reader(values).color(color); }
+
+glm::vec3 in_range(const glm::vec3 &color) { return within(color, kBrightest); }
 
 LobeInputs evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values) {
   const Reader read(values);

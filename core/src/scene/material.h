@@ -59,6 +59,7 @@ inline bool may_be_positive(const Parameter &parameter) { return parameter.varie
 
 // A described lobe with its values of one place, brought into the ranges that the models know; what is no number becomes 0.
 glm::vec3 evaluate(const Parameter &color, std::span<const glm::vec4> values);
+glm::vec3 in_range(const glm::vec3 &color);
 LobeInputs evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values);
 PrincipledInputs evaluate(const PrincipledDescription &principled, std::span<const glm::vec4> values);
 

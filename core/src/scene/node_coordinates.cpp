@@ -48,12 +48,7 @@ glm::vec3 uv(const Node &node, const Site &site) {
   if (!mesh)
     return site.instance() ? glm::vec3(glm::dvec3(quadric_uv(site.instance()->kind, object_position(site)), 0.0))
                            : glm::vec3(0.0f);
-  glm::vec2 corner[3];
-  if (!corner_uvs(*mesh, node.name, site.surface()->primitive, corner))
-    return glm::vec3(0.0f);
-  const glm::dvec2 at = (1.0 - site.bary.x - site.bary.y) * glm::dvec2(corner[0]) + site.bary.x * glm::dvec2(corner[1]) +
-                        site.bary.y * glm::dvec2(corner[2]);
-  return glm::vec3(glm::dvec3(at, 0.0));
+  return {uv_at(*mesh, node.name, site.surface()->primitive, site.bary), 0.0f};
 }
 
 glm::vec3 normal(const Site &site) {

@@ -1,4 +1,5 @@
 // From vectors to pictures: flat, box, sphere and tube projection, tiles, and the environment's maps.
+#include "sampling/angle.h"
 #include "scene/node_site.h"
 
 #include <cmath>
@@ -138,20 +139,20 @@ glm::vec4 image(const Inputs &in, const Site &site) {
 }
 
 glm::vec4 environment(const Inputs &in, const Site &site) {
-  const glm::vec3 d = unit_or_zero(in[0]);
   if (in.node.option == LANCER_ENVIRONMENT_CUBE)
-    return cube(in, site, d);
+    return cube(in, site, unit_or_zero(in[0]));
   const Image *first = picture(in, site, 0);
   if (!first)
     return kMissing;
   glm::vec2 uv(0.0f);
   if (in.node.option == LANCER_ENVIRONMENT_MIRROR_BALL) {
     // The ball, seen along +y, is bent half way between the viewer and d.
-    const glm::vec3 half(d.x, d.y - 1.0f, d.z);
+    const glm::vec3 d = unit_or_zero(in[0]), half(d.x, d.y - 1.0f, d.z);
     const float size = 2.0f * std::sqrt(std::max(-0.5f * half.y, 0.0f));
     uv = 0.5f * (glm::vec2(half.x, half.z) / (size > 0.0f ? size : 1.0f) + 1.0f);
-  } else if (d != glm::vec3(0.0f)) {
-    uv = {0.5f - std::atan2(d.y, d.x) / glm::two_pi<float>(), 0.5f + std::atan2(d.z, std::hypot(d.x, d.y)) / glm::pi<float>()};
+  } else if (const glm::dvec3 d(in[0]); d != glm::dvec3(0.0)) {
+    const MapPlace<double> place = place_on_map(d.x, d.y, d.z, std::sqrt(d.x * d.x + d.y * d.y));
+    uv = {float(0.5 - place.x), float(0.5 + place.y)};
   }
   return look_up(in, *first, uv);
 }

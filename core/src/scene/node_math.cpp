@@ -46,7 +46,8 @@ template <class Function> glm::vec3 each(const glm::vec3 &a, const glm::vec3 &b,
   return {f(a.x, b.x), f(a.y, b.y), f(a.z, b.z)};
 }
 
-// Euler angles about x, then y, then z.
+} // namespace
+
 glm::mat3 rotation(const glm::vec3 &angles) {
   const glm::vec3 c = each(angles, [](float a) { return std::cos(a); }), s = each(angles, [](float a) { return std::sin(a); });
   const glm::mat3 x(1.0f, 0.0f, 0.0f, 0.0f, c.x, s.x, 0.0f, -s.x, c.x);
@@ -54,8 +55,6 @@ glm::mat3 rotation(const glm::vec3 &angles) {
   const glm::mat3 z(c.z, s.z, 0.0f, -s.z, c.z, 0.0f, 0.0f, 0.0f, 1.0f);
   return z * y * x;
 }
-
-} // namespace
 
 float math(uint32_t operation, float a, float b, float c) {
   constexpr float pi = glm::pi<float>();

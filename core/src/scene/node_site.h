@@ -51,6 +51,8 @@ glm::vec4 attribute(const Node &node, const Site &site);
 glm::vec4 image(const Inputs &in, const Site &site);
 glm::vec4 environment(const Inputs &in, const Site &site);
 glm::vec4 mapping(const Inputs &in);
+// By Euler angles, x first.
+glm::mat3 rotation(const glm::vec3 &angles);
 glm::vec4 transform(const Inputs &in);
 float math(uint32_t operation, float a, float b, float c);
 glm::vec4 vector_math(const Inputs &in);

@@ -22,8 +22,9 @@ inline Texels allocate_texels(size_t bytes) {
   constexpr size_t large_page = size_t(2) << 20;
   const bool large = bytes >= 2 * large_page;
   const size_t alignment = large ? large_page : alignof(std::max_align_t);
-  const size_t rounded = (bytes + alignment - 1) / alignment * alignment;
-  Texels texels(static_cast<std::byte *>(std::aligned_alloc(alignment, rounded > 0 ? rounded : alignment)));
+  // Kernels read whole words: the last texel's may reach beyond it.
+  const size_t rounded = (bytes + 3 + alignment - 1) / alignment * alignment;
+  Texels texels(static_cast<std::byte *>(std::aligned_alloc(alignment, rounded)));
   if (!texels)
     throw std::bad_alloc();
 #if defined(__linux__)

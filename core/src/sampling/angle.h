@@ -1,0 +1,63 @@
+// Angles of directions, and directions by angles, in double: the same bits from every library, compiler and number of lanes.
+#pragma once
+
+namespace lancer {
+
+[[gnu::always_inline]] inline double select(bool condition, double a, double b) { return condition ? a : b; }
+
+// The angle from (1, 0) to (x, y), in (-pi, pi]: atan2(y, x), but for zeros, which have no sign here. 0 for (0, 0). Double is a
+// double, or lanes of them. Fitted to a relative error of 3e-19: what is left is rounding, about two units in the last place.
+template <class Double> [[gnu::always_inline]] inline Double angle(Double y, Double x) {
+  const Double zero(0.0), quarter(1.5707963267948966), half(3.141592653589793);
+  // Within the first octant, and there from its middle where that is nearer: the tangent is at most that of pi/8.
+  const Double a = select(x < zero, -x, x), b = select(y < zero, -y, y);
+  const auto steep = b > a;
+  const Double low = select(steep, a, b), high = select(steep, b, a);
+  const auto far = low > Double(0.41421356237309503) * high;
+  const Double t = select(high > zero, select(far, low - high, low) / select(far, low + high, high), zero);
+  const Double s = t * t, s2 = s * s, s4 = s2 * s2;
+  const Double p0 = Double(-0.333333333333332) + s * Double(0.1999999999995404);
+  const Double p1 = Double(-0.14285714280244094) + s * Double(0.11111110785906836);
+  const Double p2 = Double(-0.09090897829542213) + s * Double(0.07692061509987053);
+  const Double p3 = Double(-0.0666311889427056) + s * Double(0.05847997777822401);
+  const Double p4 = Double(-0.05039794067848503) + s * Double(0.038076984083395854);
+  const Double p = p0 + s2 * p1 + s4 * (p2 + s2 * p3 + s4 * (p4 + s2 * Double(-0.01792078452560233)));
+  const Double part = t + t * s * p;
+  // Back to the octant, the quarter, the half.
+  const Double of_octant = select(far, Double(0.7853981633974483) + part, part);
+  const Double of_quarter = select(steep, quarter - of_octant, of_octant);
+  const Double of_half = select(x < zero, half - of_quarter, of_quarter);
+  return select(y < zero, -of_half, of_half);
+}
+
+// Sine and cosine of u turns, u in [0, 1]. Fitted to 5e-20 and 4e-18: what is left is rounding.
+template <class Double> [[gnu::always_inline]] inline void sin_cos_turn(Double u, Double &sine, Double &cosine) {
+  // Subtract the nearest quarter, which is exact. A sum of this size has no fraction.
+  const Double whole(0x1.8p52);
+  const Double quarter = (Double(4.0) * u + whole) - whole;
+  const Double x = Double(6.283185307179586) * (u - Double(0.25) * quarter);
+  const Double z = x * x, z2 = z * z;
+  const Double s = (Double(-0.16666666666666632) + z * Double(0.008333333333322418)) +
+                   z2 * ((Double(-0.00019841269829812405) + z * Double(2.7557313693580386e-06)) +
+                         z2 * (Double(-2.5050758385411525e-08) + z * Double(1.5896811850312827e-10)));
+  const Double c = (Double(0.0416666666666666) + z * Double(-0.0013888888888874131)) +
+                   z2 * ((Double(2.4801587289486992e-05) + z * Double(-2.7557314353783e-07)) +
+                         z2 * (Double(2.087572347823226e-09) + z * Double(-1.1359658803746477e-11)));
+  const Double sin_x = x + x * z * s, cos_x = Double(1.0) - Double(0.5) * z + z2 * c;
+  // Turn back by it.
+  const auto first = quarter == Double(1.0), second = quarter == Double(2.0), third = quarter == Double(3.0);
+  const auto crossed = first | third;
+  const Double across = select(crossed, cos_x, sin_x), along = select(crossed, sin_x, cos_x);
+  sine = select(second | third, -across, across);
+  cosine = select(first | second, -along, along);
+}
+
+// Where a direction of any length lies on a map of all of them: x in turns, -1/2 ... 1/2 from +x towards +y, y in half turns
+// up from the horizon, -1/2 ... 1/2.
+template <class Double> struct MapPlace { Double x, y; };
+template <class Double>
+[[gnu::always_inline]] inline MapPlace<Double> place_on_map(Double x, Double y, Double z, Double across) {
+  return {angle(y, x) * Double(0.15915494309189535), angle(z, across) * Double(0.3183098861837907)};
+}
+
+} // namespace lancer

@@ -1,0 +1,120 @@
+// Paths under a picture of the sky, over surfaces with pictures: side by side and one by one they give the same bits.
+#include "random_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace lancer_test {
+namespace {
+
+// Noise; of bytes with a curve, or of floats of which a few are bright.
+void add_image(Studio &studio, Random &random, uint32_t kind) {
+  constexpr uint32_t width = 32, height = 16;
+  std::vector<uint8_t> bytes(width * height * 3);
+  std::vector<float> floats(bytes.size());
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = uint8_t(random());
+    floats[i] = random() % 64 ? number(random) : 20.0f;
+  }
+  lancer_image image = {};
+  image.name = "noise";
+  image.width = width;
+  image.height = height;
+  image.channels = 3;
+  image.kind = kind;
+  image.texels = kind == LANCER_TEXEL_U8 ? static_cast<const void *>(bytes.data()) : floats.data();
+  image.transfer = kind == LANCER_TEXEL_U8 ? LANCER_TRANSFER_SRGB : LANCER_TRANSFER_LINEAR;
+  image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
+  studio.add(image);
+}
+
+uint32_t add_pictured(Studio &studio, Random &random, uint32_t image) {
+  lancer_node picture = flagged(node(LANCER_NODE_IMAGE, LANCER_PROJECT_FLAT, {result_of(0)}), random() % 3);
+  picture.image = image;
+  picture.image_count = 1;
+  const std::vector<lancer_node> nodes = {named(node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV), ""), picture};
+  lancer_lobe matte = lobe(LANCER_DIFFUSE, 0.8f);
+  matte.color = result_of(1);
+  // Where the nodes say more than the colour.
+  lancer_material material = black();
+  if (random() % 4 == 0)
+    material.transmittance = result_of(1);
+  return studio.add({matte}, material, nodes);
+}
+
+void add_sky(Studio &studio, uint32_t seed) {
+  std::vector<lancer_node> nodes = {node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_GENERATED)};
+  if (seed % 2)
+    nodes.push_back(node(LANCER_NODE_MAPPING, LANCER_MAPPING_POINT,
+                         {result_of(0), constant(0.1f), constant(0.3f, -0.2f, 1.0f), constant(1.0f)}));
+  lancer_node picture =
+      node(LANCER_NODE_ENVIRONMENT, LANCER_ENVIRONMENT_EQUIRECTANGULAR, {result_of(int32_t(nodes.size()) - 1)});
+  picture.image = 0;
+  picture.image_count = 1;
+  nodes.push_back(picture);
+  const lancer_parameter seen = result_of(int32_t(nodes.size()) - 1);
+  // What only the general code computes, too.
+  if (seed % 3)
+    nodes.push_back(node(LANCER_NODE_VECTOR_MATH, seed % 3 == 1 ? LANCER_VECTOR_MULTIPLY : LANCER_VECTOR_ADD,
+                         {seen, constant(0.4f, 0.5f, 0.6f)}));
+  lancer_world world = {};
+  world.radiance = result_of(int32_t(nodes.size()) - 1);
+  world.nodes = nodes.data();
+  world.node_count = uint32_t(nodes.size());
+  world.hidden_from = seed % 7 == 0 ? uint32_t(LANCER_RAY_GLOSSY) : 0u;
+  studio.add(world);
+}
+
+std::vector<float> picture(uint32_t seed, uint32_t passes) {
+  Random random(seed);
+  Studio studio;
+  studio.settings.passes = passes;
+  studio.settings.samples = 4;
+  studio.settings.max_bounces = 4;
+  studio.settings.seed = seed;
+  studio.settings.threads = 2;
+  studio.settings.film_transparent = seed % 5 == 0;
+  add_image(studio, random, LANCER_TEXEL_FLOAT);
+  add_image(studio, random, LANCER_TEXEL_U8);
+  add_image(studio, random, LANCER_TEXEL_U8);
+  const Ball ball;
+  lancer_mesh mesh = ball.mesh(true);
+  std::vector<float> uvs(mesh.triangle_count * 6);
+  for (float &uv : uvs)
+    uv = number(random, -1.0f, 2.0f);
+  mesh.uvs = uvs.data();
+  studio.add(mesh);
+  mesh.uvs = nullptr;
+  studio.add(mesh);
+  studio.place(LANCER_PLANE, add_pictured(studio, random, 1), moved(0, 0, -1));
+  for (int i = 0; i < 12; ++i) {
+    const uint32_t kind = random() % 4 ? LANCER_MESH : LANCER_SPHERE;
+    lancer_instance &thing = studio.place(kind, add_pictured(studio, random, 1 + random() % 2),
+                                          moved(2.2 * (i % 4) - 3.3, 2.2 * (i / 4) - 2.2, number(random, -0.5f, 0.5f)));
+    thing.mesh = random() % 4 == 0;
+  }
+  lancer_light sun = studio.sun({0.5, -0.3, 1.0}, 0.7f);
+  sun.sun_angle = seed % 4 ? 0.3f : 0.0f;
+  sun.sun_flat = seed % 8 < 4;
+  if (seed % 3)
+    studio.add(sun);
+  add_sky(studio, seed);
+  studio.look({2, -9, 6}, {0, 0, -0.5}, 48, 12.0);
+  studio.render();
+  return studio.read(LANCER_PASS_COMBINED, 4);
+}
+
+TEST(PathPictures, ThePictureIsTheSameOneByOne) {
+  constexpr uint32_t alone = 1u << LANCER_PASS_COMBINED;
+  for (uint32_t seed = 1; seed <= 24; ++seed) {
+    const std::vector<float> lanes = picture(seed, alone);
+    EXPECT_EQ(lanes, picture(seed, alone | 1u << LANCER_PASS_UV)) << "seed " << seed;
+    double sum = 0.0;
+    for (size_t i = 0; i < lanes.size(); ++i)
+      sum += i % 4 == 3 ? 0.0 : double(lanes[i]);
+    // Something is to be seen.
+    EXPECT_GT(sum, double(lanes.size()) * 0.01);
+  }
+}
+
+} // namespace
+} // namespace lancer_test

@@ -1,0 +1,188 @@
+// Pictures looked at side by side, of the environment and on surfaces: lane by lane the bits of the general code.
+#include "integrator/picture_kernel.h"
+#include "lights/environment.h"
+#include "nodes_lab.h"
+
+#include <cstring>
+#include <random>
+
+namespace lancer_test {
+namespace {
+
+using Random = std::mt19937;
+
+// All kinds that kernels know; floats also brighter than 1, and negative.
+Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix) {
+  const uint32_t channels[] = {1, 3, 4}, kinds[] = {LANCER_TEXEL_U8, LANCER_TEXEL_U16, LANCER_TEXEL_FLOAT};
+  lancer_image image = {};
+  image.name = "picture";
+  image.width = width;
+  image.height = height;
+  image.channels = channels[random() % 3];
+  image.kind = kinds[random() % 3];
+  image.transfer = image.kind != LANCER_TEXEL_FLOAT && random() % 2 ? LANCER_TRANSFER_SRGB : LANCER_TRANSFER_LINEAR;
+  image.alpha = LANCER_ALPHA_NONE;
+  std::vector<uint8_t> bytes(size_t(width) * height * image.channels);
+  std::vector<uint16_t> words(bytes.size());
+  std::vector<float> floats(bytes.size());
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    // White often, where sums of shares round to more than 1.
+    words[i] = uint16_t(random() % 3 ? random() : 65535);
+    bytes[i] = uint8_t(words[i]);
+    floats[i] = float(words[i]) / (random() % 5 ? 65535.0f : -100.0f);
+  }
+  image.texels = image.kind == LANCER_TEXEL_U8    ? static_cast<const void *>(bytes.data())
+                 : image.kind == LANCER_TEXEL_U16 ? static_cast<const void *>(words.data())
+                                                  : floats.data();
+  for (int i = 0; i < 9; ++i)
+    image.matrix[i] = matrix ? float(random() % 1000) / 500.0f - 0.5f : i % 4 == 0 ? 1.0f : 0.0f;
+  Description description;
+  add_image(description, image);
+  return std::move(description.images[0]);
+}
+
+TEST(WidePictures, LookUpsAreThoseOfTheGeneralCode) {
+  Random random(11);
+  std::uniform_real_distribution<float> somewhere(-3.0f, 4.0f);
+  for (int round = 0; round < 400; ++round) {
+    const Image image = random_image(random, 1 + random() % 37, 1 + random() % 37, random() % 2);
+    const uint32_t flags = random() % 2 ? LANCER_EXTEND_REPEAT : LANCER_EXTEND_EXTEND;
+    const std::optional<WideImage> wide = wide_image(image, flags);
+    ASSERT_TRUE(wide);
+    for (int i = 0; i < 50; ++i) {
+      ColorBlock block{};
+      const uint32_t lanes = random() & 0xffff;
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
+        block.uv[0][lane] = somewhere(random);
+        // On and beside texels' middles and borders, and what is no place.
+        const float odd[] = {0.5f / float(image.height), 1.0f, 0.0f, -1e-9f, 1e30f, NAN, INFINITY, 1.0f - 0x1p-24f};
+        block.uv[1][lane] = random() % 2 ? somewhere(random) : odd[random() % 8];
+        block.color[0][lane] = -7.0f;
+      }
+      picture_kernel().look_up(block, *wide, lanes);
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
+        if (!(lanes >> lane & 1)) {
+          EXPECT_EQ(block.color[0][lane], -7.0f);
+          continue;
+        }
+        const glm::vec2 uv(block.uv[0][lane], block.uv[1][lane]);
+        const glm::vec4 want = lookup(image, uv, static_cast<Extension>(flags), Interpolation::Linear, false);
+        for (int axis = 0; axis < 3; ++axis)
+          ASSERT_EQ(block.color[axis][lane], want[axis]) << uv.x << " " << uv.y;
+      }
+    }
+  }
+}
+
+TEST(WidePictures, OthersAreLeftToTheGeneralCode) {
+  Random random(5);
+  Image image = random_image(random, 8, 8, false);
+  image.kind = TexelKind::U8;
+  image.channels = 4;
+  image.alpha = AlphaMode::Straight;
+  EXPECT_TRUE(wide_image(image, LANCER_EXTEND_REPEAT));
+  EXPECT_FALSE(wide_image(image, LANCER_EXTEND_CLIP));
+  EXPECT_FALSE(wide_image(image, LANCER_EXTEND_MIRROR));
+  EXPECT_FALSE(wide_image(image, LANCER_INTERPOLATE_CUBIC << 4));
+  EXPECT_FALSE(wide_image(image, LANCER_INTERPOLATE_CLOSEST << 4));
+  // Straight colours are divided by alpha where it was multiplied, and where there is one.
+  EXPECT_FALSE(wide_image(image, 256));
+  image.alpha = AlphaMode::ChannelPacked;
+  EXPECT_TRUE(wide_image(image, 256));
+  // The curve is lines up to 1 only.
+  image.transfer = Transfer::Srgb;
+  EXPECT_TRUE(wide_image(image, 0));
+  image.kind = TexelKind::Float;
+  EXPECT_FALSE(wide_image(image, 0));
+}
+
+// A picture of all directions, turned or not, times a colour or not; or what only nodes know.
+struct Sky {
+  World world;
+  std::vector<Image> images;
+  Normalisation normalisation;
+
+  Sky(Random &random, bool mapped, bool multiplied, bool known) {
+    images.push_back(random_image(random, 2 * (4 + random() % 60), 4 + random() % 60, false));
+    Node direction, mapping, environment, product;
+    direction.kind = LANCER_NODE_COORDINATE;
+    direction.option = random() % 2 ? LANCER_COORDINATE_GENERATED : LANCER_COORDINATE_POSITION;
+    mapping.kind = LANCER_NODE_MAPPING;
+    mapping.option = random() % 2 ? LANCER_MAPPING_POINT : LANCER_MAPPING_VECTOR;
+    mapping.inputs[0].node = 0;
+    mapping.inputs[1].value = {0.1f, -0.2f, 0.05f};
+    mapping.inputs[2].value = {0.4f, 1.1f, -2.0f};
+    mapping.inputs[3].value = {1.0f, random() % 4 ? 0.8f : 0.0f, 1.2f};
+    environment.kind = LANCER_NODE_ENVIRONMENT;
+    environment.image_count = 1;
+    environment.inputs[0].node = mapped ? 1 : 0;
+    product.kind = LANCER_NODE_VECTOR_MATH;
+    product.option = known ? LANCER_VECTOR_MULTIPLY : LANCER_VECTOR_MAXIMUM;
+    product.inputs[0].node = 2;
+    product.inputs[1].value = {0.5f, 2.0f, 0.25f};
+    if (random() % 2)
+      std::swap(product.inputs[0], product.inputs[1]);
+    world.program.nodes = {direction, mapping, environment, product};
+    world.radiance.node = multiplied ? 3 : 2;
+    world.schedule = world.program.schedule(std::span(&world.radiance, 1));
+    world.map_resolution = random() % 2 ? 0 : 4 + random() % 300;
+  }
+};
+
+TEST(WidePictures, TheSkyIsThatOfTheGeneralCode) {
+  Random random(3);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 60; ++round) {
+    const bool known = round % 5 != 0;
+    const Sky sky(random, random() % 2, !known || random() % 2, known);
+    const Environment environment(sky.world, sky.images, sky.normalisation, BuildContext{.threads = 1});
+    const WideSky wide = environment.wide();
+    ASSERT_EQ(wide.image.texels != nullptr, known);
+    std::vector<glm::vec4> values(4);
+    for (int i = 0; i < 400; ++i) {
+      VertexBlock vertices{};
+      SkyBlock block{};
+      const uint32_t lanes = random() & 0xffff;
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
+        vertices.u[2][lane] = float(random() >> 8) * 0x1p-24f;
+        vertices.u[3][lane] = random() % 8 ? float(random() >> 8) * 0x1p-24f : float(random() % 3) * 0x1p-24f;
+        vertices.light_pdf[lane] = 0.5;
+        glm::dvec3 d(normal(random), normal(random), normal(random));
+        // Poles, the horizon, the seam.
+        if (random() % 4 == 0)
+          d[int(random() % 3)] = 0.0;
+        if (random() % 4 == 0)
+          d[int(random() % 3)] *= 1e-9;
+        d = glm::normalize(d);
+        for (int axis = 0; axis < 3; ++axis)
+          block.wi[axis][lane] = d[axis];
+      }
+      picture_kernel().sample_sky(vertices, wide, lanes);
+      picture_kernel().look_at_sky(block, wide);
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
+        const glm::dvec3 wi(block.wi[0][lane], block.wi[1][lane], block.wi[2][lane]);
+        ASSERT_EQ(block.pdf[lane], environment.pdf(wi)) << wi.x << " " << wi.y << " " << wi.z;
+        const glm::vec3 radiance = environment.radiance(wi, values, nullptr);
+        if (!(lanes >> lane & 1)) {
+          EXPECT_EQ(vertices.light_pdf[lane], 0.5);
+          EXPECT_EQ(vertices.light_wi[0][lane], 0.0);
+        }
+        const LightSample sample = environment.sample({vertices.u[2][lane], vertices.u[3][lane]}, values, nullptr);
+        for (int axis = 0; known && axis < 3; ++axis)
+          ASSERT_EQ(block.radiance[axis][lane], radiance[axis]);
+        if (!(lanes >> lane & 1))
+          continue;
+        for (int axis = 0; axis < 3; ++axis) {
+          ASSERT_EQ(vertices.light_wi[axis][lane], sample.wi[axis]);
+          ASSERT_EQ(vertices.light_radiance[axis][lane], known ? sample.radiance[axis] : 0.0f);
+        }
+        const bool dark = known && sample.radiance == glm::vec3(0.0f);
+        ASSERT_EQ(vertices.light_pdf[lane], dark ? 0.0 : 0.5 * sample.pdf);
+      }
+    }
+  }
+}
+
+} // namespace
+} // namespace lancer_test
