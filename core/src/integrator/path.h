@@ -1,7 +1,6 @@
 // Path tracing: global illumination with next-event estimation, multiple importance sampling and Russian roulette.
 #pragma once
 
-#include "integrator/color_pictures.h"
 #include "integrator/denoising_features.h"
 #include "integrator/first_surface.h"
 #include "integrator/light_passes.h"
@@ -21,8 +20,7 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
-        lanes_(vertex_kernel()), wide_(settings.passes == 1u << LANCER_PASS_COMBINED), picture_lanes_(picture_kernel()),
-        pictures_(scene) {
+        lanes_(vertex_kernel()), wide_(settings.passes == 1u << LANCER_PASS_COMBINED), picture_lanes_(picture_kernel()) {
     if (scene.lights.environment().varies())
       sky_ = scene.lights.environment().wide();
     point_.bsdf.shares = passes_.wanted();
@@ -123,7 +121,6 @@ private:
   uint32_t waiting_count_ = 0;
   const PictureKernel &picture_lanes_;
   WideSky sky_;
-  ColorPictures pictures_;
   ColorBlock colors_{};
   SkyBlock misses_{};
   size_t missed_[kBlockLanes]; // numbers of paths

@@ -2,6 +2,7 @@
 
 #include "bsdf/microfacet.h"
 #include "integrator/terminator.h"
+#include "scene/attribute.h"
 
 #include <algorithm>
 
@@ -69,6 +70,14 @@ glm::vec3 Shader::transmittance(const Surface &surface, const glm::vec3 &wo) {
   const Material &material = scene_.materials[surface.material];
   if (!material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
     return glm::vec3(0.0f);
+  const ColorPicture &picture = scene_.pictures[surface.material];
+  const Instance &instance = context_.geometry->instances[surface.instance];
+  if (picture.clears && instance.kind == ShapeKind::Mesh) {
+    const Mesh &mesh = context_.geometry->meshes[instance.mesh];
+    const glm::vec2 uv = uv_at(mesh, picture.uv_map, surface.primitive, surface.bary);
+    return glm::vec3(
+        std::max(picture.whole - lookup_alpha(*picture.image, uv, picture.extension, Interpolation::Linear), 0.0f));
+  }
   run_nodes(material, material.transmittance_nodes, surface, {.wo = wo});
   return glm::max(value_of(material.transmittance, values_), 0.0f);
 }

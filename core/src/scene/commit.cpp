@@ -95,6 +95,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->materials = std::move(description.materials);
   scene->wide = make_wide_materials(scene->materials);
   scene->images = std::move(description.images);
+  scene->pictures = make_color_pictures(scene->materials, scene->wide, scene->images);
   scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {
     instance.place(scene->normalisation.to_normalised(instance.to_world));

@@ -219,28 +219,49 @@ void prefetch(const Image &image, const glm::vec2 &uv, Extension extension) {
       __builtin_prefetch(image.texels.get() + (size_t(y) * image.width + size_t(across.at[0])) * texel);
 }
 
-std::optional<WideImage> wide_image(const Image &image, uint32_t flags) {
+std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alpha) {
   const auto extension = static_cast<Extension>(flags & 0xf);
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
   const bool divided = (flags & 256) && multiplied && image.channels > 1;
   const bool bytes = image.kind != TexelKind::Float;
-  if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || divided || image.tile != 0 ||
-      (extension != Extension::Repeat && extension != Extension::Extend) || (image.transfer == Transfer::Srgb && !bytes) ||
+  const bool curve = image.transfer == Transfer::Srgb, beyond = divided && image.alpha == AlphaMode::Associated;
+  // Kernels have the curve up to 1: that of bytes, also divided by an alpha that they were multiplied by here.
+  if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || image.tile != 0 ||
+      (extension != Extension::Repeat && extension != Extension::Extend) || (curve && (!bytes || beyond)) ||
       image.bytes() >= size_t(1) << 31 || std::max(image.width, image.height) > 1u << 20)
     return {};
   WideImage wide;
   wide.texels = image.texels.get();
-  wide.lines = image.transfer == Transfer::Srgb ? srgb_lines().data() : nullptr;
+  wide.lines = curve ? srgb_lines().data() : nullptr;
   wide.width = image.width;
   wide.height = image.height;
   wide.channels = image.channels;
   wide.texel_bytes = uint32_t(texel_bytes(image.kind));
   wide.repeats = extension == Extension::Repeat;
+  wide.straight = divided;
+  wide.alpha = !alpha && !divided ? 0 : image.channels == 4 && image.alpha != AlphaMode::None ? 2 : 1;
   wide.has_matrix = image.has_matrix;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row)
       wide.matrix[column][row] = image.matrix[column][row];
   return wide;
+}
+
+float lookup_alpha(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation) {
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+    return 0.0f;
+  if (image.channels == 1)
+    return 1.0f;
+  const Taps across = taps(uv.x, image.width, extension, interpolation);
+  const Taps up = taps(uv.y, image.height, extension, interpolation);
+  if (image.kind != TexelKind::U8 || image.channels != 4 || image.alpha == AlphaMode::None || across.count != 2 ||
+      across.at[0] < 0 || across.at[1] < 0 || up.at[0] < 0 || up.at[1] < 0)
+    return gather_any(image, across, up).w;
+  // Most are bytes between four texels.
+  const auto *texels = reinterpret_cast<const uint8_t *>(image.texels.get());
+  const auto at = [&](int64_t x, int64_t y) { return unit(texels[(size_t(y) * image.width + size_t(x)) * 4 + 3]); };
+  const auto row = [&](int64_t y) { return across.weight[0] * at(across.at[0], y) + across.weight[1] * at(across.at[1], y); };
+  return up.weight[0] * row(up.at[0]) + up.weight[1] * row(up.at[1]);
 }
 
 glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight) {

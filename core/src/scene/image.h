@@ -34,6 +34,9 @@ struct Image {
 // the colour divided by alpha where the picture's mode keeps it multiplied.
 glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight);
 
+// Its alpha alone.
+float lookup_alpha(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation);
+
 // Asks memory for the texels that a look-up there will want.
 void prefetch(const Image &image, const glm::vec2 &uv, Extension extension);
 

@@ -3,6 +3,7 @@
 
 #include "accel/accelerator.h"
 #include "lights/light_set.h"
+#include "scene/color_pictures.h"
 #include "scene/description.h"
 #include "scene/features.h"
 #include "scene/wide_materials.h"
@@ -26,6 +27,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<WideMaterial> wide; // by material
   std::vector<Image> images;
+  std::vector<ColorPicture> pictures; // by material
   World world;
   LightSet lights;
   Normalisation normalisation;
