@@ -12,7 +12,7 @@ namespace {
 using Random = std::mt19937;
 
 // All kinds that kernels know; floats also brighter than 1, and negative.
-Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix) {
+Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix, uint32_t alpha = LANCER_ALPHA_NONE) {
   const uint32_t channels[] = {1, 3, 4}, kinds[] = {LANCER_TEXEL_U8, LANCER_TEXEL_U16, LANCER_TEXEL_FLOAT};
   lancer_image image = {};
   image.name = "picture";
@@ -21,7 +21,7 @@ Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix)
   image.channels = channels[random() % 3];
   image.kind = kinds[random() % 3];
   image.transfer = image.kind != LANCER_TEXEL_FLOAT && random() % 2 ? LANCER_TRANSFER_SRGB : LANCER_TRANSFER_LINEAR;
-  image.alpha = LANCER_ALPHA_NONE;
+  image.alpha = alpha;
   std::vector<uint8_t> bytes(size_t(width) * height * image.channels);
   std::vector<uint16_t> words(bytes.size());
   std::vector<float> floats(bytes.size());
@@ -45,9 +45,10 @@ TEST(WidePictures, LookUpsAreThoseOfTheGeneralCode) {
   Random random(11);
   std::uniform_real_distribution<float> somewhere(-3.0f, 4.0f);
   for (int round = 0; round < 400; ++round) {
-    const Image image = random_image(random, 1 + random() % 37, 1 + random() % 37, random() % 2);
-    const uint32_t flags = random() % 2 ? LANCER_EXTEND_REPEAT : LANCER_EXTEND_EXTEND;
-    const std::optional<WideImage> wide = wide_image(image, flags);
+    const Image image = random_image(random, 1 + random() % 37, 1 + random() % 37, random() % 2, random() % 4);
+    const auto extension = random() % 2 ? Extension::Repeat : Extension::Extend;
+    const bool straight = random() % 2 && image.alpha != AlphaMode::Associated, alpha = random() % 2;
+    const std::optional<WideImage> wide = wide_image(image, uint32_t(extension) | (straight ? 256u : 0u), alpha);
     ASSERT_TRUE(wide);
     for (int i = 0; i < 50; ++i) {
       ColorBlock block{};
@@ -66,7 +67,11 @@ TEST(WidePictures, LookUpsAreThoseOfTheGeneralCode) {
           continue;
         }
         const glm::vec2 uv(block.uv[0][lane], block.uv[1][lane]);
-        const glm::vec4 want = lookup(image, uv, static_cast<Extension>(flags), Interpolation::Linear, false);
+        const glm::vec4 want = lookup(image, uv, extension, Interpolation::Linear, straight);
+        ASSERT_EQ(lookup_alpha(image, uv, extension, Interpolation::Linear), want.w);
+        if (alpha) {
+          ASSERT_EQ(block.alpha[lane], want.w);
+        }
         for (int axis = 0; axis < 3; ++axis)
           ASSERT_EQ(block.color[axis][lane], want[axis]) << uv.x << " " << uv.y;
       }
@@ -85,13 +90,12 @@ TEST(WidePictures, OthersAreLeftToTheGeneralCode) {
   EXPECT_FALSE(wide_image(image, LANCER_EXTEND_MIRROR));
   EXPECT_FALSE(wide_image(image, LANCER_INTERPOLATE_CUBIC << 4));
   EXPECT_FALSE(wide_image(image, LANCER_INTERPOLATE_CLOSEST << 4));
-  // Straight colours are divided by alpha where it was multiplied, and where there is one.
-  EXPECT_FALSE(wide_image(image, 256));
-  image.alpha = AlphaMode::ChannelPacked;
-  EXPECT_TRUE(wide_image(image, 256));
-  // The curve is lines up to 1 only.
+  // The curve is lines up to 1 only, which colours may exceed beside their alpha if that is how they come.
   image.transfer = Transfer::Srgb;
+  EXPECT_TRUE(wide_image(image, 256));
+  image.alpha = AlphaMode::Associated;
   EXPECT_TRUE(wide_image(image, 0));
+  EXPECT_FALSE(wide_image(image, 256));
   image.kind = TexelKind::Float;
   EXPECT_FALSE(wide_image(image, 0));
 }

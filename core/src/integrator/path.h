@@ -2,7 +2,6 @@
 #pragma once
 
 #include "integrator/camera_rays.h"
-#include "integrator/color_pictures.h"
 #include "integrator/denoising_features.h"
 #include "integrator/first_surface.h"
 #include "integrator/layers_met.h"
@@ -27,7 +26,7 @@ public:
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
         lanes_(vertex_kernel()), picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
         any_clear_(Layers && !passes_.features() && std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
-        picture_lanes_(picture_kernel()), pictures_(scene) {
+        picture_lanes_(picture_kernel()) {
     if (scene.lights.environment().varies())
       sky_ = scene.lights.environment().wide();
     point_.bsdf.shares = passes_.wanted();
@@ -143,7 +142,6 @@ private:
   uint32_t waiting_count_ = 0;
   const PictureKernel &picture_lanes_;
   WideSky sky_;
-  ColorPictures pictures_;
   ColorBlock colors_{};
   SkyBlock misses_{};
   size_t missed_[kBlockLanes]; // numbers of paths

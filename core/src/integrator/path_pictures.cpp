@@ -96,8 +96,8 @@ template <uint32_t Shapes, bool Layers> uint32_t PathIntegrator<Shapes, Layers>:
     if (!block_.material[lane]->nodes || !(block_.on_mesh >> lane & 1))
       continue;
     const Hit &hit = hits_[waiting_[lane].number];
-    pictures[lane] = &pictures_.of(material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive));
-    if (!pictures[lane]->image.texels)
+    pictures[lane] = &scene_.pictures[material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive)];
+    if (!pictures[lane]->image)
       continue;
     const Mesh &mesh = scene_.geometry.meshes[scene_.geometry.instances[hit.instance].mesh];
     const glm::vec2 uv = uv_at(mesh, pictures[lane]->uv_map, hit.primitive, {hit.u, hit.v});
@@ -112,14 +112,21 @@ template <uint32_t Shapes, bool Layers> uint32_t PathIntegrator<Shapes, Layers>:
     for (uint32_t of = rest; of != 0; of &= of - 1)
       if (pictures[std::countr_zero(of)] == picture)
         same |= of & -of;
-    picture_lanes_.look_up(colors_, picture->image, same);
+    picture_lanes_.look_up(colors_, picture->wide, same);
     rest &= ~same;
   }
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
+    const ColorPicture &picture = *pictures[lane];
+    const float alpha = colors_.alpha[lane];
     const glm::vec3 color = in_range(get(colors_.color, lane));
-    put(pictures[lane]->weight, block_.weight, lane);
-    put(pictures[lane]->weighted ? pictures[lane]->weight * color : color, block_.base, lane);
+    const glm::vec3 weight = picture.covers ? in_range(glm::vec3(alpha)) : picture.weight;
+    put(weight, block_.weight, lane);
+    put(picture.weighted ? weight * color : color, block_.base, lane);
+    if (picture.clears) {
+      waiting_[lane].transmittance = glm::vec3(std::max(picture.whole - alpha, 0.0f));
+      block_.through[lane] = mean(waiting_[lane].transmittance);
+    }
   }
   return lanes;
 }

@@ -13,7 +13,7 @@ struct alignas(64) SkyBlock {
 
 // Places on surfaces.
 struct alignas(64) ColorBlock {
-  VertexBlock::Floats uv[2], color[3];
+  VertexBlock::Floats uv[2], color[3], alpha;
 };
 
 } // namespace lancer

@@ -51,8 +51,11 @@ LANCER_LANE void store3(double (*p)[16], int first, M which, const D3 &a) {
 [[gnu::flatten]] void look_up(ColorBlock &block, const WideImage &image, uint32_t lanes) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     const M which = some(lanes, first);
-    if (any(which))
-      store3(block.color, first, which, look_up(image, load(block.uv[0] + first), load(block.uv[1] + first)));
+    if (!any(which))
+      continue;
+    const WideTexel found = look_up(image, load(block.uv[0] + first), load(block.uv[1] + first));
+    store3(block.color, first, which, found.color);
+    store(block.alpha + first, which, found.alpha);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "bsdf/microfacet.h"
 #include "integrator/terminator.h"
+#include "scene/attribute.h"
 
 #include <algorithm>
 

@@ -87,7 +87,8 @@ LANCER_LANE V3 picture_at(const WideSky &sky, const V3 &d, const MapPlace<D> &pl
   }
   const F zero(0.0f);
   V3 color =
-      look_up(sky.image, select(somewhere, narrow(D(0.5) - seen.x), zero), select(somewhere, narrow(D(0.5) + seen.y), zero));
+      look_up(sky.image, select(somewhere, narrow(D(0.5) - seen.x), zero), select(somewhere, narrow(D(0.5) + seen.y), zero))
+          .color;
   if (sky.multiplied)
     color = color * V3{F(sky.factor[0]), F(sky.factor[1]), F(sky.factor[2])};
   return color;

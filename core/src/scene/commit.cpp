@@ -113,6 +113,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->clearing = find_instances(*scene, [&](const Instance &instance, uint32_t material) {
     return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].may_end;
   });
+  scene->pictures = make_color_pictures(scene->materials, scene->wide, scene->images);
   scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {
     instance.place(scene->normalisation.to_normalised(instance.to_world));

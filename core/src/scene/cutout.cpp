@@ -103,9 +103,7 @@ std::vector<Cutout> make_cutouts(const std::vector<Material> &materials, const s
 
 float alpha_at(const AlphaPicture &picture, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
                const glm::dvec2 &bary) {
-  glm::vec2 corner[3], uv(0.0f);
-  if (corner_uvs(mesh, picture.uv_map, triangle, corner))
-    uv = (1.0 - bary.x - bary.y) * glm::dvec2(corner[0]) + bary.x * glm::dvec2(corner[1]) + bary.y * glm::dvec2(corner[2]);
+  const glm::vec2 uv = uv_at(mesh, picture.uv_map, triangle, bary);
   const float alpha = lookup_alpha(images[picture.image], uv, picture.extension, picture.interpolation);
   return picture.clamped ? glm::clamp(alpha, 0.0f, 1.0f) : alpha;
 }

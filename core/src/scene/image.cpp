@@ -246,23 +246,27 @@ float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension,
                            taps(uv.y, image.height, extension, interpolation));
 }
 
-std::optional<WideImage> wide_image(const Image &image, uint32_t flags) {
+std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alpha) {
   const auto extension = static_cast<Extension>(flags & 0xf);
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
   const bool divided = (flags & 256) && multiplied && image.channels > 1;
   const bool bytes = image.kind != TexelKind::Float;
-  if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || divided || image.tile != 0 ||
-      (extension != Extension::Repeat && extension != Extension::Extend) || (image.transfer == Transfer::Srgb && !bytes) ||
+  const bool curve = image.transfer == Transfer::Srgb, beyond = divided && image.alpha == AlphaMode::Associated;
+  // Kernels have the curve up to 1: that of bytes, also divided by an alpha that they were multiplied by here.
+  if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || image.tile != 0 ||
+      (extension != Extension::Repeat && extension != Extension::Extend) || (curve && (!bytes || beyond)) ||
       image.bytes() >= size_t(1) << 31 || std::max(image.width, image.height) > 1u << 20)
     return {};
   WideImage wide;
   wide.texels = image.texels.get();
-  wide.lines = image.transfer == Transfer::Srgb ? srgb_lines().data() : nullptr;
+  wide.lines = curve ? srgb_lines().data() : nullptr;
   wide.width = image.width;
   wide.height = image.height;
   wide.channels = image.channels;
   wide.texel_bytes = uint32_t(texel_bytes(image.kind));
   wide.repeats = extension == Extension::Repeat;
+  wide.straight = divided;
+  wide.alpha = !alpha && !divided ? 0 : image.channels == 4 && image.alpha != AlphaMode::None ? 2 : 1;
   wide.has_matrix = image.has_matrix;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row)

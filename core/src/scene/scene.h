@@ -3,6 +3,7 @@
 
 #include "accel/accelerator.h"
 #include "lights/light_set.h"
+#include "scene/color_pictures.h"
 #include "scene/cutout.h"
 #include "scene/description.h"
 #include "scene/features.h"
@@ -30,6 +31,7 @@ struct Scene {
   std::vector<uint8_t> passing;   // by instance: some of its materials may let light pass straight on
   std::vector<uint8_t> clearing;  // by instance: there may be nothing of it at some places, as cutouts say
   std::vector<Image> images;
+  std::vector<ColorPicture> pictures; // by material
   World world;
   LightSet lights;
   Normalisation normalisation;

@@ -18,12 +18,14 @@ struct WideImage {
   uint32_t width = 0, height = 0, channels = 0;
   uint32_t texel_bytes = 0; // of a channel: 1, 2, or 4 for floats
   uint32_t repeats = 0;     // or its edges go on
+  uint32_t alpha = 0;       // 0: nobody asks, 1: solid, 2: the fourth channel
+  uint32_t straight = 0;    // the colour is divided by it
   uint32_t has_matrix = 0;
   float matrix[3][3] = {}; // columns
 };
 
-// As nodes with these flags look at it; nothing where only lookup() can do it. As long as the image is neither changed nor
-// moved.
-std::optional<WideImage> wide_image(const Image &image, uint32_t flags);
+// As nodes with these flags look at it, and whether they ask for alpha; nothing where only lookup() can do it. As long as the
+// image is neither changed nor moved.
+std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alpha = false);
 
 } // namespace lancer

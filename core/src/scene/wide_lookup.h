@@ -1,4 +1,4 @@
-// lookup() for many lanes at once, of the colour alone, with the bits of image.cpp. For kernels only, like sampling/lanes.h.
+// lookup() for many lanes at once with the bits of image.cpp. For kernels only, like sampling/lanes.h.
 #pragma once
 
 #include "sampling/lane_vectors.h"
@@ -22,41 +22,58 @@ LANCER_LANE WideTaps taps(F u, uint32_t size, bool repeats) {
   return {min(max(whole, zero), last), min(max(next, zero), last), place - whole};
 }
 
+// Alpha is 0 where nobody asks for it.
+struct WideTexel {
+  V3 color;
+  F alpha;
+};
+LANCER_LANE WideTexel operator+(const WideTexel &a, const WideTexel &b) { return {a.color + b.color, a.alpha + b.alpha}; }
+LANCER_LANE WideTexel operator*(F s, const WideTexel &a) { return {s * a.color, s * a.alpha}; }
+
 // By the bytes of a channel.
-template <uint32_t Bytes> LANCER_LANE V3 texel(const WideImage &image, U number) {
+template <uint32_t Bytes> LANCER_LANE WideTexel texel(const WideImage &image, U number) {
   const U at = number * U(image.channels);
-  const bool grey = image.channels == 1;
+  const bool grey = image.channels == 1, stored = image.alpha == 2;
+  WideTexel result;
+  result.alpha = F(image.alpha == 0 ? 0.0f : 1.0f);
   if constexpr (Bytes == 4) {
     const float *floats = reinterpret_cast<const float *>(image.texels);
     const F x = gather(floats, at);
-    return grey ? V3{x, x, x} : V3{x, gather(floats, at + U(1u)), gather(floats, at + U(2u))};
+    result.color = grey ? V3{x, x, x} : V3{x, gather(floats, at + U(1u)), gather(floats, at + U(2u))};
+    if (stored)
+      result.alpha = gather(floats, at + U(3u));
   } else if constexpr (Bytes == 2) {
     const F unit(1.0f / 65535.0f);
     const U word = gather_bytes(image.texels, at << 1);
     const F x = to_float(word & U(0xffffu)) * unit;
-    if (grey)
-      return {x, x, x};
-    return {x, to_float(word >> 16) * unit, to_float(gather_bytes(image.texels, (at << 1) + U(4u)) & U(0xffffu)) * unit};
+    result.color = V3{x, x, x};
+    if (!grey) {
+      const U next = gather_bytes(image.texels, (at << 1) + U(4u));
+      result.color = V3{x, to_float(word >> 16) * unit, to_float(next & U(0xffffu)) * unit};
+      if (stored)
+        result.alpha = to_float(next >> 16) * unit;
+    }
   } else {
     const F unit(1.0f / 255.0f);
     const U word = gather_bytes(image.texels, at);
     const F x = to_float(word & U(0xffu)) * unit;
-    if (grey)
-      return {x, x, x};
-    return {x, to_float(word >> 8 & U(0xffu)) * unit, to_float(word >> 16 & U(0xffu)) * unit};
+    result.color = grey ? V3{x, x, x} : V3{x, to_float(word >> 8 & U(0xffu)) * unit, to_float(word >> 16 & U(0xffu)) * unit};
+    if (stored)
+      result.alpha = to_float(word >> 24) * unit;
   }
+  return result;
 }
 
-template <uint32_t Bytes> LANCER_LANE V3 between(const WideImage &image, const WideTaps &across, const WideTaps &up) {
+template <uint32_t Bytes> LANCER_LANE WideTexel between(const WideImage &image, const WideTaps &across, const WideTaps &up) {
   const U width(image.width), left = truncate(across.first), right = truncate(across.second);
   const U low = truncate(up.first) * width, high = truncate(up.second) * width;
   const F wx = F(1.0f) - across.part, wy = F(1.0f) - up.part;
-  const V3 below = wx * texel<Bytes>(image, low + left) + across.part * texel<Bytes>(image, low + right);
-  const V3 above = wx * texel<Bytes>(image, high + left) + across.part * texel<Bytes>(image, high + right);
+  const WideTexel below = wx * texel<Bytes>(image, low + left) + across.part * texel<Bytes>(image, low + right);
+  const WideTexel above = wx * texel<Bytes>(image, high + left) + across.part * texel<Bytes>(image, high + right);
   return wy * below + up.part * above;
 }
 
-// Of what bytes hold: 0 ... 1, and what sums of shares round to.
+// Of what bytes hold: 0 ... 1, and what sums of shares and quotients round to.
 LANCER_LANE F decode(const float *lines, F value) {
   const F place = value * F(static_cast<float>(kSrgbSteps));
   const U i = truncate(place);
@@ -64,14 +81,19 @@ LANCER_LANE F decode(const float *lines, F value) {
   return here + (place - to_float(i)) * (next - here);
 }
 
-LANCER_LANE V3 look_up(const WideImage &image, F u, F v) {
+LANCER_LANE WideTexel look_up(const WideImage &image, F u, F v) {
   const F zero(0.0f), largest(3.402823466e+38f);
   const M finite = (abs(u) <= largest) & (abs(v) <= largest);
   const WideTaps across = taps(select(finite, u, zero), image.width, image.repeats);
   const WideTaps up = taps(select(finite, v, zero), image.height, image.repeats);
-  V3 color = image.texel_bytes == 4   ? between<4>(image, across, up)
-             : image.texel_bytes == 2 ? between<2>(image, across, up)
-                                      : between<1>(image, across, up);
+  const WideTexel found = image.texel_bytes == 4   ? between<4>(image, across, up)
+                          : image.texel_bytes == 2 ? between<2>(image, across, up)
+                                                   : between<1>(image, across, up);
+  V3 color = found.color;
+  // One of a single channel is solid.
+  const F one(1.0f), alpha = image.channels == 1 ? one : found.alpha;
+  if (image.straight)
+    color = select((alpha != one) & (alpha != zero), color / alpha, color);
   if (image.lines)
     color = {decode(image.lines, color.x), decode(image.lines, color.y), decode(image.lines, color.z)};
   if (image.has_matrix) {
@@ -80,7 +102,7 @@ LANCER_LANE V3 look_up(const WideImage &image, F u, F v) {
              F(m[0][1]) * color.x + F(m[1][1]) * color.y + F(m[2][1]) * color.z,
              F(m[0][2]) * color.x + F(m[1][2]) * color.y + F(m[2][2]) * color.z};
   }
-  return select(finite, color, V3{zero, zero, zero});
+  return {select(finite, color, V3{zero, zero, zero}), select(finite, alpha, zero)};
 }
 
 } // namespace
