@@ -130,7 +130,7 @@ TYPED_TEST(LightTrees, ProbabilitiesAddUpToOne) {
 
 TYPED_TEST(LightTrees, TheProbabilityOfAChoiceIsThatOfItsLight) {
   Random random(2);
-  for (const uint32_t count : {1u, 2u, 5u, 40u, 1000u}) {
+  for (const uint32_t count : {1u, 2u, 5u, 40u, 1000u, 5000u}) {
     const TypeParam tree = tree_of<TypeParam>(any_lights(random, count), true), faces = tree_of_faces<TypeParam>(random, count);
     for (const TypeParam *each : {&tree, &faces})
       for (int i = 0; i < 500; ++i) {
@@ -282,6 +282,12 @@ TYPED_TEST(LightTrees, StandsWhatIsDegenerate) {
       expect_sum_of_one(tree, 2, query);
     }
   }
+  // One further away than float can tell leaves the others what they are.
+  lights.clear();
+  for (int i = 0; i < 6; ++i)
+    lights.push_back(light({i ? double(i) : 4e38, 0.0, 1.0}, 1.0));
+  for (const bool transmits : {false, true})
+    EXPECT_GT(tree_of<TypeParam>(lights).probability(LightQuery(glm::dvec3(0.0), {0, 0, 1}, transmits), 3), 0.01);
   EXPECT_EQ(tree_of<TypeParam>({}).choose(any_query(random), 0.5).probability, 0.0);
 }
 

@@ -7,9 +7,9 @@
 namespace lancer {
 namespace {
 
-// A direction's tangent takes two roundings where it is turned by an eighth, three else none; the polynomial's last two steps
-// and the two or three sums that bring it back one each, of a unit in the last place of what they give at most.
-constexpr double kBound = 0x1p-51;
+// Roundings of 2^-53 each: up to three of the tangent, two of the polynomial's last steps, up to three of the sums that bring
+// it back; and the library's own, of at most a unit in the last place, is two.
+constexpr double kBound = 10 * 0x1p-53;
 
 TEST(Angle, OfDirectionsAllAround) {
   std::mt19937 random(3);

@@ -73,6 +73,8 @@ template <Question q> LANCER_SIMD void visit_spheres(const BvhScene &scene, cons
           instance, filter, s, [&](double &t) __attribute__((always_inline)) {
             return choose_root(terms, i, shape.slack, ray.skip_instance == instance, t, s.tmax, t);
           });
+    if (q.any && s.best.instance != kNone)
+      return;
   }
 }
 
@@ -119,6 +121,8 @@ template <Question q> LANCER_SIMD void visit_triangles(const HitFilter *filter, 
       continue;
     s.best = hit;
     found = true;
+    if (q.any)
+      break;
   }
   if (found) {
     if (q.any)

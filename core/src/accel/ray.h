@@ -38,9 +38,10 @@ struct Hit {
 // traversal, and an exact surface is met again where the ray leaves it.
 struct HitFilter {
   const uint8_t *instances; // by instance: 0 where every hit counts, unasked
-  // Of rays[ray] of the batch; the answer may depend on nothing else. Asked in any order and maybe more than once about
+  // Of rays[ray] of the batch. Asked in any order and maybe more than once about
   // - every hit that is closer than the closest that counts, by closer(), and some that are not;
   // - any hit at all: all hits of a ray that is not occluded.
+  // What did not count may count after other hits have been asked about, where the order makes no difference to the asker.
   bool (*counts)(void *context, size_t ray, const Hit &hit);
   void *context;
 };

@@ -13,6 +13,8 @@ namespace lancer {
 class RayGenerator {
 public:
   RayGenerator(const Camera &camera, const IntegratorSettings &settings);
+  RayGenerator(const RayGenerator &) = delete; // its block knows where its filter stands
+  RayGenerator &operator=(const RayGenerator &) = delete;
 
   // One sample of a recursive ray tracer goes through the middle of the pixel and of the lens.
   bool middle() const { return middle_; }

@@ -51,7 +51,6 @@ void ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
 void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
   branches_.clear();
   rays_.clear();
-  samplers_.clear();
   samplers_.assign(addresses.size(), Sampler(0, 0));
   generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
     samplers_[slot] = sampler;

@@ -7,7 +7,8 @@ namespace lancer {
 
 namespace {
 
-// What the edge functions leave of a weight that is 0: corners 1 and 2 exactly that, corner 0 what their sum's rounding leaves.
+// What the edge functions leave of a weight that is 0: corners 1 and 2 exactly that; corner 0 what rounding leaves of 1 less
+// both quotients, each of which, as the determinant that they share, is off by 2^-53 of a sum of 1: under 2^-52 and a half.
 constexpr double kNoWeight = 0x1p-52;
 
 bool on_border(const Hit &hit) { return hit.u == 0.0 || hit.v == 0.0 || 1.0 - hit.u - hit.v <= kNoWeight; }

@@ -108,6 +108,7 @@ private:
   void add_light_met(size_t i, uint32_t number, std::span<SampleResult> results);
   double way_end(size_t i) const; // distance from the last scattering to where the ray ends
   void add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission, SampleResult &result);
+  View view_of(const Path &path, const Ray &ray, double t) const;
   void keep_vertex(const Path &path, const Surface &surface, double t, const SampleResult &result,
                    std::vector<PathVertex> &trace) const;
   void record(const Path &path, const Surface &surface, double t, SampleResult &result);
@@ -134,7 +135,7 @@ private:
   const VertexKernel &lanes_;
   bool picture_alone_; // no other pass is asked for: vertices may be shaded in lanes, records stay as they begin
   LayersMet clear_;    // surfaces on the way of which nothing is there
-  bool any_clear_;
+  bool any_clear_;     // they are passed together; not where passes for denoising add up the ways between them
   VertexBlock block_{};
   WayBlock ways_{};
   Waiting waiting_[kBlockLanes];

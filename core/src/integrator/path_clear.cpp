@@ -27,6 +27,11 @@ template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::is_
   Layer *known = clear_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
+  // What lies behind as many layers as the path may still pass is out of its reach.
+  const Path &path = paths_[ray];
+  const uint32_t more = path.last ? 0u : std::max(settings_.transparent_bounces, path.passed_through + 1) - path.passed_through;
+  if (!known && clear_.count_before(ray, hit) >= std::min(more, kMaxLayers - 1 - path.layers))
+    return true;
   if (shader_.is_there(material, hit))
     return true;
   clear_.put(known, ray, hit, glm::vec3(1.0f));
@@ -68,7 +73,7 @@ void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleR
       if (trace)
         keep_vertex(path, surface, hit.t, result, *trace);
       if (recorded) {
-        shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d))}, point_);
+        shader_.shade(surface, view_of(path, ray, hit.t), point_);
         record(path, surface, hit.t, result);
       }
     }

@@ -45,7 +45,7 @@ public:
   double probability(const LightQuery &query, uint32_t light) const;
   double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 
-  // The numbers of a light for kernels that sample it; null where only the general code does.
+  // The numbers of a lamp for kernels that sample it; null for what is no lamp.
   const WideLamp *wide_lamp(uint32_t light) const { return light < lights_.size() ? &wide_lamps_[light] : nullptr; }
 
   // The emitter of an instance; null if it has none.

@@ -12,6 +12,8 @@ namespace {
 constexpr double kPi = glm::pi<double>();
 // Float moves a coordinate of a tree about 1024 wide by less than this, and one beyond by that share of itself.
 constexpr double kPad = 0x1p-22;
+// Float has no number for what lies much further; a lamp there is as far as this.
+constexpr double kFarthest = 1e30;
 
 // The mean of the channels' sizes, as in Cycles; 0 where nothing shines.
 double level(const glm::dvec3 &emission) {
@@ -136,10 +138,11 @@ ShineCone shine_cone(const LightCone &cone) {
 
 ClusterShape cluster_shape(const LightBounds &bounds) {
   ClusterShape shape;
-  const glm::dvec3 centre = bounds.centre();
+  const glm::dvec3 low = glm::clamp(bounds.low, -kFarthest, kFarthest), high = glm::clamp(bounds.high, -kFarthest, kFarthest);
+  const glm::dvec3 centre = 0.5 * (low + high);
   const double pad = kPad * (1024.0 + std::abs(centre.x) + std::abs(centre.y) + std::abs(centre.z));
   shape.centre = glm::vec3(centre);
-  shape.half = glm::vec3(0.5 * (bounds.high - bounds.low) + pad);
+  shape.half = glm::vec3(0.5 * (high - low) + pad);
   shape.cone = shine_cone(bounds.cone);
   shape.energy = float(bounds.energy);
   return shape;
@@ -151,7 +154,7 @@ DescribedLight describe(const Light &light, uint32_t number) {
   LightBounds &bounds = result.bounds;
   result.met = has_extent(light);
   known.number = number;
-  known.centre = light.position;
+  known.centre = glm::clamp(light.position, -kFarthest, kFarthest);
   known.axis = glm::vec3(-light.z);
   bounds.cone = {-light.z, 0.0, 0.5 * kPi};
   bounds.energy = level(light.emission);

@@ -12,10 +12,6 @@ void copy(const glm::vec3 &from, float (&to)[3]) {
     to[i] = from[i];
 }
 
-const Node *source(const World &world, const Parameter &input) {
-  return input.varies() ? &world.program.nodes[size_t(input.node)] : nullptr;
-}
-
 bool is_mapping(const Node &node) {
   return node.kind == LANCER_NODE_MAPPING && (node.option == LANCER_MAPPING_POINT || node.option == LANCER_MAPPING_VECTOR) &&
          !node.inputs[1].varies() && !node.inputs[2].varies() && !node.inputs[3].varies();
@@ -28,19 +24,19 @@ bool is_direction(const Node &node) {
 
 // A picture of all directions, mapped or not, times a constant or not.
 bool add_picture(const World &world, const std::vector<Image> &images, WideSky &sky) {
-  const Node *node = source(world, world.radiance);
+  const Node *node = world.program.source(world.radiance);
   if (node && node->kind == LANCER_NODE_VECTOR_MATH && node->option == LANCER_VECTOR_MULTIPLY &&
       node->inputs[0].varies() != node->inputs[1].varies()) {
     const int varying = node->inputs[0].varies() ? 0 : 1;
     sky.multiplied = 1;
     copy(node->inputs[1 - varying].value, sky.factor);
-    node = source(world, node->inputs[varying]);
+    node = world.program.source(node->inputs[varying]);
   }
   if (!node || node->kind != LANCER_NODE_ENVIRONMENT || node->option != LANCER_ENVIRONMENT_EQUIRECTANGULAR ||
       node->image_count == 0)
     return false;
   const std::optional<WideImage> image = wide_image(images[node->image], node->flags);
-  node = source(world, node->inputs[0]);
+  node = world.program.source(node->inputs[0]);
   if (node && is_mapping(*node)) {
     sky.mapped = 1;
     const glm::mat3 turn = rotation(node->inputs[2].value);
@@ -48,7 +44,7 @@ bool add_picture(const World &world, const std::vector<Image> &images, WideSky &
       copy(turn[column], sky.turn[column]);
     copy(node->inputs[3].value, sky.scale);
     copy(node->option == LANCER_MAPPING_POINT ? node->inputs[1].value : glm::vec3(0.0f), sky.location);
-    node = source(world, node->inputs[0]);
+    node = world.program.source(node->inputs[0]);
   }
   if (!image || !node || !is_direction(*node))
     return false;

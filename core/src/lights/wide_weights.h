@@ -1,10 +1,11 @@
-// What the children of a branch are worth at a point, side by side: the upper bound of importance(), of clusters. For kernels
-// only, like sampling/lanes.h.
+// What the children of a branch are worth at a point, side by side: the upper bound of importance(), of clusters, but that a
+// point within a cluster's ball counts as on its edge. For kernels only, like sampling/lanes.h.
 #pragma once
 
 #include "lights/light_branch.h"
 #include "lights/light_importance.h"
-#include "sampling/lanes.h"
+#include "sampling/lane_memory.h"
+#include "sampling/lane_widths.h"
 
 namespace lancer {
 namespace {

@@ -10,7 +10,7 @@ namespace {
 // A batch of paths that fills the queues without leaving the second-level cache.
 constexpr uint32_t kBatch = 1024;
 constexpr uint32_t kTileSize = 32, kSmallestTile = 8, kLargestTile = 256;
-// At the end threads wait for the last tile: so many for each keep that below a hundredth of the time.
+// At the end threads wait for the last tile: so many for each keep that near a hundredth of the time.
 constexpr uint64_t kTilesEach = 64;
 
 Camera normalised(Camera camera, const Normalisation &normalisation) {

@@ -20,7 +20,7 @@ FloatEnvironment::~FloatEnvironment() = default;
 
 ThreadPool::ThreadPool(uint32_t count) {
   try {
-    for (uint32_t i = 0; i < resolved(count); ++i)
+    for (uint32_t i = 0, all = resolved(count); i < all; ++i)
       threads_.emplace_back([this, i] { loop(i); });
   } catch (...) {
     // Not all threads could be had: end those that were, then tell.

@@ -1,7 +1,8 @@
 // Vectors of lanes: of floats and of doubles, with the sums in glm's order. For kernels only, like lanes.h.
 #pragma once
 
-#include "sampling/lanes.h"
+#include "sampling/lane_memory.h"
+#include "sampling/lane_widths.h"
 
 namespace lancer {
 namespace {

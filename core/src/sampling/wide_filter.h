@@ -1,7 +1,8 @@
 // PixelFilter::sample() for many lanes at once. For kernels only, like lanes.h.
 #pragma once
 
-#include "sampling/lanes.h"
+#include "sampling/lane_memory.h"
+#include "sampling/lane_widths.h"
 #include "sampling/pixel_filter.h"
 
 namespace lancer {

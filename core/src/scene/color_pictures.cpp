@@ -6,39 +6,35 @@ namespace lancer {
 
 namespace {
 
-const Node *source(const std::vector<Node> &nodes, const Parameter &input) {
-  return input.varies() ? &nodes[size_t(input.node)] : nullptr;
-}
-
 bool is_alpha_of(const Node *node, int32_t picture) {
   return node && node->kind == LANCER_NODE_ALPHA && node->inputs[0].node == picture;
 }
 
 // Whether what passes straight on is a constant minus the alpha of the picture.
-bool clears(const std::vector<Node> &nodes, const Parameter &transmittance, int32_t picture, float &whole) {
-  const Node *node = source(nodes, transmittance);
+bool clears(const Program &program, const Parameter &transmittance, int32_t picture, float &whole) {
+  const Node *node = program.source(transmittance);
   if (!node || node->kind != LANCER_NODE_MATH || node->option != LANCER_MATH_SUBTRACT || (node->flags & 1) ||
       node->inputs[0].varies())
     return false;
   whole = node->inputs[0].value.x;
-  return is_alpha_of(source(nodes, node->inputs[1]), picture);
+  return is_alpha_of(program.source(node->inputs[1]), picture);
 }
 
 ColorPicture find(const Material &material, const std::vector<Image> &images) {
   const LobeDescription &lobe = material.lobes.front();
   const Parameter &color = lobe.principled ? lobe.principled->base_color : lobe.color;
-  const std::vector<Node> &nodes = material.program.nodes;
-  const Node *node = source(nodes, color);
+  const Program &program = material.program;
+  const Node *node = program.source(color);
   if (!node || material.emission.varies())
     return {};
   ColorPicture found;
   found.covers = lobe.weight.varies();
-  if (found.covers && !is_alpha_of(source(nodes, lobe.weight), color.node))
+  if (found.covers && !is_alpha_of(program.source(lobe.weight), color.node))
     return {};
   found.clears = material.transmittance.varies();
-  if (found.clears && !clears(nodes, material.transmittance, color.node, found.whole))
+  if (found.clears && !clears(program, material.transmittance, color.node, found.whole))
     return {};
-  const Node *place = source(nodes, node->inputs[0]);
+  const Node *place = program.source(node->inputs[0]);
   if (node->kind != LANCER_NODE_IMAGE || node->option != LANCER_PROJECT_FLAT || node->image_count == 0 || !place ||
       place->kind != LANCER_NODE_COORDINATE || place->option != LANCER_COORDINATE_UV)
     return {};

@@ -10,10 +10,8 @@ namespace {
 
 // The node that a value comes from, if it is of this kind.
 const Node *source(const Program &program, const Parameter &parameter, uint32_t kind) {
-  if (!parameter.varies())
-    return nullptr;
-  const Node &node = program.nodes[size_t(parameter.node)];
-  return node.kind == kind ? &node : nullptr;
+  const Node *node = program.source(parameter);
+  return node && node->kind == kind ? node : nullptr;
 }
 
 const Node *math_source(const Program &program, const Parameter &parameter, uint32_t operation, uint32_t flags) {

@@ -43,6 +43,8 @@ struct Program {
 
   // The nodes that the parameters need, directly or not, in order; a BUMP's own height nodes are left to it.
   Schedule schedule(std::span<const Parameter> parameters) const;
+  // The node that a value comes from; null where it is constant.
+  const Node *source(const Parameter &value) const { return value.varies() ? &nodes[size_t(value.node)] : nullptr; }
 };
 
 // Where nodes are evaluated. Everything is in the normalised world but what nodes see, which is in the user's units.
