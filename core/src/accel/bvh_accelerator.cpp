@@ -2,7 +2,6 @@
 
 #include "accel/bvh_kernel.h"
 #include "accel/huge_pages.h"
-#include "accel/instruction_set.h"
 #include "accel/mesh_bvh.h"
 #include "accel/parallel.h"
 #include "accel/placed_scene.h"
@@ -11,27 +10,15 @@
 #include <cmath>
 
 namespace lancer {
-namespace {
 
-const BvhKernel &choose_kernel() {
-#if defined(__x86_64__)
-  switch (instruction_set()) {
-  case InstructionSet::Avx512:
-    return avx512::kernel;
-  case InstructionSet::Avx2:
-    return avx2::kernel;
-  default:
-    return sse4::kernel;
-  }
-#else
-  return generic::kernel;
-#endif
-}
+const BvhKernel &bvh_kernel() { return LANCER_CHOSEN_KERNEL(bvh_kernel); }
+
+namespace {
 
 class BvhAccelerator final : public Accelerator {
 public:
   BvhAccelerator(const Geometry &geometry, const BuildContext &context)
-      : kernel(choose_kernel()), placed(place_scene(geometry)), meshes(geometry.meshes.size()) {
+      : kernel(bvh_kernel()), placed(place_scene(geometry)), meshes(geometry.meshes.size()) {
     const std::vector<uint8_t> unfolded = choose_unfolded(geometry);
     build_meshes(geometry, unfolded, context);
     world = build_world_bvh(geometry, placed, unfolded, context);

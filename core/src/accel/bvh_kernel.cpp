@@ -233,7 +233,7 @@ LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
 } // namespace
 
 namespace LANCER_ISA {
-const BvhKernel kernel = {LANCER_ISA_NAME, closest, any_hit, closest_filtered, any_filtered, count_work};
+const BvhKernel bvh_kernel = {LANCER_ISA_NAME, closest, any_hit, closest_filtered, any_filtered, count_work};
 }
 
 } // namespace lancer

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accel/bvh.h"
+#include "accel/kernel_choice.h"
 #include "accel/ray.h"
 
 #include <cstddef>
@@ -20,20 +21,6 @@ struct BvhKernel {
 };
 
 // Each is the same source, bvh_kernel.cpp, compiled with LANCER_ISA set to the name.
-#if defined(__x86_64__)
-namespace sse4 {
-extern const BvhKernel kernel;
-}
-namespace avx2 {
-extern const BvhKernel kernel;
-}
-namespace avx512 {
-extern const BvhKernel kernel;
-}
-#else
-namespace generic {
-extern const BvhKernel kernel;
-}
-#endif
+LANCER_DECLARE_KERNEL(BvhKernel, bvh_kernel)
 
 } // namespace lancer

@@ -2,6 +2,7 @@
 // Sampler, PixelFilter, Camera::ray().
 #pragma once
 
+#include "accel/kernel_choice.h"
 #include "integrator/camera_block.h"
 
 namespace lancer {
@@ -13,22 +14,6 @@ struct CameraKernel {
 };
 
 // Each is the same source, camera_kernel.cpp, compiled with LANCER_ISA set to the name.
-#if defined(__x86_64__)
-namespace sse4 {
-extern const CameraKernel camera_kernel;
-}
-namespace avx2 {
-extern const CameraKernel camera_kernel;
-}
-namespace avx512 {
-extern const CameraKernel camera_kernel;
-}
-#else
-namespace generic {
-extern const CameraKernel camera_kernel;
-}
-#endif
-// The one that this processor runs, or that LANCER_ISA asks for.
-const CameraKernel &camera_kernel();
+LANCER_DECLARE_KERNEL(CameraKernel, camera_kernel)
 
 } // namespace lancer

@@ -8,8 +8,6 @@
 namespace lancer {
 namespace {
 
-LANCER_LANE M some(uint32_t lanes, int first) { return mask_of(lanes >> first & ((1u << kLanes) - 1u)); }
-
 // Where a ray towards d leaves the surface: leave().
 LANCER_LANE D3 origin(const CourseBlock &block, int first, const D3 &d) {
   const D3 ng = widen(load3(block.ng, first));

@@ -2,6 +2,7 @@
 // code: Bsdf, sample() of point lights, course_light.h, leave().
 #pragma once
 
+#include "accel/kernel_choice.h"
 #include "integrator/course_block.h"
 
 namespace lancer {
@@ -12,22 +13,6 @@ struct CourseKernel {
 };
 
 // Each is the same source, course_kernel.cpp, compiled with LANCER_ISA set to the name.
-#if defined(__x86_64__)
-namespace sse4 {
-extern const CourseKernel course_kernel;
-}
-namespace avx2 {
-extern const CourseKernel course_kernel;
-}
-namespace avx512 {
-extern const CourseKernel course_kernel;
-}
-#else
-namespace generic {
-extern const CourseKernel course_kernel;
-}
-#endif
-// The one that this processor runs, or that LANCER_ISA asks for.
-const CourseKernel &course_kernel();
+LANCER_DECLARE_KERNEL(CourseKernel, course_kernel)
 
 } // namespace lancer

@@ -7,8 +7,6 @@
 namespace lancer {
 namespace {
 
-LANCER_LANE M some(uint32_t lanes, int first) { return mask_of(lanes >> first & ((1u << kLanes) - 1u)); }
-
 LANCER_LANE void store(float *p, M which, F a) { store(p, select(which, a, load(p))); }
 LANCER_LANE void store(double *p, M which, D a) { store(p, select(which, a, load(p))); }
 LANCER_LANE void store3(float (*p)[16], int first, M which, const V3 &a) {

@@ -2,6 +2,7 @@
 // those of the general code: Environment, lookup().
 #pragma once
 
+#include "accel/kernel_choice.h"
 #include "integrator/picture_block.h"
 #include "lights/wide_sky.h"
 
@@ -18,22 +19,6 @@ struct PictureKernel {
 };
 
 // Each is the same source, picture_kernel.cpp, compiled with LANCER_ISA set to the name.
-#if defined(__x86_64__)
-namespace sse4 {
-extern const PictureKernel picture_kernel;
-}
-namespace avx2 {
-extern const PictureKernel picture_kernel;
-}
-namespace avx512 {
-extern const PictureKernel picture_kernel;
-}
-#else
-namespace generic {
-extern const PictureKernel picture_kernel;
-}
-#endif
-// The one that this processor runs, or that LANCER_ISA asks for.
-const PictureKernel &picture_kernel();
+LANCER_DECLARE_KERNEL(PictureKernel, picture_kernel)
 
 } // namespace lancer

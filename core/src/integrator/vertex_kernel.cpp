@@ -16,7 +16,6 @@ namespace lancer {
 namespace {
 
 template <class Enum> LANCER_LANE U number_of(Enum value) { return U(static_cast<uint32_t>(value)); }
-LANCER_LANE M some(uint32_t lanes, int first) { return mask_of(lanes >> first & ((1u << kLanes) - 1u)); }
 LANCER_LANE uint32_t placed_bits(M m, int first) { return bits(m) << first; }
 
 template <class T> LANCER_LANE bool all_same(const T *const *of) {

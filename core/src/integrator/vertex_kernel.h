@@ -2,6 +2,7 @@
 // code: surface_at(), Sampler, LightSet::choose(), sample() of lights, Bsdf, leave().
 #pragma once
 
+#include "accel/kernel_choice.h"
 #include "integrator/vertex_block.h"
 
 namespace lancer {
@@ -16,22 +17,6 @@ struct VertexKernel {
 };
 
 // Each is the same source, vertex_kernel.cpp, compiled with LANCER_ISA set to the name.
-#if defined(__x86_64__)
-namespace sse4 {
-extern const VertexKernel vertex_kernel;
-}
-namespace avx2 {
-extern const VertexKernel vertex_kernel;
-}
-namespace avx512 {
-extern const VertexKernel vertex_kernel;
-}
-#else
-namespace generic {
-extern const VertexKernel vertex_kernel;
-}
-#endif
-// The one that this processor runs, or that LANCER_ISA asks for.
-const VertexKernel &vertex_kernel();
+LANCER_DECLARE_KERNEL(VertexKernel, vertex_kernel)
 
 } // namespace lancer

@@ -2,6 +2,7 @@
 // bits.
 #pragma once
 
+#include "accel/kernel_choice.h"
 #include "lights/light_branch.h"
 #include "lights/way_block.h"
 
@@ -19,22 +20,6 @@ struct LightKernel {
 };
 
 // Each is the same source, light_kernel.cpp, compiled with LANCER_ISA set to the name.
-#if defined(__x86_64__)
-namespace sse4 {
-extern const LightKernel light_kernel;
-}
-namespace avx2 {
-extern const LightKernel light_kernel;
-}
-namespace avx512 {
-extern const LightKernel light_kernel;
-}
-#else
-namespace generic {
-extern const LightKernel light_kernel;
-}
-#endif
-// The one that this processor runs, or that LANCER_ISA asks for.
-const LightKernel &light_kernel();
+LANCER_DECLARE_KERNEL(LightKernel, light_kernel)
 
 } // namespace lancer

@@ -161,6 +161,8 @@ LANCER_COMPARE(!=)
 #endif
 
 LANCER_LANE bool any(M m) { return bits(m) != 0; }
+// Of a block's bits, those of the lanes from first on.
+LANCER_LANE M some(uint32_t lanes, int first) { return mask_of(lanes >> first & ((1u << kLanes) - 1u)); }
 
 #define LANCER_OPERATOR(op)                                                                                                    \
   LANCER_LANE F operator op(F a, F b) { return F(a.v op b.v); }                                                                \
