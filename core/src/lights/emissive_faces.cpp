@@ -1,5 +1,6 @@
 #include "lights/emissive_faces.h"
 
+#include "accel/parallel.h"
 #include "sampling/color.h"
 
 #include <cmath>
@@ -55,8 +56,8 @@ double emission_level(const EmissionAt &emission, const Surface &surface) {
 }
 
 std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                                          const std::vector<Material> &materials, uint32_t instance,
-                                          const EmissionAt &emission) const {
+                                          const std::vector<Material> &materials, uint32_t instance, const EmissionAt &emission,
+                                          const BuildContext &context) const {
   const Instance &placed = geometry.instances[instance];
   const Mesh &mesh = geometry.meshes[placed.mesh];
   const uint32_t faces = uint32_t(mesh.triangles.size());
@@ -64,6 +65,7 @@ std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::v
   std::vector<bool> textured(faces);
   double looked_at = 0.0, seen = 0.0;
   for (uint32_t face = 0; face < faces; ++face) {
+    poll_cancel(context);
     const uint32_t number = material_of(geometry, slots, instance, face);
     if (number == kNone || !is_light(materials[number]))
       continue;
@@ -93,11 +95,11 @@ std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::v
 
 EmissiveFaces::EmissiveFaces(const Geometry &geometry, const std::vector<uint32_t> &slots,
                              const std::vector<Material> &materials, uint32_t instance, bool of_mesh,
-                             const EmissionAt &emission)
+                             const EmissionAt &emission, const BuildContext &context)
     : of_mesh_(of_mesh) {
   const Instance &placed = geometry.instances[instance];
   const Mesh &mesh = geometry.meshes[placed.mesh];
-  const std::vector<double> power = powers(geometry, slots, materials, instance, emission);
+  const std::vector<double> power = powers(geometry, slots, materials, instance, emission, context);
   by_power_ = WeightedChoice(power);
   // Bring the faces that shine to about 1024 around 0: float is fine enough there.
   LightBounds box;
@@ -124,7 +126,7 @@ EmissiveFaces::EmissiveFaces(const Geometry &geometry, const std::vector<uint32_
       p = (p - centre_) * scale_;
     lights.push_back(describe_triangle(corners.p, power[face], face));
   }
-  tree_ = LightTree(std::move(lights), uint32_t(power.size()));
+  tree_ = LightTree(std::move(lights), uint32_t(power.size()), context);
 }
 
 LightQuery EmissiveFaces::to_tree(const Instance &placed, const LightQuery &query) const {

@@ -23,8 +23,9 @@ double emission_level(const EmissionAt &emission, const Surface &surface);
 class EmissiveFaces {
 public:
   // of_mesh: in the object's space, for all instances, by how this one looks; else in the world.
+  // Throws BuildCancelled.
   EmissiveFaces(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
-                uint32_t instance, bool of_mesh, const EmissionAt &emission);
+                uint32_t instance, bool of_mesh, const EmissionAt &emission, const BuildContext &context);
 
   bool empty() const { return tree_.empty(); }
   // By power, for those who know no normal.
@@ -43,7 +44,8 @@ public:
 private:
   // What the faces are worth: radiance times area in the space of the tree.
   std::vector<double> powers(const Geometry &geometry, const std::vector<uint32_t> &slots,
-                             const std::vector<Material> &materials, uint32_t instance, const EmissionAt &emission) const;
+                             const std::vector<Material> &materials, uint32_t instance, const EmissionAt &emission,
+                             const BuildContext &context) const;
   LightQuery to_tree(const Instance &placed, const LightQuery &query) const;
 
   bool of_mesh_;

@@ -43,7 +43,8 @@ WideLamp make_wide(const Light &light) {
 
 } // namespace
 
-LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment)
+LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
+                   const BuildContext &context)
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
   for (const Light &light : lights_) {
     wide_lamps_.push_back(make_wide(light));
@@ -76,7 +77,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
                [](const DescribedLight &light) { return !light.distant() && light.bounds.energy > 0.0; });
   if (near.size() > kFew) {
     std::erase_if(described, [](const DescribedLight &light) { return !light.distant(); });
-    many_ = LightTree(std::move(near), count);
+    many_ = LightTree(std::move(near), count, context);
     described.push_back(describe_cluster(many_.bounds(), count));
   }
   few_ = FewLights(std::move(described), count + 1);

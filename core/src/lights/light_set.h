@@ -12,8 +12,10 @@ namespace lancer {
 class LightSet {
 public:
   LightSet() = default;
-  // Lights as described come first, then one per emitting instance, then the environment where it varies.
-  LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment);
+  // Lights as described come first, then one per emitting instance, then the environment where it varies. Throws
+  // BuildCancelled.
+  LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
+           const BuildContext &context = {});
 
   size_t size() const { return lights_.size() + emitters_.size() + (environment_.varies() ? 1 : 0); }
   bool empty() const { return size() == 0; }

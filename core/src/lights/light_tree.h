@@ -2,6 +2,7 @@
 // are chosen by the most that may arrive from each.
 #pragma once
 
+#include "accel/accelerator.h"
 #include "lights/light_kernel.h"
 #include "lights/tree_light.h"
 
@@ -14,8 +15,8 @@ class LightTree {
 public:
   LightTree() = default;
   // count: numbers are below it. Lights without energy are never chosen, and none is distant. Coordinates should be about 1024
-  // at most.
-  LightTree(std::vector<DescribedLight> lights, uint32_t count);
+  // at most. Throws BuildCancelled.
+  LightTree(std::vector<DescribedLight> lights, uint32_t count, const BuildContext &context = {});
 
   bool empty() const { return branches_.empty(); }
   // Of all of it; energy in the user's units.

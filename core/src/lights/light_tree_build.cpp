@@ -1,3 +1,4 @@
+#include "accel/parallel.h"
 #include "lights/light_cut.h"
 #include "lights/light_tree.h"
 
@@ -20,13 +21,15 @@ bool any_aimed(const LightBranch &branch) {
 
 } // namespace
 
-LightTree::LightTree(std::vector<DescribedLight> lights, uint32_t count) : kernel_(&light_kernel()), place_of_(count, kNone) {
+LightTree::LightTree(std::vector<DescribedLight> lights, uint32_t count, const BuildContext &context)
+    : kernel_(&light_kernel()), place_of_(count, kNone) {
   bounds_ = prepare(lights);
   if (lights.empty())
     return;
   crowded_ = lights.size() > kCrowd;
   std::vector<Part> waiting{{0, uint32_t(lights.size()), LightBranches::kRoot, 0}};
   while (!waiting.empty()) {
+    poll_cancel(context);
     const Part part = waiting.back();
     waiting.pop_back();
     add_branch(part, lights, waiting);

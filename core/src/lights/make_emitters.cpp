@@ -40,7 +40,7 @@ std::vector<Emitter> make_emitters(const Geometry &geometry, const std::vector<u
       continue;
     }
     if (!user->faces)
-      user->faces = std::make_shared<EmissiveFaces>(geometry, slots, materials, instance, user->users > 1, emission);
+      user->faces = std::make_shared<EmissiveFaces>(geometry, slots, materials, instance, user->users > 1, emission, context);
     if (!user->faces->empty())
       emitters.emplace_back(geometry, instance, user->faces);
   }

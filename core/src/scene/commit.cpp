@@ -86,7 +86,8 @@ LightSet make_lights(const Scene &scene, const Description &description, const B
   Shader shader(scene, nullptr);
   const EmissionAt emission = [&](const Surface &surface, const glm::vec3 &wo) { return shader.emission(surface, wo); };
   return LightSet(std::move(lights), make_emitters(scene.geometry, scene.slots, scene.materials, emission, context),
-                  scene.geometry.instances.size(), Environment(scene.world, scene.images, scene.normalisation, context));
+                  scene.geometry.instances.size(), Environment(scene.world, scene.images, scene.normalisation, context),
+                  context);
 }
 
 } // namespace

@@ -1,0 +1,39 @@
+// The making of many lights ends soon after it is cancelled.
+#include "lights/emissive_faces.h"
+#include "lights/light_set.h"
+
+#include <atomic>
+#include <gtest/gtest.h>
+
+namespace lancer {
+namespace {
+
+const std::atomic<bool> kCancel{true};
+const BuildContext kCancelled{.cancel = &kCancel};
+
+TEST(Lights, ManyLampsCanBeCancelled) {
+  Light lamp;
+  lamp.emission = glm::dvec3(1.0);
+  std::vector<Light> lights(5, lamp); // more than are asked one by one
+  for (size_t i = 0; i < lights.size(); ++i)
+    lights[i].position.x = double(i);
+  EXPECT_FALSE(LightSet(lights, {}, 0, Environment()).many().empty());
+  EXPECT_THROW(LightSet(lights, {}, 0, Environment(), kCancelled), BuildCancelled);
+}
+
+TEST(Lights, AMeshOfManyFacesCanBeCancelled) {
+  Geometry geometry;
+  geometry.meshes.resize(1);
+  geometry.meshes[0].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  geometry.meshes[0].triangles = {{0, 1, 2}};
+  geometry.instances.resize(1);
+  geometry.instances[0].slot_count = 1;
+  std::vector<Material> materials(1);
+  materials[0].emission.value = glm::vec3(1.0f);
+  const EmissionAt emission = [](const Surface &, const glm::vec3 &) { return glm::vec3(1.0f); };
+  EXPECT_FALSE(EmissiveFaces(geometry, {0}, materials, 0, false, emission, {}).empty());
+  EXPECT_THROW(EmissiveFaces(geometry, {0}, materials, 0, false, emission, kCancelled), BuildCancelled);
+}
+
+} // namespace
+} // namespace lancer
