@@ -18,17 +18,24 @@ class Accelerator {
 public:
   virtual ~Accelerator() = default;
   // hits[i]: the closest hit of rays[i], or an invalid Hit.
-  virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const { find(rays, hits, nullptr); }
   // occluded[i]: 1 where rays[i] meets anything at all.
-  virtual void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const = 0;
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const { find(rays, occluded, nullptr); }
   // The same of the hits that count.
-  virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const = 0;
-  virtual void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const = 0;
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const { find(rays, hits, &filter); }
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const {
+    find(rays, occluded, &filter);
+  }
   // The work of closest_hit() or any_hit() on these rays, counted by the wide BVH; zeros from the others.
   virtual TraversalCounts count(std::span<const Ray>, [[maybe_unused]] bool any) const { return {}; }
   virtual size_t bytes() const = 0;
   // The instruction set that the traversal was compiled for and runs with, e.g. "AVX2".
   virtual const char *instruction_set() const = 0;
+
+private:
+  // filter: null where every hit counts.
+  virtual void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const = 0;
+  virtual void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const = 0;
 };
 
 struct BuildContext {

@@ -10,24 +10,15 @@ class BruteForce final : public Accelerator {
 public:
   explicit BruteForce(const Geometry &g) : geometry(g), scene(place_scene(g)) {}
 
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override { find(rays, hits, nullptr); }
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override { find(rays, occluded, nullptr); }
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const override {
-    find(rays, hits, &filter);
-  }
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const override {
-    find(rays, occluded, &filter);
-  }
-
   size_t bytes() const override { return scene.bytes(); }
   const char *instruction_set() const override { return "baseline"; }
 
 private:
-  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const {
+  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
     for (size_t i = 0; i < rays.size(); ++i)
       hits[i] = closest(rays[i], {filter, i});
   }
-  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const {
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
     for (size_t i = 0; i < rays.size(); ++i)
       occluded[i] = closest(rays[i], {filter, i}).valid();
   }

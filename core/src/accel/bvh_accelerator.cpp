@@ -39,18 +39,6 @@ public:
   BvhAccelerator(const BvhAccelerator &) = delete;
   BvhAccelerator &operator=(const BvhAccelerator &) = delete;
 
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override {
-    kernel.closest(scene, rays.data(), hits.data(), rays.size());
-  }
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override {
-    kernel.any(scene, rays.data(), occluded.data(), rays.size());
-  }
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const override {
-    kernel.closest_filtered(scene, rays.data(), hits.data(), rays.size(), filter);
-  }
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const override {
-    kernel.any_filtered(scene, rays.data(), occluded.data(), rays.size(), filter);
-  }
   TraversalCounts count(std::span<const Ray> rays, bool any) const override {
     TraversalCounts counts;
     kernel.count(scene, rays.data(), rays.size(), any, counts);
@@ -65,6 +53,19 @@ public:
   const char *instruction_set() const override { return kernel.name; }
 
 private:
+  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
+    if (filter)
+      kernel.closest_filtered(scene, rays.data(), hits.data(), rays.size(), *filter);
+    else
+      kernel.closest(scene, rays.data(), hits.data(), rays.size());
+  }
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
+    if (filter)
+      kernel.any_filtered(scene, rays.data(), occluded.data(), rays.size(), *filter);
+    else
+      kernel.any(scene, rays.data(), occluded.data(), rays.size());
+  }
+
   // Instances whose triangles stand in the world's own tree: those of meshes that are placed once, and copies of small ones.
   std::vector<uint8_t> choose_unfolded(const Geometry &geometry) const {
     std::vector<uint32_t> uses(geometry.meshes.size(), 0);

@@ -28,15 +28,6 @@ public:
     top = build_kdtree(placed.boxes, kInstanceCost, context);
   }
 
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override { find(rays, hits, nullptr); }
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded) const override { find(rays, occluded, nullptr); }
-  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter &filter) const override {
-    find(rays, hits, &filter);
-  }
-  void any_hit(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter &filter) const override {
-    find(rays, occluded, &filter);
-  }
-
   size_t bytes() const override {
     size_t sum = placed.bytes() + top.bytes();
     for (const KdTree &mesh : meshes)
@@ -46,11 +37,11 @@ public:
   const char *instruction_set() const override { return "baseline"; }
 
 private:
-  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const {
+  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
     for (size_t i = 0; i < rays.size(); ++i)
       hits[i] = intersect<false>(rays[i], {filter, i});
   }
-  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const {
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
     for (size_t i = 0; i < rays.size(); ++i)
       occluded[i] = intersect<true>(rays[i], {filter, i}).valid();
   }
