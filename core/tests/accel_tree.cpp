@@ -42,7 +42,7 @@ size_t walk(const WideTree &tree, const HugeVector<BuildRef> &refs, uint32_t nod
       ++met[leaf.id];
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_LE(tree.nodes[node].bounds[axis][0][lane], refs[leaf.id].lo[axis]);
-        EXPECT_GE(tree.nodes[node].bounds[axis][1][lane], refs[leaf.id].hi[axis]);
+        EXPECT_GE(tree.nodes[node].bounds[axis][1][lane], refs[leaf.id].box().hi[axis]);
       }
     }
   }

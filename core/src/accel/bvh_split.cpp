@@ -5,71 +5,36 @@
 #include <array>
 
 namespace lancer {
+
+const SplitKernel &split_kernel() { return LANCER_CHOSEN_KERNEL(split_kernel); }
+
 namespace {
 
-constexpr uint32_t kMaxBins = 16;
 // What one thread bins or moves at a time.
 constexpr uint32_t kPiece = 32768;
 
 // Small ranges are worth few bins: a sweep over them costs more than their boxes.
 uint32_t bin_count(uint32_t refs) { return std::min(kMaxBins, 4 + refs / 4); }
 
-// Maps centroids to bins, the same way in every pass.
-struct Binning {
-  Float4 origin, scale;
+Binning make_binning(const Box &centroids, uint32_t bins) {
+  Binning binning{centroids.lo, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float extent = centroids.hi[axis] - centroids.lo[axis];
+    const float s = static_cast<float>(bins) * 0.999999f / extent;
+    binning.scale[axis] = s < Box::kInf ? s : 0.0f;
+  }
+  return binning;
+}
 
-  Binning(const Box &centroids, uint32_t bins) : origin(centroids.lo), scale{} {
+Int4 counts_of(const Bins &bins, uint32_t bin) { return std::bit_cast<Int4>(std::to_array(bins.counts[bin])); }
+
+void add(const Bins &bins, uint32_t used, Bins &sum) {
+  for (uint32_t bin = 0; bin < used; ++bin)
     for (int axis = 0; axis < 3; ++axis) {
-      const float extent = centroids.hi[axis] - centroids.lo[axis];
-      const float s = static_cast<float>(bins) * 0.999999f / extent;
-      scale[axis] = s < Box::kInf ? s : 0.0f;
+      sum.boxes[bin][axis].grow(bins.boxes[bin][axis]);
+      sum.counts[bin][axis] += bins.counts[bin][axis];
     }
-  }
-  Int4 bins(Float4 centroid) const { return __builtin_convertvector((centroid - origin) * scale, Int4); }
-};
-
-// Unset until cleared: only as many as are used.
-struct Bins {
-  struct Bounds {
-    Float4 lo, hi;
-  };
-  Bounds bounds[kMaxBins][3];
-  alignas(16) std::array<uint32_t, 4> counts[kMaxBins];
-
-  Box box(uint32_t bin, int axis) const { return {bounds[bin][axis].lo, bounds[bin][axis].hi}; }
-  Int4 count(uint32_t bin) const { return std::bit_cast<Int4>(counts[bin]); }
-  void clear(uint32_t used) {
-    constexpr Box kEmpty;
-    for (uint32_t bin = 0; bin < used; ++bin) {
-      for (Bounds &b : bounds[bin])
-        b = {kEmpty.lo, kEmpty.hi};
-      counts[bin] = {};
-    }
-  }
-  void grow(uint32_t bin, int axis, const Box &by) {
-    Bounds &b = bounds[bin][axis];
-    b.lo = min4(b.lo, by.lo);
-    b.hi = max4(b.hi, by.hi);
-  }
-  void add(const BuildRef *refs, uint32_t begin, uint32_t end, const Binning &binning) {
-    for (uint32_t i = begin; i < end; ++i) {
-      const Box by = refs[i].box();
-      const Int4 bins = binning.bins(refs[i].centroid());
-      for (int axis = 0; axis < 3; ++axis) {
-        const uint32_t bin = static_cast<uint32_t>(bins[axis]);
-        grow(bin, axis, by);
-        ++counts[bin][static_cast<size_t>(axis)];
-      }
-    }
-  }
-  void add(const Bins &other, uint32_t used) {
-    for (uint32_t bin = 0; bin < used; ++bin)
-      for (int axis = 0; axis < 3; ++axis) {
-        grow(bin, axis, other.box(bin, axis));
-        counts[bin][static_cast<size_t>(axis)] += other.counts[bin][static_cast<size_t>(axis)];
-      }
-  }
-};
+}
 
 struct Plane {
   int axis = -1;
@@ -77,8 +42,9 @@ struct Plane {
 };
 
 // What the boxes of all three axes cost together with their primitives; not a number where there are none.
-Float4 cost(const Box boxes[3], Int4 counts, uint32_t group) {
-  const Float4 a = boxes[0].hi - boxes[0].lo, b = boxes[1].hi - boxes[1].lo, c = boxes[2].hi - boxes[2].lo;
+Float4 cost(const GrowingBox boxes[3], Int4 counts, uint32_t group) {
+  // The sizes have their signs turned, which their products do not show.
+  const Float4 a = boxes[0].lo + boxes[0].minus_hi, b = boxes[1].lo + boxes[1].minus_hi, c = boxes[2].lo + boxes[2].minus_hi;
   const Float4 x{a[0], b[0], c[0], 0.0f}, y{a[1], b[1], c[1], 0.0f}, z{a[2], b[2], c[2], 0.0f};
   const Int4 tests = group == 4 ? (counts + 3) >> 2 : counts;
   return (x * y + y * z + z * x) * __builtin_convertvector(tests, Float4);
@@ -87,20 +53,21 @@ Float4 cost(const Box boxes[3], Int4 counts, uint32_t group) {
 // Sweeps the planes between the bins from both sides, along all axes at once.
 Plane find_plane(const Bins &bins, uint32_t used, uint32_t group) {
   Float4 right_cost[kMaxBins];
-  Box right[3], left[3];
+  constexpr GrowingBox kEmpty = GrowingBox::empty();
+  GrowingBox right[3] = {kEmpty, kEmpty, kEmpty}, left[3] = {kEmpty, kEmpty, kEmpty};
   Int4 right_count{}, left_count{};
   for (uint32_t bin = used - 1; bin > 0; --bin) {
     for (int axis = 0; axis < 3; ++axis)
-      right[axis].grow(bins.box(bin, axis));
-    right_count += bins.count(bin);
+      right[axis].grow(bins.boxes[bin][axis]);
+    right_count += counts_of(bins, bin);
     right_cost[bin] = cost(right, right_count, group);
   }
   Float4 best{Box::kInf, Box::kInf, Box::kInf, Box::kInf};
   Int4 best_bin{};
   for (uint32_t bin = 1; bin < used; ++bin) {
     for (int axis = 0; axis < 3; ++axis)
-      left[axis].grow(bins.box(bin - 1, axis));
-    left_count += bins.count(bin - 1);
+      left[axis].grow(bins.boxes[bin - 1][axis]);
+    left_count += counts_of(bins, bin - 1);
     const Float4 sum = cost(left, left_count, group) + right_cost[bin];
     const Int4 better = sum < best;
     best = better ? sum : best;
@@ -114,34 +81,6 @@ Plane find_plane(const Bins &bins, uint32_t used, uint32_t group) {
       plane = {axis, best_bin[axis]};
     }
   return plane;
-}
-
-// The boxes of centroids on both sides of a plane.
-using CentroidBoxes = std::array<Box, 2>;
-
-// Moves a piece of a range to the places of its left and its right side, without branches on boxes.
-template <int kAxis>
-CentroidBoxes move_piece(const BuildRef *from, BuildRef *to, uint32_t begin, uint32_t end, uint32_t left, uint32_t right,
-                         const Binning &binning, int32_t bin) {
-  CentroidBoxes boxes;
-  for (uint32_t i = begin; i < end; ++i) {
-    const BuildRef ref = from[i];
-    const Float4 centroid = ref.centroid();
-    const int32_t on_right = -static_cast<int32_t>(binning.bins(centroid)[kAxis] >= bin);
-    const uint32_t mask = static_cast<uint32_t>(on_right);
-    to[(left & ~mask) | (right & mask)] = ref;
-    left += mask + 1;
-    right -= mask;
-    // With all bits set a lane is not a number, and loses against every other.
-    const Int4 bits = std::bit_cast<Int4>(centroid);
-    const Int4 lost{on_right, on_right, on_right, on_right};
-    const Float4 on_left_only = std::bit_cast<Float4>(bits | lost), on_right_only = std::bit_cast<Float4>(bits | ~lost);
-    boxes[0].lo = min4(on_left_only, boxes[0].lo);
-    boxes[0].hi = max4(on_left_only, boxes[0].hi);
-    boxes[1].lo = min4(on_right_only, boxes[1].lo);
-    boxes[1].hi = max4(on_right_only, boxes[1].hi);
-  }
-  return boxes;
 }
 
 } // namespace
@@ -181,22 +120,20 @@ bool RangeSplitter::split_by_area(const BuildRange &range, BuildRange sides[2]) 
   // Sort the boxes into bins along all three axes, piece by piece.
   const BuildRef *from = buffers[range.buffer];
   const uint32_t used = bin_count(range.count()), pieces = (range.count() + kPiece - 1) / kPiece;
-  const Binning binning(range.centroids, used);
-  const auto piece_end = [&](size_t piece) {
-    return static_cast<uint32_t>(std::min<size_t>(range.begin + (piece + 1) * kPiece, range.end));
-  };
+  const Binning binning = make_binning(range.centroids, used);
+  const auto piece_begin = [&](size_t piece) { return range.begin + static_cast<uint32_t>(piece) * kPiece; };
+  const auto piece_end = [&](size_t piece) { return std::min(piece_begin(piece) + kPiece, range.end); };
   Bins sum;
-  sum.clear(used);
   std::vector<Bins> piece_bins(pieces > 1 ? pieces : 0);
   if (pieces == 1) {
-    sum.add(from, range.begin, range.end, binning);
+    kernel.bin(from + range.begin, range.count(), binning, used, sum);
   } else {
     parallel_for(context, pieces, [&](size_t piece) {
-      piece_bins[piece].clear(used);
-      piece_bins[piece].add(from, range.begin + static_cast<uint32_t>(piece) * kPiece, piece_end(piece), binning);
+      kernel.bin(from + piece_begin(piece), piece_end(piece) - piece_begin(piece), binning, used, piece_bins[piece]);
     });
-    for (const Bins &bins : piece_bins)
-      sum.add(bins, used);
+    sum = piece_bins[0];
+    for (uint32_t piece = 1; piece < pieces; ++piece)
+      add(piece_bins[piece], used, sum);
   }
 
   const Plane plane = find_plane(sum, used, group);
@@ -207,11 +144,11 @@ bool RangeSplitter::split_by_area(const BuildRange &range, BuildRange sides[2]) 
   const auto count_left = [&](const Bins &bins) {
     uint32_t count = 0;
     for (int32_t bin = 0; bin < plane.bin; ++bin)
-      count += bins.counts[bin][static_cast<size_t>(plane.axis)];
+      count += bins.counts[bin][plane.axis];
     return count;
   };
   for (int32_t bin = 0; bin < static_cast<int32_t>(used); ++bin)
-    sides[bin >= plane.bin].box.grow(sum.box(static_cast<uint32_t>(bin), plane.axis));
+    sides[bin >= plane.bin].box.grow(sum.boxes[bin][plane.axis].box());
   const uint32_t middle = range.begin + count_left(sum);
   sides[0].begin = range.begin;
   sides[0].end = sides[1].begin = middle;
@@ -220,26 +157,25 @@ bool RangeSplitter::split_by_area(const BuildRange &range, BuildRange sides[2]) 
 
   // Move the boxes to their sides.
   BuildRef *to = buffers[range.buffer ^ 1];
-  constexpr auto kMove = std::array{move_piece<0>, move_piece<1>, move_piece<2>};
-  const auto move = kMove[static_cast<size_t>(plane.axis)];
+  const auto move = kernel.move[plane.axis];
   if (pieces == 1) {
-    const CentroidBoxes boxes = move(from, to, range.begin, range.end, range.begin, middle, binning, plane.bin);
-    sides[0].centroids = boxes[0];
-    sides[1].centroids = boxes[1];
+    GrowingBox centroids[2];
+    move(from, range.begin, range.end, binning, plane.bin, to, range.begin, middle, centroids);
+    for (int side = 0; side < 2; ++side)
+      sides[side].centroids = centroids[side].box();
     return true;
   }
   std::vector<uint32_t> lefts(pieces, range.begin);
   for (uint32_t piece = 1; piece < pieces; ++piece)
     lefts[piece] = lefts[piece - 1] + count_left(piece_bins[piece - 1]);
-  std::vector<CentroidBoxes> boxes(pieces);
+  std::vector<std::array<GrowingBox, 2>> centroids(pieces);
   parallel_for(context, pieces, [&](size_t piece) {
-    const uint32_t begin = range.begin + static_cast<uint32_t>(piece) * kPiece;
-    const uint32_t right = middle + (begin - range.begin) - (lefts[piece] - range.begin);
-    boxes[piece] = move(from, to, begin, piece_end(piece), lefts[piece], right, binning, plane.bin);
+    const uint32_t begin = piece_begin(piece), right = middle + (begin - range.begin) - (lefts[piece] - range.begin);
+    move(from, begin, piece_end(piece), binning, plane.bin, to, lefts[piece], right, centroids[piece].data());
   });
-  for (const CentroidBoxes &piece : boxes)
-    for (int side = 0; side < 2; ++side)
-      sides[side].centroids.grow(piece[static_cast<size_t>(side)]);
+  for (const std::array<GrowingBox, 2> &piece : centroids)
+    for (size_t side = 0; side < 2; ++side)
+      sides[side].centroids.grow(piece[side].box());
   return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include "accel/accelerator.h"
 #include "accel/bounds.h"
+#include "accel/split_kernel.h"
 
 namespace lancer {
 
@@ -39,6 +40,7 @@ private:
   void split_by_count(const BuildRange &range, BuildRange sides[2]) const;
 
   BuildRef *const buffers[2];
+  const SplitKernel &kernel = split_kernel();
   const uint32_t group;
   const BuildContext &context;
 };
