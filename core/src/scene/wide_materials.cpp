@@ -73,7 +73,7 @@ bool add_principled(WideMaterial &material, const LobeInputs &inputs, const Prin
   if (!layers || in.rules == Rules::Blender3 || inputs.normal != glm::vec3(0.0f) || in.coat_normal != glm::vec3(0.0f) ||
       in.sheen > kLeastLayer || in.emission != glm::vec3(0.0f) || in.diffuse_roughness >= kLambertRoughness)
     return false;
-  if (grain_of(inputs, unit(in.roughness), unit(in.anisotropic)).stretched)
+  if (grain_of(inputs, in.roughness, unit(in.anisotropic)).stretched)
     return false;
   const float metallic = unit(in.metallic), transmission = unit(in.transmission);
   copy(inputs.weight, material.weight);
