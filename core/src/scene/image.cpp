@@ -1,5 +1,6 @@
 #include "scene/image.h"
 
+#include "sampling/plain_vectors.h"
 #include "scene/wide_image.h"
 
 #include <algorithm>
@@ -269,8 +270,7 @@ std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alp
   wide.alpha = !alpha && !divided ? 0 : image.channels == 4 && image.alpha != AlphaMode::None ? 2 : 1;
   wide.has_matrix = image.has_matrix;
   for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row)
-      wide.matrix[column][row] = image.matrix[column][row];
+    copy(image.matrix[column], wide.matrix[column]);
   return wide;
 }
 

@@ -5,15 +5,11 @@
 #include "bsdf/microfacet_fresnel.h"
 #include "bsdf/principled.h"
 #include "lancer.h"
+#include "sampling/plain_vectors.h"
 
 namespace lancer {
 
 namespace {
-
-void copy(const glm::vec3 &from, float (&to)[3]) {
-  for (int i = 0; i < 3; ++i)
-    to[i] = from[i];
-}
 
 WideLobe *next(WideMaterial &material) {
   return material.count < uint32_t(kWideLobes) ? &material.lobes[material.count++] : nullptr;
