@@ -256,7 +256,7 @@ std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alp
   // Kernels have the curve up to 1: that of bytes, also divided by an alpha that they were multiplied by here.
   if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || image.tile != 0 ||
       (extension != Extension::Repeat && extension != Extension::Extend) || (curve && (!bytes || beyond)) ||
-      image.bytes() >= size_t(1) << 31 || std::max(image.width, image.height) > 1u << 20)
+      image.bytes() >= size_t(1) << 31)
     return {};
   WideImage wide;
   wide.texels = image.texels.get();
