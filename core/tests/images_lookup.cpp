@@ -203,6 +203,8 @@ TEST(ImagesLookup, RefusesWhatCannotBeRead) {
   EXPECT_FALSE(refused([](lancer_image &) {}));
   EXPECT_TRUE(refused([](lancer_image &image) { image.width = 0; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.height = 1u << 31; }));
+  // Kernels count on it.
+  EXPECT_TRUE(refused([](lancer_image &image) { image.width = (1u << 20) + 1; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.channels = 2; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.kind = 3; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.transfer = 2; }));

@@ -6,21 +6,22 @@
 namespace lancer_test {
 namespace {
 
-// Noise; of bytes with a curve, or of floats of which a few are bright.
-void add_image(Studio &studio, Random &random, uint32_t kind) {
+// Noise; of bytes with a curve, or of floats of which a few are bright. beyond: with an alpha that is less than 0 or more than
+// 1 at times.
+void add_image(Studio &studio, Random &random, uint32_t kind, bool beyond = false) {
   constexpr uint32_t width = 32, height = 16;
   std::vector<uint8_t> bytes(width * height * 4);
   std::vector<float> floats(bytes.size());
   for (size_t i = 0; i < bytes.size(); ++i) {
     bytes[i] = uint8_t(random());
-    floats[i] = random() % 64 ? number(random) : 20.0f;
+    floats[i] = i % 4 == 3 ? number(random, -0.5f, 1.5f) : random() % 64 ? number(random) : 20.0f;
   }
   lancer_image image = {};
   image.name = "noise";
   image.width = width;
   image.height = height;
   image.channels = 4;
-  image.alpha = kind == LANCER_TEXEL_U8 ? LANCER_ALPHA_STRAIGHT : LANCER_ALPHA_NONE;
+  image.alpha = kind == LANCER_TEXEL_U8 || beyond ? LANCER_ALPHA_STRAIGHT : LANCER_ALPHA_NONE;
   image.kind = kind;
   image.texels = kind == LANCER_TEXEL_U8 ? static_cast<const void *>(bytes.data()) : floats.data();
   image.transfer = kind == LANCER_TEXEL_U8 ? LANCER_TRANSFER_SRGB : LANCER_TRANSFER_LINEAR;
@@ -32,21 +33,24 @@ uint32_t add_pictured(Studio &studio, Random &random, uint32_t image) {
   lancer_node picture = flagged(node(LANCER_NODE_IMAGE, LANCER_PROJECT_FLAT, {result_of(0)}), random() % 3 | 256);
   picture.image = image;
   picture.image_count = 1;
+  // Alpha as it is, or clamped as a mix has it.
+  const int32_t share = random() % 2 ? 2 : 3;
   const std::vector<lancer_node> nodes = {named(node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV), ""), picture,
                                           node(LANCER_NODE_ALPHA, 0, {result_of(1)}),
-                                          node(LANCER_NODE_MATH, LANCER_MATH_SUBTRACT, {constant(1.0f), result_of(2)})};
+                                          flagged(node(LANCER_NODE_MATH, LANCER_MATH_ADD, {result_of(2), constant(0.0f)}), 1),
+                                          node(LANCER_NODE_MATH, LANCER_MATH_SUBTRACT, {constant(1.0f), result_of(share)})};
   // Not rough, so that kernels know it.
   lancer_lobe matte = lobe(LANCER_DIFFUSE, 0.8f, 0.0f);
   matte.rules = LANCER_RULES_45;
   matte.color = result_of(1);
   if (random() % 2)
-    matte.weight = result_of(2);
+    matte.weight = result_of(share);
   // Where the nodes say more than the colour.
   lancer_material material = black();
   if (random() % 4 == 0)
     material.transmittance = result_of(1);
   else if (random() % 2)
-    material.transmittance = result_of(3);
+    material.transmittance = result_of(4);
   return studio.add({matte}, material, nodes);
 }
 
@@ -85,6 +89,7 @@ std::vector<float> picture(uint32_t seed, uint32_t passes) {
   add_image(studio, random, LANCER_TEXEL_FLOAT);
   add_image(studio, random, LANCER_TEXEL_U8);
   add_image(studio, random, LANCER_TEXEL_U8);
+  add_image(studio, random, LANCER_TEXEL_FLOAT, true);
   const Ball ball;
   lancer_mesh mesh = ball.mesh(true);
   std::vector<float> uvs(mesh.triangle_count * 6);
@@ -97,7 +102,7 @@ std::vector<float> picture(uint32_t seed, uint32_t passes) {
   studio.place(LANCER_PLANE, add_pictured(studio, random, 1), moved(0, 0, -1));
   for (int i = 0; i < 12; ++i) {
     const uint32_t kind = random() % 4 ? LANCER_MESH : LANCER_SPHERE;
-    lancer_instance &thing = studio.place(kind, add_pictured(studio, random, 1 + random() % 2),
+    lancer_instance &thing = studio.place(kind, add_pictured(studio, random, 1 + random() % 3),
                                           moved(2.2 * (i % 4) - 3.3, 2.2 * (i / 4) - 2.2, number(random, -0.5f, 0.5f)));
     thing.mesh = random() % 4 == 0;
   }

@@ -20,44 +20,44 @@ glm::vec3 wide_normal(const Bsdf &bsdf, const LobeInputs &inputs) {
   return inputs.rules == Rules::Blender3 ? reflecting_normal(bsdf, inputs.normal) : inputs.normal;
 }
 
-Lobe course_lobe(LobeShape shape, Component component, uint8_t frame, const LobeInputs &inputs, const glm::vec3 &weight) {
+Lobe course_lobe(LobeShape shape, Component component, uint8_t frame, const LobeInputs &inputs) {
   Lobe lobe;
   lobe.shape = shape;
   lobe.component = component;
   lobe.frame = frame;
   lobe.rules = inputs.rules;
-  lobe.color = lobe.albedo = weight;
+  lobe.color = lobe.albedo = colored_weight(inputs);
   lobe.ior = inputs.ior;
   lobe.shininess = inputs.shininess;
   return lobe;
 }
 
-void add_lambert(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+void add_lambert(Bsdf &bsdf, const LobeInputs &inputs) {
   const uint8_t frame = add_frame(bsdf, wide_normal(bsdf, inputs), glm::vec3(0.0f));
-  add(bsdf, course_lobe(LobeShape::Lambert, Component::Diffuse, frame, inputs, weight));
+  add(bsdf, course_lobe(LobeShape::Lambert, Component::Diffuse, frame, inputs));
 }
 
-void add_diffuse(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+void add_diffuse(Bsdf &bsdf, const LobeInputs &inputs) {
   const uint8_t frame = add_frame(bsdf, wide_normal(bsdf, inputs), glm::vec3(0.0f));
-  Lobe lobe = make_diffuse(weight, inputs.color, inputs.roughness, inputs.option != 0, bsdf.wo_local[frame].z);
+  Lobe lobe = make_diffuse(colored_weight(inputs), inputs.color, inputs.roughness, inputs.option != 0, bsdf.wo_local[frame].z);
   lobe.frame = frame;
   lobe.rules = inputs.rules;
   add(bsdf, lobe);
 }
 
-void add_coating(Bsdf &bsdf, const LobeInputs &inputs, uint8_t frame, const glm::vec3 &weight) {
-  Lobe lobe = course_lobe(LobeShape::Beckmann, Component::Glossy, frame, inputs, weight);
+void add_coating(Bsdf &bsdf, const LobeInputs &inputs, uint8_t frame) {
+  Lobe lobe = course_lobe(LobeShape::Beckmann, Component::Glossy, frame, inputs);
   lobe.alpha_x = lobe.alpha_y = inputs.roughness;
   lobe.delta = lobe.alpha_x < kMirrorAlpha;
   lobe.albedo *= coating_albedo_estimate(lobe, bsdf.wo_local[frame]);
   add(bsdf, lobe);
 }
 
-void add_smooth_glass(Bsdf &bsdf, const LobeInputs &inputs, uint8_t frame, const glm::vec3 &weight) {
-  Lobe lobe = course_lobe(LobeShape::Dielectric, Component::Glossy, frame, inputs, weight);
+void add_smooth_glass(Bsdf &bsdf, const LobeInputs &inputs, uint8_t frame) {
+  Lobe lobe = course_lobe(LobeShape::Dielectric, Component::Glossy, frame, inputs);
   lobe.delta = true;
   lobe.ior = bsdf.inside ? 1.0f / inputs.ior : inputs.ior;
-  lobe.through = weight * (1.0f - fresnel_dielectric(bsdf.wo_local[frame].z, lobe.ior));
+  lobe.through = lobe.color * (1.0f - fresnel_dielectric(bsdf.wo_local[frame].z, lobe.ior));
   add(bsdf, lobe);
 }
 
@@ -76,7 +76,7 @@ Stretched stretched(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &n, co
 
 // The Glossy node's: squeezed one way as it is drawn out the other.
 Stretched glossy_roughness(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &n) {
-  const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f), alpha = roughness * roughness;
+  const float alpha = alpha_of(inputs.roughness);
   const float anisotropy = std::clamp(inputs.anisotropy, -0.99f, 0.99f);
   if (std::abs(anisotropy) <= 1e-4f)
     return {alpha, alpha, add_frame(bsdf, n, glm::vec3(0.0f))};
@@ -87,7 +87,7 @@ Stretched glossy_roughness(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3
 
 // The Metallic node's, as Principled has it.
 Stretched conductor_roughness(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &n) {
-  const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f), alpha = roughness * roughness;
+  const float alpha = alpha_of(inputs.roughness);
   const float anisotropy = std::clamp(inputs.anisotropy, 0.0f, 1.0f);
   if (anisotropy == 0.0f)
     return {alpha, alpha, add_frame(bsdf, n, glm::vec3(0.0f))};
@@ -95,10 +95,10 @@ Stretched conductor_roughness(Bsdf &bsdf, const LobeInputs &inputs, const glm::v
   return stretched(bsdf, inputs, n, normal_or_shading(bsdf, inputs.normal), alpha, 1.0f / aspect, aspect);
 }
 
-void add_glossy(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+void add_glossy(Bsdf &bsdf, const LobeInputs &inputs) {
   const Stretched s = glossy_roughness(bsdf, inputs, reflecting_normal(bsdf, inputs.normal));
   if (inputs.distribution == Facets::AshikhminShirley) {
-    Lobe lobe = make_ashikhmin(weight, s.alpha_x, s.alpha_y);
+    Lobe lobe = make_ashikhmin(colored_weight(inputs), s.alpha_x, s.alpha_y);
     lobe.frame = s.frame;
     lobe.rules = inputs.rules;
     add(bsdf, lobe);
@@ -116,10 +116,10 @@ void add_conductor(Bsdf &bsdf, const LobeInputs &inputs) {
   add(bsdf, lobe);
 }
 
-void add_refraction(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+void add_refraction(Bsdf &bsdf, const LobeInputs &inputs) {
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
-  const float alpha = inputs.roughness * inputs.roughness;
-  Lobe lobe = make_microfacet(Scatter::Refract, frame, weight, alpha, alpha, inputs.rules);
+  const float alpha = alpha_of(inputs.roughness);
+  Lobe lobe = make_microfacet(Scatter::Refract, frame, colored_weight(inputs), alpha, alpha, inputs.rules);
   lobe.beckmann = inputs.distribution == Facets::Beckmann;
   lobe.ior = index_from(bsdf.inside, inputs.ior);
   complete_microfacet(lobe, bsdf.wo_local[frame].z, false);
@@ -132,12 +132,11 @@ void add_glass(Bsdf &bsdf, const LobeInputs &inputs) {
   const bool preserving = inputs.distribution == Facets::MultiGgx;
   if (inputs.rules == Rules::Blender3 && !preserving) {
     // Blender 3.x: Fresnel of the smooth surface shares the light between two lobes of facets without Fresnel.
-    const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f), alpha = roughness * roughness;
-    const float eta = index_from(bsdf.inside, inputs.ior), f = fresnel_dielectric(cos_o, eta);
+    const float alpha = alpha_of(inputs.roughness), eta = index_from(bsdf.inside, inputs.ior);
+    const float f = fresnel_dielectric(cos_o, eta);
     for (Scatter scatter : {Scatter::Reflect, Scatter::Refract}) {
       const float share = scatter == Scatter::Reflect ? f : 1.0f - f;
-      Lobe lobe =
-          make_microfacet(scatter, frame, inputs.weight * glm::max(inputs.color, 0.0f) * share, alpha, alpha, inputs.rules);
+      Lobe lobe = make_microfacet(scatter, frame, colored_weight(inputs) * share, alpha, alpha, inputs.rules);
       lobe.beckmann = inputs.distribution == Facets::Beckmann;
       lobe.ior = eta;
       complete_microfacet(lobe, cos_o, false);
@@ -150,8 +149,9 @@ void add_glass(Bsdf &bsdf, const LobeInputs &inputs) {
   add(bsdf, lobe);
 }
 
-void add_sheen(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
+void add_sheen(Bsdf &bsdf, const LobeInputs &inputs) {
   const uint8_t frame = add_frame(bsdf, wide_normal(bsdf, inputs), glm::vec3(0.0f));
+  const glm::vec3 weight = colored_weight(inputs);
   const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f);
   Lobe lobe = inputs.distribution == Facets::Beckmann ? make_velvet(weight, roughness)
                                                       : make_sheen(weight, roughness, bsdf.wo_local[frame].z);
@@ -160,8 +160,8 @@ void add_sheen(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
   add(bsdf, lobe);
 }
 
-void add_translucent(Bsdf &bsdf, const LobeInputs &inputs, const glm::vec3 &weight) {
-  Lobe lobe = make_translucent(weight);
+void add_translucent(Bsdf &bsdf, const LobeInputs &inputs) {
+  Lobe lobe = make_translucent(colored_weight(inputs));
   lobe.frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
   lobe.rules = inputs.rules;
   add(bsdf, lobe);
@@ -203,24 +203,23 @@ uint32_t shapes_of(LobeKind kind) {
 }
 
 void add_lobe(Bsdf &bsdf, const LobeInputs &inputs) {
-  const glm::vec3 weight = inputs.weight * glm::max(inputs.color, 0.0f);
   switch (inputs.kind) {
   case LobeKind::Lambert:
-    return add_lambert(bsdf, inputs, weight);
+    return add_lambert(bsdf, inputs);
   case LobeKind::Diffuse:
-    return add_diffuse(bsdf, inputs, weight);
+    return add_diffuse(bsdf, inputs);
   case LobeKind::Glossy:
-    return add_glossy(bsdf, inputs, weight);
+    return add_glossy(bsdf, inputs);
   case LobeKind::Glass:
     return add_glass(bsdf, inputs);
   case LobeKind::Refraction:
-    return add_refraction(bsdf, inputs, weight);
+    return add_refraction(bsdf, inputs);
   case LobeKind::Conductor:
     return add_conductor(bsdf, inputs);
   case LobeKind::Sheen:
-    return add_sheen(bsdf, inputs, weight);
+    return add_sheen(bsdf, inputs);
   case LobeKind::Translucent:
-    return add_translucent(bsdf, inputs, weight);
+    return add_translucent(bsdf, inputs);
   case LobeKind::Principled:
     return;
   default:
@@ -228,13 +227,13 @@ void add_lobe(Bsdf &bsdf, const LobeInputs &inputs) {
   }
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
   if (inputs.kind == LobeKind::Beckmann)
-    return add_coating(bsdf, inputs, frame, weight);
+    return add_coating(bsdf, inputs, frame);
   if (inputs.kind == LobeKind::Dielectric)
-    return add_smooth_glass(bsdf, inputs, frame, weight);
+    return add_smooth_glass(bsdf, inputs, frame);
   const LobeShape shape = inputs.kind == LobeKind::Mirror  ? LobeShape::Mirror
                           : inputs.kind == LobeKind::Phong ? LobeShape::Phong
                                                            : LobeShape::BlinnPhong;
-  Lobe lobe = course_lobe(shape, Component::Glossy, frame, inputs, weight);
+  Lobe lobe = course_lobe(shape, Component::Glossy, frame, inputs);
   lobe.delta = shape == LobeShape::Mirror;
   add(bsdf, lobe);
 }

@@ -9,18 +9,12 @@ namespace lancer {
 
 namespace {
 
-// Of nodes that are not stretched.
-float alpha_of(const LobeInputs &inputs) {
-  const float roughness = std::clamp(inputs.roughness, 0.0f, 1.0f);
-  return roughness * roughness;
-}
-
 std::optional<Lobe> facets_of(const LobeInputs &inputs, bool inside) {
-  const float alpha = alpha_of(inputs);
   if (inputs.kind == LobeKind::Glass)
     return glass_facets(inputs, 0, inside);
   if (inputs.anisotropy != 0.0f)
     return {};
+  const float alpha = alpha_of(inputs.roughness);
   if (inputs.kind == LobeKind::Conductor)
     return conductor_facets(inputs, 0, alpha, alpha);
   if (inputs.kind == LobeKind::Glossy && inputs.distribution != Facets::AshikhminShirley)
@@ -36,8 +30,7 @@ float index_from(bool inside, float ior) {
 }
 
 Lobe glossy_facets(const LobeInputs &inputs, uint8_t frame, float alpha_x, float alpha_y) {
-  const glm::vec3 weight = inputs.weight * glm::max(inputs.color, 0.0f);
-  Lobe lobe = make_microfacet(Scatter::Reflect, frame, weight, alpha_x, alpha_y, inputs.rules);
+  Lobe lobe = make_microfacet(Scatter::Reflect, frame, colored_weight(inputs), alpha_x, alpha_y, inputs.rules);
   lobe.beckmann = inputs.distribution == Facets::Beckmann;
   set_constant(lobe, inputs.color);
   return lobe;
@@ -54,7 +47,7 @@ Lobe conductor_facets(const LobeInputs &inputs, uint8_t frame, float alpha_x, fl
 }
 
 Lobe glass_facets(const LobeInputs &inputs, uint8_t frame, bool inside) {
-  const float alpha = alpha_of(inputs), eta = index_from(inside, inputs.ior);
+  const float alpha = alpha_of(inputs.roughness), eta = index_from(inside, inputs.ior);
   const glm::vec3 color = glm::max(inputs.color, 0.0f);
   Lobe lobe = make_microfacet(Scatter::Both, frame, inputs.weight, alpha, alpha, inputs.rules);
   lobe.beckmann = inputs.distribution == Facets::Beckmann;

@@ -43,6 +43,9 @@ struct LobeInputs {
   glm::vec3 normal{0.0f}, tangent{0.0f}; // world; 0 = the shading normal, any tangent
 };
 
+// The weight of a lobe that its colour scales.
+inline glm::vec3 colored_weight(const LobeInputs &inputs) { return inputs.weight * glm::max(inputs.color, 0.0f); }
+
 // weight, normal and tangent are those of the lobe that carries the record.
 struct PrincipledInputs {
   Rules rules = Rules::Blender45;

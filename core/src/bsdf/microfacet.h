@@ -5,6 +5,7 @@
 //   complete_microfacet(lobe, cos_o, preserving);    then: smoothness, energy, albedo
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "bsdf/bsdf.h"
@@ -17,6 +18,12 @@ struct AlbedoRows;
 // stop telling directions apart (alpha 2e-5).
 inline constexpr float kMirrorAlpha2 = 4e-10f;
 inline constexpr float kMirrorAlpha2Blender3 = 1e-7f;
+
+// From the roughness that nodes show, 0 ... 1.
+inline float alpha_of(float roughness) {
+  const float within = std::clamp(roughness, 0.0f, 1.0f);
+  return within * within;
+}
 
 // The lobe reflects all (FresnelKind::None) until one of the following is set.
 Lobe make_microfacet(Scatter scatter, uint8_t frame, const glm::vec3 &color, float alpha_x, float alpha_y, Rules rules);

@@ -31,11 +31,11 @@ glm::vec3 through_coat(const glm::vec3 &tint, float cos_o, float ior, float coat
 }
 
 Grain base_grain(const LobeInputs &lobe, const PrincipledInputs &in) {
-  return grain_of(lobe, unit(in.roughness), unit(in.anisotropic));
+  return grain_of(lobe, in.roughness, unit(in.anisotropic));
 }
 
 MicrofacetPlan plan_coat(const PrincipledInputs &in) {
-  const float alpha = unit(in.coat_roughness) * unit(in.coat_roughness);
+  const float alpha = alpha_of(in.coat_roughness);
   Lobe lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), alpha, alpha, in.rules);
   set_dielectric(lobe, std::max(in.coat_ior, 1.0f));
   // From Blender 4.5 on it keeps all its light.
@@ -49,7 +49,7 @@ MicrofacetPlan plan_metal(const PrincipledInputs &in, const Grain &grain) {
 }
 
 MicrofacetPlan plan_glass(const PrincipledInputs &in, bool inside) {
-  const float alpha = unit(in.roughness) * unit(in.roughness), ior = std::max(in.ior, 1e-5f);
+  const float alpha = alpha_of(in.roughness), ior = std::max(in.ior, 1e-5f);
   Lobe lobe = make_microfacet(Scatter::Both, 0, glm::vec3(1.0f), alpha, alpha, in.rules);
   set_schlick(lobe, unit(f0_of_ior(ior) * positive(in.specular_tint)), glm::vec3(1.0f), inside ? 1.0f / ior : ior,
               glm::vec3(1.0f), glm::sqrt(unit(positive(in.base_color))));

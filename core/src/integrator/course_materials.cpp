@@ -1,6 +1,7 @@
 #include "integrator/course_materials.h"
 
 #include "bsdf/build.h"
+#include "sampling/plain_vectors.h"
 
 #include <algorithm>
 #include <memory>
@@ -8,11 +9,6 @@
 namespace lancer {
 
 namespace {
-
-void copy(const glm::vec3 &from, float (&to)[3]) {
-  for (int i = 0; i < 3; ++i)
-    to[i] = from[i];
-}
 
 // Neither nodes nor normals of its own have a say; nothing passes straight on.
 bool is_plain(const Material &material) {

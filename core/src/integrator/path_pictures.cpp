@@ -4,6 +4,7 @@
 #include "integrator/path_kinds.h"
 #include "sampling/color.h"
 #include "scene/attribute.h"
+#include "scene/flat_picture.h"
 
 #include <bit>
 
@@ -118,7 +119,7 @@ template <uint32_t Shapes, bool Layers> uint32_t PathIntegrator<Shapes, Layers>:
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
     const ColorPicture &picture = *pictures[lane];
-    const float alpha = colors_.alpha[lane];
+    const float alpha = clamped_alpha(colors_.alpha[lane], picture.clamped);
     const glm::vec3 color = in_range(get(colors_.color, lane));
     const glm::vec3 weight = picture.covers ? in_range(glm::vec3(alpha)) : picture.weight;
     put(weight, block_.weight, lane);

@@ -1,5 +1,7 @@
 #include "lights/light_set.h"
 
+#include "sampling/plain_vectors.h"
+
 #include <algorithm>
 #include <set>
 
@@ -9,11 +11,6 @@ namespace {
 
 // As many lights with a place are chosen from as in Cycles, which costs more for each and leaves more noise.
 constexpr size_t kFew = 4;
-
-void copy(const glm::dvec3 &from, double (&to)[3]) {
-  for (int i = 0; i < 3; ++i)
-    to[i] = from[i];
-}
 
 WideLamp make_wide(const Light &light) {
   WideLamp lamp;

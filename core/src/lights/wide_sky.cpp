@@ -1,16 +1,12 @@
 #include "lights/wide_sky.h"
 
+#include "sampling/plain_vectors.h"
 #include "scene/node_site.h"
 #include "scene/world.h"
 
 namespace lancer {
 
 namespace {
-
-void copy(const glm::vec3 &from, float (&to)[3]) {
-  for (int i = 0; i < 3; ++i)
-    to[i] = from[i];
-}
 
 bool is_mapping(const Node &node) {
   return node.kind == LANCER_NODE_MAPPING && (node.option == LANCER_MAPPING_POINT || node.option == LANCER_MAPPING_VECTOR) &&

@@ -1,51 +1,42 @@
 #include "scene/color_pictures.h"
 
-#include "lancer.h"
+#include "scene/flat_picture.h"
 
 namespace lancer {
 
 namespace {
 
-bool is_alpha_of(const Node *node, int32_t picture) {
-  return node && node->kind == LANCER_NODE_ALPHA && node->inputs[0].node == picture;
-}
-
-// Whether what passes straight on is a constant minus the alpha of the picture.
-bool clears(const Program &program, const Parameter &transmittance, int32_t picture, float &whole) {
-  const Node *node = program.source(transmittance);
-  if (!node || node->kind != LANCER_NODE_MATH || node->option != LANCER_MATH_SUBTRACT || (node->flags & 1) ||
-      node->inputs[0].varies())
-    return false;
-  whole = node->inputs[0].value.x;
-  return is_alpha_of(program.source(node->inputs[1]), picture);
-}
-
 ColorPicture find(const Material &material, const std::vector<Image> &images) {
   const LobeDescription &lobe = material.lobes.front();
   const Parameter &color = lobe.principled ? lobe.principled->base_color : lobe.color;
   const Program &program = material.program;
-  const Node *node = program.source(color);
-  if (!node || material.emission.varies())
+  const FlatPicture picture = flat_picture(program, color, images);
+  if (!picture.known() || material.emission.varies())
     return {};
   ColorPicture found;
   found.covers = lobe.weight.varies();
-  if (found.covers && !is_alpha_of(program.source(lobe.weight), color.node))
-    return {};
   found.clears = material.transmittance.varies();
-  if (found.clears && !clears(program, material.transmittance, color.node, found.whole))
+  const std::optional<Remainder> rest = remainder_of(program, material.transmittance);
+  if (found.clears && !rest)
     return {};
-  const Node *place = program.source(node->inputs[0]);
-  if (node->kind != LANCER_NODE_IMAGE || node->option != LANCER_PROJECT_FLAT || node->image_count == 0 || !place ||
-      place->kind != LANCER_NODE_COORDINATE || place->option != LANCER_COORDINATE_UV)
-    return {};
-  const Image &image = images[node->image];
-  const std::optional<WideImage> wide = wide_image(image, node->flags, found.clears || found.covers);
+  if (found.covers || found.clears) {
+    // One alpha of the same picture says both.
+    const Parameter &share = found.covers ? lobe.weight : rest->share;
+    const std::optional<PictureAlpha> alpha = picture_alpha(program, share);
+    if (!alpha || alpha->picture.node != color.node || (found.clears && rest->share.node != share.node))
+      return {};
+    found.clamped = alpha->clamped;
+  }
+  if (found.clears)
+    found.whole = rest->whole;
+  const Image &image = images[picture.image];
+  const std::optional<WideImage> wide = wide_image(image, program.source(color)->flags, found.clears || found.covers);
   if (!wide)
     return {};
   found.image = &image;
   found.wide = *wide;
-  found.extension = static_cast<Extension>(node->flags & 0xf);
-  found.uv_map = place->name;
+  found.extension = picture.extension;
+  found.uv_map = picture.uv_map;
   if (!found.covers)
     found.weight = evaluate(lobe.weight, {});
   found.weighted = !lobe.principled;

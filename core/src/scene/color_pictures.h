@@ -17,6 +17,7 @@ struct ColorPicture {
   bool covers = false;   // the weight is alpha instead
   bool weighted = false; // the colour is multiplied by the weight: of NodeColors
   bool clears = false;   // whole - alpha passes straight on
+  bool clamped = false;  // alpha, to 0 ... 1
   float whole = 1.0f;
 };
 

@@ -8,36 +8,16 @@ namespace lancer {
 
 namespace {
 
-// The node that a value comes from, if it is of this kind.
-const Node *source(const Program &program, const Parameter &parameter, uint32_t kind) {
-  const Node *node = program.source(parameter);
-  return node && node->kind == kind ? node : nullptr;
-}
-
-const Node *math_source(const Program &program, const Parameter &parameter, uint32_t operation, uint32_t flags) {
-  const Node *node = source(program, parameter, LANCER_NODE_MATH);
-  return node && node->option == operation && node->flags == flags ? node : nullptr;
-}
-
 // Follows 1 - alpha back to the picture and its UV map. share: what stands for alpha.
 AlphaPicture find_alpha(const Material &material, const std::vector<Image> &images, Parameter &share) {
-  const Program &program = material.program;
-  const Node *rest = math_source(program, material.transmittance, LANCER_MATH_SUBTRACT, 0);
-  if (!rest || rest->inputs[0].varies() || rest->inputs[0].value.x != 1.0f)
+  const std::optional<Remainder> rest = remainder_of(material.program, material.transmittance);
+  if (!rest || rest->whole != 1.0f)
     return {};
-  share = rest->inputs[1];
-  const Node *clamp = math_source(program, share, LANCER_MATH_ADD, 1);
-  if (clamp && (clamp->inputs[1].varies() || clamp->inputs[1].value.x != 0.0f))
+  share = rest->share;
+  const std::optional<PictureAlpha> alpha = picture_alpha(material.program, share);
+  if (!alpha)
     return {};
-  const Node *alpha = source(program, clamp ? clamp->inputs[0] : share, LANCER_NODE_ALPHA);
-  const Node *picture = alpha ? source(program, alpha->inputs[0], LANCER_NODE_IMAGE) : nullptr;
-  if (!picture || picture->option != LANCER_PROJECT_FLAT || picture->image_count != 1 || images[picture->image].tile != 0)
-    return {};
-  const Node *place = source(program, picture->inputs[0], LANCER_NODE_COORDINATE);
-  if (!place || place->option != LANCER_COORDINATE_UV)
-    return {};
-  return {picture->image, place->name, static_cast<Extension>(picture->flags & 0xf),
-          static_cast<Interpolation>(picture->flags >> 4 & 0xf), clamp != nullptr};
+  return {flat_picture(material.program, alpha->picture, images), alpha->clamped};
 }
 
 // Whether a node looks at nothing but its inputs, the triangle and the place within it.
@@ -103,7 +83,7 @@ float alpha_at(const AlphaPicture &picture, const std::vector<Image> &images, co
                const glm::dvec2 &bary) {
   const glm::vec2 uv = uv_at(mesh, picture.uv_map, triangle, bary);
   const float alpha = lookup_alpha(images[picture.image], uv, picture.extension, picture.interpolation);
-  return picture.clamped ? glm::clamp(alpha, 0.0f, 1.0f) : alpha;
+  return clamped_alpha(alpha, picture.clamped);
 }
 
 } // namespace lancer

@@ -1,19 +1,14 @@
 // Surfaces that pictures cut out, as leaves and fences are made: what passes is known without all that shading needs.
 #pragma once
 
+#include "scene/flat_picture.h"
 #include "scene/material.h"
 
 namespace lancer {
 
-// The alpha of one picture that lies on a UV map.
-struct AlphaPicture {
-  uint32_t image = kNone;
-  uint32_t uv_map = 0; // number of the name
-  Extension extension = Extension::Repeat;
-  Interpolation interpolation = Interpolation::Linear;
+// The alpha of one picture.
+struct AlphaPicture : FlatPicture {
   bool clamped = false; // to 0 ... 1
-
-  bool known() const { return image != kNone; }
 };
 
 struct Cutout {

@@ -1,5 +1,6 @@
 #include "scene/image.h"
 
+#include "sampling/plain_vectors.h"
 #include "scene/wide_image.h"
 
 #include <algorithm>
@@ -255,7 +256,7 @@ std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alp
   // Kernels have the curve up to 1: that of bytes, also divided by an alpha that they were multiplied by here.
   if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || image.tile != 0 ||
       (extension != Extension::Repeat && extension != Extension::Extend) || (curve && (!bytes || beyond)) ||
-      image.bytes() >= size_t(1) << 31 || std::max(image.width, image.height) > 1u << 20)
+      image.bytes() >= size_t(1) << 31)
     return {};
   WideImage wide;
   wide.texels = image.texels.get();
@@ -269,8 +270,7 @@ std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alp
   wide.alpha = !alpha && !divided ? 0 : image.channels == 4 && image.alpha != AlphaMode::None ? 2 : 1;
   wide.has_matrix = image.has_matrix;
   for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row)
-      wide.matrix[column][row] = image.matrix[column][row];
+    copy(image.matrix[column], wide.matrix[column]);
   return wide;
 }
 

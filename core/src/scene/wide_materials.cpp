@@ -5,15 +5,11 @@
 #include "bsdf/microfacet_fresnel.h"
 #include "bsdf/principled.h"
 #include "lancer.h"
+#include "sampling/plain_vectors.h"
 
 namespace lancer {
 
 namespace {
-
-void copy(const glm::vec3 &from, float (&to)[3]) {
-  for (int i = 0; i < 3; ++i)
-    to[i] = from[i];
-}
 
 WideLobe *next(WideMaterial &material) {
   return material.count < uint32_t(kWideLobes) ? &material.lobes[material.count++] : nullptr;
@@ -73,7 +69,7 @@ bool add_principled(WideMaterial &material, const LobeInputs &inputs, const Prin
   if (!layers || in.rules == Rules::Blender3 || inputs.normal != glm::vec3(0.0f) || in.coat_normal != glm::vec3(0.0f) ||
       in.sheen > kLeastLayer || in.emission != glm::vec3(0.0f) || in.diffuse_roughness >= kLambertRoughness)
     return false;
-  if (grain_of(inputs, unit(in.roughness), unit(in.anisotropic)).stretched)
+  if (grain_of(inputs, in.roughness, unit(in.anisotropic)).stretched)
     return false;
   const float metallic = unit(in.metallic), transmission = unit(in.transmission);
   copy(inputs.weight, material.weight);
