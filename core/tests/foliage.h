@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nodes_lab.h"
+#include "squares.h"
 #include "tiny_scene.h"
 
 #include "scene/fill.h"
@@ -82,32 +83,14 @@ inline std::shared_ptr<const Scene> foliage(Writing writing, AcceleratorKind kin
   std::mt19937 random(5);
   const auto number = [&](double low, double high) { return low + (high - low) * double(random() >> 8) * 0x1p-24; };
   // Leaves, most of them level so that many lie behind each other; every seventh is solid.
-  std::vector<float> positions, uvs;
-  std::vector<uint32_t> triangles;
-  std::vector<uint16_t> slots;
+  Squares leaves;
   for (uint32_t i = 0; i < 300; ++i) {
     const glm::dvec3 middle(number(-2, 2), number(-2, 2), number(-1, 3));
     const glm::dvec3 across(number(0.2, 0.8), number(-0.3, 0.3), number(-0.2, 0.2)),
         along(number(-0.3, 0.3), number(0.2, 0.8), number(-0.2, 0.2));
-    for (const auto &[u, v] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
-      for (int axis = 0; axis < 3; ++axis)
-        positions.push_back(float((middle + (2.0 * u - 1.0) * across + (2.0 * v - 1.0) * along)[axis]));
-    for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) {
-      triangles.push_back(4 * i + corner);
-      uvs.push_back(corner == 1 || corner == 2 ? 1.0f : 0.0f);
-      uvs.push_back(corner >= 2 ? 1.0f : 0.0f);
-    }
-    slots.insert(slots.end(), 2, i % 7 == 0 ? 1 : 0);
+    leaves.add(middle, across, along, 1.0f, i % 7 == 0 ? 1 : 0);
   }
-  lancer_mesh mesh = {};
-  mesh.name = "leaves";
-  mesh.positions = positions.data();
-  mesh.triangles = triangles.data();
-  mesh.uvs = uvs.data();
-  mesh.material_slots = slots.data();
-  mesh.vertex_count = uint32_t(positions.size() / 3);
-  mesh.triangle_count = uint32_t(triangles.size() / 3);
-  add_mesh(description, mesh);
+  add_mesh(description, leaves.mesh());
   // The leaves twice, panes of all kinds, a ball that is cut out, and a floor.
   struct Placed {
     uint32_t kind, first_slot, slot_count;
