@@ -80,7 +80,7 @@ glm::vec3 from_hit_to_hit(const Scene &scene, Shader &shader, Question question,
 }
 
 TEST(ShadowLayers, OneTraversalIsTheChainOfClosestHits) {
-  const auto scene = foliage(Writing::Unknown, AcceleratorKind::BruteForce);
+  const auto scene = foliage(Writing::Unknown, {.accelerator = AcceleratorKind::BruteForce});
   const Camera camera = camera_above(*scene, 1);
   for (const uint32_t deepest : {0u, 1u, 4u, 64u}) {
     const std::vector<glm::vec3> arrived = one_traversal(*scene, deepest);
@@ -108,8 +108,9 @@ TEST(ShadowLayers, OneTraversalIsTheChainOfClosestHits) {
 }
 
 TEST(ShadowLayers, EveryAcceleratorGivesTheSameBits) {
-  const std::vector<glm::vec3> expected = one_traversal(*foliage(Writing::Plain, AcceleratorKind::BruteForce), 8);
-  EXPECT_EQ(one_traversal(*foliage(Writing::Plain, AcceleratorKind::KdTree), 8), expected);
+  const std::vector<glm::vec3> expected =
+      one_traversal(*foliage(Writing::Plain, {.accelerator = AcceleratorKind::BruteForce}), 8);
+  EXPECT_EQ(one_traversal(*foliage(Writing::Plain, {.accelerator = AcceleratorKind::KdTree}), 8), expected);
   const char *before = std::getenv("LANCER_ISA");
   const std::string kept = before ? before : "";
   for (const char *instruction_set : {"sse4", "avx2", "avx512"}) {
