@@ -47,29 +47,6 @@ std::vector<Hit> all_hits(const Accelerator &accelerator, Ray ray) {
   return hits;
 }
 
-// Meshes in the world's own tree, instances, exact surfaces with and without a box.
-Geometry everything(Random &random) {
-  Geometry geometry;
-  geometry.meshes.push_back(bumpy_sphere(1.0, 24, 16, 0.2));
-  geometry.meshes.push_back(triangle_soup(random, 300, 1.0));
-  geometry.meshes.push_back(bumpy_sphere(1.0, 9, 6, 0.2));
-  const auto add = [&](ShapeKind kind, double scale, uint32_t mesh) {
-    geometry.instances.push_back(placed(kind, glm::dmat3(scale), random.in_box(6.0), mesh));
-  };
-  for (int i = 0; i < 12; ++i) {
-    add(ShapeKind::Mesh, 1.5, 0);
-    add(ShapeKind::Sphere, 1.0, 0);
-    add(ShapeKind::Cone, 0.7, 0);
-    add(ShapeKind::Cylinder, 0.7, 0);
-  }
-  add(ShapeKind::Mesh, 6.0, 1);
-  add(ShapeKind::Mesh, 3.0, 2);
-  geometry.instances.back().hidden_from = 1;
-  add(ShapeKind::Plane, 1.0, 0);
-  add(ShapeKind::Plane, 2.0, 0);
-  return geometry;
-}
-
 // Rays from everywhere, and the neighbours of a small picture.
 std::vector<Ray> some_rays(Random &random, const Geometry &geometry) {
   std::vector<Ray> rays;
@@ -94,7 +71,7 @@ std::vector<Ray> some_rays(Random &random, const Geometry &geometry) {
 
 TEST(AcceleratorFilter, GoesOnPastWhatDoesNotCount) {
   Random random(21);
-  const Geometry geometry = everything(random);
+  const Geometry geometry = everything(random, 24, 300, 6.0);
   const std::vector<Ray> rays = some_rays(random, geometry);
   const std::vector<Contestant> all = all_accelerators(geometry);
   std::vector<std::vector<Hit>> met;

@@ -9,28 +9,6 @@
 namespace lancer::test {
 namespace {
 
-// Meshes in the world's own tree, instances, exact surfaces with and without a box, and a mesh hidden from some rays.
-Geometry everything(Random &random) {
-  Geometry geometry;
-  geometry.meshes.push_back(bumpy_sphere(1.0, 40, 30, 0.2));
-  geometry.meshes.push_back(triangle_soup(random, 3000, 1.0));
-  geometry.meshes.push_back(bumpy_sphere(1.0, 9, 6, 0.2));
-  const auto add = [&](ShapeKind kind, double scale, uint32_t mesh) {
-    geometry.instances.push_back(placed(kind, glm::dmat3(scale), random.in_box(8.0), mesh));
-  };
-  for (int i = 0; i < 12; ++i) {
-    add(ShapeKind::Mesh, 1.0, 0);
-    add(ShapeKind::Sphere, 1.0, 0);
-    add(ShapeKind::Cone, 0.7, 0);
-  }
-  add(ShapeKind::Mesh, 6.0, 1);
-  add(ShapeKind::Mesh, 3.0, 2);
-  geometry.instances.back().hidden_from = 1;
-  add(ShapeKind::Plane, 1.0, 0);
-  add(ShapeKind::Plane, 2.0, 0);
-  return geometry;
-}
-
 std::vector<Ray> some_rays(Random &random, size_t count) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < count; ++i) {
@@ -49,7 +27,7 @@ const char *const kInstructionSets[] = {"sse4", "avx2", "avx512"};
 
 TEST(AcceleratorInterleaved, AnyBatchSizeAndOrderGiveTheSame) {
   Random random(11);
-  const Geometry geometry = everything(random);
+  const Geometry geometry = everything(random, 40, 3000, 8.0);
   for (const char *instruction_set : kInstructionSets) {
     const auto bvh = build_bvh_for(instruction_set, geometry, 1);
     const std::vector<Ray> rays = some_rays(random, 400);
@@ -128,7 +106,7 @@ std::vector<Ray> camera_rays(Random &random, const glm::dvec3 &eye, const glm::d
 // Neighbours that go down the tree together: through instances mirrored, turned and flattened, too.
 TEST(AcceleratorInterleaved, NeighboursGiveTheSameAsEachAlone) {
   Random random(12);
-  Geometry geometry = everything(random);
+  Geometry geometry = everything(random, 40, 3000, 8.0);
   for (int i = 0; i < 60; ++i) {
     const glm::dmat3 turned(random.direction(), 0.7 * random.direction(), -random.direction());
     geometry.instances.push_back(placed(ShapeKind::Mesh, turned, random.in_box(8.0), i % 3 == 0 ? 2 : 0));

@@ -81,6 +81,30 @@ inline Mesh triangle_soup(Random &random, uint32_t count, double half) {
   return mesh;
 }
 
+// Meshes in the world's own tree, instances, exact surfaces with and without a box, and a mesh hidden from some rays. around:
+// faces around the finer mesh; soup: triangles of the coarse one; half: of the cube that all of it lies in.
+inline Geometry everything(Random &random, uint32_t around, uint32_t soup, double half) {
+  Geometry geometry;
+  geometry.meshes.push_back(bumpy_sphere(1.0, around, 3 * around / 4, 0.2));
+  geometry.meshes.push_back(triangle_soup(random, soup, 1.0));
+  geometry.meshes.push_back(bumpy_sphere(1.0, 9, 6, 0.2));
+  const auto add = [&](ShapeKind kind, double scale, uint32_t mesh) {
+    geometry.instances.push_back(placed(kind, glm::dmat3(scale), random.in_box(half), mesh));
+  };
+  for (int i = 0; i < 12; ++i) {
+    add(ShapeKind::Mesh, 1.5, 0);
+    add(ShapeKind::Sphere, 1.0, 0);
+    add(ShapeKind::Cone, 0.7, 0);
+    add(ShapeKind::Cylinder, 0.7, 0);
+  }
+  add(ShapeKind::Mesh, 6.0, 1);
+  add(ShapeKind::Mesh, 3.0, 2);
+  geometry.instances.back().hidden_from = 1;
+  add(ShapeKind::Plane, 1.0, 0);
+  add(ShapeKind::Plane, 2.0, 0);
+  return geometry;
+}
+
 inline Ray make_ray(const glm::dvec3 &o, const glm::dvec3 &d) {
   Ray ray;
   ray.o = o;

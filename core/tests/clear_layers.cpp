@@ -30,25 +30,10 @@ std::shared_ptr<const Scene> stack(Writing writing, uint32_t count, bool bump) {
   material.node_count = uint32_t(nodes.size());
   add_material(description, material);
   // All of a square shows a corner of the picture.
-  std::vector<float> positions, uvs;
-  std::vector<uint32_t> triangles;
-  for (uint32_t i = 0; i < count; ++i) {
-    for (const auto &[x, y] : {std::pair(-1.0f, -1.0f), {1.0f, -1.0f}, {1.0f, 1.0f}, {-1.0f, 1.0f}})
-      positions.insert(positions.end(), {3.0f * x, 3.0f * y, 3.0f - 4.0f * float(i) / float(count)});
-    for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) {
-      triangles.push_back(4 * i + corner);
-      uvs.push_back(corner == 1 || corner == 2 ? 0.2f : 0.0f);
-      uvs.push_back(corner >= 2 ? 0.2f : 0.0f);
-    }
-  }
-  lancer_mesh mesh = {};
-  mesh.name = "squares";
-  mesh.positions = positions.data();
-  mesh.triangles = triangles.data();
-  mesh.uvs = uvs.data();
-  mesh.vertex_count = uint32_t(positions.size() / 3);
-  mesh.triangle_count = uint32_t(triangles.size() / 3);
-  add_mesh(description, mesh);
+  Squares squares;
+  for (uint32_t i = 0; i < count; ++i)
+    squares.add({0.0, 0.0, 3.0f - 4.0f * float(i) / float(count)}, {3.0, 0.0, 0.0}, {0.0, 3.0, 0.0}, 0.2f);
+  add_mesh(description, squares.mesh());
   lancer_instance instance = {};
   place(instance.matrix, 0, 0, 0, 1);
   instance.kind = LANCER_MESH;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nodes_lab.h"
+#include "squares.h"
 #include "tiny_scene.h"
 
 #include "scene/fill.h"
@@ -25,15 +26,9 @@ inline void add_leaf_picture(Description &description) {
       const double r = std::hypot(double(x) - 7.5, double(y) - 7.5);
       texels.insert(texels.end(), {uint8_t(40 + 3 * x), uint8_t(150 - 2 * y), 50, uint8_t(r < 4 ? 255 : r < 6 ? 128 : 0)});
     }
-  lancer_image image = {};
-  image.name = "leaf";
-  image.texels = texels.data();
-  image.width = image.height = kLeafSide;
-  image.channels = 4;
-  image.kind = LANCER_TEXEL_U8;
+  lancer_image image = image_of(texels, kLeafSide, kLeafSide);
   image.transfer = LANCER_TRANSFER_SRGB;
   image.alpha = LANCER_ALPHA_STRAIGHT;
-  image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
   add_image(description, image);
 }
 
@@ -52,7 +47,7 @@ inline std::vector<lancer_node> leaf_nodes(Writing writing) {
                {constant(1.0f), result_of(writing == Writing::Mixed ? 4 : 3), constant(0.0f)})};
 }
 
-// Materials 0: leaf, 1: half a pane, 2: solid. shines: what the leaf emits beside its alpha.
+// Materials 0: leaf, 1: half a pane, 2: solid. shines: what the leaf emits beside its alpha; flags: its.
 inline void add_foliage_materials(Description &description, Writing writing, float shines = 0.0f, uint32_t flags = 0) {
   const std::vector<lancer_node> nodes = leaf_nodes(writing);
   lancer_lobe matt = lobe(LANCER_LAMBERT, 1.0f);
@@ -73,43 +68,38 @@ inline void add_foliage_materials(Description &description, Writing writing, flo
   lancer_lobe grey = lobe(LANCER_LAMBERT, 0.5f);
   solid.lobes = &grey;
   solid.lobe_count = 1;
-  for (const lancer_material *material : {&leaf, &pane, &solid})
+  uint32_t index = 0;
+  for (lancer_material *material : {&leaf, &pane, &solid}) {
+    material->material_index = ++index;
     add_material(description, *material);
+  }
 }
 
-inline std::shared_ptr<const Scene> foliage(Writing writing, AcceleratorKind kind = AcceleratorKind::Bvh, float shines = 0.0f) {
+// What else there is to it.
+struct Planting {
+  AcceleratorKind accelerator = AcceleratorKind::Bvh;
+  uint32_t leaf_flags = 0; // of the leaves' material
+  bool lamps = false;      // three of them, among the leaves and above
+  bool holdout = false;    // the first of the two groups of leaves is cut out of the picture
+  bool hidden = false;     // the first group casts no shadow, the second and the floor are hidden from the camera
+  bool mirrored = false;   // the second group is
+};
+
+inline std::shared_ptr<const Scene> foliage(Writing writing, const Planting &planting = {}) {
   Description description;
   add_leaf_picture(description);
-  add_foliage_materials(description, writing, shines);
+  add_foliage_materials(description, writing, 0.0f, planting.leaf_flags);
   std::mt19937 random(5);
   const auto number = [&](double low, double high) { return low + (high - low) * double(random() >> 8) * 0x1p-24; };
   // Leaves, most of them level so that many lie behind each other; every seventh is solid.
-  std::vector<float> positions, uvs;
-  std::vector<uint32_t> triangles;
-  std::vector<uint16_t> slots;
+  Squares leaves;
   for (uint32_t i = 0; i < 300; ++i) {
     const glm::dvec3 middle(number(-2, 2), number(-2, 2), number(-1, 3));
     const glm::dvec3 across(number(0.2, 0.8), number(-0.3, 0.3), number(-0.2, 0.2)),
         along(number(-0.3, 0.3), number(0.2, 0.8), number(-0.2, 0.2));
-    for (const auto &[u, v] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
-      for (int axis = 0; axis < 3; ++axis)
-        positions.push_back(float((middle + (2.0 * u - 1.0) * across + (2.0 * v - 1.0) * along)[axis]));
-    for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) {
-      triangles.push_back(4 * i + corner);
-      uvs.push_back(corner == 1 || corner == 2 ? 1.0f : 0.0f);
-      uvs.push_back(corner >= 2 ? 1.0f : 0.0f);
-    }
-    slots.insert(slots.end(), 2, i % 7 == 0 ? 1 : 0);
+    leaves.add(middle, across, along, 1.0f, i % 7 == 0 ? 1 : 0);
   }
-  lancer_mesh mesh = {};
-  mesh.name = "leaves";
-  mesh.positions = positions.data();
-  mesh.triangles = triangles.data();
-  mesh.uvs = uvs.data();
-  mesh.material_slots = slots.data();
-  mesh.vertex_count = uint32_t(positions.size() / 3);
-  mesh.triangle_count = uint32_t(triangles.size() / 3);
-  add_mesh(description, mesh);
+  add_mesh(description, leaves.mesh());
   // The leaves twice, panes of all kinds, a ball that is cut out, and a floor.
   struct Placed {
     uint32_t kind, first_slot, slot_count;
@@ -127,10 +117,26 @@ inline std::shared_ptr<const Scene> foliage(Writing writing, AcceleratorKind kin
     instance.kind = thing.kind;
     instance.first_slot = thing.first_slot;
     instance.slot_count = thing.slot_count;
+    instance.object_index = uint32_t(instances.size());
   }
+  lancer_instance &first = instances[0], &second = instances[1];
+  if (planting.holdout)
+    first.flags |= LANCER_INSTANCE_HOLDOUT;
+  if (planting.hidden) {
+    first.hidden_from = LANCER_RAY_SHADOW;
+    second.hidden_from = instances.back().hidden_from = LANCER_RAY_CAMERA;
+  }
+  if (planting.mirrored)
+    second.matrix[0] = -second.matrix[0];
   add_instances(description, uint32_t(instances.size()), instances.data(), 4, all_slots, nullptr, 0);
   description.world.radiance.value = glm::vec3(0.8f, 0.9f, 1.0f);
-  return commit(std::move(description), kind, {});
+  for (int i = 0; i < 3 && planting.lamps; ++i) {
+    lancer_light lamp = point_light();
+    place(lamp.matrix, -1.0 + i, 0.5 - 0.4 * i, 0.3 + 1.8 * i);
+    std::fill(lamp.emission, lamp.emission + 3, 100.0f);
+    add_light(description, lamp);
+  }
+  return commit(std::move(description), planting.accelerator, {});
 }
 
 // Straight down on all of it.

@@ -10,16 +10,9 @@ namespace {
 template <class Texel>
 Image picture(uint32_t width, uint32_t height, uint32_t channels, const std::vector<Texel> &texels,
               uint32_t transfer = LANCER_TRANSFER_LINEAR, uint32_t alpha = LANCER_ALPHA_STRAIGHT) {
-  lancer_image image = {};
-  image.name = "picture";
-  image.texels = texels.data();
-  image.width = width;
-  image.height = height;
-  image.channels = channels;
-  image.kind = sizeof(Texel) == 1 ? LANCER_TEXEL_U8 : sizeof(Texel) == 2 ? LANCER_TEXEL_U16 : LANCER_TEXEL_FLOAT;
+  lancer_image image = image_of(texels, width, height, channels);
   image.transfer = transfer;
   image.alpha = alpha;
-  image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
   Description description;
   add_image(description, image);
   return std::move(description.images[0]);
@@ -227,14 +220,8 @@ TEST(ImagesLookup, RefusesWhatCannotBeRead) {
 TEST(ImagesLookup, TexelsThatAreNoNumberAreCleared) {
   Description description;
   const std::vector<float> texels = {1, NAN, 3, 1, 1, 2, 3, 1};
-  lancer_image image = {};
+  lancer_image image = image_of(texels, 2, 1);
   image.name = "holes";
-  image.texels = texels.data();
-  image.width = 2;
-  image.height = 1;
-  image.channels = 4;
-  image.kind = LANCER_TEXEL_FLOAT;
-  image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
   add_image(description, image);
   const Image &kept = description.images[0];
   EXPECT_EQ(lookup(kept, {0.25f, 0.5f}, Extension::Repeat, Interpolation::Closest, false), glm::vec4(0.0f));

@@ -103,10 +103,12 @@ TEST(Lights, ManyAreMetAsOneByOne) {
     set.many().along(ways, uint32_t(count), [&](uint32_t lane, uint32_t number) {
       EXPECT_FALSE(candidates[lane * 300 + number]);
       candidates[lane * 300 + number] = true;
-      // What is told is near the way. Areas reach sqrt(1.25) radii from their middle, the corners of that ball's box sqrt(3)
-      // times as far, below 2; float loses less than 1 within the scene.
+      // What is told is near the way: a box around a lamp reaches sqrt(3) radii at its corners. It is padded by 2^-22 of
+      // 1024 and its coordinates, up to 1200 together, and for each way by 2^-21 of its half, up to 20, its distance along an
+      // axis, up to 900, and the way's coordinates, up to 1500 together; the roundings that this is for move a way as far
+      // again at most. sqrt(3) times 2224 * 2^-22 + 2 * 2420 * 2^-21 is below 2^-7.
       const glm::dvec3 to = lights[number].position - o[lane];
-      const double reach = 2.0 * lights[number].radius + 1.0;
+      const double reach = std::sqrt(3.0) * lights[number].radius + 0x1p-7;
       const bool near = glm::length(to - glm::dot(to, wi[lane]) * wi[lane]) < reach;
       EXPECT_TRUE(near || glm::length(o[lane]) > 1000.0);
     });

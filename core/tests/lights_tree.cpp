@@ -2,7 +2,6 @@
 // left out.
 #include "lights/few_lights.h"
 #include "lights/light_tree.h"
-#include "picture_lab.h"
 #include "statistics.h"
 
 #include <gtest/gtest.h>
@@ -289,59 +288,6 @@ TYPED_TEST(LightTrees, StandsWhatIsDegenerate) {
   for (const bool transmits : {false, true})
     EXPECT_GT(tree_of<TypeParam>(lights).probability(LightQuery(glm::dvec3(0.0), {0, 0, 1}, transmits), 3), 0.01);
   EXPECT_EQ(tree_of<TypeParam>({}).choose(any_query(random), 0.5).probability, 0.0);
-}
-
-// Level of a floor of albedo 0.8 at its middle under point lamps of unequal power.
-struct ManyLamps {
-  std::vector<lancer_light> lights;
-  double level = 0.0;
-
-  explicit ManyLamps(double scale) {
-    Random random(9);
-    for (int i = 0; i < 200; ++i) {
-      const glm::dvec3 p(20.0 * random.uniform() - 10.0, 20.0 * random.uniform() - 10.0, 0.1 + 3.0 * random.uniform());
-      const float intensity = std::pow(10.0f, 3.0f * random.uniform() - 1.0f);
-      lancer_light light = lancer_test::point_light();
-      lancer_test::place(light.matrix, scale * p.x, scale * p.y, scale * p.z);
-      light.radius = 0.0f;
-      std::fill(light.emission, light.emission + 3, float(scale * scale) * intensity);
-      lights.push_back(light);
-      level += 0.8 * glm::one_over_pi<double>() * double(intensity) * p.z / std::pow(glm::length(p), 3.0);
-    }
-  }
-
-  std::vector<float> picture(double scale) const {
-    lancer_test::Studio studio;
-    studio.settings.samples = 16;
-    studio.look({0, 0, 50 * scale}, {0, 0, 0}, 32, 1e-4 * scale);
-    studio.camera.clip_end = 100 * scale;
-    studio.place(LANCER_SPHERE, studio.add({lancer_test::lobe(LANCER_LAMBERT, 0.8f)}),
-                 lancer_test::moved(0, 0, -0.25 * scale) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.25 * scale)));
-    for (const lancer_light &light : lights)
-      studio.add(light);
-    studio.render();
-    return studio.read(LANCER_PASS_COMBINED, 4);
-  }
-};
-
-TEST(LightTree, LightsAsTheSumOverAllLamps) {
-  const ManyLamps lamps(1.0);
-  const std::vector<float> pixels = lamps.picture(1.0);
-  double sum = 0.0, squares = 0.0;
-  const double count = double(pixels.size() / 4);
-  for (size_t i = 0; i < pixels.size(); i += 4) {
-    sum += double(pixels[i]);
-    squares += double(pixels[i]) * double(pixels[i]);
-  }
-  const double mean = sum / count, error = std::sqrt((squares / count - mean * mean) / (count - 1.0));
-  // Two-sided at the suite's level; the view is 1e-4 wide, over which the level changes by less than that share.
-  EXPECT_GT(testing::normal_p_value((mean - lamps.level) / (error + 1e-4 * lamps.level)), testing::kSignificance);
-}
-
-TEST(LightTree, ChoosesAlikeAtEveryScale) {
-  const std::vector<float> pixels = ManyLamps(1.0).picture(1.0);
-  for (const double scale : {0x1p-20, 0x1p20})
-    EXPECT_EQ(ManyLamps(scale).picture(scale), pixels);
 }
 
 } // namespace

@@ -127,21 +127,28 @@ public:
   }
 };
 
+// Texels from the lowest row up, linear, their colours multiplied by alpha. As long as they are neither changed nor moved.
+template <class Texel>
+lancer_image image_of(const std::vector<Texel> &texels, uint32_t width, uint32_t height, uint32_t channels = 4) {
+  lancer_image image = {};
+  image.name = "picture";
+  image.texels = texels.data();
+  image.width = width;
+  image.height = height;
+  image.channels = channels;
+  image.kind = sizeof(Texel) == 1 ? LANCER_TEXEL_U8 : sizeof(Texel) == 2 ? LANCER_TEXEL_U16 : LANCER_TEXEL_FLOAT;
+  image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
+  return image;
+}
+
 // A picture of floats whose colour is where the texel's middle is: u, v, 0, 1.
 inline void add_gradient(Description &description, uint32_t width, uint32_t height, uint32_t tile = 0) {
   std::vector<float> texels;
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x)
       texels.insert(texels.end(), {(float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height), float(tile), 1.0f});
-  lancer_image image = {};
-  image.name = "gradient";
-  image.texels = texels.data();
-  image.width = width;
-  image.height = height;
-  image.channels = 4;
-  image.kind = LANCER_TEXEL_FLOAT;
+  lancer_image image = image_of(texels, width, height);
   image.tile = tile;
-  image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
   add_image(description, image);
 }
 

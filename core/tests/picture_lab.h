@@ -151,6 +151,13 @@ private:
   std::vector<uint32_t> slots_;
 };
 
+// As the newest Blender has it.
+inline lancer_lobe newest(uint32_t kind, float color, float roughness = 0.3f) {
+  lancer_lobe result = lobe(kind, color, roughness);
+  result.rules = LANCER_RULES_45;
+  return result;
+}
+
 // Lets so much light pass straight on, and scatters none.
 inline lancer_material pane(float transmittance) {
   lancer_material material = black();

@@ -3,6 +3,7 @@
 
 #include "picture_lab.h"
 
+#include <gtest/gtest.h>
 #include <random>
 
 namespace lancer_test {
@@ -52,5 +53,58 @@ inline float share(Random &random) {
   return kind == 0 ? 0.0f : kind == 1 ? 1.0f : number(random);
 }
 inline lancer_parameter color(Random &random) { return constant(number(random), number(random), share(random)); }
+
+// A floor and twelve balls over it: one in so many has the second mesh, a few are exact.
+template <class Material> void place_balls(Studio &studio, Random &random, uint32_t one_in, Material &&material) {
+  studio.place(LANCER_PLANE, material(), moved(0, 0, -1));
+  for (int i = 0; i < 12; ++i) {
+    const uint32_t kind = random() % 4 ? LANCER_MESH : LANCER_SPHERE;
+    lancer_instance &thing =
+        studio.place(kind, material(), moved(2.2 * (i % 4) - 3.3, 2.2 * (i / 4) - 2.2, number(random, -0.5f, 0.5f)));
+    thing.mesh = random() % one_in == 0;
+  }
+}
+
+// picture(seed, passes) is the same side by side, which is for the picture alone, and one by one; and something is to be seen:
+// its values are `least` in the mean.
+template <class Picture> void expect_the_same_one_by_one(uint32_t seeds, double least, Picture &&picture) {
+  constexpr uint32_t alone = 1u << LANCER_PASS_COMBINED;
+  for (uint32_t seed = 1; seed <= seeds; ++seed) {
+    const std::vector<float> lanes = picture(seed, alone);
+    EXPECT_EQ(lanes, picture(seed, alone | 1u << LANCER_PASS_UV)) << "seed " << seed;
+    double sum = 0.0;
+    for (size_t i = 0; i < lanes.size(); ++i)
+      sum += i % 4 == 3 ? 0.0 : double(lanes[i]);
+    EXPECT_GT(sum, double(lanes.size()) * least) << "seed " << seed;
+  }
+}
+
+// All layers that kernels know, and some that they do not.
+inline lancer_principled principled(Random &random) {
+  lancer_principled p = {};
+  p.rules = random() % 2 ? LANCER_RULES_4 : LANCER_RULES_45;
+  p.distribution = random() % 2 ? LANCER_GGX : LANCER_MULTI_GGX;
+  p.option = 1;
+  p.base_color = color(random);
+  p.metallic = constant(share(random));
+  // Also smooth, and so nearly smooth that only what is reflected counts as rough.
+  p.roughness = constant(random() % 4 ? number(random, 0.02f, 1.0f) : random() % 2 ? 0.0f : 0.007f);
+  // Also what bends nothing, or so little that rough glass sends it straight on, and what bends outwards.
+  const float indices[] = {1.0f, 1.00005f, 1.001f, 0.7f};
+  p.ior = constant(random() % 2 ? number(random, 1.0f, 2.5f) : indices[random() % 4]);
+  p.diffuse_roughness = constant(random() % 4 ? 0.0f : 0.5f);
+  p.specular = constant(number(random));
+  p.specular_tint = random() % 2 ? constant(1.0f) : color(random);
+  p.transmission = constant(random() % 2 ? 0.0f : share(random));
+  p.coat = constant(random() % 2 ? 0.0f : share(random));
+  p.coat_roughness = constant(random() % 3 ? number(random, 0.0f, 0.5f) : 0.0f);
+  p.coat_ior = constant(number(random, 1.0f, 2.0f));
+  p.coat_tint = constant(1.0f);
+  p.sheen = constant(random() % 8 ? 0.0f : 0.5f);
+  p.sheen_roughness = constant(0.5f);
+  p.sheen_tint = constant(1.0f);
+  p.transmission_roughness = p.anisotropic = p.anisotropic_rotation = p.coat_normal = p.emission = constant(0.0f);
+  return p;
+}
 
 } // namespace lancer_test

@@ -3,6 +3,7 @@
 
 #include "integrator/shadow.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace lancer_test {
@@ -63,7 +64,7 @@ glm::vec3 from_hit_to_hit(const Scene &scene, Shader &shader, Question question,
       return light;
     const Surface surface = surface_at(scene.geometry, scene.slots, ray, hit);
     const Material &material = scene.materials[surface.material];
-    if (question.passed + layers >= deepest || !material.transmits())
+    if (question.passed + layers >= deepest || !material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
       return glm::vec3(0.0f);
     light *=
         material.transmittance.varies()
@@ -79,37 +80,64 @@ glm::vec3 from_hit_to_hit(const Scene &scene, Shader &shader, Question question,
   }
 }
 
+// How many of the rays end behind layers, unhindered or dimmed, and the most layers that one of them passes.
+struct Arrivals {
+  uint32_t lit = 0, dimmed = 0, most = 0;
+};
+
+Arrivals expect_the_chain(const Scene &scene, uint32_t deepest) {
+  const Camera camera = camera_above(scene, 1);
+  const std::vector<glm::vec3> arrived = one_traversal(scene, deepest);
+  Shader shader(scene, &camera);
+  const std::vector<Question> asked = questions(scene);
+  Arrivals arrivals;
+  for (uint32_t i = 0; i < kRays; ++i) {
+    uint32_t layers = 0;
+    const glm::vec3 expected = from_hit_to_hit(scene, shader, asked[i], deepest, layers);
+    arrivals.dimmed += expected != glm::vec3(0.0f) && expected != glm::vec3(1.0f);
+    arrivals.lit += expected != glm::vec3(0.0f);
+    arrivals.most = std::max(arrivals.most, layers);
+    // A hit's weights differ by roundings of double, so texture coordinates by one of float, 2^-24 of the picture's 16
+    // texels; from one texel to the next alpha changes by 1 at most, along two axes: 2^-19 a layer. Products add one more.
+    const float bound = float(layers + 1) * (0x1p-19f + 0x1p-24f);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(arrived[i][k], expected[k], bound) << "ray " << i << ", at most " << deepest << " layers";
+  }
+  return arrivals;
+}
+
 TEST(ShadowLayers, OneTraversalIsTheChainOfClosestHits) {
-  const auto scene = foliage(Writing::Unknown, AcceleratorKind::BruteForce);
-  const Camera camera = camera_above(*scene, 1);
+  const auto scene = foliage(Writing::Unknown, {.accelerator = AcceleratorKind::BruteForce});
   for (const uint32_t deepest : {0u, 1u, 4u, 64u}) {
-    const std::vector<glm::vec3> arrived = one_traversal(*scene, deepest);
-    Shader shader(*scene, &camera);
-    const std::vector<Question> asked = questions(*scene);
-    uint32_t some = 0, most = 0, lit = 0;
-    for (uint32_t i = 0; i < kRays; ++i) {
-      uint32_t layers = 0;
-      const glm::vec3 expected = from_hit_to_hit(*scene, shader, asked[i], deepest, layers);
-      some += expected != glm::vec3(0.0f) && expected != glm::vec3(1.0f);
-      lit += expected != glm::vec3(0.0f);
-      most = std::max(most, layers);
-      // A hit's weights differ by roundings of double, so texture coordinates by one of float, 2^-24 of the picture's 16
-      // texels; from one texel to the next alpha changes by 1 at most, along two axes: 2^-19 a layer. Products add one more.
-      const float bound = float(layers + 1) * (0x1p-19f + 0x1p-24f);
-      for (int k = 0; k < 3; ++k)
-        ASSERT_NEAR(arrived[i][k], expected[k], bound) << "ray " << i << ", at most " << deepest << " layers";
-    }
-    EXPECT_GT(lit, 100u);
+    const Arrivals arrivals = expect_the_chain(*scene, deepest);
+    EXPECT_GT(arrivals.lit, 100u);
     if (deepest > 1) {
-      EXPECT_GT(some, 100u);
-      EXPECT_GE(most, 4u);
+      EXPECT_GT(arrivals.dimmed, 100u);
+      EXPECT_GE(arrivals.most, 4u);
     }
   }
 }
 
+TEST(ShadowLayers, SomeLayersAreOpaqueForShadowsOnly) {
+  const Planting opaque{.leaf_flags = LANCER_MATERIAL_OPAQUE_SHADOWS};
+  for (const Writing writing : {Writing::Unknown, Writing::Plain, Writing::Disguised}) {
+    const auto scene = foliage(writing, opaque);
+    for (const uint32_t deepest : {1u, 4u}) {
+      const Arrivals arrivals = expect_the_chain(*scene, deepest);
+      // Panes beside the leaves let light pass as ever.
+      EXPECT_GT(arrivals.dimmed, 10u);
+    }
+    // Leaves stop much of what they would let pass.
+    const auto lit = [](const glm::vec3 &light) { return light != glm::vec3(0.0f); };
+    const std::vector<glm::vec3> stopped = one_traversal(*scene, 8), passed = one_traversal(*foliage(writing), 8);
+    EXPECT_LT(std::ranges::count_if(stopped, lit), std::ranges::count_if(passed, lit) / 2);
+  }
+}
+
 TEST(ShadowLayers, EveryAcceleratorGivesTheSameBits) {
-  const std::vector<glm::vec3> expected = one_traversal(*foliage(Writing::Plain, AcceleratorKind::BruteForce), 8);
-  EXPECT_EQ(one_traversal(*foliage(Writing::Plain, AcceleratorKind::KdTree), 8), expected);
+  const std::vector<glm::vec3> expected =
+      one_traversal(*foliage(Writing::Plain, {.accelerator = AcceleratorKind::BruteForce}), 8);
+  EXPECT_EQ(one_traversal(*foliage(Writing::Plain, {.accelerator = AcceleratorKind::KdTree}), 8), expected);
   const char *before = std::getenv("LANCER_ISA");
   const std::string kept = before ? before : "";
   for (const char *instruction_set : {"sse4", "avx2", "avx512"}) {

@@ -26,14 +26,8 @@ void add_picture(Description &description, uint32_t side) {
   uint32_t state = 1;
   for (uint8_t &texel : texels)
     texel = uint8_t((state = state * 1664525u + 1013904223u) >> 24);
-  lancer_image image = {};
-  image.name = "picture";
-  image.texels = texels.data();
-  image.width = image.height = side;
-  image.channels = 4;
-  image.kind = LANCER_TEXEL_U8;
+  lancer_image image = image_of(texels, side, side);
   image.alpha = LANCER_ALPHA_NONE;
-  image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
   add_image(description, image);
 }
 
@@ -224,14 +218,8 @@ TEST(TexturePrefetch, TakesAnyPlaceOfAnyPicture) {
     for (const uint32_t channels : {1u, 3u, 4u})
       for (const auto &[width, height] : {std::pair(1u, 1u), {1u, 7u}, {5u, 1u}, {64u, 3u}}) {
         const std::vector<float> texels(size_t(width) * height * channels, 0.5f);
-        lancer_image image = {};
-        image.name = "picture";
-        image.texels = texels.data();
-        image.width = width;
-        image.height = height;
-        image.channels = channels;
+        lancer_image image = image_of(texels, width, height, channels);
         image.kind = kind;
-        image.matrix[0] = image.matrix[4] = image.matrix[8] = 1.0f;
         Description description;
         add_image(description, image);
         constexpr float most = std::numeric_limits<float>::max(), least = std::numeric_limits<float>::denorm_min();

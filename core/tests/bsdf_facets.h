@@ -1,0 +1,29 @@
+// Rough lobes for tests, and how much they scatter by exact integrals.
+#pragma once
+
+#include "bsdf_domain.h"
+#include "bsdf_seen.h"
+
+namespace lancer::testing {
+
+inline constexpr double kUlp = 0x1p-24;
+
+inline LobeInputs rough(LobeKind kind, Facets facets, float roughness, float ior = 1.5f) {
+  LobeInputs inputs = described(kind, roughness, ior);
+  inputs.distribution = facets;
+  return inputs;
+}
+
+// Integral of f cos over the upper side, by half vectors of slopes about alpha.
+inline double reflected(const Bsdf &bsdf, double alpha) {
+  const Domain domain = half_vector_domain(bsdf.wo, alpha);
+  return integrate_square(domain.density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).f().x}; }), 16, 4e-7);
+}
+
+// The same for what goes through.
+inline double through(const Bsdf &bsdf, double alpha, double ior) {
+  const Domain domain = bent_domain(bsdf.wo, alpha, ior);
+  return integrate_square(domain.density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).f().x}; }), 16, 4e-7);
+}
+
+} // namespace lancer::testing

@@ -1,0 +1,151 @@
+// Paths go past what a picture has cut away as if they had stopped there, and every pass tells the same of it.
+#include "foliage_pictures.h"
+
+#include <algorithm>
+#include <cstring>
+#include <gtest/gtest.h>
+
+namespace lancer_test {
+namespace {
+
+// Each alone, and all at once.
+const Planting kPlantings[] = {
+    {},
+    {.lamps = true},
+    {.holdout = true},
+    {.hidden = true},
+    {.mirrored = true},
+    {.leaf_flags = LANCER_MATERIAL_OPAQUE_SHADOWS, .lamps = true},
+    {.leaf_flags = LANCER_MATERIAL_OPAQUE_SHADOWS, .lamps = true, .holdout = true, .hidden = true, .mirrored = true}};
+
+constexpr uint32_t kCombined = 1u << LANCER_PASS_COMBINED, kEverything = (1u << LANCER_PASS_COUNT) - 1;
+// For denoising paths stop at every layer.
+constexpr uint32_t kFeatures =
+    1u << LANCER_PASS_ALBEDO | 1u << LANCER_PASS_DENOISING_NORMAL | 1u << LANCER_PASS_DENOISING_DEPTH;
+
+IntegratorSettings three_bounces(uint32_t passes) {
+  IntegratorSettings settings;
+  settings.max_bounces = 3;
+  settings.passes = passes;
+  settings.mist_start = 3.0f;
+  settings.mist_depth = 5.0f;
+  return settings;
+}
+
+// A ray that starts again behind a layer meets the next within roundings of double. They reach a sample's floats as a last
+// digit here and there, 2^-24 of radiances up to 1, in each of some 2^6 operations.
+constexpr double kLightError = 0x1p-18;
+
+TEST(Cutouts, PathsGoPastWhatIsNotThereAsIfTheyHadStopped) {
+  const auto stopping = foliage(Writing::Unknown);
+  IntegratorSettings settings = three_bounces(kCombined);
+  for (const Writing writing : {Writing::Plain, Writing::Mixed, Writing::Disguised}) {
+    const auto scene = foliage(writing);
+    for (const uint32_t limit : {0u, 1u, 3u, 8u}) {
+      settings.transparent_bounces = limit;
+      const Picture fast = picture(*scene, settings), slow = picture(*stopping, settings);
+      EXPECT_LE(mean_difference(radiance(fast), radiance(slow)), kLightError) << limit;
+      EXPECT_EQ(fast.counts.camera, slow.counts.camera);
+      if (limit == 8) {
+        EXPECT_LT(fast.counts.bounce, slow.counts.bounce * 3 / 4);
+      }
+    }
+  }
+  settings.transparent_bounces = 0;
+  const Picture none = picture(*stopping, settings);
+  settings.transparent_bounces = 8;
+  EXPECT_GT(mean_difference(radiance(none), radiance(picture(*stopping, settings))), 0.01);
+}
+
+// Of numbers that each side rounds to float once, made of the same ones but for roundings of double.
+void expect_rounded(const glm::vec3 &a, const glm::vec3 &b, float least = 0x1p-24f) {
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(a[axis], b[axis], 0x1p-23f * std::max(std::abs(b[axis]), least));
+}
+
+void expect_the_same_place(const SampleResult &a, const SampleResult &b) {
+  EXPECT_EQ(a.object_index, b.object_index);
+  EXPECT_EQ(a.material_index, b.material_index);
+  expect_rounded(glm::vec3(a.depth), glm::vec3(b.depth));
+  expect_rounded(a.position, b.position);
+  // A triangle's are made of its corners', up to 1, by weights that are rounded.
+  expect_rounded(a.uv, b.uv, 1.0f);
+  // Those of exact surfaces follow the place: it is rounded to float, and made a unit vector with three more roundings.
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(a.normal[axis], b.normal[axis], 4 * 0x1p-24f);
+}
+
+void expect_the_same_light(const Picture &a, const Picture &b) {
+  float brightest = 1.0f;
+  for (const glm::vec3 &one : radiance(b))
+    brightest = std::max({brightest, one.x, one.y, one.z});
+  const auto expect = [&](auto &&ask) { EXPECT_LE(mean_difference(each(a, ask), each(b, ask)), kLightError * brightest); };
+  expect([](const SampleResult &result) { return result.radiance; });
+  expect([](const SampleResult &result) { return glm::vec3(result.alpha, result.mist, 0.0f); });
+  for (uint32_t pass = 0; pass < kLightPasses; ++pass)
+    expect([&](const SampleResult &result) { return result.light[pass]; });
+}
+
+TEST(Cutouts, PassesTellTheSameOfThem) {
+  std::vector<std::vector<glm::vec3>> seen;
+  for (const Planting &planting : kPlantings) {
+    const auto plain = foliage(Writing::Plain, planting), stopping = foliage(Writing::Unknown, planting);
+    for (const float threshold : {0.0f, 0.5f})
+      for (const uint32_t limit : {0u, 2u, 8u, 2000u}) {
+        SCOPED_TRACE(testing::Message() << &planting - kPlantings << ", threshold " << threshold << ", limit " << limit);
+        IntegratorSettings settings = three_bounces(kEverything & ~kFeatures);
+        settings.alpha_threshold = threshold;
+        settings.transparent_bounces = limit;
+        settings.film_transparent = limit == 8;
+        settings.clamp_indirect = limit == 2 ? 0.1f : 0.0f;
+        const Picture fast = picture(*plain, settings), slow = picture(*stopping, settings);
+        for (size_t i = 0; i < fast.results.size(); ++i) {
+          SCOPED_TRACE(i);
+          expect_the_same_place(fast.results[i], slow.results[i]);
+        }
+        expect_the_same_light(fast, slow);
+        // The picture does not depend on what else is asked for.
+        settings.passes = kCombined;
+        const Picture alone = picture(*plain, settings);
+        EXPECT_EQ(radiance(fast), radiance(alone));
+        const auto alpha = [](const SampleResult &result) { return glm::vec3(result.alpha); };
+        EXPECT_EQ(each(fast, alpha), each(alone, alpha));
+        if (threshold == 0.0f && limit == 8)
+          seen.push_back(radiance(slow));
+      }
+  }
+  // All of them look different.
+  for (size_t i = 0; i < seen.size(); ++i)
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), seen[i]), 1) << i;
+}
+
+bool same_bits(const Picture &a, const Picture &b) {
+  return std::memcmp(a.results.data(), b.results.data(), a.results.size() * sizeof(SampleResult)) == 0;
+}
+
+TEST(Cutouts, DenoisersAreToldTheSameOfThem) {
+  // Their nodes say the same, and paths stop at each.
+  for (const Planting &planting : kPlantings) {
+    const IntegratorSettings settings = three_bounces(kEverything);
+    EXPECT_TRUE(same_bits(picture(*foliage(Writing::Plain, planting), settings),
+                          picture(*foliage(Writing::Unknown, planting), settings)))
+        << &planting - kPlantings;
+  }
+}
+
+TEST(Cutouts, AReplayedSampleIsTheSame) {
+  for (const Writing writing : {Writing::Plain, Writing::Mixed})
+    for (const Planting &planting : kPlantings) {
+      SCOPED_TRACE(&planting - kPlantings);
+      const auto scene = foliage(writing, planting);
+      IntegratorSettings settings = three_bounces(kEverything & ~kFeatures);
+      EXPECT_TRUE(same_bits(picture(*scene, settings), picture(*scene, settings, true)));
+      // Kernels look it up where the picture alone is asked for; where somebody wants to hear of the vertices the nodes do.
+      ASSERT_TRUE(scene->pictures[0].image);
+      settings.passes = kCombined;
+      EXPECT_EQ(radiance(picture(*scene, settings)), radiance(picture(*scene, settings, true)));
+    }
+}
+
+} // namespace
+} // namespace lancer_test
