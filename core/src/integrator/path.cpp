@@ -209,9 +209,7 @@ Ray PathIntegrator<Shapes, Layers>::pass_straight_on(Path &path, const Surface &
   path.length += length;
   if (!picture_alone_)
     records_[path.slot].depth += t;
-  ++path.layers;
-  // Beyond the last layer the next surface shows its own light only.
-  path.last = ++path.passed_through >= settings_.transparent_bounces;
+  path.pass_layers(1, settings_.transparent_bounces);
   Ray next = leave(surface, ray.d, ray.tmax - t);
   next.kinds = path.kinds;
   return next;

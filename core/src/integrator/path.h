@@ -57,6 +57,17 @@ private:
     bool last = false;                  // the next surface ends it
     double passed = 0.0;                // length of the way since the last scattering, through layers
     double length = 0.0;                // of the whole way
+
+    // How many layers it may still pass straight through: limit in all, but one at least. Beyond them the next surface shows
+    // its own light only.
+    uint32_t layers_left(uint32_t limit) const {
+      return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxLayers - 1 - layers);
+    }
+    void pass_layers(uint32_t count, uint32_t limit) {
+      layers += count;
+      passed_through += count;
+      last = passed_through >= limit;
+    }
   };
 
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
