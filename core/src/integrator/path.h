@@ -68,6 +68,11 @@ private:
       passed_through += count;
       last = passed_through >= limit;
     }
+    // pass: share of the paths here that pass straight on.
+    bool chooses_to_pass(float pass) const {
+      const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxLayers + layers);
+      return pass > 0.0f && (pass >= 1.0f || sampler.get1(dimension) < pass);
+    }
   };
 
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
@@ -129,7 +134,7 @@ private:
   void sample_light(const Path &path, const Surface &surface, double pass, const VertexNumbers &u);
   void sample_occlusion(const Path &path, const Surface &surface, const VertexNumbers &u);
   bool scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u, Ray &next);
-  Ray pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
+  void pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
   static bool survives(uint32_t scatterings, float u, glm::vec3 &beta);
   void add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment);
 

@@ -184,18 +184,9 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
     return;
   if (!waiting.ends && (block_.lit >> lane & 1))
     send_shadow_of(lane);
-  if constexpr (Layers) {
-    const float pass = block_.pass[lane];
-    const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
-    if (pass > 0.0f && (pass >= 1.0f || path.sampler.get1(dimension) < pass)) {
-      if (path.layers + 1 < kMaxLayers) {
-        next_rays_.push_back(
-            pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass));
-        next_paths_.push_back(path);
-      }
-      return;
-    }
-  }
+  if constexpr (Layers)
+    if (const float pass = block_.pass[lane]; path.chooses_to_pass(pass))
+      return pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass);
   if (waiting.ends || !(block_.sampled >> lane & 1))
     return;
   const uint32_t scatterings = path.scatterings + 1;
