@@ -206,12 +206,8 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
   next.passed_through = path.passed_through;
   next.in_view = false;
   next.length = path.length + hit.t * block_.length[lane];
-  Ray &ray = next_rays_.emplace_back();
-  ray.o = get(block_.next_origin, lane);
-  ray.d = glm::dvec3(get(block_.wi, lane));
-  ray.skip_instance = hit.instance;
-  ray.skip_primitive = hit.primitive;
-  ray.kinds = next.kinds;
+  leave(hit, get(block_.next_origin, lane), glm::dvec3(get(block_.wi, lane)), std::numeric_limits<double>::infinity(),
+        next.kinds, next_rays_.emplace_back());
 }
 
 #define LANCER_PATH(shapes, layers)                                                                                            \
