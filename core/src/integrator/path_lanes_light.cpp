@@ -63,9 +63,10 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
       continue;
     waiting_[lane].light = choice.light;
     block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
-    if (const WideLamp *lamp = scene_.lights.wide_lamp(choice.light)) {
-      block_.lamp[lane] = lamp;
-      waiting_[lane].far = lamp->kind == uint32_t(LightKind::Sun);
+    if (choice.light < scene_.lights.lights().size()) {
+      const WideLamp &lamp = scene_.lights.plain_numbers(choice.light);
+      block_.lamp[lane] = &lamp;
+      waiting_[lane].far = lamp.kind == uint32_t(LightKind::Sun);
       block_.light_pdf[lane] = choice.probability;
       block_.asked |= 1u << lane;
       continue;
