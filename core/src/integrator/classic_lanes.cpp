@@ -182,13 +182,7 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const Branch
     return shadows_.push(shadow_ray(scene_.geometry, surface, get(block.viewer_ns, lane), get(block.viewer_ng, lane), sample),
                          {.slot = branch.slot}, contribution);
   }
-  Ray &shadow = shadows_.push(branch.slot, contribution);
-  shadow.o = get(lit.origin, lane);
-  shadow.d = get(lit.d, lane);
-  shadow.tmax = end;
-  shadow.skip_instance = hit.instance;
-  shadow.skip_primitive = hit.primitive;
-  shadow.kinds = LANCER_RAY_SHADOW;
+  leave(hit, get(lit.origin, lane), get(lit.d, lane), end, LANCER_RAY_SHADOW, shadows_.push(branch.slot, contribution));
 }
 
 // What the material emits, and Ka of what comes from everywhere and from the lamps.
@@ -230,12 +224,8 @@ void ClassicIntegrator::leave_lane(uint32_t lane, const Branch &branch, const Hi
   next.layers = 0;
   next.seen = next.seen || first;
   ++next.depth;
-  Ray &mirrored = next_rays_.emplace_back();
-  mirrored.o = get(block.next_origin, lane);
-  mirrored.d = glm::dvec3(get(block.mirrored, lane));
-  mirrored.skip_instance = hit.instance;
-  mirrored.skip_primitive = hit.primitive;
-  mirrored.kinds = next.kinds;
+  leave(hit, get(block.next_origin, lane), glm::dvec3(get(block.mirrored, lane)), std::numeric_limits<double>::infinity(),
+        next.kinds, next_rays_.emplace_back());
 }
 
 } // namespace lancer

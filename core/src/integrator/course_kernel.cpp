@@ -39,10 +39,10 @@ LANCER_LANE void find_surfaces(CourseBlock &block, int first) {
   const WideSurface surface = round_surface(placements, all_same(placements), load3(block.o, first), load3(block.d, first),
                                             load(block.t + first), plane);
   block.odd |= bits(surface.odd & exact) << first;
-  store3(block.p, first, select(exact, surface.p, load3(block.p, first)));
-  store(block.offset + first, select(exact, surface.offset, load(block.offset + first)));
-  store3(block.ng, first, select(exact, surface.ng, load3(block.ng, first)));
-  store3(block.ns, first, select(exact, surface.ns, load3(block.ns, first)));
+  store3(block.p, first, exact, surface.p);
+  store(block.offset + first, exact, surface.offset);
+  store3(block.ng, first, exact, surface.ng);
+  store3(block.ns, first, exact, surface.ns);
 }
 
 [[gnu::flatten]] void look(CourseBlock &block) {

@@ -1,6 +1,7 @@
-// Vectors in and out of the lanes of a block.
+// Vectors in and out of the lanes of a block, and rays that leave them.
 #pragma once
 
+#include "accel/ray.h"
 #include "integrator/vertex_block.h"
 
 #include <glm/glm.hpp>
@@ -20,6 +21,16 @@ inline glm::vec3 get(const VertexBlock::Floats (&lanes)[3], uint32_t lane) {
 }
 inline glm::dvec3 get(const VertexBlock::Doubles (&lanes)[3], uint32_t lane) {
   return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
+}
+
+// A ray whose origin a lane has found, away from what a hit lies on. It is written where it stands.
+inline void leave(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray) {
+  ray.o = o;
+  ray.d = d;
+  ray.tmax = tmax;
+  ray.skip_instance = hit.instance;
+  ray.skip_primitive = hit.primitive;
+  ray.kinds = kinds;
 }
 
 } // namespace lancer

@@ -57,6 +57,22 @@ private:
     bool last = false;                  // the next surface ends it
     double passed = 0.0;                // length of the way since the last scattering, through layers
     double length = 0.0;                // of the whole way
+
+    // How many layers it may still pass straight through: limit in all, but one at least. Beyond them the next surface shows
+    // its own light only.
+    uint32_t layers_left(uint32_t limit) const {
+      return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxLayers - 1 - layers);
+    }
+    void pass_layers(uint32_t count, uint32_t limit) {
+      layers += count;
+      passed_through += count;
+      last = passed_through >= limit;
+    }
+    // pass: share of the paths here that pass straight on.
+    bool chooses_to_pass(float pass) const {
+      const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxLayers + layers);
+      return pass > 0.0f && (pass >= 1.0f || sampler.get1(dimension) < pass);
+    }
   };
 
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
@@ -118,7 +134,7 @@ private:
   void sample_light(const Path &path, const Surface &surface, double pass, const VertexNumbers &u);
   void sample_occlusion(const Path &path, const Surface &surface, const VertexNumbers &u);
   bool scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u, Ray &next);
-  Ray pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
+  void pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
   static bool survives(uint32_t scatterings, float u, glm::vec3 &beta);
   void add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment);
 

@@ -29,8 +29,7 @@ template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::is_
     return false;
   // What lies behind as many layers as the path may still pass is out of its reach.
   const Path &path = paths_[ray];
-  const uint32_t more = path.last ? 0u : std::max(settings_.transparent_bounces, path.passed_through + 1) - path.passed_through;
-  if (!known && clear_.count_before(ray, hit) >= std::min(more, kMaxLayers - 1 - path.layers))
+  if (!known && clear_.count_before(ray, hit) >= path.layers_left(settings_.transparent_bounces))
     return true;
   if (shader_.is_there(material, hit))
     return true;
@@ -49,19 +48,15 @@ void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleR
   const uint32_t count = clear_.count_before(number, end);
   if (count == 0)
     return;
-  if (picture_alone_ && !trace && path.layers + count < kMaxLayers &&
-      path.passed_through + count <= settings_.transparent_bounces) {
-    path.layers += count;
-    path.passed_through += count;
-    path.last = path.passed_through >= settings_.transparent_bounces;
-    return;
-  }
+  const uint32_t limit = settings_.transparent_bounces;
+  if (picture_alone_ && !trace && count <= path.layers_left(limit))
+    return path.pass_layers(count, limit);
   for (const Layer &layer : clear_.in_order(number)) {
     const Hit &hit = layer.hit;
     if (!closer(hit.t, hit.instance, hit.primitive, end))
       return;
     // The path may pass no more: it ends here.
-    if (path.last || path.layers + 1 >= kMaxLayers) {
+    if (path.layers_left(limit) == 0) {
       hits_[number] = hit;
       return;
     }
@@ -77,8 +72,7 @@ void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleR
         record(path, surface, hit.t, result);
       }
     }
-    ++path.layers;
-    path.last = ++path.passed_through >= settings_.transparent_bounces;
+    path.pass_layers(1, limit);
   }
 }
 

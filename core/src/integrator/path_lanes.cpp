@@ -184,18 +184,9 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
     return;
   if (!waiting.ends && (block_.lit >> lane & 1))
     send_shadow_of(lane);
-  if constexpr (Layers) {
-    const float pass = block_.pass[lane];
-    const uint32_t dimension = kDimensionOpacity + 2 * (path.scatterings * kMaxLayers + path.layers);
-    if (pass > 0.0f && (pass >= 1.0f || path.sampler.get1(dimension) < pass)) {
-      if (path.layers + 1 < kMaxLayers) {
-        next_rays_.push_back(
-            pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass));
-        next_paths_.push_back(path);
-      }
-      return;
-    }
-  }
+  if constexpr (Layers)
+    if (const float pass = block_.pass[lane]; path.chooses_to_pass(pass))
+      return pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass);
   if (waiting.ends || !(block_.sampled >> lane & 1))
     return;
   const uint32_t scatterings = path.scatterings + 1;
@@ -215,12 +206,8 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
   next.passed_through = path.passed_through;
   next.in_view = false;
   next.length = path.length + hit.t * block_.length[lane];
-  Ray &ray = next_rays_.emplace_back();
-  ray.o = get(block_.next_origin, lane);
-  ray.d = glm::dvec3(get(block_.wi, lane));
-  ray.skip_instance = hit.instance;
-  ray.skip_primitive = hit.primitive;
-  ray.kinds = next.kinds;
+  leave(hit, get(block_.next_origin, lane), glm::dvec3(get(block_.wi, lane)), std::numeric_limits<double>::infinity(),
+        next.kinds, next_rays_.emplace_back());
 }
 
 #define LANCER_PATH(shapes, layers)                                                                                            \

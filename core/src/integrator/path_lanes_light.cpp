@@ -63,9 +63,10 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
       continue;
     waiting_[lane].light = choice.light;
     block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
-    if (const WideLamp *lamp = scene_.lights.wide_lamp(choice.light)) {
-      block_.lamp[lane] = lamp;
-      waiting_[lane].far = lamp->kind == uint32_t(LightKind::Sun);
+    if (choice.light < scene_.lights.lights().size()) {
+      const WideLamp &lamp = scene_.lights.plain_numbers(choice.light);
+      block_.lamp[lane] = &lamp;
+      waiting_[lane].far = lamp.kind == uint32_t(LightKind::Sun);
       block_.light_pdf[lane] = choice.probability;
       block_.asked |= 1u << lane;
       continue;
@@ -105,12 +106,8 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::sen
     ray = shadow_ray(scene_.geometry, surface_of(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
   } else {
     const glm::dvec3 o = get(block_.shadow_origin, lane);
-    ray.o = o;
-    ray.d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o;
-    ray.tmax = waiting.far ? infinity : 1.0;
-    ray.skip_instance = hits_[waiting.number].instance;
-    ray.skip_primitive = hits_[waiting.number].primitive;
-    ray.kinds = LANCER_RAY_SHADOW;
+    const glm::dvec3 d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o;
+    leave(hits_[waiting.number], o, d, waiting.far ? infinity : 1.0, LANCER_RAY_SHADOW, ray);
   }
 }
 

@@ -7,15 +7,6 @@
 namespace lancer {
 namespace {
 
-LANCER_LANE void store(float *p, M which, F a) { store(p, select(which, a, load(p))); }
-LANCER_LANE void store(double *p, M which, D a) { store(p, select(which, a, load(p))); }
-LANCER_LANE void store3(float (*p)[16], int first, M which, const V3 &a) {
-  store3(p, first, select(which, a, load3(p, first)));
-}
-LANCER_LANE void store3(double (*p)[16], int first, M which, const D3 &a) {
-  store3(p, first, select(which, a, load3(p, first)));
-}
-
 [[gnu::flatten]] void sample_sky(VertexBlock &block, const WideSky &sky, uint32_t lanes) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     const M which = some(lanes, first);

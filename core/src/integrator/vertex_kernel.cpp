@@ -43,10 +43,10 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
 }
 
 LANCER_LANE void store_surface(VertexBlock &block, int first, const WideSurface &surface, M lanes) {
-  store3(block.p, first, select(lanes, surface.p, load3(block.p, first)));
-  store(block.offset + first, select(lanes, surface.offset, load(block.offset + first)));
-  store3(block.ng, first, select(lanes, surface.ng, load3(block.ng, first)));
-  store3(block.ns, first, select(lanes, surface.ns, load3(block.ns, first)));
+  store3(block.p, first, lanes, surface.p);
+  store(block.offset + first, lanes, surface.offset);
+  store3(block.ng, first, lanes, surface.ng);
+  store3(block.ns, first, lanes, surface.ns);
   block.odd |= placed_bits(surface.odd & lanes, first);
 }
 

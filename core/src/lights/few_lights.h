@@ -4,6 +4,7 @@
 #pragma once
 
 #include "lights/tree_light.h"
+#include "sampling/distribution.h"
 
 #include <vector>
 
@@ -11,8 +12,6 @@ namespace lancer {
 
 // The most lights of a leaf.
 inline constexpr uint32_t kLeafLights = 8;
-// What is left of a random number stays below 1.
-inline constexpr double kBelowOne = 1.0 - 0x1p-53;
 
 // Children stand side by side from an even number on; a leaf holds a stretch of lights.
 struct LightNode {

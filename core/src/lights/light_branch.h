@@ -30,8 +30,8 @@ struct alignas(64) LightAim {
 
 struct LightBranches {
   static constexpr uint32_t kRoot = 0xffffffffu; // slot of the root
-  // Beyond half of that, branches have lights in even numbers: eight levels more hold all that can be counted.
-  static constexpr int kDeepest = 32;
+  // From some level on, branches have lights in even numbers: eight levels more hold all that can be counted.
+  static constexpr int kDeepest = 32, kEvenFrom = kDeepest / 2;
 
   const LightBranch *branches = nullptr; // 0 is the root
   const LightAim *aims = nullptr;        // of each; null where no child is aimed

@@ -47,8 +47,8 @@ public:
   double probability(const LightQuery &query, uint32_t light) const;
   double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 
-  // The numbers of a lamp for kernels that sample it; null for what is no lamp.
-  const WideLamp *wide_lamp(uint32_t light) const { return light < lights_.size() ? &wide_lamps_[light] : nullptr; }
+  // Of a light as described, for kernels.
+  const WideLamp &plain_numbers(uint32_t light) const { return wide_lamps_[light]; }
 
   // The emitter of an instance; null if it has none.
   const Emitter *emitter_of(uint32_t instance) const {
@@ -58,7 +58,6 @@ public:
   bool any_on_the_way() const { return !always_.empty() || find_; }
   // A few, each to be asked about every ray.
   const std::vector<uint32_t> &always_on_the_way() const { return always_; }
-  const WideLamp &plain_numbers(uint32_t light) const { return wide_lamps_[light]; }
   // Whether there are others, which the tree of many finds.
   bool finds() const { return find_; }
   size_t bytes() const;

@@ -43,7 +43,7 @@ void LightTree::add_branch(const Part &part, std::vector<DescribedLight> &lights
   if (part.slot != LightBranches::kRoot)
     branches_[part.slot / kBranchWidth].child[part.slot % kBranchWidth] |= number;
   // Cut the costliest child in two until there are sixteen, or only such as need no cut.
-  const bool deep = part.depth >= LightBranches::kDeepest / 2;
+  const bool deep = part.depth >= LightBranches::kEvenFrom;
   const uint32_t whole = crowded_ && part.end - part.begin > kBranchWidth ? kBranchWidth : 1;
   const auto child_of = [&](uint32_t begin, uint32_t end) {
     Child child{begin, end, bounds_of(lights, begin, end), 0.0};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lights/few_lights.h"
+#include "lights/wide_sine.h"
 #include "sampling/lane_vectors.h"
 
 namespace lancer {
@@ -24,24 +25,22 @@ struct WideCone {
   F cos_o, sin_o, cos_all, cos_full;
 };
 
-LANCER_LANE F wide_sine(F cosine) { return sqrt(max(F(0.0f), (F(1.0f) - cosine) * (F(1.0f) + cosine))); }
-
 LANCER_LANE WideImportance wide_importance(const WideQuery &query, const WideView &view, const WideCone &cone, F cos_theta,
                                            F energy) {
   const F zero(0.0f), one(1.0f);
-  const F along = dot(view.to, query.n), cos_i = select(query.transmits, abs(along), along), sin_i = wide_sine(cos_i);
+  const F along = dot(view.to, query.n), cos_i = select(query.transmits, abs(along), along), sin_i = sine_of(cos_i);
   const F cos_i_least = select(cos_i >= view.cos_u, one, cos_i * view.cos_u + sin_i * view.sin_u);
   const F cos_i_most = max(cos_i * view.cos_u - sin_i * view.sin_u, zero);
-  const F sin_theta = wide_sine(cos_theta);
+  const F sin_theta = sine_of(cos_theta);
   const F inner = cos_theta * view.cos_u + sin_theta * view.sin_u, outer = cos_theta * view.cos_u - sin_theta * view.sin_u;
   const M within = (cos_theta >= view.cos_u) | (inner >= cone.cos_o);
-  const F cos_out_least = select(within, one, inner * cone.cos_o + wide_sine(inner) * cone.sin_o);
+  const F cos_out_least = select(within, one, inner * cone.cos_o + sine_of(inner) * cone.sin_o);
   const M seen = within | (inner > cone.cos_all - F(kCosineSlack));
   const M able = seen & !(cos_i_least < F(-kCosineSlack));
   const F near2 = max(view.near2, F(kNearest2)), far2 = max(view.far2, F(kNearest2));
   const F most = energy * max(cos_i_least, F(kCosineSlack)) * max(cos_out_least, F(kCosineSlack)) / near2;
   const M sure = (cos_theta >= zero) & (view.cos_u >= zero) & (outer >= cone.cos_full);
-  const F least = abs(cos_i_most * energy * (outer * cone.cos_o - wide_sine(outer) * cone.sin_o)) / far2;
+  const F least = abs(cos_i_most * energy * (outer * cone.cos_o - sine_of(outer) * cone.sin_o)) / far2;
   return {select(able, max(most, F(kLeastImportance)), zero), select(able & sure, least, zero)};
 }
 
@@ -68,7 +67,7 @@ LANCER_LANE WideImportance round_importance(const WideQuery &query, const TreeLi
   cone.cos_all = cone.cos_full = F(light.cos_e);
   const V3 axis{F(light.axis.x), F(light.axis.y), F(light.axis.z)};
   const F cos_theta = -dot(axis, to);
-  const F best = select(cos_theta >= view.cos_u, one, cos_theta * view.cos_u + wide_sine(cos_theta) * view.sin_u);
+  const F best = select(cos_theta >= view.cos_u, one, cos_theta * view.cos_u + sine_of(cos_theta) * view.sin_u);
   const F inside = best - F(light.cos_e) + F(kCosineSlack);
   const F t = select(inside < F(light.blend), inside / F(light.blend), one);
   const F energy = max(F(light.energy) * t * t * (F(3.0f) - F(2.0f) * t), F(kLeastImportance));
@@ -139,7 +138,7 @@ LANCER_LANE WideImportance far_importance(const WideQuery &query, const ClusterS
   WideView view;
   view.to = -splat3(cluster.cone.axis);
   view.cos_u = max(F(cluster.cone.cos_all), F(-1.0f));
-  view.sin_u = wide_sine(view.cos_u);
+  view.sin_u = sine_of(view.cos_u);
   view.near2 = view.far2 = F(1.0f);
   return wide_importance(query, view, splat_cone(cluster.cone), F(1.0f), F(cluster.energy));
 }
@@ -149,7 +148,7 @@ LANCER_LANE WideImportance light_importance(const WideQuery &query, const TreeLi
     WideView view;
     view.to = splat3(light.axis);
     view.cos_u = F(light.cos_e);
-    view.sin_u = wide_sine(view.cos_u);
+    view.sin_u = sine_of(view.cos_u);
     view.near2 = F(1.0f);
     view.far2 = F(1.0f) / max(view.cos_u * view.cos_u, F(0x1p-40f));
     const WideCone cone{F(1.0f), F(0.0f), F(light.cos_e), F(light.cos_e)};

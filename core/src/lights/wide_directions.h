@@ -37,7 +37,7 @@ LANCER_LANE WideEntry find(const double *sums, U sums_at, const uint32_t *guide,
     low = select(open & !left, middle + U(1u), low);
   }
   const D from = gather(sums, sums_at + low), width = gather(sums, sums_at + low + U(1u)) - from;
-  return {low, min((u - from) / width, D(1.0 - 0x1p-53))};
+  return {low, min((u - from) / width, D(kBelowOne))};
 }
 
 LANCER_LANE D3 sample_map(const DirectionTable &map, F u, F v, D &pdf) {

@@ -4,6 +4,7 @@
 
 #include "lights/light_branch.h"
 #include "lights/light_importance.h"
+#include "lights/wide_sine.h"
 #include "sampling/lane_memory.h"
 #include "sampling/lane_widths.h"
 
@@ -13,8 +14,6 @@ namespace {
 constexpr int kChildren = static_cast<int>(kBranchWidth);
 // Registers of doubles that hold one number of each child.
 constexpr int kParts = kChildren / kHalf;
-
-LANCER_LANE F sine(F cosine) { return sqrt(max((F(1.0f) - cosine) * (F(1.0f) + cosine), F(0.0f))); }
 
 // Of kLanes children from the first on; 0 where nothing can arrive.
 LANCER_LANE F weigh(const LightBranch &branch, const LightAim *aim, const LightWalk &walk, int first) {
@@ -33,17 +32,17 @@ LANCER_LANE F weigh(const LightBranch &branch, const LightAim *aim, const LightW
   // The half angle that it fills.
   const F radius = load(branch.radius + first);
   const M outside = d2 > radius * radius;
-  const F sin_u = select(outside, radius * per_d, zero), cos_u = select(outside, sine(sin_u), F(-1.0f));
+  const F sin_u = select(outside, radius * per_d, zero), cos_u = select(outside, sine_of(sin_u), F(-1.0f));
   // The smallest angle at which light may arrive.
   const F one_side = along * per_d, cos_i = walk.transmits ? abs(one_side) : one_side;
-  const F arrives = select(cos_i >= cos_u, one, cos_i * cos_u + sine(cos_i) * sin_u);
+  const F arrives = select(cos_i >= cos_u, one, cos_i * cos_u + sine_of(cos_i) * sin_u);
   F most = energy * max(arrives, little) * min(per_d * per_d, load(branch.per_near2 + first));
   if (any(!equal(load(branch.child + first) & U(LightBranch::kAimed), U(0u)))) {
     // The smallest angle at which it may leave.
     const F cos_theta =
         -(load(aim->axis[0] + first) * x + load(aim->axis[1] + first) * y + load(aim->axis[2] + first) * z) * per_d;
-    const F inner = cos_theta * cos_u + sine(cos_theta) * sin_u, cos_o = load(aim->cos_o + first);
-    const F turned = inner * cos_o + sine(inner) * load(aim->sin_o + first);
+    const F inner = cos_theta * cos_u + sine_of(cos_theta) * sin_u, cos_o = load(aim->cos_o + first);
+    const F turned = inner * cos_o + sine_of(inner) * load(aim->sin_o + first);
     const M within = (cos_theta >= cos_u) | (inner >= cos_o);
     most = most * select(within, one, max(turned, little));
     kept = kept & ((cos_theta >= cos_u) | (inner > load(aim->cos_all + first) - little));

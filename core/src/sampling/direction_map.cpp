@@ -8,8 +8,6 @@ namespace lancer {
 
 namespace {
 
-constexpr double kBelowOne = 1.0 - 0x1p-53;
-
 // As WeightedChoice::Choice, but in double.
 struct Entry {
   uint32_t index;

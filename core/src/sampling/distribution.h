@@ -9,6 +9,9 @@
 
 namespace lancer {
 
+// What is left of a random number stays below 1.
+inline constexpr double kBelowOne = 1.0 - 0x1p-53;
+
 class WeightedChoice {
 public:
   struct Choice {

@@ -18,6 +18,10 @@ LANCER_LANE void store(double *p, D a) {
   *reinterpret_cast<DoubleVector *>(p) = a.lo;
   *reinterpret_cast<DoubleVector *>(p + kHalf) = a.hi;
 }
+// Only the lanes of m.
+LANCER_LANE void store(float *p, M m, F a) { store(p, select(m, a, load(p))); }
+LANCER_LANE void store(double *p, M m, D a) { store(p, select(m, a, load(p))); }
+
 LANCER_LANE F gather(const float *table, U index) {
 #if defined(__AVX512F__)
   return F((FloatVector)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), kAllLanes, (__m512i)index.v, table, 4));

@@ -27,6 +27,8 @@ LANCER_LANE void store3(float (*p)[16], int first, const V3 &a) {
   store(p[1] + first, a.y);
   store(p[2] + first, a.z);
 }
+// Only the lanes of m.
+LANCER_LANE void store3(float (*p)[16], int first, M m, const V3 &a) { store3(p, first, select(m, a, load3(p, first))); }
 
 struct D3 {
   D x, y, z;
@@ -44,6 +46,7 @@ LANCER_LANE void store3(double (*p)[16], int first, const D3 &a) {
   store(p[1] + first, a.y);
   store(p[2] + first, a.z);
 }
+LANCER_LANE void store3(double (*p)[16], int first, M m, const D3 &a) { store3(p, first, select(m, a, load3(p, first))); }
 LANCER_LANE D3 widen(const V3 &a) { return {widen(a.x), widen(a.y), widen(a.z)}; }
 LANCER_LANE V3 narrow(const D3 &a) { return {narrow(a.x), narrow(a.y), narrow(a.z)}; }
 
