@@ -3,6 +3,7 @@
 
 #include "accel/kernel_name.h"
 #include "bsdf/wide_coating.h"
+#include "bsdf/wide_normal.h"
 #include "scene/wide_surface.h"
 
 namespace lancer {
@@ -13,21 +14,6 @@ LANCER_LANE D3 origin(const CourseBlock &block, int first, const D3 &d) {
   const D3 ng = widen(load3(block.ng, first));
   const D side = select(dot(ng, d) < D(0.0), D(-1.0), D(1.0));
   return load3(block.p, first) + side * load(block.offset + first) * ng;
-}
-
-// Lanes whose reflecting lobes might want another normal than ns: reflecting_normal().
-LANCER_LANE M bent_lanes(const V3 &wo, const V3 &ns, const V3 &ng) {
-  const M flat = (ns.x == ng.x) & (ns.y == ng.y) & (ns.z == ng.z);
-  const F cos_o = dot(wo, ng), least = min(F(0.9f) * cos_o, F(0.01f));
-  const V3 mirrored = F(2.0f) * dot(ns, wo) * ns - wo;
-  return (!flat) & !(dot(ng, mirrored) >= least);
-}
-
-template <class T> LANCER_LANE bool all_same(const T *const *of) {
-  bool same = true;
-  for (int i = 1; i < kLanes; ++i)
-    same = same && of[i] == of[0];
-  return same;
 }
 
 // Surfaces of spheres and planes, beside those that are given.
@@ -65,7 +51,7 @@ LANCER_LANE void find_surfaces(CourseBlock &block, int first) {
     store3(block.bitangent, first, frame.b);
     store3(block.wo, first, wo);
     store(block.masked + first, masked_over_cosine(wo, alpha));
-    block.odd |= bits(bent_lanes(wo_world, ns, ng)) << first;
+    block.odd |= bits(bends(wo_world, ns, ng)) << first;
     // What the coating mirrors: course_branches() and spawn().
     const V3 reflected = load3(block.ks, first) * fresnel_dielectric(wo.z, ior).reflectance;
     const V3 mirrored = to_world(frame, {-wo.x, -wo.y, wo.z});

@@ -2,6 +2,7 @@
 #include "integrator/vertex_kernel.h"
 
 #include "accel/kernel_name.h"
+#include "bsdf/wide_normal.h"
 #include "bsdf/wide_sample.h"
 #include "lancer.h"
 #include "lights/wide_choice.h"
@@ -17,13 +18,6 @@ namespace {
 
 template <class Enum> LANCER_LANE U number_of(Enum value) { return U(static_cast<uint32_t>(value)); }
 LANCER_LANE uint32_t placed_bits(M m, int first) { return bits(m) << first; }
-
-template <class T> LANCER_LANE bool all_same(const T *const *of) {
-  bool same = true;
-  for (int i = 1; i < kLanes; ++i)
-    same = same && of[i] == of[0];
-  return same;
-}
 
 // The eight numbers of the vertex.
 LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
@@ -148,15 +142,12 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
   store(block.light_pdf + first, select(asked, light.pdf * probability, light.pdf));
 }
 
-// Lanes whose reflecting lobes want a normal that sends the mirrored direction above the surface: reflecting_normal().
+// Lanes whose lobes mind that their normal bends.
 LANCER_LANE M bent_lanes(const Records &records, const V3 &wo, const V3 &ns, const V3 &ng) {
   const M may = equal(word(
                           records, [](const WideMaterial &m) __attribute__((always_inline)) { return m.bends; }),
                       U(1u));
-  const M flat = (ns.x == ng.x) & (ns.y == ng.y) & (ns.z == ng.z);
-  const F cos_o = dot(wo, ng), least = min(F(0.9f) * cos_o, F(0.01f));
-  const V3 mirrored = F(2.0f) * dot(ns, wo) * ns - wo;
-  return may & !flat & !(dot(ng, mirrored) >= least);
+  return may & bends(wo, ns, ng);
 }
 
 // The power heuristic in ratio form.

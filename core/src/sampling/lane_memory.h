@@ -22,6 +22,14 @@ LANCER_LANE void store(double *p, D a) {
 LANCER_LANE void store(float *p, M m, F a) { store(p, select(m, a, load(p))); }
 LANCER_LANE void store(double *p, M m, D a) { store(p, select(m, a, load(p))); }
 
+// Whether all lanes read the same place.
+template <class T> LANCER_LANE bool all_same(const T *const *of) {
+  bool same = true;
+  for (int i = 1; i < kLanes; ++i)
+    same = same && of[i] == of[0];
+  return same;
+}
+
 LANCER_LANE F gather(const float *table, U index) {
 #if defined(__AVX512F__)
   return F((FloatVector)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), kAllLanes, (__m512i)index.v, table, 4));
