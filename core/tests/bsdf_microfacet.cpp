@@ -165,6 +165,18 @@ TEST(Microfacet, SmoothGlassIsTheDielectric) {
       }
 }
 
+TEST(Microfacet, RoughnessBeyondItsRange) {
+  // Nodes may give any number. Most take it to its nearest end; Refraction squares it first.
+  const auto alpha = [](LobeKind kind, float roughness) {
+    return seen({rough(kind, Facets::Ggx, roughness)}, direction(0.5)).lobes[0].alpha_x;
+  };
+  for (LobeKind kind : {LobeKind::Glossy, LobeKind::Glass, LobeKind::Conductor, LobeKind::Refraction}) {
+    EXPECT_EQ(alpha(kind, -0.5f), kind == LobeKind::Refraction ? 0.25f : 0.0f);
+    EXPECT_EQ(alpha(kind, 0.5f), 0.25f);
+    EXPECT_EQ(alpha(kind, 1.5f), 1.0f);
+  }
+}
+
 TEST(Microfacet, IndexOneIsNotThere) {
   const Bsdf bsdf = seen({rough(LobeKind::Glass, Facets::Ggx, 0.7f, 1.0f)}, direction(0.3));
   const BsdfSample sample = bsdf.sample(0.5f, {0.3f, 0.7f});

@@ -118,7 +118,7 @@ void add_conductor(Bsdf &bsdf, const LobeInputs &inputs) {
 
 void add_refraction(Bsdf &bsdf, const LobeInputs &inputs) {
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal), glm::vec3(0.0f));
-  const float alpha = alpha_of(inputs.roughness);
+  const float alpha = inputs.roughness * inputs.roughness; // below 0, too
   Lobe lobe = make_microfacet(Scatter::Refract, frame, colored_weight(inputs), alpha, alpha, inputs.rules);
   lobe.beckmann = inputs.distribution == Facets::Beckmann;
   lobe.ior = index_from(bsdf.inside, inputs.ior);

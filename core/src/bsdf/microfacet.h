@@ -19,7 +19,7 @@ struct AlbedoRows;
 inline constexpr float kMirrorAlpha2 = 4e-10f;
 inline constexpr float kMirrorAlpha2Blender3 = 1e-7f;
 
-// From the roughness that nodes show, 0 ... 1.
+// From the roughness of nodes that stay within 0 ... 1.
 inline float alpha_of(float roughness) {
   const float within = std::clamp(roughness, 0.0f, 1.0f);
   return within * within;

@@ -31,7 +31,7 @@ glm::vec3 through_coat(const glm::vec3 &tint, float cos_o, float ior, float coat
 }
 
 Grain base_grain(const LobeInputs &lobe, const PrincipledInputs &in) {
-  return grain_of(lobe, in.roughness, unit(in.anisotropic));
+  return grain_of(lobe, unit(in.roughness), unit(in.anisotropic));
 }
 
 MicrofacetPlan plan_coat(const PrincipledInputs &in) {

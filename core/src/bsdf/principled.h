@@ -21,7 +21,7 @@ struct Grain {
   bool stretched = false; // along the turned tangent
 };
 inline Grain grain_of(const LobeInputs &lobe, float roughness, float anisotropic) {
-  const float alpha = alpha_of(roughness);
+  const float alpha = roughness * roughness;
   if (!(anisotropic > 0.0f) || lobe.tangent == glm::vec3(0.0f))
     return {alpha, alpha, false};
   const float aspect = std::sqrt(std::max(0.0f, 1.0f - 0.9f * anisotropic));

@@ -25,7 +25,7 @@ constexpr Rules kSeveralBounces = Rules::Blender45;
 // own; of several bounces: one lobe.
 void add_glass3(Bsdf &bsdf, uint8_t frame, const glm::vec3 &weight, const PrincipledInputs &in, float ior) {
   const glm::vec3 tint = glm::mix(glm::vec3(1.0f), in.base_color, in.specular_tint.x);
-  const float cos_o = cos_in(bsdf, frame), alpha = alpha_of(in.roughness);
+  const float cos_o = cos_in(bsdf, frame), alpha = in.roughness * in.roughness;
   const bool single = in.distribution != Facets::MultiGgx;
   if (!single && in.roughness > 0.05f) {
     Lobe glass = make_microfacet(Scatter::Both, frame, weight, alpha, alpha, kSeveralBounces);
@@ -97,7 +97,7 @@ void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in) {
 
   if (in.coat > kLeastLayer) {
     const uint8_t coat_frame = add_frame(bsdf, reflecting_normal(bsdf, in.coat_normal), glm::vec3(0.0f));
-    Lobe coat = make_clear_coat(in.coat * lobe.weight, alpha_of(in.coat_roughness), cos_in(bsdf, coat_frame));
+    Lobe coat = make_clear_coat(in.coat * lobe.weight, in.coat_roughness * in.coat_roughness, cos_in(bsdf, coat_frame));
     coat.frame = coat_frame;
     // The passes show it whole, whatever its weight.
     coat.shown = 4.0f / in.coat;
