@@ -53,7 +53,7 @@ struct Box {
 };
 
 // A box that grows by minima alone: its high corner has its signs turned.
-struct alignas(32) GrowingBox {
+struct GrowingBox {
   Float4 lo, minus_hi;
 
   static constexpr GrowingBox empty() {
@@ -68,7 +68,7 @@ struct alignas(32) GrowingBox {
 };
 
 // A box, the number of what it holds and whose that is, kept in the free lanes: 32 bytes.
-struct alignas(32) BuildRef {
+struct BuildRef {
   Float4 lo, minus_hi;
 
   BuildRef() = default;

@@ -29,7 +29,7 @@ LANCER_SIMD void grow(GrowingBox &box, F8 by) {
 }
 
 LANCER_SIMD void add(const BuildRef &ref, const Binning &binning, Bins &bins) {
-  const F8 box = load8(reinterpret_cast<const float *>(&ref));
+  const F8 box = load8_anywhere(reinterpret_cast<const float *>(&ref));
   const Int4 places = bins_of(binning, ref.centroid());
   for (int axis = 0; axis < 3; ++axis) {
     const uint32_t bin = static_cast<uint32_t>(places[axis]);

@@ -15,7 +15,7 @@ struct Binning {
 
 // Unset until binned: only as many as are used.
 struct Bins {
-  GrowingBox boxes[kMaxBins][3]; // bin, axis
+  alignas(64) GrowingBox boxes[kMaxBins][3]; // bin, axis
   alignas(16) uint32_t counts[kMaxBins][4];
 };
 
