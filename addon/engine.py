@@ -2,17 +2,19 @@
 
 import dataclasses
 import logging
+import math
 import time
 
 import bpy
 
-from . import passes
+from . import passes, stamp
 from .bindings.abi import LancerError
+from .bindings.schedule import CANCELLED, Schedule
 from .bindings.session import Cancelled, Session
 from .export import main_thread
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
-from .waves import Waves
+from .pace import Pace
 
 # Of the last render of each scene, by its name, for the panel and for scripts.
 last_statistics = {}
@@ -22,6 +24,11 @@ _STEP = 0.05
 # As long as there is nothing to see.
 _FIRST_STEP = 0.01
 _TELL_EVERY = 0.25
+# Showing may take this share of the time: Blender copies and colour-manages the whole picture each time.
+_SHOW_SHARE = 0.1
+_SHOW_EVERY = 0.3
+# And asking for the error this.
+_ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
 
 
@@ -37,11 +44,13 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _snapshot = None
     _messages = None
     _exported = None
+    _pressed = None  # when, by time.monotonic(): the time limit counts from there
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
 
     def update(self, data=None, depsgraph=None):
+        self._pressed = time.monotonic()
         self._begin(depsgraph)
         self._guarded(depsgraph.scene, self._export, depsgraph)
 
@@ -123,60 +132,50 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 passes.fill(result.layers[0], session.read, wanted)
                 self.update_result(result)
 
+            schedule = Schedule(session, self._pressed)
             try:
-                self._run(session, session.settings.samples, scene.lancer.time_limit, show)
+                self._run(schedule, show)
                 passes.fill(result.layers[0], session.read, wanted)
+                self._account(scene, layer, session, schedule)
             finally:
                 # Keep the picture as far as it is, after Esc too.
                 self.end_result(result)
-            self._account(scene, session)
 
-    def _run(self, session, samples, time_limit, show):
-        """Renders samples in waves, shows each, and stops for Esc or for the time limit."""
-        waves = Waves(samples)
-        started = told = time.monotonic()
-        shown = None
-        while not waves.done:
-            first, count = waves.next()
-            session.render(first, count)
-            wave_started = time.monotonic()
+    def _run(self, schedule, show):
+        """Renders range by range, shows what there is now and then, and ends for Esc."""
+        picture, error = Pace(_SHOW_SHARE, _SHOW_EVERY), Pace(_ERROR_SHARE, _TELL_EVERY)
+        told = time.monotonic()
+        while schedule.start():
+            first = not picture.begun
             while True:
-                progress = session.wait(_FIRST_STEP if shown is None else _STEP)
-                now = time.monotonic()
+                progress = schedule.wait(_STEP if picture.begun else _FIRST_STEP)
+                if not progress.finished and self.test_break():
+                    schedule.cancel()
+                # At first whatever there is, tiles of the first sample too; and that sample once it is whole.
+                elif progress.samples > 0 and (picture.due or first and progress.finished) and not schedule.over:
+                    picture.spend(show)
+                    schedule.reserve = picture.cost
+                    schedule.longest = max(schedule.longest, picture.interval)
+                if time.monotonic() - told > _TELL_EVERY or progress.finished and schedule.over:
+                    told = time.monotonic()
+                    if schedule.samples > 1 and error.due:
+                        error.spend(schedule.look)
+                    self._show_progress(schedule, progress)
                 if progress.finished:
                     break
-                if now - told > _TELL_EVERY:
-                    told = now
-                    self._show_progress(first + progress.fraction * count, samples, progress, now - started)
-                late = 0.0 < time_limit <= now - started and first > 0
-                # At first whatever there is, tiles of the first sample too.
-                due = progress.samples > 0 if shown is None else now - shown > waves.interval
-                if self.test_break() or late:
-                    session.cancel()
-                elif due:
-                    shown = self._timed(waves, show)
-            waves.took(count, now - wave_started)
-            if waves.done or now - told > _TELL_EVERY:
-                told = now
-                self._show_progress(waves.first, samples, progress, now - started)
-            if progress.cancelled or self.test_break() or 0.0 < time_limit <= now - started:
+            if self.test_break():
                 return
-            if not waves.done and (first == 0 or now - shown > waves.interval):
-                shown = self._timed(waves, show)
 
-    @staticmethod
-    def _timed(waves, show):
-        before = time.monotonic()
-        show()
-        after = time.monotonic()
-        waves.showing_took(after - before)
-        return after
-
-    def _show_progress(self, done, samples, progress, elapsed):
-        self.update_progress(min(1.0, done / samples))
+    def _show_progress(self, schedule, progress):
+        self.update_progress(schedule.fraction)
         rate = progress.rays / progress.seconds / 1e6 if progress.seconds > 0.0 else 0.0
-        remaining = elapsed * (samples - done) / done if done > 0.0 else 0.0
-        self.update_stats("", f"Sample {int(done)}/{samples} | {rate:.2f} M rays/s | Remaining {_clock(remaining)}")
+        seconds, reason = schedule.remaining()
+        samples = progress.samples / schedule.pixels
+        parts = [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
+        if schedule.error is not None and schedule.error.known:
+            parts.append(f"Error {stamp.interval(schedule.error)}")
+        parts.append(f"Remaining {_clock(seconds)} to the {reason}")
+        self.update_stats("", " | ".join(parts))
 
     def _tell(self, scene, messages):
         """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
@@ -188,27 +187,47 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
 
-    def _account(self, scene, session):
+    def _account(self, scene, layer, session, schedule):
         statistics = session.statistics()
         if statistics.invalid_samples:
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
             count = statistics.invalid_samples
             text = f"{count} samples were not finite and are left out, the first at pixel {place}"
             self._tell(scene, Messages([text]))
+        error = session.error()
         numbers = dataclasses.asdict(statistics)
         pixels = session.camera.region_width * session.camera.region_height
         numbers["pixel_samples"] = numbers["samples"]
-        numbers["samples"] = round(statistics.samples / pixels)
+        numbers["samples"] = error.least_samples
+        numbers["samples_most"] = error.most_samples
+        numbers["samples_mean"] = statistics.samples / pixels
         numbers["seconds"] = statistics.render_seconds
         numbers["rays"] = statistics.rays
         numbers["rays_per_second"] = statistics.rays_per_second
+        numbers["version"] = session.library.lancer_version().decode()
+        numbers["ended_by"] = schedule.reason or CANCELLED
+        numbers["error"] = error.error
+        for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
+            numbers[f"error_{name}"] = getattr(error, name)
         # Pictures count as geometry.
         held = sum(numbers[name] for name in ("geometry_bytes", "accelerator_bytes", "film_bytes")) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held)
         last_statistics[scene.name] = numbers
+        # Only what get_result gives reaches the file.
+        stamped = self.get_result()
+        for name, value in stamp.fields(numbers, session.settings):
+            stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
+        lines = stamp.lines(numbers, session.settings)
+        self.update_stats("", lines[0])
+        # Headless, what is reported goes to the terminal; in a window the panel has it.
+        if bpy.app.background:
+            for line in lines:
+                self.report({"INFO"}, f"Lancer: {line}")
 
 
 def _clock(seconds):
+    if not math.isfinite(seconds):
+        return "unknown"
     minutes, seconds = divmod(int(seconds + 0.5), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02}:{seconds:02}" if hours else f"{minutes:02}:{seconds:02}"

@@ -54,6 +54,8 @@ def render_passes(scene, view_layer):
         yield RenderPass("Denoising Albedo", "RGB", "COLOR", Pass.ALBEDO)
     if denoising:
         yield RenderPass("Denoising Depth", "Z", "VALUE", Pass.DENOISING_DEPTH)
+    if scene.lancer.use_pass_error:
+        yield RenderPass("Lancer Error", "X", "VALUE", Pass.ERROR)
 
 
 def register_passes(engine, scene, view_layer):

@@ -6,17 +6,26 @@ Items of enums carry numbers that files store: never renumber, never reuse.
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
 
-QUALITY_SAMPLES = {"DRAFT": 32, "GOOD": 128, "FINAL": 512}
+# Target error, and the most samples that may be spent on it.
+QUALITIES = {"DRAFT": (0.1, 1024), "GOOD": (0.03, 8192), "FINAL": (0.01, 65536)}
+_presets = []  # those that are being set
+
+
+def _is(settings, quality):
+    error, samples = QUALITIES[quality]
+    return abs(settings.target_error - error) < 1e-6 and settings.samples == samples
 
 
 def _quality_changed(self, _context):
-    samples = QUALITY_SAMPLES.get(self.quality)
-    if samples is not None and self.samples != samples:
-        self.samples = samples
+    if self.quality in QUALITIES and not _is(self, self.quality):
+        # The first of two changes fits no preset, and would be taken for a wish of the artist's.
+        _presets.append(self.quality)
+        self.target_error, self.samples = QUALITIES[self.quality]
+        _presets.pop()
 
 
-def _samples_changed(self, _context):
-    if self.quality != "CUSTOM" and self.samples != QUALITY_SAMPLES[self.quality]:
+def _numbers_changed(self, _context):
+    if not _presets and self.quality != "CUSTOM" and not _is(self, self.quality):
         self.quality = "CUSTOM"
 
 
@@ -44,7 +53,8 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
     )
     time_limit: FloatProperty(
         name="Time Limit",
-        description="End the render after this many seconds, once every pixel has a sample; 0 = no limit",
+        description="End the render this many seconds after its start, once every pixel has a sample. The last go where "
+        "the error is. 0 = no limit",
         subtype="TIME_ABSOLUTE",
         min=0.0,
         soft_max=3600.0,
@@ -120,6 +130,11 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=0.1,
+    )
+    use_pass_error: BoolProperty(
+        name="Lancer Error",
+        description="Also give the standard error of each pixel's luminance: 95 % of the pixels are within 1.96 of it",
+        default=False,
     )
     use_pass_albedo: BoolProperty(
         name="Denoising Albedo",
@@ -272,24 +287,36 @@ def _add_watched(scene):
     """Properties with an update function: as annotations they make bpy 4.2 crash at exit; added and deleted they do not."""
     scene.quality = EnumProperty(
         name="Quality",
-        description="How many samples to take: a preset, or your own number",
+        description="How accurate the picture shall be: a preset, or your own numbers",
         items=(
-            ("DRAFT", "Draft", "32 samples: a quick look", 0),
-            ("GOOD", "Good", "128 samples: for most scenes", 1),
-            ("FINAL", "Final", "512 samples: little noise is left", 2),
-            ("CUSTOM", "Custom", "Your own number of samples", 3),
+            ("DRAFT", "Draft", "An error of 10 %: a quick look", 0),
+            ("GOOD", "Good", "An error of 3 %: for most scenes", 1),
+            ("FINAL", "Final", "An error of 1 %: hardly any noise is left", 2),
+            ("CUSTOM", "Custom", "Your own target error and number of samples", 3),
         ),
         default="CUSTOM",
         update=_quality_changed,
     )
+    scene.target_error = FloatProperty(
+        name="Target Error",
+        description="End the render when, with 95 % confidence, the picture is no farther than this from the finished one: the "
+        "root mean square over pixels of the standard error, relative to luminance plus 1 % of its mean. Samples go where the "
+        "error is. 0 = off",
+        subtype="FACTOR",
+        min=0.0,
+        max=1.0,
+        precision=4,
+        default=0.0,
+        update=_numbers_changed,
+    )
     scene.samples = IntProperty(
         name="Samples",
-        description="Rays through each pixel. Four times as many halve the noise",
+        description="Rays through each pixel; with a target error, the most that any gets. Four times as many halve the noise",
         min=1,
         soft_max=4096,
         max=1 << 24,
         default=256,
-        update=_samples_changed,
+        update=_numbers_changed,
     )
 
 
@@ -314,5 +341,5 @@ def unregister():
     for group, owner in reversed(_GROUPS):
         del owner.lancer
         if group is LancerSceneSettings:
-            del group.quality, group.samples
+            del group.quality, group.target_error, group.samples
         bpy.utils.unregister_class(group)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import engine
+from . import engine, stamp
 from .bindings.enums import Pass
 from .export.checks import EMPTY_PASSES
 
@@ -15,6 +15,11 @@ _REPLACED = (
     "bounces are not there. Where light differs by",
     "any of them, the messages tell.",
 )
+
+
+def _error(statistics):
+    low, high = stamp.percent(statistics["error_low"]), stamp.percent(statistics["error_high"])
+    return f"{stamp.percent(statistics['error'])} ({low} to {high})"
 
 
 class LancerPanel:
@@ -41,7 +46,8 @@ class LANCER_RENDER_PT_sampling(LancerPanel, bpy.types.Panel):
         column = self._column()
         column.prop(settings, "integrator")
         column.prop(settings, "quality")
-        column.prop(settings, "samples")
+        column.prop(settings, "target_error")
+        column.prop(settings, "samples", text="Samples" if settings.target_error == 0.0 else "Most Samples")
         column.prop(settings, "time_limit")
         column.prop(settings, "seed")
         column.prop(settings, "use_animated_seed")
@@ -115,7 +121,8 @@ class LANCER_RENDER_PT_messages(LancerPanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         statistics = engine.last_statistics.get(context.scene.name)
         if statistics is not None:
-            column.label(text=f"{statistics['samples']} samples, {statistics['seconds']:.1f} s")
+            column.label(text=f"Error {_error(statistics)}")
+            column.label(text=f"{statistics['samples_mean']:.0f} samples, {statistics['seconds']:.1f} s")
             column.label(text=f"{statistics['rays_per_second'] / 1e6:.2f} M rays/s, {statistics['instruction_set']}")
             column.label(text=f"Uses: {statistics['features']}")
         if lines is None:
@@ -147,6 +154,7 @@ class LANCER_VIEWLAYER_PT_passes(LancerPanel, bpy.types.Panel):
         _switch(column, layer, "ambient_occlusion", Pass.AMBIENT_OCCLUSION not in empty)
         if hasattr(layer, "cycles"):
             column.prop(layer.cycles, "denoising_store_passes", text="Denoising Data")
+        column.prop(context.scene.lancer, "use_pass_error")
         column.prop(context.scene.lancer, "use_pass_albedo")
         column.prop(layer, "pass_alpha_threshold")
 

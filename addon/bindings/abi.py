@@ -4,16 +4,16 @@ import ctypes
 import functools
 import os
 import sys
-from ctypes import POINTER, c_char_p, c_float, c_int32, c_size_t, c_uint32, c_uint64
+from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64
 
 from . import elf
 from .enums import *  # noqa: F403 - abi is the one name under which others find the whole interface
 from .enums import Status
 from .structs import *  # noqa: F403
-from .structs import STRUCTS, Camera, Image, Light, Material, Mesh, Progress, Settings, Statistics, World
+from .structs import STRUCTS, Camera, Error, Image, Light, Material, Mesh, Progress, Settings, Statistics, World
 from .structs import Array as _Array
 
-ABI_VERSION = 2
+ABI_VERSION = 3
 UINT32_MAX = 0xFFFFFFFF
 
 _u32, _u64 = c_uint32, c_uint64
@@ -36,6 +36,9 @@ _CALLS = {
     "lancer_session_render": (_u64, _u32, _u32),
     "lancer_session_wait": (_u64, _u32, POINTER(Progress)),
     "lancer_session_cancel": (_u64,),
+    "lancer_session_stop": (_u64,),
+    "lancer_session_refine": (_u64, c_double, c_double),
+    "lancer_session_error": (_u64, c_double, POINTER(Error)),
     "lancer_session_read": (_u64, _u32, _Array, c_size_t),
     "lancer_session_statistics": (_u64, POINTER(Statistics)),
     "lancer_debug_sample": (_u64, _u32, _u32, _u32, _Array, _Array, _u32, POINTER(_u32)),

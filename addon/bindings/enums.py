@@ -35,6 +35,7 @@ class Struct(IntEnum):
     PRINCIPLED = 17
     WORLD = 18
     LOBE_INFO = 19
+    ERROR = 20
 
 
 class NormalDomain(IntEnum):
@@ -153,6 +154,7 @@ class Pass(IntEnum):
     TRANSMISSION_COLOR = 20
     DENOISING_NORMAL = 21
     DENOISING_DEPTH = 22
+    ERROR = 23
 
     @property
     def channels(self):
@@ -161,7 +163,7 @@ class Pass(IntEnum):
 
 
 _CHANNELS = {Pass.COMBINED: 4} | dict.fromkeys(
-    (Pass.DEPTH, Pass.OBJECT_INDEX, Pass.MATERIAL_INDEX, Pass.MIST, Pass.DENOISING_DEPTH), 1
+    (Pass.DEPTH, Pass.OBJECT_INDEX, Pass.MATERIAL_INDEX, Pass.MIST, Pass.DENOISING_DEPTH, Pass.ERROR), 1
 )
 
 

@@ -242,4 +242,5 @@ def settings(s):
         passes=sum(1 << p for p in set(s.passes)),
         threads=s.threads,
         tile_size=s.tile_size,
+        refines=int(s.refines),
     )

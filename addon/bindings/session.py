@@ -9,6 +9,7 @@ poll is a function without arguments that is called at least every 0.1 s while w
 
 import ctypes
 import dataclasses
+import math
 import weakref
 from dataclasses import dataclass
 
@@ -19,7 +20,18 @@ from .abi import LancerError, Pass, Status, check, load_library
 from .probes import SceneProbes, SessionProbes, microfacet, pixel_filter, sampler
 from .snapshot import InstanceTable
 
-__all__ = ["Cancelled", "LancerError", "Progress", "Scene", "Session", "Statistics", "microfacet", "pixel_filter", "sampler"]
+__all__ = [
+    "Cancelled",
+    "LancerError",
+    "PictureError",
+    "Progress",
+    "Scene",
+    "Session",
+    "Statistics",
+    "microfacet",
+    "pixel_filter",
+    "sampler",
+]
 
 _STEP = 0.05
 
@@ -68,6 +80,30 @@ class Statistics:
     @property
     def rays_per_second(self):
         return self.rays / self.render_seconds if self.render_seconds > 0 else 0.0
+
+
+@dataclass(frozen=True)
+class PictureError:
+    """How far a picture is from the converged one: lancer_error of lancer.h."""
+
+    error: float  # infinity before anything is known
+    low: float
+    high: float
+    cannot_exclude: float
+    clipped: float
+    missing: float
+    planned_samples: float
+    least_samples: int
+    most_samples: int
+
+    @property
+    def known(self):
+        return math.isfinite(self.error)
+
+    @property
+    def bound(self):
+        """What the error stays below, with the confidence that was asked for."""
+        return self.high + self.cannot_exclude
 
 
 class _Handle:
@@ -208,6 +244,20 @@ class Session(_Handle, SessionProbes):
 
     def cancel(self):
         self._check(self.library.lancer_session_cancel(self.handle))
+
+    def stop(self):
+        """As cancel, but pixels keep a power of two of samples and the session can go on."""
+        self._check(self.library.lancer_session_stop(self.handle))
+
+    def refine(self, target=0.0, confidence=0.95):
+        """Starts a round that doubles samples where it helps most; False where none is left. Needs settings.refines."""
+        return self._check(self.library.lancer_session_refine(self.handle, float(target), float(confidence))) is Status.OK
+
+    def error(self, confidence=0.95):
+        """The PictureError of the film as it is."""
+        raw = abi.Error()
+        self._check(self.library.lancer_session_error(self.handle, float(confidence), ctypes.byref(raw)))
+        return PictureError(**{f.name: getattr(raw, f.name) for f in dataclasses.fields(PictureError)})
 
     def render_all(self, samples=None, poll=None):
         """Renders samples 0 ... samples - 1 (the settings' number where not given); True where poll did not cancel."""

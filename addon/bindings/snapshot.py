@@ -243,6 +243,8 @@ class Camera(Record):
 class Settings(Record):
     integrator: int = Integrator.PATH
     samples: int = 16
+    target_error: float = 0.0  # relative; 0 = off
+    time_limit: float = 0.0  # s; 0 = off
     seed: int = 0
     max_bounces: int = 10
     contribution_threshold: float = 0.0
@@ -269,6 +271,11 @@ class Settings(Record):
 
     def __post_init__(self):
         self.set("passes", tuple(int(p) for p in self.passes))
+
+    @property
+    def refines(self):
+        """Whether pixels may get different numbers of samples."""
+        return self.target_error > 0.0 or self.time_limit > 0.0
 
 
 @register

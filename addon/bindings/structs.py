@@ -232,6 +232,7 @@ class Settings(Structure):
         ("passes", c_uint32),
         ("threads", c_uint32),
         ("tile_size", c_uint32),
+        ("refines", c_uint32),
     ]
 
 
@@ -261,6 +262,20 @@ class Statistics(Structure):
         ("features", c_char * 512),
         ("kernel", c_char * 64),
         ("instruction_set", c_char * 32),
+    ]
+
+
+class Error(Structure):
+    _fields_ = [
+        ("error", c_double),
+        ("low", c_double),
+        ("high", c_double),
+        ("cannot_exclude", c_double),
+        ("clipped", c_double),
+        ("missing", c_double),
+        ("planned_samples", c_double),
+        ("least_samples", c_uint32),
+        ("most_samples", c_uint32),
     ]
 
 
@@ -342,4 +357,5 @@ STRUCTS = {
     Struct.PRINCIPLED: Principled,
     Struct.WORLD: World,
     Struct.LOBE_INFO: LobeInfo,
+    Struct.ERROR: Error,
 }

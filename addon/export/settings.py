@@ -26,6 +26,8 @@ def export_settings(depsgraph, passes, world, messages):
     return snapshot.Settings(
         integrator=Integrator[own.integrator],
         samples=samples,
+        target_error=own.target_error,
+        time_limit=own.time_limit,
         seed=seed & 0xFFFFFFFF,
         max_bounces=bounces,
         contribution_threshold=own.contribution_threshold,

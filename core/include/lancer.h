@@ -31,7 +31,7 @@ extern "C" {
 #endif
 
 /* Changes whenever a struct or a call of this header does. */
-#define LANCER_ABI_VERSION 2u
+#define LANCER_ABI_VERSION 3u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;
@@ -77,6 +77,7 @@ typedef enum lancer_struct {
   LANCER_STRUCT_PRINCIPLED,
   LANCER_STRUCT_WORLD,
   LANCER_STRUCT_LOBE_INFO,
+  LANCER_STRUCT_ERROR,
   LANCER_STRUCT_COUNT
 } lancer_struct;
 /* sizeof one of the structs below, by lancer_struct; 0 for an unknown number. Lets a caller refuse a stale library. */
@@ -604,7 +605,9 @@ enum {
   LANCER_PASS_TRANSMISSION_COLOR = 20,
   LANCER_PASS_DENOISING_NORMAL = 21, /* [3] camera space, mean */
   LANCER_PASS_DENOISING_DEPTH = 22,  /* [1] mean */
-  LANCER_PASS_COUNT = 23
+  LANCER_PASS_ERROR = 23, /* [1] standard error of the mean luminance; infinity before every replicate has a sample. Always
+                             kept */
+  LANCER_PASS_COUNT = 24
 };
 
 typedef struct lancer_settings {
@@ -633,6 +636,7 @@ typedef struct lancer_settings {
   uint32_t passes;           /* bits 1u << LANCER_PASS_*; COMBINED is always kept */
   uint32_t threads;          /* 0 = one per processor */
   uint32_t tile_size;        /* pixels; 0 = Lancer's choice. Changes no pixel */
+  uint32_t refines;          /* 1: lancer_session_refine will be called */
 } lancer_settings;
 
 typedef struct lancer_progress {
@@ -667,10 +671,33 @@ LANCER_API lancer_status lancer_session_render(lancer_session session, uint32_t 
 LANCER_API lancer_status lancer_session_wait(lancer_session session, uint32_t milliseconds, lancer_progress *progress);
 /* Asks the running range to stop; *_wait then gives LANCER_CANCELLED. The film keeps what each pixel has. */
 LANCER_API lancer_status lancer_session_cancel(lancer_session session);
+/* Asks the running range to stop; *_wait then gives LANCER_OK. Of each pixel's samples the film keeps the largest power of two,
+ * and the session can go on: by lancer_session_render where all pixels have the same number, else by lancer_session_refine. */
+LANCER_API lancer_status lancer_session_stop(lancer_session session);
+/* Starts a round that doubles the samples of those pixels where this brings the error down most for its cost: as many as it
+ * takes to bring the bound on the error (high + cannot_exclude at that confidence) below target, or with target 0 all of them,
+ * in that order; none beyond settings.samples. What a pixel needs is judged by other pixels' samples, which leaves its mean
+ * without bias. LANCER_OK: started, watch it with lancer_session_wait. LANCER_CANCELLED: nothing is left to double. Needs
+ * settings.refines, and every pixel's number of samples a power of two. */
+LANCER_API lancer_status lancer_session_refine(lancer_session session, double target, double confidence);
 /* Copies one pass of the region: [region_height][region_width][channels]; float_count must be exactly that. While rendering,
  * too. */
 LANCER_API lancer_status lancer_session_read(lancer_session session, uint32_t pass, float *out, size_t float_count);
 LANCER_API lancer_status lancer_session_statistics(lancer_session session, lancer_statistics *statistics);
+
+/* How far the picture is from the converged one: the root mean square over pixels of the standard error of their luminance,
+ * each relative to the pixel's luminance plus 1 % of the picture's mean. Luminance is that of ITU-R BT.709. */
+typedef struct lancer_error {
+  double error;           /* infinity before every replicate has a sample, and so are low, high and cannot_exclude */
+  double low, high;       /* the truth lies between them with the confidence asked for */
+  double cannot_exclude;  /* what light in flashes that no sample has met may add to the error, at 95 %: the rule of three */
+  double clipped;         /* share of the picture's light that clamp_indirect has taken away */
+  double missing;         /* PATH: share that bounces beyond max_bounces would add, as far as the last ones tell; else 0 */
+  double planned_samples; /* pixel samples that the last lancer_session_refine still wanted in all */
+  uint32_t least_samples, most_samples; /* of a pixel */
+} lancer_error;
+/* The error of the film as it is, at a confidence in (0, 1). While rendering, too. */
+LANCER_API lancer_status lancer_session_error(lancer_session session, double confidence, lancer_error *error);
 
 /* ---- replay ------------------------------------------------------------------------------------------------------ */
 

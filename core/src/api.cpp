@@ -19,6 +19,11 @@ template <class Fill> lancer_status fill_scene(lancer_scene handle, const void *
   });
 }
 
+void check_confidence(const char *what, double confidence) {
+  if (!(confidence > 0.0 && confidence < 1.0))
+    bad_argument(std::string(what) + ": confidence " + std::to_string(confidence) + " must be between 0 and 1");
+}
+
 void copy_text(char *target, size_t size, const std::string &text) { std::snprintf(target, size, "%s", text.c_str()); }
 
 } // namespace
@@ -35,7 +40,8 @@ uint32_t lancer_sizeof(uint32_t which) {
       sizeof(lancer_material),     sizeof(lancer_light),       sizeof(lancer_camera),    sizeof(lancer_settings),
       sizeof(lancer_progress),     sizeof(lancer_statistics),  sizeof(lancer_hit),       sizeof(lancer_vertex),
       sizeof(lancer_light_sample), sizeof(lancer_bsdf_sample), sizeof(lancer_attribute), sizeof(lancer_image),
-      sizeof(lancer_node),         sizeof(lancer_principled),  sizeof(lancer_world),     sizeof(lancer_lobe_info)};
+      sizeof(lancer_node),         sizeof(lancer_principled),  sizeof(lancer_world),     sizeof(lancer_lobe_info),
+      sizeof(lancer_error)};
   return which < LANCER_STRUCT_COUNT ? uint32_t(sizes[which]) : 0;
 }
 
@@ -213,6 +219,38 @@ lancer_status lancer_session_cancel(lancer_session session) {
   return guard([&] {
     // Without the lock: one who waits holds it.
     session_of(session)->session.cancel();
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_stop(lancer_session session) {
+  return guard([&] {
+    session_of(session)->session.stop();
+    return LANCER_OK;
+  });
+}
+
+lancer_status lancer_session_refine(lancer_session session, double target, double confidence) {
+  return guard([&]() -> lancer_status {
+    const auto object = session_of(session);
+    if (!(target >= 0.0))
+      bad_argument("refine: target " + std::to_string(target) + " must not be negative");
+    check_confidence("refine", confidence);
+    const std::lock_guard lock(object->mutex);
+    return object->session.refine(target, confidence) ? LANCER_OK : LANCER_CANCELLED;
+  });
+}
+
+lancer_status lancer_session_error(lancer_session session, double confidence, lancer_error *error) {
+  return guard([&] {
+    const auto object = session_of(session);
+    require(error, "error");
+    check_confidence("error", confidence);
+    const std::lock_guard lock(object->mutex);
+    const SessionError from = object->session.error(confidence);
+    const PictureError &picture = from.picture;
+    *error = {picture.error, picture.low,          picture.high,       picture.cannot_exclude, from.clipped,
+              from.missing,  from.planned_samples, from.least_samples, from.most_samples};
     return LANCER_OK;
   });
 }

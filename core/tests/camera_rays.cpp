@@ -65,7 +65,7 @@ void expect_general(Camera camera, IntegratorSettings settings) {
     const Started &found = started[next++];
     EXPECT_EQ(found.slot, slot);
     EXPECT_EQ(found.pixel, sampler.pixel());
-    EXPECT_EQ(found.sample, addresses[slot].sample);
+    EXPECT_EQ(found.sample, sampler.sample());
     EXPECT_EQ(found.ray.o, expected.o);
     EXPECT_EQ(found.ray.d, expected.d);
     EXPECT_EQ(found.ray.tmin, expected.tmin);
@@ -103,16 +103,17 @@ TEST(CameraRays, MiddlesOfPixels) {
 
 // The last number of the filter's table is as good as the others.
 TEST(CameraRays, WholeFilterInLanes) {
-  // A pixel's first 2^14 samples take every 2^-14 of the filter in both directions, its ends among them.
+  // The first 2^14 samples of each of a pixel's replicates take every 2^-14 of the filter in both directions, its ends among
+  // them.
   Camera camera = lancer_test::camera(CameraKind::Perspective, {});
   const IntegratorSettings settings{.filter_width = 4.0f};
   const PixelFilter filter(settings.filter, settings.filter_width);
   std::vector<SampleAddress> addresses;
-  for (uint32_t sample = 0; sample < 1u << 14; ++sample)
+  for (uint32_t sample = 0; sample < kReplicates << 14; ++sample)
     addresses.push_back({3, 4, sample});
   std::vector<SampleResult> results(addresses.size());
   for (const Started &found : start(camera, settings, addresses, results)) {
-    const Sampler sampler(0, 3, 4, found.sample);
+    const Sampler sampler(0, 3, 4, addresses[found.slot].sample);
     const glm::dvec2 offset(filter.sample(sampler.get1(0)), filter.sample(sampler.get1(1)));
     ASSERT_EQ(found.ray.d, camera.ray(glm::dvec2(3.5, 4.5) + offset, {}).d);
   }

@@ -11,14 +11,14 @@ struct FilterTable;
 inline constexpr int kCameraLanes = 16;
 
 struct alignas(64) CameraBlock {
-  // Given: pixels of the full image, and the reversed points of their samples in the dimensions of pixel and lens.
-  uint32_t x[kCameraLanes], y[kCameraLanes], reversed_point[4][kCameraLanes];
+  // Given: pixels of the full image, Sampler::replicate_key(), and the reversed points of the samples in the dimensions of
+  // pixel and lens.
+  uint32_t x[kCameraLanes], y[kCameraLanes], key[kCameraLanes], reversed_point[4][kCameraLanes];
   // Sampler::pixel(), and the ray.
   uint32_t pixel[kCameraLanes];
   double o[3][kCameraLanes], d[3][kCameraLanes];
 
-  // Given: hash of the seed, and what all lanes share.
-  uint32_t seed_hash = 0;
+  // Given: what all lanes share.
   const Camera *camera = nullptr;
   const FilterTable *filter = nullptr;
 };

@@ -10,7 +10,6 @@ RayGenerator::RayGenerator(const Camera &camera, const IntegratorSettings &setti
       plain_(!middle_ && !camera.is_panorama() && (!(camera.lens_radius > 0.0) || camera.aperture_blades < 3)),
       kernel_(camera_kernel()), block_(std::make_unique<CameraBlock>()) {
   *block_ = {};
-  block_->seed_hash = hash(seed_);
   block_->camera = &camera_;
   block_->filter = &filter_.table();
 }
@@ -23,7 +22,7 @@ uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
     return looking;
   }
   // Most lanes are of one sample: look up its digits once.
-  uint32_t sample = ~addresses[0].sample, digits[4] = {};
+  uint32_t sample = ~addresses[0].sample, key = 0, digits[4] = {};
   for (uint32_t lane = 0; lane < addresses.size(); ++lane) {
     // The region's place in the image is part of the address: a border render repeats the full image's numbers.
     block_->x[lane] = camera_.x + addresses[lane].x;
@@ -31,8 +30,10 @@ uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
     if (addresses[lane].sample != sample) {
       sample = addresses[lane].sample;
       for (uint32_t i = 0; i < 4; ++i)
-        digits[i] = sobol::reversed_point(sample, kDimensionPixel + i);
+        digits[i] = sobol::reversed_point(sample / kReplicates, kDimensionPixel + i);
+      key = Sampler::replicate_key(seed_, sample);
     }
+    block_->key[lane] = key;
     for (uint32_t i = 0; i < 4; ++i)
       block_->reversed_point[i][lane] = digits[i];
   }

@@ -25,11 +25,17 @@ void PathIntegrator<Shapes, Layers>::run(std::span<const SampleAddress> addresse
                                          std::vector<PathVertex> *trace) {
   // Start one path per sample.
   generate(addresses, results);
-  while (!paths_.empty() && !settings_.cancelled()) {
+  energy_ = {};
+  late_.begin();
+  const auto gathered = [&](uint32_t slot) { return results[slot].radiance + indirect_[slot]; };
+  for (uint32_t turn = 0; !paths_.empty() && !settings_.cancelled(); ++turn) {
     // Find where every path goes next.
     find_hits(results, trace);
     // Gather emission, ask a light, choose how each path goes on.
     shade(results, trace);
+    if (late_.due(turn))
+      late_.note(
+          turn, paths_.size(), [&](size_t i) { return paths_[i].slot; }, gathered);
     // Add the light that was not in shadow.
     counts_.shadow += shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) {
       SampleResult &result = results[waiting.slot];
@@ -47,11 +53,13 @@ void PathIntegrator<Shapes, Layers>::run(std::span<const SampleAddress> addresse
     paths_.swap(next_paths_);
     rays_.swap(next_rays_);
   }
+  late_.end(gathered, energy_);
   // Join the indirect light, clamped if that was asked for.
   for (size_t slot = 0; slot < results.size(); ++slot) {
     glm::vec3 indirect = indirect_[slot];
     const float top = largest(indirect);
     if (settings_.clamp_indirect > 0.0f && top > settings_.clamp_indirect) {
+      energy_.clipped += double(luminance(indirect)) * (1.0 - double(settings_.clamp_indirect / top));
       indirect *= settings_.clamp_indirect / top;
       passes_.scale_indirect(results[slot], settings_.clamp_indirect / top);
     }

@@ -4,6 +4,7 @@
 #include "integrator/camera_rays.h"
 #include "integrator/denoising_features.h"
 #include "integrator/first_surface.h"
+#include "integrator/late_light.h"
 #include "integrator/layers_met.h"
 #include "integrator/light_passes.h"
 #include "integrator/picture_kernel.h"
@@ -26,7 +27,7 @@ public:
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
         lanes_(vertex_kernel()), picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
         any_clear_(Layers && !passes_.features() && std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
-        picture_lanes_(picture_kernel()) {
+        picture_lanes_(picture_kernel()), late_(settings.max_bounces) {
     if (scene.lights.environment().varies())
       sky_ = scene.lights.environment().wide();
     point_.bsdf.shares = passes_.wanted();
@@ -170,6 +171,7 @@ private:
   std::vector<Hit> hits_;
   std::vector<glm::vec3> indirect_; // per slot, kept back until the path ends
   std::vector<Record> records_;     // per slot
+  LateLight late_;
 };
 
 std::unique_ptr<Integrator> make_path(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <vector>
 
 namespace lancer {
@@ -79,6 +80,26 @@ struct RayCounts {
   uint64_t camera = 0, bounce = 0, shadow = 0;
 };
 
+// Luminance that settings take from the picture, summed over samples.
+struct Energy {
+  double clipped = 0.0;                 // by clamping
+  double last = 0.0, before_last = 0.0; // found by the last bounce that is followed, and by the one before
+
+  // What bounces beyond the last would find if each went on to find less than the one before by the same factor; the light
+  // that surfaces send on falls off no slower once it has spread. Infinite where the last bounce finds no less.
+  double beyond() const {
+    if (last <= 0.0)
+      return 0.0;
+    return last < before_last ? last * last / (before_last - last) : std::numeric_limits<double>::infinity();
+  }
+  Energy &operator+=(const Energy &other) {
+    clipped += other.clipped;
+    last += other.last;
+    before_last += other.before_last;
+    return *this;
+  }
+};
+
 // One vertex of a replayed sample, in scene units.
 struct PathVertex {
   glm::dvec3 position{0.0};
@@ -97,9 +118,12 @@ public:
   // The specialisation in use, for the statistics.
   virtual const char *kernel() const = 0;
   const RayCounts &counts() const { return counts_; }
+  // Of the last batch.
+  const Energy &energy() const { return energy_; }
 
 protected:
   RayCounts counts_;
+  Energy energy_;
 };
 
 // scene and camera must outlive the integrator.

@@ -80,9 +80,11 @@ SessionSettings read_settings(const lancer_settings &source) {
   settings.integrator.mist_depth = source.mist_depth;
   settings.integrator.mist_falloff = source.mist_falloff;
   settings.integrator.blended_features = source.blended_features != 0;
-  settings.integrator.passes = source.passes;
+  // The error is the film's own: no sample has it.
+  settings.integrator.passes = source.passes & ~bit(Pass::Error);
   settings.integrator.all_features = source.features == LANCER_FEATURES_ALL;
-  settings.passes = source.passes;
+  settings.passes = settings.integrator.passes;
+  settings.refines = source.refines != 0;
   settings.threads = source.threads;
   settings.tile_size = source.tile_size;
   return settings;

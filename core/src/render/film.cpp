@@ -1,5 +1,7 @@
 #include "render/film.h"
 
+#include "sampling/color.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,6 +13,11 @@ namespace {
 constexpr float kNothing = 1e10f;
 // A pass has no more channels than these.
 constexpr uint32_t kMostChannels = 4;
+
+template <class Number> void join(const std::vector<Number> &earlier, std::vector<Number> &later) {
+  for (size_t i = 0; i < later.size(); ++i)
+    later[i] = earlier[i] + later[i];
+}
 
 } // namespace
 
@@ -27,16 +34,39 @@ Film::Layout::Layout(uint32_t passes) {
   }
 }
 
-Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes)
-    : width_(width), height_(height), passes_(passes | bit(Pass::Combined)), layout_(passes) {
+// Row by row; of a chessboard every two rows together have as many cells of each colour as they are wide.
+uint32_t Film::Tile::pixels() const {
+  if (cells == Cells::All)
+    return width * height;
+  const uint32_t begin = cells == Cells::Even ? 0 : 1;
+  return height / 2 * width + (height % 2) * ((width + 1 - begin) / 2);
+}
+
+glm::uvec2 Film::Tile::place(uint32_t pixel) const {
+  if (cells == Cells::All)
+    return {x + pixel % width, y + pixel / width};
+  const uint32_t begin = cells == Cells::Even ? 0 : 1;
+  const uint32_t pair = pixel / width, within = pixel % width, upper = (width + 1 - begin) / 2;
+  if (within < upper)
+    return {x + begin + 2 * within, y + 2 * pair};
+  return {x + (1 - begin) + 2 * (within - upper), y + 2 * pair + 1};
+}
+
+Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves)
+    : width_(width), height_(height), passes_(passes | bit(Pass::Combined)), halves_(halves), layout_(passes) {
   for (uint32_t y = 0; y < height; y += tile_size) {
     for (uint32_t x = 0; x < width; x += tile_size) {
-      auto tile = std::make_unique<Tile>();
-      tile->x = x;
-      tile->y = y;
-      tile->width = std::min(tile_size, width - x);
-      tile->height = std::min(tile_size, height - y);
-      tiles_.push_back(std::move(tile));
+      for (const Cells cells : {halves ? Cells::Even : Cells::All, Cells::Odd}) {
+        if (cells == Cells::Odd && !halves)
+          continue;
+        auto tile = std::make_unique<Tile>();
+        tile->x = x;
+        tile->y = y;
+        tile->width = std::min(tile_size, width - x);
+        tile->height = std::min(tile_size, height - y);
+        tile->cells = cells;
+        tiles_.push_back(std::move(tile));
+      }
     }
   }
 }
@@ -46,35 +76,48 @@ double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t
   // The worst count on the way has nothing but ones.
   const int levels = std::bit_width(uint64_t(samples) + 1) - 1;
   return width * height *
-         (double(layout.summed_channels) * sizeof(double) * levels + double(layout.first_channels) * sizeof(float));
+         ((double(layout.summed_channels) * sizeof(double) + kReplicates * sizeof(float)) * levels +
+          double(layout.first_channels + 1) * sizeof(float));
 }
 
 void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> results) {
   const uint32_t pixels = tile.pixels();
   const std::lock_guard lock(tile.mutex);
-  if (tile.count == 0)
+  if (tile.count == 0) {
     keep_first(tile, results);
-  std::vector<double> carry;
+    tile.brightest.resize(pixels);
+  }
+  Sums carry;
   for (uint32_t s = 0; s < samples; ++s) {
     // Make all room first: where there is none, what has been counted stays as it is.
     const uint32_t level = uint32_t(std::countr_one(tile.count));
     if (tile.levels.size() <= level)
       tile.levels.resize(level + 1);
-    carry.resize(size_t(pixels) * layout_.summed_channels);
-    gather(results.subspan(size_t(s) * pixels, pixels), carry.data());
+    carry.channels.resize(size_t(pixels) * layout_.summed_channels);
+    carry.luminances.assign(size_t(pixels) * kReplicates, 0.0f);
+    gather(results.subspan(size_t(s) * pixels, pixels), tile.count % kReplicates, carry, tile.brightest.data());
     // A new leaf joins every complete neighbour, the smaller numbers first. All pixels stand at the same leaf.
     for (uint32_t joined = 0; joined < level; ++joined) {
-      const std::vector<double> &waiting = tile.levels[joined];
-      for (size_t i = 0; i < carry.size(); ++i)
-        carry[i] = waiting[i] + carry[i];
+      join(tile.levels[joined].channels, carry.channels);
+      join(tile.levels[joined].luminances, carry.luminances);
     }
-    tile.levels[level].swap(carry);
+    std::swap(tile.levels[level], carry);
     ++tile.count;
   }
-  // Sums that have been joined are not needed any more.
+  forget_joined(tile);
+}
+
+// Sums that have been joined are not needed any more.
+void Film::forget_joined(Tile &tile) {
   for (uint32_t level = 0; level < tile.levels.size(); ++level)
     if (!tile.waits(level))
-      std::vector<double>().swap(tile.levels[level]);
+      tile.levels[level] = Sums();
+}
+
+void Film::round_down(Tile &tile) {
+  const std::lock_guard lock(tile.mutex);
+  tile.count = std::bit_floor(tile.count);
+  forget_joined(tile);
 }
 
 void Film::keep_first(Tile &tile, std::span<const SampleResult> results) const {
@@ -86,8 +129,14 @@ void Film::keep_first(Tile &tile, std::span<const SampleResult> results) const {
 }
 
 // One sample of all pixels, as they are summed.
-void Film::gather(std::span<const SampleResult> results, double *to) const {
+void Film::gather(std::span<const SampleResult> results, uint32_t replicate, Sums &sums, float *brightest) const {
+  double *to = sums.channels.data();
+  float *light = sums.luminances.data() + replicate;
   for (const SampleResult &result : results) {
+    *light = luminance(result.radiance);
+    *brightest = std::max(*brightest, *light);
+    ++brightest;
+    light += kReplicates;
     // The picture comes first, and mostly alone.
     for (int i = 0; i < 3; ++i)
       to[i] = double(result.radiance[i]);
@@ -117,8 +166,8 @@ void Film::read(Pass pass, std::span<float> out) const {
   for (const auto &tile : tiles_) {
     const std::lock_guard lock(tile->mutex);
     for (uint32_t pixel = 0; pixel < tile->pixels(); ++pixel) {
-      const size_t x = tile->x + pixel % tile->width, y = tile->y + pixel / tile->width;
-      float *target = out.data() + (y * width_ + x) * width;
+      const glm::uvec2 at = tile->place(pixel);
+      float *target = out.data() + (size_t(at.y) * width_ + at.x) * width;
       if (tile->count == 0)
         std::fill_n(target, width, pass == Pass::Depth ? kNothing : 0.0f);
       else if (of_first_sample(pass))
@@ -136,7 +185,7 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
     double sum = 0.0;
     for (uint32_t level = 0; level < tile.levels.size(); ++level)
       if (tile.waits(level))
-        sum = tile.levels[level][place + layout_.at[uint32_t(of)] + channel] + sum;
+        sum = tile.levels[level].channels[place + layout_.at[uint32_t(of)] + channel] + sum;
     return sum / double(tile.count);
   };
   const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };
@@ -153,13 +202,42 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
   }
 }
 
+uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
+  const std::lock_guard lock(tile.mutex);
+  if (tile.count < kReplicates)
+    return 0;
+  // Replicates are compared by whole rounds of turns: what is left over makes the mean better, by as much as it is more.
+  const uint32_t turns = tile.count / kReplicates;
+  const double scale = double(turns) / (double(tile.count) * (kReplicates - 1));
+  for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+    double sums[kReplicates] = {}, rest = 0.0;
+    for (uint32_t level = 0; level < tile.levels.size(); ++level) {
+      if (!tile.waits(level))
+        continue;
+      const float *from = tile.levels[level].luminances.data() + size_t(pixel) * kReplicates;
+      for (uint32_t r = 0; r < kReplicates; ++r)
+        ((1u << level) < kReplicates ? rest : sums[r]) += double(from[r]);
+    }
+    double sum = 0.0, squares = 0.0;
+    for (const double of_replicate : sums)
+      sum += of_replicate;
+    const double mean = sum / double(kReplicates * turns);
+    for (const double of_replicate : sums) {
+      const double difference = of_replicate / double(turns) - mean;
+      squares += difference * difference;
+    }
+    out[pixel] = {(sum + rest) / double(tile.count), squares * scale, double(tile.brightest[pixel])};
+  }
+  return tile.count;
+}
+
 size_t Film::bytes() const {
   size_t bytes = 0;
   for (const auto &tile : tiles_) {
     const std::lock_guard lock(tile->mutex);
-    bytes += sizeof(Tile) + tile->first.capacity() * sizeof(float);
-    for (const std::vector<double> &level : tile->levels)
-      bytes += sizeof(level) + level.capacity() * sizeof(double);
+    bytes += sizeof(Tile) + (tile->first.capacity() + tile->brightest.capacity()) * sizeof(float);
+    for (const Sums &level : tile->levels)
+      bytes += sizeof(level) + level.channels.capacity() * sizeof(double) + level.luminances.capacity() * sizeof(float);
   }
   return bytes;
 }

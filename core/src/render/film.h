@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/pass.h"
+#include "sampling/sobol.h"
 
 #include <array>
 #include <mutex>
@@ -12,33 +13,57 @@ namespace lancer {
 // complete subtrees of equal size are always joined. While samples arrive in order only the sums that wait for their neighbour
 // are kept, one per bit of the count, as in a binary counter. So neither threads nor tiles nor the split of the range show in
 // the bits, and any complete subtree can be computed elsewhere.
+// Beside the sum stand the luminances of each replicate: what they differ by is the error of the picture.
 class Film {
 public:
-  // passes: bits 1u << Pass; Combined is always kept, and with a light pass the colour that it is divided by.
-  Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes);
+  // Which pixels of its rectangle a tile has: all, or those of one colour of a chessboard.
+  enum class Cells : uint32_t { All, Even, Odd };
+
+  // passes: bits 1u << Pass; Combined is always kept, and with a light pass the colour that it is divided by. In halves: every
+  // square is two tiles of a chessboard, tile 2 i + 1 the other half of tile 2 i.
+  Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves = false);
 
   // The most that a film of this size takes on its way to so many samples.
   static double bytes_needed(double width, double height, uint32_t passes, uint32_t samples);
 
+  // A complete subtree: [pixel][summed channel], and [pixel][replicate] luminances.
+  struct Sums {
+    std::vector<double> channels;
+    std::vector<float> luminances;
+  };
+
   struct Tile {
     uint32_t x, y, width, height;
+    Cells cells = Cells::All;
     uint32_t count = 0; // samples of each of its pixels
-    // By bit of count: [pixel][summed channel]. Where the bit is not set there is nothing, or what nobody may read.
-    std::vector<std::vector<double>> levels;
-    std::vector<float> first; // [pixel][channel of sample 0]
-    std::mutex mutex;
+    // By bit of count. Where the bit is not set there is nothing, or what nobody may read.
+    std::vector<Sums> levels;
+    std::vector<float> first;     // [pixel][channel of sample 0]
+    std::vector<float> brightest; // [pixel] largest luminance of a sample
+    mutable std::mutex mutex;
 
-    uint32_t pixels() const { return width * height; }
+    uint32_t pixels() const;
+    glm::uvec2 place(uint32_t pixel) const;
     // Whether the sum of a level waits for its neighbour.
     bool waits(uint32_t level) const { return (count >> level & 1u) != 0; }
   };
 
   size_t tile_count() const { return tiles_.size(); }
   Tile &tile(size_t i) { return *tiles_[i]; }
+  const Tile &tile(size_t i) const { return *tiles_[i]; }
+  bool halves() const { return halves_; }
 
   // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel. Where memory ends the tile
   // keeps those that it has counted.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
+  // Forgets the samples beyond the last power of two.
+  void round_down(Tile &tile);
+  // What a tile knows of its pixels' luminances. variance: of the mean, by kReplicates - 1 degrees of freedom.
+  struct Luminance {
+    double mean, variance, brightest;
+  };
+  // out: one for each pixel of the tile. Returns its samples; 0 where some replicate has none yet, and nothing is known.
+  uint32_t luminances(const Tile &tile, std::span<Luminance> out) const;
   // Whether all that would be summed is finite.
   bool finite(const SampleResult &result) const;
   // [height][width][channels], row 0 at the bottom; a pixel without samples is 0, its depth 1e10.
@@ -58,11 +83,13 @@ private:
     uint32_t summed_channels = 0, first_channels = 0;
   };
 
+  static void forget_joined(Tile &tile);
   void keep_first(Tile &tile, std::span<const SampleResult> results) const;
-  void gather(std::span<const SampleResult> results, double *to) const;
+  void gather(std::span<const SampleResult> results, uint32_t replicate, Sums &sums, float *brightest) const;
   void read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const;
 
   uint32_t width_, height_, passes_;
+  bool halves_;
   Layout layout_;
   std::vector<std::unique_ptr<Tile>> tiles_;
 };

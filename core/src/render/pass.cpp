@@ -14,6 +14,7 @@ uint32_t channels(Pass pass) {
   case Pass::MaterialIndex:
   case Pass::Mist:
   case Pass::DenoisingDepth:
+  case Pass::Error:
     return 1;
   default:
     return 3;
@@ -33,7 +34,7 @@ Pass divisor(Pass pass) {
 }
 
 uint32_t kept_passes(uint32_t passes) {
-  uint32_t kept = passes | bit(Pass::Combined);
+  uint32_t kept = (passes | bit(Pass::Combined)) & ~bit(Pass::Error);
   for (uint32_t pass = 0; pass < kPassCount; ++pass) {
     if (passes & 1u << pass)
       kept |= bit(divisor(static_cast<Pass>(pass)));

@@ -22,7 +22,8 @@ enum class Pass : uint32_t {
   DiffuseColor = LANCER_PASS_DIFFUSE_COLOR,
   TransmissionColor = LANCER_PASS_TRANSMISSION_COLOR, // the last of them
   DenoisingNormal = LANCER_PASS_DENOISING_NORMAL,
-  DenoisingDepth = LANCER_PASS_DENOISING_DEPTH
+  DenoisingDepth = LANCER_PASS_DENOISING_DEPTH,
+  Error = LANCER_PASS_ERROR // of the film as a whole: no sample has it
 };
 inline constexpr uint32_t kPassCount = LANCER_PASS_COUNT;
 

@@ -1,5 +1,8 @@
 #include "render/session.h"
 
+#include "render/error_bars.h"
+#include "render/refinement.h"
+#include "sampling/color.h"
 #include "scene/error.h"
 #include "scene/memory.h"
 
@@ -12,6 +15,8 @@ constexpr uint32_t kBatch = 1024;
 constexpr uint32_t kTileSize = 32, kSmallestTile = 8, kLargestTile = 256;
 // At the end threads wait for the last tile: so many for each keep that near a hundredth of the time.
 constexpr uint64_t kTilesEach = 64;
+// Squares whose samples are judged together. Fixed, so that what is refined depends on neither tile size nor threads.
+constexpr uint32_t kRefinedSize = 16;
 
 Camera normalised(Camera camera, const Normalisation &normalisation) {
   camera.to_world.translation = normalisation.to_normalised(camera.to_world.translation);
@@ -29,6 +34,8 @@ const Camera &checked_memory(const Camera &camera, const SessionSettings &settin
 }
 
 uint32_t tile_size(const Camera &camera, const SessionSettings &settings, uint32_t threads) {
+  if (settings.refines)
+    return kRefinedSize;
   if (settings.tile_size)
     return std::min(settings.tile_size, kLargestTile);
   uint32_t size = kTileSize;
@@ -52,8 +59,9 @@ SampleResult place_of(const SampleResult &result) {
 
 Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
     : scene_(std::move(scene)), camera_(normalised(checked_memory(camera, settings), scene_->normalisation)),
-      settings_(settings), film_(camera.region_width, camera.region_height,
-                                 tile_size(camera, settings, ThreadPool::resolved(settings.threads)), settings.passes),
+      settings_(settings),
+      film_(camera.region_width, camera.region_height, tile_size(camera, settings, ThreadPool::resolved(settings.threads)),
+            settings.passes, settings.refines),
       pool_(settings.threads) {
   settings_.integrator.cancel = &cancel_;
   for (uint32_t i = 0; i < pool_.size(); ++i) {
@@ -64,24 +72,69 @@ Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const
 
 Session::~Session() { cancel_ = true; }
 
-void Session::render(uint32_t first, uint32_t count) {
+void Session::require_ready() const {
   if (pool_.running())
     throw Error(Fault::State, "session: a range is still being rendered");
   if (failed_)
     throw Error(Fault::State, "session: a range failed; its film can only be read");
   if (cancelled_)
     throw Error(Fault::State, "session: it was cancelled; its film can only be read");
+}
+
+void Session::render(uint32_t first, uint32_t count) {
+  require_ready();
+  if (refined_)
+    throw Error(Fault::State, "session: its pixels have different numbers of samples; it can only be refined");
   if (first != end_)
     throw Error(Fault::State, "session: first sample " + std::to_string(first) + " does not follow the " +
                                   std::to_string(end_) + " samples rendered so far");
   if (uint64_t(first) + count > (uint64_t(1) << 31))
     bad_argument("session: " + std::to_string(uint64_t(first) + count) + " samples > 2147483648");
+  tasks_.clear();
+  for (uint32_t tile = 0; tile < film_.tile_count(); ++tile)
+    tasks_.push_back({tile, first + count});
   end_ = first + count;
   range_samples_ = uint64_t(count) * film_.width() * film_.height();
+  start();
+}
+
+bool Session::refine(double target, double confidence) {
+  require_ready();
+  if (!film_.halves())
+    throw Error(Fault::State, "session: it was not created to be refined; set refines in its settings");
+  const LuminanceMap map(film_);
+  if (!map.known)
+    throw Error(Fault::State, "session: every pixel needs " + std::to_string(kReplicates) + " samples before it is refined");
+  for (size_t i = 0; i < film_.tile_count(); ++i)
+    if (!std::has_single_bit(film_.tile(i).count))
+      throw Error(Fault::State, "session: " + std::to_string(film_.tile(i).count) +
+                                    " samples are no power of two; only those can be doubled");
+  const RelativeVariance relative(map);
+  const PictureError error = picture_error(map, relative, confidence);
+  // What the target leaves for the error itself when its bound is to meet it.
+  const double bound = error.high + error.cannot_exclude;
+  const double goal = bound > 0.0 ? target * error.error / bound : target;
+  const Refinement refinement = plan_refinement(film_, map, relative, goal, settings_.integrator.samples);
+  planned_samples_ = refinement.samples;
+  if (refinement.tiles.empty())
+    return false;
+  tasks_.clear();
+  range_samples_ = 0;
+  for (const uint32_t tile : refinement.tiles) {
+    const uint32_t count = film_.tile(tile).count;
+    tasks_.push_back({tile, 2 * count});
+    range_samples_ += uint64_t(count) * film_.tile(tile).pixels();
+  }
+  refined_ = true;
+  start();
+  return true;
+}
+
+void Session::start() {
   samples_before_ = samples_;
   seconds_before_ = seconds();
-  cancel_ = false;
-  next_tile_ = 0;
+  cancel_ = stop_ = false;
+  next_task_ = 0;
   started_ = true;
   active_ = pool_.size();
   start_ = std::chrono::steady_clock::now();
@@ -102,29 +155,35 @@ void Session::work(uint32_t thread) {
   } const leave{*this};
   Worker &worker = *workers_[thread];
   while (!cancel_) {
-    const size_t tile = next_tile_.fetch_add(1);
-    if (tile >= film_.tile_count())
+    const size_t task = next_task_.fetch_add(1);
+    if (task >= tasks_.size())
       break;
-    render_tile(worker, film_.tile(tile));
+    render_tile(worker, film_.tile(tasks_[task].tile), tasks_[task].end);
   }
 }
 
-void Session::render_tile(Worker &worker, Film::Tile &tile) {
+void Session::render_tile(Worker &worker, Film::Tile &tile, uint32_t end) {
   const uint32_t pixels = tile.pixels();
+  if (pixels == 0)
+    return;
   const uint32_t per_batch = std::max(1u, kBatch / pixels);
-  while (tile.count < end_ && !cancel_) {
+  while (tile.count < end && !cancel_) {
     // Take the next whole samples of all pixels of the tile.
-    const uint32_t samples = std::min(per_batch, end_ - tile.count);
+    const uint32_t samples = std::min(per_batch, end - tile.count);
     worker.addresses.clear();
     for (uint32_t s = 0; s < samples; ++s)
-      for (uint32_t pixel = 0; pixel < pixels; ++pixel)
-        worker.addresses.push_back({tile.x + pixel % tile.width, tile.y + pixel / tile.width, tile.count + s});
+      for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
+        const glm::uvec2 place = tile.place(pixel);
+        worker.addresses.push_back({place.x, place.y, tile.count + s});
+      }
     worker.results.resize(worker.addresses.size());
+    Energy energy;
     // Large tiles go through the integrator in several batches.
     for (size_t begin = 0; begin < worker.addresses.size(); begin += kBatch) {
       const size_t size = std::min<size_t>(kBatch, worker.addresses.size() - begin);
       worker.integrator->run(std::span(worker.addresses).subspan(begin, size), std::span(worker.results).subspan(begin, size),
                              nullptr);
+      energy += worker.integrator->energy();
     }
     // A batch that was broken off is worth nothing.
     if (cancel_)
@@ -132,11 +191,33 @@ void Session::render_tile(Worker &worker, Film::Tile &tile) {
     drop_invalid(worker, worker.results);
     film_.add(tile, samples, worker.results);
     samples_ += worker.addresses.size();
+    {
+      const std::lock_guard lock(worker.mutex);
+      worker.energy += energy;
+    }
     const RayCounts &counts = worker.integrator->counts();
     worker.camera_rays = counts.camera;
     worker.bounce_rays = counts.bounce;
     worker.shadow_rays = counts.shadow;
   }
+}
+
+// Takes back what a stopped range has added beyond powers of two.
+void Session::settle() {
+  stop_ = false;
+  uint32_t least = ~0u, most = 0;
+  samples_ = 0;
+  for (size_t i = 0; i < film_.tile_count(); ++i) {
+    Film::Tile &tile = film_.tile(i);
+    if (tile.pixels() == 0)
+      continue;
+    film_.round_down(tile);
+    least = std::min(least, tile.count);
+    most = std::max(most, tile.count);
+    samples_ += uint64_t(tile.count) * tile.pixels();
+  }
+  end_ = most;
+  refined_ = refined_ || least != most;
 }
 
 void Session::drop_invalid(const Worker &worker, std::span<SampleResult> results) {
@@ -186,11 +267,21 @@ Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
   progress.fraction = range_samples_ ? std::min(1.0, done_samples / double(range_samples_)) : 1.0;
   if (!done)
     return State::Running;
+  if (stop_) {
+    settle();
+    progress.samples = samples_;
+    return State::Done;
+  }
   cancelled_ = cancelled_ || (cancel_ && progress.samples - samples_before_ < range_samples_);
   return cancelled_ ? State::Cancelled : State::Done;
 }
 
 void Session::read(Pass pass, std::span<float> out) const {
+  if (pass == Pass::Error) {
+    const std::vector<float> bars = error_bars(LuminanceMap(film_));
+    std::copy(bars.begin(), bars.end(), out.begin());
+    return;
+  }
   if (!film_.has(pass))
     bad_argument("session: pass " + std::to_string(uint32_t(pass)) + " is not kept; ask for it in the settings");
   film_.read(pass, out);
@@ -202,6 +293,31 @@ SampleResult Session::replay(const SampleAddress &address, std::vector<PathVerte
   const auto integrator = make_integrator(*scene_, camera_, settings);
   SampleResult result;
   integrator->run(std::span(&address, 1), std::span(&result, 1), &vertices);
+  return result;
+}
+
+SessionError Session::error(double confidence) const {
+  SessionError result;
+  const LuminanceMap map(film_);
+  if (map.known)
+    result.picture = picture_error(map, RelativeVariance(map), confidence);
+  double light = 0.0;
+  result.least_samples = ~0u;
+  for (size_t i = 0; i < map.size(); ++i) {
+    light += std::max(0.0, double(map.mean[i])) * map.unit * map.count[i];
+    result.least_samples = std::min(result.least_samples, uint32_t(map.count[i]));
+    result.most_samples = std::max(result.most_samples, uint32_t(map.count[i]));
+  }
+  Energy energy;
+  for (const auto &worker : workers_) {
+    const std::lock_guard lock(worker->mutex);
+    energy += worker->energy;
+  }
+  if (light > 0.0) {
+    result.clipped = energy.clipped / (light + energy.clipped);
+    result.missing = energy.beyond() / light;
+  }
+  result.planned_samples = planned_samples_;
   return result;
 }
 

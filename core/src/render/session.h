@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/film.h"
+#include "render/picture_error.h"
 #include "render/thread_pool.h"
 
 #include <atomic>
@@ -14,6 +15,7 @@ struct SessionSettings {
   uint32_t passes = 1;
   uint32_t threads = 0;
   uint32_t tile_size = 0;
+  bool refines = false; // the film is laid out for refine()
 };
 
 struct Progress {
@@ -32,6 +34,15 @@ struct SessionStatistics {
   const char *kernel = "";
 };
 
+// What a picture may still be wrong by, and what its settings have taken from it.
+struct SessionError {
+  PictureError picture;
+  double clipped = 0.0; // share of the picture's light that clamping has taken away
+  double missing = 0.0; // share that paths beyond the depth limit would add, as far as the last bounces tell
+  uint32_t least_samples = 0, most_samples = 0;
+  double planned_samples = 0.0; // pixel samples that the last refine() still wanted in all
+};
+
 class Session {
 public:
   // camera in world units. Throws Error when camera, settings or memory do not allow the film.
@@ -40,13 +51,22 @@ public:
 
   // Starts samples first ... first + count - 1; Error when first does not follow, or while another range runs.
   void render(uint32_t first, uint32_t count);
+  // Starts a round that doubles the samples of some pixels: plan_refinement(). False when nothing can be doubled any more.
+  // confidence: of the bound that is to come below target.
+  bool refine(double target, double confidence);
   enum class State { Done, Running, Cancelled };
   State wait(uint32_t milliseconds, Progress &progress);
   void cancel() { cancel_ = true; }
+  // Ends the range like cancel(), but no pixel keeps more samples than the last power of two, and the session can go on.
+  void stop() {
+    stop_ = true;
+    cancel_ = true;
+  }
 
   void read(Pass pass, std::span<float> out) const;
   const Film &film() const { return film_; }
   SessionStatistics statistics() const;
+  SessionError error(double confidence) const;
   const Scene &scene() const { return *scene_; }
   const Camera &camera() const { return camera_; }
   // Computes one sample by itself. Not while rendering.
@@ -57,12 +77,17 @@ private:
     std::unique_ptr<Integrator> integrator;
     std::vector<SampleAddress> addresses;
     std::vector<SampleResult> results;
+    Energy energy;    // of what has been added to the film
+    std::mutex mutex; // of energy
     // What the integrator has counted after its last batch, for other threads to read.
     std::atomic<uint64_t> camera_rays{0}, bounce_rays{0}, shadow_rays{0};
   };
 
+  void require_ready() const;
+  void start();
   void work(uint32_t thread);
-  void render_tile(Worker &worker, Film::Tile &tile);
+  void render_tile(Worker &worker, Film::Tile &tile, uint32_t end);
+  void settle();
   void drop_invalid(const Worker &worker, std::span<SampleResult> results);
   double seconds() const;
   RayCounts rays() const;
@@ -72,11 +97,18 @@ private:
   SessionSettings settings_;
   Film film_;
   std::vector<std::unique_ptr<Worker>> workers_;
-  std::atomic<bool> cancel_{false};
-  std::atomic<size_t> next_tile_{0};
+  std::atomic<bool> cancel_{false}, stop_{false};
+  std::atomic<size_t> next_task_{0};
   std::atomic<uint64_t> samples_{0};
   uint64_t range_samples_ = 0, samples_before_ = 0;
+  // What runs: tiles in order, and the samples that each of their pixels then has.
+  struct Task {
+    uint32_t tile, end;
+  };
+  std::vector<Task> tasks_;
   uint32_t end_ = 0; // samples of every pixel when the range is done
+  bool refined_ = false;
+  double planned_samples_ = 0.0;
   bool cancelled_ = false, failed_ = false;
   double seconds_before_ = 0.0;
   std::chrono::steady_clock::time_point start_;

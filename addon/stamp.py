@@ -1,0 +1,77 @@
+"""The account of a render in words: for the file's metadata, for the terminal, for the panel."""
+
+import dataclasses
+import math
+from enum import IntEnum
+
+from .bindings.enums import Integrator
+
+# Less than this is not worth a sentence.
+_NOTHING = 5e-5
+
+
+def percent(share):
+    """A share with two digits that mean something."""
+    if not math.isfinite(share):
+        return "unknown"
+    return f"{100.0 * share:.3g} %" if share >= 0.0995 else f"{100.0 * share:.2g} %"
+
+
+def interval(numbers):
+    """The error and the interval in which it lies with 95 % confidence; numbers: a PictureError."""
+    return f"{percent(numbers.error)} ({percent(numbers.low)} to {percent(numbers.high)})"
+
+
+def lines(numbers, settings):
+    """Sentences on the accuracy of a render: numbers as in engine.last_statistics, settings of its snapshot."""
+    samples = f"{numbers['samples']} samples"
+    if numbers["samples_most"] > numbers["samples"]:
+        samples = f"{numbers['samples']} to {numbers['samples_most']} samples a pixel, {numbers['samples_mean']:.0f} on average"
+    ended = f"{samples} in {numbers['seconds']:.1f} s, ended by {numbers['ended_by']}"
+    if math.isfinite(numbers["error"]):
+        low, high = percent(numbers["error_low"]), percent(numbers["error_high"])
+        text = f"error {percent(numbers['error'])}, with 95 % confidence between {low} and {high}; {ended}"
+    else:
+        text = f"error unknown: it takes two samples a pixel; {ended}"
+    return [text, *biases(numbers, settings)]
+
+
+def biases(numbers, settings):
+    """What the error does not count, a sentence each."""
+    if numbers["error_cannot_exclude"] > _NOTHING and math.isfinite(numbers["error_cannot_exclude"]):
+        yield f"light in flashes that no sample has met could add {percent(numbers['error_cannot_exclude'])} to the error"
+    if settings.clamp_indirect > 0.0:
+        yield f"clamping has taken {percent(numbers['error_clipped'])} of the light: the picture is that much too dark"
+    if settings.integrator == Integrator.PATH:
+        missing = numbers["error_missing"]
+        if math.isinf(missing):
+            yield f"light beyond {settings.max_bounces} bounces is left out, and the last of them finds no less than the others"
+        elif missing > _NOTHING:
+            yield f"light beyond {settings.max_bounces} bounces is left out: about {percent(missing)}"
+
+
+def fields(numbers, settings):
+    """(name, text) pairs for the metadata of a file."""
+    for name in ("error", "error_low", "error_high", "error_cannot_exclude", "error_clipped", "error_missing"):
+        yield name, f"{numbers[name]:.6g}"
+    yield "samples", str(numbers["samples"])
+    yield "samples_most", str(numbers["samples_most"])
+    yield "samples_mean", f"{numbers['samples_mean']:.6g}"
+    yield "seconds", f"{numbers['seconds']:.3f}"
+    yield "ended_by", numbers["ended_by"]
+    yield "invalid_samples", str(numbers["invalid_samples"])
+    yield "seed", str(settings.seed)
+    yield "settings", ", ".join(_changed(settings))
+    yield "features", numbers["features"]
+    yield "kernel", f"{numbers['kernel']}, {numbers['instruction_set']}"
+    yield "version", numbers["version"]
+
+
+def _changed(settings):
+    for field in dataclasses.fields(settings):
+        value = getattr(settings, field.name)
+        if field.name in ("passes", "threads", "tile_size", "seed"):
+            continue
+        if isinstance(value, IntEnum):
+            value = value.name
+        yield f"{field.name} {value:.6g}" if isinstance(value, float) else f"{field.name} {value}"

@@ -1,0 +1,52 @@
+// What the last bounces of a batch find: the part of the light that says what a limit on bounces cuts off.
+#pragma once
+
+#include "integrator/sample.h"
+#include "sampling/color.h"
+
+namespace lancer {
+
+class LateLight {
+public:
+  explicit LateLight(uint32_t max_bounces) : max_bounces_(max_bounces) {}
+
+  void begin() {
+    slots_.clear();
+    stage_ = 0;
+    before_[0] = before_[1] = 0.0;
+  }
+  // Whether the light of this turn of the queues is to be noted. Light of paths that pass clear surfaces comes a turn later
+  // each: it counts as late, which makes too much of it rather than too little.
+  bool due(uint32_t turn) const { return turn + 1 >= max_bounces_ && stage_ < 2; }
+  // After what the rays of this turn have met was added. slot(i): where the i-th of count paths gathers; light(slot): how much
+  // there is.
+  template <class Slot, class Light> void note(uint32_t turn, size_t count, Slot &&slot, Light &&light) {
+    if (stage_ == 0)
+      for (size_t i = 0; i < count; ++i)
+        slots_.push_back(slot(i));
+    // Without any bounce the light before the last is all that there is at first.
+    stage_ = turn + 1 == max_bounces_ ? 1 : 2;
+    before_[stage_ - 1] = sum(light);
+  }
+  template <class Light> void end(Light &&light, Energy &energy) const {
+    if (stage_ == 0)
+      return;
+    const double all = sum(light);
+    energy.before_last += (stage_ == 2 ? before_[1] : all) - before_[0];
+    energy.last += stage_ == 2 ? all - before_[1] : 0.0;
+  }
+
+private:
+  template <class Light> double sum(Light &&light) const {
+    double result = 0.0;
+    for (const uint32_t slot : slots_)
+      result += double(luminance(light(slot)));
+    return result;
+  }
+
+  uint32_t max_bounces_, stage_ = 0;
+  double before_[2] = {};
+  std::vector<uint32_t> slots_; // of the paths that were still on their way
+};
+
+} // namespace lancer

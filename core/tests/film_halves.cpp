@@ -1,0 +1,98 @@
+// Tiles that are the colours of a chessboard, what replicates tell, and the way back to a power of two.
+#include "render/film.h"
+#include "render/luminance_map.h"
+
+#include <gtest/gtest.h>
+#include <set>
+
+namespace lancer {
+namespace {
+
+std::vector<SampleResult> grey(const std::vector<float> &values) {
+  std::vector<SampleResult> results(values.size());
+  for (size_t i = 0; i < values.size(); ++i)
+    results[i].radiance = glm::vec3(values[i]);
+  return results;
+}
+
+TEST(FilmHalves, EveryPixelBelongsToOneTile) {
+  for (const uint32_t width : {1u, 2u, 15u, 16u, 33u})
+    for (const uint32_t height : {1u, 2u, 17u, 32u}) {
+      Film film(width, height, 16, 1, true);
+      std::set<std::pair<uint32_t, uint32_t>> seen;
+      for (size_t i = 0; i < film.tile_count(); ++i) {
+        const Film::Tile &tile = film.tile(i), &other = film.tile(i ^ 1);
+        EXPECT_EQ(tile.x, other.x);
+        EXPECT_EQ(tile.y, other.y);
+        for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+          const glm::uvec2 at = tile.place(pixel);
+          EXPECT_LT(at.x - tile.x, tile.width);
+          EXPECT_LT(at.y - tile.y, tile.height);
+          EXPECT_EQ((at.x + at.y) % 2, i % 2);
+          EXPECT_TRUE(seen.insert({at.x, at.y}).second);
+        }
+      }
+      EXPECT_EQ(seen.size(), size_t(width) * height);
+    }
+}
+
+TEST(FilmLuminances, AreTheMeanAndTheVarianceOfReplicates) {
+  // Samples 1, 2, 5, 8, 9: the replicates (1, 5) and (2, 8) have means 3 and 5; the mean of both has the variance (5 - 3)^2 / 4
+  // = 1, that of all five samples 4/5 of it.
+  Film film(1, 1, 1, 1);
+  film.add(film.tile(0), 5, grey({1.0f, 2.0f, 5.0f, 8.0f, 9.0f}));
+  Film::Luminance luminance[1];
+  EXPECT_EQ(film.luminances(film.tile(0), luminance), 5u);
+  EXPECT_NEAR(luminance[0].mean, 5.0, 1e-6);
+  EXPECT_NEAR(luminance[0].variance, 0.8, 1e-6);
+  EXPECT_NEAR(luminance[0].brightest, 9.0, 1e-6);
+}
+
+TEST(FilmLuminances, AreUnknownUntilEachReplicateHasASample) {
+  Film film(1, 1, 1, 1);
+  Film::Luminance luminance[1];
+  film.add(film.tile(0), 1, grey({1.0f}));
+  EXPECT_EQ(film.luminances(film.tile(0), luminance), 0u);
+  EXPECT_FALSE(LuminanceMap(film).known);
+  film.add(film.tile(0), 1, grey({1.0f}));
+  EXPECT_EQ(film.luminances(film.tile(0), luminance), 2u);
+  EXPECT_TRUE(LuminanceMap(film).known);
+}
+
+TEST(FilmLuminances, KeepTheScaleOfTheBrightest) {
+  // 1e30 squared is no float.
+  Film film(2, 1, 2, 1);
+  film.add(film.tile(0), 2, grey({1e30f, 0.0f, 3e30f, 0.0f}));
+  const LuminanceMap map(film);
+  EXPECT_NEAR(map.unit, 1e30, 1e24);
+  EXPECT_NEAR(map.mean[0], 2.0f, 1e-6f);
+  EXPECT_NEAR(map.variance[0], 2.0f, 1e-5f);
+  EXPECT_EQ(map.mean[1], 0.0f);
+}
+
+TEST(FilmHalves, RoundingDownGivesTheBitsOfThePower) {
+  std::vector<float> values;
+  for (int i = 0; i < 23; ++i)
+    values.push_back(std::ldexp(1.0f + 0.01f * float(i), i % 7 * 5));
+  const auto read = [](const Film &film) {
+    std::vector<float> out(4);
+    film.read(Pass::Combined, out);
+    return out;
+  };
+  for (const uint32_t count : {1u, 3u, 16u, 23u}) {
+    Film film(1, 1, 1, 1), power(1, 1, 1, 1);
+    film.add(film.tile(0), count, std::span(grey(values)).first(count));
+    film.round_down(film.tile(0));
+    power.add(power.tile(0), std::bit_floor(count), std::span(grey(values)).first(std::bit_floor(count)));
+    EXPECT_EQ(film.tile(0).count, std::bit_floor(count));
+    EXPECT_EQ(read(film), read(power));
+    // And goes on as if nothing had happened.
+    const uint32_t rest = 23 - film.tile(0).count;
+    film.add(film.tile(0), rest, std::span(grey(values)).last(rest));
+    power.add(power.tile(0), rest, std::span(grey(values)).last(rest));
+    EXPECT_EQ(read(film), read(power));
+  }
+}
+
+} // namespace
+} // namespace lancer
