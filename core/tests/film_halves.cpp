@@ -2,6 +2,8 @@
 #include "render/film.h"
 #include "render/luminance_map.h"
 
+#include <bit>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -74,6 +76,7 @@ TEST(FilmHalves, RoundingDownGivesTheBitsOfThePower) {
   std::vector<float> values;
   for (int i = 0; i < 23; ++i)
     values.push_back(std::ldexp(1.0f + 0.01f * float(i), i % 7 * 5));
+  const std::vector<SampleResult> results = grey(values);
   const auto read = [](const Film &film) {
     std::vector<float> out(4);
     film.read(Pass::Combined, out);
@@ -81,15 +84,15 @@ TEST(FilmHalves, RoundingDownGivesTheBitsOfThePower) {
   };
   for (const uint32_t count : {1u, 3u, 16u, 23u}) {
     Film film(1, 1, 1, 1), power(1, 1, 1, 1);
-    film.add(film.tile(0), count, std::span(grey(values)).first(count));
+    film.add(film.tile(0), count, std::span(results).first(count));
     film.round_down(film.tile(0));
-    power.add(power.tile(0), std::bit_floor(count), std::span(grey(values)).first(std::bit_floor(count)));
+    power.add(power.tile(0), std::bit_floor(count), std::span(results).first(std::bit_floor(count)));
     EXPECT_EQ(film.tile(0).count, std::bit_floor(count));
     EXPECT_EQ(read(film), read(power));
     // And goes on as if nothing had happened.
     const uint32_t rest = 23 - film.tile(0).count;
-    film.add(film.tile(0), rest, std::span(grey(values)).last(rest));
-    power.add(power.tile(0), rest, std::span(grey(values)).last(rest));
+    film.add(film.tile(0), rest, std::span(results).last(rest));
+    power.add(power.tile(0), rest, std::span(results).last(rest));
     EXPECT_EQ(read(film), read(power));
   }
 }

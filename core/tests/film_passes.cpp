@@ -9,7 +9,10 @@
 namespace lancer {
 namespace {
 
-constexpr uint32_t kAll = (1u << kPassCount) - 1;
+// The error is of the film as a whole, not of its samples.
+constexpr uint32_t kAll = ((1u << kPassCount) - 1) & ~bit(Pass::Error);
+// What every film keeps of a pixel: the sums of the picture and of each replicate's luminance, and the brightest sample.
+constexpr double kPlain = 4 * sizeof(double) + (kReplicates + 1) * sizeof(float);
 
 Pass pass(uint32_t number) { return static_cast<Pass>(number); }
 
@@ -107,6 +110,8 @@ TEST(FilmPasses, WhatAPassShowsDoesNotDependOnTheOthers) {
   const auto results = synthetic(13);
   const auto all = film_of(results);
   for (uint32_t number = 0; number < kPassCount; ++number) {
+    if (!(kAll >> number & 1u))
+      continue;
     const auto alone = film_of(results, 1u << number);
     EXPECT_TRUE(alone->has(pass(number)));
     EXPECT_EQ(read(*alone, pass(number)), read(*all, pass(number))) << number;
@@ -120,11 +125,11 @@ TEST(FilmPasses, AreKeptOnlyWhereAskedFor) {
   EXPECT_TRUE(film.has(Pass::Combined));
   // The divisor is there, but nobody asked to read it.
   EXPECT_FALSE(film.has(pass(LANCER_PASS_GLOSSY_COLOR)));
-  EXPECT_EQ(Film::bytes_needed(1, 1, 0, 1), 4 * sizeof(double));
-  EXPECT_EQ(Film::bytes_needed(1, 1, direct, 1), (4 + 6) * sizeof(double));
-  EXPECT_EQ(Film::bytes_needed(1, 1, direct | 1u << LANCER_PASS_GLOSSY_COLOR, 1), (4 + 6) * sizeof(double));
-  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Depth), 1), 4 * sizeof(double) + sizeof(float));
-  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Position), 1), 4 * sizeof(double) + 3 * sizeof(float));
+  EXPECT_EQ(Film::bytes_needed(1, 1, 0, 1), kPlain);
+  EXPECT_EQ(Film::bytes_needed(1, 1, direct, 1), kPlain + 6 * sizeof(double));
+  EXPECT_EQ(Film::bytes_needed(1, 1, direct | 1u << LANCER_PASS_GLOSSY_COLOR, 1), kPlain + 6 * sizeof(double));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Depth), 1), kPlain + sizeof(float));
+  EXPECT_EQ(Film::bytes_needed(1, 1, bit(Pass::Position), 1), kPlain + 3 * sizeof(float));
 }
 
 TEST(FilmPasses, AChannelWithoutColorIsGrey) {

@@ -34,7 +34,8 @@ Pass divisor(Pass pass) {
 }
 
 uint32_t kept_passes(uint32_t passes) {
-  uint32_t kept = (passes | bit(Pass::Combined)) & ~bit(Pass::Error);
+  passes &= ~bit(Pass::Error);
+  uint32_t kept = passes | bit(Pass::Combined);
   for (uint32_t pass = 0; pass < kPassCount; ++pass) {
     if (passes & 1u << pass)
       kept |= bit(divisor(static_cast<Pass>(pass)));
