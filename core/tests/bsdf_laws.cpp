@@ -199,8 +199,9 @@ TEST(BsdfLaws, FacetsKeepTheirEnergyAndTheirProbability) {
           whole.pdf += through.pdf;
         }
         EXPECT_LE(whole.f, 1.0 + 1e-5 + table_excess(lobe, cosine)) << known.name << " from " << cosine;
-        // From the horizon, slivers of what is seen slip between the nodes: there the test of visible facets speaks.
-        if (lobe.delta_through || cosine < 0.1)
+        // From the horizon, slivers of what is seen slip between the nodes: there the test of visible facets speaks. So it does
+        // where facets begin to reflect totally: both squares are crossed by a root's edge.
+        if (lobe.delta_through || cosine < 0.1 || lobe.ior < 1.0f)
           continue;
         // The rows' own error, which falls with their number, is about what half and a quarter of them change.
         const int rows = testing::slow() ? 2048 : 512;
