@@ -27,31 +27,37 @@ inline double gauss_square(const SquareFunction &f, glm::dvec2 low, glm::dvec2 h
   return sum * radius.x * radius.y;
 }
 
-// Halves both ways until four quarters agree with the whole, at best to the noise of a float function.
+// How far a square is taken apart: to the noise of a float function, and so many halvings at most.
+struct Refinement {
+  double noise = 0x1p-16;
+  int deepest = 7;
+};
+
+// Halves both ways until four quarters agree with the whole.
 inline double refine_square(const SquareFunction &f, glm::dvec2 low, glm::dvec2 high, double tolerance, double whole,
-                            int depth = 0) {
+                            const Refinement &refinement, int depth = 0) {
   const glm::dvec2 middle = 0.5 * (low + high);
   const glm::dvec2 corner[4] = {low, {middle.x, low.y}, {low.x, middle.y}, middle};
   double part[4], sum = 0.0;
   for (int i = 0; i < 4; ++i)
     sum += part[i] = gauss_square(f, corner[i], corner[i] + middle - low);
-  if (depth >= 7 || std::abs(sum - whole) <= std::max(tolerance, 0x1p-16 * std::abs(sum)))
+  if (depth >= refinement.deepest || std::abs(sum - whole) <= std::max(tolerance, refinement.noise * std::abs(sum)))
     return sum;
   sum = 0.0;
   for (int i = 0; i < 4; ++i)
-    sum += refine_square(f, corner[i], corner[i] + middle - low, 0.5 * tolerance, part[i], depth + 1);
+    sum += refine_square(f, corner[i], corner[i] + middle - low, 0.5 * tolerance, part[i], refinement, depth + 1);
   return sum;
 }
 
 // Starts from cells x cells, so that no narrow peak falls between the nodes of the first guess.
 inline double integrate_square(const SquareFunction &f, int cells, double tolerance, glm::dvec2 low = glm::dvec2(0.0),
-                               glm::dvec2 high = glm::dvec2(1.0)) {
+                               glm::dvec2 high = glm::dvec2(1.0), const Refinement &refinement = {}) {
   const glm::dvec2 size = (high - low) / static_cast<double>(cells);
   double sum = 0.0;
   for (int i = 0; i < cells; ++i)
     for (int j = 0; j < cells; ++j) {
       const glm::dvec2 corner = low + size * glm::dvec2(i, j);
-      sum += refine_square(f, corner, corner + size, tolerance, gauss_square(f, corner, corner + size));
+      sum += refine_square(f, corner, corner + size, tolerance, gauss_square(f, corner, corner + size), refinement);
     }
   return sum;
 }

@@ -72,6 +72,57 @@ TEST(Fresnel, MatchesMpmath) {
     EXPECT_NEAR(fresnel_dielectric(v.cos_i, v.eta) / v.expected, 1.0, kUlp + 1e-8) << v.cos_i << " " << v.eta;
 }
 
+// The factored form, in which no equal numbers are subtracted, in long double.
+long double factored_fresnel(long double c, long double n) {
+  if (n >= 1.0l) {
+    const long double e = 1.0l / n, d = (n - 1.0l) * (n + 1.0l) * e * e, g = std::sqrt(e * c * e * c + d);
+    const long double rs = -d / ((e * c + g) * (e * c + g)), p = c + e * g, rp = d * (c * c * (1.0l + e * e) - e * e) / (p * p);
+    return 0.5l * (rs * rs + rp * rp);
+  }
+  const long double d = (1.0l - n) * (1.0l + n), g2 = c * c - d;
+  if (!(g2 > 0.0l))
+    return 1.0l;
+  const long double g = std::sqrt(g2), s = c + g, p = n * n * c + g;
+  const long double rs = d / (s * s), rp = d * (1.0l - c * c * (1.0l + n * n)) / (p * p);
+  return 0.5l * (rs * rs + rp * rp);
+}
+
+TEST(Fresnel, IsRightForEveryIndexAtEveryAngle) {
+  for (const float n : {1.0f + 0x1p-23f, 1.0f + 0x1p-20f, 1.00001f, 1.001f, 1.33f, 1.5f, 2.5f, 1e3f, 1e9f, 1e19f, 3e38f, 0.5f,
+                        0.9f, 0.999f, 1.0f - 0x1p-20f, 1.0f - 0x1p-24f})
+    for (int i = 1; i <= 300; ++i) {
+      // Evenly in the angle, and 1e-5 from grazing.
+      const float c = i == 300 ? 1e-5f : std::cos(float(i) * (0.5f * kPi / 300.0f));
+      const long double expected = factored_fresnel(c, n);
+      // As MatchesMpmath; near the critical angle what cancels in the root of n < 1 cancels there too, 2^-52 of c^2.
+      const long double left = n < 1.0f ? static_cast<long double>(c) * c - (1.0l - n) * (1.0l + n) : 1.0l;
+      const double critical = left > 0.0l ? double(0x1p-50l / left) : 0.0;
+      EXPECT_NEAR(double(fresnel_dielectric(c, n) / expected), 1.0, kUlp + 1e-8 + critical) << c << " " << n;
+      // What goes through keeps its digits where little does.
+      if (expected < 1.0l) {
+        EXPECT_NEAR(double(fresnel(c, n).transmittance / (1.0l - expected)), 1.0,
+                    kUlp + 1e-8 + critical + 0x1p-50 / double(1.0l - expected))
+            << c << " " << n;
+      }
+    }
+}
+
+TEST(Fresnel, TotalReflectionBeginsAtTheCriticalAngle) {
+  for (const float n : {0.1f, 0.5f, 2.0f / 3.0f, 0.9f, 1.0f - 0x1p-20f, 1.0f - 0x1p-24f}) {
+    // The floats on both sides of the critical cosine.
+    const double critical = std::sqrt((1.0 - double{n}) * (1.0 + double{n}));
+    float below = float(critical);
+    if (double{below} >= critical)
+      below = std::nextafter(below, 0.0f);
+    const float above = std::nextafter(below, 1.0f);
+    EXPECT_EQ(fresnel(below, n).reflectance, 1.0f) << n;
+    EXPECT_EQ(fresnel(below, n).cos_t, 0.0f) << n;
+    EXPECT_EQ(fresnel(below, n).transmittance, 0.0f) << n;
+    EXPECT_GT(fresnel(std::nextafter(above, 1.0f), n).cos_t, 0.0f) << n;
+    EXPECT_LT(fresnel(std::nextafter(above, 1.0f), n).reflectance, 1.0f) << n;
+  }
+}
+
 TEST(Fresnel, TakesTheEndsOfItsRange) {
   const float infinity = std::numeric_limits<float>::infinity();
   for (float c : {0.0f, 1e-38f, 1e-6f, 0.5f, 1.0f}) {

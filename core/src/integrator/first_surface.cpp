@@ -7,17 +7,18 @@
 
 namespace lancer {
 
-namespace {
-
-// The lobes' normals, each with its weight.
-glm::vec3 mean_normal(const Bsdf &bsdf) {
+glm::vec3 mean_normal(const Bsdf &bsdf, bool diffuse_only) {
   glm::vec3 sum(0.0f);
   for (int i = 0; i < bsdf.count; ++i)
-    sum += bsdf.frames[bsdf.lobes[i].frame].n * mean(bsdf.lobes[i].color);
-  return sum == glm::vec3(0.0f) ? bsdf.ns : glm::normalize(sum);
+    if (!diffuse_only || bsdf.lobes[i].component == Component::Diffuse)
+      sum += bsdf.frames[bsdf.lobes[i].frame].n * mean(bsdf.lobes[i].color);
+  const float size = largest(glm::abs(sum));
+  if (!std::isnormal(size))
+    return bsdf.ns;
+  // The square of a very dark or bright colour is no float: bring the sum to about 1, which changes no other bit.
+  const int exponent = std::ilogb(size);
+  return glm::normalize(glm::vec3(std::ldexp(sum.x, -exponent), std::ldexp(sum.y, -exponent), std::ldexp(sum.z, -exponent)));
 }
-
-} // namespace
 
 void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result) {
   result.depth = float(t / scene.normalisation.scale);

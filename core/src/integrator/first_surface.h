@@ -7,6 +7,9 @@
 
 namespace lancer {
 
+// The normals of the lobes, or of those that are diffuse, each with its weight; the shading normal where none has any.
+glm::vec3 mean_normal(const Bsdf &bsdf, bool diffuse_only = false);
+
 // Fills where the camera ray has met a surface: depth, position and indices. t: of the camera ray.
 void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result);
 // As if it had met nothing.

@@ -188,11 +188,7 @@ void PathIntegrator<Shapes, Layers>::record(const Path &path, const Surface &sur
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::sample_occlusion(const Path &path, const Surface &surface, const VertexNumbers &u) {
   // Look around the normal of what is diffuse, with the weight of a cosine.
-  glm::vec3 n(0.0f);
-  for (int i = 0; i < point_.bsdf.count; ++i)
-    if (point_.bsdf.lobes[i].component == Component::Diffuse)
-      n += point_.bsdf.frames[point_.bsdf.lobes[i].frame].n * mean(point_.bsdf.lobes[i].color);
-  n = n == glm::vec3(0.0f) ? point_.bsdf.ns : glm::normalize(n);
+  const glm::vec3 n = mean_normal(point_.bsdf, true);
   const glm::vec3 local = warp_cosine_hemisphere({u[kVertexBsdf], u[kVertexBsdf + 1]});
   const double distance = settings_.occlusion_distance * scene_.normalisation.scale;
   Ray ray =

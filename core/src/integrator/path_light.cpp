@@ -151,7 +151,8 @@ void PathIntegrator<Shapes, Layers>::sample_light(const Path &path, const Surfac
     return;
   // The BSDF finds the same light by the samples that do not pass straight on.
   const float weight = light.delta ? 1.0f : mis_weight(light.pdf, double(value.pdf) * (1.0 - pass));
-  const glm::vec3 contribution = path.beta * f * light.radiance * float(double(weight) / light.pdf);
+  // What is scattered of a density is of the order of 1, however narrow the lobe and however bright the light.
+  const glm::vec3 contribution = path.beta * (f * float(double(weight) / light.pdf)) * light.radiance;
   WaitingLight waiting{.slot = path.slot, .indirect = path.scatterings > 0};
   if (passes_.wanted()) {
     for (size_t component = 0; component < 2; ++component)

@@ -199,7 +199,8 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
                select(has_bit(hidden, LANCER_RAY_TRANSMISSION), dark, value.transmission);
   // The BSDF finds the same light, unless it is a single direction.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
-  const V3 contribution = load3(block.beta, first) * f * load3(block.light_radiance, first) * narrow(widen(weight) / pdf);
+  // What is scattered of a density is of the order of 1, however narrow the lobe and however bright the light.
+  const V3 contribution = load3(block.beta, first) * (f * narrow(widen(weight) / pdf)) * load3(block.light_radiance, first);
   store3(block.contribution, first, contribution);
   block.lit |= placed_bits((pdf > D(0.0)) & !black(f), first);
   block.lifted |= placed_bits(lifted(load(block.terminator + first), ns, ng, wi), first);

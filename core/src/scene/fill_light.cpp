@@ -11,6 +11,13 @@ namespace lancer {
 
 namespace {
 
+// Where a disk is so bright that float has no number for its radiance it is as good as a point, and a small sun a direction.
+constexpr double kBrightestDisk = 1e36;
+
+double disk_radiance(const glm::vec3 &emission, double radius) {
+  return double(std::max({emission.x, emission.y, emission.z})) / (glm::pi<double>() * radius * radius);
+}
+
 class LightReader {
 public:
   LightReader(std::string object, Messages &messages) : object_(std::move(object)), messages_(messages) {}
@@ -21,6 +28,15 @@ public:
       messages_.add(object_, std::string(what) + " " + to_text(value) + " was replaced by " + to_text(used));
     }
     return used;
+  }
+
+  // 0 where a float could not hold how bright a disk of that radius is.
+  float not_too_small(const char *what, float value, double radius, const glm::vec3 &emission) {
+    if (!(radius > 0.0) || !(disk_radiance(emission, radius) > kBrightestDisk))
+      return value;
+    messages_.add(object_,
+                  std::string(what) + " " + to_text(value) + " was replaced by 0: so small a lamp would be too bright");
+    return 0.0f;
   }
 
   glm::vec3 read(const char *what, const float value[3]) {
@@ -56,11 +72,16 @@ void add_light(Description &description, const lancer_light &source) {
     LightReader reader(object, description.messages);
     light.emission = reader.read("emission", source.emission);
     light.radius = reader.read("radius", source.radius, 0.0f, kBrightest);
+    if (light.kind == LightKind::Point || light.kind == LightKind::Spot)
+      light.radius = reader.not_too_small("radius", light.radius, double(light.radius), light.emission);
     light.soft_falloff = source.soft_falloff != 0;
     light.spot_angle = reader.read("spot angle", source.spot_angle, 0.0f, glm::two_pi<float>());
     light.spot_blend = reader.read("spot blend", source.spot_blend, 0.0f, 1.0f);
     light.spot_cosine = source.spot_cosine != 0;
     light.sun_angle = reader.read("sun angle", source.sun_angle, 0.0f, glm::pi<float>());
+    if (light.kind == LightKind::Sun)
+      light.sun_angle =
+          reader.not_too_small("sun angle", light.sun_angle, std::sin(0.5 * double(light.sun_angle)), light.emission);
     light.sun_flat = source.sun_flat != 0;
     // A spot needs some stretch; whoever leaves it 0 has a round one in mind.
     const float smallest = light.kind == LightKind::Spot ? 1e-6f : 0.0f;

@@ -1,0 +1,349 @@
+"""No parameter of surface or light is too extreme: finite pictures, the same from every kernel, at limits or closed forms."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+import tiny_scenes
+from bindings.abi import AreaShape, Features, Integrator, LightKind, LobeKind
+from bindings.enums import Distribution, Rules
+from bindings.session import Session
+from bindings.snapshot import Instance, Light, Lobe, Material, Principled
+from tiny_scenes import move, rotate_x, scale
+
+WHITE = (1.0, 1.0, 1.0)
+BOTH = (Integrator.PATH, Integrator.CLASSIC)
+
+
+def picture(snapshot, **settings):
+    """RGB of all pixels, and what was said; each sample must have been a number."""
+    with Session.upload(tiny_scenes.with_settings(snapshot, **settings)) as session:
+        assert session.render_all()
+        pixels, statistics, messages = session.read()[..., :3].astype(float), session.statistics(), session.messages()
+    assert np.all(np.isfinite(pixels)) and np.all(pixels >= 0.0)
+    assert statistics.invalid_samples == 0
+    return pixels, messages
+
+
+def pictures(snapshot):
+    """By both integrators; the kernel for what the scene uses and the general one must agree in every bit."""
+    results = []
+    for integrator in BOTH:
+        special, said = picture(snapshot, integrator=integrator, features=Features.SCENE)
+        general, _ = picture(snapshot, integrator=integrator, features=Features.ALL)
+        assert np.array_equal(special, general), integrator
+        results.append(special)
+    return results, said
+
+
+def room(material, lights, world=0.0, extra=(), materials=(), pixels=8, **settings):
+    """A sphere and a slanting square of the material over a grey floor."""
+    camera = tiny_scenes.Camera(
+        matrix=tiny_scenes.look_at((2, -4, 2.5), (0, 0, 0.7)), width=pixels, height=pixels, window=(-0.35, 0.35, -0.35, 0.35)
+    )
+    things = [tiny_scenes.plane(0), tiny_scenes.sphere(1, move(z=1)), square(1, move(-1.2, -0.8, 0.6) @ rotate_x(1.1)), *extra]
+    settings = {"samples": 16, "max_bounces": 8, **settings}
+    return tiny_scenes.scene(
+        things, [tiny_scenes.lambert(0.6), material, *materials], lights, [tiny_scenes.quad(1.0)], world, camera, **settings
+    )
+
+
+def square(material, matrix):
+    return Instance(mesh=0, matrix=matrix, materials=(material,))
+
+
+def lamp(kind=LightKind.POINT, emission=1.0, matrix=None, **fields):
+    return Light("lamp", move(1, -1, 3) if matrix is None else matrix, kind, emission=(emission,) * 3, **fields)
+
+
+def one(kind, **fields):
+    return Material(kind.name, lobes=(Lobe(kind, color=WHITE, tangent=(1, 0, 0), **fields),))
+
+
+ROUGHNESSES = [0.0, 1e-6, 1e-3, 0.7, 1.0]
+IORS = [1.0, 1.0 + 2.0**-23, 0.9, 1.5, 1e3, 1e19]
+
+
+def materials_of(kind, roughness, ior):
+    """Every lobe of a kind that these numbers describe."""
+    if kind == LobeKind.PRINCIPLED:
+        for rules in (Rules.BLENDER_3, Rules.BLENDER_45):
+            fields = dict(roughness=roughness, ior=ior, transmission=0.5, coat=1.0, coat_ior=ior, metallic=0.3, sheen=0.5)
+            tint = (0, 0, 0) if rules == Rules.BLENDER_3 else WHITE
+            principled = Principled(rules=rules, base_color=WHITE, specular_tint=tint, anisotropic=0.9, **fields)
+            yield Material("principled", lobes=(Lobe(kind, rules=rules, principled=principled, tangent=(1, 0, 0)),))
+        return
+    rough = (Distribution.MULTI_GGX, Distribution.BECKMANN)
+    many = {LobeKind.GLOSSY: (*rough, Distribution.ASHIKHMIN_SHIRLEY), LobeKind.GLASS: rough, LobeKind.REFRACTION: rough}
+    for distribution in many.get(kind, (Distribution.GGX,)):
+        yield one(kind, roughness=roughness, ior=ior, distribution=distribution)
+
+
+@pytest.mark.parametrize("kind", LobeKind, ids=lambda kind: kind.name)
+def test_every_lobe_at_every_roughness_and_index(library, kind):
+    """White lobes under a white sky: light, and no more of it than the sky has."""
+    bends = kind in (LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.PRINCIPLED)
+    for roughness in ROUGHNESSES:
+        for ior in IORS if bends else [1.5]:
+            for material in materials_of(kind, roughness, ior):
+                lights = [lamp(emission=5.0, radius=0.1), lamp(LightKind.SUN, matrix=rotate_x(0.5), sun_angle=0.01)]
+                pictures(room(material, lights, world=0.3, pixels=4))
+                (path, _), _ = pictures(room(material, [], world=1.0, pixels=4))
+                # Sheen, coat and base of Blender 3 are a sum that may pass 1; else only noise does, of 16 means.
+                limit = 1.5 if kind == LobeKind.PRINCIPLED else 1.05
+                assert path.mean() <= limit, (roughness, ior, material)
+
+
+def glowing(things, materials, **camera):
+    """Squares that glow unevenly around some things: pictures without noise where things are smooth."""
+    glow = [Material(f"glow {i}", lobes=(), emission=(0.3 * i + 0.2, 1.0 / (i + 1), 0.5)) for i in range(6)]
+    away = [move(x, y, z) for x, y, z in ((0, 4, 0), (0, -9, 0), (5, 0, 0), (-5, 0, 0), (0, 0, 5), (0, 0, -5))]
+    walls = [Instance(mesh=0, matrix=m @ turn, materials=(i,)) for i, (m, turn) in enumerate(zip(away, TURNS, strict=True))]
+    view = tiny_scenes.Camera(matrix=tiny_scenes.look_at((0, -6, 0), (0, 0, 0)), width=24, height=24, window=(-0.3, 0.3) * 2)
+    moved = [dataclasses.replace(thing, materials=tuple(6 + m for m in thing.materials)) for thing in things]
+    return tiny_scenes.scene(walls + moved, glow + materials, [], [tiny_scenes.quad(8.0)], 0.1, view, max_bounces=12, **camera)
+
+
+TURNS = [rotate_x(math.pi / 2), rotate_x(-math.pi / 2)]
+TURNS += [tiny_scenes.rotate_y(-math.pi / 2), tiny_scenes.rotate_y(math.pi / 2), rotate_x(math.pi), np.eye(4)]
+
+
+def same(a, b, share=0.99, rtol=1e-5):
+    """All but pixels on an edge, which rounding may move to its other side: 24 x 24 pixels cross few."""
+    assert np.mean(np.all(np.isclose(a, b, rtol=rtol, atol=1e-7), axis=-1)) >= share
+
+
+@pytest.mark.parametrize("index", [1.0, 1.0 + 2.0**-23])
+@pytest.mark.parametrize("kind", [LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION], ids=lambda kind: kind.name)
+def test_index_one_is_not_there(library, kind, index):
+    """With the smallest index above 1 rays bend by less than 5e-4 at the very rim, and elsewhere by 1e-7.
+
+    CLASSIC shares rays by a table of albedos as Cycles has it, where that index counts as 15 sqrt(2^-24) of the first step.
+    """
+    for roughness in (0.0, 0.5):
+        (path, classic), _ = pictures(glowing([tiny_scenes.sphere(0)], [one(kind, roughness=roughness, ior=index)], samples=1))
+        (empty, _), _ = pictures(glowing([], [], samples=1))
+        same(path, empty)
+        same(classic, empty, rtol=4e-3)
+
+
+@pytest.mark.parametrize("ior", [1e19, 3e38, np.inf])
+def test_index_without_end_is_a_mirror(library, ior):
+    mirror, _ = pictures(glowing([tiny_scenes.sphere(0)], [one(LobeKind.MIRROR)], samples=1))
+    for kind in (LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.BECKMANN):
+        got, _ = pictures(glowing([tiny_scenes.sphere(0)], [one(kind, roughness=0.0, ior=ior)], samples=1))
+        same(got[0], mirror[0])
+        same(got[1], mirror[1])
+
+
+@pytest.mark.parametrize("kind", [LobeKind.GLOSSY, LobeKind.BECKMANN], ids=lambda kind: kind.name)
+def test_smallest_roughness_is_none(library, kind):
+    sphere = [tiny_scenes.sphere(0)]
+    mirror, _ = pictures(glowing(sphere, [one(LobeKind.MIRROR)], samples=1))
+    for roughness in (0.0, 1e-6, 1e-3 if kind == LobeKind.GLOSSY else 1e-5):
+        got, _ = pictures(glowing(sphere, [one(kind, roughness=roughness, ior=np.inf)], samples=1))
+        same(got[0], mirror[0])
+        same(got[1], mirror[1])
+
+
+@pytest.mark.parametrize("lobe", [(LobeKind.GLOSSY, 0.005), (LobeKind.BECKMANN, 2.1e-5), (LobeKind.BECKMANN, 1e-3)])
+def test_small_roughness_is_nearly_none(library, lobe):
+    """Lobes of some 1e-3 radians, before pixels of 0.025: an edge blurs by a tenth of a pixel at most, and half of them cross
+    one; what is left of 64 samples' noise there is less."""
+    kind, roughness = lobe
+    sphere = [tiny_scenes.sphere(0)]
+    mirror, _ = pictures(glowing(sphere, [one(LobeKind.MIRROR)], samples=64))
+    got, _ = pictures(glowing(sphere, [one(kind, roughness=roughness, ior=np.inf)], samples=64))
+    assert np.abs(got[0] - mirror[0]).mean() < 0.05 * mirror[0].mean()
+
+
+def test_black_is_black(library):
+    """A black metal and a black Principled still shine along their rims, by definition."""
+    lights = [lamp(emission=1e30), lamp(LightKind.SUN, emission=1e30, matrix=rotate_x(0.5))]
+    kinds = [kind for kind in LobeKind if kind not in (LobeKind.CONDUCTOR, LobeKind.PRINCIPLED)]
+    black = [Material("black", lobes=(Lobe(kind, color=(0, 0, 0)),)) for kind in kinds]
+    for material in black:
+        snapshot = tiny_scenes.scene([tiny_scenes.plane()], [material], lights, camera=tiny_scenes.pencil((3, 4, 5)))
+        got, _ = pictures(snapshot)
+        assert not np.any(got), material
+
+
+@pytest.mark.parametrize("passes", [None, "all"])
+@pytest.mark.parametrize("color", [1e-44, 1e-30, 1e-10, 1e10, 1e30])
+def test_colours_far_from_one(library, color, passes):
+    """Light is linear in the colour, and no pass loses its way: the normal keeps its length."""
+    material = dataclasses.replace(tiny_scenes.lambert(color), emission=(1, 1, 1))
+    fields = {} if passes is None else {"passes": tuple(tiny_scenes.Pass)}
+    tilted = rotate_x(0.7)
+    snapshot = tiny_scenes.scene([tiny_scenes.plane(0, tilted)], [material], [lamp()], camera=tiny_scenes.pencil(), **fields)
+    pictures(snapshot)
+    if passes:
+        normal = tiny_scenes.render(snapshot, tiny_scenes.Pass.NORMAL)[0, 0]
+        assert np.allclose(normal, tilted[:3, 2], atol=1e-6), normal
+
+
+LAMPS = {
+    "point": lamp(),
+    "ball": lamp(radius=0.3, soft_falloff=False),
+    "disk": lamp(radius=0.3),
+    "spot": lamp(LightKind.SPOT, spot_angle=2.0, radius=0.1),
+    "sun": lamp(LightKind.SUN, matrix=rotate_x(0.5), sun_angle=0.1),
+    "area": lamp(LightKind.AREA, size=(0.5, 0.5)),
+    "narrow area": lamp(LightKind.AREA, size=(2.5, 2.5), spread=0.3, shape=AreaShape.ELLIPSE),
+}
+
+
+@pytest.mark.parametrize("name", [*LAMPS, "mesh", "sphere", "sky"])
+def test_emission_is_linear_to_its_ends(library, name):
+    """1e-30 and 1e30 times the light give as many times the picture, on matt and on all but smooth surfaces."""
+
+    def lit(material, power):
+        glow = Material("glow", lobes=(), emission=(power,) * 3)
+        if name == "mesh":
+            return room(material, [], extra=[square(2, move(1, -1, 3) @ rotate_x(math.pi))], materials=[glow])
+        if name == "sphere":
+            return room(material, [], extra=[tiny_scenes.sphere(2, move(1, -1, 3) @ scale(0.2))], materials=[glow])
+        if name == "sky":
+            return room(material, [], world=power)
+        return room(material, [dataclasses.replace(LAMPS[name], emission=(power,) * 3)])
+
+    for material in (tiny_scenes.lambert(0.8), tiny_scenes.beckmann(1.0, 3e-5, np.inf), one(LobeKind.GLASS, roughness=0.05)):
+        plain, _ = pictures(lit(material, 1.0))
+        for power in (1e-20, 1e30):
+            for got, want in zip(pictures(lit(material, power))[0], plain, strict=True):
+                # Some dozen roundings; roulette looks at shares only, so every path is the same.
+                assert np.allclose(got / power, want, rtol=1e-5, atol=1e-12)
+        assert not np.any(pictures(lit(material, 0.0))[0][0])
+
+
+@pytest.mark.parametrize("radius", [1e-30, 1e-12, 1e-6])
+def test_smallest_lamps_are_points(library, radius):
+    """Even where the radiance of so bright a disk is no float: then it is said."""
+    for kind, field in ((LightKind.POINT, "radius"), (LightKind.SPOT, "radius"), (LightKind.SUN, "sun_angle")):
+        for power in (1.0, 1e30):
+            fields = dict(kind=kind, emission=power, spot_angle=2.0, matrix=move(1, -1, 3) @ rotate_x(-0.2))
+            point, _ = pictures(room(tiny_scenes.lambert(0.8), [lamp(**fields)]))
+            for soft in (True, False):
+                tiny, said = pictures(room(tiny_scenes.lambert(0.8), [lamp(**fields, **{field: radius}, soft_falloff=soft)]))
+                # Directions to its parts differ by 1e-6; shadows have an edge of that width.
+                for got, want in zip(tiny, point, strict=True):
+                    assert np.allclose(got, want, rtol=2e-4), (kind, power, soft)
+                if power / (math.pi * (radius if field == "radius" else radius / 2) ** 2) > 1e36:
+                    assert any("was replaced by 0" in line for line in said), said
+
+
+@pytest.mark.parametrize("ratio", [1.0, 0.1, 1e-3])
+def test_lamp_touches_the_floor(library, ratio):
+    """A ball that lies on a plane: seen whole from everywhere on it, E = I cos / d^2; near the contact, too."""
+    radius = 0.5
+    ball = lamp(emission=3.0, matrix=move(z=radius), radius=radius, soft_falloff=False)
+    x = ratio * radius
+    camera = tiny_scenes.pencil((x + 1e3, 0, 1e-2), (x, 0, 0), width=1e-9, pixels=8)
+    # The camera's ray comes in below the ball.
+    snapshot = tiny_scenes.scene([tiny_scenes.plane()], [tiny_scenes.lambert()], [ball], camera=camera, samples=256)
+    (path, _), _ = pictures(tiny_scenes.with_settings(snapshot, max_bounces=0))
+    d2 = x * x + radius * radius
+    want = 3.0 * radius / d2**1.5 / math.pi
+    error = path[..., 0].std(ddof=1) / 8
+    assert error < 0.01 * want and abs(path[..., 0].mean() - want) <= 4 * error + 1e-4 * want
+
+
+def test_lamp_within_a_closed_mesh(library):
+    """Outside it is dark; inside, the wall of a hollow ball has what one reflection after the other leaves."""
+    import trimesh
+
+    albedo, power = 0.5, 2.0
+    shell = tiny_scenes.MeshData.from_trimesh(trimesh.creation.icosphere(subdivisions=3))
+    light = lamp(emission=power, matrix=np.eye(4))
+    box = [Instance(mesh=0)]
+    outside = tiny_scenes.scene(
+        box, [tiny_scenes.lambert(albedo)], [light], [shell], camera=tiny_scenes.pencil((0, 0, 3)), samples=64, max_bounces=3
+    )
+    assert not np.any(pictures(outside)[0])
+    hollow = tiny_scenes.scene(
+        [tiny_scenes.sphere()],
+        [tiny_scenes.lambert(albedo)],
+        [light],
+        camera=tiny_scenes.pencil((0, 0, 0), (0, 0, -1), pixels=16),
+    )
+    for bounces in (0, 1, 4):
+        (path, _), _ = pictures(tiny_scenes.with_settings(hollow, max_bounces=bounces, samples=64))
+        want = power * albedo / math.pi * (1 - albedo ** (bounces + 1)) / (1 - albedo)
+        error = path[..., 0].std(ddof=1) / 16
+        # The wall is seen at distance 1 but for roundings of directions.
+        assert error < 1e-2 * want and abs(path[..., 0].mean() - want) <= 4 * error + 1e-5 * want
+
+
+@pytest.mark.parametrize("others", [0, 6])
+def test_dim_lamp_beside_a_blinding_one(library, others):
+    """1e-6 W is found where 1e12 W cannot shine, with few lamps and with a tree of them; together they add up."""
+    watt = 1 / (4 * math.pi**2)
+    dim = lamp(emission=1e-6 * watt, matrix=move(z=2))
+    blinding = lamp(emission=1e12 * watt, matrix=move(z=-1))
+    dark = [lamp(emission=1e12 * watt, matrix=move(0.1 * i, 0, -2)) for i in range(others)]
+    floor = [tiny_scenes.plane()], [tiny_scenes.lambert()]
+    camera = tiny_scenes.pencil((3, 4, 5), pixels=4)
+    (path, classic), _ = pictures(tiny_scenes.scene(*floor, [dim, blinding, *dark], camera=camera, samples=16))
+    want = 1e-6 * watt / 4 / math.pi
+    # Float roundings of positions and of the product.
+    assert np.allclose(path, want, rtol=1e-5) and np.allclose(classic, want, rtol=1e-5)
+    above = dataclasses.replace(blinding, matrix=move(z=1))
+    (path, classic), _ = pictures(tiny_scenes.scene(*floor, [dim, above, *dark], camera=camera, samples=1024))
+    both = want + 1e12 * watt / math.pi
+    assert np.allclose(path, both, rtol=1e-5) and np.allclose(classic, both, rtol=1e-5)
+
+
+# What each socket is asked on, and a value outside its range for which another one stands in.
+SOCKETS = {
+    "color": (LobeKind.LAMBERT, -1.0),
+    "weight": (LobeKind.GLOSSY, -0.5),
+    "roughness": (LobeKind.GLOSSY, 2.0),
+    "ior": (LobeKind.GLASS, -1.5),
+    "shininess": (LobeKind.PHONG, -3.0),
+    "edge": (LobeKind.CONDUCTOR, 7.0),
+    "anisotropy": (LobeKind.GLOSSY, -4.0),
+    "rotation": (LobeKind.GLOSSY, np.inf),
+}
+
+
+@pytest.mark.parametrize("socket", SOCKETS)
+def test_sockets_beyond_their_range(library, socket):
+    """Another number stands in, it is said, and the picture is the one of that number."""
+    kind, wrong = SOCKETS[socket]
+    lights = [lamp(emission=5.0, radius=0.1)]
+    for value in (wrong, np.nan, -np.inf):
+        lobe = dataclasses.replace(one(kind).lobes[0], **{socket: value})
+        got, said = pictures(room(Material("paint", lobes=(lobe,)), lights, world=0.3, pixels=4))
+        assert said and all(line.startswith("material 'paint': ") and "was replaced by" in line for line in said), said
+        instead = dataclasses.replace(lobe, **{socket: float(said[0].rsplit(" ", 1)[1])})
+        want, silence = pictures(room(Material("paint", lobes=(instead,)), lights, world=0.3, pixels=4))
+        assert np.array_equal(got, want) and silence == []
+
+
+@pytest.mark.parametrize("kind", [kind for kind in LobeKind if kind >= LobeKind.DIFFUSE], ids=lambda kind: kind.name)
+def test_nodes_that_leave_the_range(library, kind):
+    """Textures may drive any socket anywhere: a picture comes out, and none that shines by itself."""
+    from bindings.enums import Coordinate, NodeKind, VectorOperation
+    from bindings.snapshot import Node, NodeRef
+
+    sockets = ["weight", "normal", "tangent"]
+    sockets += (
+        Principled.PARAMETERS
+        if kind == LobeKind.PRINCIPLED
+        else ["color", "roughness", "ior", "edge", "anisotropy", "rotation"]
+    )
+    for socket in sockets:
+        for value in (-1.0, -0.0, 2.0, 1e-40):
+            nodes = (
+                Node(kind=NodeKind.COORDINATE, option=Coordinate.GENERATED),
+                Node(kind=NodeKind.VECTOR_MATH, option=VectorOperation.MULTIPLY_ADD, inputs=(NodeRef(0), 0.0, (value,) * 3)),
+            )
+            lobe = Lobe(kind, tangent=(1, 0, 0))
+            if kind == LobeKind.PRINCIPLED:
+                lobe = dataclasses.replace(lobe, principled=Principled(coat=0.5, sheen=0.5, transmission=0.3, metallic=0.3))
+            if socket in Lobe.PARAMETERS and (kind != LobeKind.PRINCIPLED or socket not in Principled.PARAMETERS):
+                lobe = dataclasses.replace(lobe, **{socket: NodeRef(1)})
+            else:
+                lobe = dataclasses.replace(lobe, principled=dataclasses.replace(lobe.principled, **{socket: NodeRef(1)}))
+            pictures(room(Material("m", lobes=(lobe,), nodes=nodes), [lamp(radius=0.1)], world=0.3, pixels=4, samples=8))
