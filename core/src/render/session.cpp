@@ -1,6 +1,7 @@
 #include "render/session.h"
 
 #include "scene/error.h"
+#include "scene/fill_camera.h"
 #include "scene/memory.h"
 
 namespace lancer {
@@ -16,6 +17,7 @@ constexpr uint64_t kTilesEach = 64;
 Camera normalised(Camera camera, const Normalisation &normalisation) {
   camera.to_world.translation = normalisation.to_normalised(camera.to_world.translation);
   camera.scale_lengths(normalisation.scale);
+  check_reach(camera);
   return camera;
 }
 
