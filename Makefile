@@ -45,7 +45,7 @@ test: packages-test python-test core-tests addon ## all tests but the slow ones
 	@echo "== blender_tests"
 	@$(python) -m pytest -q blender_tests -m "not slow"
 
-test-slow: packages-test python-test build addon ## the tests that take minutes
+test-slow: packages-test python-test core-tests addon ## the tests that take minutes
 	@echo "== blender_tests, slow"
 	@$(python) -m pytest -q blender_tests -m slow
 
