@@ -40,7 +40,7 @@ struct alignas(64) BvhNode {
   uint32_t order[8];
 };
 
-// Four triangles, corner by corner. Unused lanes repeat one point, which no ray meets.
+// Four triangles, corner by corner. Unused lanes are undefined, which no ray meets.
 struct alignas(32) TriangleBlock {
   float corner[3][3][4]; // corner, axis, lane
   uint32_t primitive[4];

@@ -30,11 +30,12 @@ LANCER_SIMD uint32_t intersect_block(const TriangleBlock &block, const MeshRay &
   uint32_t met = e.met;
   if (met == 0)
     return 0;
-  const D4 depth = e.wa * (sz * z[0]) + e.wb * (sz * z[1]) + e.wc * (sz * z[2]);
-  store4(hits.t, splat4(s.t0) + (depth / e.det) * splat4(s.unit));
+  const D4 det = sum_in_any_order(e.wa, e.wb, e.wc);
+  const D4 depth = sum_in_any_order(e.wa * (sz * z[0]), e.wb * (sz * z[1]), e.wc * (sz * z[2]));
+  store4(hits.t, splat4(s.t0) + (depth / det) * splat4(s.unit));
   store4(hits.wb, e.wb);
   store4(hits.wc, e.wc);
-  store4(hits.det, e.det);
+  store4(hits.det, det);
   for (uint32_t rest = met; rest != 0; rest &= rest - 1) {
     const int i = __builtin_ctz(rest);
     const double t = hits.t[i];

@@ -9,6 +9,9 @@
 namespace lancer {
 namespace {
 
+LANCER_SIMD void load_lanes(const double *p, D8 &a) { a = load8(p); }
+LANCER_SIMD void store_lanes(double *p, D8 a) { store8(p, a); }
+
 // Where two lanes meet four triangles.
 struct alignas(64) LaneHits {
   double t[8], wb[8], wc[8], det[8];
@@ -32,12 +35,13 @@ LANCER_SIMD uint32_t intersect_pair(const D8 corner[3][3], const PacketRays &r, 
   if (met == 0)
     return 0;
   const D8 sz = join(r.upright, lanes);
-  const D8 depth = edge.wa * (sz * z[0]) + edge.wb * (sz * z[1]) + edge.wc * (sz * z[2]);
-  const D8 t = join(r.t0, lanes) + (depth / edge.det) * join(r.unit, lanes);
+  const D8 det = sum_in_any_order(edge.wa, edge.wb, edge.wc);
+  const D8 depth = sum_in_any_order(edge.wa * (sz * z[0]), edge.wb * (sz * z[1]), edge.wc * (sz * z[2]));
+  const D8 t = join(r.t0, lanes) + (depth / det) * join(r.unit, lanes);
   store8(hits.t, t);
   store8(hits.wb, edge.wb);
   store8(hits.wc, edge.wc);
-  store8(hits.det, edge.det);
+  store8(hits.det, det);
   return met & less(join(e.tmin, lanes), t) & less(t, join(e.tmax, lanes)) & less_equal(t, join(limit, lanes));
 }
 

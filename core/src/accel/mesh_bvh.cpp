@@ -4,6 +4,7 @@
 #include "accel/bvh_split.h"
 #include "accel/parallel.h"
 
+#include <limits>
 #include <new>
 
 namespace lancer {
@@ -89,10 +90,10 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
       if (owned)
         bvh.owners[b] = tree.leaves[first].owner;
       for (uint32_t lane = 0; lane < 4; ++lane) {
-        const uint32_t triangle = tree.leaves[first + (lane < used ? lane : 0)].id;
-        block.primitive[lane] = lane < used ? triangle : kNone;
+        const uint32_t triangle = lane < used ? tree.leaves[first + lane].id : kNone;
+        block.primitive[lane] = triangle;
         for (int corner = 0; corner < 3; ++corner) {
-          const glm::vec3 p = mesh.vertex(triangle, lane < used ? corner : 0);
+          const glm::vec3 p = lane < used ? mesh.vertex(triangle, corner) : glm::vec3(std::numeric_limits<float>::quiet_NaN());
           for (int axis = 0; axis < 3; ++axis)
             block.corner[corner][axis][lane] = p[axis];
         }

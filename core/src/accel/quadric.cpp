@@ -1,6 +1,6 @@
 #include "accel/quadric.h"
 
-#include "accel/object_ray.h"
+#include "accel/edge_sides.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +104,9 @@ Interval unit_nappe(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
   c.add_square(o.x, 1.0);
   c.add_square(o.y, 1.0);
   c.add_square(0.5 * w, -1.0);
-  const glm::dvec3 m = glm::cross(glm::dvec3(o.x, o.y, -w), d);
+  // Along the cone's own lines this is next to nothing: it needs all of its digits.
+  const glm::dvec3 m(difference_of_products(o.y, d.z, -w, d.y), difference_of_products(-w, d.x, o.x, d.z),
+                     difference_of_products(o.x, d.y, o.y, d.x));
   const double across = 0.5 * std::hypot(m.x, m.y), around = std::abs(m.z);
   const double discriminant = (across - around) * (across + around);
   const double a = (d.x * d.x + d.y * d.y) - 0.25 * d.z * d.z;

@@ -41,6 +41,8 @@ LANCER_SIMD D8 operator+(D8 a, D8 b) { return {_mm512_add_pd(a.v, b.v)}; }
 LANCER_SIMD D8 operator-(D8 a, D8 b) { return {_mm512_sub_pd(a.v, b.v)}; }
 LANCER_SIMD D8 operator*(D8 a, D8 b) { return {_mm512_mul_pd(a.v, b.v)}; }
 LANCER_SIMD D8 operator/(D8 a, D8 b) { return {_mm512_div_pd(a.v, b.v)}; }
+LANCER_SIMD D8 lower(D8 a, D8 b) { return {_mm512_maskz_min_pd(0xff, a.v, b.v)}; }
+LANCER_SIMD D8 upper(D8 a, D8 b) { return {_mm512_maskz_max_pd(0xff, a.v, b.v)}; }
 LANCER_SIMD uint32_t less_equal(D8 a, D8 b) { return _mm512_cmp_pd_mask(a.v, b.v, _CMP_LE_OQ); }
 LANCER_SIMD uint32_t less(D8 a, D8 b) { return _mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ); }
 LANCER_SIMD uint32_t not_equal(D8 a, D8 b) { return _mm512_cmp_pd_mask(a.v, b.v, _CMP_NEQ_OQ); }
@@ -90,6 +92,8 @@ LANCER_SIMD D8 operator+(D8 a, D8 b) { return {a.lo + b.lo, a.hi + b.hi}; }
 LANCER_SIMD D8 operator-(D8 a, D8 b) { return {a.lo - b.lo, a.hi - b.hi}; }
 LANCER_SIMD D8 operator*(D8 a, D8 b) { return {a.lo * b.lo, a.hi * b.hi}; }
 LANCER_SIMD D8 operator/(D8 a, D8 b) { return {a.lo / b.lo, a.hi / b.hi}; }
+LANCER_SIMD D8 lower(D8 a, D8 b) { return {min4(a.lo, b.lo), min4(a.hi, b.hi)}; }
+LANCER_SIMD D8 upper(D8 a, D8 b) { return {max4(a.lo, b.lo), max4(a.hi, b.hi)}; }
 LANCER_SIMD uint32_t less_equal(D8 a, D8 b) { return less_equal(a.lo, b.lo) | less_equal(a.hi, b.hi) << 4; }
 LANCER_SIMD uint32_t not_equal(D8 a, D8 b) { return not_equal(a.lo, b.lo) | not_equal(a.hi, b.hi) << 4; }
 LANCER_SIMD uint32_t less(D8 a, D8 b) { return less_equal(a, b) & not_equal(a, b); }

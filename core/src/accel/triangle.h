@@ -2,7 +2,7 @@
 // The kernels of bvh_kernel.cpp do these operations in this order, four triangles at a time: the same bits.
 #pragma once
 
-#include "accel/object_ray.h"
+#include "accel/edge_sides.h"
 
 namespace lancer {
 
@@ -24,8 +24,8 @@ LANCER_INLINE Shear make_shear(const ObjectRay &ray) {
   return s;
 }
 
-// t, u, v of the point where the ray meets the triangle's interior, edges or corners; false where it does not.
-// Edge functions change sign exactly when their corners are swapped, so triangles that share an edge cannot both miss.
+// t, u, v of the point where the ray meets the triangle; false where it does not. t is the same bits for any order of the
+// corners. Edge functions change sign exactly when their corners are swapped, so of triangles that share an edge one is met.
 LANCER_INLINE bool intersect_triangle(const ObjectRay &ray, const Shear &s, const float a[3], const float b[3],
                                       const float c[3], double &t, double &u, double &v) {
   // Shear the corners into the ray's frame.
@@ -35,20 +35,21 @@ LANCER_INLINE bool intersect_triangle(const ObjectRay &ray, const Shear &s, cons
   const double cx = (c[s.kx] - ray.o[s.kx]) - s.sx * cz, cy = (c[s.ky] - ray.o[s.ky]) - s.sy * cz;
 
   // Keep the triangle if the origin lies on one side of all three edges.
-  const double wa = cx * by - cy * bx;
-  const double wb = ax * cy - ay * cx;
-  const double wc = bx * ay - by * ax;
-  if (!((wa >= 0.0 && wb >= 0.0 && wc >= 0.0) || (wa <= 0.0 && wb <= 0.0 && wc <= 0.0)))
+  double w[3] = {cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
+  if (!((w[0] >= 0.0 && w[1] >= 0.0 && w[2] >= 0.0) || (w[0] <= 0.0 && w[1] <= 0.0 && w[2] <= 0.0)))
     return false;
-  const double det = wa + wb + wc;
-  if (det == 0.0)
-    return false;
+  if (w[0] * w[1] * w[2] == 0.0) {
+    const double x[3] = {ax, bx, cx}, y[3] = {ay, by, cy};
+    if (!within_edges(x, y, w))
+      return false;
+  }
 
   // Interpolate the depth and return to the world's parameter.
-  const double depth = wa * (s.sz * az) + wb * (s.sz * bz) + wc * (s.sz * cz);
+  const double det = sum_in_any_order(w[0], w[1], w[2]);
+  const double depth = sum_in_any_order(w[0] * (s.sz * az), w[1] * (s.sz * bz), w[2] * (s.sz * cz));
   t = world_t(ray, depth / det);
-  u = wb / det;
-  v = wc / det;
+  u = w[1] / det;
+  v = w[2] / det;
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include "render/refinement.h"
 #include "sampling/color.h"
 #include "scene/error.h"
+#include "scene/fill_camera.h"
 #include "scene/memory.h"
 
 namespace lancer {
@@ -21,6 +22,7 @@ constexpr uint32_t kRefinedSize = 16;
 Camera normalised(Camera camera, const Normalisation &normalisation) {
   camera.to_world.translation = normalisation.to_normalised(camera.to_world.translation);
   camera.scale_lengths(normalisation.scale);
+  check_reach(camera);
   return camera;
 }
 

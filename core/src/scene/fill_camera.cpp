@@ -1,6 +1,7 @@
 #include "scene/fill_camera.h"
 
 #include "scene/error.h"
+#include "scene/geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +67,13 @@ void check_panorama(const lancer_camera &source) {
 }
 
 } // namespace
+
+void check_reach(const Camera &camera) {
+  // Squares of distances must fit into floats: those from 2^60 away do, and sums of some of them. The scene is 2^10 wide.
+  const double place = largest_coordinate(camera.to_world.translation);
+  if (!(place < 0x1p60 && camera.lens_radius < 0x1p60))
+    bad_argument("camera: it stands, or its lens reaches, more than 1e15 times the scene's size away from the scene");
+}
 
 Camera read_camera(const lancer_camera &source) {
   if (source.kind > LANCER_CYLINDRICAL)

@@ -7,5 +7,7 @@
 namespace lancer {
 
 Camera read_camera(const lancer_camera &source);
+// An Error where the camera, in the normalised world, is too far from everything.
+void check_reach(const Camera &camera);
 
 } // namespace lancer

@@ -26,6 +26,8 @@ std::string fault_of(const Affine &map) {
     if (!(length < kLargestScale) || !(length > 1.0 / kLargestScale))
       return "its scale is beyond what can be traced";
   }
+  if (!(largest_coordinate(map.translation) < kLargestScale))
+    return "its place is beyond what can be traced";
   // Judge the determinant of unit columns: it does not depend on scale. At double's roundoff the map has lost a dimension.
   const glm::dmat3 directions(map.linear[0] / columns[0], map.linear[1] / columns[1], map.linear[2] / columns[2]);
   if (!(std::abs(glm::determinant(directions)) > std::ldexp(1.0, -50)))
