@@ -1,0 +1,61 @@
+"""Which things of many lie over each other: boxes in space, triangles in a plane. Sorted, never each with each."""
+
+import numpy as np
+
+
+def box_pairs(low, high, most):
+    """(i, j), i < j, of boxes that may meet: (n, 3) arrays. Sweeps along the axis that leaves the fewest; None beyond most."""
+    best = None
+    for axis in range(3):
+        order = np.argsort(low[:, axis], kind="stable")
+        # Those that begin before a box ends, and not before it begins.
+        ends = np.searchsorted(low[order, axis], high[order, axis], side="right")
+        counts = ends - np.arange(len(order)) - 1
+        total = int(counts.sum())
+        if best is None or total < best[0]:
+            best = total, order, counts
+    total, order, counts = best
+    if total > most:
+        return None
+    one = np.repeat(np.arange(len(order)), counts)
+    other = one + 1 + np.arange(total) - np.repeat(np.cumsum(counts) - counts, counts)
+    i, j = order[one], order[other]
+    meet = ((low[i] <= high[j]) & (low[j] <= high[i])).all(axis=1)
+    i, j = i[meet], j[meet]
+    return np.minimum(i, j), np.maximum(i, j)
+
+
+def triangles_over(one, other, margin):
+    """Whether triangles overlap by more than margin, pair by pair: (n, 3, 2) arrays and (n,) lengths."""
+    over = np.ones(len(one), bool)
+    for sides in (one, other):
+        for corner in range(3):
+            # Two triangles are apart where a line along some side of them has one on each hand.
+            edge = sides[:, (corner + 1) % 3] - sides[:, corner]
+            length = np.hypot(edge[:, 0], edge[:, 1])
+            with np.errstate(invalid="ignore", divide="ignore"):
+                across = np.stack((-edge[:, 1], edge[:, 0]), axis=1) / length[:, None]
+            mine, theirs = (np.einsum("ijk,ik->ij", t, across) for t in (one, other))
+            apart = np.maximum(mine.min(axis=1) - theirs.max(axis=1), theirs.min(axis=1) - mine.max(axis=1))
+            over &= apart < -margin
+    return over
+
+
+def overlapping_triangles(one, other, most):
+    """(i, j) of triangles of two sets, (n, 3, 2) and (m, 3, 2), that overlap by a hundredth of the smaller one's size."""
+    corners = np.concatenate((one, other))
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    flat = np.zeros((len(corners), 1))
+    pairs = box_pairs(np.hstack((low, flat)), np.hstack((high, flat)), most)
+    if pairs is None:
+        # Too many to ask all: the largest decide.
+        size = (high - low).max(axis=1)
+        first = np.sort(np.argsort(-size[: len(one)], kind="stable")[:256])
+        second = np.sort(np.argsort(-size[len(one) :], kind="stable")[:256])
+        i, j = (part.ravel() for part in np.meshgrid(first, second, indexing="ij"))
+    else:
+        crossing = (pairs[0] < len(one)) & (pairs[1] >= len(one))
+        i, j = pairs[0][crossing], pairs[1][crossing] - len(one)
+    size = (high - low).max(axis=1)
+    over = triangles_over(one[i], other[j], 0.01 * np.minimum(size[i], size[j + len(one)]))
+    return i[over], j[over]
