@@ -1,5 +1,7 @@
 """Looks for what will hurt before time is spent on it: by itself at F12 what costs next to nothing, all of it when asked."""
 
+import logging
+
 import bpy
 
 from .bindings.abi import LancerError
@@ -23,7 +25,14 @@ def quick_check(scene, snapshot, poll):
         if poll():
             raise Cancelled
 
-    return Messages(lines(check_snapshot(snapshot, thorough=False, poll=obey)))
+    try:
+        return Messages(lines(check_snapshot(snapshot, thorough=False, poll=obey)))
+    except Cancelled:
+        raise
+    except Exception as error:
+        # A fault of the check must not cost the picture.
+        logging.getLogger(__name__).exception("check failed")
+        return Messages([f"scene '{scene.name}': the check before the render failed ({type(error).__name__}: {error})"])
 
 
 class LANCER_OT_check_scene(bpy.types.Operator):

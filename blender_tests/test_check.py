@@ -162,7 +162,7 @@ def test_lines_say_who_where_and_what_to_do():
     finding = Finding(
         "glass", Harm.WRONG, "is open", "close it", object="Vase", mesh="Vase", material="Glass", place=(1, 2.5, 1e7)
     )
-    assert lines([finding]) == ["object 'Vase' (mesh 'Vase', material 'Glass'): is open near (1, 2.5, 1e+07); close it"]
+    assert lines([finding]) == ["object 'Vase' (mesh 'Vase', material 'Glass') near (1, 2.5, 1e+07): is open; close it"]
     assert by_harm([dataclasses.replace(finding, harm=Harm.HINT), finding])[0] is finding
 
 

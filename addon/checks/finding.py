@@ -42,7 +42,7 @@ class Finding:
     @property
     def text(self):
         where = "" if self.place is None else f" near {told_place(self.place)}"
-        return f"{self.who}: {self.what}{where}; {self.advice}"
+        return f"{self.who}{where}: {self.what}; {self.advice}"
 
 
 KINDS = {

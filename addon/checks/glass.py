@@ -10,8 +10,7 @@ _MOST_TURNED = 256
 
 
 def check_glass(subject):
-    # Ask for meshes with clear materials first: most scenes have few.
-    for number, mesh, looks in subject.shown_meshes():
+    for number, mesh, looks in subject.shown_meshes(where=lambda traits: traits.refracts):
         found = ((row, subject.faces_with(mesh, row, lambda traits: traits.refracts)) for row in looks)
         row, clear = next(((row, clear) for row, clear in found if np.any(clear)), (None, None))
         if row is None:

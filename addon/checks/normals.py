@@ -14,7 +14,7 @@ _AWAY = -0.0175
 
 
 def check_normals(subject):
-    for number, mesh, looks in subject.shown_meshes(affordable=False):
+    for number, mesh, looks in subject.shown_meshes(whole=False):
         if mesh.normals is None:
             continue
         row = next((row for row in looks if _shows_normals(subject, row)), None)

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+_NEAREST = 256
+
 
 def box_pairs(low, high, most):
     """(i, j), i < j, of boxes that may meet: (n, 3) arrays. Sweeps along the axis that leaves the fewest; None beyond most."""
@@ -48,11 +50,13 @@ def overlapping_triangles(one, other, most):
     flat = np.zeros((len(corners), 1))
     pairs = box_pairs(np.hstack((low, flat)), np.hstack((high, flat)), most)
     if pairs is None:
-        # Too many to ask all: the largest decide.
-        size = (high - low).max(axis=1)
-        first = np.sort(np.argsort(-size[: len(one)], kind="stable")[:256])
-        second = np.sort(np.argsort(-size[len(one) :], kind="stable")[:256])
-        i, j = (part.ravel() for part in np.meshgrid(first, second, indexing="ij"))
+        # Too many to ask all: those nearest the middle of what both sets share decide.
+        sets = (low[: len(one)], high[: len(one)]), (low[len(one) :], high[len(one) :])
+        middle = np.maximum(*(part.min(axis=0) for part, _ in sets)) + np.minimum(*(part.max(axis=0) for _, part in sets))
+        away = [np.maximum(a - 0.5 * middle, 0.5 * middle - b).max(axis=1) for a, b in sets]
+        i, j = (
+            part.ravel() for part in np.meshgrid(*(np.argsort(part, kind="stable")[:_NEAREST] for part in away), indexing="ij")
+        )
     else:
         crossing = (pairs[0] < len(one)) & (pairs[1] >= len(one))
         i, j = pairs[0][crossing], pairs[1][crossing] - len(one)

@@ -30,7 +30,7 @@ def check_precision(subject):
 
 def _check_meshes(subject):
     """Meshes whose own coordinates are too coarse for their faces."""
-    for number, mesh, looks in subject.shown_meshes(affordable=False):
+    for number, mesh, looks in subject.shown_meshes(whole=False):
         if not subject.thorough and not _is_far(mesh):
             continue
         faces, count = subject.sample(mesh)
@@ -92,12 +92,14 @@ def _is_far(mesh):
 def _sizes(subject):
     """The world size of each instance along its largest extent; infinity for planes without end."""
     table = subject.instances
-    # The extent of the unit shapes, then that of meshes.
+    # The extent of the unit shapes, then that of the meshes that are looked at.
     half = np.ones((len(table), 3))
-    for number, _, _ in subject.shown_meshes(affordable=False):
+    half[table.kinds == InstanceKind.MESH] = math.inf
+    for number, _, _ in subject.shown_meshes(whole=False):
         positions = subject.meshes[number].positions
         half[subject.rows_of(number)] = 0.5 * np.ptp(positions.astype(float), axis=0)
-    sizes = 2.0 * (half * subject.scales).max(axis=1)
+    with np.errstate(invalid="ignore"):
+        sizes = 2.0 * (half * subject.scales).max(axis=1)
     sizes[table.kinds == InstanceKind.PLANE] = math.inf
     return sizes
 

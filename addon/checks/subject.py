@@ -9,6 +9,7 @@ from .traits import look_alike, traits_of
 _QUICK_MESH = 4096
 _QUICK_ALL = 16384
 _QUICK_SAMPLE = 64
+_QUICK_MESHES = 128
 
 
 class Subject:
@@ -48,15 +49,27 @@ class Subject:
             looks.setdefault(int(table.meshes[row]), []).append(row)
         return looks
 
-    def shown_meshes(self, affordable=True):
-        """(number, mesh, first rows of its looks). affordable: without those too large for a quick check."""
+    def shown_meshes(self, whole=True, where=None):
+        """(number, mesh, first rows of its looks) of meshes with faces.
+
+        where: which materials they must have one of, by traits. whole: all faces of it will be looked at; a quick check leaves
+        large meshes out then. Of many it takes some, evenly.
+        """
+        numbers = sorted(self._looks)
+        if where is not None:
+            wanted = {number for number, traits in enumerate(self.traits) if where(traits)}
+            if not wanted:
+                return
+            numbers = [n for n in numbers if any(not wanted.isdisjoint(self.materials_of(row)) for row in self._looks[n])]
+        if not self.thorough:
+            numbers = numbers[:: -(-len(numbers) // _QUICK_MESHES) or 1]
         left = _QUICK_ALL
-        for number in sorted(self._looks):
+        for number in numbers:
             mesh = self.meshes[number]
             count = len(mesh.triangles)
             if count == 0:
                 continue
-            if affordable and not self.thorough:
+            if whole and not self.thorough:
                 if count > min(left, _QUICK_MESH):
                     continue
                 left -= count
@@ -68,7 +81,7 @@ class Subject:
         count = len(mesh.triangles)
         if self.thorough:
             return slice(None), count
-        stride = max(1, count // max(_QUICK_SAMPLE, _QUICK_ALL // len(self._looks)))
+        stride = max(1, count // max(_QUICK_SAMPLE, _QUICK_ALL // min(len(self._looks), _QUICK_MESHES)))
         return slice(None, None, stride), len(range(0, count, stride))
 
     def cached(self, what, number, make):
@@ -95,7 +108,7 @@ class Subject:
 
     def materials_of(self, row):
         """Numbers of all materials that an instance has."""
-        return [int(slot) for slot in self.slots(row)]
+        return self.slots(row).tolist()
 
     def material(self, row, slot):
         """The number of the material in a slot; the last slot stands for those beyond."""
