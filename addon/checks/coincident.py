@@ -9,9 +9,9 @@ from .overlap import overlapping_triangles
 from .planes import gather, in_one_plane, pairs_of
 
 _MOST_FACETS = 2_000_000, 20_000  # thorough, quick
-_MOST_PAIRS = 8_000_000, 200_000
+_MOST_PAIRS = 64_000_000, 200_000
 _MOST_ASKED = 1024, 64  # pairs whose triangles are compared
-_MOST_TRIANGLES = 2_000_000
+_MOST_TRIANGLES = 8_000_000
 
 
 def check_coincident(subject, twins=frozenset()):

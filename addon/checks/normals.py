@@ -14,12 +14,13 @@ _AWAY = -0.0175
 
 
 def check_normals(subject):
-    for number, mesh, looks in subject.shown_meshes(whole=False):
-        if mesh.normals is None:
-            continue
-        row = next((row for row in looks if _shows_normals(subject, row)), None)
-        if row is None:
-            continue
+    shown = [
+        (number, mesh, next((row for row in looks if _shows_normals(subject, row)), None))
+        for number, mesh, looks in subject.shown_meshes(whole=False)
+        if mesh.normals is not None
+    ]
+    shown = [(number, mesh, row) for number, mesh, row in shown if row is not None]
+    for number, mesh, row in shown if subject.thorough else _suspects(subject, shown):
         faces, asked = subject.sample(mesh)
         away, areas = _away(mesh, faces)
         # Where all corners turn away the tracer turns them round; where some do, the light breaks off within the face.
@@ -47,6 +48,24 @@ def check_normals(subject):
                 weight=share,
             )
             break
+
+
+def _suspects(subject, shown):
+    """Those of which any corner in the sample points away: all meshes at once, which takes a tenth of one after the other."""
+    if not shown:
+        return []
+    places, shading, owners = [], [], []
+    for owner, (_, mesh, _) in enumerate(shown):
+        faces, asked = subject.sample(mesh)
+        triangles = mesh.triangles[faces]
+        places.append(mesh.positions[triangles])
+        shading.append(mesh.normals[triangles] if mesh.normals.ndim == 2 else mesh.normals[faces])
+        owners.append(np.full(asked, owner))
+    places, shading = np.concatenate(places), np.concatenate(shading)
+    geometric = crossed(places[:, 0], places[:, 1], places[:, 2])
+    with np.errstate(invalid="ignore"):
+        away = (np.einsum("ijk,ik->ij", shading, geometric) < 0.0).any(axis=1)
+    return [shown[owner] for owner in np.unique(np.concatenate(owners)[away])]
 
 
 def _shows_normals(subject, row):

@@ -3,15 +3,23 @@
 import numpy as np
 
 _NEAREST = 256
+_ENDLESS = 1e20
+_AT_ONCE = 1 << 21
 
 
-def box_pairs(low, high, most):
-    """(i, j), i < j, of boxes that may meet: (n, 3) arrays. Sweeps along the axis that leaves the fewest; None beyond most."""
+def box_pairs(low, high, most, group=None):
+    """(i, j), i < j, of boxes that may meet: (n, 3) arrays. Sweeps along the axis that leaves the fewest; None beyond most.
+
+    group: a whole number for each box; those of different groups are not asked.
+    """
+    group = np.zeros(len(low)) if group is None else group.astype(float)
     best = None
     for axis in range(3):
-        order = np.argsort(low[:, axis], kind="stable")
+        first, last = _within_one(low[:, axis], high[:, axis])
+        # Groups follow one another along the axis.
+        order = np.argsort(group + first, kind="stable")
         # Those that begin before a box ends, and not before it begins.
-        ends = np.searchsorted(low[order, axis], high[order, axis], side="right")
+        ends = np.searchsorted((group + first)[order], (group + last)[order], side="right")
         counts = ends - np.arange(len(order)) - 1
         total = int(counts.sum())
         if best is None or total < best[0]:
@@ -19,12 +27,32 @@ def box_pairs(low, high, most):
     total, order, counts = best
     if total > most:
         return None
-    one = np.repeat(np.arange(len(order)), counts)
-    other = one + 1 + np.arange(total) - np.repeat(np.cumsum(counts) - counts, counts)
-    i, j = order[one], order[other]
-    meet = ((low[i] <= high[j]) & (low[j] <= high[i])).all(axis=1)
-    i, j = i[meet], j[meet]
-    return np.minimum(i, j), np.maximum(i, j)
+    found, sums = [np.empty((2, 0), np.int64)], np.cumsum(counts)
+    # Ask as many at a time as memory does not feel.
+    for first in range(0, total, _AT_ONCE):
+        part = np.arange(*np.searchsorted(sums, (first, first + _AT_ONCE), side="right"))
+        before = sums[part] - counts[part]
+        one = np.repeat(part, counts[part])
+        other = one + 1 + np.arange(len(one)) - np.repeat(before - before[0], counts[part])
+        i, j = order[one], order[other]
+        meet = group[i] == group[j]
+        for axis in range(3):
+            meet &= (low[i, axis] <= high[j, axis]) & (low[j, axis] <= high[i, axis])
+        found.append(np.stack((i[meet], j[meet])))
+    return tuple(np.sort(np.concatenate(found, axis=1), axis=0))
+
+
+def _within_one(low, high):
+    """Both ends of intervals on a scale from 0 to 1, the upper a little higher than it is: sums with groups are rounded.
+
+    What has no end reaches to the end of the scale.
+    """
+    finite = (low > -_ENDLESS) & (high < _ENDLESS)
+    if not finite.any():
+        return np.zeros(len(low)), np.full(len(low), 0.5)
+    start, end = low[finite].min(), high[finite].max()
+    scale = 0.999 / max(end - start, np.finfo(float).tiny)
+    return np.clip((low - start) * scale, 0.0, 0.999), np.clip((high - start) * scale, 0.0, 0.999) + 2.0**-30
 
 
 def triangles_over(one, other, margin):

@@ -120,20 +120,15 @@ def pairs_of(subject, world, most):
             copies[:, column] = moved[over]
             entries, cells = np.append(entries, entries[over]), np.concatenate((cells, copies))
     key = (cells[:, 0] * 1024 + cells[:, 1]) * 1024 + cells[:, 2]
-    order = np.argsort(key, kind="stable")
-    starts = np.flatnonzero(np.append(True, np.diff(key[order]) != 0))
-    found = []
-    for members in np.split(entries[order], starts[1:]):
-        if len(members) < 2:
-            continue
-        subject.poll()
-        pairs = box_pairs(world.low[members], world.high[members], most)
-        if pairs is not None:
-            found.append(np.stack((members[pairs[0]], members[pairs[1]])))
-            most -= len(pairs[0])
-    if not found:
+    _, group, sizes = np.unique(key, return_inverse=True, return_counts=True)
+    group = group.reshape(-1)
+    several = np.flatnonzero(sizes[group] > 1)
+    entries, group = entries[several], group[several]
+    subject.poll()
+    pairs = box_pairs(world.low[entries], world.high[entries], most, group)
+    if pairs is None:
         return np.empty(0, int), np.empty(0, int)
-    i, j = np.sort(np.concatenate(found, axis=1), axis=0)
+    i, j = np.sort(entries[np.stack(pairs)], axis=0)
     return np.divmod(np.unique(i * len(world) + j), len(world))
 
 

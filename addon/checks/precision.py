@@ -82,8 +82,11 @@ def _judge(subject, number, mesh, row, few, places, count):
 def _is_far(mesh):
     """Whether a mesh lies further from its origin than 64 times its size: 18 of 24 bits, or fewer, are left for its shape.
 
-    Some of its vertices tell.
+    Some of its vertices tell, and mostly two: no two are further apart than sqrt(3) sizes.
     """
+    (x, y, z), (u, v, w) = mesh.positions[0].tolist(), mesh.positions[len(mesh.positions) // 2].tolist()
+    if max(abs(x), abs(y), abs(z)) < 36.0 * max(abs(x - u), abs(y - v), abs(z - w)):
+        return False
     some = mesh.positions[:: max(1, len(mesh.positions) // 256)]
     low, high = some.min(axis=0), some.max(axis=0)
     return float(max(np.abs(low).max(), np.abs(high).max())) > 64.0 * float((high - low).max())
