@@ -21,7 +21,7 @@ from check_scenes import (
 )
 from tiny_scenes import move
 
-from addon.bindings.enums import Integrator, LobeKind, MathOperation, NodeKind
+from addon.bindings.enums import Integrator, LobeKind, MathOperation, NodeKind, Pass
 from addon.bindings.snapshot import Image, Lobe, Material, Node, NodeRef, Principled, Settings
 from addon.checks import twins
 from addon.checks.check import check_snapshot
@@ -128,6 +128,8 @@ def test_nothing_gives_light():
     dark = {"lights": (), "world": (0.0, 0.0, 0.0)}
     assert found(one(ball(), **dark)) == [("lights", "WRONG")]
     assert found(one(ball(), **dark, settings=Settings(integrator=Integrator.NORMALS))) == []
+    # Who wants a mask or depths may do without.
+    assert found(one(ball(), **dark, settings=Settings(passes=(Pass.COMBINED, Pass.MIST)))) == []
     assert found(one(ball(), GLOW_, **dark)) == [] and found(one(ball(), lights=(), world=(0.0, 0.1, 0.0))) == []
 
 

@@ -26,6 +26,8 @@ from check_scenes import (
 from tiny_scenes import look_at, move, rotate_x, rotate_y, scale
 
 from addon.bindings.enums import Ray
+from addon.bindings.snapshot import MeshData
+from addon.checks.facets import mesh_facets
 from addon.checks.finding import Harm
 
 COINCIDENT = [("coincident", "WRONG")]
@@ -50,6 +52,7 @@ def test_two_planes_at_one_height(thorough):
     assert found(two(matrix=move(0.1, 0, 1e-9)), thorough) == COINCIDENT
     for height in (1e-4, 1e-5, -1e-5):
         assert found(two(matrix=move(0.1, 0, height)), thorough) == []
+        assert found(two(matrix=move(0.1, 0, height) @ rotate_x(np.pi)), thorough) == []
 
 
 @pytest.mark.parametrize(
@@ -113,7 +116,27 @@ def test_box_on_a_floor(floor, thorough):
         assert found(scene([placed(0, GLASS_, move(0, 0, gap)), floor], meshes), thorough) == []
 
 
+def test_directions_at_the_border_of_cells():
+    """Directions are sorted into cells of 1/64: those that rounding puts on either hand of a border meet all the same."""
+    for part in range(1, 32, 2):
+        turn = rotate_y(np.arcsin(0.5 * part / 64))
+        first, second = (turn @ matrix for matrix in (np.eye(4), move(0.3, 0.1, 0) @ rotate_y(1e-8)))
+        assert found(scene([placed(0, 0, first, "one"), placed(1, 1, second, "two")], [sheet(), sheet(3.0)])) == COINCIDENT
+
+
+def test_flat_parts():
+    """Parallel parts at two heights are two, and what is curved has none."""
+    low, high = sheet(parts=4), sheet(parts=4, shift=(0, 0, 0.1))
+    both = MeshData(
+        "both", np.concatenate((low.positions, high.positions)), np.concatenate((low.triangles, high.triangles + 25))
+    )
+    assert sorted(len(part) for part in mesh_facets(both).faces) == [32, 32]
+    assert len(mesh_facets(box())) == 6 and len(mesh_facets(ball(32))) == 0
+
+
 def test_boxes_side_by_side():
+    # Of glass they touch, though they are alike.
+    assert found(scene([placed(0, GLASS_, move(x, 0, 0), f"box {x}") for x in (0, 1)], [box()])) == COINCIDENT
     row = [placed(0, number % 2, move(number, 0, 0), f"box {number}") for number in range(6)]
     assert found(scene(row, [box()])) == []
     # Half into one another with one top: seen from above.

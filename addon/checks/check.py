@@ -1,5 +1,7 @@
 """All checks over one snapshot."""
 
+import numpy as np
+
 from .closures import check_closures
 from .coincident import check_coincident
 from .finding import by_harm
@@ -17,7 +19,13 @@ def check_snapshot(snapshot, thorough=True, poll=None):
     thorough: all of it. Else what costs next to nothing beside a render, without hints: F12 does so by itself. poll(share) is
     called on the way, with the share that is done or None; what it raises ends the check.
     """
-    subject = Subject(snapshot, thorough, poll)
+    # What is not finite is left out by the core, which tells of it; here it compares as false.
+    with np.errstate(all="ignore"):
+        found = _all_findings(Subject(snapshot, thorough, poll))
+    return by_harm(finding for finding in found if thorough or finding.harm)
+
+
+def _all_findings(subject):
     twins = twin_rows(subject)
     steps = (
         check_closures(subject),
@@ -33,4 +41,4 @@ def check_snapshot(snapshot, thorough=True, poll=None):
     for number, findings in enumerate(steps):
         subject.poll(number / len(steps))
         found.extend(findings)
-    return by_harm(finding for finding in found if thorough or finding.harm)
+    return found

@@ -72,9 +72,8 @@ def _cells(mesh, a, b, c):
     areas = lengths(normals)
     low, high = (np.array([pick(a[:, axis]) for axis in range(3)]) for pick in (np.min, np.max))
     size = float(lengths((high - low)[None])[0]) or 1.0
-    with np.errstate(invalid="ignore", divide="ignore"):
-        normals /= areas[:, None]
-        heights = dots(normals, a - np.float32(0.5) * (low + high)) / np.float32(size)
+    normals /= areas[:, None]
+    heights = dots(normals, a - np.float32(0.5) * (low + high)) / np.float32(size)
     key = np.zeros(len(a), np.int64) if mesh.material_slots is None else mesh.material_slots.astype(np.int64)
     # 13 bits hold each: they lie within +-2048.
     for column in (normals[:, 0], normals[:, 1], normals[:, 2], heights):

@@ -63,8 +63,7 @@ def _suspects(subject, shown):
         owners.append(np.full(asked, owner))
     places, shading = np.concatenate(places), np.concatenate(shading)
     geometric = crossed(places[:, 0], places[:, 1], places[:, 2])
-    with np.errstate(invalid="ignore"):
-        away = (np.einsum("ijk,ik->ij", shading, geometric) < 0.0).any(axis=1)
+    away = (np.einsum("ijk,ik->ij", shading, geometric) < 0.0).any(axis=1)
     return [shown[owner] for owner in np.unique(np.concatenate(owners)[away])]
 
 
@@ -83,8 +82,7 @@ def _away(mesh, faces):
         shading = [np.take(mesh.normals, triangles[:, corner], axis=0) for corner in range(3)]
     else:
         shading = [mesh.normals[faces, corner] for corner in range(3)]
-    with np.errstate(invalid="ignore"):
-        away = [dots(normals, geometric) < _AWAY * lengths(normals) * areas for normals in shading]
+    away = [dots(normals, geometric) < _AWAY * lengths(normals) * areas for normals in shading]
     return away, np.where(np.isfinite(areas), areas, 0.0)
 
 

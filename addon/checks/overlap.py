@@ -63,8 +63,7 @@ def triangles_over(one, other, margin):
             # Two triangles are apart where a line along some side of them has one on each hand.
             edge = sides[:, (corner + 1) % 3] - sides[:, corner]
             length = np.hypot(edge[:, 0], edge[:, 1])
-            with np.errstate(invalid="ignore", divide="ignore"):
-                across = np.stack((-edge[:, 1], edge[:, 0]), axis=1) / length[:, None]
+            across = np.stack((-edge[:, 1], edge[:, 0]), axis=1) / length[:, None]
             mine, theirs = (np.einsum("ijk,ik->ij", t, across) for t in (one, other))
             apart = np.maximum(mine.min(axis=1) - theirs.max(axis=1), theirs.min(axis=1) - mine.max(axis=1))
             over &= apart < -margin

@@ -101,8 +101,7 @@ def _sizes(subject):
     for number, _, _ in subject.shown_meshes(whole=False):
         positions = subject.meshes[number].positions
         half[subject.rows_of(number)] = 0.5 * np.ptp(positions.astype(float), axis=0)
-    with np.errstate(invalid="ignore"):
-        sizes = 2.0 * (half * subject.scales).max(axis=1)
+    sizes = 2.0 * (half * subject.scales).max(axis=1)
     sizes[table.kinds == InstanceKind.PLANE] = math.inf
     return sizes
 

@@ -56,8 +56,7 @@ class Ranges:
             return np.array([[*([parameter] * 3 if scalar else parameter), 1.0]]), None
         number = parameter.node
         if number not in self._known:
-            with np.errstate(all="ignore"):
-                self._known[number] = self._compute(self.nodes[number])
+            self._known[number] = self._compute(self.nodes[number])
         return self._known[number]
 
     def _compute(self, node):
@@ -119,8 +118,7 @@ def _decoded(image):
     color = np.repeat(texels, 3, axis=1) if texels.shape[1] == 1 else texels[:, :3]
     alpha = texels[:, 3:] if texels.shape[1] == 4 and image.alpha != AlphaMode.NONE else np.ones((len(texels), 1))
     if image.alpha == AlphaMode.ASSOCIATED:
-        with np.errstate(all="ignore"):
-            color = np.where(alpha > 0.0, color / alpha, 0.0)
+        color = np.where(alpha > 0.0, color / alpha, 0.0)
     if image.transfer == Transfer.SRGB:
         color = np.where(color <= 0.04045, color / 12.92, (np.maximum(color, 0.0) / 1.055 + 0.055 / 1.055) ** 2.4)
     return np.hstack((color @ np.array(image.matrix).reshape(3, 3).T, alpha))
