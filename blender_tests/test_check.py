@@ -189,6 +189,12 @@ def test_many_meshes_in_one_place_are_quick_to_tell_apart():
 
 def test_empty_scenes():
     assert found(scene([])) == [] and found(scene([placed(0)], [sheet(0.0)])) == []
+    # So flat that no inverse is left, with a determinant that rounding makes.
+    for seed in range(20):
+        first, second, share = np.random.default_rng(seed).normal(size=(3, 3))
+        flat = np.eye(4)
+        flat[:3, :3] = np.stack((first, second, share[0] * first + share[1] * second), axis=1)
+        check_snapshot(scene([placed(0, 0, flat), placed(1, 1, flat, "two")], [box(), sheet()]))
     broken = np.eye(4)
     broken[0, 3] = np.nan
     assert found(one(ball(), GREY_, broken)) == []

@@ -71,7 +71,12 @@ def _place(subject, facets, rows):
     """The columns of World for all instances of one thing."""
     matrices = subject.instances.matrices[rows]
     linear, offset = matrices[:, :, :3], matrices[:, :, 3]
-    normals = np.einsum("rji,fj->rfi", np.linalg.inv(linear), facets.normals)
+    # Normals go with the cofactors, which exist for flattened objects too; those of mirrored ones look the other way.
+    x, y, z = linear[:, :, 0], linear[:, :, 1], linear[:, :, 2]
+    cofactors = (
+        np.stack((np.cross(y, z), np.cross(z, x), np.cross(x, y)), axis=2) * np.sign(subject.volumes[rows])[:, None, None]
+    )
+    normals = np.einsum("rij,fj->rfi", cofactors, facets.normals)
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     points = np.einsum("rij,fj->rfi", linear, facets.points) + offset[:, None]
     boxes = np.clip(facets.boxes, -_FAR, _FAR)
