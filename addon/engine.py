@@ -11,6 +11,7 @@ from . import passes, stamp
 from .bindings.abi import LancerError
 from .bindings.schedule import CANCELLED, Schedule
 from .bindings.session import Cancelled, Session
+from .check_scene import quick_check
 from .export import main_thread
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
@@ -114,6 +115,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
         self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
         self._tell(depsgraph.scene, messages)
+        self._tell(depsgraph.scene, quick_check(depsgraph.scene, self._snapshot, self.test_break))
 
     def _render(self, scene, layer, wanted):
         self.update_stats("", "Building the scene")

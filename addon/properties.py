@@ -141,6 +141,11 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         description="Also render the surface colours without light, which denoisers use",
         default=False,
     )
+    use_check: BoolProperty(
+        name="Check at Render",
+        description="Before each render look for what will hurt, as far as that takes no time, and tell it with the messages",
+        default=True,
+    )
     accelerator: EnumProperty(
         name="Accelerator",
         description="How the surfaces are sorted so that rays find them. Changes the time, never the picture",

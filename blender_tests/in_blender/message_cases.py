@@ -17,8 +17,9 @@ def _told():
 
 
 def _faulty(count):
-    """Cubes with an empty material slot each, and one whose picture is missing in both of its uses."""
+    """Lit cubes with an empty material slot each, and one whose picture is missing in both of its uses."""
     scene = stage.empty()
+    stage.light()
     for i in range(count):
         stage.cube(location=(i, 0, 0)).data.materials.append(None)
     material = stage.shader(name="Painted")

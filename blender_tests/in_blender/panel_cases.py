@@ -30,6 +30,14 @@ class _Layout:
         self._judge("prop", options)
         self.shown.append(name)
 
+    def operator(self, name, **options):
+        group, _, operator = name.partition(".")
+        if operator not in dir(getattr(bpy.ops, group)):
+            raise KeyError(name)
+        self._judge("operator", options)
+        self.shown.append(name)
+        return types.SimpleNamespace()
+
     def label(self, **options):
         self._judge("label", options)
         self.shown.append(options["text"])
@@ -65,6 +73,8 @@ def _variants(context):
     yield "plain"
     bpy.ops.render.render()
     yield "rendered"
+    bpy.ops.lancer.check_scene()
+    yield "checked"
     own = context.scene.lancer
     for integrator in own.bl_rna.properties["integrator"].enum_items.keys():
         own.integrator = integrator

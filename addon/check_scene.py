@@ -1,0 +1,109 @@
+"""Looks for what will hurt before time is spent on it: by itself at F12 what costs next to nothing, all of it when asked."""
+
+import logging
+
+import bpy
+
+from .bindings.abi import LancerError
+from .bindings.session import Cancelled
+from .checks.check import check_snapshot
+from .checks.finding import lines
+from .export.messages import Messages
+from .export.scene import export_scene
+
+# Of the last Check Scene of each scene, by its name: findings, and what the export could not take as it is.
+last_findings = {}
+last_messages = {}
+
+
+def quick_check(scene, snapshot, poll):
+    """What F12 tells by itself, as Messages."""
+    if not scene.lancer.use_check:
+        return Messages()
+
+    def obey(_share):
+        if poll():
+            raise Cancelled
+
+    try:
+        return Messages(lines(check_snapshot(snapshot, thorough=False, poll=obey)))
+    except Cancelled:
+        raise
+    except Exception as error:
+        # A fault of the check must not cost the picture.
+        logging.getLogger(__name__).exception("check failed")
+        return Messages([f"scene '{scene.name}': the check before the render failed ({type(error).__name__}: {error})"])
+
+
+class LANCER_OT_check_scene(bpy.types.Operator):
+    """Look for what will hurt the picture or waste time, without rendering; the scene is taken as the viewport has it"""
+
+    bl_idname = "lancer.check_scene"
+    bl_label = "Check Scene"
+
+    def execute(self, context):
+        scene, manager = context.scene, context.window_manager
+
+        def show(share):
+            if share is not None:
+                manager.progress_update(share)
+
+        manager.progress_begin(0.0, 1.0)
+        try:
+            snapshot, messages = export_scene(context.evaluated_depsgraph_get())
+            findings = [finding for finding in check_snapshot(snapshot, poll=show) if _is_rendered(scene, finding)]
+        except LancerError as error:
+            self.report({"ERROR"}, f"Lancer: {error}")
+            return {"CANCELLED"}
+        finally:
+            manager.progress_end()
+        last_findings[scene.name], last_messages[scene.name] = findings, messages.lines()
+        for line in lines(findings):
+            self.report({"WARNING"}, f"Lancer: {line}")
+        if not findings:
+            self.report({"INFO"}, "Lancer: nothing found that would hurt")
+        return {"FINISHED"}
+
+
+def _is_rendered(scene, finding):
+    """The viewport also has what is hidden from renders."""
+    thing = scene.objects.get(finding.object or finding.light)
+    return thing is None or not thing.hide_render
+
+
+class LANCER_OT_select_object(bpy.types.Operator):
+    """Select this object and make it the active one"""
+
+    bl_idname = "lancer.select_object"
+    bl_label = "Select Object"
+    bl_options = {"UNDO"}
+
+    name: bpy.props.StringProperty(name="Object")
+
+    def execute(self, context):
+        objects = context.view_layer.objects
+        thing = objects.get(self.name)
+        if thing is None:
+            self.report({"WARNING"}, f"'{self.name}' is no object of this view layer")
+            return {"CANCELLED"}
+        for other in objects:
+            other.select_set(False)
+        # What is hidden stays unselected, but as the active one it shows its properties.
+        thing.select_set(True)
+        objects.active = thing
+        return {"FINISHED"}
+
+
+_OPERATORS = (LANCER_OT_check_scene, LANCER_OT_select_object)
+
+
+def register():
+    for cls in _OPERATORS:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(_OPERATORS):
+        bpy.utils.unregister_class(cls)
+    last_findings.clear()
+    last_messages.clear()

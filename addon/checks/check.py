@@ -1,0 +1,44 @@
+"""All checks over one snapshot."""
+
+import numpy as np
+
+from .closures import check_closures
+from .coincident import check_coincident
+from .finding import by_harm
+from .glass import check_glass
+from .lights import check_lights
+from .normals import check_normals
+from .precision import check_precision
+from .subject import Subject
+from .twins import check_double_faces, check_twins, twin_rows
+
+
+def check_snapshot(snapshot, thorough=True, poll=None):
+    """A list of Finding, what hurts most first.
+
+    thorough: all of it. Else what costs next to nothing beside a render, without hints: F12 does so by itself. poll(share) is
+    called on the way, with the share that is done or None; what it raises ends the check.
+    """
+    # What is not finite is left out by the core, which tells of it; here it compares as false.
+    with np.errstate(all="ignore"):
+        found = _all_findings(Subject(snapshot, thorough, poll))
+    return by_harm(finding for finding in found if thorough or finding.harm)
+
+
+def _all_findings(subject):
+    twins = twin_rows(subject)
+    steps = (
+        check_closures(subject),
+        check_lights(subject),
+        check_precision(subject),
+        check_glass(subject),
+        check_normals(subject),
+        check_twins(subject, twins),
+        check_double_faces(subject),
+        check_coincident(subject, frozenset(row for row, _ in twins)),
+    )
+    found = []
+    for number, findings in enumerate(steps):
+        subject.poll(number / len(steps))
+        found.extend(findings)
+    return found

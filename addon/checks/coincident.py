@@ -1,0 +1,165 @@
+"""Flat parts of two things in one plane: where both would be seen, rounding decides from point to point which one is."""
+
+import numpy as np
+
+from ..bindings.enums import CameraKind, InstanceKind
+from .edges import corner_keys, edge_faults
+from .finding import Finding, Harm, told_number
+from .overlap import overlapping_triangles
+from .planes import gather, in_one_plane, pairs_of
+
+_MOST_FACETS = 2_000_000, 20_000  # thorough, quick
+_MOST_PAIRS = 64_000_000, 200_000
+_MOST_ASKED = 1024, 64  # pairs whose triangles are compared
+_MOST_TRIANGLES = 8_000_000
+
+
+def check_coincident(subject, twins=frozenset()):
+    """twins: rows of instances that are copies of others in their very place, which are told elsewhere."""
+    quick = not subject.thorough
+    facets, world = gather(subject, twins, _MOST_FACETS[quick])
+    if world is None:
+        return
+    i, j = pairs_of(subject, world, _MOST_PAIRS[quick])
+    keep = in_one_plane(world, i, j)
+    i, j = i[keep], j[keep]
+    hurts = _Hurts(subject, facets, world)
+    # Ask the largest first, and once for each two objects.
+    area = np.sort(np.minimum(world.high[i], world.high[j]) - np.maximum(world.low[i], world.low[j]), axis=1)[:, 1:].prod(
+        axis=1
+    )
+    asked, told = 0, set()
+    for number in np.argsort(-area, kind="stable").tolist():
+        one, other = int(i[number]), int(j[number])
+        both = int(world.rows[one]), int(world.rows[other])
+        words = hurts.words(one, other) if both not in told and hurts.may(one, other) else None
+        if words is None:
+            continue
+        subject.poll()
+        asked += 1
+        if asked > _MOST_ASKED[quick]:
+            return
+        place, count = _meeting(subject, facets, world, one, other)
+        if count:
+            told.add(both)
+            yield _finding(subject, world, one, other, words, place, count, float(area[number]))
+
+
+class _Hurts:
+    """Whether two parts in one plane show in the picture."""
+
+    def __init__(self, subject, facets, world):
+        self.subject = subject
+        self.facets = facets
+        self.world = world
+        self.camera = subject.snapshot.camera
+        self._sheets = {}
+
+    def may(self, one, other):
+        """What materials alone decide: nothing hurts between opaque things that look alike."""
+        world, traits = self.world, self.subject.traits
+        first, second = int(world.materials[one]), int(world.materials[other])
+        if first < 0 or second < 0:
+            return False
+        alike = self.subject.alike(first, second)
+        row = int(world.rows[one])
+        if row == world.rows[other] and (alike or int(self.subject.instances.meshes[row]) in self.subject.doubled):
+            return False
+        if traits[first].refracts or traits[second].refracts:
+            return True
+        if not all(self.subject.seen_by_camera(int(world.rows[part])) for part in (one, other)):
+            return False
+        return not alike or traits[first].passes or traits[first].emits
+
+    def words(self, one, other):
+        """(what, advice); None where one hides the other from the camera."""
+        world, traits = self.world, self.subject.traits
+        first, second = int(world.materials[one]), int(world.materials[other])
+        if traits[first].refracts or traits[second].refracts:
+            return (
+                "touch exactly where one is glass: light leaks between them",
+                "move one of them a little, or let them overlap",
+            )
+        if not self._fight(one, other):
+            return None
+        if self.subject.alike(first, second):
+            return "lie in the same plane, and their light counts twice", "delete one of them, or move it a little"
+        return "lie in the same plane, and which of them shows changes from point to point", "move one of them a little"
+
+    def _fight(self, one, other):
+        """Whether both show on the side where the camera is: closed bodies show what looks that way, sheets show both sides."""
+        normal = self.world.normals[one]
+        matrix = self.camera.matrix
+        if self.camera.kind == CameraKind.ORTHOGRAPHIC:
+            side = float(normal @ matrix[:, 2])
+        else:
+            side = float(normal @ (matrix[:, 3] - self.world.points[one]))
+        toward = [side * float(normal @ self.world.normals[part]) > 0.0 or self._is_sheet(part) for part in (one, other)]
+        return side != 0.0 and all(toward)
+
+    def _is_sheet(self, part):
+        """Whether a part is seen from behind, too: some of its triangles end where no other begins."""
+        row, number = int(self.world.rows[part]), int(self.world.parts[part])
+        kind, mesh = InstanceKind(int(self.subject.kinds[row])), int(self.subject.instances.meshes[row])
+        if kind != InstanceKind.MESH:
+            return kind == InstanceKind.PLANE
+        key = mesh, number
+        if key not in self._sheets:
+            faults = self.subject.cached("faults", mesh, lambda: edge_faults(corner_keys(self.subject.meshes[mesh])))
+            self._sheets[key] = bool(np.isin(self.facets[kind, mesh].faces[number], faults.open).any())
+        return self._sheets[key]
+
+
+def _meeting(subject, facets, world, one, other):
+    """(a point where two parts overlap, how many triangles of the first do); (None, 0) where they only border on each other."""
+    sets = [_corners(subject, facets, world, part, world.points[one]) for part in (one, other)]
+    axes = np.delete(np.arange(3), np.argmax(np.abs(world.normals[one])))
+    endless = [not np.isfinite(corners).all() for corners in sets]
+    if all(endless):
+        return tuple(world.points[one].tolist()), 1
+    if any(endless):
+        corners = sets[0] if endless[1] else sets[1]
+        return tuple((corners[0].mean(axis=0) + world.points[one]).tolist()), len(corners)
+    i, _ = overlapping_triangles(*(corners[:, :, axes] for corners in sets), _MOST_TRIANGLES)
+    if len(i) == 0:
+        return None, 0
+    # The middle of what both boxes share is a place that both cover, or near it.
+    low, high = np.maximum(world.low[one], world.low[other]), np.minimum(world.high[one], world.high[other])
+    middle = 0.5 * (low + high) - world.points[one]
+    centers = sets[0][i].mean(axis=1)
+    nearest = np.argmin(np.linalg.norm(centers - middle, axis=1))
+    return tuple((centers[nearest] + world.points[one]).tolist()), len(np.unique(i))
+
+
+def _corners(subject, facets, world, part, origin):
+    """(triangles, 3, 3) in the world, as seen from origin."""
+    row, number = int(world.rows[part]), int(world.parts[part])
+    kind = InstanceKind(int(subject.kinds[row]))
+    matrix = subject.instances.matrices[row]
+    if kind == InstanceKind.MESH:
+        mesh = subject.meshes[int(subject.instances.meshes[row])]
+        faces = facets[kind, int(subject.instances.meshes[row])].faces[number]
+        corners = mesh.positions.astype(float)[mesh.triangles[faces]]
+    else:
+        corners = facets[kind, 0].faces[number]
+        if kind == InstanceKind.PLANE:
+            return corners
+    return corners @ matrix[:, :3].T + (matrix[:, 3] - origin)
+
+
+def _finding(subject, world, one, other, words, place, count, weight):
+    first, second = int(world.rows[one]), int(world.rows[other])
+    what, advice = words
+    partner = f"object '{subject.name(second)}'" if first != second else "others of its own faces"
+    material = subject.material_name(int(world.materials[one]))
+    return Finding(
+        "coincident",
+        Harm.WRONG,
+        f"{told_number(count, 'face')} and {partner} {what}",
+        advice,
+        object=subject.name(first),
+        material=material,
+        faces=count,
+        place=place,
+        weight=weight,
+    )

@@ -1,0 +1,95 @@
+"""One thing that will hurt, in words an artist understands; and many of them as a short list."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+_LINES_OF_A_KIND = 3
+
+
+class Harm(IntEnum):
+    HINT = 0  # may be meant so; told only when asked
+    WASTE = 1  # costs time, or light does not do what the setting promises
+    WRONG = 2  # the picture will show it
+
+
+@dataclass(frozen=True)
+class Finding:
+    kind: str  # one of KINDS
+    harm: Harm
+    what: str  # the sentence, without who and where
+    advice: str
+    object: str = ""
+    mesh: str = ""
+    material: str = ""
+    light: str = ""
+    others: int = 0  # further objects that share it
+    faces: int = 0
+    place: tuple | None = None  # world coordinates
+    weight: float = 0.0  # how much of it there is, among findings of one kind
+
+    @property
+    def who(self):
+        if self.light:
+            return f"light '{self.light}'"
+        if not self.object:
+            return f"material '{self.material}'" if self.material else "scene"
+        text = f"object '{self.object}'"
+        if self.others:
+            text += f" and {self.others} more"
+        parts = [f"{what} '{name}'" for what, name in (("mesh", self.mesh), ("material", self.material)) if name]
+        return f"{text} ({', '.join(parts)})" if parts else text
+
+    @property
+    def text(self):
+        where = "" if self.place is None else f" near {told_place(self.place)}"
+        return f"{self.who}{where}: {self.what}; {self.advice}"
+
+
+KINDS = {
+    "glass": "Glass",
+    "coincident": "Coincident Faces",
+    "normals": "Normals",
+    "precision": "Precision",
+    "closures": "Materials",
+    "lights": "Lights",
+}
+
+
+def told_place(place):
+    return f"({', '.join(f'{value:.6g}' for value in place)})"
+
+
+def told_number(count, one):
+    """3 faces, 1 face."""
+    return f"{count} {one}" if count == 1 else f"{count} {one}s"
+
+
+def by_harm(findings):
+    """What hurts most comes first; within a kind what there is most of."""
+    order = list(KINDS)
+    return sorted(findings, key=lambda f: (-f.harm, order.index(f.kind), -f.weight, f.who))
+
+
+def shortened(findings):
+    """(Finding, further objects of the same kind that are left out after it): a few of each kind, in the order of harm."""
+    kept, left = [], {}
+    for finding in by_harm(findings):
+        key = finding.kind, finding.harm
+        shown = [number for number, other in enumerate(kept) if (other.kind, other.harm) == key]
+        if len(shown) < _LINES_OF_A_KIND:
+            kept.append(finding)
+        else:
+            left[shown[-1]] = left.get(shown[-1], 0) + 1 + finding.others
+    return [(finding, left.get(number, 0)) for number, finding in enumerate(kept)]
+
+
+def told(finding, left):
+    """The line of a finding."""
+    if not left:
+        return finding.text
+    what = "object" if finding.object else "light" if finding.light else "material"
+    return f"{finding.text} (and {told_number(left, 'more ' + what)})"
+
+
+def lines(findings):
+    return [told(finding, left) for finding, left in shortened(findings)]

@@ -1,0 +1,34 @@
+"""Light that is not there, and light too weak to be seen beside the rest."""
+
+from ..bindings.enums import Integrator, Pass
+from .finding import Finding, Harm
+from .traits import is_zero
+
+# Sums of single precision lose what is 2^-24 of them; lamps may stand some 200 times nearer, which brings the square of that.
+_UNSEEN = 2.0**-40
+
+
+def check_lights(subject):
+    snapshot = subject.snapshot
+    if snapshot.settings.integrator == Integrator.NORMALS:
+        return
+    levels = [max(light.emission) for light in snapshot.lights]
+    if not (any(level > 0.0 for level in levels) or not is_zero(snapshot.world.radiance) or _any_emission(subject)):
+        # Who asks for other passes may want those alone, as of a layer of masks.
+        if set(snapshot.settings.passes) == {Pass.COMBINED}:
+            what, advice = "nothing gives light, so that the picture will be black", "add a lamp or a world colour"
+            yield Finding("lights", Harm.WRONG, what, advice)
+        return
+    strongest = max(levels, default=0.0)
+    for light, level in zip(snapshot.lights, levels, strict=True):
+        place = tuple(light.matrix[:, 3].tolist())
+        if not level > 0.0:
+            what = "gives no light: its power or colour is 0"
+            yield Finding("lights", Harm.HINT, what, "delete or hide it", light=light.name, place=place)
+        elif level < _UNSEEN * strongest:
+            what = f"is {strongest / level:.2g} times weaker than the strongest lamp, beside which it is lost in rounding"
+            yield Finding("lights", Harm.HINT, what, "delete it, or weaken the other", light=light.name, place=place)
+
+
+def _any_emission(subject):
+    return any(subject.traits[number].emits for number in set(subject.instances.slots.tolist()))

@@ -1,0 +1,110 @@
+"""Normals that disagree with the surface: shading that turns away from the side that light comes from."""
+
+import numpy as np
+
+from ..bindings.enums import Shading
+from .edges import corner_keys, edge_faults
+from .finding import Finding, Harm, told_number
+from .sides import corners, crossed, dots, lengths, middle
+
+# A share of the mesh's area: less is not seen, and slivers, whose own direction is rounding, have next to none.
+_SHARE = 1e-3
+# Beyond 91 degrees, so that what is exactly upright does not depend on rounding.
+_AWAY = -0.0175
+
+
+def check_normals(subject):
+    shown = [
+        (number, mesh, next((row for row in looks if _shows_normals(subject, row)), None))
+        for number, mesh, looks in subject.shown_meshes(whole=False)
+        if mesh.normals is not None
+    ]
+    shown = [(number, mesh, row) for number, mesh, row in shown if row is not None]
+    for number, mesh, row in shown if subject.thorough else _suspects(subject, shown):
+        faces, asked = subject.sample(mesh)
+        away, areas = _away(mesh, faces)
+        # Where all corners turn away the tracer turns them round; where some do, the light breaks off within the face.
+        some, whole = away[0] | away[1] | away[2], away[0] & away[1] & away[2]
+        if not some.any():
+            continue
+        mixed, total = some & ~whole, areas.sum()
+        for bad, harm in ((mixed, Harm.WRONG), (whole, Harm.WASTE)):
+            share = float(areas[bad].sum() / total) if total > 0.0 else 0.0
+            if share < _SHARE:
+                continue
+            worst = np.flatnonzero(bad)[np.argmax(areas[bad])]
+            count = round(bad.sum() * len(mesh.triangles) / asked)
+            what, advice = _words(subject, number, mesh, harm, count)
+            yield Finding(
+                "normals",
+                harm,
+                what,
+                advice,
+                object=subject.name(row),
+                mesh=mesh.name,
+                others=subject.others(number),
+                faces=count,
+                place=subject.place(row, middle(mesh, np.arange(len(mesh.triangles))[faces][worst])),
+                weight=share,
+            )
+            break
+
+
+def _suspects(subject, shown):
+    """Those of which any corner in the sample points away: all meshes at once, which takes a tenth of one after the other."""
+    if not shown:
+        return []
+    places, shading, owners = [], [], []
+    for owner, (_, mesh, _) in enumerate(shown):
+        faces, asked = subject.sample(mesh)
+        triangles = mesh.triangles[faces]
+        places.append(mesh.positions[triangles])
+        shading.append(mesh.normals[triangles] if mesh.normals.ndim == 2 else mesh.normals[faces])
+        owners.append(np.full(asked, owner))
+    places, shading = np.concatenate(places), np.concatenate(shading)
+    geometric = crossed(places[:, 0], places[:, 1], places[:, 2])
+    away = (np.einsum("ijk,ik->ij", shading, geometric) < 0.0).any(axis=1)
+    return [shown[owner] for owner in np.unique(np.concatenate(owners)[away])]
+
+
+def _shows_normals(subject, row):
+    if subject.instances.shadings[row] == Shading.FLAT:
+        return False
+    return any(subject.traits[number].scatters for number in subject.materials_of(row))
+
+
+def _away(mesh, faces):
+    """(for each of three corners which point away from their face, twice the areas)"""
+    geometric = crossed(*corners(mesh, faces))
+    areas = lengths(geometric)
+    if mesh.normals.ndim == 2:
+        triangles = mesh.triangles[faces]
+        shading = [np.take(mesh.normals, triangles[:, corner], axis=0) for corner in range(3)]
+    else:
+        shading = [mesh.normals[faces, corner] for corner in range(3)]
+    away = [dots(normals, geometric) < _AWAY * lengths(normals) * areas for normals in shading]
+    return away, np.where(np.isfinite(areas), areas, 0.0)
+
+
+def _words(subject, number, mesh, harm, count):
+    where = told_number(count, "face")
+    if _has_flipped(subject, number, mesh):
+        return (
+            f"faces look opposite ways, and smooth normals turn away on {where}",
+            "in Edit Mode, Mesh > Normals > Recalculate Outside",
+        )
+    if harm == Harm.WRONG:
+        return (
+            f"shading normals point away from the surface at some corners of {where}, which shows as dark patches",
+            "clear custom normals, mark sharp edges or shade it flat",
+        )
+    return (
+        f"shading normals point into the surface on {where}; they are turned round, but bumps and other engines may not",
+        "clear custom split normals, or recalculate them",
+    )
+
+
+def _has_flipped(subject, number, mesh):
+    if not subject.thorough and len(mesh.triangles) > 4096:
+        return False
+    return len(subject.cached("faults", number, lambda: edge_faults(corner_keys(mesh))).flipped) > 0

@@ -1,0 +1,35 @@
+"""Triangles as three columns of corners and what follows from them, in single precision as Blender has them."""
+
+import numpy as np
+
+
+def corners(mesh, faces=slice(None)):
+    """Three (n, 3) arrays."""
+    triangles = mesh.triangles[faces]
+    return tuple(np.take(mesh.positions, triangles[:, column], axis=0) for column in range(3))
+
+
+def crossed(a, b, c):
+    """(n, 3): normals as long as twice the area. Written out, which takes a third of the time of numpy's own."""
+    u, v = b - a, c - a
+    return np.stack(
+        (
+            u[:, 1] * v[:, 2] - u[:, 2] * v[:, 1],
+            u[:, 2] * v[:, 0] - u[:, 0] * v[:, 2],
+            u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0],
+        ),
+        axis=1,
+    )
+
+
+def dots(u, v):
+    return np.einsum("ij,ij->i", u, v)
+
+
+def lengths(vectors):
+    return np.sqrt(dots(vectors, vectors))
+
+
+def middle(mesh, face):
+    """The centre of a triangle, in double precision."""
+    return mesh.positions[mesh.triangles[face]].astype(float).mean(axis=0)
