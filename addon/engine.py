@@ -6,7 +6,7 @@ import time
 
 import bpy
 
-from . import passes
+from . import denoise, passes
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled, Session
 from .export import main_thread
@@ -49,10 +49,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self._snapshot is not None:
             scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
             layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
+            denoising = bool(denoise.sources(scene, view_layer))
             # The snapshot has all of it, and what Blender evaluated may be larger than the render. From here on there is no
             # depsgraph, unless Blender wants to keep it.
             self.free_blender_memory()
-            self._guarded(scene, self._render, scene, layer, wanted)
+            self._guarded(scene, self._render, scene, layer, wanted, denoising)
         self._snapshot = None
         if self.test_break():
             # The layers that were to follow do not come any more.
@@ -101,12 +102,16 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         # What a failed or cancelled export left behind must not be rendered by the next call.
         self._snapshot = None
         self.update_stats("", "Exporting")
-        wanted = passes.render_passes(depsgraph.scene, depsgraph.view_layer_eval)
-        options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
+        scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
+        if denoise.wanted(scene, view_layer) and denoise.missing():
+            # Told before the time is spent.
+            self._tell(scene, Messages([denoise.missing()]))
+        wanted = (item.source for item in passes.render_passes(scene, view_layer))
+        options = ExportOptions(camera=self.camera_override, passes=(*wanted, *denoise.sources(scene, view_layer)))
         self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
-        self._tell(depsgraph.scene, messages)
+        self._tell(scene, messages)
 
-    def _render(self, scene, layer, wanted):
+    def _render(self, scene, layer, wanted, denoising):
         self.update_stats("", "Building the scene")
         with Session.upload(self._snapshot, poll=self.test_break, release=True) as session:
             # The library holds its own copy from here on.
@@ -126,10 +131,25 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             try:
                 self._run(session, session.settings.samples, scene.lancer.time_limit, show)
                 passes.fill(result.layers[0], session.read, wanted)
+                denoised = None
+                if denoising and not self.test_break():
+                    self.update_result(result)
+                    denoised = self._denoise(scene, session)
+                if denoised is not None:
+                    passes.replace_combined(result.layers[0], denoised.image)
             finally:
                 # Keep the picture as far as it is, after Esc too.
                 self.end_result(result)
-            self._account(scene, session)
+            if denoised is not None:
+                self.get_result().stamp_data_add_field(f"lancer.{layer}.denoising", denoise.DECLARATION)
+            self._account(scene, session, denoised)
+
+    def _denoise(self, scene, session):
+        """Denoised, or None: then the picture that is there already stays."""
+        denoised, failure = denoise.apply(session, self.test_break, lambda done: self.update_stats("", f"Denoising {done:.0%}"))
+        if failure:
+            self._tell(scene, Messages([failure]))
+        return denoised
 
     def _run(self, session, samples, time_limit, show):
         """Renders samples in waves, shows each, and stops for Esc or for the time limit."""
@@ -188,7 +208,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
 
-    def _account(self, scene, session):
+    def _account(self, scene, session, denoised):
         statistics = session.statistics()
         if statistics.invalid_samples:
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
@@ -202,9 +222,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         numbers["seconds"] = statistics.render_seconds
         numbers["rays"] = statistics.rays
         numbers["rays_per_second"] = statistics.rays_per_second
+        numbers.update(denoise.statistics(denoised))
         # Pictures count as geometry.
         held = sum(numbers[name] for name in ("geometry_bytes", "accelerator_bytes", "film_bytes")) / 2**20
-        self.update_memory_stats(memory_used=held, memory_peak=held)
+        self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
         last_statistics[scene.name] = numbers
 
 
