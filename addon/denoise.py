@@ -3,18 +3,21 @@
 What denoising shows is a guess. No figure about accuracy counts it: DECLARATION goes wherever such a figure goes.
 """
 
+import dataclasses
 import functools
+import time
 
 from .bindings import denoiser, oidn
 from .bindings.abi import LancerError
 from .bindings.enums import Pass
-from .bindings.session import Cancelled
+from .bindings.session import Cancelled, Session
 
 DECLARATION = "denoised: the error given is that of the picture before denoising"
 
 _AS_IT_IS = "the picture is shown with its noise"
 # What guides the network, as in Cycles by default.
 _GUIDES = (Pass.ALBEDO, Pass.DENOISING_NORMAL)
+_GUIDE_SAMPLES = 32
 
 
 def wanted(scene, view_layer):
@@ -35,25 +38,51 @@ def missing():
     return ""
 
 
-def sources(scene, view_layer):
-    """The passes that the core should render for it, for ExportOptions; none where it is not wanted or cannot be done."""
-    return _GUIDES if wanted(scene, view_layer) and not missing() else ()
+def ready(scene, view_layer):
+    return wanted(scene, view_layer) and not missing()
 
 
 def apply(session, poll=None, tell=None):
     """(Denoised, "") of the session's picture; (None, "") where poll() said to stop; (None, why) where it failed.
 
-    tell(fraction) is called while it works.
+    tell(text) is called while it works.
     """
+    started = time.monotonic()
     try:
-        color, albedo, normal = (session.read(source) for source in (Pass.COMBINED, *_GUIDES))
-        return denoiser.denoise(color, albedo, normal, threads=session.settings.threads, poll=poll, tell=tell), ""
+        guides = _guides(session, poll, tell)
+        color = session.read(Pass.COMBINED)
+        threads = session.settings.threads
+
+        def working(fraction):
+            if tell is not None:
+                tell(f"Denoising {fraction:.0%}")
+
+        denoised = denoiser.denoise(color, *guides, threads=threads, poll=poll, tell=working)
+        return dataclasses.replace(denoised, seconds=time.monotonic() - started), ""
     except Cancelled:
         return None, ""
     except MemoryError:
         return None, f"there is not enough memory for denoising; {_AS_IT_IS}"
     except LancerError as error:
         return None, f"{error}; {_AS_IT_IS}"
+
+
+def _guides(session, poll, tell):
+    """Albedo and normal of the picture's own first samples.
+
+    They are rendered by themselves: beside them each sample of the picture would take longer, and few of them are enough.
+    """
+    if set(_GUIDES) <= set(session.settings.passes):
+        return [session.read(source) for source in _GUIDES]
+    if tell is not None:
+        tell("Denoising: looking at surfaces")
+    rendered = session.statistics().samples // (session.camera.region_width * session.camera.region_height)
+    samples = max(1, min(rendered, _GUIDE_SAMPLES))
+    settings = dataclasses.replace(session.settings, passes=(Pass.COMBINED, *_GUIDES), samples=samples)
+    with Session(session.scene, session.camera, settings) as guides:
+        if not guides.render_all(samples, poll) or (poll is not None and poll()):
+            raise Cancelled
+        return [guides.read(source) for source in _GUIDES]
 
 
 def statistics(denoised):

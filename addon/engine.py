@@ -49,7 +49,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self._snapshot is not None:
             scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
             layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
-            denoising = bool(denoise.sources(scene, view_layer))
+            denoising = denoise.ready(scene, view_layer)
             # The snapshot has all of it, and what Blender evaluated may be larger than the render. From here on there is no
             # depsgraph, unless Blender wants to keep it.
             self.free_blender_memory()
@@ -106,8 +106,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if denoise.wanted(scene, view_layer) and denoise.missing():
             # Told before the time is spent.
             self._tell(scene, Messages([denoise.missing()]))
-        wanted = (item.source for item in passes.render_passes(scene, view_layer))
-        options = ExportOptions(camera=self.camera_override, passes=(*wanted, *denoise.sources(scene, view_layer)))
+        wanted = passes.render_passes(scene, view_layer)
+        options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
         self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
         self._tell(scene, messages)
 
@@ -146,7 +146,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _denoise(self, scene, session):
         """Denoised, or None: then the picture that is there already stays."""
-        denoised, failure = denoise.apply(session, self.test_break, lambda done: self.update_stats("", f"Denoising {done:.0%}"))
+        denoised, failure = denoise.apply(session, self.test_break, lambda text: self.update_stats("", text))
         if failure:
             self._tell(scene, Messages([failure]))
         return denoised

@@ -7,14 +7,16 @@ from blenders import MODULE, PROGRAM
 DECLARATION = "denoised: the error given is that of the picture before denoising"
 
 
-@pytest.fixture
-def case(tmp_path):
-    return lambda name, *arguments, which=MODULE: blenders.run(which, tmp_path, "denoising_cases", name, *arguments)
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("denoising")
+    cases = blenders.run(MODULE, folder, "denoising_cases", "several")
+    return cases.__getitem__
 
 
 def check_denoised(got):
     assert got["noisy is raw"] and got["alpha is raw"] and got["others are raw"] and got["finite"]
-    assert not got["combined is raw"]
+    assert not got["combined is raw"] and got["film alike"]
     assert got["passes"] == sorted([*got["passes without"], "Noisy Image"])
     assert got["stamped"] == [False, True]
     assert [line for line in got["messages"] if "enois" in line] == []
@@ -34,6 +36,8 @@ def test_other_passes_are_what_they_were(case):
     got = case("passes")
     check_denoised(got)
     assert {"Denoising Albedo", "Denoising Normal", "Denoising Depth", "Normal"} < set(got["passes"])
+    # What guides is the same, whether it is rendered beside the picture or by itself.
+    assert got["picture"] == case("plain")["picture"]
 
 
 def test_border(case):
@@ -59,28 +63,39 @@ def test_normals_have_no_noise(case):
     assert got["combined is raw"] and got["passes"] == ["Combined"] and got["statistics"]["denoised"] == ""
 
 
-def test_esc_leaves_what_was_rendered(case):
-    got = case("stopped", "poll")
-    assert got["told"] == 1 and got["working"] == []
+GUIDES = "Denoising: looking at surfaces"
+
+
+@pytest.mark.parametrize("how, said", [("poll", 2), ("at once", 1)])
+def test_esc_leaves_what_was_rendered(case, how, said):
+    got = case(how)
+    assert got["said"][0] == GUIDES and len(got["said"]) == said and got["working"] == []
     assert got["raw"] and got["denoised"] == "" and not got["stamped"]
     assert [line for line in got["messages"] if "enois" in line] == []
 
 
-def test_ctrl_c_ends_it(case):
-    got = case("stopped", "interrupt")
-    assert got["told"] == 1 and got["working"] == []
+def test_ctrl_c_ends_it(tmp_path):
+    got = blenders.run(MODULE, tmp_path, "denoising_cases", "stopped", "interrupt")
+    assert got["said"][0] == GUIDES and len(got["said"]) == 2 and got["working"] == []
     assert "interrupted" in got["error"] and got["messages"][-1] == "interrupted"
 
 
-@pytest.mark.parametrize("name, which", [("failing", MODULE), ("plain", PROGRAM)])
-def test_where_it_cannot_be_done_it_is_told(case, name, which):
-    """Debian builds Blender without the library."""
-    got = case(name, which=which)
+def check_told(got, words):
     told = [line for line in got["messages"] if "Open Image Denoise" in line]
-    assert len(told) == 1 and told[0].endswith("the picture is shown with its noise")
-    assert ("is missing" in told[0]) == (which == PROGRAM) and told[0] in got["console"]
+    assert len(told) == 1 and words in told[0] and told[0].endswith("the picture is shown with its noise")
     assert got["combined is raw"] and got["noisy is raw"]
     assert got["statistics"]["denoised"] == "" and got["stamped"] == [False, False]
+
+
+def test_a_failure_is_told(case):
+    check_told(case("failing"), "out of memory")
+
+
+def test_a_blender_without_the_library_is_told(tmp_path):
+    """Debian builds Blender without it."""
+    got = blenders.run(PROGRAM, tmp_path, "denoising_cases", "plain")
+    check_told(got, "Open Image Denoise is missing")
+    assert "Open Image Denoise is missing" in got["console"]
 
 
 def test_the_passes_are_those_of_cycles(case):

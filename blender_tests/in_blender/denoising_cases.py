@@ -1,5 +1,6 @@
 """F12 with denoising: what is in the file, what stays as it was, and what is told."""
 
+import hashlib
 import os
 import signal
 import tempfile
@@ -42,7 +43,7 @@ def _render(scene, denoising, layer=None):
 
 def _compare(scene, layer=None):
     """The same scene without and with denoising."""
-    raw, _, _, data = _render(scene, False, layer)
+    raw, _, before, data = _render(scene, False, layer)
     pictures, messages, statistics, stamped = _render(scene, True, layer)
     combined = pictures["Combined"]
     declaration = denoise.DECLARATION.encode()
@@ -56,9 +57,10 @@ def _compare(scene, layer=None):
         "alphas": [float(combined[..., 3].min()), float(combined[..., 3].max())],
         "finite": bool(np.isfinite(combined).all()),
         "size": list(combined.shape),
+        "picture": hashlib.sha256(combined.tobytes()).hexdigest(),
         "messages": messages,
         "statistics": {name: value for name, value in statistics.items() if name.startswith("denois")},
-        "film": statistics["film_bytes"],
+        "film alike": statistics["film_bytes"] == before["film_bytes"],
         "stamped": [declaration in data, declaration in stamped],
     }
 
@@ -110,20 +112,28 @@ def normals():
     return _compare(scene)
 
 
+def several():
+    """Many cases of one process."""
+    return {
+        case.__name__: case()
+        for case in (plain, classic, passes, border, transparent, view_layers, normals, failing, as_cycles, nearer)
+    } | {how: stopped(how) for how in ("poll", "at once")}
+
+
 def stopped(how):
-    """Ended as soon as something is told of denoising: by what is polled, or by Ctrl-C of this Python."""
+    """Ended as soon as a share is told: by what is polled, or by Ctrl-C of this Python; or even before."""
     scene = _scene(samples=1)
     raw, *_ = _render(scene, False)
-    original, fractions, result = denoise.apply, [], {}
+    original, said, result = denoise.apply, [], {}
 
     def apply(session, _, tell):
-        def hear(fraction):
-            fractions.append(fraction)
-            tell(fraction)
-            if how == "interrupt":
+        def hear(text):
+            said.append(text)
+            tell(text)
+            if how == "interrupt" and "%" in text:
                 os.kill(os.getpid(), signal.SIGINT)
 
-        return original(session, lambda: how == "poll" and len(fractions) > 0, hear)
+        return original(session, lambda: how == "poll" and "%" in said[-1] or how == "at once", hear)
 
     denoise.apply = apply
     try:
@@ -136,7 +146,7 @@ def stopped(how):
     finally:
         denoise.apply = original
     working = [thread.name for thread in threading.enumerate() if "denoising" in thread.name]
-    return {**result, "told": len(fractions), "messages": engine.last_messages[scene.name], "working": working}
+    return {**result, "said": said, "messages": engine.last_messages[scene.name], "working": working}
 
 
 def failing():
