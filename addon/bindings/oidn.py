@@ -42,6 +42,7 @@ _RENAMED = {
     ("oidnSetDeviceInt", "oidnSetDevice1i"): (None, (c_void_p, c_char_p, c_int)),
     ("oidnGetDeviceInt", "oidnGetDevice1i"): (c_int, (c_void_p, c_char_p)),
     ("oidnSetFilterBool", "oidnSetFilter1b"): (None, (c_void_p, c_char_p, c_bool)),
+    ("oidnSetFilterInt", "oidnSetFilter1i"): (None, (c_void_p, c_char_p, c_int)),
 }
 
 
