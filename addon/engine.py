@@ -7,7 +7,7 @@ import time
 
 import bpy
 
-from . import passes, stamp
+from . import denoise, passes, stamp
 from .bindings.abi import LancerError
 from .bindings.schedule import CANCELLED, Schedule
 from .bindings.session import Cancelled, Session
@@ -59,10 +59,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self._snapshot is not None:
             scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
             layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
+            denoising = denoise.ready(scene, view_layer)
             # The snapshot has all of it, and what Blender evaluated may be larger than the render. From here on there is no
             # depsgraph, unless Blender wants to keep it.
             self.free_blender_memory()
-            self._guarded(scene, self._render, scene, layer, wanted)
+            self._guarded(scene, self._render, scene, layer, wanted, denoising)
         self._snapshot = None
         if self.test_break():
             # The layers that were to follow do not come any more.
@@ -111,13 +112,17 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         # What a failed or cancelled export left behind must not be rendered by the next call.
         self._snapshot = None
         self.update_stats("", "Exporting")
-        wanted = passes.render_passes(depsgraph.scene, depsgraph.view_layer_eval)
+        scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
+        if denoise.wanted(scene, view_layer) and denoise.missing():
+            # Told before the time is spent.
+            self._tell(scene, Messages([denoise.missing()]))
+        wanted = passes.render_passes(scene, view_layer)
         options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
         self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
-        self._tell(depsgraph.scene, messages)
-        self._tell(depsgraph.scene, quick_check(depsgraph.scene, self._snapshot, self.test_break))
+        self._tell(scene, messages)
+        self._tell(scene, quick_check(scene, self._snapshot, self.test_break))
 
-    def _render(self, scene, layer, wanted):
+    def _render(self, scene, layer, wanted, denoising):
         self.update_stats("", "Building the scene")
         with Session.upload(self._snapshot, poll=self.test_break, release=True) as session:
             # The library holds its own copy from here on.
@@ -138,10 +143,23 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             try:
                 self._run(schedule, show)
                 passes.fill(result.layers[0], session.read, wanted)
-                self._account(scene, layer, session, schedule)
+                denoised = None
+                if denoising and not self.test_break():
+                    self.update_result(result)
+                    denoised = self._denoise(scene, session)
+                if denoised is not None:
+                    passes.replace_combined(result.layers[0], denoised.image)
+                self._account(scene, layer, session, schedule, denoised)
             finally:
                 # Keep the picture as far as it is, after Esc too.
                 self.end_result(result)
+
+    def _denoise(self, scene, session):
+        """Denoised, or None: then the picture that is there already stays."""
+        denoised, failure = denoise.apply(session, self.test_break, lambda text: self.update_stats("", text))
+        if failure:
+            self._tell(scene, Messages([failure]))
+        return denoised
 
     def _run(self, schedule, show):
         """Renders range by range, shows what there is now and then, and ends for Esc."""
@@ -189,7 +207,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
 
-    def _account(self, scene, layer, session, schedule):
+    def _account(self, scene, layer, session, schedule, denoised):
         statistics = session.statistics()
         if statistics.invalid_samples:
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
@@ -211,9 +229,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         numbers["error"] = error.error
         for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
             numbers[f"error_{name}"] = getattr(error, name)
+        numbers.update(denoise.statistics(denoised))
         # Pictures count as geometry.
         held = sum(numbers[name] for name in ("geometry_bytes", "accelerator_bytes", "film_bytes")) / 2**20
-        self.update_memory_stats(memory_used=held, memory_peak=held)
+        self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
         last_statistics[scene.name] = numbers
         # Only what get_result gives reaches the file.
         stamped = self.get_result()

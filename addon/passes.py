@@ -5,6 +5,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
+from . import denoise
 from .bindings.enums import Pass
 
 
@@ -46,6 +47,8 @@ def render_passes(scene, view_layer):
     for row in _TABLE:
         if getattr(view_layer, "use_pass_" + row[0]):
             yield RenderPass(row[_NAME], *row[3:])
+    if denoise.wanted(scene, view_layer):
+        yield RenderPass("Noisy Image", "RGBA", "COLOR", Pass.COMBINED)
     # The switch is that of Cycles, an add-on that may be off.
     denoising = getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False)
     if denoising:
@@ -70,6 +73,11 @@ def fill(layer, read, wanted):
         source = sources.get(target.name)
         if source is not None:
             _upload(target, np.ascontiguousarray(read(source), np.float32))
+
+
+def replace_combined(layer, image):
+    """Puts another picture, (height, width, 4) float32, in the place of Combined."""
+    _upload(next(target for target in layer.passes if target.name == "Combined"), image)
 
 
 def _upload(target, image):

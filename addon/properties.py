@@ -100,6 +100,12 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         soft_max=100.0,
         default=0.0,
     )
+    use_denoising: BoolProperty(
+        name="Denoising",
+        description="Have Blender's Open Image Denoise guess what lies under the noise of the finished picture. "
+        "As it was rendered it stays as the pass Noisy Image, and the error that is told is that pass's own",
+        default=False,
+    )
     pixel_filter: EnumProperty(
         name="Pixel Filter",
         description="How neighbouring samples are weighed within a pixel",

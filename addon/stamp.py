@@ -48,6 +48,8 @@ def biases(numbers, settings):
             yield f"light beyond {settings.max_bounces} bounces is left out, and the last of them finds no less than the others"
         elif missing > _NOTHING:
             yield f"light beyond {settings.max_bounces} bounces is left out: about {percent(missing)}"
+    if numbers["denoised"]:
+        yield numbers["denoised"]
 
 
 def fields(numbers, settings):
@@ -64,6 +66,8 @@ def fields(numbers, settings):
     yield "settings", ", ".join(_changed(settings))
     yield "features", numbers["features"]
     yield "kernel", f"{numbers['kernel']}, {numbers['instruction_set']}"
+    if numbers["denoised"]:
+        yield "denoising", numbers["denoised"]
     yield "version", numbers["version"]
 
 

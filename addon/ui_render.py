@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import engine, stamp
+from . import denoise, engine, stamp
 from .bindings.enums import Pass
 from .export.checks import EMPTY_PASSES
 
@@ -14,6 +14,12 @@ _REPLACED = (
     "Filter Glossy and limits of single kinds of",
     "bounces are not there. Where light differs by",
     "any of them, the messages tell.",
+)
+
+_DENOISING = (
+    "Open Image Denoise guesses what lies under the",
+    "noise. The error given is that of the picture",
+    "before it, the pass Noisy Image.",
 )
 
 
@@ -51,6 +57,24 @@ class LANCER_RENDER_PT_sampling(LancerPanel, bpy.types.Panel):
         column.prop(settings, "time_limit")
         column.prop(settings, "seed")
         column.prop(settings, "use_animated_seed")
+
+
+class LANCER_RENDER_PT_denoising(LancerPanel, bpy.types.Panel):
+    bl_label = "Denoising"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.active = context.scene.lancer.integrator != "NORMALS"
+        self.layout.prop(context.scene.lancer, "use_denoising", text="")
+
+    def draw(self, context):
+        column = self.layout.column()
+        missing = denoise.missing()
+        if missing:
+            column.label(text=missing, icon="ERROR")
+        for text in _DENOISING:
+            column.label(text=text)
 
 
 class LANCER_RENDER_PT_light_paths(LancerPanel, bpy.types.Panel):
@@ -125,6 +149,10 @@ class LANCER_RENDER_PT_messages(LancerPanel, bpy.types.Panel):
             column.label(text=f"{statistics['samples_mean']:.0f} samples, {statistics['seconds']:.1f} s")
             column.label(text=f"{statistics['rays_per_second'] / 1e6:.2f} M rays/s, {statistics['instruction_set']}")
             column.label(text=f"Uses: {statistics['features']}")
+            if statistics["denoised"]:
+                size = statistics["denoising_bytes"] / 2**20
+                column.label(text=f"{statistics['denoiser']}: {statistics['denoising_seconds']:.1f} s, {size:.0f} MB")
+                column.label(text=statistics["denoised"])
         if lines is None:
             column.label(text="Nothing rendered yet")
         elif not lines:
@@ -173,10 +201,15 @@ class LANCER_VIEWLAYER_PT_filter(LancerPanel, bpy.types.Panel):
         column = self._column()
         column.prop(context.view_layer, "use_sky", text="Environment")
         column.prop(context.view_layer, "use_solid", text="Surfaces")
+        if hasattr(context.view_layer, "cycles"):
+            row = column.row()
+            row.active = context.scene.lancer.use_denoising
+            row.prop(context.view_layer.cycles, "use_denoising", text="Denoising")
 
 
 CLASSES = (
     LANCER_RENDER_PT_sampling,
+    LANCER_RENDER_PT_denoising,
     LANCER_RENDER_PT_light_paths,
     LANCER_RENDER_PT_film,
     LANCER_RENDER_PT_performance,

@@ -20,8 +20,8 @@ def write_settings(scene, path):
     scene.render.filepath = path
 
 
-def read(path):
-    """{pass name: array (height, width, channels)} of the first view layer; row 0 is the top row."""
+def read(path, layer=None):
+    """{pass name: array (height, width, channels)} of a view layer, the first if not named; row 0 is the top row."""
     with open(path, "rb") as file:
         data = file.read()
     magic, version = struct.unpack_from("<ii", data)
@@ -51,7 +51,7 @@ def read(path):
             part["planes"][name][y - part["y0"]] = np.frombuffer(data, kind, part["width"], begin)
             begin += part["width"] * kind.itemsize
         at += size
-    return _passes(parts)
+    return _passes(parts, layer)
 
 
 def _headers(data, multipart):
@@ -85,13 +85,15 @@ def _channels(data):
     return result
 
 
-def _passes(parts):
+def _passes(parts, layer):
     """Channels are LAYER.PASS.CHANNEL, in some files with the first two as the name of the part."""
     groups = {}
     for part in parts:
         prefix = part.get("name", b"").decode()
         for name, plane in part["planes"].items():
             words = name.split(".") if "." in name else [*prefix.split("."), name]
+            if layer is not None and words[0] != layer:
+                continue
             if len(words) >= 3 or words[0] != "Composite":
                 groups.setdefault(".".join(words[1:-1]) or words[0], {}).setdefault(words[-1], plane)
     return {

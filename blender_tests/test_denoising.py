@@ -1,0 +1,109 @@
+"""F12 with denoising: the guess takes the place of Combined, and what was rendered stays, bit for bit, as Noisy Image."""
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+
+DECLARATION = "denoised: the error given is that of the picture before denoising"
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("denoising")
+    cases = blenders.run(MODULE, folder, "denoising_cases", "several")
+    return cases.__getitem__
+
+
+def check_denoised(got):
+    assert got["noisy is raw"] and got["alpha is raw"] and got["others are raw"] and got["finite"]
+    assert not got["combined is raw"] and got["film alike"]
+    assert got["passes"] == sorted([*got["passes without"], "Noisy Image"])
+    assert got["stamped"] == [False, True]
+    assert [line for line in got["messages"] if "enois" in line] == []
+    statistics = got["statistics"]
+    assert statistics["denoised"] == DECLARATION and statistics["denoiser"].startswith("Open Image Denoise 2.")
+    assert statistics["denoising_seconds"] > 0.0 and statistics["denoising_bytes"] > 0
+
+
+@pytest.mark.parametrize("integrator", ["plain", "classic"])
+def test_what_was_rendered_stays(case, integrator):
+    got = case(integrator)
+    check_denoised(got)
+    assert got["passes without"] == ["Combined"]
+
+
+def test_other_passes_are_what_they_were(case):
+    got = case("passes")
+    check_denoised(got)
+    assert {"Denoising Albedo", "Denoising Normal", "Denoising Depth", "Normal"} < set(got["passes"])
+    # What guides is the same, whether it is rendered beside the picture or by itself.
+    assert got["picture"] == case("plain")["picture"]
+
+
+def test_border(case):
+    got = case("border")
+    check_denoised(got)
+    assert got["size"] == [36, 32, 4]
+
+
+def test_transparent_film(case):
+    got = case("transparent")
+    check_denoised(got)
+    assert got["alphas"] == [0.0, 1.0]
+
+
+def test_each_view_layer_has_a_switch(case):
+    first, second = case("view_layers")
+    assert first["noisy is raw"] and not first["combined is raw"] and "Noisy Image" in first["passes"]
+    assert second["combined is raw"] and second["passes"] == ["Combined"]
+
+
+def test_normals_have_no_noise(case):
+    got = case("normals")
+    assert got["combined is raw"] and got["passes"] == ["Combined"] and got["statistics"]["denoised"] == ""
+
+
+GUIDES = "Denoising: looking at surfaces"
+
+
+@pytest.mark.parametrize("how, said", [("poll", 2), ("at once", 1)])
+def test_esc_leaves_what_was_rendered(case, how, said):
+    got = case(how)
+    assert got["said"][0] == GUIDES and len(got["said"]) == said and got["working"] == []
+    assert got["raw"] and got["denoised"] == "" and not got["stamped"]
+    assert [line for line in got["messages"] if "enois" in line] == []
+
+
+def test_ctrl_c_ends_it(tmp_path):
+    got = blenders.run(MODULE, tmp_path, "denoising_cases", "stopped", "interrupt")
+    assert got["said"][0] == GUIDES and len(got["said"]) == 2 and got["working"] == []
+    assert "interrupted" in got["error"] and got["messages"][-1] == "interrupted"
+
+
+def check_told(got, words):
+    told = [line for line in got["messages"] if "Open Image Denoise" in line]
+    assert len(told) == 1 and words in told[0] and told[0].endswith("the picture is shown with its noise")
+    assert got["combined is raw"] and got["noisy is raw"]
+    assert got["statistics"]["denoised"] == "" and got["stamped"] == [False, False]
+
+
+def test_a_failure_is_told(case):
+    check_told(case("failing"), "out of memory")
+
+
+def test_a_blender_without_the_library_is_told(tmp_path):
+    """Debian builds Blender without it."""
+    got = blenders.run(PROGRAM, tmp_path, "denoising_cases", "plain")
+    check_told(got, "Open Image Denoise is missing")
+    assert "Open Image Denoise is missing" in got["console"]
+
+
+def test_the_passes_are_those_of_cycles(case):
+    got = case("as_cycles")
+    for ours, theirs in (got["False"], got["True"]):
+        assert ours == theirs and ours["Noisy Image"] == 4
+
+
+def test_it_comes_nearer_to_the_converged_picture(case):
+    got = case("nearer")
+    assert got["denoised"] < got["raw"]
