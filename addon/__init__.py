@@ -27,9 +27,9 @@ def register():
         raise RuntimeError(
             "Lancer needs numpy in Blender's Python: install the package python3-numpy (Debian, Ubuntu) or numpy (pip)"
         ) from None
-    from . import engine, properties, ui
+    from . import engine, features, properties, ui
 
-    for module in (properties, engine, ui):
+    for module in (properties, engine, features, ui):
         module.register()
         _registered.append(module)
     # Blender as a Python module hangs (4.5) or crashes (4.2) at exit while an engine class is registered; the program itself

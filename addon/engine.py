@@ -9,6 +9,7 @@ import bpy
 from . import passes
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled, Session
+from .bindings.uses import used_features
 from .export import main_thread
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
@@ -17,6 +18,10 @@ from .waves import Waves
 # Of the last render of each scene, by its name, for the panel and for scripts.
 last_statistics = {}
 last_messages = {}
+# Of the last measurement of each scene: a hints.Costs.
+last_costs = {}
+# What the library holds, by kind: names of last_statistics.
+MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 
 _STEP = 0.05
 # As long as there is nothing to see.
@@ -37,6 +42,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _snapshot = None
     _messages = None
     _exported = None
+    _uses = ()
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
@@ -104,6 +110,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         wanted = passes.render_passes(depsgraph.scene, depsgraph.view_layer_eval)
         options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
         self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
+        self._uses = [dataclasses.asdict(feature) for feature in used_features(self._snapshot)]
         self._tell(depsgraph.scene, messages)
 
     def _render(self, scene, layer, wanted):
@@ -202,10 +209,19 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         numbers["seconds"] = statistics.render_seconds
         numbers["rays"] = statistics.rays
         numbers["rays_per_second"] = statistics.rays_per_second
-        # Pictures count as geometry.
-        held = sum(numbers[name] for name in ("geometry_bytes", "accelerator_bytes", "film_bytes")) / 2**20
+        held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held)
+        numbers["uses"] = self._uses
         last_statistics[scene.name] = numbers
+        if scene.name in last_costs:
+            keep_costs(scene.name, last_costs[scene.name])
+
+
+def keep_costs(name, costs):
+    """Keeps what the features of a scene were measured to cost, among its statistics, too."""
+    last_costs[name] = costs
+    if name in last_statistics:
+        last_statistics[name]["feature_costs"] = {cost.name: dataclasses.asdict(cost) for cost in costs.measured}
 
 
 def _clock(seconds):
@@ -224,3 +240,4 @@ def unregister():
     bpy.utils.unregister_class(LancerRenderEngine)
     last_statistics.clear()
     last_messages.clear()
+    last_costs.clear()

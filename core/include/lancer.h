@@ -31,7 +31,7 @@ extern "C" {
 #endif
 
 /* Changes whenever a struct or a call of this header does. */
-#define LANCER_ABI_VERSION 2u
+#define LANCER_ABI_VERSION 3u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;
@@ -654,6 +654,7 @@ typedef struct lancer_statistics {
   char features[512];       /* what the scene uses, separated by blanks */
   char kernel[64];          /* the integrator's specialisation that ran */
   char instruction_set[32]; /* e.g. "AVX2" */
+  uint64_t texture_bytes;   /* pictures; geometry_bytes has meshes, instances and lights */
 } lancer_statistics;
 
 /* The scene must be committed. Checks camera and settings; allocates the film. */
