@@ -48,10 +48,14 @@ def minimal(**settings):
     meshes = (
         MeshData("ball", ball.vertices, ball.faces, uvs=uvs),
         tiny.quad(12.0, "floor"),
-        _with_uvs(tiny.quad(0.2, "square")),
+        _with_uvs(tiny.quad(2.0, "square")),
     )
     matt = [dataclasses.replace(tiny.lambert(0.7), name=name) for name in ("ball", "floor", "square")]
-    places = {"ball": tiny.move(z=1.0), "floor": np.eye(4), "square": tiny.move(0, -9, 3) @ tiny.rotate_x(math.pi / 2)}
+    places = {
+        "ball": tiny.move(z=1.0),
+        "floor": np.eye(4),
+        "square": tiny.move(0, -9, 3) @ tiny.rotate_x(math.pi / 2) @ tiny.scale(0.1),
+    }
     instances = [Instance(mesh=i, matrix=places[m.name], materials=(i,), name=m.name) for i, m in enumerate(matt)]
     camera = Camera(
         tiny.look_at((0, -6, 3), (0, 0, 0.9)), width=SIZE, height=SIZE, window=(-0.35, 0.35, -0.35, 0.35), focal_distance=6.0
@@ -104,8 +108,9 @@ def _lamp(name, **fields):
         return dataclasses.replace(snapshot, lights=(Light("lamp", **light),))
 
     def second(lamp):
-        # Below the floor, and shining away from it.
-        below = dataclasses.replace(lamp, name="second", matrix=tiny.move(0, 0, -5))
+        # Below the floor, and shining away from it; a sun, which is nowhere, against it.
+        turn = tiny.rotate_x(math.pi if lamp.kind == LightKind.SUN else 0.0)
+        below = dataclasses.replace(lamp, name="second", matrix=tiny.move(0, 0, -5) @ turn)
         return lambda snapshot: dataclasses.replace(snapshot, lights=(*snapshot.lights, below))
 
     return Case(name, used, second(Light(**light)), second(Light(kind=LightKind.POINT, emission=light["emission"])))
@@ -216,7 +221,7 @@ CASES = (
     _objects("exact sphere", kinds=int(InstanceKind.SPHERE)),
     _objects("exact cylinder", kinds=int(InstanceKind.CYLINDER)),
     _objects("exact cone", kinds=int(InstanceKind.CONE)),
-    _objects("hidden from reflections", hidden_from=int(Ray.GLOSSY)),
+    _objects("hidden from bounced light", hidden_from=int(Ray.DIFFUSE)),
     _objects("hole in the picture", flags=int(InstanceFlag.HOLDOUT)),
     Case("copies of a mesh", None, lambda s: _copies(s, [0, 1, 2, 2]), lambda s: _copies(s, [0, 1, 2, 3])),
     _lamp("point lamp with extent", kind=LightKind.POINT, radius=0.5),
