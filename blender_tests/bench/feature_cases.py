@@ -51,11 +51,8 @@ def minimal(**settings):
         _with_uvs(tiny.quad(2.0, "square")),
     )
     matt = [dataclasses.replace(tiny.lambert(0.7), name=name) for name in ("ball", "floor", "square")]
-    places = {
-        "ball": tiny.move(z=1.0),
-        "floor": np.eye(4),
-        "square": tiny.move(0, -9, 3) @ tiny.rotate_x(math.pi / 2) @ tiny.scale(0.1),
-    }
+    behind = tiny.move(0, -9, 3) @ tiny.rotate_x(math.pi / 2) @ tiny.scale(0.1)
+    places = {"ball": tiny.move(z=1.0), "floor": np.eye(4), "square": behind}
     instances = [Instance(mesh=i, matrix=places[m.name], materials=(i,), name=m.name) for i, m in enumerate(matt)]
     camera = Camera(
         tiny.look_at((0, -6, 3), (0, 0, 0.9)), width=SIZE, height=SIZE, window=(-0.35, 0.35, -0.35, 0.35), focal_distance=6.0

@@ -6,8 +6,8 @@ from .page import STYLE
 
 _TOLD = """A minimal scene, a matt ball on a matt floor under a point lamp, and one feature more at a time. Used: on the ball,
 the lamp, the sky, the camera or in the settings; how much longer the same samples take. Only compiled in: the same scene, in
-which an object behind the camera, a lamp below the floor or a sky that no ray may see has the feature, so that its code is there
-and is not needed. Figures are medians with their 95 % intervals."""
+which an object behind the camera, a lamp below the floor or a sky that no ray may see has the feature, so that its code is
+there and is not needed. Figures are medians with their 95 % intervals."""
 
 
 def percent(value):
