@@ -17,12 +17,9 @@ from .uses import used_features, without
 LEAST_SAVING = 0.03
 _PIXELS = 16384
 _RUN_SECONDS = 0.03  # of the processor, for each run
-_LEAST_ROUNDS, _MOST_ROUNDS = 4, 40
+# Fewer than six say nothing about their median at 95 %.
+_LEAST_ROUNDS, _MOST_ROUNDS = 6, 40
 _ENOUGH = 0.005  # an uncertainty below which nothing more is asked
-# Student's t for 95 %, by degrees of freedom; beyond the last the normal distribution's is near.
-_T95 = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23, 2.20, 2.18, 2.16, 2.14, 2.13, 2.12, 2.11, 2.10, 2.09)
-# The median of normal numbers scatters more than their mean by the root of pi/2.
-_MEDIAN_TO_MEAN = math.sqrt(math.pi / 2.0)
 
 
 @dataclass(frozen=True)
@@ -60,13 +57,19 @@ def median(values):
 
 
 def median_with_uncertainty(values):
-    """The median, and half of the 95 % interval that normal numbers of this scatter would give it."""
-    n = len(values)
-    if n < 2:
-        return median(values), math.inf
-    mean = sum(values) / n
-    deviation = math.sqrt(sum((x - mean) ** 2 for x in values) / (n - 1))
-    return median(values), _MEDIAN_TO_MEAN * _T95[min(n - 1, len(_T95)) - 1] * deviation / math.sqrt(n)
+    """The median, and the farther end of its 95 % interval: between two of the values, however they are distributed."""
+    ordered, n = sorted(values), len(values)
+    middle = median(values)
+    # The median lies below the value number k (from 0) with the chance that at most k of n coins show heads.
+    chance, outside = 0.0, -1
+    for k in range(n // 2):
+        chance += math.comb(n, k) / 2.0**n
+        if 2.0 * chance > 0.05:
+            break
+        outside = k
+    if outside < 0:
+        return middle, math.inf
+    return middle, max(middle - ordered[outside], ordered[n - 1 - outside] - middle)
 
 
 def small_picture(camera, pixels=_PIXELS):

@@ -1,6 +1,7 @@
 """Lancer's panels, and Blender's that it shows, drawn without a window."""
 
 import types
+from dataclasses import replace
 
 import bpy
 import stage
@@ -69,9 +70,22 @@ def _draw(cls, context):
 
 def _variants(context):
     """The context again and again, with other choices made."""
+    from addon import engine, features
+    from addon.bindings.hints import Cost, Costs
+
     yield "plain"
     bpy.ops.render.render()
     yield "rendered"
+    name = context.scene.name
+    text = "3 materials use refraction; without it this frame would take 22 % less time for the same samples"
+    cost = Cost("glass", 3, 0.22, 0.02, 1.5, text, "they are opaque, in the same colour")
+    engine.last_costs[name] = Costs((cost, replace(cost, share=0.01)), ("metal",), 6.8)
+    yield "measured"
+    engine.last_costs[name] = Costs()
+    yield "measured, nothing found"
+    features.running[name] = (0.5, "3 materials use refraction")
+    yield "measuring"
+    del features.running[name]
     own = context.scene.lancer
     for integrator in own.bl_rna.properties["integrator"].enum_items.keys():
         own.integrator = integrator
