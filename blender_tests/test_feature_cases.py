@@ -57,10 +57,14 @@ def test_the_page_holds_every_figure():
         "commit": "abc",
         "goal": 0.02,
         "quick": False,
-        "cases": {"glass": {"PATH": {**found, "idle": idle}, "CLASSIC": found}, "lens": {"PATH": found}},
+        "cases": {
+            "glass": {"PATH": {**found, "idle": idle}, "CLASSIC": {"idle": {**idle, "note": "not idle"}}},
+            "lens": {"PATH": found},
+        },
     }
     text = features_page.page(figures)
     assert "+50.0 % ± 1.0" in text and "+3.1 % ± 0.2" in text and "missed" in text and "path &lt;all&gt;" in text
+    assert text.count("missed") == 1 and "not idle" in text
     assert text.count("<tr>") == 3
 
 

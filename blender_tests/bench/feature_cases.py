@@ -40,6 +40,7 @@ class Case:
     used: Callable | None  # snapshot -> snapshot
     idle: Callable | None = None  # the same, out of sight
     idle_base: Callable | None = None  # what idle is compared with where that is not the minimal scene
+    in_classic: str = ""  # why it is not idle in CLASSIC
 
 
 def minimal(**settings):
@@ -110,7 +111,8 @@ def _lamp(name, **fields):
         below = dataclasses.replace(lamp, name="second", matrix=tiny.move(0, 0, -5) @ turn)
         return lambda snapshot: dataclasses.replace(snapshot, lights=(*snapshot.lights, below))
 
-    return Case(name, used, second(Light(**light)), second(Light(kind=LightKind.POINT, emission=light["emission"])))
+    plain = second(Light(kind=LightKind.POINT, emission=light["emission"]))
+    return Case(name, used, second(Light(**light)), plain, "every lamp is asked at every hit")
 
 
 def _sky(name, world, hidden=True):
@@ -184,7 +186,12 @@ _BUMP = _nodes(
 _SKY_NODES = (Node(NodeKind.COORDINATE), Node(NodeKind.ENVIRONMENT, inputs=(NodeRef(0),), image_count=1))
 
 CASES = (
-    Case("every feature compiled in", None, lambda s: tiny.with_settings(s, features=Features.ALL)),
+    Case(
+        "every feature compiled in",
+        None,
+        lambda s: tiny.with_settings(s, features=Features.ALL),
+        in_classic="the plain code, which its lanes are compared with",
+    ),
     _surface("rough matt (Oren-Nayar)", _lobe(LobeKind.DIFFUSE, roughness=0.6, option=1)),
     _surface("mirror", _lobe(LobeKind.MIRROR)),
     _surface("rough metal", _lobe(LobeKind.GLOSSY, roughness=0.4)),

@@ -78,6 +78,8 @@ def measure(case, integrator, quick):
     if case.idle is not None:
         idle_base = base if case.idle_base is None else case.idle_base(base)
         result["idle"] = compare(idle_base, case.idle(base), 0.005, 4.0 if quick else 40.0)
+        if integrator == Integrator.CLASSIC and case.in_classic:
+            result["idle"]["note"] = case.in_classic
     return result
 
 
@@ -86,15 +88,16 @@ def main():
     patterns = [pattern for pattern in arguments.only.split(",") if pattern]
     cases = [c for c in feature_cases.CASES if not patterns or any(pattern in c.name for pattern in patterns)]
     figures = {"machine": jobs.machine(), "commit": jobs.commit(), "goal": GOAL, "quick": arguments.quick, "cases": {}}
+    OUTPUT.mkdir(parents=True, exist_ok=True)
     for integrator in (Integrator.PATH, Integrator.CLASSIC):
         for case in cases:
             found = measure(case, integrator, arguments.quick)
             figures["cases"].setdefault(case.name, {})[integrator.name] = found
             told = ", ".join(f"{kind} {features_page.percent(value)}" for kind, value in found.items())
             print(f"{time.monotonic() - started:7.1f}  {integrator.name:<8} {case.name:<40} {told}", flush=True)
-    OUTPUT.mkdir(parents=True, exist_ok=True)
-    (OUTPUT / "features.json").write_text(json.dumps(figures, indent=1) + "\n")
-    (OUTPUT / "index.html").write_text(features_page.page(figures), encoding="utf-8")
+            # A run takes long: what there is so far can be looked at.
+            (OUTPUT / "features.json").write_text(json.dumps(figures, indent=1) + "\n")
+            (OUTPUT / "index.html").write_text(features_page.page(figures), encoding="utf-8")
     print((OUTPUT / "index.html").relative_to(ROOT))
 
 

@@ -24,6 +24,10 @@ def verdict(value, goal):
 _WORDS = {True: ("reached", "yes"), False: ("missed", "no"), None: ("within the interval", "absent")}
 
 
+def _judged(idle, goal):
+    return (idle["note"], "absent") if "note" in idle else _WORDS[verdict(idle, goal)]
+
+
 def page(figures):
     machine, goal = figures["machine"], figures["goal"]
     head = ["feature", "PATH: used", "only compiled in", "", "kernel", "CLASSIC: used", "only compiled in", ""]
@@ -43,7 +47,7 @@ def _row(name, found, goal):
         used, idle = (found.get(integrator, {}).get(kind) for kind in ("used", "idle"))
         cells.append((percent(used) if used else "", ""))
         cells.append((percent(idle) if idle else "", ""))
-        cells.append(_WORDS[verdict(idle, goal)] if idle else ("", ""))
+        cells.append(_judged(idle, goal) if idle else ("", ""))
         if integrator == "PATH":
             cells.append(((idle or used)["kernel"] if found.get(integrator) else "", "text"))
     return "".join(f'<td class="{kind}">{html.escape(text)}</td>' for text, kind in cells)
