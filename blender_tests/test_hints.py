@@ -85,6 +85,8 @@ def test_the_interval_holds_the_truth(count):
 def test_the_interval_is_as_narrow_as_order_allows():
     """Of nine numbers at 95 % the second and the eighth: below the second the median is with 2 * 10 / 512 = 3.9 %."""
     assert median_with_uncertainty([1, 2, 3, 4, 5, 6, 7, 8, 100]) == (5, 3)
+    # Of eight the first and the last: with the second it is 2 * 9 / 256 = 7 %.
+    assert median_with_uncertainty([1, 2, 3, 4, 5, 6, 7, 8]) == (4.5, 3.5)
     # Of six the least and the greatest, 2 / 64; of five even those leave 6 %.
     assert median_with_uncertainty([1.0, 2.0, 3.0, 4.0, 5.0, 7.0]) == (3.5, 3.5)
     assert median_with_uncertainty([3.0, 1.0, 2.0]) == (2.0, float("inf"))

@@ -150,6 +150,14 @@ def test_owners_are_counted_and_only_the_first_named():
     assert found.text == "2 000 exact spheres" and found.owners == tuple(f"ball {i}" for i in range(8))
 
 
+def test_a_mesh_is_shared_by_two():
+    meshes = [tiny.quad(), tiny.quad()]
+    apart, shared = (
+        names(tiny.scene([Instance(mesh=0), Instance(mesh=other)], [tiny.lambert()], meshes=meshes)) for other in (1, 0)
+    )
+    assert shared - apart == {"instances"}
+
+
 def test_an_empty_scene_uses_nothing():
     assert used_features(tiny.scene()) == []
 
