@@ -99,6 +99,24 @@ def _objects(name, **columns):
     return Case(name, on(BALL), on(SQUARE))
 
 
+_ASKED = "every lamp is asked at every hit"
+
+
+def _glowing(name, material):
+    """Below the floor it lights nothing, and is compared with a lamp there."""
+
+    def below(snapshot):
+        matrices = snapshot.instances.matrices.copy()
+        matrices[SQUARE, :, 3] = 0, 0, -5
+        return dataclasses.replace(snapshot, instances=dataclasses.replace(snapshot.instances, matrices=matrices))
+
+    def with_lamp(snapshot):
+        lamp = Light("second", tiny.move(0, 0, -5), LightKind.POINT, emission=(1, 1, 1))
+        return dataclasses.replace(below(snapshot), lights=(*snapshot.lights, lamp))
+
+    return Case(name, _on(BALL, material), lambda s: _on(SQUARE, material)(below(s)), with_lamp, _ASKED)
+
+
 def _lamp(name, **fields):
     light = {"matrix": tiny.move(3, -3, 5) @ tiny.rotate_y(0.5) @ tiny.rotate_x(-0.5), "emission": (60, 60, 60), **fields}
 
@@ -112,7 +130,7 @@ def _lamp(name, **fields):
         return lambda snapshot: dataclasses.replace(snapshot, lights=(*snapshot.lights, below))
 
     plain = second(Light(kind=LightKind.POINT, emission=light["emission"]))
-    return Case(name, used, second(Light(**light)), plain, "every lamp is asked at every hit")
+    return Case(name, used, second(Light(**light)), plain, _ASKED)
 
 
 def _sky(name, world, hidden=True):
@@ -218,7 +236,7 @@ CASES = (
         "colour by nodes (layer weight)",
         _nodes((_NORMAL, Node(NodeKind.LAYER_WEIGHT, inputs=(0.5, NodeRef(0)), option=1)), color=NodeRef(1)),
     ),
-    _surface("glowing mesh", Material(lobes=(), emission=(5, 5, 5))),
+    _glowing("glowing mesh", Material(lobes=(), emission=(5, 5, 5))),
     _surface("hole in the picture by material", Material(lobes=(), holdout=1.0)),
     _surface("displacement", Material(displacement=(0.0, 0.0, 0.1), lobes=tiny.lambert(0.7).lobes)),
     _objects("smooth normals", shadings=int(Shading.PHONG)),
