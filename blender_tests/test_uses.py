@@ -192,6 +192,14 @@ def test_a_veil_becomes_the_whole_of_its_surface():
     assert without(snapshot, "transparency").materials[0] == dataclasses.replace(tiny.lambert(0.5))
 
 
+def test_single_numbers_are_the_first_of_three():
+    material = Material("red", lobes=(Lobe(weight=0.5),), transmittance=0.75)
+    snapshot = tiny.scene([tiny.sphere()], [material])
+    assert without(snapshot, "transparency").materials[0].lobes[0].weight == pytest.approx((2 / 3, 0.0, 0.0))
+    metal = Material("metal", lobes=(Lobe(LobeKind.CONDUCTOR, option=1, color=2.0, edge=0.0),))
+    assert "metal" in names(tiny.scene([tiny.sphere()], [metal]))
+
+
 def test_a_sky_becomes_its_mean():
     image = Image("sky", np.full((4, 8, 3), 0.7, np.float32))
     nodes = (Node(NodeKind.COORDINATE), Node(NodeKind.ENVIRONMENT, inputs=(NodeRef(0),), image_count=1))

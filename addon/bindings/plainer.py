@@ -24,6 +24,11 @@ _DULL = {
 }  # fmt: skip
 
 
+def _three(value):
+    """A constant as the library takes it: of a single number the first of three."""
+    return value if isinstance(value, tuple) else (value, 0.0, 0.0)
+
+
 def _with_lobes(material, change):
     """change gives a lobe, the same or another, or None."""
     lobes = [change(lobe) for lobe in material.lobes]
@@ -61,7 +66,9 @@ def _color_of_metal(lobe):
     if isinstance(lobe.color, NodeRef) or isinstance(lobe.edge, NodeRef):
         return (0.8, 0.8, 0.8)
     # Reflectance at normal incidence of index n and extinction k.
-    return tuple(((n - 1) ** 2 + k * k) / ((n + 1) ** 2 + k * k) for n, k in zip(lobe.color, lobe.edge, strict=True))
+    return tuple(
+        ((n - 1) ** 2 + k * k) / ((n + 1) ** 2 + k * k) for n, k in zip(_three(lobe.color), _three(lobe.edge), strict=True)
+    )
 
 
 def matt_metal(material):
@@ -153,14 +160,14 @@ def opaque(material):
         return material
     behind = sources(material.nodes, material.transmittance)
     shares = [lobe for lobe in material.lobes if sources(material.nodes, lobe.weight) & behind]
-    rest = 1.0 if behind else 1.0 - sum(material.transmittance) / 3.0
+    rest = 1.0 if behind else 1.0 - sum(_three(material.transmittance)) / 3.0
 
     def change(owner, name, value):
         if owner == "lobe" and name == "weight" and sources(material.nodes, value) & behind:
             # What covers the surface in part covers all of it then.
             return (1.0 / len(shares),) * 3
         if owner == "lobe" and name == "weight" and not isinstance(value, NodeRef) and rest > 0.0:
-            return tuple(min(1.0, x / rest) for x in value)
+            return tuple(min(1.0, x / rest) for x in _three(value))
         return _BLACK if (owner, name) == ("material", "transmittance") else value
 
     return without_idle_nodes(map_parameters(material, change))

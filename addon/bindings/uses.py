@@ -61,7 +61,9 @@ def shown_materials(snapshot):
     if not len(table):
         return []
     shown = np.zeros(len(snapshot.materials), bool)
-    for first, count in np.unique(np.stack([table.first_slots, table.slot_counts], axis=1), axis=0):
+    # Objects that have the same slots say so by the same numbers: many objects are few lists.
+    for both in np.unique(table.first_slots.astype(np.uint64) << np.uint64(32) | table.slot_counts).tolist():
+        first, count = both >> 32, both & 0xFFFFFFFF
         shown[table.slots[first : first + count]] = True
     return np.flatnonzero(shown).tolist()
 
