@@ -52,7 +52,7 @@ class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
         if costs is None:
             return
         if not costs.hints:
-            column.label(text="No feature takes 3 % of the time or more", icon="CHECKMARK")
+            column.label(text="No feature would surely save 3 % of the time", icon="CHECKMARK")
         for cost in costs.hints:
             start, rest = cost.text.split("; ", 1)
             column.label(text=start, icon="INFO")
