@@ -77,7 +77,7 @@ def measure(case, integrator, quick):
         result["used"] = compare(base, case.used(base), 0.02, 2.0 if quick else 6.0)
     if case.idle is not None:
         idle_base = base if case.idle_base is None else case.idle_base(base)
-        result["idle"] = compare(idle_base, case.idle(base), 0.005, 4.0 if quick else 40.0)
+        result["idle"] = compare(idle_base, case.idle(base), 0.007, 4.0 if quick else 20.0)
         if integrator == Integrator.CLASSIC and case.in_classic:
             result["idle"]["note"] = case.in_classic
     return result
