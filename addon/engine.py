@@ -11,6 +11,7 @@ from . import denoise, passes, stamp
 from .bindings.abi import LancerError
 from .bindings.schedule import CANCELLED, Schedule
 from .bindings.session import Cancelled, Session
+from .bindings.uses import used_features
 from .check_scene import quick_check
 from .export import main_thread
 from .export.messages import Messages
@@ -20,6 +21,10 @@ from .pace import Pace
 # Of the last render of each scene, by its name, for the panel and for scripts.
 last_statistics = {}
 last_messages = {}
+# Of the last measurement of each scene: a hints.Costs.
+last_costs = {}
+# What the library holds, by kind: names of last_statistics.
+MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 
 _STEP = 0.05
 # As long as there is nothing to see.
@@ -46,6 +51,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _messages = None
     _exported = None
     _pressed = None  # when, by time.monotonic(): the time limit counts from there
+    _uses = ()
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
@@ -119,6 +125,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         wanted = passes.render_passes(scene, view_layer)
         options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
         self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
+        self._uses = [dataclasses.asdict(feature) for feature in used_features(self._snapshot)]
         self._tell(scene, messages)
         self._tell(scene, quick_check(scene, self._snapshot, self.test_break))
 
@@ -230,10 +237,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
             numbers[f"error_{name}"] = getattr(error, name)
         numbers.update(denoise.statistics(denoised))
-        # Pictures count as geometry.
-        held = sum(numbers[name] for name in ("geometry_bytes", "accelerator_bytes", "film_bytes")) / 2**20
+        held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
+        numbers["uses"] = self._uses
         last_statistics[scene.name] = numbers
+        if scene.name in last_costs:
+            keep_costs(scene.name, last_costs[scene.name])
         # Only what get_result gives reaches the file.
         stamped = self.get_result()
         for name, value in stamp.fields(numbers, session.settings):
@@ -244,6 +253,13 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if bpy.app.background:
             for line in lines:
                 self.report({"INFO"}, f"Lancer: {line}")
+
+
+def keep_costs(name, costs):
+    """Keeps what the features of a scene were measured to cost, among its statistics, too."""
+    last_costs[name] = costs
+    if name in last_statistics:
+        last_statistics[name]["feature_costs"] = {cost.name: dataclasses.asdict(cost) for cost in costs.measured}
 
 
 def _clock(seconds):
@@ -264,3 +280,4 @@ def unregister():
     bpy.utils.unregister_class(LancerRenderEngine)
     last_statistics.clear()
     last_messages.clear()
+    last_costs.clear()

@@ -2,10 +2,10 @@
 
 import bpy
 
-from . import engine, ui_check, ui_data, ui_render
+from . import engine, ui_check, ui_data, ui_render, ui_uses
 
 _ID = engine.LancerRenderEngine.bl_idname
-_CLASSES = (*ui_render.CLASSES, *ui_check.CLASSES, *ui_data.CLASSES)
+_CLASSES = (*ui_render.CLASSES, *ui_uses.CLASSES, *ui_check.CLASSES, *ui_data.CLASSES)
 
 # Blender's panels for things that Lancer shows otherwise or does not have.
 _EXCLUDED = {

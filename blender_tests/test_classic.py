@@ -9,6 +9,7 @@ import reference
 import tiny_scenes
 from bindings.abi import Falloff, Integrator, LightKind, LobeKind, Shading
 from bindings.enums import Coordinate, Environment, NodeKind, Ray
+from bindings.session import Session
 from bindings.snapshot import Image, Instance, Light, Lobe, Material, MeshData, Node, NodeRef, World
 from course import EXACT, EYE, LAMP, classic, color, lamp, mirrored_sky, specular
 from tiny_scenes import lambert, move, pencil, plane, rgb, rotate_x, scale, sphere
@@ -269,6 +270,25 @@ def test_flat_gouraud_and_phong_shading():
         assert len({round(x, 4) for x in want.values()}) == 3, "the test's point tells them apart"
         for shading, value in want.items():
             assert np.isclose(shaded(shading, point, light), value, rtol=1e-5), (shading, point)
+
+
+def test_a_crowded_recursion_begins_anew_in_small_parts():
+    """Glass doubles the rays of every depth. In tiles of 8 x 8 pixels a batch is small from the start; in those of 32 x 32 the
+    rays become more than are kept at once. Both give the same bits and count the same rays."""
+    glass = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=1.5),))
+    balls = [sphere(0, scale(1.0 - 0.1 * i)) for i in range(6)]
+    camera = dataclasses.replace(pencil((0, -3, 0), width=1.6, pixels=32), width=32, height=32)
+    snapshot = tiny_scenes.scene(balls, [glass], [lamp()], world=(0.2, 0.4, 0.6), camera=camera)
+    found = []
+    for tile_size in (8, 32):
+        settings = dict(integrator=Integrator.CLASSIC, max_bounces=10, samples=1, tile_size=tile_size)
+        with Session.upload(tiny_scenes.with_settings(snapshot, **settings)) as session:
+            session.render_all()
+            found.append((session.read(0), session.statistics()))
+    assert np.array_equal(found[0][0], found[1][0])
+    assert found[0][1].bounce_rays == found[1][1].bounce_rays and found[0][1].camera_rays == 32 * 32
+    # The crowd has been there: more rays a sample than the 8 that 1024 samples may have under way.
+    assert found[0][1].bounce_rays > 10 * 8 * 32 * 32
 
 
 def test_normals_view():

@@ -162,6 +162,30 @@ def test_f12_in_a_window(display, tmp_path):
     assert code in (0, 1), f"Blender ended with {code}"
 
 
+def test_features_are_measured_beside_the_window(display, tmp_path):
+    """The window answers while the scene's features are measured, and Esc stops that with nothing kept."""
+    window = Window(str(tmp_path), display)
+    try:
+        window.wait_for("ready")
+        window.tell("measure")
+        window.wait_for("running_modal")
+        # A timer goes on beside it: nothing holds the window for the seconds that it takes.
+        window.wait_for("tick", len(window.times("tick")) + 5)
+        window.tell("measuring?")
+        window.wait_for("measuring")
+        window.press("Escape")
+        for asked in range(90):
+            window.tell("measuring?")
+            window.wait_for("tick", len(window.times("tick")) + 2)
+            if len(window.times("measuring")) < asked + 2:
+                break
+        window.wait_for("nothing")
+    finally:
+        code = window.close()
+    # Blender itself leaves with 1 after Esc; a crash would be a signal's number.
+    assert code in (0, 1), f"Blender ended with {code}"
+
+
 def linear(color):
     """Bytes of sRGB as light."""
     c = np.array(color) / 255.0

@@ -7,10 +7,22 @@ import blenders
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.enums import AlphaMode, CameraKind, Coordinate, Environment, Extension, Integrator, Interpolation, NodeKind, Ray
-from bindings.session import Scene
+from bindings.enums import (
+    AlphaMode,
+    CameraKind,
+    Coordinate,
+    Environment,
+    Extension,
+    Integrator,
+    Interpolation,
+    LightKind,
+    NodeKind,
+    Pass,
+    Ray,
+)
+from bindings.session import Scene, Session
 from bindings.shading import Image, Material, Node, NodeRef, World
-from bindings.snapshot import Camera
+from bindings.snapshot import Camera, Light
 from blenders import MODULE, PROGRAM
 from charts import unit
 from significance import LEVEL, chi_square, uniforms
@@ -178,6 +190,25 @@ def test_hidden_world(library):
             # 64 pixels of 64 samples each: below 1 % of noise where it is sampled as a light.
             assert np.allclose(tiny_scenes.radiance(down), lit, rtol=0.01), (varying, hidden)
             assert np.allclose(tiny_scenes.radiance(up), seen, rtol=1e-6), (varying, hidden)
+
+
+@pytest.mark.parametrize("integrator", [Integrator.PATH, Integrator.CLASSIC])
+def test_a_backdrop_takes_no_samples_from_lamps(library, integrator):
+    """What the camera alone sees lights nothing: surfaces have the bits, and the rays, of a scene without it."""
+    lights = [Light("lamp", tiny_scenes.move(2, -1, 3), LightKind.POINT, emission=(20, 20, 20), radius=0.3)]
+    camera = tiny_scenes.pencil((1, 0, 1), pixels=8)
+    floor = dict(instances=[tiny_scenes.plane()], materials=[tiny_scenes.lambert()], lights=lights, samples=4, camera=camera)
+    world, images = sky(np.full((4, 8, 1), 0.5), hidden_from=int(Ray.DIFFUSE | Ray.GLOSSY | Ray.TRANSMISSION))
+    found = []
+    for snapshot in (scene(world, images, integrator=integrator, **floor), scene(World(), (), integrator=integrator, **floor)):
+        with Session.upload(snapshot) as session:
+            session.render_all()
+            found.append((session.read(Pass.COMBINED), session.statistics().shadow_rays))
+    assert np.array_equal(found[0][0], found[1][0]) and found[0][0][..., :3].min() > 0.0
+    assert found[0][1] == found[1][1] > 0
+    # By itself it is no light that could be chosen, either.
+    alone = scene(world, images, integrator=integrator, **{**floor, "lights": []})
+    assert tiny_scenes.render(alone)[..., :3].max() == 0.0
 
 
 @pytest.mark.parametrize("integrator", Integrator)

@@ -72,6 +72,7 @@ class Statistics:
     features: str
     kernel: str
     instruction_set: str
+    texture_bytes: int
 
     @property
     def rays(self):

@@ -262,6 +262,7 @@ class Statistics(Structure):
         ("features", c_char * 512),
         ("kernel", c_char * 64),
         ("instruction_set", c_char * 32),
+        ("texture_bytes", c_uint64),
     ]
 
 

@@ -8,7 +8,7 @@ from . import goals
 BEGIN = "<!-- bench: written by `make bench README=1` -->"
 END = "<!-- bench: end -->"
 
-_STYLE = """
+STYLE = """
 body { font: 14px sans-serif; margin: 24px; color: #222; background: #f4f4f4 }
 table { border-collapse: collapse; background: #fff; margin-bottom: 24px } td, th { padding: 4px 8px; border: 1px solid #ccc }
 td { text-align: right } td.text, th.text { text-align: left }
@@ -32,7 +32,7 @@ def write(figures, folder, chart_names):
         "<h2>Roofline</h2>",
         _roofline(figures),
     ]
-    head = f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>Benchmark</title><style>{_STYLE}</style></head><body>'
+    head = f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>Benchmark</title><style>{STYLE}</style></head><body>'
     (folder / "index.html").write_text(head + "\n".join(parts) + "</body></html>\n", encoding="utf-8")
 
 

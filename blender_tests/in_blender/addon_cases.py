@@ -175,5 +175,5 @@ def many_renders():
         bpy.ops.render.render()
         resident.append(_resident())
     last = _statistics(scene)
-    held = sum(last[name] for name in ("geometry_bytes", "accelerator_bytes", "film_bytes"))
+    held = sum(last[name] for name in ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes"))
     return {"resident": resident, "held": held, "triangles": last["triangles"]}

@@ -1,6 +1,7 @@
 """Lancer's panels, and Blender's that it shows, drawn without a window."""
 
 import types
+from dataclasses import replace
 
 import bpy
 import stage
@@ -42,6 +43,13 @@ class _Layout:
         self._judge("label", options)
         self.shown.append(options["text"])
 
+    def operator(self, name, **options):
+        self._judge("operator", options)
+        group, own = name.split(".")
+        if own not in dir(getattr(bpy.ops, group)):
+            raise KeyError(name)
+        self.shown.append(name)
+
     def template_node_view(self, tree, node, socket):
         if socket.node != node or node.id_data != tree:
             raise ValueError("the socket is of another node")
@@ -70,11 +78,24 @@ def _draw(cls, context):
 
 def _variants(context):
     """The context again and again, with other choices made."""
+    from addon import engine, features
+    from addon.bindings.hints import Cost, Costs
+
     yield "plain"
     bpy.ops.render.render()
     yield "rendered"
     bpy.ops.lancer.check_scene()
     yield "checked"
+    name = context.scene.name
+    text = "3 materials use refraction; without it this frame would take 22 % less time for the same samples"
+    cost = Cost("glass", 3, 0.22, 0.02, 1.5, text, "they are opaque, in the same colour")
+    engine.last_costs[name] = Costs((cost, replace(cost, share=0.01)), ("metal",), 6.8)
+    yield "measured"
+    engine.last_costs[name] = Costs()
+    yield "measured, nothing found"
+    features.running[name] = (0.5, "3 materials use refraction")
+    yield "measuring"
+    del features.running[name]
     own = context.scene.lancer
     for integrator in own.bl_rna.properties["integrator"].enum_items.keys():
         own.integrator = integrator

@@ -36,8 +36,19 @@ def told(word):
     return True
 
 
+def measure():
+    """As the button of the panel does it."""
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        say(next(iter(bpy.ops.lancer.measure_features("INVOKE_DEFAULT", seconds=600.0))).lower())
+
+
 def tick():
     say("tick")
+    if told("measure"):
+        measure()
+    if told("measuring?"):
+        scene = bpy.context.scene.name
+        say("measuring" if scene in addon.features.running else "measured" if scene in addon.engine.last_costs else "nothing")
     if told("compare"):
         window_pictures.compare(FOLDER)
         say("compared")

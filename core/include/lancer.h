@@ -658,6 +658,7 @@ typedef struct lancer_statistics {
   char features[512];       /* what the scene uses, separated by blanks */
   char kernel[64];          /* the integrator's specialisation that ran */
   char instruction_set[32]; /* e.g. "AVX2" */
+  uint64_t texture_bytes;   /* pictures; geometry_bytes has meshes, instances and lights */
 } lancer_statistics;
 
 /* The scene must be committed. Checks camera and settings; allocates the film. */

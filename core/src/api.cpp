@@ -301,6 +301,7 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
               feature_names({scene.features, scene.shapes}) + (lens ? " lens" : ""));
     copy_text(statistics->kernel, sizeof statistics->kernel, from.kernel);
     copy_text(statistics->instruction_set, sizeof statistics->instruction_set, scene.accelerator->instruction_set());
+    statistics->texture_bytes = scene.texture_bytes();
     return LANCER_OK;
   });
 }

@@ -12,23 +12,28 @@ namespace {
 // Every lamp at every depth has numbers of its own, behind those of a path.
 constexpr uint32_t kDimensionLamp = 1u << 24;
 
-constexpr size_t kGlassBatch = 64;
+// Glass doubles the rays of every depth. Where more than so many are under way, the batch begins anew in parts that are small
+// enough for the deepest recursion.
+constexpr size_t kCrowd = 8192, kSmallPart = 64;
 
 } // namespace
 
 void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                             std::vector<PathVertex> *trace) {
-  // Glass doubles the rays of every depth: fewer samples at a time keep the queues within memory.
-  const bool doubles = (scene_.features & kFeatureGlass) != 0;
-  const size_t part = doubles ? kGlassBatch : addresses.size();
-  for (size_t begin = 0; begin < addresses.size() && !settings_.cancelled(); begin += part) {
-    const size_t size = std::min(part, addresses.size() - begin);
-    run_part(addresses.subspan(begin, size), results.subspan(begin, size), trace);
+  for (size_t begin = 0; begin < addresses.size() && !settings_.cancelled();) {
+    const size_t size = std::min(crowded_ ? kSmallPart : addresses.size(), addresses.size() - begin);
+    if (run_part(addresses.subspan(begin, size), results.subspan(begin, size), trace))
+      begin += size;
+    else
+      // It is likely so for the batches that follow, too.
+      crowded_ = true;
   }
 }
 
-void ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+// False where the rays became too many: nothing is done then.
+bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                                  std::vector<PathVertex> *trace) {
+  const RayCounts before = counts_;
   generate(addresses, results);
   // Trace the recursion depth by depth: a pixel's sum has the same order in any batch.
   while (!rays_.empty() && !settings_.cancelled()) {
@@ -45,7 +50,12 @@ void ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     counts_.bounce += next_rays_.size();
     branches_.swap(next_branches_);
     rays_.swap(next_rays_);
+    if (rays_.size() > kCrowd && addresses.size() > kSmallPart) {
+      counts_ = before;
+      return false;
+    }
   }
+  return true;
 }
 
 void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
@@ -158,6 +168,8 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
     const bool lamp = i < lights.size();
     const CourseLight &course = lamp ? lights[i].course : plain;
     const uint32_t hidden = scene_.lights.hidden_from(i);
+    if (!lamp && !LightSet::lit_by(hidden))
+      continue;
     // Illuminate each lit point as if nothing stood between.
     glm::vec3 light(0.0f);
     LightSample s;

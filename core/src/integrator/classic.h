@@ -53,7 +53,7 @@ private:
     DenoisingFeatures features{};
   };
 
-  void run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
+  bool run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void shade(const Branch &branch, const Ray &ray, const Hit &hit, SampleResult &result, std::vector<PathVertex> *trace);
   void shade_lanes(std::span<SampleResult> results);
@@ -88,6 +88,7 @@ private:
   std::unique_ptr<ClassicLanes> lanes_; // null: surfaces are shaded one by one
   Shaded point_;                        // of the surface at hand
   Shaded corners_[3];                   // of its triangle, under Gouraud shading
+  bool crowded_ = false;                // batches are done in small parts
   std::vector<Sampler> samplers_;       // per slot
   std::vector<Branch> branches_, next_branches_;
   std::vector<Ray> rays_, next_rays_;

@@ -27,6 +27,8 @@ CourseLamp make_lamp(const LightSet &lights, uint32_t number) {
     lamp.diffuse[i] = hidden & LANCER_RAY_DIFFUSE ? 0.0f : course.diffuse_color[i];
     lamp.specular[i] = hidden & LANCER_RAY_GLOSSY ? 0.0f : course.specular_color[i];
   }
+  // Ka of a surface takes light of lamps that are hidden, too.
+  lamp.unseen = !described && !LightSet::lit_by(hidden);
   if (!described)
     return lamp;
   const Light &light = lights.lights()[number];
@@ -122,6 +124,10 @@ void ClassicIntegrator::light_lanes(size_t begin, size_t end) {
   for (uint32_t number = 0; number < lanes_->lamps.size(); ++number) {
     const CourseLamp &lamp = lanes_->lamps[number];
     CourseLit &lit = lanes_->lit[number];
+    if (lamp.unseen) {
+      lit.lit = 0;
+      continue;
+    }
     if (!lamp.point) {
       lit.there = lit.far = 0;
       for (size_t i = begin, lane = 0; i < end; ++i)

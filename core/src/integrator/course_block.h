@@ -50,7 +50,8 @@ struct alignas(64) CourseBlock {
 
 // A lamp as all lanes ask it.
 struct CourseLamp {
-  bool point = false; // one without extent; else light's samples are given
+  bool point = false;  // one without extent; else light's samples are given
+  bool unseen = false; // no surface shows its light
   double position[3] = {}, emission[3] = {};
   float diffuse[3] = {}, specular[3] = {}; // colours, black where the lamp is hidden from such rays
 };

@@ -57,7 +57,8 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
     described.push_back(describe(lights_[i], i));
   for (const Emitter &emitter : emitters_)
     described.push_back(describe_cluster(emitter.bounds(), uint32_t(described.size())));
-  if (environment_.varies())
+  // What only the camera sees lights nothing.
+  if (environment_.varies() && lit_by(environment_.hidden_from()))
     described.push_back(describe_sky(environment_.mean(), environment_light()));
   // One that is never chosen is never met either: both techniques know the same lights.
   std::vector<uint32_t> met;

@@ -22,6 +22,10 @@ public:
   const std::vector<Light> &lights() const { return lights_; }
   const std::vector<Emitter> &emitters() const { return emitters_; }
   const Environment &environment() const { return environment_; }
+  // Whether any surface shows light that is hidden from these rays.
+  static bool lit_by(uint32_t hidden_from) {
+    return (~hidden_from & (LANCER_RAY_DIFFUSE | LANCER_RAY_GLOSSY | LANCER_RAY_TRANSMISSION)) != 0;
+  }
   // The environment's number among the lights; only where it varies.
   uint32_t environment_light() const { return uint32_t(lights_.size() + emitters_.size()); }
   // Bits LANCER_RAY_* of the rays that do not see a light, and whether nothing stands in its way.

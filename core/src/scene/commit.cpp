@@ -151,6 +151,11 @@ size_t Scene::geometry_bytes() const {
     for (const MeshAttribute &attribute : mesh.attributes)
       bytes += attribute.values.size() * sizeof(float);
   }
+  return bytes;
+}
+
+size_t Scene::texture_bytes() const {
+  size_t bytes = 0;
   for (const Image &image : images)
     bytes += image.bytes();
   return bytes;

@@ -44,7 +44,8 @@ struct Scene {
 
   // A primitive as the user numbered it.
   uint32_t face_number(uint32_t instance, uint32_t primitive) const;
-  size_t geometry_bytes() const;
+  size_t geometry_bytes() const; // with lights, without pictures
+  size_t texture_bytes() const;
 };
 
 // Turns a description into a scene. Throws Error, or BuildCancelled when context.cancel is raised.

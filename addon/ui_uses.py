@@ -1,0 +1,66 @@
+"""The panel that tells an artist what the scene uses, what it takes, and what each part of it costs."""
+
+import bpy
+
+from . import engine, features
+from .bindings.uses import kernel_in_words
+from .ui_render import LancerPanel
+
+_MEMORY = {
+    "geometry_bytes": "Geometry and lights",
+    "accelerator_bytes": "Acceleration",
+    "texture_bytes": "Textures",
+    "film_bytes": "Film",
+}
+
+
+def _size(size):
+    return f"{size / 2**20:.1f} MB" if size >= 2**20 / 20 else f"{size / 2**10:.1f} kB"
+
+
+def _share(value):
+    return f"{value * 100:.0f} %"
+
+
+class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
+    bl_label = "What This Scene Uses"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        name = context.scene.name
+        column = self.layout.column(align=True)
+        statistics = engine.last_statistics.get(name)
+        if statistics is None:
+            column.label(text="Told after the first render")
+        else:
+            for feature in statistics["uses"]:
+                column.label(text=feature["text"])
+            column.separator()
+            column.label(text="The code that ran knows")
+            column.label(text=kernel_in_words(statistics["kernel"]))
+            column.separator()
+            for key, what in _MEMORY.items():
+                column.label(text=f"{what}: {_size(statistics[key])}")
+        column.separator()
+        if name in features.running:
+            fraction, text = features.running[name]
+            column.label(text=f"Measuring, {_share(fraction)}: {text}", icon="TIME")
+            return
+        column.operator("lancer.measure_features", icon="TIME")
+        costs = engine.last_costs.get(name)
+        if costs is None:
+            return
+        if not costs.hints:
+            column.label(text="No feature would surely save 3 % of the time", icon="CHECKMARK")
+        for cost in costs.hints:
+            start, rest = cost.text.split("; ", 1)
+            column.label(text=start, icon="INFO")
+            column.label(text=rest)
+            told = f"about {cost.seconds:.1f} s, {_share(cost.share)} give or take {_share(cost.uncertainty)}"
+            column.label(text=f"{told}. Without: {cost.without}")
+        if costs.skipped:
+            column.label(text=f"No time for {len(costs.skipped)} more features")
+
+
+CLASSES = (LANCER_RENDER_PT_uses,)

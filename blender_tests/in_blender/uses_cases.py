@@ -1,0 +1,81 @@
+"""What a scene uses, told after a render and measured by the operator."""
+
+import bpy
+import stage
+
+
+def _glassy(samples=4):
+    scene = stage.room(width=32, height=18, samples=samples)
+    glass = stage.shader("ShaderNodeBsdfGlass", "Glass", Color=(1.0, 1.0, 1.0))
+    for i in range(12):
+        stage.ball(0.9 - 0.05 * i, glass, segments=32, location=(0, -2, 1))
+    return scene
+
+
+def statistics():
+    from addon import engine
+
+    scene = _glassy()
+    image = bpy.data.images.new("Checks", 16, 16)
+    material = stage.shader(name="Pictured")
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    tree.links.new(node.outputs["Color"], next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
+    bpy.data.objects["Cube"].data.materials[0] = material
+    bpy.ops.render.render()
+    numbers = engine.last_statistics[scene.name]
+    return {
+        "uses": numbers["uses"],
+        "memory": {name: numbers[name] for name in engine.MEMORY},
+        "costs": numbers.get("feature_costs"),
+    }
+
+
+def _data():
+    """What a measurement may not change: every property of scene, objects, materials and cameras that holds a plain value."""
+    found = {}
+    for group in (bpy.data.scenes, bpy.data.objects, bpy.data.materials, bpy.data.cameras, bpy.data.lights, bpy.data.meshes):
+        for item in group:
+            for owner in (item, getattr(item, "lancer", None), getattr(item, "render", None)):
+                for name, prop in owner.bl_rna.properties.items() if owner is not None else ():
+                    if prop.type in ("BOOLEAN", "INT", "FLOAT", "STRING", "ENUM"):
+                        value = getattr(owner, name)
+                        found[f"{item.name_full} {owner.bl_rna.identifier} {name}"] = repr(
+                            value[:] if hasattr(value, "__getitem__") and not isinstance(value, str) else value
+                        )
+    return found
+
+
+def measured():
+    """The operator without a window: what it gives and keeps, and whether the file is as it was."""
+    from addon import engine
+
+    scene = _glassy()
+    bpy.ops.render.render()
+    before = _data()
+    result = bpy.ops.lancer.measure_features(seconds=1.0)
+    after = _data()
+    costs = engine.last_costs[scene.name]
+    kept = engine.last_statistics[scene.name]["feature_costs"]
+    bpy.ops.render.render()
+    return {
+        "result": sorted(result),
+        "changed": [key for key in after if after[key] != before.get(key)],
+        "compared": len(before),
+        "costs": {cost.name: [cost.share, cost.uncertainty, cost.text] for cost in costs.measured},
+        "hints": [cost.name for cost in costs.hints],
+        "kept": sorted(kept),
+        "kept after a render": sorted(engine.last_statistics[scene.name]["feature_costs"]),
+    }
+
+
+def without_camera():
+    """No camera: the button is grey, and a script is told."""
+    scene = stage.empty()
+    stage.cube()
+    try:
+        bpy.ops.lancer.measure_features()
+    except RuntimeError as error:
+        return {"error": str(error), "camera": scene.camera is not None}
+    return {"error": ""}
