@@ -43,13 +43,6 @@ class _Layout:
         self._judge("label", options)
         self.shown.append(options["text"])
 
-    def operator(self, name, **options):
-        self._judge("operator", options)
-        group, own = name.split(".")
-        if own not in dir(getattr(bpy.ops, group)):
-            raise KeyError(name)
-        self.shown.append(name)
-
     def template_node_view(self, tree, node, socket):
         if socket.node != node or node.id_data != tree:
             raise ValueError("the socket is of another node")
