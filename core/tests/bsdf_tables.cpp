@@ -1,5 +1,6 @@
 // Tables of what lobes send out: whatever is asked, nothing beyond them is read.
 #include "bsdf/albedo_tables.h"
+#include "bsdf/sheen.h"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -19,6 +20,8 @@ TEST(AlbedoTables, AnyQuestionHasAnAnswerWithinThem) {
              glass_mean_albedo(value, value),
              dielectric_mix(0.5f, 0.5f, value),
              fifth_power_mix(value, value),
+             sheen_fit(value, 0.5f).albedo,
+             sheen_fit(0.5f, value).albedo,
          }) {
       EXPECT_GE(share, 0.0f) << value;
       EXPECT_LE(share, 1.0f) << value;

@@ -3,6 +3,8 @@
 // of our own (core/tables).
 #pragma once
 
+#include "sampling/on_axis.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -20,8 +22,6 @@ extern const uint16_t kGlassMean[2][kCoarse * kCoarse];            // [index][ro
 extern const uint16_t kDielectricMix[kCoarse * kCoarse * kCoarse]; // [index][cosine][roughness]
 extern const uint16_t kFifthPowerMix[kCoarse * kCoarse];           // [cosine][roughness]
 
-// 0 ... 1. What is no number is 0: it must not become a place beyond a table.
-inline float on_axis(float x) { return std::min(std::max(0.0f, x), 1.0f); }
 inline float read1(const uint16_t *table, int n, float x) {
   x = on_axis(x) * static_cast<float>(n - 1);
   const int i = std::min(static_cast<int>(x), n - 2);
