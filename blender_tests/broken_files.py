@@ -20,10 +20,13 @@ for folder in (os.path.join(os.path.dirname(HERE), "addon"), os.path.dirname(HER
     if folder not in sys.path:
         sys.path.insert(0, folder)
 
+from bindings.abi import load_library  # noqa: E402
 from bindings.npz import SnapshotError  # noqa: E402
 from bindings.session import LancerError, Session  # noqa: E402
 from bindings.snapshot import SceneSnapshot  # noqa: E402
 
+# The one under test, or another build of it.
+LIBRARY = load_library(os.environ.get("LANCER_LIBRARY"))
 NUMBERS = (0, 1, -1, 2, 3, 7, 255, 2**16, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 2**63, -(2**31), 10**400)
 FLOATS = (
     0.0,
@@ -155,7 +158,7 @@ def try_file(path):
     world = dataclasses.replace(snapshot.world, map_resolution=min(snapshot.world.map_resolution or 16, WIDEST_MAP))
     snapshot = dataclasses.replace(snapshot, settings=dataclasses.replace(settings, threads=threads), world=world)
     try:
-        with Session.upload(snapshot) as session:
+        with Session.upload(snapshot, LIBRARY) as session:
             session.messages()
             if camera.region_width * camera.region_height > MOST_PIXELS or settings.max_bounces > 64:
                 return "session"
