@@ -121,7 +121,8 @@ def spoil_array(arrays, chance):
         array = array.copy()
         for _ in range(chance.choice((1, 3, array.size))):
             at = chance.randrange(array.size)
-            array.reshape(-1)[at] = chance.choice(FLOATS) if array.dtype.kind == "f" else chance.choice(NUMBERS[:11]) % 2**16
+            value = chance.choice(FLOATS) if array.dtype.kind == "f" else chance.choice(NUMBERS[:11]) % 2**32
+            array.reshape(-1)[at] = np.array(value).astype(array.dtype)
     arrays[name] = array
 
 
