@@ -135,8 +135,9 @@ TEST(PictureError, OfBlackAndOfEvenPicturesIsNone) {
 
 TEST(Refinement, DoublesWhereTheOtherHalfIsNoisy) {
   Film film(kSize, kSize, 16, 1, true);
-  fill(film, 64, 1,
-       [](std::mt19937 &random, uint32_t x, uint32_t) { return 1.0f + (x >= 48 ? 0.5f : 0.001f) * gaussian(random); });
+  fill(film, 64, 1, [](std::mt19937 &random, uint32_t x, uint32_t) {
+    return x >= 48 ? 1.0f + 0.5f * gaussian(random) : 5.0f + 0.001f * gaussian(random);
+  });
   const LuminanceMap map(film);
   const RelativeVariance relative(map);
   // The plan takes the mean of what pixels and their neighbours say. A hundredth to spare, for the roundings of a sum.
