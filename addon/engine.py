@@ -247,7 +247,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         stamped = self.get_result()
         for name, value in stamp.fields(numbers, session.settings):
             stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
-        lines = stamp.lines(numbers, session.settings)
+        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings)
         self.update_stats("", lines[0])
         # Headless, what is reported goes to the terminal; in a window the panel has it.
         if bpy.app.background:

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import denoise, engine, stamp
+from . import denoise, engine
 from .bindings.enums import Pass
 from .export.checks import EMPTY_PASSES
 
@@ -21,11 +21,6 @@ _DENOISING = (
     "noise. The error given is that of the picture",
     "before it, the pass Noisy Image.",
 )
-
-
-def _error(statistics):
-    low, high = stamp.percent(statistics["error_low"]), stamp.percent(statistics["error_high"])
-    return f"{stamp.percent(statistics['error'])} ({low} to {high})"
 
 
 class LancerPanel:
@@ -145,14 +140,15 @@ class LANCER_RENDER_PT_messages(LancerPanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         statistics = engine.last_statistics.get(context.scene.name)
         if statistics is not None:
-            column.label(text=f"Error {_error(statistics)}")
-            column.label(text=f"{statistics['samples_mean']:.0f} samples, {statistics['seconds']:.1f} s")
+            # The error, then what it does not count.
+            for sentence in statistics["accuracy"]:
+                for part in sentence.split("; "):
+                    column.label(text=part[0].upper() + part[1:])
             column.label(text=f"{statistics['rays_per_second'] / 1e6:.2f} M rays/s, {statistics['instruction_set']}")
             column.label(text=f"Uses: {statistics['features']}")
             if statistics["denoised"]:
                 size = statistics["denoising_bytes"] / 2**20
                 column.label(text=f"{statistics['denoiser']}: {statistics['denoising_seconds']:.1f} s, {size:.0f} MB")
-                column.label(text=statistics["denoised"])
         if lines is None:
             column.label(text="Nothing rendered yet")
         elif not lines:
