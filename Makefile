@@ -17,6 +17,7 @@ QUICK ?=
 BLENDER ?=
 BEFORE ?=
 README ?=
+MINUTES ?= 10
 
 python := $(VENV)/bin/python
 core := build/core
@@ -27,9 +28,9 @@ compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
 # Runs a command into a log: silent when it goes well, all of it when it does not. $(call logged,LOG,COMMAND)
 logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 
-.PHONY: build render test test-slow bench tradeoff features parity sanitize addon format clean help
-.PHONY: packages-build packages-run packages-test packages-format packages-bench
-.PHONY: python-run python-test python-dev python-bench core-tests
+.PHONY: build render test test-slow bench tradeoff features parity sanitize fuzz addon format clean help
+.PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-bench
+.PHONY: python-run python-test python-dev python-bench core-programs core-tests
 
 build: packages-build ## build the core; the library lands in addon/lib, where the add-on loads it
 	@mkdir -p build
@@ -45,15 +46,19 @@ test: packages-test python-test core-tests addon ## all tests but the slow ones
 	@echo "== blender_tests"
 	@$(python) -m pytest -q blender_tests -m "not slow"
 
-test-slow: packages-test python-test core-tests addon ## the tests that take minutes
+test-slow: packages-test python-test core-programs addon ## the tests that take minutes
+	@echo "== a thousand renders cancelled"
+	@LANCER_CANCELS=1000 $(core)/lancer_failures --gtest_brief=1 --gtest_filter='*Cancel*'
 	@echo "== blender_tests, slow"
 	@$(python) -m pytest -q blender_tests -m slow
 
-core-tests: packages-test
+core-programs: packages-test
 	@mkdir -p build
 	@$(call logged,build/configure.log,$(cmake) -B $(core) -DLANCER_TESTS=ON)
 	@echo "== core and its tests"
 	@cmake --build $(core) $(compile)
+
+core-tests: core-programs
 	@$(call logged,build/ctest.log,ctest --test-dir $(core) -j $(JOBS) --output-on-failure)
 	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest.log
 
@@ -64,6 +69,16 @@ sanitize: packages-test ## the C++ tests under AddressSanitizer and UndefinedBeh
 	@cmake --build build/sanitize $(compile)
 	@$(call logged,build/ctest-sanitize.log,ctest --test-dir build/sanitize -j $(JOBS) --output-on-failure)
 	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest-sanitize.log
+
+# What calls have found goes into core/fuzz/corpus once it is mended, and is replayed by ctest.
+fuzz: packages-fuzz python-test ## try the C interface and the loading of snapshots with anything: make fuzz [MINUTES=10]
+	@mkdir -p build/fuzz-found build/fuzz-corpus
+	@$(call logged,build/configure-fuzz.log,$(cmake) -B build/fuzz -DLANCER_FUZZ=ON -DCMAKE_C_COMPILER=clang-19 -DCMAKE_CXX_COMPILER=clang++-19)
+	@echo "== core under sanitizers, to be fuzzed"
+	@cmake --build build/fuzz $(compile)
+	@$(call logged,build/configure-sanitize.log,$(cmake) -B build/sanitize -DLANCER_SANITIZE=ON)
+	@cmake --build build/sanitize --target lancer $(compile)
+	@.ci/fuzz.sh $(MINUTES) $(python)
 
 bench: packages-run packages-bench python-bench build ## every renderer side by side: make bench [QUICK=1] [ONLY='balls*'] [README=1] [BEFORE=revision]
 ifneq ($(BEFORE),)
@@ -101,7 +116,7 @@ clean: ## remove what was built (not .venv)
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1~\2/p' Makefile | awk -F'~' '{ printf "%-17s %s\n", $$1, $$2 }'
 
-packages-build packages-run packages-test packages-format: packages-%:
+packages-build packages-run packages-test packages-fuzz packages-format: packages-%:
 	@PYTHON='$(PYTHON)' .ci/packages.sh $*
 
 # What only a peer of the benchmark needs may be missing: the benchmark names that peer as missing.

@@ -1,5 +1,5 @@
 #!/bin/sh
-# packages.sh SET...    installs what is missing of the named sets (build, run, test, format, and of the benchmark's peers
+# packages.sh SET...    installs what is missing of the named sets (build, run, test, fuzz, format, and of the benchmark's peers
 # povray, llvm) with one call of apt-get.
 # Each thing is looked for by what it gives (a command, a library, a header), so that a copy from elsewhere is good enough.
 set -eu
@@ -54,6 +54,13 @@ want_test() {
   want xdotool command_is_there xdotool
   want imagemagick command_is_there import
   want libgl1-mesa-dri file_is_there "/usr/lib/*/dri/*_dri.so /usr/lib/dri/*_dri.so"
+}
+
+# A compiler that brings libFuzzer.
+want_fuzz() {
+  want_test
+  want clang-19 command_is_there clang++-19
+  want libclang-rt-19-dev file_is_there "/usr/lib/llvm-19/lib/clang/19/lib/linux/libclang_rt.fuzzer-*.a"
 }
 
 want_povray() {

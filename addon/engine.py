@@ -181,7 +181,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 # At first whatever there is, tiles of the first sample too; and that sample once it is whole.
                 elif progress.samples > 0 and (picture.due or first and progress.finished) and not schedule.over:
                     picture.spend(show)
-                    schedule.reserve = picture.cost
+                    schedule.reserve = picture.cost + error.cost
                     schedule.longest = max(schedule.longest, picture.interval)
                 if time.monotonic() - told > _TELL_EVERY or progress.finished and schedule.over:
                     told = time.monotonic()

@@ -45,12 +45,15 @@ def calls_on_scenes(raw):
 
 def calls_on_sessions(raw):
     array = raw.keep(np.zeros(64))
-    statistics, count = raw.keep(abi.Statistics()), raw.keep(ctypes.c_uint32())
+    statistics, error, count = raw.keep(abi.Statistics()), raw.keep(abi.Error()), raw.keep(ctypes.c_uint32())
     pointer = array.ctypes.data
     return {
         "lancer_session_render": (0, 1),
         "lancer_session_wait": (0, None),
         "lancer_session_cancel": (),
+        "lancer_session_stop": (),
+        "lancer_session_refine": (0.1, 0.95),
+        "lancer_session_error": (0.95, ctypes.byref(error)),
         "lancer_session_read": (0, pointer, 4),
         "lancer_session_statistics": (ctypes.byref(statistics),),
         "lancer_debug_sample": (0, 0, 0, pointer, None, 0, ctypes.byref(count)),

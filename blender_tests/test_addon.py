@@ -104,7 +104,9 @@ def test_panels(case):
     assert "No feature would surely save 3 % of the time" in uses["measured, nothing found"]
     assert any("50 %" in text for text in uses["measuring"]) and "lancer.measure_features" not in uses["measuring"]
     # What users look for is there.
-    assert {"integrator", "quality", "samples", "time_limit"} <= set(shown["LANCER_RENDER_PT_sampling"]["plain"])
+    assert {"integrator", "quality", "target_error", "samples", "time_limit"} <= set(
+        shown["LANCER_RENDER_PT_sampling"]["plain"]
+    )
     assert shown["LANCER_RENDER_PT_messages"]["plain"] != shown["LANCER_RENDER_PT_messages"]["rendered"]
     assert "nodes" in shown["LANCER_MATERIAL_PT_surface"]["plain"] and "nodes" in shown["LANCER_WORLD_PT_surface"]["plain"]
     assert "kd" in shown["LANCER_MATERIAL_PT_surface"]["PHONG"] and "ior" in shown["LANCER_MATERIAL_PT_surface"]["KD_KS"]
@@ -138,7 +140,13 @@ def test_animated_seed(case):
 def test_quality(case):
     got = case("quality")
     got.pop("console")
-    assert got == {"DRAFT": [32, "DRAFT"], "GOOD": [128, "GOOD"], "FINAL": [512, "FINAL"], "own number": [77, "CUSTOM"]}
+    assert got == {
+        "DRAFT": [0.1, 1024, "DRAFT"],
+        "GOOD": [0.03, 8192, "GOOD"],
+        "FINAL": [0.01, 65536, "FINAL"],
+        "own number": [77, "CUSTOM"],
+        "own error": [1024, "CUSTOM"],
+    }
 
 
 @both

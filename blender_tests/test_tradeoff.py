@@ -20,7 +20,8 @@ def test_luminance_of_grey_is_its_level():
 
 def test_noise_and_bias_are_told_apart():
     reference = Reference(*pictures(2, 20.0, 0.2, 1))
-    # The mean of two: 0.2 / sqrt 2, relative to 20 and 1 % of it. Of 60 000 pixels the square is known to sqrt(2 / 60 000), 0.6 %.
+    # The mean of two: 0.2 / sqrt 2, relative to 20 and 1 % of it. Of 60 000 pixels the square is known to 0.6 %: to the root of
+    # 2 / 60 000.
     scale = 20.2
     assert reference.error == pytest.approx(0.2 / 2**0.5 / scale, rel=0.01)
     noise, bias = reference.split(list(pictures(5, 20.5, 0.4, 2)))

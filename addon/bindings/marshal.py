@@ -22,8 +22,8 @@ def _row_major(matrix):
 
 
 def _text(text):
-    """UTF-8 that ends where C sees its end."""
-    return text.replace("\0", " ").encode("utf-8")
+    """UTF-8 that ends where C sees its end; half a character, which Python's text can hold, becomes a question mark."""
+    return text.replace("\0", " ").encode("utf-8", "replace")
 
 
 def _parameter(value):

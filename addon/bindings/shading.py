@@ -74,7 +74,7 @@ class Node(Record):
     image_count: int = 0
     first: int = 0
     name: str = ""
-    inputs: tuple = ()  # up to five parameters
+    inputs: tuple[object, ...] = ()  # up to five parameters
     matrix: tuple = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
     def __post_init__(self):
@@ -146,14 +146,14 @@ class Lobe(_Parameters):
 @dataclass(frozen=True, eq=False)
 class Material(_Parameters):
     name: str = ""
-    lobes: tuple = (Lobe(),)
+    lobes: tuple[Lobe, ...] = (Lobe(),)
     emission: object = _BLACK
     transmittance: object = _BLACK
     holdout: object = 0.0
     ambient: object = _BLACK
     displacement: object = _BLACK
     normal: object = _BLACK
-    nodes: tuple = ()
+    nodes: tuple[Node, ...] = ()
     flags: int = 0  # MaterialFlag
     material_index: int = 0
 
@@ -169,7 +169,7 @@ class Material(_Parameters):
 @dataclass(frozen=True, eq=False)
 class World(_Parameters):
     radiance: object = _BLACK
-    nodes: tuple = ()
+    nodes: tuple[Node, ...] = ()
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0
 

@@ -25,7 +25,7 @@ from .enums import (
     Ray,
     Shading,
 )
-from .npz import load_npz, register, save_npz
+from .npz import SnapshotError, load_npz, register, save_npz
 from .record import Record, array
 from .shading import Image, Lobe, Material, Node, NodeRef, Principled, World  # noqa: F401 - all records have one address
 
@@ -57,7 +57,7 @@ class MeshData(Record):
     uvs: np.ndarray | None = None  # (T, 3, 2)
     colors: np.ndarray | None = None  # (T, 3, 3), linear
     material_slots: np.ndarray | None = None  # (T,)
-    attributes: tuple = ()  # of MeshAttribute
+    attributes: tuple[MeshAttribute, ...] = ()
 
     def __post_init__(self):
         what = f"mesh '{self.name}': "
@@ -126,7 +126,7 @@ class InstanceTable(Record):
     hidden_from: np.ndarray | None = None  # zeros where not given
     flags: np.ndarray | None = None
     terminators: np.ndarray | None = None  # float
-    names: tuple = ()
+    names: tuple[str, ...] = ()
     slots: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
 
     def __post_init__(self):
@@ -270,7 +270,7 @@ class Settings(Record):
     accelerator: int = Accelerator.BVH
 
     def __post_init__(self):
-        self.set("passes", tuple(int(p) for p in self.passes))
+        self.set("passes", tuple(int(Pass(p)) for p in self.passes))
 
     @property
     def refines(self):
@@ -281,11 +281,11 @@ class Settings(Record):
 @register
 @dataclass(frozen=True, eq=False)
 class SceneSnapshot(Record):
-    meshes: tuple = ()
+    meshes: tuple[MeshData, ...] = ()
     instances: InstanceTable = field(default_factory=InstanceTable)
-    materials: tuple = ()
-    lights: tuple = ()
-    images: tuple = ()
+    materials: tuple[Material, ...] = ()
+    lights: tuple[Light, ...] = ()
+    images: tuple[Image, ...] = ()
     world: World = field(default_factory=World)  # or its constant radiance
     camera: Camera = field(default_factory=Camera)
     settings: Settings = field(default_factory=Settings)
@@ -301,7 +301,8 @@ class SceneSnapshot(Record):
 
     @classmethod
     def load(cls, path):
+        """The snapshot in a file; SnapshotError where the file holds none, or a broken one."""
         snapshot = load_npz(path)
         if not isinstance(snapshot, cls):
-            raise ValueError(f"{path} holds no scene snapshot")
+            raise SnapshotError(f"{path} holds no scene snapshot: it holds a {type(snapshot).__name__}")
         return snapshot

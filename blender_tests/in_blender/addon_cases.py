@@ -114,9 +114,12 @@ def quality():
     result = {}
     for name in ("DRAFT", "GOOD", "FINAL"):
         own.quality = name
-        result[name] = [own.samples, own.quality]
+        result[name] = [round(own.target_error, 6), own.samples, own.quality]
     own.samples = 77
     result["own number"] = [own.samples, own.quality]
+    own.quality = "DRAFT"
+    own.target_error = 0.2
+    result["own error"] = [own.samples, own.quality]
     return result
 
 

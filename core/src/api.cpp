@@ -106,12 +106,13 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
     context.cancel = &object->cancel;
     object->builder = std::make_unique<ThreadPool>(1);
     object->cancel = false;
-    object->state = SceneObject::State::Committing;
     // The object owns the thread, so a plain pointer outlives the work.
     SceneObject *const target = object.get();
     object->builder->start([target, accelerator, context](uint32_t) {
       target->scene = commit(std::move(target->description), static_cast<AcceleratorKind>(accelerator), context);
     });
+    // Only now: where there was no memory to start, nothing is on its way.
+    object->state = SceneObject::State::Committing;
     return LANCER_OK;
   });
 }
@@ -134,8 +135,9 @@ lancer_status lancer_scene_wait(lancer_scene scene, uint32_t milliseconds) {
       object->state = SceneObject::State::Failed;
       throw;
     }
-    object->builder.reset();
+    // The copy takes memory: without it the scene can be waited for again.
     object->messages = object->scene->messages;
+    object->builder.reset();
     object->state = SceneObject::State::Committed;
     return LANCER_OK;
   });

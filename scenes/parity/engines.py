@@ -4,6 +4,8 @@ import os
 
 import bpy
 
+from addon import engine as lancer_engine
+
 from . import exr
 
 # Pass by its name since 5.0: (switch of the view layer, name before 5.0).
@@ -108,6 +110,13 @@ def _set_lancer(lancer, case, samples, seed):
         lancer.use_denoising = False
 
 
+def _refuse_dropped_samples(statistics):
+    """No scene of the list holds what float cannot."""
+    if statistics["invalid_samples"]:
+        place = tuple(statistics[f"invalid_{name}"] for name in ("x", "y", "sample"))
+        raise RuntimeError(f"{statistics['invalid_samples']} samples were not finite, the first at {place}")
+
+
 def render(scene, engine, case, samples, seed, folder):
     """{pass: picture} by engine, under the names of Blender 5; Combined in RGB, with its alpha as a pass of its own."""
     scene.render.engine = engine
@@ -119,6 +128,8 @@ def render(scene, engine, case, samples, seed, folder):
     bpy.ops.render.render(write_still=True)
     if not os.path.exists(path):
         raise RuntimeError(f"{engine} wrote no picture")
+    if engine == "LANCER":
+        _refuse_dropped_samples(lancer_engine.last_statistics[scene.name])
     stored = exr.read(path)
     result = {}
     for name in case.passes:

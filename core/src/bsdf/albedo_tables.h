@@ -3,6 +3,8 @@
 // of our own (core/tables).
 #pragma once
 
+#include "sampling/on_axis.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -21,25 +23,25 @@ extern const uint16_t kDielectricMix[kCoarse * kCoarse * kCoarse]; // [index][co
 extern const uint16_t kFifthPowerMix[kCoarse * kCoarse];           // [cosine][roughness]
 
 inline float read1(const uint16_t *table, int n, float x) {
-  x = std::clamp(x, 0.0f, 1.0f) * static_cast<float>(n - 1);
+  x = on_axis(x) * static_cast<float>(n - 1);
   const int i = std::min(static_cast<int>(x), n - 2);
   const float t = x - static_cast<float>(i), a = table[i], b = table[i + 1];
   return (a + (b - a) * t) * (1.0f / 65535.0f);
 }
 // The same of a row of floats.
 inline float read_row(const float *row, int n, float x) {
-  x = std::clamp(x, 0.0f, 1.0f) * static_cast<float>(n - 1);
+  x = on_axis(x) * static_cast<float>(n - 1);
   const int i = std::min(static_cast<int>(x), n - 2);
   return row[i] + (row[i + 1] - row[i]) * (x - static_cast<float>(i));
 }
 inline float read2(const uint16_t *table, int n, float y, float x) {
-  y = std::clamp(y, 0.0f, 1.0f) * static_cast<float>(n - 1);
+  y = on_axis(y) * static_cast<float>(n - 1);
   const int i = std::min(static_cast<int>(y), n - 2);
   const float t = y - static_cast<float>(i), a = read1(table + n * i, n, x), b = read1(table + n * (i + 1), n, x);
   return a + (b - a) * t;
 }
 inline float read3(const uint16_t *table, int n, float z, float y, float x) {
-  z = std::clamp(z, 0.0f, 1.0f) * static_cast<float>(n - 1);
+  z = on_axis(z) * static_cast<float>(n - 1);
   const int i = std::min(static_cast<int>(z), n - 2);
   const float t = z - static_cast<float>(i), a = read2(table + n * n * i, n, y, x), b = read2(table + n * n * (i + 1), n, y, x);
   return a + (b - a) * t;

@@ -9,6 +9,7 @@
 #include "bsdf/lobe.h"
 #include "bsdf/matte.h"
 #include "bsdf/sheen_table.h"
+#include "sampling/on_axis.h"
 #include "sampling/warp.h"
 
 namespace lancer {
@@ -20,7 +21,7 @@ struct SheenFit {
 inline SheenFit sheen_fit(float cos_o, float roughness) {
   constexpr float kLast = kSheenNodes - 1;
   // Cycles keeps the roughness at 1e-3 or more.
-  const float y = kLast * std::clamp(roughness, 1e-3f, 1.0f), x = kLast * std::clamp(cos_o, 0.0f, 1.0f);
+  const float y = kLast * on_axis(roughness, 1e-3f), x = kLast * on_axis(cos_o);
   const int j = std::min(static_cast<int>(y), kSheenNodes - 2), i = std::min(static_cast<int>(x), kSheenNodes - 2);
   const float v = y - static_cast<float>(j), u = x - static_cast<float>(i);
   float fit[3];

@@ -1,6 +1,7 @@
 #include "integrator/denoising_features.h"
 
 #include "sampling/color.h"
+#include "sampling/nearest_float.h"
 
 #include <cmath>
 #include <limits>
@@ -87,7 +88,7 @@ void add_denoising_features(const Scene &scene, const Camera &camera, const Shad
   if (features.first)
     distance -= near_distance(camera, glm::dvec3(-shaded.bsdf.wo));
   features.first = false;
-  result.denoising_depth += features.share * mean(features.beta) * float(distance / scene.normalisation.scale);
+  result.denoising_depth += features.share * mean(features.beta) * nearest_float(distance / scene.normalisation.scale);
   const Mixture mixture = mix(shaded, features.blended);
   const glm::vec3 normal = camera.direction_to_camera(glm::dvec3(mixture.normal));
   if (features.blended) {

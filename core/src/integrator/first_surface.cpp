@@ -1,6 +1,7 @@
 #include "integrator/first_surface.h"
 
 #include "sampling/color.h"
+#include "sampling/nearest_float.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +22,8 @@ glm::vec3 mean_normal(const Bsdf &bsdf, bool diffuse_only) {
 }
 
 void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result) {
-  result.depth = float(t / scene.normalisation.scale);
-  result.position = glm::vec3(scene.normalisation.to_world(surface.p));
+  result.depth = nearest_float(t / scene.normalisation.scale);
+  result.position = nearest_float(scene.normalisation.to_world(surface.p));
   result.object_index = float(scene.geometry.instances[surface.instance].object_index);
   result.material_index = material ? float(material->index) : 0.0f;
 }

@@ -79,11 +79,11 @@ void ThreadPool::loop(uint32_t thread) {
     if (stop_ && generation_ == seen)
       return;
     seen = generation_;
-    const auto work = work_;
     lock.unlock();
     std::exception_ptr failure;
     try {
-      work(thread);
+      // No other work comes before this one is done: a copy, which takes memory, is not needed.
+      work_(thread);
     } catch (...) {
       failure = std::current_exception();
     }

@@ -1,6 +1,7 @@
 #include "scene/surface.h"
 
 #include "accel/quadric.h"
+#include "sampling/nearest_float.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,7 +121,7 @@ SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface
   SurfaceAttributes attributes;
   const Instance &instance = geometry.instances[surface.instance];
   if (instance.kind != ShapeKind::Mesh) {
-    attributes.uv = glm::vec2(quadric_uv(instance.kind, instance.to_object.point(surface.p)));
+    attributes.uv = nearest_float(quadric_uv(instance.kind, instance.to_object.point(surface.p)));
     return attributes;
   }
   const Mesh &mesh = geometry.meshes[instance.mesh];

@@ -1,0 +1,71 @@
+"""F12 and accuracy: what ends a render, what it tells, and that file, statistics and pass tell the same."""
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+
+both = pytest.mark.parametrize("which", [MODULE, PROGRAM])
+
+
+@pytest.fixture
+def case(which, tmp_path):
+    return lambda name: blenders.run(which, tmp_path, "accuracy_cases", name)
+
+
+def _power_of_two(number):
+    return number > 0 and number & (number - 1) == 0
+
+
+@both
+def test_the_error_is_told(case):
+    got = case("told")
+    numbers, stamped = got["numbers"], got["stamped"]
+    assert 0.0 < numbers["error_low"] < numbers["error"] < numbers["error_high"] < 1.0
+    assert numbers["error_cannot_exclude"] > 0.0
+    assert numbers["ended_by"] == "samples" and numbers["samples"] == numbers["samples_most"] == 64
+    # Six digits are stamped.
+    for name in ("error", "error_low", "error_high", "error_cannot_exclude"):
+        assert float(stamped[name]) == pytest.approx(numbers[name], rel=1e-5)
+    assert stamped["samples"] == "64" and stamped["seed"] == "0" and stamped["ended_by"] == "samples"
+    assert "max_bounces 10" in stamped["settings"] and "lambert" in stamped["features"] and stamped["version"]
+    assert float(stamped["seconds"]) == pytest.approx(numbers["seconds"], abs=1e-3)
+    assert got["layers"] == ["ViewLayer"]
+    # The pass shares the same variances over windows of another kind: the figure is the same within the distance that the
+    # interval leaves between its two kinds of sharing.
+    assert numbers["error_low"] / 1.5 < got["by bars"] < numbers["error_high"] * 1.5
+    assert got["least bar"] >= 0.0
+    assert "Lancer: error " in got["console"] and "with 95 % confidence between" in got["console"]
+
+
+@both
+def test_one_sample_tells_no_error(case):
+    got = case("one_sample")
+    assert got["numbers"]["error"] == float("inf") and got["stamped"]["error"] == "inf"
+    assert "error unknown" in got["console"]
+
+
+@both
+def test_a_target_ends_the_render(case):
+    met, missed = case("target")
+    numbers = met["numbers"]
+    assert numbers["ended_by"] == "target error"
+    assert numbers["error_high"] + numbers["error_cannot_exclude"] <= 0.05 * 1.0001
+    assert _power_of_two(numbers["samples"]) and _power_of_two(numbers["samples_most"])
+    assert "target_error 0.05" in met["stamped"]["settings"]
+    assert missed["numbers"]["ended_by"] == "samples"
+    assert missed["numbers"]["samples"] == missed["numbers"]["samples_most"] == 100
+
+
+@both
+def test_time_ends_the_render_on_powers_of_two(case):
+    numbers = case("limit")["numbers"]
+    assert numbers["ended_by"] == "time limit"
+    assert _power_of_two(numbers["samples"]) and _power_of_two(numbers["samples_most"])
+    assert numbers["samples_most"] <= 2 * numbers["samples"] or numbers["samples"] >= 64
+
+
+@both
+def test_biases_are_declared(case):
+    got = case("biases")
+    assert got["numbers"]["error_clipped"] > 0.0 and got["numbers"]["error_missing"] > 0.0
+    assert "clamping has taken" in got["console"] and "light beyond 1 bounces is left out" in got["console"]

@@ -1,0 +1,389 @@
+#include "program.h"
+
+#include "records.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+namespace lancer_fuzz {
+
+namespace {
+
+constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRanges = 5, kMostRefinements = 4, kMostThings = 16;
+constexpr uint32_t kCount = 3; // of what a probe is asked
+
+[[noreturn]] void broken(const char *what, const char *detail) {
+  std::fprintf(stderr, "broken promise: %s: %s\n", what, detail);
+  std::abort();
+}
+
+// Every status is one of those that there are, none is a fault of the library's own, and an error has its sentence.
+lancer_status checked(const char *call, lancer_status status) {
+  const char *said = lancer_last_error();
+  if (status < LANCER_OK || status >= LANCER_ERROR_INTERNAL)
+    broken(call, said);
+  if ((status >= LANCER_ERROR_ARGUMENT) != (*said != '\0'))
+    broken(call, "its status and its message do not fit");
+  if (std::strlen(said) > 1023)
+    broken(call, "its message has no end");
+  return status;
+}
+
+#define LANCER_CHECKED(call) checked(#call, call)
+
+struct SceneState {
+  lancer_scene handle = 0;
+  Filled filled;
+  bool committed = false; // or on its way
+};
+
+struct SessionState {
+  lancer_session handle = 0;
+  uint32_t width = 0, height = 0, samples = 0;
+};
+
+class Program {
+public:
+  Program(const uint8_t *data, size_t size) : bytes_(data, size), records_(bytes_) {}
+
+  void run() {
+    for (uint32_t i = 0; i < kMostCalls && bytes_.any(); ++i)
+      call();
+    finish();
+  }
+
+private:
+  // The newest, mostly; an older one, one that is gone, or one that never was.
+  template <class State> lancer_scene handle_of(const std::vector<State> &states) {
+    const uint8_t b = bytes_.byte();
+    if (b >= 253 || states.empty())
+      return b == 255 ? 0 : b == 254 ? 0xdeadbeef12345678u : gone_;
+    return states[(states.size() - 1 + b / 200) % states.size()].handle;
+  }
+  template <class State> State *state_of(std::vector<State> &states, uint64_t handle) {
+    const auto found = std::find_if(states.begin(), states.end(), [&](const State &s) { return s.handle == handle; });
+    return found == states.end() ? nullptr : &*found;
+  }
+
+  void call() {
+    switch (bytes_.below(24)) {
+    case 0:
+      return create_scene();
+    case 1:
+    case 2:
+      return add_mesh();
+    case 3:
+      return add_image();
+    case 4:
+    case 5:
+    case 6:
+      return add_material();
+    case 7:
+    case 8:
+      return add_light();
+    case 9:
+    case 10:
+    case 11:
+      return add_instances();
+    case 12:
+      return set_world();
+    case 13:
+      return commit(handle_of(scenes_));
+    case 14:
+      return wait_for_scene(handle_of(scenes_), bytes_.below(3));
+    case 15:
+      return end_scene();
+    case 16:
+      return create_session(handle_of(scenes_));
+    case 17:
+      return render(handle_of(sessions_));
+    case 18:
+      return wait_for_session(handle_of(sessions_), bytes_.below(3));
+    case 19:
+      return judge(handle_of(sessions_));
+    case 20:
+      return end_session();
+    case 21:
+      return look(handle_of(sessions_));
+    case 22:
+      return probe_scene(handle_of(scenes_));
+    default:
+      return small_calls();
+    }
+  }
+
+  // Ends a range, asks for its error, or lets that say what is rendered next.
+  void judge(lancer_session session) {
+    lancer_error error;
+    switch (bytes_.below(6)) {
+    default:
+      LANCER_CHECKED(lancer_session_cancel(session));
+      return;
+    case 3:
+      LANCER_CHECKED(lancer_session_stop(session));
+      return;
+    case 4:
+      LANCER_CHECKED(lancer_session_error(session, bytes_.number(0.95, 0.0, 1.0), bytes_.rarely(2) ? nullptr : &error));
+      return;
+    case 5:
+      // Each doubles what has been rendered.
+      if (refinements_++ < kMostRefinements)
+        LANCER_CHECKED(lancer_session_refine(session, bytes_.number(0.05, 0.0, 1.0), bytes_.number(0.95, 0.0, 1.0)));
+    }
+  }
+
+  void create_scene() {
+    if (scenes_.size() == kMostScenes)
+      return;
+    SceneState scene;
+    if (LANCER_CHECKED(lancer_scene_create(bytes_.rarely(2) ? nullptr : &scene.handle)) == LANCER_OK)
+      scenes_.push_back(scene);
+  }
+
+  // The scene to fill, and what is in it; makes one where there is none.
+  lancer_scene open(Filled *&filled) {
+    static Filled nobodys;
+    nobodys = {};
+    if (scenes_.empty())
+      create_scene();
+    const lancer_scene handle = handle_of(scenes_);
+    SceneState *state = state_of(scenes_, handle);
+    filled = state ? &state->filled : &nobodys;
+    return handle;
+  }
+
+  void add_mesh() {
+    Filled *filled = nullptr;
+    const lancer_scene scene = open(filled);
+    const lancer_mesh mesh = records_.mesh();
+    if (filled->meshes < kMostThings &&
+        LANCER_CHECKED(lancer_scene_add_mesh(scene, bytes_.rarely(1) ? nullptr : &mesh)) == LANCER_OK)
+      ++filled->meshes;
+  }
+  void add_image() {
+    Filled *filled = nullptr;
+    const lancer_scene scene = open(filled);
+    const lancer_image image = records_.image();
+    if (filled->images < kMostThings && LANCER_CHECKED(lancer_scene_add_image(scene, &image)) == LANCER_OK)
+      ++filled->images;
+  }
+  void add_material() {
+    Filled *filled = nullptr;
+    const lancer_scene scene = open(filled);
+    const lancer_material material = records_.material(*filled);
+    if (filled->materials < kMostThings && LANCER_CHECKED(lancer_scene_add_material(scene, &material)) == LANCER_OK)
+      ++filled->materials;
+  }
+  void add_light() {
+    Filled *filled = nullptr;
+    const lancer_scene scene = open(filled);
+    const lancer_light light = records_.light();
+    if (filled->lights < kMostThings && LANCER_CHECKED(lancer_scene_add_light(scene, &light)) == LANCER_OK)
+      ++filled->lights;
+  }
+  void add_instances() {
+    Filled *filled = nullptr;
+    const lancer_scene scene = open(filled);
+    const Records::Instances instances = records_.instances(*filled);
+    const auto count = uint32_t(instances.rows.size());
+    if (filled->instances + count <= 2 * kMostThings &&
+        LANCER_CHECKED(lancer_scene_add_instances(
+            scene, count, bytes_.rarely(1) ? nullptr : instances.rows.data(), uint32_t(instances.slots.size()),
+            bytes_.rarely(1) ? nullptr : instances.slots.data(), instances.names, instances.names_size)) == LANCER_OK)
+      filled->instances += count;
+  }
+  void set_world() {
+    Filled *filled = nullptr;
+    const lancer_scene scene = open(filled);
+    const lancer_world world = records_.world(*filled);
+    LANCER_CHECKED(lancer_scene_set_world(scene, &world));
+  }
+
+  void commit(lancer_scene scene) {
+    if (LANCER_CHECKED(lancer_scene_commit(scene, bytes_.choice(3), bytes_.rarely(2) ? 1025 : 1 + bytes_.below(2))) ==
+        LANCER_OK)
+      state_of(scenes_, scene)->committed = true;
+  }
+  void wait_for_scene(lancer_scene scene, uint32_t milliseconds) {
+    LANCER_CHECKED(lancer_scene_wait(scene, milliseconds));
+    size_t needed = 0;
+    std::string text(bytes_.byte(), '?');
+    const lancer_status status = LANCER_CHECKED(lancer_scene_messages(scene, text.data(), text.size(), &needed));
+    if (status == LANCER_OK && !text.empty() && std::memchr(text.data(), 0, text.size()) == nullptr)
+      broken("lancer_scene_messages", "its text has no end");
+  }
+  void end_scene() {
+    const lancer_scene scene = handle_of(scenes_);
+    if (bytes_.rarely(100)) {
+      LANCER_CHECKED(lancer_scene_cancel(scene));
+      return;
+    }
+    if (LANCER_CHECKED(lancer_scene_destroy(scene)) != LANCER_OK)
+      return;
+    gone_ = scene;
+    std::erase_if(scenes_, [&](const SceneState &state) { return state.handle == scene; });
+  }
+
+  void create_session(lancer_scene scene) {
+    if (sessions_.size() == kMostSessions)
+      return;
+    const lancer_camera camera = records_.camera();
+    const lancer_settings settings = records_.settings();
+    SessionState session{0, camera.region_width, camera.region_height};
+    if (LANCER_CHECKED(lancer_session_create(scene, &camera, &settings, &session.handle)) == LANCER_OK)
+      sessions_.push_back(session);
+  }
+  void render(lancer_session session) {
+    SessionState *state = state_of(sessions_, session);
+    const uint32_t first = bytes_.rarely(10) ? bytes_.word() : state ? state->samples : 0, count = 1 + bytes_.below(2);
+    if (ranges_ == kMostRanges || LANCER_CHECKED(lancer_session_render(session, first, count)) != LANCER_OK)
+      return;
+    ++ranges_;
+    state->samples += count;
+  }
+  void wait_for_session(lancer_session session, uint32_t milliseconds) {
+    lancer_progress progress = {};
+    const lancer_status status = LANCER_CHECKED(lancer_session_wait(session, milliseconds, &progress));
+    if (status <= LANCER_CANCELLED && !(progress.fraction >= 0.0 && progress.fraction <= 1.0))
+      broken("lancer_session_wait", "its fraction is none");
+  }
+  void end_session() {
+    const lancer_session session = handle_of(sessions_);
+    if (LANCER_CHECKED(lancer_session_destroy(session)) != LANCER_OK)
+      return;
+    gone_ = session;
+    std::erase_if(sessions_, [&](const SessionState &state) { return state.handle == session; });
+  }
+
+  // All passes that the film keeps, the statistics, and a sample by itself.
+  void look(lancer_session session) {
+    std::vector<float> picture;
+    lancer_statistics statistics;
+    LANCER_CHECKED(lancer_session_statistics(session, &statistics));
+    const SessionState *state = state_of(sessions_, session);
+    const size_t pixels = state ? size_t(state->width) * state->height : 1;
+    for (uint32_t pass = 0; pass <= LANCER_PASS_COUNT; ++pass)
+      for (const size_t channels : {1, 3, 4}) {
+        picture.assign(pixels * channels, NAN);
+        if (LANCER_CHECKED(lancer_session_read(session, pass, picture.data(), picture.size())) != LANCER_OK)
+          continue;
+        for (const float value : picture)
+          if (!std::isfinite(value))
+            broken("lancer_session_read", ("pass " + std::to_string(pass) + " is not finite").c_str());
+      }
+    replay(session, state);
+    const double raster[2 * kCount] = {0.5, 0.5, -1e9, 3.0, double(bytes_.number(1.0f, 0.0f, 8.0f)), 2.0},
+                            lens[2 * kCount] = {0.5, 0.5, 0.0, 0.0, 0.99999, 0.5};
+    double origins[3 * kCount], directions[3 * kCount];
+    LANCER_CHECKED(lancer_probe_camera(session, kCount, raster, lens, origins, directions));
+  }
+
+  void replay(lancer_session session, const SessionState *state) {
+    float rgba[4];
+    lancer_vertex vertices[4];
+    uint32_t count = 0;
+    const uint32_t x = state ? bytes_.reference(state->width) : 0, y = state ? bytes_.reference(state->height) : 0;
+    LANCER_CHECKED(lancer_debug_sample(session, x, y, bytes_.below(3), rgba, vertices, bytes_.below(5), &count));
+  }
+
+  void probe_scene(lancer_scene scene) {
+    double origins[3 * kCount], directions[3 * kCount], low[kCount], high[kCount];
+    float u[3 * kCount], wo[3 * kCount], wi[3 * kCount];
+    for (uint32_t i = 0; i < 3 * kCount; ++i) {
+      origins[i] = bytes_.number(i % 3 == 2 ? 6.0 : 0.0, -3.0, 3.0);
+      directions[i] = bytes_.number(i % 3 == 2 ? -1.0 : 0.0, -1.0, 1.0);
+      u[i] = bytes_.number(0.5f, 0.0f, 0.999f);
+      wo[i] = bytes_.number(i % 3 == 2 ? 0.8f : i % 3 == 0 ? 0.6f : 0.0f, -1.0f, 1.0f);
+      wi[i] = bytes_.number(i % 3 == 2 ? 0.6f : i % 3 == 0 ? 0.8f : 0.0f, -1.0f, 1.0f);
+    }
+    for (uint32_t i = 0; i < kCount; ++i) {
+      low[i] = bytes_.number(0.0, 0.0, 4.0);
+      high[i] = bytes_.number(1e30, 0.0, 10.0);
+    }
+    const SceneState *state = state_of(scenes_, scene);
+    const uint32_t material = bytes_.reference(state ? state->filled.materials : 0),
+                   light = bytes_.reference(state ? state->filled.lights + 1 : 0);
+    lancer_hit hits[kCount];
+    uint8_t occluded[kCount];
+    uint64_t counts[4];
+    float four[4 * kCount], three[3 * kCount], pdf[kCount];
+    lancer_bsdf_sample samples[kCount];
+    lancer_light_sample light_samples[kCount];
+    lancer_lobe_info lobes[4];
+    uint32_t lobe_count = 0;
+    LANCER_CHECKED(lancer_probe_intersect(scene, kCount, origins, directions, low, high, hits));
+    LANCER_CHECKED(lancer_probe_occluded(scene, kCount, origins, directions, low, high, occluded));
+    LANCER_CHECKED(lancer_probe_traversal(scene, kCount, origins, directions, low, high, bytes_.below(2), counts));
+    LANCER_CHECKED(lancer_probe_bsdf(scene, material, kCount, wo, wi, three, pdf));
+    LANCER_CHECKED(lancer_probe_bsdf_sample(scene, material, kCount, wo, u, samples));
+    LANCER_CHECKED(lancer_probe_lobes(scene, material, wo, lobes, bytes_.below(5), &lobe_count, three, nullptr));
+    LANCER_CHECKED(lancer_probe_node(scene, material, bytes_.below(8), kCount, u, four));
+    LANCER_CHECKED(lancer_probe_world(scene, kCount, directions, three, pdf));
+    LANCER_CHECKED(lancer_probe_light(scene, light, kCount, origins, u, light_samples));
+    LANCER_CHECKED(lancer_probe_light_pdf(scene, light, kCount, origins, directions, pdf));
+  }
+
+  // What needs no scene.
+  void small_calls() {
+    float a[kCount], b[kCount], c[kCount], numbers[8];
+    for (uint32_t i = 0; i < kCount; ++i)
+      a[i] = bytes_.number(0.5f, 0.0f, 1.0f);
+    LANCER_CHECKED(lancer_probe_microfacet(kCount, a, a, a, a, a, b, c, numbers));
+    LANCER_CHECKED(lancer_probe_sampler(bytes_.byte(), bytes_.word(), bytes_.byte(), bytes_.word(), 8, numbers));
+    LANCER_CHECKED(lancer_probe_filter(bytes_.choice(2), bytes_.number(1.5f, 0.0f, 4.0f), kCount, a, b));
+    lancer_sizeof(bytes_.byte());
+  }
+
+  // To the end: a scene, a commit, a session, a range, its picture.
+  void finish() {
+    if (scenes_.empty())
+      create_scene();
+    if (scenes_.empty())
+      return;
+    // A scene without anything in it tells nothing.
+    if (!scenes_.back().committed && scenes_.back().filled.instances == 0) {
+      add_material();
+      add_instances();
+      add_light();
+    }
+    const SceneState scene = scenes_.back();
+    if (!scene.committed)
+      commit(scene.handle);
+    lancer_status status;
+    while ((status = LANCER_CHECKED(lancer_scene_wait(scene.handle, 50))) == LANCER_RUNNING)
+      ;
+    if (status == LANCER_OK) {
+      create_session(scene.handle);
+      for (const SessionState &session : std::vector<SessionState>(sessions_)) {
+        while (LANCER_CHECKED(lancer_session_wait(session.handle, 50, nullptr)) == LANCER_RUNNING)
+          ;
+        render(session.handle);
+        while (LANCER_CHECKED(lancer_session_wait(session.handle, 50, nullptr)) == LANCER_RUNNING)
+          ;
+        look(session.handle);
+      }
+      probe_scene(scene.handle);
+    }
+    for (const SessionState &session : sessions_)
+      LANCER_CHECKED(lancer_session_destroy(session.handle));
+    for (const SceneState &each : scenes_)
+      LANCER_CHECKED(lancer_scene_destroy(each.handle));
+  }
+
+  Bytes bytes_;
+  Records records_;
+  std::vector<SceneState> scenes_;
+  std::vector<SessionState> sessions_;
+  uint64_t gone_ = 7;
+  uint32_t refinements_ = 0;
+  uint32_t ranges_ = 0;
+};
+
+} // namespace
+
+void run_program(const uint8_t *data, size_t size) { Program(data, size).run(); }
+
+} // namespace lancer_fuzz

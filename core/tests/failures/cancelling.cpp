@@ -1,0 +1,196 @@
+// Renders and builds cancelled at any moment: nothing stays behind, no thread and no memory, and the next one is as ever.
+#include "failing.h"
+#include "whole_render.h"
+
+#include "../tiny_scene.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <random>
+#include <thread>
+
+namespace {
+
+using namespace lancer_test;
+using Clock = std::chrono::steady_clock;
+
+// LANCER_CANCELS: how often; few where nothing is said.
+int repeats() {
+  const char *asked = std::getenv("LANCER_CANCELS");
+  return asked ? std::atoi(asked) : 50;
+}
+
+size_t threads_now() {
+  size_t count = 0;
+  for ([[maybe_unused]] const auto &entry : std::filesystem::directory_iterator("/proc/self/task"))
+    ++count;
+  return count;
+}
+
+// A joined thread may be listed for a moment more; one that was left behind is listed for ever.
+bool threads_come_down_to(size_t count) {
+  for (int i = 0; i < 100000 && threads_now() > count; ++i)
+    std::this_thread::yield();
+  return threads_now() <= count;
+}
+
+// A pause of a random share of what the work takes.
+class Moment {
+public:
+  explicit Moment(std::chrono::nanoseconds whole) : whole_(double(whole.count())) {}
+  void wait(std::mt19937 &random) const {
+    const std::chrono::nanoseconds pause(int64_t(whole_ * std::uniform_real_distribution<double>(0.0, 1.1)(random)));
+    for (const auto end = Clock::now() + pause; Clock::now() < end;)
+      std::this_thread::yield();
+  }
+
+private:
+  double whole_;
+};
+
+lancer_status finish_scene(lancer_scene scene) {
+  lancer_status status;
+  while ((status = lancer_scene_wait(scene, 50)) == LANCER_RUNNING)
+    ;
+  return status;
+}
+
+// Renders 16 samples of 24 x 16 pixels; cancels after the moment where one is given.
+lancer_status render(lancer_scene scene, std::vector<float> &image, const Moment *moment, std::mt19937 &random) {
+  const lancer_camera camera = make_camera();
+  const lancer_settings settings = make_settings();
+  lancer_session session = 0;
+  EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_OK) << lancer_last_error();
+  EXPECT_EQ(lancer_session_render(session, 0, 16), LANCER_OK) << lancer_last_error();
+  if (moment) {
+    moment->wait(random);
+    EXPECT_EQ(lancer_session_cancel(session), LANCER_OK);
+  }
+  const lancer_status status = finish(session);
+  EXPECT_EQ(lancer_session_read(session, LANCER_PASS_COMBINED, image.data(), image.size()), LANCER_OK);
+  lancer_statistics statistics;
+  EXPECT_EQ(lancer_session_statistics(session, &statistics), LANCER_OK);
+  EXPECT_EQ(statistics.invalid_samples, 0u);
+  if (status == LANCER_CANCELLED) {
+    EXPECT_EQ(lancer_session_render(session, 16, 1), LANCER_ERROR_STATE);
+  }
+  EXPECT_EQ(lancer_session_destroy(session), LANCER_OK);
+  return status;
+}
+
+TEST(Cancelling, RendersLeaveNothingBehind) {
+  std::mt19937 random(1);
+  const lancer_scene scene = make_scene();
+  std::vector<float> whole(24 * 16 * 4), image(whole.size());
+  ASSERT_EQ(render(scene, whole, nullptr, random), LANCER_OK);
+  const auto start = Clock::now();
+  ASSERT_EQ(render(scene, image, nullptr, random), LANCER_OK);
+  const Moment moment(Clock::now() - start);
+  const size_t threads = threads_now();
+  int cancelled = 0;
+  for (int i = 0; i < repeats(); ++i) {
+    SCOPED_TRACE(i);
+    const int64_t memory = live_memory();
+    const lancer_status status = render(scene, image, &moment, random);
+    ASSERT_TRUE(status == LANCER_OK || status == LANCER_CANCELLED) << status << ": " << lancer_last_error();
+    cancelled += status == LANCER_CANCELLED;
+    if (status == LANCER_OK) {
+      ASSERT_EQ(image, whole);
+    }
+    for (const float value : image)
+      ASSERT_TRUE(std::isfinite(value));
+    ASSERT_TRUE(threads_come_down_to(threads));
+    ASSERT_EQ(live_memory(), memory);
+  }
+  // Moments are spread over the whole render: most are before its end.
+  EXPECT_GT(cancelled, repeats() / 4);
+  EXPECT_EQ(render(scene, image, nullptr, random), LANCER_OK);
+  EXPECT_EQ(image, whole);
+  lancer_scene_destroy(scene);
+}
+
+// A wavy sheet of so many squares a side.
+struct Sheet {
+  std::vector<float> positions;
+  std::vector<uint32_t> triangles;
+
+  explicit Sheet(uint32_t side) {
+    for (uint32_t y = 0; y <= side; ++y)
+      for (uint32_t x = 0; x <= side; ++x)
+        positions.insert(positions.end(), {float(x), float(y), std::sin(float(3 * x + 5 * y))});
+    for (uint32_t y = 0; y < side; ++y)
+      for (uint32_t x = 0; x < side; ++x) {
+        const uint32_t a = y * (side + 1) + x, b = a + side + 1;
+        triangles.insert(triangles.end(), {a, a + 1, b, a + 1, b + 1, b});
+      }
+  }
+  lancer_mesh mesh() const {
+    lancer_mesh mesh = {};
+    mesh.name = "sheet";
+    mesh.positions = positions.data();
+    mesh.triangles = triangles.data();
+    mesh.vertex_count = uint32_t(positions.size() / 3);
+    mesh.triangle_count = uint32_t(triangles.size() / 3);
+    return mesh;
+  }
+};
+
+// A mesh that shines, so that a tree of lights is made as well, before its commit.
+lancer_scene open_scene(const Sheet &sheet) {
+  lancer_scene scene = 0;
+  EXPECT_EQ(lancer_scene_create(&scene), LANCER_OK);
+  add_material(scene, {lobe(LANCER_LAMBERT, 0.5f)}, 1.0f);
+  const lancer_mesh mesh = sheet.mesh();
+  EXPECT_EQ(lancer_scene_add_mesh(scene, &mesh), LANCER_OK) << lancer_last_error();
+  lancer_instance instance = {};
+  place(instance.matrix, -2.0, -2.0, 0.0, 0.05);
+  instance.slot_count = 1;
+  const uint32_t slot = 0;
+  EXPECT_EQ(lancer_scene_add_instances(scene, 1, &instance, 1, &slot, nullptr, 0), LANCER_OK);
+  return scene;
+}
+
+class CancelledBuilds : public testing::TestWithParam<uint32_t> {};
+
+TEST_P(CancelledBuilds, LeaveNothingBehind) {
+  const Sheet sheet(60);
+  std::mt19937 random(2);
+  const auto commit = [&](const Moment *moment, bool wait) {
+    const lancer_scene scene = open_scene(sheet);
+    EXPECT_EQ(lancer_scene_commit(scene, GetParam(), 2), LANCER_OK);
+    if (moment) {
+      moment->wait(random);
+      // To end the scene is to cancel its build, too.
+      EXPECT_EQ(wait ? lancer_scene_cancel(scene) : lancer_scene_destroy(scene), LANCER_OK);
+    }
+    const lancer_status status = wait ? finish_scene(scene) : LANCER_CANCELLED;
+    if (wait && status == LANCER_CANCELLED) {
+      EXPECT_EQ(lancer_scene_wait(scene, 0), LANCER_ERROR_STATE);
+    }
+    EXPECT_EQ(lancer_scene_destroy(scene), wait ? LANCER_OK : LANCER_ERROR_HANDLE);
+    return status;
+  };
+  ASSERT_EQ(commit(nullptr, true), LANCER_OK) << lancer_last_error();
+  const auto start = Clock::now();
+  ASSERT_EQ(commit(nullptr, true), LANCER_OK) << lancer_last_error();
+  const Moment moment(Clock::now() - start);
+  const size_t threads = threads_now();
+  int cancelled = 0;
+  for (int i = 0; i < repeats() / 2; ++i) {
+    SCOPED_TRACE(i);
+    const int64_t memory = live_memory();
+    const lancer_status status = commit(&moment, i % 4 != 3);
+    ASSERT_TRUE(status == LANCER_OK || status == LANCER_CANCELLED) << status << ": " << lancer_last_error();
+    cancelled += status == LANCER_CANCELLED;
+    ASSERT_TRUE(threads_come_down_to(threads));
+    ASSERT_EQ(live_memory(), memory);
+  }
+  EXPECT_GT(cancelled, repeats() / 8);
+  EXPECT_EQ(commit(nullptr, true), LANCER_OK);
+}
+
+INSTANTIATE_TEST_SUITE_P(Trees, CancelledBuilds, testing::Values(LANCER_BVH, LANCER_KDTREE));
+
+} // namespace

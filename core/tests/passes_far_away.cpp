@@ -1,0 +1,39 @@
+// Places that float cannot hold: passes tell the farthest that there is, and the picture is whole.
+#include "tiny_scene.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace {
+
+using namespace lancer_test;
+
+std::vector<float> read(lancer_session session, uint32_t pass, size_t channels) {
+  std::vector<float> values(24 * 16 * channels);
+  EXPECT_EQ(lancer_session_read(session, pass, values.data(), values.size()), LANCER_OK) << lancer_last_error();
+  return values;
+}
+
+TEST(PassesFarAway, EndWhereFloatEnds) {
+  const lancer_scene scene = make_scene();
+  lancer_camera camera = make_camera();
+  // Along y over the plane, beyond all floats.
+  camera.matrix[7] = 1e39;
+  const lancer_settings settings = make_settings();
+  lancer_session session = 0;
+  ASSERT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_OK) << lancer_last_error();
+  ASSERT_EQ(lancer_session_render(session, 0, 1), LANCER_OK);
+  ASSERT_EQ(finish(session), LANCER_OK);
+  const float farthest = std::numeric_limits<float>::max();
+  // The lowest row sees the plane.
+  EXPECT_EQ(read(session, LANCER_PASS_POSITION, 3)[1], farthest);
+  EXPECT_EQ(read(session, LANCER_PASS_UV, 3)[1], farthest);
+  EXPECT_GT(read(session, LANCER_PASS_COMBINED, 4)[0], 0.0f);
+  lancer_statistics statistics;
+  lancer_session_statistics(session, &statistics);
+  EXPECT_EQ(statistics.invalid_samples, 0u);
+  lancer_session_destroy(session);
+  lancer_scene_destroy(scene);
+}
+
+} // namespace
