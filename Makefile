@@ -30,7 +30,7 @@ logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 
 .PHONY: build render test test-slow bench tradeoff features parity sanitize fuzz addon format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-bench
-.PHONY: python-run python-test python-dev python-bench core-programs core-tests
+.PHONY: python-run python-test python-dev python-bench python-charts core-programs core-tests
 
 build: packages-build ## build the core; the library lands in addon/lib, where the add-on loads it
 	@mkdir -p build
@@ -94,7 +94,7 @@ endif
 features: packages-run python-run build ## what each feature costs where used, and where only compiled in: make features [QUICK=1] [ONLY=glass]
 	@$(python) blender_tests/bench/features.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
-tradeoff: packages-run python-bench build ## error against seconds: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
+tradeoff: packages-run python-charts build ## error against seconds: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
 	@$(python) blender_tests/bench/tradeoff.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(QUICK),--quick) $(if $(README),--readme)
 
@@ -125,6 +125,9 @@ packages-bench: packages-run
 
 python-bench: packages-run
 	@$(PYTHON) .ci/environment.py $(VENV) run bench --optional bench-mitsuba bench-luxcore bench-embree
+
+python-charts: packages-run
+	@$(PYTHON) .ci/environment.py $(VENV) run bench
 
 python-run: packages-run
 	@$(PYTHON) .ci/environment.py $(VENV) run

@@ -83,9 +83,10 @@ def lines(scene):
     """What a panel shows, a line each."""
     for name, told in forecasts(scene):
         yield f"{name}: {seconds(told.seconds)}; error {share(told.error)}"
-    classic = classic_seconds(measured[scene.name].points, _pixels(scene), scene.lancer.samples)
+    samples = scene.lancer.samples
+    classic = classic_seconds(measured[scene.name].points, _pixels(scene), samples)
     if classic is not None:
-        yield f"Classic, {scene.lancer.samples} samples: about {clock(classic)}"
+        yield f"Classic, {samples} sample{'s' if samples > 1 else ''}: about {clock(classic)}"
 
 
 def seconds(told):
@@ -146,14 +147,11 @@ def _measured(seconds, snapshot, poll, tell):
 
 
 @persistent
-def _changed(_scene, depsgraph):
+def _changed(scene, depsgraph):
     """Marks as old what was measured before an object, a material or a light changed."""
-    for kept in measured.values():
-        if not kept.is_old and any(
-            update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading
-            for update in depsgraph.updates
-        ):
-            kept.is_old = True
+    kept = measured.get(scene.name)
+    if kept is not None and not kept.is_old:
+        kept.is_old = any(u.is_updated_geometry or u.is_updated_transform or u.is_updated_shading for u in depsgraph.updates)
 
 
 @persistent

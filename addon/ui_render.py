@@ -73,7 +73,9 @@ def _draw_forecast(column, scene):
     if quality.is_old(scene):
         column.label(text="Measured before the last changes", icon="ERROR")
     for line in quality.lines(scene):
-        column.label(text=line)
+        # Panels are narrow.
+        for part in line.split("; "):
+            column.label(text=part)
 
 
 class LANCER_RENDER_PT_denoising(LancerPanel, bpy.types.Panel):

@@ -22,6 +22,7 @@ from addon.bindings.enums import Integrator  # noqa: E402
 from addon.properties import QUALITIES  # noqa: E402
 from bench import compare, jobs, tradeoff_chart, tradeoff_page, tradeoff_runs, worker  # noqa: E402
 from bench.tradeoff_error import Reference, middle, seconds_to, slope  # noqa: E402
+from scenes.render import captured_output  # noqa: E402
 
 _PIXELS = 192 * 108
 _REFERENCE, _QUICK_REFERENCE = 32768, 4096
@@ -163,12 +164,10 @@ def headlines(curves):
     return rows
 
 
-def main():
-    arguments, started = read_arguments(), time.monotonic()
-
-    def say(text):
-        print(f"{time.monotonic() - started:7.1f}  {text}", flush=True)
-
+def measure(arguments, say):
+    """All figures, as they go into the file."""
+    # Before anything runs: its load is that of others.
+    machine = jobs.machine()
     scene = open_scene(arguments)
     study = Study(scene, arguments.quick, say)
     samples = arguments.samples or (_QUICK_REFERENCE if arguments.quick else _REFERENCE)
@@ -178,9 +177,9 @@ def main():
     for number in range(_QUICK_SEEDS if arguments.quick else _SEEDS):
         study.round(number + 1, number)
     curves = conclude(study, ours, theirs)
-    figures = {
+    return {
         "scene": arguments.blend.stem if arguments.blend else "showcase",
-        "machine": jobs.machine(),
+        "machine": machine,
         "threads": arguments.threads,
         "commit": jobs.commit(),
         "blender": bpy.app.version_string,
@@ -202,6 +201,17 @@ def main():
         },
         "equal_error": headlines(curves),
     }
+
+
+def main():
+    arguments, started = read_arguments(), time.monotonic()
+    # Cycles tells of every picture that it writes.
+    with captured_output() as (terminal, _):
+
+        def say(text):
+            print(f"{time.monotonic() - started:7.1f}  {text}", file=terminal, flush=True)
+
+        figures = measure(arguments, say)
     arguments.output.mkdir(parents=True, exist_ok=True)
     (arguments.output / "tradeoff.json").write_text(json.dumps(figures, indent=1) + "\n")
     tradeoff_chart.write(figures, arguments.output)
