@@ -29,7 +29,7 @@ def write(figures, folder):
     _presets(axis, figures["presets"])
     floor = figures["reference"]["error"]
     axis.axhline(floor, color="#999999", lw=0.8, ls="--", zorder=0)
-    note = f"error of the reference itself, {floor:.1%}: it is subtracted"
+    note = f"error of the reference itself, {100 * floor:.2g} %: it is subtracted"
     axis.annotate(
         note,
         (0.01, floor),
@@ -42,6 +42,7 @@ def write(figures, folder):
     _axes(axis, figures, floor)
     figure.draw_without_rendering()
     _names(axis, figures["curves"])
+    _own_name(axis, figures["curves"]["PATH"])
     for kind in ("svg", "png"):
         metadata = {"Date": None} if kind == "svg" else None
         figure.savefig(folder / f"tradeoff.{kind}", dpi=110, facecolor="white", metadata=metadata)
@@ -71,7 +72,7 @@ def _axes(axis, figures, floor):
     title = f"{figures['scene']}: farther left and lower is better"
     if figures["equal_error"]:
         row = figures["equal_error"][-1]
-        title += f"; to {row['error']:.0%} in {row['lancer']:.2g} s, Cycles in {row['cycles']:.2g} s"
+        title += f"; {100 * row['error']:g} % after {row['lancer']:.2g} s, with Cycles after {row['cycles']:.2g} s"
     axis.set_title(title, loc="left", fontsize=11, color="#333333")
 
 
@@ -85,10 +86,12 @@ def _curve(axis, name, rows):
 
 
 def _names(axis, curves):
-    """Each beside the end of its curve; one that would cover another goes below it."""
+    """Of the others, beside the ends of their curves; one that would cover another goes below it."""
     points = axis.figure.dpi / 72.0
     ends = []
     for name, rows in curves.items():
+        if name == "PATH":
+            continue
         last = [row for row in rows if row["error"] > 0.0][-1:]
         for row in last:
             end = row["seconds"], min(row["error"], _TOP)
@@ -100,8 +103,15 @@ def _names(axis, curves):
             if x < other_x + length and other_x < x + _WIDTH * len(label) and abs(at - other_y) < _LINE:
                 at = other_y - _LINE
         placed.append((x, at, _WIDTH * len(label)))
-        style = {"color": color, "va": "center", "fontsize": 9, "weight": "bold"}
-        axis.annotate(label, end, xytext=(7, at - y), textcoords="offset points", **style)
+        place = {"xytext": (7, at - y), "va": "center"}
+        axis.annotate(label, end, textcoords="offset points", color=color, fontsize=9, weight="bold", **place)
+
+
+def _own_name(axis, rows):
+    """On the side of its curve where no slower one is."""
+    row, (color, _, label) = rows[-1], _LOOKS["PATH"]
+    place = {"xytext": (-8, -3), "textcoords": "offset points", "ha": "right", "va": "top"}
+    axis.annotate(label, (row["seconds"], row["error"]), fontsize=9, color=color, weight="bold", **place)
 
 
 def _presets(axis, presets):
@@ -110,5 +120,5 @@ def _presets(axis, presets):
         [r["seconds"] for r in rows], [r["error"] for r in rows], "--", color=_PRESETS, lw=0.9, marker="D", ms=7, mec="white"
     )
     for name, row in presets.items():
-        place = {"xytext": (-8, -3), "textcoords": "offset points", "ha": "right", "va": "top"}
+        place = {"xytext": (6, 4), "textcoords": "offset points", "ha": "left", "va": "bottom"}
         axis.annotate(name, (row["seconds"], row["error"]), fontsize=9, color=_PRESETS, weight="bold", **place)
