@@ -164,6 +164,16 @@ def headlines(curves):
     return rows
 
 
+def slopes(curves):
+    """Of those that go on falling, from where samples have spread over a pixel."""
+    result = {}
+    for name in ("PATH", "Cycles"):
+        points = [(row["seconds"], row["error"]) for row in curves[name] if row["samples"] >= 4 and row["error"] > 0.0]
+        if len(points) > 1:
+            result[name] = slope(points)
+    return result
+
+
 def measure(arguments, say):
     """All figures, as they go into the file."""
     # Before anything runs: its load is that of others.
@@ -194,11 +204,7 @@ def measure(arguments, say):
         "left_out": study.exact.messages.lines(),
         "curves": curves,
         "presets": conclude_presets(study, ours),
-        "slopes": {
-            name: slope([(row["seconds"], row["error"]) for row in rows if row["samples"] >= 4])
-            for name, rows in curves.items()
-            if name in ("PATH", "Cycles")
-        },
+        "slopes": slopes(curves),
         "equal_error": headlines(curves),
     }
 
