@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 import tiny_scenes as tiny
+from bindings.abi import LancerError
 from bindings.forecast import Range, classic_seconds, forecast, slope
 from bindings.pilot import Measured, Point, measure
 from bindings.schedule import SAMPLES, TARGET, TIME, Schedule
@@ -154,6 +155,16 @@ def test_it_can_be_stopped_and_tells_how_far_it_is():
     calls = iter(range(100_000))
     with pytest.raises(Cancelled):
         measure(tiny.showroom(256), 1000.0, poll=lambda: next(calls) > 60)
+
+
+def test_small_pictures():
+    """Of one pixel nobody knows the error; of four all of them are measured."""
+    with pytest.raises(LancerError, match="small"):
+        measure(tiny.scene([tiny.plane()], [tiny.lambert()], world=1.0), 0.1)
+    measured = measure(tiny.showroom(2, time_limit=3.0), 0.1)
+    assert measured.pixels == measured.even_pixels == 4
+    told = forecast(measured, 4, samples=64)
+    assert 0.0 < told.error.low <= told.error.value <= told.error.high
 
 
 def test_a_black_picture_has_no_error():

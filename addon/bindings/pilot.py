@@ -11,6 +11,7 @@ import math
 import time
 from dataclasses import dataclass
 
+from .abi import LancerError
 from .enums import Integrator
 from .hints import small_picture
 from .schedule import PILOT
@@ -18,7 +19,7 @@ from .session import Cancelled, Scene, Session
 
 # Pixels of the larger of the small pictures.
 _FEWEST, _MOST = 1024, 36864
-_QUARTER = 4
+_QUARTER, _LEAST_QUARTER = 4, 64
 # Of the time: for the samples that all pixels get, of either picture.
 _EVEN_SHARE = 0.2
 _FIRST = 8  # samples before which an error is not worth a point
@@ -70,6 +71,8 @@ def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None):
         even = run.even(small, begun + 2.0 * _EVEN_SHARE * seconds)
         tell(0.3, "Samples where the error is")
         refined = run.refined(large, lambda part: tell(0.3 + 0.7 * part, "Samples where the error is"))
+    if not (even and refined):
+        raise LancerError("so small a picture cannot tell its error")
     return Measured(tuple(refined), tuple(even), _pixels(large), _pixels(small), begun - started, classic)
 
 
@@ -89,7 +92,7 @@ class _Run:
             once = self._seconds(session, camera)
         wanted = _EVEN_SHARE * seconds / (PILOT * max(once, 1e-9))
         large = small_picture(self.camera, min(max(wanted, _FEWEST), _MOST))
-        return large, small_picture(large, _pixels(large) / _QUARTER)
+        return large, small_picture(large, max(_pixels(large) / _QUARTER, _LEAST_QUARTER))
 
     def even(self, camera, until):
         """The same samples for all pixels: PILOT at least, then while there is time."""
@@ -117,7 +120,7 @@ class _Run:
                 _add(points, session, camera)
             while time.monotonic() < self.until:
                 bound = session.error().bound
-                if bound <= _ENOUGH or not session.refine(_NEXT * bound):
+                if not _ENOUGH < bound < math.inf or not session.refine(_NEXT * bound):
                     break
                 self._wait(session, until=self.until)
                 _add(points, session, camera)
