@@ -2,11 +2,12 @@
 
 import bpy
 
-from . import denoise, engine
+from . import denoise, engine, measuring, quality
 from .bindings.enums import Pass
 from .export.checks import EMPTY_PASSES
 
 _ID = engine.LancerRenderEngine.bl_idname
+_MEASURE = "lancer.measure_quality"
 
 # What an artist who comes from Cycles should know before the first render.
 _REPLACED = (
@@ -52,6 +53,24 @@ class LANCER_RENDER_PT_sampling(LancerPanel, bpy.types.Panel):
         column.prop(settings, "time_limit")
         column.prop(settings, "seed")
         column.prop(settings, "use_animated_seed")
+        _draw_forecast(self.layout.column(align=True), context.scene)
+
+
+def _draw_forecast(column, scene):
+    """What each quality would take and give, as far as it was measured."""
+    what, fraction, text = measuring.running.get(scene.name, ("", 0.0, ""))
+    if what == _MEASURE:
+        column.label(text=f"Measuring, {fraction * 100:.0f} %: {text}", icon="TIME")
+        return
+    column.operator(_MEASURE, icon="TIME")
+    if scene.name not in quality.measured:
+        return
+    if quality.is_old(scene):
+        column.label(text="Measured before the last changes", icon="ERROR")
+    for line in quality.lines(scene):
+        # Panels are narrow.
+        for part in line.split("; "):
+            column.label(text=part)
 
 
 class LANCER_RENDER_PT_denoising(LancerPanel, bpy.types.Panel):

@@ -2,10 +2,11 @@
 
 import bpy
 
-from . import engine, features
+from . import engine, measuring
 from .bindings.uses import kernel_in_words
 from .ui_render import LancerPanel
 
+_MEASURE = "lancer.measure_features"
 _MEMORY = {
     "geometry_bytes": "Geometry and lights",
     "accelerator_bytes": "Acceleration",
@@ -43,11 +44,11 @@ class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
             for key, what in _MEMORY.items():
                 column.label(text=f"{what}: {_size(statistics[key])}")
         column.separator()
-        if name in features.running:
-            fraction, text = features.running[name]
+        if measuring.running.get(name, ())[:1] == (_MEASURE,):
+            _, fraction, text = measuring.running[name]
             column.label(text=f"Measuring, {_share(fraction)}: {text}", icon="TIME")
             return
-        column.operator("lancer.measure_features", icon="TIME")
+        column.operator(_MEASURE, icon="TIME")
         costs = engine.last_costs.get(name)
         if costs is None:
             return

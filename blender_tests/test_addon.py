@@ -103,6 +103,14 @@ def test_panels(case):
     assert uses["measured"].count("3 materials use refraction") == 1
     assert "No feature would surely save 3 % of the time" in uses["measured, nothing found"]
     assert any("50 %" in text for text in uses["measuring"]) and "lancer.measure_features" not in uses["measuring"]
+    sampling = shown["LANCER_RENDER_PT_sampling"]
+    assert "lancer.measure_quality" in sampling["plain"] and "lancer.measure_quality" in sampling["measuring"]
+    assert "Measuring, 25 %: All pixels alike" in sampling["measuring quality"]
+    assert "lancer.measure_quality" not in sampling["measuring quality"]
+    told = [text.split(":")[0] for text in sampling["quality"] if ": about " in text]
+    assert told == ["Draft", "Good", "Final", "As set", "Classic, 1 sample"]
+    old = "Measured before the last changes"
+    assert old not in sampling["quality"] and old in sampling["quality of other settings"]
     # What users look for is there.
     assert {"integrator", "quality", "target_error", "samples", "time_limit"} <= set(
         shown["LANCER_RENDER_PT_sampling"]["plain"]

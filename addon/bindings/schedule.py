@@ -13,7 +13,7 @@ import time
 # Ranges of 1, 1, 2, 4 ... samples as long as one takes no longer than this: then of as many as fit.
 _LONGEST_INTERVAL = 1.0
 # From here on the error is known well enough to decide by.
-_PILOT = 64
+PILOT = 64
 # Of ending a render whose error is still above its target: one half for the first look, a quarter for the second ...
 _MISTAKE = 0.05
 
@@ -132,7 +132,7 @@ class Schedule:
         if not self._refining and self.samples >= self.settings.samples:
             return SAMPLES
         target = self.settings.target_error
-        if self.samples >= _PILOT:
+        if self.samples >= PILOT:
             self._refining = self.settings.refines and 2 * self.samples <= self.settings.samples or self._refining
             if target > 0.0:
                 self.confidence = 1.0 - 2.0 * _MISTAKE / 2.0 ** (self._looks + 1)

@@ -23,13 +23,20 @@ from scenes.parity import exr  # noqa: E402
 
 
 def set_up(name, threads, width=None, height=None, samples=None, bounces=12, seed=0):
-    """The named scene with settings that mean the same to Lancer and to Cycles: no clamp, no filter, no adaptive end."""
+    """The named scene as make_alike has it."""
     scene = scenes.load(name)
+    scene.render.resolution_x = width or scene.render.resolution_x
+    scene.render.resolution_y = height or scene.render.resolution_y
+    make_alike(scene, threads, bounces)
+    set_samples(scene, samples or scene.lancer.samples, seed)
+    return scene
+
+
+def make_alike(scene, threads, bounces=12):
+    """Settings that mean the same to Lancer and to Cycles: no filter, no adaptive end, nothing clamped by Cycles."""
     render = scene.render
     render.threads_mode = "FIXED"
     render.threads = threads
-    render.resolution_x = width or render.resolution_x
-    render.resolution_y = height or render.resolution_y
     render.use_compositing = render.use_sequencer = False
     scene.lancer.max_bounces = bounces
     scene.lancer.pixel_filter = "BOX"
@@ -43,8 +50,6 @@ def set_up(name, threads, width=None, height=None, samples=None, bounces=12, see
     cycles.pixel_filter_type = "BOX"
     for kind in ("max", "diffuse", "glossy", "transmission", "transparent_max", "volume"):
         setattr(cycles, f"{kind}_bounces", bounces)
-    set_samples(scene, samples or scene.lancer.samples, seed)
-    return scene
 
 
 def set_samples(scene, samples, seed):
@@ -90,10 +95,7 @@ def render(engine, name, threads, width, height, samples, seed, bounces=12, pict
     """F12 with one sample, then with all of them; the rate is that of the engine's own clock, which starts at the first ray."""
     scene = set_up(name, threads, width, height, samples, bounces)
     scene.render.engine = engine
-    image = scene.render.image_settings
-    if hasattr(image, "media_type"):
-        image.media_type = "IMAGE"
-    image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR", "32", "NONE"
+    write_floats(scene)
     bpy.context.view_layer.update()
     result = {"samples": samples * width * height}
     with tempfile.TemporaryDirectory() as folder:
@@ -112,13 +114,26 @@ def render(engine, name, threads, width, height, samples, seed, bounces=12, pict
         result["render_seconds"] = own_clock(scene)
         result["clock"] = "the engine's own clock"
         if picture:
-            values = next(iter(exr.read(scene.render.filepath).values()))
-            np.save(picture, np.ascontiguousarray(values[::-1, :, :3]))
+            np.save(picture, read_floats(scene))
     if engine == "LANCER":
         statistics = addon.engine.last_statistics[scene.name]
         result["rays"] = {kind: statistics[f"{kind}_rays"] for kind in ("camera", "bounce", "shadow")}
         result["statistics"] = statistics
     return result
+
+
+def write_floats(scene):
+    """What F12 writes are the numbers themselves."""
+    image = scene.render.image_settings
+    if hasattr(image, "media_type"):
+        image.media_type = "IMAGE"
+    image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR", "32", "NONE"
+
+
+def read_floats(scene):
+    """The written picture, (h, w, 3); row 0 is the bottom row."""
+    values = next(iter(exr.read(scene.render.filepath).values()))
+    return np.ascontiguousarray(values[::-1, :, :3])
 
 
 def own_clock(scene):

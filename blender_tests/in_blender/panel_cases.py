@@ -71,7 +71,7 @@ def _draw(cls, context):
 
 def _variants(context):
     """The context again and again, with other choices made."""
-    from addon import engine, features
+    from addon import engine, measuring
     from addon.bindings.hints import Cost, Costs
 
     yield "plain"
@@ -86,9 +86,17 @@ def _variants(context):
     yield "measured"
     engine.last_costs[name] = Costs()
     yield "measured, nothing found"
-    features.running[name] = (0.5, "3 materials use refraction")
+    measuring.running[name] = ("lancer.measure_features", 0.5, "3 materials use refraction")
     yield "measuring"
-    del features.running[name]
+    del measuring.running[name]
+    measuring.running[name] = ("lancer.measure_quality", 0.25, "All pixels alike")
+    yield "measuring quality"
+    del measuring.running[name]
+    bpy.ops.lancer.measure_quality(seconds=0.1)
+    yield "quality"
+    context.scene.lancer.max_bounces += 1
+    yield "quality of other settings"
+    context.scene.lancer.max_bounces -= 1
     own = context.scene.lancer
     for integrator in own.bl_rna.properties["integrator"].enum_items.keys():
         own.integrator = integrator

@@ -32,7 +32,7 @@ def statistics():
     }
 
 
-def _data():
+def plain_data():
     """What a measurement may not change: every property of scene, objects, materials and cameras that holds a plain value."""
     found = {}
     for group in (bpy.data.scenes, bpy.data.objects, bpy.data.materials, bpy.data.cameras, bpy.data.lights, bpy.data.meshes):
@@ -53,9 +53,9 @@ def measured():
 
     scene = _glassy()
     bpy.ops.render.render()
-    before = _data()
+    before = plain_data()
     result = bpy.ops.lancer.measure_features(seconds=1.0)
-    after = _data()
+    after = plain_data()
     costs = engine.last_costs[scene.name]
     kept = engine.last_statistics[scene.name]["feature_costs"]
     bpy.ops.render.render()

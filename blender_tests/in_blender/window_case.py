@@ -48,7 +48,7 @@ def tick():
         measure()
     if told("measuring?"):
         scene = bpy.context.scene.name
-        say("measuring" if scene in addon.features.running else "measured" if scene in addon.engine.last_costs else "nothing")
+        say("measuring" if scene in addon.measuring.running else "measured" if scene in addon.engine.last_costs else "nothing")
     if told("compare"):
         window_pictures.compare(FOLDER)
         say("compared")

@@ -1,0 +1,138 @@
+"""Operators that measure what F12 would render, beside Blender's window: one export, a thread that works, progress, Esc.
+
+What they find is kept in this session only; no file and no data of the artist's changes.
+"""
+
+import logging
+import threading
+import time
+
+import bpy
+
+from .bindings.abi import LancerError
+from .bindings.session import Cancelled
+from .export.scene import ExportOptions, export_scene
+from .passes import render_passes
+
+# (operator's bl_idname, fraction, text) of a measurement that runs, by the scene's name.
+running = {}
+
+_TICK = 0.1
+
+
+class _Measurement(threading.Thread):
+    """It touches no data of Blender's."""
+
+    def __init__(self, work, snapshot, exporting):
+        super().__init__(name="lancer measures", daemon=True)
+        self.work, self.snapshot = work, snapshot
+        self.exporting = exporting  # seconds
+        self.stop = threading.Event()
+        self.progress = (0.0, "Building the scene")
+        self.found = None
+        self.error = ""
+
+    def run(self):
+        try:
+            self.found = self.work(self.snapshot, self.stop.is_set, self._tell)
+        except Cancelled:
+            pass
+        except LancerError as error:
+            self.error = str(error)
+        except MemoryError:
+            self.error = "not enough memory to measure this scene"
+        except Exception as error:
+            logging.getLogger(__name__).exception("measuring failed")
+            self.error = f"{type(error).__name__}: {error}"
+        self.snapshot = None
+
+    def _tell(self, fraction, text):
+        self.progress = (fraction, text)
+
+
+class Measuring:
+    """What such operators share; they give work(snapshot, poll, tell) and keep(context, found)."""
+
+    @classmethod
+    def poll(cls, context):
+        # Two at once would slow each other down.
+        return context.scene is not None and context.scene.camera is not None and not running
+
+    def execute(self, context):
+        measurement = self._started(context)
+        if measurement is not None:
+            measurement.join()
+        return self._ended(context, measurement)
+
+    def invoke(self, context, event):
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        self._measurement = self._started(context)
+        if self._measurement is None:
+            return {"CANCELLED"}
+        running[self._scene] = (self.bl_idname, *self._measurement.progress)
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(_TICK, window=context.window)
+        manager.progress_begin(0.0, 1.0)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        measurement = self._measurement
+        if event.type == "ESC":
+            measurement.stop.set()
+        if event.type != "TIMER":
+            return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
+        running[self._scene] = (self.bl_idname, *measurement.progress)
+        context.window_manager.progress_update(measurement.progress[0])
+        _redraw(context)
+        if measurement.is_alive():
+            return {"RUNNING_MODAL"}
+        self._leave(context)
+        return self._ended(context, measurement)
+
+    def cancel(self, context):
+        """Blender closes the window or loads another file."""
+        self._measurement.stop.set()
+        self._measurement.join()
+        self._leave(context)
+
+    def _leave(self, context):
+        running.pop(self._scene, None)
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        _redraw(context)
+
+    def _started(self, context):
+        self._scene = context.scene.name
+        started = time.monotonic()
+        depsgraph = context.evaluated_depsgraph_get()
+        wanted = tuple(item.source for item in render_passes(depsgraph.scene, depsgraph.view_layer_eval))
+        try:
+            snapshot, _ = export_scene(depsgraph, ExportOptions(passes=wanted))
+        except LancerError as error:
+            self.report({"ERROR"}, f"Lancer: {error}")
+            return None
+        # Blender writes properties of an operator in its own thread only: the work gets what it needs of them now.
+        measurement = _Measurement(self.work(), snapshot, time.monotonic() - started)
+        self.begun(context, snapshot)
+        measurement.start()
+        return measurement
+
+    def begun(self, context, snapshot):
+        """For what is to be noted of the scene as it is measured."""
+
+    def _ended(self, context, measurement):
+        if measurement is None or measurement.found is None:
+            if measurement is not None and measurement.error:
+                self.report({"ERROR"}, f"Lancer: {measurement.error}")
+            return {"CANCELLED"}
+        self.keep(self._scene, measurement)
+        return {"FINISHED"}
+
+
+def _redraw(context):
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
