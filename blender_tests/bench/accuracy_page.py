@@ -4,7 +4,7 @@ import html
 
 import numpy as np
 
-from .page import _STYLE, _goal_cells, _table
+from .page import STYLE, _goal_cells, _table
 
 _EVEN = ["scene", "samples", "reference: samples", "its share of the error's square", "pixels inside, of the noisy", "of all"]
 _EVEN += ["interval holds", "with what cannot be excluded", "told / real", "high / real"]
@@ -29,7 +29,7 @@ def write(figures, folder):
         " measured is the error that its pictures have, against its own reference, and whether their mean is biased.</p>",
         _table(_CYCLES, [row for name, scene in figures["cycles"].items() for row in _cycles(name, scene)]),
     ]
-    head = f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>Accuracy</title><style>{_STYLE}</style></head><body>'
+    head = f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>Accuracy</title><style>{STYLE}</style></head><body>'
     (folder / "index.html").write_text(head + "\n".join(parts) + "</body></html>\n", encoding="utf-8")
 
 

@@ -26,12 +26,12 @@ class Plan:
     counts: tuple = (64, 256)
     targets: tuple = (0.05, 0.02, 0.01)
     # Samples a pixel that a run may take on average: a target that would take more is scaled up until it does not.
-    budgets: tuple = (128, 256, 512)
+    budgets: tuple = (96, 160, 256)
     reference: float = 1.0  # of what the scene asks for
     threads: int = 2
 
 
-QUICK = Plan(seeds=6, counts=(64,), targets=(0.05,), budgets=(128,), reference=0.25)
+QUICK = Plan(seeds=6, counts=(64,), targets=(0.05,), budgets=(96,), reference=0.25)
 
 
 class Measured:

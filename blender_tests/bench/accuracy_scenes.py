@@ -22,7 +22,7 @@ GLASS = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=
 class Scene:
     name: str
     build: object  # a snapshot in return
-    reference: int = 16384  # samples of the reference
+    reference: int  # samples of the reference
     in_blender: bool = False  # it is one of scenes/, so Cycles can render it too
 
 
@@ -121,7 +121,7 @@ def high_contrast():
 
 def showroom():
     room = tiny_scenes.showroom(64, passes=(Pass.COMBINED,), max_bounces=8)
-    return _at_size(room)
+    return at_size(room)
 
 
 def glossy():
@@ -150,13 +150,13 @@ def glow():
     return _scene(instances, materials)
 
 
-def _at_size(snapshot):
-    """The same view cut to the bench's size."""
+def at_size(snapshot, width=WIDTH, height=HEIGHT):
+    """The same view from left to right, with as many pixels."""
     camera = snapshot.camera
     left, right, bottom, top = camera.window
     wide, middle = right - left, 0.5 * (bottom + top)
-    half = 0.5 * wide * HEIGHT / WIDTH
-    size = {"width": WIDTH, "height": HEIGHT, "region_width": WIDTH, "region_height": HEIGHT}
+    half = 0.5 * wide * height / width
+    size = {"width": width, "height": height, "region_width": width, "region_height": height}
     camera = dataclasses.replace(camera, window=(left, right, middle - half, middle + half), **size)
     return dataclasses.replace(snapshot, camera=camera)
 
@@ -175,9 +175,11 @@ def from_blender(name):
     return Scene(name, build, 8192, in_blender=True)
 
 
+_OWN = (soft_shadow, mirror, depth_of_field, environment, tiny_lamp, half_black, glossy)
+_SLOWER = (classic, very_dark, high_contrast, showroom, veils, glow)
 SCENES = (
-    *(Scene(build.__name__, build) for build in (soft_shadow, mirror, depth_of_field, environment, tiny_lamp, half_black)),
-    *(Scene(build.__name__, build) for build in (classic, very_dark, high_contrast, showroom, glossy, veils, glow)),
+    *(Scene(build.__name__, build, 16384) for build in _OWN),
+    *(Scene(build.__name__, build, 8192) for build in _SLOWER),
     *(from_blender(name) for name in ("balls", "room", "glass_metal", "leaves", "lights200", "models", "triangle")),
 )
 
