@@ -120,6 +120,18 @@ void Film::round_down(Tile &tile) {
   forget_joined(tile);
 }
 
+std::pair<uint32_t, uint32_t> Film::sample_range() const {
+  uint32_t least = ~0u, most = 0;
+  for (const auto &tile : tiles_) {
+    if (tile->pixels() == 0)
+      continue;
+    const std::lock_guard lock(tile->mutex);
+    least = std::min(least, tile->count);
+    most = std::max(most, tile->count);
+  }
+  return {least, most};
+}
+
 void Film::keep_first(Tile &tile, std::span<const SampleResult> results) const {
   tile.first.resize(size_t(tile.pixels()) * layout_.first_channels);
   for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel)

@@ -58,6 +58,8 @@ public:
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
   // Forgets the samples beyond the last power of two.
   void round_down(Tile &tile);
+  // Least and most samples of a pixel.
+  std::pair<uint32_t, uint32_t> sample_range() const;
   // What a tile knows of its pixels' luminances. variance: of the mean, by kReplicates - 1 degrees of freedom.
   struct Luminance {
     double mean, variance, brightest;

@@ -1,5 +1,7 @@
 #include "render/picture_error.h"
 
+#include "render/alike.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,13 +9,6 @@ namespace lancer {
 
 namespace {
 
-// Pixels share the variance of 7 x 7 around them, next to each other, or two or four apart ...
-constexpr int kRadius = 3;
-constexpr int kWider[] = {2, 4};
-// ... whose luminances are within three standard deviations of theirs ...
-constexpr float kSame = 9.0f;
-// ... wider until enough of them bear it: see error_bars.cpp.
-constexpr float kBearers = 20.0f;
 // Squares of pixels within which unmet light is bounded, and the rule of three: what has not come up in m samples has, at 95 %,
 // a probability below 3 / m.
 constexpr uint32_t kSquare = 16;
@@ -28,59 +23,6 @@ double gaussian_reach(double confidence) {
   }
   return low;
 }
-
-// Sums over the neighbours of pixels whose luminance may be the same as theirs, for a row of pixels at a time.
-class Neighbours {
-public:
-  explicit Neighbours(const LuminanceMap &map) : map_(map), of_mean_(map.size()), sums_(map.width) {
-    for (size_t i = 0; i < map.size(); ++i)
-      of_mean_[i] = map.count[i] > 0.0f ? map.variance[i] / map.count[i] : 0.0f;
-  }
-
-  struct Sums {
-    float variance = 0.0f, squares = 0.0f, mean = 0.0f, count = 0.0f;
-
-    bool bear() const { return variance > 0.0f && variance * variance >= kBearers * squares; }
-  };
-  const std::vector<Sums> &row(int y) {
-    // Go through neighbours next to each other one offset at a time: the inner loop then runs along the row.
-    std::fill(sums_.begin(), sums_.end(), Sums());
-    for (int dy = -kRadius; dy <= kRadius; ++dy)
-      for (int dx = -kRadius; dx <= kRadius; ++dx)
-        if (uint32_t(y + dy) < map_.height)
-          for (int x = std::max(0, -dx); x < int(map_.width) - std::max(0, dx); ++x)
-            add(place(x, y), place(x + dx, y + dy), sums_[size_t(x)]);
-    // Look wider where few of them bear the variance.
-    for (int x = 0; x < int(map_.width); ++x)
-      for (size_t i = 0; i < std::size(kWider) && !sums_[size_t(x)].bear(); ++i)
-        sums_[size_t(x)] = around(x, y, kWider[i]);
-    return sums_;
-  }
-
-private:
-  Sums around(int x, int y, int step) const {
-    Sums sums;
-    for (int dy = -kRadius * step; dy <= kRadius * step; dy += step)
-      for (int dx = -kRadius * step; dx <= kRadius * step; dx += step)
-        if (uint32_t(y + dy) < map_.height && uint32_t(x + dx) < map_.width)
-          add(place(x, y), place(x + dx, y + dy), sums);
-    return sums;
-  }
-  size_t place(int x, int y) const { return size_t(y) * map_.width + size_t(x); }
-  void add(size_t p, size_t q, Sums &sums) const {
-    const float apart = map_.mean[p] - map_.mean[q];
-    const float same = apart * apart <= kSame * (of_mean_[p] + of_mean_[q]) ? 1.0f : 0.0f;
-    const float variance = same * map_.variance[q];
-    sums.variance += variance;
-    sums.squares += variance * variance;
-    sums.mean += same * map_.mean[q];
-    sums.count += same;
-  }
-
-  const LuminanceMap &map_;
-  std::vector<float> of_mean_; // variance
-  std::vector<Sums> sums_;
-};
 
 double mean_over(const LuminanceMap &map, const std::vector<float> &variance) {
   double sum = 0.0;
@@ -116,18 +58,13 @@ double unmet(const LuminanceMap &map) {
 } // namespace
 
 RelativeVariance::RelativeVariance(const LuminanceMap &map) : own(map.size()), shared(map.size()) {
-  Neighbours neighbours(map);
+  const AlikeNeighbours alike(map);
   const float floor = map.floor();
-  for (uint32_t y = 0; y < map.height; ++y) {
-    const std::vector<Neighbours::Sums> &row = neighbours.row(int(y));
-    for (uint32_t x = 0; x < map.width; ++x) {
-      const size_t pixel = size_t(y) * map.width + x;
-      const Neighbours::Sums &sums = row[x];
-      const float level = std::max(sums.mean / sums.count, 0.0f) + floor;
-      const float scale = level > 0.0f ? 1.0f / (level * level) : 0.0f;
-      own[pixel] = map.variance[pixel] * scale;
-      shared[pixel] = sums.variance / sums.count * scale;
-    }
+  for (size_t pixel = 0; pixel < map.size(); ++pixel) {
+    const float level = std::max(alike.mean[pixel] / alike.count[pixel], 0.0f) + floor;
+    const float scale = level > 0.0f ? 1.0f / (level * level) : 0.0f;
+    own[pixel] = map.variance[pixel] * scale;
+    shared[pixel] = alike.variance[pixel] / alike.count[pixel] * scale;
   }
 }
 

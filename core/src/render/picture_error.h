@@ -21,7 +21,7 @@ struct PictureError {
 // What an error is made of, pixel by pixel.
 struct RelativeVariance {
   // [height][width]: of one sample, over the square of luminance and floor. own: as the pixel's replicates have it; shared: as
-  // those of neighbours have it whose luminance may be the same.
+  // those of the neighbours have it that are like it (alike.h).
   std::vector<float> own, shared;
 
   explicit RelativeVariance(const LuminanceMap &map);

@@ -7,6 +7,8 @@
 #include "scene/fill_camera.h"
 #include "scene/memory.h"
 
+#include <tuple>
+
 namespace lancer {
 
 namespace {
@@ -207,17 +209,15 @@ void Session::render_tile(Worker &worker, Film::Tile &tile, uint32_t end) {
 // Takes back what a stopped range has added beyond powers of two.
 void Session::settle() {
   stop_ = false;
-  uint32_t least = ~0u, most = 0;
   samples_ = 0;
   for (size_t i = 0; i < film_.tile_count(); ++i) {
     Film::Tile &tile = film_.tile(i);
     if (tile.pixels() == 0)
       continue;
     film_.round_down(tile);
-    least = std::min(least, tile.count);
-    most = std::max(most, tile.count);
     samples_ += uint64_t(tile.count) * tile.pixels();
   }
+  const auto [least, most] = film_.sample_range();
   end_ = most;
   refined_ = refined_ || least != most;
 }
@@ -304,12 +304,9 @@ SessionError Session::error(double confidence) const {
   if (map.known)
     result.picture = picture_error(map, RelativeVariance(map), confidence);
   double light = 0.0;
-  result.least_samples = ~0u;
-  for (size_t i = 0; i < map.size(); ++i) {
+  for (size_t i = 0; i < map.size(); ++i)
     light += std::max(0.0, double(map.mean[i])) * map.unit * map.count[i];
-    result.least_samples = std::min(result.least_samples, uint32_t(map.count[i]));
-    result.most_samples = std::max(result.most_samples, uint32_t(map.count[i]));
-  }
+  std::tie(result.least_samples, result.most_samples) = film_.sample_range();
   Energy energy;
   for (const auto &worker : workers_) {
     const std::lock_guard lock(worker->mutex);
