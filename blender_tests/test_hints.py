@@ -60,7 +60,7 @@ def test_it_can_be_stopped():
     calls = iter(range(100_000))
     # Past the filling and building of so small a scene, within some run.
     with pytest.raises(Cancelled):
-        measure_costs(shells(), 1000.0, poll=lambda: next(calls) > 60)
+        measure_costs(shells(), 1000.0, poll=lambda: next(calls) > 30)
 
 
 @pytest.mark.parametrize(

@@ -228,7 +228,7 @@ def blurred(quick=False):
     return seen(quick=quick, position=False)
 
 
-@blurred(quick=True)
+@blurred()
 def focus_round(scene):
     _focus(scene)
 
@@ -248,7 +248,7 @@ def focus_ratio(scene):
     _focus(scene, aperture_ratio=2.0)
 
 
-@blurred()
+@blurred(quick=True)
 def focus_orthographic(scene):
     eye = _focus(scene)
     eye.data.type, eye.data.ortho_scale = "ORTHO", 5.0
