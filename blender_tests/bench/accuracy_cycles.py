@@ -47,7 +47,7 @@ def measure(name, threads, width, height, folder, seeds=8, thresholds=(0.05, 0.0
     image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
     bpy.context.view_layer.cycles.pass_debug_sample_count = True
     bpy.context.view_layer.update()
-    converged = figures.Reference(np.stack(_reference(scene, Path(folder), reference)))
+    converged = figures.Reference(np.stack(list(_reference(scene, Path(folder), reference))))
     result = []
     scene.cycles.use_adaptive_sampling = True
     scene.cycles.adaptive_min_samples = 0
