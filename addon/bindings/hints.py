@@ -94,6 +94,9 @@ class _Runs:
 
     def __call__(self, samples):
         """Seconds of the processor."""
+        # A short run ends before it is watched once.
+        if self.poll is not None and self.poll():
+            raise Cancelled
         start = time.process_time()
         self.session.render(self.first, samples)
         while True:
