@@ -3,45 +3,135 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 namespace lancer {
 
 namespace {
 
-constexpr std::array<int, 6> kRadii = {1, 2, 3, 5, 8, 12};
+// An edge has so few pixels in a window that edges ask one more.
+constexpr std::array<int, 7> kRadii = {1, 2, 3, 5, 8, 12, 20};
+constexpr size_t kPlainRadii = 6;
 // (sum v)^2 / sum v^2 is how many pixels bear the variance; of n equal ones it is n / 3, since the square of one difference
 // spreads as chi-square with one degree of freedom. 20 of them know their common standard error to an eighth.
 constexpr double kBearers = 20.0;
 
-// Sums over any rectangle by four look-ups.
-class AreaSums {
+// Of the variances in a window.
+struct Sums {
+  double pixels = 0.0, sum = 0.0, squares = 0.0;
+
+  void add(double variance) {
+    pixels += 1.0;
+    sum += variance;
+    squares += variance * variance;
+  }
+  bool enough() const { return pixels > 0.0 && sum * sum >= kBearers * squares; }
+  double mean() const { return sum / pixels; }
+  double degrees_of_freedom() const { return squares > 0.0 ? std::min(3.0 * sum * sum / squares, pixels) : pixels; }
+};
+
+// Within how many standard errors 95 % lie where the variance is an estimate, over the same of a known variance: Student's t by
+// the first terms of its series in 1 / freedom (Fisher, Cornish, "The percentile points of distributions having known
+// cumulants", 1960).
+double student_over_gaussian(double freedom) {
+  constexpr double z2 = 1.96 * 1.96, z4 = z2 * z2, z6 = z4 * z2;
+  const double a = (z2 + 1.0) / 4.0, b = (5.0 * z4 + 16.0 * z2 + 3.0) / 96.0;
+  const double c = (3.0 * z6 + 19.0 * z4 + 17.0 * z2 - 15.0) / 384.0;
+  return 1.0 + (a + (b + c / freedom) / freedom) / freedom;
+}
+
+struct Window {
+  uint32_t x0, y0, x1, y1;
+
+  Window(const LuminanceMap &map, uint32_t x, uint32_t y, int radius)
+      : x0(uint32_t(std::max(int(x) - radius, 0))), y0(uint32_t(std::max(int(y) - radius, 0))),
+        x1(std::min(x + uint32_t(radius) + 1, map.width)), y1(std::min(y + uint32_t(radius) + 1, map.height)) {}
+};
+
+// The smallest window that has enough variances, or the last. sums_of: what a window sums up to.
+template <class SumsOf> Sums smallest_window(const LuminanceMap &map, uint32_t x, uint32_t y, size_t radii, SumsOf &&sums_of) {
+  Sums sums;
+  for (size_t i = 0; i < radii && !sums.enough(); ++i)
+    sums = sums_of(Window(map, x, y, kRadii[i]));
+  return sums;
+}
+
+// Sums over any window by four look-ups in each table.
+class Tables {
 public:
-  template <class Value> AreaSums(uint32_t width, uint32_t height, Value &&value) : stride_(width + 1) {
-    sums_.assign(size_t(stride_) * (height + 1), 0.0);
-    for (uint32_t y = 0; y < height; ++y) {
-      double row = 0.0;
-      for (uint32_t x = 0; x < width; ++x) {
-        row += value(size_t(y) * width + x);
-        sums_[size_t(y + 1) * stride_ + x + 1] = sums_[size_t(y) * stride_ + x + 1] + row;
+  // share: whether a pixel counts.
+  template <class Counts> Tables(const LuminanceMap &map, Counts &&counts) : stride_(map.width + 1) {
+    sums_.resize(size_t(stride_) * (map.height + 1));
+    for (uint32_t y = 0; y < map.height; ++y) {
+      Sums row;
+      for (uint32_t x = 0; x < map.width; ++x) {
+        const size_t pixel = size_t(y) * map.width + x;
+        if (counts(pixel))
+          row.add(map.variance[pixel]);
+        const Sums &above = at(x + 1, y);
+        at(x + 1, y + 1) = {above.pixels + row.pixels, above.sum + row.sum, above.squares + row.squares};
       }
     }
   }
-  double of(uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1) const {
-    const double *low = sums_.data() + size_t(y0) * stride_, *high = sums_.data() + size_t(y1) * stride_;
-    return std::max(0.0, (high[x1] - high[x0]) - (low[x1] - low[x0]));
+  Sums of(const Window &window) const {
+    const auto over = [&](double Sums::*value) {
+      const double high = at(window.x1, window.y1).*value - at(window.x0, window.y1).*value;
+      return std::max(0.0, high - (at(window.x1, window.y0).*value - at(window.x0, window.y0).*value));
+    };
+    return {over(&Sums::pixels), over(&Sums::sum), over(&Sums::squares)};
   }
 
 private:
+  Sums &at(uint32_t x, uint32_t y) { return sums_[size_t(y) * stride_ + x]; }
+  const Sums &at(uint32_t x, uint32_t y) const { return sums_[size_t(y) * stride_ + x]; }
+
   uint32_t stride_;
-  std::vector<double> sums_;
+  std::vector<Sums> sums_;
 };
+
+// What a sample varies by, at most, where it shows either the darkest or the brightest of the 3 x 3 and the mean is what it is.
+float mixture_variance(const LuminanceMap &map, uint32_t x, uint32_t y) {
+  const Window window(map, x, y, 1);
+  const float own = map.mean[size_t(y) * map.width + x];
+  float dark = own, bright = own;
+  for (uint32_t v = window.y0; v < window.y1; ++v)
+    for (uint32_t u = window.x0; u < window.x1; ++u) {
+      dark = std::min(dark, map.mean[size_t(v) * map.width + u]);
+      bright = std::max(bright, map.mean[size_t(v) * map.width + u]);
+    }
+  return (own - dark) * (bright - own);
+}
+
+// [height][width]: kPlain, or that of an edge: equal ones and those beside them vary by the same within a factor of 4 to 8.
+constexpr int16_t kPlain = std::numeric_limits<int16_t>::min();
+
+std::vector<int16_t> kinds_of(const LuminanceMap &map) {
+  const Tables all(map, [](size_t) { return true; });
+  std::vector<int16_t> kinds(map.size(), kPlain);
+  for (uint32_t y = 0; y < map.height; ++y)
+    for (uint32_t x = 0; x < map.width; ++x) {
+      const float mixture = mixture_variance(map, x, y);
+      if (mixture > 0.0f &&
+          mixture > smallest_window(map, x, y, kPlainRadii, [&](const Window &w) { return all.of(w); }).mean())
+        kinds[size_t(y) * map.width + x] = int16_t(std::ilogb(mixture) >> 1);
+    }
+  return kinds;
+}
 
 } // namespace
 
 std::vector<float> error_bars(const LuminanceMap &map) {
-  const AreaSums sums(map.width, map.height, [&](size_t i) { return double(map.variance[i]); });
-  const AreaSums squares(map.width, map.height, [&](size_t i) { return double(map.variance[i]) * map.variance[i]; });
+  const std::vector<int16_t> kinds = kinds_of(map);
+  const Tables plain(map, [&](size_t pixel) { return kinds[pixel] == kPlain; });
+  const auto of_edges = [&](const Window &window, int kind) {
+    Sums sums;
+    for (uint32_t y = window.y0; y < window.y1; ++y)
+      for (size_t pixel = size_t(y) * map.width + window.x0, end = pixel + window.x1 - window.x0; pixel < end; ++pixel)
+        if (kinds[pixel] != kPlain && std::abs(kinds[pixel] - kind) <= 1)
+          sums.add(map.variance[pixel]);
+    return sums;
+  };
   std::vector<float> bars(map.size());
   for (uint32_t y = 0; y < map.height; ++y) {
     for (uint32_t x = 0; x < map.width; ++x) {
@@ -50,17 +140,15 @@ std::vector<float> error_bars(const LuminanceMap &map) {
         bars[pixel] = std::numeric_limits<float>::infinity();
         continue;
       }
-      // Widen the window until enough pixels in it have variance.
-      double variance = 0.0;
-      for (const int radius : kRadii) {
-        const uint32_t x0 = uint32_t(std::max(int(x) - radius, 0)), x1 = std::min(x + uint32_t(radius) + 1, map.width);
-        const uint32_t y0 = uint32_t(std::max(int(y) - radius, 0)), y1 = std::min(y + uint32_t(radius) + 1, map.height);
-        const double sum = sums.of(x0, y0, x1, y1);
-        variance = sum / (double(x1 - x0) * (y1 - y0));
-        if (sum * sum >= kBearers * squares.of(x0, y0, x1, y1))
-          break;
+      if (const int16_t kind = kinds[pixel]; kind == kPlain) {
+        const Sums sums = smallest_window(map, x, y, kPlainRadii, [&](const Window &window) { return plain.of(window); });
+        bars[pixel] = float(map.unit * std::sqrt(sums.mean() / map.count[pixel]));
+      } else {
+        const Sums sums =
+            smallest_window(map, x, y, kRadii.size(), [&](const Window &window) { return of_edges(window, kind); });
+        const double reach = sums.enough() ? 1.0 : student_over_gaussian(sums.degrees_of_freedom());
+        bars[pixel] = float(map.unit * reach * std::sqrt(sums.mean() / map.count[pixel]));
       }
-      bars[pixel] = float(map.unit * std::sqrt(variance / map.count[pixel]));
     }
   }
   return bars;
