@@ -102,8 +102,8 @@ def test_what_ends_a_render():
     assert late.ended_by == TIME and late.seconds.value == 60.0
     # What is left after half a second before the first sample.
     assert late.samples.value == pytest.approx(59.5 / (RATE * 512**2), rel=1e-6)
-    # A target is not looked at before 64 samples.
-    assert forecast(measured, 512**2, 0.9, 8192).samples.value == 64.0
+    # A target is not looked at before 16 samples.
+    assert forecast(measured, 512**2, 0.9, 8192).samples.value == 16.0
     assert classic_seconds(measured, 512**2, 16) == pytest.approx(0.5 + 4 * RATE * 512**2)
     assert classic_seconds(dataclasses.replace(measured, classic_seconds=0.0), 512**2, 16) is None
 
@@ -171,4 +171,4 @@ def test_a_black_picture_has_no_error():
     black = tiny.scene([tiny.plane()], [tiny.lambert()], camera=tiny.pencil(pixels=32))
     measured = measure(black, 0.1)
     told = forecast(measured, 1024, 0.01, 4096)
-    assert told.error.value < 1e-12 and told.samples.value == 64.0 and told.seconds.low <= told.seconds.high
+    assert told.error.value < 1e-12 and told.samples.value == 16.0 and told.seconds.low <= told.seconds.high

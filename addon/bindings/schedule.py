@@ -13,7 +13,7 @@ import time
 # Ranges of 1, 1, 2, 4 ... samples as long as one takes no longer than this: then of as many as fit.
 _LONGEST_INTERVAL = 1.0
 # From here on the error is known well enough to decide by.
-PILOT = 64
+PILOT = 16
 # Of ending a render whose error is still above its target: one half for the first look, a quarter for the second ...
 _MISTAKE = 0.05
 
@@ -24,8 +24,8 @@ class Schedule:
     """Drives a Session by its settings: samples, target_error, time_limit.
 
     started: when the time limit began, by time.monotonic().
-    Without target and limit all pixels get the same samples. With either, ranges double the samples of every pixel, and from 64
-    on those of the pixels that need it most (Session.refine).
+    Without target and limit all pixels get the same samples. With either, ranges double the samples of every pixel, and from
+    PILOT on those of the pixels that need it most (Session.refine).
     """
 
     def __init__(self, session, started=None):
@@ -50,14 +50,14 @@ class Schedule:
         """Starts the next range; False when there is none."""
         if self.over:
             return False
-        count = self._count()
-        if self._refining:
-            if not self.session.refine(self.settings.target_error, self.confidence):
+        self._refining = self._refining and self._refine()
+        self._next = 0
+        if not self._refining:
+            self._next = self._count()
+            if self._next == 0:
                 self.reason = SAMPLES
                 return False
-        else:
-            self.session.render(self.samples, count)
-        self._next = count
+            self.session.render(self.samples, self._next)
         self._range = (time.monotonic(), self._progress.samples if self._progress else 0)
         return True
 
@@ -141,6 +141,13 @@ class Schedule:
                 if self.error.bound <= target:
                     return TARGET
         return None
+
+    def _refine(self):
+        """Whether a round began. If not, no pixel can be doubled, so all have the same number, the largest power of two."""
+        if self.session.refine(self.settings.target_error, self.confidence):
+            return True
+        self.samples = self.session.error().most_samples
+        return False
 
     def _count(self):
         """Samples of the next range, where all pixels get the same."""

@@ -24,9 +24,9 @@ _UNBOUNDED = 1 << 20
 class Plan:
     seeds: int = 20
     counts: tuple = (64, 256)
-    targets: tuple = (0.05, 0.02, 0.01)
+    targets: tuple = (0.1, 0.05, 0.02, 0.01)
     # Samples a pixel that a run may take on average: a target that would take more is scaled up until it does not.
-    budgets: tuple = (96, 160, 256)
+    budgets: tuple = (32, 96, 160, 256)
     reference: float = 1.0  # of what the scene asks for
     threads: int = 2
 

@@ -87,17 +87,17 @@ void Session::require_ready() const {
 
 void Session::render(uint32_t first, uint32_t count) {
   require_ready();
-  if (refined_)
+  const auto [least, most] = film_.sample_range();
+  if (least != most)
     throw Error(Fault::State, "session: its pixels have different numbers of samples; it can only be refined");
-  if (first != end_)
+  if (first != most)
     throw Error(Fault::State, "session: first sample " + std::to_string(first) + " does not follow the " +
-                                  std::to_string(end_) + " samples rendered so far");
+                                  std::to_string(most) + " samples rendered so far");
   if (uint64_t(first) + count > (uint64_t(1) << 31))
     bad_argument("session: " + std::to_string(uint64_t(first) + count) + " samples > 2147483648");
   tasks_.clear();
   for (uint32_t tile = 0; tile < film_.tile_count(); ++tile)
     tasks_.push_back({tile, first + count});
-  end_ = first + count;
   range_samples_ = uint64_t(count) * film_.width() * film_.height();
   start();
 }
@@ -129,7 +129,6 @@ bool Session::refine(double target, double confidence) {
     tasks_.push_back({tile, 2 * count});
     range_samples_ += uint64_t(count) * film_.tile(tile).pixels();
   }
-  refined_ = true;
   start();
   return true;
 }
@@ -217,9 +216,6 @@ void Session::settle() {
     film_.round_down(tile);
     samples_ += uint64_t(tile.count) * tile.pixels();
   }
-  const auto [least, most] = film_.sample_range();
-  end_ = most;
-  refined_ = refined_ || least != most;
 }
 
 void Session::drop_invalid(const Worker &worker, std::span<SampleResult> results) {

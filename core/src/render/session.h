@@ -106,8 +106,6 @@ private:
     uint32_t tile, end;
   };
   std::vector<Task> tasks_;
-  uint32_t end_ = 0; // samples of every pixel when the range is done
-  bool refined_ = false;
   double planned_samples_ = 0.0;
   bool cancelled_ = false, failed_ = false;
   double seconds_before_ = 0.0;
