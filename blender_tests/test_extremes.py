@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+import reference
 import tiny_scenes
 from bindings.abi import AreaShape, Features, Integrator, LightKind, LobeKind
 from bindings.enums import Distribution, Rules
@@ -117,15 +118,49 @@ def same(a, b, share=0.99, rtol=1e-5):
 @pytest.mark.parametrize("index", [1.0, 1.0 + 2.0**-23])
 @pytest.mark.parametrize("kind", [LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION], ids=lambda kind: kind.name)
 def test_index_one_is_not_there(library, kind, index):
-    """With the smallest index above 1 rays bend by less than 5e-4 at the very rim, and elsewhere by 1e-7.
-
-    CLASSIC shares rays by a table of albedos as Cycles has it, where that index counts as 15 sqrt(2^-24) of the first step.
-    """
+    """With the smallest index above 1 rays bend by less than 5e-4 at the very rim, and elsewhere by 1e-7."""
     for roughness in (0.0, 0.5):
         (path, classic), _ = pictures(glowing([tiny_scenes.sphere(0)], [one(kind, roughness=roughness, ior=index)], samples=1))
         (empty, _), _ = pictures(glowing([], [], samples=1))
         same(path, empty)
-        same(classic, empty, rtol=4e-3)
+        same(classic, empty)
+
+
+GLASSES = [
+    (LobeKind.DIELECTRIC, 0.0, Distribution.GGX),
+    (LobeKind.GLASS, 0.0, Distribution.GGX),
+    (LobeKind.GLASS, 0.0, Distribution.MULTI_GGX),
+    (LobeKind.GLASS, 0.5, Distribution.BECKMANN),
+    (LobeKind.GLASS, 1.0, Distribution.GGX),
+]
+
+
+@pytest.mark.parametrize("kind, roughness, distribution", GLASSES)
+@pytest.mark.parametrize("ior", IORS)
+def test_a_boundary_shares_light_by_fresnel(library, kind, roughness, distribution, ior):
+    """A red floor behind it and a blue sky before it, from both of its sides: 1 - F of the one, F of the other.
+
+    CLASSIC takes rough glass for smooth. Rays are rounded to 1e-7, and at these cosines F changes by less than ten times that.
+    """
+    glass = one(kind, roughness=roughness, ior=ior, distribution=distribution)
+    floor = Material("floor", lobes=(), emission=(1, 0, 0))
+    for turned, index in ((np.eye(4), float(np.float32(ior))), (rotate_x(math.pi), 1.0 / float(np.float32(ior)))):
+        for cosine in (1.0, 0.8, 0.1, 0.02):
+            eye = (3 * math.sqrt(1 - cosine**2), 0, 3 * cosine)
+            things = [tiny_scenes.plane(0, turned), tiny_scenes.plane(1, move(z=-5))]
+            camera = tiny_scenes.pencil(eye, (0, 0, 0), pixels=8)
+            snapshot = tiny_scenes.scene(things, [glass, floor], world=(0, 0, 1), camera=camera, samples=64, max_bounces=1)
+            want = float(reference.fresnel(cosine, index))
+            # Above an index of 3.7 F falls before it rises; that of the Glass node does not, as in Cycles.
+            if kind == LobeKind.GLASS:
+                want = max(want, float(reference.fresnel(1.0, index)))
+            (path, classic), _ = pictures(snapshot)
+            assert np.allclose(classic, (1 - want, 0, want), rtol=0, atol=1e-6), (cosine, index, classic[0, 0], want)
+            if roughness == 0.0:
+                # One of the two each time: Bernoulli's deviation bounds that of stratified numbers.
+                assert np.allclose(path.sum(axis=-1), 1.0, rtol=0, atol=1e-6)
+                error = math.sqrt(want * (1 - want) / (64 * 64))
+                assert abs(path[..., 2].mean() - want) <= 4 * error + 1e-6, (cosine, index, path[..., 2].mean(), want)
 
 
 @pytest.mark.parametrize("ior", [1e19, 3e38, np.inf])
@@ -291,7 +326,37 @@ def test_dim_lamp_beside_a_blinding_one(library, others):
     above = dataclasses.replace(blinding, matrix=move(z=1))
     (path, classic), _ = pictures(tiny_scenes.scene(*floor, [dim, above, *dark], camera=camera, samples=1024))
     both = want + 1e12 * watt / math.pi
-    assert np.allclose(path, both, rtol=1e-5) and np.allclose(classic, both, rtol=1e-5)
+    # A 256th of the choices at most goes to the dim one, lest it be missed where the other is hidden: those miss the other.
+    deviation = math.sqrt(1 / 256 / 1024)
+    assert np.allclose(path, both, rtol=4 * deviation) and np.allclose(classic, both, rtol=1e-5)
+    assert abs(path[..., 0].mean() - both) <= 4 * deviation * both / 4  # of 16 pixels
+
+
+@pytest.mark.parametrize("others", [0, 6])
+def test_dim_lamp_beside_a_hidden_blinding_one(library, others):
+    """1e-6 W light a room, 1e12 W stand in a box: the picture is found, and its error tells how well.
+
+    One sample of 1024, among many lamps of 4096, asks the dim one, and brings all that the others miss.
+    """
+    watt = 1 / (4 * math.pi**2)
+    dim = lamp(emission=1e-6 * watt, matrix=move(z=2))
+    hidden = [lamp(emission=1e12 * watt, matrix=move(3 + 0.05 * i, 0, 1)) for i in range(1 + others)]
+    box = [square(0, move(3, 0, 1) @ turn @ move(z=0.5)) for turn in (*TURNS[:4], TURNS[4], TURNS[5])]
+    camera = tiny_scenes.pencil((-3, -4, 5), pixels=16)
+    snapshot = tiny_scenes.scene(
+        [tiny_scenes.plane(), *box], [tiny_scenes.lambert()], [dim, *hidden], [tiny_scenes.quad(1.2)], camera=camera
+    )
+    want = 1e-6 * watt / 4 / math.pi
+    samples = 4096 if others else 1024
+    with Session.upload(tiny_scenes.with_settings(snapshot, samples=samples, max_bounces=0)) as session:
+        assert session.render_all()
+        got, error = session.read()[..., 0].astype(float), session.error()
+    mean, deviation = got.mean(), got.std(ddof=1) / 16
+    assert deviation < 0.2 * want and abs(mean - want) <= 4 * deviation, (mean, deviation, want)
+    # What the pixels are off, relative as the error is; of 256 pixels with a hit each its own root mean square is known to a
+    # tenth.
+    off = math.sqrt(np.mean((got - want) ** 2)) / (1.01 * want)
+    assert 0.8 * error.low <= off <= 1.2 * (error.high + error.cannot_exclude), (off, error)
 
 
 # What each socket is asked on, and a value outside its range for which another one stands in.

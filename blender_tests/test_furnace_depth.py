@@ -49,14 +49,15 @@ def test_every_depth(library, bounces):
     judge("exact", False, bounces, 16, 1e-6)
 
 
-@pytest.mark.parametrize("bounces", [0, 1, 2, 5, 10])
+@pytest.mark.parametrize("bounces", range(11))
 def test_every_depth_within_a_mesh(library, bounces):
     judge("mesh", False, bounces, 64, 2e-4)
 
 
-@pytest.mark.parametrize("bounces", [2, 5, 10])
+@pytest.mark.parametrize("bounces", range(11))
 def test_every_depth_under_roulette(library, bounces):
-    judge("exact", True, bounces, 64, 6e-4)
+    """Roulette begins with the second bounce, and of the tenth a sample's deviation is 0.13."""
+    judge("exact", True, bounces, 64 if bounces < 4 else 576, 2e-4)
 
 
 @pytest.mark.slow

@@ -187,5 +187,34 @@ TEST(LightsExtreme, LampsOfAnyPowersShareTheChoices) {
     expect_fair(LightTree(lamps(count), uint32_t(count)), count, lamps(count));
 }
 
+// A blinding lamp may be hidden: those beside it are still found, and take no more than a 256th of its choices.
+TEST(LightsExtreme, DimLampsBesideABlindingOneAreFound) {
+  const LightQuery query({1.0, 2.0, 0.0}, {0.0f, 0.0f, 1.0f}, false);
+  for (const uint32_t count : {2u, 4u, 5u, 16u}) {
+    // All in one place, so that none is in a cluster of its own.
+    std::vector<DescribedLight> described;
+    for (uint32_t i = 0; i < count; ++i) {
+      Light light;
+      light.kind = LightKind::Point;
+      light.position = {3.0, 4.0, 5.0};
+      light.emission = glm::dvec3(i == 0 ? 1e12 : 1e-6);
+      described.push_back(describe(light, i));
+    }
+    const auto expect = [&](double blinding, double dim, double part) {
+      // Of the sum that holds every dim one as this part of the blinding one.
+      const double sum = 1.0 + (count - 1) * double{kRaised} * part;
+      EXPECT_NEAR(dim * sum / (double{kRaised} * part), 1.0, 1e-6) << count;
+      EXPECT_GE(blinding, 1.0 - double{kRaised}) << count;
+    };
+    const LightTree tree(described, count);
+    expect(tree.probability(query, 0), tree.probability(query, 1), 1.0 / kBranchWidth);
+    if (count > kLeafLights)
+      continue;
+    // The other half of the choices goes by the lower bounds, which are not raised.
+    const FewLights few(described, count);
+    expect(few.probability(query, 0), 2.0 * few.probability(query, 1), 1.0 / count);
+  }
+}
+
 } // namespace
 } // namespace lancer

@@ -60,11 +60,15 @@ CourseShares course_shares(const Lobe &lobe, float cosine) {
     return {lobe.albedo};
   case LobeShape::Dielectric:
     return {lobe.albedo - lobe.through, lobe.through};
-  case LobeShape::Microfacet:
-    // One that does not reflect keeps no account of what goes through: all of it does.
-    if (!reflects(lobe))
-      return {glm::vec3(0.0f), lobe.albedo};
-    return {lobe.albedo - lobe.through, lobe.through};
+  case LobeShape::Microfacet: {
+    // What rough facets reflect on average; smooth ones, and those that let light through, answer as the one they are taken
+    // for, so that no light is lost between the two shares.
+    if (!lobe.delta && !refracts(lobe))
+      return {lobe.albedo};
+    const FacetResponse response = facet_response(lobe, cosine);
+    const glm::vec3 color = lobe.delta ? lobe.color * lobe.energy : lobe.color;
+    return {color * response.reflected, color * response.through};
+  }
   default:
     return {};
   }

@@ -1,10 +1,19 @@
 #include "lights/few_lights.h"
 
-#include <array>
+#include <algorithm>
 
 namespace lancer {
 
 namespace {
+
+void raise(std::span<Importance> parts) {
+  float strongest = 0.0f;
+  for (const Importance &part : parts)
+    strongest = std::max(strongest, part.most);
+  const float least = kRaised / float(parts.size()) * strongest;
+  for (Importance &part : parts)
+    part.most = part.most > 0.0f ? std::max(part.most, least) : 0.0f;
+}
 
 // What each of several has of the sum of upper and of lower bounds, averaged; where no lower bound is positive, what can
 // contribute shares that half evenly.
@@ -12,10 +21,12 @@ struct Sums {
   double most = 0.0, least = 0.0;
   int able = 0;
 
-  void add(const Importance &part) {
-    most += double(part.most);
-    least += double(part.least);
-    able += part.most > 0.0f;
+  explicit Sums(std::span<const Importance> parts) {
+    for (const Importance &part : parts) {
+      most += double(part.most);
+      least += double(part.least);
+      able += part.most > 0.0f;
+    }
   }
   double share(const Importance &part) const {
     if (!(part.most > 0.0f))
@@ -35,25 +46,32 @@ Importance FewLights::weigh(const LightQuery &query, uint32_t number) const {
 }
 
 glm::dvec2 FewLights::shares(const LightQuery &query, uint32_t pair) const {
-  const Importance left = weigh(query, pair), right = weigh(query, pair + 1);
+  std::array<Importance, 2> parts{weigh(query, pair), weigh(query, pair + 1)};
+  raise(parts);
   // A cluster's lower bound is mostly 0 and would share the choices evenly: five times the variance under 200 lamps.
   if (pair != 0 && (nodes_[pair].count != 1 || nodes_[pair + 1].count != 1)) {
-    const double sum = double(left.most) + double(right.most);
-    return sum > 0.0 ? glm::dvec2(double(left.most), double(right.most)) / sum : glm::dvec2(0.0);
+    const double left = double(parts[0].most), right = double(parts[1].most), sum = left + right;
+    return sum > 0.0 ? glm::dvec2(left, right) / sum : glm::dvec2(0.0);
   }
-  Sums sums;
-  sums.add(left);
-  sums.add(right);
-  return {sums.share(left), sums.share(right)};
+  const Sums sums(parts);
+  return {sums.share(parts[0]), sums.share(parts[1])};
+}
+
+std::span<Importance> FewLights::weigh_leaf(const LightQuery &query, const LightNode &node,
+                                            std::array<Importance, kLeafLights> &room) const {
+  const std::span<Importance> parts(room.data(), node.count);
+  for (uint32_t i = 0; i < node.count; ++i)
+    parts[i] = importance(query, lights_[node.first + i]);
+  raise(parts);
+  return parts;
 }
 
 LightChoice FewLights::choose_of_leaf(const LightQuery &query, const LightNode &node, double u) const {
   if (node.count == 1)
     return {lights_[node.first].number, 1.0, u};
-  std::array<Importance, kLeafLights> parts;
-  Sums sums;
-  for (uint32_t i = 0; i < node.count; ++i)
-    sums.add(parts[i] = importance(query, lights_[node.first + i]));
+  std::array<Importance, kLeafLights> room;
+  const std::span<Importance> parts = weigh_leaf(query, node, room);
+  const Sums sums(parts);
   // Go along the shares; rounding at the end stays with the last that has one.
   LightChoice choice;
   for (uint32_t i = 0; i < node.count; ++i) {
@@ -93,15 +111,9 @@ LightChoice FewLights::choose(const LightQuery &query, double u) const {
 double FewLights::share_of_leaf(const LightQuery &query, const LightNode &node, uint32_t place) const {
   if (node.count == 1)
     return 1.0;
-  Sums sums;
-  Importance wanted;
-  for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-    const Importance part = importance(query, lights_[i]);
-    sums.add(part);
-    if (i == place)
-      wanted = part;
-  }
-  return sums.share(wanted);
+  std::array<Importance, kLeafLights> room;
+  const std::span<Importance> parts = weigh_leaf(query, node, room);
+  return Sums(parts).share(parts[place - node.first]);
 }
 
 double FewLights::probability(const LightQuery &query, uint32_t number) const {

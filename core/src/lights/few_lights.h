@@ -6,6 +6,8 @@
 #include "lights/tree_light.h"
 #include "sampling/distribution.h"
 
+#include <array>
+#include <span>
 #include <vector>
 
 namespace lancer {
@@ -52,6 +54,8 @@ private:
   Importance weigh(const LightQuery &query, uint32_t node) const;
   // Of the two nodes of a pair; both 0 where neither can contribute.
   glm::dvec2 shares(const LightQuery &query, uint32_t pair) const;
+  std::span<Importance> weigh_leaf(const LightQuery &query, const LightNode &node,
+                                   std::array<Importance, kLeafLights> &room) const;
   LightChoice choose_of_leaf(const LightQuery &query, const LightNode &node, double u) const;
   double share_of_leaf(const LightQuery &query, const LightNode &node, uint32_t place) const;
   void split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);

@@ -28,6 +28,11 @@ struct Importance {
   float most = 0.0f, least = 0.0f;
 };
 
+// What stands between is not known: beside a blinding light that is hidden, a dim one may be all there is. Of n to choose from,
+// none that may contribute counts for less than 1 / n of this part of the strongest: so much of the choices is the most that
+// raised ones take from the others.
+inline constexpr float kRaised = 0x1p-8f;
+
 // Where the light leaves: LightCone, in cosines.
 struct ShineCone {
   glm::vec3 axis{0, 0, 1};

@@ -189,14 +189,26 @@ LANCER_LANE WideImportance weigh(const WideQuery &query, const WideTree &tree, u
                                            node.shape.energy);
 }
 
+LANCER_LANE void raise(WideImportance *parts, uint32_t count) {
+  const F zero(0.0f);
+  F strongest = zero;
+  for (uint32_t i = 0; i < count; ++i)
+    strongest = max(strongest, parts[i].most);
+  const F least = F(kRaised / static_cast<float>(count)) * strongest;
+  for (uint32_t i = 0; i < count; ++i)
+    parts[i].most = select(parts[i].most > zero, max(parts[i].most, least), zero);
+}
+
 // Shares of the sum of upper and of lower bounds, averaged.
 struct WideSums {
   D most = D(0.0), least = D(0.0), able = D(0.0);
 
-  LANCER_LANE void add(const WideImportance &part) {
-    most = most + widen(part.most);
-    least = least + widen(part.least);
-    able = select(part.most > F(0.0f), able + D(1.0), able);
+  LANCER_LANE WideSums(const WideImportance *parts, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) {
+      most = most + widen(parts[i].most);
+      least = least + widen(parts[i].least);
+      able = select(parts[i].most > F(0.0f), able + D(1.0), able);
+    }
   }
   LANCER_LANE D share(const WideImportance &part) const {
     const D lower = select(least > D(0.0), widen(part.least) / least, D(1.0) / able);
@@ -213,9 +225,10 @@ LANCER_LANE void choose_of_leaf(const WideQuery &query, const WideTree &tree, co
     return;
   }
   WideImportance parts[kLeafLights];
-  WideSums sums;
   for (uint32_t i = 0; i < node.count; ++i)
-    sums.add(parts[i] = light_importance(query, tree.lights[node.first + i]));
+    parts[i] = light_importance(query, tree.lights[node.first + i]);
+  raise(parts, node.count);
+  const WideSums sums(parts, node.count);
   D probability = zero, rest = choice.u;
   D left = choice.u;
   M open = here;
@@ -252,19 +265,18 @@ LANCER_LANE WideChoice choose_light(const WideQuery &query, const WideTree &tree
       continue;
     }
     const uint32_t pair = at.number == kPairs ? 0 : tree.nodes[at.number].first;
-    const WideImportance first = weigh(query, tree, pair), second = weigh(query, tree, pair + 1);
+    WideImportance parts[2] = {weigh(query, tree, pair), weigh(query, tree, pair + 1)};
+    raise(parts, 2);
     D x, y;
     if (pair != 0 && (tree.nodes[pair].count != 1 || tree.nodes[pair + 1].count != 1)) {
       // Between clusters the upper bounds decide.
-      const D a = widen(first.most), b = widen(second.most), sum = a + b;
+      const D a = widen(parts[0].most), b = widen(parts[1].most), sum = a + b;
       x = select(sum > zero, a / sum, zero);
       y = select(sum > zero, b / sum, zero);
     } else {
-      WideSums sums;
-      sums.add(first);
-      sums.add(second);
-      x = sums.share(first);
-      y = sums.share(second);
+      const WideSums sums(parts, 2);
+      x = sums.share(parts[0]);
+      y = sums.share(parts[1]);
     }
     const M right = (y > zero) & !(choice.u < x), none = !((x > zero) | right);
     const D share = select(right, y, x);

@@ -72,6 +72,18 @@ template <int By> LANCER_LANE void add_before(DoubleVector (&of)[kParts]) {
   }
 }
 
+// The largest of the children's numbers, none of which is negative.
+LANCER_LANE float largest(const float (&of)[kChildren]) {
+  using Four [[gnu::vector_size(16), gnu::may_alias]] = float;
+  const Four *const parts = reinterpret_cast<const Four *>(of);
+  Four most = parts[0];
+  for (int i = 1; i < kChildren / 4; ++i)
+    most = most > parts[i] ? most : parts[i];
+  const Four turned = __builtin_shufflevector(most, most, 2, 3, 0, 1);
+  most = most > turned ? most : turned;
+  return most[0] > most[1] ? most[0] : most[1];
+}
+
 struct WideWeights {
   alignas(64) float most[kChildren];
   // Of the children up to each: the same sums in every instruction set.
@@ -83,10 +95,15 @@ struct WideWeights {
 LANCER_LANE void weigh_all(const LightBranches &tree, uint32_t number, const LightWalk &walk, WideWeights &weights) {
   const LightBranch &branch = tree.branches[number];
   const LightAim *aim = tree.aims + (tree.aims ? number : 0);
+  for (int first = 0; first < kChildren; first += kLanes)
+    store(weights.most + first, weigh(branch, aim, walk, first));
+  const F zero(0.0f), least(kRaised / static_cast<float>(kChildren) * largest(weights.most));
   for (int first = 0; first < kChildren; first += kLanes) {
-    const F most = weigh(branch, aim, walk, first);
+    const F bound = load(weights.most + first);
+    const M able = bound > zero;
+    const F most = select(able, max(bound, least), zero);
     store(weights.most + first, most);
-    weights.able |= bits(most > F(0.0f)) << first;
+    weights.able |= bits(able) << first;
     const D wide = widen(most);
     weights.up_to[first / kHalf] = wide.lo;
     weights.up_to[first / kHalf + 1] = wide.hi;
