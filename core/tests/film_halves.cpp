@@ -6,6 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
+#include <tuple>
 
 namespace lancer {
 namespace {
@@ -70,6 +71,38 @@ TEST(FilmLuminances, KeepTheScaleOfTheBrightest) {
   EXPECT_NEAR(map.mean[0], 2.0f, 1e-6f);
   EXPECT_NEAR(map.variance[0], 2.0f, 1e-5f);
   EXPECT_EQ(map.mean[1], 0.0f);
+}
+
+TEST(FilmDropped, AreThoseThatTheFilmHas) {
+  Film film(4, 2, 4, 1, true);
+  Film::Tile &even = film.tile(0), &odd = film.tile(1);
+  EXPECT_EQ(film.dropped().samples, 0u);
+  const std::vector<SampleResult> some = grey(std::vector<float>(4 * 6, 1.0f));
+  // Two in sample 3 of a tile and one in its sample 4; two in sample 2 of the other one.
+  film.drop(even, {0, 0, 3});
+  film.drop(even, {2, 0, 3});
+  film.drop(even, {1, 1, 4});
+  film.add(even, 6, some);
+  film.drop(odd, {0, 1, 2});
+  film.drop(odd, {2, 1, 2});
+  film.add(odd, 6, some);
+  EXPECT_EQ(film.dropped().samples, 5u);
+  const auto first = [&] {
+    const SampleAddress address = film.dropped().first;
+    return std::tuple(address.x, address.y, address.sample);
+  };
+  EXPECT_EQ(first(), std::tuple(0u, 1u, 2u));
+  film.round_down(even);
+  EXPECT_EQ(film.dropped().samples, 4u);
+  // Begins again with the same samples.
+  film.drop(even, {1, 1, 4});
+  film.add(even, 4, some);
+  EXPECT_EQ(film.dropped().samples, 5u);
+  Film other(4, 2, 4, 1, true);
+  other.drop(other.tile(0), {2, 0, 2});
+  other.add(other.tile(0), 3, some);
+  other.round_down(other.tile(0));
+  EXPECT_EQ(other.dropped().samples, 0u);
 }
 
 TEST(FilmHalves, RoundingDownGivesTheBitsOfThePower) {

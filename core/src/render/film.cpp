@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 namespace lancer {
 
@@ -114,9 +116,40 @@ void Film::forget_joined(Tile &tile) {
       tile.levels[level] = Sums();
 }
 
+void Film::drop(Tile &tile, const SampleAddress &address) {
+  const std::lock_guard lock(tile.mutex);
+  if (tile.dropped.empty())
+    tile.first_dropped = address;
+  const auto width = size_t(std::bit_width(address.sample));
+  if (tile.dropped.size() <= width)
+    tile.dropped.resize(width + 1);
+  ++tile.dropped[width];
+}
+
+Film::Dropped Film::dropped() const {
+  const auto order = [](const SampleAddress &address) { return std::tie(address.sample, address.y, address.x); };
+  Dropped result;
+  for (const auto &tile : tiles_) {
+    const std::lock_guard lock(tile->mutex);
+    if (tile->dropped.empty())
+      continue;
+    if (result.samples == 0 || order(tile->first_dropped) < order(result.first))
+      result.first = tile->first_dropped;
+    result.samples += std::accumulate(tile->dropped.begin(), tile->dropped.end(), uint64_t(0));
+  }
+  return result;
+}
+
 void Film::round_down(Tile &tile) {
   const std::lock_guard lock(tile.mutex);
   tile.count = std::bit_floor(tile.count);
+  // The numbers below a power of two are those of less width than it has.
+  const auto width = size_t(std::bit_width(tile.count));
+  if (tile.dropped.size() > width) {
+    tile.dropped.resize(width);
+    while (!tile.dropped.empty() && tile.dropped.back() == 0)
+      tile.dropped.pop_back();
+  }
   forget_joined(tile);
 }
 
@@ -248,6 +281,7 @@ size_t Film::bytes() const {
   for (const auto &tile : tiles_) {
     const std::lock_guard lock(tile->mutex);
     bytes += sizeof(Tile) + (tile->first.capacity() + tile->brightest.capacity()) * sizeof(float);
+    bytes += tile->dropped.capacity() * sizeof(uint64_t);
     for (const Sums &level : tile->levels)
       bytes += sizeof(level) + level.channels.capacity() * sizeof(double) + level.luminances.capacity() * sizeof(float);
   }
