@@ -73,6 +73,22 @@ TEST(FilmLuminances, KeepTheScaleOfTheBrightest) {
   EXPECT_EQ(map.mean[1], 0.0f);
 }
 
+TEST(FilmLuminances, AreThoseOfSamplesWhoseSumIsNoFloat) {
+  Film film(1, 1, 1, 1);
+  std::vector<float> values;
+  for (int i = 0; i < 64; ++i)
+    values.push_back(i % 2 ? 3e38f : 1e38f);
+  film.add(film.tile(0), 64, grey(values));
+  Film::Luminance luminance[1];
+  EXPECT_EQ(film.luminances(film.tile(0), luminance), 64u);
+  // Replicates of 1e38 and of 3e38. Three products and two sums of luminance round by 6e-8 each, of 3e38 as of 1e38: of their
+  // difference that is twice as much, of its square four times.
+  EXPECT_NEAR(luminance[0].mean, 2e38, 2e38 * 5 * 6e-8);
+  EXPECT_NEAR(luminance[0].variance, 1e76, 1e76 * 20 * 6e-8);
+  const LuminanceMap map(film);
+  EXPECT_TRUE(std::isfinite(map.unit) && std::isfinite(map.mean[0]) && std::isfinite(map.variance[0]));
+}
+
 TEST(FilmDropped, AreThoseThatTheFilmHas) {
   Film film(4, 2, 4, 1, true);
   Film::Tile &even = film.tile(0), &odd = film.tile(1);

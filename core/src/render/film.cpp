@@ -16,9 +16,14 @@ constexpr float kNothing = 1e10f;
 // A pass has no more channels than these.
 constexpr uint32_t kMostChannels = 4;
 
-template <class Number> void join(const std::vector<Number> &earlier, std::vector<Number> &later) {
+void join(const std::vector<double> &earlier, std::vector<double> &later) {
   for (size_t i = 0; i < later.size(); ++i)
     later[i] = earlier[i] + later[i];
+}
+
+void join_means(const std::vector<float> &earlier, std::vector<float> &later) {
+  for (size_t i = 0; i < later.size(); ++i)
+    later[i] = 0.5f * earlier[i] + 0.5f * later[i];
 }
 
 } // namespace
@@ -101,7 +106,7 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
     // A new leaf joins every complete neighbour, the smaller numbers first. All pixels stand at the same leaf.
     for (uint32_t joined = 0; joined < level; ++joined) {
       join(tile.levels[joined].channels, carry.channels);
-      join(tile.levels[joined].luminances, carry.luminances);
+      join_means(tile.levels[joined].luminances, carry.luminances);
     }
     std::swap(tile.levels[level], carry);
     ++tile.count;
@@ -261,7 +266,7 @@ uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
         continue;
       const float *from = tile.levels[level].luminances.data() + size_t(pixel) * kReplicates;
       for (uint32_t r = 0; r < kReplicates; ++r)
-        ((1u << level) < kReplicates ? rest : sums[r]) += double(from[r]);
+        ((1u << level) < kReplicates ? rest : sums[r]) += double(1u << level) * double(from[r]);
     }
     double sum = 0.0, squares = 0.0;
     for (const double of_replicate : sums)

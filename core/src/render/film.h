@@ -26,7 +26,8 @@ public:
   // The most that a film of this size takes on its way to so many samples.
   static double bytes_needed(double width, double height, uint32_t passes, uint32_t samples);
 
-  // A complete subtree: [pixel][summed channel], and [pixel][replicate] luminances.
+  // A complete subtree: [pixel][summed channel], and [pixel][replicate] luminances, each divided by the number of samples of
+  // the subtree, so that floats hold them however bright the samples are.
   struct Sums {
     std::vector<double> channels;
     std::vector<float> luminances;
