@@ -217,6 +217,8 @@ void Session::settle() {
     film_.round_down(tile);
     samples_ += uint64_t(tile.count) * tile.pixels();
   }
+  // Of the range nothing is left to be cancelled.
+  range_samples_ = 0;
   const auto [least, most] = film_.sample_range();
   end_ = most;
   refined_ = refined_ || least != most;
@@ -267,10 +269,9 @@ Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
   progress.fraction = range_samples_ ? std::min(1.0, done_samples / double(range_samples_)) : 1.0;
   if (!done)
     return State::Running;
-  if (stop_) {
+  if (stop_ && !cancelled_) {
     settle();
     progress.samples = samples_;
-    return State::Done;
   }
   cancelled_ = cancelled_ || (cancel_ && progress.samples - samples_before_ < range_samples_);
   return cancelled_ ? State::Cancelled : State::Done;
