@@ -4,11 +4,11 @@ import blenders
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.enums import LightKind, Pass
+from bindings.enums import LightKind, LobeKind, Pass
 from bindings.session import Session
-from bindings.snapshot import Camera, Light
+from bindings.snapshot import Camera, Light, Lobe, Material
 from blenders import MODULE
-from tiny_scenes import lambert, look_at, move, plane
+from tiny_scenes import lambert, look_at, move, plane, rotate_x
 
 SIDE, SAMPLES = 16, 4
 
@@ -131,6 +131,25 @@ def test_what_a_stopped_range_takes_back_is_not_told():
         with Session.upload(overflowing(samples=64)) as whole:
             assert whole.render_all(16)
             assert session.statistics().invalid_samples == whole.statistics().invalid_samples
+
+
+@pytest.mark.overflows
+@pytest.mark.parametrize("clamp", [0.0, 1.0])
+def test_what_is_dropped_is_no_part_of_what_settings_take(clamp):
+    """The floor in a mirror: light after two scatterings, and beyond float in places."""
+    lamp = Light("lamp", move(z=1e-6), LightKind.POINT, emission=(1e30,) * 3)
+    mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(1.0, 1.0, 1.0)),))
+    camera = Camera(look_at((0.0, 0.0, 2.0), (0.0, 0.0, 4.0)), width=SIDE, height=SIDE, window=(-1e-4, 1e-4, -1e-4, 1e-4))
+    floor_and_mirror = [plane(0), plane(1, move(z=4.0) @ rotate_x(np.pi))]
+    snapshot = tiny_scenes.scene(
+        floor_and_mirror, [lambert(0.5), mirror], [lamp], camera=camera, samples=4, max_bounces=3, clamp_indirect=clamp
+    )
+    with Session.upload(snapshot) as session:
+        assert session.render_all()
+        assert session.statistics().invalid_samples > 0
+        error = session.error()
+    # Of the indirect light, which is all that there is, clamping to 1 leaves less than a part in 1e30.
+    assert (error.clipped, error.missing) == ((1.0, 0.0) if clamp else (0.0, 0.0))
 
 
 def test_a_finite_scene_reports_none():
