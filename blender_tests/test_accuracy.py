@@ -163,7 +163,10 @@ def test_stopping_leaves_powers_of_two():
                 finished(even)
                 count *= 2
         assert found.all()
-        # It can go on.
+        # It has ended, however often that is asked, and whoever cancels what is not running; and it can go on.
+        assert not session.wait(0.0).cancelled
+        session.cancel()
+        assert not session.wait(0.0).cancelled
         assert session.refine(0.0)
         finished(session)
         assert session.error().least_samples == 2 * told.least_samples
@@ -289,7 +292,8 @@ def test_refining_is_refused_in_wrong_states():
 
 
 @pytest.mark.parametrize(
-    "target, confidence", [(-1.0, 0.95), (float("nan"), 0.95), (0.1, 0.0), (0.1, 1.0), (0.1, float("nan"))]
+    "target, confidence",
+    [(-1.0, 0.95), (float("nan"), 0.95), (float("inf"), 0.95), (0.1, 0.0), (0.1, 1.0), (0.1, float("nan"))],
 )
 def test_wrong_targets_are_refused(target, confidence):
     with Session.upload(room()) as session:
@@ -297,6 +301,19 @@ def test_wrong_targets_are_refused(target, confidence):
         with pytest.raises(LancerError) as error:
             session.refine(target, confidence)
         assert error.value.status is Status.ERROR_ARGUMENT
+
+
+def test_a_cancelled_session_stays_so():
+    with Session.upload(room(samples=FOREVER)) as session:
+        session.render(0, FOREVER)
+        session.wait(0.01)
+        session.cancel()
+        while not session.wait(0.05).finished:
+            pass
+        before = session.read()
+        session.stop()
+        assert session.wait(0.0).cancelled
+        assert (session.read() == before).all()
 
 
 def test_a_time_limit_or_a_target_asks_for_refinement():

@@ -13,23 +13,29 @@ FEW, MANY = 30, 300
 # What a process may have grown by after the tenth of its renders.
 MOST_GROWTH = 0.01
 
-# Renders a snapshot of many things again and again; the tenth and the last say what the process holds.
+# Renders a snapshot of many things again and again, every second time with a round of refinement; the tenth and the last say
+# what the process holds.
 LOOP = """
 import sys
 sys.path[:0] = sys.argv[2:]
-import conftest, gc
+import conftest, dataclasses, gc
 from bindings.abi import Pass
 from bindings.session import Session
 from memory_now import held
 from test_snapshot import rich
 held_after = []
-snapshot = rich()
+even = rich()
+refined = dataclasses.replace(even, settings=dataclasses.replace(even.settings, samples=4, target_error=0.01))
 for number in range(int(sys.argv[1])):
-    with Session.upload(snapshot) as session:
-        assert session.render_all(1)
+    with Session.upload(refined if number % 2 else even) as session:
+        assert session.render_all(2)
+        if session.settings.refines:
+            assert session.refine()
+            while not session.wait(0.05).finished:
+                pass
         for which in Pass:
             session.read(which)
-        session.statistics(), session.messages(), session.debug_sample(1, 1, 0)
+        session.error(), session.statistics(), session.messages(), session.debug_sample(1, 1, 0)
     gc.collect()
     held_after.append(held())
 print(held_after[9]["resident"], held_after[-1]["resident"], held_after[9]["given"], held_after[-1]["given"])

@@ -45,6 +45,8 @@ struct SessionState {
   uint32_t width = 0, height = 0, samples = 0;
 };
 
+// Every byte is taken in a statement of its own or where the language says which comes first: a file is to mean the same calls
+// with every compiler.
 class Program {
 public:
   Program(const uint8_t *data, size_t size) : bytes_(data, size), records_(bytes_) {}
@@ -93,7 +95,7 @@ private:
     case 13:
       return commit(handle_of(scenes_));
     case 14:
-      return wait_for_scene(handle_of(scenes_), bytes_.below(3));
+      return wait_for_scene(handle_of(scenes_));
     case 15:
       return end_scene();
     case 16:
@@ -101,7 +103,7 @@ private:
     case 17:
       return render(handle_of(sessions_));
     case 18:
-      return wait_for_session(handle_of(sessions_), bytes_.below(3));
+      return wait_for_session(handle_of(sessions_));
     case 19:
       return judge(handle_of(sessions_));
     case 20:
@@ -115,9 +117,20 @@ private:
     }
   }
 
+  void ask_error(lancer_session session, double confidence, bool nowhere) {
+    lancer_error e;
+    if (LANCER_CHECKED(lancer_session_error(session, confidence, nowhere ? nullptr : &e)) != LANCER_OK)
+      return;
+    // The first four are infinite as long as they are not known, and missing where the last bounce finds no less than the one
+    // before.
+    const bool good = e.low >= 0.0 && e.low <= e.error && e.error <= e.high && e.cannot_exclude >= 0.0 && e.clipped >= 0.0 &&
+                      e.clipped <= 1.0 && e.missing >= 0.0 && e.planned_samples >= 0.0 && e.least_samples <= e.most_samples;
+    if (!good)
+      broken("lancer_session_error", "its numbers are none");
+  }
+
   // Ends a range, asks for its error, or lets that say what is rendered next.
   void judge(lancer_session session) {
-    lancer_error error;
     switch (bytes_.below(6)) {
     default:
       LANCER_CHECKED(lancer_session_cancel(session));
@@ -125,14 +138,21 @@ private:
     case 3:
       LANCER_CHECKED(lancer_session_stop(session));
       return;
-    case 4:
-      LANCER_CHECKED(lancer_session_error(session, bytes_.number(0.95, 0.0, 1.0), bytes_.rarely(2) ? nullptr : &error));
-      return;
-    case 5:
-      // Each doubles what has been rendered.
-      if (refinements_++ < kMostRefinements)
-        LANCER_CHECKED(lancer_session_refine(session, bytes_.number(0.05, 0.0, 1.0), bytes_.number(0.95, 0.0, 1.0)));
+    case 4: {
+      const double confidence = bytes_.number(0.95, 0.0, 1.0);
+      return ask_error(session, confidence, bytes_.rarely(2));
     }
+    case 5:
+      return refine(session);
+    }
+  }
+  void refine(lancer_session session) {
+    // Each doubles what has been rendered.
+    if (refinements_ == kMostRefinements)
+      return;
+    ++refinements_;
+    const double target = bytes_.number(0.05, 0.0, 1.0), confidence = bytes_.number(0.95, 0.0, 1.0);
+    LANCER_CHECKED(lancer_session_refine(session, target, confidence));
   }
 
   void create_scene() {
@@ -189,10 +209,12 @@ private:
     const lancer_scene scene = open(filled);
     const Records::Instances instances = records_.instances(*filled);
     const auto count = uint32_t(instances.rows.size());
-    if (filled->instances + count <= 2 * kMostThings &&
-        LANCER_CHECKED(lancer_scene_add_instances(
-            scene, count, bytes_.rarely(1) ? nullptr : instances.rows.data(), uint32_t(instances.slots.size()),
-            bytes_.rarely(1) ? nullptr : instances.slots.data(), instances.names, instances.names_size)) == LANCER_OK)
+    if (filled->instances + count > 2 * kMostThings)
+      return;
+    const lancer_instance *rows = bytes_.rarely(1) ? nullptr : instances.rows.data();
+    const uint32_t *slots = bytes_.rarely(1) ? nullptr : instances.slots.data();
+    if (LANCER_CHECKED(lancer_scene_add_instances(scene, count, rows, uint32_t(instances.slots.size()), slots, instances.names,
+                                                  instances.names_size)) == LANCER_OK)
       filled->instances += count;
   }
   void set_world() {
@@ -203,12 +225,12 @@ private:
   }
 
   void commit(lancer_scene scene) {
-    if (LANCER_CHECKED(lancer_scene_commit(scene, bytes_.choice(3), bytes_.rarely(2) ? 1025 : 1 + bytes_.below(2))) ==
-        LANCER_OK)
+    const uint32_t accelerator = bytes_.choice(3), threads = bytes_.rarely(2) ? 1025 : 1 + bytes_.below(2);
+    if (LANCER_CHECKED(lancer_scene_commit(scene, accelerator, threads)) == LANCER_OK)
       state_of(scenes_, scene)->committed = true;
   }
-  void wait_for_scene(lancer_scene scene, uint32_t milliseconds) {
-    LANCER_CHECKED(lancer_scene_wait(scene, milliseconds));
+  void wait_for_scene(lancer_scene scene) {
+    LANCER_CHECKED(lancer_scene_wait(scene, bytes_.below(3)));
     size_t needed = 0;
     std::string text(bytes_.byte(), '?');
     const lancer_status status = LANCER_CHECKED(lancer_scene_messages(scene, text.data(), text.size(), &needed));
@@ -244,9 +266,9 @@ private:
     ++ranges_;
     state->samples += count;
   }
-  void wait_for_session(lancer_session session, uint32_t milliseconds) {
+  void wait_for_session(lancer_session session) {
     lancer_progress progress = {};
-    const lancer_status status = LANCER_CHECKED(lancer_session_wait(session, milliseconds, &progress));
+    const lancer_status status = LANCER_CHECKED(lancer_session_wait(session, bytes_.below(3), &progress));
     if (status <= LANCER_CANCELLED && !(progress.fraction >= 0.0 && progress.fraction <= 1.0))
       broken("lancer_session_wait", "its fraction is none");
   }
@@ -263,6 +285,7 @@ private:
     std::vector<float> picture;
     lancer_statistics statistics;
     LANCER_CHECKED(lancer_session_statistics(session, &statistics));
+    ask_error(session, 0.95, false);
     const SessionState *state = state_of(sessions_, session);
     const size_t pixels = state ? size_t(state->width) * state->height : 1;
     for (uint32_t pass = 0; pass <= LANCER_PASS_COUNT; ++pass)
@@ -287,7 +310,8 @@ private:
     lancer_vertex vertices[4];
     uint32_t count = 0;
     const uint32_t x = state ? bytes_.reference(state->width) : 0, y = state ? bytes_.reference(state->height) : 0;
-    LANCER_CHECKED(lancer_debug_sample(session, x, y, bytes_.below(3), rgba, vertices, bytes_.below(5), &count));
+    const uint32_t sample = bytes_.below(3), capacity = bytes_.below(5);
+    LANCER_CHECKED(lancer_debug_sample(session, x, y, sample, rgba, vertices, capacity, &count));
   }
 
   void probe_scene(lancer_scene scene) {
@@ -333,8 +357,10 @@ private:
     for (uint32_t i = 0; i < kCount; ++i)
       a[i] = bytes_.number(0.5f, 0.0f, 1.0f);
     LANCER_CHECKED(lancer_probe_microfacet(kCount, a, a, a, a, a, b, c, numbers));
-    LANCER_CHECKED(lancer_probe_sampler(bytes_.byte(), bytes_.word(), bytes_.byte(), bytes_.word(), 8, numbers));
-    LANCER_CHECKED(lancer_probe_filter(bytes_.choice(2), bytes_.number(1.5f, 0.0f, 4.0f), kCount, a, b));
+    const uint32_t seed = bytes_.byte(), x = bytes_.word(), y = bytes_.byte(), sample = bytes_.word();
+    LANCER_CHECKED(lancer_probe_sampler(seed, x, y, sample, 8, numbers));
+    const uint32_t filter = bytes_.choice(2);
+    LANCER_CHECKED(lancer_probe_filter(filter, bytes_.number(1.5f, 0.0f, 4.0f), kCount, a, b));
     lancer_sizeof(bytes_.byte());
   }
 

@@ -151,9 +151,12 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
   else
     node.option %= node.kind == LANCER_NODE_NORMAL_MAP ? 6 : node.kind == LANCER_NODE_SEPARATE ? 3 : 4;
   const bool picture = node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT;
-  if (picture)
-    node.flags = bytes_.choice(4) | bytes_.choice(3) << 4 | flag() << 8;
-  else if (bytes_.rarely(100))
+  if (picture) {
+    // One after the other: of operands the compiler chooses which comes first.
+    node.flags = bytes_.choice(4);
+    node.flags |= bytes_.choice(3) << 4;
+    node.flags |= flag() << 8;
+  } else if (bytes_.rarely(100))
     node.flags = bytes_.below(node.kind == LANCER_NODE_BUMP ? 8 : node.kind == LANCER_NODE_MIX ? 4 : 2);
   else if (bytes_.rarely(2))
     node.flags = ~0u;

@@ -3,6 +3,8 @@
 #include "render/fill_settings.h"
 #include "scene/fill_camera.h"
 
+#include <cmath>
+
 namespace {
 
 using namespace lancer;
@@ -235,8 +237,8 @@ lancer_status lancer_session_stop(lancer_session session) {
 lancer_status lancer_session_refine(lancer_session session, double target, double confidence) {
   return guard([&]() -> lancer_status {
     const auto object = session_of(session);
-    if (!(target >= 0.0))
-      bad_argument("refine: target " + std::to_string(target) + " must not be negative");
+    if (!(target >= 0.0) || !std::isfinite(target))
+      bad_argument("refine: target " + std::to_string(target) + " must be finite and not negative");
     check_confidence("refine", confidence);
     const std::lock_guard lock(object->mutex);
     return object->session.refine(target, confidence) ? LANCER_OK : LANCER_CANCELLED;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
+#include <tuple>
 
 namespace lancer {
 namespace {
@@ -70,6 +71,54 @@ TEST(FilmLuminances, KeepTheScaleOfTheBrightest) {
   EXPECT_NEAR(map.mean[0], 2.0f, 1e-6f);
   EXPECT_NEAR(map.variance[0], 2.0f, 1e-5f);
   EXPECT_EQ(map.mean[1], 0.0f);
+}
+
+TEST(FilmLuminances, AreThoseOfSamplesWhoseSumIsNoFloat) {
+  Film film(1, 1, 1, 1);
+  std::vector<float> values;
+  for (int i = 0; i < 64; ++i)
+    values.push_back(i % 2 ? 3e38f : 1e38f);
+  film.add(film.tile(0), 64, grey(values));
+  Film::Luminance luminance[1];
+  EXPECT_EQ(film.luminances(film.tile(0), luminance), 64u);
+  // Replicates of 1e38 and of 3e38. Three products and two sums of luminance round by 6e-8 each, of 3e38 as of 1e38: of their
+  // difference that is twice as much, of its square four times.
+  EXPECT_NEAR(luminance[0].mean, 2e38, 2e38 * 5 * 6e-8);
+  EXPECT_NEAR(luminance[0].variance, 1e76, 1e76 * 20 * 6e-8);
+  const LuminanceMap map(film);
+  EXPECT_TRUE(std::isfinite(map.unit) && std::isfinite(map.mean[0]) && std::isfinite(map.variance[0]));
+}
+
+TEST(FilmDropped, AreThoseThatTheFilmHas) {
+  Film film(4, 2, 4, 1, true);
+  Film::Tile &even = film.tile(0), &odd = film.tile(1);
+  EXPECT_EQ(film.dropped().samples, 0u);
+  const std::vector<SampleResult> some = grey(std::vector<float>(4 * 6, 1.0f));
+  // Two in sample 3 of a tile and one in its sample 4; two in sample 2 of the other one.
+  film.drop(even, {0, 0, 3});
+  film.drop(even, {2, 0, 3});
+  film.drop(even, {1, 1, 4});
+  film.add(even, 6, some);
+  film.drop(odd, {0, 1, 2});
+  film.drop(odd, {2, 1, 2});
+  film.add(odd, 6, some);
+  EXPECT_EQ(film.dropped().samples, 5u);
+  const auto first = [&] {
+    const SampleAddress address = film.dropped().first;
+    return std::tuple(address.x, address.y, address.sample);
+  };
+  EXPECT_EQ(first(), std::tuple(0u, 1u, 2u));
+  film.round_down(even);
+  EXPECT_EQ(film.dropped().samples, 4u);
+  // Begins again with the same samples.
+  film.drop(even, {1, 1, 4});
+  film.add(even, 4, some);
+  EXPECT_EQ(film.dropped().samples, 5u);
+  Film other(4, 2, 4, 1, true);
+  other.drop(other.tile(0), {2, 0, 2});
+  other.add(other.tile(0), 3, some);
+  other.round_down(other.tile(0));
+  EXPECT_EQ(other.dropped().samples, 0u);
 }
 
 TEST(FilmHalves, RoundingDownGivesTheBitsOfThePower) {

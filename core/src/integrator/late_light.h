@@ -4,6 +4,8 @@
 #include "integrator/sample.h"
 #include "sampling/color.h"
 
+#include <cmath>
+
 namespace lancer {
 
 class LateLight {
@@ -37,10 +39,13 @@ public:
   }
 
 private:
+  // A sample that is not finite is dropped, and so is its share.
   template <class Light> double sum(Light &&light) const {
     double result = 0.0;
-    for (const uint32_t slot : slots_)
-      result += double(luminance(light(slot)));
+    for (const uint32_t slot : slots_) {
+      const float level = luminance(light(slot));
+      result += std::isfinite(level) ? double(level) : 0.0;
+    }
     return result;
   }
 

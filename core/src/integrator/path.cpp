@@ -59,7 +59,7 @@ void PathIntegrator<Shapes, Layers>::run(std::span<const SampleAddress> addresse
     glm::vec3 indirect = indirect_[slot];
     const float top = largest(indirect);
     if (settings_.clamp_indirect > 0.0f && top > settings_.clamp_indirect) {
-      energy_.clipped += double(luminance(indirect)) * (1.0 - double(settings_.clamp_indirect / top));
+      energy_.clip(double(luminance(indirect)) * (1.0 - double(settings_.clamp_indirect / top)));
       indirect *= settings_.clamp_indirect / top;
       passes_.scale_indirect(results[slot], settings_.clamp_indirect / top);
     }

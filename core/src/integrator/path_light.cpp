@@ -28,7 +28,7 @@ void PathIntegrator<Shapes, Layers>::add(const Path &path, SampleResult &result,
   if (path.in_view) {
     const float top = largest(radiance), limit = settings_.clamp_indirect;
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
-    energy_.clipped += double(luminance(radiance - seen));
+    energy_.clip(double(luminance(radiance - seen)));
     result.radiance += seen;
     passes_.add_seen(result, seen, environment);
     return;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -92,6 +93,8 @@ struct Energy {
       return 0.0;
     return last < before_last ? last * last / (before_last - last) : std::numeric_limits<double>::infinity();
   }
+  // A sample that is not finite is dropped, and what would have been clipped of it.
+  void clip(double light) { clipped += std::isfinite(light) ? light : 0.0; }
   Energy &operator+=(const Energy &other) {
     clipped += other.clipped;
     last += other.last;

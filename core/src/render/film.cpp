@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 namespace lancer {
 
@@ -14,9 +16,14 @@ constexpr float kNothing = 1e10f;
 // A pass has no more channels than these.
 constexpr uint32_t kMostChannels = 4;
 
-template <class Number> void join(const std::vector<Number> &earlier, std::vector<Number> &later) {
+void join(const std::vector<double> &earlier, std::vector<double> &later) {
   for (size_t i = 0; i < later.size(); ++i)
     later[i] = earlier[i] + later[i];
+}
+
+void join_means(const std::vector<float> &earlier, std::vector<float> &later) {
+  for (size_t i = 0; i < later.size(); ++i)
+    later[i] = 0.5f * earlier[i] + 0.5f * later[i];
 }
 
 } // namespace
@@ -99,7 +106,7 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
     // A new leaf joins every complete neighbour, the smaller numbers first. All pixels stand at the same leaf.
     for (uint32_t joined = 0; joined < level; ++joined) {
       join(tile.levels[joined].channels, carry.channels);
-      join(tile.levels[joined].luminances, carry.luminances);
+      join_means(tile.levels[joined].luminances, carry.luminances);
     }
     std::swap(tile.levels[level], carry);
     ++tile.count;
@@ -114,9 +121,40 @@ void Film::forget_joined(Tile &tile) {
       tile.levels[level] = Sums();
 }
 
+void Film::drop(Tile &tile, const SampleAddress &address) {
+  const std::lock_guard lock(tile.mutex);
+  if (tile.dropped.empty())
+    tile.first_dropped = address;
+  const auto width = size_t(std::bit_width(address.sample));
+  if (tile.dropped.size() <= width)
+    tile.dropped.resize(width + 1);
+  ++tile.dropped[width];
+}
+
+Film::Dropped Film::dropped() const {
+  const auto order = [](const SampleAddress &address) { return std::tie(address.sample, address.y, address.x); };
+  Dropped result;
+  for (const auto &tile : tiles_) {
+    const std::lock_guard lock(tile->mutex);
+    if (tile->dropped.empty())
+      continue;
+    if (result.samples == 0 || order(tile->first_dropped) < order(result.first))
+      result.first = tile->first_dropped;
+    result.samples += std::accumulate(tile->dropped.begin(), tile->dropped.end(), uint64_t(0));
+  }
+  return result;
+}
+
 void Film::round_down(Tile &tile) {
   const std::lock_guard lock(tile.mutex);
   tile.count = std::bit_floor(tile.count);
+  // The numbers below a power of two are those of less width than it has.
+  const auto width = size_t(std::bit_width(tile.count));
+  if (tile.dropped.size() > width) {
+    tile.dropped.resize(width);
+    while (!tile.dropped.empty() && tile.dropped.back() == 0)
+      tile.dropped.pop_back();
+  }
   forget_joined(tile);
 }
 
@@ -228,7 +266,7 @@ uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
         continue;
       const float *from = tile.levels[level].luminances.data() + size_t(pixel) * kReplicates;
       for (uint32_t r = 0; r < kReplicates; ++r)
-        ((1u << level) < kReplicates ? rest : sums[r]) += double(from[r]);
+        ((1u << level) < kReplicates ? rest : sums[r]) += double(1u << level) * double(from[r]);
     }
     double sum = 0.0, squares = 0.0;
     for (const double of_replicate : sums)
@@ -248,6 +286,7 @@ size_t Film::bytes() const {
   for (const auto &tile : tiles_) {
     const std::lock_guard lock(tile->mutex);
     bytes += sizeof(Tile) + (tile->first.capacity() + tile->brightest.capacity()) * sizeof(float);
+    bytes += tile->dropped.capacity() * sizeof(uint64_t);
     for (const Sums &level : tile->levels)
       bytes += sizeof(level) + level.channels.capacity() * sizeof(double) + level.luminances.capacity() * sizeof(float);
   }

@@ -26,7 +26,8 @@ public:
   // The most that a film of this size takes on its way to so many samples.
   static double bytes_needed(double width, double height, uint32_t passes, uint32_t samples);
 
-  // A complete subtree: [pixel][summed channel], and [pixel][replicate] luminances.
+  // A complete subtree: [pixel][summed channel], and [pixel][replicate] luminances, each divided by the number of samples of
+  // the subtree, so that floats hold them however bright the samples are.
   struct Sums {
     std::vector<double> channels;
     std::vector<float> luminances;
@@ -38,8 +39,10 @@ public:
     uint32_t count = 0; // samples of each of its pixels
     // By bit of count. Where the bit is not set there is nothing, or what nobody may read.
     std::vector<Sums> levels;
-    std::vector<float> first;     // [pixel][channel of sample 0]
-    std::vector<float> brightest; // [pixel] largest luminance of a sample
+    std::vector<float> first;      // [pixel][channel of sample 0]
+    std::vector<float> brightest;  // [pixel] largest luminance of a sample
+    std::vector<uint64_t> dropped; // by the bit width of the sample's number; empty where none was
+    SampleAddress first_dropped{0, 0, 0};
     mutable std::mutex mutex;
 
     uint32_t pixels() const;
@@ -56,6 +59,14 @@ public:
   // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel. Where memory ends the tile
   // keeps those that it has counted.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
+  // Counts a sample of those that are added next, which is not finite. In order of sample and of place.
+  void drop(Tile &tile, const SampleAddress &address);
+  struct Dropped {
+    uint64_t samples = 0;
+    SampleAddress first{0, 0, 0}; // the least number of a sample, and then the lowest row
+  };
+  // Of the samples that the film has.
+  Dropped dropped() const;
   // Forgets the samples beyond the last power of two.
   void round_down(Tile &tile);
   // Least and most samples of a pixel.

@@ -191,7 +191,7 @@ void Session::render_tile(Worker &worker, Film::Tile &tile, uint32_t end) {
     // A batch that was broken off is worth nothing.
     if (cancel_)
       return;
-    drop_invalid(worker, worker.results);
+    drop_invalid(worker, tile);
     film_.add(tile, samples, worker.results);
     samples_ += worker.addresses.size();
     {
@@ -216,16 +216,16 @@ void Session::settle() {
     film_.round_down(tile);
     samples_ += uint64_t(tile.count) * tile.pixels();
   }
+  // Of the range nothing is left to be cancelled.
+  range_samples_ = 0;
 }
 
-void Session::drop_invalid(const Worker &worker, std::span<SampleResult> results) {
-  for (size_t i = 0; i < results.size(); ++i) {
-    if (film_.finite(results[i]))
+void Session::drop_invalid(Worker &worker, Film::Tile &tile) {
+  for (size_t i = 0; i < worker.results.size(); ++i) {
+    if (film_.finite(worker.results[i]))
       continue;
-    results[i] = place_of(results[i]);
-    const std::lock_guard lock(mutex_);
-    if (invalid_++ == 0)
-      first_invalid_ = worker.addresses[i];
+    worker.results[i] = place_of(worker.results[i]);
+    film_.drop(tile, worker.addresses[i]);
   }
 }
 
@@ -265,10 +265,9 @@ Session::State Session::wait(uint32_t milliseconds, Progress &progress) {
   progress.fraction = range_samples_ ? std::min(1.0, done_samples / double(range_samples_)) : 1.0;
   if (!done)
     return State::Running;
-  if (stop_) {
+  if (stop_ && !cancelled_) {
     settle();
     progress.samples = samples_;
-    return State::Done;
   }
   cancelled_ = cancelled_ || (cancel_ && progress.samples - samples_before_ < range_samples_);
   return cancelled_ ? State::Cancelled : State::Done;
@@ -321,11 +320,9 @@ SessionStatistics Session::statistics() const {
   statistics.render_seconds = seconds();
   statistics.samples = samples_;
   statistics.rays = rays();
-  {
-    const std::lock_guard lock(mutex_);
-    statistics.invalid_samples = invalid_;
-    statistics.first_invalid = first_invalid_;
-  }
+  const Film::Dropped dropped = film_.dropped();
+  statistics.invalid_samples = dropped.samples;
+  statistics.first_invalid = dropped.first;
   statistics.threads = pool_.size();
   statistics.film_bytes = film_.bytes();
   statistics.kernel = workers_.front()->integrator->kernel();

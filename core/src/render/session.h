@@ -88,7 +88,7 @@ private:
   void work(uint32_t thread);
   void render_tile(Worker &worker, Film::Tile &tile, uint32_t end);
   void settle();
-  void drop_invalid(const Worker &worker, std::span<SampleResult> results);
+  void drop_invalid(Worker &worker, Film::Tile &tile);
   double seconds() const;
   RayCounts rays() const;
 
@@ -112,8 +112,6 @@ private:
   std::chrono::steady_clock::time_point start_;
   bool started_ = false;
   mutable std::mutex mutex_; // of what follows
-  uint64_t invalid_ = 0;
-  SampleAddress first_invalid_{0, 0, 0};
   std::chrono::steady_clock::time_point end_time_;
   std::atomic<uint32_t> active_{0};
   ThreadPool pool_; // last: its threads end before anything else does

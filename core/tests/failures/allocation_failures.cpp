@@ -68,6 +68,7 @@ TEST(AllocationFailures, TheFirstRenderOfAProcessIsNoExceptionToThat) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, AllocationFailures,
                          testing::Values(Case{"BvhPath", {LANCER_PATH, LANCER_BVH, 2}, Refuse::One},
+                                         Case{"BvhPathRefined", {LANCER_PATH, LANCER_BVH, 2, true}, Refuse::One},
                                          Case{"BvhPathFromThenOn", {LANCER_PATH, LANCER_BVH, 2}, Refuse::AllFromIt},
                                          Case{"KdtreeClassic", {LANCER_CLASSIC, LANCER_KDTREE, 2}, Refuse::One},
                                          Case{"BruteForceNormals", {LANCER_NORMALS, LANCER_BRUTE_FORCE, 2}, Refuse::AllFromIt}),

@@ -111,6 +111,68 @@ TEST(Cancelling, RendersLeaveNothingBehind) {
   lancer_scene_destroy(scene);
 }
 
+// Doubles samples until nothing is left to double; cancels or stops after the moment where one is given.
+lancer_status refine(lancer_scene scene, std::vector<float> &image, const Moment *moment, bool stops, std::mt19937 &random) {
+  const lancer_camera camera = make_camera();
+  lancer_settings settings = make_settings();
+  settings.refines = 1;
+  settings.samples = 32;
+  lancer_session session = 0;
+  EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_OK) << lancer_last_error();
+  EXPECT_EQ(lancer_session_render(session, 0, 2), LANCER_OK) << lancer_last_error();
+  EXPECT_EQ(finish(session), LANCER_OK);
+  const auto rounds = [&] {
+    lancer_status status = LANCER_OK, started;
+    while (status == LANCER_OK && (started = lancer_session_refine(session, 0.0, 0.95)) == LANCER_OK)
+      status = finish(session);
+    EXPECT_TRUE(status != LANCER_OK || started == LANCER_CANCELLED) << lancer_last_error();
+    return status;
+  };
+  std::thread other;
+  if (moment)
+    other = std::thread([&] {
+      moment->wait(random);
+      EXPECT_EQ(stops ? lancer_session_stop(session) : lancer_session_cancel(session), LANCER_OK);
+    });
+  const lancer_status status = rounds();
+  if (other.joinable())
+    other.join();
+  lancer_error error;
+  EXPECT_EQ(lancer_session_error(session, 0.95, &error), LANCER_OK);
+  EXPECT_TRUE(error.low <= error.error && error.error <= error.high) << error.low << " " << error.error << " " << error.high;
+  EXPECT_EQ(lancer_session_read(session, LANCER_PASS_COMBINED, image.data(), image.size()), LANCER_OK);
+  EXPECT_EQ(lancer_session_destroy(session), LANCER_OK);
+  return status;
+}
+
+TEST(Cancelling, RefinementsLeaveNothingBehind) {
+  std::mt19937 random(3);
+  const lancer_scene scene = make_scene();
+  std::vector<float> whole(24 * 16 * 4), image(whole.size());
+  ASSERT_EQ(refine(scene, whole, nullptr, false, random), LANCER_OK);
+  const auto start = Clock::now();
+  ASSERT_EQ(refine(scene, image, nullptr, false, random), LANCER_OK);
+  const Moment moment(Clock::now() - start);
+  const size_t threads = threads_now();
+  int cancelled = 0;
+  for (int i = 0; i < repeats(); ++i) {
+    SCOPED_TRACE(i);
+    const int64_t memory = live_memory();
+    const bool stops = i % 2 != 0;
+    const lancer_status status = refine(scene, image, &moment, stops, random);
+    // After a stop it has gone on to the same end.
+    ASSERT_TRUE(status == LANCER_OK || (status == LANCER_CANCELLED && !stops)) << status << ": " << lancer_last_error();
+    cancelled += status == LANCER_CANCELLED;
+    if (status == LANCER_OK) {
+      ASSERT_EQ(image, whole);
+    }
+    ASSERT_TRUE(threads_come_down_to(threads));
+    ASSERT_EQ(live_memory(), memory);
+  }
+  EXPECT_GT(cancelled, repeats() / 8);
+  lancer_scene_destroy(scene);
+}
+
 // A wavy sheet of so many squares a side.
 struct Sheet {
   std::vector<float> positions;

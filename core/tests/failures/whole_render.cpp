@@ -291,12 +291,27 @@ void ask_scene(lancer_scene scene, Calls &calls) {
   calls.make("probe_light", [&] { return lancer_probe_light(scene, 0, 1, origin, u, &light); });
 }
 
-void use_session(lancer_session session, std::span<float> picture, Calls &calls) {
+// Doubles the samples of all pixels, then of those that are worth it; and asks to stop what has ended.
+void refine(lancer_session session, Calls &calls) {
+  for (const double target : {0.0, 0.01}) {
+    calls.make("session_refine", [&] { return lancer_session_refine(session, target, 0.95); });
+    calls.make("session_wait", [&] { return lancer_session_wait(session, 50, nullptr); });
+    calls.make("session_stop", [&] { return lancer_session_stop(session); });
+    calls.make("session_wait", [&] { return lancer_session_wait(session, 50, nullptr); });
+  }
+}
+
+void use_session(lancer_session session, bool refines, std::span<float> picture, Calls &calls) {
   for (uint32_t first : {0, 1})
     for (const bool wait : {false, true})
       calls.make(wait ? "session_wait" : "session_render", [&] {
-        return wait ? lancer_session_wait(session, 50, nullptr) : lancer_session_render(session, first, first ? 2 : 1);
+        return wait ? lancer_session_wait(session, 50, nullptr)
+                    : lancer_session_render(session, first, first && !refines ? 2 : 1);
       });
+  if (refines)
+    refine(session, calls);
+  lancer_error error;
+  calls.make("session_error", [&] { return lancer_session_error(session, 0.95, &error); });
   lancer_statistics statistics;
   calls.make("statistics", [&] { return lancer_session_statistics(session, &statistics); });
   float rgba[4];
@@ -337,6 +352,8 @@ void ask_again(lancer_scene scene, lancer_session session, std::span<float> pict
     lancer_statistics statistics;
     finish(session);
     lancer_session_statistics(session, &statistics);
+    lancer_error error;
+    lancer_session_error(session, 0.95, &error);
     lancer_session_read(session, LANCER_PASS_COMBINED, picture.data(), 4 * kWholeSide * kWholeSide);
   }
 }
@@ -360,9 +377,10 @@ RenderOutcome render_whole(const RenderKind &kind, std::span<float> picture) {
   settings.threads = kind.threads;
   settings.tile_size = 5;
   settings.max_bounces = 3;
+  settings.refines = kind.refines;
   lancer_session session = 0;
   calls.make("session_create", [&] { return lancer_session_create(scene, &camera, &settings, &session); });
-  use_session(session, picture, calls);
+  use_session(session, kind.refines, picture, calls);
   // What there is must go, even where no memory is.
   RenderOutcome end;
   Calls ends(end);

@@ -12,6 +12,7 @@ struct RenderKind {
   uint32_t integrator = LANCER_PATH;
   uint32_t accelerator = LANCER_BVH;
   uint32_t threads = 2;
+  bool refines = false;
 };
 
 inline constexpr uint32_t kWholeSide = 8;
@@ -31,7 +32,8 @@ struct RenderOutcome {
 void prepare_whole();
 
 // Renders meshes with attributes, materials of nodes, pictures, lamps enough for a tree and a sky that varies, reads all passes
-// into picture [kWholeFloats], asks for statistics, a replay and probes, and leaves nothing behind. Asks for no memory itself.
+// into picture [kWholeFloats], asks for the error, statistics, a replay and probes, and leaves nothing behind. Asks for no
+// memory itself.
 RenderOutcome render_whole(const RenderKind &kind, std::span<float> picture);
 
 } // namespace lancer_test
