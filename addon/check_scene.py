@@ -4,6 +4,7 @@ import logging
 
 import bpy
 
+from . import redraw
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled
 from .checks.check import check_snapshot
@@ -58,6 +59,7 @@ class LANCER_OT_check_scene(bpy.types.Operator):
         finally:
             manager.progress_end()
         last_findings[scene.name], last_messages[scene.name] = findings, messages.lines()
+        redraw.properties()
         for line in lines(findings):
             self.report({"WARNING"}, f"Lancer: {line}")
         if not findings:

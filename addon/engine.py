@@ -7,7 +7,7 @@ import time
 
 import bpy
 
-from . import denoise, passes, stamp
+from . import denoise, passes, redraw, stamp
 from .bindings.abi import LancerError
 from .bindings.schedule import CANCELLED, Schedule
 from .bindings.session import Cancelled, Session
@@ -74,6 +74,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self.test_break():
             # The layers that were to follow do not come any more.
             self._exported = None
+        redraw.properties_after_render()
 
     def _begin(self, depsgraph):
         """Starts the account anew with each picture.

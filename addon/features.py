@@ -29,7 +29,7 @@ class LANCER_OT_measure_features(Measuring, bpy.types.Operator):
         return functools.partial(_work, self.seconds)
 
     def keep(self, scene, measurement):
-        engine.keep_costs(scene, measurement.found)
+        engine.keep_costs(scene.name, measurement.found)
         for cost in measurement.found.hints:
             self.report({"INFO"}, f"Lancer: {cost.text}. Without: {cost.without}")
 

@@ -9,6 +9,7 @@ import time
 
 import bpy
 
+from . import redraw
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled
 from .export.scene import ExportOptions, export_scene
@@ -51,12 +52,14 @@ class _Measurement(threading.Thread):
 
 
 class Measuring:
-    """What such operators share; they give work(snapshot, poll, tell) and keep(context, found)."""
+    """What such operators share; they give work() and keep(scene, measurement)."""
 
     @classmethod
     def poll(cls, context):
-        # Two at once would slow each other down.
-        return context.scene is not None and context.scene.camera is not None and not running
+        missing = _missing(context.scene)
+        if missing:
+            cls.poll_message_set(missing)
+        return not missing
 
     def execute(self, context):
         measurement = self._started(context)
@@ -70,7 +73,7 @@ class Measuring:
         self._measurement = self._started(context)
         if self._measurement is None:
             return {"CANCELLED"}
-        running[self._scene] = (self.bl_idname, *self._measurement.progress)
+        self._show()
         manager = context.window_manager
         self._timer = manager.event_timer_add(_TICK, window=context.window)
         manager.progress_begin(0.0, 1.0)
@@ -83,9 +86,13 @@ class Measuring:
             measurement.stop.set()
         if event.type != "TIMER":
             return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
-        running[self._scene] = (self.bl_idname, *measurement.progress)
+        if bpy.app.is_job_running("RENDER") and not measurement.stop.is_set():
+            # Beside it everything takes longer.
+            measurement.stop.set()
+            self.report({"WARNING"}, "Lancer: measuring was stopped, as a render has begun")
+        self._show()
         context.window_manager.progress_update(measurement.progress[0])
-        _redraw(context)
+        redraw.properties()
         if measurement.is_alive():
             return {"RUNNING_MODAL"}
         self._leave(context)
@@ -97,11 +104,17 @@ class Measuring:
         self._measurement.join()
         self._leave(context)
 
+    def _show(self):
+        fraction, text = self._measurement.progress
+        text = "Stopping" if self._measurement.stop.is_set() else text
+        # An operator's own bl_idname is spelt as that of its class in C.
+        running[self._scene] = type(self).bl_idname, fraction, text
+
     def _leave(self, context):
         running.pop(self._scene, None)
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
-        _redraw(context)
+        redraw.properties()
 
     def _started(self, context):
         self._scene = context.scene.name
@@ -127,12 +140,19 @@ class Measuring:
             if measurement is not None and measurement.error:
                 self.report({"ERROR"}, f"Lancer: {measurement.error}")
             return {"CANCELLED"}
-        self.keep(self._scene, measurement)
+        scene = bpy.data.scenes.get(self._scene)
+        if scene is None:
+            self.report({"WARNING"}, f"Lancer: there is no scene '{self._scene}' any more, of which figures were measured")
+            return {"CANCELLED"}
+        self.keep(scene, measurement)
         return {"FINISHED"}
 
 
-def _redraw(context):
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "PROPERTIES":
-                area.tag_redraw()
+def _missing(scene):
+    """Why there is nothing to measure now; "" where there is."""
+    if scene is None or scene.camera is None:
+        return "The scene has no camera"
+    # Two at once would slow each other down.
+    if running:
+        return "A measurement is running"
+    return "A render is running" if bpy.app.is_job_running("RENDER") else ""

@@ -19,6 +19,8 @@ from .properties import QUALITIES
 
 # Kept, by the scene's name.
 measured = {}
+# The same of measurements that may not have ended yet.
+_begun = {}
 
 # What the picture's noise and time hang on, apart from what a forecast is asked for and from the picture's size.
 _OWN = (
@@ -90,8 +92,12 @@ def lines(scene):
 
 
 def seconds(told):
-    low, high = clock(told.low), clock(told.high)
-    return f"about {clock(told.value)}" + (f", {low} to {high}" if low != high else "")
+    value, low, high = clock(told.value), clock(told.low), clock(told.high)
+    if low == high:
+        return f"about {value}"
+    # Panels are narrow: a unit that both have is told once.
+    number, _, unit = low.partition(" ")
+    return f"about {value}, {number if high.endswith(f' {unit}') else low} to {high}"
 
 
 def share(told):
@@ -131,14 +137,14 @@ class LANCER_OT_measure_quality(Measuring, bpy.types.Operator):
     def begun(self, context, snapshot):
         camera = snapshot.camera
         pixels = camera.region_width * camera.region_height
-        self._kept = Kept(None, pixels, _size(context.scene), _settings(context.scene))
+        self._kept = _begun[context.scene.name] = Kept(None, pixels, _size(context.scene), _settings(context.scene))
 
     def keep(self, scene, measurement):
         found = measurement.found
         # F12 exports the scene, too.
         self._kept.points = dataclasses.replace(found, before=found.before + measurement.exporting)
-        measured[scene] = self._kept
-        for line in lines(bpy.data.scenes[scene]):
+        measured[scene.name] = self._kept
+        for line in lines(scene):
             self.report({"INFO"}, f"Lancer: {line}")
 
 
@@ -148,15 +154,17 @@ def _measured(seconds, snapshot, poll, tell):
 
 @persistent
 def _changed(scene, depsgraph):
-    """Marks as old what was measured before an object, a material or a light changed."""
-    kept = measured.get(scene.name)
-    if kept is not None and not kept.is_old:
-        kept.is_old = any(u.is_updated_geometry or u.is_updated_transform or u.is_updated_shading for u in depsgraph.updates)
+    """Marks as old what was exported to be measured before an object, a material or a light changed."""
+    current = [kept for kept in (measured.get(scene.name), _begun.get(scene.name)) if kept is not None and not kept.is_old]
+    if current and any(u.is_updated_geometry or u.is_updated_transform or u.is_updated_shading for u in depsgraph.updates):
+        for kept in current:
+            kept.is_old = True
 
 
 @persistent
 def _forget(*_):
     measured.clear()
+    _begun.clear()
 
 
 _HANDLERS = (("depsgraph_update_post", _changed), ("load_pre", _forget))
@@ -172,4 +180,4 @@ def unregister():
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
     bpy.utils.unregister_class(LANCER_OT_measure_quality)
-    measured.clear()
+    _forget()
