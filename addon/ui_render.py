@@ -16,7 +16,9 @@ _REPLACED = (
     "differs by any of them, the messages tell."
 )
 
-_DENOISING = "Open Image Denoise guesses what lies under the noise. The error given is that of the picture before it, the pass Noisy Image."
+_DENOISING = (
+    "Open Image Denoise guesses what lies under the noise. The error given is that of the picture before, the pass Noisy Image."
+)
 
 
 class LancerPanel:
