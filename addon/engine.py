@@ -6,6 +6,7 @@ import math
 import time
 
 import bpy
+from bpy.app.handlers import persistent
 
 from . import denoise, passes, redraw, stamp
 from .bindings.abi import LancerError
@@ -271,14 +272,22 @@ def _clock(seconds):
     return f"{hours}:{minutes:02}:{seconds:02}" if hours else f"{minutes:02}:{seconds:02}"
 
 
+@persistent
+def _forget(*_):
+    """Another file's scenes may have the same names."""
+    last_statistics.clear()
+    last_messages.clear()
+    last_costs.clear()
+
+
 def register():
     bpy.utils.register_class(LancerRenderEngine)
+    bpy.app.handlers.load_pre.append(_forget)
     main_thread.register()
 
 
 def unregister():
     main_thread.unregister()
+    bpy.app.handlers.load_pre.remove(_forget)
     bpy.utils.unregister_class(LancerRenderEngine)
-    last_statistics.clear()
-    last_messages.clear()
-    last_costs.clear()
+    _forget()

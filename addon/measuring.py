@@ -8,6 +8,7 @@ import threading
 import time
 
 import bpy
+from bpy.app.handlers import persistent
 
 from . import redraw
 from .bindings.abi import LancerError
@@ -17,8 +18,27 @@ from .passes import render_passes
 
 # (operator's bl_idname, fraction, text) of a measurement that runs, by the scene's name.
 running = {}
+# How often objects, materials or lights have changed, by the scene's name.
+_changes = {}
 
 _TICK = 0.1
+
+# What noise and time hang on, apart from the number of samples and of pixels.
+_OWN = (
+    "integrator",
+    "max_bounces",
+    "contribution_threshold",
+    "transparent_bounces",
+    "environment_reflections",
+    "clamp_indirect",
+    "pixel_filter",
+    "filter_width",
+    "film_transparent_glass",
+    "film_transparent_roughness",
+    "accelerator",
+    "features",
+)
+_RENDER = ("film_transparent", "use_border", "use_crop_to_border", "threads_mode", "threads", "use_simplify")
 
 
 class _Measurement(threading.Thread):
@@ -156,3 +176,29 @@ def _missing(scene):
     if running:
         return "A measurement is running"
     return "A render is running" if bpy.app.is_job_running("RENDER") else ""
+
+
+def state(scene):
+    """Another one when what was measured is not true of the scene any more."""
+    own, render = scene.lancer, scene.render
+    border = (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y) if render.use_border else ()
+    shape = render.resolution_x / render.resolution_y, render.pixel_aspect_x / render.pixel_aspect_y, *border
+    values = [getattr(own, name) for name in _OWN] + [getattr(render, name) for name in _RENDER]
+    return (_changes.get(scene.name, 0), *values, *shape, scene.camera.name if scene.camera else "", scene.frame_current)
+
+
+@persistent
+def _changed(scene, depsgraph):
+    if any(
+        update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading for update in depsgraph.updates
+    ):
+        _changes[scene.name] = _changes.get(scene.name, 0) + 1
+
+
+def register():
+    bpy.app.handlers.depsgraph_update_post.append(_changed)
+
+
+def unregister():
+    bpy.app.handlers.depsgraph_update_post.remove(_changed)
+    _changes.clear()

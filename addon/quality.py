@@ -11,33 +11,13 @@ from dataclasses import dataclass
 import bpy
 from bpy.app.handlers import persistent
 
-from . import stamp
+from . import measuring, stamp
 from .bindings.forecast import classic_seconds, forecast
 from .bindings.pilot import measure
-from .measuring import Measuring
 from .properties import QUALITIES
 
 # Kept, by the scene's name.
 measured = {}
-# The same of measurements that may not have ended yet.
-_begun = {}
-
-# What the picture's noise and time hang on, apart from what a forecast is asked for and from the picture's size.
-_OWN = (
-    "integrator",
-    "max_bounces",
-    "contribution_threshold",
-    "transparent_bounces",
-    "environment_reflections",
-    "clamp_indirect",
-    "pixel_filter",
-    "filter_width",
-    "film_transparent_glass",
-    "film_transparent_roughness",
-    "accelerator",
-    "features",
-)
-_RENDER = ("film_transparent", "use_border", "use_crop_to_border", "threads_mode", "threads", "use_simplify")
 
 
 @dataclass
@@ -45,21 +25,11 @@ class Kept:
     points: object  # forecast.Measured
     pixels: int  # of the picture then
     size: float  # of the resolution then, by which a later one is scaled
-    settings: tuple
-    is_old: bool = False
-
-
-def _settings(scene):
-    own, render = scene.lancer, scene.render
-    border = (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y) if render.use_border else ()
-    shape = render.resolution_x / render.resolution_y, render.pixel_aspect_x / render.pixel_aspect_y, *border
-    values = [getattr(own, name) for name in _OWN] + [getattr(render, name) for name in _RENDER]
-    return (*values, *shape, scene.camera.name if scene.camera else "", scene.frame_current)
+    state: tuple  # measuring.state then
 
 
 def is_old(scene):
-    kept = measured[scene.name]
-    return kept.is_old or kept.settings != _settings(scene)
+    return measured[scene.name].state != measuring.state(scene)
 
 
 def _size(scene):
@@ -119,7 +89,7 @@ def _two_digits(value):
     return f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
 
 
-class LANCER_OT_measure_quality(Measuring, bpy.types.Operator):
+class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.measure_quality"
     bl_label = "Measure Speed and Accuracy"
     bl_description = (
@@ -137,7 +107,7 @@ class LANCER_OT_measure_quality(Measuring, bpy.types.Operator):
     def begun(self, context, snapshot):
         camera = snapshot.camera
         pixels = camera.region_width * camera.region_height
-        self._kept = _begun[context.scene.name] = Kept(None, pixels, _size(context.scene), _settings(context.scene))
+        self._kept = Kept(None, pixels, _size(context.scene), measuring.state(context.scene))
 
     def keep(self, scene, measurement):
         found = measurement.found
@@ -153,31 +123,16 @@ def _measured(seconds, snapshot, poll, tell):
 
 
 @persistent
-def _changed(scene, depsgraph):
-    """Marks as old what was exported to be measured before an object, a material or a light changed."""
-    current = [kept for kept in (measured.get(scene.name), _begun.get(scene.name)) if kept is not None and not kept.is_old]
-    if current and any(u.is_updated_geometry or u.is_updated_transform or u.is_updated_shading for u in depsgraph.updates):
-        for kept in current:
-            kept.is_old = True
-
-
-@persistent
 def _forget(*_):
     measured.clear()
-    _begun.clear()
-
-
-_HANDLERS = (("depsgraph_update_post", _changed), ("load_pre", _forget))
 
 
 def register():
     bpy.utils.register_class(LANCER_OT_measure_quality)
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
+    bpy.app.handlers.load_pre.append(_forget)
 
 
 def unregister():
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(handler)
+    bpy.app.handlers.load_pre.remove(_forget)
     bpy.utils.unregister_class(LANCER_OT_measure_quality)
     _forget()

@@ -27,10 +27,10 @@ class LANCER_RENDER_PT_check(LancerPanel, bpy.types.Panel):
         if not findings and not messages:
             column.label(text="Nothing found that would hurt", icon="CHECKMARK")
         for finding, left in shortened(findings):
-            row = sentence(column, context, told(finding, left), _ICONS[finding.harm])
-            if finding.object or finding.light:
-                button = row.operator("lancer.select_object", text="", icon="RESTRICT_SELECT_OFF")
-                button.name = finding.object or finding.light
+            name = finding.object or finding.light
+            row = sentence(column, context, told(finding, left), _ICONS[finding.harm], buttons=1 if name else 0)
+            if name:
+                row.operator("lancer.select_object", text="", icon="RESTRICT_SELECT_OFF").name = name
         for line in messages:
             sentence(column, context, line, "DOT")
 

@@ -5,9 +5,9 @@
 _LETTER, _BORDERS, _ICON = 5.9, 40, 20
 
 
-def sentence(column, context, text, icon="NONE"):
-    """Writes it; gives the row of its first line."""
-    first, *rest = _wrapped(text, _letters(context, icon))
+def sentence(column, context, text, icon="NONE", buttons=0):
+    """Writes it; gives the row of its first line, where room is left for so many small buttons."""
+    first, *rest = _wrapped(text, _letters(context, buttons + (icon != "NONE")))
     row = column.row(align=True)
     row.label(text=first, icon=icon)
     for part in rest:
@@ -15,12 +15,12 @@ def sentence(column, context, text, icon="NONE"):
     return row
 
 
-def _letters(context, icon):
+def _letters(context, icons):
     """How many have room in a line; all where there is no window."""
     if context.region is None:
         return None
     width = context.region.width / context.preferences.system.ui_scale
-    return max(1, int((width - _BORDERS - (0 if icon == "NONE" else _ICON)) / _LETTER))
+    return max(1, int((width - _BORDERS - icons * _ICON) / _LETTER))
 
 
 def _wrapped(text, letters):

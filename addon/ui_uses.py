@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import engine
+from . import engine, features
 from .bindings.uses import kernel_in_words
 from .ui_lines import sentence
 from .ui_render import LancerPanel, draw_measuring
@@ -51,6 +51,8 @@ class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
         costs = engine.last_costs.get(name)
         if costs is None:
             return
+        if features.is_old(context.scene):
+            sentence(column, context, "Measured before the last changes", "ERROR")
         if not costs.hints:
             sentence(column, context, "No feature would surely save 3 % of the time", "CHECKMARK")
         for cost in costs.hints:
