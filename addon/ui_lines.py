@@ -3,6 +3,8 @@
 # In pixels at a display scale of 1, measured in Blender's own font: a letter of a usual sentence, the panel's and the label's
 # borders, an icon.
 _LETTER, _BORDERS, _ICON = 5.9, 40, 20
+# A number and its sign are one word.
+_GLUED = "\N{NO-BREAK SPACE}%"
 
 
 def sentence(column, context, text, icon="NONE", buttons=0):
@@ -25,8 +27,8 @@ def _letters(context, icons):
 
 def _wrapped(text, letters):
     parts = [""]
-    for word in text.split():
+    for word in text.replace(" %", _GLUED).split(" "):
         if letters is not None and parts[-1] and len(parts[-1]) + len(word) >= letters:
             parts.append("")
         parts[-1] += f" {word}" if parts[-1] else word
-    return parts
+    return [part.replace(_GLUED, " %") for part in parts]

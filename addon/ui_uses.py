@@ -54,7 +54,8 @@ class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
         if features.is_old(context.scene):
             sentence(column, context, "Measured before the last changes", "ERROR")
         if not costs.hints:
-            sentence(column, context, "No feature would surely save 3 % of the time", "CHECKMARK")
+            which = "None of the features that were measured" if costs.skipped else "No feature"
+            sentence(column, context, f"{which} would surely save 3 % of the time", "CHECKMARK")
         for cost in costs.hints:
             start, rest = cost.text.split("; ", 1)
             sentence(column, context, start, "INFO")
@@ -62,7 +63,7 @@ class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
             told = f"about {cost.seconds:.1f} s, {_share(cost.share)} give or take {_share(cost.uncertainty)}"
             sentence(column, context, f"{told}. Without: {cost.without}")
         if costs.skipped:
-            column.label(text=f"No time for {len(costs.skipped)} more features")
+            sentence(column, context, f"There was no time for {len(costs.skipped)} more")
 
 
 CLASSES = (LANCER_RENDER_PT_uses,)

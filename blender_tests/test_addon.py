@@ -98,7 +98,7 @@ def test_panels(case):
     uses = shown["LANCER_RENDER_PT_uses"]
     assert "lancer.measure_features" in uses["plain"] and "2 objects are meshes" in uses["rendered"]
     assert [text for text in uses["rendered"] if text.startswith(("Geometry", "Acceleration", "Textures", "Film"))]
-    assert "3 materials use refraction" in uses["measured"] and "No time for 1 more features" in uses["measured"]
+    assert "3 materials use refraction" in uses["measured"] and "There was no time for 1 more" in uses["measured"]
     assert "without it this frame would take 22 % less time for the same samples" in uses["measured"]
     assert uses["measured"].count("3 materials use refraction") == 1
     assert "No feature would surely save 3 % of the time" in uses["measured, nothing found"]
