@@ -3,7 +3,9 @@
 import logging
 
 import bpy
+from bpy.app.handlers import persistent
 
+from . import redraw
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled
 from .checks.check import check_snapshot
@@ -58,6 +60,7 @@ class LANCER_OT_check_scene(bpy.types.Operator):
         finally:
             manager.progress_end()
         last_findings[scene.name], last_messages[scene.name] = findings, messages.lines()
+        redraw.properties()
         for line in lines(findings):
             self.report({"WARNING"}, f"Lancer: {line}")
         if not findings:
@@ -86,6 +89,10 @@ class LANCER_OT_select_object(bpy.types.Operator):
         if thing is None:
             self.report({"WARNING"}, f"'{self.name}' is no object of this view layer")
             return {"CANCELLED"}
+        active = objects.active
+        if active is not None and active != thing and active.mode != "OBJECT":
+            # Of two objects the one would stay in Edit Mode, out of sight, when the other becomes the active one.
+            bpy.ops.object.mode_set(mode="OBJECT")
         for other in objects:
             other.select_set(False)
         # What is hidden stays unselected, but as the active one it shows its properties.
@@ -97,13 +104,21 @@ class LANCER_OT_select_object(bpy.types.Operator):
 _OPERATORS = (LANCER_OT_check_scene, LANCER_OT_select_object)
 
 
+@persistent
+def _forget(*_):
+    """Another file's scenes may have the same names."""
+    last_findings.clear()
+    last_messages.clear()
+
+
 def register():
     for cls in _OPERATORS:
         bpy.utils.register_class(cls)
+    bpy.app.handlers.load_pre.append(_forget)
 
 
 def unregister():
+    bpy.app.handlers.load_pre.remove(_forget)
     for cls in reversed(_OPERATORS):
         bpy.utils.unregister_class(cls)
-    last_findings.clear()
-    last_messages.clear()
+    _forget()

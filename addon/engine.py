@@ -6,8 +6,9 @@ import math
 import time
 
 import bpy
+from bpy.app.handlers import persistent
 
-from . import denoise, passes, stamp
+from . import denoise, passes, redraw, stamp
 from .bindings.abi import LancerError
 from .bindings.schedule import CANCELLED, Schedule
 from .bindings.session import Cancelled, Session
@@ -74,6 +75,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self.test_break():
             # The layers that were to follow do not come any more.
             self._exported = None
+        redraw.properties_after_render()
 
     def _begin(self, depsgraph):
         """Starts the account anew with each picture.
@@ -270,14 +272,22 @@ def _clock(seconds):
     return f"{hours}:{minutes:02}:{seconds:02}" if hours else f"{minutes:02}:{seconds:02}"
 
 
+@persistent
+def _forget(*_):
+    """Another file's scenes may have the same names."""
+    last_statistics.clear()
+    last_messages.clear()
+    last_costs.clear()
+
+
 def register():
     bpy.utils.register_class(LancerRenderEngine)
+    bpy.app.handlers.load_pre.append(_forget)
     main_thread.register()
 
 
 def unregister():
     main_thread.unregister()
+    bpy.app.handlers.load_pre.remove(_forget)
     bpy.utils.unregister_class(LancerRenderEngine)
-    last_statistics.clear()
-    last_messages.clear()
-    last_costs.clear()
+    _forget()

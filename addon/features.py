@@ -4,16 +4,28 @@ import functools
 
 import bpy
 
-from . import engine
+from . import engine, measuring
 from .bindings.hints import measure_costs
-from .measuring import Measuring
+
+# Of what the figures in engine.last_costs were measured, by the scene's name.
+_states = {}
+
+
+def _state(scene):
+    # The seconds are those of a whole frame.
+    render = scene.render
+    return *measuring.state(scene), scene.lancer.samples, render.resolution_x, render.resolution_percentage
+
+
+def is_old(scene):
+    return scene.name in _states and _states[scene.name] != _state(scene)
 
 
 def _work(seconds, snapshot, poll, tell):
     return measure_costs(snapshot, seconds, poll, tell)
 
 
-class LANCER_OT_measure_features(Measuring, bpy.types.Operator):
+class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.measure_features"
     bl_label = "Measure What Features Cost"
     bl_description = (
@@ -28,8 +40,12 @@ class LANCER_OT_measure_features(Measuring, bpy.types.Operator):
     def work(self):
         return functools.partial(_work, self.seconds)
 
+    def begun(self, context, snapshot):
+        self._state = _state(context.scene)
+
     def keep(self, scene, measurement):
-        engine.keep_costs(scene, measurement.found)
+        _states[scene.name] = self._state
+        engine.keep_costs(scene.name, measurement.found)
         for cost in measurement.found.hints:
             self.report({"INFO"}, f"Lancer: {cost.text}. Without: {cost.without}")
 
@@ -40,3 +56,4 @@ def register():
 
 def unregister():
     bpy.utils.unregister_class(LANCER_OT_measure_features)
+    _states.clear()

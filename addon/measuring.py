@@ -8,7 +8,9 @@ import threading
 import time
 
 import bpy
+from bpy.app.handlers import persistent
 
+from . import redraw
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled
 from .export.scene import ExportOptions, export_scene
@@ -16,8 +18,27 @@ from .passes import render_passes
 
 # (operator's bl_idname, fraction, text) of a measurement that runs, by the scene's name.
 running = {}
+# How often objects, materials or lights have changed, by the scene's name.
+_changes = {}
 
 _TICK = 0.1
+
+# What noise and time hang on, apart from the number of samples and of pixels.
+_OWN = (
+    "integrator",
+    "max_bounces",
+    "contribution_threshold",
+    "transparent_bounces",
+    "environment_reflections",
+    "clamp_indirect",
+    "pixel_filter",
+    "filter_width",
+    "film_transparent_glass",
+    "film_transparent_roughness",
+    "accelerator",
+    "features",
+)
+_RENDER = ("film_transparent", "use_border", "use_crop_to_border", "threads_mode", "threads", "use_simplify")
 
 
 class _Measurement(threading.Thread):
@@ -51,12 +72,14 @@ class _Measurement(threading.Thread):
 
 
 class Measuring:
-    """What such operators share; they give work(snapshot, poll, tell) and keep(context, found)."""
+    """What such operators share; they give work() and keep(scene, measurement)."""
 
     @classmethod
     def poll(cls, context):
-        # Two at once would slow each other down.
-        return context.scene is not None and context.scene.camera is not None and not running
+        missing = _missing(context.scene)
+        if missing:
+            cls.poll_message_set(missing)
+        return not missing
 
     def execute(self, context):
         measurement = self._started(context)
@@ -70,7 +93,7 @@ class Measuring:
         self._measurement = self._started(context)
         if self._measurement is None:
             return {"CANCELLED"}
-        running[self._scene] = (self.bl_idname, *self._measurement.progress)
+        self._show()
         manager = context.window_manager
         self._timer = manager.event_timer_add(_TICK, window=context.window)
         manager.progress_begin(0.0, 1.0)
@@ -83,9 +106,13 @@ class Measuring:
             measurement.stop.set()
         if event.type != "TIMER":
             return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
-        running[self._scene] = (self.bl_idname, *measurement.progress)
+        if bpy.app.is_job_running("RENDER") and not measurement.stop.is_set():
+            # Beside it everything takes longer.
+            measurement.stop.set()
+            self.report({"WARNING"}, "Lancer: measuring was stopped, as a render has begun")
+        self._show()
         context.window_manager.progress_update(measurement.progress[0])
-        _redraw(context)
+        redraw.properties()
         if measurement.is_alive():
             return {"RUNNING_MODAL"}
         self._leave(context)
@@ -97,11 +124,17 @@ class Measuring:
         self._measurement.join()
         self._leave(context)
 
+    def _show(self):
+        fraction, text = self._measurement.progress
+        text = "Stopping" if self._measurement.stop.is_set() else text
+        # An operator's own bl_idname is spelt as that of its class in C.
+        running[self._scene] = type(self).bl_idname, fraction, text
+
     def _leave(self, context):
         running.pop(self._scene, None)
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
-        _redraw(context)
+        redraw.properties()
 
     def _started(self, context):
         self._scene = context.scene.name
@@ -127,12 +160,45 @@ class Measuring:
             if measurement is not None and measurement.error:
                 self.report({"ERROR"}, f"Lancer: {measurement.error}")
             return {"CANCELLED"}
-        self.keep(self._scene, measurement)
+        scene = bpy.data.scenes.get(self._scene)
+        if scene is None:
+            self.report({"WARNING"}, f"Lancer: there is no scene '{self._scene}' any more, of which figures were measured")
+            return {"CANCELLED"}
+        self.keep(scene, measurement)
         return {"FINISHED"}
 
 
-def _redraw(context):
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "PROPERTIES":
-                area.tag_redraw()
+def _missing(scene):
+    """Why there is nothing to measure now; "" where there is."""
+    if scene is None or scene.camera is None:
+        return "The scene has no camera"
+    # Two at once would slow each other down.
+    if running:
+        return "A measurement is running"
+    return "A render is running" if bpy.app.is_job_running("RENDER") else ""
+
+
+def state(scene):
+    """Another one when what was measured is not true of the scene any more."""
+    own, render = scene.lancer, scene.render
+    border = (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y) if render.use_border else ()
+    shape = render.resolution_x / render.resolution_y, render.pixel_aspect_x / render.pixel_aspect_y, *border
+    values = [getattr(own, name) for name in _OWN] + [getattr(render, name) for name in _RENDER]
+    return (_changes.get(scene.name, 0), *values, *shape, scene.camera.name if scene.camera else "", scene.frame_current)
+
+
+@persistent
+def _changed(scene, depsgraph):
+    if any(
+        update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading for update in depsgraph.updates
+    ):
+        _changes[scene.name] = _changes.get(scene.name, 0) + 1
+
+
+def register():
+    bpy.app.handlers.depsgraph_update_post.append(_changed)
+
+
+def unregister():
+    bpy.app.handlers.depsgraph_update_post.remove(_changed)
+    _changes.clear()

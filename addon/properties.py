@@ -29,6 +29,12 @@ def _numbers_changed(self, _context):
         self.quality = "CUSTOM"
 
 
+def _passes_changed(self, _context):
+    # The compositor's nodes have a socket for each pass.
+    for layer in self.id_data.view_layers:
+        layer.update_render_passes()
+
+
 def _color(name, description, default):
     return FloatVectorProperty(
         name=name, description=description, subtype="COLOR", size=3, min=0.0, soft_max=1.0, default=(default,) * 3
@@ -36,21 +42,6 @@ def _color(name, description, default):
 
 
 class LancerSceneSettings(bpy.types.PropertyGroup):
-    integrator: EnumProperty(
-        name="Integrator",
-        description="How light is followed through the scene",
-        items=(
-            (
-                "PATH",
-                "Path Tracing",
-                "Global illumination: light that bounces, soft shadows, caustics. Noise falls with samples",
-                0,
-            ),
-            ("CLASSIC", "Classic", "Recursive ray tracing: direct light, mirrors and glass. Fast and free of noise", 1),
-            ("NORMALS", "Normals", "Surface directions as colours, to check geometry", 2),
-        ),
-        default="PATH",
-    )
     time_limit: FloatProperty(
         name="Time Limit",
         description="End the render this many seconds after its start, once every pixel has a sample. The last go where "
@@ -100,12 +91,6 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         soft_max=100.0,
         default=0.0,
     )
-    use_denoising: BoolProperty(
-        name="Denoising",
-        description="Have Blender's Open Image Denoise guess what lies under the noise of the finished picture. "
-        "As it was rendered it stays as the pass Noisy Image, and the error that is told is that pass's own",
-        default=False,
-    )
     pixel_filter: EnumProperty(
         name="Pixel Filter",
         description="How neighbouring samples are weighed within a pixel",
@@ -136,16 +121,6 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=0.1,
-    )
-    use_pass_error: BoolProperty(
-        name="Lancer Error",
-        description="Also give the standard error of each pixel's luminance: 95 % of the pixels are within 1.96 of it",
-        default=False,
-    )
-    use_pass_albedo: BoolProperty(
-        name="Denoising Albedo",
-        description="Also render the surface colours without light, which denoisers use",
-        default=False,
     )
     use_check: BoolProperty(
         name="Check at Render",
@@ -296,6 +271,41 @@ class LancerWorldSettings(bpy.types.PropertyGroup):
 
 def _add_watched(scene):
     """Properties with an update function: as annotations they make bpy 4.2 crash at exit; added and deleted they do not."""
+    scene.integrator = EnumProperty(
+        name="Integrator",
+        description="How light is followed through the scene",
+        items=(
+            (
+                "PATH",
+                "Path Tracing",
+                "Global illumination: light that bounces, soft shadows, caustics. Noise falls with samples",
+                0,
+            ),
+            ("CLASSIC", "Classic", "Recursive ray tracing: direct light, mirrors and glass. Fast and free of noise", 1),
+            ("NORMALS", "Normals", "Surface directions as colours, to check geometry", 2),
+        ),
+        default="PATH",
+        update=_passes_changed,
+    )
+    scene.use_denoising = BoolProperty(
+        name="Denoising",
+        description="Have Blender's Open Image Denoise guess what lies under the noise of the finished picture. "
+        "As it was rendered it stays as the pass Noisy Image, and the error that is told is that pass's own",
+        default=False,
+        update=_passes_changed,
+    )
+    scene.use_pass_error = BoolProperty(
+        name="Lancer Error",
+        description="Also give the standard error of each pixel's luminance: 95 % of the pixels are within 1.96 of it",
+        default=False,
+        update=_passes_changed,
+    )
+    scene.use_pass_albedo = BoolProperty(
+        name="Denoising Albedo",
+        description="Also render the surface colours without light, which denoisers use",
+        default=False,
+        update=_passes_changed,
+    )
     scene.quality = EnumProperty(
         name="Quality",
         description="How accurate the picture shall be: a preset, or your own numbers",
@@ -331,6 +341,7 @@ def _add_watched(scene):
     )
 
 
+_WATCHED = ("integrator", "use_denoising", "use_pass_error", "use_pass_albedo", "quality", "target_error", "samples")
 _GROUPS = (
     (LancerSceneSettings, bpy.types.Scene),
     (LancerObjectSettings, bpy.types.Object),
@@ -352,5 +363,6 @@ def unregister():
     for group, owner in reversed(_GROUPS):
         del owner.lancer
         if group is LancerSceneSettings:
-            del group.quality, group.target_error, group.samples
+            for name in _WATCHED:
+                delattr(group, name)
         bpy.utils.unregister_class(group)

@@ -11,31 +11,13 @@ from dataclasses import dataclass
 import bpy
 from bpy.app.handlers import persistent
 
-from . import stamp
+from . import measuring, stamp
 from .bindings.forecast import classic_seconds, forecast
 from .bindings.pilot import measure
-from .measuring import Measuring
 from .properties import QUALITIES
 
 # Kept, by the scene's name.
 measured = {}
-
-# What the picture's noise and time hang on, apart from what a forecast is asked for and from the picture's size.
-_OWN = (
-    "integrator",
-    "max_bounces",
-    "contribution_threshold",
-    "transparent_bounces",
-    "environment_reflections",
-    "clamp_indirect",
-    "pixel_filter",
-    "filter_width",
-    "film_transparent_glass",
-    "film_transparent_roughness",
-    "accelerator",
-    "features",
-)
-_RENDER = ("film_transparent", "use_border", "use_crop_to_border", "threads_mode", "threads", "use_simplify")
 
 
 @dataclass
@@ -43,21 +25,11 @@ class Kept:
     points: object  # forecast.Measured
     pixels: int  # of the picture then
     size: float  # of the resolution then, by which a later one is scaled
-    settings: tuple
-    is_old: bool = False
-
-
-def _settings(scene):
-    own, render = scene.lancer, scene.render
-    border = (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y) if render.use_border else ()
-    shape = render.resolution_x / render.resolution_y, render.pixel_aspect_x / render.pixel_aspect_y, *border
-    values = [getattr(own, name) for name in _OWN] + [getattr(render, name) for name in _RENDER]
-    return (*values, *shape, scene.camera.name if scene.camera else "", scene.frame_current)
+    state: tuple  # measuring.state then
 
 
 def is_old(scene):
-    kept = measured[scene.name]
-    return kept.is_old or kept.settings != _settings(scene)
+    return measured[scene.name].state != measuring.state(scene)
 
 
 def _size(scene):
@@ -90,8 +62,12 @@ def lines(scene):
 
 
 def seconds(told):
-    low, high = clock(told.low), clock(told.high)
-    return f"about {clock(told.value)}" + (f", {low} to {high}" if low != high else "")
+    value, low, high = clock(told.value), clock(told.low), clock(told.high)
+    if low == high:
+        return f"about {value}"
+    # Panels are narrow: a unit that both have is told once.
+    number, _, unit = low.partition(" ")
+    return f"about {value}, {number if high.endswith(f' {unit}') else low} to {high}"
 
 
 def share(told):
@@ -113,7 +89,7 @@ def _two_digits(value):
     return f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
 
 
-class LANCER_OT_measure_quality(Measuring, bpy.types.Operator):
+class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.measure_quality"
     bl_label = "Measure Speed and Accuracy"
     bl_description = (
@@ -131,14 +107,14 @@ class LANCER_OT_measure_quality(Measuring, bpy.types.Operator):
     def begun(self, context, snapshot):
         camera = snapshot.camera
         pixels = camera.region_width * camera.region_height
-        self._kept = Kept(None, pixels, _size(context.scene), _settings(context.scene))
+        self._kept = Kept(None, pixels, _size(context.scene), measuring.state(context.scene))
 
     def keep(self, scene, measurement):
         found = measurement.found
         # F12 exports the scene, too.
         self._kept.points = dataclasses.replace(found, before=found.before + measurement.exporting)
-        measured[scene] = self._kept
-        for line in lines(bpy.data.scenes[scene]):
+        measured[scene.name] = self._kept
+        for line in lines(scene):
             self.report({"INFO"}, f"Lancer: {line}")
 
 
@@ -147,29 +123,16 @@ def _measured(seconds, snapshot, poll, tell):
 
 
 @persistent
-def _changed(scene, depsgraph):
-    """Marks as old what was measured before an object, a material or a light changed."""
-    kept = measured.get(scene.name)
-    if kept is not None and not kept.is_old:
-        kept.is_old = any(u.is_updated_geometry or u.is_updated_transform or u.is_updated_shading for u in depsgraph.updates)
-
-
-@persistent
 def _forget(*_):
     measured.clear()
 
 
-_HANDLERS = (("depsgraph_update_post", _changed), ("load_pre", _forget))
-
-
 def register():
     bpy.utils.register_class(LANCER_OT_measure_quality)
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
+    bpy.app.handlers.load_pre.append(_forget)
 
 
 def unregister():
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(handler)
+    bpy.app.handlers.load_pre.remove(_forget)
     bpy.utils.unregister_class(LANCER_OT_measure_quality)
-    measured.clear()
+    _forget()

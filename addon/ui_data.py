@@ -4,6 +4,7 @@ import bpy
 
 from .export.describe import describe_material
 from .export.world import CUBE_SIDES
+from .ui_lines import sentence
 from .ui_render import LancerPanel
 
 _LIGHT_SIZES = {
@@ -48,7 +49,7 @@ class LANCER_MATERIAL_PT_surface(LancerPanel, bpy.types.Panel):
         column = self._column()
         column.prop(own, "model")
         if own.model == "NODES":
-            self._draw_nodes(column, material)
+            self._draw_nodes(context, column, material)
         else:
             column.prop(own, "kd")
             column.prop(own, "ks")
@@ -62,7 +63,7 @@ class LANCER_MATERIAL_PT_surface(LancerPanel, bpy.types.Panel):
         row.prop(own, "ka")
 
     @staticmethod
-    def _draw_nodes(column, material):
+    def _draw_nodes(context, column, material):
         if bpy.app.version < (5, 0) and not material.use_nodes:
             column.prop(material, "use_nodes", icon="NODETREE")
             column.prop(material, "diffuse_color", text="Color")
@@ -73,7 +74,7 @@ class LANCER_MATERIAL_PT_surface(LancerPanel, bpy.types.Panel):
         else:
             column.template_node_view(material.node_tree, output, output.inputs["Surface"])
         for line in describe_material(material):
-            column.label(text=line)
+            sentence(column, context, line)
 
 
 class LANCER_DATA_PT_light(LancerPanel, bpy.types.Panel):

@@ -5,22 +5,19 @@ import bpy
 from . import denoise, engine, measuring, quality
 from .bindings.enums import Pass
 from .export.checks import EMPTY_PASSES
+from .ui_lines import sentence
 
 _ID = engine.LancerRenderEngine.bl_idname
 _MEASURE = "lancer.measure_quality"
 
 # What an artist who comes from Cycles should know before the first render.
 _REPLACED = (
-    "They replace Cycles' bounces and clamping.",
-    "Filter Glossy and limits of single kinds of",
-    "bounces are not there. Where light differs by",
-    "any of them, the messages tell.",
+    "They replace Cycles' bounces and clamping. Filter Glossy and limits of single kinds of bounces are not there. Where light "
+    "differs by any of them, the messages tell."
 )
 
 _DENOISING = (
-    "Open Image Denoise guesses what lies under the",
-    "noise. The error given is that of the picture",
-    "before it, the pass Noisy Image.",
+    "Open Image Denoise guesses what lies under the noise. The error given is that of the picture before, the pass Noisy Image."
 )
 
 
@@ -53,24 +50,33 @@ class LANCER_RENDER_PT_sampling(LancerPanel, bpy.types.Panel):
         column.prop(settings, "time_limit")
         column.prop(settings, "seed")
         column.prop(settings, "use_animated_seed")
-        _draw_forecast(self.layout.column(align=True), context.scene)
+        _draw_forecast(self.layout.column(align=True), context)
 
 
-def _draw_forecast(column, scene):
+def _draw_forecast(column, context):
     """What each quality would take and give, as far as it was measured."""
-    what, fraction, text = measuring.running.get(scene.name, ("", 0.0, ""))
-    if what == _MEASURE:
-        column.label(text=f"Measuring, {fraction * 100:.0f} %: {text}", icon="TIME")
+    scene = context.scene
+    if draw_measuring(column, scene, _MEASURE):
         return
     column.operator(_MEASURE, icon="TIME")
     if scene.name not in quality.measured:
         return
     if quality.is_old(scene):
-        column.label(text="Measured before the last changes", icon="ERROR")
+        sentence(column, context, "Measured before the last changes", "ERROR")
     for line in quality.lines(scene):
         # Panels are narrow.
         for part in line.split("; "):
-            column.label(text=part)
+            sentence(column, context, part)
+
+
+def draw_measuring(column, scene, operator):
+    """In the place of that operator's button, how far it is; False where it does not run."""
+    what, fraction, text = measuring.running.get(scene.name, ("", 0.0, ""))
+    if what != operator:
+        return False
+    column.label(text=f"Measuring, {fraction * 100:.0f} % (Esc stops)", icon="TIME")
+    column.label(text=text)
+    return True
 
 
 class LANCER_RENDER_PT_denoising(LancerPanel, bpy.types.Panel):
@@ -86,9 +92,8 @@ class LANCER_RENDER_PT_denoising(LancerPanel, bpy.types.Panel):
         column = self.layout.column()
         missing = denoise.missing()
         if missing:
-            column.label(text=missing, icon="ERROR")
-        for text in _DENOISING:
-            column.label(text=text)
+            sentence(column, context, missing, "ERROR")
+        sentence(column, context, _DENOISING)
 
 
 class LANCER_RENDER_PT_light_paths(LancerPanel, bpy.types.Panel):
@@ -109,8 +114,7 @@ class LANCER_RENDER_PT_light_paths(LancerPanel, bpy.types.Panel):
         row.prop(settings, "contribution_threshold")
         row.prop(settings, "environment_reflections")
         column.separator()
-        for text in _REPLACED:
-            column.label(text=text)
+        sentence(column, context, _REPLACED)
 
 
 class LANCER_RENDER_PT_film(LancerPanel, bpy.types.Panel):
@@ -160,20 +164,21 @@ class LANCER_RENDER_PT_messages(LancerPanel, bpy.types.Panel):
         statistics = engine.last_statistics.get(context.scene.name)
         if statistics is not None:
             # The error, then what it does not count.
-            for sentence in statistics["accuracy"]:
-                for part in sentence.split("; "):
-                    column.label(text=part[0].upper() + part[1:])
-            column.label(text=f"{statistics['rays_per_second'] / 1e6:.2f} M rays/s, {statistics['instruction_set']}")
-            column.label(text=f"Uses: {statistics['features']}")
+            for line in statistics["accuracy"]:
+                for part in line.split("; "):
+                    sentence(column, context, part[0].upper() + part[1:])
+            sentence(column, context, f"{statistics['rays_per_second'] / 1e6:.2f} M rays/s, {statistics['instruction_set']}")
+            sentence(column, context, f"Uses: {statistics['features']}")
             if statistics["denoised"]:
                 size = statistics["denoising_bytes"] / 2**20
-                column.label(text=f"{statistics['denoiser']}: {statistics['denoising_seconds']:.1f} s, {size:.0f} MB")
+                text = f"{statistics['denoiser']}: {statistics['denoising_seconds']:.1f} s, {size:.0f} MB"
+                sentence(column, context, text)
         if lines is None:
             column.label(text="Nothing rendered yet")
         elif not lines:
-            column.label(text="All of the scene was rendered as it is", icon="CHECKMARK")
+            sentence(column, context, "All of the scene was rendered as it is", "CHECKMARK")
         for line in lines or ():
-            column.label(text=line, icon="ERROR")
+            sentence(column, context, line, "ERROR")
 
 
 class LANCER_VIEWLAYER_PT_passes(LancerPanel, bpy.types.Panel):

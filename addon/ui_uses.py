@@ -2,9 +2,10 @@
 
 import bpy
 
-from . import engine, measuring
+from . import engine, features
 from .bindings.uses import kernel_in_words
-from .ui_render import LancerPanel
+from .ui_lines import sentence
+from .ui_render import LancerPanel, draw_measuring
 
 _MEASURE = "lancer.measure_features"
 _MEMORY = {
@@ -36,32 +37,33 @@ class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
             column.label(text="Told after the first render")
         else:
             for feature in statistics["uses"]:
-                column.label(text=feature["text"])
+                sentence(column, context, feature["text"])
             column.separator()
             column.label(text="The code that ran knows")
-            column.label(text=kernel_in_words(statistics["kernel"]))
+            sentence(column, context, kernel_in_words(statistics["kernel"]))
             column.separator()
             for key, what in _MEMORY.items():
                 column.label(text=f"{what}: {_size(statistics[key])}")
         column.separator()
-        if measuring.running.get(name, ())[:1] == (_MEASURE,):
-            _, fraction, text = measuring.running[name]
-            column.label(text=f"Measuring, {_share(fraction)}: {text}", icon="TIME")
+        if draw_measuring(column, context.scene, _MEASURE):
             return
         column.operator(_MEASURE, icon="TIME")
         costs = engine.last_costs.get(name)
         if costs is None:
             return
+        if features.is_old(context.scene):
+            sentence(column, context, "Measured before the last changes", "ERROR")
         if not costs.hints:
-            column.label(text="No feature would surely save 3 % of the time", icon="CHECKMARK")
+            which = "None of the features that were measured" if costs.skipped else "No feature"
+            sentence(column, context, f"{which} would surely save 3 % of the time", "CHECKMARK")
         for cost in costs.hints:
             start, rest = cost.text.split("; ", 1)
-            column.label(text=start, icon="INFO")
-            column.label(text=rest)
+            sentence(column, context, start, "INFO")
+            sentence(column, context, rest)
             told = f"about {cost.seconds:.1f} s, {_share(cost.share)} give or take {_share(cost.uncertainty)}"
-            column.label(text=f"{told}. Without: {cost.without}")
+            sentence(column, context, f"{told}. Without: {cost.without}")
         if costs.skipped:
-            column.label(text=f"No time for {len(costs.skipped)} more features")
+            sentence(column, context, f"There was no time for {len(costs.skipped)} more")
 
 
 CLASSES = (LANCER_RENDER_PT_uses,)

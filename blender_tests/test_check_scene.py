@@ -41,6 +41,8 @@ def test_switches_and_buttons(case):
     assert len(got["on"]) == 1 and "glass is open" in got["on"][0] and got["off"] == []
     assert got["asked"] == [["glass", "WRONG", "Thing"]] and got["hidden"] == []
     assert got["selected"] == [["Thing", ["Thing"]], ["Camera", ["Camera"]]] and got["nobody"] == ["CANCELLED"]
+    # A click on the object that is being edited leaves it so; no other stays behind in Edit Mode.
+    assert got["modes"] == ["EDIT", "OBJECT"]
     # What cannot be checked is an error in words, and leaves the last list as it was.
     assert "camera" in got["without camera"] and got["kept"] == []
 

@@ -1,11 +1,12 @@
-"""Open Image Denoise through ctypes, without Blender around it: the library that this Python's bpy module brings."""
+"""Open Image Denoise through ctypes, without Blender around it: the library that this Python's bpy module brings.
 
-import glob
-import importlib.util
-import os
+Each test runs twice: with that library as it is, of version 2, and behind the functions that version 1 has in their places.
+"""
+
 import threading
 
 import numpy as np
+import oidn_versions
 import pytest
 from bindings import abi, denoiser, oidn
 from bindings.abi import LancerError
@@ -14,13 +15,16 @@ from bindings.session import Cancelled
 HEIGHT, WIDTH = 96, 128
 
 
-@pytest.fixture(scope="module")
-def library():
-    spec = importlib.util.find_spec("bpy")
-    assert spec is not None, "bpy is missing: pip install bpy"
-    found = glob.glob(os.path.join(os.path.dirname(spec.origin), "lib", "libOpenImageDenoise.so.*"))
-    assert len(found) == 1
-    return oidn.load(found[0])
+@pytest.fixture(scope="module", params=[2, 1], ids=["version 2", "version 1"])
+def library(request, tmp_path_factory):
+    if request.param == 2:
+        yield oidn.load(oidn_versions.newer())
+        return
+    path, environment = oidn_versions.older(tmp_path_factory.mktemp("oidn"))
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in environment.items():
+            patch.setenv(name, value)
+        yield oidn.load(path)
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +50,8 @@ def test_noise_goes_and_guides_help(library, pictures):
     guided = denoiser.denoise(noisy, albedo, normal, library=library)
     alone = denoiser.denoise(noisy, library=library)
     assert error(guided.image, truth) < error(alone.image, truth) < error(noisy, truth)
-    assert guided.seconds > 0.0 and guided.version.count(".") == 2
+    assert guided.seconds > 0.0
+    assert guided.version == "1.4.3" or "1.4.3" not in library._name and guided.version.startswith("2.")
     # The images alone: colours and two guides of three floats.
     assert guided.memory_bytes >= 3 * 12 * HEIGHT * WIDTH
 

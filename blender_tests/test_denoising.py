@@ -1,6 +1,7 @@
 """F12 with denoising: the guess takes the place of Combined, and what was rendered stays, bit for bit, as Noisy Image."""
 
 import blenders
+import oidn_versions
 import pytest
 from blenders import MODULE, PROGRAM
 
@@ -96,6 +97,14 @@ def test_a_blender_without_the_library_is_told(tmp_path):
     got = blenders.run(PROGRAM, tmp_path, "denoising_cases", "plain")
     check_told(got, "Open Image Denoise is missing")
     assert "Open Image Denoise is missing" in got["console"]
+
+
+def test_version_1_in_a_blender_of_its_time(tmp_path):
+    """As builds of Blender 3 bring it: in the process already, and found there."""
+    path, environment = oidn_versions.older(tmp_path)
+    got = blenders.run(PROGRAM, tmp_path, "denoising_cases", "plain", LD_PRELOAD=path, **environment)
+    assert got["noisy is raw"] and got["finite"] and not got["combined is raw"] and got["stamped"] == [False, True]
+    assert got["statistics"]["denoiser"] == "Open Image Denoise 1.4.3" and "Denoising 100%" in got["console"]
 
 
 def test_the_passes_are_those_of_cycles(case):

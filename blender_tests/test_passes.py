@@ -91,3 +91,17 @@ def test_known_numbers(case):
     assert got["open"] == [1.0, 1.0, 1.0]
     assert got["under a lid, 0.5"] == [1.0, 1.0, 1.0] and got["under a lid, 1e+06"] == [0.0, 0.0, 0.0]
     assert got["veil, 0.2"] == pytest.approx(3.0) and got["veil, 0.4"] == pytest.approx(4.0)
+
+
+def test_switches_are_seen_in_the_compositor_at_once(case):
+    got = case("sockets")
+    error, albedo, noisy = "Lancer Error", "Denoising Albedo", "Noisy Image"
+    shown = {name: set(got[name]) for name in got if name != "console"}
+    assert shown == {
+        "nothing": set(),
+        "use_pass_error": {error},
+        "use_pass_albedo": {error, albedo},
+        "use_denoising": {error, albedo, noisy},
+        "integrator": {error, albedo},
+        "off": set(),
+    }

@@ -25,10 +25,11 @@ def test_the_operator_measures_and_changes_nothing(which, tmp_path):
     assert got["result"] == ["FINISHED"] and got["changed"] == [] and got["compared"] > 500
     share, uncertainty, text = got["costs"]["glass"]
     assert text.startswith("1 material uses refraction; without it this frame would take ")
+    assert got["old"] == [False, True]
     assert set(got["hints"]) <= set(got["costs"]) and sorted(got["costs"]) == got["kept"] == got["kept after a render"]
 
 
 @both
 def test_nothing_to_measure_without_a_camera(which, tmp_path):
     got = blenders.run(which, tmp_path, "uses_cases", "without_camera")
-    assert "poll() failed" in got["error"]
+    assert "The scene has no camera" in got["error"]

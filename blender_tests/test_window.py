@@ -186,6 +186,35 @@ def test_features_are_measured_beside_the_window(display, tmp_path):
     assert code in (0, 1), f"Blender ended with {code}"
 
 
+def test_panels_tell_what_goes_on(display, tmp_path):
+    """Progress, figures and buttons are drawn when they change, wherever the pointer is, and go with their file."""
+    window = Window(str(tmp_path), display, "panels")
+    try:
+        window.wait_for("ready")
+        window.tell("measure quality")
+        window.wait_for("running_modal")
+        window.wait_for("draws-progress", 2)
+        # A render ends the measurement, which would count its time, and no other can be begun beside it.
+        window.press("F12")
+        window.wait_for("render_pre")
+        window.wait_for("draws-button", len(window.times("draws-button")) + 1)
+        window.tell("measure quality")
+        window.wait_for("refused")
+        window.press("Escape")
+        cancelled = window.wait_for("render_cancel")
+        # The pointer is in the render window: the panel is drawn anew by itself.
+        assert window.wait_for("draws-figures") > cancelled
+        # It can be measured again, and another file ends that, and knows nothing of all this.
+        window.tell("measure quality")
+        window.wait_for("running_modal", 2)
+        window.tell("load")
+        window.wait_for("knows-nothing")
+    finally:
+        code = window.close()
+    # Blender itself leaves with 1 after Esc; a crash would be a signal's number.
+    assert code in (0, 1), f"Blender ended with {code}"
+
+
 def linear(color):
     """Bytes of sRGB as light."""
     c = np.array(color) / 255.0

@@ -64,13 +64,15 @@ def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None):
     tell = tell or (lambda fraction, text: None)
     with Scene.upload(snapshot, library, poll) as scene:
         begun = time.monotonic()
-        run = _Run(scene, snapshot, begun + seconds, poll)
+
+        def show(text):
+            tell(min(1.0, (time.monotonic() - begun) / max(seconds, 1e-9)), text)
+
+        run = _Run(scene, snapshot, begun + seconds, poll, show)
         classic = run.classic() if snapshot.settings.integrator == Integrator.PATH else 0.0
         large, small = run.cameras(seconds)
-        tell(0.05, "All pixels alike")
         even = run.even(small, begun + 2.0 * _EVEN_SHARE * seconds)
-        tell(0.3, "Samples where the error is")
-        refined = run.refined(large, lambda part: tell(0.3 + 0.7 * part, "Samples where the error is"))
+        refined = run.refined(large)
     if not (even and refined):
         raise LancerError("so small a picture cannot tell its error")
     return Measured(tuple(refined), tuple(even), _pixels(large), _pixels(small), begun - started, classic)
@@ -79,8 +81,9 @@ def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None):
 class _Run:
     """The renders of one measurement."""
 
-    def __init__(self, scene, snapshot, until, poll):
-        self.scene, self.camera, self.poll, self.until = scene, snapshot.camera, poll, until
+    def __init__(self, scene, snapshot, until, poll, show):
+        self.scene, self.camera, self.poll, self.until, self.show = scene, snapshot.camera, poll, until, show
+        self.doing = "A look at the scene"
         # With a target the film is laid out for refinement.
         self.refining = dataclasses.replace(snapshot.settings, target_error=1e-6, time_limit=0.0, samples=_DEEPEST)
         self.settings = dataclasses.replace(self.refining, target_error=0.0)
@@ -97,6 +100,7 @@ class _Run:
     def even(self, camera, until):
         """The same samples for all pixels: PILOT at least, then while there is time."""
         points = []
+        self.doing = "All pixels alike"
         with Session(self.scene, camera, self.settings) as session:
             done = 0
             while done < _DEEPEST:
@@ -109,9 +113,9 @@ class _Run:
                     break
         return points
 
-    def refined(self, camera, tell):
+    def refined(self, camera):
         points = []
-        started = time.monotonic()
+        self.doing = "Samples where the error is"
         with Session(self.scene, camera, self.refining) as session:
             done = 0
             while done < PILOT:
@@ -124,7 +128,6 @@ class _Run:
                     break
                 self._wait(session, until=self.until)
                 _add(points, session, camera)
-                tell(min(1.0, (time.monotonic() - started) / max(self.until - started, 1e-9)))
         return points
 
     def classic(self):
@@ -150,6 +153,7 @@ class _Run:
         stopped = False
         while True:
             progress = session.wait(0.05)
+            self.show(self.doing)
             if progress.finished:
                 break
             if self.poll is not None and self.poll():

@@ -141,6 +141,12 @@ def switches():
         bpy.ops.lancer.select_object(name=name)
         active = bpy.context.view_layer.objects.active.name
         result["selected"].append((active, [item.name for item in bpy.context.view_layer.objects if item.select_get()]))
+    bpy.ops.lancer.select_object(name="Thing")
+    bpy.ops.object.mode_set(mode="EDIT")
+    result["modes"] = []
+    for name in ("Thing", "Camera"):
+        bpy.ops.lancer.select_object(name=name)
+        result["modes"].append(bpy.data.objects["Thing"].mode)
     result["nobody"] = sorted(bpy.ops.lancer.select_object(name="Nobody"))
     bpy.context.scene.camera = None
     try:

@@ -131,6 +131,7 @@ def panels():
     cube = bpy.data.objects["Cube"]
     context = types.SimpleNamespace(
         engine="LANCER",
+        region=None,
         scene=scene,
         view_layer=scene.view_layers[0],
         object=cube,

@@ -157,3 +157,29 @@ def _veil(opacity):
     tree.links.new(matt.outputs[0], mix.inputs[2])
     tree.links.new(mix.outputs[0], output.inputs["Surface"])
     return material
+
+
+def sockets():
+    """What the compositor's node of the render shows, before any render, for Lancer's own switches."""
+    scene = stage.room(width=16, height=16, samples=1)
+    if bpy.app.version >= (5, 0):
+        tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositing", "CompositorNodeTree")
+    else:
+        scene.use_nodes = True
+        tree = scene.node_tree
+        tree.nodes.clear()
+    node = tree.nodes.new("CompositorNodeRLayers")
+    node.scene = scene
+
+    def shown():
+        return [output.name for output in node.outputs if output.enabled and output.name not in ("Image", "Alpha")]
+
+    result = {"nothing": shown()}
+    for name in ("use_pass_error", "use_pass_albedo", "use_denoising"):
+        setattr(scene.lancer, name, True)
+        result[name] = shown()
+    scene.lancer.integrator = "NORMALS"
+    result["integrator"] = shown()
+    scene.lancer.use_pass_error = scene.lancer.use_pass_albedo = False
+    result["off"] = shown()
+    return result

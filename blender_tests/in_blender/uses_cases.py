@@ -49,7 +49,7 @@ def plain_data():
 
 def measured():
     """The operator without a window: what it gives and keeps, and whether the file is as it was."""
-    from addon import engine
+    from addon import engine, features
 
     scene = _glassy()
     bpy.ops.render.render()
@@ -59,6 +59,10 @@ def measured():
     costs = engine.last_costs[scene.name]
     kept = engine.last_statistics[scene.name]["feature_costs"]
     bpy.ops.render.render()
+    old = [features.is_old(scene)]
+    bpy.data.objects["Cube"].location.x += 0.5
+    bpy.context.view_layer.update()
+    old.append(features.is_old(scene))
     return {
         "result": sorted(result),
         "changed": [key for key in after if after[key] != before.get(key)],
@@ -66,6 +70,7 @@ def measured():
         "costs": {cost.name: [cost.share, cost.uncertainty, cost.text] for cost in costs.measured},
         "hints": [cost.name for cost in costs.hints],
         "kept": sorted(kept),
+        "old": old,
         "kept after a render": sorted(engine.last_statistics[scene.name]["feature_costs"]),
     }
 

@@ -1,8 +1,8 @@
 """Inside a real window: a scene that takes minutes, and a clock that shows whether Blender still answers.
 
-Started by the program itself: blender --factory-startup -P window_case.py -- FOLDER [pictures]. What happens is written to
-FOLDER/log.txt, a line each: seconds, word. With pictures it is a scene of those instead, which a
-file called compare has rendered again by a script.
+Started by the program itself: blender --factory-startup -P window_case.py -- FOLDER [pictures | panels]. What happens is
+written to FOLDER/log.txt, a line each: seconds, word. With pictures it is a scene of those instead, which a file called
+compare has rendered again by a script; with panels it is also said what is drawn in them.
 """
 
 import os
@@ -15,6 +15,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [os.path.dirname(os.path.dirname(HERE)), HERE]
 
 import stage  # noqa: E402
+import window_panels  # noqa: E402
 import window_pictures  # noqa: E402
 
 import addon  # noqa: E402
@@ -49,6 +50,10 @@ def tick():
     if told("measuring?"):
         scene = bpy.context.scene.name
         say("measuring" if scene in addon.measuring.running else "measured" if scene in addon.engine.last_costs else "nothing")
+    if told("measure quality"):
+        say(window_panels.measure())
+    if told("load"):
+        say(window_panels.load(FOLDER))
     if told("compare"):
         window_pictures.compare(FOLDER)
         say("compared")
@@ -61,6 +66,8 @@ def tick():
 def prepare():
     """Not in the first moments: the window has to be there."""
     bpy.app.timers.register(tick, persistent=True)
+    if KIND == ["panels"]:
+        window_panels.watch(say)
     say("ready")
 
 

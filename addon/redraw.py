@@ -1,0 +1,32 @@
+"""Drawing anew what tells of a render or a measurement: Blender itself does it only where the pointer is."""
+
+import bpy
+
+from .export import main_thread
+
+_LOOK_AGAIN = 0.1  # seconds
+
+
+def properties():
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
+
+
+def properties_after_render():
+    """Once the render that is running is over; may be called by the thread that renders."""
+    if not bpy.app.background:
+        main_thread.post(_watch)
+
+
+def _watch():
+    if not bpy.app.timers.is_registered(_when_over):
+        bpy.app.timers.register(_when_over)
+
+
+def _when_over():
+    if bpy.app.is_job_running("RENDER"):
+        return _LOOK_AGAIN
+    properties()
+    return None
