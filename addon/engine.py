@@ -200,10 +200,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         rate = progress.rays / progress.seconds / 1e6 if progress.seconds > 0.0 else 0.0
         seconds, reason = schedule.remaining()
         samples = progress.samples / schedule.pixels
-        parts = [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
+        # Small windows cut off the end.
+        parts = [f"Remaining {_clock(seconds)} to the {reason}"]
         if schedule.error is not None and schedule.error.known:
             parts.append(f"Error {stamp.interval(schedule.error)}")
-        parts.append(f"Remaining {_clock(seconds)} to the {reason}")
+        parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
         self.update_stats("", " | ".join(parts))
 
     def _tell(self, scene, messages):

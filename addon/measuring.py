@@ -18,6 +18,8 @@ from .passes import render_passes
 
 # (operator's bl_idname, fraction, text) of a measurement that runs, by the scene's name.
 running = {}
+# The threads of those beside a window, each with the timer that looks at it.
+_looked_at = []
 # How often objects, materials or lights have changed, by the scene's name.
 _changes = {}
 
@@ -96,6 +98,7 @@ class Measuring:
         self._show()
         manager = context.window_manager
         self._timer = manager.event_timer_add(_TICK, window=context.window)
+        _looked_at.append((self._measurement, self._timer))
         manager.progress_begin(0.0, 1.0)
         manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -132,6 +135,7 @@ class Measuring:
 
     def _leave(self, context):
         running.pop(self._scene, None)
+        _looked_at.remove((self._measurement, self._timer))
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         redraw.properties()
@@ -201,4 +205,12 @@ def register():
 
 def unregister():
     bpy.app.handlers.depsgraph_update_post.remove(_changed)
+    # Blender drops an operator whose class goes, without a word to it.
+    while _looked_at:
+        measurement, timer = _looked_at.pop()
+        measurement.stop.set()
+        measurement.join()
+        bpy.context.window_manager.event_timer_remove(timer)
+        bpy.context.window_manager.progress_end()
+    running.clear()
     _changes.clear()

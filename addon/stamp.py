@@ -5,6 +5,7 @@ import math
 from enum import IntEnum
 
 from .bindings.enums import Integrator
+from .bindings.schedule import CANCELLED
 
 # Less than this is not worth a sentence.
 _NOTHING = 5e-5
@@ -27,7 +28,8 @@ def lines(numbers, settings):
     samples = f"{numbers['samples']} samples"
     if numbers["samples_most"] > numbers["samples"]:
         samples = f"{numbers['samples']} to {numbers['samples_most']} samples a pixel, {numbers['samples_mean']:.0f} on average"
-    ended = f"{samples} in {numbers['seconds']:.1f} s, ended by {numbers['ended_by']}"
+    how = CANCELLED if numbers["ended_by"] == CANCELLED else f"ended by {numbers['ended_by']}"
+    ended = f"{samples} in {numbers['seconds']:.1f} s, {how}"
     if math.isfinite(numbers["error"]):
         low, high = percent(numbers["error_low"]), percent(numbers["error_high"])
         text = f"error {percent(numbers['error'])}, with 95 % confidence between {low} and {high}; {ended}"

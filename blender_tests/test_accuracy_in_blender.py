@@ -69,3 +69,10 @@ def test_biases_are_declared(case):
     got = case("biases")
     assert got["numbers"]["error_clipped"] > 0.0 and got["numbers"]["error_missing"] > 0.0
     assert "clamping has taken" in got["console"] and "light beyond 1 bounces is left out" in got["console"]
+
+
+@both
+def test_esc_leaves_an_account(case):
+    got = case("broken_off")
+    assert got["numbers"]["ended_by"] == got["stamped"]["ended_by"] == "cancelled"
+    assert got["lines"][0].startswith("error ") and got["lines"][0].endswith(" s, cancelled")

@@ -5,6 +5,8 @@ import oidn_versions
 import pytest
 from blenders import MODULE, PROGRAM
 
+# Of Blender 5.2.
+NEWER = "view layer 'ViewLayer': these passes are not supported: Denoising Specular Albedo, Denoising Roughness"
 DECLARATION = "denoised: the error given is that of the picture before denoising"
 
 
@@ -20,7 +22,7 @@ def check_denoised(got):
     assert not got["combined is raw"] and got["film alike"]
     assert got["passes"] == sorted([*got["passes without"], "Noisy Image"])
     assert got["stamped"] == [False, True]
-    assert [line for line in got["messages"] if "enois" in line] == []
+    assert [line for line in got["messages"] if "enois" in line and line != NEWER] == []
     statistics = got["statistics"]
     assert statistics["denoised"] == DECLARATION and statistics["denoiser"].startswith("Open Image Denoise 2.")
     assert statistics["denoising_seconds"] > 0.0 and statistics["denoising_bytes"] > 0
@@ -36,6 +38,7 @@ def test_what_was_rendered_stays(case, integrator):
 def test_other_passes_are_what_they_were(case):
     got = case("passes")
     check_denoised(got)
+    assert (NEWER in got["messages"]) == (got["version"] >= [5, 2])
     assert {"Denoising Albedo", "Denoising Normal", "Denoising Depth", "Normal"} < set(got["passes"])
     # What guides is the same, whether it is rendered beside the picture or by itself.
     assert got["picture"] == case("plain")["picture"]
@@ -110,7 +113,10 @@ def test_version_1_in_a_blender_of_its_time(tmp_path):
 def test_the_passes_are_those_of_cycles(case):
     got = case("as_cycles")
     for ours, theirs in (got["False"], got["True"]):
+        # New in Blender 5.2, and told in the README as not supported.
+        newer = {name: theirs.pop(name) for name in ("Denoising Roughness", "Denoising Specular Albedo") if name in theirs}
         assert ours == theirs and ours["Noisy Image"] == 4
+        assert not newer or got["version"] >= [5, 2]
 
 
 def test_it_comes_nearer_to_the_converged_picture(case):

@@ -209,6 +209,11 @@ def test_panels_tell_what_goes_on(display, tmp_path):
         window.wait_for("running_modal", 2)
         window.tell("load")
         window.wait_for("knows-nothing")
+        # Nor does a measurement outlive the add-on.
+        window.tell("measure quality")
+        window.wait_for("running_modal", 3)
+        window.tell("switch")
+        window.wait_for("can-measure")
     finally:
         code = window.close()
     # Blender itself leaves with 1 after Esc; a crash would be a signal's number.

@@ -64,6 +64,8 @@ def _missing_passes(view_layer):
                 continue
             if getattr(owner, field.identifier) and field.name not in names:
                 names.append(field.name)
+    if bpy.app.version >= (5, 2) and getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False):
+        names += ["Denoising Specular Albedo", "Denoising Roughness"]
     names += [f"AOV '{aov.name}'" for aov in view_layer.aovs]
     return names + [f"light group '{group.name}'" for group in view_layer.lightgroups]
 

@@ -48,6 +48,7 @@ def _compare(scene, layer=None):
     combined = pictures["Combined"]
     declaration = denoise.DECLARATION.encode()
     return {
+        "version": list(bpy.app.version),
         "passes": sorted(pictures),
         "passes without": sorted(raw),
         "noisy is raw": np.array_equal(pictures.get("Noisy Image"), raw["Combined"]),
@@ -165,7 +166,7 @@ def failing():
 
 def as_cycles():
     """The passes of both engines for the same switches."""
-    names = {}
+    names = {"version": list(bpy.app.version)}
     for store in (False, True):
         scene = _scene(16, 16, 1)
         scene.view_layers[0].cycles.denoising_store_passes = store

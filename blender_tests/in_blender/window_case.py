@@ -52,6 +52,8 @@ def tick():
         say("measuring" if scene in addon.measuring.running else "measured" if scene in addon.engine.last_costs else "nothing")
     if told("measure quality"):
         say(window_panels.measure())
+    if told("switch"):
+        say(window_panels.switch())
     if told("load"):
         say(window_panels.load(FOLDER))
     if told("compare"):

@@ -39,6 +39,14 @@ def measure():
         return next(iter(bpy.ops.lancer.measure_quality("INVOKE_DEFAULT", seconds=600.0))).lower()
 
 
+def switch():
+    """The add-on off and on again."""
+    addon.unregister()
+    addon.register()
+    bpy.context.scene.render.engine = "LANCER"
+    return "can-measure" if bpy.ops.lancer.measure_quality.poll() else "cannot-measure"
+
+
 def load(folder):
     """Another file, whose scene has the same name: is anything known of it?"""
     path = os.path.join(folder, "other.blend")
