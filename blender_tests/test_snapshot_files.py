@@ -69,6 +69,8 @@ WRONG_FIELDS = [
     (("camera", "region_height"), 2**32, "Camera.region_height"),
     (("camera", "clip_end"), None, "Camera.clip_end"),
     (("settings", "samples"), 0.5, "Settings.samples"),
+    (("settings", "mist_falloff"), 10**400, "Settings.mist_falloff"),
+    (("settings", "glass_roughness"), -(10**400), "Settings.glass_roughness"),
     (("settings", "passes"), [10**9], "Pass"),
     (("settings", "passes"), 3, "Settings.passes"),
     (("materials", 0, "name"), 5, "Material.name"),

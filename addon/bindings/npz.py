@@ -8,6 +8,7 @@ import dataclasses
 import functools
 import json
 import os
+import sys
 import typing
 
 import numpy as np
@@ -105,7 +106,8 @@ def _fits(value, kind):
     if kind in (int, bool):
         return isinstance(value, int) and 0 <= value <= _LARGEST
     if kind is float:
-        return isinstance(value, (int, float))
+        # A file's integers have any number of digits.
+        return isinstance(value, float) or isinstance(value, int) and abs(value) <= sys.float_info.max
     if kind is object:
         return (
             _fits(value, float) or isinstance(value, _TYPES["NodeRef"]) or _fits(value, tuple[float, ...]) and len(value) == 3

@@ -650,8 +650,8 @@ typedef struct lancer_statistics {
   double build_seconds, render_seconds;
   uint64_t samples; /* pixel samples */
   uint64_t camera_rays, bounce_rays, shadow_rays;
-  uint64_t invalid_samples;                      /* non-finite, dropped */
-  uint32_t invalid_x, invalid_y, invalid_sample; /* the first of them, for lancer_debug_sample */
+  uint64_t invalid_samples;                      /* non-finite, dropped, among those that the film has */
+  uint32_t invalid_x, invalid_y, invalid_sample; /* the first of them by sample, then row, for lancer_debug_sample */
   uint32_t threads;
   uint64_t triangles, instances, lights;
   uint64_t geometry_bytes, accelerator_bytes, film_bytes;
@@ -677,9 +677,9 @@ LANCER_API lancer_status lancer_session_cancel(lancer_session session);
 LANCER_API lancer_status lancer_session_stop(lancer_session session);
 /* Starts a round that doubles the samples of those pixels where this brings the error down most for its cost: as many as it
  * takes to bring the bound on the error (high + cannot_exclude at that confidence) below target, or with target 0 all of them,
- * in that order; none beyond settings.samples. What a pixel needs is judged by other pixels' samples, which leaves its mean
- * without bias. LANCER_OK: started, watch it with lancer_session_wait. LANCER_CANCELLED: nothing is left to double. Needs
- * settings.refines, and every pixel's number of samples a power of two. */
+ * in that order; none beyond settings.samples. target is finite and not negative. What a pixel needs is judged by other pixels'
+ * samples, which leaves its mean without bias. LANCER_OK: started, watch it with lancer_session_wait. LANCER_CANCELLED: nothing
+ * is left to double. Needs settings.refines, and every pixel's number of samples a power of two. */
 LANCER_API lancer_status lancer_session_refine(lancer_session session, double target, double confidence);
 /* Copies one pass of the region: [region_height][region_width][channels]; float_count must be exactly that. While rendering,
  * too. */

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 namespace lancer {
@@ -62,6 +63,17 @@ double mean_of(const std::vector<SampleResult> &results, const std::function<flo
   for (const SampleResult &result : results)
     sum += double(value(result));
   return sum / double(results.size());
+}
+
+TEST(FilmPasses, LightOverADarkColourIsAtTheEdgeOfFloat) {
+  std::vector<SampleResult> results = synthetic(1);
+  results[0].light[kLightComponents] = glm::vec3(1e38f, 1.0f, 0.0f);
+  results[0].light[kLightComponents + 2] = glm::vec3(1e-3f, 0.5f, 0.0f);
+  const std::vector<float> light = read(*film_of(results), pass(LANCER_PASS_DIFFUSE_DIRECT));
+  EXPECT_EQ(light[0], std::numeric_limits<float>::max());
+  EXPECT_EQ(light[1], 2.0f);
+  // What has no colour gets the mean of what has.
+  EXPECT_EQ(light[2], std::numeric_limits<float>::max());
 }
 
 TEST(FilmPasses, PartsSumToCombined) {

@@ -1,6 +1,7 @@
 #include "render/film.h"
 
 #include "sampling/color.h"
+#include "sampling/nearest_float.h"
 
 #include <algorithm>
 #include <bit>
@@ -240,7 +241,8 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
   };
   const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };
   if (divisor(pass) != pass) {
-    const glm::vec3 light(divide_by_color(color(pass), color(divisor(pass))));
+    // A colour may be darker than what float holds of light over it.
+    const glm::vec3 light = nearest_float(divide_by_color(color(pass), color(divisor(pass))));
     for (int i = 0; i < 3; ++i)
       target[i] = light[i];
   } else if (pass == Pass::Mist) {
