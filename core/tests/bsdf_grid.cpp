@@ -149,10 +149,11 @@ TEST(BsdfGrid, DensitiesAreThoseOfTheFacets) {
             const double eta = lobe.ior, cos_t = response.cos_t,
                          stretch = (eta - 1.0) * (eta + 1.0) / (eta * (eta * cos_t + cos_oh)), per = stretch * stretch / cos_t,
                          got = per * double{microfacet_eval_through(lobe, wo, wi, h).pdf};
-            // A float cosine is known to 2^-23: that of wi, by the law of refraction, to this part of itself, and the stretch,
-            // a sum of both, to the roundings of its terms. The density goes by the one and by the square of the other.
+            // A float cosine is known to six roundings: three of the sum of products, one and a half of the length of either
+            // direction. So that of wi is known, by the law of refraction, to this part of itself, and the stretch, a sum of
+            // both, by its terms. The density goes by the one and by the square of the other.
             const double bent = std::max(1.0, 1.0 / eta),
-                         known_to = 1e-5 + 0x1p-23 * (bent * bent / (cos_t * cos_t) + 4.0 * bent / std::abs(stretch));
+                         known_to = 1e-5 + 6.0 * 0x1p-24 * (bent * bent / (cos_t * cos_t) + 2.0 * bent / std::abs(stretch));
             EXPECT_NEAR(got, visible * (1.0 - share), known_to * visible * (1.0 - share)) << what();
             ++refractions;
           }
