@@ -8,7 +8,7 @@ from conftest import ROOT
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("tests", ["BsdfFalling.*", "BsdfLaws.*"])
+@pytest.mark.parametrize("tests", ["BsdfFalling.*", "BsdfLaws.*", "BsdfGrid.*"])
 def test_every_lobe(tests):
     program = os.path.join(ROOT, "build", "core", "lancer_tests")
     assert os.path.exists(program), "the core's tests are missing: make core-tests"

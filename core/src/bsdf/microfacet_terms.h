@@ -45,18 +45,23 @@ inline float facet_d(const Lobe &lobe, const glm::vec3 &h) {
   return exponent <= 87.0f ? std::exp(-exponent) * kInvPi / (lobe.alpha_x * lobe.alpha_y * z2 * z2) : 0.0f;
 }
 
+// The share of the facets of Beckmann that w sees, exactly.
+inline float beckmann_seen(const Lobe &lobe, const glm::vec3 &w) {
+  return beckmann_g1_exact(std::abs(w.z) / squeezed(w, lobe.alpha_x, lobe.alpha_y));
+}
+
 // G1 / wo.z, exact, as the density of the sampler needs it.
 inline float facet_g1(const Lobe &lobe, const glm::vec3 &wo) {
-  if (!lobe.beckmann)
-    return 1.0f / (wo.z + ggx_hidden(wo, lobe.alpha_x, lobe.alpha_y));
-  return beckmann_g1_exact(wo.z / squeezed(wo, lobe.alpha_x, lobe.alpha_y)) / wo.z;
+  return lobe.beckmann ? beckmann_seen(lobe, wo) / wo.z : 1.0f / (wo.z + ggx_hidden(wo, lobe.alpha_x, lobe.alpha_y));
 }
 
 // G2 / wo.z: masking and shadowing, correlated by height from Blender 4.0 on, of each direction by itself before.
 inline float facet_g2(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
   const float o = facet_hidden(lobe, wo), i = facet_hidden(lobe, wi), z = std::abs(wi.z);
   const float seen = lobe.rules == Rules::Blender3 ? (wo.z + o) * (z + i) : (wo.z + o) * z + wo.z * i;
-  return seen > 0.0f ? z / seen : 0.0f;
+  const float both = seen > 0.0f ? z / seen : 0.0f;
+  // By Cycles' fit both directions may see up to 0.3 % more of the facets than one does: more light than came.
+  return lobe.beckmann ? std::min(both, std::min(beckmann_seen(lobe, wo), beckmann_seen(lobe, wi)) / wo.z) : both;
 }
 
 inline ColorValue microfacet_eval_reflected(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi, const glm::vec3 &h) {
