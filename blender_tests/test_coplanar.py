@@ -89,3 +89,24 @@ def test_no_light_passes_between_glass_and_floor(library, place, glass_first):
     black, lamp = lambert(0.0), lambert(0.0, emission=(1.0,) * 3)
     seen = render(scene(things, [GLASS, black, lamp], [], [BOX, quad(1.0)], 0.0, lens, samples=16, max_bounces=12))
     assert np.count_nonzero(seen[..., :3]) == 0
+
+
+@pytest.mark.parametrize("height", [2.0**-24, 0.0, -(2.0**-24)])
+@pytest.mark.parametrize("lamp_first", [True, False])
+def test_a_shining_face_shines_where_it_is_there(library, lamp_first, height):
+    """A lamp set into a ceiling: it lights the floor if it is seen, and does not if it is not, whichever is lower by rounding."""
+    ceiling = Instance(mesh=0, matrix=stored(PLACE), materials=(0,))
+    lamp = Instance(mesh=1, matrix=stored(PLACE @ move(0, 0, height)), materials=(1,))
+    floor = Instance(mesh=0, matrix=stored(PLACE @ move(0, 0, -1)), materials=(0,))
+    looks = [lambert(0.5), lambert(0.0, emission=(1.0,) * 3)]
+    eye, spot = (PLACE @ (0, 0, -0.5, 1))[:3], (PLACE @ (0.1, 0.2, -1, 1))[:3]
+    lens = Camera(matrix=look_at(eye, spot), width=16, height=16)
+
+    def picture(*things):
+        return render(scene(things, looks, [], [grid(5), quad(1.0)], 0.0, lens, samples=64))[..., 0]
+
+    seen = picture(lamp, ceiling, floor) if lamp_first else picture(ceiling, lamp, floor)
+    if lamp_first:
+        assert np.allclose(seen, picture(lamp, floor), rtol=1e-4)
+    else:
+        assert seen.max() == 0.0

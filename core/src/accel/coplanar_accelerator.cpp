@@ -1,10 +1,6 @@
 #include "accel/coplanar_accelerator.h"
 
-#include "accel/coplanar_faces.h"
-
-#include <algorithm>
-#include <cmath>
-#include <tuple>
+#include "accel/plane_rule.h"
 
 namespace lancer {
 
@@ -12,28 +8,14 @@ namespace {
 
 class CoplanarAccelerator final : public Accelerator {
 public:
-  CoplanarAccelerator(std::unique_ptr<Accelerator> a, const Geometry &g, const FaceRounding &r, CoplanarFaces f,
-                      std::vector<uint8_t> passing)
-      : inner(std::move(a)), geometry(g), rounding(r), faces(std::move(f)), passing_slots(std::move(passing)),
-        everything(geometry.instances.size(), 1) {
-    for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
-      if (!faces.instances[i])
-        continue;
-      if (geometry.instances[i].kind == ShapeKind::Plane)
-        planes.push_back(i);
-      else
-        widest = std::max(widest, rounding.share(i, glm::dvec3(0.0)));
-    }
-  }
+  CoplanarAccelerator(std::unique_ptr<Accelerator> a, PlaneRule r, size_t instances)
+      : inner(std::move(a)), rule(std::move(r)), everything(instances, 1) {}
 
   TraversalCounts count(std::span<const Ray> rays, bool any) const override { return inner->count(rays, any); }
-  size_t bytes() const override { return inner->bytes() + faces.bytes() + everything.capacity(); }
+  size_t bytes() const override { return inner->bytes() + rule.bytes() + everything.capacity(); }
   const char *instruction_set() const override { return inner->instruction_set(); }
 
 private:
-  // Whose turn it is to be met.
-  using Order = std::tuple<bool, uint32_t, uint32_t, uint32_t>;
-
   // What is asked, and what of it counts beforehand.
   struct Asked {
     const CoplanarAccelerator &self;
@@ -45,55 +27,117 @@ private:
     }
   };
 
-  // A hit of a ray, and the search across its plane for what is there in its stead.
+  // A hit, and the search across its plane for what is there in its stead.
   struct Search {
     size_t ray;
     Hit *hit;
-    FlatFace face;
-    double reach; // from the start to the plane
-    Order best;
+    PlaneRule::Across across;
+    PlaneRule::Order best;
     Hit found;
   };
   struct Searches {
     const Asked &asked;
-    std::vector<Ray> across;
+    std::vector<Ray> rays;
     std::vector<Search> all;
+  };
+
+  // A light that a ray ends on unless something stops it, and what else lies there.
+  struct End {
+    size_t ray = 0;
+    bool known = false, shines = false, stops = false; // something there, anything that shines, something on the way
+    PlaneRule::Order best{};
+    bool best_shines = false;
+  };
+  struct Ends {
+    const Asked &asked;
+    std::vector<Ray> rays;
+    std::vector<End> all;
   };
 
   void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
     const Asked asked{*this, rays, filter};
-    const std::vector<uint8_t> instances = asked_of(filter);
-    const HitFilter counting{instances.data(),
-                             [](void *context, size_t ray, const Hit &hit) {
-                               const Asked &a = *static_cast<const Asked *>(context);
-                               return !a.self.starts_in_plane(a.rays[ray], hit) && a.counts(ray, hit);
-                             },
-                             const_cast<Asked *>(&asked)};
-    inner->closest_hit(rays, hits, counting);
+    if (filter) {
+      trace(asked, hits);
+    } else {
+      // Few rays come back to the plane that they have left: those are asked about anew.
+      inner->closest_hit(rays, hits);
+      std::vector<size_t> back;
+      for (size_t i = 0; i < rays.size(); ++i)
+        if (hits[i].valid() && rule.starts_in_plane(rays[i], hits[i]))
+          back.push_back(i);
+      again(rays, back, hits);
+    }
     Searches searches{asked, {}, {}};
     for (size_t i = 0; i < rays.size(); ++i)
-      if (hits[i].valid() && faces.has(hits[i].instance, hits[i].primitive))
+      if (hits[i].valid())
         search(i, hits[i], searches);
     settle(searches);
   }
 
   void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
     const Asked asked{*this, rays, filter};
-    const std::vector<uint8_t> instances = asked_of(filter);
-    const HitFilter counting{instances.data(),
-                             [](void *context, size_t ray, const Hit &hit) {
-                               const Asked &a = *static_cast<const Asked *>(context);
-                               return a.self.stops(a, ray, hit);
-                             },
-                             const_cast<Asked *>(&asked)};
-    inner->any_hit(rays, occluded, counting);
+    if (filter || rule.any_shines()) {
+      trace(asked, occluded);
+    } else {
+      inner->any_hit(rays, occluded);
+      std::vector<size_t> back;
+      for (size_t i = 0; i < rays.size(); ++i)
+        if (occluded[i] && rule.flagged(rays[i]))
+          back.push_back(i);
+      again(rays, back, occluded);
+    }
+    if (rule.any_shines())
+      look_at_ends(asked, occluded);
   }
 
-  // What lets light pass takes none of it where something else is there.
+  // Some of the rays, by the rule.
+  template <class Answer>
+  void again(std::span<const Ray> rays, const std::vector<size_t> &which, std::span<Answer> answers) const {
+    if (which.empty())
+      return;
+    std::vector<Ray> some;
+    for (const size_t i : which)
+      some.push_back(rays[i]);
+    std::vector<Answer> found(some.size());
+    trace({*this, some, nullptr}, std::span<Answer>(found));
+    for (size_t i = 0; i < which.size(); ++i)
+      answers[which[i]] = found[i];
+  }
+
+  void trace(Asked asked, std::span<Hit> hits) const {
+    const std::vector<uint8_t> instances = instances_asked(asked.filter);
+    inner->closest_hit(asked.rays, hits,
+                       {instances.data(),
+                        [](void *context, size_t ray, const Hit &hit) {
+                          const Asked &a = *static_cast<const Asked *>(context);
+                          return !a.self.rule.starts_in_plane(a.rays[ray], hit) && a.counts(ray, hit);
+                        },
+                        &asked});
+  }
+
+  void trace(Asked asked, std::span<uint8_t> occluded) const {
+    const std::vector<uint8_t> instances = instances_asked(asked.filter);
+    inner->any_hit(asked.rays, occluded,
+                   {instances.data(),
+                    [](void *context, size_t ray, const Hit &hit) {
+                      const Asked &a = *static_cast<const Asked *>(context);
+                      return a.self.stops(a, ray, hit);
+                    },
+                    &asked});
+  }
+
+  std::vector<uint8_t> instances_asked(const HitFilter *filter) const {
+    std::vector<uint8_t> instances = rule.instances();
+    for (size_t i = 0; filter && i < instances.size(); ++i)
+      instances[i] |= filter->instances[i];
+    return instances;
+  }
+
   bool stops(const Asked &asked, size_t ray, const Hit &hit) const {
-    if (starts_in_plane(asked.rays[ray], hit))
+    if (rule.starts_in_plane(asked.rays[ray], hit) || (rule.any_shines() && rule.ends_in_plane(asked.rays[ray], hit)))
       return false;
-    if (asked.filter && asked.filter->instances[hit.instance] && faces.has(hit.instance, hit.primitive)) {
+    // What lets light through takes none of it where something else is there.
+    if (asked.filter && asked.filter->instances[hit.instance]) {
       Hit there = hit;
       Searches searches{asked, {}, {}};
       search(ray, there, searches);
@@ -104,106 +148,77 @@ private:
     return asked.counts(ray, hit);
   }
 
-  std::vector<uint8_t> asked_of(const HitFilter *filter) const {
-    std::vector<uint8_t> instances = faces.instances;
-    for (size_t i = 0; filter && i < instances.size(); ++i)
-      instances[i] |= filter->instances[i];
-    return instances;
-  }
-
-  Order order_of(const Hit &hit) const {
-    const Instance &instance = geometry.instances[hit.instance];
-    uint32_t slot = 0;
-    if (instance.kind == ShapeKind::Mesh && instance.slot_count > 0 && !geometry.meshes[instance.mesh].material_slots.empty())
-      slot = std::min<uint32_t>(geometry.meshes[instance.mesh].material_slots[hit.primitive], instance.slot_count - 1);
-    const bool passing = instance.slot_count > 0 && !passing_slots.empty() && passing_slots[instance.first_slot + slot] != 0;
-    return {passing, hit.instance, slot, hit.primitive};
-  }
-
-  // Whether what a ray meets lies in the plane that it starts in: rounding alone holds it before the ray.
-  bool starts_in_plane(const Ray &ray, const Hit &hit) const {
-    if (ray.skip_instance == kNone || !faces.has(hit.instance, hit.primitive) ||
-        !faces.has(ray.skip_instance, ray.skip_primitive))
-      return false;
-    const std::optional<FlatFace> start = face_left(geometry, ray), end = face_met(geometry, ray, hit);
-    if (!start || !end)
-      return false;
-    const double apart = std::max(rounding.apart(ray.skip_instance, hit.instance, start->n, start->p),
-                                  rounding.apart(ray.skip_instance, hit.instance, start->n, end->p));
-    if (!parallel(*start, *end, apart))
-      return false;
-    // The larger one knows the plane better.
-    const FlatFace &plane = start->height >= end->height ? *start : *end;
-    const glm::dvec3 way = end->p - start->p;
-    return std::abs(glm::dot(way, plane.n)) <= apart * (1.0 + glm::length(way) / plane.height);
-  }
-
-  // Prepares to look across the plane of a hit.
-  void search(size_t number, Hit &hit, Searches &searches) const {
-    const Ray &ray = searches.asked.rays[number];
-    const Instance &instance = geometry.instances[hit.instance];
-    const bool mesh = instance.kind == ShapeKind::Mesh;
-    if (mesh && !faces.may_be_covered(hit.instance, hit.primitive, {hit.u, hit.v}))
+  void search(size_t ray, Hit &hit, Searches &searches) const {
+    const std::optional<PlaneRule::Across> across = rule.across(searches.asked.rays[ray], hit);
+    if (!across)
       return;
-    const std::optional<FlatFace> face = face_met(geometry, ray, hit);
-    if (!face || (!mesh && !faces.may_be_covered(hit.instance, 0, glm::dvec2(instance.to_object.point(face->p)))))
+    searches.rays.push_back(across->ray);
+    searches.all.push_back({ray, &hit, *across, rule.order_of(hit), hit});
+  }
+
+  // Looks at all that rays meet, without an end.
+  template <class Looks> void look(Looks &looks) const {
+    if (looks.all.empty())
       return;
-    double others = widest;
-    for (const uint32_t plane : planes)
-      others = std::max(others, rounding.share(plane, face->p));
-    const double reach = std::min(rounding.share(hit.instance, face->p) + others, 0x1p-9 * rounding.extent(hit.instance));
-    Ray across;
-    across.o = face->p - reach * face->n;
-    across.d = face->n;
-    across.tmax = 2.0 * reach;
-    across.kinds = ray.kinds;
-    searches.across.push_back(across);
-    searches.all.push_back({number, &hit, *face, reach, order_of(hit), hit});
+    std::vector<uint8_t> nothing(looks.all.size());
+    inner->any_hit(looks.rays, nothing,
+                   {everything.data(),
+                    [](void *context, size_t i, const Hit &hit) {
+                      Looks &l = *static_cast<Looks *>(context);
+                      l.asked.self.look_at(l.asked, hit, l.all[i]);
+                      return false;
+                    },
+                    &looks});
   }
 
   void settle(Searches &searches) const {
-    if (searches.all.empty())
-      return;
-    std::vector<uint8_t> nothing(searches.all.size());
-    const HitFilter looking{everything.data(),
-                            [](void *context, size_t i, const Hit &hit) {
-                              Searches &s = *static_cast<Searches *>(context);
-                              s.asked.self.look_at(s, i, hit);
-                              return false;
-                            },
-                            &searches};
-    inner->any_hit(searches.across, nothing, looking);
+    look(searches);
     for (const Search &s : searches.all)
       *s.hit = s.found;
   }
 
-  void look_at(Searches &searches, size_t number, const Hit &hit) const {
-    Search &s = searches.all[number];
-    const Ray &ray = searches.asked.rays[s.ray];
-    if (!faces.has(hit.instance, hit.primitive) || (ray.skip_instance == hit.instance && ray.skip_primitive == hit.primitive))
+  void look_at(const Asked &asked, const Hit &hit, Search &s) const {
+    const Ray &ray = asked.rays[s.ray];
+    if (ray.skip_instance == hit.instance && ray.skip_primitive == hit.primitive)
       return;
-    const Order order = order_of(hit);
-    if (!(order < s.best))
-      return;
-    const std::optional<FlatFace> face = face_met(geometry, searches.across[number], hit);
-    const double apart = rounding.apart(s.hit->instance, hit.instance, s.face.n, s.face.p);
-    if (!face || std::abs(hit.t - s.reach) > apart || !parallel(s.face, *face, apart))
-      return;
+    const PlaneRule::Order order = rule.order_of(hit);
     const Hit there{s.hit->t, hit.u, hit.v, hit.instance, hit.primitive};
-    if (!searches.asked.counts(s.ray, there))
+    if (!(order < s.best) || !rule.in_plane(s.across, *s.hit, hit) || !asked.counts(s.ray, there))
       return;
     s.best = order;
     s.found = there;
   }
 
+  // Where a light lies in one plane with other things, it is seen if the one that is there shines.
+  void look_at_ends(const Asked &asked, std::span<uint8_t> occluded) const {
+    Ends ends{asked, {}, {}};
+    for (size_t i = 0; i < occluded.size(); ++i)
+      if (!occluded[i] && asked.rays[i].tmax < std::numeric_limits<double>::infinity()) {
+        ends.rays.push_back(PlaneRule::around_end(asked.rays[i]));
+        ends.all.emplace_back().ray = i;
+      }
+    look(ends);
+    for (const End &end : ends.all)
+      occluded[end.ray] = end.known && (end.shines ? !end.best_shines : end.stops);
+  }
+
+  void look_at(const Asked &asked, const Hit &hit, End &end) const {
+    const Ray &ray = asked.rays[end.ray];
+    if (!rule.ends_in_plane(ray, hit) || rule.starts_in_plane(ray, hit))
+      return;
+    const bool light = rule.emits(hit);
+    end.stops = end.stops || (ray.tmin < hit.t && hit.t < ray.tmax && asked.counts(end.ray, hit));
+    end.shines = end.shines || light;
+    if (const PlaneRule::Order order = rule.order_of(hit); !end.known || order < end.best) {
+      end.best = order;
+      end.best_shines = light;
+    }
+    end.known = true;
+  }
+
   const std::unique_ptr<Accelerator> inner;
-  const Geometry &geometry;
-  const FaceRounding rounding;
-  const CoplanarFaces faces;
-  const std::vector<uint8_t> passing_slots;
+  const PlaneRule rule;
   const std::vector<uint8_t> everything; // by instance: ask about its hits
-  std::vector<uint32_t> planes;          // instances without end
-  double widest = 0.0;                   // of the others, how much each may be off
 };
 
 } // namespace
@@ -215,8 +230,8 @@ std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geome
   CoplanarFaces faces = find_coplanar_faces(geometry, rounding, context);
   if (!faces.any())
     return plain;
-  return std::make_unique<CoplanarAccelerator>(std::move(plain), geometry, rounding, std::move(faces),
-                                               std::move(rules.passing_slots));
+  return std::make_unique<CoplanarAccelerator>(
+      std::move(plain), PlaneRule(geometry, rounding, std::move(faces), std::move(rules)), geometry.instances.size());
 }
 
 } // namespace lancer

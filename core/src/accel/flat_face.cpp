@@ -96,6 +96,8 @@ glm::dvec3 FaceRounding::moved(uint32_t instance) const {
   return kPlaceRounding * glm::abs(geometry.instances[instance].to_world.translation - origin);
 }
 
+double FaceRounding::most(uint32_t instance, double sum) const { return std::min(sum, 2.0 * kMeant * extent(instance)); }
+
 double FaceRounding::extent(uint32_t number) const {
   if (geometry.instances[number].kind == ShapeKind::Plane)
     return kInfinity;
@@ -125,10 +127,10 @@ void FaceRounding::box(uint32_t number, glm::dvec3 &lo, glm::dvec3 &hi) const {
 }
 
 double FaceRounding::apart(uint32_t one, uint32_t other, const glm::dvec3 &n, const glm::dvec3 &p) const {
-  if (one == other)
-    return 2.0 * glm::dot(glm::abs(n), within(one, p));
-  const double sum = glm::dot(glm::abs(n), within(one, p) + moved(one) + within(other, p) + moved(other));
-  return std::min(sum, kMeant * std::min(extent(one), extent(other)));
+  glm::dvec3 sum = within(one, p) + within(other, p);
+  if (one != other)
+    sum += moved(one) + moved(other);
+  return std::min(glm::dot(glm::abs(n), sum), kMeant * std::min(extent(one), extent(other)));
 }
 
 double FaceRounding::share(uint32_t instance, const glm::dvec3 &p) const {

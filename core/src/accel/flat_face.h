@@ -33,6 +33,8 @@ public:
   double apart(uint32_t one, uint32_t other, const glm::dvec3 &n, const glm::dvec3 &p) const;
   // What one of both adds to that at most, whatever the normal.
   double share(uint32_t instance, const glm::dvec3 &p) const;
+  // No face of an instance is further from the others of its plane than this, whatever they add.
+  double most(uint32_t instance, double sum) const;
   // The largest extent of an instance along an axis, in the world.
   double extent(uint32_t instance) const;
   double extent_of_mesh(uint32_t mesh) const; // in its own space
