@@ -7,7 +7,7 @@ import pytest
 from bindings.abi import Accelerator, InstanceKind, LightKind
 from bindings.snapshot import Camera, Instance, Light, MeshData
 from ten_scenes import GLASS
-from tiny_scenes import lambert, look_at, move, plane, quad, render, rotate_x, rotate_y, scale, scene
+from tiny_scenes import lambert, look_at, move, plane, quad, render, rotate_x, rotate_y, scale, scene, veiled
 
 RED, GREEN = lambert((0.8, 0, 0)), lambert((0, 0.8, 0))
 PLACE = move(0.1, 0.2, 0.3) @ rotate_x(0.3) @ rotate_y(0.2)
@@ -94,7 +94,7 @@ def test_no_light_passes_between_glass_and_floor(library, place, glass_first):
 @pytest.mark.parametrize("height", [2.0**-24, 0.0, -(2.0**-24)])
 @pytest.mark.parametrize("lamp_first", [True, False])
 def test_a_shining_face_shines_where_it_is_there(library, lamp_first, height):
-    """A lamp set into a ceiling: it lights the floor if it is seen, and does not if it is not, whichever is lower by rounding."""
+    """A lamp set into a ceiling: it lights the floor if it is seen and else does not, whatever rounding says."""
     ceiling = Instance(mesh=0, matrix=stored(PLACE), materials=(0,))
     lamp = Instance(mesh=1, matrix=stored(PLACE @ move(0, 0, height)), materials=(1,))
     floor = Instance(mesh=0, matrix=stored(PLACE @ move(0, 0, -1)), materials=(0,))
@@ -110,3 +110,22 @@ def test_a_shining_face_shines_where_it_is_there(library, lamp_first, height):
         assert np.allclose(seen, picture(lamp, floor), rtol=1e-4)
     else:
         assert seen.max() == 0.0
+
+
+@pytest.mark.parametrize("height", [2.0**-24, -(2.0**-24)])
+def test_veils_in_one_plane_are_one_veil(library, height):
+    """Half of the light passes, whether it is the sun's or on its way to the eye: the second veil is not there."""
+    veil = Instance(mesh=0, matrix=stored(PLACE), materials=(0,))
+    other = Instance(mesh=1, matrix=stored(PLACE @ move(0, 0, height)), materials=(1,))
+    floor = plane(2, stored(PLACE @ move(0, 0, -1)))
+    looks = [veiled(lambert((0.8, 0, 0)), 0.5), veiled(lambert((0, 0.8, 0)), 0.5), lambert(0.5)]
+    lens = Camera(
+        matrix=look_at((PLACE @ (0.5, -2, 3, 1))[:3], PLACE[:3, 3]), width=32, height=32, window=(-0.5, 0.5, -0.5, 0.5)
+    )
+    lamps = [Light("sun", rotate_x(0.2), LightKind.SUN, emission=(np.pi,) * 3)]
+
+    def picture(*things):
+        return render(scene(things, looks, lamps, [grid(5), grid(8)], 0.0, lens, samples=64, max_bounces=0))
+
+    seen, alone = picture(veil, other, floor), picture(veil, floor)
+    assert alone[..., 1].max() > 0.1 and np.allclose(seen, alone, rtol=1e-4, atol=1e-6)

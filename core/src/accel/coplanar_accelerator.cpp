@@ -36,7 +36,7 @@ private:
     Hit found;
   };
   struct Searches {
-    const Asked &asked;
+    const Asked &asked; // without a filter where what lets light through is there, too
     std::vector<Ray> rays;
     std::vector<Search> all;
   };
@@ -63,13 +63,13 @@ private:
       inner->closest_hit(rays, hits);
       std::vector<size_t> back;
       for (size_t i = 0; i < rays.size(); ++i)
-        if (hits[i].valid() && rule.starts_in_plane(rays[i], hits[i]))
+        if (hits[i].valid() && rule.flagged(hits[i]) && rule.starts_in_plane(rays[i], hits[i]))
           back.push_back(i);
       again(rays, back, hits);
     }
     Searches searches{asked, {}, {}};
     for (size_t i = 0; i < rays.size(); ++i)
-      if (hits[i].valid())
+      if (hits[i].valid() && rule.flagged(hits[i]))
         search(i, hits[i], searches);
     settle(searches);
   }
@@ -110,7 +110,8 @@ private:
                        {instances.data(),
                         [](void *context, size_t ray, const Hit &hit) {
                           const Asked &a = *static_cast<const Asked *>(context);
-                          return !a.self.rule.starts_in_plane(a.rays[ray], hit) && a.counts(ray, hit);
+                          return !(a.self.rule.flagged(hit) && a.self.rule.starts_in_plane(a.rays[ray], hit)) &&
+                                 a.counts(ray, hit);
                         },
                         &asked});
   }
@@ -134,12 +135,15 @@ private:
   }
 
   bool stops(const Asked &asked, size_t ray, const Hit &hit) const {
+    if (!rule.flagged(hit))
+      return asked.counts(ray, hit);
     if (rule.starts_in_plane(asked.rays[ray], hit) || (rule.any_shines() && rule.ends_in_plane(asked.rays[ray], hit)))
       return false;
     // What lets light through takes none of it where something else is there.
     if (asked.filter && asked.filter->instances[hit.instance]) {
       Hit there = hit;
-      Searches searches{asked, {}, {}};
+      const Asked all{*this, asked.rays, nullptr};
+      Searches searches{all, {}, {}};
       search(ray, there, searches);
       settle(searches);
       if (there.instance != hit.instance || there.primitive != hit.primitive)
@@ -204,7 +208,7 @@ private:
 
   void look_at(const Asked &asked, const Hit &hit, End &end) const {
     const Ray &ray = asked.rays[end.ray];
-    if (!rule.ends_in_plane(ray, hit) || rule.starts_in_plane(ray, hit))
+    if (!rule.flagged(hit) || !rule.ends_in_plane(ray, hit) || rule.starts_in_plane(ray, hit))
       return;
     const bool light = rule.emits(hit);
     end.stops = end.stops || (ray.tmin < hit.t && hit.t < ray.tmax && asked.counts(end.ray, hit));

@@ -12,8 +12,11 @@ struct Covered {
   glm::dvec2 low, high;
   uint64_t cells;
 
+  // -1 and 8: beyond.
   glm::ivec2 cell(const glm::dvec2 &at) const {
-    return glm::ivec2(glm::clamp(glm::floor(8.0 * (at - low) / (high - low)), glm::dvec2(-1.0), glm::dvec2(8.0)));
+    const glm::dvec2 scaled = 8.0 * (at - low) / (high - low);
+    const auto whole = [](double x) { return x >= 0.0 ? x < 8.0 ? static_cast<int>(x) : 8 : -1; };
+    return {whole(scaled.x), whole(scaled.y)};
   }
 };
 

@@ -44,7 +44,7 @@ PlaneRule::Order PlaneRule::order_of(const Hit &hit) const {
 }
 
 bool PlaneRule::starts_in_plane(const Ray &ray, const Hit &hit) const {
-  if (!flagged(ray) || !flagged(hit))
+  if (!flagged(ray))
     return false;
   const std::optional<FlatFace> start = face_left(geometry, ray), end = face_met(geometry, ray, hit);
   if (!start || !end)
@@ -60,7 +60,7 @@ bool PlaneRule::starts_in_plane(const Ray &ray, const Hit &hit) const {
 }
 
 bool PlaneRule::ends_in_plane(const Ray &ray, const Hit &hit) const {
-  if (!(ray.tmax < kInfinity && hit.t > (1.0 - kEnd) * ray.tmax) || !flagged(hit))
+  if (!(ray.tmax < kInfinity && hit.t > (1.0 - kEnd) * ray.tmax))
     return false;
   const std::optional<FlatFace> face = face_met(geometry, ray, hit);
   return face && std::abs(glm::dot(ray.o + ray.tmax * ray.d - face->p, face->n)) <=
@@ -85,7 +85,7 @@ double PlaneRule::others(const glm::dvec3 &p) const {
 std::optional<PlaneRule::Across> PlaneRule::across(const Ray &ray, const Hit &hit) const {
   const Instance &instance = geometry.instances[hit.instance];
   const bool mesh = instance.kind == ShapeKind::Mesh;
-  if (!flagged(hit) || (mesh && !faces.may_be_covered(hit.instance, hit.primitive, {hit.u, hit.v})))
+  if (mesh && !faces.may_be_covered(hit.instance, hit.primitive, {hit.u, hit.v}))
     return {};
   const std::optional<FlatFace> face = face_met(geometry, ray, hit);
   if (!face || (!mesh && !faces.may_be_covered(hit.instance, 0, glm::dvec2(instance.to_object.point(face->p)))))

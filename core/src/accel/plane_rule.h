@@ -25,6 +25,7 @@ public:
   Order order_of(const Hit &hit) const;
   bool emits(const Hit &hit) const { return is(rules.emitting_slots, hit); }
 
+  // All of the following are about hits that are flagged.
   // Whether what a ray meets lies in the plane that it starts in, or ends in: rounding alone holds it before the ray.
   bool starts_in_plane(const Ray &ray, const Hit &hit) const;
   bool ends_in_plane(const Ray &ray, const Hit &hit) const;
