@@ -7,8 +7,8 @@ namespace lancer {
 
 namespace {
 
-// Pairs of boxes that are compared for each face: a bound for heaps of things in one place.
-constexpr size_t kPairs = 64;
+// Boxes, and faces in boxes that meet, that each is compared with: bounds for heaps of things in one place.
+constexpr size_t kBoxes = 256, kPairs = 32;
 // Others that a face keeps in mind; with more, it is covered everywhere.
 constexpr uint32_t kOthers = 64;
 
@@ -37,6 +37,10 @@ bool overlap(const FaceCandidate &one, const FaceCandidate &other, double border
 bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const FaceCandidate &other) {
   const FaceCandidate &large = one.face.height >= other.face.height ? one : other, &small = &large == &one ? other : one;
   const glm::dvec3 middle = (small.corner[0] + small.corner[1] + small.corner[2]) / 3.0;
+  // Mostly much less will do.
+  const double most = large.rounding + small.rounding;
+  if (!parallel(large.face, small.face, most))
+    return false;
   const double apart = rounding.apart(large.instance, small.instance, large.face.n, middle);
   if (!parallel(large.face, small.face, apart))
     return false;
@@ -64,6 +68,8 @@ public:
 
   CoplanarFaces find() {
     const bool all = compare();
+    if (!all)
+      spread();
     CoplanarFaces faces;
     if (mark(faces) && all)
       cover(faces);
@@ -87,21 +93,33 @@ private:
     std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
       return a.cell != b.cell ? a.cell < b.cell : a.low != b.low ? a.low < b.low : a.candidate < b.candidate;
     });
-    size_t left = kPairs * entries.size();
+    size_t boxes = kBoxes * entries.size(), pairs = kPairs * entries.size();
     for (size_t i = 0; i < entries.size(); ++i) {
       FaceCandidate &one = candidates[entries[i].candidate];
       for (size_t k = i + 1; k < entries.size() && entries[k].cell == entries[i].cell && entries[k].low <= one.high.x; ++k) {
-        if (left-- == 0)
-          return false;
         FaceCandidate &other = candidates[entries[k].candidate];
-        if ((one.found >= kOthers && other.found >= kOthers) || !boxes_meet(one.low, one.high, other.low, other.high) ||
-            same_border(one, other) || !in_one_plane(rounding, one, other))
+        if (boxes-- == 0 || pairs == 0)
+          return false;
+        if (!boxes_meet(one.low, one.high, other.low, other.high) || (one.found >= kOthers && other.found >= kOthers) ||
+            same_border(one, other))
+          continue;
+        --pairs;
+        if (!in_one_plane(rounding, one, other))
           continue;
         add_patch(one, other);
         add_patch(other, one);
       }
     }
     return true;
+  }
+
+  // Where not all were compared: a thing that lies on another anywhere may do so everywhere.
+  void spread() {
+    std::vector<uint8_t> found(geometry.instances.size(), 0);
+    for (const FaceCandidate &c : candidates)
+      found[c.instance] |= c.found > 0;
+    for (FaceCandidate &c : candidates)
+      c.found |= found[c.instance];
   }
 
   // Coordinates on a face, as hits have them: weights of its corners, or those of the exact surface's space.

@@ -11,7 +11,7 @@ namespace lancer {
 namespace {
 
 // How many: a number for small scenes, a share of large meshes, some of each thing; and not more.
-constexpr size_t kCompared = 4096, kOfMeshes = 256, kOfEach = 16, kMost = 32768;
+constexpr size_t kCompared = 4096, kOfMeshes = 256, kOfEach = 16, kMost = 16384;
 // Pairs of boxes that are compared for each thing: a bound for heaps of them in one place.
 constexpr size_t kPairs = 128;
 // Steps of planes in the scene's extent.
