@@ -1,4 +1,4 @@
-"""Flat parts of two things in one plane: where both would be seen, rounding decides from point to point which one is."""
+"""Flat parts of two things in one plane: where both would be seen, only one of them is, which may be the wrong one."""
 
 import numpy as np
 
@@ -77,14 +77,14 @@ class _Hurts:
         first, second = int(world.materials[one]), int(world.materials[other])
         if traits[first].refracts or traits[second].refracts:
             return (
-                "touch exactly where one is glass: light leaks between them",
+                "touch exactly where one is glass: only one of both surfaces is there, what is opaque before glass",
                 "move one of them a little, or let them overlap",
             )
         if not self._fight(one, other):
             return None
         if self.subject.alike(first, second):
             return "lie in the same plane, and their light counts twice", "delete one of them, or move it a little"
-        return "lie in the same plane, and which of them shows changes from point to point", "move one of them a little"
+        return "lie in the same plane, and only one of them is seen", "move one of them a little"
 
     def _fight(self, one, other):
         """Whether both show on the side where the camera is: closed bodies show what looks that way, sheets show both sides."""

@@ -1,10 +1,12 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
+#include "accel/coplanar_accelerator.h"
 #include "accel/parallel.h"
 #include "integrator/shading.h"
 #include "lights/make_emitters.h"
 #include "lights/place_light.h"
 #include "scene/displace.h"
 #include "scene/mesh_normals.h"
+#include "scene/passing.h"
 #include "scene/scene.h"
 
 #include <chrono>
@@ -79,6 +81,16 @@ template <class Predicate> std::vector<uint8_t> find_instances(const Scene &scen
   return found;
 }
 
+PlaneRules plane_rules(const Scene &scene) {
+  PlaneRules rules;
+  rules.origin = scene.normalisation.to_normalised(glm::dvec3(0.0));
+  for (const uint32_t material : scene.slots) {
+    rules.passing_slots.push_back(lets_light_through(scene.materials[material]));
+    rules.emitting_slots.push_back(scene.materials[material].emits());
+  }
+  return rules;
+}
+
 LightSet make_lights(const Scene &scene, const Description &description, const BuildContext &context) {
   std::vector<Light> lights;
   for (const LightDescription &light : description.lights)
@@ -128,7 +140,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
       mesh.smooth_normals = normals_by_area(mesh);
   }
   scene->lights = make_lights(*scene, description, context);
-  scene->accelerator = build_accelerator(kind, scene->geometry, context);
+  scene->accelerator = build_accelerator(kind, scene->geometry, plane_rules(*scene), context);
   scene->messages = description.messages.text();
   scene->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return scene;

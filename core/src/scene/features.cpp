@@ -2,6 +2,7 @@
 
 #include "bsdf/build.h"
 #include "scene/description.h"
+#include "scene/passing.h"
 
 #include <iterator>
 
@@ -30,11 +31,6 @@ bool uses_images(const Program &program) {
     if (node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT)
       return true;
   return false;
-}
-
-bool is_glass(const LobeDescription &lobe) {
-  return lobe.kind == LobeKind::Dielectric || lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction ||
-         (lobe.principled && may_be_positive(lobe.principled->transmission));
 }
 
 // Whether some layer of it may have facets.

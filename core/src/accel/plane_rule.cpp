@@ -1,0 +1,109 @@
+#include "accel/plane_rule.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEnd = 0x1p-8;
+
+} // namespace
+
+PlaneRule::PlaneRule(const Geometry &g, const FaceRounding &r, CoplanarFaces f, PlaneRules known)
+    : geometry(g), rounding(r), faces(std::move(f)), rules(std::move(known)) {
+  for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
+    if (!faces.instances[i])
+      continue;
+    const Instance &instance = geometry.instances[i];
+    for (uint32_t slot = 0; slot < instance.slot_count && !rules.emitting_slots.empty(); ++slot)
+      shines = shines || rules.emitting_slots[instance.first_slot + slot];
+    if (instance.kind == ShapeKind::Plane)
+      planes.push_back(i);
+    else
+      widest = std::max(widest, rounding.share(i, glm::dvec3(0.0)));
+  }
+}
+
+uint32_t PlaneRule::slot_of(const Hit &hit) const {
+  const Instance &instance = geometry.instances[hit.instance];
+  if (instance.kind != ShapeKind::Mesh || instance.slot_count == 0 || geometry.meshes[instance.mesh].material_slots.empty())
+    return 0;
+  return std::min<uint32_t>(geometry.meshes[instance.mesh].material_slots[hit.primitive], instance.slot_count - 1);
+}
+
+bool PlaneRule::is(const std::vector<uint8_t> &slots, const Hit &hit) const {
+  const Instance &instance = geometry.instances[hit.instance];
+  return instance.slot_count > 0 && !slots.empty() && slots[instance.first_slot + slot_of(hit)] != 0;
+}
+
+PlaneRule::Order PlaneRule::order_of(const Hit &hit) const {
+  return {is(rules.passing_slots, hit), hit.instance, slot_of(hit), hit.primitive};
+}
+
+bool PlaneRule::starts_in_plane(const Ray &ray, const Hit &hit) const {
+  if (!flagged(ray))
+    return false;
+  const std::optional<FlatFace> start = face_left(geometry, ray), end = face_met(geometry, ray, hit);
+  if (!start || !end)
+    return false;
+  const double apart = std::max(rounding.apart(ray.skip_instance, hit.instance, start->n, start->p),
+                                rounding.apart(ray.skip_instance, hit.instance, start->n, end->p));
+  if (!parallel(*start, *end, apart))
+    return false;
+  // The larger one knows the plane better.
+  const FlatFace &plane = start->height >= end->height ? *start : *end;
+  const glm::dvec3 way = end->p - start->p;
+  return std::abs(glm::dot(way, plane.n)) <= apart * (1.0 + glm::length(way) / plane.height);
+}
+
+bool PlaneRule::ends_in_plane(const Ray &ray, const Hit &hit) const {
+  if (!(ray.tmax < kInfinity && hit.t > (1.0 - kEnd) * ray.tmax))
+    return false;
+  const std::optional<FlatFace> face = face_met(geometry, ray, hit);
+  return face && std::abs(glm::dot(ray.o + ray.tmax * ray.d - face->p, face->n)) <=
+                     rounding.share(hit.instance, face->p) + others(face->p);
+}
+
+Ray PlaneRule::around_end(const Ray &ray) {
+  Ray around = ray;
+  around.tmin = (1.0 - kEnd) * ray.tmax;
+  around.tmax = (1.0 + kEnd) * ray.tmax;
+  return around;
+}
+
+// How much any face at p adds at most to how far it may be from another.
+double PlaneRule::others(const glm::dvec3 &p) const {
+  double most = widest;
+  for (const uint32_t plane : planes)
+    most = std::max(most, rounding.share(plane, p));
+  return most;
+}
+
+std::optional<PlaneRule::Across> PlaneRule::across(const Ray &ray, const Hit &hit) const {
+  const Instance &instance = geometry.instances[hit.instance];
+  const bool mesh = instance.kind == ShapeKind::Mesh;
+  if (mesh && !faces.may_be_covered(hit.instance, hit.primitive, {hit.u, hit.v}))
+    return {};
+  const std::optional<FlatFace> face = face_met(geometry, ray, hit);
+  if (!face || (!mesh && !faces.may_be_covered(hit.instance, 0, glm::dvec2(instance.to_object.point(face->p)))))
+    return {};
+  Across across{{}, *face, rounding.most(hit.instance, rounding.share(hit.instance, face->p) + others(face->p))};
+  across.ray.o = face->p - across.reach * face->n;
+  across.ray.d = face->n;
+  across.ray.tmax = 2.0 * across.reach;
+  across.ray.kinds = ray.kinds;
+  return across;
+}
+
+bool PlaneRule::in_plane(const Across &across, const Hit &hit, const Hit &met) const {
+  if (!flagged(met))
+    return false;
+  const std::optional<FlatFace> face = face_met(geometry, across.ray, met);
+  const double apart = rounding.apart(hit.instance, met.instance, across.face.n, across.face.p);
+  return face && std::abs(met.t - across.reach) <= apart && parallel(across.face, *face, apart);
+}
+
+} // namespace lancer

@@ -1,0 +1,59 @@
+// Which of the faces in one plane is there, and which of them a ray may meet.
+#pragma once
+
+#include "accel/coplanar_accelerator.h"
+#include "accel/coplanar_faces.h"
+
+#include <tuple>
+
+namespace lancer {
+
+class PlaneRule {
+public:
+  PlaneRule(const Geometry &geometry, const FaceRounding &rounding, CoplanarFaces faces, PlaneRules rules);
+
+  bool flagged(const Hit &hit) const { return faces.has(hit.instance, hit.primitive); }
+  // The face that a ray starts on.
+  bool flagged(const Ray &ray) const { return ray.skip_instance != kNone && faces.has(ray.skip_instance, ray.skip_primitive); }
+  // By instance: 1 where some faces are.
+  const std::vector<uint8_t> &instances() const { return faces.instances; }
+  bool any_shines() const { return shines; }
+  size_t bytes() const { return faces.bytes(); }
+
+  // Whose turn it is to be there.
+  using Order = std::tuple<bool, uint32_t, uint32_t, uint32_t>;
+  Order order_of(const Hit &hit) const;
+  bool emits(const Hit &hit) const { return is(rules.emitting_slots, hit); }
+
+  // All of the following are about hits that are flagged.
+  // Whether what a ray meets lies in the plane that it starts in, or ends in: rounding alone holds it before the ray.
+  bool starts_in_plane(const Ray &ray, const Hit &hit) const;
+  bool ends_in_plane(const Ray &ray, const Hit &hit) const;
+  // The last part of a ray, and beyond: what it meets here may lie where it ends.
+  static Ray around_end(const Ray &ray);
+
+  // A ray across the plane of a hit that meets whatever may be there in its stead; none where there is nothing else.
+  struct Across {
+    Ray ray;
+    FlatFace face;
+    double reach; // from its start to the plane
+  };
+  std::optional<Across> across(const Ray &ray, const Hit &hit) const;
+  // Whether what that meets is in the plane of the hit.
+  bool in_plane(const Across &across, const Hit &hit, const Hit &met) const;
+
+private:
+  uint32_t slot_of(const Hit &hit) const;
+  bool is(const std::vector<uint8_t> &slots, const Hit &hit) const;
+  double others(const glm::dvec3 &p) const;
+
+  const Geometry &geometry;
+  const FaceRounding rounding;
+  const CoplanarFaces faces;
+  const PlaneRules rules;
+  std::vector<uint32_t> planes; // instances without end that have such faces
+  double widest = 0.0;          // of the others, how much each may be off
+  bool shines = false;          // some of those instances does
+};
+
+} // namespace lancer
