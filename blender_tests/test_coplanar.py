@@ -93,8 +93,8 @@ def test_no_light_passes_between_glass_and_floor(library, place, glass_first):
 
 @pytest.mark.parametrize("height", [2.0**-24, 0.0, -(2.0**-24)])
 @pytest.mark.parametrize("lamp_first", [True, False])
-def test_a_shining_face_shines_where_it_is_there(library, lamp_first, height):
-    """A lamp set into a ceiling: it lights the floor if it is seen and else does not, whatever rounding says."""
+def test_a_shining_face_is_there_before_those_that_do_not(library, lamp_first, height):
+    """A lamp set into a ceiling lights the floor, whatever rounding says and whichever comes first."""
     ceiling = Instance(mesh=0, matrix=stored(PLACE), materials=(0,))
     lamp = Instance(mesh=1, matrix=stored(PLACE @ move(0, 0, height)), materials=(1,))
     floor = Instance(mesh=0, matrix=stored(PLACE @ move(0, 0, -1)), materials=(0,))
@@ -106,10 +106,17 @@ def test_a_shining_face_shines_where_it_is_there(library, lamp_first, height):
         return render(scene(things, looks, [], [grid(5), quad(1.0)], 0.0, lens, samples=64))[..., 0]
 
     seen = picture(lamp, ceiling, floor) if lamp_first else picture(ceiling, lamp, floor)
-    if lamp_first:
-        assert np.allclose(seen, picture(lamp, floor), rtol=1e-4)
-    else:
-        assert seen.max() == 0.0
+    assert np.allclose(seen, picture(lamp, floor), rtol=1e-4)
+
+
+def test_a_veil_of_light_on_a_ceiling_is_not_there(library):
+    """What lets light through gives way to what does not, so that no light leaks; then it lights nothing either."""
+    ceiling = Instance(mesh=0, matrix=stored(PLACE), materials=(0,))
+    lamp = Instance(mesh=1, matrix=stored(PLACE @ move(0, 0, 2.0**-24)), materials=(1,))
+    floor = Instance(mesh=0, matrix=stored(PLACE @ move(0, 0, -1)), materials=(0,))
+    looks = [lambert(0.5), dataclasses.replace(veiled(lambert(0.0), 0.5), emission=(1.0,) * 3)]
+    lens = Camera(matrix=look_at((PLACE @ (0, 0, -0.5, 1))[:3], (PLACE @ (0.1, 0.2, -1, 1))[:3]), width=16, height=16)
+    assert render(scene([lamp, ceiling, floor], looks, [], [grid(5), quad(1.0)], 0.0, lens, samples=64))[..., :3].max() == 0.0
 
 
 @pytest.mark.parametrize("height", [2.0**-24, -(2.0**-24)])

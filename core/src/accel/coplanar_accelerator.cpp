@@ -76,17 +76,18 @@ private:
 
   void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
     const Asked asked{*this, rays, filter};
-    if (filter || rule.any_shines()) {
+    if (filter) {
       trace(asked, occluded);
     } else {
+      // What stops a ray is not told: those that begin or end where another face of their plane may are asked about anew.
       inner->any_hit(rays, occluded);
       std::vector<size_t> back;
       for (size_t i = 0; i < rays.size(); ++i)
-        if (occluded[i] && rule.flagged(rays[i]))
+        if (occluded[i] && (rule.starts_covered(rays[i]) || rule.may_end_on_light(rays[i])))
           back.push_back(i);
       again(rays, back, occluded);
     }
-    if (rule.any_shines())
+    if (rule.any_hidden_light())
       look_at_ends(asked, occluded);
   }
 

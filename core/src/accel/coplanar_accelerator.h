@@ -15,9 +15,9 @@ struct PlaneRules {
 };
 
 // An accelerator with one rule more. Where two faces cover the same place of a plane, as far as rounding tells, the one is met
-// that lets no light through, then the one of the smaller instance, of the smaller slot, of the smaller number: from either
-// side, whichever is closer by rounding. A ray that starts on a face meets no other of its plane. A scene without such faces
-// gets the plain accelerator.
+// that lets no light through, then one that shines, then the one of the smaller instance, of the smaller slot, of the smaller
+// number: from either side, whichever is closer by rounding. A ray that starts on a face meets no other of its plane. A scene
+// without such faces gets the plain accelerator.
 std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, PlaneRules rules,
                                                const BuildContext &context);
 

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEnd = 0x1p-8;
+constexpr size_t kLightPlanes = 16;
 
 } // namespace
 
@@ -18,13 +19,65 @@ PlaneRule::PlaneRule(const Geometry &g, const FaceRounding &r, CoplanarFaces f, 
     if (!faces.instances[i])
       continue;
     const Instance &instance = geometry.instances[i];
-    for (uint32_t slot = 0; slot < instance.slot_count && !rules.emitting_slots.empty(); ++slot)
-      shines = shines || rules.emitting_slots[instance.first_slot + slot];
+    for (uint32_t slot = instance.first_slot; slot < instance.first_slot + instance.slot_count; ++slot) {
+      const bool emits = !rules.emitting_slots.empty() && rules.emitting_slots[slot];
+      shines = shines || emits;
+      hides_light = hides_light || (emits && !rules.passing_slots.empty() && rules.passing_slots[slot]);
+    }
     if (instance.kind == ShapeKind::Plane)
       planes.push_back(i);
     else
       widest = std::max(widest, rounding.share(i, glm::dvec3(0.0)));
   }
+  if (shines)
+    find_light_planes();
+}
+
+void PlaneRule::find_light_planes() {
+  for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
+    if (!faces.instances[i])
+      continue;
+    const Instance &instance = geometry.instances[i];
+    const bool mesh = instance.kind == ShapeKind::Mesh;
+    const size_t count = mesh ? geometry.meshes[instance.mesh].triangles.size() : 1;
+    for (uint32_t primitive = 0; primitive < count && !shines_anywhere; ++primitive) {
+      const Hit hit{0.0, 0.0f, 0.0f, i, primitive};
+      if (!flagged(hit) || !emits(hit))
+        continue;
+      // A triangle's plane is known the less the farther it reaches beyond it, so each is looked at by itself.
+      shines_anywhere = !mesh || light_planes.size() == kLightPlanes;
+      if (shines_anywhere)
+        return;
+      glm::dvec3 corner[3];
+      world_corners(geometry, i, primitive, corner);
+      const FlatFace face = triangle_face(corner);
+      light_planes.push_back({face.p, face.n, 2.0 * (rounding.share(i, face.p) + others(face.p))});
+    }
+  }
+}
+
+bool PlaneRule::starts_covered(const Ray &ray) const {
+  if (!flagged(ray))
+    return false;
+  const Instance &instance = geometry.instances[ray.skip_instance];
+  if (instance.kind != ShapeKind::Mesh)
+    return faces.may_be_covered(ray.skip_instance, 0, glm::dvec2(instance.to_object.point(ray.o)));
+  // The weights of the triangle's corners at the start, by the plane's two directions.
+  glm::dvec3 corner[3];
+  world_corners(geometry, ray.skip_instance, ray.skip_primitive, corner);
+  const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0], o = ray.o - corner[0];
+  const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b), oa = glm::dot(o, a), ob = glm::dot(o, b);
+  const double area = aa * bb - ab * ab;
+  return faces.may_be_covered(ray.skip_instance, ray.skip_primitive, glm::dvec2(bb * oa - ab * ob, aa * ob - ab * oa) / area);
+}
+
+bool PlaneRule::may_end_on_light(const Ray &ray) const {
+  if (!shines || !(ray.tmax < kInfinity))
+    return false;
+  const glm::dvec3 end = ray.o + ray.tmax * ray.d;
+  return shines_anywhere || std::any_of(light_planes.begin(), light_planes.end(), [&](const LightPlane &plane) {
+           return std::abs(glm::dot(end - plane.p, plane.n)) <= plane.reach;
+         });
 }
 
 uint32_t PlaneRule::slot_of(const Hit &hit) const {
@@ -40,7 +93,7 @@ bool PlaneRule::is(const std::vector<uint8_t> &slots, const Hit &hit) const {
 }
 
 PlaneRule::Order PlaneRule::order_of(const Hit &hit) const {
-  return {is(rules.passing_slots, hit), hit.instance, slot_of(hit), hit.primitive};
+  return {is(rules.passing_slots, hit), !emits(hit), hit.instance, slot_of(hit), hit.primitive};
 }
 
 bool PlaneRule::starts_in_plane(const Ray &ray, const Hit &hit) const {

@@ -13,17 +13,24 @@ public:
   PlaneRule(const Geometry &geometry, const FaceRounding &rounding, CoplanarFaces faces, PlaneRules rules);
 
   bool flagged(const Hit &hit) const { return faces.has(hit.instance, hit.primitive); }
-  // The face that a ray starts on.
+  // By the face that a ray starts on.
   bool flagged(const Ray &ray) const { return ray.skip_instance != kNone && faces.has(ray.skip_instance, ray.skip_primitive); }
   // By instance: 1 where some faces are.
   const std::vector<uint8_t> &instances() const { return faces.instances; }
   bool any_shines() const { return shines; }
+  // Whether there may be faces that shine where something else is there.
+  bool any_hidden_light() const { return hides_light; }
   size_t bytes() const { return faces.bytes(); }
 
   // Whose turn it is to be there.
-  using Order = std::tuple<bool, uint32_t, uint32_t, uint32_t>;
+  using Order = std::tuple<bool, bool, uint32_t, uint32_t, uint32_t>;
   Order order_of(const Hit &hit) const;
   bool emits(const Hit &hit) const { return is(rules.emitting_slots, hit); }
+
+  // Whether a ray starts at a place of a flagged face where there may be others.
+  bool starts_covered(const Ray &ray) const;
+  // Whether a ray may end on a flagged face that shines.
+  bool may_end_on_light(const Ray &ray) const;
 
   // All of the following are about hits that are flagged.
   // Whether what a ray meets lies in the plane that it starts in, or ends in: rounding alone holds it before the ray.
@@ -46,6 +53,7 @@ private:
   uint32_t slot_of(const Hit &hit) const;
   bool is(const std::vector<uint8_t> &slots, const Hit &hit) const;
   double others(const glm::dvec3 &p) const;
+  void find_light_planes();
 
   const Geometry &geometry;
   const FaceRounding rounding;
@@ -53,7 +61,15 @@ private:
   const PlaneRules rules;
   std::vector<uint32_t> planes; // instances without end that have such faces
   double widest = 0.0;          // of the others, how much each may be off
-  bool shines = false;          // some of those instances does
+  // Of the instances that have such faces:
+  bool shines = false;          // some does
+  bool hides_light = false;     // some does that lets light through, and so gives way to others
+  bool shines_anywhere = false; // there are more planes of light than are worth a look at each
+  struct LightPlane {
+    glm::dvec3 p, n;
+    double reach;
+  };
+  std::vector<LightPlane> light_planes;
 };
 
 } // namespace lancer
