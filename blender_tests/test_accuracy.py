@@ -137,6 +137,21 @@ def is_power_of_two(count):
     return count > 0 and count & (count - 1) == 0
 
 
+def test_what_stopping_takes_back_is_no_bias():
+    """63 of 127 samples are taken back; what clamping and the last bounce found in them was counted beside the light of 64."""
+    with Session.upload(room(clamp_indirect=0.05, max_bounces=1)) as session:
+        session.render_all(64)
+        before = session.error()
+        session.render(64, 63)
+        finished(session)
+        session.stop()
+        finished(session)
+        after = session.error()
+    # Counted so both would be nearly doubled.
+    assert after.most_samples == 64 and before.clipped > 0.01 and before.missing > 0.001
+    assert after.clipped < 1.5 * before.clipped and after.missing < 1.5 * before.missing
+
+
 def test_stopping_leaves_powers_of_two():
     snapshot = room(samples=FOREVER, threads=2)
     with Session.upload(snapshot) as session:

@@ -194,6 +194,7 @@ void Session::render_tile(Worker &worker, Film::Tile &tile, uint32_t end) {
     drop_invalid(worker, tile);
     film_.add(tile, samples, worker.results);
     samples_ += worker.addresses.size();
+    counted_samples_ += worker.addresses.size();
     {
       const std::lock_guard lock(worker.mutex);
       worker.energy += energy;
@@ -298,15 +299,19 @@ SessionError Session::error(double confidence) const {
   const LuminanceMap map(film_);
   if (map.known)
     result.picture = picture_error(map, RelativeVariance(map), confidence);
-  double light = 0.0;
-  for (size_t i = 0; i < map.size(); ++i)
+  double light = 0.0, samples = 0.0;
+  for (size_t i = 0; i < map.size(); ++i) {
     light += std::max(0.0, double(map.mean[i])) * map.unit * map.count[i];
+    samples += double(map.count[i]);
+  }
   std::tie(result.least_samples, result.most_samples) = film_.sample_range();
   Energy energy;
   for (const auto &worker : workers_) {
     const std::lock_guard lock(worker->mutex);
     energy += worker->energy;
   }
+  // Energy is also that of samples which a stopped range has taken back.
+  light *= double(counted_samples_) / std::max(samples, 1.0);
   if (light > 0.0) {
     result.clipped = energy.clipped / (light + energy.clipped);
     result.missing = energy.beyond() / light;

@@ -99,7 +99,7 @@ private:
   std::vector<std::unique_ptr<Worker>> workers_;
   std::atomic<bool> cancel_{false}, stop_{false};
   std::atomic<size_t> next_task_{0};
-  std::atomic<uint64_t> samples_{0};
+  std::atomic<uint64_t> samples_{0}, counted_samples_{0}; // that the film has; that it has ever had
   uint64_t range_samples_ = 0, samples_before_ = 0;
   // What runs: tiles in order, and the samples that each of their pixels then has.
   struct Task {
