@@ -32,7 +32,7 @@ private:
     size_t ray;
     Hit *hit;
     PlaneRule::Across across;
-    PlaneRule::Order best;
+    PlaneOrder best;
     Hit found;
   };
   struct Searches {
@@ -45,7 +45,7 @@ private:
   struct End {
     size_t ray = 0;
     bool known = false, shines = false, stops = false; // something there, anything that shines, something on the way
-    PlaneRule::Order best{};
+    PlaneOrder best{};
     bool best_shines = false;
   };
   struct Ends {
@@ -186,7 +186,7 @@ private:
     const Ray &ray = asked.rays[s.ray];
     if (ray.skip_instance == hit.instance && ray.skip_primitive == hit.primitive)
       return;
-    const PlaneRule::Order order = rule.order_of(hit);
+    const PlaneOrder order = rule.order_of(hit);
     const Hit there{s.hit->t, hit.u, hit.v, hit.instance, hit.primitive};
     if (!(order < s.best) || !rule.in_plane(s.across, *s.hit, hit) || !asked.counts(s.ray, there))
       return;
@@ -214,7 +214,7 @@ private:
     const bool light = rule.emits(hit);
     end.stops = end.stops || (ray.tmin < hit.t && hit.t < ray.tmax && asked.counts(end.ray, hit));
     end.shines = end.shines || light;
-    if (const PlaneRule::Order order = rule.order_of(hit); !end.known || order < end.best) {
+    if (const PlaneOrder order = rule.order_of(hit); !end.known || order < end.best) {
       end.best = order;
       end.best_shines = light;
     }
@@ -232,7 +232,7 @@ std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geome
                                                const BuildContext &context) {
   std::unique_ptr<Accelerator> plain = build_accelerator(kind, geometry, context);
   const FaceRounding rounding(geometry, rules.origin);
-  CoplanarFaces faces = find_coplanar_faces(geometry, rounding, context);
+  CoplanarFaces faces = find_coplanar_faces(geometry, rounding, rules, context);
   if (!faces.any())
     return plain;
   return std::make_unique<CoplanarAccelerator>(

@@ -2,17 +2,9 @@
 #pragma once
 
 #include "accel/accelerator.h"
-
-#include <vector>
+#include "accel/plane_order.h"
 
 namespace lancer {
-
-// What is known of a scene beyond its geometry.
-struct PlaneRules {
-  glm::dvec3 origin{0.0};                // of the user's world, which floats placed the instances from
-  std::vector<uint8_t> passing_slots{};  // by slot: its material lets light through; empty: none does
-  std::vector<uint8_t> emitting_slots{}; // by slot: its material shines; empty: none does
-};
 
 // An accelerator with one rule more. Where two faces cover the same place of a plane, as far as rounding tells, the one is met
 // that lets no light through, then one that shines, then the one of the smaller instance, of the smaller slot, of the smaller

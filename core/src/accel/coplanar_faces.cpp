@@ -57,14 +57,15 @@ bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const 
 struct Patch {
   uint64_t face; // instance and primitive
   glm::dvec2 low, high;
+  bool loses; // the face gives way
 };
 
 uint64_t number_of(const FaceCandidate &c) { return uint64_t{c.instance} << 32 | c.primitive; }
 
 class Finder {
 public:
-  Finder(const Geometry &g, const FaceRounding &r, const BuildContext &c)
-      : geometry(g), rounding(r), context(c), chosen(choose_faces(g, r, c)), candidates(chosen.faces) {}
+  Finder(const Geometry &g, const FaceRounding &r, const PlaneRules &known, const BuildContext &c)
+      : geometry(g), rounding(r), rules(known), context(c), chosen(choose_faces(g, r, c)), candidates(chosen.faces) {}
 
   CoplanarFaces find() {
     const bool all = compare();
@@ -136,8 +137,9 @@ private:
   void add_patch(FaceCandidate &c, const FaceCandidate &by) {
     if (++c.found > kOthers)
       return;
-    Patch patch{number_of(c), glm::dvec2(std::numeric_limits<double>::infinity()),
-                -glm::dvec2(std::numeric_limits<double>::infinity())};
+    Patch patch{
+        number_of(c), glm::dvec2(std::numeric_limits<double>::infinity()), -glm::dvec2(std::numeric_limits<double>::infinity()),
+        plane_order(geometry, rules, by.instance, by.primitive) < plane_order(geometry, rules, c.instance, c.primitive)};
     glm::dvec2 low = patch.low, high = patch.high;
     for (int i = 0; i < 3; ++i) {
       const glm::dvec2 own = on_face(c, c.corner[i]), other = on_face(c, by.corner[i]);
@@ -229,7 +231,7 @@ private:
   void cover(CoplanarFaces &faces) {
     std::stable_sort(patches.begin(), patches.end(), [](const Patch &a, const Patch &b) { return a.face < b.face; });
     for (size_t begin = 0, end; begin < patches.size(); begin = end) {
-      Covered c{patches[begin].face, patches[begin].low, patches[begin].high, 0};
+      Covered c{patches[begin].face, patches[begin].low, patches[begin].high, 0, 0};
       for (end = begin; end < patches.size() && patches[end].face == c.face; ++end) {
         c.low = glm::min(c.low, patches[end].low);
         c.high = glm::max(c.high, patches[end].high);
@@ -239,8 +241,10 @@ private:
       for (size_t i = begin; i < end; ++i) {
         const glm::ivec2 low = c.cell(patches[i].low), high = c.cell(patches[i].high);
         for (int x = std::max(low.x, 0); x <= std::min(high.x, 7); ++x)
-          for (int y = std::max(low.y, 0); y <= std::min(high.y, 7); ++y)
+          for (int y = std::max(low.y, 0); y <= std::min(high.y, 7); ++y) {
             c.cells |= uint64_t{1} << (8 * x + y);
+            c.losing |= uint64_t{patches[i].loses} << (8 * x + y);
+          }
       }
       faces.covered.push_back(c);
     }
@@ -248,6 +252,7 @@ private:
 
   const Geometry &geometry;
   const FaceRounding &rounding;
+  const PlaneRules &rules;
   const BuildContext &context;
   FaceCandidates chosen;
   std::vector<FaceCandidate> &candidates;
@@ -256,18 +261,19 @@ private:
 
 } // namespace
 
-bool CoplanarFaces::may_be_covered(uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const {
+bool CoplanarFaces::may_be(uint64_t Covered::*cells, uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const {
   const uint64_t face = uint64_t{instance} << 32 | primitive;
   const auto known =
       std::lower_bound(covered.begin(), covered.end(), face, [](const Covered &c, uint64_t number) { return c.face < number; });
   if (known == covered.end() || known->face != face)
     return true;
   const glm::ivec2 cell = known->cell(at);
-  return cell.x >= 0 && cell.x < 8 && cell.y >= 0 && cell.y < 8 && known->cells >> (8 * cell.x + cell.y) & 1;
+  return cell.x >= 0 && cell.x < 8 && cell.y >= 0 && cell.y < 8 && (*known).*cells >> (8 * cell.x + cell.y) & 1;
 }
 
-CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const BuildContext &context) {
-  return Finder(geometry, rounding, context).find();
+CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const PlaneRules &rules,
+                                  const BuildContext &context) {
+  return Finder(geometry, rounding, rules, context).find();
 }
 
 } // namespace lancer

@@ -3,14 +3,15 @@
 
 #include "accel/accelerator.h"
 #include "accel/flat_face.h"
+#include "accel/plane_order.h"
 
 namespace lancer {
 
-// The part of a face that others cover, in eight by eight cells of its coordinates.
+// The part of a face that others cover, in eight by eight cells of its coordinates; and where some of them go before it.
 struct Covered {
   uint64_t face; // instance and primitive
   glm::dvec2 low, high;
-  uint64_t cells;
+  uint64_t cells, losing;
 
   // -1 and 8: beyond.
   glm::ivec2 cell(const glm::dvec2 &at) const {
@@ -32,14 +33,24 @@ struct CoplanarFaces {
     return instances[instance] && bits[first[instance] + (primitive >> 6)] >> (primitive & 63) & 1;
   }
   // Whether there may be others at a place of such a face: weights of a triangle's corners, x and y of an exact surface.
-  bool may_be_covered(uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const;
+  bool may_be_covered(uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const {
+    return may_be(&Covered::cells, instance, primitive, at);
+  }
+  // And whether such another would be there instead of it.
+  bool may_lose(uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const {
+    return may_be(&Covered::losing, instance, primitive, at);
+  }
   size_t bytes() const {
     return instances.capacity() + first.capacity() * sizeof(uint32_t) + bits.capacity() * sizeof(uint64_t) +
            covered.capacity() * sizeof(Covered);
   }
+
+private:
+  bool may_be(uint64_t Covered::*cells, uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const;
 };
 
 // The same for every accelerator; its cost is bounded.
-CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const BuildContext &context);
+CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const PlaneRules &rules,
+                                  const BuildContext &context);
 
 } // namespace lancer

@@ -80,22 +80,6 @@ bool PlaneRule::may_end_on_light(const Ray &ray) const {
          });
 }
 
-uint32_t PlaneRule::slot_of(const Hit &hit) const {
-  const Instance &instance = geometry.instances[hit.instance];
-  if (instance.kind != ShapeKind::Mesh || instance.slot_count == 0 || geometry.meshes[instance.mesh].material_slots.empty())
-    return 0;
-  return std::min<uint32_t>(geometry.meshes[instance.mesh].material_slots[hit.primitive], instance.slot_count - 1);
-}
-
-bool PlaneRule::is(const std::vector<uint8_t> &slots, const Hit &hit) const {
-  const Instance &instance = geometry.instances[hit.instance];
-  return instance.slot_count > 0 && !slots.empty() && slots[instance.first_slot + slot_of(hit)] != 0;
-}
-
-PlaneRule::Order PlaneRule::order_of(const Hit &hit) const {
-  return {is(rules.passing_slots, hit), !emits(hit), hit.instance, slot_of(hit), hit.primitive};
-}
-
 bool PlaneRule::starts_in_plane(const Ray &ray, const Hit &hit) const {
   if (!flagged(ray))
     return false;
@@ -138,10 +122,10 @@ double PlaneRule::others(const glm::dvec3 &p) const {
 std::optional<PlaneRule::Across> PlaneRule::across(const Ray &ray, const Hit &hit) const {
   const Instance &instance = geometry.instances[hit.instance];
   const bool mesh = instance.kind == ShapeKind::Mesh;
-  if (mesh && !faces.may_be_covered(hit.instance, hit.primitive, {hit.u, hit.v}))
+  if (mesh && !faces.may_lose(hit.instance, hit.primitive, {hit.u, hit.v}))
     return {};
   const std::optional<FlatFace> face = face_met(geometry, ray, hit);
-  if (!face || (!mesh && !faces.may_be_covered(hit.instance, 0, glm::dvec2(instance.to_object.point(face->p)))))
+  if (!face || (!mesh && !faces.may_lose(hit.instance, 0, glm::dvec2(instance.to_object.point(face->p)))))
     return {};
   Across across{{}, *face, rounding.most(hit.instance, rounding.share(hit.instance, face->p) + others(face->p))};
   across.ray.o = face->p - across.reach * face->n;

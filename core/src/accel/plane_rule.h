@@ -1,10 +1,7 @@
 // Which of the faces in one plane is there, and which of them a ray may meet.
 #pragma once
 
-#include "accel/coplanar_accelerator.h"
 #include "accel/coplanar_faces.h"
-
-#include <tuple>
 
 namespace lancer {
 
@@ -22,10 +19,8 @@ public:
   bool any_hidden_light() const { return hides_light; }
   size_t bytes() const { return faces.bytes(); }
 
-  // Whose turn it is to be there.
-  using Order = std::tuple<bool, bool, uint32_t, uint32_t, uint32_t>;
-  Order order_of(const Hit &hit) const;
-  bool emits(const Hit &hit) const { return is(rules.emitting_slots, hit); }
+  PlaneOrder order_of(const Hit &hit) const { return plane_order(geometry, rules, hit.instance, hit.primitive); }
+  bool emits(const Hit &hit) const { return face_emits(geometry, rules, hit.instance, hit.primitive); }
 
   // Whether a ray starts at a place of a flagged face where there may be others.
   bool starts_covered(const Ray &ray) const;
@@ -39,7 +34,7 @@ public:
   // The last part of a ray, and beyond: what it meets here may lie where it ends.
   static Ray around_end(const Ray &ray);
 
-  // A ray across the plane of a hit that meets whatever may be there in its stead; none where there is nothing else.
+  // A ray across the plane of a hit that meets whatever may be there in its stead; none where nothing goes before it.
   struct Across {
     Ray ray;
     FlatFace face;
@@ -50,8 +45,6 @@ public:
   bool in_plane(const Across &across, const Hit &hit, const Hit &met) const;
 
 private:
-  uint32_t slot_of(const Hit &hit) const;
-  bool is(const std::vector<uint8_t> &slots, const Hit &hit) const;
   double others(const glm::dvec3 &p) const;
   void find_light_planes();
 
