@@ -188,7 +188,7 @@ def test_many_renders_keep_no_memory(which, tmp_path):
 
 # A field of squares n by n, and the step of the road to a picture at which there is no more memory.
 OUT_OF_MEMORY = """
-import dataclasses, json, resource, sys
+import dataclasses, json, os, resource, sys
 sys.path[:0] = [{root!r} + "/addon", {here!r}]
 import numpy as np
 import tiny_scenes
@@ -219,7 +219,10 @@ try:
     if step == "commit":
         limit()
     scene.commit(threads=2)
-    if step == "film":
+    if step == "late":
+        # On one processor a thread begins when another has taken all memory, and has to fail without any.
+        os.sched_setaffinity(0, {{min(os.sched_getaffinity(0))}})
+    if step in ("film", "late"):
         limit()
     size = dict(width=20000, height=20000, region_width=20000, region_height=20000)
     with Session(scene, dataclasses.replace(snapshot.camera, **size), snapshot.settings) as session:
@@ -237,7 +240,8 @@ print(json.dumps(result))
     "step, n, extra",
     # Megabytes that are left: fewer than the mesh takes (144), the build of half a million triangles,
     # the stack of the thread that builds it, or the film (6400).
-    [("fill", 2000, 64), ("commit", 500, 24), ("commit", 500, 8), ("film", 10, 256)],
+    [("fill", 2000, 64), ("commit", 500, 24), ("commit", 500, 8), ("film", 10, 256)]
+    + [("late", 10, left) for left in range(24, 43, 3)],
 )
 def test_out_of_memory(step, n, extra):
     """Too large a scene is an error with words; the process lives and renders the same scene when there is memory again."""

@@ -137,6 +137,9 @@ def stopped(how):
         return original(session, lambda: how == "poll" and "%" in said[-1] or how == "at once", hear)
 
     denoise.apply = apply
+    if how == "interrupt":
+        # As in a terminal: what a shell starts in the background ignores Ctrl-C.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         pictures, _, statistics, data = _render(scene, True)
         result["raw"] = all(np.array_equal(pictures[name], raw["Combined"]) for name in ("Combined", "Noisy Image"))

@@ -18,12 +18,17 @@ inline void poll_cancel(const BuildContext &context) {
     throw BuildCancelled{};
 }
 
+// Makes what a thread needs to throw anything. It is made when first needed, and a process without the memory for it ends: so a
+// thread has it made before its work may take all memory. The compiler would leave out a question whose answer nobody reads.
+inline void prepare_to_fail() { [[maybe_unused]] const volatile int exceptions = std::uncaught_exceptions(); }
+
 // Calls piece(0) ... piece(count - 1), in any order; the first exception ends the loop and is thrown here.
 template <class Piece> void parallel_for(const BuildContext &context, size_t count, Piece &&piece) {
   std::atomic<size_t> next{0};
   std::exception_ptr failure;
   std::mutex mutex;
   const auto work = [&] {
+    prepare_to_fail();
     try {
       for (size_t i; (i = next.fetch_add(1)) < count;) {
         poll_cancel(context);

@@ -1,7 +1,10 @@
 #include "render/thread_pool.h"
 
+#include "accel/parallel.h"
+
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <utility>
 
 #if defined(__SSE2__)
@@ -9,6 +12,20 @@
 #endif
 
 namespace lancer {
+
+namespace {
+
+// Small enough that freeing it does not give it back to the system.
+constexpr size_t kReserve = size_t(64) << 10;
+
+// What is free afterwards is there for prepare_to_fail(); without any the pool fails with words.
+void reserve_memory() {
+  const std::unique_ptr<char[]> memory(new char[kReserve]);
+  // Not to be left out by the compiler.
+  *static_cast<volatile char *>(memory.get()) = 0;
+}
+
+} // namespace
 
 #if defined(__SSE2__)
 FloatEnvironment::FloatEnvironment() : saved_(_mm_getcsr()) { _mm_setcsr(0x1f80); }
@@ -20,8 +37,12 @@ FloatEnvironment::~FloatEnvironment() = default;
 
 ThreadPool::ThreadPool(uint32_t count) {
   try {
-    for (uint32_t i = 0, all = resolved(count); i < all; ++i)
+    for (uint32_t i = 0, all = resolved(count); i < all; ++i) {
+      reserve_memory();
       threads_.emplace_back([this, i] { loop(i); });
+      std::unique_lock lock(mutex_);
+      done_.wait(lock, [this] { return ready_ == size(); });
+    }
   } catch (...) {
     // Not all threads could be had: end those that were, then tell.
     {
@@ -72,8 +93,11 @@ bool ThreadPool::running() const {
 
 void ThreadPool::loop(uint32_t thread) {
   const FloatEnvironment environment;
+  prepare_to_fail();
   uint64_t seen = 0;
   std::unique_lock lock(mutex_);
+  ++ready_;
+  done_.notify_all();
   while (true) {
     wake_.wait(lock, [&] { return stop_ || generation_ != seen; });
     if (stop_ && generation_ == seen)

@@ -37,7 +37,7 @@ private:
   std::function<void(uint32_t)> work_;
   std::exception_ptr failure_;
   uint64_t generation_ = 0;
-  uint32_t busy_ = 0;
+  uint32_t busy_ = 0, ready_ = 0;
   bool stop_ = false;
   std::vector<std::thread> threads_;
 };
