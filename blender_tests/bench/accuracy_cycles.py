@@ -47,7 +47,7 @@ def measure(name, threads, width, height, folder, seeds=8, thresholds=(0.05, 0.0
     image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
     bpy.context.view_layer.cycles.pass_debug_sample_count = True
     bpy.context.view_layer.update()
-    converged = figures.Reference(np.stack(list(_reference(scene, Path(folder), reference))))
+    converged = figures.Reference(np.stack(list(_reference(scene, name, Path(folder), reference))))
     result = []
     scene.cycles.use_adaptive_sampling = True
     scene.cycles.adaptive_min_samples = 0
@@ -69,14 +69,14 @@ def measure(name, threads, width, height, folder, seeds=8, thresholds=(0.05, 0.0
     return {"reference": {"samples": reference, "error": converged.error}, "thresholds": result}
 
 
-def _reference(scene, folder, samples):
+def _reference(scene, name, folder, samples):
     """Without a threshold; each part is kept."""
     scene.cycles.use_adaptive_sampling = False
     count = samples // _REFERENCE_PARTS
     folder.mkdir(parents=True, exist_ok=True)
     for number in range(_REFERENCE_PARTS):
         size = f"{scene.render.resolution_x}x{scene.render.resolution_y}"
-        path = folder / f"{scene.name}-{size}-cycles-{bpy.app.version_string}-{count}-{number}.npy"
+        path = folder / f"{name}-{size}-cycles-{bpy.app.version_string}-{count}-{number}.npy"
         if not path.exists():
             np.save(path, render(scene, count, _REFERENCE_SEED + number)[0])
         yield np.load(path)
