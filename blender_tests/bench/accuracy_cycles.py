@@ -23,19 +23,14 @@ _MOST_SAMPLES = 4096
 
 
 def render(scene, samples, seed):
-    """(luminances, mean samples of a pixel) as Cycles renders them; samples are None where it does not tell."""
+    """Luminances as Cycles renders them. How many samples it took for them it does not tell: its pass has shares."""
     worker.set_samples(scene, samples, seed)
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = os.path.join(folder, "picture.exr")
         bpy.ops.render.render(write_still=True)
         layers = exr.read(scene.render.filepath)
     combined = next(value for name, value in layers.items() if "Combined" in name or len(layers) == 1)
-    counts = [value for name, value in layers.items() if "Sample Count" in name]
-    taken = None
-    if counts:
-        # Cycles writes the share of the largest number.
-        taken = float(np.mean(counts[0])) * (samples if counts[0].max() <= 1.0 else 1)
-    return figures.luminance(combined[..., :3]), taken
+    return figures.luminance(combined[..., :3])
 
 
 def measure(name, threads, width, height, folder, seeds=8, thresholds=(0.05, 0.02, 0.01), reference=8192):
@@ -45,8 +40,6 @@ def measure(name, threads, width, height, folder, seeds=8, thresholds=(0.05, 0.0
     if hasattr(image, "media_type"):
         image.media_type = "MULTI_LAYER_IMAGE"
     image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
-    bpy.context.view_layer.cycles.pass_debug_sample_count = True
-    bpy.context.view_layer.update()
     converged = figures.Reference(np.stack(list(_reference(scene, name, Path(folder), reference))))
     result = []
     scene.cycles.use_adaptive_sampling = True
@@ -54,15 +47,13 @@ def measure(name, threads, width, height, folder, seeds=8, thresholds=(0.05, 0.0
     for threshold in thresholds:
         scene.cycles.adaptive_threshold = threshold
         runs = [render(scene, _MOST_SAMPLES, seed) for seed in range(seeds)]
-        real = [figures.real_error(picture, converged) for picture, _ in runs]
-        counts = [count for _, count in runs if count is not None]
+        real = [figures.real_error(picture, converged) for picture in runs]
         own = figures.root_mean_square(real)
         result.append(
             {
                 "threshold": threshold,
                 "real": real,
-                "samples": float(np.mean(counts)) if counts else None,
-                "bias": figures.bias(np.stack([picture for picture, _ in runs]), converged),
+                "bias": figures.bias(np.stack(runs), converged),
                 "reference_share": (converged.error / own) ** 2 if own > 0.0 else 0.0,
             }
         )
@@ -78,7 +69,7 @@ def _reference(scene, name, folder, samples):
         size = f"{scene.render.resolution_x}x{scene.render.resolution_y}"
         path = folder / f"{name}-{size}-cycles-{bpy.app.version_string}-{count}-{number}.npy"
         if not path.exists():
-            np.save(path, render(scene, count, _REFERENCE_SEED + number)[0])
+            np.save(path, render(scene, count, _REFERENCE_SEED + number))
         yield np.load(path)
 
 

@@ -11,7 +11,7 @@ _EVEN += ["interval holds", "with what cannot be excluded", "told / real", "high
 _EVEN += ["real error", "bias z", "blocks beyond 4"]
 _TARGET = ["scene", "asked", "target", "met", "real error", "samples", "even samples would take", "bias", "bias z"]
 _TARGET += ["blocks beyond 4", "reference's share"]
-_CYCLES = ["scene", "noise threshold", "real error: median", "least", "most", "share at or below the threshold", "samples"]
+_CYCLES = ["scene", "noise threshold", "real error: median", "least", "most", "share at or below the threshold"]
 _CYCLES += ["bias", "bias z", "blocks beyond 4", "reference's share"]
 
 
@@ -100,7 +100,6 @@ def _cycles(name, scene):
             f"{min(real):.4f}",
             f"{max(real):.4f}",
             percent(np.mean(np.array(real) <= run["threshold"])),
-            "" if run["samples"] is None else f"{run['samples']:.0f}",
             f"{percent(run['bias']['relative'], 3)} +- {percent(run['bias']['relative_error'], 3)}",
             *_bias(run["bias"]),
             percent(run["reference_share"]),
