@@ -138,7 +138,8 @@ private:
   bool stops(const Asked &asked, size_t ray, const Hit &hit) const {
     if (!rule.flagged(hit))
       return asked.counts(ray, hit);
-    if (rule.starts_in_plane(asked.rays[ray], hit) || (rule.any_shines() && rule.ends_in_plane(asked.rays[ray], hit)))
+    const Ray &asked_ray = asked.rays[ray];
+    if (rule.starts_in_plane(asked_ray, hit) || (rule.may_end_on_light(asked_ray) && rule.ends_in_plane(asked_ray, hit)))
       return false;
     // What lets light through takes none of it where something else is there.
     if (asked.filter && asked.filter->instances[hit.instance]) {

@@ -123,17 +123,6 @@ private:
       c.found |= found[c.instance];
   }
 
-  // Coordinates on a face, as hits have them: weights of its corners, or those of the exact surface's space.
-  glm::dvec2 on_face(const FaceCandidate &c, const glm::dvec3 &p) const {
-    const Instance &instance = geometry.instances[c.instance];
-    if (instance.kind != ShapeKind::Mesh)
-      return glm::dvec2(instance.to_object.point(p));
-    const glm::dvec3 a = c.corner[1] - c.corner[0], b = c.corner[2] - c.corner[0], q = p - c.corner[0];
-    const glm::dvec3 n = glm::cross(a, b);
-    const double area = glm::dot(n, n);
-    return {glm::dot(glm::cross(q, b), n) / area, glm::dot(glm::cross(a, q), n) / area};
-  }
-
   void add_patch(FaceCandidate &c, const FaceCandidate &by) {
     if (++c.found > kOthers)
       return;
@@ -142,7 +131,8 @@ private:
         plane_order(geometry, rules, by.instance, by.primitive) < plane_order(geometry, rules, c.instance, c.primitive)};
     glm::dvec2 low = patch.low, high = patch.high;
     for (int i = 0; i < 3; ++i) {
-      const glm::dvec2 own = on_face(c, c.corner[i]), other = on_face(c, by.corner[i]);
+      const glm::dvec2 own = place_on_face(geometry, c.instance, c.primitive, c.corner[i]),
+                       other = place_on_face(geometry, c.instance, c.primitive, by.corner[i]);
       low = glm::min(low, own);
       high = glm::max(high, own);
       patch.low = glm::min(patch.low, other);

@@ -47,6 +47,18 @@ void world_corners(const Geometry &geometry, uint32_t instance, uint32_t triangl
     corner[i] = placed.to_world.point(glm::dvec3(geometry.meshes[placed.mesh].vertex(triangle, i)));
 }
 
+glm::dvec2 place_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive, const glm::dvec3 &p) {
+  const Instance &placed = geometry.instances[instance];
+  if (placed.kind != ShapeKind::Mesh)
+    return glm::dvec2(placed.to_object.point(p));
+  glm::dvec3 corner[3];
+  world_corners(geometry, instance, primitive, corner);
+  const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0], q = p - corner[0];
+  const glm::dvec3 n = glm::cross(a, b);
+  const double area = glm::dot(n, n);
+  return {glm::dot(glm::cross(q, b), n) / area, glm::dot(glm::cross(a, q), n) / area};
+}
+
 std::optional<FlatFace> face_met(const Geometry &geometry, const Ray &ray, const Hit &hit) {
   const Instance &instance = geometry.instances[hit.instance];
   if (instance.kind != ShapeKind::Mesh)

@@ -18,6 +18,8 @@ struct FlatFace {
 // A triangle, by its corners in the world.
 FlatFace triangle_face(const glm::dvec3 corner[3]);
 void world_corners(const Geometry &geometry, uint32_t instance, uint32_t triangle, glm::dvec3 corner[3]);
+// Where p is on a face, as hits tell it: weights of a triangle's corners, x and y of an exact surface.
+glm::dvec2 place_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive, const glm::dvec3 &p);
 // The face that a ray meets, with p where it does; none where the surface is curved there.
 std::optional<FlatFace> face_met(const Geometry &geometry, const Ray &ray, const Hit &hit);
 // The face that a ray starts on, with p next to its start.

@@ -44,7 +44,7 @@ void PlaneRule::find_light_planes() {
       const Hit hit{0.0, 0.0f, 0.0f, i, primitive};
       if (!flagged(hit) || !emits(hit))
         continue;
-      // A triangle's plane is known the less the farther it reaches beyond it, so each is looked at by itself.
+      // Each by itself: beyond a triangle its plane is known the less.
       shines_anywhere = !mesh || light_planes.size() == kLightPlanes;
       if (shines_anywhere)
         return;
@@ -57,18 +57,8 @@ void PlaneRule::find_light_planes() {
 }
 
 bool PlaneRule::starts_covered(const Ray &ray) const {
-  if (!flagged(ray))
-    return false;
-  const Instance &instance = geometry.instances[ray.skip_instance];
-  if (instance.kind != ShapeKind::Mesh)
-    return faces.may_be_covered(ray.skip_instance, 0, glm::dvec2(instance.to_object.point(ray.o)));
-  // The weights of the triangle's corners at the start, by the plane's two directions.
-  glm::dvec3 corner[3];
-  world_corners(geometry, ray.skip_instance, ray.skip_primitive, corner);
-  const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0], o = ray.o - corner[0];
-  const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b), oa = glm::dot(o, a), ob = glm::dot(o, b);
-  const double area = aa * bb - ab * ab;
-  return faces.may_be_covered(ray.skip_instance, ray.skip_primitive, glm::dvec2(bb * oa - ab * ob, aa * ob - ab * oa) / area);
+  return flagged(ray) && faces.may_be_covered(ray.skip_instance, ray.skip_primitive,
+                                              place_on_face(geometry, ray.skip_instance, ray.skip_primitive, ray.o));
 }
 
 bool PlaneRule::may_end_on_light(const Ray &ray) const {

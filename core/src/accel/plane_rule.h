@@ -14,7 +14,6 @@ public:
   bool flagged(const Ray &ray) const { return ray.skip_instance != kNone && faces.has(ray.skip_instance, ray.skip_primitive); }
   // By instance: 1 where some faces are.
   const std::vector<uint8_t> &instances() const { return faces.instances; }
-  bool any_shines() const { return shines; }
   // Whether there may be faces that shine where something else is there.
   bool any_hidden_light() const { return hides_light; }
   size_t bytes() const { return faces.bytes(); }
@@ -57,7 +56,7 @@ private:
   // Of the instances that have such faces:
   bool shines = false;          // some does
   bool hides_light = false;     // some does that lets light through, and so gives way to others
-  bool shines_anywhere = false; // there are more planes of light than are worth a look at each
+  bool shines_anywhere = false; // an exact surface does, or there are more planes of light than are worth a look at each
   struct LightPlane {
     glm::dvec3 p, n;
     double reach;

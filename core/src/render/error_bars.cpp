@@ -60,7 +60,7 @@ template <class SumsOf> Sums smallest_window(const LuminanceMap &map, uint32_t x
 // Sums over any window by four look-ups in each table.
 class Tables {
 public:
-  // share: whether a pixel counts.
+  // counts: whether a pixel does.
   template <class Counts> Tables(const LuminanceMap &map, Counts &&counts) : stride_(map.width + 1) {
     sums_.resize(size_t(stride_) * (map.height + 1));
     for (uint32_t y = 0; y < map.height; ++y) {
@@ -103,7 +103,8 @@ float mixture_variance(const LuminanceMap &map, uint32_t x, uint32_t y) {
   return (own - dark) * (bright - own);
 }
 
-// [height][width]: kPlain, or that of an edge: equal ones and those beside them vary by the same within a factor of 4 to 8.
+// [height][width]: kPlain, or of an edge the power of four that it would vary by. Edges share with those of the same power and
+// of the two beside it.
 constexpr int16_t kPlain = std::numeric_limits<int16_t>::min();
 
 std::vector<int16_t> kinds_of(const LuminanceMap &map) {

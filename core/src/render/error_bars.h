@@ -3,7 +3,7 @@
 
 #include "render/luminance_map.h"
 
-#include <span>
+#include <vector>
 
 namespace lancer {
 
