@@ -21,10 +21,6 @@ def is_old(scene):
     return scene.name in _states and _states[scene.name] != _state(scene)
 
 
-def _work(seconds, snapshot, poll, tell):
-    return measure_costs(snapshot, seconds, poll, tell)
-
-
 class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.measure_features"
     bl_label = "Measure What Features Cost"
@@ -38,7 +34,7 @@ class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
     )
 
     def work(self):
-        return functools.partial(_work, self.seconds)
+        return functools.partial(measure_costs, seconds=self.seconds)
 
     def begun(self, context, snapshot):
         self._state = _state(context.scene)

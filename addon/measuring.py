@@ -57,7 +57,7 @@ class _Measurement(threading.Thread):
 
     def run(self):
         try:
-            self.found = self.work(self.snapshot, self.stop.is_set, self._tell)
+            self.found = self.work(self.snapshot, poll=self.stop.is_set, tell=self._tell)
         except Cancelled:
             pass
         except LancerError as error:

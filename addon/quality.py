@@ -102,7 +102,7 @@ class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
     )
 
     def work(self):
-        return functools.partial(_measured, self.seconds)
+        return functools.partial(measure, seconds=self.seconds)
 
     def begun(self, context, snapshot):
         camera = snapshot.camera
@@ -116,10 +116,6 @@ class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
         measured[scene.name] = self._kept
         for line in lines(scene):
             self.report({"INFO"}, f"Lancer: {line}")
-
-
-def _measured(seconds, snapshot, poll, tell):
-    return measure(snapshot, seconds, poll, tell)
 
 
 @persistent

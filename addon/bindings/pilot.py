@@ -102,11 +102,7 @@ class _Run:
         points = []
         self.doing = "All pixels alike"
         with Session(self.scene, camera, self.settings) as session:
-            done = 0
-            while done < _DEEPEST:
-                self._render(session, done, max(1, done))
-                done += max(1, done)
-                _add(points, session, camera)
+            for done in self._doubling(session, camera, points):
                 # The next range takes as long as all before it.
                 late = time.monotonic() + session.statistics().render_seconds > until
                 if done >= PILOT and (late or session.error().bound <= _ENOUGH):
@@ -117,11 +113,9 @@ class _Run:
         points = []
         self.doing = "Samples where the error is"
         with Session(self.scene, camera, self.refining) as session:
-            done = 0
-            while done < PILOT:
-                self._render(session, done, max(1, done))
-                done += max(1, done)
-                _add(points, session, camera)
+            for done in self._doubling(session, camera, points):
+                if done >= PILOT:
+                    break
             while time.monotonic() < self.until:
                 bound = session.error().bound
                 if not _ENOUGH < bound < math.inf or not session.refine(_NEXT * bound):
@@ -129,6 +123,15 @@ class _Run:
                 self._wait(session, until=self.until)
                 _add(points, session, camera)
         return points
+
+    def _doubling(self, session, camera, points):
+        """Samples of each pixel, 1, 2, 4 ..., as they are there; each adds its point."""
+        done = 0
+        while done < _DEEPEST:
+            self._render(session, done, max(1, done))
+            done += max(1, done)
+            _add(points, session, camera)
+            yield done
 
     def classic(self):
         """Seconds of a pixel's sample of the other integrator."""
