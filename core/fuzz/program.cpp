@@ -1,10 +1,10 @@
 #include "program.h"
 
+#include "checked.h"
+#include "probes.h"
 #include "records.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 
@@ -13,26 +13,6 @@ namespace lancer_fuzz {
 namespace {
 
 constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRanges = 5, kMostRefinements = 4, kMostThings = 16;
-constexpr uint32_t kCount = 3; // of what a probe is asked
-
-[[noreturn]] void broken(const char *what, const char *detail) {
-  std::fprintf(stderr, "broken promise: %s: %s\n", what, detail);
-  std::abort();
-}
-
-// Every status is one of those that there are, none is a fault of the library's own, and an error has its sentence.
-lancer_status checked(const char *call, lancer_status status) {
-  const char *said = lancer_last_error();
-  if (status < LANCER_OK || status >= LANCER_ERROR_INTERNAL)
-    broken(call, said);
-  if ((status >= LANCER_ERROR_ARGUMENT) != (*said != '\0'))
-    broken(call, "its status and its message do not fit");
-  if (std::strlen(said) > 1023)
-    broken(call, "its message has no end");
-  return status;
-}
-
-#define LANCER_CHECKED(call) checked(#call, call)
 
 struct SceneState {
   lancer_scene handle = 0;
@@ -111,9 +91,9 @@ private:
     case 21:
       return look(handle_of(sessions_));
     case 22:
-      return probe_scene(handle_of(scenes_));
+      return probe(handle_of(scenes_));
     default:
-      return small_calls();
+      return probe_nothing(bytes_);
     }
   }
 
@@ -299,10 +279,7 @@ private:
             broken("lancer_session_read", ("pass " + std::to_string(pass) + " is not finite").c_str());
       }
     replay(session, state);
-    const double raster[2 * kCount] = {0.5, 0.5, -1e9, 3.0, double(bytes_.number(1.0f, 0.0f, 8.0f)), 2.0},
-                            lens[2 * kCount] = {0.5, 0.5, 0.0, 0.0, 0.99999, 0.5};
-    double origins[3 * kCount], directions[3 * kCount];
-    LANCER_CHECKED(lancer_probe_camera(session, kCount, raster, lens, origins, directions));
+    probe_camera(session, bytes_);
   }
 
   void replay(lancer_session session, const SessionState *state) {
@@ -314,54 +291,9 @@ private:
     LANCER_CHECKED(lancer_debug_sample(session, x, y, sample, rgba, vertices, capacity, &count));
   }
 
-  void probe_scene(lancer_scene scene) {
-    double origins[3 * kCount], directions[3 * kCount], low[kCount], high[kCount];
-    float u[3 * kCount], wo[3 * kCount], wi[3 * kCount];
-    for (uint32_t i = 0; i < 3 * kCount; ++i) {
-      origins[i] = bytes_.number(i % 3 == 2 ? 6.0 : 0.0, -3.0, 3.0);
-      directions[i] = bytes_.number(i % 3 == 2 ? -1.0 : 0.0, -1.0, 1.0);
-      u[i] = bytes_.number(0.5f, 0.0f, 0.999f);
-      wo[i] = bytes_.number(i % 3 == 2 ? 0.8f : i % 3 == 0 ? 0.6f : 0.0f, -1.0f, 1.0f);
-      wi[i] = bytes_.number(i % 3 == 2 ? 0.6f : i % 3 == 0 ? 0.8f : 0.0f, -1.0f, 1.0f);
-    }
-    for (uint32_t i = 0; i < kCount; ++i) {
-      low[i] = bytes_.number(0.0, 0.0, 4.0);
-      high[i] = bytes_.number(1e30, 0.0, 10.0);
-    }
+  void probe(lancer_scene scene) {
     const SceneState *state = state_of(scenes_, scene);
-    const uint32_t material = bytes_.reference(state ? state->filled.materials : 0),
-                   light = bytes_.reference(state ? state->filled.lights + 1 : 0);
-    lancer_hit hits[kCount];
-    uint8_t occluded[kCount];
-    uint64_t counts[4];
-    float four[4 * kCount], three[3 * kCount], pdf[kCount];
-    lancer_bsdf_sample samples[kCount];
-    lancer_light_sample light_samples[kCount];
-    lancer_lobe_info lobes[4];
-    uint32_t lobe_count = 0;
-    LANCER_CHECKED(lancer_probe_intersect(scene, kCount, origins, directions, low, high, hits));
-    LANCER_CHECKED(lancer_probe_occluded(scene, kCount, origins, directions, low, high, occluded));
-    LANCER_CHECKED(lancer_probe_traversal(scene, kCount, origins, directions, low, high, bytes_.below(2), counts));
-    LANCER_CHECKED(lancer_probe_bsdf(scene, material, kCount, wo, wi, three, pdf));
-    LANCER_CHECKED(lancer_probe_bsdf_sample(scene, material, kCount, wo, u, samples));
-    LANCER_CHECKED(lancer_probe_lobes(scene, material, wo, lobes, bytes_.below(5), &lobe_count, three, nullptr));
-    LANCER_CHECKED(lancer_probe_node(scene, material, bytes_.below(8), kCount, u, four));
-    LANCER_CHECKED(lancer_probe_world(scene, kCount, directions, three, pdf));
-    LANCER_CHECKED(lancer_probe_light(scene, light, kCount, origins, u, light_samples));
-    LANCER_CHECKED(lancer_probe_light_pdf(scene, light, kCount, origins, directions, pdf));
-  }
-
-  // What needs no scene.
-  void small_calls() {
-    float a[kCount], b[kCount], c[kCount], numbers[8];
-    for (uint32_t i = 0; i < kCount; ++i)
-      a[i] = bytes_.number(0.5f, 0.0f, 1.0f);
-    LANCER_CHECKED(lancer_probe_microfacet(kCount, a, a, a, a, a, b, c, numbers));
-    const uint32_t seed = bytes_.byte(), x = bytes_.word(), y = bytes_.byte(), sample = bytes_.word();
-    LANCER_CHECKED(lancer_probe_sampler(seed, x, y, sample, 8, numbers));
-    const uint32_t filter = bytes_.choice(2);
-    LANCER_CHECKED(lancer_probe_filter(filter, bytes_.number(1.5f, 0.0f, 4.0f), kCount, a, b));
-    lancer_sizeof(bytes_.byte());
+    probe_scene(scene, state ? &state->filled : nullptr, bytes_);
   }
 
   // To the end: a scene, a commit, a session, a range, its picture.
@@ -392,7 +324,7 @@ private:
           ;
         look(session.handle);
       }
-      probe_scene(scene.handle);
+      probe(scene.handle);
     }
     for (const SessionState &session : sessions_)
       LANCER_CHECKED(lancer_session_destroy(session.handle));

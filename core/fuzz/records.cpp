@@ -7,7 +7,7 @@ namespace lancer_fuzz {
 
 namespace {
 
-constexpr uint32_t kMostVertices = 12, kMostTriangles = 20, kMostNodes = 12, kMostLobes = 4, kMostInstances = 6;
+constexpr uint32_t kMostVertices = 12, kMostTriangles = 20, kMostInstances = 6;
 constexpr uint32_t kMostSide = 8; // of pictures
 const char *const kNames[] = {"thing", "", "UVMap", "generated", "tangent:", "tangent:UVMap", "\xff\xfe%s%n", nullptr};
 
@@ -45,24 +45,6 @@ float *Records::floats(size_t count, float low, float high) {
   for (size_t i = 0; i < count; ++i)
     values[i] = bytes_.any() ? bytes_.number(0.5f, low, high) : 0.3f + 0.1f * float(i * 7 % 5);
   return keep(std::move(values));
-}
-
-lancer_parameter Records::parameter(float usual, float low, float high) {
-  if (node_count_ && bytes_.rarely(90))
-    return {{0, 0, 0}, int32_t(bytes_.reference(node_count_))};
-  if (bytes_.rarely(1))
-    return {{0, 0, 0}, -2};
-  const float x = bytes_.number(usual, low, high);
-  if (!bytes_.rarely(60))
-    return {{x, x, x}, -1};
-  const float y = bytes_.number(usual, low, high);
-  return {{x, y, bytes_.number(usual, low, high)}, -1};
-}
-
-lancer_parameter Records::vector() {
-  if (bytes_.rarely(50))
-    return parameter(0.5f, -1.0f, 1.0f);
-  return {{0, 0, 0}, -1};
 }
 
 lancer_attribute Records::attribute(uint32_t vertices, uint32_t triangles) {
@@ -132,141 +114,6 @@ lancer_image Records::image() {
   if (bytes_.rarely(2))
     image.width = image.height = 1u << (19 + bytes_.below(13));
   return image;
-}
-
-lancer_node Records::node(const Filled &filled, uint32_t at) {
-  lancer_node node = {};
-  node.name = name();
-  node.kind = bytes_.choice(LANCER_NODE_COUNT);
-  node.option = bytes_.byte();
-  // Most options are of their kind: the largest kinds have 41 and 24.
-  if (node.kind == LANCER_NODE_MATH)
-    node.option %= LANCER_MATH_COUNT + 1;
-  else if (node.kind == LANCER_NODE_VECTOR_MATH)
-    node.option %= LANCER_VECTOR_COUNT + 1;
-  else if (node.kind == LANCER_NODE_COORDINATE)
-    node.option %= LANCER_COORDINATE_COUNT + 1;
-  else if (node.kind == LANCER_NODE_MIX)
-    node.option %= LANCER_MIX_COUNT + 1;
-  else
-    node.option %= node.kind == LANCER_NODE_NORMAL_MAP ? 6 : node.kind == LANCER_NODE_SEPARATE ? 3 : 4;
-  const bool picture = node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT;
-  if (picture) {
-    // One after the other: of operands the compiler chooses which comes first.
-    node.flags = bytes_.choice(4);
-    node.flags |= bytes_.choice(3) << 4;
-    node.flags |= flag() << 8;
-  } else if (bytes_.rarely(100))
-    node.flags = bytes_.below(node.kind == LANCER_NODE_BUMP ? 8 : node.kind == LANCER_NODE_MIX ? 4 : 2);
-  else if (bytes_.rarely(2))
-    node.flags = ~0u;
-  if (picture && filled.images) {
-    node.image = bytes_.reference(filled.images);
-    node.image_count = node.image < filled.images ? 1 + bytes_.below(filled.images - node.image) : 1;
-    if (bytes_.rarely(3))
-      node.image_count = ~0u;
-  }
-  if (node.kind == LANCER_NODE_BUMP)
-    node.first = bytes_.below(at + 2);
-  node_count_ = at;
-  for (lancer_parameter &input : node.inputs)
-    input = parameter(0.5f, -2.0f, 2.0f);
-  for (int i = 0; i < 12; ++i)
-    node.matrix[i] = i % 5 == 0 ? 1.0f : 0.0f;
-  if (flag(40))
-    for (float &value : node.matrix)
-      value = bytes_.number(0.5f, -2.0f, 2.0f);
-  return node;
-}
-
-uint32_t Records::nodes(const Filled &filled, const lancer_node *&out) {
-  node_count_ = 0;
-  std::vector<lancer_node> nodes(bytes_.rarely(140) ? bytes_.below(kMostNodes + 1) : 0);
-  for (uint32_t i = 0; i < nodes.size(); ++i)
-    nodes[i] = node(filled, i);
-  const auto count = uint32_t(nodes.size());
-  out = keep(std::move(nodes));
-  node_count_ = count;
-  // More than there may be, and more than there are: refused before any is read.
-  if (bytes_.rarely(1))
-    return 4097 + bytes_.word() / 2;
-  if (bytes_.rarely(1)) {
-    out = nullptr;
-    return count + 1;
-  }
-  return count;
-}
-
-lancer_principled Records::principled() {
-  lancer_principled p = {};
-  p.rules = bytes_.choice(3);
-  p.distribution = bytes_.rarely(100) ? uint32_t(LANCER_MULTI_GGX) : bytes_.choice(4);
-  p.option = bytes_.choice(2);
-  p.base_color = parameter(0.8f);
-  p.metallic = parameter(0.0f);
-  p.roughness = parameter(0.5f);
-  p.ior = parameter(1.45f, 0.5f, 3.0f);
-  p.diffuse_roughness = parameter(0.0f);
-  p.specular = parameter(0.5f);
-  p.specular_tint = parameter(1.0f);
-  p.anisotropic = parameter(0.0f);
-  p.anisotropic_rotation = parameter(0.0f);
-  p.transmission = parameter(0.0f);
-  p.transmission_roughness = parameter(0.0f);
-  p.coat = parameter(0.0f);
-  p.coat_roughness = parameter(0.03f);
-  p.coat_ior = parameter(1.5f, 0.5f, 3.0f);
-  p.coat_tint = parameter(1.0f);
-  p.coat_normal = vector();
-  p.sheen = parameter(0.0f);
-  p.sheen_roughness = parameter(0.5f);
-  p.sheen_tint = parameter(1.0f);
-  p.emission = parameter(0.0f, 0.0f, 4.0f);
-  return p;
-}
-
-lancer_lobe Records::lobe() {
-  lancer_lobe lobe = {};
-  lobe.kind = bytes_.choice(LANCER_LOBE_KIND_COUNT);
-  lobe.distribution = bytes_.choice(4);
-  lobe.option = bytes_.choice(2);
-  lobe.rules = bytes_.choice(3);
-  lobe.weight = parameter(1.0f);
-  lobe.color = parameter(0.8f);
-  lobe.roughness = parameter(0.3f);
-  lobe.ior = parameter(1.5f, 0.5f, 3.0f);
-  lobe.shininess = parameter(20.0f, 0.0f, 200.0f);
-  lobe.edge = parameter(1.0f);
-  lobe.anisotropy = parameter(0.0f, -1.0f, 1.0f);
-  lobe.rotation = parameter(0.0f, -1.0f, 1.0f);
-  lobe.normal = vector();
-  lobe.tangent = vector();
-  if (lobe.kind == LANCER_PRINCIPLED && !bytes_.rarely(3))
-    lobe.principled = keep(std::vector<lancer_principled>{principled()});
-  return lobe;
-}
-
-lancer_material Records::material(const Filled &filled) {
-  lancer_material material = {};
-  material.name = name();
-  material.node_count = nodes(filled, material.nodes);
-  std::vector<lancer_lobe> lobes(bytes_.rarely(3) ? 64 : bytes_.rarely(60) ? bytes_.below(kMostLobes + 1) : 1);
-  for (lancer_lobe &lobe : lobes)
-    lobe = this->lobe();
-  material.lobe_count = uint32_t(lobes.size());
-  material.lobes = keep(std::move(lobes));
-  if (bytes_.rarely(1))
-    material.lobe_count = ~0u;
-  material.material_index = bytes_.byte();
-  material.flags = bytes_.rarely(60) ? bytes_.below(16) : bytes_.rarely(2) ? ~0u : 0u;
-  material.emission = parameter(0.0f, 0.0f, 4.0f);
-  material.transmittance = parameter(0.0f);
-  material.holdout = parameter(0.0f);
-  material.ambient = parameter(0.0f);
-  material.displacement = vector();
-  material.normal = vector();
-  node_count_ = 0;
-  return material;
 }
 
 lancer_light Records::light() {
