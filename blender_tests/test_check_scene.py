@@ -8,7 +8,7 @@ EXPECTED = {
     "open glass": ("glass", "WRONG", "Thing", "open at 4 edges"),
     "glass inside out": ("glass", "WRONG", "Thing", "inside out"),
     "two planes": ("coincident", "WRONG", "Plane", "same plane"),
-    "glass on the floor": ("coincident", "WRONG", "", "touch exactly"),
+    "glass on glass": ("coincident", "WRONG", "", "touch exactly"),
     "copy in place": ("coincident", "WASTE", "Ball.001", "exactly where object 'Ball' does"),
     "flipped faces": ("normals", "", "Flipped", "look opposite ways"),
     "far from the origin": ("precision", "WRONG", "Ball", "no larger than a few steps"),

@@ -32,8 +32,8 @@ def check_coincident(subject, twins=frozenset()):
     for number in np.argsort(-area, kind="stable").tolist():
         one, other = int(i[number]), int(j[number])
         both = int(world.rows[one]), int(world.rows[other])
-        words = hurts.words(one, other) if both not in told and hurts.may(one, other) else None
-        if words is None:
+        words = hurts.words(one, other) if hurts.may(one, other) else None
+        if words is None or (both, words[0]) in told:
             continue
         subject.poll()
         asked += 1
@@ -41,7 +41,7 @@ def check_coincident(subject, twins=frozenset()):
             return
         place, count = _meeting(subject, facets, world, one, other)
         if count:
-            told.add(both)
+            told.add((both, words[0]))
             yield _finding(subject, world, one, other, words, place, count, float(area[number]))
 
 
@@ -72,19 +72,34 @@ class _Hurts:
         return not alike or traits[first].passes or traits[first].emits
 
     def words(self, one, other):
-        """(what, advice); None where one hides the other from the camera."""
+        """(Harm, what, advice); None where one hides the other from the camera."""
         world, traits = self.world, self.subject.traits
         first, second = int(world.materials[one]), int(world.materials[other])
+        if self._rests(one, other) or self._rests(other, one):
+            return (
+                Harm.HINT,
+                "touch exactly where one is glass: it stands on the other as if glued, with no air between",
+                "move it away a little if there shall be air",
+            )
         if traits[first].refracts or traits[second].refracts:
             return (
+                Harm.WRONG,
                 "touch exactly where one is glass: only one of both surfaces is there, what is opaque before glass",
                 "move one of them a little, or let them overlap",
             )
         if not self._fight(one, other):
             return None
         if self.subject.alike(first, second):
-            return "lie in the same plane, and their light counts twice", "delete one of them, or move it a little"
-        return "lie in the same plane, and only one of them is seen", "move one of them a little"
+            return Harm.WRONG, "lie in the same plane, and their light counts twice", "delete one of them, or move it a little"
+        return Harm.WRONG, "lie in the same plane, and only one of them is seen", "move one of them a little"
+
+    def _rests(self, glass, ground):
+        """Whether glass stands on something opaque: that is there in its stead, and light in the glass ends on it, rightly."""
+        traits, normals = self.subject.traits, self.world.normals
+        above, below = (traits[int(self.world.materials[part])] for part in (glass, ground))
+        if not above.refracts or below.refracts or below.passes:
+            return False
+        return float(normals[glass] @ normals[ground]) < 0.0 or self._is_sheet(ground)
 
     def _fight(self, one, other):
         """Whether both show on the side where the camera is: closed bodies show what looks that way, sheets show both sides."""
@@ -149,12 +164,12 @@ def _corners(subject, facets, world, part, origin):
 
 def _finding(subject, world, one, other, words, place, count, weight):
     first, second = int(world.rows[one]), int(world.rows[other])
-    what, advice = words
+    harm, what, advice = words
     partner = f"object '{subject.name(second)}'" if first != second else "others of its own faces"
     material = subject.material_name(int(world.materials[one]))
     return Finding(
         "coincident",
-        Harm.WRONG,
+        harm,
         f"{told_number(count, 'face')} and {partner} {what}",
         advice,
         object=subject.name(first),

@@ -59,9 +59,9 @@ _FLAWS = {
         lambda: stage.plane(3.0, stage.shader(Color=(0.8, 0.1, 0.1))),
         lambda: stage.plane(3.0, stage.shader(Color=(0.8, 0.1, 0.1)), location=(0, 0, 1e-4)),
     ),
-    "glass on the floor": (
-        lambda: stage.cube(1.0, _glass(), location=(0, 0, 0.5)),
-        lambda: stage.cube(1.0, stage.shader(Color=(0.1, 0.8, 0.1)), location=(0, 0, 0.5)),
+    "glass on glass": (
+        lambda: [stage.cube(1.0, _glass(), location=(0, 0, z)) for z in (1.5, 2.5)],
+        lambda: [stage.cube(1.0, _glass(), location=(0, 0, z)) for z in (1.5, 2.75)],
     ),
     "copy in place": (
         lambda: [stage.ball(location=(0, 0, 1)) for _ in range(2)],

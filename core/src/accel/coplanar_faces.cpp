@@ -219,7 +219,7 @@ private:
 
   // Tells where on the faces others are: nowhere else need anyone look for them.
   void cover(CoplanarFaces &faces) {
-    std::stable_sort(patches.begin(), patches.end(), [](const Patch &a, const Patch &b) { return a.face < b.face; });
+    std::sort(patches.begin(), patches.end(), [](const Patch &a, const Patch &b) { return a.face < b.face; });
     for (size_t begin = 0, end; begin < patches.size(); begin = end) {
       Covered c{patches[begin].face, patches[begin].low, patches[begin].high, 0, 0};
       for (end = begin; end < patches.size() && patches[end].face == c.face; ++end) {

@@ -4,6 +4,7 @@
 
 #include "../tiny_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -39,16 +40,39 @@ bool threads_come_down_to(size_t count) {
 // A pause of a random share of what the work takes.
 class Moment {
 public:
-  explicit Moment(std::chrono::nanoseconds whole) : whole_(double(whole.count())) {}
-  void wait(std::mt19937 &random) const {
-    const std::chrono::nanoseconds pause(int64_t(whole_ * std::uniform_real_distribution<double>(0.0, 1.1)(random)));
-    for (const auto end = Clock::now() + pause; Clock::now() < end;)
+  explicit Moment(std::chrono::nanoseconds whole) : share_(0.0, 1.1 * double(whole.count())) {}
+  void wait() {
+    for (const auto end = Clock::now() + std::chrono::nanoseconds(int64_t(share_(random_))); Clock::now() < end;)
       std::this_thread::yield();
   }
 
 private:
-  double whole_;
+  std::mt19937 random_{1};
+  std::uniform_real_distribution<double> share_;
 };
+
+// Does a piece of work to its end, then so often broken off at a moment; counts how often it was cancelled. The work is
+// given the moment, where there is one, and the number of the time.
+template <class Work> void break_off(int times, int &cancelled, const Work &work) {
+  // Warm up, then time the whole.
+  ASSERT_EQ(work(nullptr, 0), LANCER_OK) << lancer_last_error();
+  const auto start = Clock::now();
+  ASSERT_EQ(work(nullptr, 0), LANCER_OK) << lancer_last_error();
+  Moment moment(Clock::now() - start);
+
+  const size_t threads = threads_now();
+  cancelled = 0;
+  for (int i = 0; i < times; ++i) {
+    SCOPED_TRACE(i);
+    const int64_t memory = live_memory();
+    const lancer_status status = work(&moment, i);
+    ASSERT_TRUE(status == LANCER_OK || status == LANCER_CANCELLED) << status << ": " << lancer_last_error();
+    cancelled += status == LANCER_CANCELLED;
+    ASSERT_TRUE(threads_come_down_to(threads));
+    ASSERT_EQ(live_memory(), memory);
+  }
+  ASSERT_EQ(work(nullptr, 0), LANCER_OK) << lancer_last_error();
+}
 
 lancer_status finish_scene(lancer_scene scene) {
   lancer_status status;
@@ -58,14 +82,14 @@ lancer_status finish_scene(lancer_scene scene) {
 }
 
 // Renders 16 samples of 24 x 16 pixels; cancels after the moment where one is given.
-lancer_status render(lancer_scene scene, std::vector<float> &image, const Moment *moment, std::mt19937 &random) {
+lancer_status render(lancer_scene scene, std::vector<float> &image, Moment *moment) {
   const lancer_camera camera = make_camera();
   const lancer_settings settings = make_settings();
   lancer_session session = 0;
   EXPECT_EQ(lancer_session_create(scene, &camera, &settings, &session), LANCER_OK) << lancer_last_error();
   EXPECT_EQ(lancer_session_render(session, 0, 16), LANCER_OK) << lancer_last_error();
   if (moment) {
-    moment->wait(random);
+    moment->wait();
     EXPECT_EQ(lancer_session_cancel(session), LANCER_OK);
   }
   const lancer_status status = finish(session);
@@ -81,38 +105,25 @@ lancer_status render(lancer_scene scene, std::vector<float> &image, const Moment
 }
 
 TEST(Cancelling, RendersLeaveNothingBehind) {
-  std::mt19937 random(1);
   const lancer_scene scene = make_scene();
   std::vector<float> whole(24 * 16 * 4), image(whole.size());
-  ASSERT_EQ(render(scene, whole, nullptr, random), LANCER_OK);
-  const auto start = Clock::now();
-  ASSERT_EQ(render(scene, image, nullptr, random), LANCER_OK);
-  const Moment moment(Clock::now() - start);
-  const size_t threads = threads_now();
+  ASSERT_EQ(render(scene, whole, nullptr), LANCER_OK);
   int cancelled = 0;
-  for (int i = 0; i < repeats(); ++i) {
-    SCOPED_TRACE(i);
-    const int64_t memory = live_memory();
-    const lancer_status status = render(scene, image, &moment, random);
-    ASSERT_TRUE(status == LANCER_OK || status == LANCER_CANCELLED) << status << ": " << lancer_last_error();
-    cancelled += status == LANCER_CANCELLED;
+  ASSERT_NO_FATAL_FAILURE(break_off(repeats(), cancelled, [&](Moment *moment, int) {
+    const lancer_status status = render(scene, image, moment);
     if (status == LANCER_OK) {
-      ASSERT_EQ(image, whole);
+      EXPECT_EQ(image, whole);
     }
-    for (const float value : image)
-      ASSERT_TRUE(std::isfinite(value));
-    ASSERT_TRUE(threads_come_down_to(threads));
-    ASSERT_EQ(live_memory(), memory);
-  }
+    EXPECT_TRUE(std::all_of(image.begin(), image.end(), [](float value) { return std::isfinite(value); }));
+    return status;
+  }));
   // Moments are spread over the whole render: most are before its end.
   EXPECT_GT(cancelled, repeats() / 4);
-  EXPECT_EQ(render(scene, image, nullptr, random), LANCER_OK);
-  EXPECT_EQ(image, whole);
   lancer_scene_destroy(scene);
 }
 
 // Doubles samples until nothing is left to double; cancels or stops after the moment where one is given.
-lancer_status refine(lancer_scene scene, std::vector<float> &image, const Moment *moment, bool stops, std::mt19937 &random) {
+lancer_status refine(lancer_scene scene, std::vector<float> &image, Moment *moment, bool stops) {
   const lancer_camera camera = make_camera();
   lancer_settings settings = make_settings();
   settings.refines = 1;
@@ -131,7 +142,7 @@ lancer_status refine(lancer_scene scene, std::vector<float> &image, const Moment
   std::thread other;
   if (moment)
     other = std::thread([&] {
-      moment->wait(random);
+      moment->wait();
       EXPECT_EQ(stops ? lancer_session_stop(session) : lancer_session_cancel(session), LANCER_OK);
     });
   const lancer_status status = rounds();
@@ -146,29 +157,20 @@ lancer_status refine(lancer_scene scene, std::vector<float> &image, const Moment
 }
 
 TEST(Cancelling, RefinementsLeaveNothingBehind) {
-  std::mt19937 random(3);
   const lancer_scene scene = make_scene();
   std::vector<float> whole(24 * 16 * 4), image(whole.size());
-  ASSERT_EQ(refine(scene, whole, nullptr, false, random), LANCER_OK);
-  const auto start = Clock::now();
-  ASSERT_EQ(refine(scene, image, nullptr, false, random), LANCER_OK);
-  const Moment moment(Clock::now() - start);
-  const size_t threads = threads_now();
+  ASSERT_EQ(refine(scene, whole, nullptr, false), LANCER_OK);
   int cancelled = 0;
-  for (int i = 0; i < repeats(); ++i) {
-    SCOPED_TRACE(i);
-    const int64_t memory = live_memory();
-    const bool stops = i % 2 != 0;
-    const lancer_status status = refine(scene, image, &moment, stops, random);
+  ASSERT_NO_FATAL_FAILURE(break_off(repeats(), cancelled, [&](Moment *moment, int time) {
+    const bool stops = time % 2 != 0;
+    const lancer_status status = refine(scene, image, moment, stops);
     // After a stop it has gone on to the same end.
-    ASSERT_TRUE(status == LANCER_OK || (status == LANCER_CANCELLED && !stops)) << status << ": " << lancer_last_error();
-    cancelled += status == LANCER_CANCELLED;
+    EXPECT_TRUE(status == LANCER_OK || !stops);
     if (status == LANCER_OK) {
-      ASSERT_EQ(image, whole);
+      EXPECT_EQ(image, whole);
     }
-    ASSERT_TRUE(threads_come_down_to(threads));
-    ASSERT_EQ(live_memory(), memory);
-  }
+    return status;
+  }));
   EXPECT_GT(cancelled, repeats() / 8);
   lancer_scene_destroy(scene);
 }
@@ -218,39 +220,24 @@ class CancelledBuilds : public testing::TestWithParam<uint32_t> {};
 
 TEST_P(CancelledBuilds, LeaveNothingBehind) {
   const Sheet sheet(60);
-  std::mt19937 random(2);
-  const auto commit = [&](const Moment *moment, bool wait) {
+  int cancelled = 0;
+  ASSERT_NO_FATAL_FAILURE(break_off(repeats() / 2, cancelled, [&](Moment *moment, int time) {
     const lancer_scene scene = open_scene(sheet);
     EXPECT_EQ(lancer_scene_commit(scene, GetParam(), 2), LANCER_OK);
+    // To end the scene is to cancel its build, too.
+    const bool ends = moment && time % 4 == 3;
     if (moment) {
-      moment->wait(random);
-      // To end the scene is to cancel its build, too.
-      EXPECT_EQ(wait ? lancer_scene_cancel(scene) : lancer_scene_destroy(scene), LANCER_OK);
+      moment->wait();
+      EXPECT_EQ(ends ? lancer_scene_destroy(scene) : lancer_scene_cancel(scene), LANCER_OK);
     }
-    const lancer_status status = wait ? finish_scene(scene) : LANCER_CANCELLED;
-    if (wait && status == LANCER_CANCELLED) {
+    const lancer_status status = ends ? LANCER_CANCELLED : finish_scene(scene);
+    if (!ends && status == LANCER_CANCELLED) {
       EXPECT_EQ(lancer_scene_wait(scene, 0), LANCER_ERROR_STATE);
     }
-    EXPECT_EQ(lancer_scene_destroy(scene), wait ? LANCER_OK : LANCER_ERROR_HANDLE);
+    EXPECT_EQ(lancer_scene_destroy(scene), ends ? LANCER_ERROR_HANDLE : LANCER_OK);
     return status;
-  };
-  ASSERT_EQ(commit(nullptr, true), LANCER_OK) << lancer_last_error();
-  const auto start = Clock::now();
-  ASSERT_EQ(commit(nullptr, true), LANCER_OK) << lancer_last_error();
-  const Moment moment(Clock::now() - start);
-  const size_t threads = threads_now();
-  int cancelled = 0;
-  for (int i = 0; i < repeats() / 2; ++i) {
-    SCOPED_TRACE(i);
-    const int64_t memory = live_memory();
-    const lancer_status status = commit(&moment, i % 4 != 3);
-    ASSERT_TRUE(status == LANCER_OK || status == LANCER_CANCELLED) << status << ": " << lancer_last_error();
-    cancelled += status == LANCER_CANCELLED;
-    ASSERT_TRUE(threads_come_down_to(threads));
-    ASSERT_EQ(live_memory(), memory);
-  }
+  }));
   EXPECT_GT(cancelled, repeats() / 8);
-  EXPECT_EQ(commit(nullptr, true), LANCER_OK);
 }
 
 INSTANTIATE_TEST_SUITE_P(Trees, CancelledBuilds, testing::Values(LANCER_BVH, LANCER_KDTREE));
