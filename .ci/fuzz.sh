@@ -6,9 +6,11 @@ set -eu
 seconds=$(awk "BEGIN { print int($1 * 60) + 1 }")
 python=$2
 echo "== calls and files, $seconds s each"
-# Python itself is not built for the sanitizers: their library comes before all others, and Python's own leaks are not ours.
+# Python itself is not built for the sanitizers: their library comes before all others, with the one that throws, which it looks for
+# at once. Python's own leaks are not ours.
 files=0
-LD_PRELOAD="$(g++ -print-file-name=libasan.so)" ASAN_OPTIONS=detect_leaks=0 LANCER_LIBRARY="$PWD/build/sanitize/liblancer.so" \
+first="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so)"
+LD_PRELOAD="$first" ASAN_OPTIONS=detect_leaks=0 LANCER_LIBRARY="$PWD/build/sanitize/liblancer.so" \
   "$python" blender_tests/broken_files.py build/fuzz-seed.txt build/fuzz-found "$(date +%s)" 1 "$seconds" \
   >build/fuzz-files.log 2>&1 &
 worker=$!
