@@ -90,7 +90,7 @@ LANCER_SIMD void enter_mesh_packet(const PlacedShape &shape, const Entering &e, 
     const uint64_t bits = __builtin_bit_cast(uint64_t, largest) & 0x7ffull << 52;
     r.inverse_unit[i] = __builtin_bit_cast(double, bits);
     r.unit[i] = __builtin_bit_cast(double, (2046ull << 52) - bits);
-    r.longest[i] = (az >= ax) & (az >= ay) ? 2 : (ay >= ax ? 1 : 0);
+    r.longest[i] = ((az >= ax) & (az >= ay)) ? 2 : (ay >= ax ? 1 : 0);
   }
   for (uint32_t i = 0; i < kPacket; ++i) {
     const double dx = r.d[0][i] * r.unit[i], dy = r.d[1][i] * r.unit[i], dz = r.d[2][i] * r.unit[i];

@@ -164,12 +164,12 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
   }
   const auto &lights = scene_.lights.lights();
   for (uint32_t i = 0; i < scene_.lights.size(); ++i) {
-    const glm::vec2 u = lamp_numbers(branch, i);
     const bool lamp = i < lights.size();
-    const CourseLight &course = lamp ? lights[i].course : plain;
     const uint32_t hidden = scene_.lights.hidden_from(i);
-    if (!lamp && !LightSet::lit_by(hidden))
+    if (!lamp && (!LightSet::lit_by(hidden) || scene_.lights.behind(i, surface.p, point_.bsdf.ng)))
       continue;
+    const glm::vec2 u = lamp_numbers(branch, i);
+    const CourseLight &course = lamp ? lights[i].course : plain;
     // Illuminate each lit point as if nothing stood between.
     glm::vec3 light(0.0f);
     LightSample s;

@@ -129,10 +129,12 @@ void ClassicIntegrator::light_lanes(size_t begin, size_t end) {
       continue;
     }
     if (!lamp.point) {
-      lit.there = lit.far = 0;
+      lit.lit = lit.there = lit.far = 0;
       for (size_t i = begin, lane = 0; i < end; ++i)
         if (lanes_->known[i - begin])
           sample_lamp(number, branches_[i], uint32_t(lane++), lit);
+      if (!lit.there)
+        continue;
     }
     lanes_->kernel.light(block, lamp, lit);
   }
@@ -141,6 +143,8 @@ void ClassicIntegrator::light_lanes(size_t begin, size_t end) {
 void ClassicIntegrator::sample_lamp(uint32_t number, const Branch &branch, uint32_t lane, CourseLit &lit) {
   static const CourseLight plain;
   const auto &lights = scene_.lights.lights();
+  if (scene_.lights.behind(number, get(lanes_->block.p, lane), get(lanes_->block.viewer_ng, lane)))
+    return;
   const LightSample sample =
       sample_scene_light(scene_, number, get(lanes_->block.p, lane), lamp_numbers(branch, number), shader_);
   if (!(sample.pdf > 0.0))

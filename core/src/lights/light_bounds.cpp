@@ -59,6 +59,14 @@ double LightCone::measure() const {
          0.5 * kPi * (2.0 * (theta_w - theta_o) * sin_o - std::cos(theta_o - 2.0 * theta_w) + cos_o);
 }
 
+bool LightBounds::behind(const glm::dvec3 &p, const glm::dvec3 &n) const {
+  const glm::dvec3 to = centre() - p, half = 0.5 * (high - low);
+  const glm::dvec3 farthest = glm::abs(to) + half;
+  // Of a float direction and a float normal each component is off by 2^-24, and so are products and sums: a cosine by less
+  // than 1e-6.
+  return glm::dot(to, n) + glm::dot(half, glm::abs(n)) < -1e-6 * (farthest.x + farthest.y + farthest.z);
+}
+
 void LightBounds::add(const LightBounds &other) {
   if (!(other.energy > 0.0))
     return;

@@ -31,6 +31,9 @@ struct LightBounds {
   // What has no energy adds nothing.
   void add(const LightBounds &other);
   glm::dvec3 centre() const { return 0.5 * (low + high); }
+  // Whether all of it lies behind the plane through p with unit normal n: no direction to it, told in floats, has a cosine
+  // above 0.
+  bool behind(const glm::dvec3 &p, const glm::dvec3 &n) const;
   // The cost of asking this cluster: the surface area orientation heuristic.
   double cost() const;
 };

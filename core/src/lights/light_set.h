@@ -22,6 +22,11 @@ public:
   const std::vector<Light> &lights() const { return lights_; }
   const std::vector<Emitter> &emitters() const { return emitters_; }
   const Environment &environment() const { return environment_; }
+  // Whether nothing of a light can arrive on this side of a surface; lamps and the environment are not looked at.
+  bool behind(uint32_t light, const glm::dvec3 &p, const glm::vec3 &n) const {
+    const size_t emitter = light - lights_.size();
+    return emitter < emitters_.size() && emitters_[emitter].bounds().behind(p, glm::dvec3(n));
+  }
   // Whether any surface shows light that is hidden from these rays.
   static bool lit_by(uint32_t hidden_from) {
     return (~hidden_from & (LANCER_RAY_DIFFUSE | LANCER_RAY_GLOSSY | LANCER_RAY_TRANSMISSION)) != 0;
