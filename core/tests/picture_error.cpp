@@ -185,6 +185,24 @@ TEST(PictureError, WhatWasNeverMetIsBoundedByTheRuleOfThree) {
   EXPECT_NEAR(picture_error(map, RelativeVariance(map), 0.95).cannot_exclude, missing / (1.01 * mean), 1e-5);
 }
 
+TEST(PictureError, IsANumberWhereColoursFarBelowZeroAreSeen) {
+  for (const float depth : {1e10f, 1e20f, 1e28f}) {
+    Film film(kSize, kSize, 16, 1);
+    fill(film, 16, 9, [&](std::mt19937 &random, uint32_t x, uint32_t y) {
+      return x == 30 && y == 20 ? -depth * std::exp(gaussian(random)) : 0.2f + 0.1f * gaussian(random);
+    });
+    const LuminanceMap map(film);
+    const PictureError error = picture_error(map, RelativeVariance(map), 0.95);
+    EXPECT_TRUE(std::isfinite(error.high)) << depth;
+    EXPECT_TRUE(error.low <= error.error && error.error <= error.high) << depth;
+    // The pixel alone makes it: a quarter of a sample's deviation, which is about its depth but 1e15 means at most, over a
+    // hundredth of the mean. The interval goes four times below; what is left of 0.06 is for the draw.
+    EXPECT_GT(error.low, 0.02 * std::min(double(depth) / 0.2, 1e15) / 0.01 / kSize) << depth;
+    for (const float bar : error_bars(map))
+      ASSERT_TRUE(std::isfinite(bar)) << depth;
+  }
+}
+
 TEST(PictureError, OfBlackAndOfEvenPicturesIsNone) {
   for (const float value : {0.0f, 3.0f}) {
     Film film(20, 9, 8, 1);

@@ -4,6 +4,14 @@
 
 namespace lancer {
 
+namespace {
+
+// In units of the mean. No pixel of light comes near it; colours below zero, which the mean leaves out, may go beyond. Squares
+// of it, of a neighbourhood together and over a hundredth squared, are still floats.
+constexpr double kMost = 1e15;
+
+} // namespace
+
 LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.height()) {
   const size_t pixels = size_t(width) * height;
   for (std::vector<float> *values : {&mean, &variance, &brightest, &count})
@@ -31,8 +39,8 @@ LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.
     for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
       const glm::uvec2 at = tile.place(pixel);
       const size_t to = size_t(at.y) * width + at.x;
-      mean[to] = float(luminances[pixel].mean / unit);
-      variance[to] = float(luminances[pixel].variance / (unit * unit) * samples);
+      mean[to] = float(std::clamp(luminances[pixel].mean / unit, -kMost, kMost));
+      variance[to] = float(std::min(luminances[pixel].variance / (unit * unit) * samples, kMost * kMost));
       brightest[to] = float(luminances[pixel].brightest / unit);
       count[to] = float(samples);
     }

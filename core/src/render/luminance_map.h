@@ -7,7 +7,7 @@
 
 namespace lancer {
 
-// Luminances are in units of the picture's mean, so that no square of them leaves the range of floats.
+// Luminances are in units of the picture's mean, and bounded, so that no square of them leaves the range of floats.
 struct LuminanceMap {
   uint32_t width = 0, height = 0;
   bool known = true; // false: some pixel has too few samples to tell an error from
