@@ -29,7 +29,8 @@ want_build() {
   want libglm-dev file_is_there "/usr/include/glm/glm.hpp /usr/local/include/glm/glm.hpp"
 }
 
-# Blender's Python module links against the X libraries even where it opens no window.
+# Blender's Python module links against the X libraries even where it opens no window, and ends the process where it draws strokes of
+# grease pencil and finds no EGL.
 want_run() {
   want_build
   want python3 command_is_there "$python"
@@ -43,6 +44,7 @@ want_run() {
   want libsm6 library_is_there libSM.so.6
   want libice6 library_is_there libICE.so.6
   want libgl1 library_is_there libGL.so.1
+  want libegl1 library_is_there libEGL.so.1
 }
 
 want_test() {
