@@ -1,5 +1,6 @@
 // Samplers against densities at every roughness and height: chi-square tests whose p-values must be spread evenly.
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "bsdf/ggx.h"
 #include "bsdf_catalogue.h"
@@ -110,8 +111,14 @@ struct Sides {
   }
 };
 
-// Whether half vectors of float directions tell cells apart: they carry 2^-24 over |wo + wi|, a cell is a tenth of the width.
-bool resolved(const Known &lobe, double cosine) { return lobe.width == 0.0 || 0x1p-24 / (2.0 * cosine) < 5e-3 * lobe.width; }
+// As many draws as half vectors of float directions bear: these carry 2^-24 over |wo + wi|, of which a cell, a tenth of the
+// width across, must feel no more than half the noise of its count.
+double most_draws(const Known &lobe, double cosine) {
+  if (lobe.width == 0.0)
+    return std::numeric_limits<double>::infinity();
+  const double share = 0x1p-24 / (2.0 * cosine) / (0.1 * lobe.width);
+  return kCells * 0.25 / (share * share);
+}
 
 double p_of_directions(const Known &lobe, double cosine, int draws, uint64_t seed) {
   const glm::vec3 wo = direction(cosine);
@@ -135,16 +142,18 @@ double p_of_directions(const Known &lobe, double cosine, int draws, uint64_t see
 }
 
 TEST(BsdfFalling, EveryLobeAsItsDensitySays) {
-  const int draws = testing::slow() ? 1000000 : 30000;
+  constexpr double kFewest = 30000.0;
+  const double wanted = testing::slow() ? 1e6 : kFewest;
   std::vector<double> p_values;
   std::vector<std::string> names;
   uint64_t seed = 1000;
   for (const double alpha : testing::roughnesses())
     for (const Known &lobe : testing::all_lobes(alpha))
       for (const double cosine : testing::heights()) {
-        if (!resolved(lobe, cosine))
+        const double draws = std::min(wanted, most_draws(lobe, cosine));
+        if (draws < kFewest)
           continue;
-        p_values.push_back(p_of_directions(lobe, cosine, draws, seed++));
+        p_values.push_back(p_of_directions(lobe, cosine, int(draws), seed++));
         names.push_back(lobe.name + " from " + std::to_string(cosine));
       }
   judge_all(p_values, names);
