@@ -56,21 +56,27 @@ private:
 
   void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
     const Asked asked{*this, rays, filter};
+    Searches searches{asked, {}, {}};
     if (filter) {
       trace(asked, hits);
+      for (size_t i = 0; i < rays.size(); ++i)
+        search_flagged(i, hits[i], searches);
     } else {
       // Few rays come back to the plane that they have left: those are asked about anew.
       inner->closest_hit(rays, hits);
       std::vector<size_t> back;
-      for (size_t i = 0; i < rays.size(); ++i)
-        if (hits[i].valid() && rule.flagged(hits[i]) && rule.starts_in_plane(rays[i], hits[i]))
+      for (size_t i = 0; i < rays.size(); ++i) {
+        if (!hits[i].valid() || !rule.flagged(hits[i]))
+          continue;
+        if (rule.starts_in_plane(rays[i], hits[i]))
           back.push_back(i);
+        else
+          search(i, hits[i], searches);
+      }
       again(rays, back, hits);
+      for (const size_t i : back)
+        search_flagged(i, hits[i], searches);
     }
-    Searches searches{asked, {}, {}};
-    for (size_t i = 0; i < rays.size(); ++i)
-      if (hits[i].valid() && rule.flagged(hits[i]))
-        search(i, hits[i], searches);
     settle(searches);
   }
 
@@ -152,6 +158,11 @@ private:
         return false;
     }
     return asked.counts(ray, hit);
+  }
+
+  void search_flagged(size_t ray, Hit &hit, Searches &searches) const {
+    if (hit.valid() && rule.flagged(hit))
+      search(ray, hit, searches);
   }
 
   void search(size_t ray, Hit &hit, Searches &searches) const {

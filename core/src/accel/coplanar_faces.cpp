@@ -9,8 +9,10 @@ namespace {
 
 // Boxes, and faces in boxes that meet, that each is compared with: bounds for heaps of things in one place.
 constexpr size_t kBoxes = 256, kPairs = 32;
-// Others that a face keeps in mind; with more, it is covered everywhere.
+// Others of a face in a heap: two that both have so many are not compared with each other any more.
 constexpr uint32_t kOthers = 64;
+// Where others cover faces, for all of them together; beyond, they are covered anywhere.
+constexpr size_t kPatches = 1 << 17;
 
 // Whether two triangles in one plane share more than a border that is this wide.
 bool overlap(const FaceCandidate &one, const FaceCandidate &other, double border) {
@@ -53,11 +55,10 @@ bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const 
   return overlap(one, other, 8.0 * apart);
 }
 
-// Where something covers a face, in its own coordinates.
+// Where another covers a face.
 struct Patch {
   uint64_t face; // instance and primitive
-  glm::dvec2 low, high;
-  bool loses; // the face gives way
+  CoverPatch where;
 };
 
 uint64_t number_of(const FaceCandidate &c) { return uint64_t{c.instance} << 32 | c.primitive; }
@@ -101,9 +102,12 @@ private:
         FaceCandidate &other = candidates[entries[k].candidate];
         if (boxes-- == 0 || pairs == 0)
           return false;
-        if (!boxes_meet(one.low, one.high, other.low, other.high) || (one.found >= kOthers && other.found >= kOthers) ||
-            same_border(one, other))
+        if (!boxes_meet(one.low, one.high, other.low, other.high) || same_border(one, other))
           continue;
+        if (one.found >= kOthers && other.found >= kOthers) {
+          one.anywhere = other.anywhere = true;
+          continue;
+        }
         --pairs;
         if (!in_one_plane(rounding, one, other))
           continue;
@@ -124,25 +128,16 @@ private:
   }
 
   void add_patch(FaceCandidate &c, const FaceCandidate &by) {
-    if (++c.found > kOthers)
+    ++c.found;
+    c.anywhere = c.anywhere || patches.size() >= kPatches;
+    if (c.anywhere)
       return;
-    Patch patch{
-        number_of(c), glm::dvec2(std::numeric_limits<double>::infinity()), -glm::dvec2(std::numeric_limits<double>::infinity()),
-        plane_order(geometry, rules, by.instance, by.primitive) < plane_order(geometry, rules, c.instance, c.primitive)};
-    glm::dvec2 low = patch.low, high = patch.high;
-    for (int i = 0; i < 3; ++i) {
-      const glm::dvec2 own = place_on_face(geometry, c.instance, c.primitive, c.corner[i]),
-                       other = place_on_face(geometry, c.instance, c.primitive, by.corner[i]);
-      low = glm::min(low, own);
-      high = glm::max(high, own);
-      patch.low = glm::min(patch.low, other);
-      patch.high = glm::max(patch.high, other);
-    }
-    // Wider than any rounding.
-    const glm::dvec2 border = 0x1p-6 * (high - low);
-    patch.low = glm::max(patch.low, low) - border;
-    patch.high = glm::min(patch.high, high) + border;
-    patches.push_back(patch);
+    // What rounding holds apart is the least that counts as covered.
+    CoverPatch patch =
+        make_patch(coordinates_on_face(geometry, c.instance, c.primitive), c.corner, by.corner, c.rounding + by.rounding);
+    patch.loses =
+        plane_order(geometry, rules, by.instance, by.primitive) < plane_order(geometry, rules, c.instance, c.primitive);
+    patches.push_back({number_of(c), patch});
   }
 
   // Neighbours in a mesh, which are most of what lies in one plane.
@@ -219,24 +214,32 @@ private:
 
   // Tells where on the faces others are: nowhere else need anyone look for them.
   void cover(CoplanarFaces &faces) {
+    uint32_t marked = 0;
+    for (const uint64_t word : faces.bits) {
+      faces.ranks.push_back(marked);
+      marked += static_cast<uint32_t>(std::popcount(word));
+    }
     std::sort(patches.begin(), patches.end(), [](const Patch &a, const Patch &b) { return a.face < b.face; });
-    for (size_t begin = 0, end; begin < patches.size(); begin = end) {
-      Covered c{patches[begin].face, patches[begin].low, patches[begin].high, 0, 0};
-      for (end = begin; end < patches.size() && patches[end].face == c.face; ++end) {
-        c.low = glm::min(c.low, patches[end].low);
-        c.high = glm::max(c.high, patches[end].high);
+    std::vector<CoverPatch> own;
+    // Words of bits are in the order of candidates. The halves of one face come together.
+    for (size_t begin = 0, end; begin < candidates.size(); begin = end) {
+      const uint64_t face = number_of(candidates[begin]);
+      bool found = false, anywhere = false;
+      for (end = begin; end < candidates.size() && number_of(candidates[end]) == face; ++end) {
+        found = found || candidates[end].found > 0;
+        anywhere = anywhere || candidates[end].anywhere;
       }
-      if (end - begin >= kOthers)
+      if (!found)
         continue;
-      for (size_t i = begin; i < end; ++i) {
-        const glm::ivec2 low = c.cell(patches[i].low), high = c.cell(patches[i].high);
-        for (int x = std::max(low.x, 0); x <= std::min(high.x, 7); ++x)
-          for (int y = std::max(low.y, 0); y <= std::min(high.y, 7); ++y) {
-            c.cells |= uint64_t{1} << (8 * x + y);
-            c.losing |= uint64_t{patches[i].loses} << (8 * x + y);
-          }
-      }
-      faces.covered.push_back(c);
+      own.clear();
+      for (auto at = std::lower_bound(patches.begin(), patches.end(), face,
+                                      [](const Patch &patch, uint64_t number) { return patch.face < number; });
+           at != patches.end() && at->face == face; ++at)
+        own.push_back(at->where);
+      if (anywhere)
+        faces.cover.add_face_covered_anywhere();
+      else
+        faces.cover.add_face(own, coordinates_on_face(geometry, candidates[begin].instance, candidates[begin].primitive));
     }
   }
 
@@ -250,16 +253,6 @@ private:
 };
 
 } // namespace
-
-bool CoplanarFaces::may_be(uint64_t Covered::*cells, uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const {
-  const uint64_t face = uint64_t{instance} << 32 | primitive;
-  const auto known =
-      std::lower_bound(covered.begin(), covered.end(), face, [](const Covered &c, uint64_t number) { return c.face < number; });
-  if (known == covered.end() || known->face != face)
-    return true;
-  const glm::ivec2 cell = known->cell(at);
-  return cell.x >= 0 && cell.x < 8 && cell.y >= 0 && cell.y < 8 && (*known).*cells >> (8 * cell.x + cell.y) & 1;
-}
 
 CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const PlaneRules &rules,
                                   const BuildContext &context) {

@@ -2,51 +2,45 @@
 #pragma once
 
 #include "accel/accelerator.h"
+#include "accel/cover.h"
 #include "accel/flat_face.h"
 #include "accel/plane_order.h"
 
+#include <bit>
+
 namespace lancer {
-
-// The part of a face that others cover, in eight by eight cells of its coordinates; and where some of them go before it.
-struct Covered {
-  uint64_t face; // instance and primitive
-  glm::dvec2 low, high;
-  uint64_t cells, losing;
-
-  // -1 and 8: beyond.
-  glm::ivec2 cell(const glm::dvec2 &at) const {
-    const glm::dvec2 scaled = 8.0 * (at - low) / (high - low);
-    const auto whole = [](double x) { return x >= 0.0 ? x < 8.0 ? static_cast<int>(x) : 8 : -1; };
-    return {whole(scaled.x), whole(scaled.y)};
-  }
-};
 
 // Faces that may do so: a few others of the same planes may be among them.
 struct CoplanarFaces {
   std::vector<uint8_t> instances; // 1: some of its faces do; empty where nothing does
   std::vector<uint32_t> first;    // by instance: its first word of bits
   std::vector<uint64_t> bits;     // by face
-  std::vector<Covered> covered;   // in the order of faces; others may be covered anywhere
+  std::vector<uint32_t> ranks;    // by word of bits: how many faces are marked before it
+  Cover cover;                    // by rank; empty where each may be covered anywhere
 
   bool any() const { return !instances.empty(); }
   bool has(uint32_t instance, uint32_t primitive) const {
     return instances[instance] && bits[first[instance] + (primitive >> 6)] >> (primitive & 63) & 1;
   }
-  // Whether there may be others at a place of such a face: weights of a triangle's corners, x and y of an exact surface.
-  bool may_be_covered(uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const {
-    return may_be(&Covered::cells, instance, primitive, at);
+  // Whether there may be others at a place of such a face.
+  bool may_be_covered(uint32_t instance, uint32_t primitive, const glm::dvec3 &p) const {
+    return cover.empty() || cover.may_be_covered(rank(instance, primitive), p);
   }
-  // And whether such another would be there instead of it.
-  bool may_lose(uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const {
-    return may_be(&Covered::losing, instance, primitive, at);
+  // And whether such another would be there instead of it. at: p, or as a hit tells it: weights of a triangle's corners.
+  template <class Place> bool may_lose(uint32_t instance, uint32_t primitive, const Place &at) const {
+    return cover.empty() || cover.may_lose(rank(instance, primitive), at);
   }
   size_t bytes() const {
-    return instances.capacity() + first.capacity() * sizeof(uint32_t) + bits.capacity() * sizeof(uint64_t) +
-           covered.capacity() * sizeof(Covered);
+    return instances.capacity() + (first.capacity() + ranks.capacity()) * sizeof(uint32_t) +
+           bits.capacity() * sizeof(uint64_t) + cover.bytes();
   }
 
 private:
-  bool may_be(uint64_t Covered::*cells, uint32_t instance, uint32_t primitive, const glm::dvec2 &at) const;
+  size_t rank(uint32_t instance, uint32_t primitive) const {
+    const size_t word = first[instance] + (primitive >> 6);
+    const uint64_t before = (uint64_t{1} << (primitive & 63)) - 1;
+    return ranks[word] + static_cast<size_t>(std::popcount(bits[word] & before));
+  }
 };
 
 // The same for every accelerator; its cost is bounded.

@@ -16,7 +16,8 @@ struct FaceCandidate {
   double rounding; // what it adds to FaceRounding::apart() at most
   glm::dvec3 low, high;
   uint32_t instance, primitive;
-  uint32_t found = 0; // others in its plane
+  uint32_t found = 0;    // others in its plane
+  bool anywhere = false; // more of them than are kept in mind
 };
 
 struct FaceCandidates {

@@ -47,16 +47,17 @@ void world_corners(const Geometry &geometry, uint32_t instance, uint32_t triangl
     corner[i] = placed.to_world.point(glm::dvec3(geometry.meshes[placed.mesh].vertex(triangle, i)));
 }
 
-glm::dvec2 place_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive, const glm::dvec3 &p) {
+FaceCoordinates coordinates_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive) {
   const Instance &placed = geometry.instances[instance];
-  if (placed.kind != ShapeKind::Mesh)
-    return glm::dvec2(placed.to_object.point(p));
+  if (placed.kind != ShapeKind::Mesh) {
+    const glm::dmat3 rows = glm::transpose(placed.to_object.linear);
+    return {placed.to_world.translation, rows[0], rows[1]};
+  }
   glm::dvec3 corner[3];
   world_corners(geometry, instance, primitive, corner);
-  const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0], q = p - corner[0];
-  const glm::dvec3 n = glm::cross(a, b);
+  const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0], n = glm::cross(a, b);
   const double area = glm::dot(n, n);
-  return {glm::dot(glm::cross(q, b), n) / area, glm::dot(glm::cross(a, q), n) / area};
+  return {corner[0], glm::cross(b, n) / area, glm::cross(n, a) / area};
 }
 
 std::optional<FlatFace> face_met(const Geometry &geometry, const Ray &ray, const Hit &hit) {

@@ -18,8 +18,15 @@ struct FlatFace {
 // A triangle, by its corners in the world.
 FlatFace triangle_face(const glm::dvec3 corner[3]);
 void world_corners(const Geometry &geometry, uint32_t instance, uint32_t triangle, glm::dvec3 corner[3]);
-// Where p is on a face, as hits tell it: weights of a triangle's corners, x and y of an exact surface.
-glm::dvec2 place_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive, const glm::dvec3 &p);
+
+// Where a place of the world is on a face, as hits tell it: weights of a triangle's corners, x and y of an exact surface.
+struct FaceCoordinates {
+  glm::dvec3 o, x, y;
+
+  glm::dvec2 operator()(const glm::dvec3 &p) const { return {glm::dot(x, p - o), glm::dot(y, p - o)}; }
+};
+FaceCoordinates coordinates_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive);
+
 // The face that a ray meets, with p where it does; none where the surface is curved there.
 std::optional<FlatFace> face_met(const Geometry &geometry, const Ray &ray, const Hit &hit);
 // The face that a ray starts on, with p next to its start.

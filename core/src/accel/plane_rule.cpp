@@ -57,8 +57,7 @@ void PlaneRule::find_light_planes() {
 }
 
 bool PlaneRule::starts_covered(const Ray &ray) const {
-  return flagged(ray) && faces.may_be_covered(ray.skip_instance, ray.skip_primitive,
-                                              place_on_face(geometry, ray.skip_instance, ray.skip_primitive, ray.o));
+  return flagged(ray) && faces.may_be_covered(ray.skip_instance, ray.skip_primitive, ray.o);
 }
 
 bool PlaneRule::may_end_on_light(const Ray &ray) const {
@@ -112,10 +111,10 @@ double PlaneRule::others(const glm::dvec3 &p) const {
 std::optional<PlaneRule::Across> PlaneRule::across(const Ray &ray, const Hit &hit) const {
   const Instance &instance = geometry.instances[hit.instance];
   const bool mesh = instance.kind == ShapeKind::Mesh;
-  if (mesh && !faces.may_lose(hit.instance, hit.primitive, {hit.u, hit.v}))
+  if (mesh && !faces.may_lose(hit.instance, hit.primitive, glm::dvec2(hit.u, hit.v)))
     return {};
   const std::optional<FlatFace> face = face_met(geometry, ray, hit);
-  if (!face || (!mesh && !faces.may_lose(hit.instance, 0, glm::dvec2(instance.to_object.point(face->p)))))
+  if (!face || (!mesh && !faces.may_lose(hit.instance, 0, face->p)))
     return {};
   Across across{{}, *face, rounding.most(hit.instance, rounding.share(hit.instance, face->p) + others(face->p))};
   across.ray.o = face->p - across.reach * face->n;
