@@ -7,6 +7,7 @@ namespace lancer {
 
 namespace {
 
+// Cells of a face's grid along an axis, at most.
 constexpr int kLongestSide = 128;
 // More patches than this in one cell are heaps in one place: something may be anywhere in it.
 constexpr uint32_t kLooked = 64;
