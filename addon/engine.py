@@ -22,6 +22,8 @@ from .pace import Pace
 # Of the last render of each scene, by its name, for the panel and for scripts.
 last_statistics = {}
 last_messages = {}
+# What that render could not show as Cycles does: {key of Messages.add: how often}.
+last_missing = {}
 # Of the last measurement of each scene: a hints.Costs.
 last_costs = {}
 # What the library holds, by kind: names of last_statistics.
@@ -89,6 +91,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self._exported = picture, set()
             self._messages = Messages()
             last_messages.pop(scene.name, None)
+            last_missing.pop(scene.name, None)
             last_statistics.pop(scene.name, None)
         self._exported[1].add(layer)
 
@@ -212,6 +215,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         room = max(0, _MAX_REPORTS - len(self._messages))
         new = self._messages.merge(messages).lines()
         last_messages[scene.name] = self._messages.lines()
+        last_missing[scene.name] = self._messages.missing()
         for line in new[:room]:
             self.report({"WARNING"}, f"Lancer: {line}")
         if len(new) > room:
@@ -278,6 +282,7 @@ def _forget(*_):
     """Another file's scenes may have the same names."""
     last_statistics.clear()
     last_messages.clear()
+    last_missing.clear()
     last_costs.clear()
 
 

@@ -145,7 +145,10 @@ class Instances:
             if light is not None:
                 self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
-            self.messages.add(f"object '{thing.name}': type {thing.type} is not supported, it is left out")
+            self.messages.add(
+                f"object '{thing.name}': type {thing.type} is not supported, it is left out",
+                f"feature:{thing.type.lower()} object",
+            )
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

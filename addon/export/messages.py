@@ -8,11 +8,18 @@ class Messages:
 
     def __init__(self, lines=()):
         self._counts = {}
+        self._keys = {}
         for text in lines:
             self.add(text)
 
-    def add(self, text):
+    def add(self, text, key=""):
+        """key: what is missing, for programs: "node:" and the node's label, or "feature:" and its name.
+
+        Whoever asks for it gets another picture than Cycles'. What merely warns has no key.
+        """
         self._counts[text] = self._counts.get(text, 0) + 1
+        if key:
+            self._keys[text] = key
 
     def merge(self, other):
         """Adds what another holds. Gives of it what is new here."""
@@ -21,7 +28,16 @@ class Messages:
             if text not in self._counts:
                 new._counts[text] = count
             self._counts[text] = self._counts.get(text, 0) + count
+        self._keys.update(other._keys)
+        new._keys.update({text: key for text, key in other._keys.items() if text in new._counts})
         return new
+
+    def missing(self):
+        """{key: how often it was met}"""
+        counts = {}
+        for text, key in self._keys.items():
+            counts[key] = counts.get(key, 0) + self._counts[text]
+        return counts
 
     def __len__(self):
         return len(self._counts)

@@ -72,9 +72,9 @@ def _environment_texture(graph, site, output):
 def _picture(graph, site):
     node = site.node
     if node.image is None or graph.images is None:
-        graph.tell(site, "has no image, magenta is used")
+        graph.tell(site, "has no image, magenta is used", "")
         return None
-    return graph.images.numbers(node.image, node.image_user, lambda text: graph.tell(site, text))
+    return graph.images.numbers(node.image, node.image_user, lambda text, key="": graph.tell(site, text, key))
 
 
 def _has_color_under_alpha(image):

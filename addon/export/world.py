@@ -22,7 +22,10 @@ def export_world(world, images, depsgraph, messages):
     graph = NodeGraph(who, messages, images, depsgraph)
     cycles = getattr(world, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")
+        messages.add(
+            f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
+            "feature:bounce limit of a lamp",
+        )
     radiance = _cube(world.lancer, graph, who, messages) if world.lancer.use_cube else _nodes(world, graph, who, messages)
     return snapshot.World(
         radiance=radiance,
@@ -39,7 +42,7 @@ def _nodes(world, graph, who, messages):
     if output is None:
         return 0.0, 0.0, 0.0
     if output.inputs["Volume"].is_linked:
-        messages.add(f"{who}: volumes are not supported, its background alone is shown")
+        messages.add(f"{who}: volumes are not supported, its background alone is shown", "feature:volume of the world")
     return emission_of(graph, world.node_tree, "OUTPUT_WORLD")
 
 
@@ -63,7 +66,7 @@ def _side(image, name, images, who, messages):
     """(number, picture) of one side; a black one, with a message, where there is none."""
     found = None
     if image is not None:
-        found = images.numbers(image, None, lambda text: messages.add(f"{who}, side {name}: {text}"))
+        found = images.numbers(image, None, lambda text, key="": messages.add(f"{who}, side {name}: {text}", key))
     if found is not None:
         return found[0], images.list[found[0]]
     messages.add(f"{who}: side {name} of its cube has no picture, it is black")
