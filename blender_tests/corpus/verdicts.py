@@ -63,7 +63,7 @@ def rank(rows):
     rows: of all files; those that differ with a message count. Of things that complete as many, that of more of these files
     comes first. files: that have it at all; uses: how often it was met in them.
     """
-    open_ = [set(row["missing"]) for row in rows if row["verdict"] == "told"]
+    open_ = [set(row["missing"]) for row in rows if row["verdict"] == "told" and row["missing"]]
     everywhere, uses = Counter(), Counter()
     for row in rows:
         everywhere.update(set(row["missing"]))
