@@ -168,7 +168,7 @@ def test_means_are_over_equal_files_and_over_all():
     assert found["means"]["equal"]["efficiency"] == 4.0 and found["means"]["equal"]["files"] == 1
     assert found["means"]["all"]["efficiency"] == pytest.approx(np.sqrt(2.0))
     assert found["means"]["all"]["least_efficiency"] == 0.5
-    assert "1 differ without a message" in verdicts.sentence(found) and "8 files" in verdicts.sentence(found)
+    assert "1 differs without a message" in verdicts.sentence(found) and "8 files" in verdicts.sentence(found)
 
 
 def figures():
@@ -195,7 +195,7 @@ def test_the_readme_tells_date_commit_counts_and_what_is_missing(tmp_path):
     readme.update(path, figures())
     text = path.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
-    for words in ("2026-01-02, commit abc1234", "1 differ without a message", "| noise | 2 | 2 | 3 |", "`g`, `h`", "4.00x"):
+    for words in ("2026-01-02, commit abc1234", "1 differs without a message", "| noise | 2 | 2 | 3 |", "`g`, `h`", "4.00x"):
         assert words in text, words
     with pytest.raises(ValueError, match="lacks the lines"):
         path.write_text("no place for it")

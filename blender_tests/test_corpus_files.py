@@ -76,7 +76,7 @@ def test_what_cannot_be_opened_is_a_row(measured):
 def test_the_page_and_its_pictures(measured):
     code, said, rows, output = measured
     text = (output / "index.html").read_text()
-    assert code == 0 and "4 files: 1 differ with a message, 2 equal, 1 cannot be opened" in said
+    assert code == 0 and "4 files: 1 differs with a message, 2 equal, 1 cannot be opened" in said
     for row in rows.values():
         assert f">{row['name']}<br>" in text
         assert all((output / "pictures" / name).stat().st_size > 100 for name in row.get("pictures", ()))

@@ -85,6 +85,8 @@ class Measurement:
             if engine in failures:
                 self._show_alone(probes)
                 return self._end(verdict, f"{failures[engine].kind}: {failures[engine]}")
+        if probes["LANCER"][1].get("instances") == 0:
+            self.row["told"].append("no surface renders")
         dark = {engine for engine, (picture, _) in probes.items() if not np.nan_to_num(picture[..., :3]).any()}
         if len(dark) == 2:
             self._write(*(probe[0] for probe in probes.values()))

@@ -28,7 +28,7 @@ def write(figures, folder):
     found = figures["summary"]
     script = (Path(__file__).with_name("table.js")).read_text(encoding="utf-8")
     buttons = "".join(
-        f'<button data-verdict="{verdict}">{count} {html.escape(verdicts.WORDS[verdict])}</button>'
+        f'<button data-verdict="{verdict}">{count} {html.escape(verdicts.words(verdict, count))}</button>'
         for verdict, count in found["counts"].items()
     )
     parts = [
@@ -89,7 +89,7 @@ def _row(row):
     ours, theirs = (row["engines"].get(engine, {}) for engine in ("LANCER", "CYCLES"))
     cells = [
         f'<td class="name">{html.escape(row["name"])}<br><span class="what">{html.escape(what)}</span></td>',
-        f'<td class="text {verdict}" data-value="{verdicts.ORDER.index(verdict)}">{html.escape(verdicts.WORDS[verdict])}</td>',
+        f'<td class="text {verdict}" data-value="{verdicts.ORDER.index(verdict)}">{html.escape(verdicts.words(verdict))}</td>',
         *(
             f'<td><a href="pictures/{name}"><img src="pictures/{name}" loading="lazy"></a></td>'
             for name in row.get("pictures", ())

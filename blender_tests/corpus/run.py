@@ -125,7 +125,7 @@ class Progress:
     def end(self, row, fresh):
         if fresh:
             self.measured.append(row["seconds"])
-        told = f"{verdicts.WORDS[row['verdict']]}{'' if fresh else ' (kept)'}; {row['sentence']}"
+        told = f"{verdicts.words(row['verdict'])}{'' if fresh else ' (kept)'}; {row['sentence']}"
         if "efficiency" in row:
             told += f"; speed {row['speed']:.2f}x, efficiency {row['efficiency']:.2f}x"
         self.line.end(f"{self.number}/{self.count} {self.name}: {told}")

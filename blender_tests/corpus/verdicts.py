@@ -5,22 +5,26 @@ from collections import Counter
 
 from bench import estimates
 
-# (verdict, what it says), in the order of the page.
-WORDS = {
-    "untold": "differ without a message",
-    "failed": "fail in Lancer",
-    "told": "differ with a message",
-    "cycles": "fail in Cycles",
-    "noise": "equal within a noise above the limits",
-    "equal": "equal",
-    "black": "are black",
-    "unreadable": "cannot be opened",
-    "missing": "are not there",
+# What each verdict says of one file and of several, in the order of the page.
+_WORDS = {
+    "untold": ("differs without a message", "differ without a message"),
+    "failed": ("fails in Lancer", "fail in Lancer"),
+    "told": ("differs with a message", "differ with a message"),
+    "cycles": ("fails in Cycles", "fail in Cycles"),
+    "noise": ("equal within a noise above the limits",) * 2,
+    "equal": ("equal", "equal"),
+    "black": ("black", "black"),
+    "unreadable": ("cannot be opened", "cannot be opened"),
+    "missing": ("not there", "not there"),
 }
-ORDER = tuple(WORDS)
+ORDER = tuple(_WORDS)
 EQUAL = ("equal", "noise")
 # What a run must not have.
 FAULTS = ("untold", "failed")
+
+
+def words(verdict, count=1):
+    return _WORDS[verdict][count != 1]
 
 
 def counts(rows):
@@ -87,4 +91,6 @@ def summary(rows):
 
 def sentence(found):
     """The counts in a line."""
-    return f"{found['files']} files: " + ", ".join(f"{count} {WORDS[verdict]}" for verdict, count in found["counts"].items())
+    return f"{found['files']} files: " + ", ".join(
+        f"{count} {words(verdict, count)}" for verdict, count in found["counts"].items()
+    )
