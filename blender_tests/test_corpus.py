@@ -80,6 +80,15 @@ def test_verdicts(tmp_path, fields, verdict, words):
     assert all(engine.closed for engine in engines)
 
 
+def test_large_squares_find_what_noise_hides_in_small_ones():
+    """A tenth less of all light, under noise of a fifth in each square of 8 x 8 pixels."""
+    source = np.random.default_rng(7)
+    ours, theirs = (level + 1.6 * source.standard_normal((2, 160, 320, 4)) for level in (0.9, 1.0))
+    limit, parts = measure.KIND.limit, measure._parts(ours, theirs)
+    verdicts_ = {name: measure.figures.judge(numbers, limit).name for name, numbers in parts.items()}
+    assert verdicts_["Combined"] == "noise" and verdicts_["Combined, large squares"] == "fail"
+
+
 def test_both_engines_render_the_same_by_turns(tmp_path):
     row, engines = measured(tmp_path, spread=0.01)
     renders = [[request for task, request in engine.asked if task == "render"] for engine in engines]

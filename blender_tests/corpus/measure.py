@@ -14,6 +14,8 @@ from .conversation import Ended
 
 # Real files mix Principled and multiple scattering with everything else.
 KIND = figures.KINDS["LOBES"]
+# Beside the squares of that kind so many across the picture, whose means have less noise for a fault to hide in.
+_LARGE_SQUARES = 8
 ENGINES = ("LANCER", "CYCLES")
 # What the budget leaves for renders at least, however long opening took.
 _LEAST_SHARE = 0.4
@@ -164,9 +166,13 @@ class Measurement:
         self._write(ours.mean(axis=0), theirs.mean(axis=0))
         self._tell_invalid(ours, theirs)
         parts = _parts(*_finite(ours, theirs))
-        worst = max(parts, key=lambda name: figures.share(figures.decisive(parts[name], KIND.limit), KIND.limit))
-        numbers = figures.decisive(parts[worst], KIND.limit)
-        name = figures.judge(parts[worst], KIND.limit).name
+        names = {part: figures.judge(numbers, KIND.limit).name for part, numbers in parts.items()}
+
+        def badness(part):
+            return -figures.WORST_FIRST.index(names[part]), figures.share(figures.decisive(parts[part], KIND.limit), KIND.limit)
+
+        worst = max(parts, key=badness)
+        numbers, name = figures.decisive(parts[worst], KIND.limit), names[worst]
         self.row["parity"] = {**page.numbers(numbers), "part": worst, "name": name}
         mean, p99 = f"mean {numbers.mean:.2%}", f"99th percentile {numbers.p99:.2%}"
         sentence = f"{worst}: {mean}, {p99}; noise {numbers.noise_mean:.2%} and {numbers.noise_p99:.2%}"
@@ -208,9 +214,11 @@ def _finite(ours, theirs):
 
 
 def _parts(ours, theirs):
-    """{"Combined", "Alpha": Figures} of the means of even and of odd seeds."""
+    """{name: Figures} of the means of even and of odd seeds."""
     halves = [[values[start::2].mean(axis=0) for start in (0, 1)] for values in (ours, theirs)]
-    slices = {"Combined": slice(0, 3), "Alpha": slice(3, 4)}
+    large = KIND._replace(block=max(KIND.block, max(ours.shape[1:3]) // _LARGE_SQUARES))
+    parts = {"Combined": (slice(0, 3), KIND), "Combined, large squares": (slice(0, 3), large), "Alpha": (slice(3, 4), KIND)}
     return {
-        name: figures.measure(*([half[..., part] for half in pair] for pair in halves), KIND) for name, part in slices.items()
+        name: figures.measure(*([half[..., part] for half in pair] for pair in halves), kind)
+        for name, (part, kind) in parts.items()
     }
