@@ -173,7 +173,7 @@ class Measurement:
 
         worst = max(parts, key=badness)
         numbers, name = figures.decisive(parts[worst], KIND.limit), names[worst]
-        self.row["parity"] = {**page.numbers(numbers), "part": worst, "name": name}
+        self.row["parity"] = {**page.as_record(numbers), "part": worst, "name": name}
         mean, p99 = f"mean {numbers.mean:.2%}", f"99th percentile {numbers.p99:.2%}"
         sentence = f"{worst}: {mean}, {p99}; noise {numbers.noise_mean:.2%} and {numbers.noise_p99:.2%}"
         if name == "fail":
