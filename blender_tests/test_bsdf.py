@@ -61,6 +61,8 @@ def chart_of(material, wo):
         return Half(wo.astype(float), Slopes(only.roughness, side))
     if only.kind == LobeKind.PHONG:
         return Power(wo * [-1, -1, 1], only.shininess)
+    if only.kind == LobeKind.MINNAERT:
+        return Power((0, 0, side), only.shininess)
     return Half(wo.astype(float), Power((0, 0, side), only.shininess))
 
 
