@@ -295,6 +295,26 @@ def test_flat_gouraud_and_phong_shading():
             assert np.isclose(shaded(shading, point, light), value, rtol=1e-5), (shading, point)
 
 
+def test_gouraud_under_parallel_rays():
+    """A highlight at the corners is that of the rays' own direction, wherever on the picture they start."""
+    source, wo, n = np.array([0.5, 0.25, 3.0]), np.array([0.6, 0.0, 0.8]), 5.0
+    mesh = dataclasses.replace(TILTED, normals=np.float32([(0, 0, 1)] * 3))
+    shiny = Material("shiny", lobes=(Lobe(LobeKind.PHONG, color=rgb(1.0), shininess=n),))
+
+    def lit(p):
+        way = source - p
+        d = np.linalg.norm(way)
+        return max(0.0, wo @ (way / d * [-1, -1, 1])) ** n * 9 / d**2 / math.pi
+
+    corners = [lit(p) for p in mesh.positions.astype(float)]
+    for point in ((0.2, 0.1), (-0.8, -0.9)):
+        v, u = (point[1] + 1) / 3, (point[0] + 1) / 3
+        place = np.array([*point, 0.0])
+        camera = pencil(tuple(place + 5 * wo), tuple(place))
+        got = color([Instance(shading=Shading.GOURAUD)], [shiny], [lamp(source, 9.0)], camera=camera, meshes=[mesh])
+        assert np.allclose(got, np.array([1 - u - v, u, v]) @ corners, rtol=EXACT + 3e-7 * n), point
+
+
 def test_a_crowded_recursion_begins_anew_in_small_parts():
     """Glass doubles the rays of every depth. In tiles of 8 x 8 pixels a batch is small from the start; in those of 32 x 32 the
     rays become more than are kept at once. Both give the same bits and count the same rays."""
