@@ -17,9 +17,10 @@ from .check_scene import quick_check
 from .export import main_thread
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
+from .harm import Harm
 from .pace import Pace
 
-# Of the last render of each scene, by its name, for the panel and for scripts.
+# Of the last render of each scene, by its name, for the panel and for scripts: numbers, and Messages.
 last_statistics = {}
 last_messages = {}
 # Of the last measurement of each scene: a hints.Costs.
@@ -111,8 +112,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
         self._snapshot = None
-        self._messages.add(text)
-        last_messages[scene.name] = self._messages.lines()
+        self._messages.add(text, Harm.FAILED)
+        last_messages[scene.name] = self._messages
         self.error_set(f"Lancer: {text}")
         self.report({"ERROR"}, f"Lancer: {text}")
 
@@ -136,7 +137,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         with Session.upload(self._snapshot, poll=self.test_break, release=True) as session:
             # The library holds its own copy from here on.
             self._snapshot = None
-            self._tell(scene, Messages(session.messages()))
+            self._tell(scene, Messages.of_library(session.messages()))
             camera = session.camera
             result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=layer)
             if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
@@ -210,10 +211,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _tell(self, scene, messages):
         """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
         room = max(0, _MAX_REPORTS - len(self._messages))
-        new = self._messages.merge(messages).lines()
-        last_messages[scene.name] = self._messages.lines()
-        for line in new[:room]:
-            self.report({"WARNING"}, f"Lancer: {line}")
+        new = [message for message in self._messages.merge(messages).told() if message.harm > Harm.HINT]
+        last_messages[scene.name] = self._messages
+        for message in new[:room]:
+            self.report({"WARNING"}, f"Lancer: {message.line}")
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
 
@@ -223,7 +224,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
             count = statistics.invalid_samples
             text = f"{count} samples were not finite and are left out, the first at pixel {place}"
-            self._tell(scene, Messages([text]))
+            self._tell(scene, Messages([text], Harm.WRONG))
         error = session.error()
         numbers = dataclasses.asdict(statistics)
         pixels = session.camera.region_width * session.camera.region_height

@@ -1,5 +1,7 @@
 """Image nodes: what picture, where on it, and how it is read."""
 
+import functools
+
 from ..bindings.enums import (
     Coordinate,
     Environment,
@@ -10,6 +12,7 @@ from ..bindings.enums import (
     Projection,
     VectorOperation,
 )
+from ..harm import Harm
 from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
 from .maths import transformed
@@ -72,9 +75,9 @@ def _environment_texture(graph, site, output):
 def _picture(graph, site):
     node = site.node
     if node.image is None or graph.images is None:
-        graph.tell(site, "has no image, magenta is used")
+        graph.tell(site, "has no image, magenta is used", Harm.WRONG)
         return None
-    return graph.images.numbers(node.image, node.image_user, lambda text: graph.tell(site, text))
+    return graph.images.numbers(node.image, node.image_user, functools.partial(graph.tell, site))
 
 
 def _has_color_under_alpha(image):
