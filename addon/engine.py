@@ -112,7 +112,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
         self._snapshot = None
-        self._messages.add(text, Harm.FAILED)
+        self._messages.add(text, harm=Harm.FAILED)
         last_messages[scene.name] = self._messages
         self.error_set(f"Lancer: {text}")
         self.report({"ERROR"}, f"Lancer: {text}")

@@ -13,13 +13,13 @@ from addon.harm import Harm
 def test_what_hurts_most_comes_first():
     messages = Messages()
     messages.add("a setting differs")
-    messages.add("a hint", Harm.HINT)
-    messages.add("an object is left out", Harm.LEFT_OUT)
-    messages.add("a picture is missing", Harm.WRONG)
-    messages.add("another setting differs", Harm.DIFFERENT)
-    messages.add("an object is left out", Harm.LEFT_OUT)
-    messages.add("no picture", Harm.FAILED)
-    messages.add("slow", Harm.WASTE)
+    messages.add("a hint", harm=Harm.HINT)
+    messages.add("an object is left out", harm=Harm.LEFT_OUT)
+    messages.add("a picture is missing", harm=Harm.WRONG)
+    messages.add("another setting differs", harm=Harm.DIFFERENT)
+    messages.add("an object is left out", harm=Harm.LEFT_OUT)
+    messages.add("no picture", harm=Harm.FAILED)
+    messages.add("slow", harm=Harm.WASTE)
     assert messages.lines() == list(messages) == [
         "no picture", "a picture is missing", "an object is left out (2 times)", "a setting differs",
         "another setting differs", "slow", "a hint",
@@ -28,18 +28,19 @@ def test_what_hurts_most_comes_first():
 
 def test_what_is_told_twice_keeps_its_greatest_harm_and_its_key():
     messages = Messages()
-    messages.add("the same", Harm.HINT, "node:Bevel")
-    messages.add("the same", Harm.WRONG)
+    messages.add("the same", "node:Bevel", Harm.HINT)
+    messages.add("the same", harm=Harm.WRONG)
     (message,) = messages.told()
-    assert message == ("the same", Harm.WRONG, "node:Bevel", 2)
+    assert message == ("the same", "node:Bevel", Harm.WRONG, 2)
+    assert messages.missing() == {"node:Bevel": 2}
 
 
 def test_merging_gives_what_is_new():
     messages = Messages(["known"])
     more = Messages(["known", "new"], Harm.WRONG)
-    more.add("new", Harm.WRONG)
-    assert messages.merge(more).told() == [("new", Harm.WRONG, "", 2)]
-    assert messages.told() == [("known", Harm.WRONG, "", 2), ("new", Harm.WRONG, "", 2)]
+    more.add("new", harm=Harm.WRONG)
+    assert messages.merge(more).told() == [("new", "", Harm.WRONG, 2)]
+    assert messages.told() == [("known", "", Harm.WRONG, 2), ("new", "", Harm.WRONG, 2)]
     assert len(messages.merge(more)) == 0
 
 

@@ -52,7 +52,7 @@ def check_view_layer(scene, view_layer, messages):
         messages.add(f"{who}: Freestyle is not supported by Lancer, Blender draws its lines with EEVEE over the picture")
     names = _missing_passes(view_layer)
     if names:
-        messages.add(f"{who}: these passes are not supported: {', '.join(names)}", Harm.LEFT_OUT)
+        messages.add(f"{who}: these passes are not supported: {', '.join(names)}", harm=Harm.LEFT_OUT)
 
 
 def _missing_passes(view_layer):
@@ -110,7 +110,7 @@ def check_hair(thing, messages):
         system = modifier.particle_system
         if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
             text = f"hair of particle system '{system.name}' is not supported, it is left out"
-            messages.add(f"object '{thing.name}': {text}", Harm.LEFT_OUT)
+            messages.add(f"object '{thing.name}': {text}", harm=Harm.LEFT_OUT)
 
 
 def check_linking(thing, kind, messages):

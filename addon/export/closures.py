@@ -132,7 +132,7 @@ def _portal(surface, site, weight):
 
 
 def _volume(surface, site, weight):
-    surface.graph.tell(site, f"{site.node.bl_label} is a volume and has no surface, nothing is shown", Harm.LEFT_OUT)
+    surface.graph.tell(site, f"{site.node.bl_label} is a volume and has no surface, nothing is shown", harm=Harm.LEFT_OUT)
 
 
 def read_unknown(surface, site, weight):

@@ -17,7 +17,7 @@ def check_cycles(scene, messages):
     if cycles is None:
         return
     for text, harm in _light_paths(scene.lancer, cycles):
-        messages.add(f"scene '{scene.name}': {text}", harm)
+        messages.add(f"scene '{scene.name}': {text}", harm=harm)
     for text in (*_light(cycles), *_simplified(scene, cycles)):
         messages.add(f"scene '{scene.name}': {text}")
 

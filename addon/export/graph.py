@@ -81,7 +81,7 @@ class NodeGraph:
         if key not in numbers:
             if len(self._nodes) >= _MOST_NODES:
                 text = f"has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest"
-                self.messages.add(f"{self.owner}: {text}", Harm.WRONG)
+                self.messages.add(f"{self.owner}: {text}", harm=Harm.WRONG)
                 return _UNKNOWN[self.unknown]
             numbers[key] = len(self._nodes)
             self._nodes.append(node)
@@ -150,8 +150,10 @@ class NodeGraph:
 
     # ---- reading ----
 
-    def tell(self, site, text, harm=Harm.DIFFERENT, key=""):
-        self.messages.add(f"{self.owner}, node '{_site(site).node.name}': {text}", harm, key)
+    def tell(self, site, text, key=None, harm=Harm.DIFFERENT):
+        """key: of Messages.add; by default the node itself is what is missing, "" where nothing is."""
+        node = _site(site).node
+        self.messages.add(f"{self.owner}, node '{node.name}': {text}", f"node:{node.bl_label}" if key is None else key, harm)
 
     def parameter(self, site, names, default=0.0, kind="number", low=-math.inf, high=math.inf):
         """The input of a node that has one of the names, made usable; default where this Blender has none.
@@ -224,7 +226,7 @@ class NodeGraph:
         """The value of an origin as a colour; the unknown one where it has none."""
         value = self._output(origin.site, origin.output)
         if value is None:
-            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used", Harm.WRONG)
+            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used", harm=Harm.WRONG)
             return _UNKNOWN[self.unknown]
         return _three(value)
 
@@ -269,7 +271,7 @@ class NodeGraph:
         source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
         if socket.type == "RGBA":
             text = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
-            self.tell(site, text, Harm.WRONG)
+            self.tell(site, text, harm=Harm.WRONG)
             return _UNKNOWN[self.unknown]
         value = _constant(socket)
         told = f"{value:g}" if isinstance(value, float) else ", ".join(f"{x:g}" for x in value)

@@ -34,7 +34,7 @@ class Images:
                 self.list += _read_all(image, path, tell)
             self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
         if self._ranges[key] is None:
-            tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used", Harm.WRONG)
+            tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used", harm=Harm.WRONG)
         return self._ranges[key]
 
 
@@ -102,7 +102,7 @@ def _read_tile(image, number, tell):
     if not pictures and len(image.tiles) == 1:
         pictures = _read(image, image, tell, number)
     if not pictures:
-        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out", Harm.LEFT_OUT)
+        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out", harm=Harm.LEFT_OUT)
     return pictures
 
 
@@ -127,7 +127,7 @@ def _read(image, source, tell, tile=0):
         # Only now Blender has looked at the file. It gives scripts no pixels of its layers.
         if source.type == "MULTILAYER":
             text = "is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used"
-            tell(f"image '{image.name}' {text}", Harm.WRONG)
+            tell(f"image '{image.name}' {text}", harm=Harm.WRONG)
             return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
         return []
     values = floats(source)

@@ -146,7 +146,7 @@ class Instances:
             if light is not None:
                 self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
-            self.messages.add(f"object '{thing.name}': type {thing.type} is not supported, it is left out", Harm.LEFT_OUT)
+            self.messages.add(f"object '{thing.name}': type {thing.type} is not supported, it is left out", harm=Harm.LEFT_OUT)
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

@@ -8,8 +8,8 @@ from ..harm import Harm
 
 class Message(NamedTuple):
     text: str
-    harm: Harm
     key: str
+    harm: Harm
     count: int = 1
 
     @property
@@ -27,19 +27,22 @@ class Messages:
     def __init__(self, lines=(), harm=Harm.DIFFERENT):
         self._messages = {}
         for text in lines:
-            self.add(text, harm)
+            self.add(text, harm=harm)
 
     @classmethod
     def of_library(cls, lines):
         """Of the lines that a Session gives."""
         messages = cls()
         for text in lines:
-            messages.add(text, next((harm for word, harm in _OF_LIBRARY if word in text), Harm.DIFFERENT))
+            messages.add(text, harm=next((harm for word, harm in _OF_LIBRARY if word in text), Harm.DIFFERENT))
         return messages
 
-    def add(self, text, harm=Harm.DIFFERENT, key=""):
-        """text: a whole sentence that names its owner; key: what it is about, for programs, as "kind:what"."""
-        self._count(Message(text, harm, key))
+    def add(self, text, key="", harm=Harm.DIFFERENT):
+        """key: what is missing, for programs: "node:" and the node's label, or "feature:" and its name.
+
+        Whoever asks for it gets another picture than Cycles'. What merely warns has no key.
+        """
+        self._count(Message(text, key, harm))
 
     def _count(self, message):
         """Whether it is new here."""
@@ -69,6 +72,14 @@ class Messages:
 
     def lines(self):
         return [message.line for message in self.told()]
+
+    def missing(self):
+        """{key: how often it was met}"""
+        counts = {}
+        for message in self._messages.values():
+            if message.key:
+                counts[message.key] = counts.get(message.key, 0) + message.count
+        return counts
 
     def number(self, value, who, what, default, low=-math.inf, high=math.inf):
         """value where it is a finite number in [low, high]; else the nearest usable one, with a message."""

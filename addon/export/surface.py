@@ -184,5 +184,5 @@ def emission_of(graph: NodeGraph, tree, kind):
     surface = Surface(graph)
     surface.read(Site(output), output.inputs["Surface"])
     if surface.lobes or not is_constant(surface.transmittance, 0.0) or not is_constant(surface.holdout, 0.0):
-        graph.messages.add(f"{graph.owner}: only Background and Emission shine, other shaders are left out", Harm.LEFT_OUT)
+        graph.messages.add(f"{graph.owner}: only Background and Emission shine, other shaders are left out", harm=Harm.LEFT_OUT)
     return surface.emission if isinstance(surface.emission, NodeRef) else triple(surface.emission)

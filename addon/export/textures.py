@@ -1,7 +1,5 @@
 """Image nodes: what picture, where on it, and how it is read."""
 
-import functools
-
 from ..bindings.enums import (
     Coordinate,
     Environment,
@@ -75,9 +73,9 @@ def _environment_texture(graph, site, output):
 def _picture(graph, site):
     node = site.node
     if node.image is None or graph.images is None:
-        graph.tell(site, "has no image, magenta is used", Harm.WRONG)
+        graph.tell(site, "has no image, magenta is used", harm=Harm.WRONG)
         return None
-    return graph.images.numbers(node.image, node.image_user, functools.partial(graph.tell, site))
+    return graph.images.numbers(node.image, node.image_user, lambda text, key="", **harm: graph.tell(site, text, key, **harm))
 
 
 def _has_color_under_alpha(image):

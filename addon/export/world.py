@@ -40,7 +40,7 @@ def _nodes(world, graph, who, messages):
     if output is None:
         return 0.0, 0.0, 0.0
     if output.inputs["Volume"].is_linked:
-        messages.add(f"{who}: volumes are not supported, its background alone is shown", Harm.LEFT_OUT)
+        messages.add(f"{who}: volumes are not supported, its background alone is shown", harm=Harm.LEFT_OUT)
     return emission_of(graph, world.node_tree, "OUTPUT_WORLD")
 
 
@@ -64,8 +64,10 @@ def _side(image, name, images, who, messages):
     """(number, picture) of one side; a black one, with a message, where there is none."""
     found = None
     if image is not None:
-        found = images.numbers(image, None, lambda text, *more: messages.add(f"{who}, side {name}: {text}", *more))
+        found = images.numbers(
+            image, None, lambda text, key="", **harm: messages.add(f"{who}, side {name}: {text}", key, **harm)
+        )
     if found is not None:
         return found[0], images.list[found[0]]
-    messages.add(f"{who}: side {name} of its cube has no picture, it is black", Harm.WRONG)
+    messages.add(f"{who}: side {name} of its cube has no picture, it is black", harm=Harm.WRONG)
     return -1, snapshot.Image(name="black", texels=np.zeros((1, 1, 3), np.uint8), alpha=AlphaMode.NONE)
