@@ -10,7 +10,7 @@ from bpy.app.handlers import persistent
 
 from . import denoise, passes, redraw, stamp
 from .bindings.abi import LancerError
-from .bindings.schedule import CANCELLED, Schedule
+from .bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
 from .bindings.session import Cancelled, Session
 from .bindings.uses import used_features
 from .check_scene import quick_check
@@ -38,6 +38,8 @@ _SHOW_EVERY = 0.3
 # And asking for the error this.
 _ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
+# After the time that is left: what it is that is expected to end the render.
+_REMAINING = {SAMPLES: "", TARGET: " to the target error", TIME: " of the time limit"}
 
 
 class LancerRenderEngine(bpy.types.RenderEngine):
@@ -202,7 +204,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         seconds, reason = schedule.remaining()
         samples = progress.samples / schedule.pixels
         # Small windows cut off the end.
-        parts = [f"Remaining {_clock(seconds)} to the {reason}"]
+        parts = [f"Remaining {_clock(seconds)}{_REMAINING[reason]}"]
         if schedule.error is not None and schedule.error.known:
             parts.append(f"Error {stamp.interval(schedule.error)}")
         parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
@@ -249,9 +251,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             keep_costs(scene.name, last_costs[scene.name])
         # Only what get_result gives reaches the file.
         stamped = self.get_result()
+        several = len(stamped.layers) > 1
         for name, value in stamp.fields(numbers, session.settings):
             stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
-        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings)
+        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings, layer if several else "")
         self.update_stats("", lines[0])
         # Headless, what is reported goes to the terminal; in a window the panel has it.
         if bpy.app.background:
