@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
+from ..harm import Harm
 from .arithmetic import is_constant
 from .attributes import named_attributes
 from .checks import check_object
@@ -143,7 +144,9 @@ class Objects:
             if placement is not None:
                 self.placements.append(placement)
         if number < 0:
-            self.messages.add(f"object '{name}': has no vertices to place its exact shape by, it is left out")
+            self.messages.add(
+                f"object '{name}': has no vertices to place its exact shape by, it is left out", harm=Harm.LEFT_OUT
+            )
         return number
 
     def _tell_exact(self, name, slots):
@@ -159,7 +162,7 @@ class Objects:
             return
         for number in sorted({min(slot, len(materials) - 1) for slot in used}):
             if materials[number] is None:
-                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used")
+                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used", harm=Harm.HINT)
 
 
 def _has_special_collections(view_layer):
