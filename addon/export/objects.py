@@ -134,7 +134,8 @@ class Objects:
             found = wanted, number, used
             copies.append(found)
         _, number, used = found
-        if number < 0:
+        # Nodes may well give instances alone.
+        if number < 0 and not any(modifier.type == "NODES" for modifier in thing.modifiers):
             self.messages.add(f"object '{name}': has no faces, it is left out")
         return number, used
 
