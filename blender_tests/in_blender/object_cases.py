@@ -67,7 +67,7 @@ def instancers():
 
 
 def freed():
-    """Renders instances of every kind, of objects that nothing else shows. What they leave allocated Blender tells at its exit."""
+    """Renders instances of every kind, of objects that nothing else shows. What they leave Blender tells at its exit."""
     scene = stage.room()
     row_of_cubes()
     for name, thing in (("Boxes", stage.cube(0.3)), ("Lamps", stage.light())):
