@@ -32,8 +32,8 @@ def _attribute(mesh, name, domain):
 def shown_mesh(thing, owner):
     """The mesh of an object that shows one; owner: the evaluated object that it is, or is an instance of.
 
-    While its mesh is being edited an object has a wrapper of it, which looks empty until Blender makes a mesh of that. Cycles asks
-    for one, too, for all objects of that mesh and their instances, but not for what Geometry Nodes made.
+    While its mesh is being edited an object has a wrapper of it, which looks empty until Blender makes a mesh of that. Cycles
+    asks for one, too, for all objects of that mesh and their instances, but not for what Geometry Nodes made.
     """
     mesh = thing.data
     if not mesh.is_editmode or owner.data != mesh:
