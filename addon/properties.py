@@ -198,7 +198,7 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
         ),
         default="NODES",
     )
-    ka: _color("Ambient", "Share of the lights' ambient colour that the surface shows (Classic only)", 0.0)
+    ka: _color("Ambient", "Share of ambient light that the surface shows: the world's, and that of lamps (Classic only)", 0.0)
     kd: _color("Diffuse", "Colour of the matt body", 0.8)
     ks: _color("Specular", "Colour of the highlight or of the clear layer", 0.2)
     roughness: FloatProperty(
