@@ -4,8 +4,8 @@ import blenders
 import pytest
 from blenders import MODULE, PROGRAM
 
-# Pixels on edges of faces may show either: both engines see a pixel at its middle to 0.01 of its width, which moves some over an
-# edge. A pixel is crossed by an edge with a chance below a half, and its middle moved over that with one of 0.01 x 0.5.
+# Pixels on edges of faces may show either: both engines see a pixel at its middle to 0.01 of its width, which moves some over
+# an edge. A pixel is crossed by an edge with a chance below a half, and its middle moved over that with one of 0.01 x 0.5.
 ON_EDGES = 0.5 * 0.01 * 0.5
 
 
