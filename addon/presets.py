@@ -25,7 +25,6 @@ def _made(name, label, settings):
             "preset_subdir": folder,
             "preset_operator": "script.execute_preset",
             "preset_add_operator": operator,
-            "COMPAT_ENGINES": {"LANCER"},
         },
     )
     add = type(
