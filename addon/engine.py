@@ -23,6 +23,8 @@ from .pace import Pace
 # Of the last render of each scene, by its name, for the panel and for scripts: numbers, and Messages.
 last_statistics = {}
 last_messages = {}
+# What that render could not show as Cycles does: {key of Messages.add: how often}.
+last_missing = {}
 # Of the last measurement of each scene: a hints.Costs.
 last_costs = {}
 # What the library holds, by kind: names of last_statistics.
@@ -92,6 +94,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self._exported = picture, set()
             self._messages = Messages()
             last_messages.pop(scene.name, None)
+            last_missing.pop(scene.name, None)
             last_statistics.pop(scene.name, None)
         self._exported[1].add(layer)
 
@@ -215,6 +218,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         room = max(0, _MAX_REPORTS - len(self._messages))
         new = [message for message in self._messages.merge(messages).told() if message.harm > Harm.HINT]
         last_messages[scene.name] = self._messages
+        last_missing[scene.name] = self._messages.missing()
         for message in new[:room]:
             self.report({"WARNING"}, f"Lancer: {message.line}")
         if len(new) > room:
@@ -268,6 +272,7 @@ def _forget(*_):
     """Another file's scenes may have the same names."""
     last_statistics.clear()
     last_messages.clear()
+    last_missing.clear()
     last_costs.clear()
 
 

@@ -263,6 +263,8 @@ class Statistics(Structure):
         ("kernel", c_char * 64),
         ("instruction_set", c_char * 32),
         ("texture_bytes", c_uint64),
+        ("wide_vertices", c_uint64),
+        ("narrow_vertices", c_uint64),
     ]
 
 

@@ -60,7 +60,7 @@ def _glass(surface, site, weight):
 def _tell_thin_film(surface, site):
     thickness = surface.graph.parameter(site, ("Thin Film Thickness",), 0.0)
     if not is_constant(thickness, 0.0):
-        surface.graph.tell(site, "input 'Thin Film Thickness' is not supported, the surface has no film")
+        surface.graph.tell(site, "input 'Thin Film Thickness' is not supported, the surface has no film", "feature:thin film")
 
 
 def _metallic(surface, site, weight):

@@ -81,7 +81,7 @@ class NodeGraph:
         if key not in numbers:
             if len(self._nodes) >= _MOST_NODES:
                 text = f"has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest"
-                self.messages.add(f"{self.owner}: {text}", harm=Harm.WRONG)
+                self.messages.add(f"{self.owner}: {text}", "feature:many nodes", harm=Harm.WRONG)
                 return _UNKNOWN[self.unknown]
             numbers[key] = len(self._nodes)
             self._nodes.append(node)
@@ -193,7 +193,9 @@ class NodeGraph:
             return default
         if self._output(origin.site, origin.output) is None:
             source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
-            self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, its default is used")
+            self.tell(
+                site, f"input '{socket.name}' is linked to {source}, which is not supported, its default is used", _key(origin)
+            )
             return default
         return self.input(site, socket)
 
@@ -202,7 +204,7 @@ class NodeGraph:
         value = self._read(site, socket)
         if isinstance(value, NodeRef) or all(map(math.isfinite, triple(value))):
             return value
-        self.tell(site, f"input '{socket.name}' is not finite, 0 is used")
+        self.tell(site, f"input '{socket.name}' is not finite, 0 is used", "")
         return 0.0 if isinstance(value, float) else (0.0, 0.0, 0.0)
 
     def _read(self, site, socket):
@@ -270,12 +272,16 @@ class NodeGraph:
         """What is used for an input whose source cannot be computed."""
         source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
         if socket.type == "RGBA":
-            text = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
-            self.tell(site, text, harm=Harm.WRONG)
+            told = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
+            self.tell(site, told, _key(origin), Harm.WRONG)
             return _UNKNOWN[self.unknown]
         value = _constant(socket)
         told = f"{value:g}" if isinstance(value, float) else ", ".join(f"{x:g}" for x in value)
-        self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, the constant {told} is used")
+        self.tell(
+            site,
+            f"input '{socket.name}' is linked to {source}, which is not supported, the constant {told} is used",
+            _key(origin),
+        )
         return value
 
     def _convert(self, value, source, target):
@@ -286,6 +292,10 @@ class NodeGraph:
 
 def _site(node):
     return node if isinstance(node, Site) else Site(node)
+
+
+def _key(origin):
+    return f"node:{origin.site.node.bl_label}"
 
 
 def _three(value):

@@ -144,7 +144,10 @@ def _nodes(light, graph):
         return neutral
     emission = emission_of(graph, light.node_tree, "OUTPUT_LIGHT")
     if isinstance(emission, NodeRef):
-        graph.messages.add(f"{graph.owner}: light that varies with place or direction is not supported, its own power is used")
+        graph.messages.add(
+            f"{graph.owner}: light that varies with place or direction is not supported, its own power is used",
+            "feature:light textures",
+        )
         return neutral
     return emission
 
@@ -153,13 +156,19 @@ def _check(thing, light, who, messages):
     check_linking(thing, "light", messages)
     cycles = getattr(light, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")
+        messages.add(
+            f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
+            "feature:bounce limit of a lamp",
+        )
     if getattr(light, "use_custom_distance", False) and bpy.app.version < (4, 2):
         messages.add(f"{who}: custom distance is not supported, its light reaches on as in Cycles")
     if not getattr(cycles, "use_multiple_importance_sampling", True):
-        messages.add(f"{who}: without multiple importance sampling Cycles hides it from mirrors and glass, here they show it")
+        messages.add(
+            f"{who}: without multiple importance sampling Cycles hides it from mirrors and glass, here they show it",
+            "feature:lamp without MIS",
+        )
     if light.type == "SPOT" and _sheared(np.array(thing.matrix_world, float)):
-        messages.add(f"{who}: a sheared spot is not supported, its cone is only stretched")
+        messages.add(f"{who}: a sheared spot is not supported, its cone is only stretched", "feature:sheared spot")
 
 
 def _sheared(matrix):

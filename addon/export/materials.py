@@ -122,7 +122,7 @@ def _from_nodes(material, graph):
     has_surface = graph.is_linked(site, ("Surface",))
     if graph.is_linked(site, ("Volume",)):
         shown = "its surface alone is shown" if has_surface else "nothing of it is shown"
-        messages.add(f"{who}: volumes are not supported, {shown}", harm=Harm.LEFT_OUT)
+        messages.add(f"{who}: volumes are not supported, {shown}", "feature:volume", harm=Harm.LEFT_OUT)
         if not has_surface:
             return {"lobes": (), "transmittance": (1.0, 1.0, 1.0)}
     values = _displacement(material, graph, site)

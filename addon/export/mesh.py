@@ -1,5 +1,6 @@
 """Evaluated Blender meshes as arrays, by foreach_get, which copies whole arrays where Blender holds them so."""
 
+import contextlib
 import ctypes
 from dataclasses import replace
 
@@ -25,6 +26,23 @@ def _attribute(mesh, name, domain):
     if attribute is None or attribute.domain != domain or len(attribute.data) == 0:
         return None
     return attribute.data
+
+
+@contextlib.contextmanager
+def shown_mesh(thing, owner):
+    """The mesh of an object that shows one; owner: the evaluated object that it is, or is an instance of.
+
+    While its mesh is being edited an object has a wrapper of it, which looks empty until Blender makes a mesh of that. Cycles
+    asks for one, too, for all objects of that mesh and their instances, but not for what Geometry Nodes made.
+    """
+    mesh = thing.data
+    if not mesh.is_editmode or owner.data != mesh:
+        yield mesh
+        return
+    try:
+        yield owner.to_mesh()
+    finally:
+        owner.to_mesh_clear()
 
 
 def export_mesh(mesh, name, poll, wanted=frozenset()):

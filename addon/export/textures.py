@@ -73,7 +73,7 @@ def _environment_texture(graph, site, output):
 def _picture(graph, site):
     node = site.node
     if node.image is None or graph.images is None:
-        graph.tell(site, "has no image, magenta is used", harm=Harm.WRONG)
+        graph.tell(site, "has no image, magenta is used", "", harm=Harm.WRONG)
         return None
     return graph.images.numbers(node.image, node.image_user, lambda text, key="", **harm: graph.tell(site, text, key, **harm))
 

@@ -23,7 +23,10 @@ def export_world(world, images, depsgraph, messages):
     graph = NodeGraph(who, messages, images, depsgraph)
     cycles = getattr(world, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")
+        messages.add(
+            f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
+            "feature:bounce limit of a lamp",
+        )
     radiance = _cube(world.lancer, graph, who, messages) if world.lancer.use_cube else _nodes(world, graph, who, messages)
     return snapshot.World(
         radiance=radiance,
@@ -40,7 +43,8 @@ def _nodes(world, graph, who, messages):
     if output is None:
         return 0.0, 0.0, 0.0
     if output.inputs["Volume"].is_linked:
-        messages.add(f"{who}: volumes are not supported, its background alone is shown", harm=Harm.LEFT_OUT)
+        text = f"{who}: volumes are not supported, its background alone is shown"
+        messages.add(text, "feature:volume of the world", harm=Harm.LEFT_OUT)
     return emission_of(graph, world.node_tree, "OUTPUT_WORLD")
 
 

@@ -659,6 +659,9 @@ typedef struct lancer_statistics {
   char kernel[64];          /* the integrator's specialisation that ran */
   char instruction_set[32]; /* e.g. "AVX2" */
   uint64_t texture_bytes;   /* pictures; geometry_bytes has meshes, instances and lights */
+  /* Vertices of rays on surfaces: shaded by kernels of many lanes, and one by one by the general code. Layers that a cut-out
+   * takes away are none. */
+  uint64_t wide_vertices, narrow_vertices;
 } lancer_statistics;
 
 /* The scene must be committed. Checks camera and settings; allocates the film. */

@@ -34,6 +34,7 @@ void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<
 bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                                  std::vector<PathVertex> *trace) {
   const RayCounts before = counts_;
+  const VertexCounts vertices_before = vertices_;
   generate(addresses, results);
   // Trace the recursion depth by depth: a pixel's sum has the same order in any batch.
   while (!rays_.empty() && !settings_.cancelled()) {
@@ -52,6 +53,7 @@ bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     rays_.swap(next_rays_);
     if (rays_.size() > kCrowd && addresses.size() > kSmallPart) {
       counts_ = before;
+      vertices_ = vertices_before;
       return false;
     }
   }
@@ -95,6 +97,7 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
     miss(branch, ray.o, direction, result);
     return;
   }
+  ++vertices_.narrow;
   const bool from_camera = branch.depth == 0;
   const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
   const double way = (branch.passed + hit.t) * glm::length(ray.d);

@@ -210,6 +210,7 @@ void ClassicIntegrator::add_own_light(uint32_t lane, const Branch &branch, const
 
 // What follows from a shaded lane: its light, its shadow rays, its mirrored ray.
 void ClassicIntegrator::leave_lane(uint32_t lane, const Branch &branch, const Hit &hit, SampleResult &result) {
+  ++vertices_.wide;
   const CourseBlock &block = lanes_->block;
   const Material &material = scene_.materials[lanes_->material_of[lane]];
   const bool first = branch.depth == 0 && !branch.seen && settings_.alpha_threshold <= 1.0f;
