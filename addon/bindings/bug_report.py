@@ -3,7 +3,6 @@
 It may come from anywhere: load gives a snapshot that is safe to render, or raises SnapshotError.
 """
 
-import io
 import json
 import os
 import shutil
@@ -14,6 +13,7 @@ from .npz import SnapshotError
 from .snapshot import SceneSnapshot
 
 _FACTS, _SNAPSHOT = "report.json", "snapshot.npz"
+_CHUNK = 1 << 20
 
 
 def save(path, facts, snapshot=None, tell=None):
@@ -27,9 +27,20 @@ def save(path, facts, snapshot=None, tell=None):
         with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
             archive.writestr(_FACTS, json.dumps(facts, indent=2))
             if snapshot is not None:
-                with archive.open(_SNAPSHOT, "w", force_zip64=True) as file:
-                    snapshot.write(_Counted(file, snapshot.nbytes, tell))
+                inner = os.path.join(place, _SNAPSHOT)
+                snapshot.save(inner)
+                with open(inner, "rb") as file, archive.open(_SNAPSHOT, "w", force_zip64=True) as packed:
+                    _copy(file, packed, os.path.getsize(inner), tell)
         os.replace(whole, path)
+
+
+def _copy(source, target, size, tell):
+    done = 0
+    while chunk := source.read(_CHUNK):
+        target.write(chunk)
+        done += len(chunk)
+        if tell is not None:
+            tell(done / size)
 
 
 def load(path):
@@ -55,21 +66,3 @@ def load(path):
     except Exception as error:
         # A damaged archive can fail anywhere.
         raise SnapshotError(f"{path} holds no scene snapshot: {type(error).__name__}: {error}") from error
-
-
-class _Counted(io.RawIOBase):
-    """A file that says how much of so many bytes has been written to it."""
-
-    def __init__(self, file, size, tell):
-        self._file, self._size, self._tell = file, max(1, size), tell
-        self._written = 0
-
-    def write(self, data):
-        done = self._file.write(data)
-        self._written += len(data)
-        if self._tell is not None:
-            self._tell(min(1.0, self._written / self._size))
-        return done
-
-    def writable(self):
-        return True

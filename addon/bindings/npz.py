@@ -30,24 +30,6 @@ def register(cls):
 
 
 def save_npz(record, path):
-    with open(os.fspath(path), "wb") as file:
-        write_npz(record, file)
-
-
-def arrays_of(value):
-    """All arrays in a tree of records."""
-    if isinstance(value, np.ndarray):
-        yield value
-    elif isinstance(value, tuple):
-        for item in value:
-            yield from arrays_of(item)
-    elif dataclasses.is_dataclass(value):
-        for field in dataclasses.fields(value):
-            yield from arrays_of(getattr(value, field.name))
-
-
-def write_npz(record, file):
-    """To a file that is open for writing, which need not be able to seek."""
     arrays = {}
 
     def encode(value):
@@ -65,7 +47,8 @@ def write_npz(record, file):
         return value
 
     tree = json.dumps(encode(record)).encode("utf-8")
-    np.savez(file, **{_TREE: np.frombuffer(tree, np.uint8)}, **arrays)
+    with open(os.fspath(path), "wb") as file:
+        np.savez(file, **{_TREE: np.frombuffer(tree, np.uint8)}, **arrays)
 
 
 def load_npz(path):

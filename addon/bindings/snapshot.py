@@ -25,7 +25,7 @@ from .enums import (
     Ray,
     Shading,
 )
-from .npz import SnapshotError, arrays_of, load_npz, register, save_npz, write_npz
+from .npz import SnapshotError, load_npz, register, save_npz
 from .record import Record, array
 from .shading import Image, Lobe, Material, Node, NodeRef, Principled, World  # noqa: F401 - all records have one address
 
@@ -298,15 +298,6 @@ class SceneSnapshot(Record):
 
     def save(self, path):
         save_npz(self, path)
-
-    def write(self, file):
-        """As save, to a file that is open for writing."""
-        write_npz(self, file)
-
-    @property
-    def nbytes(self):
-        """Of all its arrays."""
-        return sum(array.nbytes for array in arrays_of(self))
 
     @classmethod
     def load(cls, path):
