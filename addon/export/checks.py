@@ -3,6 +3,7 @@
 import bpy
 
 from ..bindings.enums import Pass
+from ..harm import Harm
 from .cycles_settings import check_cycles
 
 # As passes.py renders them, by the names of a view layer's switches.
@@ -51,7 +52,7 @@ def check_view_layer(scene, view_layer, messages):
         messages.add(f"{who}: Freestyle is not supported by Lancer, Blender draws its lines with EEVEE over the picture")
     names = _missing_passes(view_layer)
     if names:
-        messages.add(f"{who}: these passes are not supported: {', '.join(names)}")
+        messages.add(f"{who}: these passes are not supported: {', '.join(names)}", harm=Harm.LEFT_OUT)
 
 
 def _missing_passes(view_layer):
@@ -120,10 +121,8 @@ def check_hair(thing, messages):
             continue
         system = modifier.particle_system
         if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
-            messages.add(
-                f"object '{thing.name}': hair of particle system '{system.name}' is not supported, it is left out",
-                "feature:hair particles",
-            )
+            text = f"hair of particle system '{system.name}' is not supported, it is left out"
+            messages.add(f"object '{thing.name}': {text}", "feature:hair particles", harm=Harm.LEFT_OUT)
 
 
 def check_linking(thing, kind, messages):

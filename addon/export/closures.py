@@ -1,6 +1,7 @@
 """What each shader node adds to a surface: lobes, light, passage and holes."""
 
 from ..bindings.enums import Distribution, LobeKind
+from ..harm import Harm
 from .arithmetic import is_constant
 from .distributions import read_distribution
 from .principled import read_principled
@@ -131,7 +132,7 @@ def _portal(surface, site, weight):
 
 
 def _volume(surface, site, weight):
-    surface.graph.tell(site, f"{site.node.bl_label} is a volume and has no surface, nothing is shown")
+    surface.graph.tell(site, f"{site.node.bl_label} is a volume and has no surface, nothing is shown", harm=Harm.LEFT_OUT)
 
 
 def read_unknown(surface, site, weight):
