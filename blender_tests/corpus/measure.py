@@ -189,11 +189,10 @@ class Measurement:
 
     def _compare_noise(self, ours, theirs, seconds):
         found = noise.compare(*noise.relative_variance(ours, theirs))
-        speed = seconds["CYCLES"] / max(seconds["LANCER"], 0.01)
-        self.row["speed"] = speed
+        # A picture without noise, as of the sky alone, says nothing of speed.
         if found:
-            self.row["variance"] = found
-            self.row["efficiency"] = speed / found["ratio"]
+            speed = seconds["CYCLES"] / max(seconds["LANCER"], 0.01)
+            self.row |= {"speed": speed, "variance": found, "efficiency": speed / found["ratio"]}
 
     def _write(self, ours, theirs):
         """Pictures for the page, row 0 above."""
