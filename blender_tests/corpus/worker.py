@@ -69,7 +69,7 @@ def render(engine, samples, seed, picture):
         statistics = addon.engine.last_statistics[scene.name]
         wanted = ("build_seconds", "wide_vertices", "narrow_vertices", "kernel", "features", "triangles", "instances", "lights")
         result |= {name: statistics[name] for name in wanted}
-        result |= {"messages": addon.engine.last_messages[scene.name], "missing": addon.engine.last_missing[scene.name]}
+        result |= {"messages": list(addon.engine.last_messages[scene.name]), "missing": addon.engine.last_missing[scene.name]}
         result["export_seconds"] = sum(export)
     return result
 
