@@ -11,7 +11,7 @@ import os
 import bpy
 import numpy as np
 
-from .arrays import built_in, corner_vertices, read
+from .arrays import built_in, corner_vertices, look
 from .attributes import attribute_sources, read_uv_map, render_uv_map
 from .mesh import color_attribute, face_slots, read_positions
 
@@ -84,6 +84,9 @@ class Kept:
                 self.counts[f"kept_{kind}"] += 1
                 return entry.value
         self.counts[f"read_{kind}"] += 1
+        if sources is not None:
+            # Blender's own arrays go with the frame, and to make normals may move them.
+            sources = tuple(np.array(source) if isinstance(source, np.ndarray) else source for source in sources)
         value = make()
         if sources is not None:
             entries.append(_Entry(sources, value))
@@ -122,16 +125,21 @@ def _sources_of_mesh(mesh, wanted, poll):
     """All that export_mesh makes its arrays of; None where Blender does not give all of it."""
     if not _NEW_NORMALS and mesh.has_custom_normals:
         return None
-    sources = [len(mesh.polygons), len(mesh.edges), read_positions(mesh), corner_vertices(mesh)]
-    sources.append(read(mesh.polygons, "loop_start", np.int32, 1))
+    places, corners = built_in(mesh, "position", "POINT"), built_in(mesh, ".corner_vert", "CORNER")
+    sources = [
+        len(mesh.edges),
+        read_positions(mesh) if places is None else look(places, "vector", np.float32, 3),
+        corner_vertices(mesh) if corners is None else look(corners, "value", np.int32, 1),
+        look(mesh.polygons, "loop_start", np.int32, 1),
+    ]
     poll()
     sources += _sources_of_normals(mesh)
     poll()
     layer, color = render_uv_map(mesh), color_attribute(mesh)
     if layer is not None:
-        sources += ["uv", read_uv_map(layer)]
+        sources.append(look(layer.uv, "vector", np.float32, 2) if hasattr(layer, "uv") else read_uv_map(layer))
     if color is not None:
-        sources += [color.domain, read(color.data, "color", np.float32, 4)]
+        sources += [color.domain, look(color.data, "color", np.float32, 4)]
     sources.append(face_slots(mesh))
     poll()
     sources += attribute_sources(mesh, wanted)
@@ -143,23 +151,23 @@ def _sources_of_normals(mesh):
     if not _NEW_NORMALS:
         yield mesh.use_auto_smooth
         yield mesh.auto_smooth_angle
-        yield read(mesh.polygons, "use_smooth", bool, 1)
+        yield look(mesh.polygons, "use_smooth", bool, 1)
         if mesh.use_auto_smooth:
-            yield read(mesh.loops, "edge_index", np.int32, 1)
-            yield read(mesh.edges, "use_edge_sharp", bool, 1)
+            yield look(mesh.loops, "edge_index", np.int32, 1)
+            yield look(mesh.edges, "use_edge_sharp", bool, 1)
         return
     yield mesh.normals_domain
     yield mesh.has_custom_normals
     for name, domain in (("sharp_face", "FACE"), ("sharp_edge", "EDGE")):
         data = built_in(mesh, name, domain)
-        yield None if data is None else read(data, "value", bool, 1)
+        yield None if data is None else look(data, "value", bool, 1)
     if built_in(mesh, "sharp_edge", "EDGE") is not None or mesh.has_custom_normals:
-        yield read(mesh.loops, "edge_index", np.int32, 1)
+        yield look(mesh.loops, "edge_index", np.int32, 1)
     if mesh.has_custom_normals:
         custom = mesh.attributes.get("custom_normal")
         yield None if custom is None else custom.data_type
-        yield read(mesh.vertex_normals, "vector", np.float32, 3)
-        yield read(mesh.corner_normals, "vector", np.float32, 3)
+        yield look(mesh.vertex_normals, "vector", np.float32, 3)
+        yield look(mesh.corner_normals, "vector", np.float32, 3)
 
 
 def _sources_of_image(image, path):
