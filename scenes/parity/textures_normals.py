@@ -225,14 +225,13 @@ def smooth_and_flat_divided(scene):
 
 @case()
 def normals_at_edges_of_three_faces(scene):
-    """The user's normals, a different one at each corner."""
+    """The user's normals: those of the fins lean the other way."""
     mesh = _hills(True)
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     if hasattr(mesh, "use_auto_smooth"):
         mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
-    turns = np.arange(len(mesh.loops)) * 2.4
-    normals = np.stack([0.3 * np.cos(turns), 0.3 * np.sin(turns), np.ones(len(turns))], axis=1)
-    mesh.normals_split_custom_set((normals / np.linalg.norm(normals, axis=1, keepdims=True)).tolist())
+    normals = [(0.4, 0.0, 0.9165) if face.index < 25 else (-0.4, -0.5, 0.7681) for face in mesh.polygons for _ in face.vertices]
+    mesh.normals_split_custom_set(normals)
     _under_lamp(scene, mesh)
 
 
