@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import InstanceTable
+from ..harm import Harm
 from .checks import check_hair
 from .lights import export_light
 from .objects import Objects
@@ -145,7 +146,8 @@ class Instances:
             if light is not None:
                 self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
-            self.messages.add(f"object '{thing.name}': type {thing.type} is not supported, it is left out")
+            text = f"object '{thing.name}': type {thing.type} is not supported, it is left out"
+            self.messages.add(text, f"feature:{thing.type.lower()} object", harm=Harm.LEFT_OUT)
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

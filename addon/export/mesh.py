@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bindings.snapshot import MeshData
 from .arrays import at_corners, built_in, corner_vertices, gather, read, triangle_faces
-from .attributes import read_attributes, read_uv_map, render_uv_map
+from .attributes import POLYGONS, read_attributes, read_uv_map, render_uv_map
 from .shading_normals import shading_normals
 
 _SAMPLE = 8
@@ -35,8 +35,8 @@ def shown_mesh(thing, owner):
 def export_mesh(mesh, name, poll, wanted=frozenset()):
     """The mesh with the normals that Blender shades with, its render UV map and colours, and the attributes that are wanted.
 
-    wanted: names of further UV maps and attributes as attribute_name gives them, tangents_name's, "generated". poll ends the
-    export by an exception; one array of Blender's is the least that it can wait for.
+    wanted: names of further UV maps and attributes as attribute_name gives them, tangents_name's, "generated", POLYGONS. poll
+    ends the export by an exception; one array of Blender's is the least that it can wait for.
     """
     positions = read_positions(mesh)
     poll()
@@ -70,6 +70,7 @@ def export_mesh(mesh, name, poll, wanted=frozenset()):
         uvs=uvs,
         colors=colors,
         material_slots=slots,
+        polygons=np.unique(faces, return_inverse=True)[1] if POLYGONS in wanted and faces is not None else None,
     )
     return replace(data, attributes=read_attributes(mesh, data, wanted, corners, faces, poll)) if wanted else data
 

@@ -6,8 +6,9 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
+from ..harm import Harm
 from .arithmetic import is_constant
-from .attributes import named_attributes
+from .attributes import POLYGONS, named_attributes
 from .checks import check_object
 from .mesh import export_mesh, read_positions, shown_mesh
 from .visibility import object_hidden_from
@@ -96,7 +97,7 @@ class Objects:
         kind = InstanceKind[own.shape]
         mesh, placement = 0, -1
         if kind == InstanceKind.MESH:
-            mesh, used = self._mesh(thing, owner, name, data_key, slots, poll)
+            mesh, used = self._mesh(thing, owner, name, data_key, slots, self._colors_polygons(own), poll)
             if mesh < 0:
                 return -1, ""
         else:
@@ -113,7 +114,11 @@ class Objects:
             self.looks.append(look)
         return number, name
 
-    def _mesh(self, thing, owner, name, data_key, slots, poll):
+    def _colors_polygons(self, own):
+        """Whether each face of the object gets one colour: Classic has to know which triangles are one face then."""
+        return own.shading == "FLAT" and self.scene.lancer.integrator == "CLASSIC"
+
+    def _mesh(self, thing, owner, name, data_key, slots, polygons, poll):
         """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces.
 
         Objects that share a mesh may show it with materials that read different attributes of it.
@@ -121,6 +126,8 @@ class Objects:
         wanted = self._wanted.get(slots)
         if wanted is None:
             wanted = self._wanted[slots] = self.materials.attributes(slots)
+        if polygons:
+            wanted = wanted | {POLYGONS}
         copies = self._meshes.setdefault(data_key, [])
         found = next((copy for copy in copies if copy[0] >= wanted), None)
         if found is None:
@@ -152,7 +159,9 @@ class Objects:
             if placement is not None:
                 self.placements.append(placement)
         if number < 0:
-            self.messages.add(f"object '{name}': has no vertices to place its exact shape by, it is left out")
+            self.messages.add(
+                f"object '{name}': has no vertices to place its exact shape by, it is left out", harm=Harm.LEFT_OUT
+            )
         return number
 
     def _tell_exact(self, name, slots):
@@ -168,7 +177,7 @@ class Objects:
             return
         for number in sorted({min(slot, len(materials) - 1) for slot in used}):
             if materials[number] is None:
-                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used")
+                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used", harm=Harm.HINT)
 
 
 def _has_special_collections(view_layer):
