@@ -86,7 +86,7 @@ def _tangents_layer(mesh, name):
 
 def attribute_sources(mesh, wanted):
     """What read_attributes reads of the mesh for these names, beside its faces, places and normals: arrays, and None."""
-    for name in sorted(wanted):
+    for name in sorted(wanted - {POLYGONS}):
         if name == "generated":
             yield _generated(mesh).values
         elif name.startswith(_TANGENT):

@@ -66,12 +66,12 @@ class Kept:
 
         def read_again(image, path, tell):
             def make():
-                lines = []
-                return read_all(image, path, lines.append), lines
+                told = []
+                return read_all(image, path, lambda *given, **named: told.append((given, named))), told
 
-            found, lines = self._get("images", image.name_full, _sources_of_image(image, path), make)
-            for line in lines:
-                tell(line)
+            found, told = self._get("images", image.name_full, _sources_of_image(image, path), make)
+            for given, named in told:
+                tell(*given, **named)
             return found
 
         return read_again
