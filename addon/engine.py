@@ -15,6 +15,7 @@ from .bindings.session import Cancelled, Session
 from .bindings.uses import used_features
 from .check_scene import quick_check
 from .export import main_thread
+from .export.kept import Kept
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
 from .harm import Harm
@@ -27,6 +28,8 @@ last_messages = {}
 last_missing = {}
 # Of the last measurement of each scene: a hints.Costs.
 last_costs = {}
+# Of the scenes that are being animated or have Persistent Data, by their names: what is not read again.
+_kept = {}
 # What the library holds, by kind: names of last_statistics.
 MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 
@@ -96,6 +99,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             last_messages.pop(scene.name, None)
             last_missing.pop(scene.name, None)
             last_statistics.pop(scene.name, None)
+            if not (self.is_animation or scene.render.use_persistent_data):
+                _kept.pop(scene.name, None)
+            else:
+                _kept.setdefault(scene.name, Kept()).next_picture()
         self._exported[1].add(layer)
 
     def _guarded(self, scene, work, *arguments):
@@ -131,7 +138,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             # Told before the time is spent.
             self._tell(scene, Messages([denoise.missing()]))
         wanted = passes.render_passes(scene, view_layer)
-        options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
+        options = ExportOptions(
+            camera=self.camera_override, passes=tuple(item.source for item in wanted), kept=_kept.get(scene.name)
+        )
         self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
         self._uses = [dataclasses.asdict(feature) for feature in used_features(self._snapshot)]
         self._tell(scene, messages)
@@ -236,6 +245,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
         numbers["uses"] = self._uses
+        if scene.name in _kept:
+            numbers.update(_kept[scene.name].counts, kept_bytes=_kept[scene.name].bytes)
         last_statistics[scene.name] = numbers
         if scene.name in last_costs:
             keep_costs(scene.name, last_costs[scene.name])
@@ -274,16 +285,29 @@ def _forget(*_):
     last_messages.clear()
     last_missing.clear()
     last_costs.clear()
+    _kept.clear()
+
+
+@persistent
+def _forget_kept(scene, *_):
+    """After the last frame, or Esc."""
+    if not scene.render.use_persistent_data:
+        _kept.pop(scene.name, None)
+
+
+_HANDLERS = (("load_pre", _forget), ("render_complete", _forget_kept), ("render_cancel", _forget_kept))
 
 
 def register():
     bpy.utils.register_class(LancerRenderEngine)
-    bpy.app.handlers.load_pre.append(_forget)
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
     main_thread.register()
 
 
 def unregister():
     main_thread.unregister()
-    bpy.app.handlers.load_pre.remove(_forget)
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
     bpy.utils.unregister_class(LancerRenderEngine)
     _forget()
