@@ -23,12 +23,15 @@ def export_world(world, images, depsgraph, messages):
     cycles = getattr(world, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
         messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")
+    method = getattr(cycles, "sampling_method", "")
     radiance = _cube(world.lancer, graph, who, messages) if world.lancer.use_cube else _nodes(world, graph, who, messages)
+    if method == "NONE" and isinstance(radiance, snapshot.NodeRef):
+        messages.add(f"{who}: Sampling None is not supported, Auto is used; behind objects that cast no shadow it is brighter")
     return snapshot.World(
         radiance=radiance,
         nodes=graph.nodes,
         hidden_from=hidden_from(getattr(world, "cycles_visibility", None)),
-        map_resolution=cycles.sample_map_resolution if getattr(cycles, "sampling_method", "") == "MANUAL" else 0,
+        map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )
 
 
