@@ -8,7 +8,7 @@ _LINES_OF_A_KIND = 3
 
 class Harm(IntEnum):
     HINT = 0  # may be meant so; told only when asked
-    WASTE = 1  # costs time, or light does not do what the setting promises
+    WASTE = 1  # costs time, light does not do what the setting promises, or Cycles would show something else
     WRONG = 2  # the picture will show it
 
 
@@ -53,6 +53,10 @@ KINDS = {
     "closures": "Materials",
     "lights": "Lights",
 }
+
+
+# Of opaque surfaces that lie on each other and look alike.
+SHADOWED = "Cycles would show them darker, down to black, as each shadows the other there"
 
 
 def told_place(place):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..bindings.enums import InstanceKind
 from .edges import corner_keys, mixed
-from .finding import Finding, Harm, told_number
+from .finding import SHADOWED, Finding, Harm, told_number
 
 # Below this share of a mesh double faces cost nothing that is felt.
 _SHARE = 0.1
@@ -69,7 +69,7 @@ def check_twins(subject, rows):
         yield Finding(
             "coincident",
             Harm.WASTE if opaque and same else Harm.WRONG,
-            what if copies == 1 else f"{what}, like {copies - 1} more",
+            (what if copies == 1 else f"{what}, like {copies - 1} more") + (f": {SHADOWED}" if opaque and same else ""),
             "delete the copy",
             object=name,
             faces=_face_count(subject, row),
@@ -112,17 +112,16 @@ def check_double_faces(subject):
         row = looks[0]
         opposite = ~_same_turn(keys[one], keys[other])
         hurts = _hurts(subject, mesh, row, one, other, opposite)
-        # A back for each face is how some engines show both sides.
-        if not hurts.any() and opposite.all():
-            continue
-        shown = np.flatnonzero(hurts) if hurts.any() else np.flatnonzero(~opposite)
+        # Where nothing hurts, all of them count, and a back for each face, too, is how some engines show both sides.
+        shown = np.flatnonzero(hurts) if hurts.any() else np.arange(len(one))
         share = len(shown) / len(mesh.triangles)
         subject.doubled.add(number)
         harm = Harm.WRONG if hurts.any() else Harm.WASTE if share > _SHARE else Harm.HINT
+        what = f"{told_number(len(shown), 'face')} lie exactly on other faces of the mesh"
         yield Finding(
             "coincident",
             harm,
-            f"{told_number(len(shown), 'face')} lie exactly on other faces of the mesh",
+            what if hurts.any() else f"{what}: {SHADOWED}",
             "in Edit Mode, Mesh > Merge > By Distance, then delete what is left twice",
             object=subject.name(row),
             mesh=mesh.name,
