@@ -32,7 +32,7 @@ from addon.checks.finding import Harm
 
 COINCIDENT = [("coincident", "WRONG")]
 TOUCHING = [("coincident", "HINT")]
-DARKER = [("coincident", "WASTE")]
+DARKER = [("coincident", "DIFFERENT")]
 
 
 def two(first=GREY_, second=RED_, matrix=None, mesh=None, camera=EYE):
@@ -77,7 +77,7 @@ def test_planes_in_any_position(turn):
 def test_planes_that_look_alike(thorough):
     """Lancer shows them as one, Cycles has each shadow the other: told where the picture shows enough of it."""
     finding = only(two(GREY_, GREY_), thorough)
-    assert finding.harm == Harm.WASTE and "Cycles would show them darker" in finding.what
+    assert finding.key and finding.harm == Harm.DIFFERENT and "Cycles would show them darker" in finding.what
     assert {finding.object, *finding.what.split("'")} >= {"one", "two"}
     twin = dataclasses.replace(GREY, name="grey.001")
     snapshot = scene([placed(0, 0), placed(1, 1, name="two")], [sheet(), sheet(3.0)], materials=(GREY, twin))
@@ -113,12 +113,12 @@ def test_planes_that_look_alike(thorough):
 @pytest.mark.parametrize("thorough", [True, False])
 def test_copies_that_cycles_shows_darker(thorough):
     finding = only(scene([placed(0, GREY_, name="one"), placed(0, GREY_, name="two")], [sheet()]), thorough)
-    assert finding.harm == Harm.WASTE and "Cycles would show them darker" in finding.what
+    assert finding.key and finding.harm == Harm.DIFFERENT and "Cycles would show them darker" in finding.what
     for turn in (slice(None), slice(None, None, -1)):
         board = sheet(parts=4)
         double = dataclasses.replace(board, triangles=np.concatenate((board.triangles, board.triangles[:, turn])))
         finding = only(one(double, GREY_), thorough)
-        assert finding.harm == Harm.WASTE and "Cycles would show them darker" in finding.what
+        assert finding.key and finding.harm == Harm.DIFFERENT and "Cycles would show them darker" in finding.what
     # Light that counts twice, or red that fights grey, is another matter.
     assert "Cycles" not in only(two(GREY_, RED_), thorough).what
 
@@ -216,10 +216,10 @@ def test_copies_in_place(thorough):
     """A copy that was not moved costs time; where light passes it costs the look."""
     snapshot = scene([placed(0, GREY_, move(1, 2, 3), "one"), placed(0, GREY_, move(1, 2, 3), "two")], [ball()])
     finding = only(snapshot, thorough)
-    assert (finding.kind, finding.harm, finding.object) == ("coincident", Harm.WASTE, "two") and "'one'" in finding.what
+    assert (finding.kind, finding.harm, finding.object) == ("coincident", Harm.DIFFERENT, "two") and "'one'" in finding.what
     # Its mesh may be a copy, too.
     copied = scene([placed(0, GREY_, name="one"), placed(1, GREY_, name="two")], [ball(), ball(name="ball.001")])
-    assert found(copied, thorough) == [("coincident", "WASTE")]
+    assert found(copied, thorough) == [("coincident", "DIFFERENT")]
     for material in (VEIL_, GLOW_):
         assert found(scene([placed(0, material), placed(0, material)], [ball()]), thorough) == COINCIDENT
     assert found(scene([placed(0, GREY_), placed(0, RED_)], [ball()]), thorough) == COINCIDENT
@@ -227,22 +227,24 @@ def test_copies_in_place(thorough):
     assert found(scene([placed(0, GREY_), placed(1, GREY_)], [ball(16), ball(20)]), thorough) == []
     seen, unseen = placed(0, GREY_), placed(0, RED_, hidden_from=Ray.CAMERA)
     assert found(scene([seen, unseen], [ball()]), thorough) == []
-    assert found(scene([exact("SPHERE"), exact("SPHERE", name="b")]), thorough) == [("coincident", "WASTE")]
+    assert found(scene([exact("SPHERE"), exact("SPHERE", name="b")]), thorough) == [("coincident", "DIFFERENT")]
     assert found(scene([exact("SPHERE"), exact("SPHERE", 0, scale(0.9), "b")]), thorough) == []
 
 
 def test_faces_twice():
     faces = np.array(BOX_FACES)
     twice = box(faces=np.concatenate((faces, np.roll(faces, 1, axis=1))))
-    assert found(one(twice)) == [("coincident", "WASTE")]
+    assert found(one(twice)) == [("coincident", "DIFFERENT")]
     assert only(one(twice, VEIL_)).faces == 12 and found(one(twice, VEIL_)) == COINCIDENT
     # So does a back for every face, which otherwise hurts nobody who is opaque.
     backed = box(faces=np.concatenate((faces, faces[:, ::-1])))
     assert found(one(backed)) == DARKER and found(one(backed, VEIL_)) == COINCIDENT and found(one(backed, GLASS_)) == COINCIDENT
     slots = np.repeat([0, 1], 12).astype(np.uint16)
     assert found(one(dataclasses.replace(twice, material_slots=slots), (GREY_, RED_))) == COINCIDENT
-    assert found(one(dataclasses.replace(twice, material_slots=slots), (GREY_, GREY_))) == [("coincident", "WASTE")]
-    # One of many is a hint; points without area are nothing.
-    some = box(faces=[*BOX_FACES, BOX_FACES[0]])
-    assert found(one(some)) == [("coincident", "HINT")] and found(one(some), thorough=False) == []
+    assert found(one(dataclasses.replace(twice, material_slots=slots), (GREY_, GREY_))) == [("coincident", "DIFFERENT")]
+    # What the picture hardly shows is a hint; points without area are nothing.
+    some = one(box(faces=[*BOX_FACES, BOX_FACES[0]]))
+    far = dataclasses.replace(some, camera=dataclasses.replace(EYE, matrix=look_at((1.0, -600.0, 300.0), (0, 0, 0))))
+    assert found(some) == found(some, thorough=False) == DARKER
+    assert found(far) == [("coincident", "HINT")] and found(far, thorough=False) == []
     assert found(one(box(faces=[*BOX_FACES, (0, 0, 1), (0, 0, 1)]))) == []

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..bindings.enums import CameraKind, InstanceKind
 from .edges import corner_keys, edge_faults
-from .finding import SHADOWED, Finding, Harm, told_number
-from .framing import share_of_plane
+from .finding import IN_ONE_PLANE, SHADOWED, Finding, Harm, told_number
+from .framing import LEAST_SHARE, share_of_plane
 from .overlap import overlapping_triangles
 from .planes import gather, in_one_plane, pairs_of
 
@@ -16,7 +16,6 @@ _MOST_FACETS = 2_000_000, 20_000  # thorough, quick
 _MOST_PAIRS = 64_000_000, 200_000
 _MOST_ASKED = 1024, 64  # pairs whose triangles are compared
 _MOST_ALIKE = 65536, 1024  # pairs that look alike, which are most, of which the camera is asked
-LEAST_SHARE = 1e-3  # of the picture that such a pair must take to be worth a line
 _MOST_TRIANGLES = 8_000_000
 
 
@@ -115,7 +114,11 @@ class _Hurts:
         if self.alike(one, other):
             if self._share(one, other) < LEAST_SHARE:
                 return None
-            return Harm.WASTE, f"lie in the same plane and look alike: {SHADOWED}", "delete one of them, or move it a little"
+            return (
+                Harm.DIFFERENT,
+                f"lie in the same plane and look alike: {SHADOWED}",
+                "delete one of them, or move it a little",
+            )
         if self.subject.alike(first, second):
             return Harm.WRONG, "lie in the same plane, and their light counts twice", "delete one of them, or move it a little"
         return Harm.WRONG, "lie in the same plane, and only one of them is seen", "move one of them a little"
@@ -210,4 +213,5 @@ def _finding(subject, world, one, other, words, place, count, weight):
         faces=count,
         place=place,
         weight=weight,
+        key=IN_ONE_PLANE if harm == Harm.DIFFERENT else "",
     )

@@ -1,15 +1,10 @@
 """One thing that will hurt, in words an artist understands; and many of them as a short list."""
 
 from dataclasses import dataclass
-from enum import IntEnum
+
+from ..harm import Harm
 
 _LINES_OF_A_KIND = 3
-
-
-class Harm(IntEnum):
-    HINT = 0  # may be meant so; told only when asked
-    WASTE = 1  # costs time, light does not do what the setting promises, or Cycles would show something else
-    WRONG = 2  # the picture will show it
 
 
 @dataclass(frozen=True)
@@ -26,6 +21,7 @@ class Finding:
     faces: int = 0
     place: tuple | None = None  # world coordinates
     weight: float = 0.0  # how much of it there is, among findings of one kind
+    key: str = ""  # of its message, where Cycles shows it otherwise
 
     @property
     def who(self):
@@ -56,6 +52,7 @@ KINDS = {
 
 
 # Of opaque surfaces that lie on each other and look alike.
+IN_ONE_PLANE = "feature:faces in one plane"
 SHADOWED = "Cycles would show them darker, down to black, as each shadows the other there"
 
 

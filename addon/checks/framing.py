@@ -4,7 +4,9 @@ import numpy as np
 
 from ..bindings.enums import CameraKind
 
+LEAST_SHARE = 1e-3  # of the picture, which is worth a line
 _RAYS = 64  # along each side of the picture
+_MOST_TRIANGLES = 16
 
 
 def share_of_plane(camera, point, normal, low, high):
@@ -24,3 +26,15 @@ def share_of_plane(camera, point, normal, low, high):
     distances = ((point - origins) @ normal) / (directions @ normal)
     places = origins + distances[:, :, None] * directions
     return float(((distances > 0.0) & ((places >= low) & (places <= high)).all(axis=2)).mean())
+
+
+def share_of_triangles(camera, corners):
+    """The same of triangles, (n, 3, 3) in the world: by the boxes of the largest."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    largest = np.argsort(-np.linalg.norm(normals, axis=1))[:_MOST_TRIANGLES]
+    margin = 2.0**-20 * np.abs(corners[largest]).max(initial=0.0)
+    shares = (
+        share_of_plane(camera, corners[i, 0], normals[i], corners[i].min(axis=0) - margin, corners[i].max(axis=0) + margin)
+        for i in largest
+    )
+    return min(1.0, sum(shares))

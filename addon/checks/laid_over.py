@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from .coincident import LEAST_SHARE, is_plain
+from .coincident import is_plain
 from .facets import mesh_facets
-from .finding import SHADOWED, Finding, Harm, told_number
-from .framing import share_of_plane
+from .finding import IN_ONE_PLANE, SHADOWED, Finding, Harm, told_number
+from .framing import LEAST_SHARE, share_of_triangles
 from .overlap import box_pairs, triangles_over
 from .subject import step
 
@@ -30,12 +30,13 @@ def check_laid_over(subject):
             over = _overlapping(corners, facets.normals[part], _MOST_PAIRS[not subject.thorough])
             if len(over) == 0:
                 continue
-            share, place = _shown(subject, row, corners[over], facets.normals[part])
+            places = subject.world(row, corners[over].reshape(-1, 3)).reshape(-1, 3, 3)
+            share = share_of_triangles(subject.snapshot.camera, places)
             if share < LEAST_SHARE:
                 continue
             yield Finding(
                 "coincident",
-                Harm.WASTE,
+                Harm.DIFFERENT,
                 f"{told_number(len(over), 'face')} lie in the same plane as others that they overlap: {SHADOWED}",
                 "in Edit Mode delete those beneath, or move them a little",
                 object=subject.name(row),
@@ -43,8 +44,9 @@ def check_laid_over(subject):
                 material=subject.material_name(material),
                 others=subject.others(number),
                 faces=len(over),
-                place=place,
+                place=tuple(places[0].mean(axis=0).tolist()),
                 weight=share,
+                key=IN_ONE_PLANE,
             )
             break
 
@@ -64,13 +66,3 @@ def _overlapping(corners, normal, most):
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     apart = np.abs(np.einsum("nk,nck->nc", normals[i], corners[j] - corners[i][:, :1])).max(axis=1)
     return np.unique(j[apart <= _STEPS * step(np.abs(corners).max(initial=0.0))])
-
-
-def _shown(subject, row, corners, normal):
-    """(share of the picture, a point) of triangles where an instance stands."""
-    places = subject.world(row, corners.reshape(-1, 3))
-    low, high = places.min(axis=0), places.max(axis=0)
-    margin = _STEPS * step(np.abs(places).max())
-    turned = np.linalg.inv(subject.instances.matrices[row][:, :3]).T @ normal if subject.volumes[row] else normal
-    share = share_of_plane(subject.snapshot.camera, places[0], turned, low - margin, high + margin)
-    return share, tuple(places[:3].mean(axis=0).tolist())
