@@ -7,7 +7,7 @@ from .checks.finding import Harm, shortened, told
 from .ui_lines import sentence
 from .ui_render import LancerPanel
 
-_ICONS = {Harm.WRONG: "ERROR", Harm.WASTE: "TIME", Harm.HINT: "INFO"}
+_ICONS = {Harm.WRONG: "ERROR", Harm.DIFFERENT: "ERROR", Harm.WASTE: "TIME", Harm.HINT: "INFO"}
 
 
 class LANCER_RENDER_PT_check(LancerPanel, bpy.types.Panel):
