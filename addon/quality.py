@@ -9,15 +9,15 @@ import math
 from dataclasses import dataclass
 
 import bpy
-from bpy.app.handlers import persistent
 
 from . import measuring, stamp
 from .bindings.forecast import classic_seconds, forecast
 from .bindings.pilot import measure
+from .of_scenes import OfScenes
 from .properties import QUALITIES
 
-# Kept, by the scene's name.
-measured = {}
+# Kept, by the scene.
+measured = OfScenes()
 
 
 @dataclass
@@ -29,7 +29,7 @@ class Kept:
 
 
 def is_old(scene):
-    return measured[scene.name].state != measuring.state(scene)
+    return measured[scene].state != measuring.state(scene)
 
 
 def _size(scene):
@@ -39,13 +39,13 @@ def _size(scene):
 
 def _pixels(scene):
     """Of the picture as it would be rendered now."""
-    kept = measured[scene.name]
+    kept = measured[scene]
     return kept.pixels * _size(scene) / kept.size
 
 
 def forecasts(scene):
     """(name, Forecast) of each preset and of the numbers that are set now."""
-    kept, own, pixels = measured[scene.name], scene.lancer, _pixels(scene)
+    kept, own, pixels = measured[scene], scene.lancer, _pixels(scene)
     for name, (error, samples) in QUALITIES.items():
         yield name.capitalize(), forecast(kept.points, pixels, error, samples)
     yield "As set", forecast(kept.points, pixels, own.target_error, own.samples, own.time_limit)
@@ -56,7 +56,7 @@ def lines(scene):
     for name, told in forecasts(scene):
         yield f"{name}: {seconds(told.seconds)}; error {share(told.error)}"
     samples = scene.lancer.samples
-    classic = classic_seconds(measured[scene.name].points, _pixels(scene), samples)
+    classic = classic_seconds(measured[scene].points, _pixels(scene), samples)
     if classic is not None:
         yield f"Classic, {samples} sample{'s' if samples > 1 else ''}: about {clock(classic)}"
 
@@ -92,6 +92,7 @@ def _two_digits(value):
 class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.measure_quality"
     bl_label = "Measure Speed and Accuracy"
+    figures = measured
     bl_description = (
         "Renders small pictures of the scene for some seconds, and tells how long each quality will take at the full size "
         "and how near it will come. Nothing in the scene is changed. Esc stops it"
@@ -113,22 +114,14 @@ class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
         found = measurement.found
         # F12 exports the scene, too.
         self._kept.points = dataclasses.replace(found, before=found.before + measurement.exporting)
-        measured[scene.name] = self._kept
+        measured[scene] = self._kept
         for line in lines(scene):
             self.report({"INFO"}, f"Lancer: {line}")
 
 
-@persistent
-def _forget(*_):
-    measured.clear()
-
-
 def register():
     bpy.utils.register_class(LANCER_OT_measure_quality)
-    bpy.app.handlers.load_pre.append(_forget)
 
 
 def unregister():
-    bpy.app.handlers.load_pre.remove(_forget)
     bpy.utils.unregister_class(LANCER_OT_measure_quality)
-    _forget()
