@@ -11,6 +11,7 @@ import time
 import bpy
 
 from .bindings.abi import LancerError
+from .export.camera import NO_CAMERA
 from .export.checks import check_view_layer
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
@@ -52,6 +53,8 @@ def export(context):
     """The Export of the context's scene and view layer. Raises LancerError."""
     global _asked
     scene, layer = context.scene, context.view_layer
+    if scene.camera is None:
+        raise LancerError(NO_CAMERA.format(scene.name))
     asked = Export()
     with _without_handlers(), _prepared(scene, layer) as copy:
         name = copy.name

@@ -56,6 +56,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _snapshot = None
     _picture = None
     _uses = ()
+    _gave_up = False
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
@@ -90,7 +91,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _working(self):
         with render_job.working():
             yield
-            if render_job.is_ending():
+            if render_job.is_ending() and not self._gave_up:
+                self._gave_up = True
                 # An error, as Blender would go on with the next frame.
                 self._fail("the add-on was switched off while it rendered")
 

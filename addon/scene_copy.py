@@ -43,7 +43,7 @@ def _fill(copy, scene):
 def _copy_groups(source, target):
     """The settings that add-ons have added."""
     for prop in source.bl_rna.properties:
-        value = getattr(source, prop.identifier)
+        value = getattr(source, prop.identifier) if prop.type == "POINTER" else None
         if isinstance(value, bpy.types.PropertyGroup) and prop.identifier != "rna_type":
             _copy_values(value, getattr(target, prop.identifier))
             _copy_groups(value, getattr(target, prop.identifier))

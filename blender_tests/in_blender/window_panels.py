@@ -39,6 +39,14 @@ def measure():
         return next(iter(bpy.ops.lancer.measure_quality("INVOKE_DEFAULT", seconds=600.0))).lower()
 
 
+def check():
+    """As the button of the panel does it: "running_modal", or "checked" at once."""
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=2000, ring_count=1000, location=(0, 0, 3))
+        result = next(iter(bpy.ops.lancer.check_scene("INVOKE_DEFAULT"))).lower()
+    return f"check-{result}"
+
+
 def switch():
     """The add-on off and on again."""
     addon.unregister()
