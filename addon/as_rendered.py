@@ -71,11 +71,13 @@ def export(context):
         raise asked.error
     if asked.snapshot is None:
         raise LancerError(f"Blender did not evaluate view layer '{layer.name}' for a render")
-    lines = [line.replace(f"'{name}'", f"'{scene.name}'") for line in asked.messages.lines()]
+    asked.messages = asked.messages.replaced(f"'{name}'", f"'{scene.name}'")
     # Freestyle, which would draw its lines, is off in the copy.
-    missed = Messages()
+    missed, known = Messages(), {message.text for message in asked.messages.told()}
     check_view_layer(scene, layer, missed)
-    asked.messages = Messages([*lines, *(line for line in missed.lines() if line not in lines)])
+    for message in missed.told():
+        if message.text not in known:
+            asked.messages.add(message.text, message.key, message.harm)
     return asked
 
 

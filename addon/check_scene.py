@@ -8,7 +8,7 @@ from bpy.app.handlers import persistent
 from . import measuring
 from .bindings.session import Cancelled
 from .checks.check import check_snapshot
-from .checks.finding import lines
+from .checks.finding import lines, shortened, told
 from .export.messages import Messages
 from .of_scenes import OfScenes
 from .registering import add_all
@@ -28,7 +28,10 @@ def quick_check(scene, snapshot, poll):
             raise Cancelled
 
     try:
-        return Messages(lines(check_snapshot(snapshot, thorough=False, poll=obey)))
+        messages = Messages()
+        for finding, left in shortened(check_snapshot(snapshot, thorough=False, poll=obey)):
+            messages.add(told(finding, left), harm=finding.harm)
+        return messages
     except Cancelled:
         raise
     except Exception as error:

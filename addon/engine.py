@@ -11,22 +11,25 @@ from bpy.app.handlers import persistent
 
 from . import as_rendered, denoise, passes, redraw, render_job, stamp
 from .bindings.abi import LancerError
-from .bindings.schedule import CANCELLED, Schedule
+from .bindings.schedule import SAMPLES, TARGET, TIME, Schedule
 from .bindings.session import Cancelled, Session
 from .bindings.uses import used_features
 from .check_scene import quick_check
 from .export import main_thread
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
+from .harm import Harm
 from .of_scenes import OfScenes
 from .pace import Pace
 from .picture import Picture
 from .priority import lowered
 
-# Of the last render of each scene, for the panel and for scripts. The statistics are those of the view layer that was rendered
-# last; "layers" has those of all, by their names.
+# Of the last render of each scene, for the panel and for scripts: numbers, and Messages. The numbers are those of the last view
+# layer; "layers" has those of all, by their names.
 last_statistics = OfScenes()
 last_messages = OfScenes()
+# What that render could not show as Cycles does: {key of Messages.add: how often}.
+last_missing = OfScenes()
 # Of the last measurement of each scene: a hints.Costs.
 last_costs = OfScenes()
 # What the library holds, by kind: names of last_statistics.
@@ -42,6 +45,8 @@ _SHOW_EVERY = 0.3
 # And asking for the error this.
 _ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
+# After the time that is left: what it is that is expected to end the render.
+_REMAINING = {SAMPLES: "", TARGET: " to the target error", TIME: " of the time limit"}
 
 
 class LancerRenderEngine(bpy.types.RenderEngine):
@@ -111,6 +116,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self._picture is None or not self._picture.has(key, layer):
             self._picture = Picture(key, self.get_result().layers.keys())
             last_messages.pop(scene, None)
+            last_missing.pop(scene, None)
             last_statistics.pop(scene, None)
         self._picture.begin(layer)
 
@@ -133,8 +139,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
         self._snapshot = None
-        self._picture.messages.add(text)
-        last_messages[scene] = self._picture.messages.lines()
+        self._picture.messages.add(text, harm=Harm.FAILED)
+        last_messages[scene] = self._picture.messages
         self._fail(text)
 
     def _fail(self, text):
@@ -163,7 +169,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         with lowered(lambda: Session.upload(self._snapshot, poll=self._is_over, release=True)) as session:
             # The library holds its own copy from here on.
             self._snapshot = None
-            self._tell(scene, Messages(session.messages()))
+            self._tell(scene, Messages.of_library(session.messages()))
             camera = session.camera
             result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=layer)
             if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
@@ -228,7 +234,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         seconds, reason = schedule.remaining()
         samples = progress.samples / schedule.pixels
         # Small windows cut off the end.
-        parts = [f"Remaining {_clock(seconds)} to the {reason}"]
+        parts = [f"Remaining {_clock(seconds)}{_REMAINING[reason]}"]
         if schedule.error is not None and schedule.error.known:
             parts.append(f"Error {stamp.interval(schedule.error)}")
         parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
@@ -237,10 +243,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _tell(self, scene, messages):
         """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
         room = max(0, _MAX_REPORTS - len(self._picture.messages))
-        new = self._picture.messages.merge(messages).lines()
-        last_messages[scene] = self._picture.messages.lines()
-        for line in new[:room]:
-            self.report({"WARNING"}, f"Lancer: {line}")
+        new = [message for message in self._picture.messages.merge(messages).told() if message.harm > Harm.HINT]
+        last_messages[scene] = self._picture.messages
+        last_missing[scene] = self._picture.messages.missing()
+        for message in new[:room]:
+            self.report({"WARNING"}, f"Lancer: {message.line}")
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
 
@@ -250,33 +257,20 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
             count = statistics.invalid_samples
             text = f"{count} samples were not finite and are left out, the first at pixel {place}"
-            self._tell(scene, Messages([text]))
-        error = session.error()
-        numbers = dataclasses.asdict(statistics)
-        pixels = session.camera.region_width * session.camera.region_height
-        numbers["pixel_samples"] = numbers["samples"]
-        numbers["samples"] = error.least_samples
-        numbers["samples_most"] = error.most_samples
-        numbers["samples_mean"] = statistics.samples / pixels
-        numbers["seconds"] = statistics.render_seconds
-        numbers["rays"] = statistics.rays
-        numbers["rays_per_second"] = statistics.rays_per_second
-        numbers["version"] = session.library.lancer_version().decode()
-        numbers["ended_by"] = schedule.reason or CANCELLED
-        numbers["error"] = error.error
-        for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
-            numbers[f"error_{name}"] = getattr(error, name)
+            self._tell(scene, Messages([text], Harm.WRONG))
+        numbers = stamp.account(session, schedule)
         numbers.update(denoise.statistics(denoised))
         held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
         numbers["uses"] = self._uses
-        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings)
+        # Only what get_result gives reaches the file.
+        stamped = self.get_result()
+        several = len(stamped.layers) > 1
+        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings, layer if several else "")
         layers = last_statistics.get(scene, {}).get("layers", {})
         last_statistics[scene] = {**numbers, "layers": {**layers, layer: numbers}}
         if scene in last_costs:
             keep_costs(scene, last_costs[scene])
-        # Only what get_result gives reaches the file.
-        stamped = self.get_result()
         for name, value in stamp.fields(numbers, session.settings):
             stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
         self.update_stats("", lines[0])
@@ -306,6 +300,7 @@ def _forget(*_):
     """Another file's scenes may have the same names."""
     last_statistics.clear()
     last_messages.clear()
+    last_missing.clear()
     last_costs.clear()
 
 

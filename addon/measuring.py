@@ -155,7 +155,7 @@ class Measuring:
         # Blender writes properties of an operator in its own thread only: the work gets what it needs of them now.
         measurement = _Measurement(self.work(), export)
         _watch(True)
-        self.messages = export.messages.lines()
+        self.messages = export.messages
         self.begun(context, export.snapshot)
         measurement.start()
         return measurement
