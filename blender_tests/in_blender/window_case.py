@@ -66,7 +66,9 @@ def tick():
     if told("measure quality"):
         say(window_panels.measure())
     if told("check"):
-        say(window_panels.check())
+        say(window_panels.check(say))
+    if told("listed?"):
+        say("listed" if bpy.context.scene in addon.check_scene.last_findings else "unlisted")
     for engine in ("CYCLES", "LANCER"):
         if told(engine):
             bpy.context.scene.render.engine = engine

@@ -1,10 +1,12 @@
 #include "render/processors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <fstream>
+#include <cstdio>
+#include <cstring>
 #include <limits>
-#include <sstream>
+#include <memory>
 #include <thread>
 
 #if defined(__linux__)
@@ -17,18 +19,29 @@ namespace lancer {
 namespace {
 
 #if defined(__linux__)
-// Quota over period of one group; infinity where the file is absent or sets no limit.
+using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
+
+File open(const std::string &path) { return {std::fopen(path.c_str(), "r"), &std::fclose}; }
+
+// The numbers at the start of a file; 0 for those that are not there, as where it says "max".
+std::array<double, 2> numbers(const std::string &path) {
+  std::array<double, 2> found{};
+  if (const File file = open(path))
+    if (std::fscanf(file.get(), "%lf %lf", &found[0], &found[1]) < 1)
+      return {};
+  return found;
+}
+
+// Quota over period of one group; infinity where it has no limit.
 double quota(const std::string &folder) {
-  const double none = std::numeric_limits<double>::infinity();
-  double time = 0.0, period = 0.0;
   // Version 2: "max 100000" or "150000 100000".
-  if (std::ifstream(folder + "/cpu.max") >> time >> period && time > 0.0 && period > 0.0)
-    return time / period;
-  // Version 1, where -1 is no limit.
-  if (std::ifstream(folder + "/cpu.cfs_quota_us") >> time && std::ifstream(folder + "/cpu.cfs_period_us") >> period &&
-      time > 0.0 && period > 0.0)
-    return time / period;
-  return none;
+  auto [time, period] = numbers(folder + "/cpu.max");
+  if (time == 0.0) {
+    // Version 1, where -1 is no limit.
+    time = numbers(folder + "/cpu.cfs_quota_us")[0];
+    period = numbers(folder + "/cpu.cfs_period_us")[0];
+  }
+  return time > 0.0 && period > 0.0 ? time / period : std::numeric_limits<double>::infinity();
 }
 
 // The least quota of a group and of those that hold it. Inside a container the path may be that of the host, of which the
@@ -42,16 +55,19 @@ double quota_of_all(const std::string &mount, std::string path) {
   return least;
 }
 
-// The least quota of the groups that hold this process, by the lines "number:controllers:path" of the kernel.
+// The least quota of the groups that hold this process, by the kernel's lines "number:controllers:path".
 double quota_of_process(const std::string &root) {
   double least = std::numeric_limits<double>::infinity();
-  std::ifstream file(root + "/proc/self/cgroup");
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream fields(line);
-    std::string number, controllers, path;
-    std::getline(fields, number, ':');
-    std::getline(fields, controllers, ':');
-    std::getline(fields, path);
+  const File file = open(root + "/proc/self/cgroup");
+  std::array<char, 4096> text{};
+  while (file && std::fgets(text.data(), int(text.size()), file.get())) {
+    const std::string line(text.data(), std::strcspn(text.data(), "\n"));
+    const size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos)
+      continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1), path = line.substr(second + 1);
+    if (path.empty() || path[0] != '/')
+      continue;
     const std::string mounts = root + "/sys/fs/cgroup";
     if (controllers.empty())
       least = std::min(least, quota_of_all(mounts, path));
