@@ -9,7 +9,7 @@ import threading
 import bpy
 from bpy.app.handlers import persistent
 
-from . import as_rendered, of_scenes, redraw
+from . import as_rendered, of_scenes, priority, redraw
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled
 
@@ -53,6 +53,9 @@ class _Measurement(threading.Thread):
         self.error = ""
 
     def run(self):
+        if not bpy.app.background:
+            # As a render in a window does, whose seconds are foretold.
+            priority.lower()
         try:
             self.found = self.work(self.snapshot, poll=self.stop.is_set, tell=self._tell)
         except Cancelled:

@@ -12,17 +12,17 @@ _STEPS = 10
 
 def lowered(work):
     """What work() gives. In a window the threads that it makes have a lower priority from then on."""
+    return work() if bpy.app.background else _in_a_low_thread(work)
+
+
+def lower():
+    """Lowers that of the calling thread and of those that it makes from now on; it cannot be raised again."""
     # On Linux a thread has a priority of its own, which those that it makes inherit.
-    if bpy.app.background or not sys.platform.startswith("linux"):
-        return work()
-    return _in_a_low_thread(work)
+    if sys.platform.startswith("linux"):
+        os.setpriority(os.PRIO_PROCESS, 0, min(19, os.getpriority(os.PRIO_PROCESS, 0) + _STEPS))
 
 
 def _in_a_low_thread(work):
-    # None may raise its priority again: it is that of a thread which ends here.
-    with ThreadPoolExecutor(1, initializer=_lower) as executor:
+    # Blender's own thread keeps its priority: a short-lived one makes those that render.
+    with ThreadPoolExecutor(1, initializer=lower) as executor:
         return executor.submit(work).result()
-
-
-def _lower():
-    os.setpriority(os.PRIO_PROCESS, 0, min(19, os.getpriority(os.PRIO_PROCESS, 0) + _STEPS))
