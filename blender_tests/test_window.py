@@ -131,7 +131,9 @@ def test_f12_in_a_window(display, tmp_path):
         window.wait_for("render_cancel")
         time.sleep(1.0)
         kept = window.shot("kept.png")
-        assert np.abs(middle(kept) - middle(second)).mean() < 6.0, "the picture is gone"
+        # More samples may have come before it stopped: it is like the picture before, and unlike what was there without one.
+        changed = [np.abs(middle(kept) - middle(other)).mean() for other in (second, before)]
+        assert changed[0] < 0.5 * changed[1], "the picture is gone"
         assert roughness(middle(kept)) <= 1.1 * roughness(middle(second))
         # And it can be done again.
         window.press("F12")
