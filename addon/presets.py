@@ -4,6 +4,8 @@ import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
+from .registering import add_all
+
 _SAMPLING = ("target_error", "samples", "quality", "time_limit", "use_denoising")
 _LIGHT_PATHS = (
     "max_bounces",
@@ -59,8 +61,7 @@ def draw_light_paths(panel, _context):
 
 
 def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
+    add_all(_CLASSES, bpy.utils.register_class, bpy.utils.unregister_class)
 
 
 def unregister():

@@ -3,6 +3,7 @@
 import bpy
 
 from . import engine, ui_check, ui_data, ui_render, ui_uses
+from .registering import add_all
 
 _ID = engine.LancerRenderEngine.bl_idname
 _CLASSES = (*ui_render.CLASSES, *ui_uses.CLASSES, *ui_check.CLASSES, *ui_data.CLASSES)
@@ -34,8 +35,7 @@ def _compatible_panels():
 
 
 def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
+    add_all(_CLASSES, bpy.utils.register_class, bpy.utils.unregister_class)
     for panel in _compatible_panels():
         panel.COMPAT_ENGINES.add(_ID)
 

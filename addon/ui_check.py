@@ -5,8 +5,9 @@ import bpy
 from . import check_scene
 from .checks.finding import Harm, shortened, told
 from .ui_lines import sentence
-from .ui_render import LancerPanel
+from .ui_render import LancerPanel, draw_measuring
 
+_CHECK = "lancer.check_scene"
 _ICONS = {Harm.WRONG: "ERROR", Harm.DIFFERENT: "ERROR", Harm.WASTE: "TIME", Harm.HINT: "INFO"}
 
 
@@ -19,7 +20,9 @@ class LANCER_RENDER_PT_check(LancerPanel, bpy.types.Panel):
         name = context.scene.name
         self._column().prop(context.scene.lancer, "use_check")
         column = self.layout.column(align=True)
-        column.operator("lancer.check_scene", icon="VIEWZOOM")
+        if draw_measuring(column, context.scene, _CHECK, "Checking"):
+            return
+        column.operator(_CHECK, icon="VIEWZOOM")
         findings = check_scene.last_findings.get(name)
         if findings is None:
             return

@@ -70,12 +70,12 @@ def _draw_forecast(column, context):
             sentence(column, context, part)
 
 
-def draw_measuring(column, scene, operator):
+def draw_measuring(column, scene, operator, doing="Measuring"):
     """In the place of that operator's button, how far it is; False where it does not run."""
     what, fraction, text = measuring.running.get(scene.name, ("", 0.0, ""))
     if what != operator:
         return False
-    column.label(text=f"Measuring, {fraction * 100:.0f} % (Esc stops)", icon="TIME")
+    column.label(text=f"{doing}, {fraction * 100:.0f} % (Esc stops)", icon="TIME")
     column.label(text=text)
     return True
 

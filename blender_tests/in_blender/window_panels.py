@@ -4,6 +4,7 @@ Started by window_case.py. Nothing here draws: what Blender has drawn by itself 
 """
 
 import os
+import time
 
 import bpy
 
@@ -37,6 +38,22 @@ def measure():
         if not bpy.ops.lancer.measure_quality.poll():
             return "refused"
         return next(iter(bpy.ops.lancer.measure_quality("INVOKE_DEFAULT", seconds=600.0))).lower()
+
+
+def check(say):
+    """As the panel's button does it, of a scene whose check never ends by itself."""
+
+    def endless(_snapshot, poll):
+        try:
+            while True:
+                poll(0.5)
+                time.sleep(0.02)
+        finally:
+            say("check-cancelled")
+
+    addon.check_scene.check_snapshot = endless
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        return next(iter(bpy.ops.lancer.check_scene("INVOKE_DEFAULT"))).lower()
 
 
 def switch():
