@@ -6,8 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 
-# A thread five steps lower gets a third of the time of one beside it, and all that nobody else wants: more steps would let other
-# programs stop a render.
+# A thread five steps lower gets a third of the time of one beside it, and all that nobody else wants. With more steps other
+# programs could stop a render.
 _STEPS = 5
 
 
