@@ -71,6 +71,7 @@ def _export(material, messages, asker, images, depsgraph):
         return snapshot.Material(lobes=(snapshot.Lobe(LobeKind.LAMBERT, color),), **common), frozenset()
     values = _from_nodes(material, graph)
     common["flags"] |= values.pop("flags", 0)
+    common["ambient"] = _color(graph.add(common["ambient"], values.pop("ambient", 0.0)))
     return snapshot.Material(nodes=graph.nodes, **values, **common), frozenset(graph.attributes)
 
 
@@ -132,6 +133,7 @@ def _from_nodes(material, graph):
     return {
         **values,
         "lobes": surface.lobes,
+        "ambient": surface.ambient,
         "emission": _color(surface.emission),
         "transmittance": _color(surface.transmittance),
         "holdout": surface.holdout if not isinstance(surface.holdout, tuple) else surface.holdout[0],
