@@ -188,6 +188,7 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
             ("KD_KS", "Diffuse and Coat", "A matt body under a rough, clear layer", 1),
             ("PHONG", "Phong", "A matt body with Phong's highlight", 2),
             ("BLINN_PHONG", "Blinn-Phong", "A matt body with Blinn's highlight", 3),
+            ("MINNAERT", "Minnaert", "A matt body whose rim is darker, as velvet's, or brighter, as the moon's", 4),
         ),
         default="NODES",
     )
@@ -211,6 +212,14 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
         min=0.0,
         soft_max=1000.0,
         default=50.0,
+    )
+    darkness: FloatProperty(
+        name="Darkness",
+        description="Exponent k of Minnaert's law: 1 is even; more darkens the rim; less brightens it, as far as no more light "
+        "comes back than arrives",
+        min=0.0,
+        soft_max=4.0,
+        default=1.5,
     )
 
 

@@ -52,11 +52,11 @@ class LANCER_MATERIAL_PT_surface(LancerPanel, bpy.types.Panel):
             self._draw_nodes(context, column, material)
         else:
             column.prop(own, "kd")
-            column.prop(own, "ks")
+            column.prop(own, "darkness" if own.model == "MINNAERT" else "ks")
             if own.model == "KD_KS":
                 column.prop(own, "roughness")
                 column.prop(own, "ior")
-            else:
+            elif own.model != "MINNAERT":
                 column.prop(own, "shininess")
         row = column.row()
         row.active = _uses_classic(context.scene)

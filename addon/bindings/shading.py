@@ -125,7 +125,7 @@ class Lobe(_Parameters):
     color: object = (0.8, 0.8, 0.8)
     roughness: object = 0.5  # alpha itself for BECKMANN, else the socket's value
     ior: object = 1.5
-    shininess: object = 50.0
+    shininess: object = 50.0  # the exponent of PHONG and BLINN_PHONG; k of MINNAERT, 1 is Lambert
     weight: object = _WHITE
     edge: object = _WHITE
     anisotropy: object = 0.0

@@ -31,7 +31,7 @@ extern "C" {
 #endif
 
 /* Changes whenever a struct or a call of this header does. */
-#define LANCER_ABI_VERSION 3u
+#define LANCER_ABI_VERSION 4u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;
@@ -362,6 +362,9 @@ typedef struct lancer_node {
  *                inside, the side that the geometric normal points away from
  *   PHONG        color (n + 2)/(2 pi) max(0, R.V)^n in PATH; color max(0, R.V)^n per light / pi in CLASSIC; n = shininess
  *   BLINN_PHONG  color (n + 2)(n + 4)/(8 pi (2^(-n/2) + n)) max(0, N.H)^n in PATH; color max(0, N.H)^n / pi in CLASSIC
+ *   MINNAERT     color (k + 1)/(2 pi) ((l.n)(v.n))^(k - 1), k = shininess; 1 is LAMBERT. color is the albedo from straight
+ *                above. Below k = 1 the albedo would pass 1 towards the horizon: no cosine counts as less than
+ *                m = max(color)^(1/(1 - k)), where it is 1, and 2 pi/(k + 1) becomes 2 pi ((1 - q)/(k + 1) + q/2), q = m^(k + 1)
  * Those of Blender's shader nodes, as Cycles of the running version defines them. roughness is the socket's: alpha is its
  * square (DIFFUSE, SHEEN, VELVET: the value itself); anisotropy and rotation turn and stretch it along tangent.
  *   DIFFUSE      Oren-Nayar of roughness; 0 is LAMBERT. option 0: before Blender 4.3, 1: energy-preserving, from 4.3
@@ -388,7 +391,8 @@ enum {
   LANCER_SHEEN = 11,
   LANCER_TRANSLUCENT = 12,
   LANCER_PRINCIPLED = 13,
-  LANCER_LOBE_KIND_COUNT = 14
+  LANCER_MINNAERT = 14,
+  LANCER_LOBE_KIND_COUNT = 15
 };
 enum { LANCER_GGX = 0, LANCER_BECKMANN_DISTRIBUTION = 1, LANCER_ASHIKHMIN_SHIRLEY = 2, LANCER_MULTI_GGX = 3 };
 /* Whose definitions hold for lobes of nodes: those of Blender 3.x, of 4.0 to 4.4, of 4.5 and newer. */
@@ -420,7 +424,7 @@ typedef struct lancer_lobe {
   lancer_parameter color;                /* Kd or Ks */
   lancer_parameter roughness;            /* alpha itself, BECKMANN; else the socket's value */
   lancer_parameter ior;                  /* relative to the outside, > 0, may be infinite */
-  lancer_parameter shininess;            /* the exponent n; PHONG, BLINN_PHONG */
+  lancer_parameter shininess;            /* the exponent n of PHONG, BLINN_PHONG; k of MINNAERT */
   lancer_parameter edge;                 /* CONDUCTOR */
   lancer_parameter anisotropy, rotation; /* -1 ... 1 and turns, GLOSSY, CONDUCTOR */
   lancer_parameter normal;               /* world; the constant 0, 0, 0: the shading normal */
