@@ -28,8 +28,8 @@ class _Inside:
         self.sockets = {name: self.start.outputs[name] for name in sockets}
         self._depths = {self.start.name: 0}
 
-    def node(self, name, kind, inputs, **settings):
-        """The output of a new node. inputs: constants and outputs of other nodes, by the names or numbers of sockets."""
+    def node(self, name, kind, inputs, output=0, **settings):
+        """An output of a new node. inputs: constants and outputs of other nodes, by the names or numbers of sockets."""
         node = self.tree.nodes.new("ShaderNode" + kind)
         node.name = node.label = name
         for setting, value in settings.items():
@@ -40,7 +40,7 @@ class _Inside:
             else:
                 node.inputs[socket].default_value = value
         self._place(node)
-        return node.outputs[0]
+        return node.outputs[output]
 
     def finish(self, shader):
         end = self.tree.nodes.new("NodeGroupOutput")
@@ -90,7 +90,16 @@ def _show_phong(inside, kd, ks, shininess):
     return _show_power(inside, kd, ks, _math(inside, "Blinn's Exponent", "MULTIPLY", shininess, 4.0))
 
 
-_INSIDES = {"KD_KS": _show_kd_ks, "PHONG": _show_phong, "BLINN_PHONG": _show_power}
+def _show_minnaert(inside, kd, darkness):
+    """Of (cos_i cos_o)^(k - 1) the view's part, as far as no more light comes back than arrives."""
+    facing = inside.node("Away", "LayerWeight", {"Blend": 0.5, "Normal": inside.sockets[NORMAL]}, "Facing")
+    cosine = _math(inside, "At Least", "MAXIMUM", _math(inside, "Cosine", "SUBTRACT", 1.0, facing), 1e-3)
+    power = _math(inside, "Power", "POWER", cosine, _math(inside, "k - 1", "SUBTRACT", darkness, 1.0))
+    color = inside.node("Color", "VectorMath", {0: kd, "Scale": power}, operation="SCALE")
+    return _body(inside, inside.node("At Most", "VectorMath", {0: color, 1: (1.0, 1.0, 1.0)}, operation="MINIMUM"))
+
+
+_INSIDES = {"KD_KS": _show_kd_ks, "PHONG": _show_phong, "BLINN_PHONG": _show_power, "MINNAERT": _show_minnaert}
 
 
 # ---- groups ----------------------------------------------------------------------------------------------------------------
@@ -167,9 +176,7 @@ class LANCER_OT_add_model(bpy.types.Operator):
     def execute(self, context):
         space, tree = context.space_data, _edited(context)
         if model_of(tree) is not None:
-            self.report(
-                {"ERROR"}, "Lancer: this is the inside of a model, which Lancer does not read: add the node outside of it"
-            )
+            self.report({"ERROR"}, "Lancer: the inside of a model is not read: add the node outside of it")
             return {"CANCELLED"}
         for other in tree.nodes:
             other.select = False

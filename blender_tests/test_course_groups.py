@@ -9,8 +9,13 @@ import reference
 from blenders import MODULE, PROGRAM
 
 pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
-MODELS = ("KD_KS", "PHONG", "BLINN_PHONG")
-LOBES = {"KD_KS": ["LAMBERT", "BECKMANN"], "PHONG": ["LAMBERT", "PHONG"], "BLINN_PHONG": ["LAMBERT", "BLINN_PHONG"]}
+LOBES = {
+    "KD_KS": ["LAMBERT", "BECKMANN"],
+    "PHONG": ["LAMBERT", "PHONG"],
+    "BLINN_PHONG": ["LAMBERT", "BLINN_PHONG"],
+    "MINNAERT": ["MINNAERT"],
+}
+MODELS = tuple(LOBES)
 # Blender stores single precision; a number that went through it is compared to sixteen times its rounding of 2^-24.
 STORED = 1e-6
 # Pixels of CLASSIC: float32 products, a dozen at 6e-8, powers of up to 60 of a cosine that is known to 1e-7, and a camera of
@@ -44,6 +49,14 @@ def unit(vector):
     return np.asarray(vector, float) / np.linalg.norm(vector)
 
 
+def minnaert(color, k, *cosines):
+    """f of lancer.h: below k = 1 no cosine counts as less than the one at which all light comes back."""
+    least = max(color) ** (1 / (1 - k)) if k < 1 else 0.0
+    q = least ** (k + 1)
+    scale = 2 * math.pi * ((1 - q) / (k + 1) + q / 2)
+    return color / scale * math.prod(max(cosine, least) for cosine in cosines) ** (k - 1)
+
+
 def classic(model, values, stage, x):
     """The pixel at (x, 0, 0) by the formulas of the texts."""
     way = np.array(stage["lamp"]) - [x, 0.0, 0.0]
@@ -51,7 +64,10 @@ def classic(model, values, stage, x):
     light, view = unit(way), unit(stage["eye"])
     half = unit(light + view)
     ka, kd, ks = (np.array(values[name]) for name in ("ka", "kd", "ks"))
-    result = kd / math.pi * light[2] * lc + ka * (stage["sky"] + lc / math.pi)
+    ambient = ka * (stage["sky"] + lc / math.pi)
+    if model == "MINNAERT":
+        return ambient + minnaert(kd, values["darkness"], light[2], view[2]) * light[2] * lc
+    result = kd / math.pi * light[2] * lc + ambient
     if model == "KD_KS":
         alpha, ior = values["roughness"], values["ior"]
         result = result + ks * float(reference.beckmann_bsdf(view, light, alpha, ior)) * light[2] * lc
@@ -63,7 +79,7 @@ def classic(model, values, stage, x):
 def test_a_texture_modulates_each_parameter(case):
     """Text 003, 3.4: each half of a texture gives what the formula says of its value; PATH gives what constants give."""
     got = case("textures")
-    assert len(got["pixels"]) == 13
+    assert len(got["pixels"]) == 16
     for key, found in got["pixels"].items():
         model, name = key.split()
         for half, x in enumerate((-0.5, 0.5)):
@@ -77,9 +93,9 @@ def test_a_texture_modulates_each_parameter(case):
 def test_the_normal_s_socket_bends_both_lobes(case):
     got = case("normals")
     for model in MODELS:
-        first, second = got[model]["lobes"]
-        assert got[model]["kinds"] == LOBES[model] and first["normal"] == second["normal"]
-        assert got[model]["node kinds"][first["normal"]["node"]] == "BUMP"
+        assert got[model]["kinds"] == LOBES[model]
+        for lobe in got[model]["lobes"]:
+            assert got[model]["node kinds"][lobe["normal"]["node"]] == "BUMP"
 
 
 def test_models_are_mixed_and_nested(case):
@@ -133,6 +149,11 @@ def test_the_shader_editor_adds_models(case):
     got = case("editor")
     assert sorted(got["added"]) == sorted(2 * got["models"]) and got["trees"] == len(got["models"])
     assert got["selected"] and not got["nothing edited"]
-    assert got["menu"][0] == "NODE_MT_lancer_models" and got["menu"][1:] == ["Diffuse and Coat", "Phong", "Blinn-Phong"]
+    assert got["menu"][0] == "NODE_MT_lancer_models" and got["menu"][1:] == [
+        "Diffuse and Coat",
+        "Phong",
+        "Blinn-Phong",
+        "Minnaert",
+    ]
     assert got["menu of Cycles"] == []
     assert "inside of a model" in str(got["inside"])

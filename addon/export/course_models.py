@@ -1,7 +1,7 @@
-"""The course's models as node groups: how a group is recognised, and the lobes that its sockets describe.
+"""The course's models: the lobes that their parameters describe, and the node groups that stand for them.
 
-A custom property of the group's tree names the model: copies, links, renames and Blenders without the add-on keep it. The sockets
-alone are read, constant or linked, by their names; the nodes inside are what Cycles and EEVEE show.
+A custom property of a group's tree names the model: copies, links, renames and Blenders without the add-on keep it. The
+sockets alone are read, constant or linked, by their names; the nodes inside are what Cycles and EEVEE show.
 """
 
 import math
@@ -14,27 +14,36 @@ TAG = "lancer_model"
 _INSIDE = "lancer_inside"  # what the nodes inside were like when the group was made
 NORMAL = "Normal"
 
-Parameter = namedtuple("Parameter", "socket kind default low high", defaults=("color", 0.0, 0.0, math.inf))
+# field: of the lobe that it shapes.
+Parameter = namedtuple("Parameter", "socket kind default low high field", defaults=("color", 0.0, 0.0, math.inf, "color"))
 # By the names of the material's own settings, which give the sockets their defaults, ranges and descriptions.
 PARAMETERS = {
     "ka": Parameter("Ambient"),
     "kd": Parameter("Diffuse"),
     "ks": Parameter("Specular"),
-    "roughness": Parameter("Roughness", "number", 0.2, 0.0, 1.0),
-    "ior": Parameter("IOR", "number", 1.5, 1e-6),
-    "shininess": Parameter("Shininess", "number", 50.0),
+    "roughness": Parameter("Roughness", "number", 0.2, 0.0, 1.0, "roughness"),
+    "ior": Parameter("IOR", "number", 1.5, 1e-6, field="ior"),
+    "shininess": Parameter("Shininess", "number", 50.0, field="shininess"),
+    "darkness": Parameter("Darkness", "number", 1.0, field="shininess"),
 }
-# The lobes of each model, and of each the parameter that is its colour and those that shape it.
+# The lobes of each model, and the parameters of each lobe.
 MODELS = {
     "KD_KS": ((LobeKind.LAMBERT, "kd"), (LobeKind.BECKMANN, "ks", "roughness", "ior")),
     "PHONG": ((LobeKind.LAMBERT, "kd"), (LobeKind.PHONG, "ks", "shininess")),
     "BLINN_PHONG": ((LobeKind.LAMBERT, "kd"), (LobeKind.BLINN_PHONG, "ks", "shininess")),
+    "MINNAERT": ((LobeKind.MINNAERT, "kd", "darkness"),),
 }
 
 
 def parameters_of(model):
     """Names of a model's parameters, in the order of its sockets."""
     return (*(name for _, *names in MODELS[model] for name in names), "ka")
+
+
+def lobes_of(model, value):
+    """(kind, fields) of each lobe; value gives that of a parameter by its name."""
+    for kind, *names in MODELS[model]:
+        yield kind, {PARAMETERS[name].field: value(name) for name in names}
 
 
 def model_of(tree):
@@ -68,10 +77,9 @@ def read_group(surface, site, weight):
             "inputs alone. Ungroup the node to have its nodes instead",
         )
     normal = surface.normal(site, _identifiers(site, NORMAL))
-    for kind, color, *others in MODELS[model]:
-        values = {name: _value(graph, site, name) for name in others}
-        # The models are the same in all Blenders, as the material's own settings give them.
-        surface.add(kind, weight, _value(graph, site, color), Rules.BLENDER_45, normal=normal, **values)
+    for kind, fields in lobes_of(model, lambda name: _value(graph, site, name)):
+        # The models are the same in all Blenders.
+        surface.add(kind, weight, rules=Rules.BLENDER_45, normal=normal, **fields)
     surface.add_ambient(graph.multiply(_value(graph, site, "ka"), weight))
 
 

@@ -5,6 +5,7 @@ import bpy
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag
 from .arithmetic import is_constant, triple
+from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph
 from .images import Images
 from .normals import bump, displacement_height
@@ -95,23 +96,17 @@ def _is_weak(material, surface):
 
 
 def _own_model(own, who, messages):
-    kd = messages.color(own.kd, who, "diffuse colour")
-    ks = messages.color(own.ks, who, "specular colour")
-    if own.model == "MINNAERT":
-        k = messages.number(own.darkness, who, "darkness", 1.0, 0.0)
-        return (snapshot.Lobe(LobeKind.MINNAERT, kd, shininess=k),) if any(kd) else ()
-    lobes = []
-    if any(kd):
-        lobes.append(snapshot.Lobe(LobeKind.LAMBERT, kd))
-    if any(ks) and own.model == "KD_KS":
-        roughness = messages.number(own.roughness, who, "roughness", 0.2, 0.0)
-        ior = messages.number(own.ior, who, "IOR", 1.5, 1e-6)
-        lobes.append(snapshot.Lobe(LobeKind.BECKMANN, ks, roughness=roughness, ior=ior))
-    elif any(ks):
-        kind = LobeKind.PHONG if own.model == "PHONG" else LobeKind.BLINN_PHONG
-        shininess = messages.number(own.shininess, who, "shininess", 50.0, 0.0)
-        lobes.append(snapshot.Lobe(kind, ks, shininess=shininess))
-    return tuple(lobes)
+    """The lobes of the material's own settings; black ones are none."""
+
+    def value(name):
+        wanted, given = PARAMETERS[name], getattr(own, name)
+        what = own.bl_rna.properties[name].name
+        if wanted.kind == "color":
+            return messages.color(given, who, what)
+        return messages.number(given, who, what, wanted.default, wanted.low, wanted.high)
+
+    lobes = (snapshot.Lobe(kind, **fields) for kind, fields in lobes_of(own.model, value))
+    return tuple(lobe for lobe in lobes if any(lobe.color))
 
 
 def _from_nodes(material, graph):

@@ -18,6 +18,7 @@ VALUES = {
     "roughness": 0.3,
     "ior": 1.75,
     "shininess": 30.0,
+    "darkness": 1.75,
 }
 POWER, LAMP, EYE, SKY = 800.0, (0.25, 2.0, 3.0), (0.0, -3.0, 4.0), 0.25
 # The two halves of a textured input.
@@ -28,6 +29,7 @@ HALVES = {
     "roughness": (0.25, 0.5),
     "ior": (1.25, 2.0),
     "shininess": (10.0, 60.0),
+    "darkness": (0.75, 2.5),
 }
 
 
