@@ -169,6 +169,7 @@ class Material(_Parameters):
 @dataclass(frozen=True, eq=False)
 class World(_Parameters):
     radiance: object = _BLACK
+    ambient: tuple | None = None  # light from everywhere that Ka reflects in CLASSIC; None: the mean of the radiance
     nodes: tuple[Node, ...] = ()
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0
@@ -177,4 +178,6 @@ class World(_Parameters):
 
     def __post_init__(self):
         super().__post_init__()
+        if self.ambient is not None:
+            self.vectors(ambient=3)
         self.set("nodes", tuple(self.nodes))

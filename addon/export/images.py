@@ -7,6 +7,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Transfer
+from ..harm import Harm
 from . import main_thread
 from .colorspace import IDENTITY, conversion, convert, floats, loaded
 
@@ -24,7 +25,7 @@ class Images:
         self._ranges = {}
 
     def numbers(self, image, user, tell):
-        """(first, count) of a Blender image, more than one for tiles; None where there is none. tell(text) takes messages."""
+        """(first, count) of a Blender image, more for tiles; None where there is none. tell takes text, key and harm."""
         path = _frame_path(image, user, tell)
         key = (image.as_pointer(), image.colorspace_settings.name, image.alpha_mode, path)
         if key not in self._ranges:
@@ -33,7 +34,7 @@ class Images:
                 self.list += _read_all(image, path, tell)
             self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
         if self._ranges[key] is None:
-            tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used")
+            tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used", harm=Harm.WRONG)
         return self._ranges[key]
 
 
@@ -50,7 +51,10 @@ def _frame_path(image, user, tell):
         return ""
     if user is None:
         # Which file belongs to a frame is kept by the nodes that show it; without one Blender would name that of frame 0.
-        tell(f"image '{image.name}' is a sequence, of which only the file that it was made from is used")
+        tell(
+            f"image '{image.name}' is a sequence, of which only the file that it was made from is used",
+            "feature:image sequence",
+        )
         path = image.filepath
     else:
         path = image.filepath_from_user(image_user=user)
@@ -63,7 +67,7 @@ def _read_all(image, path, tell):
     if path:
         return _read_file(image, path, tell)
     if image.source == "MOVIE":
-        tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used")
+        tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used", "feature:movie as image")
     if _divided(image) and image.source == "FILE" and image.packed_file is None and not image.is_dirty:
         pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library), tell)
         if pictures:
@@ -101,7 +105,7 @@ def _read_tile(image, number, tell):
     if not pictures and len(image.tiles) == 1:
         pictures = _read(image, image, tell, number)
     if not pictures:
-        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out")
+        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out", harm=Harm.LEFT_OUT)
     return pictures
 
 
@@ -125,7 +129,8 @@ def _read(image, source, tell, tile=0):
     if min(source.size) < 1 or source.channels < 1:
         # Only now Blender has looked at the file. It gives scripts no pixels of its layers.
         if source.type == "MULTILAYER":
-            tell(f"image '{image.name}' is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used")
+            text = "is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used"
+            tell(f"image '{image.name}' {text}", "feature:multilayer EXR", harm=Harm.WRONG)
             return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
         return []
     values = floats(source)

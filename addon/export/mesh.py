@@ -1,5 +1,6 @@
 """Evaluated Blender meshes as arrays, by foreach_get, which copies whole arrays where Blender holds them so."""
 
+import contextlib
 import ctypes
 from dataclasses import replace
 
@@ -7,7 +8,7 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import MeshData
-from .attributes import read_attributes, read_uv_map, render_uv_map
+from .attributes import POLYGONS, read_attributes, read_uv_map, render_uv_map
 
 _TRIANGLES_AT_ONCE = 1 << 18
 _SAMPLE = 8
@@ -27,11 +28,28 @@ def _attribute(mesh, name, domain):
     return attribute.data
 
 
+@contextlib.contextmanager
+def shown_mesh(thing, owner):
+    """The mesh of an object that shows one; owner: the evaluated object that it is, or is an instance of.
+
+    While its mesh is being edited an object has a wrapper of it, which looks empty until Blender makes a mesh of that. Cycles
+    asks for one, too, for all objects of that mesh and their instances, but not for what Geometry Nodes made.
+    """
+    mesh = thing.data
+    if not mesh.is_editmode or owner.data != mesh:
+        yield mesh
+        return
+    try:
+        yield owner.to_mesh()
+    finally:
+        owner.to_mesh_clear()
+
+
 def export_mesh(mesh, name, poll, wanted=frozenset()):
     """The mesh with the normals that Blender shades with, its render UV map and colours, and the attributes that are wanted.
 
-    wanted: names of further UV maps and attributes as attribute_name gives them, tangents_name's, "generated". poll ends the
-    export by an exception; one array of Blender's is the least that it can wait for.
+    wanted: names of further UV maps and attributes as attribute_name gives them, tangents_name's, "generated", POLYGONS. poll
+    ends the export by an exception; one array of Blender's is the least that it can wait for.
     """
     positions = read_positions(mesh)
     poll()
@@ -65,6 +83,7 @@ def export_mesh(mesh, name, poll, wanted=frozenset()):
         uvs=uvs,
         colors=colors,
         material_slots=slots,
+        polygons=np.unique(faces, return_inverse=True)[1] if POLYGONS in wanted and faces is not None else None,
     )
     return replace(data, attributes=read_attributes(mesh, data, wanted, corners, faces, poll)) if wanted else data
 

@@ -107,7 +107,7 @@ def particle_instances():
     return counts(export())
 
 
-def _row_of_cubes():
+def row_of_cubes():
     """Node instances: five cubes on a line of points."""
     tree = bpy.data.node_groups.new("Row", "GeometryNodeTree")
     if hasattr(tree, "interface"):
@@ -129,7 +129,7 @@ def _row_of_cubes():
 def node_instances():
     """Five cubes on a line of points, beside a plain cube."""
     stage.empty()
-    _row_of_cubes()
+    row_of_cubes()
     stage.cube(location=(0, 9, 0))
     return counts(export())
 
@@ -178,7 +178,7 @@ def walked():
     settings = ground.particle_systems[0].settings
     settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 7, "OBJECT", item
     settings.size_random = 0.5
-    _row_of_cubes()
+    row_of_cubes()
     corners = [(1, -1, 0), (3, -1, 0), (3, 1, 0), (1, 1, 0)]
     stage.mesh("Flat", corners, [(0, 1, 2, 3)], location=(0, 0, -1)).lancer.shape = "PLANE"
     ExportProbe.look = _walk
