@@ -119,7 +119,11 @@ def test_groups_are_known_by_more_than_their_name(case):
     assert [("changed" in line, "Ungroup" in line) for line in changed["messages"]] == [(True, True)]
     # A model that this version does not know is the nodes inside.
     assert unknown["kinds"] == ["LAMBERT", "GLOSSY"] and unknown["messages"] == []
-    assert ["no input 'Shininess', 50" in line for line in poor["messages"]] == [True]
+    # Its link inside went with the input.
+    assert [("no input 'Shininess', 50" in line, "changed" in line) for line in poor["messages"]] == [
+        (False, True),
+        (True, False),
+    ]
     assert poor["lobes"][1]["shininess"] == 50.0
 
 
@@ -157,3 +161,8 @@ def test_the_shader_editor_adds_models(case):
     ]
     assert got["menu of Cycles"] == []
     assert "inside of a model" in str(got["inside"])
+
+
+def test_adding_a_model_is_one_step_to_undo(case):
+    """The node and its group go, and come back."""
+    assert case("undo") == [1, -1, 1]

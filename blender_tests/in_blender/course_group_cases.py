@@ -139,7 +139,9 @@ def mixed():
     stage.empty()
     tree = Tree("mixed")
     diffuse = tree.node("BsdfDiffuse", Color=(1.0, 1.0, 1.0)).outputs[0]
-    mixed = tree.show(tree.shaders("MixShader", diffuse, node_of(tree, "PHONG").outputs[0], Fac=0.25))
+    shader = tree.shaders("MixShader", diffuse, node_of(tree, "PHONG").outputs[0])
+    shader.node.inputs[0].default_value = 0.25
+    mixed = tree.show(shader)
     outer = bpy.data.node_groups.new("Outer", "ShaderNodeTree")
     course_groups._add_socket(outer, "Paint", "Color")
     course_groups._add_socket(outer, "Shader", "Shader", "OUTPUT")
@@ -195,6 +197,7 @@ def save(path):
     for model in MODELS:
         grouped(model).use_fake_user = True
     bpy.ops.wm.save_as_mainfile(filepath=path)
+    return True
 
 
 def opened(path, how):
@@ -226,17 +229,24 @@ def cycles():
     return result
 
 
-def editor():
-    """The operator and its menu in a node editor of Blender's own window."""
-    scene = stage.empty()
-    tree = Tree("edited")
+def _editing(tree):
+    """The node editor of Blender's own window on a tree: what bpy.context.temp_override takes."""
     window = bpy.context.window_manager.windows[0]
     area = max(window.screen.areas, key=lambda area: area.width * area.height)
     area.type = "NODE_EDITOR"
     space = area.spaces.active
-    space.tree_type, space.pin, space.node_tree = "ShaderNodeTree", True, tree.tree
+    space.tree_type, space.pin, space.node_tree = "ShaderNodeTree", True, tree
+    return {"window": window, "area": area, "region": area.regions[-1]}
+
+
+def editor():
+    """The operator and its menu."""
+    scene = stage.empty()
+    tree = Tree("edited")
+    place = _editing(tree.tree)
+    space = place["area"].spaces.active
     found = {"models": list(MODELS)}
-    with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
+    with bpy.context.temp_override(**place):
         for model in MODELS:
             bpy.ops.lancer.add_model(model=model)
             bpy.ops.lancer.add_model(model=model)
@@ -255,6 +265,22 @@ def editor():
             found["inside"] = str(error)
         space.node_tree = None
         found["nothing edited"] = bpy.ops.lancer.add_model.poll()
+    return found
+
+
+def undo():
+    """How many groups there are after the operator, after one undo, and after one redo."""
+    stage.empty()
+    material = Tree("undone").material
+    material.use_fake_user = True
+    bpy.ops.ed.undo_push(message="before")
+    with bpy.context.temp_override(**_editing(material.node_tree)):
+        bpy.ops.lancer.add_model("EXEC_DEFAULT", True, model="PHONG")
+    found = [len(bpy.data.node_groups)]
+    for step in (bpy.ops.ed.undo, bpy.ops.ed.redo):
+        step()
+        nodes = bpy.data.materials["undone"].node_tree.nodes
+        found.append(len(bpy.data.node_groups) + sum(node.type == "GROUP" for node in nodes) - 1)
     return found
 
 

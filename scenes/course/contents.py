@@ -1,7 +1,8 @@
 """The chapters of the report, in the order of chapters.toml, which has their words; the modules measure and render."""
 
-import tomllib
 from pathlib import Path
+
+import tomllib
 
 from . import acceleration, intersections, lighting, sampling, shading, textures, tracing
 from .chapter import Chapter

@@ -8,12 +8,12 @@ import reference
 import tiny_scenes
 from bindings.abi import Falloff, LightKind, LobeKind
 from bindings.session import Scene, microfacet
-from bindings.snapshot import Light, Lobe, Material
+from bindings.snapshot import Light, Lobe, Material, World
 from tiny_scenes import lambert, move, plane, rgb, rotate_x, sphere
 
 from . import studio
 from .chapter import Figure, Picture, worst
-from .studio import LAMP, SINGLE, classic, lamp
+from .studio import LAMP, SINGLE, SINGLE_WHY, classic, lamp
 
 _KD, _KS = np.array((0.5, 0.25, 0.125)), np.array((0.25, 0.5, 1.0))
 
@@ -45,57 +45,80 @@ class Lit:
         return _dot(self.l * np.array([-1.0, -1.0, 1.0]), self.v)
 
 
-def _material(*lobes, **fields):
-    return Material("course", lobes=lobes, **fields)
+def _power(cosine, n):
+    return np.maximum(cosine, 0.0) ** n
 
 
-def _two(kind, **fields):
-    return _material(Lobe(color=tuple(_KD)), Lobe(kind, color=tuple(_KS), **fields))
+def _facets(s, alpha, ior):
+    """D F G / (4 (l·n)(v·n)) at 50 digits."""
+    value = np.vectorize(lambda wo, wi: float(reference.beckmann_bsdf(wo, wi, alpha, ior)), signature="(3),(3)->()")
+    return value(s.v, s.l)[..., None]
 
 
-def _ball(material, lights=(lamp((-3.0, -4.0, 4.0), 60.0),), pixels=160, world=0.0):
-    camera = studio.perspective((0.0, -5.0, 0.8), (0, 0, 0), pixels, 0.25)
+def minnaert_f(color, k, *cosines):
+    """f of lancer.h: below k = 1 no cosine counts as less than the one at which all light comes back."""
+    color = np.asarray(color, float)
+    least = color.max() ** (1 / (1 - k)) if k < 1 else 0.0
+    q = least ** (k + 1)
+    scale = 2 * math.pi * ((1 - q) / (k + 1) + q / 2)
+    return color / scale * math.prod(np.maximum(cosine, least) for cosine in cosines) ** (k - 1)
+
+
+_FORMULAS = {
+    LobeKind.LAMBERT: lambda s: s.cosine / math.pi,
+    LobeKind.BECKMANN: lambda s, roughness=0.5, ior=1.5: _facets(s, roughness, ior) * s.cosine,
+    LobeKind.PHONG: lambda s, shininess=50.0: _power(s.mirrored(), shininess) / math.pi,
+    LobeKind.BLINN_PHONG: lambda s, shininess=50.0: _power(s.h[..., 2:], shininess) / math.pi,
+}
+
+
+def light_of(kind, s, color=(0.8, 0.8, 0.8), **values):
+    """What the texts say that a lobe reflects of the lamp's light towards the eye; values: as those of a Lobe."""
+    if kind == LobeKind.MINNAERT:
+        return minnaert_f(color, values.get("shininess", 50.0), s.cosine, s.v[..., 2:]) * s.cosine * s.lc
+    return np.asarray(color) * _FORMULAS[kind](s, **values) * s.lc
+
+
+def _two(kind, **values):
+    """A matt body and a lobe."""
+    return Material("course", lobes=(Lobe(color=tuple(_KD)), Lobe(kind, color=tuple(_KS), **values)))
+
+
+def _one(kind, **values):
+    return Material("course", lobes=(Lobe(kind, color=tuple(_KD), **values),))
+
+
+def _ball(material, world=0.0):
+    camera = studio.perspective((0.0, -5.0, 0.8), (0, 0, 0), 160, 0.25)
+    lights = [lamp((-3.0, -4.0, 4.0), 60.0)]
     return studio.render(classic([sphere()], [material], lights, world=world, camera=camera, samples=16, max_bounces=0))
 
 
-def _deviation(material, formula, **settings):
-    """The largest relative deviation of the plane's pixels from formula(Lit)."""
-    shot = classic([plane()], [material], [lamp()], max_bounces=0, **settings)
-    picture = studio.render(shot)[..., :3]
-    return worst(picture, np.broadcast_to(formula(Lit(shot)), picture.shape))
+def _deviation(material):
+    """The largest relative deviation of the plane's pixels from the sum of the lobes' formulas."""
+    shot = classic([plane()], [material], [lamp()], max_bounces=0)
+    lit = Lit(shot)
+    wanted = {LobeKind.BECKMANN: ("roughness", "ior"), LobeKind.LAMBERT: ()}
+    want = 0.0
+    for lobe in material.lobes:
+        values = {name: getattr(lobe, name) for name in wanted.get(lobe.kind, ("shininess",))}
+        want = want + light_of(lobe.kind, lit, lobe.color, **values)
+    return worst(studio.render(shot)[..., :3], want)
 
 
 def models(quick):
-    figures = [
-        Figure.at_most(
-            "Lambert: largest relative deviation of 256 pixels from Kd/π (l·n) lc",
-            _deviation(_material(Lobe(color=tuple(_KD))), lambda s: _KD / math.pi * s.cosine * s.lc),
-            SINGLE,
-            "a dozen products in single precision, 6e-8 each",
-        )
-    ]
-    pictures = [Picture("lambert", "Kd alone", _ball(_material(Lobe(color=tuple(_KD)))), 0.6)]
-    for kind, name, cosine in (
-        (LobeKind.PHONG, "Phong", Lit.mirrored),
-        (LobeKind.BLINN_PHONG, "Blinn-Phong", lambda s: s.h[..., 2:]),
-    ):
+    what = "Lambert: largest relative deviation of 256 pixels from Kd/π (l·n) lc"
+    figures = [Figure.at_most(what, _deviation(_one(LobeKind.LAMBERT)), SINGLE, SINGLE_WHY)]
+    pictures = [Picture("lambert", "Kd alone", _ball(_one(LobeKind.LAMBERT)), 0.6)]
+    for kind, name in ((LobeKind.PHONG, "Phong"), (LobeKind.BLINN_PHONG, "Blinn-Phong")):
         for n in (5.0, 50.0, 500.0):
-
-            def formula(s, n=n, cosine=cosine):
-                return (_KD * s.cosine + _KS * np.maximum(cosine(s), 0.0) ** n) / math.pi * s.lc
-
-            error = _deviation(_two(kind, shininess=n), formula)
+            material = _two(kind, shininess=n)
             what = f"{name}, n = {n:.0f}: largest relative deviation from (Kd (l·n) + Ks cosⁿ) lc/π"
-            figures.append(Figure.at_most(what, error, SINGLE + 3e-7 * n, "n times the rounding of a cosine in the power"))
+            why = "n times the rounding of a cosine in the power"
+            figures.append(Figure.at_most(what, _deviation(material), SINGLE + 3e-7 * n, why))
             if n != 5.0:
-                pictures.append(Picture(f"{name}-{n:.0f}", f"{name}, n = {n:.0f}", _ball(_two(kind, shininess=n)), 0.6))
-    return tuple(figures), tuple(pictures)
-
-
-def _lab_bsdf(s, alpha, ior):
-    """Kd/π + Ks D F G / (4 (l·n)(v·n)), times (l·n) lc, at 50 digits."""
-    f = np.vectorize(lambda v, l: float(reference.beckmann_bsdf(v, l, alpha, ior)), signature="(3),(3)->()")(s.v, s.l)
-    return (_KD / math.pi + _KS * f[..., None]) * s.cosine * s.lc
+                pictures.append(Picture(f"{name}-{n:.0f}", f"{name}, n = {n:.0f}", _ball(material), 0.6))
+    return figures, pictures
 
 
 def facets(quick):
@@ -120,10 +143,10 @@ def facets(quick):
         figures.append(Figure.at_most(f"{name}: largest relative deviation from 50 digits", error, limits[name], why))
     for alpha, ior in ((0.05, 1.5), (0.3, 1.33), (0.7, 2.0)):
         alpha = float(np.float32(alpha))
-        error = _deviation(_two(LobeKind.BECKMANN, roughness=alpha, ior=ior), lambda s, a=alpha, n=ior: _lab_bsdf(s, a, n))
-        # D answers with 2 tan/alpha² to the rounding of h; tan reaches 0.9 on the plane that is seen.
+        # D answers with 2 tan/alpha² to the rounding of h; tan reaches 0.9 on the part of the plane that is seen.
         limit = SINGLE + 4e-7 * (1 + 0.9 / alpha**2)
         what = f"Kd Ks, α = {alpha:.2g}, IOR {ior}: largest relative deviation of 256 pixels"
+        error = _deviation(_two(LobeKind.BECKMANN, roughness=alpha, ior=float(np.float32(ior))))
         figures.append(Figure.at_most(what, error, limit, "h in single precision, on which D depends by 2 tan θ/α²"))
     figures.append(_energy())
     shown = [(0.5, 1.5), (0.2, 1.5), (0.05, 1.5), (0.2, 3.0)]
@@ -144,7 +167,7 @@ def _energy():
     rng = np.random.default_rng(2)
     u = rng.random((20000, 3))
     most = 0.0
-    material = _material(Lobe(LobeKind.BECKMANN, color=(1, 1, 1), roughness=0.3, ior=1.5))
+    material = Material("layer", lobes=(Lobe(LobeKind.BECKMANN, color=(1, 1, 1), roughness=0.3, ior=1.5),))
     with Scene.upload(tiny_scenes.scene([plane()], [material])) as scene:
         for z in (1.0, 0.5, 0.1):
             samples = scene.bsdf_sample(0, (math.sqrt(1 - z * z), 0.0, z), u)
@@ -152,24 +175,15 @@ def _energy():
     return Figure.at_most("share of light that the layer reflects, at 0°, 60° and 84°: most", most, 1.0, "no light is made")
 
 
-def minnaert_f(color, k, *cosines):
-    """f of lancer.h: below k = 1 no cosine counts as less than the one at which all light comes back."""
-    color = np.asarray(color, float)
-    least = color.max() ** (1 / (1 - k)) if k < 1 else 0.0
-    q = least ** (k + 1)
-    scale = 2 * math.pi * ((1 - q) / (k + 1) + q / 2)
-    return color / scale * math.prod(np.maximum(cosine, least) for cosine in cosines) ** (k - 1)
-
-
 def minnaert(quick):
     figures, pictures = [], []
     for k in (0.5, 1.0, 1.5, 3.0):
-        material = _material(Lobe(LobeKind.MINNAERT, color=tuple(_KD), shininess=k))
-        error = _deviation(material, lambda s, k=k: minnaert_f(_KD, k, s.cosine, s.v[..., 2:]) * s.cosine * s.lc)
+        material = _one(LobeKind.MINNAERT, shininess=k)
         what = f"k = {k:g}: largest relative deviation of 256 pixels"
-        figures.append(Figure.at_most(what, error, SINGLE * (1 + abs(k - 1)), "the power of a cosine in single precision"))
+        limit, why = SINGLE * (1 + abs(k - 1)), "the power of a cosine in single precision"
+        figures.append(Figure.at_most(what, _deviation(material), limit, why))
         pictures.append(Picture(f"k{k:g}", f"k = {k:g}", _ball(material), 0.6))
-    return tuple(figures), tuple(pictures)
+    return figures, pictures
 
 
 _ATTENUATIONS = {
@@ -208,13 +222,11 @@ def lamps(quick):
     figures.append(Figure.at_most("spot: largest relative deviation at five angles", worst(got, want), 2e-5, why))
     sun = Light("sun", rotate_x(math.acos(0.5)), LightKind.SUN, emission=(2, 4, 6))
     error = worst(_middle([sun]), np.array([2, 4, 6]) * 0.5 / math.pi)
-    figures.append(
-        Figure.at_most("sun at 60°: largest relative deviation from Kd/π E cos 60°", error, SINGLE, "single precision")
-    )
+    figures.append(Figure.at_most("sun at 60°: largest relative deviation from Kd/π E cos 60°", error, SINGLE, SINGLE_WHY))
     several = [lamp(), lamp((0, 0, 2.0), 4.0), lamp((2, -1, 3.0), (1.0, 2.0, 8.0))]
     together, alone = _middle(several), sum(_middle([light]) for light in several)
     what = "three lamps: largest relative deviation from the sum of one at a time"
-    figures.append(Figure.at_most(what, worst(together, alone), SINGLE, "sums in single precision"))
+    figures.append(Figure.at_most(what, worst(together, alone), SINGLE, SINGLE_WHY))
     stripes = [studio.render(_corridor(falloff)) for falloff in (Falloff.PHYSICAL, Falloff.LINEAR, Falloff.GAUSSIAN)]
     return tuple(figures), (
         Picture("attenuation", "A wall along which a lamp hangs: physical, linear, bell curve", studio.beside(*stripes), 0.5),
@@ -233,4 +245,36 @@ def _stage(cone):
     return classic([plane(), sphere(0, move(0.8, 0, 0.6) @ tiny_scenes.scale(0.6))], [lambert(0.8)], [light], camera=camera)
 
 
-CHAPTERS = (models, facets, minnaert, lamps)
+def ambient(quick):
+    ka, sky = (0.5, 0.25, 1.0), (0.1, 0.2, 0.4)
+    material = Material("ambient", lobes=(), ambient=ka)
+
+    def seen(lights, world):
+        """The middle of the plane under a ball, which no lamp above it lights."""
+        shot = classic([plane(), sphere(1, move(z=9.0))], [material, lambert()], lights, camera=tiny_scenes.pencil((3, 0, 4)))
+        return studio.render(dataclasses.replace(shot, world=world))[0, 0, :3]
+
+    one = World(sky, ambient=(0.3, 0.2, 0.1))
+    silent = {"ambient_color": (0.0, 0.0, 0.0)}
+    term = worst(seen([], one), np.multiply(ka, one.ambient))
+    moved = np.abs(seen([lamp((0, 0, 20.0), **silent)], one) - seen([lamp((5, 1, 30.0), 90.0, **silent)], one)).max()
+    tinted = (1.0, 0.5, 0.0)
+    lamps_own = worst(
+        seen([lamp((0, 0, 20.0), ambient_color=tinted)], World()), np.multiply(ka, tinted) * 9.0 / 400.0 / math.pi
+    )
+    figures = (
+        Figure.at_most("Ka Ia: largest relative deviation of the three channels", term, SINGLE, SINGLE_WHY),
+        Figure.near(
+            "difference that a lamp's place and power make to it, where no light of the lamp arrives", moved, 0, 0, "Ia alone"
+        ),
+        Figure.at_most("the sky as Ia: the same", worst(seen([], World(sky)), np.multiply(ka, sky)), SINGLE, SINGLE_WHY),
+        Figure.at_most("a lamp's own ambient colour: the same from Ka I_a lc/π", lamps_own, SINGLE, SINGLE_WHY),
+    )
+    shown = [
+        Picture(f"ka{k}", f"Ka = {k}", _ball(Material("ball", lobes=(Lobe(color=tuple(_KD)),), ambient=rgb(k)), world=0.5), 0.6)
+        for k in (0.0, 0.2, 0.5)
+    ]
+    return figures, shown
+
+
+CHAPTERS = (models, facets, minnaert, ambient, lamps)

@@ -18,6 +18,10 @@ pre { background: #f0f0f0; padding: 8px; white-space: pre-wrap } figure { displa
 img { width: 300px; image-rendering: pixelated; display: block; background: #000 } figcaption { max-width: 300px; color: #555 }
 .ok { color: #07702c } .off { color: #b00020; font-weight: bold } .texts { color: #777 }
 """
+_INTRODUCTION = (
+    "000 are the lectures on light and ray tracing, 003 the project, 004 the slides of the second course. Every value was "
+    "measured in this run, and every picture rendered; what is expected comes from the formula, not from an earlier run."
+)
 
 
 def write(chapters, folder, title):
@@ -30,10 +34,11 @@ def write(chapters, folder, title):
         f'<li><a href="#c{place}">{html.escape(chapter.title)}</a> {_mark(chapter.ok)}</li>'
         for place, chapter in enumerate(chapters, 1)
     )
-    text = f"""<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>The course</title><style>{_STYLE}</style></head>
-<body><h1>The course, chapter by chapter</h1><p>{html.escape(title)}</p><p>{html.escape(summary(chapters))} The numbers 000, 003
-and 004 are those of the three texts: the lectures on light and ray tracing, the project, and the slides of the second course.
-</p><ol>{contents}</ol>
+    title, told = html.escape(title), html.escape(summary(chapters))
+    text = f"""<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>The course</title>
+<style>{_STYLE}</style></head><body>
+<h1>The course, chapter by chapter</h1><p>{title}. {told}</p><p>{_INTRODUCTION}</p>
+<ol>{contents}</ol>
 {sections}</body></html>
 """
     (folder / "index.html").write_text(text, encoding="utf-8")
@@ -61,7 +66,8 @@ def _section(place, chapter, folder):
     pictures = "".join(_picture(f"{place}-{picture.name}.png", picture, folder) for picture in chapter.pictures)
     return f"""<section id="c{place}"><h2>{place}. {html.escape(chapter.title)}</h2>
 <p class="texts">In the texts: {html.escape(chapter.texts)}</p><p>{html.escape(chapter.built)}</p>
-<pre>{html.escape(chapter.formula)}</pre><p><b>Where:</b> {sources}</p><p><b>Problems met:</b> {html.escape(chapter.problems)}</p>
+<pre>{html.escape(chapter.formula.strip())}</pre><p><b>Where:</b> {sources}</p>
+<p><b>Problems met:</b> {html.escape(chapter.problems)}</p>
 <table><tr><th>Measured</th><th>Value</th><th>Expected</th><th></th><th>Why</th></tr>{rows}</table>{pictures}</section>"""
 
 

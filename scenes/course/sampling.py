@@ -13,7 +13,7 @@ from tiny_scenes import lambert, look_at, move, plane, rgb, sphere
 
 from . import studio
 from .chapter import Figure, Picture, worst
-from .studio import SINGLE
+from .studio import SINGLE, SINGLE_WHY
 
 
 def _edge(pixels):
@@ -57,7 +57,7 @@ def antialiasing(quick):
     slope = math.log(errors[256] / errors[4]) / math.log(64)
     figures.append(Figure.at_most(what, slope, -0.6, "random samples: -0.5; on an edge a low-discrepancy sequence: -0.75"))
     inside = np.abs(studio.render(shot, samples=16)[..., 0] - share)[~cut].max()
-    figures.append(Figure.at_most("error of pixels that no edge cuts", inside, SINGLE, "single precision"))
+    figures.append(Figure.at_most("error of pixels that no edge cuts", inside, SINGLE, SINGLE_WHY))
     ball = studio.classic(
         [sphere(), plane(1, move(z=-1.0))], [lambert((0.8, 0.3, 0.2)), lambert(0.5)], [studio.lamp((3, -4, 5), 60.0)]
     )

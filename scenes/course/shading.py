@@ -9,7 +9,7 @@ from tiny_scenes import lambert, plane, sphere
 
 from . import studio
 from .chapter import Figure, Picture, worst
-from .studio import SINGLE, classic, lamp
+from .studio import SINGLE, SINGLE_WHY, classic, lamp
 
 _PLACE = np.array((0.5, 0.25, 3.0))
 _TILTED = MeshData(
@@ -104,9 +104,7 @@ def colors(quick):
         Figure.near("a red, a green and a blue lamp: light in the channels that are not theirs", others, 0, 0, "each by itself")
     )
     error = worst(together, sum(alone))
-    figures.append(
-        Figure.at_most("a white lamp: relative deviation from the sum of the three", error, SINGLE, "single precision")
-    )
+    figures.append(Figure.at_most("a white lamp: relative deviation from the sum of the three", error, SINGLE, SINGLE_WHY))
     factors = {"diffuse_color": np.array((1.0, 0.5, 0.0)), "specular_color": np.array((0.25, 1.0, 2.0))}
     shiny = Material("shiny", lobes=(Lobe(color=tuple(kd)), Lobe(LobeKind.PHONG, color=(0.5, 0.25, 1.0), shininess=4.0)))
     parts = [Material("part", lobes=(lobe,)) for lobe in shiny.lobes]

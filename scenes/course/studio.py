@@ -10,8 +10,9 @@ from bindings.session import Session
 from bindings.snapshot import Camera, Light, SceneSnapshot
 from tiny_scenes import look_at, move, rgb
 
-# One sample through the middle of all has no noise: a dozen products in single precision, 6e-8 each.
+# One sample through the middle of all has no noise.
 SINGLE = 2e-6
+SINGLE_WHY = "a dozen products in single precision, 6e-8 each"
 EYE = np.array((3.0, 0.0, 4.0))
 LAMP = np.array((-1.0, 2.0, 2.0))
 

@@ -3,10 +3,9 @@
 import dataclasses
 import math
 
-import bpy
 import numpy as np
 import tiny_scenes
-from bindings.abi import LobeKind
+from bindings.abi import Integrator, LobeKind
 from bindings.enums import Coordinate, Environment, Extension, Interpolation, NodeKind
 from bindings.session import Scene
 from bindings.snapshot import Image, Instance, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, World
@@ -18,8 +17,8 @@ from scenes import parts, pictures
 
 from . import studio
 from .chapter import Figure, Picture, worst
-from .lighting import Lit
-from .studio import SINGLE, classic, lamp
+from .lighting import Lit, light_of
+from .studio import classic, lamp
 
 _UV = Node(NodeKind.COORDINATE, Coordinate.UV)
 _CLOSEST = int(Extension.REPEAT) | int(Interpolation.CLOSEST) << 4
@@ -69,43 +68,44 @@ def images(quick):
 # Two values for each parameter of the lobes, side by side in a picture.
 _HALVES = {
     "color": ((0.75, 0.5, 0.25), (0.125, 0.25, 0.5)),
-    "roughness": (rgb(0.25), rgb(0.5)),
-    "ior": (rgb(1.25), rgb(2.0)),
-    "shininess": (rgb(10.0), rgb(40.0)),
+    "roughness": (0.25, 0.5),
+    "ior": (1.25, 2.0),
+    "shininess": (2.0, 40.0),
+}
+_PARAMETERS = {
+    LobeKind.LAMBERT: ("color",),
+    LobeKind.BECKMANN: ("color", "roughness", "ior"),
+    LobeKind.PHONG: ("color", "shininess"),
+    LobeKind.BLINN_PHONG: ("color", "shininess"),
+    LobeKind.MINNAERT: ("color", "shininess"),
 }
 
 
 def parameters(quick):
-    figures = []
-    for kind, names in (
-        (LobeKind.LAMBERT, ("color",)),
-        (LobeKind.BECKMANN, ("color", "roughness", "ior")),
-        (LobeKind.PHONG, ("color", "shininess")),
-        (LobeKind.BLINN_PHONG, ("color", "shininess")),
-        (LobeKind.MINNAERT, ("color", "shininess")),
-    ):
-        for name in names:
-            textured = Material("textured", (Lobe(kind, **{name: NodeRef(1)}),), nodes=(_UV, _picture_node()))
-            shot = _square(textured, [_HALVES[name]])
-            picture = studio.render(shot)[..., :3]
-            _, column, on = _texels_seen(shot, 2)
-            want = np.zeros(picture.shape)
-            for half, value in enumerate(_HALVES[name]):
-                constant = Material("constant", (Lobe(kind, **{name: value if name == "color" else value[0]}),))
-                there = on & (column == half)
-                want[there] = studio.render(_square(constant, [_HALVES[name]]))[..., :3][there]
-            what = f"{LobeKind(kind).name.capitalize().replace('_', '-')}, {name}: largest relative deviation from the constant's picture"
-            figures.append(Figure.at_most(what, worst(picture, want), SINGLE, "the same formula; its own figures stand above"))
+    figures = [_modulated(kind, name) for kind, names in _PARAMETERS.items() for name in names]
     for model in MODELS:
-        same = sum(
-            int(np.sum(_shown(model, False, integrator) != _shown(model, True, integrator)))
-            for integrator in ("PATH", "CLASSIC")
-        )
+        differ = 0
+        for integrator in (Integrator.PATH, Integrator.CLASSIC):
+            differ += int(np.sum(_shown(model, False, integrator) != _shown(model, True, integrator)))
         what = f"node group {model}: values of pictures that differ from the material's own settings, both integrators"
-        figures.append(Figure.near(what, same, 0, 0, "one road from there on"))
-    return tuple(figures), (
-        Picture("group", "Phong's node group: a picture as Kd, another as Ks, a third as the exponent", _painted()),
-    )
+        figures.append(Figure.near(what, differ, 0, 0, "one road from there on"))
+    caption = "Phong's node group: pictures as Kd, as Ks and as the exponent"
+    return figures, [Picture("group", caption, _painted())]
+
+
+def _modulated(kind, name):
+    """A picture of two values in one parameter of a lobe, against the formula of each half."""
+    others = {} if name == "color" or "shininess" not in _PARAMETERS[kind] else {"color": (0.8, 0.8, 0.8)}
+    lobe = Lobe(kind, **{**others, name: NodeRef(1)})
+    material = Material("textured", (lobe,), nodes=(_UV, _picture_node()))
+    shot = _square(material, [[rgb(value) for value in _HALVES[name]]])
+    _, column, on = _texels_seen(shot, 2)
+    lit = Lit(shot)
+    halves = [light_of(kind, lit, **{**others, name: value}) for value in _HALVES[name]]
+    want = np.where(column[..., None] == 0, *halves) * on[..., None]
+    what = f"{LobeKind(kind).name.capitalize().replace('_', '-')}, {name}: largest relative deviation of 256 pixels"
+    why = "as with constants: up to 40 times the rounding of a cosine"
+    return Figure.at_most(what, worst(studio.render(shot)[..., :3], want), 2e-5, why)
 
 
 def _shown(model, grouped, integrator):
@@ -128,7 +128,7 @@ def _shown(model, grouped, integrator):
             node.inputs[PARAMETERS[name].socket].default_value = (*value, 1.0) if isinstance(value, tuple) else value
 
     shot = studio.from_blender("lab", 64, 48, prepare)
-    return studio.render(shot, integrator={"PATH": 0, "CLASSIC": 1}[integrator], samples=4)
+    return studio.render(shot, integrator=integrator, samples=4)
 
 
 def _group_node(material, model):
@@ -206,8 +206,8 @@ def _lit_by(normal):
     return lambda s: np.maximum(np.sum(s.l * normal, axis=-1, keepdims=True), 0.0) * s.lc / math.pi
 
 
-def _turned(nodes, node, normal, texels=((rgb(0.5),),), flags=0):
-    material = Material("turned", (Lobe(color=(1, 1, 1), normal=NodeRef(node)),), nodes=nodes, flags=flags)
+def _turned(nodes, node, normal, texels=(((0.5, 0.5, 0.5),),)):
+    material = Material("turned", (Lobe(color=(1, 1, 1), normal=NodeRef(node)),), nodes=nodes)
     shot = _square(material, texels, studio.parallel(width=2.0))
     want = _lit_by(normal)(Lit(shot))
     return worst(studio.render(shot)[..., :3], np.broadcast_to(want, (16, 16, 3)))
