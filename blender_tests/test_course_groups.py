@@ -100,7 +100,6 @@ def test_the_normal_s_socket_bends_both_lobes(case):
 
 def test_models_are_mixed_and_nested(case):
     got = case("mixed")
-    diffuse, highlight = got["mixed"]["lobes"]
     assert got["mixed"]["kinds"].count("PHONG") == 1 and got["mixed"]["messages"] == []
     phong = next(lobe for lobe, kind in zip(got["mixed"]["lobes"], got["mixed"]["kinds"], strict=True) if kind == "PHONG")
     assert phong["color"] == near([0.75, 0.5, 0.25]) and phong["weight"] == near([0.25] * 3)

@@ -102,37 +102,35 @@ def lens(quick):
     ), (Picture("showcase", "The showcase through a lens in focus", studio.render(shot, samples=16 if quick else 64)),)
 
 
-def _estimate(shot):
-    """The mean of a picture whose pixels are alike, and its standard error."""
-    values = studio.render(shot)[..., 0]
+def _furnace(albedo, bounces, samples):
+    """The mean of 32 x 32 pixels inside of a ball that glows by 1, and its standard error."""
+    shot = tiny_scenes.furnace(albedo, 1.0, samples=samples, max_bounces=bounces)
+    camera = dataclasses.replace(shot.camera, width=32, height=32, region_width=32, region_height=32)
+    values = studio.render(dataclasses.replace(shot, camera=camera))[..., 0]
     return float(values.mean()), float(values.std() / math.sqrt(values.size))
 
 
 def global_illumination(quick):
     figures = []
+    samples = 16 if quick else 64
     for albedo in (0.2, 0.8):
-        many = tiny_scenes.furnace(albedo, 1.0, samples=16 if quick else 64, max_bounces=1000)
-        many = dataclasses.replace(
-            many, camera=dataclasses.replace(many.camera, width=32, height=32, region_width=32, region_height=32)
-        )
-        mean, error = _estimate(many)
+        mean, error = _furnace(albedo, 1000, samples)
         what = f"inside a ball of albedo {albedo} that glows by 1"
         figures.append(Figure.near(what, mean, 1 / (1 - albedo), 4 * error + 1e-5, "e/(1 - a); four standard errors"))
-    for depth in (0, 1, 2, 4):
-        shot = tiny_scenes.furnace(0.5, 1.0, samples=16, max_bounces=depth)
-        mean, error = _estimate(shot)
-        want = sum(0.5**k for k in range(depth + 1))
-        figures.append(
-            Figure.near(f"the same of albedo 0.5 with {depth} bounces", mean, want, 4 * error + 1e-5, "1 + a + a² + ...")
-        )
-    direct = studio.classic([plane()], [lambert(0.6)], [studio.lamp()], max_bounces=0)
+    for bounces in (0, 1, 2, 4):
+        mean, error = _furnace(0.5, bounces, samples)
+        what = f"the same of albedo 0.5 with {bounces} bounces after the first"
+        want = 2.0 - 0.5 ** (bounces + 1)
+        figures.append(Figure.near(what, mean, want, 4 * error + 1e-5, "1 + a + a² + ... + a^(bounces + 1)"))
+    camera = studio.parallel(width=1e-6, pixels=4)
+    direct = studio.classic([plane()], [lambert(0.6)], [studio.lamp()], max_bounces=0, camera=camera)
     difference = worst(studio.render(direct, integrator=Integrator.PATH), studio.render(direct))
-    what = "Path Tracing without bounces and Classic, a matt plane under a lamp: largest relative difference"
+    what = "Path Tracing without bounces and Classic, a point of a matt plane under a lamp: largest relative difference"
     figures.append(Figure.at_most(what, difference, SINGLE, "one light, one formula"))
     size = 128 if quick else 256
     shot = studio.from_blender("cornell", size, size)
     classic = studio.render(shot, integrator=Integrator.CLASSIC, samples=16)
-    path = studio.render(shot, integrator=Integrator.PATH, samples=64 if quick else 256)
+    path = studio.render(shot, integrator=Integrator.PATH, samples=4 * samples)
     share = classic[..., :3].mean() / path[..., :3].mean()
     what = "closed box: share of Path Tracing's light that Classic has"
     why = "the lamp shines at the ceiling alone: nearly all else is lit by what comes back from there"
