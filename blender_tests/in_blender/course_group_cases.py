@@ -88,8 +88,8 @@ def _halves(tree, name):
 
 
 def _floor(make, integrator):
-    """Two pixels, the middles of the two halves of a floor of the material that make() gives, under a lamp and a grey sky."""
-    scene = stage.empty(width=2, height=1, samples=1)
+    """Two pixels of a floor of the material that make() gives, one on each half, under a lamp and a grey sky."""
+    scene = stage.empty(width=4, height=4, samples=1)
     scene.lancer.integrator = integrator
     floor = stage.plane(2.0, make())
     layer = floor.data.uv_layers.new(name="UVMap")
@@ -99,7 +99,7 @@ def _floor(make, integrator):
     stage.light(energy=POWER, location=LAMP, shadow_soft_size=0.0)
     stage.sky((SKY,) * 3)
     stage.camera(EYE, (0, 0, 0), type="ORTHO", ortho_scale=2.0)
-    return stage.picture(scene)[0, :, :3].tolist()
+    return stage.picture(scene)[1, 1:3, :3].tolist()
 
 
 def textures():

@@ -271,7 +271,7 @@ def ambient(quick):
         Figure.at_most("a lamp's own ambient colour: the same from Ka I_a lc/π", lamps_own, SINGLE, SINGLE_WHY),
     )
     shown = [
-        Picture(f"ka{k}", f"Ka = {k}", _ball(Material("ball", lobes=(Lobe(color=tuple(_KD)),), ambient=rgb(k)), world=0.5), 0.6)
+        Picture(f"ka{k}", f"Ka = {k}", _ball(Material("ball", lobes=(Lobe(color=tuple(_KD)),), ambient=rgb(k)), world=0.2), 0.8)
         for k in (0.0, 0.2, 0.5)
     ]
     return figures, shown

@@ -2,12 +2,13 @@
 
 import html
 import json
+import os
 
 import numpy as np
 
 from scenes.parity import png
 
-from .chapter import number
+from .chapter import ROOT, number
 
 _STYLE = """
 body { font: 15px/1.45 sans-serif; margin: 24px auto; max-width: 1040px; padding: 0 16px; color: #222; background: #f4f4f4 }
@@ -52,11 +53,13 @@ def summary(chapters):
     return f"{len(chapters)} chapters, {len(figures)} figures measured in this run: " + (f"{off} off." if off else "all ok.")
 
 
+def _link(source, folder):
+    path = os.path.relpath(ROOT / source.file, folder)
+    return f'<a href="{path}#L{source.line}">{source.name}</a> ({source.file}:{source.line})'
+
+
 def _section(place, chapter, folder):
-    sources = ", ".join(
-        f'<a href="../../{source.file}#L{source.line}">{source.name}</a> ({source.file}:{source.line})'
-        for source in chapter.sources
-    )
+    sources = ", ".join(_link(source, folder) for source in chapter.sources)
     rows = "".join(
         f'<tr><td>{html.escape(figure.what)}</td><td class="number">{number(figure.measured)}</td>'
         f'<td class="number">{html.escape(figure.expected)}</td><td>{_mark(figure.ok)}</td>'

@@ -1,8 +1,10 @@
 """From the vertices to the pixel: flat, Gouraud and Phong shading; and colours."""
 
+import dataclasses
 import math
 
 import numpy as np
+import trimesh
 from bindings.abi import LobeKind, Shading
 from bindings.snapshot import Instance, Lobe, Material, MeshData
 from tiny_scenes import lambert, plane, sphere
@@ -18,6 +20,8 @@ _TILTED = MeshData(
     [(0, 1, 2)],
     normals=np.float32([(0.6, 0, 0.8), (0, 0, 1), (0, -0.6, 0.8)]),
 )
+_COARSE = MeshData.from_trimesh(trimesh.creation.uv_sphere(count=(8, 16)), "ball")
+_COARSE = dataclasses.replace(_COARSE, normals=_COARSE.positions)
 _SHINY = Material("shiny", lobes=(Lobe(color=(0.5, 0.1, 0.05)), Lobe(LobeKind.PHONG, color=(1, 1, 1), shininess=30.0)))
 
 
@@ -59,7 +63,7 @@ def shading(quick):
     for kind, name in ((Shading.FLAT, "Flat"), (Shading.GOURAUD, "Gouraud"), (Shading.PHONG, "Phong")):
         picture = _ball(kind)
         errors[name] = float(np.sqrt(np.mean((picture - truth)[..., :3] ** 2)))
-        pictures.append(Picture(name, f"{name}: a ball of 128 faces", picture, 0.8))
+        pictures.append(Picture(name, f"{name}: a ball of {len(_COARSE.triangles)} triangles", picture, 0.8))
     for better, worse in (("Gouraud", "Flat"), ("Phong", "Gouraud")):
         what = f"the ball beside the exact one: error of {better} over that of {worse}"
         figures.append(Figure.at_most(what, errors[better] / errors[worse], 1.0, "the slides' order of the three"))
@@ -67,28 +71,10 @@ def shading(quick):
 
 
 def _ball(shading):
-    """A coarse ball with normals, or for None the exact sphere."""
-    rings, segments = 8, 16
-    theta, phi = np.meshgrid(
-        np.linspace(0, math.pi, rings + 1), np.linspace(0, 2 * math.pi, segments, endpoint=False), indexing="ij"
-    )
-    points = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1).reshape(-1, 3)
-    faces = []
-    for i in range(rings):
-        for k in range(segments):
-            a, b = i * segments + k, i * segments + (k + 1) % segments
-            c, d = a + segments, b + segments
-            faces += (
-                [(a, c, d)] * (i < rings - 1) + [(a, d, b)] * (i > 0)
-                if 0 < i < rings - 1
-                else [(a, c, d)]
-                if i == 0
-                else [(a, c, b)]
-            )
-    mesh = MeshData("ball", points, faces, normals=points)
+    """A coarse ball with the sphere's normals, or for None the exact sphere."""
     camera = studio.perspective((0.0, -5.0, 0.8), (0, 0, 0), 160, 0.25)
     thing = sphere() if shading is None else Instance(shading=shading)
-    return studio.render(classic([thing], [_SHINY], [lamp((-3, -4, 4), 60.0)], [mesh], camera=camera))
+    return studio.render(classic([thing], [_SHINY], [lamp((-3, -4, 4), 60.0)], [_COARSE], camera=camera))
 
 
 def colors(quick):
