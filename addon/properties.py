@@ -194,7 +194,7 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
             ("KD_KS", "Diffuse and Coat", "A matt body under a rough, clear layer", 1),
             ("PHONG", "Phong", "A matt body with Phong's highlight", 2),
             ("BLINN_PHONG", "Blinn-Phong", "A matt body with Blinn's highlight", 3),
-            ("MINNAERT", "Minnaert", "A matt body whose rim is darker, as velvet's, or brighter, as the moon's", 4),
+            ("MINNAERT", "Minnaert", "A matt body whose rim is darker, or brighter as the moon's", 4),
         ),
         default="NODES",
     )
