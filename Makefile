@@ -12,6 +12,7 @@ FRAME ?=
 SAMPLES ?=
 OUT ?=
 BLEND ?=
+SNAPSHOT ?=
 ONLY ?=
 QUICK ?=
 BLENDER ?=
@@ -41,8 +42,8 @@ build: packages-build ## build the core; the library lands in addon/lib, where t
 	@echo "== core"
 	@cmake --build $(core) --target lancer $(compile)
 
-render: packages-run python-run build ## render the showcase, or a file: make render BLEND=file.blend [FRAME=1] [OUT=x.png] [SAMPLES=n]
-	@$(python) scenes/render.py $(if $(BLEND),--blend "$(BLEND)") $(if $(FRAME),--frame $(FRAME)) \
+render: packages-run python-run build ## render the showcase, or a file: make render BLEND=file.blend | SNAPSHOT=report.zip [FRAME=1] [OUT=x.png] [SAMPLES=n]
+	@$(python) scenes/render.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SNAPSHOT),--snapshot "$(SNAPSHOT)") $(if $(FRAME),--frame $(FRAME)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(SAMPLES),--samples $(SAMPLES))
 
 test: packages-test python-test core-tests addon ## all tests but the slow ones

@@ -10,7 +10,7 @@ from bpy.app.handlers import persistent
 
 from . import denoise, passes, redraw, stamp
 from .bindings.abi import LancerError
-from .bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
+from .bindings.schedule import SAMPLES, TARGET, TIME, Schedule
 from .bindings.session import Cancelled, Session
 from .bindings.uses import used_features
 from .check_scene import quick_check
@@ -231,21 +231,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             count = statistics.invalid_samples
             text = f"{count} samples were not finite and are left out, the first at pixel {place}"
             self._tell(scene, Messages([text], Harm.WRONG))
-        error = session.error()
-        numbers = dataclasses.asdict(statistics)
-        pixels = session.camera.region_width * session.camera.region_height
-        numbers["pixel_samples"] = numbers["samples"]
-        numbers["samples"] = error.least_samples
-        numbers["samples_most"] = error.most_samples
-        numbers["samples_mean"] = statistics.samples / pixels
-        numbers["seconds"] = statistics.render_seconds
-        numbers["rays"] = statistics.rays
-        numbers["rays_per_second"] = statistics.rays_per_second
-        numbers["version"] = session.library.lancer_version().decode()
-        numbers["ended_by"] = schedule.reason or CANCELLED
-        numbers["error"] = error.error
-        for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
-            numbers[f"error_{name}"] = getattr(error, name)
+        numbers = stamp.account(session, schedule)
         numbers.update(denoise.statistics(denoised))
         held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)

@@ -33,6 +33,25 @@ def duration(value):
             return f"{value:.1f} {name}" if value < 9.95 else f"{value:.0f} {name}"
 
 
+def account(session, schedule):
+    """What a Session that a Schedule has driven tells of itself, by the names that engine.last_statistics has."""
+    statistics, error = session.statistics(), session.error()
+    numbers = dataclasses.asdict(statistics)
+    numbers["pixel_samples"] = numbers["samples"]
+    numbers["samples"] = error.least_samples
+    numbers["samples_most"] = error.most_samples
+    numbers["samples_mean"] = statistics.samples / schedule.pixels
+    numbers["seconds"] = statistics.render_seconds
+    numbers["rays"] = statistics.rays
+    numbers["rays_per_second"] = statistics.rays_per_second
+    numbers["version"] = session.library.lancer_version().decode()
+    numbers["ended_by"] = schedule.reason or CANCELLED
+    numbers["error"] = error.error
+    for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
+        numbers[f"error_{name}"] = getattr(error, name)
+    return numbers
+
+
 def of_layers(statistics):
     """The lines of all view layers of a render, of engine.last_statistics."""
     return [line for numbers in statistics.get("layers", {"": statistics}).values() for line in numbers["accuracy"]]

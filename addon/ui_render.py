@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import denoise, engine, measuring, quality
+from . import denoise, engine, measuring, presets, quality
 from .bindings.enums import Pass
 from .export.checks import EMPTY_PASSES
 from .ui_lines import sentence
@@ -39,6 +39,7 @@ class LancerPanel:
 class LANCER_RENDER_PT_sampling(LancerPanel, bpy.types.Panel):
     bl_label = "Sampling"
     bl_context = "render"
+    draw_header_preset = presets.draw_sampling
 
     def draw(self, context):
         settings = context.scene.lancer
@@ -100,6 +101,7 @@ class LANCER_RENDER_PT_light_paths(LancerPanel, bpy.types.Panel):
     bl_label = "Light Paths"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
+    draw_header_preset = presets.draw_light_paths
 
     def draw(self, context):
         settings = context.scene.lancer

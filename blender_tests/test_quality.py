@@ -16,7 +16,7 @@ def test_each_quality_has_its_seconds_and_error(which, tmp_path):
     # A preset names the error that is not exceeded: less is to be expected. And each takes longer than the one before.
     assert [told[name][4] <= limit for name, limit in (("Draft", 0.1), ("Good", 0.03), ("Final", 0.01))] == [True] * 3
     assert told["Draft"][1] <= told["Good"][1] <= told["Final"][1]
-    assert got["lines"][0].startswith("Draft: about ") and got["lines"][-1].startswith("Classic, 64 samples: about ")
+    assert got["lines"][0].startswith("Draft: ") and got["lines"][-1].startswith("Classic, 64 samples: about ")
     assert all(f"Info: Lancer: {line}" in got["console"] for line in got["lines"])
     # The interval that the render gives itself, and that which it was told beforehand, have something in common.
     _, _, low, high = got["rendered"]
