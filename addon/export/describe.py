@@ -86,6 +86,8 @@ def _lobe(lobe):
     text = f"{_NAMES[lobe.kind]}: {_told(lobe.color)}{weight}"
     if lobe.kind == LobeKind.BECKMANN:
         text += f", alpha {_told(lobe.roughness)}"
+    if lobe.kind in (LobeKind.PHONG, LobeKind.BLINN_PHONG):
+        text += f", shininess {_told(lobe.shininess)}"
     if lobe.kind == LobeKind.MINNAERT:
         text += f", darkness {_told(lobe.shininess)}"
     if lobe.kind in _ROUGH:
