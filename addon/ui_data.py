@@ -52,11 +52,11 @@ class LANCER_MATERIAL_PT_surface(LancerPanel, bpy.types.Panel):
             self._draw_nodes(context, column, material)
         else:
             column.prop(own, "kd")
-            column.prop(own, "ks")
+            column.prop(own, "darkness" if own.model == "MINNAERT" else "ks")
             if own.model == "KD_KS":
                 column.prop(own, "roughness")
                 column.prop(own, "ior")
-            else:
+            elif own.model != "MINNAERT":
                 column.prop(own, "shininess")
         row = column.row()
         row.active = _uses_classic(context.scene)
@@ -130,6 +130,7 @@ class LANCER_DATA_PT_classic_light(LancerPanel, bpy.types.Panel):
         row = column.row()
         row.enabled = own.falloff not in ("PHYSICAL", "CONSTANT")
         row.prop(own, "radius")
+        column.prop(own, "use_ambient")
         column.prop(own, "use_separate_colors")
         if own.use_separate_colors:
             column.prop(own, "ambient_color")
@@ -163,10 +164,29 @@ class LANCER_WORLD_PT_surface(LancerPanel, bpy.types.Panel):
             column.prop(world, "color")
 
 
+class LANCER_WORLD_PT_classic(LancerPanel, bpy.types.Panel):
+    bl_label = "Classic"
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.world is not None
+
+    def draw(self, context):
+        own = context.world.lancer
+        column = self._column()
+        column.active = _uses_classic(context.scene)
+        column.prop(own, "use_ambient_color")
+        if own.use_ambient_color:
+            column.prop(own, "ambient_color", text="Color")
+
+
 CLASSES = (
     LANCER_OBJECT_PT_surface,
     LANCER_MATERIAL_PT_surface,
     LANCER_DATA_PT_light,
     LANCER_DATA_PT_classic_light,
     LANCER_WORLD_PT_surface,
+    LANCER_WORLD_PT_classic,
 )

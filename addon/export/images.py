@@ -9,10 +9,11 @@ from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Transfer
 from ..harm import Harm
 from . import main_thread
-from .colorspace import IDENTITY, conversion, convert, floats, loaded
+from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one piece, which stays in the cache
 _WHITE = 65535.0
+_ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # their colour is multiplied by alpha in the file
 
 
 class Images:
@@ -68,29 +69,32 @@ def _read_all(image, path, tell):
         return _read_file(image, path, tell)
     if image.source == "MOVIE":
         tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used", "feature:movie as image")
-    if _divided(image) and image.source == "FILE" and image.packed_file is None and not image.is_dirty:
+    # Bytes that Blender holds are those of the file, unless it has divided them by alpha.
+    is_file = image.source == "FILE" and image.packed_file is None and not image.is_dirty
+    if is_file and (not image.has_data or image.is_float or image.alpha_mode == "PREMUL"):
         pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library), tell)
         if pictures:
             return pictures
     # What Blender had not loaded before, it need not keep.
     had_data = image.has_data
-    pictures = _read(image, image, tell)
+    pictures = _read(image, image, tell, _space(image))
     if not had_data and not image.is_dirty:
         main_thread.run(image.buffers_free)
     return pictures
 
 
-def _divided(image):
-    """Whether Blender divides the bytes of a file by alpha; Cycles takes them as they are."""
-    return image.alpha_mode == "PREMUL" and not image.is_float
+def _space(image):
+    """(name, whether it is data) of the colour space. Tiles that Blender has not looked at have no name yet."""
+    return image.colorspace_settings.name, image.colorspace_settings.is_data
 
 
 def _read_file(image, path, tell, tile=0):
+    """A file outside of the .blend with its values as they are stored, which Cycles decodes after interpolation."""
     if not os.path.isfile(path):
         return []
     try:
-        with loaded(path, image.colorspace_settings.name, "STRAIGHT" if _divided(image) else image.alpha_mode) as source:
-            return _read(image, source, tell, tile)
+        with stored(path) as source:
+            return _read(image, source, tell, _space(image), tile, is_stored=True)
     except RuntimeError:
         return []
 
@@ -103,14 +107,14 @@ def _read_tile(image, number, tell):
     path = bpy.path.abspath(path, library=image.library)
     pictures = _read_packed(image, number, tell) or _read_file(image, path, tell, number)
     if not pictures and len(image.tiles) == 1:
-        pictures = _read(image, image, tell, number)
+        pictures = _read(image, image, tell, _space(image), number)
     if not pictures:
         tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out", harm=Harm.LEFT_OUT)
     return pictures
 
 
 def _read_packed(image, number, tell):
-    """A tile that lies in the .blend: its bytes are a file."""
+    """A tile that lies in the .blend: its bytes are a file, which Blender decodes."""
     packed = next((item for item in image.packed_files if getattr(item, "tile_number", 0) == number), None)
     if packed is None or packed.packed_file is None:
         return []
@@ -118,14 +122,20 @@ def _read_packed(image, number, tell):
     try:
         with open(path, "wb") as file:
             file.write(packed.packed_file.data)
-        return _read_file(image, path, tell, number)
+        with loaded(path, image.colorspace_settings.name, image.alpha_mode) as source:
+            return _read(image, source, tell, _space(source), number)
+    except RuntimeError:
+        return []
     finally:
         if os.path.exists(path):
             os.remove(path)
 
 
-def _read(image, source, tell, tile=0):
-    """The picture of source under the settings of image, in a list; empty where it has no pixels."""
+def _read(image, source, tell, space, tile=0, is_stored=False):
+    """The picture of source under the settings of image, in a list; empty where it has no pixels.
+
+    is_stored: floating point, too, is in the colour space, as bytes always are; otherwise it is in the working space.
+    """
     if min(source.size) < 1 or source.channels < 1:
         # Only now Blender has looked at the file. It gives scripts no pixels of its layers.
         if source.type == "MULTILAYER":
@@ -134,22 +144,21 @@ def _read(image, source, tell, tile=0):
             return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
         return []
     values = floats(source)
-    is_data = image.colorspace_settings.is_data
-    alpha = _alpha_mode(image, source.is_float, is_data)
-    # Before 5.1 Cycles took all bytes of files for straight ones.
-    if alpha == AlphaMode.STRAIGHT and source != image and _divided(image) and bpy.app.version >= (5, 1):
-        alpha = AlphaMode.ASSOCIATED
+    name, is_data = space
+    alpha = _alpha_mode(image, source, is_data, is_stored)
     if values.shape[2] == 2:
         values = values[:, :, [0, 0, 0, 1]]
     if values.shape[2] == 4 and (alpha == AlphaMode.NONE or bool((values[:, :, 3] == 1.0).all())):
         # The mode stays: it says what becomes of colour where the picture is clipped.
         values = values[:, :, :3]
     transfer, matrix = Transfer.LINEAR, IDENTITY
-    if not source.is_float and not is_data:
-        found = conversion(image.colorspace_settings.name)
-        if found is None:
-            values = _converted(values, image.colorspace_settings.name)
-            return [_picture(image, values, transfer, _associate(values, alpha), tile, matrix)]
+    # Without a name Cycles takes values as they are.
+    if name and not is_data and (is_stored or not source.is_float):
+        found = conversion(name)
+        # Cycles keeps texels encoded where the curve alone makes them scene-linear; what takes more comes before interpolation.
+        if found is None or (found[0] == Transfer.SRGB and found[1] != IDENTITY):
+            values, alpha = _converted(values, name, alpha)
+            return [_picture(image, values, transfer, alpha, tile, matrix)]
         transfer, matrix = found
     texels = _floating(values) if source.is_float else _quantised(values, 255.0, np.uint8)
     return [_picture(image, texels, transfer, alpha, tile, matrix)]
@@ -159,31 +168,46 @@ def _picture(image, texels, transfer, alpha, tile, matrix):
     return snapshot.Image(name=image.name, texels=texels, transfer=transfer, alpha=alpha, tile=tile, matrix=matrix)
 
 
-def _alpha_mode(image, is_float, is_data):
-    """As Blender keeps pixels in memory: bytes straight, floating point multiplied by alpha, data as it is."""
+def _alpha_mode(image, source, is_data, is_stored):
+    """As Cycles takes the pixels of source, per version."""
     if image.alpha_mode == "NONE":
         return AlphaMode.NONE
     if is_data or image.alpha_mode == "CHANNEL_PACKED":
         return AlphaMode.CHANNEL_PACKED
-    return AlphaMode.ASSOCIATED if is_float else AlphaMode.STRAIGHT
+    if bpy.app.version >= (5, 1):
+        # As the image says, even of pixels that Blender has already multiplied or divided.
+        associated = image.alpha_mode == "PREMUL"
+    elif is_stored:
+        associated = source.file_format in _ASSOCIATED_FORMATS
+    else:
+        # As Blender keeps pixels in memory.
+        associated = source.is_float
+    return AlphaMode.ASSOCIATED if associated else AlphaMode.STRAIGHT
 
 
-def _converted(values, name):
-    """Bytes of a colour space that is no curve and matrix, as floating point in the working space."""
-    if values.shape[2] == 4:
-        return convert(values, name)
+def _converted(values, name, alpha):
+    """Values of a colour space that takes more than its curve, as floating point in the working space; and their alpha mode.
+
+    Colour with alpha is converted straight, and multiplied by it after, as interpolation wants it.
+    """
     full = np.ones((*values.shape[:2], 4), np.float32)
-    full[:, :, :3] = values
-    return np.ascontiguousarray(convert(full, name)[:, :, :3])
+    full[:, :, : values.shape[2]] = values
+    if values.shape[2] == 1:
+        full[:, :, :3] = values
+    if values.shape[2] < 4:
+        return np.ascontiguousarray(convert(full, name)[:, :, :3]), alpha
+    if alpha == AlphaMode.ASSOCIATED:
+        _divide(full)
+    full = convert(full, name)
+    if alpha in (AlphaMode.ASSOCIATED, AlphaMode.STRAIGHT):
+        full[:, :, :3] *= full[:, :, 3:]
+        alpha = AlphaMode.ASSOCIATED
+    return full, alpha
 
 
-def _associate(values, alpha):
-    """Multiplies straight colour by alpha, as interpolation wants it; gives the mode that it has then."""
-    if alpha != AlphaMode.STRAIGHT:
-        return alpha
-    if values.shape[2] == 4:
-        values[:, :, :3] *= values[:, :, 3:]
-    return AlphaMode.ASSOCIATED
+def _divide(values):
+    """Colour by alpha, where there is any."""
+    np.divide(values[:, :, :3], values[:, :, 3:], out=values[:, :, :3], where=values[:, :, 3:] > 0.0)
 
 
 def _floating(values):

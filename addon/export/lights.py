@@ -64,10 +64,16 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
         no_shadow=not _casts_shadow(light),
         falloff=Falloff[own.falloff],
         falloff_radius=messages.number(own.radius, who, "falloff radius", 10.0, 1e-12),
-        ambient_color=messages.color(own.ambient_color, who, "ambient colour", 1.0) if separate else (1.0, 1.0, 1.0),
+        ambient_color=_ambient(own, who, messages),
         diffuse_color=messages.color(own.diffuse_color, who, "diffuse colour", 1.0) if separate else (1.0, 1.0, 1.0),
         specular_color=messages.color(own.specular_color, who, "specular colour", 1.0) if separate else (1.0, 1.0, 1.0),
     )
+
+
+def _ambient(own, who, messages):
+    if not own.use_ambient:
+        return 0.0, 0.0, 0.0
+    return messages.color(own.ambient_color, who, "ambient colour", 1.0) if own.use_separate_colors else (1.0, 1.0, 1.0)
 
 
 def _rotation(matrix):

@@ -97,6 +97,9 @@ def _is_weak(material, surface):
 def _own_model(own, who, messages):
     kd = messages.color(own.kd, who, "diffuse colour")
     ks = messages.color(own.ks, who, "specular colour")
+    if own.model == "MINNAERT":
+        k = messages.number(own.darkness, who, "darkness", 1.0, 0.0)
+        return (snapshot.Lobe(LobeKind.MINNAERT, kd, shininess=k),) if any(kd) else ()
     lobes = []
     if any(kd):
         lobes.append(snapshot.Lobe(LobeKind.LAMBERT, kd))

@@ -8,7 +8,7 @@ import numpy as np
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
 from ..harm import Harm
 from .arithmetic import is_constant
-from .attributes import named_attributes
+from .attributes import POLYGONS, named_attributes
 from .checks import check_object
 from .mesh import export_mesh, read_positions, shown_mesh
 from .visibility import object_hidden_from
@@ -95,7 +95,7 @@ class Objects:
         kind = InstanceKind[own.shape]
         mesh, placement = 0, -1
         if kind == InstanceKind.MESH:
-            mesh, used = self._mesh(thing, owner, name, data_key, slots, poll)
+            mesh, used = self._mesh(thing, owner, name, data_key, slots, self._colors_polygons(own), poll)
             if mesh < 0:
                 return -1, ""
         else:
@@ -112,7 +112,11 @@ class Objects:
             self.looks.append(look)
         return number, name
 
-    def _mesh(self, thing, owner, name, data_key, slots, poll):
+    def _colors_polygons(self, own):
+        """Whether each face of the object gets one colour: Classic has to know which triangles are one face then."""
+        return own.shading == "FLAT" and self.scene.lancer.integrator == "CLASSIC"
+
+    def _mesh(self, thing, owner, name, data_key, slots, polygons, poll):
         """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces.
 
         Objects that share a mesh may show it with materials that read different attributes of it.
@@ -120,6 +124,8 @@ class Objects:
         wanted = self._wanted.get(slots)
         if wanted is None:
             wanted = self._wanted[slots] = self.materials.attributes(slots)
+        if polygons:
+            wanted = wanted | {POLYGONS}
         copies = self._meshes.setdefault(data_key, [])
         found = next((copy for copy in copies if copy[0] >= wanted), None)
         if found is None:

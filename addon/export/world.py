@@ -21,15 +21,17 @@ def export_world(world, images, depsgraph, messages):
         return snapshot.World()
     who = f"world '{world.name}'"
     graph = NodeGraph(who, messages, images, depsgraph)
+    own = world.lancer
     cycles = getattr(world, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
         messages.add(
             f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
             "feature:bounce limit of a lamp",
         )
-    radiance = _cube(world.lancer, graph, who, messages) if world.lancer.use_cube else _nodes(world, graph, who, messages)
+    radiance = _cube(own, graph, who, messages) if own.use_cube else _nodes(world, graph, who, messages)
     return snapshot.World(
         radiance=radiance,
+        ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,
         nodes=graph.nodes,
         hidden_from=hidden_from(getattr(world, "cycles_visibility", None)),
         map_resolution=cycles.sample_map_resolution if getattr(cycles, "sampling_method", "") == "MANUAL" else 0,

@@ -5,7 +5,8 @@ import numpy as np
 import stage
 
 from addon.bindings.enums import InstanceKind, LightKind, Ray, Shading
-from addon.export.mesh import _triangle_corners, _triangle_faces
+from addon.export.arrays import triangle_faces
+from addon.export.mesh import _triangle_corners
 from addon.export.scene import export_scene
 
 
@@ -352,6 +353,6 @@ def triangulation():
     return {
         "corners": corners.tolist(),
         "copied": root.flags.owndata,
-        "faces": _triangle_faces(data).tolist(),
+        "faces": triangle_faces(data).tolist(),
         "told": [[list(triangle.loops), triangle.polygon_index] for triangle in data.loop_triangles],
     }
