@@ -149,15 +149,31 @@ class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
         return {"FINISHED"}
 
 
-def _draw_button(panel, _context):
-    panel.layout.operator(LANCER_OT_save_bug_report.bl_idname, icon="URL")
+class LANCER_RENDER_PT_bug_report(bpy.types.Panel):
+    bl_label = "Bug Report"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+    # Below what the last render has told.
+    bl_parent_id = "LANCER_RENDER_PT_messages"
+    bl_options = {"HIDE_HEADER"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine == engine.LancerRenderEngine.bl_idname
+
+    def draw(self, _context):
+        self.layout.operator(LANCER_OT_save_bug_report.bl_idname, icon="URL")
+
+
+_CLASSES = (LANCER_OT_save_bug_report, LANCER_RENDER_PT_bug_report)
 
 
 def register():
-    bpy.utils.register_class(LANCER_OT_save_bug_report)
-    bpy.types.LANCER_RENDER_PT_messages.append(_draw_button)
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
 
 
 def unregister():
-    bpy.types.LANCER_RENDER_PT_messages.remove(_draw_button)
-    bpy.utils.unregister_class(LANCER_OT_save_bug_report)
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)
