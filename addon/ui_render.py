@@ -2,9 +2,10 @@
 
 import bpy
 
-from . import denoise, engine, measuring, presets, quality
+from . import denoise, engine, measuring, presets, quality, stamp
 from .bindings.enums import Pass
 from .export.checks import EMPTY_PASSES
+from .harm import Harm
 from .ui_lines import sentence
 
 _ID = engine.LancerRenderEngine.bl_idname
@@ -161,12 +162,12 @@ class LANCER_RENDER_PT_messages(LancerPanel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
-        lines = engine.last_messages.get(context.scene.name)
+        messages = engine.last_messages.get(context.scene.name)
         column = self.layout.column(align=True)
         statistics = engine.last_statistics.get(context.scene.name)
         if statistics is not None:
             # The error, then what it does not count.
-            for line in statistics["accuracy"]:
+            for line in stamp.of_layers(statistics):
                 for part in line.split("; "):
                     sentence(column, context, part[0].upper() + part[1:])
             sentence(column, context, f"{statistics['rays_per_second'] / 1e6:.2f} M rays/s, {statistics['instruction_set']}")
@@ -175,12 +176,13 @@ class LANCER_RENDER_PT_messages(LancerPanel, bpy.types.Panel):
                 size = statistics["denoising_bytes"] / 2**20
                 text = f"{statistics['denoiser']}: {statistics['denoising_seconds']:.1f} s, {size:.0f} MB"
                 sentence(column, context, text)
-        if lines is None:
+        if messages is None:
             column.label(text="Nothing rendered yet")
-        elif not lines:
+            return
+        if all(message.harm == Harm.HINT for message in messages.told()):
             sentence(column, context, "All of the scene was rendered as it is", "CHECKMARK")
-        for line in lines or ():
-            sentence(column, context, line, "ERROR")
+        for message in messages.told():
+            sentence(column, context, message.line, "INFO" if message.harm == Harm.HINT else "ERROR")
 
 
 class LANCER_VIEWLAYER_PT_passes(LancerPanel, bpy.types.Panel):
