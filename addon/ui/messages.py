@@ -1,0 +1,37 @@
+"""The panel that tells how the last render went: its error, its speed, and what of the scene it could not show."""
+
+import bpy
+
+from .. import engine
+from .render import LancerRenderPanel
+from .sentences import sentence
+
+
+class LANCER_RENDER_PT_messages(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Messages of the Last Render"
+    bl_order = 3
+
+    def draw(self, context):
+        lines = engine.last_messages.get(context.scene.name)
+        column = self.layout.column(align=True)
+        statistics = engine.last_statistics.get(context.scene.name)
+        if statistics is not None:
+            # The error, then what it does not count.
+            for line in statistics["accuracy"]:
+                for part in line.split("; "):
+                    sentence(column, context, part[0].upper() + part[1:])
+            rate = f"{statistics['rays_per_second'] / 1e6:.2f} million rays per second"
+            sentence(column, context, f"{rate} ({statistics['instruction_set']})")
+            if statistics["denoised"]:
+                size = statistics["denoising_bytes"] / 2**20
+                text = f"{statistics['denoiser']}: {statistics['denoising_seconds']:.1f} s, {size:.0f} MB"
+                sentence(column, context, text)
+        if lines is None:
+            column.label(text="Nothing rendered yet")
+        elif not lines:
+            sentence(column, context, "All of the scene was rendered as it is", "CHECKMARK")
+        for line in lines or ():
+            sentence(column, context, line, "ERROR")
+
+
+CLASSES = (LANCER_RENDER_PT_messages,)
