@@ -1,7 +1,7 @@
 """Every setting of a small scene, changed one by one: which of them change what is exported, and which are shown in panels.
 
-What is exported is a function of the data alone, so that a setting that is read shows by what it does, whoever wrote the reader.
-A setting may act in some states only, a lens in perspective, the angles of a panorama in a panorama: hence the states.
+What is exported is a function of the data alone, so that a setting that is read shows by what it does, whoever wrote the
+reader. It may act in some states only, a lens in perspective, the angles of a panorama in a panorama: hence the states.
 """
 
 import bpy
@@ -56,14 +56,19 @@ def other_values(owner, field):
     elif field.type == "INT":
         values = [now + 1, now - 1] if not field.is_array else []
     elif field.type == "FLOAT":
+        # One of both is within the limits. Matrices are results.
         is_matrix = field.is_array and field.array_dimensions[1] > 0
-        values = [] if is_matrix else [tuple(x * 0.7 + 0.1 for x in now)] if field.is_array else [now * 0.7 + 0.1]
+        values = [] if is_matrix else [_scaled(now, 0.7), _scaled(now, 1.3)]
     elif field.type == "POINTER":
-        known = next((every for every in _collections() if every and every[0].bl_rna.identifier == field.fixed_type.identifier), [])
-        values = [None, *known]
+        kind = field.fixed_type.identifier
+        values = [None, *next((every for every in _collections() if every and every[0].bl_rna.identifier == kind), [])]
     else:
         values = []
     return [value for value in values if value != now]
+
+
+def _scaled(value, factor):
+    return value * factor + 0.1 if isinstance(value, float) else tuple(x * factor + 0.1 for x in value)
 
 
 def _collections():
@@ -72,41 +77,48 @@ def _collections():
 
 
 def acting(scene, view_layer, owners):
-    """({setting: what acts}, {setting: what only changes messages}) of the owners' settings, as (type, property)."""
-    acts, tells = set(), set()
+    """(settings that act, settings that change messages alone, all settings) of the owners, as (type, property)."""
+    acts, tells, known = set(), set(), set()
     for root in owners:
         # Of changes to add-ons' settings Blender tells the depsgraph nothing.
         root.id_data.update_tag()
     before = exported(scene, view_layer)
-    for root in owners:
-        for owner, field in settings_of(root):
-            kept = getattr(owner, field.identifier)
-            kept = tuple(kept) if getattr(field, "is_array", False) and field.array_dimensions[1] == 0 else kept
-            key = owner.bl_rna.identifier, field.identifier
-            for value in other_values(owner, field):
-                if key in acts:
-                    break
-                try:
-                    setattr(owner, field.identifier, value)
-                except (TypeError, ValueError, AttributeError):
-                    continue  # not among the choices of this moment
-                owner.id_data.update_tag()
-                after = exported(scene, view_layer)
-                if after[0] != before[0]:
-                    acts.add(key)
-                elif after[1] != before[1]:
-                    tells.add(key)
-            setattr(owner, field.identifier, kept)
+    for owner, field in (setting for root in owners for setting in settings_of(root)):
+        key = _type_of(owner), field.identifier
+        known.add(key)
+        values = other_values(owner, field)
+        if not values:
+            continue
+        kept = getattr(owner, field.identifier)
+        kept = tuple(kept) if getattr(field, "is_array", False) else kept
+        for value in values:
+            try:
+                setattr(owner, field.identifier, value)
+            except (TypeError, ValueError, AttributeError):
+                continue  # not among the choices of this moment
             owner.id_data.update_tag()
-            if key in acts:
-                # What was rounded, as an angle is that stands for a length, does not come back to the last bit.
-                before = exported(scene, view_layer)
-    return acts, tells - acts
+            after = exported(scene, view_layer)
+            if after[0] != before[0]:
+                acts.add(key)
+                break
+            if after[1] != before[1]:
+                tells.add(key)
+        setattr(owner, field.identifier, kept)
+        owner.id_data.update_tag()
+        if key in acts:
+            # What was rounded, as an angle is that stands for a length, does not come back to the last bit.
+            before = exported(scene, view_layer)
+    return acts, tells, known
+
+
+def _type_of(owner):
+    """Its name; each kind of lamp has a type of its own."""
+    return "Light" if isinstance(owner, bpy.types.Light) else owner.bl_rna.identifier
 
 
 def _textured():
     """A material that shines, lets through, and is displaced, so that all its settings act."""
-    material = stage.shader("ShaderNodeBsdfPrincipled", "Textured")
+    material = stage.shader(name="Textured")
     tree = material.node_tree
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
     checker, moved = tree.nodes.new("ShaderNodeTexChecker"), tree.nodes.new("ShaderNodeDisplacement")
@@ -114,7 +126,7 @@ def _textured():
     tree.links.new(moved.outputs[0], output.inputs["Displacement"])
     glow, veil = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeBsdfTransparent")
     glow.inputs["Strength"].default_value = 10.0
-    bodies = [next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED"), veil]
+    bodies = [next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE"), veil]
     for body in bodies:
         added = tree.nodes.new("ShaderNodeAddShader")
         tree.links.new(glow.outputs[0], added.inputs[0])
@@ -135,11 +147,12 @@ class _Stage:
         self.cube.modifiers.new("Subdivision", "SUBSURF").levels = 2
         self.lamp = stage.light()
         self.lamp.data.use_nodes = True
+        glow = next(node for node in self.lamp.data.node_tree.nodes if node.type == "EMISSION")
+        glow.inputs["Strength"].default_value = 2.0
         bpy.data.worlds.new("Other")
         self.world = stage.sky()
         self.camera = stage.camera()
         bpy.data.images.new("Picture", 2, 2)
-        scene.render.use_simplify = True
         scene.lancer.pixel_filter = "BLACKMAN_HARRIS"
         for name in ("use_pass_mist", "use_pass_ambient_occlusion"):
             setattr(self.layer, name, True)
@@ -147,9 +160,16 @@ class _Stage:
     def shows(self, tab, thing, **fields):
         """The settings that the panels of a tab show."""
         context = recording.Context(
-            engine="LANCER", scene=self.scene, view_layer=self.layer, object=thing, active_object=thing, world=self.world, **fields
+            engine="LANCER",
+            scene=self.scene,
+            view_layer=self.layer,
+            object=thing,
+            active_object=thing,
+            world=self.world,
+            **fields,
         )
-        return {setting for record in recording.drawn(context, tab).values() for setting in record.properties}
+        shown = {setting for record in recording.drawn(context, tab).values() for setting in record.properties}
+        return {("Light" if kind.endswith("Light") else kind, name) for kind, name in shown}
 
     def states(self):
         """(name, owners whose settings act there, what the panels of their tabs show) of one state after the other."""
@@ -166,8 +186,10 @@ class _Stage:
             return name, owners, set().union(*(self.shows(tab, self.cube) for tab in tabs))
 
         yield now("as it is", scene, self.layer, world, self.cube)
-        own.film_transparent_glass = scene.render.film_transparent = scene.render.use_border = own.use_denoising = True
-        yield now("transparent, with a border", scene.render, own)
+        own.film_transparent_glass = scene.render.film_transparent = own.use_denoising = True
+        scene.render.use_border, scene.render.border_max_x = True, 0.5
+        scene.render.use_simplify, scene.render.simplify_subdivision = True, 1
+        yield now("transparent, with a border, simplified", scene, self.layer)
         own.integrator = "CLASSIC"
         yield now("Classic", own)
         if bpy.app.version < (5, 0):
@@ -220,7 +242,8 @@ class _Stage:
 
     def _of_lamps(self):
         lamp = self.lamp
-        lamp.data.lancer.falloff, lamp.data.lancer.use_separate_colors = "LINEAR", True
+        own = lamp.data.lancer
+        own.falloff, own.use_separate_colors, own.diffuse_color = "LINEAR", True, (1.0, 0.5, 0.2)
         if "use_temperature" in lamp.data.bl_rna.properties:
             lamp.data.use_temperature = True
 
@@ -232,6 +255,10 @@ class _Stage:
         for kind in ("POINT", "SUN", "SPOT"):
             lamp.data.type = kind
             yield now(kind)
+        if bpy.app.version < (5, 2):
+            lamp.data.use_nodes = False
+            yield now("a lamp without nodes")
+            lamp.data.use_nodes = True
         lamp.data.type = "AREA"
         for shape in ("SQUARE", "RECTANGLE", "DISK", "ELLIPSE"):
             lamp.data.shape = shape
@@ -239,10 +266,12 @@ class _Stage:
 
 
 def controls():
-    """{state: what acts, what only changes messages, what is shown}, each a list of "Type.property"."""
+    """{what settings do: ["Type.property", ...]}: act, change messages alone, are shown, are there at all."""
     built = _Stage()
-    result = {}
-    for name, owners, shown in built.states():
-        found = (*acting(built.scene, built.layer, owners), shown)
-        result[name] = [sorted(".".join(key) for key in keys) for keys in found]
-    return result
+    acts, tells, known, shown = set(), set(), set(), set()
+    for _, owners, in_panels in built.states():
+        shown |= in_panels
+        for total, found in zip((acts, tells, known), acting(built.scene, built.layer, owners), strict=True):
+            total |= found
+    found = {"act": acts, "tell": tells - acts, "known": known, "shown": shown}
+    return {what: sorted(map(".".join, settings)) for what, settings in found.items()} | {"version": bpy.app.version[:2]}

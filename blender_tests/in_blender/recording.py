@@ -76,7 +76,7 @@ def _call(call, *arguments, **options):
         record.words.append("nodes")
     elif name == "label":
         record.words.append(options.get("text", ""))
-    for owner, identifier in zip(values, values[1:]):
+    for owner, identifier in zip(values, values[1:], strict=False):
         if isinstance(owner, bpy.types.bpy_struct) and isinstance(identifier, str):
             _show(record, name, owner, identifier)
     if name in ("panel", "panel_prop"):
