@@ -12,15 +12,18 @@ _OF_EEVEE = {
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
     "EEVEE_MATERIAL_PT_context_material",
-    "EEVEE_WORLD_PT_mist",
 }
-# What Lancer shows otherwise.
+# What Lancer shows otherwise, or elsewhere.
 _REPLACED = {
     "DATA_PT_light",
     "DATA_PT_spot",
     "NODE_DATA_PT_light",
     "NODE_DATA_PT_spot",
     "OBJECT_PT_shading",
+    "RENDER_PT_simplify",
+    "RENDER_PT_simplify_greasepencil",
+    "RENDER_PT_simplify_render",
+    "RENDER_PT_simplify_viewport",
 }
 # What has no effect: previews, stereoscopy, Freestyle, the light of volumes and strands.
 _WITHOUT_EFFECT = {
@@ -30,6 +33,8 @@ _WITHOUT_EFFECT = {
     "MATERIAL_PT_freestyle_line",
     "MATERIAL_PT_preview",
     "PARTICLE_PT_hair_shape",
+    "PARTICLE_PT_render_path",
+    "PARTICLE_PT_render_path_timing",
     "RENDER_PT_freestyle",
     "RENDER_PT_output_views",
     "RENDER_PT_stereoscopy",

@@ -12,7 +12,6 @@ _ICONS = {Harm.WRONG: "ERROR", Harm.WASTE: "TIME", Harm.HINT: "INFO"}
 
 class LANCER_RENDER_PT_check(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Check"
-    bl_order = 5
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):

@@ -9,7 +9,6 @@ from .sentences import sentence
 
 class LANCER_RENDER_PT_messages(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Messages of the Last Render"
-    bl_order = 3
 
     def draw(self, context):
         lines = engine.last_messages.get(context.scene.name)

@@ -9,16 +9,18 @@ _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
 class LancerObjectPanel(LancerPanel):
+    """Of an object that has a surface."""
+
     bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.object is not None and context.object.type in _SURFACES
 
 
 class LANCER_OBJECT_PT_shading(LancerObjectPanel, bpy.types.Panel):
     bl_label = "Shading"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and context.object is not None and context.object.type in _SURFACES
 
     def draw(self, context):
         own = context.object.lancer
@@ -39,8 +41,9 @@ class LANCER_OBJECT_PT_shadow_terminator(LancerObjectPanel, bpy.types.Panel):
         setting(column, "shadow_terminator_geometry_offset", thing, getattr(thing, "cycles", None), text="Geometry Offset")
 
 
-class LANCER_OBJECT_PT_ray_visibility(LancerObjectPanel, bpy.types.Panel):
+class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
+    bl_context = "object"
     bl_parent_id = "OBJECT_PT_visibility"
 
     @classmethod

@@ -1,9 +1,10 @@
 """The Render tab: what is set before a render, in the order of Cycles."""
 
 import bpy
+from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
 from .. import denoise, measuring, quality
-from .panel import LancerPanel, uses_classic
+from .panel import LancerPanel, setting, uses_classic
 from .sentences import sentence
 
 _MEASURE = "lancer.measure_quality"
@@ -20,14 +21,13 @@ _DENOISING = (
 
 
 class LancerRenderPanel(LancerPanel):
-    """Of Blender's own panels of this tab Simplify has the order 0, as it comes, and Color Management 100."""
+    """They stand in the order in which they are registered, and Blender's Grease Pencil and Color Management after them."""
 
     bl_context = "render"
 
 
 class LANCER_RENDER_PT_sampling(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
-    bl_order = -2
 
     def draw(self, context):
         settings = context.scene.lancer
@@ -97,7 +97,6 @@ class LANCER_RENDER_PT_sampling_advanced(LancerRenderPanel, bpy.types.Panel):
 
 class LANCER_RENDER_PT_light_paths(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Light Paths"
-    bl_order = -1
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
@@ -138,9 +137,52 @@ class LANCER_RENDER_PT_classic(LancerRenderPanel, bpy.types.Panel):
         column.prop(settings, "environment_reflections", text="Reflect Sky Only")
 
 
+class LANCER_RENDER_PT_simplify(LancerRenderPanel, bpy.types.Panel):
+    """Blender's own would stand before all others."""
+
+    bl_label = "Simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_simplify", text="")
+
+    def draw(self, context):
+        pass
+
+
+class LANCER_RENDER_PT_simplify_viewport(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "LANCER_RENDER_PT_simplify"
+
+    def draw(self, context):
+        render = context.scene.render
+        column = self._column()
+        column.active = render.use_simplify
+        column.prop(render, "simplify_subdivision", text="Max Subdivision")
+        column.prop(render, "simplify_child_particles", text="Child Particles")
+        setting(column, "use_simplify_normals", render, text="Normals")
+
+
+class LANCER_RENDER_PT_simplify_render(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Render"
+    bl_parent_id = "LANCER_RENDER_PT_simplify"
+
+    def draw(self, context):
+        render = context.scene.render
+        column = self._column()
+        column.active = render.use_simplify
+        column.prop(render, "simplify_subdivision_render", text="Max Subdivision")
+        column.prop(render, "simplify_child_particles_render", text="Child Particles")
+
+
+class LANCER_RENDER_PT_simplify_strokes(LancerRenderPanel, GreasePencilSimplifyPanel, bpy.types.Panel):
+    bl_label = "Grease Pencil"
+    bl_parent_id = "LANCER_RENDER_PT_simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
 class LANCER_RENDER_PT_film(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Film"
-    bl_order = 1
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
@@ -173,12 +215,11 @@ class LANCER_RENDER_PT_transparent(LancerRenderPanel, bpy.types.Panel):
         column.prop(settings, "film_transparent_glass")
         row = column.row()
         row.active = settings.film_transparent_glass
-        row.prop(settings, "film_transparent_roughness")
+        row.prop(settings, "film_transparent_roughness", text="Max Roughness")
 
 
 class LANCER_RENDER_PT_performance(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Performance"
-    bl_order = 2
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
@@ -224,6 +265,10 @@ CLASSES = (
     LANCER_RENDER_PT_max_bounces,
     LANCER_RENDER_PT_clamping,
     LANCER_RENDER_PT_classic,
+    LANCER_RENDER_PT_simplify,
+    LANCER_RENDER_PT_simplify_viewport,
+    LANCER_RENDER_PT_simplify_render,
+    LANCER_RENDER_PT_simplify_strokes,
     LANCER_RENDER_PT_film,
     LANCER_RENDER_PT_pixel_filter,
     LANCER_RENDER_PT_transparent,

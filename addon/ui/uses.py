@@ -26,7 +26,6 @@ def _share(value):
 
 class LANCER_RENDER_PT_uses(LancerRenderPanel, bpy.types.Panel):
     bl_label = "What This Scene Uses"
-    bl_order = 4
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):

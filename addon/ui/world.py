@@ -16,7 +16,6 @@ class LancerWorldPanel(LancerPanel):
 
 class LANCER_WORLD_PT_surface(LancerWorldPanel, bpy.types.Panel):
     bl_label = "Surface"
-    bl_order = -1
 
     def draw(self, context):
         world = context.world
@@ -31,6 +30,19 @@ class LANCER_WORLD_PT_surface(LancerWorldPanel, bpy.types.Panel):
             column.prop(world, "color")
         else:
             nodes_of(column, world.node_tree, "Surface")
+
+
+class LANCER_WORLD_PT_mist(LancerWorldPanel, bpy.types.Panel):
+    """EEVEE's would stand before the surface."""
+
+    bl_label = "Mist Pass"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        mist = context.world.mist_settings
+        column = self._column()
+        for name in ("start", "depth", "falloff"):
+            column.prop(mist, name)
 
 
 class LANCER_WORLD_PT_ambient_occlusion(LancerWorldPanel, bpy.types.Panel):
@@ -74,6 +86,7 @@ class LANCER_WORLD_PT_settings(LancerWorldPanel, bpy.types.Panel):
 
 CLASSES = (
     LANCER_WORLD_PT_surface,
+    LANCER_WORLD_PT_mist,
     LANCER_WORLD_PT_ambient_occlusion,
     LANCER_WORLD_PT_ray_visibility,
     LANCER_WORLD_PT_settings,
