@@ -37,7 +37,7 @@ class LANCER_DATA_PT_panorama(LancerPanel, bpy.types.Panel):
         # The projection is the camera's own since it left the Cycles add-on, which may be off.
         camera = context.camera
         owner = camera if hasattr(camera, "panorama_type") else getattr(camera, "cycles", None)
-        column = self._column()
+        column = self._column(animated=True)
         if owner is None:
             column.label(text="Enable the add-on Cycles Render Engine", icon="ERROR")
             return

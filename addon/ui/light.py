@@ -23,7 +23,7 @@ class LANCER_DATA_PT_light(LancerLightPanel, bpy.types.Panel):
     def draw(self, context):
         light = context.light
         self.layout.row().prop(light, "type", expand=True)
-        column = self._column()
+        column = self._column(animated=True)
         if hasattr(light, "use_temperature"):
             column.prop(light, "use_temperature", text="Temperature")
             row = column.row()
@@ -59,7 +59,7 @@ class LANCER_DATA_PT_beam_shape(LancerLightPanel, bpy.types.Panel):
 
     def draw(self, context):
         light = context.light
-        column = self._column()
+        column = self._column(animated=True)
         if light.type == "SPOT":
             column.prop(light, "spot_size", text="Angle")
             column.prop(light, "spot_blend", text="Blend", slider=True)
@@ -107,7 +107,7 @@ class LANCER_DATA_PT_classic_light(LancerLightPanel, bpy.types.Panel):
 
     def draw(self, context):
         own = context.light.lancer
-        column = self._column()
+        column = self._column(animated=True)
         column.active = uses_classic(context.scene)
         column.prop(own, "falloff")
         row = column.row()

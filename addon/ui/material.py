@@ -27,7 +27,7 @@ class LANCER_MATERIAL_PT_surface(LancerMaterialPanel, bpy.types.Panel):
     def draw(self, context):
         material = context.material
         own = material.lancer
-        column = self._column()
+        column = self._column(animated=True)
         column.prop(own, "model")
         if _has_nodes(material):
             nodes_of(column, material.node_tree, "Surface")

@@ -16,10 +16,10 @@ class LancerPanel:
     def poll(cls, context):
         return context.engine in cls.COMPAT_ENGINES
 
-    def _column(self):
-        """A column with labels at the left, without the dots for animation."""
+    def _column(self, animated=False):
+        """A column with labels at the left; animated: with dots that set keys, as Cycles has them for things of the scene."""
         self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
+        self.layout.use_property_decorate = animated
         return self.layout.column()
 
 

@@ -19,7 +19,7 @@ class LANCER_WORLD_PT_surface(LancerWorldPanel, bpy.types.Panel):
 
     def draw(self, context):
         world = context.world
-        column = self._column()
+        column = self._column(animated=True)
         column.prop(world.lancer, "use_cube")
         if world.lancer.use_cube:
             column.prop(world.lancer, "cube_strength")
@@ -40,7 +40,7 @@ class LANCER_WORLD_PT_mist(LancerWorldPanel, bpy.types.Panel):
 
     def draw(self, context):
         mist = context.world.mist_settings
-        column = self._column()
+        column = self._column(animated=True)
         for name in ("start", "depth", "falloff"):
             column.prop(mist, name)
 
@@ -50,7 +50,7 @@ class LANCER_WORLD_PT_ambient_occlusion(LancerWorldPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
-        self._column().prop(context.world.light_settings, "distance")
+        self._column(animated=True).prop(context.world.light_settings, "distance")
 
 
 class LANCER_WORLD_PT_ray_visibility(LancerWorldPanel, bpy.types.Panel):

@@ -83,6 +83,7 @@ def panels():
         world=scene.world,
     )
     shown, errors = {cls.__name__: {} for cls in ui.CLASSES}, []
+    context.light.use_nodes = True
     for variant in _variants(context):
         for cls in ui.CLASSES:
             try:
