@@ -78,6 +78,12 @@ def test_what_is_not_supported_is_hidden(found):
     assert not found["tell"] & found["shown"]
 
 
+def test_nothing_is_shown_twice(found):
+    """Blender's panel Viewport Display, which is there for every engine, shows three of them too."""
+    also = {"Material.diffuse_color", "Material.pass_index", "World.color"}
+    assert {name.rpartition(".")[0] for name in found["twice"]} & found["act"] <= also
+
+
 def test_no_name_in_the_export_is_a_setting_that_nothing_is_known_of(found):
     """A setting may be read and not act on this scene: its name is in the export's text all the same."""
     nodes = [node for path in READERS for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]

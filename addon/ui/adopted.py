@@ -15,6 +15,7 @@ _OF_EEVEE = {
 }
 # What Lancer shows otherwise, or elsewhere.
 _REPLACED = {
+    "DATA_PT_area",
     "DATA_PT_light",
     "DATA_PT_spot",
     "NODE_DATA_PT_light",

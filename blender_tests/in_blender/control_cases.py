@@ -30,8 +30,8 @@ def exported(scene, view_layer):
     return (snapshot, wanted, denoise.wanted(scene, view_layer)), sorted(messages)
 
 
-def settings_of(owner, depth=2):
-    """(struct, property) of all that can be set in a data-block and in what it holds."""
+def settings_of(owner, depth):
+    """(struct, property) of all that can be set in a struct and, at a depth of 2, in what it holds."""
     for field in owner.bl_rna.properties:
         if field.identifier in _LEFT_OUT or owner.is_property_readonly(field.identifier) and field.type != "POINTER":
             continue
@@ -76,14 +76,14 @@ def _collections():
     return [list(every) for every in (data.worlds, data.materials, data.objects, data.images, data.collections)]
 
 
-def acting(scene, view_layer, owners):
+def acting(scene, view_layer, owners, depth):
     """(settings that act, settings that change messages alone, all settings) of the owners, as (type, property)."""
     acts, tells, known = set(), set(), set()
     for root in owners:
         # Of changes to add-ons' settings Blender tells the depsgraph nothing.
         root.id_data.update_tag()
     before = exported(scene, view_layer)
-    for owner, field in (setting for root in owners for setting in settings_of(root)):
+    for owner, field in (setting for root in owners for setting in settings_of(root, depth)):
         key = _type_of(owner), field.identifier
         known.add(key)
         values = other_values(owner, field)
@@ -138,6 +138,7 @@ def _textured():
 
 class _Stage:
     def __init__(self):
+        self.twice = set()  # (type, property, panel) of what another panel of the same tab shows already
         self.scene = scene = stage.empty(width=16, height=12, samples=1)
         self.layer = scene.view_layers[0]
         self.material = _textured()
@@ -168,77 +169,83 @@ class _Stage:
             world=self.world,
             **fields,
         )
-        shown = {setting for record in recording.drawn(context, tab).values() for setting in record.properties}
-        return {("Light" if kind.endswith("Light") else kind, name) for kind, name in shown}
+        shown = set()
+        for panel, record in recording.drawn(context, tab).items():
+            here = {("Light" if kind.endswith("Light") else kind, name) for kind, name in record.properties}
+            self.twice |= {(*setting, panel) for setting in shown & here}
+            shown |= here
+        return shown
 
     def states(self):
-        """(name, owners whose settings act there, what the panels of their tabs show) of one state after the other."""
+        """(owners whose settings are looked at, how deep, what the panels of their tabs show) of one state after the other."""
         yield from self._of_scenes()
         yield from self._of_materials()
         yield from self._of_cameras()
         yield from self._of_lamps()
 
     def _of_scenes(self):
-        scene, own, world = self.scene, self.scene.lancer, self.world
+        scene, own, layer, world = self.scene, self.scene.lancer, self.layer, self.world
 
-        def now(name, *owners):
+        def now(*owners, depth=1):
             tabs = ("render", "output", "view_layer", "scene", "world", "object")
-            return name, owners, set().union(*(self.shows(tab, self.cube) for tab in tabs))
+            return owners, depth, set().union(*(self.shows(tab, self.cube) for tab in tabs))
 
-        yield now("as it is", scene, self.layer, world, self.cube)
+        yield now(scene, layer, world, self.cube, depth=2)
         own.film_transparent_glass = scene.render.film_transparent = own.use_denoising = True
         scene.render.use_border, scene.render.border_max_x = True, 0.5
         scene.render.use_simplify, scene.render.simplify_subdivision = True, 1
-        yield now("transparent, with a border, simplified", scene, self.layer)
+        yield now(scene.render, own, *filter(None, [getattr(layer, "cycles", None)]))
         own.integrator = "CLASSIC"
-        yield now("Classic", own)
+        yield now(own)
         if bpy.app.version < (5, 0):
             world.use_nodes = False
-            yield now("a world without nodes", world)
+            yield now(world)
             world.use_nodes = True
         world.lancer.use_cube = True
-        yield now("a cube", world)
+        yield now(world.lancer)
         world.lancer.use_cube = False
         if hasattr(world, "cycles"):
             world.cycles.sampling_method = "MANUAL"
-            yield now("a map of the sky", world)
+            yield now(world.cycles)
         self.cube.lancer.shape = "SPHERE"
-        yield now("a sphere", self.cube.lancer)
+        yield now(self.cube.lancer)
         self.cube.lancer.shape = "MESH"
 
     def _of_materials(self):
         material = self.material
         slot = self.cube.material_slots[0]
 
-        def now(name):
-            return name, (material,), self.shows("material", self.cube, material=material, material_slot=slot)
+        def now(owner, depth=1):
+            return (owner,), depth, self.shows("material", self.cube, material=material, material_slot=slot)
 
-        for model in material.lancer.bl_rna.properties["model"].enum_items.keys():
+        yield now(material, depth=2)
+        for model in ("KD_KS", "PHONG", "BLINN_PHONG"):
             material.lancer.model = model
-            yield now(model)
+            yield now(material.lancer)
         material.lancer.model = "NODES"
         if bpy.app.version < (5, 0):
             material.use_nodes = False
-            yield now("a material without nodes")
+            yield now(material)
             material.use_nodes = True
 
     def _of_cameras(self):
         data = self.camera.data
         panorama = data if hasattr(data, "panorama_type") else data.cycles
 
-        def now(name):
-            return name, (data,), self.shows("data", self.camera, camera=data)
+        def now(*owners, depth=1):
+            return owners, depth, self.shows("data", self.camera, camera=data)
 
-        for type_ in ("PERSP", "ORTHO", "PANO"):
+        yield now(data, depth=2)
+        for type_ in ("ORTHO", "PANO"):
             data.type = type_
-            yield now(type_)
+            yield now(data)
         for projection in panorama.bl_rna.properties["panorama_type"].enum_items.keys():
             panorama.panorama_type = projection
-            yield now(projection)
+            yield now(panorama)
         data.type = "PERSP"
         data.sensor_fit, data.lens_unit = "VERTICAL", "FOV"
         data.dof.use_dof, data.dof.aperture_blades = True, 5
-        yield now("depth of field")
+        yield now(data, data.dof)
 
     def _of_lamps(self):
         lamp = self.lamp
@@ -247,31 +254,32 @@ class _Stage:
         if "use_temperature" in lamp.data.bl_rna.properties:
             lamp.data.use_temperature = True
 
-        def now(name):
+        def now(*owners, depth=1):
+            # The type of the data-block's Python object follows its kind only when asked for anew.
             data = lamp.data
-            shown = self.shows("data", lamp, light=data) | self.shows("object", lamp, light=data)
-            return name, (data, lamp), shown
+            return (data, *owners), depth, self.shows("data", lamp, light=data) | self.shows("object", lamp, light=data)
 
-        for kind in ("POINT", "SUN", "SPOT"):
+        yield now(lamp, depth=2)
+        for kind in ("SUN", "SPOT"):
             lamp.data.type = kind
-            yield now(kind)
+            yield now()
         if bpy.app.version < (5, 2):
             lamp.data.use_nodes = False
-            yield now("a lamp without nodes")
+            yield now()
             lamp.data.use_nodes = True
         lamp.data.type = "AREA"
         for shape in ("SQUARE", "RECTANGLE", "DISK", "ELLIPSE"):
             lamp.data.shape = shape
-            yield now(shape)
+            yield now(lamp.data.cycles) if hasattr(lamp.data, "cycles") else now()
 
 
 def controls():
-    """{what settings do: ["Type.property", ...]}: act, change messages alone, are shown, are there at all."""
+    """{what settings do: ["Type.property", ...]}: act, change messages alone, are there at all, are shown, are shown again."""
     built = _Stage()
     acts, tells, known, shown = set(), set(), set(), set()
-    for _, owners, in_panels in built.states():
+    for owners, depth, in_panels in built.states():
         shown |= in_panels
-        for total, found in zip((acts, tells, known), acting(built.scene, built.layer, owners), strict=True):
+        for total, found in zip((acts, tells, known), acting(built.scene, built.layer, owners, depth), strict=True):
             total |= found
-    found = {"act": acts, "tell": tells - acts, "known": known, "shown": shown}
+    found = {"act": acts, "tell": tells - acts, "known": known, "shown": shown, "twice": built.twice}
     return {what: sorted(map(".".join, settings)) for what, settings in found.items()} | {"version": bpy.app.version[:2]}
