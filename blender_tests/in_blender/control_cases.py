@@ -154,6 +154,7 @@ class _Stage:
         self.world = stage.sky()
         self.camera = stage.camera()
         bpy.data.images.new("Picture", 2, 2)
+        scene.render.use_simplify, scene.render.simplify_subdivision = True, 1
         scene.lancer.pixel_filter = "BLACKMAN_HARRIS"
         for name in ("use_pass_mist", "use_pass_ambient_occlusion"):
             setattr(self.layer, name, True)
@@ -193,7 +194,6 @@ class _Stage:
         yield now(scene, layer, world, self.cube, depth=2)
         own.film_transparent_glass = scene.render.film_transparent = own.use_denoising = True
         scene.render.use_border, scene.render.border_max_x = True, 0.5
-        scene.render.use_simplify, scene.render.simplify_subdivision = True, 1
         yield now(scene.render, own, *filter(None, [getattr(layer, "cycles", None)]))
         own.integrator = "CLASSIC"
         yield now(own)

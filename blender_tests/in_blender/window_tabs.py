@@ -7,6 +7,7 @@ are in LANCER_TABS_WAIT (1.5).
 """
 
 import os
+import subprocess
 import sys
 import traceback
 
@@ -120,6 +121,12 @@ def properties():
     return window, next(area for area in window.screen.areas if area.type == "PROPERTIES")
 
 
+def photograph(window, area, path):
+    """By ImageMagick: Blender's own screenshots are black in some of its versions on such a display."""
+    part = f"{area.width}x{area.height}+{area.x}+{window.height - area.y - area.height}"
+    subprocess.run(["import", "-window", "root", "-crop", part, "+repage", path], check=True)
+
+
 def walk():
     """Sets one tab after the other, and photographs each once it has had the time to be drawn."""
     window, area = properties()
@@ -145,8 +152,7 @@ def walk():
         area.spaces.active.context = tab
         area.tag_redraw()
         yield
-        with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
-            bpy.ops.screen.screenshot_area(filepath=os.path.join(FOLDER, name + ".png"))
+        photograph(window, area, os.path.join(FOLDER, name + ".png"))
 
 
 def tick(steps=walk()):  # noqa: B008 - one walk for the life of the timer
