@@ -12,12 +12,16 @@ FRAME ?=
 SAMPLES ?=
 OUT ?=
 BLEND ?=
+SNAPSHOT ?=
 ONLY ?=
 QUICK ?=
 BLENDER ?=
 BEFORE ?=
 README ?=
 MINUTES ?= 10
+DIR ?=
+CLONES ?=
+PX ?=
 
 python := $(VENV)/bin/python
 core := build/core
@@ -28,7 +32,7 @@ compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
 # Runs a command into a log: silent when it goes well, all of it when it does not. $(call logged,LOG,COMMAND)
 logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 
-.PHONY: build render test test-slow bench accuracy tradeoff features parity sanitize fuzz addon format clean help
+.PHONY: build render test test-slow bench accuracy tradeoff features parity corpus sanitize fuzz addon format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-bench
 .PHONY: python-run python-test python-dev python-bench python-charts core-programs core-tests
 
@@ -38,8 +42,8 @@ build: packages-build ## build the core; the library lands in addon/lib, where t
 	@echo "== core"
 	@cmake --build $(core) --target lancer $(compile)
 
-render: packages-run python-run build ## render the showcase, or a file: make render BLEND=file.blend [FRAME=1] [OUT=x.png] [SAMPLES=n]
-	@$(python) scenes/render.py $(if $(BLEND),--blend "$(BLEND)") $(if $(FRAME),--frame $(FRAME)) \
+render: packages-run python-run build ## render the showcase, or a file: make render BLEND=file.blend | SNAPSHOT=report.zip [FRAME=1] [OUT=x.png] [SAMPLES=n]
+	@$(python) scenes/render.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SNAPSHOT),--snapshot "$(SNAPSHOT)") $(if $(FRAME),--frame $(FRAME)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(SAMPLES),--samples $(SAMPLES))
 
 test: packages-test python-test core-tests addon ## all tests but the slow ones
@@ -104,6 +108,11 @@ accuracy: packages-run python-run build ## is the error that renders tell true: 
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
 	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P scenes/parity/run.py --,$(python) scenes/parity/run.py) \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
+
+corpus: packages-run python-run build ## files of others, by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1]
+	@$(python) blender_tests/corpus/run.py $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
+	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PX),--pixels $(PX)) $(if $(BLENDER),--blender "$(BLENDER)") \
+	  $(if $(README),--readme)
 
 addon: packages-run python-run build ## the zips to install: build/lancer-VERSION.zip (Blender 4.2+) and -blender3.zip (3.x)
 	@$(python) .ci/package.py

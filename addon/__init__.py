@@ -27,9 +27,9 @@ def register():
         raise RuntimeError(
             "Lancer needs numpy in Blender's Python: install the package python3-numpy (Debian, Ubuntu) or numpy (pip)"
         ) from None
-    from . import check_scene, engine, features, measuring, properties, quality, ui
+    from . import bug_report, check_scene, engine, features, manual, measuring, preferences, presets, properties, quality, ui
 
-    for module in (properties, engine, measuring, features, quality, check_scene, ui):
+    for module in (properties, preferences, engine, measuring, features, quality, check_scene, presets, ui, bug_report, manual):
         module.register()
         _registered.append(module)
     # Blender as a Python module hangs (4.5) or crashes (4.2) at exit while an engine class is registered; the program itself

@@ -9,7 +9,7 @@ from . import redraw
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled
 from .checks.check import check_snapshot
-from .checks.finding import lines
+from .checks.finding import lines, shortened, told
 from .export.messages import Messages
 from .export.scene import export_scene
 
@@ -28,7 +28,10 @@ def quick_check(scene, snapshot, poll):
             raise Cancelled
 
     try:
-        return Messages(lines(check_snapshot(snapshot, thorough=False, poll=obey)))
+        messages = Messages()
+        for finding, left in shortened(check_snapshot(snapshot, thorough=False, poll=obey)):
+            messages.add(told(finding, left), harm=finding.harm)
+        return messages
     except Cancelled:
         raise
     except Exception as error:
@@ -59,7 +62,7 @@ class LANCER_OT_check_scene(bpy.types.Operator):
             return {"CANCELLED"}
         finally:
             manager.progress_end()
-        last_findings[scene.name], last_messages[scene.name] = findings, messages.lines()
+        last_findings[scene.name], last_messages[scene.name] = findings, messages
         redraw.properties()
         for line in lines(findings):
             self.report({"WARNING"}, f"Lancer: {line}")

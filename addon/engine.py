@@ -10,18 +10,21 @@ from bpy.app.handlers import persistent
 
 from . import denoise, passes, redraw, stamp
 from .bindings.abi import LancerError
-from .bindings.schedule import CANCELLED, Schedule
+from .bindings.schedule import SAMPLES, TARGET, TIME, Schedule
 from .bindings.session import Cancelled, Session
 from .bindings.uses import used_features
 from .check_scene import quick_check
 from .export import main_thread
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
+from .harm import Harm
 from .pace import Pace
 
-# Of the last render of each scene, by its name, for the panel and for scripts.
+# Of the last render of each scene, by its name, for the panel and for scripts: numbers, and Messages.
 last_statistics = {}
 last_messages = {}
+# What that render could not show as Cycles does: {key of Messages.add: how often}.
+last_missing = {}
 # Of the last measurement of each scene: a hints.Costs.
 last_costs = {}
 # What the library holds, by kind: names of last_statistics.
@@ -37,6 +40,8 @@ _SHOW_EVERY = 0.3
 # And asking for the error this.
 _ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
+# After the time that is left: what it is that is expected to end the render.
+_REMAINING = {SAMPLES: "", TARGET: " to the target error", TIME: " of the time limit"}
 
 
 class LancerRenderEngine(bpy.types.RenderEngine):
@@ -89,6 +94,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self._exported = picture, set()
             self._messages = Messages()
             last_messages.pop(scene.name, None)
+            last_missing.pop(scene.name, None)
             last_statistics.pop(scene.name, None)
         self._exported[1].add(layer)
 
@@ -111,8 +117,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
         self._snapshot = None
-        self._messages.add(text)
-        last_messages[scene.name] = self._messages.lines()
+        self._messages.add(text, harm=Harm.FAILED)
+        last_messages[scene.name] = self._messages
         self.error_set(f"Lancer: {text}")
         self.report({"ERROR"}, f"Lancer: {text}")
 
@@ -136,7 +142,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         with Session.upload(self._snapshot, poll=self.test_break, release=True) as session:
             # The library holds its own copy from here on.
             self._snapshot = None
-            self._tell(scene, Messages(session.messages()))
+            self._tell(scene, Messages.of_library(session.messages()))
             camera = session.camera
             result = self.begin_result(0, 0, camera.region_width, camera.region_height, layer=layer)
             if (result.resolution_x, result.resolution_y) != (camera.region_width, camera.region_height):
@@ -201,7 +207,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         seconds, reason = schedule.remaining()
         samples = progress.samples / schedule.pixels
         # Small windows cut off the end.
-        parts = [f"Remaining {_clock(seconds)} to the {reason}"]
+        parts = [f"Remaining {_clock(seconds)}{_REMAINING[reason]}"]
         if schedule.error is not None and schedule.error.known:
             parts.append(f"Error {stamp.interval(schedule.error)}")
         parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
@@ -210,10 +216,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _tell(self, scene, messages):
         """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
         room = max(0, _MAX_REPORTS - len(self._messages))
-        new = self._messages.merge(messages).lines()
-        last_messages[scene.name] = self._messages.lines()
-        for line in new[:room]:
-            self.report({"WARNING"}, f"Lancer: {line}")
+        new = [message for message in self._messages.merge(messages).told() if message.harm > Harm.HINT]
+        last_messages[scene.name] = self._messages
+        last_missing[scene.name] = self._messages.missing()
+        for message in new[:room]:
+            self.report({"WARNING"}, f"Lancer: {message.line}")
         if len(new) > room:
             self.report({"WARNING"}, f"Lancer: {len(new) - room} more messages are in the render properties")
 
@@ -223,22 +230,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
             count = statistics.invalid_samples
             text = f"{count} samples were not finite and are left out, the first at pixel {place}"
-            self._tell(scene, Messages([text]))
-        error = session.error()
-        numbers = dataclasses.asdict(statistics)
-        pixels = session.camera.region_width * session.camera.region_height
-        numbers["pixel_samples"] = numbers["samples"]
-        numbers["samples"] = error.least_samples
-        numbers["samples_most"] = error.most_samples
-        numbers["samples_mean"] = statistics.samples / pixels
-        numbers["seconds"] = statistics.render_seconds
-        numbers["rays"] = statistics.rays
-        numbers["rays_per_second"] = statistics.rays_per_second
-        numbers["version"] = session.library.lancer_version().decode()
-        numbers["ended_by"] = schedule.reason or CANCELLED
-        numbers["error"] = error.error
-        for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
-            numbers[f"error_{name}"] = getattr(error, name)
+            self._tell(scene, Messages([text], Harm.WRONG))
+        numbers = stamp.account(session, schedule)
         numbers.update(denoise.statistics(denoised))
         held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
@@ -248,9 +241,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             keep_costs(scene.name, last_costs[scene.name])
         # Only what get_result gives reaches the file.
         stamped = self.get_result()
+        several = len(stamped.layers) > 1
         for name, value in stamp.fields(numbers, session.settings):
             stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
-        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings)
+        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings, layer if several else "")
         self.update_stats("", lines[0])
         # Headless, what is reported goes to the terminal; in a window the panel has it.
         if bpy.app.background:
@@ -278,6 +272,7 @@ def _forget(*_):
     """Another file's scenes may have the same names."""
     last_statistics.clear()
     last_messages.clear()
+    last_missing.clear()
     last_costs.clear()
 
 

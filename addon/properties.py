@@ -166,7 +166,13 @@ class LancerObjectSettings(bpy.types.PropertyGroup):
         description="How light varies over a face",
         items=(
             ("AS_MESH", "As Mesh", "Smooth and flat faces as the mesh has them", 0),
-            ("FLAT", "Flat", "One direction for each face", 1),
+            (
+                "FLAT",
+                "Flat",
+                "One direction for each face. In Classic one colour for each face, computed at its centre; in Path Tracing "
+                "light still varies over it",
+                1,
+            ),
             (
                 "GOURAUD",
                 "Gouraud",
@@ -188,10 +194,11 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
             ("KD_KS", "Diffuse and Coat", "A matt body under a rough, clear layer", 1),
             ("PHONG", "Phong", "A matt body with Phong's highlight", 2),
             ("BLINN_PHONG", "Blinn-Phong", "A matt body with Blinn's highlight", 3),
+            ("MINNAERT", "Minnaert", "A matt body whose rim is darker, or brighter as the moon's", 4),
         ),
         default="NODES",
     )
-    ka: _color("Ambient", "Share of the lights' ambient colour that the surface shows (Classic only)", 0.0)
+    ka: _color("Ambient", "Share of ambient light that the surface shows: the world's, and that of lamps (Classic only)", 0.0)
     kd: _color("Diffuse", "Colour of the matt body", 0.8)
     ks: _color("Specular", "Colour of the highlight or of the clear layer", 0.2)
     roughness: FloatProperty(
@@ -211,6 +218,14 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
         min=0.0,
         soft_max=1000.0,
         default=50.0,
+    )
+    darkness: FloatProperty(
+        name="Darkness",
+        description="Exponent k of Minnaert's law: 1 is even; more darkens the rim; less brightens it, as far as no more light "
+        "comes back than arrives",
+        min=0.0,
+        soft_max=4.0,
+        default=1.5,
     )
 
 
@@ -236,6 +251,12 @@ class LancerLightSettings(bpy.types.PropertyGroup):
         soft_max=1000.0,
         default=10.0,
     )
+    use_ambient: BoolProperty(
+        name="Ambient Light",
+        description="The light reaches surfaces with an ambient colour from everywhere too, whatever their direction and what "
+        "stands between (Classic only)",
+        default=True,
+    )
     use_separate_colors: BoolProperty(
         name="Separate Colors",
         description="Give ambient, diffuse and specular light factors of their own (Classic only)",
@@ -253,6 +274,13 @@ def _side(direction):
 
 
 class LancerWorldSettings(bpy.types.PropertyGroup):
+    use_ambient_color: BoolProperty(
+        name="Ambient Color",
+        description="Give light from everywhere, which a material's Ambient shows, a colour of its own in place of the world's "
+        "mean. It is added once, whatever the lamps (Classic only)",
+        default=False,
+    )
+    ambient_color: _color("Ambient Color", "Light from everywhere, the same at every place (Classic only)", 0.1)
     use_cube: BoolProperty(
         name="Cube Environment",
         description="Surround the scene with six pictures, one for each side of a cube, in place of the world's nodes",

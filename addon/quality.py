@@ -5,7 +5,6 @@ The measurement is kept in this session, and is told to be old once what it depe
 
 import dataclasses
 import functools
-import math
 from dataclasses import dataclass
 
 import bpy
@@ -15,6 +14,10 @@ from . import measuring, stamp
 from .bindings.forecast import classic_seconds, forecast
 from .bindings.pilot import measure
 from .properties import QUALITIES
+
+# An interval whose ends differ by more than this factor says nothing to plan by, unless even its upper end is short (seconds).
+_TELLING = 20.0
+_SHORT = 20.0
 
 # Kept, by the scene's name.
 measured = {}
@@ -54,17 +57,21 @@ def forecasts(scene):
 def lines(scene):
     """What a panel shows, a line each."""
     for name, told in forecasts(scene):
-        yield f"{name}: {seconds(told.seconds)}; error {share(told.error)}"
+        error, _ = QUALITIES.get(name.upper(), (scene.lancer.target_error, 0))
+        short = f"; {told.samples.value:.0f} samples end it above its {stamp.percent(error)}" if told.misses(error) else ""
+        yield f"{name}: {seconds(told.seconds)}; error {share(told.error)}{short}"
     samples = scene.lancer.samples
     classic = classic_seconds(measured[scene.name].points, _pixels(scene), samples)
     if classic is not None:
-        yield f"Classic, {samples} sample{'s' if samples > 1 else ''}: about {clock(classic)}"
+        yield f"Classic, {samples} sample{'s' if samples > 1 else ''}: about {stamp.duration(classic)}"
 
 
 def seconds(told):
-    value, low, high = clock(told.value), clock(told.low), clock(told.high)
+    value, low, high = (stamp.duration(item) for item in (told.value, told.low, told.high))
     if low == high:
         return f"about {value}"
+    if told.high > _TELLING * told.low:
+        return f"at most {high}" if told.high < _SHORT else "the time cannot be told"
     # Panels are narrow: a unit that both have is told once.
     number, _, unit = low.partition(" ")
     return f"about {value}, {number if high.endswith(f' {unit}') else low} to {high}"
@@ -72,21 +79,6 @@ def seconds(told):
 
 def share(told):
     return f"{stamp.percent(told.value)}, {stamp.percent(told.low)} to {stamp.percent(told.high)}"
-
-
-def clock(value):
-    """Two digits that mean something, in the unit that one would say."""
-    if not math.isfinite(value):
-        return "ever"
-    for limit, unit, name in ((99.5, 1.0, "s"), (99.5 * 60.0, 60.0, "min"), (math.inf, 3600.0, "h")):
-        if value < limit:
-            return f"{_two_digits(value / unit)} {name}"
-
-
-def _two_digits(value):
-    if value >= 99.5:
-        return f"{value:.0f}"
-    return f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
 
 
 class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):

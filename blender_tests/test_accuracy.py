@@ -247,6 +247,26 @@ def test_what_comes_after_the_last_sample_is_part_of_the_time(clock):
         assert 20.0 <= ended - begun <= 21.0 + OTHER_LOOKS or schedule.samples == 1
 
 
+def test_what_remains_is_unknown_until_the_error_is():
+    """A limit of samples that stands for no end must not be told as hours before the first look at the error."""
+    with Session.upload(room(samples=FOREVER, target_error=0.01)) as session:
+        schedule = Schedule(session)
+        for _ in range(3):
+            assert schedule.start()
+            while not schedule.wait(0.05).finished:
+                pass
+        assert schedule.remaining()[0] == np.inf
+        schedule.look()
+        seconds, reason = schedule.remaining()
+        assert 0.0 < seconds < np.inf and reason is TARGET
+    with Session.upload(room(samples=64, target_error=0.0)) as session:
+        schedule = Schedule(session)
+        schedule.start()
+        while not schedule.wait(0.05).finished:
+            pass
+        assert schedule.remaining()[1] is SAMPLES and schedule.remaining()[0] < np.inf
+
+
 def test_a_cancelled_render_says_so():
     with Session.upload(room(samples=FOREVER, target_error=1e-9)) as session:
         schedule = Schedule(session)

@@ -46,7 +46,10 @@ def test_one_sample_tells_no_error(case):
 
 @both
 def test_a_target_ends_the_render(case):
-    met, missed = case("target")
+    got = case("target")
+    met, missed = got["renders"]
+    (line,) = (line for line in got["console"].splitlines() if "Info: " in line and "was not reached" in line)
+    assert "0.0001 % was not reached: " in line and line.endswith(" Samples")
     numbers = met["numbers"]
     assert numbers["ended_by"] == "target error"
     assert numbers["error_high"] + numbers["error_cannot_exclude"] <= 0.05 * 1.0001
@@ -54,6 +57,13 @@ def test_a_target_ends_the_render(case):
     assert "target_error 0.05" in met["stamped"]["settings"]
     assert missed["numbers"]["ended_by"] == "samples"
     assert missed["numbers"]["samples"] == missed["numbers"]["samples_most"] == 100
+
+
+@both
+def test_each_view_layer_has_its_error(case):
+    got = case("layers")
+    for name in ("Front", "Back"):
+        assert f"Info: Lancer: view layer '{name}': error " in got["console"], got["console"]
 
 
 @both

@@ -15,7 +15,7 @@ EXPONENTS = [0.0, 1.0, 10.0, 200.0, 1e4]
 
 
 def lobe(kind, **fields):
-    return Material(kind.name, lobes=(Lobe(kind, color=(1, 1, 1), **fields),))
+    return Material(kind.name, lobes=(Lobe(kind, **({"color": (1, 1, 1)} | fields)),))
 
 
 MATERIALS = (
@@ -24,6 +24,7 @@ MATERIALS = (
     + [lobe(LobeKind.BECKMANN, roughness=a, ior=1.5) for a in (0.1, 0.5)]
     + [lobe(LobeKind.PHONG, shininess=n) for n in EXPONENTS]
     + [lobe(LobeKind.BLINN_PHONG, shininess=n) for n in EXPONENTS]
+    + [lobe(LobeKind.MINNAERT, shininess=k, color=(0.4, 0.2, 0.1)) for k in (0.0, 0.5, 2.0, 30.0)]
     + [
         Material("mixed", lobes=(Lobe(color=(0.5, 0.2, 0.1)), Lobe(LobeKind.BECKMANN, color=(1, 1, 1), roughness=0.3))),
         Material("three", lobes=(Lobe(), Lobe(LobeKind.PHONG, shininess=5.0), Lobe(LobeKind.BLINN_PHONG, shininess=9.0))),
@@ -60,6 +61,8 @@ def chart_of(material, wo):
         return Half(wo.astype(float), Slopes(only.roughness, side))
     if only.kind == LobeKind.PHONG:
         return Power(wo * [-1, -1, 1], only.shininess)
+    if only.kind == LobeKind.MINNAERT:
+        return Power((0, 0, side), only.shininess)
     return Half(wo.astype(float), Power((0, 0, side), only.shininess))
 
 
@@ -169,6 +172,12 @@ def test_specular_lobes_of_the_lectures(scene):
         elif material.name == "BLINN_PHONG":
             norm = (n + 2) * (n + 4) / (8 * np.pi * (2.0 ** (-n / 2) + n))
             want = norm * unit(wo + wi)[2] ** n
+        elif material.name == "MINNAERT":
+            # Its darkest cosine is 0.4 ** (1 / (1 - n)) where n < 1: these two are above it for n = 0.5.
+            q = 0.4 ** ((n + 1) / (1 - n)) if n < 1 else 0.0
+            low = 0.4 ** (1 / (1 - n)) if n < 1 else 0.0
+            area = 2 * np.pi * ((1 - q) / (n + 1) + q / 2)
+            want = 0.4 * (max(wo[2], low) * max(wi[2], low)) ** (n - 1) / area
         else:
             continue
         # Directions rounded to float32 carry 1e-7 into a base that is raised to n.

@@ -146,6 +146,39 @@ def test_normals_that_lean():
     assert found(one(box(normals=box().positions))) == []
 
 
+def _roof(slope, turned=()):
+    """Two squares that meet along the x-axis, each that many degrees down from level; of its smooth normals some are turned."""
+    c, s = np.cos(np.radians(slope)), np.sin(np.radians(slope))
+    points = np.array([(0, 0, 0), (1, 0, 0), (0, c, -s), (1, c, -s), (0, -c, -s), (1, -c, -s)])
+    normals = np.array([(0, 0, 1)] * 2 + [(0, s, c)] * 2 + [(0, -s, c)] * 2)
+    # Vertices that several programs write once for each face, at the same place.
+    faces = np.array([(0, 1, 3), (0, 3, 2), (1, 0, 4), (1, 4, 5)])
+    corners = normals[faces].copy()
+    for face, corner in turned:
+        corners[face, corner] *= -1.0
+    return MeshData("roof", points[faces].reshape(-1, 3), np.arange(12).reshape(4, 3), normals=corners)
+
+
+@pytest.mark.parametrize("thorough", [True, False])
+def test_smooth_shading_round_folds(thorough):
+    """The mean at a fold turns away from neither side of a roof, but from a third face under its edge."""
+    assert found(one(_roof(80)), thorough) == []
+    roof = _roof(80)
+    # The apron hangs from the ridge, inwards under the first slope: the ridge's normal turns away from it.
+    apron = np.array([(0, 0, 0), (1, 0, 0), (0.5, 0.8, -0.6)])
+    normals = np.array([(0.0, 0.0, 1.0), (0.0, 0.0, 1.0), (0.0, -0.6, -0.8)])
+    folded = MeshData(
+        "folded",
+        np.concatenate((roof.positions, apron)),
+        np.concatenate((roof.triangles, [(13, 12, 14)])).astype(np.uint32),
+        normals=np.concatenate((roof.normals, normals[None, [1, 0, 2]])),
+    )
+    assert found(one(folded), thorough) == ([("normals", "HINT")] if thorough else [])
+    # Normals that turn away from all faces around are a fault wherever they are.
+    for turned in ([(0, 2)], [(1, 1)], [(0, 0), (0, 1)]):
+        assert found(one(_roof(30, turned)), thorough) == NORMALS, turned
+
+
 def test_flipped_faces_of_a_smooth_mesh():
     mesh = ball()
     faces = np.array(mesh.triangles)

@@ -51,3 +51,10 @@ def test_a_fault_of_the_check_costs_no_picture(case):
     got = case("failing")
     assert len(got["messages"]) == 1 and "check before the render failed (ValueError: no such edge)" in got["messages"][0]
     assert got["samples"] == 1
+
+
+def test_smooth_shading_of_folds_is_no_fault(case):
+    """What any engine shows so is a hint where somebody asks, and F12 does not speak of it."""
+    got = case("smooth")
+    assert got["monkey"] == [[["normals", "HINT", "Suzanne"]], []]
+    assert got["letters"] == [[["normals", "HINT", "Text"]], []]

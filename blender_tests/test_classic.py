@@ -90,6 +90,29 @@ def test_ambient():
     assert np.allclose(got, want, rtol=EXACT)
 
 
+@pytest.mark.parametrize("lamps", [0, 1, 5])
+def test_the_ambient_term_is_one_whatever_the_lamps(lamps):
+    """I = Ka A: A of the world's own in place of the sky, added once, with no lamp's place, shadow or distance in it."""
+    material = Material("ambient", lobes=(), ambient=(0.5, 0.25, 1.0))
+    lights = [lamp((i, 0, 2.0 + i), ambient_color=(0, 0, 0)) for i in range(lamps)]
+    snapshot = classic([plane()], [material], lights)
+    for sky in (0.0, 7.0):
+        world = World((sky,) * 3, ambient=(0.2, 0.4, 0.8))
+        got = tiny_scenes.render(dataclasses.replace(snapshot, world=world))[0, 0, :3]
+        assert np.allclose(got, (0.1, 0.1, 0.8), rtol=EXACT)
+    black = dataclasses.replace(snapshot, world=World((7.0,) * 3, ambient=(0, 0, 0)))
+    assert np.all(tiny_scenes.render(black)[0, 0, :3] == 0.0)
+
+
+def test_the_own_ambient_colour_is_no_light():
+    """Nothing but Ka shows it: no matt surface, no mirror, no background."""
+    world = World((0, 0, 0), ambient=(1, 1, 1))
+    mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(1, 1, 1)),))
+    for instances, material in (([plane()], lambert()), ([plane()], mirror), ([], lambert())):
+        snapshot = dataclasses.replace(classic(instances, [material]), world=world)
+        assert np.all(tiny_scenes.render(snapshot)[0, 0, :3] == 0.0)
+
+
 ATTENUATIONS = {
     Falloff.PHYSICAL: lambda d, r: 1 / d**2,
     Falloff.CONSTANT: lambda d, r: 1.0,
@@ -245,7 +268,7 @@ def shaded(shading, point, light):
 
 
 def test_flat_gouraud_and_phong_shading():
-    """FLAT: the face's normal; PHONG: normals interpolated; GOURAUD: illumination at the corners, interpolated."""
+    """FLAT: the face's colour at its centre; PHONG: normals interpolated; GOURAUD: illumination at corners, interpolated."""
     source = np.array([0.5, 0.25, 3.0])
     light = lamp(source, 9.0)
     corners, normals = TILTED.positions.astype(float), TILTED.normals.astype(float)
@@ -262,7 +285,7 @@ def test_flat_gouraud_and_phong_shading():
         p = np.array([*point, 0.0])
         n = weights @ normals
         want = {
-            Shading.FLAT: lit(p, np.array([0, 0, 1.0])),
+            Shading.FLAT: lit(corners.mean(axis=0), np.array([0, 0, 1.0])),
             Shading.PHONG: lit(p, n / np.linalg.norm(n)),
             Shading.AS_MESH: lit(p, n / np.linalg.norm(n)),
             Shading.GOURAUD: float(weights @ [lit(c, m) for c, m in zip(corners, normals, strict=True)]),
@@ -270,6 +293,26 @@ def test_flat_gouraud_and_phong_shading():
         assert len({round(x, 4) for x in want.values()}) == 3, "the test's point tells them apart"
         for shading, value in want.items():
             assert np.isclose(shaded(shading, point, light), value, rtol=1e-5), (shading, point)
+
+
+def test_gouraud_under_parallel_rays():
+    """A highlight at the corners is that of the rays' own direction, wherever on the picture they start."""
+    source, wo, n = np.array([0.5, 0.25, 3.0]), np.array([0.6, 0.0, 0.8]), 5.0
+    mesh = dataclasses.replace(TILTED, normals=np.float32([(0, 0, 1)] * 3))
+    shiny = Material("shiny", lobes=(Lobe(LobeKind.PHONG, color=rgb(1.0), shininess=n),))
+
+    def lit(p):
+        way = source - p
+        d = np.linalg.norm(way)
+        return max(0.0, wo @ (way / d * [-1, -1, 1])) ** n * 9 / d**2 / math.pi
+
+    corners = [lit(p) for p in mesh.positions.astype(float)]
+    for point in ((0.2, 0.1), (-0.8, -0.9)):
+        v, u = (point[1] + 1) / 3, (point[0] + 1) / 3
+        place = np.array([*point, 0.0])
+        camera = pencil(tuple(place + 5 * wo), tuple(place))
+        got = color([Instance(shading=Shading.GOURAUD)], [shiny], [lamp(source, 9.0)], camera=camera, meshes=[mesh])
+        assert np.allclose(got, np.array([1 - u - v, u, v]) @ corners, rtol=EXACT + 3e-7 * n), point
 
 
 def test_a_crowded_recursion_begins_anew_in_small_parts():

@@ -54,6 +54,25 @@ def test_tile_sizes(reference, tile_size):
     assert_same(reference, threads=2, tile_size=tile_size)
 
 
+@pytest.mark.parametrize("integrator", INTEGRATORS, ids=lambda i: i.name)
+def test_vertices_are_counted_the_same(integrator):
+    """By the code that shaded them, however the work is cut; with passes all go through the general code."""
+
+    def counted(**settings):
+        with Session.upload(picture(integrator=integrator, **settings)) as session:
+            session.render_all()
+            statistics = session.statistics()
+            return statistics.wide_vertices, statistics.narrow_vertices
+
+    alone = {"passes": (Pass.COMBINED,)}
+    wide, narrow = counted(threads=1, **alone)
+    assert narrow > 0 and (wide > 0) == (integrator != Integrator.NORMALS)
+    for settings in ({"threads": 7}, {"threads": 2, "tile_size": 5}, {"threads": 2, "tile_size": 1000}):
+        assert counted(**settings, **alone) == (wide, narrow)
+    if integrator == Integrator.PATH:
+        assert counted(threads=2) == (0, wide + narrow)
+
+
 @pytest.mark.parametrize("accelerator", Accelerator)
 def test_accelerators(reference, accelerator):
     assert_same(reference, threads=2, accelerator=accelerator)

@@ -100,6 +100,8 @@ def test_what_ends_a_render():
     assert forecast(measured, 512**2, 0.01, 1024).samples == Range(1024.0, 1024.0, 1024.0)
     late = forecast(measured, 512**2, 0.01, 1 << 40, time_limit=60.0)
     assert late.ended_by == TIME and late.seconds.value == 60.0
+    assert not late.misses(0.01) and not forecast(measured, 512**2, 0.9, 8192).misses(0.9)
+    assert forecast(measured, 512**2, 0.01, 1024).misses(0.01) and not forecast(measured, 512**2, 0.0, 1024).misses(0.0)
     # What is left after half a second before the first sample.
     assert late.samples.value == pytest.approx(59.5 / (RATE * 512**2), rel=1e-6)
     # A target is not looked at before 16 samples.

@@ -69,6 +69,9 @@ def test_own_models(case):
             assert (glossy["roughness"], glossy["ior"]) == near((0.25, 1.75))
         else:
             assert glossy["shininess"] == near(40.0)
+    matt = got["MINNAERT"]
+    assert matt["kinds"] == ["MINNAERT"] and matt["lobes"][0]["color"] == near(kd)
+    assert matt["lobes"][0]["shininess"] == near(0.75) and matt["ambient"] == near([0.5, 0.25, 0.0])
 
 
 def test_principled_under_newest_names(case):

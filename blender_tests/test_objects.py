@@ -39,6 +39,12 @@ def test_instancers_narrow_what_they_bring_in(case):
     assert got["meshes"] == 1
 
 
+def test_instances_leave_nothing_allocated(case):
+    """Blender tells at its exit what nobody has freed."""
+    got = case("freed")
+    assert got["instances"] >= 2 + 5 + 1 + 6 and "Not freed" not in got["console"]
+
+
 def test_meshes_bring_what_their_materials_read(case):
     got = case("attributes")
     got.pop("console")

@@ -43,6 +43,40 @@ def test_bit_depth_and_alpha(case):
     assert got["messages"] == [] and got["unchanged"]
 
 
+def test_deep_files_keep_their_values_and_get_the_curve(case):
+    got = case("deep")
+    images = {picture["name"]: picture for picture in got["images"]}
+    by_image = got["version"] >= [5, 1]
+    for kind in ("PNG", "TIFF", "OPEN_EXR"):
+        stored = ramp() / 255.0
+        # Colour that PNG and TIFF store is straight and that of EXR multiplied, until Cycles took the image's word for it.
+        straight = "STRAIGHT" if by_image or kind != "OPEN_EXR" else "ASSOCIATED"
+        premultiplied = "ASSOCIATED" if by_image or kind == "OPEN_EXR" else "STRAIGHT"
+        alphas = {"STRAIGHT": straight, "PREMUL": premultiplied, "CHANNEL_PACKED": "CHANNEL_PACKED", "NONE": "NONE"}
+        for mode, alpha in alphas.items():
+            picture = images[f"{kind} {mode}"]
+            assert (picture["transfer"], picture["alpha"]) == ("SRGB", alpha), picture["name"]
+            check_stored(picture, kind, stored[..., :3] if mode == "NONE" else stored)
+        assert (images[f"{kind} data"]["transfer"], images[f"{kind} data"]["alpha"]) == ("LINEAR", "CHANNEL_PACKED")
+        check_stored(images[f"{kind} data"], kind, stored)
+        # Decoded before interpolation: what Blender packs, and what takes more than the curve of sRGB.
+        for name in ("packed", "other"):
+            picture = images[f"{kind} {name}"]
+            assert picture["transfer"] == "LINEAR" and picture["type"] == "float32", picture["name"]
+    assert images["held"]["transfer"] == "SRGB" and images["painted"]["transfer"] == "LINEAR"
+    assert got["unchanged"] and got["messages"] == []
+
+
+def check_stored(picture, kind, values):
+    """Texels are those of the file: whole steps of 16 bits, or floats."""
+    texels = np.array(picture["texels"])
+    if kind == "OPEN_EXR" and picture["type"] == "float32":
+        assert np.array_equal(texels.astype(np.float32), values.astype(np.float32)), picture["name"]
+    else:
+        assert picture["type"] == "uint16"
+        assert np.array_equal(texels, np.floor(values * 65535.0 + 0.5)), picture["name"]
+
+
 def test_colour_spaces_as_blender_converts_them(case):
     got = case("spaces")
     kinds = {}

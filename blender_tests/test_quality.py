@@ -16,7 +16,7 @@ def test_each_quality_has_its_seconds_and_error(which, tmp_path):
     # A preset names the error that is not exceeded: less is to be expected. And each takes longer than the one before.
     assert [told[name][4] <= limit for name, limit in (("Draft", 0.1), ("Good", 0.03), ("Final", 0.01))] == [True] * 3
     assert told["Draft"][1] <= told["Good"][1] <= told["Final"][1]
-    assert got["lines"][0].startswith("Draft: about ") and got["lines"][-1].startswith("Classic, 64 samples: about ")
+    assert got["lines"][0].startswith("Draft: ") and got["lines"][-1].startswith("Classic, 64 samples: about ")
     assert all(f"Info: Lancer: {line}" in got["console"] for line in got["lines"])
     # The interval that the render gives itself, and that which it was told beforehand, have something in common.
     _, _, low, high = got["rendered"]
@@ -27,3 +27,20 @@ def test_each_quality_has_its_seconds_and_error(which, tmp_path):
     old = got["old"]
     assert [name for name in old if old[name]] == ["other bounces", "moved"]
     assert got["left"] == 0
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_what_cannot_be_told_is_not_told(which, tmp_path):
+    assert {
+        "sure": "about 60 s",
+        "wide": "about 60 s, 20 s to 5.0 min",
+        "untold": "the time cannot be told",
+        "short": "at most 9.0 s",
+    } == {name: text for name, text in blenders.run(which, tmp_path, "quality_cases", "words").items() if name != "console"}
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_a_forecast_ends_with_the_samples(which, tmp_path):
+    lines = blenders.run(which, tmp_path, "quality_cases", "missed")
+    (line,) = (line for line in lines if line.startswith("As set"))
+    assert line.endswith("; 16 samples end it above its 0.01 %"), lines

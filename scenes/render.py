@@ -1,4 +1,4 @@
-"""Renders a scene of this folder or a .blend file with Lancer in Blender's Python module: `make render` calls it."""
+"""Renders a scene of this folder, a .blend file or a bug report with Lancer: `make render` calls it."""
 
 import argparse
 import contextlib
@@ -16,6 +16,8 @@ import bpy  # noqa: E402
 
 import addon  # noqa: E402
 import scenes  # noqa: E402
+from addon.bindings.uses import kernel_in_words  # noqa: E402
+from scenes import replay  # noqa: E402
 
 FORMATS = {".png": "PNG", ".exr": "OPEN_EXR", ".jpg": "JPEG", ".jpeg": "JPEG", ".tif": "TIFF", ".tiff": "TIFF", ".hdr": "HDR"}
 
@@ -25,6 +27,7 @@ def read_arguments():
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--scene", default="showcase", choices=sorted(scenes.BUILDERS), help="a scene of this folder")
     what.add_argument("--blend", type=Path, help="a file of Blender")
+    what.add_argument("--snapshot", type=Path, help="a snapshot (.npz) or a bug report (.zip)")
     parser.add_argument("--frame", type=int, help="default: the frame that the file was saved at")
     parser.add_argument("--samples", type=int, help="per pixel; default: what the scene says")
     parser.add_argument("--output", type=Path, help="the picture; default: build/NAME.png")
@@ -88,6 +91,16 @@ def open_scene(arguments):
     return bpy.context.scene
 
 
+def output_path(arguments):
+    source = arguments.blend or arguments.snapshot
+    name = arguments.scene if source is None else source.stem
+    output = (arguments.output or ROOT / "build" / f"{name}.png").absolute()
+    if output.suffix.lower() not in FORMATS:
+        sys.exit(f"{output.name}: the name should end in one of {', '.join(FORMATS)}")
+    output.parent.mkdir(parents=True, exist_ok=True)
+    return output
+
+
 def set_up(scene, arguments):
     """Settings for this run only: the file is never saved."""
     scene.render.engine = "LANCER"
@@ -97,11 +110,7 @@ def set_up(scene, arguments):
             layer.samples = 0
     if arguments.frame is not None:
         scene.frame_set(arguments.frame)
-    name = arguments.scene if arguments.blend is None else arguments.blend.stem
-    output = (arguments.output or ROOT / "build" / f"{name}.png").absolute()
-    if output.suffix.lower() not in FORMATS:
-        sys.exit(f"{output.name}: the name should end in one of {', '.join(FORMATS)}")
-    output.parent.mkdir(parents=True, exist_ok=True)
+    output = output_path(arguments)
     image = scene.render.image_settings
     if hasattr(image, "media_type"):
         image.media_type = "IMAGE"
@@ -122,6 +131,9 @@ def render(scene, terminal):
 
 def main():
     arguments = read_arguments()
+    if arguments.snapshot is not None:
+        again(arguments)
+        return
     started = time.perf_counter()
     failure = None
     with captured_output() as (terminal, log):
@@ -143,10 +155,25 @@ def main():
     report(addon.engine.last_statistics[scene.name], output, time.perf_counter() - started)
 
 
+def again(arguments):
+    """Renders a snapshot."""
+    output = output_path(arguments)
+    with captured_output() as (terminal, _):
+        progress = Progress(terminal)
+        try:
+            kind = FORMATS[output.suffix.lower()]
+            lines = replay.replay(arguments.snapshot, arguments.samples, output, kind, progress)
+        finally:
+            progress.close()
+    print("\n".join(lines))
+
+
 def report(statistics, output, seconds):
     print(f"{seconds:.1f} s in all, {statistics['seconds']:.1f} s of it rendering")
     print(f"{statistics['samples']} samples a pixel, {statistics['rays_per_second'] / 1e6:.2f} million rays/s")
-    print(f"features: {statistics['features']}  ({statistics['kernel']}, {statistics['instruction_set']})")
+    for feature in statistics["uses"]:
+        print(feature["text"])
+    print(f"shaded by the code for {kernel_in_words(statistics['kernel'])} ({statistics['instruction_set']})")
     print(os.path.relpath(output))
 
 

@@ -13,7 +13,7 @@ from .structs import *  # noqa: F403
 from .structs import STRUCTS, Camera, Error, Image, Light, Material, Mesh, Progress, Settings, Statistics, World
 from .structs import Array as _Array
 
-ABI_VERSION = 3
+ABI_VERSION = 4
 UINT32_MAX = 0xFFFFFFFF
 
 _u32, _u64 = c_uint32, c_uint64

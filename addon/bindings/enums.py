@@ -74,6 +74,7 @@ class LobeKind(IntEnum):
     SHEEN = 11
     TRANSLUCENT = 12
     PRINCIPLED = 13
+    MINNAERT = 14
 
 
 class LightKind(IntEnum):

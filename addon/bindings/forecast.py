@@ -39,6 +39,10 @@ class Forecast:
     samples: Range  # of a pixel, on average
     ended_by: str
 
+    def misses(self, target_error):
+        """Whether the limit of samples is expected to end it before that error is reached; False without one."""
+        return target_error > 0.0 and self.ended_by == SAMPLES
+
 
 def forecast(measured, pixels, target_error=0.0, samples=0, time_limit=0.0):
     """What a render of so many pixels would come to by these settings: Forecast."""

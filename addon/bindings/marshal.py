@@ -56,6 +56,7 @@ def mesh(m):
         uvs=_address(m.uvs),
         colors=_address(m.colors),
         material_slots=_address(m.material_slots),
+        polygons=_address(m.polygons),
         attributes=_many(abi.Attribute, map(_attribute, m.attributes)),
         vertex_count=len(m.positions),
         triangle_count=len(m.triangles),
@@ -164,6 +165,8 @@ def world(w):
         node_count=len(w.nodes),
         hidden_from=int(w.hidden_from),
         radiance=_parameter(w.radiance),
+        ambient=(0.0, 0.0, 0.0) if w.ambient is None else w.ambient,
+        use_ambient=w.ambient is not None,
         map_resolution=w.map_resolution,
     )
 

@@ -137,6 +137,8 @@ def smooth_matt(material):
     def change(lobe):
         if lobe.kind == LobeKind.DIFFUSE and may_be_positive(lobe.roughness):
             return _matt(lobe, lobe.color)
+        if lobe.kind == LobeKind.MINNAERT and lobe.shininess != 1.0:
+            return _matt(lobe, lobe.color)
         return lobe if lobe.principled is None else _without_layer(lobe, "diffuse_roughness")
 
     return _with_lobes(material, change)

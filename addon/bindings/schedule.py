@@ -102,10 +102,13 @@ class Schedule:
         if progress is not None and progress.samples > 0 and progress.seconds > 0.0:
             rate = progress.samples / progress.seconds
             target = self.settings.target_error
-            if target > 0.0 and self.error is not None and self.error.known:
+            known = self.error is not None and self.error.known
+            if target > 0.0 and known:
                 needed = self._needed(progress, target)
                 ends.append((needed / rate, TARGET))
-            ends.append((max(0.0, self.settings.samples * self.pixels - progress.samples) / rate, SAMPLES))
+            # With a target the limit of samples is far beyond what most scenes need.
+            if target <= 0.0 or known:
+                ends.append((max(0.0, self.settings.samples * self.pixels - progress.samples) / rate, SAMPLES))
         return min(ends, default=(math.inf, SAMPLES))
 
     @property

@@ -73,6 +73,8 @@ class Statistics:
     kernel: str
     instruction_set: str
     texture_bytes: int
+    wide_vertices: int
+    narrow_vertices: int
 
     @property
     def rays(self):

@@ -125,7 +125,7 @@ class Lobe(_Parameters):
     color: object = (0.8, 0.8, 0.8)
     roughness: object = 0.5  # alpha itself for BECKMANN, else the socket's value
     ior: object = 1.5
-    shininess: object = 50.0
+    shininess: object = 50.0  # the exponent of PHONG and BLINN_PHONG; k of MINNAERT, 1 is Lambert
     weight: object = _WHITE
     edge: object = _WHITE
     anisotropy: object = 0.0
@@ -169,6 +169,7 @@ class Material(_Parameters):
 @dataclass(frozen=True, eq=False)
 class World(_Parameters):
     radiance: object = _BLACK
+    ambient: tuple | None = None  # light from everywhere that Ka reflects in CLASSIC; None: the mean of the radiance
     nodes: tuple[Node, ...] = ()
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0
@@ -177,4 +178,6 @@ class World(_Parameters):
 
     def __post_init__(self):
         super().__post_init__()
+        if self.ambient is not None:
+            self.vectors(ambient=3)
         self.set("nodes", tuple(self.nodes))

@@ -57,6 +57,7 @@ class MeshData(Record):
     uvs: np.ndarray | None = None  # (T, 3, 2)
     colors: np.ndarray | None = None  # (T, 3, 3), linear
     material_slots: np.ndarray | None = None  # (T,)
+    polygons: np.ndarray | None = None  # (T,), each below T: the polygon of each triangle; None: each is one
     attributes: tuple[MeshAttribute, ...] = ()
 
     def __post_init__(self):
@@ -73,6 +74,8 @@ class MeshData(Record):
             self.set("colors", array(self.colors, np.float32, (count, 3, 3), what + "colors"))
         if self.material_slots is not None:
             self.set("material_slots", array(self.material_slots, np.uint16, (count,), what + "material_slots"))
+        if self.polygons is not None:
+            self.set("polygons", array(self.polygons, np.uint32, (count,), what + "polygons"))
         self.set("attributes", tuple(self.attributes))
         rows = {Domain.VERTEX: vertices, Domain.FACE: count, Domain.CORNER: 3 * count}
         for attribute in self.attributes:

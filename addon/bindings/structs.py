@@ -21,6 +21,7 @@ class Mesh(Structure):
         ("uvs", Array),
         ("colors", Array),
         ("material_slots", Array),
+        ("polygons", Array),
         ("attributes", POINTER(Attribute)),
         ("vertex_count", c_uint32),
         ("triangle_count", c_uint32),
@@ -153,6 +154,8 @@ class World(Structure):
         ("node_count", c_uint32),
         ("hidden_from", c_uint32),
         ("radiance", Parameter),
+        ("ambient", c_float * 3),
+        ("use_ambient", c_uint32),
         ("map_resolution", c_uint32),
         ("reserved", c_uint32),
     ]
@@ -263,6 +266,8 @@ class Statistics(Structure):
         ("kernel", c_char * 64),
         ("instruction_set", c_char * 32),
         ("texture_bytes", c_uint64),
+        ("wide_vertices", c_uint64),
+        ("narrow_vertices", c_uint64),
     ]
 
 

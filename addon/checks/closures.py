@@ -14,8 +14,9 @@ _SHARES = ("roughness", "transmission_roughness", "coat_roughness", "sheen_rough
 # What surely comes back of the light is its colour; of the others Fresnel decides, or a refractive index is no colour.
 _COLORED = {
     LobeKind.LAMBERT, LobeKind.DIFFUSE, LobeKind.MIRROR, LobeKind.GLOSSY, LobeKind.PHONG, LobeKind.BLINN_PHONG,
-    LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.TRANSLUCENT,
+    LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.TRANSLUCENT, LobeKind.MINNAERT,
 }  # fmt: skip
+_WITHOUT_ROUGHNESS = {LobeKind.LAMBERT, LobeKind.PHONG, LobeKind.BLINN_PHONG, LobeKind.MIRROR, LobeKind.MINNAERT}
 # Shares of Mix Shaders in single precision add up to 1 within a few of its steps; colours are set with three digits.
 _MORE_THAN_ALL = 1.001
 # A hundredth of a picture: single texels are not worth a word.
@@ -65,7 +66,7 @@ def _parameters(material):
             shares += [(name, getattr(record, name)) for name in _SHARES] + [("transmission", record.transmission)]
             indices += [("IOR", record.ior), ("coat IOR", record.coat_ior)]
         else:
-            if lobe.kind not in (LobeKind.LAMBERT, LobeKind.PHONG, LobeKind.BLINN_PHONG, LobeKind.MIRROR):
+            if lobe.kind not in _WITHOUT_ROUGHNESS:
                 shares.append(("roughness", lobe.roughness))
             if lobe.kind in (LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION):
                 indices.append(("IOR", lobe.ior))

@@ -1,15 +1,10 @@
 """One thing that will hurt, in words an artist understands; and many of them as a short list."""
 
 from dataclasses import dataclass
-from enum import IntEnum
+
+from ..harm import Harm
 
 _LINES_OF_A_KIND = 3
-
-
-class Harm(IntEnum):
-    HINT = 0  # may be meant so; told only when asked
-    WASTE = 1  # costs time, or light does not do what the setting promises
-    WRONG = 2  # the picture will show it
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..bindings.enums import Shading
-from .edges import corner_keys, edge_faults
+from .edges import corner_keys, edge_faults, vertex_keys
 from .finding import Finding, Harm, told_number
 from .sides import corners, crossed, dots, lengths, middle
 
@@ -27,8 +27,9 @@ def check_normals(subject):
         some, whole = away[0] | away[1] | away[2], away[0] & away[1] & away[2]
         if not some.any():
             continue
-        mixed, total = some & ~whole, areas.sum()
-        for bad, harm in ((mixed, Harm.WRONG), (whole, Harm.WASTE)):
+        some, total = some & ~whole, areas.sum()
+        folds = _folds(mesh, faces, some)
+        for bad, harm in ((some & ~folds, Harm.WRONG), (whole, Harm.WASTE), (folds, Harm.HINT)):
             share = float(areas[bad].sum() / total) if total > 0.0 else 0.0
             if share < _SHARE:
                 continue
@@ -86,6 +87,33 @@ def _away(mesh, faces):
     return away, np.where(np.isfinite(areas), areas, 0.0)
 
 
+def _folds(mesh, faces, bad):
+    """Mask of those among the bad faces whose normals are as smooth shading makes them at folds of more than a right angle.
+
+    The mean of the faces around a corner turns away from some of them there, in any engine, but never from all; a normal that
+    turns away from all of them is a fault, and so is one between faces that look opposite ways.
+    """
+    folds = np.zeros(len(bad), bool)
+    keys = vertex_keys(mesh.positions)
+    chosen = np.arange(len(mesh.triangles))[faces][bad]
+    near = np.flatnonzero(np.isin(keys, keys[mesh.triangles[chosen]])[mesh.triangles].any(axis=1))
+    around = keys[mesh.triangles[near]]
+    flipped = near[edge_faults(around).flipped]
+    # Every corner of a bad face with every face that has a corner in the same place.
+    around = around.reshape(-1)
+    order = np.argsort(around)
+    corner_places = keys[mesh.triangles[chosen]].reshape(-1)
+    first = np.searchsorted(around[order], corner_places)
+    count = np.searchsorted(around[order], corner_places, "right") - first
+    corner = np.repeat(np.arange(len(corner_places)), count)
+    face = near[order[np.arange(len(corner)) + np.repeat(first - np.cumsum(count) + count, count)] // 3]
+    shading = mesh.normals[mesh.triangles[chosen]] if mesh.normals.ndim == 2 else mesh.normals[chosen]
+    agrees = np.zeros(len(corner_places), bool)
+    agrees[corner[dots(shading.reshape(-1, 3)[corner], crossed(*corners(mesh, face))) > 0.0]] = True
+    folds[bad] = agrees.reshape(-1, 3).all(axis=1) & ~np.isin(chosen, flipped)
+    return folds
+
+
 def _words(subject, number, mesh, harm, count):
     where = told_number(count, "face")
     if _has_flipped(subject, number, mesh):
@@ -97,6 +125,11 @@ def _words(subject, number, mesh, harm, count):
         return (
             f"shading normals point away from the surface at some corners of {where}, which shows as dark patches",
             "clear custom normals, mark sharp edges or shade it flat",
+        )
+    if harm == Harm.HINT:
+        return (
+            f"smooth shading bends round folds of more than a right angle at {where}",
+            "if dark patches show there, mark sharp edges or shade it flat",
         )
     return (
         f"shading normals point into the surface on {where}; they are turned round, but bumps and other engines may not",

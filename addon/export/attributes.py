@@ -8,6 +8,8 @@ from .tangents import corner_tangents
 
 _TANGENT = "tangent:"
 _NAMED = "named:"
+# Wanted beside the attributes: which triangles are one polygon, for flat shading.
+POLYGONS = "polygons:"
 _DOMAINS = {"POINT": Domain.VERTEX, "FACE": Domain.FACE, "CORNER": Domain.CORNER}
 # Blender's types of attributes: the field that holds a value, its numbers, and how many of them are used.
 _TYPES = {
@@ -24,7 +26,7 @@ _TYPES = {
 
 def attribute_name(name):
     """What an attribute of Blender's is called in a snapshot, where some names have a meaning of their own."""
-    is_taken = name == "generated" or name.startswith((_TANGENT, _NAMED)) or name.endswith(" ")
+    is_taken = name in ("generated", POLYGONS) or name.startswith((_TANGENT, _NAMED)) or name.endswith(" ")
     return _NAMED + name if is_taken else name
 
 
@@ -34,7 +36,8 @@ def tangents_name(uv_map):
 
 def named_attributes(wanted):
     """Those of the wanted that have names of Blender's, as Blender has them."""
-    return sorted(_name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(_TANGENT))
+    own = (_TANGENT, POLYGONS)
+    return sorted(_name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(own))
 
 
 def _name_in_blender(name):
@@ -47,7 +50,7 @@ def read_attributes(mesh, data, wanted, corners, faces, poll):
     corners and faces: of each triangle; None where they are Blender's own.
     """
     found = []
-    for name in sorted(wanted):
+    for name in sorted(wanted - {POLYGONS}):
         poll()
         if name == "generated":
             found.append(_generated(mesh))

@@ -72,7 +72,9 @@ def _projection(data, render, width, height, who, messages):
         aspect = width * render.pixel_aspect_x / (height * render.pixel_aspect_y)
         return panorama(data, aspect, who, messages)
     if data.type not in ("PERSP", "ORTHO"):
-        messages.add(f"{who}: type {data.type} is not supported, a perspective camera is used")
+        messages.add(
+            f"{who}: type {data.type} is not supported, a perspective camera is used", f"feature:{data.type.lower()} camera"
+        )
     return CameraKind.ORTHOGRAPHIC if data.type == "ORTHO" else CameraKind.PERSPECTIVE, (0.0,) * 8
 
 
@@ -109,7 +111,7 @@ def _rigid(matrix, who, messages):
         raise LancerError(f"{who}: its axes lie in one plane")
     # Float matrices are orthogonal to some 1e-7 a product; parents without shear stay below 1e-5.
     if max(abs(x @ y), abs(x @ z), abs(y @ z)) > 1e-5:
-        messages.add(f"{who}: shear is not supported, its view direction is kept")
+        messages.add(f"{who}: shear is not supported, its view direction is kept", "feature:sheared camera")
     y = upright / length
     right = np.cross(y, z)
     result = np.empty((3, 4))

@@ -3,6 +3,7 @@
 import bpy
 
 from ..bindings.enums import Pass
+from ..harm import Harm
 from .cycles_settings import check_cycles
 
 # As passes.py renders them, by the names of a view layer's switches.
@@ -30,9 +31,9 @@ _HAS_OFFSET = "shadow_terminator_shading_offset" in _OF_OBJECTS
 def check_scene(scene, messages):
     who = f"scene '{scene.name}'"
     if scene.render.use_motion_blur:
-        messages.add(f"{who}: motion blur is not supported, the frame is rendered sharp")
+        messages.add(f"{who}: motion blur is not supported, the frame is rendered sharp", "feature:motion blur")
     if scene.render.use_multiview:
-        messages.add(f"{who}: stereoscopy is not supported, every view shows the scene's camera")
+        messages.add(f"{who}: stereoscopy is not supported, every view shows the scene's camera", "feature:stereoscopy")
     check_cycles(scene, messages)
 
 
@@ -51,7 +52,7 @@ def check_view_layer(scene, view_layer, messages):
         messages.add(f"{who}: Freestyle is not supported by Lancer, Blender draws its lines with EEVEE over the picture")
     names = _missing_passes(view_layer)
     if names:
-        messages.add(f"{who}: these passes are not supported: {', '.join(names)}")
+        messages.add(f"{who}: these passes are not supported: {', '.join(names)}", harm=Harm.LEFT_OUT)
 
 
 def _missing_passes(view_layer):
@@ -73,16 +74,25 @@ def _missing_passes(view_layer):
 def check_object(thing, scene, messages):
     check_linking(thing, "object", messages)
     if _HAS_CATCHER and thing.is_shadow_catcher:
-        messages.add(f"object '{thing.name}': shadow catchers are not supported, it is rendered as any other object")
+        messages.add(
+            f"object '{thing.name}': shadow catchers are not supported, it is rendered as any other object",
+            "feature:shadow catcher",
+        )
     # An add-on, which may be off.
     cycles = getattr(thing, "cycles", None)
     offset = thing.shadow_terminator_shading_offset if _HAS_OFFSET else getattr(cycles, "shadow_terminator_offset", 0.0)
     if offset > 0.0:
         who = f"object '{thing.name}'"
-        messages.add(f"{who}: the shading offset of the shadow terminator is left out, use the geometry offset")
+        messages.add(
+            f"{who}: the shading offset of the shadow terminator is left out, use the geometry offset",
+            "feature:shading offset of the terminator",
+        )
     if getattr(cycles, "is_caustics_receiver", False):
         who = f"object '{thing.name}'"
-        messages.add(f"{who}: shadow caustics are not supported, it receives those that paths find by themselves")
+        messages.add(
+            f"{who}: shadow caustics are not supported, it receives those that paths find by themselves",
+            "feature:shadow caustics",
+        )
     if thing.modifiers:
         _check_subdivision(thing, scene, f"object '{thing.name}'", messages)
 
@@ -98,7 +108,10 @@ def _check_subdivision(thing, scene, who, messages):
         experiments = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
         adaptive = experiments and thing.cycles.use_adaptive_subdivision
     if adaptive:
-        messages.add(f"{who}: adaptive subdivision is not supported, '{last.name}' divides by its {last.render_levels} levels")
+        messages.add(
+            f"{who}: adaptive subdivision is not supported, '{last.name}' divides by its {last.render_levels} levels",
+            "feature:adaptive subdivision",
+        )
 
 
 def check_hair(thing, messages):
@@ -108,7 +121,8 @@ def check_hair(thing, messages):
             continue
         system = modifier.particle_system
         if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
-            messages.add(f"object '{thing.name}': hair of particle system '{system.name}' is not supported, it is left out")
+            text = f"hair of particle system '{system.name}' is not supported, it is left out"
+            messages.add(f"object '{thing.name}': {text}", "feature:hair particles", harm=Harm.LEFT_OUT)
 
 
 def check_linking(thing, kind, messages):
@@ -117,6 +131,12 @@ def check_linking(thing, kind, messages):
     linking = thing.light_linking
     receiver, blocker = linking.receiver_collection, linking.blocker_collection
     if receiver is not None:
-        messages.add(f"{kind} '{thing.name}': light linking ('{receiver.name}') is not supported, it lights everything")
+        messages.add(
+            f"{kind} '{thing.name}': light linking ('{receiver.name}') is not supported, it lights everything",
+            "feature:light linking",
+        )
     if blocker is not None:
-        messages.add(f"{kind} '{thing.name}': shadow linking ('{blocker.name}') is not supported, everything casts shadow")
+        messages.add(
+            f"{kind} '{thing.name}': shadow linking ('{blocker.name}') is not supported, everything casts shadow",
+            "feature:shadow linking",
+        )

@@ -1,6 +1,7 @@
 """What each shader node adds to a surface: lobes, light, passage and holes."""
 
 from ..bindings.enums import Distribution, LobeKind
+from ..harm import Harm
 from .arithmetic import is_constant
 from .distributions import read_distribution
 from .principled import read_principled
@@ -59,7 +60,7 @@ def _glass(surface, site, weight):
 def _tell_thin_film(surface, site):
     thickness = surface.graph.parameter(site, ("Thin Film Thickness",), 0.0)
     if not is_constant(thickness, 0.0):
-        surface.graph.tell(site, "input 'Thin Film Thickness' is not supported, the surface has no film")
+        surface.graph.tell(site, "input 'Thin Film Thickness' is not supported, the surface has no film", "feature:thin film")
 
 
 def _metallic(surface, site, weight):
@@ -131,7 +132,7 @@ def _portal(surface, site, weight):
 
 
 def _volume(surface, site, weight):
-    surface.graph.tell(site, f"{site.node.bl_label} is a volume and has no surface, nothing is shown")
+    surface.graph.tell(site, f"{site.node.bl_label} is a volume and has no surface, nothing is shown", harm=Harm.LEFT_OUT)
 
 
 def read_unknown(surface, site, weight):

@@ -86,7 +86,10 @@ def _write(pixels, path):
 
 @contextlib.contextmanager
 def loaded(path, name, alpha_mode):
-    """A file as an image of Blender's, beside the user's data, for as long as it is looked at."""
+    """A file as an image of Blender's, beside the user's data, for as long as it is looked at.
+
+    name: of the colour space; "" lets Blender choose by the file, None is data, whose values stay as they are.
+    """
     main_thread.look()
     image, held = main_thread.run(lambda: _load(path, name, alpha_mode))
     try:
@@ -95,12 +98,18 @@ def loaded(path, name, alpha_mode):
         main_thread.post(held.close)
 
 
+def stored(path):
+    """The same with values as the file stores them: not decoded, neither multiplied nor divided by alpha."""
+    return loaded(path, None, "CHANNEL_PACKED")
+
+
 def _load(path, name, alpha_mode):
     """The image, whose pixels are read when they are asked for, and what to close for it to go."""
     with contextlib.ExitStack() as stack:
         image = stack.enter_context(_own_data()).images.load(path, check_existing=False)
-        # Empty for what Blender has not looked at yet, a set of tiles: it then chooses by the file.
-        if name:
+        if name is None:
+            image.colorspace_settings.is_data = True
+        elif name:
             image.colorspace_settings.name = name
         image.alpha_mode = alpha_mode
         return image, stack.pop_all()

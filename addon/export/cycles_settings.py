@@ -1,9 +1,12 @@
 """Cycles' own settings of a scene that change its light and that Lancer does not follow.
 
-Its light paths are told in one line wherever they limit the light otherwise than Lancer's, as they do when Blender starts; each
-other setting where it is not as it comes. Those that Lancer's settings stand for (samples, filter, seed, transparent bounces)
-are not read, and those that change noise and time only need not be.
+Its light paths are told in one line wherever they limit the light otherwise than Lancer's, as they do when Blender starts: a
+hint as long as no limit is one that somebody has set. Each other setting is told where it is not as it comes. Those that
+Lancer's settings stand for (samples, filter, seed, transparent bounces) are not read, and those that change noise and time only
+need not be.
 """
+
+from ..harm import Harm
 
 _KINDS = ("diffuse", "glossy", "transmission")
 
@@ -13,7 +16,9 @@ def check_cycles(scene, messages):
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
         return
-    for text in (*_light_paths(scene.lancer, cycles), *_light(cycles), *_simplified(scene, cycles)):
+    for text, harm in _light_paths(scene.lancer, cycles):
+        messages.add(f"scene '{scene.name}': {text}", harm=harm)
+    for text in (*_light(cycles), *_simplified(scene, cycles)):
         messages.add(f"scene '{scene.name}': {text}")
 
 
@@ -21,20 +26,25 @@ def _light_paths(own, cycles):
     # The other integrators show pictures of their own.
     if own.integrator != "PATH":
         return
-    theirs = [f"Total {cycles.max_bounces}"] if cycles.max_bounces != own.max_bounces else []
+    # (Setting, words) of each limit that Lancer's do not hold.
+    theirs = [("max_bounces", f"Total {cycles.max_bounces}")] if cycles.max_bounces != own.max_bounces else []
     # A kind that may bounce as often as a path at all is not limited.
     deepest = min(cycles.max_bounces, own.max_bounces)
-    limits = {kind: getattr(cycles, f"{kind}_bounces") for kind in _KINDS}
-    theirs += [f"{kind.capitalize()} {limit}" for kind, limit in limits.items() if limit < deepest]
+    for kind in _KINDS:
+        limit = getattr(cycles, f"{kind}_bounces")
+        if limit < deepest:
+            theirs.append((f"{kind}_bounces", f"{kind.capitalize()} {limit}"))
     if cycles.blur_glossy > 0.0:
-        theirs.append(f"Filter Glossy {cycles.blur_glossy:g}")
+        theirs.append(("blur_glossy", f"Filter Glossy {cycles.blur_glossy:g}"))
     if cycles.sample_clamp_indirect > 0.0 and cycles.sample_clamp_indirect != own.clamp_indirect:
-        theirs.append(f"Clamp Indirect {cycles.sample_clamp_indirect:g}")
+        theirs.append(("sample_clamp_indirect", f"Clamp Indirect {cycles.sample_clamp_indirect:g}"))
     ours = [f"Max Bounces {own.max_bounces}"]
     if own.clamp_indirect > 0.0:
         ours.append(f"Clamp Indirect {own.clamp_indirect:g}")
     if theirs:
-        yield f"Cycles limits light by {_listed(theirs)}, Lancer by {_listed(ours)}: set Light Paths alike to compare"
+        told = _listed([words for _, words in theirs])
+        harm = Harm.DIFFERENT if any(_changed(cycles, name) for name, _ in theirs) else Harm.HINT
+        yield f"Cycles limits light by {told}, Lancer by {_listed(ours)}: set Light Paths alike to compare", harm
 
 
 def _listed(words):

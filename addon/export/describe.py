@@ -26,6 +26,7 @@ _NAMES = {
     LobeKind.SHEEN: "Sheen",
     LobeKind.TRANSLUCENT: "Translucent Kd",
     LobeKind.PRINCIPLED: "Principled",
+    LobeKind.MINNAERT: "Minnaert Kd",
 }
 _ROUGH = {LobeKind.DIFFUSE, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR, LobeKind.SHEEN}
 _FACETS = {LobeKind.BECKMANN, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR}
@@ -98,6 +99,8 @@ def _lobe(lobe):
     text = f"{_NAMES[lobe.kind]}: {_told(lobe.color)}{weight}"
     if lobe.kind == LobeKind.BECKMANN:
         text += f", alpha {_told(lobe.roughness)}"
+    if lobe.kind == LobeKind.MINNAERT:
+        text += f", darkness {_told(lobe.shininess)}"
     if lobe.kind in _ROUGH:
         text += f", roughness {_told(lobe.roughness)}"
     if lobe.kind in _REFRACTIVE:

@@ -16,6 +16,7 @@ import bpy
 from ..bindings import snapshot
 from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
+from ..harm import Harm
 from . import colors, coordinates, maths, normals, textures
 from .arithmetic import THIRDS, is_constant, single, triple
 from .colorspace import luminance_weights
@@ -79,7 +80,8 @@ class NodeGraph:
         key = (kind, option, flags, name, image, image_count, first, node.inputs, node.matrix)
         if key not in numbers:
             if len(self._nodes) >= _MOST_NODES:
-                self.messages.add(f"{self.owner}: has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest")
+                text = f"has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest"
+                self.messages.add(f"{self.owner}: {text}", "feature:many nodes", harm=Harm.WRONG)
                 return _UNKNOWN[self.unknown]
             numbers[key] = len(self._nodes)
             self._nodes.append(node)
@@ -148,8 +150,10 @@ class NodeGraph:
 
     # ---- reading ----
 
-    def tell(self, site, text):
-        self.messages.add(f"{self.owner}, node '{_site(site).node.name}': {text}")
+    def tell(self, site, text, key=None, harm=Harm.DIFFERENT):
+        """key: of Messages.add; by default the node itself is what is missing, "" where nothing is."""
+        node = _site(site).node
+        self.messages.add(f"{self.owner}, node '{node.name}': {text}", f"node:{node.bl_label}" if key is None else key, harm)
 
     def parameter(self, site, names, default=0.0, kind="number", low=-math.inf, high=math.inf):
         """The input of a node that has one of the names, made usable; default where this Blender has none.
@@ -189,7 +193,9 @@ class NodeGraph:
             return default
         if self._output(origin.site, origin.output) is None:
             source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
-            self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, its default is used")
+            self.tell(
+                site, f"input '{socket.name}' is linked to {source}, which is not supported, its default is used", _key(origin)
+            )
             return default
         return self.input(site, socket)
 
@@ -198,7 +204,7 @@ class NodeGraph:
         value = self._read(site, socket)
         if isinstance(value, NodeRef) or all(map(math.isfinite, triple(value))):
             return value
-        self.tell(site, f"input '{socket.name}' is not finite, 0 is used")
+        self.tell(site, f"input '{socket.name}' is not finite, 0 is used", "")
         return 0.0 if isinstance(value, float) else (0.0, 0.0, 0.0)
 
     def _read(self, site, socket):
@@ -222,7 +228,7 @@ class NodeGraph:
         """The value of an origin as a colour; the unknown one where it has none."""
         value = self._output(origin.site, origin.output)
         if value is None:
-            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used")
+            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used", harm=Harm.WRONG)
             return _UNKNOWN[self.unknown]
         return _three(value)
 
@@ -266,11 +272,16 @@ class NodeGraph:
         """What is used for an input whose source cannot be computed."""
         source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
         if socket.type == "RGBA":
-            self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used")
+            told = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
+            self.tell(site, told, _key(origin), Harm.WRONG)
             return _UNKNOWN[self.unknown]
         value = _constant(socket)
         told = f"{value:g}" if isinstance(value, float) else ", ".join(f"{x:g}" for x in value)
-        self.tell(site, f"input '{socket.name}' is linked to {source}, which is not supported, the constant {told} is used")
+        self.tell(
+            site,
+            f"input '{socket.name}' is linked to {source}, which is not supported, the constant {told} is used",
+            _key(origin),
+        )
         return value
 
     def _convert(self, value, source, target):
@@ -281,6 +292,10 @@ class NodeGraph:
 
 def _site(node):
     return node if isinstance(node, Site) else Site(node)
+
+
+def _key(origin):
+    return f"node:{origin.site.node.bl_label}"
 
 
 def _three(value):

@@ -7,11 +7,13 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Transfer
+from ..harm import Harm
 from . import main_thread
-from .colorspace import IDENTITY, conversion, convert, floats, loaded
+from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one piece, which stays in the cache
 _WHITE = 65535.0
+_ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # their colour is multiplied by alpha in the file
 
 
 class Images:
@@ -24,7 +26,7 @@ class Images:
         self._ranges = {}
 
     def numbers(self, image, user, tell):
-        """(first, count) of a Blender image, more than one for tiles; None where there is none. tell(text) takes messages."""
+        """(first, count) of a Blender image, more for tiles; None where there is none. tell takes text, key and harm."""
         path = _frame_path(image, user, tell)
         key = (image.as_pointer(), image.colorspace_settings.name, image.alpha_mode, path)
         if key not in self._ranges:
@@ -33,7 +35,7 @@ class Images:
                 self.list += _read_all(image, path, tell)
             self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
         if self._ranges[key] is None:
-            tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used")
+            tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used", harm=Harm.WRONG)
         return self._ranges[key]
 
 
@@ -50,7 +52,10 @@ def _frame_path(image, user, tell):
         return ""
     if user is None:
         # Which file belongs to a frame is kept by the nodes that show it; without one Blender would name that of frame 0.
-        tell(f"image '{image.name}' is a sequence, of which only the file that it was made from is used")
+        tell(
+            f"image '{image.name}' is a sequence, of which only the file that it was made from is used",
+            "feature:image sequence",
+        )
         path = image.filepath
     else:
         path = image.filepath_from_user(image_user=user)
@@ -63,30 +68,33 @@ def _read_all(image, path, tell):
     if path:
         return _read_file(image, path, tell)
     if image.source == "MOVIE":
-        tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used")
-    if _divided(image) and image.source == "FILE" and image.packed_file is None and not image.is_dirty:
+        tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used", "feature:movie as image")
+    # Bytes that Blender holds are those of the file, unless it has divided them by alpha.
+    is_file = image.source == "FILE" and image.packed_file is None and not image.is_dirty
+    if is_file and (not image.has_data or image.is_float or image.alpha_mode == "PREMUL"):
         pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library), tell)
         if pictures:
             return pictures
     # What Blender had not loaded before, it need not keep.
     had_data = image.has_data
-    pictures = _read(image, image, tell)
+    pictures = _read(image, image, tell, _space(image))
     if not had_data and not image.is_dirty:
         main_thread.run(image.buffers_free)
     return pictures
 
 
-def _divided(image):
-    """Whether Blender divides the bytes of a file by alpha; Cycles takes them as they are."""
-    return image.alpha_mode == "PREMUL" and not image.is_float
+def _space(image):
+    """(name, whether it is data) of the colour space. Tiles that Blender has not looked at have no name yet."""
+    return image.colorspace_settings.name, image.colorspace_settings.is_data
 
 
 def _read_file(image, path, tell, tile=0):
+    """A file outside of the .blend with its values as they are stored, which Cycles decodes after interpolation."""
     if not os.path.isfile(path):
         return []
     try:
-        with loaded(path, image.colorspace_settings.name, "STRAIGHT" if _divided(image) else image.alpha_mode) as source:
-            return _read(image, source, tell, tile)
+        with stored(path) as source:
+            return _read(image, source, tell, _space(image), tile, is_stored=True)
     except RuntimeError:
         return []
 
@@ -99,14 +107,14 @@ def _read_tile(image, number, tell):
     path = bpy.path.abspath(path, library=image.library)
     pictures = _read_packed(image, number, tell) or _read_file(image, path, tell, number)
     if not pictures and len(image.tiles) == 1:
-        pictures = _read(image, image, tell, number)
+        pictures = _read(image, image, tell, _space(image), number)
     if not pictures:
-        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out")
+        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out", harm=Harm.LEFT_OUT)
     return pictures
 
 
 def _read_packed(image, number, tell):
-    """A tile that lies in the .blend: its bytes are a file."""
+    """A tile that lies in the .blend: its bytes are a file, which Blender decodes."""
     packed = next((item for item in image.packed_files if getattr(item, "tile_number", 0) == number), None)
     if packed is None or packed.packed_file is None:
         return []
@@ -114,37 +122,43 @@ def _read_packed(image, number, tell):
     try:
         with open(path, "wb") as file:
             file.write(packed.packed_file.data)
-        return _read_file(image, path, tell, number)
+        with loaded(path, image.colorspace_settings.name, image.alpha_mode) as source:
+            return _read(image, source, tell, _space(source), number)
+    except RuntimeError:
+        return []
     finally:
         if os.path.exists(path):
             os.remove(path)
 
 
-def _read(image, source, tell, tile=0):
-    """The picture of source under the settings of image, in a list; empty where it has no pixels."""
+def _read(image, source, tell, space, tile=0, is_stored=False):
+    """The picture of source under the settings of image, in a list; empty where it has no pixels.
+
+    is_stored: floating point, too, is in the colour space, as bytes always are; otherwise it is in the working space.
+    """
     if min(source.size) < 1 or source.channels < 1:
         # Only now Blender has looked at the file. It gives scripts no pixels of its layers.
         if source.type == "MULTILAYER":
-            tell(f"image '{image.name}' is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used")
+            text = "is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used"
+            tell(f"image '{image.name}' {text}", "feature:multilayer EXR", harm=Harm.WRONG)
             return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
         return []
     values = floats(source)
-    is_data = image.colorspace_settings.is_data
-    alpha = _alpha_mode(image, source.is_float, is_data)
-    # Before 5.1 Cycles took all bytes of files for straight ones.
-    if alpha == AlphaMode.STRAIGHT and source != image and _divided(image) and bpy.app.version >= (5, 1):
-        alpha = AlphaMode.ASSOCIATED
+    name, is_data = space
+    alpha = _alpha_mode(image, source, is_data, is_stored)
     if values.shape[2] == 2:
         values = values[:, :, [0, 0, 0, 1]]
     if values.shape[2] == 4 and (alpha == AlphaMode.NONE or bool((values[:, :, 3] == 1.0).all())):
         # The mode stays: it says what becomes of colour where the picture is clipped.
         values = values[:, :, :3]
     transfer, matrix = Transfer.LINEAR, IDENTITY
-    if not source.is_float and not is_data:
-        found = conversion(image.colorspace_settings.name)
-        if found is None:
-            values = _converted(values, image.colorspace_settings.name)
-            return [_picture(image, values, transfer, _associate(values, alpha), tile, matrix)]
+    # Without a name Cycles takes values as they are.
+    if name and not is_data and (is_stored or not source.is_float):
+        found = conversion(name)
+        # Cycles keeps texels encoded where the curve alone makes them scene-linear; what takes more comes before interpolation.
+        if found is None or (found[0] == Transfer.SRGB and found[1] != IDENTITY):
+            values, alpha = _converted(values, name, alpha)
+            return [_picture(image, values, transfer, alpha, tile, matrix)]
         transfer, matrix = found
     texels = _floating(values) if source.is_float else _quantised(values, 255.0, np.uint8)
     return [_picture(image, texels, transfer, alpha, tile, matrix)]
@@ -154,31 +168,46 @@ def _picture(image, texels, transfer, alpha, tile, matrix):
     return snapshot.Image(name=image.name, texels=texels, transfer=transfer, alpha=alpha, tile=tile, matrix=matrix)
 
 
-def _alpha_mode(image, is_float, is_data):
-    """As Blender keeps pixels in memory: bytes straight, floating point multiplied by alpha, data as it is."""
+def _alpha_mode(image, source, is_data, is_stored):
+    """As Cycles takes the pixels of source, per version."""
     if image.alpha_mode == "NONE":
         return AlphaMode.NONE
     if is_data or image.alpha_mode == "CHANNEL_PACKED":
         return AlphaMode.CHANNEL_PACKED
-    return AlphaMode.ASSOCIATED if is_float else AlphaMode.STRAIGHT
+    if bpy.app.version >= (5, 1):
+        # As the image says, even of pixels that Blender has already multiplied or divided.
+        associated = image.alpha_mode == "PREMUL"
+    elif is_stored:
+        associated = source.file_format in _ASSOCIATED_FORMATS
+    else:
+        # As Blender keeps pixels in memory.
+        associated = source.is_float
+    return AlphaMode.ASSOCIATED if associated else AlphaMode.STRAIGHT
 
 
-def _converted(values, name):
-    """Bytes of a colour space that is no curve and matrix, as floating point in the working space."""
-    if values.shape[2] == 4:
-        return convert(values, name)
+def _converted(values, name, alpha):
+    """Values of a colour space that takes more than its curve, as floating point in the working space; and their alpha mode.
+
+    Colour with alpha is converted straight, and multiplied by it after, as interpolation wants it.
+    """
     full = np.ones((*values.shape[:2], 4), np.float32)
-    full[:, :, :3] = values
-    return np.ascontiguousarray(convert(full, name)[:, :, :3])
+    full[:, :, : values.shape[2]] = values
+    if values.shape[2] == 1:
+        full[:, :, :3] = values
+    if values.shape[2] < 4:
+        return np.ascontiguousarray(convert(full, name)[:, :, :3]), alpha
+    if alpha == AlphaMode.ASSOCIATED:
+        _divide(full)
+    full = convert(full, name)
+    if alpha in (AlphaMode.ASSOCIATED, AlphaMode.STRAIGHT):
+        full[:, :, :3] *= full[:, :, 3:]
+        alpha = AlphaMode.ASSOCIATED
+    return full, alpha
 
 
-def _associate(values, alpha):
-    """Multiplies straight colour by alpha, as interpolation wants it; gives the mode that it has then."""
-    if alpha != AlphaMode.STRAIGHT:
-        return alpha
-    if values.shape[2] == 4:
-        values[:, :, :3] *= values[:, :, 3:]
-    return AlphaMode.ASSOCIATED
+def _divide(values):
+    """Colour by alpha, where there is any."""
+    np.divide(values[:, :, :3], values[:, :, 3:], out=values[:, :, :3], where=values[:, :, 3:] > 0.0)
 
 
 def _floating(values):

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import InstanceTable
+from ..harm import Harm
 from .checks import check_hair
 from .lights import export_light
 from .objects import Objects
@@ -64,10 +65,10 @@ class Instances:
                 key = thing.original.as_pointer(), thing.data.as_pointer(), self._narrowed_by(entry.parent)
                 row = rows.get(key)
                 if row is None:
-                    row = rows[key] = self._new_row(thing, *key, poll)
+                    row = rows[key] = self._new_row(thing, entry.instance_object, *key, poll)
             else:
                 # What nobody brings in comes once: there is nothing to remember.
-                row = self._new_row(thing, thing.original.as_pointer(), thing.data.as_pointer(), None, poll)
+                row = self._new_row(thing, thing, thing.original.as_pointer(), thing.data.as_pointer(), None, poll)
             if row >= 0:
                 row_of.append(row)
                 entries.append(number)
@@ -127,8 +128,8 @@ class Instances:
             narrowed = self._narrowed[key] = self._objects.narrowed_by(instancer)
         return narrowed
 
-    def _new_row(self, thing, original_key, data_key, narrowed, poll):
-        look, name = self._objects.look(thing, original_key, data_key, narrowed, poll)
+    def _new_row(self, thing, owner, original_key, data_key, narrowed, poll):
+        look, name = self._objects.look(thing, owner, original_key, data_key, narrowed, poll)
         if look < 0:
             return -1
         self._looks.append(look)
@@ -145,7 +146,8 @@ class Instances:
             if light is not None:
                 self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
-            self.messages.add(f"object '{thing.name}': type {thing.type} is not supported, it is left out")
+            text = f"object '{thing.name}': type {thing.type} is not supported, it is left out"
+            self.messages.add(text, f"feature:{thing.type.lower()} object", harm=Harm.LEFT_OUT)
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

@@ -8,6 +8,7 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
+from ..harm import Harm
 from .checks import check_linking
 from .graph import NodeGraph
 from .images import NoPictures
@@ -23,7 +24,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
     who = f"light '{thing.name}'"
     matrix = np.array(matrix_world, float)
     if not np.isfinite(matrix).all():
-        messages.add(f"{who}: its transform is not finite, it is left out")
+        messages.add(f"{who}: its transform is not finite, it is left out", harm=Harm.LEFT_OUT)
         return None
     # A portal gives no light: it tells Cycles where to look for the sky's.
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
@@ -38,7 +39,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
     elif kind == LightKind.SPOT:
         size = _stretch(matrix)
     if kind == LightKind.AREA and not size[0] * size[1] > 0.0:
-        messages.add(f"{who}: its area is zero, it is left out")
+        messages.add(f"{who}: its area is zero, it is left out", harm=Harm.LEFT_OUT)
         return None
     # A picture varies, so that none is read.
     graph = NodeGraph(who, messages, NoPictures(), depsgraph, unknown="white")
@@ -63,10 +64,16 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
         no_shadow=not _casts_shadow(light),
         falloff=Falloff[own.falloff],
         falloff_radius=messages.number(own.radius, who, "falloff radius", 10.0, 1e-12),
-        ambient_color=messages.color(own.ambient_color, who, "ambient colour", 1.0) if separate else (1.0, 1.0, 1.0),
+        ambient_color=_ambient(own, who, messages),
         diffuse_color=messages.color(own.diffuse_color, who, "diffuse colour", 1.0) if separate else (1.0, 1.0, 1.0),
         specular_color=messages.color(own.specular_color, who, "specular colour", 1.0) if separate else (1.0, 1.0, 1.0),
     )
+
+
+def _ambient(own, who, messages):
+    if not own.use_ambient:
+        return 0.0, 0.0, 0.0
+    return messages.color(own.ambient_color, who, "ambient colour", 1.0) if own.use_separate_colors else (1.0, 1.0, 1.0)
 
 
 def _rotation(matrix):
@@ -143,7 +150,10 @@ def _nodes(light, graph):
         return neutral
     emission = emission_of(graph, light.node_tree, "OUTPUT_LIGHT")
     if isinstance(emission, NodeRef):
-        graph.messages.add(f"{graph.owner}: light that varies with place or direction is not supported, its own power is used")
+        graph.messages.add(
+            f"{graph.owner}: light that varies with place or direction is not supported, its own power is used",
+            "feature:light textures",
+        )
         return neutral
     return emission
 
@@ -152,13 +162,19 @@ def _check(thing, light, who, messages):
     check_linking(thing, "light", messages)
     cycles = getattr(light, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")
+        messages.add(
+            f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
+            "feature:bounce limit of a lamp",
+        )
     if getattr(light, "use_custom_distance", False) and bpy.app.version < (4, 2):
         messages.add(f"{who}: custom distance is not supported, its light reaches on as in Cycles")
     if not getattr(cycles, "use_multiple_importance_sampling", True):
-        messages.add(f"{who}: without multiple importance sampling Cycles hides it from mirrors and glass, here they show it")
+        messages.add(
+            f"{who}: without multiple importance sampling Cycles hides it from mirrors and glass, here they show it",
+            "feature:lamp without MIS",
+        )
     if light.type == "SPOT" and _sheared(np.array(thing.matrix_world, float)):
-        messages.add(f"{who}: a sheared spot is not supported, its cone is only stretched")
+        messages.add(f"{who}: a sheared spot is not supported, its cone is only stretched", "feature:sheared spot")
 
 
 def _sheared(matrix):

@@ -4,6 +4,7 @@ import bpy
 
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag
+from ..harm import Harm
 from .arithmetic import is_constant, triple
 from .graph import NodeGraph
 from .images import Images
@@ -96,6 +97,9 @@ def _is_weak(material, surface):
 def _own_model(own, who, messages):
     kd = messages.color(own.kd, who, "diffuse colour")
     ks = messages.color(own.ks, who, "specular colour")
+    if own.model == "MINNAERT":
+        k = messages.number(own.darkness, who, "darkness", 1.0, 0.0)
+        return (snapshot.Lobe(LobeKind.MINNAERT, kd, shininess=k),) if any(kd) else ()
     lobes = []
     if any(kd):
         lobes.append(snapshot.Lobe(LobeKind.LAMBERT, kd))
@@ -115,13 +119,13 @@ def _from_nodes(material, graph):
     who, messages, tree = graph.owner, graph.messages, material.node_tree
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
-        messages.add(f"{who}: has no Material Output node that Cycles takes, black is used")
+        messages.add(f"{who}: has no Material Output node that Cycles takes, black is used", harm=Harm.WRONG)
         return {"lobes": ()}
     site = Site(output)
     has_surface = graph.is_linked(site, ("Surface",))
     if graph.is_linked(site, ("Volume",)):
         shown = "its surface alone is shown" if has_surface else "nothing of it is shown"
-        messages.add(f"{who}: volumes are not supported, {shown}")
+        messages.add(f"{who}: volumes are not supported, {shown}", "feature:volume", harm=Harm.LEFT_OUT)
         if not has_surface:
             return {"lobes": (), "transmittance": (1.0, 1.0, 1.0)}
     values = _displacement(material, graph, site)

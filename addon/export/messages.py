@@ -1,36 +1,85 @@
 """What a render left out or replaced, counted and told once."""
 
 import math
+from typing import NamedTuple
+
+from ..harm import Harm
+
+
+class Message(NamedTuple):
+    text: str
+    key: str
+    harm: Harm
+    count: int = 1
+
+    @property
+    def line(self):
+        return self.text if self.count == 1 else f"{self.text} ({self.count} times)"
+
+
+# What the library's own messages say of their harm; others are of something that is shown otherwise.
+_OF_LIBRARY = (("without area were left out", Harm.HINT), ("left out", Harm.LEFT_OUT), ("gives no light", Harm.LEFT_OUT))
 
 
 class Messages:
-    """Sentences in order of their first arrival; a sentence met again is only counted."""
+    """Sentences, what hurts most first, else in order of their first arrival; a sentence met again is only counted."""
 
-    def __init__(self, lines=()):
-        self._counts = {}
+    def __init__(self, lines=(), harm=Harm.DIFFERENT):
+        self._messages = {}
         for text in lines:
-            self.add(text)
+            self.add(text, harm=harm)
 
-    def add(self, text):
-        self._counts[text] = self._counts.get(text, 0) + 1
+    @classmethod
+    def of_library(cls, lines):
+        """Of the lines that a Session gives."""
+        messages = cls()
+        for text in lines:
+            messages.add(text, harm=next((harm for word, harm in _OF_LIBRARY if word in text), Harm.DIFFERENT))
+        return messages
+
+    def add(self, text, key="", harm=Harm.DIFFERENT):
+        """key: what is missing, for programs: "node:" and the node's label, or "feature:" and its name.
+
+        Whoever asks for it gets another picture than Cycles'. What merely warns has no key.
+        """
+        self._count(Message(text, key, harm))
+
+    def _count(self, message):
+        """Whether it is new here."""
+        known = self._messages.get(message.text)
+        if known is not None:
+            message = known._replace(count=known.count + message.count, harm=max(known.harm, message.harm))
+        self._messages[message.text] = message
+        return known is None
 
     def merge(self, other):
         """Adds what another holds. Gives of it what is new here."""
         new = Messages()
-        for text, count in other._counts.items():
-            if text not in self._counts:
-                new._counts[text] = count
-            self._counts[text] = self._counts.get(text, 0) + count
+        for message in other._messages.values():
+            if self._count(message):
+                new._count(message)
         return new
 
     def __len__(self):
-        return len(self._counts)
+        return len(self._messages)
 
     def __iter__(self):
         return iter(self.lines())
 
+    def told(self):
+        """Each Message, what hurts most first."""
+        return sorted(self._messages.values(), key=lambda message: -message.harm)
+
     def lines(self):
-        return [text if count == 1 else f"{text} ({count} times)" for text, count in self._counts.items()]
+        return [message.line for message in self.told()]
+
+    def missing(self):
+        """{key: how often it was met}"""
+        counts = {}
+        for message in self._messages.values():
+            if message.key:
+                counts[message.key] = counts.get(message.key, 0) + message.count
+        return counts
 
     def number(self, value, who, what, default, low=-math.inf, high=math.inf):
         """value where it is a finite number in [low, high]; else the nearest usable one, with a message."""

@@ -6,10 +6,11 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
+from ..harm import Harm
 from .arithmetic import is_constant
-from .attributes import named_attributes
+from .attributes import POLYGONS, named_attributes
 from .checks import check_object
-from .mesh import export_mesh, read_positions
+from .mesh import export_mesh, read_positions, shown_mesh
 from .visibility import object_hidden_from
 
 _TERMINATOR = "shadow_terminator_geometry_offset"
@@ -76,38 +77,46 @@ class Objects:
     def _is_indirect(self, thing):
         return self._asks_layer and thing.original.indirect_only_get(view_layer=self.view_layer)
 
-    def look(self, thing, original_key, data_key, narrowed, poll):
-        """(Number of the look, name) of an object that shows a mesh; (-1, "") where there is nothing to see."""
+    def look(self, thing, owner, original_key, data_key, narrowed, poll):
+        """(Number of the look, name) of an object that shows a mesh; (-1, "") where there is nothing to see.
+
+        owner: the evaluated object that thing is, or is an instance of. Instances exist for a moment only: settings of add-ons
+        that are read from one stay allocated for ever.
+        """
         poll()
         name = thing.name
         if original_key not in self._checked:
             self._checked.add(original_key)
-            check_object(thing, self.scene, self.messages)
+            check_object(owner, self.scene, self.messages)
         sight = self.sight(thing, narrowed)
         materials = [slot.material for slot in thing.material_slots]
         slots = tuple([self.materials.number(material, name) for material in materials or list(thing.data.materials) or [None]])
-        own = thing.lancer
+        own = owner.lancer
         kind = InstanceKind[own.shape]
         mesh, placement = 0, -1
         if kind == InstanceKind.MESH:
-            mesh, used = self._mesh(thing, name, data_key, slots, poll)
+            mesh, used = self._mesh(thing, owner, name, data_key, slots, self._colors_polygons(own), poll)
             if mesh < 0:
                 return -1, ""
         else:
-            placement, used = self._placement(thing, name, kind, data_key), (0,)
+            placement, used = self._placement(thing, owner, name, kind, data_key), (0,)
             if placement < 0:
                 return -1, ""
             self._tell_exact(name, slots)
         if None in materials:
             self._tell_empty(name, materials, used)
         index, shading = max(0, thing.pass_index), Shading[own.shading]
-        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(thing), placement)
+        look = Look(kind, mesh, slots, index, shading, *sight, _terminator(owner), placement)
         number = self._numbers.setdefault(look, len(self.looks))
         if number == len(self.looks):
             self.looks.append(look)
         return number, name
 
-    def _mesh(self, thing, name, data_key, slots, poll):
+    def _colors_polygons(self, own):
+        """Whether each face of the object gets one colour: Classic has to know which triangles are one face then."""
+        return own.shading == "FLAT" and self.scene.lancer.integrator == "CLASSIC"
+
+    def _mesh(self, thing, owner, name, data_key, slots, polygons, poll):
         """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces.
 
         Objects that share a mesh may show it with materials that read different attributes of it.
@@ -115,11 +124,14 @@ class Objects:
         wanted = self._wanted.get(slots)
         if wanted is None:
             wanted = self._wanted[slots] = self.materials.attributes(slots)
+        if polygons:
+            wanted = wanted | {POLYGONS}
         copies = self._meshes.setdefault(data_key, [])
         found = next((copy for copy in copies if copy[0] >= wanted), None)
         if found is None:
             original = thing.original.data
-            data = export_mesh(thing.data, name if original is None else original.name, poll, wanted)
+            with shown_mesh(thing, owner) as mesh:
+                data = export_mesh(mesh, name if original is None else original.name, poll, wanted)
             poll()
             used = (0,) if data.material_slots is None else tuple(np.unique(data.material_slots).tolist())
             number = -1
@@ -129,21 +141,25 @@ class Objects:
             found = wanted, number, used
             copies.append(found)
         _, number, used = found
-        if number < 0:
+        # Nodes may well give instances alone.
+        if number < 0 and not any(modifier.type == "NODES" for modifier in thing.modifiers):
             self.messages.add(f"object '{name}': has no faces, it is left out")
         return number, used
 
-    def _placement(self, thing, name, kind, data_key):
+    def _placement(self, thing, owner, name, kind, data_key):
         """The number of what brings the unit shape to where the object's mesh is; -1 where the mesh has no vertices."""
         number = self._placed.get((kind, data_key))
         if number is None:
-            placement = _placement(kind, read_positions(thing.data))
+            with shown_mesh(thing, owner) as mesh:
+                placement = _placement(kind, read_positions(mesh))
             number = -1 if placement is None else len(self.placements)
             self._placed[kind, data_key] = number
             if placement is not None:
                 self.placements.append(placement)
         if number < 0:
-            self.messages.add(f"object '{name}': has no vertices to place its exact shape by, it is left out")
+            self.messages.add(
+                f"object '{name}': has no vertices to place its exact shape by, it is left out", harm=Harm.LEFT_OUT
+            )
         return number
 
     def _tell_exact(self, name, slots):
@@ -159,7 +175,7 @@ class Objects:
             return
         for number in sorted({min(slot, len(materials) - 1) for slot in used}):
             if materials[number] is None:
-                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used")
+                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used", harm=Harm.HINT)
 
 
 def _has_special_collections(view_layer):

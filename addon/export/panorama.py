@@ -24,7 +24,9 @@ def panorama(data, aspect, who, messages):
         return CameraKind.PERSPECTIVE, (0.0,) * 8
     kind = _KINDS.get(owner.panorama_type)
     if kind is None:
-        messages.add(f"{who}: panorama {owner.panorama_type} is not supported, a perspective camera is used")
+        messages.add(
+            f"{who}: panorama {owner.panorama_type} is not supported, a perspective camera is used", "feature:panorama"
+        )
         return CameraKind.PERSPECTIVE, (0.0,) * 8
     values = tuple(_values(owner, data, kind, aspect))
     return kind, values + (0.0,) * (8 - len(values))

@@ -37,7 +37,7 @@ def read_principled(surface, site, weight):
         return
     for name, meaning in (_FILM, _WALL):
         if not is_constant(number(name, 0.0), 0.0):
-            graph.tell(site, f"input '{PRINCIPLED[name][0]}' is not supported, {meaning}")
+            graph.tell(site, f"input '{PRINCIPLED[name][0]}' is not supported, {meaning}", f"feature:Principled {name}")
     values = {name: number(name, default, 0.0, 1.0) for name, default in _SHARES}
     values["base_color"] = _base_color(surface, site, values)
     values["ior"] = number("ior", 1.5, SMALLEST_IOR)
@@ -92,7 +92,7 @@ def _base_color(surface, site, values):
     if is_constant(share, 0.0):
         return base
     name = find(site.node, PRINCIPLED["subsurface"]).name
-    graph.tell(site, f"input '{name}' is not supported, a diffuse surface is used")
+    graph.tell(site, f"input '{name}' is not supported, a diffuse surface is used", "feature:subsurface scattering")
     diffuse_only = is_constant(values["metallic"], 0.0) and is_constant(values["transmission"], 0.0)
     if RULES == Rules.BLENDER_3 and diffuse_only:
         return graph.mix(share, base, surface.color(site, ("Subsurface Color",)))

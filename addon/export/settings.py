@@ -5,6 +5,8 @@ import bpy
 from ..bindings import snapshot
 from ..bindings.enums import Accelerator, Features, Integrator, Pass, PixelFilter
 
+# Threads of a render whose scene leaves their number to Blender, 0 = all: as the add-on's preferences say.
+default_threads = 0
 # The core's own limit: glass doubles the rays of Classic with every depth.
 _DEEPEST_RECURSION = 16
 # The exponents of Blender's names.
@@ -47,7 +49,7 @@ def export_settings(depsgraph, passes, world, messages):
         blended_features=bpy.app.version >= (5, 2),
         features=Features[own.features],
         passes=tuple(sorted({Pass.COMBINED, *passes})),
-        threads=render.threads if render.threads_mode == "FIXED" else 0,
+        threads=render.threads if render.threads_mode == "FIXED" else default_threads,
         accelerator=Accelerator[own.accelerator],
         **_world_settings(world, messages),
     )

@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MathOperation, Rules
 from ..bindings.shading import NodeRef
+from ..harm import Harm
 from .arithmetic import is_constant, triple
 from .closures import CLOSURES, read_unknown
 from .coordinates import default_tangent
@@ -36,7 +37,9 @@ class Surface:
     def lobes(self):
         if len(self._lobes) > _MAX_LOBES:
             graph = self.graph
-            graph.messages.add(f"{graph.owner}: has {len(self._lobes)} lobes, the first {_MAX_LOBES} are used")
+            graph.messages.add(
+                f"{graph.owner}: has {len(self._lobes)} lobes, the first {_MAX_LOBES} are used", "feature:many lobes"
+            )
         return tuple(self._lobes[:_MAX_LOBES])
 
     def read(self, site, socket):
@@ -63,7 +66,8 @@ class Surface:
             # Cycles 3 takes the one direction of Transparent for one of many, and adds what the other lobe sends there.
             self.graph.messages.add(
                 f"{self.graph.owner}: beside Translucent, rough Glass or Refraction a Transparent part shows what is behind "
-                "in its own colour, which Cycles 3 mixes with theirs"
+                "in its own colour, which Cycles 3 mixes with theirs",
+                "feature:Transparent beside Translucent of Cycles 3",
             )
 
     def _in_order(self, root):
@@ -183,5 +187,6 @@ def emission_of(graph: NodeGraph, tree, kind):
     surface = Surface(graph)
     surface.read(Site(output), output.inputs["Surface"])
     if surface.lobes or not is_constant(surface.transmittance, 0.0) or not is_constant(surface.holdout, 0.0):
-        graph.messages.add(f"{graph.owner}: only Background and Emission shine, other shaders are left out")
+        text = "only Background and Emission shine, other shaders are left out"
+        graph.messages.add(f"{graph.owner}: {text}", "feature:surfaces of worlds and lights", harm=Harm.LEFT_OUT)
     return surface.emission if isinstance(surface.emission, NodeRef) else triple(surface.emission)

@@ -10,6 +10,7 @@ from ..bindings.enums import (
     Projection,
     VectorOperation,
 )
+from ..harm import Harm
 from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
 from .maths import transformed
@@ -72,9 +73,9 @@ def _environment_texture(graph, site, output):
 def _picture(graph, site):
     node = site.node
     if node.image is None or graph.images is None:
-        graph.tell(site, "has no image, magenta is used")
+        graph.tell(site, "has no image, magenta is used", "", harm=Harm.WRONG)
         return None
-    return graph.images.numbers(node.image, node.image_user, lambda text: graph.tell(site, text))
+    return graph.images.numbers(node.image, node.image_user, lambda text, key="", **harm: graph.tell(site, text, key, **harm))
 
 
 def _has_color_under_alpha(image):

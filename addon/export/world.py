@@ -5,6 +5,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind
+from ..harm import Harm
 from .graph import NodeGraph
 from .sockets import output_node
 from .surface import emission_of
@@ -20,12 +21,17 @@ def export_world(world, images, depsgraph, messages):
         return snapshot.World()
     who = f"world '{world.name}'"
     graph = NodeGraph(who, messages, images, depsgraph)
+    own = world.lancer
     cycles = getattr(world, "cycles", None)
     if getattr(cycles, "max_bounces", 1024) < 1024:
-        messages.add(f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used")
-    radiance = _cube(world.lancer, graph, who, messages) if world.lancer.use_cube else _nodes(world, graph, who, messages)
+        messages.add(
+            f"{who}: its own limit of {cycles.max_bounces} bounces is not supported, the scene's Max Bounces is used",
+            "feature:bounce limit of a lamp",
+        )
+    radiance = _cube(own, graph, who, messages) if own.use_cube else _nodes(world, graph, who, messages)
     return snapshot.World(
         radiance=radiance,
+        ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,
         nodes=graph.nodes,
         hidden_from=hidden_from(getattr(world, "cycles_visibility", None)),
         map_resolution=cycles.sample_map_resolution if getattr(cycles, "sampling_method", "") == "MANUAL" else 0,
@@ -39,7 +45,8 @@ def _nodes(world, graph, who, messages):
     if output is None:
         return 0.0, 0.0, 0.0
     if output.inputs["Volume"].is_linked:
-        messages.add(f"{who}: volumes are not supported, its background alone is shown")
+        text = f"{who}: volumes are not supported, its background alone is shown"
+        messages.add(text, "feature:volume of the world", harm=Harm.LEFT_OUT)
     return emission_of(graph, world.node_tree, "OUTPUT_WORLD")
 
 
@@ -63,8 +70,10 @@ def _side(image, name, images, who, messages):
     """(number, picture) of one side; a black one, with a message, where there is none."""
     found = None
     if image is not None:
-        found = images.numbers(image, None, lambda text: messages.add(f"{who}, side {name}: {text}"))
+        found = images.numbers(
+            image, None, lambda text, key="", **harm: messages.add(f"{who}, side {name}: {text}", key, **harm)
+        )
     if found is not None:
         return found[0], images.list[found[0]]
-    messages.add(f"{who}: side {name} of its cube has no picture, it is black")
+    messages.add(f"{who}: side {name} of its cube has no picture, it is black", harm=Harm.WRONG)
     return -1, snapshot.Image(name="black", texels=np.zeros((1, 1, 3), np.uint8), alpha=AlphaMode.NONE)

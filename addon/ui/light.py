@@ -113,6 +113,7 @@ class LANCER_DATA_PT_classic_light(LancerLightPanel, bpy.types.Panel):
         row = column.row()
         row.enabled = own.falloff not in ("PHYSICAL", "CONSTANT")
         row.prop(own, "radius")
+        column.prop(own, "use_ambient")
         column.prop(own, "use_separate_colors")
         if own.use_separate_colors:
             column.prop(own, "ambient_color")

@@ -36,11 +36,11 @@ class LANCER_MATERIAL_PT_surface(LancerMaterialPanel, bpy.types.Panel):
             column.prop(material, "diffuse_color", text="Color")
         else:
             column.prop(own, "kd")
-            column.prop(own, "ks")
+            column.prop(own, "darkness" if own.model == "MINNAERT" else "ks")
             if own.model == "KD_KS":
                 column.prop(own, "roughness")
                 column.prop(own, "ior")
-            else:
+            elif own.model != "MINNAERT":
                 column.prop(own, "shininess")
         row = column.row()
         row.active = uses_classic(context.scene)

@@ -3,7 +3,7 @@
 import bpy
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
-from .. import denoise, measuring, quality
+from .. import denoise, measuring, presets, quality
 from .panel import LancerPanel, setting, uses_classic
 from .sentences import sentence
 
@@ -28,6 +28,7 @@ class LancerRenderPanel(LancerPanel):
 
 class LANCER_RENDER_PT_sampling(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
+    draw_header_preset = presets.draw_sampling
 
     def draw(self, context):
         settings = context.scene.lancer
@@ -98,6 +99,7 @@ class LANCER_RENDER_PT_sampling_advanced(LancerRenderPanel, bpy.types.Panel):
 class LANCER_RENDER_PT_light_paths(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Light Paths"
     bl_options = {"DEFAULT_CLOSED"}
+    draw_header_preset = presets.draw_light_paths
 
     def draw(self, context):
         sentence(self.layout.column(align=True), context, _REPLACED)

@@ -3,7 +3,7 @@
 import bpy
 
 from ..export.world import CUBE_SIDES
-from .panel import LancerPanel, nodes_of, setting
+from .panel import LancerPanel, nodes_of, setting, uses_classic
 
 
 class LancerWorldPanel(LancerPanel):
@@ -84,10 +84,24 @@ class LANCER_WORLD_PT_settings(LancerWorldPanel, bpy.types.Panel):
         setting(row, "sample_map_resolution", cycles)
 
 
+class LANCER_WORLD_PT_classic(LancerWorldPanel, bpy.types.Panel):
+    bl_label = "Classic"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        own = context.world.lancer
+        column = self._column(animated=True)
+        column.active = uses_classic(context.scene)
+        column.prop(own, "use_ambient_color")
+        if own.use_ambient_color:
+            column.prop(own, "ambient_color", text="Color")
+
+
 CLASSES = (
     LANCER_WORLD_PT_surface,
     LANCER_WORLD_PT_mist,
     LANCER_WORLD_PT_ambient_occlusion,
     LANCER_WORLD_PT_ray_visibility,
     LANCER_WORLD_PT_settings,
+    LANCER_WORLD_PT_classic,
 )

@@ -9,13 +9,13 @@ import argparse
 import dataclasses
 import json
 import sys
-import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "addon"), str(ROOT / "blender_tests")]
 
 from bench import accuracy_goals, accuracy_page, accuracy_runs, accuracy_scenes, jobs  # noqa: E402
+from bench.longer import Line, kept  # noqa: E402
 
 OUTPUT = ROOT / "build" / "accuracy"
 # Of those that exist for Blender too, each with another kind of noise; smaller, since most runs go up to 4096 samples.
@@ -31,33 +31,6 @@ def read_arguments():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--no-cycles", action="store_true", help="leave Cycles out")
     return parser.parse_args()
-
-
-class Line:
-    """One line that moves on a terminal; in a log a line for each scene."""
-
-    def __init__(self):
-        self.started = time.monotonic()
-        self.moves = sys.stdout.isatty()
-
-    def show(self, text):
-        if self.moves:
-            print(f"\r\033[K{time.monotonic() - self.started:7.1f}  {text}", end="", flush=True)
-
-    def end(self, text):
-        print(f"{chr(13) + chr(27) + '[K' if self.moves else ''}{time.monotonic() - self.started:7.1f}  {text}", flush=True)
-
-
-def kept(path, key, measure):
-    """What measure() gives, or gave in an earlier run with the same key."""
-    if path.exists():
-        found = json.loads(path.read_text())
-        if found["key"] == key:
-            return found["result"]
-    result = measure()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({"key": key, "result": result}))
-    return result
 
 
 def summary(result):

@@ -219,6 +219,7 @@ CASES = (
     _surface("Beckmann facets", _lobe(LobeKind.BECKMANN, roughness=0.2)),
     _surface("Phong", _lobe(LobeKind.PHONG)),
     _surface("Blinn-Phong", _lobe(LobeKind.BLINN_PHONG)),
+    _surface("Minnaert", _lobe(LobeKind.MINNAERT, shininess=1.5)),
     _surface("smooth glass", _lobe(LobeKind.DIELECTRIC)),
     _surface("rough glass", _lobe(LobeKind.GLASS, roughness=0.4)),
     _surface("refraction alone", _lobe(LobeKind.REFRACTION, roughness=0.2)),

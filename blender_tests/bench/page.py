@@ -212,9 +212,13 @@ def _readme_cell(record):
 
 
 def update_readme(path, figures):
-    text = path.read_text(encoding="utf-8")
-    if BEGIN not in text or END not in text:
-        raise ValueError(f"{path.name} lacks the lines between which the table belongs: {BEGIN} and {END}")
-    before, rest = text.split(BEGIN, 1)
-    after = rest.split(END, 1)[1]
-    path.write_text(f"{before}{BEGIN}\n{readme_table(figures)}\n{END}{after}", encoding="utf-8")
+    replace_between(path, BEGIN, END, readme_table(figures))
+
+
+def replace_between(path, begin, end, text):
+    """Puts text between two lines of a file that are there already."""
+    whole = path.read_text(encoding="utf-8")
+    if begin not in whole or end not in whole:
+        raise ValueError(f"{path.name} lacks the lines between which the table belongs: {begin} and {end}")
+    before, rest = whole.split(begin, 1)
+    path.write_text(f"{before}{begin}\n{text}\n{end}{rest.split(end, 1)[1]}", encoding="utf-8")

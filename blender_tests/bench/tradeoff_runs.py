@@ -13,7 +13,7 @@ from addon.bindings.schedule import Schedule
 from addon.bindings.session import Scene, Session
 from addon.export.scene import export_scene
 
-from . import worker
+from . import worker, written
 
 _DEEPEST_CLASSIC = 16
 
@@ -79,12 +79,12 @@ class Cycles:
     def render(self, seed, samples):
         """(seconds, picture)."""
         self.scene.render.engine = "CYCLES"
-        worker.write_floats(self.scene)
+        written.write_floats(self.scene)
         worker.set_samples(self.scene, samples, seed)
         with tempfile.TemporaryDirectory() as folder:
             self.scene.render.filepath = str(Path(folder) / "picture.exr")
             bpy.ops.render.render(write_still=True, scene=self.scene.name)
-            return worker.own_clock(self.scene), worker.read_floats(self.scene)
+            return written.own_clock(self.scene), written.read_floats(self.scene)[..., :3]
 
 
 def without_exact_shapes(scene):

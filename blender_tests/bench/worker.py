@@ -1,7 +1,6 @@
 """worker.py TASK ARGUMENTS: one measurement inside Blender's Python module. Arguments and answer are JSON."""
 
 import os
-import re
 import sys
 import tempfile
 import time
@@ -19,7 +18,7 @@ from addon.bindings import abi  # noqa: E402
 from addon.bindings.session import Scene, Session  # noqa: E402
 from addon.export.scene import export_scene  # noqa: E402
 from bench import process  # noqa: E402
-from scenes.parity import exr  # noqa: E402
+from bench.written import own_clock, read_floats, write_floats  # noqa: E402
 
 
 def set_up(name, threads, width=None, height=None, samples=None, bounces=12, seed=0):
@@ -114,38 +113,12 @@ def render(engine, name, threads, width, height, samples, seed, bounces=12, pict
         result["render_seconds"] = own_clock(scene)
         result["clock"] = "the engine's own clock"
         if picture:
-            np.save(picture, read_floats(scene))
+            np.save(picture, read_floats(scene)[..., :3])
     if engine == "LANCER":
         statistics = addon.engine.last_statistics[scene.name]
         result["rays"] = {kind: statistics[f"{kind}_rays"] for kind in ("camera", "bounce", "shadow")}
         result["statistics"] = statistics
     return result
-
-
-def write_floats(scene):
-    """What F12 writes are the numbers themselves."""
-    image = scene.render.image_settings
-    if hasattr(image, "media_type"):
-        image.media_type = "IMAGE"
-    image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR", "32", "NONE"
-
-
-def read_floats(scene):
-    """The written picture, (h, w, 3); row 0 is the bottom row."""
-    values = next(iter(exr.read(scene.render.filepath).values()))
-    return np.ascontiguousarray(values[::-1, :, :3])
-
-
-def own_clock(scene):
-    """Seconds of the last render from its first ray on; Cycles writes them into the picture's file, to a hundredth."""
-    if scene.render.engine == "LANCER":
-        return addon.engine.last_statistics[scene.name]["seconds"]
-    with open(scene.render.filepath, "rb") as file:
-        found = re.search(rb"cycles\.[^\0]*\.render_time\0string\0....([0-9:.]+)", file.read(1 << 16), re.DOTALL)
-    seconds = 0.0
-    for part in found[1].decode().split(":"):
-        seconds = 60.0 * seconds + float(part)
-    return seconds
 
 
 def snapshot(path, **settings):

@@ -57,7 +57,17 @@ def one_sample():
 
 def target():
     """Renders that end by a target, and by the samples that are allowed for it."""
-    return [_rendered(_noisy(target_error=target, samples=samples)) for target, samples in ((0.05, 65536), (1e-6, 100))]
+    limits = ((0.05, 65536), (1e-6, 100))
+    return {"renders": [_rendered(_noisy(target_error=target, samples=samples)) for target, samples in limits]}
+
+
+def layers():
+    """Two view layers."""
+    scene = _noisy(samples=4)
+    scene.view_layers[0].name = "Front"
+    scene.view_layers.new("Back")
+    bpy.ops.render.render()
+    return {"accuracy": engine.last_statistics[scene.name]["accuracy"]}
 
 
 def limit():

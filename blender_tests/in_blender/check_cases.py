@@ -173,3 +173,24 @@ def failing():
     finally:
         check_scene.check_snapshot = good
     return {"messages": messages, "samples": engine.last_statistics[scene.name]["samples"]}
+
+
+def _monkey():
+    bpy.ops.mesh.primitive_monkey_add(location=(0, 0, 1))
+    bpy.ops.object.shade_smooth()
+
+
+def _letters():
+    bpy.ops.object.text_add(location=(-2, 0, 1))
+    text = bpy.context.object.data
+    text.body, text.extrude, text.bevel_depth, text.bevel_resolution = "Lancer @&8", 0.1, 0.04, 3
+
+
+def smooth():
+    """{name: (findings, messages of F12)} of things whose smooth shading bends round sharp folds, as Blender makes them."""
+    result = {}
+    for name, build in (("monkey", _monkey), ("letters", _letters)):
+        _room()
+        build()
+        result[name] = (_findings(), _told())
+    return result

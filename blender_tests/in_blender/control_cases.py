@@ -201,7 +201,7 @@ class _Stage:
             world.use_nodes = False
             yield now(world)
             world.use_nodes = True
-        world.lancer.use_cube = True
+        world.lancer.use_cube = world.lancer.use_ambient_color = True
         yield now(world.lancer)
         world.lancer.use_cube = False
         if hasattr(world, "cycles"):
@@ -219,9 +219,10 @@ class _Stage:
             return (owner,), depth, self.shows("material", self.cube, material=material, material_slot=slot)
 
         yield now(material, depth=2)
-        for model in ("KD_KS", "PHONG", "BLINN_PHONG"):
-            material.lancer.model = model
-            yield now(material.lancer)
+        for model in material.lancer.bl_rna.properties["model"].enum_items.keys():
+            if model != "NODES":
+                material.lancer.model = model
+                yield now(material.lancer)
         material.lancer.model = "NODES"
         if bpy.app.version < (5, 0):
             material.use_nodes = False

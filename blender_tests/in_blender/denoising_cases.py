@@ -38,7 +38,7 @@ def _render(scene, denoising, layer=None):
     bpy.ops.render.render(write_still=True)
     with open(path, "rb") as file:
         data = file.read()
-    return exr.read(path, layer), engine.last_messages[scene.name], engine.last_statistics[scene.name], data
+    return exr.read(path, layer), list(engine.last_messages[scene.name]), engine.last_statistics[scene.name], data
 
 
 def _compare(scene, layer=None):
@@ -150,7 +150,7 @@ def stopped(how):
     finally:
         denoise.apply = original
     working = [thread.name for thread in threading.enumerate() if "denoising" in thread.name]
-    return {**result, "said": said, "messages": engine.last_messages[scene.name], "working": working}
+    return {**result, "said": said, "messages": list(engine.last_messages[scene.name]), "working": working}
 
 
 def failing():

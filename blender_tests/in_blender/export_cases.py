@@ -5,7 +5,8 @@ import numpy as np
 import stage
 
 from addon.bindings.enums import InstanceKind, LightKind, Ray, Shading
-from addon.export.mesh import _triangle_corners, _triangle_faces
+from addon.export.arrays import triangle_faces
+from addon.export.mesh import _triangle_corners
 from addon.export.scene import export_scene
 
 
@@ -107,7 +108,7 @@ def particle_instances():
     return counts(export())
 
 
-def _row_of_cubes():
+def row_of_cubes():
     """Node instances: five cubes on a line of points."""
     tree = bpy.data.node_groups.new("Row", "GeometryNodeTree")
     if hasattr(tree, "interface"):
@@ -129,7 +130,7 @@ def _row_of_cubes():
 def node_instances():
     """Five cubes on a line of points, beside a plain cube."""
     stage.empty()
-    _row_of_cubes()
+    row_of_cubes()
     stage.cube(location=(0, 9, 0))
     return counts(export())
 
@@ -178,7 +179,7 @@ def walked():
     settings = ground.particle_systems[0].settings
     settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 7, "OBJECT", item
     settings.size_random = 0.5
-    _row_of_cubes()
+    row_of_cubes()
     corners = [(1, -1, 0), (3, -1, 0), (3, 1, 0), (1, 1, 0)]
     stage.mesh("Flat", corners, [(0, 1, 2, 3)], location=(0, 0, -1)).lancer.shape = "PLANE"
     ExportProbe.look = _walk
@@ -352,6 +353,6 @@ def triangulation():
     return {
         "corners": corners.tolist(),
         "copied": root.flags.owndata,
-        "faces": _triangle_faces(data).tolist(),
+        "faces": triangle_faces(data).tolist(),
         "told": [[list(triangle.loops), triangle.polygon_index] for triangle in data.loop_triangles],
     }

@@ -9,6 +9,7 @@ import stage
 from export_cases import export_told
 
 from addon.bindings.enums import AlphaMode, NodeKind, Transfer
+from scenes.parity import image_files
 
 SIZE = 8
 
@@ -94,6 +95,7 @@ def answer():
         "flags": [node.flags for node in nodes],
         "messages": list(messages),
         "unchanged": before == listed(),
+        "version": list(bpy.app.version),
     }
 
 
@@ -165,6 +167,33 @@ def files():
     packed.pack()
     show(packed)
     os.remove(os.path.join(folder, "frame_003.png"))
+    return answer()
+
+
+def deep():
+    """Files of 16 bits and of floats: as they are, with each way to take alpha, packed, painted over, in a space of its own."""
+    stage.empty()
+    values = ramp() / 255.0
+    for kind in ("PNG", "TIFF", "OPEN_EXR"):
+        path = image_files.write(kind, os.path.join(tempfile.mkdtemp(), "file"), values)
+        for mode in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"):
+            item = image_files.load(path, "sRGB")
+            item.name, item.alpha_mode = f"{kind} {mode}", mode
+            show(item)
+        packed, data, other = (image_files.load(path, space) for space in ("sRGB", "Non-Color", "Filmic sRGB"))
+        packed.name, data.name, other.name = f"{kind} packed", f"{kind} data", f"{kind} other"
+        packed.pack()
+        for item in (packed, data, other):
+            show(item)
+    # Blender holds it decoded already, and does not decode it again for others.
+    held = image_files.load(path, "sRGB")
+    held.name = "held"
+    held.pixels[0]
+    painted = image_files.load(path, "sRGB")
+    painted.name = "painted"
+    painted.pixels[0] = 0.25
+    for item in (held, painted):
+        show(item)
     return answer()
 
 

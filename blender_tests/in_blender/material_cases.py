@@ -96,11 +96,12 @@ class Tree:
 def own_models():
     stage.empty()
     materials = []
-    for model in ("KD_KS", "PHONG", "BLINN_PHONG"):
+    for model in ("KD_KS", "PHONG", "BLINN_PHONG", "MINNAERT"):
         material = bpy.data.materials.new(model)
         own = material.lancer
         own.model, own.kd, own.ks = model, (0.5, 0.25, 0.125), (0.75, 0.5, 0.25)
         own.roughness, own.ior, own.shininess, own.ka = 0.25, 1.75, 40.0, (0.5, 0.25, 0.0)
+        own.darkness = 0.75
         materials.append(material)
     return answer(*materials)
 

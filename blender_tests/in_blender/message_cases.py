@@ -83,7 +83,7 @@ def failed_layer(path):
 
     def say(*_):
         with open(path, "w", encoding="utf-8") as file:
-            json.dump(engine.last_messages[scene.name], file)
+            json.dump(list(engine.last_messages[scene.name]), file)
 
     engine.export_scene = export
     bpy.app.handlers.render_post.append(say)

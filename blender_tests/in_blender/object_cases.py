@@ -2,7 +2,7 @@
 
 import bpy
 import stage
-from export_cases import export_told
+from export_cases import export_told, row_of_cubes
 
 from addon.bindings.enums import InstanceFlag, Ray
 
@@ -64,6 +64,25 @@ def instancers():
             setattr(empty, field, value)
     snapshot, _ = export_told()
     return {"rows": _rows(snapshot), "meshes": len(snapshot.meshes)}
+
+
+def freed():
+    """Renders instances of every kind, of objects that nothing else shows. What they leave Blender tells at its exit."""
+    scene = stage.room()
+    row_of_cubes()
+    for name, thing in (("Boxes", stage.cube(0.3)), ("Lamps", stage.light())):
+        collection = bpy.data.collections.new(name)
+        scene.collection.objects.unlink(thing)
+        collection.objects.link(thing)
+        empty = stage.link(name, None, (0, 1, 1))
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    ground = stage.plane(2.0)
+    ground.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = ground.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type = "HAIR", 5, "OBJECT"
+    settings.instance_object = bpy.data.objects["Cube"]
+    bpy.ops.render.render()
+    return {"instances": len(export_told()[0].instances)}
 
 
 def _textured(name, uv_map):

@@ -39,7 +39,7 @@ def _variants(context):
     for integrator in own.bl_rna.properties["integrator"].enum_items.keys():
         own.integrator = integrator
         yield integrator
-    for model in ("KD_KS", "PHONG", "BLINN_PHONG", "NODES"):
+    for model in ("KD_KS", "PHONG", "BLINN_PHONG", "MINNAERT", "NODES"):
         context.material.lancer.model = model
         yield model
     context.camera.type = "PANO"

@@ -22,7 +22,7 @@ def _read(scene):
     path = os.path.join(tempfile.mkdtemp(), "passes.exr")
     exr.write_settings(scene, path)
     bpy.ops.render.render(write_still=True)
-    return exr.read(path), engine.last_messages[scene.name]
+    return exr.read(path), list(engine.last_messages[scene.name])
 
 
 def _ask(layer, *switches, on=True):

@@ -51,3 +51,22 @@ def measured():
         "old": old,
         "left": len(quality.measured),
     }
+
+
+def words():
+    """How intervals of seconds are told."""
+    from addon import quality
+    from addon.bindings.forecast import Range
+
+    spans = {"sure": (60, 60, 60), "wide": (60, 20, 300), "untold": (900, 6, 133200), "short": (2, 0.2, 9)}
+    return {name: quality.seconds(Range(*values)) for name, values in spans.items()}
+
+
+def missed():
+    """The lines of a target that the samples do not suffice for."""
+    from addon import quality
+
+    scene = stage.room(width=32, height=18, samples=16)
+    scene.lancer.target_error = 1e-4
+    bpy.ops.lancer.measure_quality(seconds=0.5)
+    return list(quality.lines(scene))

@@ -29,7 +29,7 @@ def _told_of_scene():
 
     messages = Messages()
     check_scene(bpy.context.scene, messages)
-    return messages.lines()
+    return messages
 
 
 # name: (settings of Cycles, settings of Lancer), all others as Blender starts with them.
@@ -48,20 +48,26 @@ _LIGHT_PATHS = {
 
 
 def light_paths():
-    result = {}
+    result = {"harms": {}}
     for name, (theirs, ours) in _LIGHT_PATHS.items():
         bpy.ops.wm.read_factory_settings(use_empty=False)
         scene = bpy.context.scene
         for owner, changes in ((scene.cycles, theirs), (scene.lancer, ours)):
             for field, value in changes.items():
                 setattr(owner, field, value)
-        result[name] = _told_of_scene()
+        messages = _told_of_scene()
+        result[name] = messages.lines()
+        if messages:
+            result["harms"][name] = [message.harm.name for message in messages.told()]
     return result
 
 
 def settings():
     """Messages of light paths as Lancer's, of neutral changes, and of each other change by itself."""
-    told = _told_of_scene
+
+    def told():
+        return _told_of_scene().lines()
+
     bpy.ops.wm.read_factory_settings(use_empty=False)
     stage.light_paths_alike(bpy.context.scene)
     result = {"alike": told(), "words": {}}

@@ -150,12 +150,17 @@ def write_exr(scene, path=None, layers=False):
 
 def picture(scene):
     """Renders and gives the linear picture, (h, w, 4); row 0 is the bottom row."""
-    image = bpy.data.images.load(write_exr(scene))
+    return pixels(write_exr(scene))
+
+
+def pixels(path):
+    """The linear picture in an EXR file, (h, w, 4); row 0 is the bottom row."""
+    image = bpy.data.images.load(path)
     width, height = image.size
-    pixels = np.empty(width * height * 4, np.float32)
-    image.pixels.foreach_get(pixels)
+    values = np.empty(width * height * 4, np.float32)
+    image.pixels.foreach_get(values)
     bpy.data.images.remove(image)
-    return pixels.reshape(height, width, 4)
+    return values.reshape(height, width, 4)
 
 
 def channels(path):

@@ -1,8 +1,8 @@
 """Inside a real window: a scene that takes minutes, and a clock that shows whether Blender still answers.
 
-Started by the program itself: blender --factory-startup -P window_case.py -- FOLDER [pictures | panels]. What happens is
-written to FOLDER/log.txt, a line each: seconds, word. With pictures it is a scene of those instead, which a file called
-compare has rendered again by a script; with panels it is also said what is drawn in them.
+Started by the program itself: blender --factory-startup -P window_case.py -- FOLDER [pictures | panels | edit]. What happens is
+written to FOLDER/log.txt, a line each: seconds, word. With pictures and with edit it is a scene of those instead, which a
+file called compare has rendered again by a script; with panels it is also said what is drawn in them.
 """
 
 import os
@@ -15,6 +15,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [os.path.dirname(os.path.dirname(HERE)), HERE]
 
 import stage  # noqa: E402
+import window_edit  # noqa: E402
 import window_panels  # noqa: E402
 import window_pictures  # noqa: E402
 
@@ -57,7 +58,7 @@ def tick():
     if told("load"):
         say(window_panels.load(FOLDER))
     if told("compare"):
-        window_pictures.compare(FOLDER)
+        (window_edit if KIND == ["edit"] else window_pictures).compare(FOLDER)
         say("compared")
     if told("quit"):
         addon.unregister()
@@ -70,6 +71,8 @@ def prepare():
     bpy.app.timers.register(tick, persistent=True)
     if KIND == ["panels"]:
         window_panels.watch(say)
+    if KIND == ["edit"]:
+        window_edit.edit()
     say("ready")
 
 
@@ -94,6 +97,8 @@ for item in list(bpy.data.objects):
 if KIND == ["pictures"]:
     window_pictures.build(FOLDER)
     window_pictures.watch(say)
+elif KIND == ["edit"]:
+    window_edit.build()
 else:
     build()
 for name in ("render_init", "render_pre", "render_post", "render_cancel", "render_complete"):

@@ -76,6 +76,11 @@ lancer_mesh Records::mesh() {
     for (uint16_t &slot : slots)
       slot = uint16_t(bytes_.reference(3));
     mesh.material_slots = keep(std::move(slots));
+    // Pairs of triangles are polygons, and sometimes one is out of range; no byte is read for them.
+    std::vector<uint32_t> polygons(mesh.triangle_count);
+    for (uint32_t i = 0; i < mesh.triangle_count; ++i)
+      polygons[i] = (i + mesh.triangle_count % 2) / 2 + (mesh.vertex_count == 1 ? mesh.triangle_count : 0);
+    mesh.polygons = keep(std::move(polygons));
   }
   std::vector<lancer_attribute> attributes(bytes_.rarely(80) ? bytes_.below(4) : 0);
   for (lancer_attribute &attribute : attributes)
@@ -149,6 +154,9 @@ lancer_world Records::world(const Filled &filled) {
   world.node_count = nodes(filled, world.nodes);
   world.hidden_from = hidden_from();
   world.radiance = parameter(0.5f);
+  world.use_ambient = world.radiance.node < 0 && world.hidden_from & 1u;
+  for (int i = 0; i < 3; ++i)
+    world.ambient[i] = world.radiance.value[i];
   // The map of 0, and of large numbers, would take long where the radiance varies.
   world.map_resolution = bytes_.rarely(2) ? 65537 + bytes_.byte() : 1 + bytes_.below(32);
   node_count_ = 0;

@@ -31,7 +31,7 @@ extern "C" {
 #endif
 
 /* Changes whenever a struct or a call of this header does. */
-#define LANCER_ABI_VERSION 3u
+#define LANCER_ABI_VERSION 4u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;
@@ -107,6 +107,8 @@ typedef struct lancer_mesh {
   const float *uvs;                   /* NULL or [triangle_count][3][2] */
   const float *colors;                /* NULL or [triangle_count][3][3], linear RGB */
   const uint16_t *material_slots;     /* NULL (all slot 0) or [triangle_count] */
+  const uint32_t *polygons;           /* NULL (each triangle is one) or [triangle_count]: of which polygon it is a part, each
+                                         below triangle_count. Only FLAT shading in CLASSIC asks */
   const lancer_attribute *attributes; /* NULL or [attribute_count] */
   uint32_t vertex_count;
   uint32_t triangle_count;
@@ -121,7 +123,14 @@ typedef struct lancer_mesh {
  *   CONE      apex (0, 0, 1), base disk of radius 1 at z = -1, closed by the disk */
 enum { LANCER_MESH = 0, LANCER_SPHERE = 1, LANCER_PLANE = 2, LANCER_CYLINDER = 3, LANCER_CONE = 4 };
 
-/* How normals are used. GOURAUD is an idea of CLASSIC (illumination at the vertices, interpolated); PATH takes it as PHONG. */
+/* How normals are used, and in CLASSIC where light is computed.
+ *   AS_MESH  the mesh's normals; without any, the faces'
+ *   FLAT     the faces' normals. CLASSIC computes one colour for each polygon, as if every ray had met it at its centre: the
+ *            mean of its vertices, moved to the polygon along its normal, or to the nearest place where it is concave. That
+ *            holds for light, shadows, highlights, textures, opacity, and for where mirrored and refracted rays start; depth,
+ *            position and the other passes of places stay those of the pixel
+ *   GOURAUD  CLASSIC computes illumination at the vertices and interpolates it; PATH takes it as PHONG
+ *   PHONG    normals interpolated, by area where the mesh has none */
 enum { LANCER_SHADING_AS_MESH = 0, LANCER_SHADING_FLAT = 1, LANCER_SHADING_GOURAUD = 2, LANCER_SHADING_PHONG = 3 };
 
 /* Rays by what sent them. A thing hidden from some of them is not there for those rays. */
@@ -362,6 +371,9 @@ typedef struct lancer_node {
  *                inside, the side that the geometric normal points away from
  *   PHONG        color (n + 2)/(2 pi) max(0, R.V)^n in PATH; color max(0, R.V)^n per light / pi in CLASSIC; n = shininess
  *   BLINN_PHONG  color (n + 2)(n + 4)/(8 pi (2^(-n/2) + n)) max(0, N.H)^n in PATH; color max(0, N.H)^n / pi in CLASSIC
+ *   MINNAERT     color (k + 1)/(2 pi) ((l.n)(v.n))^(k - 1), k = shininess; 1 is LAMBERT. color is the albedo from straight
+ *                above. Below k = 1 the albedo would pass 1 towards the horizon: no cosine counts as less than
+ *                m = max(color)^(1/(1 - k)), where it is 1, and 2 pi/(k + 1) becomes 2 pi ((1 - q)/(k + 1) + q/2), q = m^(k + 1)
  * Those of Blender's shader nodes, as Cycles of the running version defines them. roughness is the socket's: alpha is its
  * square (DIFFUSE, SHEEN, VELVET: the value itself); anisotropy and rotation turn and stretch it along tangent.
  *   DIFFUSE      Oren-Nayar of roughness; 0 is LAMBERT. option 0: before Blender 4.3, 1: energy-preserving, from 4.3
@@ -388,7 +400,8 @@ enum {
   LANCER_SHEEN = 11,
   LANCER_TRANSLUCENT = 12,
   LANCER_PRINCIPLED = 13,
-  LANCER_LOBE_KIND_COUNT = 14
+  LANCER_MINNAERT = 14,
+  LANCER_LOBE_KIND_COUNT = 15
 };
 enum { LANCER_GGX = 0, LANCER_BECKMANN_DISTRIBUTION = 1, LANCER_ASHIKHMIN_SHIRLEY = 2, LANCER_MULTI_GGX = 3 };
 /* Whose definitions hold for lobes of nodes: those of Blender 3.x, of 4.0 to 4.4, of 4.5 and newer. */
@@ -420,7 +433,7 @@ typedef struct lancer_lobe {
   lancer_parameter color;                /* Kd or Ks */
   lancer_parameter roughness;            /* alpha itself, BECKMANN; else the socket's value */
   lancer_parameter ior;                  /* relative to the outside, > 0, may be infinite */
-  lancer_parameter shininess;            /* the exponent n; PHONG, BLINN_PHONG */
+  lancer_parameter shininess;            /* the exponent n of PHONG, BLINN_PHONG; k of MINNAERT */
   lancer_parameter edge;                 /* CONDUCTOR */
   lancer_parameter anisotropy, rotation; /* -1 ... 1 and turns, GLOSSY, CONDUCTOR */
   lancer_parameter normal;               /* world; the constant 0, 0, 0: the shading normal */
@@ -523,9 +536,11 @@ typedef struct lancer_world {
   uint32_t node_count;
   uint32_t hidden_from;      /* LANCER_RAY_* bits */
   lancer_parameter radiance; /* RGB */
-  uint32_t map_resolution;   /* width of the map by which directions are sampled where the radiance varies; 0 = by its images,
-                                1024 without any. At most 65536, but no map is wider than 2048: what is finer is looked at in
-                                up to 8192 x 4096 places and joined */
+  float ambient[3];        /* CLASSIC: the light from everywhere that Ka reflects, once, whatever the lamps; see use_ambient */
+  uint32_t use_ambient;    /* 0: the mean of the radiance in place of ambient */
+  uint32_t map_resolution; /* width of the map by which directions are sampled where the radiance varies; 0 = by its images,
+                              1024 without any. At most 65536, but no map is wider than 2048: what is finer is looked at in
+                              up to 8192 x 4096 places and joined */
   uint32_t reserved;
 } lancer_world;
 /* Black until set. */
@@ -659,6 +674,9 @@ typedef struct lancer_statistics {
   char kernel[64];          /* the integrator's specialisation that ran */
   char instruction_set[32]; /* e.g. "AVX2" */
   uint64_t texture_bytes;   /* pictures; geometry_bytes has meshes, instances and lights */
+  /* Vertices of rays on surfaces: shaded by kernels of many lanes, and one by one by the general code. Layers that a cut-out
+   * takes away are none. */
+  uint64_t wide_vertices, narrow_vertices;
 } lancer_statistics;
 
 /* The scene must be committed. Checks camera and settings; allocates the film. */

@@ -306,6 +306,8 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
     copy_text(statistics->kernel, sizeof statistics->kernel, from.kernel);
     copy_text(statistics->instruction_set, sizeof statistics->instruction_set, scene.accelerator->instruction_set());
     statistics->texture_bytes = scene.texture_bytes();
+    statistics->wide_vertices = from.vertices.wide;
+    statistics->narrow_vertices = from.vertices.narrow;
     return LANCER_OK;
   });
 }

@@ -71,7 +71,7 @@ TEST(BsdfBump, NothingIsSampledThroughTheSurface) {
   Random random(1);
   for (LobeKind kind : {LobeKind::Lambert, LobeKind::Diffuse, LobeKind::Beckmann, LobeKind::Phong, LobeKind::BlinnPhong,
                         LobeKind::Mirror, LobeKind::Dielectric, LobeKind::Glossy, LobeKind::Glass, LobeKind::Refraction,
-                        LobeKind::Conductor, LobeKind::Sheen, LobeKind::Translucent})
+                        LobeKind::Conductor, LobeKind::Sheen, LobeKind::Translucent, LobeKind::Minnaert})
     for (int k = 0; k < 500; ++k) {
       const glm::vec3 ns = tilted(40.0 * random.uniform(), 7.0 * random.uniform());
       LobeInputs lobe = about(kind, tilted(60.0 * random.uniform(), 7.0 * random.uniform()));

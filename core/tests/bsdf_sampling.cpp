@@ -43,6 +43,8 @@ std::vector<Case> cases() {
     all.push_back({"Phong " + std::to_string(n), {lobe(LobeKind::Phong, 0.9f, 0, 1, n)}});
     all.push_back({"Blinn-Phong " + std::to_string(n), {lobe(LobeKind::BlinnPhong, 0.9f, 0, 1, n)}});
   }
+  for (float k : {0.0f, 0.5f, 2.0f, 20.0f})
+    all.push_back({"Minnaert " + std::to_string(k), {lobe(LobeKind::Minnaert, 0.5f, 0, 1, k)}});
   for (float ior : {0.9f, 1.5f, 4.0f})
     all.push_back({"coated " + std::to_string(ior), {diffuse, lobe(LobeKind::Beckmann, 0.8f, 0.05f, ior)}, 0.05});
   all.push_back(

@@ -121,6 +121,20 @@ TEST(ImagesLookup, CurveIsDecodedAfterInterpolation) {
   }
 }
 
+TEST(ImagesLookup, CurveComesAfterInterpolationInEveryDepth) {
+  const auto looks_like = [](const Image &image, double encoded) {
+    for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Cubic})
+      EXPECT_NEAR(grey(image, 0.5f, 0.5f, Extension::Extend, interpolation), srgb(std::max(encoded, 0.0)),
+                  kCurve * std::max(1.0, srgb(encoded)));
+  };
+  // Half way between two texels both ways to interpolate take their mean, also below 0, where the curve ends, and above 1.
+  looks_like(picture<uint16_t>(2, 1, 1, {13107, 39321}, LANCER_TRANSFER_SRGB), 0.4);
+  looks_like(picture<float>(2, 1, 1, {0.1f, 0.7f}, LANCER_TRANSFER_SRGB), 0.4);
+  looks_like(picture<float>(2, 1, 1, {-0.5f, 1.0f}, LANCER_TRANSFER_SRGB), 0.25);
+  looks_like(picture<float>(2, 1, 1, {-0.5f, 0.25f}, LANCER_TRANSFER_SRGB), -0.125);
+  looks_like(picture<float>(2, 1, 1, {0.5f, 5.5f}, LANCER_TRANSFER_SRGB), 3.0);
+}
+
 TEST(ImagesLookup, CurveIsFarthestFromItsLinesWhereItsPartsMeet) {
   for (const float c : {0.04045f, std::nextafter(0.04045f, 0.0f), 0.0404f, 0.0405f}) {
     const float got =

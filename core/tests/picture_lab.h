@@ -136,6 +136,12 @@ public:
   float alpha() const { return mean(read(LANCER_PASS_COMBINED, 4), 4).w; }
   float number(uint32_t pass) const { return mean(read(pass, 1), 1).x; }
 
+  lancer_statistics statistics() const {
+    lancer_statistics out;
+    EXPECT_EQ(lancer_session_statistics(session_, &out), LANCER_OK) << lancer_last_error();
+    return out;
+  }
+
 private:
   static glm::vec4 mean(const std::vector<float> &values, uint32_t channels) {
     glm::dvec4 sum(0.0);

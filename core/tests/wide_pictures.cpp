@@ -17,8 +17,8 @@ struct Form {
 };
 constexpr uint32_t kKinds[] = {LANCER_TEXEL_U8, LANCER_TEXEL_U16, LANCER_TEXEL_FLOAT}, kChannels[] = {1, 3, 4};
 
-// Floats also brighter than 1, and negative.
-Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix, const Form &form) {
+// Floats also brighter than 1 and negative, unless all shall lie in 0 ... 1.
+Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix, const Form &form, bool unit = false) {
   std::vector<uint8_t> bytes(size_t(width) * height * form.channels);
   std::vector<uint16_t> words(bytes.size());
   std::vector<float> floats(bytes.size());
@@ -26,7 +26,7 @@ Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix,
     // White often, where sums of shares round to more than 1.
     words[i] = uint16_t(random() % 3 ? random() : 65535);
     bytes[i] = uint8_t(words[i]);
-    floats[i] = float(words[i]) / (random() % 5 ? 65535.0f : -100.0f);
+    floats[i] = float(words[i]) / (unit || random() % 5 ? 65535.0f : -100.0f);
   }
   lancer_image image = form.kind == LANCER_TEXEL_U8    ? image_of(bytes, width, height, form.channels)
                        : form.kind == LANCER_TEXEL_U16 ? image_of(words, width, height, form.channels)
@@ -76,16 +76,17 @@ TEST(WidePictures, LookUpsAreThoseOfTheGeneralCode) {
       for (const uint32_t transfer : {LANCER_TRANSFER_LINEAR, LANCER_TRANSFER_SRGB})
         for (const uint32_t alpha_mode :
              {LANCER_ALPHA_NONE, LANCER_ALPHA_STRAIGHT, LANCER_ALPHA_ASSOCIATED, LANCER_ALPHA_CHANNEL_PACKED})
-          for (int look = 0; look < 16; ++look) {
+          for (int look = 0; look < 32; ++look) {
             const Form form{kind, channels, transfer, alpha_mode};
-            const bool straight = look & 1, alpha = look & 2, matrix = look & 4;
+            const bool straight = look & 1, alpha = look & 2, matrix = look & 4, unit = look & 16;
             const auto extension = look & 8 ? Extension::Repeat : Extension::Extend;
             SCOPED_TRACE(testing::Message() << kind << " " << channels << " " << transfer << " " << alpha_mode << " " << look);
-            const Image image = random_image(random, 1 + random() % 37, 1 + random() % 37, matrix, form);
+            const Image image = random_image(random, 1 + random() % 37, 1 + random() % 37, matrix, form, unit);
             const std::optional<WideImage> wide = wide_image(image, uint32_t(extension) | (straight ? 256u : 0u), alpha);
-            // The curve is lines up to 1 only: floats exceed it, and colours that come multiplied do beside their alpha.
-            const bool beyond =
-                kind == LANCER_TEXEL_FLOAT || (straight && channels > 1 && alpha_mode == LANCER_ALPHA_ASSOCIATED);
+            // The curve is lines up to 1 only: some floats exceed it, and colours that come multiplied do beside their alpha.
+            const bool beyond = image.exceeds_unit || (straight && channels > 1 && alpha_mode == LANCER_ALPHA_ASSOCIATED);
+            if (kind != LANCER_TEXEL_FLOAT || unit)
+              ASSERT_FALSE(image.exceeds_unit);
             ASSERT_EQ(wide.has_value(), transfer == LANCER_TRANSFER_LINEAR || !beyond);
             for (int i = 0; i < 30 && wide; ++i)
               ASSERT_NO_FATAL_FAILURE(expect_looks(random, image, *wide, extension, straight, alpha));

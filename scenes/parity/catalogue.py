@@ -16,6 +16,7 @@ SUBJECTS = (
     "furnaces",
     "furnaces_principled",
     "textures_images",
+    "textures_files",
     "textures_coordinates",
     "textures_normals",
     "lights_shapes",

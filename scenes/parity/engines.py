@@ -69,13 +69,26 @@ def _ask_for(view_layer, scene, switch):
         scene.lancer.use_pass_albedo = True
 
 
-def _set_cycles(cycles, case, samples, seed):
+def unbias_cycles(cycles, samples, seed):
+    """So many samples of all light, from a sequence whose errors are independent between seeds."""
     cycles.device, cycles.samples, cycles.seed = "CPU", samples, seed
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = False
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-    cycles.blur_glossy = cycles.light_sampling_threshold = 0.0
+    cycles.blur_glossy = 0.0
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.use_animated_seed = cycles.use_auto_tile = False
+    # The pattern that older Blenders know under another name; never the one that hides error from the eye.
+    for pattern in ("TABULATED_SOBOL", "PROGRESSIVE_MULTI_JITTER"):
+        try:
+            cycles.sampling_pattern = pattern
+            break
+        except TypeError:
+            continue
+
+
+def _set_cycles(cycles, case, samples, seed):
+    unbias_cycles(cycles, samples, seed)
+    cycles.light_sampling_threshold = 0.0
     cycles.pixel_filter_type = "BLACKMAN_HARRIS" if case.filter_width else "BOX"
     cycles.filter_width = case.filter_width or 1.0
     cycles.film_exposure = case.exposure
@@ -87,27 +100,26 @@ def _set_cycles(cycles, case, samples, seed):
     cycles.min_light_bounces = cycles.min_transparent_bounces = 0
     if hasattr(cycles, "use_light_tree"):
         cycles.use_light_tree = False
-    # The pattern that older Blenders know under another name; never the one that hides error from the eye.
-    for pattern in ("TABULATED_SOBOL", "PROGRESSIVE_MULTI_JITTER"):
-        try:
-            cycles.sampling_pattern = pattern
-            break
-        except TypeError:
-            continue
 
 
-def _set_lancer(lancer, case, samples, seed):
+def unbias_lancer(lancer, samples, seed):
+    """So many samples of all light."""
     lancer.quality, lancer.samples, lancer.seed = "CUSTOM", samples, seed
-    lancer.max_bounces, lancer.clamp_indirect = case.bounces, 0.0
-    lancer.pixel_filter = "BLACKMAN_HARRIS" if case.filter_width else "BOX"
-    lancer.filter_width = case.filter_width or 1.0
+    lancer.clamp_indirect = 0.0
     for setting in ("target_error", "time_limit"):
         if hasattr(lancer, setting):
             setattr(lancer, setting, 0.0)
-    if hasattr(lancer, "transparent_bounces"):
-        lancer.transparent_bounces = case.transparent_bounces
     if hasattr(lancer, "use_denoising"):
         lancer.use_denoising = False
+
+
+def _set_lancer(lancer, case, samples, seed):
+    unbias_lancer(lancer, samples, seed)
+    lancer.max_bounces = case.bounces
+    lancer.pixel_filter = "BLACKMAN_HARRIS" if case.filter_width else "BOX"
+    lancer.filter_width = case.filter_width or 1.0
+    if hasattr(lancer, "transparent_bounces"):
+        lancer.transparent_bounces = case.transparent_bounces
 
 
 def _refuse_dropped_samples(statistics):

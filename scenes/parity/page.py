@@ -51,7 +51,9 @@ def _row(outcome, folder):
     if not outcome.parts:
         return f"{begin}<td></td><td></td><td></td><td></td><td>{remarks}</td></tr>"
     worst = outcome.worst
-    images = "".join(f'<td><img src="pictures/{name}"></td>' for name in _pictures(outcome, worst, folder))
+    images = "".join(
+        f'<td><img src="pictures/{name}"></td>' for name in write_pictures(folder, case.name, *outcome.pictures[worst])
+    )
     return f'{begin}{images}<td class="figures">{"<br>".join(_lines(outcome))}</td><td>{remarks}</td></tr>'
 
 
@@ -67,18 +69,18 @@ def _lines(outcome):
     yield f"{outcome.samples} samples; " + ", ".join(f"{engine} {time:.1f} s" for engine, time in outcome.seconds.items())
 
 
-def _pictures(outcome, name, folder):
-    """Writes the three pictures of a pass and gives their file names."""
-    ours, theirs = outcome.pictures[name]
+def write_pictures(folder, name, ours, theirs):
+    """Writes ours, theirs and their difference x 8, all as bright as theirs asks for, and gives the three file names."""
     # Show the brightest hundredth as white, so that dark passes can be read too.
     brightest = float(np.percentile(np.abs(np.nan_to_num(theirs)), 99))
     exposure = 1.0 / brightest if brightest > 0.0 else 1.0
     difference = 8.0 * np.abs(ours - theirs)
+    names = []
     for suffix, picture in (("lancer", ours), ("cycles", theirs), ("difference", difference)):
-        file_name = f"{outcome.case.name}-{suffix}.png"
-        with open(os.path.join(folder, file_name), "wb") as file:
+        names.append(f"{name}-{suffix}.png")
+        with open(os.path.join(folder, names[-1]), "wb") as file:
             file.write(png.encode(png.display(picture, exposure)))
-        yield file_name
+    return names
 
 
 def _record(outcome):
@@ -93,12 +95,12 @@ def _record(outcome):
         "note": outcome.note,
         "samples": outcome.samples,
         "seconds": outcome.seconds,
-        "passes": {name: {**_numbers(numbers), "verdict": verdict.name} for name, (numbers, verdict) in outcome.parts.items()},
+        "passes": {name: {**numbers(numbers), "verdict": verdict.name} for name, (numbers, verdict) in outcome.parts.items()},
         "messages": outcome.messages,
     }
 
 
-def _numbers(figures):
+def numbers(figures):
     """JSON knows no infinity."""
     plain = {key: value if math.isfinite(value) else None for key, value in figures._asdict().items() if key != "dim"}
-    return {**plain, "dim": _numbers(figures.dim)} if figures.dim else plain
+    return {**plain, "dim": numbers(figures.dim)} if figures.dim else plain

@@ -6,13 +6,13 @@ import zlib
 import numpy as np
 
 
-def encode(picture):
-    """The bytes of a PNG of display values in [0, 1], (height, width, 3 or 4); row 0 is the top row."""
-    values = (np.clip(np.nan_to_num(picture), 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+def encode(picture, depth=8):
+    """The bytes of a PNG of display values in [0, 1], (height, width, 3 or 4) with 8 or 16 bits; row 0 is the top row."""
+    values = (np.clip(np.nan_to_num(picture), 0.0, 1.0) * (2**depth - 1) + 0.5).astype(f">u{depth // 8}")
     height, width, channels = values.shape
     rows = b"".join(b"\0" + row.tobytes() for row in values)
     parts = [
-        (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[channels], 0, 0, 0)),
+        (b"IHDR", struct.pack(">IIBBBBB", width, height, depth, {3: 2, 4: 6}[channels], 0, 0, 0)),
         (b"IDAT", zlib.compress(rows, 9)),
         (b"IEND", b""),
     ]

@@ -45,6 +45,15 @@ void add_diffuse(Bsdf &bsdf, const LobeInputs &inputs) {
   add(bsdf, lobe);
 }
 
+void add_minnaert(Bsdf &bsdf, const LobeInputs &inputs) {
+  const uint8_t frame = add_frame(bsdf, wide_normal(bsdf, inputs), glm::vec3(0.0f));
+  const float rho = std::max({inputs.color.x, inputs.color.y, inputs.color.z, 0.0f});
+  Lobe lobe = make_minnaert(colored_weight(inputs), inputs.shininess, rho, bsdf.wo_local[frame]);
+  lobe.frame = frame;
+  lobe.rules = inputs.rules;
+  add(bsdf, lobe);
+}
+
 void add_coating(Bsdf &bsdf, const LobeInputs &inputs, uint8_t frame) {
   Lobe lobe = course_lobe(LobeShape::Beckmann, Component::Glossy, frame, inputs);
   lobe.alpha_x = lobe.alpha_y = inputs.roughness;
@@ -194,6 +203,7 @@ uint32_t shapes_of(LobeKind kind) {
   case LobeKind::Sheen:
     return shape_bit(LobeShape::Sheen) | shape_bit(LobeShape::Matte);
   case LobeKind::Translucent:
+  case LobeKind::Minnaert:
     return shape_bit(LobeShape::Matte);
   case LobeKind::Principled:
     return shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Matte) | shape_bit(LobeShape::Microfacet) |
@@ -220,6 +230,8 @@ void add_lobe(Bsdf &bsdf, const LobeInputs &inputs) {
     return add_sheen(bsdf, inputs);
   case LobeKind::Translucent:
     return add_translucent(bsdf, inputs);
+  case LobeKind::Minnaert:
+    return add_minnaert(bsdf, inputs);
   case LobeKind::Principled:
     return;
   default:

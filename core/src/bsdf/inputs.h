@@ -21,9 +21,10 @@ enum class LobeKind : uint32_t {
   Conductor = 10,
   Sheen = 11,
   Translucent = 12,
-  Principled = 13
+  Principled = 13,
+  Minnaert = 14
 };
-inline constexpr uint32_t kLobeKinds = 14;
+inline constexpr uint32_t kLobeKinds = 15;
 
 // How the facets of a rough surface are distributed.
 enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, MultiGgx = 3 };

@@ -13,7 +13,7 @@ enum class LobeShape : uint8_t {
   Dielectric = 3, // smooth glass: one or two directions
   Phong = 4,
   BlinnPhong = 5,
-  Matte = 6,      // Oren-Nayar, Burley, velvet, translucent: smooth and wide, told apart by variant
+  Matte = 6,      // Oren-Nayar, Burley, velvet, translucent, Minnaert: smooth and wide, told apart by variant
   Microfacet = 7, // GGX or Beckmann, reflection, refraction or both, smooth or rough
   Ashikhmin = 8,  // Ashikhmin-Shirley, the clear coat of 3.x
   Sheen = 9       // microfibres

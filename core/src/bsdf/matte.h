@@ -1,4 +1,5 @@
-// Smooth, wide lobes, told apart by Lobe::variant: Oren-Nayar, Burley's diffuse, velvet, the dust sheen of 3.x, translucency.
+// Smooth, wide lobes, told apart by Lobe::variant: Oren-Nayar, Burley's diffuse, velvet, the dust sheen of 3.x, translucency,
+// Minnaert.
 // Local frame, wo.z > 0. Values are f |cos(wi)| without the lobe's colour.
 #pragma once
 
@@ -7,11 +8,12 @@
 
 #include "bsdf/lobe.h"
 #include "bsdf/lobe_value.h"
+#include "bsdf/minnaert.h"
 #include "sampling/warp.h"
 
 namespace lancer {
 
-enum class Matte : uint8_t { OrenNayar = 0, Burley = 1, Velvet = 2, DustSheen = 3, Translucent = 4 };
+enum class Matte : uint8_t { OrenNayar = 0, Burley = 1, Velvet = 2, DustSheen = 3, Translucent = 4, Minnaert = 5 };
 
 // Coloured, with the cosine in it; pdf per solid angle of wi.
 struct ColorValue {
@@ -89,6 +91,14 @@ inline Lobe make_velvet(const glm::vec3 &weight, float sigma) {
 // Light that comes out behind. As in Cycles it counts as diffuse: in passes, and for lights that are hidden from such rays.
 inline Lobe make_translucent(const glm::vec3 &weight) { return make_matte(Matte::Translucent, weight); }
 
+// The course's Minnaert; rho as of complete_minnaert.
+inline Lobe make_minnaert(const glm::vec3 &weight, float k, float rho, const glm::vec3 &wo) {
+  Lobe lobe = make_matte(Matte::Minnaert, weight);
+  lobe.shininess = k;
+  complete_minnaert(lobe, rho, wo);
+  return lobe;
+}
+
 inline bool matte_transmits(const Lobe &lobe) { return lobe.variant == static_cast<uint8_t>(Matte::Translucent); }
 
 inline ColorValue oren_nayar_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
@@ -149,6 +159,10 @@ inline ColorValue matte_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::v
     return wo.z > 0.0f ? velvet_eval(lobe, wo, wi) : ColorValue{};
   case Matte::DustSheen:
     return wo.z > 0.0f ? dust_sheen_eval(wo, wi) : ColorValue{};
+  case Matte::Minnaert: {
+    const LobeValue value = minnaert_eval_pdf(lobe, wi);
+    return {glm::vec3(value.f), value.pdf};
+  }
   case Matte::Translucent:
     break;
   }
@@ -162,6 +176,8 @@ inline glm::vec3 matte_sample(const Lobe &lobe, glm::vec2 u) {
     const float sin_theta = std::sqrt((1.0f - u.x) * (1.0f + u.x)), phi = 2.0f * kPi * u.y;
     return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), u.x};
   }
+  if (lobe.variant == static_cast<uint8_t>(Matte::Minnaert))
+    return minnaert_sample(lobe, u);
   const glm::vec3 w = warp_cosine_hemisphere(u);
   return matte_transmits(lobe) ? glm::vec3(w.x, w.y, -w.z) : w;
 }

@@ -1,6 +1,7 @@
 #include "integrator/classic.h"
 
 #include "integrator/first_surface.h"
+#include "integrator/flat_shading.h"
 #include "sampling/color.h"
 
 #include <algorithm>
@@ -34,6 +35,7 @@ void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<
 bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                                  std::vector<PathVertex> *trace) {
   const RayCounts before = counts_;
+  const VertexCounts vertices_before = vertices_;
   generate(addresses, results);
   // Trace the recursion depth by depth: a pixel's sum has the same order in any batch.
   while (!rays_.empty() && !settings_.cancelled()) {
@@ -52,6 +54,7 @@ bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::
     rays_.swap(next_rays_);
     if (rays_.size() > kCrowd && addresses.size() > kSmallPart) {
       counts_ = before;
+      vertices_ = vertices_before;
       return false;
     }
   }
@@ -95,18 +98,28 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
     miss(branch, ray.o, direction, result);
     return;
   }
+  ++vertices_.narrow;
   const bool from_camera = branch.depth == 0;
-  const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-  const double way = (branch.passed + hit.t) * glm::length(ray.d);
-  shader_.shade(surface, {.wo = -direction, .footprint = float(cone_.base + way * cone_.spread)}, point_);
+  // What is met says where it is; what is lit says its colour.
+  const Surface met = surface_at(scene_.geometry, scene_.slots, ray, hit);
+  Surface surface = met;
+  glm::vec3 wo = -direction;
+  double way = (branch.passed + hit.t) * glm::length(ray.d);
+  if (is_flat(scene_.geometry.instances[hit.instance])) {
+    surface = surface_at_center(scene_, hit);
+    const glm::dvec3 view = view_of(branch, ray, surface.p);
+    wo = -glm::vec3(glm::normalize(view));
+    way = glm::length(view) + (from_camera ? 0.0 : branch.passed * glm::length(ray.d));
+  }
+  shader_.shade(surface, {.wo = wo, .footprint = float(cone_.base + way * cone_.spread)}, point_);
   if (trace)
-    trace->push_back({scene_.normalisation.to_world(surface.p), hit.t / scene_.normalisation.scale, surface.ns, branch.weight,
-                      result.radiance, surface.instance, surface.primitive, surface.material, branch.depth});
+    trace->push_back({scene_.normalisation.to_world(met.p), hit.t / scene_.normalisation.scale, surface.ns, branch.weight,
+                      result.radiance, met.instance, met.primitive, met.material, branch.depth});
   if (from_camera && !cut_hole(scene_, surface, branch.weight, point_, result))
     return;
   Branch here = branch;
   if (from_camera)
-    record(here, surface, hit.t, result);
+    record(here, met, hit.t, result);
   add(here, here.weight * point_.emission, false, result);
   if (here.features.open)
     add_denoising_features(scene_, camera_, point_, hit.t * glm::length(ray.d), here.features, result);
@@ -114,9 +127,9 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
   const bool hole = from_camera && scene_.geometry.instances[surface.instance].holdout;
   if (point_.material && !hole) {
     result.radiance += here.weight * value_of(point_.material->ambient, shader_.values()) * ambient_;
-    add_direct_light(here, surface, ray.o, hit, result);
+    add_direct_light(here, surface, ray, hit, result);
   }
-  branch_out(here, surface, ray, hit, result);
+  branch_out(here, surface, met, ray, hit, result);
 }
 
 // Fills the passes that describe what the camera sees.
@@ -136,6 +149,13 @@ void ClassicIntegrator::add(const Branch &branch, const glm::vec3 &light, bool e
     passes_.add_seen(result, light, environment);
 }
 
+// The way from the eye to another place than the ray goes to, of any length. Layers that it has passed are no eye.
+glm::dvec3 ClassicIntegrator::view_of(const Branch &branch, const Ray &ray, const glm::dvec3 &p) const {
+  if (branch.depth > 0)
+    return p - ray.o;
+  return camera_.kind == CameraKind::Orthographic ? ray.d : p - (ray.o - branch.passed * ray.d);
+}
+
 // Which point of the lamp to take: its middle when there is one sample only.
 glm::vec2 ClassicIntegrator::lamp_numbers(const Branch &branch, uint32_t light) const {
   if (generator_.middle())
@@ -143,7 +163,7 @@ glm::vec2 ClassicIntegrator::lamp_numbers(const Branch &branch, uint32_t light) 
   return samplers_[branch.slot].get2(kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + light));
 }
 
-void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &surface, const glm::dvec3 &eye, const Hit &hit,
+void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &surface, const Ray &ray, const Hit &hit,
                                          SampleResult &result) {
   static const CourseLight plain;
   // Under Gouraud shading the triangle's corners are lit, each a hit of its own with all weight on one corner.
@@ -158,7 +178,7 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
       at.u = corner == 1 ? 1.0 : 0.0;
       at.v = corner == 2 ? 1.0 : 0.0;
       const Surface vertex = surface_at(scene_.geometry, scene_.slots, Ray{}, at);
-      shader_.shade(vertex, {.wo = glm::vec3(glm::normalize(eye - vertex.p))}, corners_[corner]);
+      shader_.shade(vertex, {.wo = -glm::vec3(glm::normalize(view_of(branch, ray, vertex.p)))}, corners_[corner]);
       lit[corner] = {vertex.p, &corners_[corner].bsdf, float(corner == 0 ? 1.0 - hit.u - hit.v : corner == 1 ? hit.u : hit.v)};
     }
   }
@@ -198,8 +218,8 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
   }
 }
 
-void ClassicIntegrator::branch_out(const Branch &branch, const Surface &surface, const Ray &ray, const Hit &hit,
-                                   SampleResult &result) {
+void ClassicIntegrator::branch_out(const Branch &branch, const Surface &surface, const Surface &met, const Ray &ray,
+                                   const Hit &hit, SampleResult &result) {
   const CourseBranches branches = course_branches(point_.bsdf);
   // Features follow every branch by its share of the light.
   const float all = mean(point_.transmittance + branches.reflected + branches.refracted);
@@ -213,7 +233,7 @@ void ClassicIntegrator::branch_out(const Branch &branch, const Surface &surface,
     behind.passed += hit.t;
     behind.weight *= point_.transmittance;
     ++behind.layers;
-    push(behind, leave(surface, ray.d, ray.tmax - hit.t));
+    push(behind, leave(met, ray.d, ray.tmax - hit.t));
   }
   // Beyond the depth limit a ray is black: it need not be traced.
   if (branch.depth >= settings_.max_bounces)

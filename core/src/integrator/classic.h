@@ -31,7 +31,7 @@ class ClassicIntegrator final : public Integrator {
 public:
   ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), cone_(camera), passes_(settings), ambient_(mean_environment(scene, camera)) {
+        shadows_(scene, camera, settings), cone_(camera), passes_(settings), ambient_(ambient_light(scene, camera)) {
     // Kernels make the picture and what the first surface says, nothing else.
     if (!settings.all_features && !settings.environment_reflections && !passes_.data() && !passes_.features())
       lanes_ = std::make_unique<ClassicLanes>(scene);
@@ -68,12 +68,14 @@ private:
   void miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result);
   void record(Branch &branch, const Surface &surface, double t, SampleResult &result);
   void add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result);
-  void add_direct_light(const Branch &branch, const Surface &surface, const glm::dvec3 &eye, const Hit &hit,
+  void add_direct_light(const Branch &branch, const Surface &surface, const Ray &ray, const Hit &hit,
                         SampleResult &result);
-  void branch_out(const Branch &branch, const Surface &surface, const Ray &ray, const Hit &hit, SampleResult &result);
+  void branch_out(const Branch &branch, const Surface &surface, const Surface &met, const Ray &ray, const Hit &hit,
+                  SampleResult &result);
   void spawn(Branch child, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight, uint32_t kind,
              SampleResult &result);
   void push(const Branch &branch, Ray ray);
+  glm::dvec3 view_of(const Branch &branch, const Ray &ray, const glm::dvec3 &p) const;
   glm::vec2 lamp_numbers(const Branch &branch, uint32_t light) const;
 
   const Scene &scene_;

@@ -2,8 +2,10 @@
 #include "integrator/classic.h"
 
 #include "integrator/first_surface.h"
+#include "integrator/flat_shading.h"
 #include "integrator/lane_access.h"
 #include "sampling/color.h"
+#include "scene/polygon_centers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +56,9 @@ const WideCourse *ClassicIntegrator::for_lanes(const Hit &hit) const {
   const Instance &instance = scene_.geometry.instances[hit.instance];
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   const bool corners = instance.kind == ShapeKind::Mesh && instance.shading == Shading::Gouraud;
-  if (material == kNone || instance.holdout || corners || !lanes_->materials[material].known)
+  // Passes tell the place that is met, not the one that is lit.
+  const bool elsewhere = is_flat(instance) && settings_.passes != 1u << LANCER_PASS_COMBINED;
+  if (material == kNone || instance.holdout || corners || elsewhere || !lanes_->materials[material].known)
     return nullptr;
   return &lanes_->materials[material];
 }
@@ -63,21 +67,30 @@ void ClassicIntegrator::put_in_lane(size_t number, const WideCourse &material) {
   CourseBlock &block = lanes_->block;
   const uint32_t lane = block.count++;
   const Ray &ray = rays_[number];
-  const Hit &hit = hits_[number];
+  Hit &hit = hits_[number];
   const Instance &instance = scene_.geometry.instances[hit.instance];
+  glm::dvec3 view = ray.d;
   block.placement[lane] = &instance.to_world.linear[0][0];
   put(ray.o, block.o, lane);
-  put(ray.d, block.d, lane);
   block.t[lane] = hit.t;
   block.sphere |= uint32_t(instance.kind == ShapeKind::Sphere) << lane;
   block.plane |= uint32_t(instance.kind == ShapeKind::Plane) << lane;
   if (!((block.sphere | block.plane) >> lane & 1)) {
-    const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+    Surface surface;
+    if (is_flat(instance)) {
+      surface = surface_at_center(scene_, hit);
+      view = view_of(branches_[number], ray, surface.p);
+      // Rays that leave the surface start on the centre's triangle.
+      hit = center_hit(scene_.geometry.meshes[instance.mesh], hit);
+    } else {
+      surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+    }
     put(surface.p, block.p, lane);
     block.offset[lane] = surface.offset;
     put(surface.ng, block.ng, lane);
     put(surface.ns, block.ns, lane);
   }
+  put(view, block.d, lane);
   copy(material.kd, block.kd, lane);
   copy(material.ks, block.ks, lane);
   block.alpha[lane] = material.alpha;
@@ -210,6 +223,7 @@ void ClassicIntegrator::add_own_light(uint32_t lane, const Branch &branch, const
 
 // What follows from a shaded lane: its light, its shadow rays, its mirrored ray.
 void ClassicIntegrator::leave_lane(uint32_t lane, const Branch &branch, const Hit &hit, SampleResult &result) {
+  ++vertices_.wide;
   const CourseBlock &block = lanes_->block;
   const Material &material = scene_.materials[lanes_->material_of[lane]];
   const bool first = branch.depth == 0 && !branch.seen && settings_.alpha_threshold <= 1.0f;

@@ -76,7 +76,9 @@ CourseShares course_shares(const Lobe &lobe, float cosine) {
 
 } // namespace
 
-glm::vec3 mean_environment(const Scene &scene, const Camera &camera) {
+glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
+  if (scene.world.ambient)
+    return *scene.world.ambient;
   const Environment &environment = scene.lights.environment();
   if (!environment.varies())
     return environment.constant();

@@ -12,8 +12,9 @@ struct LitPoint {
   float weight = 0.0f;
 };
 
-// The light from everywhere that Ka reflects: the environment where it is the same in all directions, else its mean.
-glm::vec3 mean_environment(const Scene &scene, const Camera &camera);
+// The light from everywhere that Ka reflects: the world's own, else the environment where it is the same in all directions,
+// else its mean.
+glm::vec3 ambient_light(const Scene &scene, const Camera &camera);
 
 // What the texts call lc, as irradiance at normal incidence from a light's sample, after the light's own attenuation.
 // The attenuations other than PHYSICAL replace 1/d^2: such a light is at every distance d att(d) times what it is at one unit.

@@ -7,6 +7,8 @@
 #include "integrator/light_passes.h"
 #include "integrator/sample.h"
 
+#include <algorithm>
+
 namespace lancer {
 
 class NormalsIntegrator final : public Integrator {
@@ -25,6 +27,7 @@ public:
     hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
     counts_.camera += rays_.size();
+    vertices_.narrow += size_t(std::ranges::count_if(hits_, [](const Hit &hit) { return hit.valid(); }));
     for (size_t i = 0; i < rays_.size(); ++i) {
       const Ray &ray = rays_[i];
       SampleResult &result = results[slots_[i]];

@@ -90,6 +90,8 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
   next_paths_.clear();
   next_rays_.clear();
   add_lights_met(results);
+  size_t met = 0;
+  const uint64_t narrow_before = vertices_.narrow;
   for (size_t i = 0; i < paths_.size(); ++i) {
     if (i + 1 < paths_.size())
       textures_.ahead(hits_[i + 1]);
@@ -97,6 +99,7 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
       miss(i, results);
       continue;
     }
+    ++met;
     const uint32_t material = material_of(scene_.geometry, scene_.slots, hits_[i].instance, hits_[i].primitive);
     if (const WideMaterial *wide = trace ? nullptr : for_lanes(material, hits_[i].instance))
       put_in_lane(i, material, *wide, results);
@@ -106,12 +109,15 @@ void PathIntegrator<Shapes, Layers>::shade(std::span<SampleResult> results, std:
   }
   add_missed(results);
   shade_lanes(results);
+  // What lanes gave back has been shaded by the general code.
+  vertices_.wide += met - (vertices_.narrow - narrow_before);
 }
 
 template <uint32_t Shapes, bool Layers>
 void PathIntegrator<Shapes, Layers>::shade_surface(Path &path, const Ray &ray, double t, const Surface &surface,
                                                    std::span<SampleResult> results, std::vector<PathVertex> *trace) {
   // Ask the material what it does to light that goes back along the ray.
+  ++vertices_.narrow;
   SampleResult &result = results[path.slot];
   shader_.shade(surface, view_of(path, ray, t), point_);
   if (trace)

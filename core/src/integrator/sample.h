@@ -81,6 +81,11 @@ struct RayCounts {
   uint64_t camera = 0, bounce = 0, shadow = 0;
 };
 
+// Vertices on surfaces, by the code that shaded them: kernels of many lanes, or the general code one by one.
+struct VertexCounts {
+  uint64_t wide = 0, narrow = 0;
+};
+
 // Luminance that settings take from the picture, summed over samples.
 struct Energy {
   double clipped = 0.0;                 // by clamping
@@ -121,11 +126,13 @@ public:
   // The specialisation in use, for the statistics.
   virtual const char *kernel() const = 0;
   const RayCounts &counts() const { return counts_; }
+  const VertexCounts &vertices() const { return vertices_; }
   // Of the last batch.
   const Energy &energy() const { return energy_; }
 
 protected:
   RayCounts counts_;
+  VertexCounts vertices_;
   Energy energy_;
 };
 

@@ -82,7 +82,9 @@ uint32_t kind_of(const Lobe &lobe) {
   case LobeShape::BlinnPhong:
     return LANCER_BLINN_PHONG;
   case LobeShape::Matte:
-    return lobe.component == Component::Transmission ? LANCER_TRANSLUCENT : LANCER_DIFFUSE;
+    return lobe.variant == uint8_t(Matte::Translucent) ? LANCER_TRANSLUCENT
+           : lobe.variant == uint8_t(Matte::Minnaert)  ? LANCER_MINNAERT
+                                                       : LANCER_DIFFUSE;
   case LobeShape::Microfacet:
     return lobe.variant == uint8_t(Scatter::Both)      ? LANCER_GLASS
            : lobe.variant == uint8_t(Scatter::Refract) ? LANCER_REFRACTION

@@ -203,6 +203,8 @@ void Session::render_tile(Worker &worker, Film::Tile &tile, uint32_t end) {
     worker.camera_rays = counts.camera;
     worker.bounce_rays = counts.bounce;
     worker.shadow_rays = counts.shadow;
+    worker.wide_vertices = worker.integrator->vertices().wide;
+    worker.narrow_vertices = worker.integrator->vertices().narrow;
   }
 }
 
@@ -236,6 +238,15 @@ RayCounts Session::rays() const {
     sum.camera += worker->camera_rays;
     sum.bounce += worker->bounce_rays;
     sum.shadow += worker->shadow_rays;
+  }
+  return sum;
+}
+
+VertexCounts Session::vertices() const {
+  VertexCounts sum;
+  for (const auto &worker : workers_) {
+    sum.wide += worker->wide_vertices;
+    sum.narrow += worker->narrow_vertices;
   }
   return sum;
 }
@@ -325,6 +336,7 @@ SessionStatistics Session::statistics() const {
   statistics.render_seconds = seconds();
   statistics.samples = samples_;
   statistics.rays = rays();
+  statistics.vertices = vertices();
   const Film::Dropped dropped = film_.dropped();
   statistics.invalid_samples = dropped.samples;
   statistics.first_invalid = dropped.first;

@@ -27,6 +27,7 @@ struct SessionStatistics {
   double render_seconds = 0.0;
   uint64_t samples = 0;
   RayCounts rays;
+  VertexCounts vertices;
   uint64_t invalid_samples = 0;
   SampleAddress first_invalid{0, 0, 0};
   uint32_t threads = 0;
@@ -81,6 +82,7 @@ private:
     std::mutex mutex; // of energy
     // What the integrator has counted after its last batch, for other threads to read.
     std::atomic<uint64_t> camera_rays{0}, bounce_rays{0}, shadow_rays{0};
+    std::atomic<uint64_t> wide_vertices{0}, narrow_vertices{0};
   };
 
   void require_ready() const;
@@ -91,6 +93,7 @@ private:
   void drop_invalid(Worker &worker, Film::Tile &tile);
   double seconds() const;
   RayCounts rays() const;
+  VertexCounts vertices() const;
 
   std::shared_ptr<const Scene> scene_;
   Camera camera_; // normalised

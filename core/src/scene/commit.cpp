@@ -7,6 +7,7 @@
 #include "scene/displace.h"
 #include "scene/mesh_normals.h"
 #include "scene/passing.h"
+#include "scene/polygon_centers.h"
 #include "scene/scene.h"
 
 #include <chrono>
@@ -138,6 +139,8 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
     poll_cancel(context);
     if (smooth && mesh.normal_domain == NormalDomain::None && mesh.smooth_normals.empty())
       mesh.smooth_normals = normals_by_area(mesh);
+    if (instance.shading == Shading::Flat && mesh.centers.empty())
+      mesh.centers = polygon_centers(mesh);
   }
   scene->lights = make_lights(*scene, description, context);
   scene->accelerator = build_accelerator(kind, scene->geometry, plane_rules(*scene), context);
@@ -159,7 +162,7 @@ size_t Scene::geometry_bytes() const {
     bytes += mesh.positions.size() * sizeof(glm::vec3) + mesh.triangles.size() * sizeof(glm::uvec3) +
              (mesh.normals.size() + mesh.smooth_normals.size() + mesh.colors.size()) * sizeof(glm::vec3) +
              mesh.uvs.size() * sizeof(glm::vec2) + mesh.material_slots.size() * sizeof(uint16_t) +
-             mesh.face_of.size() * sizeof(uint32_t);
+             (mesh.face_of.size() + mesh.polygons.size()) * sizeof(uint32_t) + mesh.centers.size() * sizeof(PolygonCenter);
     for (const MeshAttribute &attribute : mesh.attributes)
       bytes += attribute.values.size() * sizeof(float);
   }

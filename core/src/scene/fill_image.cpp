@@ -4,6 +4,7 @@
 #include "scene/fill.h"
 #include "scene/memory.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -41,6 +42,11 @@ size_t clear_not_finite(Image &image) {
     ++cleared;
   }
   return cleared;
+}
+
+bool exceeds_unit(const Image &image) {
+  const auto *numbers = reinterpret_cast<const float *>(image.texels.get());
+  return !std::all_of(numbers, numbers + image.bytes() / sizeof(float), [](float x) { return x >= 0.0f && x <= 1.0f; });
 }
 
 void check_image(const std::string &object, const lancer_image &source) {
@@ -92,9 +98,11 @@ void add_image(Description &description, const lancer_image &source) {
     throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, which are not free");
   }
   std::memcpy(image.texels.get(), source.texels, image.bytes());
-  if (image.kind == TexelKind::Float)
+  if (image.kind == TexelKind::Float) {
     if (const size_t cleared = clear_not_finite(image))
       description.messages.add(object, std::to_string(cleared) + " texels that are not finite were set to 0");
+    image.exceeds_unit = exceeds_unit(image);
+  }
   if (image.alpha == AlphaMode::Straight && image.channels == 4) {
     if (image.kind == TexelKind::U8)
       associate<uint8_t>(image);

@@ -127,6 +127,8 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
     lobe.ior = reader.read_ior("IOR", given.ior);
   if (blinn || lobe.kind == LobeKind::Phong)
     lobe.shininess = reader.read_scalar("shininess", given.shininess, 0.0f, 1e8f, 32.0f);
+  if (lobe.kind == LobeKind::Minnaert)
+    lobe.shininess = reader.read_scalar("k", given.shininess, 0.0f, 1e8f, 1.0f);
   if (lobe.kind == LobeKind::Conductor)
     lobe.edge = reader.read_color("edge", given.edge, f82 ? 1.0f : kBrightest);
   if (metal) {

@@ -92,6 +92,13 @@ template <class Vector> size_t zero_where_not_finite(std::vector<Vector> &values
   return replaced;
 }
 
+void check_polygons(const std::string &object, const lancer_mesh &mesh) {
+  for (uint32_t i = 0; mesh.polygons && i < mesh.triangle_count; ++i)
+    if (mesh.polygons[i] >= mesh.triangle_count)
+      bad_argument(object + ": polygon " + std::to_string(mesh.polygons[i]) + " >= " + std::to_string(mesh.triangle_count) +
+                   " triangles");
+}
+
 void check_attributes(const std::string &object, const lancer_mesh &mesh) {
   if (mesh.attribute_count && !mesh.attributes)
     bad_argument(object + ": attributes is NULL for " + std::to_string(mesh.attribute_count) + " attributes");
@@ -148,6 +155,7 @@ void add_mesh(Description &description, const lancer_mesh &source) {
   if (source.normal_domain > LANCER_NORMALS_CORNER)
     bad_argument(object + ": normal_domain " + std::to_string(source.normal_domain) + " is not one of 0, 1, 2");
   check_indices(object, source);
+  check_polygons(object, source);
   check_attributes(object, source);
 
   // Copy all of it, then leave the faces that can be hit.
@@ -161,6 +169,8 @@ void add_mesh(Description &description, const lancer_mesh &source) {
   copy(source.colors, size_t(source.triangle_count) * 3, mesh.colors);
   if (source.material_slots)
     mesh.material_slots.assign(source.material_slots, source.material_slots + source.triangle_count);
+  if (source.polygons)
+    mesh.polygons.assign(source.polygons, source.polygons + source.triangle_count);
   for (uint32_t i = 0; i < source.attribute_count; ++i)
     mesh.attributes.push_back(copy_attribute(description, source.attributes[i], source));
   const std::vector<uint32_t> kept = kept_faces(object, mesh, description.messages);

@@ -21,6 +21,12 @@ void set_world(Description &description, const lancer_world &source) {
       bad_argument("world: radiance " + to_text(value) + " must be finite and not negative");
     world.radiance.value[i] = value;
   }
+  if (source.use_ambient) {
+    for (const float value : source.ambient)
+      if (!std::isfinite(value) || value < 0.0f)
+        bad_argument("world: ambient " + to_text(value) + " must be finite and not negative");
+    world.ambient = glm::vec3(source.ambient[0], source.ambient[1], source.ambient[2]);
+  }
   world.radiance.node = source.radiance.node;
   world.schedule = world.program.schedule(std::span(&world.radiance, 1));
   world.hidden_from = source.hidden_from;

@@ -23,6 +23,13 @@ struct MeshAttribute {
   std::vector<float> values;
 };
 
+// Where a polygon's one colour is computed, under flat shading.
+struct PolygonCenter {
+  uint32_t triangle = 0;  // it lies in this one
+  glm::dvec2 place{0.0};  // weights of vertex 1 and 2 there
+  glm::vec3 normal{0.0f}; // object space, unit; 0 where its areas add up to none
+};
+
 // A triangle mesh in its object's space. Only faces of finite, non-zero area are kept.
 struct Mesh {
   std::string name;
@@ -33,10 +40,12 @@ struct Mesh {
   std::vector<glm::vec2> uvs;           // empty, or three per triangle
   std::vector<glm::vec3> colors;        // empty, or three per triangle
   std::vector<uint16_t> material_slots; // empty (all 0), or per triangle
+  std::vector<uint32_t> polygons;       // empty (each triangle is one), or which polygon each triangle is a part of
   std::vector<MeshAttribute> attributes;
   glm::vec3 low{-1.0f}, high{1.0f}; // bounds of the positions as they were given
   NormalDomain normal_domain = NormalDomain::None;
   std::vector<glm::vec3> smooth_normals; // per vertex; only where PHONG or GOURAUD is asked of a mesh without normals
+  std::vector<PolygonCenter> centers;    // by polygon; only where FLAT is asked of a mesh with polygons
 
   glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
 };

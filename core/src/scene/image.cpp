@@ -251,11 +251,10 @@ std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alp
   const auto extension = static_cast<Extension>(flags & 0xf);
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
   const bool divided = (flags & 256) && multiplied && image.channels > 1;
-  const bool bytes = image.kind != TexelKind::Float;
   const bool curve = image.transfer == Transfer::Srgb, beyond = divided && image.alpha == AlphaMode::Associated;
-  // Kernels have the curve up to 1: that of bytes, also divided by an alpha that they were multiplied by here.
+  // Kernels have the curve between 0 and 1: of colours that stay there, also divided by an alpha that multiplied them here.
   if (static_cast<Interpolation>(flags >> 4 & 0xf) != Interpolation::Linear || image.tile != 0 ||
-      (extension != Extension::Repeat && extension != Extension::Extend) || (curve && (!bytes || beyond)) ||
+      (extension != Extension::Repeat && extension != Extension::Extend) || (curve && (image.exceeds_unit || beyond)) ||
       image.bytes() >= size_t(1) << 31)
     return {};
   WideImage wide;

@@ -22,7 +22,8 @@ struct Image {
   TexelKind kind = TexelKind::U8;
   Transfer transfer = Transfer::Linear;
   AlphaMode alpha = AlphaMode::Straight;
-  uint32_t tile = 0; // UDIM; 0 = none
+  uint32_t tile = 0;         // UDIM; 0 = none
+  bool exceeds_unit = false; // some number of it lies outside of 0 ... 1
   bool has_matrix = false;
   glm::mat3 matrix{1.0f}; // decoded RGB to the working space
   Texels texels;          // [height][width][channels]

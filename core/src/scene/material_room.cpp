@@ -67,6 +67,7 @@ size_t add_lobe(const LobeDescription &lobe, Frames &frames) {
   case LobeKind::Lambert:
   case LobeKind::Diffuse:
   case LobeKind::Sheen:
+  case LobeKind::Minnaert:
     old ? frames.reflecting(lobe.normal) : frames.wide(lobe.normal);
     return 1;
   case LobeKind::Glossy:

@@ -42,6 +42,7 @@ void keep_faces(Mesh &mesh, const std::vector<uint32_t> &kept) {
   keep(mesh.uvs, 3, kept);
   keep(mesh.colors, 3, kept);
   keep(mesh.material_slots, 1, kept);
+  keep(mesh.polygons, 1, kept);
   for (MeshAttribute &attribute : mesh.attributes)
     if (attribute.domain != Domain::Vertex)
       keep(attribute.values, attribute.channels * (attribute.domain == Domain::Corner ? 3u : 1u), kept);

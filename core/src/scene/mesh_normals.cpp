@@ -9,12 +9,6 @@ namespace lancer {
 
 namespace {
 
-// Along a face's normal, of the length of twice its area.
-glm::dvec3 twice_area(const Mesh &mesh, uint32_t triangle) {
-  const glm::dvec3 v0(mesh.vertex(triangle, 0)), v1(mesh.vertex(triangle, 1)), v2(mesh.vertex(triangle, 2));
-  return glm::cross(v1 - v0, v2 - v0);
-}
-
 std::vector<glm::vec3> units(const std::vector<glm::dvec3> &sums) {
   std::vector<glm::vec3> normals(sums.size());
   for (size_t i = 0; i < sums.size(); ++i)
@@ -70,6 +64,11 @@ void renew_at_corners(Mesh &mesh, const std::vector<bool> &triangles) {
 }
 
 } // namespace
+
+glm::dvec3 twice_area(const Mesh &mesh, uint32_t triangle) {
+  const glm::dvec3 v0(mesh.vertex(triangle, 0)), v1(mesh.vertex(triangle, 1)), v2(mesh.vertex(triangle, 2));
+  return glm::cross(v1 - v0, v2 - v0);
+}
 
 glm::dvec3 face_normal(const Mesh &mesh, uint32_t triangle) { return unit_or_zero(twice_area(mesh, triangle)); }
 

@@ -5,6 +5,8 @@
 
 namespace lancer {
 
+// Along a face's normal, of the length of twice its area.
+glm::dvec3 twice_area(const Mesh &mesh, uint32_t triangle);
 // Unit, or 0.
 glm::dvec3 face_normal(const Mesh &mesh, uint32_t triangle);
 

@@ -73,7 +73,7 @@ template <uint32_t Bytes> LANCER_LANE WideTexel between(const WideImage &image, 
   return wy * below + up.part * above;
 }
 
-// Of what bytes hold: 0 ... 1, and what sums of shares and quotients round to.
+// Of what lies in 0 ... 1, and what sums of shares and quotients round to.
 LANCER_LANE F decode(const float *lines, F value) {
   const F place = value * F(static_cast<float>(kSrgbSteps));
   const U i = truncate(place);

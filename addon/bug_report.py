@@ -1,0 +1,155 @@
+"""Save Bug Report: what a maintainer needs to see a fault of a render, in one .zip."""
+
+import os
+import platform
+
+import bpy
+from bpy_extras.io_utils import ExportHelper
+
+from . import engine
+from .bindings import bug_report
+from .bindings.abi import LancerError, load_library
+from .export.messages import Messages
+from .export.scene import ExportOptions, export_scene
+from .harm import Harm
+from .passes import render_passes
+
+_HOLDS = "It holds the geometry and the pictures of the scene"
+
+
+def _settings(owner):
+    """Numbers, switches and choices; no text, which may be a path."""
+    kinds = {"BOOLEAN", "INT", "FLOAT", "ENUM"}
+    names = [field.identifier for field in owner.bl_rna.properties if field.type in kinds]
+    values = {name: getattr(owner, name) for name in names}
+    return {name: value if isinstance(value, (int, float, str)) else list(value) for name, value in sorted(values.items())}
+
+
+def _processor():
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            return next(line.partition(":")[2].strip() for line in file if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor()
+
+
+def versions():
+    """Of all that takes part in a render."""
+    import numpy
+
+    from . import bl_info
+
+    try:
+        library = load_library().lancer_version().decode()
+    except LancerError as error:
+        library = str(error)
+    return {
+        "Lancer": ".".join(map(str, bl_info["version"])),
+        "library": library,
+        "Blender": f"{bpy.app.version_string} {bpy.app.build_hash.decode()}",
+        "Python": platform.python_version(),
+        "numpy": numpy.__version__,
+        "system": platform.platform(),
+        "processor": _processor(),
+        "processors": os.cpu_count(),
+    }
+
+
+def _plain(messages):
+    return [message._asdict() | {"harm": message.harm.name} for message in messages.told()]
+
+
+def facts(scene, exported):
+    """What is known, as json holds it. exported: the Messages of the export for this report."""
+    told = engine.last_messages.get(scene.name)
+    return {
+        "versions": versions(),
+        "settings": {
+            "lancer": _settings(scene.lancer),
+            "render": _settings(scene.render),
+            "cycles": _settings(scene.cycles) if hasattr(scene, "cycles") else {},
+            "view": _settings(scene.view_settings),
+        },
+        "messages": [] if told is None else _plain(told),
+        "exported": _plain(exported),
+        "statistics": engine.last_statistics.get(scene.name),
+    }
+
+
+def _exported(context):
+    """(snapshot or None, Messages): a scene that cannot be exported is a fault worth a report, too."""
+    depsgraph = context.evaluated_depsgraph_get()
+    wanted = tuple(item.source for item in render_passes(depsgraph.scene, depsgraph.view_layer_eval))
+    try:
+        return export_scene(depsgraph, ExportOptions(passes=wanted))
+    except LancerError as error:
+        return None, Messages([str(error)], Harm.FAILED)
+    except Exception as error:
+        return None, Messages([f"the export failed ({type(error).__name__}: {error})"], Harm.FAILED)
+
+
+def _size(size):
+    return f"{size / 2**20:.1f} MB" if size >= 2**20 / 10 else f"{size / 2**10:.1f} kB"
+
+
+class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
+    """Save the scene as Lancer sees it, its settings, messages and figures in one file, by which a fault can be found"""
+
+    bl_idname = "lancer.save_bug_report"
+    bl_label = "Save Bug Report"
+    filename_ext = ".zip"
+
+    filter_glob: bpy.props.StringProperty(default="*.zip", options={"HIDDEN"})
+    use_scene: bpy.props.BoolProperty(
+        name="Geometry and Pictures",
+        description="Without them the report has settings, versions, messages and figures only, and cannot be rendered",
+        default=True,
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene is not None
+
+    def draw(self, context):
+        column = self.layout.column()
+        column.prop(self, "use_scene")
+        if self.use_scene:
+            column.label(text=_HOLDS, icon="INFO")
+            numbers = engine.last_statistics.get(context.scene.name)
+            if numbers is not None:
+                size = _size(numbers["geometry_bytes"] + numbers["texture_bytes"])
+                column.label(text=f"They take about {size}, less when packed")
+
+    def execute(self, context):
+        manager, scene = context.window_manager, context.scene
+        path = bpy.path.abspath(self.filepath)
+        manager.progress_begin(0.0, 1.0)
+        try:
+            snapshot, messages = _exported(context) if self.use_scene else (None, Messages())
+            bug_report.save(path, facts(scene, messages), snapshot, manager.progress_update)
+        except OSError as error:
+            self.report({"ERROR"}, f"Lancer: the report could not be written: {error}")
+            return {"CANCELLED"}
+        finally:
+            manager.progress_end()
+        size = _size(os.path.getsize(path))
+        if self.use_scene and snapshot is None:
+            self.report({"WARNING"}, f"Lancer: saved a report of {size} without the scene: {messages.lines()[0]}")
+        else:
+            told = f". {_HOLDS}: do not publish it if they are secret" if self.use_scene else ", without the scene"
+            self.report({"INFO"}, f"Lancer: saved a report of {size}{told}")
+        return {"FINISHED"}
+
+
+def _draw_button(panel, _context):
+    panel.layout.operator(LANCER_OT_save_bug_report.bl_idname, icon="URL")
+
+
+def register():
+    bpy.utils.register_class(LANCER_OT_save_bug_report)
+    bpy.types.LANCER_RENDER_PT_messages.append(_draw_button)
+
+
+def unregister():
+    bpy.types.LANCER_RENDER_PT_messages.remove(_draw_button)
+    bpy.utils.unregister_class(LANCER_OT_save_bug_report)

@@ -1,0 +1,48 @@
+"""Whole arrays of Blender's meshes, in whatever place each Blender keeps them; parts of them at the corners of triangles."""
+
+import numpy as np
+
+_TRIANGLES_AT_ONCE = 1 << 18
+
+
+def read(collection, attribute, dtype, width):
+    values = np.empty(len(collection) * width, dtype)
+    collection.foreach_get(attribute, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def built_in(mesh, name, domain):
+    """The data of a built-in attribute; None where this Blender keeps it elsewhere."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != domain or len(attribute.data) == 0:
+        return None
+    return attribute.data
+
+
+def corner_vertices(mesh):
+    data = built_in(mesh, ".corner_vert", "CORNER")
+    if data is not None:
+        return read(data, "value", np.int32, 1)
+    return read(mesh.loops, "vertex_index", np.int32, 1)
+
+
+def triangle_faces(mesh):
+    """Of which face each triangle is a part."""
+    if hasattr(mesh, "loop_triangle_polygons"):
+        return read(mesh.loop_triangle_polygons, "value", np.int32, 1)
+    return read(mesh.loop_triangles, "polygon_index", np.int32, 1)
+
+
+def gather(values, indices, poll):
+    """values[indices], in parts short enough to be stopped between."""
+    result = np.empty(indices.shape + values.shape[1:], values.dtype)
+    for first in range(0, len(indices), _TRIANGLES_AT_ONCE):
+        poll()
+        part = slice(first, first + _TRIANGLES_AT_ONCE)
+        # Clipping takes less time than looking for indices out of range, and there are none.
+        np.take(values, indices[part], axis=0, out=result[part], mode="clip")
+    return result
+
+
+def at_corners(values, corners, poll):
+    return values.reshape(-1, 3, values.shape[1]) if corners is None else gather(values, corners, poll)

@@ -1,0 +1,89 @@
+"""What makes Lancer handy: presets, preferences, pages of the manual."""
+
+import os
+
+import bpy
+import stage
+
+
+def presets():
+    """Saves, changes, applies and removes a preset of each kind. {kind: [as saved, changed, applied, file, gone]}"""
+    result = {}
+    scene = stage.empty()
+    changes = {
+        "sampling": ({"quality": "GOOD", "time_limit": 7.0}, {"quality": "CUSTOM", "samples": 3, "time_limit": 0.0}),
+        "light_paths": ({"max_bounces": 3, "clamp_indirect": 2.0}, {"max_bounces": 9, "clamp_indirect": 0.0}),
+    }
+    for kind, (wanted, other) in changes.items():
+        add, menu = getattr(bpy.ops.render, f"lancer_{kind}_preset_add"), f"LANCER_PT_{kind}_presets"
+
+        def now(kind=kind):
+            names = (
+                ("target_error", "samples", "quality", "time_limit")
+                if kind == "sampling"
+                else ("max_bounces", "clamp_indirect")
+            )
+            return [getattr(scene.lancer, name) for name in names]
+
+        def put(values):
+            for name, value in values.items():
+                setattr(scene.lancer, name, value)
+            return now()
+
+        saved = put(wanted)
+        add(name="Mine")
+        (folder,) = [path for path in bpy.utils.preset_paths(f"lancer/{kind}") if os.path.exists(path)]
+        path = os.path.join(folder, os.listdir(folder)[0])
+        changed = put(other)
+        bpy.ops.script.execute_preset(filepath=path, menu_idname=menu)
+        result[kind] = [saved, changed, now(), os.path.basename(path)]
+        # As the button for removal does, which takes the preset that was applied last.
+        add(remove_active=True)
+        result[kind].append(os.listdir(folder))
+    return result
+
+
+def manual():
+    """{setting or operator: page that Blender would open}, and the pages that Blender's own map knows."""
+    from bl_operators.wm import WM_OT_doc_view_manual
+
+    import addon
+    from addon import properties
+
+    def page(name):
+        return WM_OT_doc_view_manual._lookup_rna_url(name.lower(), verbose=False)
+
+    found = {}
+    for group, _ in properties._GROUPS:
+        for item in group.bl_rna.properties:
+            if item.identifier not in ("name", "rna_type"):
+                name = f"bpy.types.{group.__name__}.{item.identifier}"
+                found[name] = page(name)
+    for name in (
+        "bpy.ops.lancer.check_scene",
+        "bpy.ops.render.lancer_sampling_preset_add",
+        "bpy.types.CyclesRenderSettings.samples",
+    ):
+        found[name] = page(name)
+    own = [pages for prefix, pages in bpy.utils.manual_map() if len(pages) > 1000]
+    known = {suffix.partition("#")[0] for _, suffix in own[0]}
+    addon.unregister()
+    gone = page("bpy.types.LancerSceneSettings.samples")
+    addon.register()
+    return {"found": found, "known": sorted(known), "gone": gone}
+
+
+def without_preferences():
+    """Imported by a script it is no add-on, and has no preferences: threads and quality are as they come."""
+    from export_cases import export_told
+
+    from addon import preferences
+
+    scene = stage.room()
+    scene.render.threads_mode = "AUTO"
+    preferences._start_new_file()
+    return {
+        "threads": export_told()[0].settings.threads,
+        "quality": scene.lancer.is_property_set("target_error"),
+        "found": preferences._found() is not None,
+    }

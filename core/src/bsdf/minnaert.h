@@ -1,0 +1,76 @@
+// Minnaert: f = (k + 1) / (2 pi) (cos_i cos_o)^(k - 1), the reciprocal law of limb darkening (Minnaert 1941; scaled as the
+// diffuse lobe of Lafortune et al. 1997), k = Lobe::shininess. k = 1 is Lambert; above, the rim is darker; below, brighter.
+//
+// Energy: the albedo of colour rho is rho cos_o^(k - 1): rho from straight above, and for k < 1 more than 1 towards the
+// horizon. So no cosine counts as less than m = rho^(1 / (1 - k)), at which that albedo is 1; rho is the colour's largest
+// channel. With
+//   c = max(cos, m) in both powers, and A = integral of c_i^(k - 1) cos_i = 2 pi ((1 - m^(k+1)) / (k + 1) + m^(k+1) / 2),
+//   f = (c_i c_o)^(k - 1) / A, albedo rho c_o^(k - 1) <= 1, equal to rho at c_o = 1.
+// f stays reciprocal, is the plain law where m vanishes (k >= 1, or a dark colour), and Lambert for k < 1 and white.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "bsdf/beckmann.h"
+#include "bsdf/lobe.h"
+#include "bsdf/lobe_value.h"
+#include "bsdf/phong.h"
+#include "sampling/warp.h"
+
+namespace lancer {
+
+// No logarithm of a cosine is less: powers of two of them stay within a float.
+inline constexpr float kLowestLogCosine = -40.0f;
+
+// log max(cos, m), from the tangent, which keeps its digits near the normal; behind the surface as on the horizon.
+inline float minnaert_log_cosine(const Lobe &lobe, const glm::vec3 &w) {
+  return w.z > 0.0f ? std::max(-0.5f * std::log1p(tan2_theta(w)), lobe.alpha_x) : lobe.alpha_x;
+}
+
+// (cos of w)^(k - 1), bounded.
+inline float minnaert_power(const Lobe &lobe, const glm::vec3 &w) {
+  return std::exp((lobe.shininess - 1.0f) * minnaert_log_cosine(lobe, w));
+}
+
+// The parts of A / (2 pi) above m and below it.
+struct MinnaertParts {
+  float above = 0.0f, below = 0.0f;
+};
+inline MinnaertParts minnaert_parts(const Lobe &lobe) {
+  const float exponent = (lobe.shininess + 1.0f) * lobe.alpha_x; // of m^(k + 1)
+  return {-std::expm1(exponent) / (lobe.shininess + 1.0f), 0.5f * std::exp(exponent)};
+}
+
+// lobe: its colour and k are set; alpha_x becomes log m, alpha_y 1 / A, energy what f owes to wo. rho: the largest channel of
+// the surface's own colour, without the weights of mixtures.
+inline void complete_minnaert(Lobe &lobe, float rho, const glm::vec3 &wo) {
+  const float k = lobe.shininess;
+  lobe.alpha_x = kLowestLogCosine;
+  if (k < 1.0f)
+    lobe.alpha_x = std::max(std::log(std::min(rho, 1.0f)) / (1.0f - k), kLowestLogCosine);
+  const MinnaertParts parts = minnaert_parts(lobe);
+  lobe.alpha_y = 1.0f / (2.0f * kPi * (parts.above + parts.below));
+  lobe.energy = minnaert_power(lobe, wo);
+  lobe.albedo = lobe.color * lobe.energy;
+}
+
+// f cos, and the density of minnaert_sample.
+inline LobeValue minnaert_eval_pdf(const Lobe &lobe, const glm::vec3 &wi) {
+  const float pdf = lobe.alpha_y * minnaert_power(lobe, wi) * wi.z;
+  return {lobe.energy * pdf, pdf};
+}
+
+inline glm::vec3 minnaert_sample(const Lobe &lobe, glm::vec2 u) {
+  // Above m the share of directions within an angle is 1 - cos^(k + 1), below it the rest falls as sin^2 there.
+  const MinnaertParts parts = minnaert_parts(lobe);
+  const float inside = u.x * (parts.above + parts.below);
+  if (inside < parts.above || parts.below == 0.0f)
+    return sample_cosine_power(lobe.shininess, {std::min(inside * (lobe.shininess + 1.0f), 1.0f), u.y});
+  const float rest = (1.0f - u.x) * (parts.above + parts.below) / parts.below;
+  const float cosine = std::exp(lobe.alpha_x) * std::sqrt(std::min(rest, 1.0f));
+  const float sine = std::sqrt((1.0f - cosine) * (1.0f + cosine)), phi = 2.0f * kPi * u.y;
+  return {sine * std::cos(phi), sine * std::sin(phi), cosine};
+}
+
+} // namespace lancer

@@ -1,0 +1,59 @@
+// How many vertices the kernels of many lanes shaded, and how many the general code.
+#include "picture_lab.h"
+
+#include <gtest/gtest.h>
+
+namespace lancer_test {
+namespace {
+
+constexpr uint32_t kPixels = 24, kSamples = 4, kRays = kPixels * kPixels * kSamples;
+
+// A surface that fills the view, and what the statistics say of it. Each camera ray meets it once.
+lancer_statistics seen(const lancer_lobe &lobe, uint32_t passes, uint32_t threads, uint32_t integrator = LANCER_PATH) {
+  Studio studio;
+  studio.settings.integrator = integrator;
+  studio.settings.passes = passes;
+  studio.settings.threads = threads;
+  studio.settings.samples = kSamples;
+  studio.place(LANCER_PLANE, studio.add({lobe}));
+  studio.add(studio.sun({0, 0, 1}));
+  studio.look({0, 0, 1}, {0, 0, 0}, kPixels, 1.0);
+  studio.render();
+  return studio.statistics();
+}
+
+constexpr uint32_t kPicture = 1u << LANCER_PASS_COMBINED, kMore = kPicture | 1u << LANCER_PASS_DEPTH;
+
+TEST(VertexCounts, LanesShadeTheUsualSurfaceOfAPictureAlone) {
+  for (const uint32_t threads : {1u, 2u, 5u}) {
+    const lancer_statistics alone = seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kPicture, threads);
+    EXPECT_EQ(alone.camera_rays, kRays);
+    EXPECT_EQ(alone.wide_vertices, kRays);
+    EXPECT_EQ(alone.narrow_vertices, 0u);
+  }
+}
+
+TEST(VertexCounts, TheGeneralCodeShadesTheRest) {
+  // Beside the picture another pass; a lobe that lanes do not know.
+  for (const lancer_statistics &statistics :
+       {seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kMore, 2), seen(newest(LANCER_SHEEN, 0.5f), kPicture, 2),
+        seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kPicture, 2, LANCER_NORMALS)}) {
+    EXPECT_EQ(statistics.wide_vertices, 0u);
+    EXPECT_EQ(statistics.narrow_vertices, kRays);
+  }
+}
+
+TEST(VertexCounts, ClassicCountsItsVerticesToo) {
+  const lancer_statistics known = seen(lobe(LANCER_LAMBERT, 0.5f), kPicture, 2, LANCER_CLASSIC);
+  EXPECT_EQ(known.wide_vertices + known.narrow_vertices, kRays);
+}
+
+TEST(VertexCounts, EmptySpaceHasNone) {
+  Studio studio;
+  studio.sky(1, 1, 1);
+  studio.render();
+  EXPECT_EQ(studio.statistics().wide_vertices + studio.statistics().narrow_vertices, 0u);
+}
+
+} // namespace
+} // namespace lancer_test

@@ -1,0 +1,71 @@
+"""Pictures by way of files of sixteen bits and more, as scanners, sculptors and photographers save them."""
+
+import os
+import struct
+
+import bpy
+import numpy as np
+
+from . import png
+from .images import image
+
+
+def load(path, colorspace):
+    result = bpy.data.images.load(path)
+    result.colorspace_settings.name = colorspace
+    return result
+
+
+def from_file(kind, pixels, colorspace="sRGB", name="Picture"):
+    """Pixels, row 0 the lowest, as a file of PNG or TIFF with 16 bits, EXR, or HDR stores them; and the image that shows it."""
+    return load(write(kind, os.path.join(bpy.app.tempdir, name), pixels), colorspace)
+
+
+def write(kind, stem, pixels):
+    """The path of such a file: stem and what the format is told by."""
+    encode, ending = {"PNG": (_png, ".png"), "TIFF": (_tiff, ".tif")}.get(kind, (None, ""))
+    if encode is None:
+        return _by_blender(kind, stem, pixels)
+    with open(stem + ending, "wb") as file:
+        file.write(encode(pixels[::-1]))
+    return stem + ending
+
+
+def _png(rows):
+    return png.encode(rows, depth=16)
+
+
+def _tiff(rows):
+    """One strip without compression; a fourth channel is alpha that colour is not multiplied by."""
+    height, width, channels = rows.shape
+    data = (np.clip(rows, 0.0, 1.0) * 65535.0 + 0.5).astype("<u2").tobytes()
+    short, long = 3, 4
+    fields = [
+        (256, long, 1, width),
+        (257, long, 1, height),
+        (258, short, channels, None),
+        (259, short, 1, 1),
+        (262, short, 1, 2 if channels > 1 else 1),
+        (273, long, 1, None),
+        (277, short, 1, channels),
+        (278, long, 1, height),
+        (279, long, 1, len(data)),
+        (284, short, 1, 1),
+    ] + [(338, short, 1, 2)] * (channels == 4)
+    bits_at = 8 + 2 + 12 * len(fields) + 4
+    values = {258: bits_at if channels > 2 else 16, 273: bits_at + 2 * channels}
+    entries = b"".join(struct.pack("<HHII", tag, kind, count, values.get(tag, value)) for tag, kind, count, value in fields)
+    head = struct.pack("<2sHIH", b"II", 42, 8, len(fields))
+    return head + entries + struct.pack("<I", 0) + struct.pack("<H", 16) * channels + data
+
+
+def _by_blender(kind, stem, pixels):
+    """Stored as they are: data know no colour space, and colour with alpha counts as multiplied by it."""
+    full = np.ones((*pixels.shape[:2], 4))
+    full[..., : pixels.shape[2]] = pixels
+    source = image("Written", full, "Non-Color", is_float=True, pack=False)
+    path = stem + {"OPEN_EXR": ".exr", "HDR": ".hdr"}[kind]
+    source.filepath_raw, source.file_format = path, kind
+    source.save()
+    bpy.data.images.remove(source)
+    return path

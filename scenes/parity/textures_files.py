@@ -1,0 +1,184 @@
+"""Image files of more than eight bits: Cycles interpolates what a file stores, and decodes sRGB after."""
+
+import os
+
+import bpy
+import numpy as np
+
+from . import image_files, images
+from .catalogue import case, variants
+from .nodes import material, world
+from .stages import camera, card
+
+FORMATS = {"png": "PNG", "tiff": "TIFF", "exr": "OPEN_EXR"}
+ALPHA_MODES = {"straight": "STRAIGHT", "premultiplied": "PREMUL", "packed": "CHANNEL_PACKED", "none": "NONE"}
+OLD_HDR = (
+    "Debian's OpenImageIO reads the bytes of RGBE half a step, 0.2 to 0.4 %, brighter than Blender, the curve makes it 0.9 %"
+)
+
+
+def _coarse(low=0.0, high=1.0, channels=3, seed=3):
+    """Few texels, far apart in value: between them encoded and linear values differ most."""
+    return np.random.default_rng(seed).uniform(low, high, (5, 7, channels))
+
+
+def _shown(scene, image, alpha=False, **props):
+    """The picture as light; alpha: mixed with another by its alpha."""
+
+    def build(nodes):
+        picture = nodes.add("ShaderNodeTexImage", props={"image": image, **props})
+        light = nodes.add("ShaderNodeEmission", Color=picture.outputs["Color"])
+        if not alpha:
+            return light
+        mix = nodes.add("ShaderNodeMixShader", picture.outputs["Alpha"])
+        nodes.link(nodes.add("ShaderNodeEmission", Color=(0.1, 0.1, 0.4)), mix.inputs[1])
+        nodes.link(light, mix.inputs[2])
+        return mix
+
+    return card(scene, material(build))
+
+
+@variants(
+    values={
+        "png": ("PNG", {"quick": True}),
+        "tiff": "TIFF",
+        "exr": ("OPEN_EXR", {"quick": True}),
+        "hdr": ("HDR", {"blender3": ((0.009, 0.02), OLD_HDR)}),
+    }
+)
+def image_depth(scene, kind):
+    _shown(scene, image_files.from_file(kind, _coarse()))
+
+
+@variants(values={"closest": "Closest", "cubic": "Cubic", "smart": "Smart"})
+def image_depth_interpolation(scene, interpolation):
+    _shown(scene, image_files.from_file("PNG", _coarse()), interpolation=interpolation)
+
+
+@variants(values={"repeat": "REPEAT", "extend": "EXTEND", "clip": "CLIP", "mirror": ("MIRROR", {"since": (3, 5)})})
+def image_depth_extension(scene, extension):
+    thing = _shown(scene, image_files.from_file("PNG", _coarse(channels=4)), alpha=True, extension=extension)
+    for item in thing.data.uv_layers.active.data:
+        item.uv = (item.uv[0] * 2.3 - 0.65, item.uv[1] * 2.3 - 0.65)
+
+
+@variants(
+    values={
+        f"{name}_{space}": (kind, value)
+        for name, kind in FORMATS.items()
+        for space, value in {"raw": "Non-Color", "linear": images.LINEAR, "filmic": "Filmic sRGB"}.items()
+    }
+)
+def image_depth_colorspace(scene, choice):
+    kind, space = choice
+    _shown(scene, image_files.from_file(kind, _coarse(), space))
+
+
+def _veil(kind):
+    """A picture with alpha, by which colour is multiplied as the format has it."""
+    pixels = _coarse(0.1, 1.0, channels=4)
+    if kind == "OPEN_EXR":
+        pixels[..., :3] *= pixels[..., 3:]
+    return pixels
+
+
+@variants(
+    values={
+        f"{name}_{mode}{suffix}": (kind, value, linked, space)
+        for name, kind in FORMATS.items()
+        for mode, value in ALPHA_MODES.items()
+        for suffix, linked, space in (("", True, "sRGB"), ("_unlinked", False, "sRGB"), ("_linear", True, images.LINEAR))
+        if kind != "TIFF" or mode == "straight"
+    }
+)
+def image_depth_alpha(scene, choice):
+    kind, mode, linked, space = choice
+    image = image_files.from_file(kind, _veil(kind), space)
+    image.alpha_mode = mode
+    _shown(scene, image, linked)
+
+
+@case()
+def image_depth_beyond(scene):
+    """Encoded values below 0 and above 1."""
+    _shown(scene, image_files.from_file("OPEN_EXR", _coarse(-0.5, 2.5)))
+
+
+@variants(values={f"{k}_{mode}": (kind, value) for k, kind in FORMATS.items() for mode, value in ALPHA_MODES.items()})
+def image_depth_packed(scene, choice):
+    """A file within the .blend, which Blender decodes before Cycles interpolates."""
+    kind, mode = choice
+    image = image_files.from_file(kind, _veil(kind))
+    image.alpha_mode = mode
+    image.pack()
+    _shown(scene, image, alpha=True)
+
+
+@variants(values=ALPHA_MODES)
+def image_bytes_packed(scene, mode):
+    image = images.from_file("Bytes", _coarse(0.1, 1.0, channels=4))
+    image.alpha_mode = mode
+    image.pack()
+    _shown(scene, image, alpha=True)
+
+
+@variants(values=ALPHA_MODES)
+def image_depth_painted(scene, mode):
+    """Floating point that was never a file, under the name of sRGB."""
+    _shown(scene, images.image("Painted", _veil("OPEN_EXR"), "sRGB", is_float=True, alpha_mode=mode, pack=False), alpha=True)
+
+
+@variants(values=ALPHA_MODES)
+def image_bytes_painted(scene, mode):
+    _shown(scene, images.image("Painted", _coarse(0.1, 1.0, channels=4), alpha_mode=mode, pack=False), alpha=True)
+
+
+@case()
+def image_depth_grey(scene):
+    """One channel."""
+    _shown(scene, image_files.from_file("TIFF", _coarse(channels=1)))
+
+
+@variants(values={"png": "PNG", "exr": "OPEN_EXR"})
+def image_depth_udim(scene, kind):
+    for number in (1001, 1002):
+        path = image_files.write(kind, os.path.join(bpy.app.tempdir, f"tile.{number}"), _coarse(seed=number))
+    image = image_files.load(path.replace("1002", "<UDIM>"), "sRGB")
+    image.source = "TILED"
+    if image.tiles.get(1002) is None:
+        image.tiles.new(1002)
+    thing = _shown(scene, image)
+    for item in thing.data.uv_layers.active.data:
+        item.uv = (item.uv[0] * 2.0, item.uv[1])
+
+
+@case()
+def image_depth_sequence(scene):
+    for frame in (1, 2):
+        path = image_files.write("PNG", os.path.join(bpy.app.tempdir, f"deep_{frame:04}"), _coarse(seed=frame))
+    image = image_files.load(path.replace("0002", "0001"), "sRGB")
+    image.source = "SEQUENCE"
+    thing = _shown(scene, image)
+    user = next(node for node in thing.active_material.node_tree.nodes if node.type == "TEX_IMAGE").image_user
+    user.frame_duration, user.frame_start, user.frame_offset, user.use_auto_refresh = 2, 1, 0, True
+    scene.frame_set(2)
+
+
+@variants(values={"png": "PNG", "exr": "OPEN_EXR"})
+def world_depth(scene, kind):
+    """A sky of few texels, encoded."""
+    image = image_files.from_file(kind, _coarse())
+
+    def build(nodes):
+        picture = nodes.add("ShaderNodeTexEnvironment", props={"image": image})
+        return nodes.add("ShaderNodeBackground", Color=picture.outputs["Color"])
+
+    world(scene, build)
+    camera(scene, (0, 0, 0), (0.3, 1, 0.2), lens=14.0)
+
+
+@variants(values={"bytes": 8, "deep": 16}, since=(5, 0))
+def image_working_space(scene, depth):
+    """Where sRGB takes a matrix beside its curve, texels are converted before interpolation."""
+    bpy.ops.wm.set_working_color_space(working_space="ACEScg", convert_colors=False)
+    _shown(scene, images.from_file("Bytes", _coarse()) if depth == 8 else image_files.from_file("PNG", _coarse()))
