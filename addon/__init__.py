@@ -27,11 +27,29 @@ def register():
         raise RuntimeError(
             "Lancer needs numpy in Blender's Python: install the package python3-numpy (Debian, Ubuntu) or numpy (pip)"
         ) from None
-    from . import bug_report, check_scene, engine, features, manual, measuring, preferences, presets, properties, quality, ui
+    from . import (
+        bug_report,
+        check_scene,
+        course_groups,
+        engine,
+        features,
+        manual,
+        measuring,
+        preferences,
+        presets,
+        properties,
+        quality,
+        render_job,
+        ui,
+    )
+    from .export import main_thread
+    from .registering import add_all
 
-    for module in (properties, preferences, engine, measuring, features, quality, check_scene, presets, ui, bug_report, manual):
-        module.register()
-        _registered.append(module)
+    modules = (properties, preferences, main_thread, engine, measuring, features, quality, check_scene, course_groups, presets)
+    # A render that goes on is ended first, while all is there.
+    modules += (ui, bug_report, manual, render_job)
+    add_all(modules, lambda module: module.register(), lambda module: module.unregister())
+    _registered.extend(modules)
     # Blender as a Python module hangs (4.5) or crashes (4.2) at exit while an engine class is registered; the program itself
     # disables its add-ons at exit, and its classes are gone by the time atexit calls.
     if not bpy.app.binary_path:

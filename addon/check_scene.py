@@ -5,17 +5,17 @@ import logging
 import bpy
 from bpy.app.handlers import persistent
 
-from . import redraw
-from .bindings.abi import LancerError
+from . import measuring
 from .bindings.session import Cancelled
 from .checks.check import check_snapshot
 from .checks.finding import lines, shortened, told
 from .export.messages import Messages
-from .export.scene import export_scene
+from .of_scenes import OfScenes
+from .registering import add_all
 
-# Of the last Check Scene of each scene, by its name: findings, and what the export could not take as it is.
-last_findings = {}
-last_messages = {}
+# Of the last Check Scene of each scene: findings, and what the export could not take as it is.
+last_findings = OfScenes()
+last_messages = OfScenes()
 
 
 def quick_check(scene, snapshot, poll):
@@ -40,41 +40,31 @@ def quick_check(scene, snapshot, poll):
         return Messages([f"scene '{scene.name}': the check before the render failed ({type(error).__name__}: {error})"])
 
 
-class LANCER_OT_check_scene(bpy.types.Operator):
-    """Look for what will hurt the picture or waste time, without rendering; the scene is taken as the viewport has it"""
-
+class LANCER_OT_check_scene(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.check_scene"
     bl_label = "Check Scene"
+    bl_description = "Look for what will hurt the picture or waste time, in what F12 would render. Esc stops it"
 
-    def execute(self, context):
-        scene, manager = context.scene, context.window_manager
+    def work(self):
+        return _check
 
-        def show(share):
-            if share is not None:
-                manager.progress_update(share)
-
-        manager.progress_begin(0.0, 1.0)
-        try:
-            snapshot, messages = export_scene(context.evaluated_depsgraph_get())
-            findings = [finding for finding in check_snapshot(snapshot, poll=show) if _is_rendered(scene, finding)]
-        except LancerError as error:
-            self.report({"ERROR"}, f"Lancer: {error}")
-            return {"CANCELLED"}
-        finally:
-            manager.progress_end()
-        last_findings[scene.name], last_messages[scene.name] = findings, messages
-        redraw.properties()
+    def keep(self, scene, measurement):
+        findings = measurement.found
+        last_findings[scene], last_messages[scene] = findings, self.messages
         for line in lines(findings):
             self.report({"WARNING"}, f"Lancer: {line}")
         if not findings:
             self.report({"INFO"}, "Lancer: nothing found that would hurt")
-        return {"FINISHED"}
 
 
-def _is_rendered(scene, finding):
-    """The viewport also has what is hidden from renders."""
-    thing = scene.objects.get(finding.object or finding.light)
-    return thing is None or not thing.hide_render
+def _check(snapshot, poll, tell):
+    def obey(share):
+        if poll():
+            raise Cancelled
+        if share is not None:
+            tell(share, "Looking for what will hurt")
+
+    return check_snapshot(snapshot, poll=obey)
 
 
 class LANCER_OT_select_object(bpy.types.Operator):
@@ -115,8 +105,7 @@ def _forget(*_):
 
 
 def register():
-    for cls in _OPERATORS:
-        bpy.utils.register_class(cls)
+    add_all(_OPERATORS, bpy.utils.register_class, bpy.utils.unregister_class)
     bpy.app.handlers.load_pre.append(_forget)
 
 

@@ -11,6 +11,7 @@ from .bindings import denoiser, oidn
 from .bindings.abi import LancerError
 from .bindings.enums import Pass
 from .bindings.session import Cancelled, Session
+from .priority import lowered
 
 DECLARATION = "denoised: the error given is that of the picture before denoising"
 
@@ -79,7 +80,7 @@ def _guides(session, poll, tell):
     rendered = session.statistics().samples // (session.camera.region_width * session.camera.region_height)
     samples = max(1, min(rendered, _GUIDE_SAMPLES))
     settings = dataclasses.replace(session.settings, passes=(Pass.COMBINED, *_GUIDES), samples=samples)
-    with Session(session.scene, session.camera, settings) as guides:
+    with lowered(lambda: Session(session.scene, session.camera, settings)) as guides:
         if not guides.render_all(samples, poll) or (poll is not None and poll()):
             raise Cancelled
         return [guides.read(source) for source in _GUIDES]

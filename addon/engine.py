@@ -1,5 +1,6 @@
 """The engine that Blender calls: export, render in waves, show, account."""
 
+import contextlib
 import dataclasses
 import logging
 import math
@@ -8,25 +9,32 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import denoise, passes, redraw, stamp
+from . import as_rendered, denoise, passes, redraw, render_job, stamp
 from .bindings.abi import LancerError
 from .bindings.schedule import SAMPLES, TARGET, TIME, Schedule
 from .bindings.session import Cancelled, Session
 from .bindings.uses import used_features
 from .check_scene import quick_check
 from .export import main_thread
+from .export.kept import Kept
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
 from .harm import Harm
+from .of_scenes import OfScenes
 from .pace import Pace
+from .picture import Picture
+from .priority import lowered
 
-# Of the last render of each scene, by its name, for the panel and for scripts: numbers, and Messages.
-last_statistics = {}
-last_messages = {}
+# Of the last render of each scene, for the panel and for scripts: numbers, and Messages. The numbers are those of the last view
+# layer; "layers" has those of all, by their names.
+last_statistics = OfScenes()
+last_messages = OfScenes()
 # What that render could not show as Cycles does: {key of Messages.add: how often}.
-last_missing = {}
+last_missing = OfScenes()
 # Of the last measurement of each scene: a hints.Costs.
-last_costs = {}
+last_costs = OfScenes()
+# Of the scenes that are being animated or have Persistent Data: what is not read again.
+_kept = OfScenes()
 # What the library holds, by kind: names of last_statistics.
 MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 
@@ -45,7 +53,7 @@ _REMAINING = {SAMPLES: "", TARGET: " to the target error", TIME: " of the time l
 
 
 class LancerRenderEngine(bpy.types.RenderEngine):
-    bl_idname = "LANCER"
+    bl_idname = main_thread.ENGINE
     bl_label = "Lancer"
     bl_use_preview = False
     bl_use_postprocess = True
@@ -54,33 +62,51 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     # Blender runs __init__ twice and __del__ at odd times, so the class has neither; what lives longer than a call starts here.
     _snapshot = None
-    _messages = None
-    _exported = None
-    _pressed = None  # when, by time.monotonic(): the time limit counts from there
+    _picture = None
     _uses = ()
+    _gave_up = False
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
 
     def update(self, data=None, depsgraph=None):
-        self._pressed = time.monotonic()
-        self._begin(depsgraph)
-        self._guarded(depsgraph.scene, self._export, depsgraph)
+        if as_rendered.is_wanted():
+            as_rendered.take(self, depsgraph)
+            return
+        with self._working():
+            self._begin(depsgraph)
+            self._guarded(depsgraph.scene, self._export, depsgraph)
 
     def render(self, depsgraph):
-        if self._snapshot is not None:
-            scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
-            layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
-            denoising = denoise.ready(scene, view_layer)
-            # The snapshot has all of it, and what Blender evaluated may be larger than the render. From here on there is no
-            # depsgraph, unless Blender wants to keep it.
-            self.free_blender_memory()
-            self._guarded(scene, self._render, scene, layer, wanted, denoising)
-        self._snapshot = None
-        if self.test_break():
-            # The layers that were to follow do not come any more.
-            self._exported = None
-        redraw.properties_after_render()
+        if as_rendered.is_wanted():
+            return
+        with self._working():
+            if self._snapshot is not None:
+                scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
+                layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
+                denoising = denoise.ready(scene, view_layer)
+                # The snapshot has all of it, and what Blender evaluated may be larger than the render. From here on there is no
+                # depsgraph, unless Blender wants to keep it.
+                self.free_blender_memory()
+                self._guarded(scene, self._render, scene, layer, wanted, denoising)
+            self._snapshot = None
+            if self._is_over():
+                # The layers that were to follow do not come any more.
+                self._picture = None
+            redraw.properties_after_render()
+
+    @contextlib.contextmanager
+    def _working(self):
+        with render_job.working():
+            yield
+            if render_job.is_ending() and not self._gave_up:
+                self._gave_up = True
+                # An error, as Blender would go on with the next frame.
+                self._fail("the add-on was switched off while it rendered")
+
+    def _is_over(self):
+        """Whether the user has enough, or the add-on goes away."""
+        return render_job.is_ending() or self.test_break()
 
     def _begin(self, depsgraph):
         """Starts the account anew with each picture.
@@ -89,14 +115,17 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         serves one picture after the other too, which tell themselves by another frame, or by a layer that is there again.
         """
         scene, layer = depsgraph.scene, depsgraph.view_layer.name
-        picture = (scene.name, scene.frame_current_final)
-        if self._exported is None or self._exported[0] != picture or layer in self._exported[1]:
-            self._exported = picture, set()
-            self._messages = Messages()
-            last_messages.pop(scene.name, None)
-            last_missing.pop(scene.name, None)
-            last_statistics.pop(scene.name, None)
-        self._exported[1].add(layer)
+        key = (scene.name, scene.frame_current_final)
+        if self._picture is None or not self._picture.has(key, layer):
+            self._picture = Picture(key, self.get_result().layers.keys())
+            last_messages.pop(scene, None)
+            last_missing.pop(scene, None)
+            last_statistics.pop(scene, None)
+            if not (self.is_animation or scene.render.use_persistent_data):
+                _kept.pop(scene, None)
+            else:
+                _kept.setdefault(scene, Kept()).next_picture()
+        self._picture.begin(layer)
 
     def _guarded(self, scene, work, *arguments):
         """Whatever goes wrong becomes an error that Blender shows, and that ends a headless render with failure."""
@@ -104,7 +133,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             work(*arguments)
             return
         except Cancelled:
-            self._snapshot = self._exported = None
+            self._snapshot = self._picture = None
             return
         except LancerError as error:
             text = str(error)
@@ -117,8 +146,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
         self._snapshot = None
-        self._messages.add(text, harm=Harm.FAILED)
-        last_messages[scene.name] = self._messages
+        self._picture.messages.add(text, harm=Harm.FAILED)
+        last_messages[scene] = self._picture.messages
+        self._fail(text)
+
+    def _fail(self, text):
         self.error_set(f"Lancer: {text}")
         self.report({"ERROR"}, f"Lancer: {text}")
 
@@ -131,15 +163,17 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             # Told before the time is spent.
             self._tell(scene, Messages([denoise.missing()]))
         wanted = passes.render_passes(scene, view_layer)
-        options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
-        self._snapshot, messages = export_scene(depsgraph, options, self.test_break)
+        options = ExportOptions(self.camera_override, tuple(item.source for item in wanted), _kept.get(scene))
+        self._snapshot, messages = export_scene(depsgraph, options, self._is_over)
+        settings = self._snapshot.settings
+        self._snapshot.set("settings", dataclasses.replace(settings, time_limit=self._picture.limit(settings.time_limit)))
         self._uses = [dataclasses.asdict(feature) for feature in used_features(self._snapshot)]
         self._tell(scene, messages)
-        self._tell(scene, quick_check(scene, self._snapshot, self.test_break))
+        self._tell(scene, quick_check(scene, self._snapshot, self._is_over))
 
     def _render(self, scene, layer, wanted, denoising):
         self.update_stats("", "Building the scene")
-        with Session.upload(self._snapshot, poll=self.test_break, release=True) as session:
+        with lowered(lambda: Session.upload(self._snapshot, poll=self._is_over, release=True)) as session:
             # The library holds its own copy from here on.
             self._snapshot = None
             self._tell(scene, Messages.of_library(session.messages()))
@@ -154,12 +188,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 passes.fill(result.layers[0], session.read, wanted)
                 self.update_result(result)
 
-            schedule = Schedule(session, self._pressed)
+            schedule = Schedule(session, self._picture.started)
             try:
                 self._run(schedule, show)
                 passes.fill(result.layers[0], session.read, wanted)
                 denoised = None
-                if denoising and not self.test_break():
+                if denoising and not self._is_over():
                     self.update_result(result)
                     denoised = self._denoise(scene, session)
                 if denoised is not None:
@@ -171,7 +205,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _denoise(self, scene, session):
         """Denoised, or None: then the picture that is there already stays."""
-        denoised, failure = denoise.apply(session, self.test_break, lambda text: self.update_stats("", text))
+        denoised, failure = denoise.apply(session, self._is_over, lambda text: self.update_stats("", text))
         if failure:
             self._tell(scene, Messages([failure]))
         return denoised
@@ -184,7 +218,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             first = not picture.begun
             while True:
                 progress = schedule.wait(_STEP if picture.begun else _FIRST_STEP)
-                if not progress.finished and self.test_break():
+                if not progress.finished and self._is_over():
                     schedule.cancel()
                 # At first whatever there is, tiles of the first sample too; and that sample once it is whole.
                 elif progress.samples > 0 and (picture.due or first and progress.finished) and not schedule.over:
@@ -198,7 +232,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     self._show_progress(schedule, progress)
                 if progress.finished:
                     break
-            if self.test_break():
+            if self._is_over():
                 return
 
     def _show_progress(self, schedule, progress):
@@ -215,10 +249,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _tell(self, scene, messages):
         """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
-        room = max(0, _MAX_REPORTS - len(self._messages))
-        new = [message for message in self._messages.merge(messages).told() if message.harm > Harm.HINT]
-        last_messages[scene.name] = self._messages
-        last_missing[scene.name] = self._messages.missing()
+        room = max(0, _MAX_REPORTS - len(self._picture.messages))
+        new = [message for message in self._picture.messages.merge(messages).told() if message.harm > Harm.HINT]
+        last_messages[scene] = self._picture.messages
+        last_missing[scene] = self._picture.messages.missing()
         for message in new[:room]:
             self.report({"WARNING"}, f"Lancer: {message.line}")
         if len(new) > room:
@@ -236,15 +270,18 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
         numbers["uses"] = self._uses
-        last_statistics[scene.name] = numbers
-        if scene.name in last_costs:
-            keep_costs(scene.name, last_costs[scene.name])
+        if scene in _kept:
+            numbers.update(_kept[scene].counts, kept_bytes=_kept[scene].bytes)
         # Only what get_result gives reaches the file.
         stamped = self.get_result()
         several = len(stamped.layers) > 1
+        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings, layer if several else "")
+        layers = last_statistics.get(scene, {}).get("layers", {})
+        last_statistics[scene] = {**numbers, "layers": {**layers, layer: numbers}}
+        if scene in last_costs:
+            keep_costs(scene, last_costs[scene])
         for name, value in stamp.fields(numbers, session.settings):
             stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
-        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings, layer if several else "")
         self.update_stats("", lines[0])
         # Headless, what is reported goes to the terminal; in a window the panel has it.
         if bpy.app.background:
@@ -252,11 +289,11 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 self.report({"INFO"}, f"Lancer: {line}")
 
 
-def keep_costs(name, costs):
+def keep_costs(scene, costs):
     """Keeps what the features of a scene were measured to cost, among its statistics, too."""
-    last_costs[name] = costs
-    if name in last_statistics:
-        last_statistics[name]["feature_costs"] = {cost.name: dataclasses.asdict(cost) for cost in costs.measured}
+    last_costs[scene] = costs
+    if scene in last_statistics:
+        last_statistics[scene]["feature_costs"] = {cost.name: dataclasses.asdict(cost) for cost in costs.measured}
 
 
 def _clock(seconds):
@@ -274,16 +311,28 @@ def _forget(*_):
     last_messages.clear()
     last_missing.clear()
     last_costs.clear()
+    _kept.clear()
+
+
+@persistent
+def _forget_kept(scene, *_):
+    """After the last frame, or Esc."""
+    if not scene.render.use_persistent_data:
+        _kept.pop(scene, None)
+
+
+_HANDLERS = (("load_pre", _forget), ("render_complete", _forget_kept), ("render_cancel", _forget_kept))
 
 
 def register():
     bpy.utils.register_class(LancerRenderEngine)
-    bpy.app.handlers.load_pre.append(_forget)
-    main_thread.register()
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
-    main_thread.unregister()
-    bpy.app.handlers.load_pre.remove(_forget)
+    redraw.forget()
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
     bpy.utils.unregister_class(LancerRenderEngine)
     _forget()

@@ -6,9 +6,10 @@ import bpy
 
 from . import engine, measuring
 from .bindings.hints import measure_costs
+from .of_scenes import OfScenes
 
-# Of what the figures in engine.last_costs were measured, by the scene's name.
-_states = {}
+# Of what the figures in engine.last_costs were measured, by the scene.
+_states = OfScenes()
 
 
 def _state(scene):
@@ -18,12 +19,13 @@ def _state(scene):
 
 
 def is_old(scene):
-    return scene.name in _states and _states[scene.name] != _state(scene)
+    return scene in _states and _states[scene] != _state(scene)
 
 
 class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.measure_features"
     bl_label = "Measure What Features Cost"
+    figures = _states
     bl_description = (
         "Renders small pictures of the scene with and without each of its features in turn, and tells how much time each "
         "takes. Nothing in the scene is changed. Esc stops it"
@@ -40,8 +42,8 @@ class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
         self._state = _state(context.scene)
 
     def keep(self, scene, measurement):
-        _states[scene.name] = self._state
-        engine.keep_costs(scene.name, measurement.found)
+        _states[scene] = self._state
+        engine.keep_costs(scene, measurement.found)
         for cost in measurement.found.hints:
             self.report({"INFO"}, f"Lancer: {cost.text}. Without: {cost.without}")
 
@@ -52,4 +54,3 @@ def register():
 
 def unregister():
     bpy.utils.unregister_class(LANCER_OT_measure_features)
-    _states.clear()

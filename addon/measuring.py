@@ -1,27 +1,24 @@
-"""Operators that measure what F12 would render, beside Blender's window: one export, a thread that works, progress, Esc.
+"""Operators that look at what F12 would render, beside Blender's window: one export, a thread that works, progress, Esc.
 
 What they find is kept in this session only; no file and no data of the artist's changes.
 """
 
 import logging
 import threading
-import time
 
 import bpy
 from bpy.app.handlers import persistent
 
-from . import redraw
+from . import as_rendered, of_scenes, priority, redraw
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled
-from .export.scene import ExportOptions, export_scene
-from .passes import render_passes
 
-# (operator's bl_idname, fraction, text) of a measurement that runs, by the scene's name.
-running = {}
+# (operator's bl_idname, fraction, text) of the work that runs, by its scene.
+running = of_scenes.OfScenes()
 # The threads of those beside a window, each with the timer that looks at it.
 _looked_at = []
-# How often objects, materials or lights have changed, by the scene's name.
-_changes = {}
+# How often objects, materials or lights have changed since figures are kept, by the scene.
+_changes = of_scenes.OfScenes()
 
 _TICK = 0.1
 
@@ -46,16 +43,19 @@ _RENDER = ("film_transparent", "use_border", "use_crop_to_border", "threads_mode
 class _Measurement(threading.Thread):
     """It touches no data of Blender's."""
 
-    def __init__(self, work, snapshot, exporting):
+    def __init__(self, work, export):
         super().__init__(name="lancer measures", daemon=True)
-        self.work, self.snapshot = work, snapshot
-        self.exporting = exporting  # seconds
+        self.work, self.snapshot = work, export.snapshot
+        self.exporting = export.seconds
         self.stop = threading.Event()
         self.progress = (0.0, "Building the scene")
         self.found = None
         self.error = ""
 
     def run(self):
+        if not bpy.app.background:
+            # As a render in a window does, whose seconds are foretold.
+            priority.lower()
         try:
             self.found = self.work(self.snapshot, poll=self.stop.is_set, tell=self._tell)
         except Cancelled:
@@ -63,7 +63,7 @@ class _Measurement(threading.Thread):
         except LancerError as error:
             self.error = str(error)
         except MemoryError:
-            self.error = "not enough memory to measure this scene"
+            self.error = "not enough memory for this scene"
         except Exception as error:
             logging.getLogger(__name__).exception("measuring failed")
             self.error = f"{type(error).__name__}: {error}"
@@ -74,7 +74,12 @@ class _Measurement(threading.Thread):
 
 
 class Measuring:
-    """What such operators share; they give work() and keep(scene, measurement)."""
+    """What such operators share. They give work() and keep(scene, measurement).
+
+    figures: the mapping in which they keep what they find, which ends with the file.
+    """
+
+    figures = {}
 
     @classmethod
     def poll(cls, context):
@@ -87,14 +92,14 @@ class Measuring:
         measurement = self._started(context)
         if measurement is not None:
             measurement.join()
-        return self._ended(context, measurement)
+        return self._ended(measurement)
 
     def invoke(self, context, event):
         if bpy.app.background or context.window is None:
             return self.execute(context)
         self._measurement = self._started(context)
         if self._measurement is None:
-            return {"CANCELLED"}
+            return self._ended(None)
         self._show()
         manager = context.window_manager
         self._timer = manager.event_timer_add(_TICK, window=context.window)
@@ -112,64 +117,71 @@ class Measuring:
         if bpy.app.is_job_running("RENDER") and not measurement.stop.is_set():
             # Beside it everything takes longer.
             measurement.stop.set()
-            self.report({"WARNING"}, "Lancer: measuring was stopped, as a render has begun")
+            self.report({"WARNING"}, f"Lancer: '{self.bl_label}' was stopped, as a render has begun")
         self._show()
         context.window_manager.progress_update(measurement.progress[0])
         redraw.properties()
         if measurement.is_alive():
             return {"RUNNING_MODAL"}
         self._leave(context)
-        return self._ended(context, measurement)
+        return self._ended(measurement)
 
     def cancel(self, context):
         """Blender closes the window or loads another file."""
         self._measurement.stop.set()
         self._measurement.join()
         self._leave(context)
+        _watch_figures()
 
     def _show(self):
+        scene = of_scenes.find(self._scene)
         fraction, text = self._measurement.progress
         text = "Stopping" if self._measurement.stop.is_set() else text
-        # An operator's own bl_idname is spelt as that of its class in C.
-        running[self._scene] = type(self).bl_idname, fraction, text
+        if scene is not None:
+            # An operator's own bl_idname is spelt as that of its class in C.
+            running[scene] = type(self).bl_idname, fraction, text
 
     def _leave(self, context):
-        running.pop(self._scene, None)
+        running.clear()
         _looked_at.remove((self._measurement, self._timer))
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         redraw.properties()
 
     def _started(self, context):
-        self._scene = context.scene.name
-        started = time.monotonic()
-        depsgraph = context.evaluated_depsgraph_get()
-        wanted = tuple(item.source for item in render_passes(depsgraph.scene, depsgraph.view_layer_eval))
+        self._scene = of_scenes.identity(context.scene)
         try:
-            snapshot, _ = export_scene(depsgraph, ExportOptions(passes=wanted))
+            export = as_rendered.export(context)
         except LancerError as error:
             self.report({"ERROR"}, f"Lancer: {error}")
             return None
         # Blender writes properties of an operator in its own thread only: the work gets what it needs of them now.
-        measurement = _Measurement(self.work(), snapshot, time.monotonic() - started)
-        self.begun(context, snapshot)
+        measurement = _Measurement(self.work(), export)
+        _watch(True)
+        self.messages = export.messages
+        self.begun(context, export.snapshot)
         measurement.start()
         return measurement
 
     def begun(self, context, snapshot):
         """For what is to be noted of the scene as it is measured."""
 
-    def _ended(self, context, measurement):
+    def _ended(self, measurement):
+        kept = self._keep(measurement)
+        _watch_figures()
+        return {"FINISHED"} if kept else {"CANCELLED"}
+
+    def _keep(self, measurement):
         if measurement is None or measurement.found is None:
             if measurement is not None and measurement.error:
                 self.report({"ERROR"}, f"Lancer: {measurement.error}")
-            return {"CANCELLED"}
-        scene = bpy.data.scenes.get(self._scene)
+            return False
+        scene = of_scenes.find(self._scene)
         if scene is None:
-            self.report({"WARNING"}, f"Lancer: there is no scene '{self._scene}' any more, of which figures were measured")
-            return {"CANCELLED"}
+            self.report({"WARNING"}, "Lancer: the scene of which figures were measured is gone")
+            return False
         self.keep(scene, measurement)
-        return {"FINISHED"}
+        return True
 
 
 def _missing(scene):
@@ -178,7 +190,7 @@ def _missing(scene):
         return "The scene has no camera"
     # Two at once would slow each other down.
     if running:
-        return "A measurement is running"
+        return "A measurement or a check is running"
     return "A render is running" if bpy.app.is_job_running("RENDER") else ""
 
 
@@ -188,23 +200,45 @@ def state(scene):
     border = (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y) if render.use_border else ()
     shape = render.resolution_x / render.resolution_y, render.pixel_aspect_x / render.pixel_aspect_y, *border
     values = [getattr(own, name) for name in _OWN] + [getattr(render, name) for name in _RENDER]
-    return (_changes.get(scene.name, 0), *values, *shape, scene.camera.name if scene.camera else "", scene.frame_current)
+    return (_changes.get(scene, 0), *values, *shape, scene.camera.name if scene.camera else "", scene.frame_current)
 
 
-@persistent
 def _changed(scene, depsgraph):
     if any(
         update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading for update in depsgraph.updates
     ):
-        _changes[scene.name] = _changes.get(scene.name, 0) + 1
+        _changes[scene] = _changes.get(scene, 0) + 1
+
+
+def _watch(on):
+    """Whether changes of scenes are counted: each costs a call."""
+    handlers = bpy.app.handlers.depsgraph_update_post
+    if on and _changed not in handlers:
+        handlers.append(_changed)
+    if not on:
+        _changes.clear()
+        if _changed in handlers:
+            handlers.remove(_changed)
+
+
+def _watch_figures():
+    """Only figures that are kept can become old."""
+    _watch(any(cls.figures for cls in Measuring.__subclasses__()))
+
+
+@persistent
+def _forget(*_):
+    """Another file has other scenes."""
+    for cls in Measuring.__subclasses__():
+        cls.figures.clear()
+    _watch(False)
 
 
 def register():
-    bpy.app.handlers.depsgraph_update_post.append(_changed)
+    bpy.app.handlers.load_pre.append(_forget)
 
 
 def unregister():
-    bpy.app.handlers.depsgraph_update_post.remove(_changed)
     # Blender drops an operator whose class goes, without a word to it.
     while _looked_at:
         measurement, timer = _looked_at.pop()
@@ -213,4 +247,5 @@ def unregister():
         bpy.context.window_manager.event_timer_remove(timer)
         bpy.context.window_manager.progress_end()
     running.clear()
-    _changes.clear()
+    bpy.app.handlers.load_pre.remove(_forget)
+    _forget()

@@ -76,8 +76,10 @@ def fill(layer, read, wanted):
 
 
 def replace_combined(layer, image):
-    """Puts another picture, (height, width, 4) float32, in the place of Combined."""
-    _upload(next(target for target in layer.passes if target.name == "Combined"), image)
+    """Puts another picture, (height, width, 4) float32, in the place of Combined, of both eyes in stereoscopy."""
+    for target in layer.passes:
+        if target.name == "Combined":
+            _upload(target, image)
 
 
 def _upload(target, image):

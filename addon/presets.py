@@ -4,6 +4,8 @@ import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
+from .registering import add_all
+
 _SAMPLING = ("target_error", "samples", "quality", "time_limit", "use_denoising")
 _LIGHT_PATHS = (
     "max_bounces",
@@ -12,6 +14,18 @@ _LIGHT_PATHS = (
     "contribution_threshold",
     "environment_reflections",
 )
+
+
+def _draw(panel, context):
+    """As Blender draws presets, but where none was saved yet it tells of missing paths."""
+    if bpy.utils.preset_paths(panel.preset_subdir):
+        PresetPanel.draw(panel, context)
+        return
+    column, manager = panel.layout.column(), context.window_manager
+    column.label(text="No presets yet")
+    row = column.row()
+    row.prop(manager, "preset_name", text="")
+    row.operator(panel.preset_add_operator, text="", icon="ADD").name = manager.preset_name
 
 
 def _made(name, label, settings):
@@ -25,6 +39,7 @@ def _made(name, label, settings):
             "preset_subdir": folder,
             "preset_operator": "script.execute_preset",
             "preset_add_operator": operator,
+            "draw": _draw,
         },
     )
     add = type(
@@ -59,8 +74,7 @@ def draw_light_paths(panel, _context):
 
 
 def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
+    add_all(_CLASSES, bpy.utils.register_class, bpy.utils.unregister_class)
 
 
 def unregister():

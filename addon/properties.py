@@ -6,6 +6,8 @@ Items of enums carry numbers that files store: never renumber, never reuse.
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
 
+from .registering import add_all
+
 # Target error, and the most samples that may be spent on it.
 QUALITIES = {"DRAFT": (0.1, 1024), "GOOD": (0.03, 8192), "FINAL": (0.01, 65536)}
 _presets = []  # those that are being set
@@ -380,17 +382,26 @@ _GROUPS = (
 
 
 def register():
-    for group, owner in _GROUPS:
-        bpy.utils.register_class(group)
-        if group is LancerSceneSettings:
-            _add_watched(group)
-        owner.lancer = PointerProperty(type=group, name="Lancer")
+    add_all(_GROUPS, _add, _remove)
 
 
 def unregister():
-    for group, owner in reversed(_GROUPS):
-        del owner.lancer
-        if group is LancerSceneSettings:
-            for name in _WATCHED:
-                delattr(group, name)
-        bpy.utils.unregister_class(group)
+    for item in reversed(_GROUPS):
+        _remove(item)
+
+
+def _add(item):
+    group, owner = item
+    bpy.utils.register_class(group)
+    if group is LancerSceneSettings:
+        _add_watched(group)
+    owner.lancer = PointerProperty(type=group, name="Lancer")
+
+
+def _remove(item):
+    group, owner = item
+    del owner.lancer
+    if group is LancerSceneSettings:
+        for name in _WATCHED:
+            delattr(group, name)
+    bpy.utils.unregister_class(group)

@@ -8,19 +8,19 @@ import functools
 from dataclasses import dataclass
 
 import bpy
-from bpy.app.handlers import persistent
 
 from . import measuring, stamp
 from .bindings.forecast import classic_seconds, forecast
 from .bindings.pilot import measure
+from .of_scenes import OfScenes
 from .properties import QUALITIES
 
 # An interval whose ends differ by more than this factor says nothing to plan by, unless even its upper end is short (seconds).
 _TELLING = 20.0
 _SHORT = 20.0
 
-# Kept, by the scene's name.
-measured = {}
+# Kept, by the scene.
+measured = OfScenes()
 
 
 @dataclass
@@ -32,7 +32,7 @@ class Kept:
 
 
 def is_old(scene):
-    return measured[scene.name].state != measuring.state(scene)
+    return measured[scene].state != measuring.state(scene)
 
 
 def _size(scene):
@@ -42,13 +42,13 @@ def _size(scene):
 
 def _pixels(scene):
     """Of the picture as it would be rendered now."""
-    kept = measured[scene.name]
+    kept = measured[scene]
     return kept.pixels * _size(scene) / kept.size
 
 
 def forecasts(scene):
     """(name, Forecast) of each preset and of the numbers that are set now."""
-    kept, own, pixels = measured[scene.name], scene.lancer, _pixels(scene)
+    kept, own, pixels = measured[scene], scene.lancer, _pixels(scene)
     for name, (error, samples) in QUALITIES.items():
         yield name.capitalize(), forecast(kept.points, pixels, error, samples)
     yield "As set", forecast(kept.points, pixels, own.target_error, own.samples, own.time_limit)
@@ -61,7 +61,7 @@ def lines(scene):
         short = f"; {told.samples.value:.0f} samples end it above its {stamp.percent(error)}" if told.misses(error) else ""
         yield f"{name}: {seconds(told.seconds)}; error {share(told.error)}{short}"
     samples = scene.lancer.samples
-    classic = classic_seconds(measured[scene.name].points, _pixels(scene), samples)
+    classic = classic_seconds(measured[scene].points, _pixels(scene), samples)
     if classic is not None:
         yield f"Classic, {samples} sample{'s' if samples > 1 else ''}: about {stamp.duration(classic)}"
 
@@ -84,6 +84,7 @@ def share(told):
 class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.measure_quality"
     bl_label = "Measure Speed and Accuracy"
+    figures = measured
     bl_description = (
         "Renders small pictures of the scene for some seconds, and tells how long each quality will take at the full size "
         "and how near it will come. Nothing in the scene is changed. Esc stops it"
@@ -105,22 +106,14 @@ class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
         found = measurement.found
         # F12 exports the scene, too.
         self._kept.points = dataclasses.replace(found, before=found.before + measurement.exporting)
-        measured[scene.name] = self._kept
+        measured[scene] = self._kept
         for line in lines(scene):
             self.report({"INFO"}, f"Lancer: {line}")
 
 
-@persistent
-def _forget(*_):
-    measured.clear()
-
-
 def register():
     bpy.utils.register_class(LANCER_OT_measure_quality)
-    bpy.app.handlers.load_pre.append(_forget)
 
 
 def unregister():
-    bpy.app.handlers.load_pre.remove(_forget)
     bpy.utils.unregister_class(LANCER_OT_measure_quality)
-    _forget()

@@ -30,3 +30,9 @@ def _when_over():
         return _LOOK_AGAIN
     properties()
     return None
+
+
+def forget():
+    """Nothing is drawn anew when the render is over."""
+    if bpy.app.timers.is_registered(_when_over):
+        bpy.app.timers.unregister(_when_over)

@@ -9,6 +9,7 @@ import time
 import blenders
 import numpy as np
 import pytest
+import windows
 from conftest import HERE, ROOT
 
 SCREEN = (1280, 800)
@@ -21,21 +22,8 @@ def display():
     """A screen of our own on the first free display number."""
     for tool in ("Xvfb", "xdotool", "import", "convert"):
         assert shutil.which(tool), f"{tool} is missing: apt-get install xvfb xdotool imagemagick libgl1-mesa-dri"
-    reading, writing = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{SCREEN[0]}x{SCREEN[1]}x24", "-nolisten", "tcp"],
-        pass_fds=[writing],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    os.close(writing)
-    # The number and its newline come one by one, and a server that cannot finish its line gives up.
-    with open(reading, encoding="ascii") as file:
-        number = file.readline().strip()
-    assert number, "Xvfb did not start"
-    yield f":{number}"
-    server.terminate()
-    server.wait(10)
+    with windows.screen(*SCREEN) as name:
+        yield name
 
 
 class Window:
@@ -94,6 +82,15 @@ class Window:
                 return now
         raise AssertionError("no picture on the screen")
 
+    def shot_once_refined(self, name, first):
+        """The first shot whose middle has a good deal less noise than that of another."""
+        for _ in range(120):
+            now = self.shot(name)
+            if roughness(middle(now)) < 0.8 * roughness(middle(first)):
+                return now
+            time.sleep(0.25)
+        raise AssertionError("the picture on the screen does not refine")
+
     def tell(self, word):
         open(os.path.join(self.folder, word), "w").close()
 
@@ -123,28 +120,20 @@ def test_f12_in_a_window(display, tmp_path):
         window.wait_for("ready")
         before = window.shot("before.png")
         window.press("F12")
-        started = window.wait_for("render_pre")
-        # The first picture on the screen, then one after some seconds of refining.
+        window.wait_for("render_pre")
+        # The first picture on the screen, then one with less noise.
         first = window.shot_once_rendered("first.png", before)
-        time.sleep(6.0)
-        second = window.shot("second.png")
-        assert np.abs(second - first).mean() > 0.05, "the picture on the screen does not change"
-        assert roughness(middle(second)) < 0.8 * roughness(middle(first)), "the picture on the screen does not refine"
-        # The window answers while two threads render and a third draws in software on two processors: a timer of 0.05 s
-        # still comes several times a second, and taking screenshots, which holds the display, delays it a second or so.
-        ticks = [at for at in window.times("tick") if at > started]
-        gaps = np.diff(ticks)
-        assert len(ticks) > 10 and np.median(gaps) < 0.5 and gaps.max() < 4.0, (
-            f"median {np.median(gaps)} s, longest {gaps.max()} s"
-        )
-        # Esc stops within half a second, before a hand would press it again, and keeps the picture.
+        second = window.shot_once_refined("second.png", first)
+        # The window answers: its timer comes again and again. How soon is measured by `make bench`.
+        window.wait_for("tick", len(window.times("tick")) + 10)
+        # Esc stops it and keeps the picture.
         window.press("Escape")
-        asked = time.time()
-        stopped = window.wait_for("render_cancel", patience=30)
+        window.wait_for("render_cancel")
         time.sleep(1.0)
         kept = window.shot("kept.png")
-        assert stopped - asked < 0.5, f"Esc took {stopped - asked:.2f} s"
-        assert np.abs(middle(kept) - middle(second)).mean() < 6.0, "the picture is gone"
+        # More samples may have come before it stopped: it is like the picture before, and unlike what was there without one.
+        changed = [np.abs(middle(kept) - middle(other)).mean() for other in (second, before)]
+        assert changed[0] < 0.5 * changed[1], "the picture is gone"
         assert roughness(middle(kept)) <= 1.1 * roughness(middle(second))
         # And it can be done again.
         window.press("F12")
@@ -217,6 +206,69 @@ def test_panels_tell_what_goes_on(display, tmp_path):
     finally:
         code = window.close()
     # Blender itself leaves with 1 after Esc; a crash would be a signal's number.
+    assert code in (0, 1), f"Blender ended with {code}"
+
+
+def test_the_add_on_goes_while_it_renders(display, tmp_path):
+    """Switched off in the midst of a render it ends that first, and can be switched on and render again; then Blender quits
+    while it renders."""
+    window = Window(str(tmp_path), display)
+    try:
+        window.wait_for("ready")
+        window.press("F12")
+        window.wait_for("render_pre")
+        window.wait_for("tick", len(window.times("tick")) + 5)
+        window.tell("off")
+        # The whole job of Blender's is over then.
+        assert window.wait_for("off") >= window.wait_for("render_cancel")
+        window.wait_for("tick", len(window.times("tick")) + 5)
+        window.tell("on")
+        window.wait_for("on")
+        window.press("Escape")
+        window.press("F12")
+        window.wait_for("render_pre", 2)
+        window.wait_for("tick", len(window.times("tick")) + 5)
+        window.tell("quit")
+        code = window.process.wait(90)
+    finally:
+        window.close()
+    # Blender itself leaves with 1 when its last render was broken off; a crash would be a signal's number.
+    assert code in (0, 1), f"Blender ended with {code}"
+
+
+def test_nothing_runs_for_other_engines(display, tmp_path):
+    """The timer that serves renders is there only while a scene's engine is Lancer."""
+    window = Window(str(tmp_path), display)
+    try:
+        window.wait_for("ready")
+        window.wait_for("serves")
+        window.tell("CYCLES")
+        window.wait_for("rests")
+        window.tell("LANCER")
+        window.wait_for("serves", 2)
+    finally:
+        code = window.close()
+    assert code == 0, f"Blender ended with {code}"
+
+
+def test_check_scene_leaves_the_window_alive(display, tmp_path):
+    """A check that takes for ever is looked at beside the window, and Esc ends it with nothing listed."""
+    window = Window(str(tmp_path), display)
+    try:
+        window.wait_for("ready")
+        window.tell("check")
+        window.wait_for("running_modal")
+        window.wait_for("tick", len(window.times("tick")) + 3)
+        window.tell("measuring?")
+        window.wait_for("measuring")
+        window.press("Escape")
+        window.wait_for("check-cancelled")
+        window.tell("measuring?")
+        window.wait_for("nothing")
+        window.tell("listed?")
+        window.wait_for("unlisted")
+    finally:
+        code = window.close()
     assert code in (0, 1), f"Blender ended with {code}"
 
 

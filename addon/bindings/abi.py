@@ -2,6 +2,7 @@
 
 import ctypes
 import functools
+import mmap
 import os
 import sys
 from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64
@@ -97,6 +98,8 @@ def _load(path):
     try:
         library = ctypes.CDLL(path)
     except OSError as error:
+        if not _has_room(2 * os.path.getsize(path)):
+            raise LancerError(f"there is not enough memory or address space to load Lancer's library ({error})") from None
         raise LancerError(f"Lancer's library cannot be loaded ({error}): {remedy}") from None
     try:
         for name, (result, arguments) in _QUERIES.items():
@@ -118,6 +121,15 @@ def _load(path):
     except AttributeError as error:
         raise LancerError(f"Lancer's library is of another version ({error}): {remedy}") from None
     return library
+
+
+def _has_room(size):
+    """Whether so many bytes can be mapped: the loader says of a mapping that failed neither how large it was nor why."""
+    try:
+        mmap.mmap(-1, size).close()
+    except (OSError, MemoryError):
+        return False
+    return True
 
 
 def check(status, library=None):

@@ -8,6 +8,8 @@ from ..bindings.abi import LancerError
 from ..bindings.enums import CameraKind
 from .panorama import panorama
 
+NO_CAMERA = "scene '{}' has no camera: add one, or choose one in the scene properties"
+
 
 def image_size(scene):
     """Full image in pixels, as Blender truncates it."""
@@ -30,7 +32,7 @@ def export_camera(camera, depsgraph, messages):
     """camera is the object to look through; None means that the scene has none."""
     scene = depsgraph.scene
     if camera is None:
-        raise LancerError(f"scene '{scene.name}' has no camera: add one, or choose one in the scene properties")
+        raise LancerError(NO_CAMERA.format(scene.name))
     if camera.type != "CAMERA":
         raise LancerError(f"object '{camera.name}' is the scene's camera but no camera: choose one in the scene properties")
     camera = camera.evaluated_get(depsgraph)

@@ -2,6 +2,9 @@
 
 In a window Blender renders in a thread of its own while the main one draws and obeys the user; to make and to remove data is
 safe in the main one only. In the background, and where a script waits for the render, both are one.
+
+Only the main thread may begin a timer, and F12 calls no Python there: so a slow one waits as long as Lancer is the engine of a
+scene, and is quick in a render.
 """
 
 import contextlib
@@ -11,13 +14,17 @@ import threading
 from concurrent import futures
 
 import bpy
+from bpy.app.handlers import persistent
 
-_INTERVAL = 0.01  # of the main thread's looks
+ENGINE = "LANCER"
+
+_QUICK, _SLOW = 0.01, 0.1  # seconds between the main thread's looks: in a render, and before
 _PATIENCE = 0.05  # between two looks whether the user still waits
 
 _asked = queue.SimpleQueue()
 _obey = contextvars.ContextVar("obey", default=None)
 _serving = False
+_owner = object()  # of what is heard of changes of the engine
 
 
 @contextlib.contextmanager
@@ -72,7 +79,8 @@ def _ask(work):
     return future
 
 
-def _serve():
+def serve():
+    """Does what is asked for; for the main thread alone."""
     with contextlib.suppress(queue.Empty):
         while True:
             future, work = _asked.get_nowait()
@@ -81,20 +89,58 @@ def _serve():
                     future.set_result(work())
                 except BaseException as error:
                     future.set_exception(error)
-    return _INTERVAL
+
+
+def _tick():
+    global _serving
+    serve()
+    rendering = bpy.app.is_job_running("RENDER")
+    _serving = rendering or any(scene.render.engine == ENGINE for scene in bpy.data.scenes)
+    if not _serving:
+        return None
+    return _QUICK if rendering else _SLOW
+
+
+@persistent
+def _look(*_):
+    """The file's scenes may have changed, or the engine of one."""
+    global _serving
+    if not _serving:
+        _serving = True
+        bpy.app.timers.register(_tick, persistent=True)
+
+
+@persistent
+def _loaded(*_):
+    # Loading ends all subscriptions.
+    _subscribe()
+    _look()
+
+
+def _subscribe():
+    for key in ((bpy.types.RenderSettings, "engine"), (bpy.types.Window, "scene")):
+        bpy.msgbus.subscribe_rna(key=key, owner=_owner, args=(), notify=_look)
+
+
+_HANDLERS = (("load_post", _loaded), ("undo_post", _look), ("redo_post", _look))
 
 
 def register():
-    global _serving
     # Timers never come in the background.
     if not bpy.app.background:
-        bpy.app.timers.register(_serve, persistent=True)
-        _serving = True
+        for name, handler in _HANDLERS:
+            getattr(bpy.app.handlers, name).append(handler)
+        _loaded()
 
 
 def unregister():
     global _serving
-    if _serving:
-        _serving = False
-        bpy.app.timers.unregister(_serve)
-        _serve()
+    if bpy.app.background:
+        return
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
+    bpy.msgbus.clear_by_owner(_owner)
+    _serving = False
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+    serve()

@@ -60,6 +60,13 @@ class Messages:
                 new._count(message)
         return new
 
+    def replaced(self, old, new):
+        """The same messages with other words in the place of some."""
+        messages = Messages()
+        for message in self._messages.values():
+            messages._count(message._replace(text=message.text.replace(old, new)))
+        return messages
+
     def __len__(self):
         return len(self._messages)
 

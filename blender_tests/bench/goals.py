@@ -193,6 +193,15 @@ def _threads(figures):
     return at_least("2 threads against 1, balls", "1.9x on 2 real cores", ratio, 1.9)
 
 
+def _window(figures):
+    parts = []
+    for name in ("longest", "median"):
+        ours, theirs = (get(figures, "window", engine, name) for engine in ("LANCER", "CYCLES"))
+        seconds = "" if ours is None or theirs is None else f"{ours:.2f} s, Cycles {theirs:.2f} s:"
+        parts.append(_part(f"{name} {seconds}", over(ours, theirs), "{:.2f}x", lambda x: x <= 1.0))
+    return _all("gaps of Blender's main loop while it renders in a window, against Cycles", "1.0x", parts)
+
+
 def _leaks(figures):
     """A leak is a leak among any number of rays; none says enough only of as many as the goal names."""
     count, rays = get(figures, "rays", "leaks"), get(figures, "rays", "leak_rays") or 0
@@ -226,4 +235,5 @@ _ROWS = (
     ),
     _lights,
     _threads,
+    _window,
 )

@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests")]
 
-from bench import chart, classic, contest, extras, goals, jobs, page, plan, rays, roofline  # noqa: E402
+from bench import chart, classic, contest, extras, goals, jobs, page, plan, rays, roofline, window  # noqa: E402
 
 # Seconds that a short run waits for another renderer.
 _QUICK_LIMIT = 45.0
@@ -86,6 +86,7 @@ def measure_rest(figures, arguments, say):
     attempt(figures, "limits", say, roofline.measure, threads)
     if "lancer" in figures["rays"] and "clock" in figures["limits"]:
         figures["roofline"] = roofline.rows(figures["limits"], figures["rays"], threads)
+    attempt(figures, "window", say, window.gaps, rounds, 5.0 if arguments.quick else 20.0, threads)
     attempt(figures, "classic", say, classic.measure, rounds, threads, arguments.quick)
     if not arguments.quick:
         attempt(figures, "accelerators", say, extras.accelerators, rounds, threads)

@@ -42,7 +42,7 @@ def asked():
     def serve(asker):
         # Look by hand, as the timer does in a window; the pause lets the asking thread run in between.
         while asker.is_alive():
-            main_thread._serve()
+            main_thread.serve()
             time.sleep(0.01)
         return asker.outcome
 
@@ -58,13 +58,13 @@ def asked():
     # Nobody serves: the user's Esc ends the wait, and what was asked for is never done.
     asker = _Asker(lambda: done.append("cancelled"), obey)
     asker.join()
-    main_thread._serve()
+    main_thread.serve()
     result["cancelled"] = asker.outcome
     poster = threading.Thread(target=main_thread.post, args=(lambda: done.append("posted"),))
     poster.start()
     poster.join()
     result["before"] = list(done)
-    main_thread._serve()
+    main_thread.serve()
     result["done"] = done
     main_thread._serving = False
     return result

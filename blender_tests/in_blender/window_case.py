@@ -20,7 +20,9 @@ import window_panels  # noqa: E402
 import window_pictures  # noqa: E402
 
 import addon  # noqa: E402
+from addon.export import main_thread  # noqa: E402
 
+serves = False
 FOLDER, *KIND = sys.argv[sys.argv.index("--") + 1 :]
 LOG = open(os.path.join(FOLDER, "log.txt"), "w", encoding="utf-8", buffering=1)
 
@@ -44,8 +46,18 @@ def measure():
         say(next(iter(bpy.ops.lancer.measure_features("INVOKE_DEFAULT", seconds=600.0))).lower())
 
 
+def tell_of_timer():
+    """When the timer that serves renders has come or gone."""
+    global serves
+    now = bpy.app.timers.is_registered(main_thread._tick)
+    if now != serves:
+        serves = now
+        say("serves" if now else "rests")
+
+
 def tick():
     say("tick")
+    tell_of_timer()
     if told("measure"):
         measure()
     if told("measuring?"):
@@ -53,6 +65,21 @@ def tick():
         say("measuring" if scene in addon.measuring.running else "measured" if scene in addon.engine.last_costs else "nothing")
     if told("measure quality"):
         say(window_panels.measure())
+    if told("check"):
+        say(window_panels.check(say))
+    if told("listed?"):
+        say("listed" if bpy.context.scene in addon.check_scene.last_findings else "unlisted")
+    for engine in ("CYCLES", "LANCER"):
+        if told(engine):
+            bpy.context.scene.render.engine = engine
+            say(f"engine-{engine}")
+    if told("off"):
+        addon.unregister()
+        say("off")
+    if told("on"):
+        addon.register()
+        bpy.context.scene.render.engine = "LANCER"
+        say("on")
     if told("switch"):
         say(window_panels.switch())
     if told("load"):

@@ -4,11 +4,12 @@ Started by window_case.py. Nothing here draws: what Blender has drawn by itself 
 """
 
 import os
+import time
 
 import bpy
 
 import addon
-from addon import ui_render
+from addon.ui import messages, render
 
 
 def watch(say):
@@ -16,19 +17,19 @@ def watch(say):
     for area in bpy.context.window_manager.windows[0].screen.areas:
         if area.type == "PROPERTIES":
             area.spaces[0].context = "RENDER"
-    draw_measuring, draw_messages = ui_render.draw_measuring, ui_render.LANCER_RENDER_PT_messages.draw
+    draw_measuring, draw_messages = render.draw_measuring, messages.LANCER_RENDER_PT_messages.draw
 
     def measuring(*arguments):
         drawn = draw_measuring(*arguments)
         say("draws-progress" if drawn else "draws-button")
         return drawn
 
-    def messages(panel, context):
+    def told(panel, context):
         draw_messages(panel, context)
         over = not bpy.app.is_job_running("RENDER")
         say("draws-figures" if over and context.scene.name in addon.engine.last_statistics else "draws-no-figures")
 
-    ui_render.draw_measuring, ui_render.LANCER_RENDER_PT_messages.draw = measuring, messages
+    render.draw_measuring, messages.LANCER_RENDER_PT_messages.draw = measuring, told
 
 
 def measure():
@@ -37,6 +38,22 @@ def measure():
         if not bpy.ops.lancer.measure_quality.poll():
             return "refused"
         return next(iter(bpy.ops.lancer.measure_quality("INVOKE_DEFAULT", seconds=600.0))).lower()
+
+
+def check(say):
+    """As the panel's button does it, of a scene whose check never ends by itself."""
+
+    def endless(_snapshot, poll):
+        try:
+            while True:
+                poll(0.5)
+                time.sleep(0.02)
+        finally:
+            say("check-cancelled")
+
+    addon.check_scene.check_snapshot = endless
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        return next(iter(bpy.ops.lancer.check_scene("INVOKE_DEFAULT"))).lower()
 
 
 def switch():

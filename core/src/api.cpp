@@ -104,7 +104,7 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
       bad_argument("scene: threads " + std::to_string(threads) + " > 1024");
     object->messages = object->description.messages.text();
     BuildContext context;
-    context.threads = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
+    context.threads = ThreadPool::resolved(threads);
     context.cancel = &object->cancel;
     object->builder = std::make_unique<ThreadPool>(1);
     object->cancel = false;

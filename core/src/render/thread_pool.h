@@ -1,7 +1,8 @@
 // Threads that wait for work and can be watched from outside.
 #pragma once
 
-#include <algorithm>
+#include "render/processors.h"
+
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -15,9 +16,9 @@ namespace lancer {
 // Runs one job at a time on all of its threads. The first exception of a job is kept for the one who waits.
 class ThreadPool {
 public:
-  // count 0: one per processor.
+  // count 0: one per processor that the process may use.
   explicit ThreadPool(uint32_t count);
-  static uint32_t resolved(uint32_t count) { return count ? count : std::max(1u, std::thread::hardware_concurrency()); }
+  static uint32_t resolved(uint32_t count) { return count ? count : usable_processors(); }
   ~ThreadPool();
   ThreadPool(const ThreadPool &) = delete;
   ThreadPool &operator=(const ThreadPool &) = delete;

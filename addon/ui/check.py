@@ -2,24 +2,26 @@
 
 import bpy
 
-from . import check_scene
-from .checks.finding import Harm, shortened, told
-from .ui_lines import sentence
-from .ui_render import LancerPanel
+from .. import check_scene
+from ..checks.finding import Harm, shortened, told
+from .render import LancerRenderPanel, draw_measuring
+from .sentences import sentence
 
+_CHECK = "lancer.check_scene"
 _ICONS = {Harm.WRONG: "ERROR", Harm.DIFFERENT: "ERROR", Harm.WASTE: "TIME", Harm.HINT: "INFO"}
 
 
-class LANCER_RENDER_PT_check(LancerPanel, bpy.types.Panel):
+class LANCER_RENDER_PT_check(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Check"
-    bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         name = context.scene.name
         self._column().prop(context.scene.lancer, "use_check")
         column = self.layout.column(align=True)
-        column.operator("lancer.check_scene", icon="VIEWZOOM")
+        if draw_measuring(column, context.scene, _CHECK, "Checking"):
+            return
+        column.operator(_CHECK, icon="VIEWZOOM")
         findings = check_scene.last_findings.get(name)
         if findings is None:
             return
