@@ -15,7 +15,7 @@ from .planes import gather, in_one_plane, pairs_of
 _MOST_FACETS = 2_000_000, 20_000  # thorough, quick
 _MOST_PAIRS = 64_000_000, 200_000
 _MOST_ASKED = 1024, 64  # pairs whose triangles are compared
-_MOST_ALIKE = 65536, 1024  # pairs that look alike, which are most, of which the camera is asked
+_MOST_ALIKE = 65536, 128  # pairs that look alike, which are most, of which the camera is asked
 _MOST_TRIANGLES = 8_000_000
 
 
@@ -213,5 +213,5 @@ def _finding(subject, world, one, other, words, place, count, weight):
         faces=count,
         place=place,
         weight=weight,
-        key=IN_ONE_PLANE if harm == Harm.DIFFERENT else "",
+        key=IN_ONE_PLANE if harm > Harm.WASTE else "",
     )

@@ -6,7 +6,7 @@ from ..bindings.enums import CameraKind
 
 LEAST_SHARE = 1e-3  # of the picture, which is worth a line
 _RAYS = 64  # along each side of the picture
-_MOST_TRIANGLES = 16
+_MOST_TRIANGLES = 4
 
 
 def share_of_plane(camera, point, normal, low, high):

@@ -22,15 +22,14 @@ def check_laid_over(subject):
         if number in subject.doubled or not subject.seen_by_camera(row):
             continue
         facets = subject.cached("facets", number, lambda mesh=mesh: mesh_facets(mesh))
-        for part, faces in enumerate(facets.faces):
-            material = subject.material(row, int(facets.slots[part]))
-            if material < 0 or not is_plain(subject.traits[material]):
-                continue
-            corners = mesh.positions[mesh.triangles[faces]].astype(float)
-            over = _overlapping(corners, facets.normals[part], _MOST_PAIRS[not subject.thorough])
-            if len(over) == 0:
-                continue
-            places = subject.world(row, corners[over].reshape(-1, 3)).reshape(-1, 3, 3)
+        plain = [
+            part
+            for part in range(len(facets))
+            if len(facets.faces[part]) > 1 and _is_plain(subject, subject.material(row, int(facets.slots[part])))
+        ]
+        for part, over in _overlapping(mesh, facets, plain, _MOST_PAIRS[not subject.thorough]):
+            corners = mesh.positions[mesh.triangles[over]].astype(float)
+            places = subject.world(row, corners.reshape(-1, 3)).reshape(-1, 3, 3)
             share = share_of_triangles(subject.snapshot.camera, places)
             if share < LEAST_SHARE:
                 continue
@@ -41,7 +40,7 @@ def check_laid_over(subject):
                 "in Edit Mode delete those beneath, or move them a little",
                 object=subject.name(row),
                 mesh=mesh.name,
-                material=subject.material_name(material),
+                material=subject.material_name(subject.material(row, int(facets.slots[part]))),
                 others=subject.others(number),
                 faces=len(over),
                 place=tuple(places[0].mean(axis=0).tolist()),
@@ -51,18 +50,30 @@ def check_laid_over(subject):
             break
 
 
-def _overlapping(corners, normal, most):
-    """Numbers of the triangles, (n, 3, 3) and nearly in one plane, that overlap an earlier one exactly in its plane."""
-    flat = np.delete(corners, np.argmax(np.abs(normal)), axis=2)
+def _is_plain(subject, material):
+    return material >= 0 and is_plain(subject.traits[material])
+
+
+def _overlapping(mesh, facets, parts, most):
+    """(part, numbers of its triangles that overlap an earlier one exactly in their plane), of those with any."""
+    if not parts:
+        return
+    faces = np.concatenate([facets.faces[part] for part in parts])
+    group = np.repeat(parts, [len(facets.faces[part]) for part in parts])
+    corners = mesh.positions[mesh.triangles[faces]].astype(float)
     low, high = corners.min(axis=1), corners.max(axis=1)
-    pairs = box_pairs(low, high, most)
+    pairs = box_pairs(low, high, most, group)
     if pairs is None or len(pairs[0]) == 0:
-        return np.empty(0, int)
+        return
     i, j = pairs
+    axes = np.array([(1, 2), (0, 2), (0, 1)])[np.argmax(np.abs(facets.normals[group[i]]), axis=1)]
+    flat = (np.take_along_axis(corners[number], axes[:, None, :], axis=2) for number in (i, j))
     size = (high - low).max(axis=1)
-    over = triangles_over(flat[i], flat[j], _SLIVER * np.minimum(size[i], size[j]))
+    over = triangles_over(*flat, _SLIVER * np.minimum(size[i], size[j]))
     i, j = i[over], j[over]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.cross(corners[i, 1] - corners[i, 0], corners[i, 2] - corners[i, 0])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    apart = np.abs(np.einsum("nk,nck->nc", normals[i], corners[j] - corners[i][:, :1])).max(axis=1)
-    return np.unique(j[apart <= _STEPS * step(np.abs(corners).max(initial=0.0))])
+    apart = np.abs(np.einsum("nk,nck->nc", normals, corners[j] - corners[i][:, :1])).max(axis=1, initial=0.0)
+    j = np.unique(j[apart <= _STEPS * step(np.abs(corners).max())])
+    for part in np.unique(group[j]).tolist():
+        yield part, faces[j[group[j] == part]]

@@ -118,7 +118,7 @@ def check_double_faces(subject):
         subject.doubled.add(number)
         corners = mesh.positions[mesh.triangles[one[shown]]].astype(float)
         places = subject.world(row, corners.reshape(-1, 3)).reshape(-1, 3, 3)
-        darker = not hurts.any() and subject.seen_by_camera(row)
+        darker = subject.seen_by_camera(row) and any(subject.traits[number].scatters for number in subject.materials_of(row))
         felt = darker and share_of_triangles(subject.snapshot.camera, places) >= LEAST_SHARE
         harm = Harm.WRONG if hurts.any() else Harm.DIFFERENT if felt else Harm.HINT
         what = f"{told_number(len(shown), 'face')} lie exactly on other faces of the mesh"
@@ -133,7 +133,7 @@ def check_double_faces(subject):
             faces=len(shown),
             place=tuple(places[0].mean(axis=0).tolist()),
             weight=share,
-            key=IN_ONE_PLANE if harm == Harm.DIFFERENT else "",
+            key=IN_ONE_PLANE if harm > Harm.WASTE else "",
         )
 
 
