@@ -6,8 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 
-# A thread five steps lower gets a third of the time of one beside it, and all that nobody else wants: more steps would let other
-# programs stop a render.
+# A thread five steps lower gets a third of the time of one beside it, and all that nobody else wants. With more steps other
+# programs would bring a render to a stop.
 _STEPS = 5
 
 
