@@ -32,7 +32,7 @@ compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
 # Runs a command into a log: silent when it goes well, all of it when it does not. $(call logged,LOG,COMMAND)
 logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 
-.PHONY: build render test test-slow bench accuracy tradeoff features parity corpus sanitize fuzz addon format clean help
+.PHONY: build render test test-slow bench accuracy tradeoff features parity corpus course sanitize fuzz addon format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-bench
 .PHONY: python-run python-test python-dev python-bench python-charts core-programs core-tests
 
@@ -104,6 +104,9 @@ tradeoff: packages-run python-charts build ## error against seconds: make tradeo
 
 accuracy: packages-run python-run build ## is the error that renders tell true: make accuracy [QUICK=1] [ONLY='glass*']
 	@$(python) blender_tests/bench/accuracy.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+
+course: packages-test python-test build ## the course's texts, chapter by chapter, measured now: make course [QUICK=1] [ONLY=shadows]
+	@$(python) scenes/course/run.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
 	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P scenes/parity/run.py --,$(python) scenes/parity/run.py) \

@@ -30,6 +30,7 @@ def register():
     from . import (
         bug_report,
         check_scene,
+        course_groups,
         engine,
         features,
         manual,
@@ -44,9 +45,9 @@ def register():
     from .export import main_thread
     from .registering import add_all
 
-    modules = (properties, preferences, main_thread, engine, measuring, features, quality, check_scene, presets, ui, bug_report)
+    modules = (properties, preferences, main_thread, engine, measuring, features, quality, check_scene, course_groups, presets)
     # A render that goes on is ended first, while all is there.
-    modules += (manual, render_job)
+    modules += (ui, bug_report, manual, render_job)
     add_all(modules, lambda module: module.register(), lambda module: module.unregister())
     _registered.extend(modules)
     # Blender as a Python module hangs (4.5) or crashes (4.2) at exit while an engine class is registered; the program itself

@@ -18,10 +18,10 @@ _HOLDS = "It holds the geometry and the pictures of the scene"
 
 
 def _settings(owner):
-    """Numbers, switches and choices; no text, which may be a path."""
+    """Numbers, switches and choices that are set; no text, which may be a path."""
     kinds = {"BOOLEAN", "INT", "FLOAT", "ENUM"}
     names = [field.identifier for field in owner.bl_rna.properties if field.type in kinds]
-    values = {name: getattr(owner, name) for name in names}
+    values = {name: getattr(owner, name) for name in names if owner.is_property_set(name)}
     return {name: value if isinstance(value, (int, float, str)) else list(value) for name, value in sorted(values.items())}
 
 
@@ -110,15 +110,23 @@ class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
     def poll(cls, context):
         return context.scene is not None
 
+    def invoke(self, context, event):
+        if not self.filepath:
+            stem = os.path.splitext(bpy.data.filepath)[0] or "untitled"
+            self.filepath = f"{stem}-lancer-report{self.filename_ext}"
+        return super().invoke(context, event)
+
     def draw(self, context):
         column = self.layout.column()
         column.prop(self, "use_scene")
         if self.use_scene:
-            column.label(text=_HOLDS, icon="INFO")
+            # The side of a file selector is narrow.
+            for line in ("It holds the geometry and", "the pictures of the scene"):
+                column.label(text=line)
             numbers = engine.last_statistics.get(context.scene.name)
             if numbers is not None:
                 size = _size(numbers["geometry_bytes"] + numbers["texture_bytes"])
-                column.label(text=f"They take about {size}, less when packed")
+                column.label(text=f"About {size}, before packing")
 
     def execute(self, context):
         manager, scene = context.window_manager, context.scene
@@ -141,15 +149,31 @@ class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
         return {"FINISHED"}
 
 
-def _draw_button(panel, _context):
-    panel.layout.operator(LANCER_OT_save_bug_report.bl_idname, icon="URL")
+class LANCER_RENDER_PT_bug_report(bpy.types.Panel):
+    bl_label = "Bug Report"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+    # Below what the last render has told.
+    bl_parent_id = "LANCER_RENDER_PT_messages"
+    bl_options = {"HIDE_HEADER"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine == engine.LancerRenderEngine.bl_idname
+
+    def draw(self, _context):
+        self.layout.operator(LANCER_OT_save_bug_report.bl_idname, icon="URL")
+
+
+_CLASSES = (LANCER_OT_save_bug_report, LANCER_RENDER_PT_bug_report)
 
 
 def register():
-    bpy.utils.register_class(LANCER_OT_save_bug_report)
-    bpy.types.LANCER_RENDER_PT_messages.append(_draw_button)
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
 
 
 def unregister():
-    bpy.types.LANCER_RENDER_PT_messages.remove(_draw_button)
-    bpy.utils.unregister_class(LANCER_OT_save_bug_report)
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -30,7 +30,7 @@ def quick_check(scene, snapshot, poll):
     try:
         messages = Messages()
         for finding, left in shortened(check_snapshot(snapshot, thorough=False, poll=obey)):
-            messages.add(told(finding, left), harm=finding.harm)
+            messages.add(told(finding, left), finding.key, finding.harm)
         return messages
     except Cancelled:
         raise

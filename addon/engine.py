@@ -16,6 +16,7 @@ from .bindings.session import Cancelled, Session
 from .bindings.uses import used_features
 from .check_scene import quick_check
 from .export import main_thread
+from .export.kept import Kept
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
 from .harm import Harm
@@ -32,6 +33,8 @@ last_messages = OfScenes()
 last_missing = OfScenes()
 # Of the last measurement of each scene: a hints.Costs.
 last_costs = OfScenes()
+# Of the scenes that are being animated or have Persistent Data: what is not read again.
+_kept = OfScenes()
 # What the library holds, by kind: names of last_statistics.
 MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 
@@ -118,6 +121,10 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             last_messages.pop(scene, None)
             last_missing.pop(scene, None)
             last_statistics.pop(scene, None)
+            if not (self.is_animation or scene.render.use_persistent_data):
+                _kept.pop(scene, None)
+            else:
+                _kept.setdefault(scene, Kept()).next_picture()
         self._picture.begin(layer)
 
     def _guarded(self, scene, work, *arguments):
@@ -156,7 +163,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             # Told before the time is spent.
             self._tell(scene, Messages([denoise.missing()]))
         wanted = passes.render_passes(scene, view_layer)
-        options = ExportOptions(camera=self.camera_override, passes=tuple(item.source for item in wanted))
+        options = ExportOptions(self.camera_override, tuple(item.source for item in wanted), _kept.get(scene))
         self._snapshot, messages = export_scene(depsgraph, options, self._is_over)
         settings = self._snapshot.settings
         self._snapshot.set("settings", dataclasses.replace(settings, time_limit=self._picture.limit(settings.time_limit)))
@@ -263,6 +270,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
         numbers["uses"] = self._uses
+        if scene in _kept:
+            numbers.update(_kept[scene].counts, kept_bytes=_kept[scene].bytes)
         # Only what get_result gives reaches the file.
         stamped = self.get_result()
         several = len(stamped.layers) > 1
@@ -302,15 +311,28 @@ def _forget(*_):
     last_messages.clear()
     last_missing.clear()
     last_costs.clear()
+    _kept.clear()
+
+
+@persistent
+def _forget_kept(scene, *_):
+    """After the last frame, or Esc."""
+    if not scene.render.use_persistent_data:
+        _kept.pop(scene, None)
+
+
+_HANDLERS = (("load_pre", _forget), ("render_complete", _forget_kept), ("render_cancel", _forget_kept))
 
 
 def register():
     bpy.utils.register_class(LancerRenderEngine)
-    bpy.app.handlers.load_pre.append(_forget)
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
     redraw.forget()
-    bpy.app.handlers.load_pre.remove(_forget)
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
     bpy.utils.unregister_class(LancerRenderEngine)
     _forget()

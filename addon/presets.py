@@ -16,6 +16,18 @@ _LIGHT_PATHS = (
 )
 
 
+def _draw(panel, context):
+    """As Blender draws presets, but where none was saved yet it tells of missing paths."""
+    if bpy.utils.preset_paths(panel.preset_subdir):
+        PresetPanel.draw(panel, context)
+        return
+    column, manager = panel.layout.column(), context.window_manager
+    column.label(text="No presets yet")
+    row = column.row()
+    row.prop(manager, "preset_name", text="")
+    row.operator(panel.preset_add_operator, text="", icon="ADD").name = manager.preset_name
+
+
 def _made(name, label, settings):
     """The popover of presets and the operator that adds to them and removes from them."""
     folder, operator, menu = f"lancer/{name}", f"render.lancer_{name}_preset_add", f"LANCER_PT_{name}_presets"
@@ -27,6 +39,7 @@ def _made(name, label, settings):
             "preset_subdir": folder,
             "preset_operator": "script.execute_preset",
             "preset_add_operator": operator,
+            "draw": _draw,
         },
     )
     add = type(

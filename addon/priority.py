@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import bpy
 
 # A thread five steps lower gets a third of the time of one beside it, and all that nobody else wants. With more steps other
-# programs would bring a render to a stop.
+# programs could stop a render.
 _STEPS = 5
 
 

@@ -89,9 +89,9 @@ def test_broken_library(which, kind, word, tmp_path):
 @both
 def test_panels(case):
     got = case("panels", where="panel_cases")
-    assert got["errors"] == [] and got["polls"] == [] and got["foreign"] == []
+    assert got["errors"] == [] and got["foreign"] == []
     shown = got["shown"]
-    assert "LANCER_RENDER_PT_sampling" in shown and all(all(texts.values()) for texts in shown.values())
+    assert "LANCER_RENDER_PT_sampling" in shown and all(shown.values())
     # Panels about a thing hide where there is none; the others never do.
     about = {name for name in shown if name.split("_PT_")[0].endswith(("OBJECT", "MATERIAL", "DATA", "WORLD"))}
     assert set(got["hidden"]) == about
@@ -113,23 +113,58 @@ def test_panels(case):
     old = "Measured before the last changes"
     assert old not in sampling["quality"] and old in sampling["quality of other settings"]
     # What users look for is there.
-    assert {"integrator", "quality", "target_error", "samples", "time_limit"} <= set(
-        shown["LANCER_RENDER_PT_sampling"]["plain"]
-    )
+    assert {"integrator", "quality", "target_error", "samples", "time_limit"} <= set(sampling["plain"])
     assert shown["LANCER_RENDER_PT_messages"]["plain"] != shown["LANCER_RENDER_PT_messages"]["rendered"]
     assert "nodes" in shown["LANCER_MATERIAL_PT_surface"]["plain"] and "nodes" in shown["LANCER_WORLD_PT_surface"]["plain"]
     assert "kd" in shown["LANCER_MATERIAL_PT_surface"]["PHONG"] and "ior" in shown["LANCER_MATERIAL_PT_surface"]["KD_KS"]
     lamp = shown["LANCER_DATA_PT_light"]
-    assert "angle" in lamp["SUN"] and "spot_blend" in lamp["SPOT"] and "shadow_soft_size" in lamp["POINT"]
+    assert "angle" in lamp["SUN"] and "spot_blend" in shown["LANCER_DATA_PT_beam_shape"]["SPOT"]
+    assert "shadow_soft_size" in lamp["POINT"] and "nodes" in shown["LANCER_DATA_PT_light_nodes"]["SUN"]
     assert "size_y" in lamp["RECTANGLE"] and "size_y" not in lamp["DISK"]
 
 
+# Of each tab some panels that belong there, in their order, and what has no effect.
+EXPECTED = {
+    "render": ["sampling", "denoising", "light_paths", "simplify", "film", "performance", "messages", "uses", "check"],
+    "view_layer": ["passes", "filter", "override"],
+    "world": ["surface", "mist", "ambient_occlusion", "ray_visibility", "settings"],
+    "object of a mesh": ["shading", "shadow_terminator"],
+    "material of a mesh": ["surface", "rendered", "displacement", "settings"],
+    "data of a light": ["light", "light_settings", "light_nodes", "classic_light"],
+}
+BLENDERS_OWN = {
+    "material of a mesh": {"EEVEE_MATERIAL_PT_context_material"},
+    "data of a camera": {"DATA_PT_lens", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture", "DATA_PT_camera"},
+    "object of a mesh": {"OBJECT_PT_visibility", "OBJECT_PT_relations"},
+    "object of a light": {"OBJECT_PT_visibility"},
+    "output": {"RENDER_PT_format", "RENDER_PT_output", "RENDER_PT_post_processing"},
+}
+WITHOUT_EFFECT = ("preview", "stereoscopy", "output_views", "freestyle", "linking", "motion_blur", "eevee", "volume", "hair")
+
+
 @both
-def test_simplify_is_shown(case):
-    """It acts on what Lancer renders, so that the switch must be in sight."""
-    got = case("simplify", where="panel_cases")
-    assert got["RENDER_PT_simplify"] == ["use_simplify"]
-    assert "simplify_subdivision_render" in got["RENDER_PT_simplify_render"]
+def test_tabs(case):
+    """Panels stand in Cycles' order, and each does something."""
+    got = case("tabs", where="panel_cases")
+    got.pop("console")
+    for tab, names in EXPECTED.items():
+        own = [name.split("_PT_")[1] for name in got[tab] if name.startswith("LANCER_")]
+        assert [name for name in own if name in names] == names, tab
+    for tab, names in BLENDERS_OWN.items():
+        assert names <= set(got[tab]), tab
+    assert "LANCER_OBJECT_PT_ray_visibility" in got["object of a mesh"] and got["object of a light"]
+    everything = {name for names in got.values() for name in names}
+    assert not [name for name in everything for word in WITHOUT_EFFECT if word in name.split("_PT_")[1]]
+
+
+@both
+def test_a_material_is_read_once_for_many_drawings(case):
+    """The panel tells what its nodes lose, reads them anew after a change, and leaves no handler where nothing is drawn."""
+    got = case("cached", where="panel_cases")
+    assert got["first"] == got["again"] == ["Diffuse Kd: 0.8 0.2 0.1"]
+    (loss,) = [line for line in got["lossy"] if line not in got["first"] and "Wireframe" in line]
+    assert loss.startswith("Node 'Diffuse BSDF'") and "not supported" in loss
+    assert got["reads"] == [1, 2] and got["left"]
 
 
 @both

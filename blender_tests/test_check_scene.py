@@ -9,7 +9,7 @@ EXPECTED = {
     "glass inside out": ("glass", "WRONG", "Thing", "inside out"),
     "two planes": ("coincident", "WRONG", "Plane", "same plane"),
     "glass on glass": ("coincident", "WRONG", "", "touch exactly"),
-    "copy in place": ("coincident", "WASTE", "Ball.001", "exactly where object 'Ball' does"),
+    "copy in place": ("coincident", "DIFFERENT", "Ball.001", "exactly where object 'Ball' does"),
     "flipped faces": ("normals", "", "Flipped", "look opposite ways"),
     "far from the origin": ("precision", "WRONG", "Ball", "no larger than a few steps"),
     "tiny in its place": ("precision", "WRONG", "Ball", "hardly more than the step"),

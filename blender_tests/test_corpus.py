@@ -107,6 +107,11 @@ def test_a_silent_difference_is_looked_at_again(tmp_path):
     assert row["samples"] == 4 and "first_look" not in row
 
 
+def test_a_picture_without_noise_counts_for_no_speed(tmp_path):
+    assert "speed" in measured(tmp_path, spread=0.01)[0]
+    assert "speed" not in measured(tmp_path)[0]
+
+
 def test_samples_follow_the_budget(tmp_path):
     """Set-ups of half a second leave 0.4 s for two rounds of both engines: 16 samples of 5 ms."""
     row, _ = measured(tmp_path, seconds=0.005)

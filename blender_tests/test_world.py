@@ -312,6 +312,24 @@ def test_export(which, tmp_path):
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_a_sky_without_its_picture_is_still_sampled(which, tmp_path):
+    """Magenta, but no constant: Cycles samples as a lamp what has a texture, and its light passes what casts no shadow."""
+    got = blenders.run(which, tmp_path, "world_cases", "missing")
+    for name in ("none", "lost"):
+        varies, pictures, messages = got[name]
+        assert varies and pictures == 0 and len(messages) == 1 and "magenta is used" in messages[0], name
+    assert any("Sampling None is not supported" in line for line in got["unsampled"][2])
+
+
+def test_a_sky_without_its_picture_is_magenta(library):
+    world = World(radiance=NodeRef(1), nodes=(DIRECTION, Node(kind=NodeKind.ENVIRONMENT, inputs=(NodeRef(0),))))
+    with Scene.upload(scene(world, ()), library) as uploaded:
+        radiance, pdf = uploaded.world(even_directions(4))
+    # All directions are alike; a cell's area is told by two cosines, which near a pole differ by some thousandths of 2^-24.
+    assert np.array_equal(radiance, np.tile(np.float32((1.0, 0.0, 1.0)), (32, 1))) and np.allclose(pdf, 0.25 / np.pi, rtol=1e-3)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_a_cube_of_sequences_shows_their_first_files(which, tmp_path):
     got = blenders.run(which, tmp_path, "world_cases", "sequence")
     # A tenth, two tenths ... of 255.

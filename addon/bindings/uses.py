@@ -273,11 +273,11 @@ _KERNELS = {
     "path all lobes, solid": "all kinds of surfaces, none of which light passes straight through",
     "path lambert+microfacet": "matt and glossy surfaces alone",
     "path lambert": "matt surfaces alone",
-    "classic": "the recursive ray tracer of the course",
+    "classic": "Classic ray tracing",
     "normals": "directions of surfaces",
 }
 
 
 def kernel_in_words(kernel):
-    """What the code that ran can do, for the name that statistics give it."""
+    """What the code that ran is made for, for the name that statistics give it."""
     return _KERNELS.get(kernel, kernel)

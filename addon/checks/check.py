@@ -6,6 +6,7 @@ from .closures import check_closures
 from .coincident import check_coincident
 from .finding import by_harm
 from .glass import check_glass
+from .laid_over import check_laid_over
 from .lights import check_lights
 from .normals import check_normals
 from .precision import check_precision
@@ -35,6 +36,7 @@ def _all_findings(subject):
         check_normals(subject),
         check_twins(subject, twins),
         check_double_faces(subject),
+        check_laid_over(subject),
         check_coincident(subject, frozenset(row for row, _ in twins)),
     )
     found = []

@@ -1,16 +1,21 @@
-"""Flat parts of two things in one plane: where both would be seen, only one of them is, which may be the wrong one."""
+"""Flat parts of two things in one plane: where both would be seen, only one of them is, which may be the wrong one.
+
+Where they look alike nobody can tell which. But in Cycles a ray that leaves one of them may meet the other, so both are darker.
+"""
 
 import numpy as np
 
 from ..bindings.enums import CameraKind, InstanceKind
 from .edges import corner_keys, edge_faults
-from .finding import Finding, Harm, told_number
+from .finding import IN_ONE_PLANE, SHADOWED, Finding, Harm, told_number
+from .framing import LEAST_SHARE, share_of_plane
 from .overlap import overlapping_triangles
 from .planes import gather, in_one_plane, pairs_of
 
 _MOST_FACETS = 2_000_000, 20_000  # thorough, quick
 _MOST_PAIRS = 64_000_000, 200_000
 _MOST_ASKED = 1024, 64  # pairs whose triangles are compared
+_MOST_ALIKE = 65536, 1024  # pairs that look alike, which are most, of which the camera is asked
 _MOST_TRIANGLES = 8_000_000
 
 
@@ -21,18 +26,24 @@ def check_coincident(subject, twins=frozenset()):
     if world is None:
         return
     i, j = pairs_of(subject, world, _MOST_PAIRS[quick])
-    keep = in_one_plane(world, i, j)
+    # Near the border of two cells of directions a part may be paired with itself.
+    keep = in_one_plane(world, i, j) & (i != j)
     i, j = i[keep], j[keep]
     hurts = _Hurts(subject, facets, world)
     # Ask the largest first, and once for each two objects.
     area = np.sort(np.minimum(world.high[i], world.high[j]) - np.maximum(world.low[i], world.low[j]), axis=1)[:, 1:].prod(
         axis=1
     )
-    asked, told = 0, set()
+    asked, alike, told = 0, 0, set()
     for number in np.argsort(-area, kind="stable").tolist():
         one, other = int(i[number]), int(j[number])
         both = int(world.rows[one]), int(world.rows[other])
-        words = hurts.words(one, other) if hurts.may(one, other) else None
+        if not hurts.may(one, other):
+            continue
+        alike += hurts.alike(one, other)
+        if hurts.alike(one, other) and alike > _MOST_ALIKE[quick]:
+            continue
+        words = hurts.words(one, other)
         if words is None or (both, words[0]) in told:
             continue
         subject.poll()
@@ -45,6 +56,11 @@ def check_coincident(subject, twins=frozenset()):
             yield _finding(subject, world, one, other, words, place, count, float(area[number]))
 
 
+def is_plain(traits):
+    """Of a material that only shows light which comes from elsewhere."""
+    return traits.scatters and not (traits.refracts or traits.passes or traits.emits)
+
+
 class _Hurts:
     """Whether two parts in one plane show in the picture."""
 
@@ -55,21 +71,27 @@ class _Hurts:
         self.camera = subject.snapshot.camera
         self._sheets = {}
 
+    def alike(self, one, other):
+        """Whether two parts are of plain materials that look the same."""
+        first, second = int(self.world.materials[one]), int(self.world.materials[other])
+        return is_plain(self.subject.traits[first]) and self.subject.alike(first, second)
+
     def may(self, one, other):
-        """What materials alone decide: nothing hurts between opaque things that look alike."""
+        """What materials alone decide."""
         world, traits = self.world, self.subject.traits
         first, second = int(world.materials[one]), int(world.materials[other])
         if first < 0 or second < 0:
             return False
-        alike = self.subject.alike(first, second)
         row = int(world.rows[one])
-        if row == world.rows[other] and (alike or int(self.subject.instances.meshes[row]) in self.subject.doubled):
-            return False
+        if row == world.rows[other]:
+            doubled = int(self.subject.instances.meshes[row]) in self.subject.doubled
+            if doubled or (self.subject.alike(first, second) and not self.alike(one, other)):
+                return False
         if traits[first].refracts or traits[second].refracts:
             return True
         if not all(self.subject.seen_by_camera(int(world.rows[part])) for part in (one, other)):
             return False
-        return not alike or traits[first].passes or traits[first].emits
+        return traits[first].scatters or traits[first].emits or traits[first].passes or not self.subject.alike(first, second)
 
     def words(self, one, other):
         """(Harm, what, advice); None where one hides the other from the camera."""
@@ -89,6 +111,14 @@ class _Hurts:
             )
         if not self._fight(one, other):
             return None
+        if self.alike(one, other):
+            if self._share(one, other) < LEAST_SHARE:
+                return None
+            return (
+                Harm.DIFFERENT,
+                f"lie in the same plane and look alike: {SHADOWED}",
+                "delete one of them, or move it a little",
+            )
         if self.subject.alike(first, second):
             return Harm.WRONG, "lie in the same plane, and their light counts twice", "delete one of them, or move it a little"
         return Harm.WRONG, "lie in the same plane, and only one of them is seen", "move one of them a little"
@@ -111,6 +141,12 @@ class _Hurts:
             side = float(normal @ (matrix[:, 3] - self.world.points[one]))
         toward = [side * float(normal @ self.world.normals[part]) > 0.0 or self._is_sheet(part) for part in (one, other)]
         return side != 0.0 and all(toward)
+
+    def _share(self, one, other):
+        """Of the picture, that shows where the boxes of both meet."""
+        world = self.world
+        low, high = np.maximum(world.low[one], world.low[other]), np.minimum(world.high[one], world.high[other])
+        return share_of_plane(self.camera, world.points[one], world.normals[one], low, high)
 
     def _is_sheet(self, part):
         """Whether a part is seen from behind, too: some of its triangles end where no other begins."""
@@ -177,4 +213,5 @@ def _finding(subject, world, one, other, words, place, count, weight):
         faces=count,
         place=place,
         weight=weight,
+        key=IN_ONE_PLANE if harm == Harm.DIFFERENT else "",
     )

@@ -21,6 +21,7 @@ class Finding:
     faces: int = 0
     place: tuple | None = None  # world coordinates
     weight: float = 0.0  # how much of it there is, among findings of one kind
+    key: str = ""  # of its message, where Cycles shows it otherwise
 
     @property
     def who(self):
@@ -48,6 +49,11 @@ KINDS = {
     "closures": "Materials",
     "lights": "Lights",
 }
+
+
+# Of opaque surfaces that lie on each other and look alike.
+IN_ONE_PLANE = "feature:faces in one plane"
+SHADOWED = "Cycles would show them darker, down to black, as each shadows the other there"
 
 
 def told_place(place):

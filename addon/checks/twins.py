@@ -4,10 +4,8 @@ import numpy as np
 
 from ..bindings.enums import InstanceKind
 from .edges import corner_keys, mixed
-from .finding import Finding, Harm, told_number
-
-# Below this share of a mesh double faces cost nothing that is felt.
-_SHARE = 0.1
+from .finding import IN_ONE_PLANE, SHADOWED, Finding, Harm, told_number
+from .framing import LEAST_SHARE, share_of_triangles
 
 
 def twin_rows(subject):
@@ -62,19 +60,21 @@ def check_twins(subject, rows):
         ours, theirs = subject.materials_of(row), subject.materials_of(first)
         traits = [subject.traits[number] for number in ours + theirs]
         same = len(ours) == len(theirs) and all(map(subject.alike, ours, theirs))
-        opaque = not any(trait.passes or trait.emits for trait in traits)
+        harmless = same and not any(trait.passes or trait.emits for trait in traits)
+        darker = harmless and subject.seen_by_camera(row) and all(trait.scatters for trait in traits)
         copies = sum(1 for _, other in rows if other == first)
         name, other = subject.name(row), subject.name(first)
         what = f"stands exactly where object '{other}' does, with the same faces"
         yield Finding(
             "coincident",
-            Harm.WASTE if opaque and same else Harm.WRONG,
-            what if copies == 1 else f"{what}, like {copies - 1} more",
+            Harm.DIFFERENT if darker else Harm.WASTE if harmless else Harm.WRONG,
+            (what if copies == 1 else f"{what}, like {copies - 1} more") + (f": {SHADOWED}" if darker else ""),
             "delete the copy",
             object=name,
             faces=_face_count(subject, row),
             place=subject.place(row, _middle(subject, row)),
             weight=float(_face_count(subject, row)),
+            key=IN_ONE_PLANE if darker else "",
         )
 
 
@@ -112,24 +112,28 @@ def check_double_faces(subject):
         row = looks[0]
         opposite = ~_same_turn(keys[one], keys[other])
         hurts = _hurts(subject, mesh, row, one, other, opposite)
-        # A back for each face is how some engines show both sides.
-        if not hurts.any() and opposite.all():
-            continue
-        shown = np.flatnonzero(hurts) if hurts.any() else np.flatnonzero(~opposite)
+        # Where nothing hurts, all of them count, and a back for each face, too, is how some engines show both sides.
+        shown = np.flatnonzero(hurts) if hurts.any() else np.arange(len(one))
         share = len(shown) / len(mesh.triangles)
         subject.doubled.add(number)
-        harm = Harm.WRONG if hurts.any() else Harm.WASTE if share > _SHARE else Harm.HINT
+        corners = mesh.positions[mesh.triangles[one[shown]]].astype(float)
+        places = subject.world(row, corners.reshape(-1, 3)).reshape(-1, 3, 3)
+        darker = not hurts.any() and subject.seen_by_camera(row)
+        felt = darker and share_of_triangles(subject.snapshot.camera, places) >= LEAST_SHARE
+        harm = Harm.WRONG if hurts.any() else Harm.DIFFERENT if felt else Harm.HINT
+        what = f"{told_number(len(shown), 'face')} lie exactly on other faces of the mesh"
         yield Finding(
             "coincident",
             harm,
-            f"{told_number(len(shown), 'face')} lie exactly on other faces of the mesh",
+            f"{what}: {SHADOWED}" if darker else what,
             "in Edit Mode, Mesh > Merge > By Distance, then delete what is left twice",
             object=subject.name(row),
             mesh=mesh.name,
             others=subject.others(number),
             faces=len(shown),
-            place=subject.place(row, mesh.positions[mesh.triangles[one[shown[0]]]].astype(float).mean(axis=0)),
+            place=tuple(places[0].mean(axis=0).tolist()),
             weight=share,
+            key=IN_ONE_PLANE if harm == Harm.DIFFERENT else "",
         )
 
 

@@ -72,12 +72,30 @@ def _generated(mesh):
 
 def _tangents(mesh, data, name, corners, poll):
     """(x, y, z, sign) along u at each corner; None where the mesh has no such UV map."""
-    uv_map = _name_in_blender(name[len(_TANGENT) :])
-    layer = mesh.uv_layers.get(uv_map) if uv_map else render_uv_map(mesh)
+    layer = _tangents_layer(mesh, name)
     if layer is None:
         return None
     uvs = _at_corners(read_uv_map(layer), corners).reshape(-1, 3, 2)
     return MeshAttribute(name, corner_tangents(data.positions, data.triangles, data.normals, uvs, poll), Domain.CORNER)
+
+
+def _tangents_layer(mesh, name):
+    uv_map = _name_in_blender(name[len(_TANGENT) :])
+    return mesh.uv_layers.get(uv_map) if uv_map else render_uv_map(mesh)
+
+
+def attribute_sources(mesh, wanted):
+    """What read_attributes reads of the mesh for these names, beside its faces, places and normals: arrays, and None."""
+    for name in sorted(wanted - {POLYGONS}):
+        if name == "generated":
+            yield _generated(mesh).values
+        elif name.startswith(_TANGENT):
+            layer = _tangents_layer(mesh, name)
+            yield None if layer is None else read_uv_map(layer)
+        else:
+            values, domain = _values(mesh, name) or (None, None)
+            yield values
+            yield domain
 
 
 def render_uv_map(mesh):
@@ -93,21 +111,29 @@ def read_uv_map(layer):
 
 
 def _named(mesh, name, corners, faces):
+    found = _values(mesh, name)
+    if found is None:
+        return None
+    values, domain = found
+    if domain == Domain.CORNER:
+        values = _at_corners(values, corners)
+    elif domain == Domain.FACE and faces is not None:
+        values = values[faces]
+    return MeshAttribute(name, values, domain)
+
+
+def _values(mesh, name):
+    """(values, domain) of a named attribute as Blender has it; None where it has none that can be read."""
     layer = mesh.uv_layers.get(_name_in_blender(name))
     if layer is not None:
-        return MeshAttribute(name, _at_corners(read_uv_map(layer), corners), Domain.CORNER)
+        return read_uv_map(layer), Domain.CORNER
     attribute = mesh.attributes.get(_name_in_blender(name))
     if attribute is None or attribute.data_type not in _TYPES or attribute.domain not in _DOMAINS or not len(attribute.data):
         return None
     field, dtype, width = _TYPES[attribute.data_type]
     values = np.empty(len(attribute.data) * width, dtype)
     attribute.data.foreach_get(field, values)
-    values, domain = values.reshape(-1, width).astype(np.float32), _DOMAINS[attribute.domain]
-    if domain == Domain.CORNER:
-        values = _at_corners(values, corners)
-    elif domain == Domain.FACE and faces is not None:
-        values = values[faces]
-    return MeshAttribute(name, values, domain)
+    return values.reshape(-1, width).astype(np.float32), _DOMAINS[attribute.domain]
 
 
 def _at_corners(values, corners):

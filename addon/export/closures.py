@@ -3,6 +3,7 @@
 from ..bindings.enums import Distribution, LobeKind
 from ..harm import Harm
 from .arithmetic import is_constant
+from .course_models import read_group
 from .distributions import read_distribution
 from .principled import read_principled
 from .sockets import DIFFUSE_OPTION, SMALLEST_IOR
@@ -158,7 +159,9 @@ CLOSURES = {
     "BSDF_TRANSLUCENT": _translucent,
     "BSDF_TRANSPARENT": _transparent,
     "BSDF_VELVET": _sheen,
+    "CUSTOM GROUP": read_group,
     "EMISSION": _emission,
+    "GROUP": read_group,
     "HOLDOUT": _holdout,
     "PRINCIPLED_VOLUME": _volume,
     "VOLUME_ABSORPTION": _volume,

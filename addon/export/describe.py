@@ -1,6 +1,7 @@
 """What a material becomes, in lines for its panel."""
 
 import math
+from dataclasses import dataclass
 
 from ..bindings.enums import LobeKind
 from ..bindings.shading import NodeRef
@@ -41,6 +42,12 @@ _PRINCIPLED = (
 )
 
 
+@dataclass(frozen=True)
+class Description:
+    lobes: tuple  # of lines: what scatters light, what shines, what is let through
+    losses: tuple  # of lines: what of its nodes is left out or replaced, each once
+
+
 def describe_material(material):
     messages = Messages()
     # A panel is drawn often, and must not read files.
@@ -58,7 +65,13 @@ def describe_material(material):
             lines.append(f"{name}: {_told(value)}")
     if not is_constant(exported.displacement, 0.0):
         lines.append("Displacement: textured")
-    return (lines or ["Black"]) + messages.lines()
+    return Description(tuple(lines or ["Black"]), tuple(_without_owner(line, material) for line in messages))
+
+
+def _without_owner(line, material):
+    """A message without the name of the material, which its panel shows already."""
+    text = line.removeprefix(f"material '{material.name}'").lstrip(":, ")
+    return text[0].upper() + text[1:]
 
 
 def _probed(lobe):
@@ -86,6 +99,8 @@ def _lobe(lobe):
     text = f"{_NAMES[lobe.kind]}: {_told(lobe.color)}{weight}"
     if lobe.kind == LobeKind.BECKMANN:
         text += f", alpha {_told(lobe.roughness)}"
+    if lobe.kind in (LobeKind.PHONG, LobeKind.BLINN_PHONG):
+        text += f", shininess {_told(lobe.shininess)}"
     if lobe.kind == LobeKind.MINNAERT:
         text += f", darkness {_told(lobe.shininess)}"
     if lobe.kind in _ROUGH:

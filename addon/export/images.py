@@ -19,9 +19,10 @@ _ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # their colour
 class Images:
     """Numbers the pictures that nodes ask for."""
 
-    def __init__(self, obey=None):
-        """obey is called before each file; it raises Cancelled when the user has enough."""
+    def __init__(self, obey=None, kept=None):
+        """obey is called before each file; it raises Cancelled when the user has enough. kept: of earlier frames, a Kept."""
         self.list = []
+        self._kept = kept
         self._obey = obey
         self._ranges = {}
 
@@ -32,7 +33,8 @@ class Images:
         if key not in self._ranges:
             first = len(self.list)
             with main_thread.obeying(self._obey):
-                self.list += _read_all(image, path, tell)
+                read = _read_all if self._kept is None else self._kept.pictures(_read_all)
+                self.list += read(image, path, tell)
             self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
         if self._ranges[key] is None:
             tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used", harm=Harm.WRONG)

@@ -26,11 +26,11 @@ class Instances:
     There may be millions: of each entry only numbers are kept, and matrices are read all at once.
     """
 
-    def __init__(self, depsgraph, materials, messages):
+    def __init__(self, depsgraph, materials, messages, kept=None):
         self.depsgraph = depsgraph
         self.messages = messages
         self.lights = []
-        self._objects = Objects(depsgraph, materials, messages)
+        self._objects = Objects(depsgraph, materials, messages, kept)
         self._rows = {}
         self._narrowed = {}
         self._checked_hair = set()

@@ -6,6 +6,7 @@ from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag
 from ..harm import Harm
 from .arithmetic import is_constant, triple
+from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph
 from .images import Images
 from .normals import bump, displacement_height
@@ -72,6 +73,7 @@ def _export(material, messages, asker, images, depsgraph):
         return snapshot.Material(lobes=(snapshot.Lobe(LobeKind.LAMBERT, color),), **common), frozenset()
     values = _from_nodes(material, graph)
     common["flags"] |= values.pop("flags", 0)
+    common["ambient"] = _color(graph.add(common["ambient"], values.pop("ambient", 0.0)))
     return snapshot.Material(nodes=graph.nodes, **values, **common), frozenset(graph.attributes)
 
 
@@ -95,23 +97,17 @@ def _is_weak(material, surface):
 
 
 def _own_model(own, who, messages):
-    kd = messages.color(own.kd, who, "diffuse colour")
-    ks = messages.color(own.ks, who, "specular colour")
-    if own.model == "MINNAERT":
-        k = messages.number(own.darkness, who, "darkness", 1.0, 0.0)
-        return (snapshot.Lobe(LobeKind.MINNAERT, kd, shininess=k),) if any(kd) else ()
-    lobes = []
-    if any(kd):
-        lobes.append(snapshot.Lobe(LobeKind.LAMBERT, kd))
-    if any(ks) and own.model == "KD_KS":
-        roughness = messages.number(own.roughness, who, "roughness", 0.2, 0.0)
-        ior = messages.number(own.ior, who, "IOR", 1.5, 1e-6)
-        lobes.append(snapshot.Lobe(LobeKind.BECKMANN, ks, roughness=roughness, ior=ior))
-    elif any(ks):
-        kind = LobeKind.PHONG if own.model == "PHONG" else LobeKind.BLINN_PHONG
-        shininess = messages.number(own.shininess, who, "shininess", 50.0, 0.0)
-        lobes.append(snapshot.Lobe(kind, ks, shininess=shininess))
-    return tuple(lobes)
+    """The lobes of the material's own settings; black ones are none."""
+
+    def value(name):
+        wanted, given = PARAMETERS[name], getattr(own, name)
+        what = own.bl_rna.properties[name].name
+        if wanted.kind == "color":
+            return messages.color(given, who, what)
+        return messages.number(given, who, what, wanted.default, wanted.low, wanted.high)
+
+    lobes = (snapshot.Lobe(kind, **fields) for kind, fields in lobes_of(own.model, value))
+    return tuple(lobe for lobe in lobes if any(lobe.color))
 
 
 def _from_nodes(material, graph):
@@ -136,6 +132,7 @@ def _from_nodes(material, graph):
     return {
         **values,
         "lobes": surface.lobes,
+        "ambient": surface.ambient,
         "emission": _color(surface.emission),
         "transmittance": _color(surface.transmittance),
         "holdout": surface.holdout if not isinstance(surface.holdout, tuple) else surface.holdout[0],

@@ -107,19 +107,27 @@ def _uvs(mesh, corners, poll):
     return at_corners(values, corners, poll) if len(values) else None
 
 
-def _colors(mesh, corners, triangles, poll):
+def color_attribute(mesh):
+    """The one that is rendered; None where there is none."""
     if len(mesh.color_attributes) == 0:
         return None
     # Blender renders the one with the camera; files of old versions have none so marked.
     index = mesh.color_attributes.render_color_index
-    attribute = mesh.color_attributes[index if 0 <= index < len(mesh.color_attributes) else 0]
+    return mesh.color_attributes[index if 0 <= index < len(mesh.color_attributes) else 0]
+
+
+def _colors(mesh, corners, triangles, poll):
+    attribute = color_attribute(mesh)
+    if attribute is None:
+        return None
     values = read(attribute.data, "color", np.float32, 4).reshape(-1, 4)[:, :3]
     if len(values) == 0:
         return None
     return gather(values, triangles, poll) if attribute.domain == "POINT" else at_corners(values, corners, poll)
 
 
-def _material_slots(mesh, corners):
+def face_slots(mesh):
+    """The material slot of each of Blender's faces; None where all have the first."""
     data = built_in(mesh, "material_index", "FACE")
     if data is not None:
         slots = read(data, "value", np.int32, 1)
@@ -128,7 +136,12 @@ def _material_slots(mesh, corners):
         return None
     else:
         slots = read(mesh.polygons, "material_index", np.int32, 1)
-    if not slots.any():
+    return slots if slots.any() else None
+
+
+def _material_slots(mesh, corners):
+    slots = face_slots(mesh)
+    if slots is None:
         return None
     if corners is not None:
         slots = slots[triangle_faces(mesh)]

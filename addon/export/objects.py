@@ -36,7 +36,9 @@ class Look(NamedTuple):
 class Objects:
     """Reads each object once; meshes, looks and placements are lists in the order of their numbers."""
 
-    def __init__(self, depsgraph, materials, messages):
+    def __init__(self, depsgraph, materials, messages, kept=None):
+        """kept: of earlier frames, a Kept."""
+        self._export_mesh = export_mesh if kept is None else kept.meshes(export_mesh)
         self.scene = depsgraph.scene
         self.view_layer = depsgraph.view_layer
         self.materials = materials
@@ -131,7 +133,7 @@ class Objects:
         if found is None:
             original = thing.original.data
             with shown_mesh(thing, owner) as mesh:
-                data = export_mesh(mesh, name if original is None else original.name, poll, wanted)
+                data = self._export_mesh(mesh, name if original is None else original.name, poll, wanted)
             poll()
             used = (0,) if data.material_slots is None else tuple(np.unique(data.material_slots).tolist())
             number = -1

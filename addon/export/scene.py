@@ -19,6 +19,7 @@ from .world import export_world
 class ExportOptions:
     camera: object = None  # the object to look through; None = the scene's
     passes: tuple = (Pass.COMBINED,)
+    kept: object = None  # a Kept, of earlier frames
 
 
 def export_scene(depsgraph, options=None, poll=None):
@@ -42,9 +43,9 @@ def export_scene(depsgraph, options=None, poll=None):
     check_scene(scene, messages)
     check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
-    images = Images(obey)
+    images = Images(obey, options.kept)
     materials = Materials(messages, override, images, depsgraph)
-    instances = Instances(depsgraph, materials, messages)
+    instances = Instances(depsgraph, materials, messages, options.kept)
     instances.collect(obey)
     sky = export_world(world if view_layer.use_sky else None, images, depsgraph, messages)
     snapshot = SceneSnapshot(

@@ -28,6 +28,7 @@ class Surface:
         self.emission = 0.0
         self.transmittance = 0.0
         self.holdout = 0.0
+        self.ambient = 0.0
         # What Cycles takes the emission for when it asks whether to sample it: all that is linked counts as 1.
         self.estimated = _NONE
         self._share = 1.0  # of the closure at hand, in the same way
@@ -120,14 +121,17 @@ class Surface:
     def transmit(self, share):
         self.transmittance = self.graph.add(self.transmittance, share)
 
-    def add(self, kind, weight, color=(1.0, 1.0, 1.0), **values):
+    def add_ambient(self, color):
+        self.ambient = self.graph.add(self.ambient, color)
+
+    def add(self, kind, weight, color=(1.0, 1.0, 1.0), rules=RULES, **values):
         """Equal lobes become one, and black ones none: the scene pays for what it shows."""
         weight, color = (value if isinstance(value, NodeRef) else triple(value) for value in (weight, color))
         if is_constant(color, 0.0) and kind != LobeKind.CONDUCTOR or is_constant(weight, 0.0):
             return
         if kind in _LINEAR and not isinstance(weight, NodeRef) and not isinstance(color, NodeRef):
             color, weight = self.graph.multiply(color, weight), (1.0, 1.0, 1.0)
-        lobe = snapshot.Lobe(kind=kind, color=color, weight=weight, rules=RULES, **values)
+        lobe = snapshot.Lobe(kind=kind, color=color, weight=weight, rules=rules, **values)
         field = "color" if kind in _LINEAR else "weight"
         for number, other in enumerate(self._lobes):
             if _same_but(lobe, other, field):

@@ -53,10 +53,9 @@ def _image_texture(graph, site, output):
 
 def _environment_texture(graph, site, output):
     node = site.node
-    found = _picture(graph, site)
-    if found is None:
-        return _MAGENTA
-    first, count = found
+    # Without pictures it is magenta, yet no constant: Cycles samples a sky that has such a node as a lamp, and what that sheds
+    # past objects that cast no shadow comes beside what they pass on.
+    first, count = _picture(graph, site) or (0, 0)
     vector = graph.linked(site, ("Vector",), None)
     if vector is None:
         vector = coordinate(graph, Coordinate.POSITION)

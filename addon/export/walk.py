@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import bpy
 
+from .course_models import model_of
+
 # A reroute or muted node that nothing feeds is no link at all from 5.0 on; before, it gave 0.
 _LOOSE_ENDS_ARE_ZERO = bpy.app.version < (5, 0)
 # The latter are nodes of add-ons, which bring a tree along.
@@ -52,7 +54,7 @@ class Walker:
             node, output = link.from_node, link.from_socket
             if node.mute or node.type == "REROUTE":
                 onward = _passed_through(node, output)
-            elif node.type in _GROUPS:
+            elif node.type in _GROUPS and not _is_closure(node, output):
                 onward, path = _group_result(node, output), (*path, node)
             elif node.type == "GROUP_INPUT" and path:
                 onward, path = _by_identifier(path[-1].inputs, output.identifier), path[:-1]
@@ -77,6 +79,11 @@ class Walker:
                 link.to_socket.as_pointer(): link for link in usable if link.from_socket.enabled and link.to_socket.enabled
             }
         return self._links[key].get(socket.as_pointer())
+
+
+def _is_closure(node, output):
+    """Whether a group node is one of the course's models, which are read as they are."""
+    return output.type == "SHADER" and model_of(node.node_tree) is not None
 
 
 def _passed_through(node, output):

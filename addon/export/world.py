@@ -29,12 +29,18 @@ def export_world(world, images, depsgraph, messages):
             "feature:bounce limit of a lamp",
         )
     radiance = _cube(own, graph, who, messages) if own.use_cube else _nodes(world, graph, who, messages)
+    method = getattr(cycles, "sampling_method", "")
+    if method == "NONE" and isinstance(radiance, snapshot.NodeRef):
+        messages.add(
+            f"{who}: Sampling None is not supported, Auto is used; behind objects that cast no shadow it is brighter",
+            "feature:sky that is not sampled",
+        )
     return snapshot.World(
         radiance=radiance,
         ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,
         nodes=graph.nodes,
         hidden_from=hidden_from(getattr(world, "cycles_visibility", None)),
-        map_resolution=cycles.sample_map_resolution if getattr(cycles, "sampling_method", "") == "MANUAL" else 0,
+        map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )
 
 

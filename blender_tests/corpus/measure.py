@@ -173,7 +173,7 @@ class Measurement:
 
         worst = max(parts, key=badness)
         numbers, name = figures.decisive(parts[worst], KIND.limit), names[worst]
-        self.row["parity"] = {**page.numbers(numbers), "part": worst, "name": name}
+        self.row["parity"] = {**page.as_record(numbers), "part": worst, "name": name}
         mean, p99 = f"mean {numbers.mean:.2%}", f"99th percentile {numbers.p99:.2%}"
         sentence = f"{worst}: {mean}, {p99}; noise {numbers.noise_mean:.2%} and {numbers.noise_p99:.2%}"
         if name == "fail":
@@ -189,11 +189,10 @@ class Measurement:
 
     def _compare_noise(self, ours, theirs, seconds):
         found = noise.compare(*noise.relative_variance(ours, theirs))
-        speed = seconds["CYCLES"] / max(seconds["LANCER"], 0.01)
-        self.row["speed"] = speed
+        # A picture without noise, as of the sky alone, says nothing of speed.
         if found:
-            self.row["variance"] = found
-            self.row["efficiency"] = speed / found["ratio"]
+            speed = seconds["CYCLES"] / max(seconds["LANCER"], 0.01)
+            self.row |= {"speed": speed, "variance": found, "efficiency": speed / found["ratio"]}
 
     def _write(self, ours, theirs):
         """Pictures for the page, row 0 above."""

@@ -12,7 +12,7 @@ _STYLE = """
 h1 { font-size: 20px } button { margin-right: 6px }
 table.files td { vertical-align: top } table.sortable th { cursor: pointer; user-select: none }
 th[data-order=up]::after { content: " \\25b2" } th[data-order=down]::after { content: " \\25bc" }
-td.name { text-align: left; max-width: 220px; overflow-wrap: anywhere } td.remarks { text-align: left; min-width: 320px }
+td.name { text-align: left; min-width: 170px; overflow-wrap: anywhere } td.remarks { text-align: left; min-width: 320px }
 td.remarks div { max-height: 190px; overflow: auto } .what { color: #777 }
 td img { width: 220px; display: block; background: #000 }
 .untold, .failed { color: #b00020; font-weight: bold } .told, .cycles, .unreadable { color: #9a6700 }

@@ -25,6 +25,8 @@ from corpus.conversation import Conversation  # noqa: E402
 WORKER = Path(__file__).with_name("worker.py")
 # Two processes have a file open at a time.
 _SHARE_OF_MEMORY = 0.4
+# What decides a row; the rest of this folder makes pages of them.
+_MEASURING = ("alike", "framing", "measure", "noise", "worker")
 
 
 def read_arguments():
@@ -80,11 +82,11 @@ def find_files(arguments):
     return sources.chosen(files, arguments.only)
 
 
-def digest_of_tree(folder, pattern):
-    """Of the contents of all files of a pattern below a folder."""
+def digest_of(paths):
+    """Of the names and contents of files."""
     digest = hashlib.sha256()
-    for path in sorted(folder.rglob(pattern)):
-        digest.update(str(path.relative_to(folder)).encode() + b"\0" + path.read_bytes())
+    for path in sorted(paths):
+        digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
@@ -93,7 +95,8 @@ class Kept:
 
     def __init__(self, arguments, plan):
         own = {"library": jobs.digest_of_file(ROOT / "addon" / "lib" / "liblancer.so")}
-        own |= {"addon": digest_of_tree(ROOT / "addon", "*.py"), "corpus": digest_of_tree(Path(__file__).parent, "*.py")}
+        own |= {"addon": digest_of((ROOT / "addon").rglob("*.py"))}
+        own |= {"corpus": digest_of(Path(__file__).with_name(f"{name}.py") for name in _MEASURING)}
         self.own = {**own, "plan": asdict(plan), "blender": arguments.blender}
         self.folder = arguments.output / "results"
         self.suffix = "-quick" if arguments.quick else ""

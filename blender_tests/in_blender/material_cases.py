@@ -34,6 +34,11 @@ def read(material, name="object"):
     return materials.list[number], messages.lines(), sorted(materials.attributes([number]))
 
 
+def panel_lines(material):
+    found = describe_material(material)
+    return [*found.lobes, *found.losses]
+
+
 def answer(*materials):
     result = {"version": list(bpy.app.version)}
     for material in materials:
@@ -44,7 +49,7 @@ def answer(*materials):
             "node kinds": [NodeKind(node.kind).name for node in record.nodes],
             "messages": messages,
             "attributes": attributes,
-            "panel": describe_material(material),
+            "panel": panel_lines(material),
         }
     return result
 
@@ -380,14 +385,14 @@ def panel():
             # Named otherwise before 4.0.
             socket = next(known for known in (socket, *_OLDER.get(socket, ())) if known in node.inputs)
             node.inputs[socket].default_value = value
-        said[name] = [describe_material(material) for _ in range(3)]
+        said[name] = [panel_lines(material) for _ in range(3)]
         return node
 
     say("matt", **{"Base Color": (0.8, 0.4, 0.2, 1.0), "Specular IOR Level": 0.0})
     say("metal", **{"Base Color": (0.5, 0.5, 0.5, 1.0), "Metallic": 1.0, "Roughness": 0.3})
     node = say("coated", **{"Specular IOR Level": 0.0, "Coat Weight": 1.0, "Coat Roughness": 0.1})
     node.inputs["Alpha"].default_value = 0.25
-    said["veil"] = [describe_material(bpy.data.materials["coated"])]
+    said["veil"] = [panel_lines(bpy.data.materials["coated"])]
     probe._ask = ask
     return {"said": said, "asked": asked, "version": list(bpy.app.version)}
 

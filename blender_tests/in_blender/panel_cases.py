@@ -1,72 +1,10 @@
 """Lancer's panels, and Blender's that it shows, drawn without a window."""
 
-import types
 from dataclasses import replace
 
 import bpy
+import recording
 import stage
-
-
-class _Layout:
-    """Takes a panel's calls and judges them as Blender would: a property must exist, an icon must have a name known to it."""
-
-    def __init__(self, shown=None):
-        self.shown = [] if shown is None else shown
-
-    def row(self, **_):
-        return _Layout(self.shown)
-
-    def column(self, **_):
-        return _Layout(self.shown)
-
-    def grid_flow(self, **_):
-        return _Layout(self.shown)
-
-    def separator(self, **_):
-        pass
-
-    def prop(self, data, name, **options):
-        if name not in data.bl_rna.properties:
-            raise KeyError(f"{data.bl_rna.identifier}.{name}")
-        self._judge("prop", options)
-        self.shown.append(name)
-
-    def operator(self, name, **options):
-        group, _, operator = name.partition(".")
-        if operator not in dir(getattr(bpy.ops, group)):
-            raise KeyError(name)
-        self._judge("operator", options)
-        self.shown.append(name)
-        return types.SimpleNamespace()
-
-    def label(self, **options):
-        self._judge("label", options)
-        self.shown.append(options["text"])
-
-    def template_node_view(self, tree, node, socket):
-        if socket.node != node or node.id_data != tree:
-            raise ValueError("the socket is of another node")
-        self.shown.append("nodes")
-
-    @staticmethod
-    def _judge(name, options):
-        parameters = bpy.types.UILayout.bl_rna.functions[name].parameters
-        for option, value in options.items():
-            if option not in parameters:
-                raise TypeError(f"{name} has no option {option}")
-            if option == "icon" and value not in parameters["icon"].enum_items:
-                raise TypeError(f"no icon {value}")
-
-
-def _draw(cls, context):
-    """Calls draw as Blender does, on a stand-in: a panel exists only within a window."""
-    members = {name: value for base in reversed(cls.__mro__[:2]) for name, value in vars(base).items()}
-    panel = types.SimpleNamespace(layout=_Layout())
-    panel._column = types.MethodType(members["_column"], panel)
-    if "_draw_nodes" in members:
-        panel._draw_nodes = members["_draw_nodes"].__get__(None, cls)
-    cls.draw(panel, context)
-    return panel.layout.shown
 
 
 def _variants(context):
@@ -104,6 +42,11 @@ def _variants(context):
     for model in ("KD_KS", "PHONG", "BLINN_PHONG", "MINNAERT", "NODES"):
         context.material.lancer.model = model
         yield model
+    context.camera.type = "PANO"
+    panorama = context.camera if hasattr(context.camera, "panorama_type") else context.camera.cycles
+    for projection in panorama.bl_rna.properties["panorama_type"].enum_items.keys():
+        panorama.panorama_type = projection
+        yield projection
     context.material.node_tree.nodes.clear()
     yield "material without output"
     context.world.node_tree.nodes.clear()
@@ -129,41 +72,91 @@ def panels():
 
     scene = stage.room(width=16, height=16, samples=1)
     cube = bpy.data.objects["Cube"]
-    context = types.SimpleNamespace(
+    context = recording.Context(
         engine="LANCER",
-        region=None,
         scene=scene,
         view_layer=scene.view_layers[0],
         object=cube,
         material=cube.data.materials[0],
         light=next(item.data for item in bpy.data.objects if item.type == "LIGHT"),
+        camera=scene.camera.data,
         world=scene.world,
     )
-    shown, errors, polls = {cls.__name__: {} for cls in ui._CLASSES}, [], []
+    shown, errors = {cls.__name__: {} for cls in ui.CLASSES}, []
+    context.light.use_nodes = True
     for variant in _variants(context):
-        for cls in ui._CLASSES:
+        for cls in ui.CLASSES:
             try:
-                if not cls.poll(context):
-                    polls.append(f"{cls.__name__}: hidden, {variant}")
-                shown[cls.__name__][variant] = _draw(cls, context)
+                if cls.poll(context):
+                    shown[cls.__name__][variant] = recording.draw(cls, context).words
             except Exception as error:
                 errors.append(f"{cls.__name__}, {variant}: {type(error).__name__}: {error}")
-    nothing = types.SimpleNamespace(engine="LANCER", object=None, material=None, light=None, world=None)
-    hidden = [cls.__name__ for cls in ui._CLASSES if not cls.poll(nothing)]
+    things = dict.fromkeys(("object", "material", "light", "camera", "world"))
+    nothing = recording.Context(engine="LANCER", scene=scene, **things)
+    hidden = [cls.__name__ for cls in ui.CLASSES if not cls.poll(nothing)]
     context.engine = "CYCLES"
-    foreign = [cls.__name__ for cls in ui._CLASSES if cls.poll(context)]
-    return {"shown": shown, "errors": errors, "polls": polls, "hidden": hidden, "foreign": foreign}
+    foreign = [cls.__name__ for cls in ui.CLASSES if cls.poll(context)]
+    return {"shown": shown, "errors": errors, "hidden": hidden, "foreign": foreign}
 
 
-def simplify():
-    """{panel: what it shows} of Blender's own panels of Simplify, as Lancer shows them."""
-    context = types.SimpleNamespace(engine="LANCER", scene=stage.room())
-    result = {}
-    for cls in bpy.types.Panel.__subclasses__():
-        if "RENDER_PT_simplify" in (cls.__name__, getattr(cls, "bl_parent_id", "")) and cls.poll(context):
-            panel = types.SimpleNamespace(layout=_Layout())
-            if "draw_header" in vars(cls):
-                cls.draw_header(panel, context)
-            cls.draw(panel, context)
-            result[cls.__name__] = panel.layout.shown
-    return result
+def tabs():
+    """{tab and thing: the names of the panels that are shown there, Lancer's own in the order in which they stand}."""
+    scene = stage.room()
+    context = recording.Context(engine="LANCER", scene=scene, view_layer=scene.view_layers[0], world=scene.world)
+    shown = {tab: _names(context, tab) for tab in ("render", "output", "view_layer", "scene", "world")}
+    for thing in scene.objects:
+        kind = thing.type.lower()
+        of = recording.Context(
+            **{"engine": "LANCER", "scene": scene, "view_layer": context.view_layer, "object": thing, "active_object": thing},
+            **{kind: thing.data, "material": thing.active_material},
+        )
+        for tab in ("object", "data", "material"):
+            shown[f"{tab} of a {kind}"] = _names(of, tab)
+    return shown
+
+
+def _names(context, tab):
+    from addon import ui
+
+    shown = list(recording.shown_panels(context, tab))
+    own = [cls for cls in ui.CLASSES if cls in shown]
+    return [cls.__name__ for cls in shown if cls not in own] + [cls.__name__ for cls in own]
+
+
+def cached():
+    """How often a material's nodes are read while it is drawn, changed and drawn again, and which handlers stay then."""
+    from addon import ui
+    from addon.ui import described
+
+    scene = stage.room()
+    material = bpy.data.objects["Cube"].active_material
+    context = recording.Context(engine="LANCER", scene=scene, material=material)
+    reads, describe = [], described.describe_material
+    described.describe_material = lambda read: reads.append(read.name) or describe(read)
+    handlers = bpy.app.handlers.depsgraph_update_post
+    before = list(handlers)
+
+    def draw():
+        return recording.draw(ui.material.LANCER_MATERIAL_PT_rendered, context).words
+
+    try:
+        first, again = draw(), draw()
+        kept = len(reads)
+        node = next(item for item in material.node_tree.nodes if item.type == "BSDF_DIFFUSE")
+        wire = material.node_tree.nodes.new("ShaderNodeWireframe")
+        material.node_tree.links.new(wire.outputs[0], node.inputs["Color"])
+        bpy.context.view_layer.update()
+        lossy = draw()
+        read_again = len(reads)
+        material.node_tree.links.clear()
+        bpy.context.view_layer.update()
+        described._leave()
+        return {
+            "first": first,
+            "again": again,
+            "lossy": lossy,
+            "reads": [kept, read_again],
+            "left": handlers[:] == before,
+        }
+    finally:
+        described.describe_material = describe

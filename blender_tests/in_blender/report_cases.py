@@ -35,14 +35,11 @@ def saved(folder):
     except RuntimeError as problem:
         result.append(["CANCELLED"])
         error = str(problem)
-    import addon.bug_report
-
-    draws = bpy.types.LANCER_RENDER_PT_messages.draw._draw_funcs
     return {
         "result": result,
         "error": error,
         "version": bpy.app.version_string,
-        "button": addon.bug_report._draw_button in draws,
+        "button": bpy.types.LANCER_RENDER_PT_bug_report.bl_parent_id == "LANCER_RENDER_PT_messages",
     }
 
 

@@ -9,7 +9,7 @@ import time
 import bpy
 
 import addon
-from addon import ui_render
+from addon.ui import messages, render
 
 
 def watch(say):
@@ -17,19 +17,19 @@ def watch(say):
     for area in bpy.context.window_manager.windows[0].screen.areas:
         if area.type == "PROPERTIES":
             area.spaces[0].context = "RENDER"
-    draw_measuring, draw_messages = ui_render.draw_measuring, ui_render.LANCER_RENDER_PT_messages.draw
+    draw_measuring, draw_messages = render.draw_measuring, messages.LANCER_RENDER_PT_messages.draw
 
     def measuring(*arguments):
         drawn = draw_measuring(*arguments)
         say("draws-progress" if drawn else "draws-button")
         return drawn
 
-    def messages(panel, context):
+    def told(panel, context):
         draw_messages(panel, context)
         over = not bpy.app.is_job_running("RENDER")
         say("draws-figures" if over and context.scene.name in addon.engine.last_statistics else "draws-no-figures")
 
-    ui_render.draw_measuring, ui_render.LANCER_RENDER_PT_messages.draw = measuring, messages
+    render.draw_measuring, messages.LANCER_RENDER_PT_messages.draw = measuring, told
 
 
 def measure():

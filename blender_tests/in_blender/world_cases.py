@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import stage
 
+from addon.bindings.enums import NodeKind
 from addon.export.images import Images
 from addon.export.messages import Messages
 from addon.export.world import CUBE_SIDES, export_world
@@ -37,6 +38,24 @@ def _shown(projection, messages):
     world = _exported(messages)
     node = world.nodes[world.radiance.node]
     return [int(node.kind), int(node.option), int(node.image_count)]
+
+
+def missing():
+    """A sky whose picture is not there, and one that is not to be sampled."""
+    scene = stage.empty()
+    tree, background = _tree()
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    tree.links.new(texture.outputs[0], background.inputs["Color"])
+    lost = bpy.data.images.new("lost", 4, 4)
+    lost.source, lost.filepath = "FILE", os.path.join(tempfile.mkdtemp(), "nowhere.hdr")
+    result = {}
+    for name, image, method in (("none", None, "AUTOMATIC"), ("lost", lost, "AUTOMATIC"), ("unsampled", None, "NONE")):
+        texture.image, scene.world.cycles.sampling_method = image, method
+        messages = Messages()
+        world = _exported(messages)
+        node = next(node for node in world.nodes if node.kind == NodeKind.ENVIRONMENT)
+        result[name] = [hasattr(world.radiance, "node"), int(node.image_count), list(messages)]
+    return result
 
 
 def export():

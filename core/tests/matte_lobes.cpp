@@ -51,11 +51,11 @@ std::vector<Case> cases() {
     all.push_back({"stretched" + name, [=](const glm::vec3 &) { return make_ashikhmin(white, r, 0.4f * r); }});
     all.push_back({"clear coat" + name, [=](const glm::vec3 &wo) { return make_clear_coat(white, r, wo.z); }});
   }
+  all.push_back({"dust", [=](const glm::vec3 &) { return make_matte(Matte::DustSheen, white); }});
   for (const float k : {0.0f, 0.5f, 1.0f, 4.0f})
     for (const float rho : {0.2f, 0.9f})
       all.push_back({"Minnaert " + std::to_string(k) + ", " + std::to_string(rho),
                      [=](const glm::vec3 &wo) { return make_minnaert(glm::vec3(rho), k, rho, wo); }});
-  all.push_back({"dust", [=](const glm::vec3 &) { return make_matte(Matte::DustSheen, white); }});
   return all;
 }
 

@@ -43,6 +43,9 @@ TEST(Minnaert, IsTheFormulaOfTheHeader) {
         for (const double cos_i : {1.0, 0.4, 1e-2}) {
           const double want = expected(k, rho, cos_o, cos_i);
           const double got = value(k, glm::vec3(rho, 0.5f * rho, 0.0f), direction(cos_o), direction(cos_i, 2.0));
+          // Beyond what a float holds to all its digits.
+          if (want * cos_i < 1e-37)
+            continue;
           EXPECT_NEAR(got / want, 1.0, 1e-6 + std::abs(k - 1.0) * 14.0 * 0x1p-23) << k << " " << rho << " " << cos_o;
         }
 }

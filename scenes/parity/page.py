@@ -95,12 +95,12 @@ def _record(outcome):
         "note": outcome.note,
         "samples": outcome.samples,
         "seconds": outcome.seconds,
-        "passes": {name: {**numbers(numbers), "verdict": verdict.name} for name, (numbers, verdict) in outcome.parts.items()},
+        "passes": {name: {**as_record(numbers), "verdict": verdict.name} for name, (numbers, verdict) in outcome.parts.items()},
         "messages": outcome.messages,
     }
 
 
-def numbers(figures):
+def as_record(figures):
     """JSON knows no infinity."""
     plain = {key: value if math.isfinite(value) else None for key, value in figures._asdict().items() if key != "dim"}
-    return {**plain, "dim": numbers(figures.dim)} if figures.dim else plain
+    return {**plain, "dim": as_record(figures.dim)} if figures.dim else plain

@@ -3,6 +3,7 @@
 import math
 
 import bmesh
+import bpy
 import numpy as np
 
 from .. import parts
@@ -186,6 +187,52 @@ def smooth_and_sharp(scene):
     lamp(scene)
     sky(scene)
     camera(scene)
+
+
+def _hills(fins):
+    """A hilly grid whose faces are no planes; with fins some of its edges have three faces."""
+    side = 6
+    places = [
+        (x, y, 0.9 * math.sin(1.7 * x) * math.cos(2.3 * y)) for y in np.linspace(-1, 1, side) for x in np.linspace(-1, 1, side)
+    ]
+    corners = [y * side + x for y in range(side - 1) for x in range(side - 1)]
+    faces = [(a, a + 1, a + side + 1, a + side) for a in corners]
+    for a in corners[side:-side:3] if fins else ():
+        x, y, z = places[a]
+        places += [(x, y + 0.3, z + 0.5), (x + 0.4, y + 0.3, z + 0.5)]
+        faces.append((a, a + 1, len(places) - 1, len(places) - 2))
+    mesh = bpy.data.meshes.new("Hills")
+    mesh.from_pydata(places, [], faces)
+    return mesh
+
+
+def _under_lamp(scene, mesh):
+    thing = parts.place(scene, "Hills", mesh, shader("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7)), rotation=(0.2, 0, 0.3))
+    lamp(scene)
+    sky(scene)
+    camera(scene, (0.2, -2.4, 2.6), (0, 0.05, 0))
+    return thing
+
+
+@case(quick=True)
+def smooth_and_flat_divided(scene):
+    """Flat faces beside smooth ones, none of them a plane."""
+    mesh = _hills(False)
+    mesh.polygons.foreach_set("use_smooth", [index % 3 > 0 for index in range(len(mesh.polygons))])
+    modifier = _under_lamp(scene, mesh).modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = modifier.render_levels = 1
+
+
+@case()
+def normals_at_edges_of_three_faces(scene):
+    """The user's normals: those of the fins lean the other way."""
+    mesh = _hills(True)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
+    normals = [(0.4, 0.0, 0.9165) if face.index < 25 else (-0.4, -0.5, 0.7681) for face in mesh.polygons for _ in face.vertices]
+    mesh.normals_split_custom_set(normals)
+    _under_lamp(scene, mesh)
 
 
 @variants(

@@ -134,3 +134,50 @@ def world_nodes_computed(scene):
         return nodes.add("ShaderNodeBackground", Color=color, Strength=nodes.add("ShaderNodeMath", 0.3, 0.4))
 
     world(scene, build)
+
+
+_GLASS = {
+    "glass": ("ShaderNodeBsdfGlass", {"Roughness": 0.0}),
+    "rough": ("ShaderNodeBsdfGlass", {"Roughness": 0.4}),
+    "refraction": ("ShaderNodeBsdfRefraction", {"Roughness": 0.0}),
+    "principled": ("ShaderNodeBsdfPrincipled", {"Roughness": 0.1, "Transmission_Weight": 1.0}),
+}
+
+
+def _missing(nodes):
+    picture = nodes.add("ShaderNodeTexEnvironment")
+    image = bpy.data.images.new("Lost", 4, 4)
+    image.source, image.filepath = "FILE", "//nowhere.hdr"
+    picture.image = image
+    return picture
+
+
+_SKIES = {
+    "plain": lambda nodes: (0.9, 0.1, 0.9),
+    "missing": _missing,
+    "empty": lambda nodes: nodes.add("ShaderNodeTexEnvironment"),
+    "pictured": lambda nodes: nodes.add("ShaderNodeTexEnvironment", props={"image": _even()}),
+}
+
+
+def _even():
+    """A picture of one colour."""
+    return images.image("Even", np.tile((0.9, 0.1, 0.9, 1.0), (4, 8, 1)), images.LINEAR, is_float=True, pack=False)
+
+
+@variants(
+    "LOBES",
+    values={
+        f"{kind}_{sky}": (kind, sky) for kind in _GLASS for sky in _SKIES if sky in ("plain", "missing") or kind == "glass"
+    },
+    bounces=4,
+)
+def world_glass_without_shadow(scene, choice):
+    """What a sky that is sampled as a lamp throws through glass that casts no shadow comes beside what the glass refracts."""
+    kind, sky = choice
+    floor(scene, size=6.0)
+    node, inputs = _GLASS[kind]
+    ball(scene, shader(node, **inputs), radius=0.8, location=(0, 0, 0.8)).visible_shadow = False
+    world(scene, lambda nodes: nodes.add("ShaderNodeBackground", Color=_SKIES[sky](nodes)))
+    scene.world.cycles.sampling_method, scene.world.cycles.sample_map_resolution = "MANUAL", 64
+    camera(scene, (0, -4.2, 2.2), (0, 0, 0.6), lens=60.0)

@@ -2,10 +2,10 @@
 
 import bpy
 
-from . import engine, features
-from .bindings.uses import kernel_in_words
-from .ui_lines import sentence
-from .ui_render import LancerPanel, draw_measuring
+from .. import engine, features
+from ..bindings.uses import kernel_in_words
+from .render import LancerRenderPanel, draw_measuring
+from .sentences import sentence
 
 _MEASURE = "lancer.measure_features"
 _MEMORY = {
@@ -24,9 +24,8 @@ def _share(value):
     return f"{value * 100:.0f} %"
 
 
-class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
+class LANCER_RENDER_PT_uses(LancerRenderPanel, bpy.types.Panel):
     bl_label = "What This Scene Uses"
-    bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
@@ -39,8 +38,7 @@ class LANCER_RENDER_PT_uses(LancerPanel, bpy.types.Panel):
             for feature in statistics["uses"]:
                 sentence(column, context, feature["text"])
             column.separator()
-            column.label(text="The code that ran knows")
-            sentence(column, context, kernel_in_words(statistics["kernel"]))
+            sentence(column, context, f"Rendered by the code for {kernel_in_words(statistics['kernel'])}")
             column.separator()
             for key, what in _MEMORY.items():
                 column.label(text=f"{what}: {_size(statistics[key])}")

@@ -2,18 +2,17 @@
 
 import bpy
 
-from . import check_scene
-from .checks.finding import Harm, shortened, told
-from .ui_lines import sentence
-from .ui_render import LancerPanel, draw_measuring
+from .. import check_scene
+from ..checks.finding import Harm, shortened, told
+from .render import LancerRenderPanel, draw_measuring
+from .sentences import sentence
 
 _CHECK = "lancer.check_scene"
-_ICONS = {Harm.WRONG: "ERROR", Harm.WASTE: "TIME", Harm.HINT: "INFO"}
+_ICONS = {Harm.WRONG: "ERROR", Harm.DIFFERENT: "ERROR", Harm.WASTE: "TIME", Harm.HINT: "INFO"}
 
 
-class LANCER_RENDER_PT_check(LancerPanel, bpy.types.Panel):
+class LANCER_RENDER_PT_check(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Check"
-    bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):

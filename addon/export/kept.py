@@ -1,0 +1,207 @@
+"""Meshes and pictures that the frames of an animation, or the renders of one scene with Persistent Data, have in common.
+
+What was read is kept beside all that it was read from, and used again only where that is there again, bit by bit. So a frame
+still reads what Blender holds, but computes nothing of it, and decodes no file again. What a picture did not use goes with the
+next one.
+"""
+
+import hashlib
+import os
+
+import bpy
+import numpy as np
+
+from .arrays import built_in, corner_vertices, look
+from .attributes import attribute_sources, read_uv_map, render_uv_map
+from .mesh import color_attribute, face_slots, read_positions
+
+_NEW_NORMALS = bpy.app.version >= (4, 1)
+
+
+class _Entry:
+    """sources: arrays and other values, in an order of their own. value: what was read of them."""
+
+    def __init__(self, sources, value):
+        self.sources, self.value, self.used = sources, value, True
+
+    @property
+    def bytes(self):
+        """Of all arrays, each counted once."""
+        return sum({id(array): array.nbytes for array in _arrays((self.sources, self.value))}.values())
+
+
+class Kept:
+    """What was kept so far; counts tells of the picture at hand what was read and what was there already."""
+
+    def __init__(self):
+        self._entries = {}
+        self.counts = {}
+        self.next_picture()
+
+    def next_picture(self):
+        """Drops what the picture before did not use. All layers of a picture share."""
+        for key, entries in list(self._entries.items()):
+            left = self._entries[key] = [entry for entry in entries if entry.used]
+            for entry in left:
+                entry.used = False
+            if not left:
+                del self._entries[key]
+        self.counts = {"read_meshes": 0, "kept_meshes": 0, "read_images": 0, "kept_images": 0}
+
+    @property
+    def bytes(self):
+        return sum(entry.bytes for entries in self._entries.values() for entry in entries)
+
+    def meshes(self, export_mesh):
+        """export_mesh that asks here first."""
+
+        def export(mesh, name, poll, wanted):
+            sources = _sources_of_mesh(mesh, wanted, poll)
+            return self._get("meshes", (name, wanted), sources, lambda: export_mesh(mesh, name, poll, wanted))
+
+        return export
+
+    def pictures(self, read_all):
+        """read_all of images.py that asks here first; what it told is told again."""
+
+        def read_again(image, path, tell):
+            def make():
+                told = []
+                return read_all(image, path, lambda *given, **named: told.append((given, named))), told
+
+            found, told = self._get("images", image.name_full, _sources_of_image(image, path), make)
+            for given, named in told:
+                tell(*given, **named)
+            return found
+
+        return read_again
+
+    def _get(self, kind, key, sources, make):
+        entries = self._entries.setdefault((kind, key), [])
+        for entry in entries:
+            if sources is not None and _same(entry.sources, sources):
+                entry.used = True
+                self.counts[f"kept_{kind}"] += 1
+                return entry.value
+        self.counts[f"read_{kind}"] += 1
+        if sources is not None:
+            # Blender's own arrays go with the frame, and to make normals may move them.
+            sources = tuple(np.array(source) if isinstance(source, np.ndarray) else source for source in sources)
+        value = make()
+        if sources is not None:
+            entries.append(_Entry(sources, value))
+        return value
+
+
+def _same(a, b):
+    """Whether two tuples hold the same bits."""
+    if len(a) != len(b):
+        return False
+    for x, y in zip(a, b, strict=True):
+        if isinstance(x, np.ndarray) and isinstance(y, np.ndarray):
+            if x.dtype != y.dtype or x.shape != y.shape or not np.array_equal(_bits(x), _bits(y)):
+                return False
+        elif isinstance(x, np.ndarray) or isinstance(y, np.ndarray) or x != y:
+            return False
+    return True
+
+
+def _bits(array):
+    return array.view(np.uint32) if array.dtype.itemsize == 4 else array
+
+
+def _arrays(value):
+    """The arrays that stand in tuples, lists and records."""
+    if isinstance(value, np.ndarray):
+        yield value
+    elif isinstance(value, (tuple, list)):
+        for item in value:
+            yield from _arrays(item)
+    elif hasattr(value, "__dataclass_fields__"):
+        yield from _arrays(tuple(vars(value).values()))
+
+
+def _sources_of_mesh(mesh, wanted, poll):
+    """All that export_mesh makes its arrays of; None where Blender does not give all of it."""
+    if not _NEW_NORMALS and mesh.has_custom_normals:
+        return None
+    places, corners = built_in(mesh, "position", "POINT"), built_in(mesh, ".corner_vert", "CORNER")
+    sources = [
+        len(mesh.edges),
+        read_positions(mesh) if places is None else look(places, "vector", np.float32, 3),
+        corner_vertices(mesh) if corners is None else look(corners, "value", np.int32, 1),
+        look(mesh.polygons, "loop_start", np.int32, 1),
+    ]
+    poll()
+    sources += _sources_of_normals(mesh)
+    poll()
+    layer, color = render_uv_map(mesh), color_attribute(mesh)
+    if layer is not None:
+        sources.append(look(layer.uv, "vector", np.float32, 2) if hasattr(layer, "uv") else read_uv_map(layer))
+    if color is not None:
+        sources += [color.domain, look(color.data, "color", np.float32, 4)]
+    sources.append(face_slots(mesh))
+    poll()
+    sources += attribute_sources(mesh, wanted)
+    return tuple(sources)
+
+
+def _sources_of_normals(mesh):
+    """What decides them beside faces and places: hard edges, flat faces, and the user's normals as they come out."""
+    if not _NEW_NORMALS:
+        yield mesh.use_auto_smooth
+        yield mesh.auto_smooth_angle
+        yield look(mesh.polygons, "use_smooth", bool, 1)
+        if mesh.use_auto_smooth:
+            yield look(mesh.loops, "edge_index", np.int32, 1)
+            yield look(mesh.edges, "use_edge_sharp", bool, 1)
+        return
+    yield mesh.normals_domain
+    yield mesh.has_custom_normals
+    for name, domain in (("sharp_face", "FACE"), ("sharp_edge", "EDGE")):
+        data = built_in(mesh, name, domain)
+        yield None if data is None else look(data, "value", bool, 1)
+    if built_in(mesh, "sharp_edge", "EDGE") is not None or mesh.has_custom_normals:
+        yield look(mesh.loops, "edge_index", np.int32, 1)
+    if mesh.has_custom_normals:
+        custom = mesh.attributes.get("custom_normal")
+        yield None if custom is None else custom.data_type
+        yield look(mesh.vertex_normals, "vector", np.float32, 3)
+        yield look(mesh.corner_normals, "vector", np.float32, 3)
+
+
+def _sources_of_image(image, path):
+    """What a picture is read from and by which settings; None where that may change without a trace."""
+    if image.is_dirty or image.source in ("MOVIE", "VIEWER"):
+        return None
+    settings = (image.source, image.alpha_mode, image.colorspace_settings.name, image.has_data, image.filepath, path)
+    working = getattr(getattr(bpy.data, "colorspace", None), "working_space", "")
+    if image.source == "GENERATED":
+        made = image.generated_type, *image.generated_color, image.generated_width, image.generated_height, image.is_float
+        return (*settings, working, *made)
+    packed = tuple(item.packed_file for item in image.packed_files) or ((image.packed_file,) if image.packed_file else ())
+    if packed and not path:
+        return (*settings, working, *(hashlib.sha256(item.data).digest() for item in packed if item is not None))
+    files = _files_of(image, path)
+    return None if files is None else (*settings, working, *files)
+
+
+def _files_of(image, path):
+    """What the system tells of each file; None where one is missing."""
+    names = [path or image.filepath]
+    if image.source == "TILED":
+        names = [image.filepath.replace("<UDIM>", str(tile.number)) for tile in image.tiles]
+        names = [_uv_tile(name, tile.number) for name, tile in zip(names, image.tiles, strict=True)]
+    found = []
+    for name in names:
+        try:
+            told = os.stat(bpy.path.abspath(name, library=image.library))
+        except OSError:
+            return None
+        found.append((name, told.st_mtime_ns, told.st_size, told.st_ino))
+    return found
+
+
+def _uv_tile(name, number):
+    column, row = (number - 1001) % 10, (number - 1001) // 10
+    return name.replace("<UVTILE>", f"u{column + 1}_v{row + 1}")

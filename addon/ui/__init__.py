@@ -1,0 +1,31 @@
+"""Panels: Lancer's own, a file for each tab of the Properties editor, and Blender's that it shows while it is registered."""
+
+import bpy
+
+from ..registering import add_all
+from . import adopted, camera, check, described, light, material, messages, objects, render, uses, view_layer, world
+
+CLASSES = (
+    *render.CLASSES,
+    *messages.CLASSES,
+    *uses.CLASSES,
+    *check.CLASSES,
+    *view_layer.CLASSES,
+    *world.CLASSES,
+    *objects.CLASSES,
+    *camera.CLASSES,
+    *light.CLASSES,
+    *material.CLASSES,
+)
+
+
+def register():
+    add_all(CLASSES, bpy.utils.register_class, bpy.utils.unregister_class)
+    adopted.adopt()
+
+
+def unregister():
+    described.forget()
+    adopted.release(CLASSES)
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

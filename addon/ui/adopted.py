@@ -1,0 +1,66 @@
+"""Blender's own panels that Lancer shows: those that any engine may show, but for what has no effect here, and some of EEVEE's.
+
+Only panels of Blender itself are taken: those of the Cycles add-on go and come with it.
+"""
+
+import bpy
+
+from .panel import ID
+
+# Shown to EEVEE, and true of Lancer as they are.
+_OF_EEVEE = {
+    "DATA_PT_camera_dof",
+    "DATA_PT_camera_dof_aperture",
+    "EEVEE_MATERIAL_PT_context_material",
+}
+# What Lancer shows otherwise, or elsewhere.
+_REPLACED = {
+    "DATA_PT_area",
+    "DATA_PT_light",
+    "DATA_PT_spot",
+    "NODE_DATA_PT_light",
+    "NODE_DATA_PT_spot",
+    "OBJECT_PT_shading",
+    "RENDER_PT_simplify",
+    "RENDER_PT_simplify_greasepencil",
+    "RENDER_PT_simplify_render",
+    "RENDER_PT_simplify_viewport",
+}
+# What has no effect: previews, stereoscopy, Freestyle, the light of volumes and strands.
+_WITHOUT_EFFECT = {
+    "DATA_PT_camera_stereoscopy",
+    "DATA_PT_preview",
+    "DATA_PT_volume_render",
+    "MATERIAL_PT_freestyle_line",
+    "MATERIAL_PT_preview",
+    "PARTICLE_PT_hair_shape",
+    "PARTICLE_PT_render_path",
+    "PARTICLE_PT_render_path_timing",
+    "RENDER_PT_freestyle",
+    "RENDER_PT_output_views",
+    "RENDER_PT_stereoscopy",
+    "TEXTURE_PT_preview",
+    "WORLD_PT_preview",
+}
+
+
+def _adopts(panel):
+    name = panel.__name__
+    if name in _OF_EEVEE:
+        return True
+    if name in _REPLACED or name in _WITHOUT_EFFECT or name.startswith("VIEWLAYER_PT_freestyle"):
+        return False
+    return "BLENDER_RENDER" in getattr(panel, "COMPAT_ENGINES", ())
+
+
+def adopt():
+    for panel in bpy.types.Panel.__subclasses__():
+        if _adopts(panel):
+            panel.COMPAT_ENGINES.add(ID)
+
+
+def release(own):
+    """Gives back all panels but those of own, Lancer's classes."""
+    for panel in bpy.types.Panel.__subclasses__():
+        if panel not in own and ID in getattr(panel, "COMPAT_ENGINES", ()):
+            panel.COMPAT_ENGINES.discard(ID)

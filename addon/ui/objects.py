@@ -1,0 +1,70 @@
+"""The Object tab: what it is traced as, how it is shaded, and which rays see it."""
+
+import bpy
+
+from .panel import LancerPanel, setting
+
+_SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+_RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
+
+
+class LancerObjectPanel(LancerPanel):
+    """Of an object that has a surface."""
+
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.object is not None and context.object.type in _SURFACES
+
+
+class LANCER_OBJECT_PT_shading(LancerObjectPanel, bpy.types.Panel):
+    bl_label = "Shading"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        own = context.object.lancer
+        column = self._column()
+        column.prop(own, "shape")
+        row = column.row()
+        row.active = own.shape == "MESH"
+        row.prop(own, "shading")
+
+
+class LANCER_OBJECT_PT_shadow_terminator(LancerObjectPanel, bpy.types.Panel):
+    bl_label = "Shadow Terminator"
+    bl_parent_id = "LANCER_OBJECT_PT_shading"
+
+    def draw(self, context):
+        thing = context.object
+        column = self._column()
+        setting(column, "shadow_terminator_geometry_offset", thing, getattr(thing, "cycles", None), text="Geometry Offset")
+
+
+class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    @classmethod
+    def poll(cls, context):
+        thing = context.object
+        if not super().poll(context) or thing is None:
+            return False
+        # What an instance shows is seen by no more than its instancer is.
+        return thing.type in {*_SURFACES, "LIGHT"} or thing.is_instancer
+
+    def draw(self, context):
+        thing = context.object
+        column = self._column()
+        for ray in _RAYS:
+            # A lamp casts no shadow of its own.
+            if ray != "shadow" or thing.type != "LIGHT":
+                column.prop(thing, "visible_" + ray, text=ray.capitalize())
+
+
+CLASSES = (
+    LANCER_OBJECT_PT_shading,
+    LANCER_OBJECT_PT_shadow_terminator,
+    LANCER_OBJECT_PT_ray_visibility,
+)

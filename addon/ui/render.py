@@ -1,0 +1,281 @@
+"""The Render tab: what is set before a render, in the order of Cycles."""
+
+import bpy
+from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
+
+from .. import denoise, measuring, presets, quality
+from .panel import LancerPanel, setting, uses_classic
+from .sentences import sentence
+
+_MEASURE = "lancer.measure_quality"
+
+# What an artist who comes from Cycles should know before the first render.
+_REPLACED = (
+    "They replace Cycles' bounces and clamping. Filter Glossy and limits of single kinds of bounces are not there. Where light "
+    "differs by any of them, the messages tell."
+)
+
+_DENOISING = (
+    "Open Image Denoise guesses what lies under the noise. The error given is that of the picture before, the pass Noisy Image."
+)
+
+
+class LancerRenderPanel(LancerPanel):
+    """They stand in the order in which they are registered, and Blender's Grease Pencil and Color Management after them."""
+
+    bl_context = "render"
+
+
+class LANCER_RENDER_PT_sampling(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+    draw_header_preset = presets.draw_sampling
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.prop(settings, "integrator")
+        column.prop(settings, "quality")
+        column.prop(settings, "target_error")
+        column.prop(settings, "samples", text="Samples" if settings.target_error == 0.0 else "Max Samples")
+        column.prop(settings, "time_limit")
+        _draw_forecast(self.layout.column(align=True), context)
+
+
+def _draw_forecast(column, context):
+    """What each quality would take and give, as far as it was measured."""
+    scene = context.scene
+    if draw_measuring(column, scene, _MEASURE):
+        return
+    column.operator(_MEASURE, icon="TIME")
+    if scene.name not in quality.measured:
+        return
+    if quality.is_old(scene):
+        sentence(column, context, "Measured before the last changes", "ERROR")
+    for line in quality.lines(scene):
+        # Panels are narrow.
+        for part in line.split("; "):
+            sentence(column, context, part)
+
+
+def draw_measuring(column, scene, operator, doing="Measuring"):
+    """In the place of that operator's button, how far it is; False where it does not run."""
+    what, fraction, text = measuring.running.get(scene.name, ("", 0.0, ""))
+    if what != operator:
+        return False
+    column.label(text=f"{doing}, {fraction * 100:.0f} % (Esc stops)", icon="TIME")
+    column.label(text=text)
+    return True
+
+
+class LANCER_RENDER_PT_denoising(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Denoise"
+    bl_parent_id = "LANCER_RENDER_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.active = context.scene.lancer.integrator != "NORMALS"
+        self.layout.prop(context.scene.lancer, "use_denoising", text="")
+
+    def draw(self, context):
+        column = self.layout.column(align=True)
+        missing = denoise.missing()
+        if missing:
+            sentence(column, context, missing, "ERROR")
+        sentence(column, context, _DENOISING)
+
+
+class LANCER_RENDER_PT_sampling_advanced(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Advanced"
+    bl_parent_id = "LANCER_RENDER_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        row = self._column().row(align=True)
+        row.prop(settings, "seed")
+        row.prop(settings, "use_animated_seed", text="", icon="TIME")
+
+
+class LANCER_RENDER_PT_light_paths(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Light Paths"
+    bl_options = {"DEFAULT_CLOSED"}
+    draw_header_preset = presets.draw_light_paths
+
+    def draw(self, context):
+        sentence(self.layout.column(align=True), context, _REPLACED)
+
+
+class LANCER_RENDER_PT_max_bounces(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Max Bounces"
+    bl_parent_id = "LANCER_RENDER_PT_light_paths"
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.prop(settings, "max_bounces", text="Total")
+        column.prop(settings, "transparent_bounces", text="Transparent")
+
+
+class LANCER_RENDER_PT_clamping(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Clamping"
+    bl_parent_id = "LANCER_RENDER_PT_light_paths"
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.active = settings.integrator == "PATH"
+        column.prop(settings, "clamp_indirect", text="Indirect Light")
+
+
+class LANCER_RENDER_PT_classic(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Classic"
+    bl_parent_id = "LANCER_RENDER_PT_light_paths"
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.active = uses_classic(context.scene)
+        column.prop(settings, "contribution_threshold", text="Threshold")
+        column.prop(settings, "environment_reflections", text="Reflect Sky Only")
+
+
+class LANCER_RENDER_PT_simplify(LancerRenderPanel, bpy.types.Panel):
+    """Blender's own would stand before all others."""
+
+    bl_label = "Simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_simplify", text="")
+
+    def draw(self, context):
+        pass
+
+
+class LANCER_RENDER_PT_simplify_viewport(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "LANCER_RENDER_PT_simplify"
+
+    def draw(self, context):
+        render = context.scene.render
+        column = self._column()
+        column.active = render.use_simplify
+        column.prop(render, "simplify_subdivision", text="Max Subdivision")
+        column.prop(render, "simplify_child_particles", text="Child Particles")
+        setting(column, "use_simplify_normals", render, text="Normals")
+
+
+class LANCER_RENDER_PT_simplify_render(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Render"
+    bl_parent_id = "LANCER_RENDER_PT_simplify"
+
+    def draw(self, context):
+        render = context.scene.render
+        column = self._column()
+        column.active = render.use_simplify
+        column.prop(render, "simplify_subdivision_render", text="Max Subdivision")
+        column.prop(render, "simplify_child_particles_render", text="Child Particles")
+
+
+class LANCER_RENDER_PT_simplify_strokes(LancerRenderPanel, GreasePencilSimplifyPanel, bpy.types.Panel):
+    bl_label = "Grease Pencil"
+    bl_parent_id = "LANCER_RENDER_PT_simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class LANCER_RENDER_PT_film(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        pass
+
+
+class LANCER_RENDER_PT_pixel_filter(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Pixel Filter"
+    bl_parent_id = "LANCER_RENDER_PT_film"
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.prop(settings, "pixel_filter", text="Type")
+        if settings.pixel_filter == "BLACKMAN_HARRIS":
+            column.prop(settings, "filter_width", text="Width")
+
+
+class LANCER_RENDER_PT_transparent(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Transparent"
+    bl_parent_id = "LANCER_RENDER_PT_film"
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "film_transparent", text="")
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.active = context.scene.render.film_transparent
+        column.prop(settings, "film_transparent_glass")
+        row = column.row()
+        row.active = settings.film_transparent_glass
+        row.prop(settings, "film_transparent_roughness", text="Max Roughness")
+
+
+class LANCER_RENDER_PT_performance(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        pass
+
+
+class LANCER_RENDER_PT_threads(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Threads"
+    bl_parent_id = "LANCER_RENDER_PT_performance"
+
+    def draw(self, context):
+        render = context.scene.render
+        column = self._column()
+        column.prop(render, "threads_mode")
+        row = column.row()
+        row.enabled = render.threads_mode == "FIXED"
+        row.prop(render, "threads")
+
+
+class LANCER_RENDER_PT_acceleration(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Acceleration Structure"
+    bl_parent_id = "LANCER_RENDER_PT_performance"
+
+    def draw(self, context):
+        column = self._column()
+        column.prop(context.scene.lancer, "accelerator")
+        column.prop(context.scene.lancer, "features")
+
+
+class LANCER_RENDER_PT_final_render(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Final Render"
+    bl_parent_id = "LANCER_RENDER_PT_performance"
+
+    def draw(self, context):
+        self._column().prop(context.scene.render, "use_persistent_data")
+
+
+CLASSES = (
+    LANCER_RENDER_PT_sampling,
+    LANCER_RENDER_PT_denoising,
+    LANCER_RENDER_PT_sampling_advanced,
+    LANCER_RENDER_PT_light_paths,
+    LANCER_RENDER_PT_max_bounces,
+    LANCER_RENDER_PT_clamping,
+    LANCER_RENDER_PT_classic,
+    LANCER_RENDER_PT_simplify,
+    LANCER_RENDER_PT_simplify_viewport,
+    LANCER_RENDER_PT_simplify_render,
+    LANCER_RENDER_PT_simplify_strokes,
+    LANCER_RENDER_PT_film,
+    LANCER_RENDER_PT_pixel_filter,
+    LANCER_RENDER_PT_transparent,
+    LANCER_RENDER_PT_performance,
+    LANCER_RENDER_PT_threads,
+    LANCER_RENDER_PT_acceleration,
+    LANCER_RENDER_PT_final_render,
+)

@@ -1,0 +1,139 @@
+"""Animations in which some things change and others do not: each frame beside a render of its own, and what was read for it."""
+
+import os
+import tempfile
+
+import bpy
+import numpy as np
+import stage
+
+import addon
+
+FRAMES = (1, 2, 3)
+_COUNTS = ("read_meshes", "kept_meshes", "read_images", "kept_images")
+
+
+def _write(path, value):
+    image = bpy.data.images.new("written", 8, 8)
+    image.pixels.foreach_set(np.tile(np.array([value, 0.5, 0.25, 1.0], np.float32), 64))
+    image.filepath_raw, image.file_format = path, "PNG"
+    image.save()
+    bpy.data.images.remove(image)
+
+
+def _pictured(name, path):
+    """A material that shows the picture in a file."""
+    material = stage.shader("ShaderNodeEmission", name)
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = bpy.data.images.load(path)
+    tree.links.new(node.outputs["Color"], next(n for n in tree.nodes if n.type == "EMISSION").inputs["Color"])
+    return material
+
+
+def _row(number, name, material=None):
+    item = stage.cube(0.8, material or stage.shader(Color=(0.7, 0.7, 0.7)), location=(number - 3.5, 0, 0))
+    item.name = item.data.name = name
+    item.data.uv_layers.new()
+    return item
+
+
+def _animate(owner, path, first, last):
+    for frame, value in ((FRAMES[0], first), (FRAMES[-1], last)):
+        setattr(owner, path, value)
+        owner.keyframe_insert(path, frame=frame)
+
+
+def _build(folder):
+    """A row of boxes, each with a change of its own; what changes by a handler does so with the number of the frame."""
+    scene = stage.empty(64, 16, 4)
+    still = os.path.join(folder, "still.png")
+    changed = os.path.join(folder, "changed.png")
+    for path in (still, changed):
+        _write(path, 0.5)
+    _row(0, "Still", _pictured("Still", still))
+    moved = _row(1, "Moved")
+    _animate(moved, "location", (-2.5, 0, 0), (-2.5, 0.5, 0))
+    keyed = _row(2, "Keyed")
+    keyed.shape_key_add(name="Basis")
+    key = keyed.shape_key_add(name="Wide")
+    key.data[0].co.z += 0.8
+    _animate(key, "value", 0.0, 1.0)
+    bent = _row(3, "Bent")
+    modifier = bent.modifiers.new("Bend", "SIMPLE_DEFORM")
+    _animate(modifier, "factor", 0.0, 1.5)
+    driven = _row(4, "Driven")
+    wave = driven.modifiers.new("Displace", "DISPLACE")
+    curve = wave.driver_add("strength")
+    curve.driver.expression = "frame * 0.1"
+    slotted = _row(5, "Slotted", stage.shader(Color=(0.9, 0.1, 0.1)))
+    slotted.data.materials.append(stage.shader(Color=(0.1, 0.1, 0.9)))
+    swapped = _row(6, "Swapped")
+    swapped.material_slots[0].link = "OBJECT"
+    others = [stage.shader(Color=(0.1, 0.2 * frame, 0.1)) for frame in FRAMES]
+    _row(7, "Repainted", _pictured("Repainted", changed))
+    # A second mesh that looks like the first, but for one corner of its map.
+    twin = _row(0, "Still too", bpy.data.materials["Still"])
+    twin.location.z = 1.5
+    stage.light("SUN", 3.0, (0, -3, 5), (0.5, 0.3, 0))
+    stage.sky()
+    stage.camera((0, -8, 3), (0, 0, 0.3), type="ORTHO", ortho_scale=9.0)
+    scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
+
+    def change(scene, *_):
+        frame = scene.frame_current
+        slotted.data.polygons.foreach_set("material_index", [int(index < frame) for index in range(6)])
+        slotted.data.update()
+        swapped.material_slots[0].material = others[frame - 1]
+        _write(changed, 0.2 * frame)
+        # The system's clock may tell two changes within one of its ticks the same time.
+        os.utime(changed, ns=(frame * 10**9, frame * 10**9))
+
+    return scene, change
+
+
+def _read(path):
+    return stage.pixels(path)[:, :, :3]
+
+
+def frames(persistent):
+    """[[the counts of each frame], how far each frame is from its own render, the kept bytes, whether they go at the end]."""
+    folder = tempfile.mkdtemp()
+    scene, change = _build(folder)
+    counts, sizes = [], []
+
+    def count(scene, *_):
+        numbers = addon.engine.last_statistics[scene.name]
+        counts.append([numbers.get(name) for name in _COUNTS])
+        sizes.append(numbers.get("kept_bytes"))
+
+    bpy.app.handlers.frame_change_pre.append(change)
+    bpy.app.handlers.render_post.append(count)
+    try:
+        alone = []
+        for frame in FRAMES:
+            scene.frame_set(frame)
+            alone.append(_read(stage.write_exr(scene, os.path.join(folder, f"alone_{frame}.exr"))))
+        plain = counts[:]
+        counts.clear(), sizes.clear()
+        scene.render.use_persistent_data = persistent == "yes"
+        scene.frame_set(FRAMES[0])
+        scene.render.filepath = os.path.join(folder, "frame_")
+        bpy.ops.render.render(animation=True)
+    finally:
+        bpy.app.handlers.frame_change_pre.remove(change)
+        bpy.app.handlers.render_post.remove(count)
+    left = len(addon.engine._kept)
+    together = [_read(os.path.join(folder, f"frame_{frame:04d}.exr")) for frame in FRAMES]
+    changes = [float(np.abs(a - b).max()) for a, b in zip(together, together[1:], strict=False)]
+    differences = [float(np.abs(a - b).max()) for a, b in zip(alone, together, strict=True)]
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    return {
+        "alone": plain,
+        "counts": counts,
+        "bytes": sizes,
+        "differences": differences,
+        "changes": changes,
+        "left": left,
+        "after another file": len(addon.engine._kept),
+    }

@@ -1,0 +1,107 @@
+"""What a chapter of the report is made of."""
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A number that was measured just now, and the range that it has to be in; why says where the range comes from."""
+
+    what: str
+    measured: float
+    low: float
+    high: float
+    expected: str
+    why: str
+
+    @property
+    def ok(self):
+        return self.low <= self.measured <= self.high
+
+    @classmethod
+    def near(cls, what, measured, expected, limit, why):
+        """Within limit of a closed form; a limit of 0 asks for the number itself."""
+        text = number(expected) if limit == 0 else f"{number(expected)} ± {limit:.2g}"
+        return cls(what, float(measured), expected - limit, expected + limit, text, why)
+
+    @classmethod
+    def at_most(cls, what, measured, limit, why):
+        return cls(what, float(measured), -math.inf, limit, f"at most {number(limit)}", why)
+
+    @classmethod
+    def at_least(cls, what, measured, limit, why):
+        return cls(what, float(measured), limit, math.inf, f"at least {number(limit)}", why)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """pixels: (height, width, 3 or 4), linear, row 0 the lowest, as renders give them; white is what is shown as 1."""
+
+    name: str
+    caption: str
+    pixels: np.ndarray
+    white: float = 1.0
+
+
+@dataclass(frozen=True)
+class Source:
+    """A function, by the file it stands in and the text with which its definition begins."""
+
+    file: str
+    text: str
+
+    @property
+    def line(self):
+        lines = (ROOT / self.file).read_text(encoding="utf-8").splitlines()
+        found = next((number for number, line in enumerate(lines, 1) if self.text in line), None)
+        if found is None:
+            raise LookupError(f"{self.file} has no '{self.text}'")
+        return found
+
+    @property
+    def name(self):
+        """The last word of the text, which is the function's own."""
+        return re.findall(r"\w+", self.text)[-1]
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """texts: where the texts ask for it; built: what there is; problems: what had to be solved on the way."""
+
+    title: str
+    texts: str
+    built: str
+    formula: str
+    problems: str
+    sources: tuple[Source, ...]
+    figures: tuple[Figure, ...]
+    pictures: tuple[Picture, ...]
+
+    @classmethod
+    def of(cls, prose, figures, pictures=()):
+        """prose: the fields that chapters.toml has."""
+        sources = tuple(Source(*source) for source in prose["sources"])
+        return cls(**{**prose, "sources": sources}, figures=tuple(figures), pictures=tuple(pictures))
+
+    @property
+    def ok(self):
+        return all(figure.ok for figure in self.figures)
+
+
+def number(value):
+    """Short, and a whole number as it is."""
+    return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e9 else f"{value:.4g}"
+
+
+def worst(measured, expected):
+    """The largest deviation, relative to what is expected where that is not 0."""
+    measured, expected = np.asarray(measured, float), np.asarray(expected, float)
+    scale = np.where(expected != 0.0, np.abs(expected), 1.0)
+    return float(np.max(np.abs(measured - expected) / scale))
