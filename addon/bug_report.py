@@ -13,6 +13,7 @@ from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
 from .harm import Harm
 from .passes import render_passes
+from .registering import add_all
 
 _HOLDS = "It holds the geometry and the pictures of the scene"
 
@@ -170,8 +171,7 @@ _CLASSES = (LANCER_OT_save_bug_report, LANCER_RENDER_PT_bug_report)
 
 
 def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
+    add_all(_CLASSES, bpy.utils.register_class, bpy.utils.unregister_class)
 
 
 def unregister():

@@ -8,6 +8,7 @@ import bpy
 from .engine import LancerRenderEngine
 from .export.course_models import MODELS, NORMAL, PARAMETERS, is_as_made, mark, model_of, parameters_of
 from .properties import LancerMaterialSettings
+from .registering import add_all
 
 _SETTINGS = LancerMaterialSettings.__annotations__
 # Models by their names, descriptions and numbers in the material's own settings.
@@ -226,8 +227,7 @@ _CLASSES = (LANCER_OT_add_model, NODE_MT_lancer_models)
 
 
 def register():
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
+    add_all(_CLASSES, bpy.utils.register_class, bpy.utils.unregister_class)
     bpy.types.NODE_MT_add.append(_draw_entry)
 
 
