@@ -27,7 +27,7 @@ def _rendered(shot, accelerator):
 
 
 def trees(quick):
-    width, height = (160, 120) if quick else (480, 360)
+    width, height = (120, 90) if quick else (200, 150)
     shot = studio.from_blender("spheres600", width, height)
     shot = with_settings(shot, samples=1, threads=0)
     pictures, rates = {}, {}
@@ -57,7 +57,10 @@ def trees(quick):
             "nodes of the BVH that it visits on the way", asked["nodes"], spheres / 4, "a quarter of all, as in the text"
         )
     )
-    return tuple(figures), (Picture("spheres", "600 spheres on a plane, each mirroring the others", pictures[Accelerator.BVH]),)
+    size = {"width": 480, "height": 360, "region_width": 480, "region_height": 360}
+    large = dataclasses.replace(shot, camera=dataclasses.replace(shot.camera, **size))
+    caption = "600 spheres on a plane, each mirroring the others"
+    return figures, [Picture("spheres", caption, studio.render(large, samples=1 if quick else 4))]
 
 
 def _asked(shot):
@@ -66,8 +69,7 @@ def _asked(shot):
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(0, camera.width, 4), np.arange(0, camera.height, 4)))
     with Session.upload(shot) as session:
         origins, directions = session.probe_camera(np.stack([x, y], axis=1))
-    # The plane has no place in the tree.
-    with Scene.upload(dataclasses.replace(shot)) as scene:
+    with Scene.upload(shot) as scene:
         counts = scene.traversal(origins, directions)
     return {name: count / len(origins) for name, count in counts.items()}
 
