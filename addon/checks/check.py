@@ -3,10 +3,11 @@
 import numpy as np
 
 from .closures import check_closures
-from .coincident import check_coincident
+from .coincident import check_coincident, flat_parts
 from .finding import by_harm
 from .glass import check_glass
 from .laid_over import check_laid_over
+from .lamps_in_faces import check_lamps_in_faces
 from .lights import check_lights
 from .normals import check_normals
 from .precision import check_precision
@@ -37,10 +38,16 @@ def _all_findings(subject):
         check_twins(subject, twins),
         check_double_faces(subject),
         check_laid_over(subject),
-        check_coincident(subject, frozenset(row for row, _ in twins)),
+        _check_planes(subject, frozenset(row for row, _ in twins)),
     )
     found = []
     for number, findings in enumerate(steps):
         subject.poll(number / len(steps))
         found.extend(findings)
     return found
+
+
+def _check_planes(subject, twins):
+    facets, world = flat_parts(subject, twins)
+    yield from check_coincident(subject, facets, world)
+    yield from check_lamps_in_faces(subject, facets, world)

@@ -19,11 +19,15 @@ _MOST_ALIKE = 65536, 128  # pairs that look alike, which are most, of which the 
 _MOST_TRIANGLES = 8_000_000
 
 
-def check_coincident(subject, twins=frozenset()):
-    """twins: rows of instances that are copies of others in their very place, which are told elsewhere."""
+def flat_parts(subject, twins=frozenset()):
+    """What planes.gather gives. twins: rows of copies of others in their very place, which are told elsewhere."""
+    return gather(subject, twins, _MOST_FACETS[not subject.thorough])
+
+
+def check_coincident(subject, facets, world):
+    """facets, world: of flat_parts."""
     quick = not subject.thorough
-    facets, world = gather(subject, twins, _MOST_FACETS[quick])
-    if world is None:
+    if world is None or len(world) < 2:
         return
     i, j = pairs_of(subject, world, _MOST_PAIRS[quick])
     # Near the border of two cells of directions a part may be paired with itself.
@@ -163,7 +167,7 @@ class _Hurts:
 
 def _meeting(subject, facets, world, one, other):
     """(a point where two parts overlap, how many triangles of the first do); (None, 0) where they only border on each other."""
-    sets = [_corners(subject, facets, world, part, world.points[one]) for part in (one, other)]
+    sets = [corners_of(subject, facets, world, part, world.points[one]) for part in (one, other)]
     axes = np.delete(np.arange(3), np.argmax(np.abs(world.normals[one])))
     endless = [not np.isfinite(corners).all() for corners in sets]
     if all(endless):
@@ -182,7 +186,7 @@ def _meeting(subject, facets, world, one, other):
     return tuple((centers[nearest] + world.points[one]).tolist()), len(np.unique(i))
 
 
-def _corners(subject, facets, world, part, origin):
+def corners_of(subject, facets, world, part, origin):
     """(triangles, 3, 3) in the world, as seen from origin."""
     row, number = int(world.rows[part]), int(world.parts[part])
     kind = InstanceKind(int(subject.kinds[row]))

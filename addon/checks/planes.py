@@ -38,7 +38,7 @@ class World:
 
 
 def gather(subject, twins, most):
-    """Facets by what has them, and all of them in the world; None where there are fewer than two, or too many."""
+    """Facets by what has them, and all of them in the world; None where there are none, or too many."""
     table = subject.instances
     facets, rows_of = {}, {}
     # Where a dimension is lost nothing is shown; NaN is not above 0 either.
@@ -57,7 +57,7 @@ def gather(subject, twins, most):
             facets[kind, 0] = shape_facets(kind)
             rows_of[kind, 0] = rows
     total = sum(len(facets[key]) * len(rows_of[key]) for key in facets)
-    if total < 2 or total > most:
+    if total == 0 or total > most:
         return facets, None
     columns = [_place(subject, facets[key], rows_of[key]) for key in facets]
     return facets, World(*(np.concatenate(column) for column in zip(*columns, strict=True)))

@@ -85,8 +85,9 @@ TEST(WidePictures, LookUpsAreThoseOfTheGeneralCode) {
             const std::optional<WideImage> wide = wide_image(image, uint32_t(extension) | (straight ? 256u : 0u), alpha);
             // The curve is lines up to 1 only: some floats exceed it, and colours that come multiplied do beside their alpha.
             const bool beyond = image.exceeds_unit || (straight && channels > 1 && alpha_mode == LANCER_ALPHA_ASSOCIATED);
-            if (kind != LANCER_TEXEL_FLOAT || unit)
+            if (kind != LANCER_TEXEL_FLOAT || unit) {
               ASSERT_FALSE(image.exceeds_unit);
+            }
             ASSERT_EQ(wide.has_value(), transfer == LANCER_TRANSFER_LINEAR || !beyond);
             for (int i = 0; i < 30 && wide; ++i)
               ASSERT_NO_FATAL_FAILURE(expect_looks(random, image, *wide, extension, straight, alpha));
