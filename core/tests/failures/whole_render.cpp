@@ -85,9 +85,19 @@ struct Parts {
     attributes = {{{"tangent:", tangents.data(), LANCER_DOMAIN_CORNER, 4}, {"dust", normals.data(), LANCER_DOMAIN_VERTEX, 1}}};
     meshes = {};
     lancer_mesh &grid = meshes[0];
-    grid = {"grid",        positions.data(), triangles.data(),      normals.data(),
-            uvs.data(),    colors.data(),    slots.data(),          attributes.data(),
-            kGrid * kGrid, kFaces,           LANCER_NORMALS_VERTEX, uint32_t(attributes.size())};
+    grid = {"grid",
+            positions.data(),
+            triangles.data(),
+            normals.data(),
+            uvs.data(),
+            colors.data(),
+            slots.data(),
+            nullptr,
+            attributes.data(),
+            kGrid * kGrid,
+            kFaces,
+            LANCER_NORMALS_VERTEX,
+            uint32_t(attributes.size())};
     lancer_mesh &plain = meshes[1];
     plain.name = "plain";
     plain.positions = positions.data();
