@@ -6,13 +6,11 @@ import platform
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from . import engine
+from . import as_rendered, engine
 from .bindings import bug_report
 from .bindings.abi import LancerError, load_library
 from .export.messages import Messages
-from .export.scene import ExportOptions, export_scene
 from .harm import Harm
-from .passes import render_passes
 from .registering import add_all
 
 _HOLDS = "It holds the geometry and the pictures of the scene"
@@ -79,10 +77,9 @@ def facts(scene, exported):
 
 def _exported(context):
     """(snapshot or None, Messages): a scene that cannot be exported is a fault worth a report, too."""
-    depsgraph = context.evaluated_depsgraph_get()
-    wanted = tuple(item.source for item in render_passes(depsgraph.scene, depsgraph.view_layer_eval))
     try:
-        return export_scene(depsgraph, ExportOptions(passes=wanted))
+        export = as_rendered.export(context)
+        return export.snapshot, export.messages
     except LancerError as error:
         return None, Messages([str(error)], Harm.FAILED)
     except Exception as error:
@@ -109,6 +106,9 @@ class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
 
     @classmethod
     def poll(cls, context):
+        if bpy.app.is_job_running("RENDER"):
+            cls.poll_message_set("A render is running")
+            return False
         return context.scene is not None
 
     def invoke(self, context, event):
