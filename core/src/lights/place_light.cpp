@@ -1,6 +1,5 @@
 #include "lights/place_light.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace lancer {
@@ -20,15 +19,6 @@ void set_axes(Light &light, const Affine &map) {
     light.y = -light.y;
 }
 
-// By how much a lamp and a face that are meant to lie in one plane may be apart, in the user's world. Blender computes
-// placements in float and keeps corners as floats: locations, axes and corners of both are some ten halves of a last place off
-// together.
-double apart_by_rounding(const LightDescription &from) {
-  const glm::dvec3 &p = from.to_world.translation;
-  const double reach = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + 0.5 * double(from.size.x + from.size.y);
-  return 0x1p-20 * reach;
-}
-
 } // namespace
 
 Light place_light(const LightDescription &from, const Normalisation &normalisation) {
@@ -37,9 +27,6 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.kind = from.kind;
   light.position = normalisation.to_normalised(from.to_world.translation);
   set_axes(light, from.to_world);
-  // Before a face of its plane, such as the ceiling that it is set into: rounding would let the face hide a part of it.
-  if (from.kind == LightKind::Area)
-    light.position -= apart_by_rounding(from) * scale * light.z;
   light.emission = glm::dvec3(from.emission);
   // Irradiance is intensity over distance squared: lengths scale, so intensity scales with their square.
   if (from.kind == LightKind::Point || from.kind == LightKind::Spot)
