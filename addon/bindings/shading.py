@@ -169,10 +169,10 @@ class Material(_Parameters):
 @dataclass(frozen=True, eq=False)
 class World(_Parameters):
     radiance: object = _BLACK
-    ambient: tuple | None = None  # light from everywhere that Ka reflects in CLASSIC; None: the mean of the radiance
     nodes: tuple[Node, ...] = ()
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0
+    ambient: tuple | None = None  # light from everywhere that Ka reflects in CLASSIC; None: the mean of the radiance
 
     PARAMETERS = ("radiance",)
 
