@@ -1,4 +1,4 @@
-"""Area lamps that lie exactly in a face: for each ray rounding decides whether the face is before them, in Cycles as here."""
+"""Area lamps that lie exactly in a face: in Cycles rounding decides for each ray whether the face is before the lamp."""
 
 import numpy as np
 
@@ -35,8 +35,8 @@ def check_lamps_in_faces(subject, facets, world):
         what = f"lies exactly in a face of object '{subject.name(int(world.rows[part]))}'"
         yield Finding(
             "lights",
-            Harm.WRONG,
-            f"{what}, which hides a part of it, another part than in Cycles",
+            Harm.DIFFERENT,
+            f"{what}: Cycles would show it weaker, as the face hides part of it",
             "move it a little to the side that it shines to",
             light=light.name,
             place=tuple(light.matrix[:, 3].tolist()),

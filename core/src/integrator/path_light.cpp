@@ -52,7 +52,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::add
       const Ray &ray = rays_[first + lane];
       put(paths_[first + lane].from, ways_.from, lane);
       put(ray.d, ways_.d, lane);
-      ways_.end[lane] = way_end(first + lane);
+      ways_.end[lane] = way_end(first + lane) + lights.most_before();
     }
     for (const uint32_t number : lights.always_on_the_way()) {
       const uint32_t met = lanes_.meets(ways_, lights.plain_numbers(number)) & ((1u << count) - 1u);

@@ -1,6 +1,7 @@
 // Area lights: a rectangle or an ellipse that shines to its front.
 #pragma once
 
+#include "lights/area_end.h"
 #include "lights/light.h"
 #include "sampling/warp.h"
 
@@ -51,8 +52,7 @@ inline LightSample sample_area(const Light &light, const glm::dvec3 &p, const gl
   if (!(part.area > 0.0))
     return sample;
   const glm::dvec2 d = part.ellipse ? glm::dvec2(warp_disk(u)) : glm::mix(part.low, part.high, glm::dvec2(u));
-  sample.target = light.position + d.x * light.half_x * light.x + d.y * light.half_y * light.y;
-  const glm::dvec3 v = sample.target - p;
+  const glm::dvec3 at = light.position + d.x * light.half_x * light.x + d.y * light.half_y * light.y, v = at - p;
   sample.distance = glm::length(v);
   if (!(sample.distance > 0.0))
     return sample;
@@ -60,6 +60,7 @@ inline LightSample sample_area(const Light &light, const glm::dvec3 &p, const gl
   const double cosine = glm::dot(sample.wi, light.z);
   if (!(cosine > 0.0) || (light.ellipse && !part.ellipse && !on_area(light, d.x, d.y)))
     return sample;
+  sample.target = p + area_end(sample.distance, cosine, light.apart) * sample.wi;
   sample.pdf = sample.distance * sample.distance / (cosine * part.area);
   sample.radiance = area_radiance(light, cosine);
   return sample;
@@ -78,7 +79,7 @@ inline LightHit meet_area(const Light &light, const glm::dvec3 &o, const glm::dv
     return hit;
   hit.radiance = area_radiance(light, cosine);
   hit.pdf = t * t / (cosine * part.area);
-  hit.distance = t;
+  hit.distance = area_end(t, cosine, light.apart);
   return hit;
 }
 

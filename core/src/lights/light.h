@@ -33,6 +33,7 @@ struct Light {
   double half_x = 0.0, half_y = 0.0, area = 0.0; // AREA
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
+  double apart = 0.0; // AREA: by how much a face that is meant to lie in its plane may be before it
   uint32_t hidden_from = 0;                         // LANCER_RAY_* bits
   bool no_shadow = false;
   CourseLight course;
@@ -42,7 +43,7 @@ struct Light {
 // The estimate of what arrives at normal incidence is radiance / pdf; for delta lights (one direction only) radiance already is
 // that irradiance and pdf is 1. pdf is per solid angle, without the choice of the light; 0 = no sample.
 struct LightSample {
-  glm::dvec3 target{0.0}; // the point, where finite
+  glm::dvec3 target{0.0}; // where a way that nothing blocks ends: the point, or just before it; where finite
   glm::dvec3 wi{0.0};     // unit, towards the light
   double distance = 0.0;  // infinite for a sun
   glm::vec3 radiance{0.0f};
@@ -54,7 +55,7 @@ struct LightSample {
 struct LightHit {
   glm::vec3 radiance{0.0f};
   double pdf = 0.0;      // as sample() from o would have it; 0 = not on the way
-  double distance = 0.0; // of the point that sample() would have given; infinite for a sun
+  double distance = 0.0; // of the target that sample() would have given; infinite for a sun
 };
 
 LightSample sample(const Light &light, const glm::dvec3 &p, const glm::vec2 &u);

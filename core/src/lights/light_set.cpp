@@ -1,5 +1,6 @@
 #include "lights/light_set.h"
 
+#include "lights/area_end.h"
 #include "sampling/plain_vectors.h"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ WideLamp make_wide(const Light &light) {
   lamp.area = light.area;
   lamp.tan_half_spread = light.tan_half_spread;
   lamp.spread_scale = light.spread_scale;
+  lamp.apart = light.apart;
   lamp.one_minus_cos_sun = light.one_minus_cos_sun;
   lamp.flat_radius = light.flat_radius;
   return lamp;
@@ -45,6 +47,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
   for (const Light &light : lights_) {
     wide_lamps_.push_back(make_wide(light));
+    most_before_ = std::max(most_before_, kMostAparts * light.apart);
     switches_.push_back(light.hidden_from | (light.no_shadow ? kNoShadow : 0));
   }
   for (const Emitter &emitter : emitters_)

@@ -65,6 +65,8 @@ public:
   }
   // Whether a ray can run into a light as described.
   bool any_on_the_way() const { return !always_.empty() || find_; }
+  // How far before a lamp a way to it may end.
+  double most_before() const { return most_before_; }
   // A few, each to be asked about every ray.
   const std::vector<uint32_t> &always_on_the_way() const { return always_; }
   // Whether there are others, which the tree of many finds.
@@ -84,6 +86,7 @@ private:
   FewLights few_;
   LightTree many_;
   bool find_ = false;
+  double most_before_ = 0.0;
   Environment environment_;
 };
 

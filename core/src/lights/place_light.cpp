@@ -1,5 +1,6 @@
 #include "lights/place_light.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lancer {
@@ -17,6 +18,18 @@ void set_axes(Light &light, const Affine &map) {
   light.y = glm::cross(light.z, light.x);
   if (glm::dot(light.y, y) < 0.0)
     light.y = -light.y;
+}
+
+// No wider than this, in normalised units, of which the scene is at least 512 wide: a scene far from the origin keeps the shadows
+// of what stands before a lamp.
+constexpr double kMostApart = 0x1p-7;
+
+// By how much a lamp and a face that are meant to lie in one plane may be apart, in normalised units. Blender computes placements
+// in float and keeps corners as floats: locations, axes and corners of both are some ten halves of a last place off together.
+double apart_by_rounding(const LightDescription &from, double scale) {
+  const glm::dvec3 &p = from.to_world.translation;
+  const double reach = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + 0.5 * double(from.size.x + from.size.y);
+  return std::min(0x1p-20 * reach * scale, kMostApart);
 }
 
 } // namespace
@@ -52,6 +65,8 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.half_x = 0.5 * double(from.size.x) * scale;
   light.half_y = 0.5 * double(from.size.y) * scale;
   light.ellipse = from.shape == AreaShape::Ellipse;
+  if (from.kind == LightKind::Area)
+    light.apart = apart_by_rounding(from, scale);
   light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
   if (from.spread < glm::pi<float>()) {
     const double half = 0.5 * std::max(double(from.spread), 1e-3);

@@ -2,6 +2,7 @@
 // kernels only, like sampling/lanes.h.
 #pragma once
 
+#include "lights/area_end.h"
 #include "lights/wide_lamp.h"
 #include "sampling/lane_vectors.h"
 
@@ -59,13 +60,13 @@ LANCER_LANE void sample_area(const WideLamp *const *lamps, const D3 &p, F u, F v
   const D du = widen(u), dv = widen(v);
   const D across = select(round, widen(disk_x), low_x * (one - du) + high_x * du);
   const D along = select(round, widen(disk_y), low_y * (one - dv) + high_y * dv);
-  const D3 target = position + across * half_x * x + along * half_y * y;
-  const D3 to_light = target - p;
+  const D3 to_light = position + across * half_x * x + along * half_y * y - p;
   const D distance = sqrt(dot(to_light, to_light));
   const D3 wi = to_light / distance;
   const D cosine = dot(wi, z);
   const M outside = ellipse & !round & !(across * across + along * along <= one);
   const M valid = which & (area > zero) & (distance > zero) & (cosine > zero) & !outside;
+  const D3 target = p + area_end(distance, cosine, LANCER_LAMP(apart)) * wi;
   const D pdf = distance * distance / (cosine * area);
   const D3 emission = LANCER_LAMP3(emission);
   V3 radiance = narrow(emission);
