@@ -10,7 +10,7 @@ from .. import parts
 from . import images
 from .catalogue import case, variants
 from .nodes import material, shader
-from .stages import add_uv, ball, camera, card, lamp, sky, studio
+from .stages import add_uv, ball, camera, card, floor, lamp, sky, studio
 
 
 def _waves(space):
@@ -102,14 +102,14 @@ def _heights(ripples=0.0):
     return images.image("Heights", pixels, "Non-Color")
 
 
-def _bump(strength=1.0, distance=0.3, invert=False, kind="ShaderNodeBsdfDiffuse", coordinate="UV"):
+def _bump(strength=1.0, distance=0.3, invert=False, kind="ShaderNodeBsdfDiffuse", color="Color", coordinate="UV"):
     def build(nodes):
         where = nodes.add("ShaderNodeTexCoord").outputs[coordinate]
         picture = nodes.add("ShaderNodeTexImage", props={"image": _heights(), "interpolation": "Cubic"}, Vector=where)
         bump = nodes.add(
             "ShaderNodeBump", props={"invert": invert}, Strength=strength, Distance=distance, Height=picture.outputs["Color"]
         )
-        return nodes.add(kind, Color=(0.8, 0.7, 0.6), Normal=bump)
+        return nodes.add(kind, Normal=bump, **{color: (0.8, 0.7, 0.6)})
 
     return material(build)
 
@@ -117,6 +117,13 @@ def _bump(strength=1.0, distance=0.3, invert=False, kind="ShaderNodeBsdfDiffuse"
 @variants(values={"plain": {}, "weak": {"strength": 0.3}, "inverted": {"invert": True}})
 def bump(scene, settings):
     _tilted_card(scene, _bump(**settings))
+
+
+@case("LOBES", quick=True)
+def bump_principled(scene):
+    """How the lit side of a bump ends, which newer Blenders do otherwise than older ones."""
+    card(scene, _bump(distance=0.6, kind="ShaderNodeBsdfPrincipled", color="Base Color"))
+    parts.add_light(scene, "Sun", "SUN", 4.0, (1, -0.5, 0.25), angle=0.1)
 
 
 @variants(values={"leaf": "ShaderNodeBsdfTranslucent", "cloth": "ShaderNodeBsdfSheen"})
@@ -206,8 +213,9 @@ def _hills(fins):
     return mesh
 
 
-def _under_lamp(scene, mesh):
-    thing = parts.place(scene, "Hills", mesh, shader("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7)), rotation=(0.2, 0, 0.3))
+def _under_lamp(scene, mesh, surface=None):
+    surface = surface or shader("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7))
+    thing = parts.place(scene, "Hills", mesh, surface, rotation=(0.2, 0, 0.3))
     lamp(scene)
     sky(scene)
     camera(scene, (0.2, -2.4, 2.6), (0, 0.05, 0))
@@ -233,6 +241,42 @@ def normals_at_edges_of_three_faces(scene):
     normals = [(0.4, 0.0, 0.9165) if face.index < 25 else (-0.4, -0.5, 0.7681) for face in mesh.polygons for _ in face.vertices]
     mesh.normals_split_custom_set(normals)
     _under_lamp(scene, mesh)
+
+
+def _normals_away(scene, surface):
+    """Leaves whose normals were taken from elsewhere: those of every other face look away from it, and lean in the others."""
+    mesh = _hills(False)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
+    normals = [(0.5, 0.3, -0.8124) if face.index % 2 else (0.4, 0.0, 0.9165) for face in mesh.polygons for _ in face.vertices]
+    mesh.normals_split_custom_set(normals)
+    _under_lamp(scene, mesh, surface)
+    floor(scene)
+
+
+@case(quick=True)
+def normals_away(scene):
+    _normals_away(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)))
+
+
+@variants(
+    "LOBES",
+    values={
+        "glossy": ("ShaderNodeBsdfAnisotropic", {"distribution": "GGX"}, {"Anisotropy": 0.0, "Roughness": 0.5}),
+        "translucent": ("ShaderNodeBsdfTranslucent", {}, {"Color": (0.8, 0.7, 0.6)}),
+        "principled": ("ShaderNodeBsdfPrincipled", {}, {"Roughness": 0.4}),
+    },
+)
+def normals_away_lobe(scene, value):
+    kind, props, inputs = value
+    _normals_away(scene, shader(kind, props=props, **inputs))
+
+
+@case("LOBES", since=(4, 0))
+def normals_away_glass(scene):
+    """Blender 3 mixes two lobes, whose worst blocks differ by 4.6 %."""
+    _normals_away(scene, shader("ShaderNodeBsdfGlass", Roughness=0.3))
 
 
 @variants(

@@ -121,6 +121,7 @@ void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, 
     const uint8_t frame = add_frame(bsdf, n_cloth, glm::vec3(0.0f));
     Lobe sheen = make_sheen(in.sheen * positive(in.sheen_tint) * weight, unit(in.sheen_roughness), cos_in(bsdf, frame));
     sheen.frame = frame;
+    sheen.rules = in.rules;
     add(bsdf, sheen);
     weight = below(weight, sheen.albedo);
   }
@@ -162,6 +163,7 @@ void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, 
   const uint8_t matte_frame = n == n_reflect ? frame : add_frame(bsdf, n, glm::vec3(0.0f));
   Lobe diffuse = make_diffuse(color * weight, color, unit(in.diffuse_roughness), in.option == 1, cos_in(bsdf, matte_frame));
   diffuse.frame = matte_frame;
+  diffuse.rules = in.rules;
   add(bsdf, diffuse);
 }
 

@@ -66,6 +66,7 @@ void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in) {
   if (diffuse > kLeastLayer) {
     Lobe burley = make_burley(diffuse * in.base_color * lobe.weight, in.roughness);
     burley.frame = frame;
+    burley.rules = in.rules;
     add(bsdf, burley);
   }
   if (diffuse > kLeastLayer && in.sheen > kLeastLayer) {
@@ -73,6 +74,7 @@ void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in) {
     Lobe dust =
         make_matte(Matte::DustSheen, diffuse * in.sheen * glm::mix(glm::vec3(1.0f), hue, in.sheen_tint.x) * lobe.weight);
     dust.frame = frame;
+    dust.rules = in.rules;
     add(bsdf, dust);
   }
 

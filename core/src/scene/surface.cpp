@@ -77,11 +77,8 @@ void mesh_surface(const Geometry &geometry, const Hit &hit, Surface &surface) {
   surface.ng = normal_to_world(instance, glm::cross(v1 - v0, v2 - v0));
   surface.ns = surface.ng;
   const glm::vec3 n = interpolated_normal(mesh, instance.shading, hit.primitive, surface.bary);
-  if (n != glm::vec3(0.0f)) {
+  if (n != glm::vec3(0.0f))
     surface.ns = normal_to_world(instance, glm::dvec3(n));
-    if (glm::dot(surface.ns, surface.ng) < 0.0f)
-      surface.ns = -surface.ns;
-  }
 }
 
 void quadric_surface(const Geometry &geometry, const Ray &ray, const Hit &hit, Surface &surface) {

@@ -86,8 +86,7 @@ LANCER_LANE WideSurface mesh_surface(const double *const *placements, bool same,
     const V3 between = narrow(first) * n[0] + narrow(u) * n[1] + narrow(w) * n[2];
     const M there_is = smooth & !black(between);
     M odd = mask_of(0);
-    V3 ns = unit(map_transposed(to_object, widen(between)), odd);
-    ns = select(dot(ns, surface.ng) < F(0.0f), -ns, ns);
+    const V3 ns = unit(map_transposed(to_object, widen(between)), odd);
     surface.ns = select(there_is, ns, surface.ng);
     surface.odd = surface.odd | (odd & there_is);
   }
