@@ -248,3 +248,20 @@ def test_faces_twice():
     assert found(some) == found(some, thorough=False) == DARKER
     assert found(far) == [("coincident", "HINT")] and found(far, thorough=False) == []
     assert found(one(box(faces=[*BOX_FACES, (0, 0, 1), (0, 0, 1)]))) == []
+
+
+@pytest.mark.parametrize("thorough", [True, False])
+def test_small_faces_of_a_mesh_on_instances_of_another(thorough):
+    """Leaves that were made real while the instances stayed: each is a thousandth of its mesh, all are told in one line."""
+    rng = np.random.default_rng(1)
+    turns = [move(*rng.uniform(-2, 2, 3)) @ rotate_x(3 * rng.random()) @ rotate_y(3 * rng.random()) for _ in range(200)]
+    leaf = sheet(0.2, name="leaf")
+    points = [leaf.positions @ turn[:3, :3].T + turn[:3, 3] for turn in turns]
+    real = MeshData("real", np.concatenate(points), np.concatenate([leaf.triangles + 4 * k for k in range(len(turns))]))
+    leaves = [placed(1, RED_, turn, name="leaf") for turn in turns]
+    finding = only(scene([placed(0, GREY_, name="tree"), *leaves], [real, leaf]), thorough)
+    assert finding.kind == "coincident" and finding.harm == Harm.WRONG and finding.key
+    assert {finding.object, *finding.what.split("'")} >= {"tree", "leaf"}
+    # A quarter of a leaf away they are apart.
+    moved = [placed(1, RED_, turn @ move(0, 0, 0.05), name="leaf") for turn in turns]
+    assert found(scene([placed(0, GREY_, name="tree"), *moved], [real, leaf]), thorough) == []

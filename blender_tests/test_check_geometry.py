@@ -22,8 +22,8 @@ from check_scenes import (
 )
 from tiny_scenes import move, rotate_x, rotate_y, scale
 
-from addon.bindings.enums import Shading
-from addon.bindings.snapshot import MeshData
+from addon.bindings.enums import LightKind, Shading
+from addon.bindings.snapshot import Light, MeshData
 from addon.checks.finding import Harm
 
 GLASS_WRONG, NORMALS, PRECISION = [("glass", "WRONG")], [("normals", "WRONG")], [("precision", "WRONG")]
@@ -132,18 +132,41 @@ def test_custom_normals_that_point_away():
 def test_normals_that_lean():
     """Up to upright is how smooth shading works; beyond it light breaks off."""
     flat = sheet()
-    for angle, kind in ((80, []), (89, []), (100, [("normals", "WASTE")])):
+    for angle, kind in ((80, []), (89, []), (100, [("normals", "WRONG")])):
         normal = (np.sin(np.radians(angle)), 0.0, np.cos(np.radians(angle)))
         assert found(one(dataclasses.replace(flat, normals=np.tile(normal, (4, 1))))) == kind, angle
-    # All of them reversed are turned round.
+    # Nor do all of them reversed help.
     reversed_ = dataclasses.replace(ball(), normals=-ball().normals)
-    assert found(one(reversed_)) == [("normals", "WASTE")]
+    assert found(one(reversed_)) == [("normals", "WRONG")]
     # Where normals are not used they cannot hurt.
     assert found(scene([placed(0, shading=Shading.FLAT)], [reversed_])) == []
     assert found(one(reversed_, GLOW_)) == []
     # Neither zeros nor a cube without hard edges point away.
     assert found(one(dataclasses.replace(ball(), normals=0.0 * ball().normals))) == []
     assert found(one(box(normals=box().positions))) == []
+
+
+@pytest.mark.parametrize("thorough", [True, False])
+def test_large_flat_faces_shaded_as_round(thorough):
+    panel = Light("panel", move(0, 0, 3), LightKind.AREA, emission=(1, 1, 1), size=(2.0, 2.0))
+    cube = box(normals=box().positions)
+    finding = only(one(cube, lights=(panel,)), thorough)
+    # Corners lean by the angle between a face and the diagonal.
+    assert (finding.kind, finding.harm, finding.faces) == ("normals", Harm.HINT, 12) and "by 55 degrees" in finding.what
+    assert finding.key
+    # What is round has no flat faces; flat shading shows them as they are; true points of light do not ask.
+    assert found(one(ball(), lights=(panel,)), thorough) == []
+    assert found(scene([placed(0, shading=Shading.FLAT)], [cube], lights=(panel,)), thorough) == []
+    assert found(one(cube), thorough) == []
+    # Smooth edges round flat faces are what a Weighted Normal modifier makes.
+    rim = dataclasses.replace(cube, normals=np.repeat(_upright(cube)[:, None], 3, axis=1))
+    assert found(one(rim, lights=(panel,)), thorough) == []
+
+
+def _upright(mesh):
+    a, b, c = (mesh.positions[mesh.triangles[:, k]].astype(float) for k in range(3))
+    normals = np.cross(b - a, c - a)
+    return normals / np.linalg.norm(normals, axis=1)[:, None]
 
 
 def _roof(slope, turned=()):

@@ -21,8 +21,10 @@ PLACES = {
 
 
 def room(place, gap, lamps=FEW, floor=None, shutter=None, **settings):
-    """A floor and a ceiling 3 above it with lamps at a gap below the ceiling, as Blender's floats have them. shutter: how far below
-    the first lamp a square is that hides it all."""
+    """A floor and a ceiling 3 above it with lamps at a gap below the ceiling, as Blender's floats have them.
+
+    shutter: how far below the first lamp a square is that hides it all.
+    """
 
     def rounded(matrix):
         return (place @ matrix).astype(np.float32).astype(float)
@@ -46,16 +48,16 @@ def room(place, gap, lamps=FEW, floor=None, shutter=None, **settings):
         )
         for k in range(lamps)
     ]
-    camera = Camera(
-        matrix=place @ look_at((0.3, -1.5, 1.5), (0, -0.9, 0)), width=32, height=32, window=(-0.8, 0.8, -0.8, 0.8)
-    )
+    camera = Camera(matrix=place @ look_at((0.3, -1.5, 1.5), (0, -0.9, 0)), width=32, height=32, window=(-0.8, 0.8, -0.8, 0.8))
     materials = [floor or lambert(0.8), lambert(0.5)]
     return scene(instances, materials, lights, [quad(4.0), quad(0.5)], camera=camera, **{"samples": 64, **settings})
 
 
 CASES = {
     "one bounce": {},
-    "sampled by the surface": {"floor": Material("glossy", lobes=(Lobe(LobeKind.BECKMANN, color=(1, 1, 1), roughness=0.2, ior=3.0),))},
+    "sampled by the surface": {
+        "floor": Material("glossy", lobes=(Lobe(LobeKind.BECKMANN, color=(1, 1, 1), roughness=0.2, ior=3.0),))
+    },
     "seen in a mirror": {"floor": MIRROR, "max_bounces": 2},
     "among others": {"lamps": MANY, "max_bounces": 3},
     "classic": {"integrator": Integrator.CLASSIC},
@@ -65,8 +67,8 @@ CASES = {
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("case", CASES)
 def test_its_light_arrives(library, case, place):
-    """1e-4 below the ceiling no rounding reaches. The numbers are the same, so only what the gap itself changes is left: 1e-4 of
-    3 in distances, 1e-4 of 0.3 in the outlines of a mirrored lamp."""
+    """1e-4 below the ceiling no rounding reaches. The samples are the same, so only what the gap itself changes is left: 1e-4
+    of 3 in distances, 1e-4 of 0.3 in the outlines of a mirrored lamp."""
     inside, below = (render(room(PLACES[place], gap, **CASES[case]))[..., :3] for gap in (0.0, 1e-4))
     assert below.mean() > 0.02
     assert inside.mean() == pytest.approx(below.mean(), rel=2e-3)

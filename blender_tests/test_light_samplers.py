@@ -44,19 +44,23 @@ LIGHTS = {
 }
 
 
+# Over the origin: near faces are sampled by solid angle, far ones by area.
+MESHES = {"mesh": 2.0, "sheared mesh": 2.0, "near mesh": 0.4, "far mesh": 30.0}
+
+
 def upload(library, name):
     """The scene and the number of the one light in it."""
-    if name in ("mesh", "sheared mesh"):
+    if name in MESHES:
         shear = np.eye(4)
         shear[0, 1] = 0.7 if "sheared" in name else 0.0
-        matrix = move(0.2, 0, 2) @ rotate_x(np.pi) @ shear @ scale(0.8, 0.5, 0.6)
+        matrix = move(0.2, 0, MESHES[name]) @ rotate_x(np.pi) @ shear @ scale(0.8, 0.5, 0.6)
         lamp = Instance(mesh=0, matrix=matrix)
         glow = Material("glow", lobes=(), emission=(1, 1, 1))
         return Scene.upload(tiny_scenes.scene([lamp], [glow], meshes=[TENT]), library)
     return Scene.upload(tiny_scenes.scene(lights=[LIGHTS[name]]), library)
 
 
-NAMES = [*LIGHTS, "mesh", "sheared mesh"]
+NAMES = [*LIGHTS, *MESHES]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -11,6 +11,7 @@ from .lamps_in_faces import check_lamps_in_faces
 from .lights import check_lights
 from .normals import check_normals
 from .precision import check_precision
+from .round_faces import check_round_faces
 from .subject import Subject
 from .twins import check_double_faces, check_twins, twin_rows
 
@@ -18,13 +19,13 @@ from .twins import check_double_faces, check_twins, twin_rows
 def check_snapshot(snapshot, thorough=True, poll=None):
     """A list of Finding, what hurts most first.
 
-    thorough: all of it. Else what costs next to nothing beside a render, without hints: F12 does so by itself. poll(share) is
-    called on the way, with the share that is done or None; what it raises ends the check.
+    thorough: all of it. Else what costs next to nothing beside a render, and of hints those by which Cycles' picture differs:
+    F12 does so by itself. poll(share) is called on the way, with the share that is done or None; what it raises ends the check.
     """
     # What is not finite is left out by the core, which tells of it; here it compares as false.
     with np.errstate(all="ignore"):
         found = _all_findings(Subject(snapshot, thorough, poll))
-    return by_harm(finding for finding in found if thorough or finding.harm)
+    return by_harm(finding for finding in found if thorough or finding.harm or finding.key)
 
 
 def _all_findings(subject):
@@ -35,6 +36,7 @@ def _all_findings(subject):
         check_precision(subject),
         check_glass(subject),
         check_normals(subject),
+        check_round_faces(subject),
         check_twins(subject, twins),
         check_double_faces(subject),
         check_laid_over(subject),

@@ -34,14 +34,14 @@ def check_coincident(subject, facets, world):
     keep = in_one_plane(world, i, j) & (i != j)
     i, j = i[keep], j[keep]
     hurts = _Hurts(subject, facets, world)
-    # Ask the largest first, and once for each two objects.
+    # Ask the largest first, and once for each two objects, however many instances they have.
     area = np.sort(np.minimum(world.high[i], world.high[j]) - np.maximum(world.low[i], world.low[j]), axis=1)[:, 1:].prod(
         axis=1
     )
     asked, alike, told = 0, 0, set()
     for number in np.argsort(-area, kind="stable").tolist():
         one, other = int(i[number]), int(j[number])
-        both = int(world.rows[one]), int(world.rows[other])
+        both = tuple(sorted(subject.name(int(world.rows[part])) for part in (one, other)))
         if not hurts.may(one, other):
             continue
         alike += hurts.alike(one, other)

@@ -1,4 +1,4 @@
-"""The flat parts of meshes and shapes that are large enough to be seen: a plane, a material slot, and the triangles in it."""
+"""The flat parts of meshes and shapes: a plane, a material slot, and the triangles in it. Of large meshes only large parts."""
 
 from dataclasses import dataclass
 
@@ -8,8 +8,9 @@ from ..bindings.enums import InstanceKind
 from .edges import mixed
 from .sides import corners, crossed, dots, lengths
 
-# A part of its mesh's area. What is curved has no flat part as large, so that its triangles cost nothing further.
-_SHARE = 0.01
+# The least share of a mesh's area that a part of it has, in meshes of more than a few triangles. What is curved has no part as
+# large, so that its triangles cost nothing further.
+_FEW, _SHARE = 2048, 0.01
 # How far directions, and heights in parts of the mesh's size, may differ within a part.
 _TURN = 2.0**-11
 _DISK = 32
@@ -24,46 +25,63 @@ class Facets:
     boxes: np.ndarray  # (n, 2, 3)
     slots: np.ndarray  # (n,)
     faces: tuple  # of each, numbers of its triangles; for a shape its corners themselves
+    shares: np.ndarray  # (n,) of the area of all
 
     def __len__(self):
         return len(self.normals)
 
+    def large(self):
+        """Those that are looked at however many triangles there are."""
+        kept = np.flatnonzero(self.shares >= _SHARE)
+        faces = tuple(self.faces[part] for part in kept)
+        return Facets(self.normals[kept], self.points[kept], self.boxes[kept], self.slots[kept], faces, self.shares[kept])
 
-_NONE = Facets(np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 2, 3)), np.empty(0, int), ())
+
+_NONE = Facets(np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 2, 3)), np.empty(0, int), (), np.empty(0))
 
 
-def mesh_facets(mesh):
+def facets_of(subject, number, mesh):
+    """Of a mesh by its number: all parts of a small one, of others those that are large."""
+
+    def make():
+        whole = len(mesh.triangles) <= (_FEW if subject.thorough else min(_FEW, subject.parts_left))
+        if whole:
+            subject.parts_left -= len(mesh.triangles)
+        return mesh_facets(mesh, np.nextafter(0.0, 1.0) if whole else _SHARE)
+
+    return subject.cached("facets", number, make)
+
+
+def mesh_facets(mesh, share=_SHARE):
+    """Those that have at least that share of the area."""
     a, b, c = corners(mesh)
     areas, key = _cells(mesh, a, b, c)
     total = areas.sum(dtype=float)
     if not (np.isfinite(total) and total > 0.0):
         return _NONE
     # Sum up the area of the triangles of each cell. Cells share buckets: where all of a bucket is too little, so is each.
-    least = _SHARE * total
+    least = share * total
     bits = 16 if len(key) > 1 << 14 else 10
     bucket = (mixed(key.view(np.uint64)) >> np.uint64(64 - bits)).astype(np.int64)
     some = np.flatnonzero((np.bincount(bucket, areas, 1 << bits) >= least)[bucket])
     _, group = np.unique(key[some], return_inverse=True)
     group = group.reshape(-1)
-    large = np.flatnonzero(np.bincount(group, areas[some]) >= least)
-    order = np.argsort(group, kind="stable")
-    ends = np.searchsorted(group[order], np.stack((large, large + 1)))
-    faces = [some[order[start:end]] for start, end in ends.T]
-    faces = tuple(part[areas[part] > 0.0] for part in faces)
-    if not faces:
+    large = np.bincount(group, areas[some]) >= least
+    kept = np.flatnonzero(large[group] & (areas[some] > 0.0))
+    if len(kept) == 0:
         return _NONE
-    places = [mesh.positions[mesh.triangles[part]].astype(float) for part in faces]
-    # Of the triangles in a plane the largest tells best where it is.
-    best = np.array([place[np.argmax(areas[part])] for part, place in zip(faces, places, strict=True)])
+    # Sort by plane, in each the largest triangle first: it tells best where the plane is.
+    kept = kept[np.lexsort((-areas[some[kept]], group[kept]))]
+    faces = some[kept]
+    starts = np.flatnonzero(np.diff(group[kept], prepend=-1))
+    places = mesh.positions[mesh.triangles[faces]].astype(float)
+    best = places[starts]
     normals = crossed(*best.transpose(1, 0, 2))
-    slots = [0 if mesh.material_slots is None else mesh.material_slots[part[0]] for part in faces]
-    return Facets(
-        normals / lengths(normals)[:, None],
-        best.mean(axis=1),
-        np.array([(place.min(axis=(0, 1)), place.max(axis=(0, 1))) for place in places]),
-        np.array(slots, int),
-        faces,
-    )
+    boxes = np.stack((np.minimum.reduceat(places.min(axis=1), starts), np.maximum.reduceat(places.max(axis=1), starts)), axis=1)
+    slots = np.zeros(len(starts), int) if mesh.material_slots is None else mesh.material_slots[faces[starts]].astype(int)
+    shares = np.add.reduceat(areas[faces].astype(float), starts) / total
+    parts = tuple(np.split(faces, starts[1:]))
+    return Facets(normals / lengths(normals)[:, None], best.mean(axis=1), boxes, slots, parts, shares)
 
 
 def _cells(mesh, a, b, c):
@@ -89,7 +107,7 @@ def shape_facets(kind):
         corner = np.array([[-far, -far, 0.0], [far, -far, 0.0], [far, far, 0.0], [-far, far, 0.0]])
         triangles = corner[[[0, 1, 2], [0, 2, 3]]]
         box = np.array([[[-np.inf, -np.inf, 0.0], [np.inf, np.inf, 0.0]]])
-        return Facets(np.array([[0.0, 0.0, 1.0]]), np.zeros((1, 3)), box, np.zeros(1, int), (triangles,))
+        return Facets(np.array([[0.0, 0.0, 1.0]]), np.zeros((1, 3)), box, np.zeros(1, int), (triangles,), np.ones(1))
     heights = {InstanceKind.CYLINDER: (-1.0, 1.0), InstanceKind.CONE: (-1.0,)}.get(kind, ())
     if not heights:
         return _NONE
@@ -101,4 +119,4 @@ def shape_facets(kind):
         parts.append(np.stack((middle, ring, np.roll(ring, -1, axis=0)), axis=1))
         boxes.append(((-1.0, -1.0, height), (1.0, 1.0, height)))
     axes = np.array([(0.0, 0.0, height) for height in heights])
-    return Facets(np.sign(axes), axes, np.array(boxes), np.zeros(len(heights), int), tuple(parts))
+    return Facets(np.sign(axes), axes, np.array(boxes), np.zeros(len(heights), int), tuple(parts), np.ones(len(heights)))

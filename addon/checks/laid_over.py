@@ -3,7 +3,7 @@
 import numpy as np
 
 from .coincident import is_plain
-from .facets import mesh_facets
+from .facets import facets_of
 from .finding import IN_ONE_PLANE, SHADOWED, Finding, Harm, told_number
 from .framing import LEAST_SHARE, share_of_triangles
 from .overlap import box_pairs, triangles_over
@@ -21,7 +21,7 @@ def check_laid_over(subject):
         row = looks[0]
         if number in subject.doubled or not subject.seen_by_camera(row):
             continue
-        facets = subject.cached("facets", number, lambda mesh=mesh: mesh_facets(mesh))
+        facets = facets_of(subject, number, mesh).large()
         plain = [
             part
             for part in range(len(facets))

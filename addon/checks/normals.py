@@ -23,19 +23,19 @@ def check_normals(subject):
     for number, mesh, row in shown if subject.thorough else _suspects(subject, shown):
         faces, asked = subject.sample(mesh)
         away, areas = _away(mesh, faces)
-        # Where all corners turn away the tracer turns them round; where some do, the light breaks off within the face.
+        # Where all corners turn away the face is lit from behind; where some do, the light breaks off within it.
         some, whole = away[0] | away[1] | away[2], away[0] & away[1] & away[2]
         if not some.any():
             continue
         some, total = some & ~whole, areas.sum()
         folds = _folds(mesh, faces, some)
-        for bad, harm in ((some & ~folds, Harm.WRONG), (whole, Harm.WASTE), (folds, Harm.HINT)):
+        for bad, harm in ((some & ~folds, Harm.WRONG), (whole, Harm.WRONG), (folds, Harm.HINT)):
             share = float(areas[bad].sum() / total) if total > 0.0 else 0.0
             if share < _SHARE:
                 continue
             worst = np.flatnonzero(bad)[np.argmax(areas[bad])]
             count = round(bad.sum() * len(mesh.triangles) / asked)
-            what, advice = _words(subject, number, mesh, harm, count)
+            what, advice = _words(subject, number, mesh, harm, count, bad is whole)
             yield Finding(
                 "normals",
                 harm,
@@ -114,26 +114,26 @@ def _folds(mesh, faces, bad):
     return folds
 
 
-def _words(subject, number, mesh, harm, count):
+def _words(subject, number, mesh, harm, count, whole):
     where = told_number(count, "face")
     if _has_flipped(subject, number, mesh):
         return (
             f"faces look opposite ways, and smooth normals turn away on {where}",
             "in Edit Mode, Mesh > Normals > Recalculate Outside",
         )
+    if whole:
+        return (
+            f"shading normals point into the surface on {where}, which light falls on from behind",
+            "clear custom split normals, or recalculate them",
+        )
     if harm == Harm.WRONG:
         return (
             f"shading normals point away from the surface at some corners of {where}, which shows as dark patches",
             "clear custom normals, mark sharp edges or shade it flat",
         )
-    if harm == Harm.HINT:
-        return (
-            f"smooth shading bends round folds of more than a right angle at {where}",
-            "if dark patches show there, mark sharp edges or shade it flat",
-        )
     return (
-        f"shading normals point into the surface on {where}; they are turned round, but bumps and other engines may not",
-        "clear custom split normals, or recalculate them",
+        f"smooth shading bends round folds of more than a right angle at {where}",
+        "if dark patches show there, mark sharp edges or shade it flat",
     )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..bindings.enums import InstanceKind
-from .facets import mesh_facets, shape_facets
+from .facets import facets_of, shape_facets
 from .overlap import box_pairs
 from .subject import step
 
@@ -46,7 +46,7 @@ def gather(subject, twins, most):
     if twins:
         visible[list(twins)] = False
     for number, mesh, _ in subject.shown_meshes():
-        found = subject.cached("facets", number, lambda mesh=mesh: mesh_facets(mesh))
+        found = facets_of(subject, number, mesh)
         if len(found):
             key = InstanceKind.MESH, number
             facets[key] = found
@@ -56,11 +56,16 @@ def gather(subject, twins, most):
         if len(rows):
             facets[kind, 0] = shape_facets(kind)
             rows_of[kind, 0] = rows
-    total = sum(len(facets[key]) * len(rows_of[key]) for key in facets)
-    if total == 0 or total > most:
+    if _count(facets, rows_of) > most:
+        facets = {key: found.large() for key, found in facets.items()}
+    if not 0 < _count(facets, rows_of) <= most:
         return facets, None
     columns = [_place(subject, facets[key], rows_of[key]) for key in facets]
     return facets, World(*(np.concatenate(column) for column in zip(*columns, strict=True)))
+
+
+def _count(facets, rows_of):
+    return sum(len(found) * len(rows_of[key]) for key, found in facets.items())
 
 
 def _only(rows, mask):

@@ -10,6 +10,7 @@ _QUICK_MESH = 4096
 _QUICK_ALL = 16384
 _QUICK_SAMPLE = 64
 _QUICK_MESHES = 128
+_QUICK_PARTS = 8192
 
 
 class Subject:
@@ -26,6 +27,7 @@ class Subject:
         self.traits = [traits_of(material) for material in snapshot.materials]
         self.kinds = self.instances.kinds
         self.doubled = set()  # meshes of which it is told that they have faces twice
+        self.parts_left = _QUICK_PARTS  # triangles of which small flat parts are looked at, too
         self._poll = poll
         self._seen = {}
         self._looks = self._group()

@@ -9,8 +9,8 @@ namespace lancer {
 // At grazing directions a way ends at most this many times Light::apart before the lamp: nothing visible stands in between.
 inline constexpr double kMostAparts = 64.0;
 
-// How long the way is that ends before the lamp, of one that is t long and meets its axis under this cosine. Double is a double,
-// or lanes of them.
+// How long the way is that ends before the lamp, of one that is t long and meets its axis under this cosine. Double is a
+// double, or lanes of them.
 template <class Double> [[gnu::always_inline]] inline Double area_end(Double t, Double cosine, Double apart) {
   using std::max;
   using std::min;

@@ -1,6 +1,7 @@
 #include "lights/emitter.h"
 
 #include "accel/quadric.h"
+#include "sampling/spherical_triangle.h"
 #include "sampling/warp.h"
 
 #include <cmath>
@@ -9,10 +10,51 @@ namespace lancer {
 
 namespace {
 
-double face_area(const Geometry &geometry, const Instance &instance, uint32_t face) {
-  const Mesh &mesh = geometry.meshes[instance.mesh];
-  const glm::dvec3 v0(mesh.vertex(face, 0)), v1(mesh.vertex(face, 1)), v2(mesh.vertex(face, 2));
-  return 0.5 * glm::length(glm::cross(instance.to_world.vector(v1 - v0), instance.to_world.vector(v2 - v0)));
+// A face of a mesh as a point sees it, relative to the point.
+struct SeenFace {
+  // Below this share of the squared distance of its middle a face is taken as a light far away, which its area describes as
+  // well; beyond these solid angles it is seen edge on, or the point lies on it.
+  static constexpr double kFar = 0.01, kLeastAngle = 1e-6, kMostAngle = 6.28;
+
+  glm::dvec3 v0, e1, e2;
+  double area = 0.0;
+
+  SeenFace(const Geometry &geometry, const Instance &instance, uint32_t face, const glm::dvec3 &p) {
+    const Mesh &mesh = geometry.meshes[instance.mesh];
+    const glm::dvec3 a(mesh.vertex(face, 0)), b(mesh.vertex(face, 1)), c(mesh.vertex(face, 2));
+    v0 = instance.to_world.point(a) - p;
+    e1 = instance.to_world.vector(b - a);
+    e2 = instance.to_world.vector(c - a);
+    area = 0.5 * glm::length(glm::cross(e1, e2));
+  }
+
+  bool is_near() const {
+    const glm::dvec3 middle = v0 + (e1 + e2) / 3.0;
+    return area > kFar * glm::dot(middle, middle);
+  }
+
+  // Whether directions to it are sampled evenly, of which there are so many.
+  static bool is_even(double solid_angle) { return solid_angle > kLeastAngle && solid_angle < kMostAngle; }
+
+  SphericalTriangle directions() const { return {v0, v0 + e1, v0 + e2}; }
+
+  // The weights of corners 1 and 2 where a direction meets its plane.
+  glm::dvec2 weights(const glm::dvec3 &wi) const {
+    const glm::dvec3 across = glm::cross(wi, e2);
+    const double scale = 1.0 / glm::dot(across, e1);
+    const double u = std::clamp(-glm::dot(v0, across) * scale, 0.0, 1.0);
+    return {u, std::clamp(-glm::dot(wi, glm::cross(v0, e1)) * scale, 0.0, 1.0 - u)};
+  }
+};
+
+// Weights of corners 1 and 2 of the point of a face that u stands for.
+glm::dvec2 sample_seen(const SeenFace &seen, const glm::vec2 &u) {
+  if (seen.is_near()) {
+    const SphericalTriangle directions = seen.directions();
+    if (SeenFace::is_even(directions.solid_angle))
+      return seen.weights(directions.sample(glm::dvec2(u)));
+  }
+  return glm::dvec2(warp_triangle(u));
 }
 
 // Exact surfaces by their unit parts: 0 the curved side, 1 and 2 the disks at z = -1 and z = 1.
@@ -134,7 +176,8 @@ double Emitter::pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface
 LightSample Emitter::sample_face(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t face,
                                  const glm::dvec3 &p, const glm::vec2 &u, Surface &surface) const {
   if (faces_) {
-    surface = face_point(geometry, slots, instance_, face, glm::dvec2(warp_triangle(u)));
+    const SeenFace seen(geometry, geometry.instances[instance_], face, p);
+    surface = face_point(geometry, slots, instance_, face, sample_seen(seen, u));
   } else {
     const auto part = parts_.sample(u.x);
     surface = part_point(geometry, slots, instance_, int(part.index), {part.u, u.y});
@@ -161,7 +204,13 @@ double Emitter::face_pdf(const Geometry &geometry, const glm::dvec3 &p, const Su
     return 0.0;
   double area = 0.0;
   if (faces_) {
-    area = face_area(geometry, placed, surface.primitive);
+    const SeenFace seen(geometry, placed, surface.primitive, p);
+    if (seen.is_near()) {
+      const double solid_angle = seen.directions().solid_angle;
+      if (SeenFace::is_even(solid_angle))
+        return 1.0 / solid_angle;
+    }
+    area = seen.area;
   } else {
     for (int part = 0; part < 3; ++part)
       area += part_area(placed.kind, part);

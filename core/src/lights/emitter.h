@@ -1,4 +1,5 @@
-// An object whose material emits, as a light: a face by how much it matters, points of it by area.
+// An object whose material emits, as a light: a face by how much it matters, points of it by the angle that they fill where it
+// is near, by area where it is far.
 #pragma once
 
 #include "lights/emissive_faces.h"

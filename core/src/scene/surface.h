@@ -10,7 +10,7 @@ struct Surface {
   glm::dvec3 p{0.0};     // normalised world, on the surface to a few ulp of double
   double offset = 0.0;   // bound of p's distance from the surface as any later ray sees it
   glm::vec3 ng{0, 0, 1}; // outward geometric normal, unit
-  glm::vec3 ns{0, 0, 1}; // shading normal, unit, on the side of ng
+  glm::vec3 ns{0, 0, 1}; // shading normal, unit; on the other side of ng where the mesh has it so
   glm::dvec2 bary{0.0};  // weights of vertex 1 and 2; 0 on an exact surface
   uint32_t instance = kNone;
   uint32_t primitive = kNone;
