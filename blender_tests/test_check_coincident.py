@@ -246,7 +246,7 @@ def test_faces_twice():
     some = one(box(faces=[*BOX_FACES, BOX_FACES[0]]))
     far = dataclasses.replace(some, camera=dataclasses.replace(EYE, matrix=look_at((1.0, -600.0, 300.0), (0, 0, 0))))
     assert found(some) == found(some, thorough=False) == DARKER
-    assert found(far) == [("coincident", "HINT")] and found(far, thorough=False) == []
+    assert found(far) == found(far, thorough=False) == [("coincident", "HINT")]
     assert found(one(box(faces=[*BOX_FACES, (0, 0, 1), (0, 0, 1)]))) == []
 
 

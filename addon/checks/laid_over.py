@@ -31,11 +31,9 @@ def check_laid_over(subject):
             corners = mesh.positions[mesh.triangles[over]].astype(float)
             places = subject.world(row, corners.reshape(-1, 3)).reshape(-1, 3, 3)
             share = share_of_triangles(subject.snapshot.camera, places)
-            if share < LEAST_SHARE:
-                continue
             yield Finding(
                 "coincident",
-                Harm.DIFFERENT,
+                Harm.DIFFERENT if share >= LEAST_SHARE else Harm.HINT,
                 f"{told_number(len(over), 'face')} lie in the same plane as others that they overlap: {SHADOWED}",
                 "in Edit Mode delete those beneath, or move them a little",
                 object=subject.name(row),

@@ -133,7 +133,7 @@ def check_double_faces(subject):
             faces=len(shown),
             place=tuple(places[0].mean(axis=0).tolist()),
             weight=share,
-            key=IN_ONE_PLANE if harm > Harm.WASTE else "",
+            key=IN_ONE_PLANE if harm > Harm.WASTE or darker else "",
         )
 
 
