@@ -5,7 +5,7 @@ from bpy.app.handlers import persistent
 from bpy.props import EnumProperty, IntProperty
 
 from .export import settings
-from .properties import QUALITIES
+from .scene_settings import QUALITIES
 
 
 def _threads_changed(self, _context):

@@ -13,7 +13,7 @@ from . import measuring, stamp
 from .bindings.forecast import classic_seconds, forecast
 from .bindings.pilot import measure
 from .of_scenes import OfScenes
-from .properties import QUALITIES
+from .scene_settings import QUALITIES
 
 # An interval whose ends differ by more than this factor says nothing to plan by, unless even its upper end is short (seconds).
 _TELLING = 20.0

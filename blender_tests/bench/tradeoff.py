@@ -19,7 +19,7 @@ import bpy  # noqa: E402
 import addon  # noqa: E402
 import scenes  # noqa: E402
 from addon.bindings.enums import Integrator  # noqa: E402
-from addon.properties import QUALITIES  # noqa: E402
+from addon.scene_settings import QUALITIES  # noqa: E402
 from bench import compare, jobs, tradeoff_chart, tradeoff_page, tradeoff_runs, worker  # noqa: E402
 from bench.tradeoff_error import Reference, middle, seconds_to, slope  # noqa: E402
 from scenes.render import captured_output  # noqa: E402
