@@ -43,6 +43,7 @@ def test_instances_leave_nothing_allocated(case):
     """Blender tells at its exit what nobody has freed."""
     got = case("freed")
     assert got["instances"] >= 2 + 5 + 1 + 6 and "Not freed" not in got["console"]
+    assert "Not freed" not in case("freed_text")["console"]
 
 
 def test_meshes_bring_what_their_materials_read(case):

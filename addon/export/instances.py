@@ -17,6 +17,8 @@ _SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}
 _SHOWS_NOTHING = {"ARMATURE", "CAMERA", "EMPTY", "GPENCIL", "GREASEPENCIL", "LATTICE", "LIGHT_PROBE", "SPEAKER"}
 # Before 4.5 what brings a light in did not narrow which rays see it.
 _LIGHTS_ARE_OBJECTS = bpy.app.version >= (4, 5)
+# Before 5.0 reading a column of all entries leaks the temporary object that the mesh comes in of a text which is the first.
+_LEAKS_FIRST = bpy.app.version < (5, 0)
 _POLL_EVERY = 256
 
 
@@ -39,6 +41,7 @@ class Instances:
         self._row_of = array("I")  # of entries that show a mesh
         self._entries = array("I")
         self._entry_count = 0
+        self._first_is_text = False
 
     @property
     def meshes(self):
@@ -53,6 +56,7 @@ class Instances:
                 poll()
             thing = entry.object
             if thing.type != "MESH":
+                self._first_is_text = self._first_is_text or number == 0 and thing.type in _SHOWN_AS_MESH
                 if entry.show_self:
                     self._add_other(thing, entry)
                 continue
@@ -108,16 +112,23 @@ class Instances:
         )
 
     def _matrices(self, placements):
-        """(rows, 3, 4). A second walk over the same entries is faster than an object of Python's for each."""
-        columns = np.empty(16 * self._entry_count, np.float32)
-        self.depsgraph.object_instances.foreach_get("matrix_world", columns)
-        columns, entries = columns.reshape(-1, 4, 4), np.frombuffer(self._entries, np.uint32)
+        """(rows, 3, 4)."""
+        columns, entries = self._columns(), np.frombuffer(self._entries, np.uint32)
         matrices = columns[entries, :, :3].transpose(0, 2, 1).astype(float, "C")
         exact = np.flatnonzero(placements >= 0)
         if len(exact):
             whole = columns[entries[exact]].transpose(0, 2, 1).astype(float)
             matrices[exact] = (whole @ np.array(self._objects.placements)[placements[exact]])[:, :3]
         return matrices
+
+    def _columns(self):
+        """(entries, 4, 4): the columns of all matrices. A second walk is faster than an object of Python's for each entry."""
+        walk = self.depsgraph.object_instances
+        if _LEAKS_FIRST and self._first_is_text:
+            return np.array([entry.matrix_world for entry in walk], np.float32).transpose(0, 2, 1)
+        columns = np.empty(16 * self._entry_count, np.float32)
+        walk.foreach_get("matrix_world", columns)
+        return columns.reshape(-1, 4, 4)
 
     def _narrowed_by(self, instancer):
         if instancer is None:

@@ -85,6 +85,21 @@ def freed():
     return {"instances": len(export_told()[0].instances)}
 
 
+def freed_text():
+    """The same of a text that is the first of all objects."""
+    scene = stage.room()
+    others = list(scene.collection.objects)
+    for thing in others:
+        scene.collection.objects.unlink(thing)
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body, text.extrude = "text", 0.1
+    for thing in (stage.link("Text", text), *others):
+        if thing.name not in scene.collection.objects:
+            scene.collection.objects.link(thing)
+    bpy.ops.render.render()
+    return {"instances": len(export_told()[0].instances)}
+
+
 def _textured(name, uv_map):
     """A material that reads a UV map by its name."""
     material = stage.shader(name=name)
