@@ -6,6 +6,11 @@ import bpy
 import stage
 
 
+def _presets(folder):
+    """Without what Python keeps beside them."""
+    return [name for name in os.listdir(folder) if name.endswith(".py")]
+
+
 def presets():
     """Saves, changes, applies and removes a preset of each kind. {kind: [as saved, changed, applied, file, gone]}"""
     result = {}
@@ -33,13 +38,13 @@ def presets():
         saved = put(wanted)
         add(name="Mine")
         (folder,) = [path for path in bpy.utils.preset_paths(f"lancer/{kind}") if os.path.exists(path)]
-        path = os.path.join(folder, os.listdir(folder)[0])
+        path = os.path.join(folder, _presets(folder)[0])
         changed = put(other)
         bpy.ops.script.execute_preset(filepath=path, menu_idname=menu)
         result[kind] = [saved, changed, now(), os.path.basename(path)]
         # As the button for removal does, which takes the preset that was applied last.
         add(remove_active=True)
-        result[kind].append(os.listdir(folder))
+        result[kind].append(_presets(folder))
     return result
 
 
