@@ -46,6 +46,8 @@ def as_rendered():
     found = as_rendered.export(bpy.context)
     after = {thing.name: thing.users for thing in (*bpy.data.objects, *bpy.data.collections, *bpy.data.materials)}
     meshes, snapshot, messages = exported[0]
+    for name in ("render_init", "render_pre", "render_complete"):
+        getattr(bpy.app.handlers, name).pop()
     return {
         "meshes": [_meshes(found.snapshot), meshes],
         "settings": found.snapshot.settings == snapshot.settings,
