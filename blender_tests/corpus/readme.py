@@ -30,8 +30,13 @@ def text(figures):
     if found["missing"]:
         lines += ["", "| what is missing | files made right | in all | files that have it |", "| --- | --- | --- | --- |"]
         rows = found["missing"][:_MOST_MISSING]
-        lines += [f"| {row['key']} | {row['completes']} | {row['total']} | {row['files']} |" for row in rows]
+        lines += [f"| {_plain(row['key'])} | {row['completes']} | {row['total']} | {row['files']} |" for row in rows]
     return "\n".join(lines)
+
+
+def _plain(key):
+    """Of "node:Noise Texture" and "feature:volume"."""
+    return f"{key.removeprefix('node:')} node" if key.startswith("node:") else key.removeprefix("feature:")
 
 
 def _means(title, found):
