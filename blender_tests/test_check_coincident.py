@@ -88,6 +88,12 @@ def test_planes_that_look_alike(thorough):
     assert found(one(MeshData("both", *both), GREY_), thorough) == DARKER
     lifted = small.positions + np.float32((0.0, 0.0, 1e-4))
     assert found(one(MeshData("both", np.concatenate((large.positions, lifted)), both[1]), GREY_), thorough) == []
+    # Of two such places in one mesh what the picture shows is told, whichever is the higher.
+    for height in (-1.0, 1.0):
+        far = both[0] + np.float32((0.0, 900.0, height))
+        pairs = MeshData("pairs", np.concatenate((both[0], far)), np.concatenate((both[1], both[1] + 8)))
+        finding = only(one(pairs, GREY_), thorough)
+        assert finding.harm == Harm.DIFFERENT and abs(finding.place[1]) < 4.0
     # Flush tops of two bodies, seen from above and from below.
     tops = [placed(0, GREY_, name="one"), placed(0, GREY_, move(0.3, 0.2, 0.1), name="two")]
     assert found(scene(tops, [box()]), thorough) == []

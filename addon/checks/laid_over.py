@@ -1,4 +1,7 @@
-"""Faces of a mesh that lie over others of its faces in one plane, as far as they look alike and share no three corners."""
+"""Faces of a mesh that lie over others of its faces in one plane, as far as they look alike and share no three corners.
+
+Of the flat parts where they do the one that the picture shows most of is told.
+"""
 
 import numpy as np
 
@@ -27,25 +30,34 @@ def check_laid_over(subject):
             for part in range(len(facets))
             if len(facets.faces[part]) > 1 and _is_plain(subject, subject.material(row, int(facets.slots[part])))
         ]
-        for part, over in _overlapping(mesh, facets, plain, _MOST_PAIRS[not subject.thorough]):
-            corners = mesh.positions[mesh.triangles[over]].astype(float)
-            places = subject.world(row, corners.reshape(-1, 3)).reshape(-1, 3, 3)
-            share = share_of_triangles(subject.snapshot.camera, places)
-            yield Finding(
-                "coincident",
-                Harm.DIFFERENT if share >= LEAST_SHARE else Harm.HINT,
-                f"{told_number(len(over), 'face')} lie in the same plane as others that they overlap: {SHADOWED}",
-                "in Edit Mode delete those beneath, or move them a little",
-                object=subject.name(row),
-                mesh=mesh.name,
-                material=subject.material_name(subject.material(row, int(facets.slots[part]))),
-                others=subject.others(number),
-                faces=len(over),
-                place=tuple(places[0].mean(axis=0).tolist()),
-                weight=share,
-                key=IN_ONE_PLANE,
-            )
-            break
+        parts = [
+            (*_seen(subject, row, mesh, over), over, part)
+            for part, over in _overlapping(mesh, facets, plain, _MOST_PAIRS[not subject.thorough])
+        ]
+        if not parts:
+            continue
+        share, place, over, part = max(parts, key=lambda found: found[0])
+        yield Finding(
+            "coincident",
+            Harm.DIFFERENT if share >= LEAST_SHARE else Harm.HINT,
+            f"{told_number(len(over), 'face')} lie in the same plane as others that they overlap: {SHADOWED}",
+            "in Edit Mode delete those beneath, or move them a little",
+            object=subject.name(row),
+            mesh=mesh.name,
+            material=subject.material_name(subject.material(row, int(facets.slots[part]))),
+            others=subject.others(number),
+            faces=len(over),
+            place=place,
+            weight=share,
+            key=IN_ONE_PLANE,
+        )
+
+
+def _seen(subject, row, mesh, triangles):
+    """(the share of the picture that triangles take, a place on one of them)"""
+    corners = mesh.positions[mesh.triangles[triangles]].astype(float)
+    places = subject.world(row, corners.reshape(-1, 3)).reshape(-1, 3, 3)
+    return share_of_triangles(subject.snapshot.camera, places), tuple(places[0].mean(axis=0).tolist())
 
 
 def _is_plain(subject, material):
