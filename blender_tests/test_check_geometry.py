@@ -163,6 +163,19 @@ def test_large_flat_faces_shaded_as_round(thorough):
     assert found(one(rim, lights=(panel,)), thorough) == []
 
 
+@pytest.mark.parametrize("thorough", [True, False])
+@pytest.mark.parametrize("whole", [0.2, 0.8])
+def test_the_larger_fault_of_normals_is_told(thorough, whole):
+    """Of a mesh some faces of which turn away at all corners and others at one: what more of its area does."""
+    flat = sheet(parts=20)
+    up, down = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
+    count = round(whole * len(flat.triangles))
+    normals = np.array([[down] * 3] * count + [[up, down, up]] * (len(flat.triangles) - count))
+    finding = only(one(dataclasses.replace(flat, normals=normals)), thorough)
+    assert finding.harm == Harm.WRONG and finding.weight > 0.5
+    assert ("light falls on from behind" if whole > 0.5 else "at some corners") in finding.what
+
+
 def _upright(mesh):
     a, b, c = (mesh.positions[mesh.triangles[:, k]].astype(float) for k in range(3))
     normals = np.cross(b - a, c - a)

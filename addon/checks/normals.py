@@ -29,26 +29,29 @@ def check_normals(subject):
             continue
         some, total = some & ~whole, areas.sum()
         folds = _folds(mesh, faces, some)
-        for bad, harm in ((some & ~folds, Harm.WRONG), (whole, Harm.WRONG), (folds, Harm.HINT)):
-            share = float(areas[bad].sum() / total) if total > 0.0 else 0.0
-            if share < _SHARE:
-                continue
-            worst = np.flatnonzero(bad)[np.argmax(areas[bad])]
-            count = round(bad.sum() * len(mesh.triangles) / asked)
-            what, advice = _words(subject, number, mesh, harm, count, bad is whole)
-            yield Finding(
-                "normals",
-                harm,
-                what,
-                advice,
-                object=subject.name(row),
-                mesh=mesh.name,
-                others=subject.others(number),
-                faces=count,
-                place=subject.place(row, middle(mesh, np.arange(len(mesh.triangles))[faces][worst])),
-                weight=share,
-            )
-            break
+        groups = [
+            (harm, float(areas[bad].sum() / total) if total > 0.0 else 0.0, bad)
+            for harm, bad in ((Harm.WRONG, some & ~folds), (Harm.WRONG, whole), (Harm.HINT, folds))
+        ]
+        groups = [group for group in groups if group[1] >= _SHARE]
+        if not groups:
+            continue
+        harm, share, bad = max(groups, key=lambda group: group[:2])
+        worst = np.flatnonzero(bad)[np.argmax(areas[bad])]
+        count = round(bad.sum() * len(mesh.triangles) / asked)
+        what, advice = _words(subject, number, mesh, harm, count, bad is whole)
+        yield Finding(
+            "normals",
+            harm,
+            what,
+            advice,
+            object=subject.name(row),
+            mesh=mesh.name,
+            others=subject.others(number),
+            faces=count,
+            place=subject.place(row, middle(mesh, np.arange(len(mesh.triangles))[faces][worst])),
+            weight=share,
+        )
 
 
 def _suspects(subject, shown):
