@@ -72,24 +72,23 @@ def test_files_that_are_no_reports(tmp_path):
 
 
 def test_reports_spoiled_by_chance(tmp_path):
-    """Every file loads, or is refused in words."""
+    """Every file loads, or is refused in words. The first is spoiled where nobody reads: in the time of its first entry."""
     path, generator, ends = str(tmp_path / "report.zip"), np.random.default_rng(3), set()
     bug_report.save(path, FACTS, rich())
     with open(path, "rb") as file:
         whole = np.frombuffer(file.read(), np.uint8)
     for number in range(200):
         data = whole.copy()
-        places = generator.integers(0, len(data), generator.integers(1, 9))
+        places = generator.integers(0, len(data), generator.integers(1, 9)) if number else np.arange(10, 14)
         data[places] = generator.integers(0, 256, len(places))
         with open(path, "wb") as file:
-            file.write(data[: generator.integers(1, len(data)) if number % 4 == 0 else None].tobytes())
+            file.write(data[: generator.integers(1, len(data)) if number % 4 == 1 else None].tobytes())
         try:
             bug_report.load(path)
             ends.add("loaded")
         except SnapshotError:
             ends.add("refused")
-    # Whether any byte is of no account depends on how well the machine's zlib packs.
-    assert "refused" in ends
+    assert ends == {"loaded", "refused"}
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
