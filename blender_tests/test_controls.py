@@ -55,10 +55,13 @@ def found(request, tmp_path_factory):
     return {what: set(names) for what, names in got.items() if what not in ("version", "console")} | {"version": got["version"]}
 
 
+def acts_in(entry, version):
+    return list(entry.since) <= version < list(entry.before)
+
+
 def listed(version):
     """What the export says that it reads."""
-    here = (entry for entry in CONTROLS if list(entry.since) <= version < list(entry.before))
-    return {f"{entry.owner}.{name}" for entry in here for name in entry.names}
+    return {f"{entry.owner}.{name}" for entry in CONTROLS if acts_in(entry, version) for name in entry.names}
 
 
 def test_the_export_reads_what_it_lists(found):
@@ -90,7 +93,6 @@ def test_no_name_in_the_export_is_a_setting_that_nothing_is_known_of(found):
     names = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
     names |= {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     acting = {name.split(".")[1] for name in found["act"] | found["tell"]}
-    # Those of the list act in some Blender, if not in this one.
-    listed = {name for controls in CONTROLS for name in controls.names}
-    unknown = {name for name in found["known"] if name.split(".")[1] in names - acting - listed - set(OF_OTHERS)}
+    in_others = {name for entry in CONTROLS if not acts_in(entry, found["version"]) for name in entry.names}
+    unknown = {name for name in found["known"] if name.split(".")[1] in names - acting - in_others - set(OF_OTHERS)}
     assert not {name for name in unknown if not name.startswith(OWN)}
