@@ -64,18 +64,27 @@ CASES = {
 }
 
 
+# No rounding reaches so far below the ceiling.
+GAP = 1e-4
+# A lamp h above a place and r aside lights it by h^2 / (h^2 + r^2)^2 of its power: the logarithm changes by 2 / h for each
+# length of h, at most. A mirrored lamp, 4.5 away, grows by less.
+BY_THE_GAP = 2.0 * GAP / (3.0 - GAP)
+# The samples are the same, but where rounding tilts the plane of many lamps their tree divides them otherwise, and others are
+# chosen. That is noise: over 16 seeds the standard deviation of the mean is 1.3e-4 to 2.6e-4 at the three places. Four of them.
+BY_THE_TREE = 4.0 * 2.6e-4
+
+
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("case", CASES)
 def test_its_light_arrives(library, case, place):
-    """1e-4 below the ceiling no rounding reaches. The samples are the same, so only what the gap itself changes is left: 1e-4
-    of 3 in distances, 1e-4 of 0.3 in the outlines of a mirrored lamp."""
-    inside, below = (render(room(PLACES[place], gap, **CASES[case]))[..., :3] for gap in (0.0, 1e-4))
+    inside, below = (render(room(PLACES[place], gap, **CASES[case]))[..., :3] for gap in (0.0, GAP))
+    tree = BY_THE_TREE if case == "among others" and place != "plain" else 0.0
     assert below.mean() > 0.02
-    assert inside.mean() == pytest.approx(below.mean(), rel=2e-3)
+    assert inside.mean() == pytest.approx(below.mean(), rel=BY_THE_GAP + tree)
 
 
 def test_what_stands_before_it_still_hides_it(library):
     """A shutter that is a thousandth of the lamp away."""
     open_, shut = (render(room(PLACES["turned"], 0.1, shutter=shutter))[..., :3] for shutter in (None, 3e-4))
     assert open_.mean() > 0.02
-    assert shut.mean() < 1e-6
+    assert (shut == 0.0).all()
