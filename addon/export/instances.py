@@ -56,7 +56,8 @@ class Instances:
                 poll()
             thing = entry.object
             if thing.type != "MESH":
-                self._first_is_text = self._first_is_text or number == 0 and thing.type in _SHOWN_AS_MESH
+                if number == 0:
+                    self._first_is_text = thing.type in _SHOWN_AS_MESH
                 if entry.show_self:
                     self._add_other(thing, entry)
                 continue
