@@ -54,7 +54,7 @@ def test_a_fault_of_the_check_costs_no_picture(case):
 
 
 def test_smooth_shading_of_folds_is_no_fault(case):
-    """What any engine shows so is a hint where somebody asks, and F12 does not speak of it."""
+    """What any engine shows so is a hint where somebody asks, and F12 does not speak of it, whatever the lamp."""
     got = case("smooth")
-    assert got["monkey"] == [[["normals", "HINT", "Suzanne"]], []]
-    assert got["letters"] == [[["normals", "HINT", "Text"]], []]
+    for name, thing in (("monkey", "Suzanne"), ("letters", "Text")):
+        assert got[name] == {lamp: [[["normals", "HINT", thing]], []] for lamp in ("POINT", "AREA")}

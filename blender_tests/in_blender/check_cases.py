@@ -187,10 +187,13 @@ def _letters():
 
 
 def smooth():
-    """{name: (findings, messages of F12)} of things whose smooth shading bends round sharp folds, as Blender makes them."""
+    """{name: {lamp: (findings, messages of F12)}} of what is smooth round sharp folds, as Blender makes it."""
     result = {}
     for name, build in (("monkey", _monkey), ("letters", _letters)):
-        _room()
-        build()
-        result[name] = (_findings(), _told())
+        result[name] = {}
+        for lamp in ("POINT", "AREA"):
+            _room()
+            bpy.data.lights["Light"].type = lamp
+            build()
+            result[name][lamp] = (_findings(), _told())
     return result
