@@ -38,7 +38,7 @@ def check_round_faces(subject):
             "normals",
             Harm.HINT,
             f"{told_number(len(faces), 'flat face')} are shaded as if they were round, by {angle:.0f} degrees at the corners: "
-            "light along them may differ from Cycles' by a percent",
+            "light along them may differ from Cycles' by a few percent",
             "add a Weighted Normal modifier, or shade it smooth by angle",
             object=subject.name(row),
             mesh=mesh.name,

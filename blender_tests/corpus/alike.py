@@ -2,8 +2,7 @@
 
 What shows in the picture stays the author's: passes, film, filter, lens, blur, world, the depth of paths. What limits or
 smooths light to save samples is taken away, since Lancer has no such limits, and so is what would end a render at another
-number of samples in one engine than in the other. What makes Cycles fast stays: guiding, roulette. Its light tree, which new
-files have, is turned on: without it several glowing meshes give less light together than the sum of what each gives alone.
+number of samples in one engine than in the other. What makes Cycles fast stays: light tree, guiding, roulette.
 """
 
 import bpy
@@ -21,7 +20,6 @@ _TAKEN = (
     ("caustics_reflective", True, "no reflective caustics"),
     ("caustics_refractive", True, "no refractive caustics"),
     ("use_fast_gi", False, "Fast GI"),
-    ("use_light_tree", True, "no light tree"),
     ("film_exposure", 1.0, "film exposure {:g}"),
     ("shading_system", False, "Open Shading Language"),
     ("use_adaptive_sampling", False, ""),
