@@ -27,8 +27,9 @@ struct BsdfSample {
 };
 
 // Contract
-//   Place     begin() says where: wo unit, away from the surface; ng unit, on the side of wo; ns unit, on the same side of the
-//             surface as ng; inside: wo lies behind the outward side. All directions are in the world.
+//   Place     begin() says where: wo unit, away from the surface; ng unit, on the side of wo; ns unit, turned over as ng was:
+//             beyond the surface where the mesh's normals look away from their face, and there it lights as Cycles has it;
+//             inside: wo lies behind the outward side. All directions are in the world.
 //   Lobes     are added by add_lobe and add_principled (build.h); complete() makes the probabilities. A lobe's normal may be
 //             its own. It acts on the side of its normal and scatters through to the other; lobes that need wo there are 0
 //             where wo is behind their normal.
