@@ -31,13 +31,15 @@ class OfScenes(MutableMapping):
         self._values.clear()
 
 
-def identity(scene):
-    """What stays the same of a scene when it is renamed, edited and undone, and is that of no later one.
+def identity(block):
+    """What stays the same of a scene, or another data-block, when it is renamed, edited and undone, and is that of no later one.
 
-    Blenders before 4.1 tell its address only, which a later scene may have: there a scene with another name is another one.
+    Blenders before 4.1 tell its address only, which a later one may have: there one with another name is another one.
     """
-    uid = getattr(scene, "session_uid", None)
-    return (scene.original.as_pointer(), scene.name) if uid is None else uid
+    block = block.original
+    uid = getattr(block, "session_uid", None)
+    # Blocks of different types may share a number.
+    return (type(block).__name__, *((block.as_pointer(), block.name) if uid is None else (uid,)))
 
 
 def find(wanted):

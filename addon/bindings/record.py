@@ -16,6 +16,8 @@ def array(value, dtype, shape, what):
 
 
 def same(a, b):
+    if a is b:
+        return True
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         if not (isinstance(a, np.ndarray) and isinstance(b, np.ndarray)):
             return False
@@ -36,6 +38,12 @@ class Record:
         if type(self) is not type(other):
             return NotImplemented
         return all(same(getattr(self, f.name), getattr(other, f.name)) for f in dataclasses.fields(self))
+
+    def replaced(self, **values):
+        """The same with other values, which are as a record of this kind makes them: nothing is checked or copied again."""
+        copy = object.__new__(type(self))
+        copy.__dict__.update(vars(self) | values)
+        return copy
 
     def set(self, name, value):
         object.__setattr__(self, name, value)

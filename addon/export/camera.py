@@ -36,41 +36,50 @@ def export_camera(camera, depsgraph, messages):
     if camera.type != "CAMERA":
         raise LancerError(f"object '{camera.name}' is the scene's camera but no camera: choose one in the scene properties")
     camera = camera.evaluated_get(depsgraph)
-    data = camera.data
-    who = f"camera '{camera.name}'"
     width, height = image_size(scene)
     x, y, region_width, region_height = border(scene, width, height)
     if min(width, height, region_width, region_height) < 1:
         raise LancerError(f"the image has {region_width} x {region_height} pixels: raise the resolution or widen the border")
-    kind, projection = _projection(data, scene.render, width, height, who, messages)
-    matrix = _rigid(np.array(camera.matrix_world, float), who, messages)
-    start = messages.number(data.clip_start, who, "clip start", 0.1, 0.0)
-    lens_radius, focal_distance = _lens(data, kind, matrix, start, depsgraph, who, messages)
-    dof = data.dof
+    fields = camera_fields(camera, depsgraph, messages)
     return snapshot.Camera(
-        matrix=matrix,
-        kind=kind,
         width=width,
         height=height,
         x=x,
         y=y,
         region_width=region_width,
         region_height=region_height,
-        window=_window(camera, depsgraph, kind, width, height),
-        clip_start=start,
-        clip_end=messages.number(data.clip_end, who, "clip end", 1000.0, start),
-        lens_radius=lens_radius,
-        focal_distance=focal_distance,
-        aperture_blades=dof.aperture_blades,
-        aperture_rotation=messages.number(dof.aperture_rotation, who, "aperture rotation", 0.0),
-        aperture_ratio=messages.number(dof.aperture_ratio, who, "aperture ratio", 1.0, 1e-3),
-        panorama=projection,
+        window=_window(camera, depsgraph, fields["kind"], width, height),
+        **fields,
     )
 
 
-def _projection(data, render, width, height, who, messages):
+def camera_fields(camera, depsgraph, messages):
+    """The fields of a snapshot.Camera that hang on an evaluated camera alone, not on the picture that it takes."""
+    data = camera.data
+    who = f"camera '{camera.name}'"
+    kind, numbers = _projection(data, depsgraph.scene, who, messages)
+    matrix = rigid(np.array(camera.matrix_world, float), who, messages)
+    start = messages.number(data.clip_start, who, "clip start", 0.1, 0.0)
+    lens_radius, focal_distance = _lens(data, kind, matrix, start, depsgraph, who, messages)
+    dof = data.dof
+    return {
+        "matrix": matrix,
+        "kind": kind,
+        "clip_start": start,
+        "clip_end": messages.number(data.clip_end, who, "clip end", 1000.0, start),
+        "lens_radius": lens_radius,
+        "focal_distance": focal_distance,
+        "aperture_blades": dof.aperture_blades,
+        "aperture_rotation": messages.number(dof.aperture_rotation, who, "aperture rotation", 0.0),
+        "aperture_ratio": messages.number(dof.aperture_ratio, who, "aperture ratio", 1.0, 1e-3),
+        "panorama": numbers,
+    }
+
+
+def _projection(data, scene, who, messages):
     """(kind, the panorama's numbers)."""
     if data.type == "PANO":
+        render, (width, height) = scene.render, image_size(scene)
         aspect = width * render.pixel_aspect_x / (height * render.pixel_aspect_y)
         return panorama(data, aspect, who, messages)
     if data.type not in ("PERSP", "ORTHO"):
@@ -92,12 +101,17 @@ def _window(camera, depsgraph, kind, width, height):
         half = 0.5 * camera.data.sensor_width / max(camera.data.lens, 1e-6)
         aspect = height * render.pixel_aspect_y / (width * render.pixel_aspect_x)
         return -half, half, -half * aspect, half * aspect
+    return window_of(p, kind)
+
+
+def window_of(p, kind):
+    """The window of a projection matrix."""
     if kind == CameraKind.PERSPECTIVE:
         return tuple((sign + p[axis][2]) / p[axis][axis] for axis in (0, 1) for sign in (-1.0, 1.0))
     return tuple((sign - p[axis][3]) / p[axis][axis] for axis in (0, 1) for sign in (-1.0, 1.0))
 
 
-def _rigid(matrix, who, messages):
+def rigid(matrix, who, messages):
     """Scale is left out as everywhere in Blender; what is left is made exactly orthogonal, mirrored where it was."""
     if not np.isfinite(matrix).all():
         raise LancerError(f"{who}: its transform is not finite")

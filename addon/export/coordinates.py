@@ -4,6 +4,7 @@ import numpy as np
 
 from ..bindings.enums import Coordinate, MappingType, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
+from ..of_scenes import identity
 from .arithmetic import THIRDS, divide
 from .attributes import attribute_name, tangents_name
 from .fold import rotation
@@ -48,6 +49,7 @@ def _texture_coordinate(graph, site, output):
         graph.tell(site, "coordinates from the instancer are not supported, the object's own are used")
     if which != Coordinate.OBJECT or node.object is None:
         return coordinate(graph, which)
+    graph.objects.add(identity(node.object))
     thing = node.object if graph.depsgraph is None else node.object.evaluated_get(graph.depsgraph)
     matrix = np.array(thing.matrix_world, float)
     if not np.isfinite(matrix).all() or np.linalg.det(matrix[:3, :3]) == 0.0:

@@ -8,6 +8,7 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Transfer
 from ..harm import Harm
+from ..of_scenes import identity
 from . import main_thread
 from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
 
@@ -16,29 +17,48 @@ _WHITE = 65535.0
 _ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # their colour is multiplied by alpha in the file
 
 
+# In the place of pictures that nothing asks for any more, so that the others keep their numbers.
+_NOTHING = snapshot.Image(name="nothing", texels=np.zeros((1, 1, 1), np.uint8))
+
+
 class Images:
     """Numbers the pictures that nodes ask for."""
 
     def __init__(self, obey=None, kept=None):
         """obey is called before each file; it raises Cancelled when the user has enough. kept: of earlier frames, a Kept."""
         self.list = []
+        self.obey = obey
         self._kept = kept
-        self._obey = obey
         self._ranges = {}
 
     def numbers(self, image, user, tell):
         """(first, count) of a Blender image, more for tiles; None where there is none. tell takes text, key and harm."""
         path = _frame_path(image, user, tell)
-        key = (image.as_pointer(), image.colorspace_settings.name, image.alpha_mode, path)
+        key = (identity(image), image.colorspace_settings.name, image.alpha_mode, path)
         if key not in self._ranges:
             first = len(self.list)
-            with main_thread.obeying(self._obey):
+            with main_thread.obeying(self.obey):
                 read = _read_all if self._kept is None else self._kept.pictures(_read_all)
                 self.list += read(image, path, tell)
             self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
         if self._ranges[key] is None:
             tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used", harm=Harm.WRONG)
         return self._ranges[key]
+
+    def repeat(self, pictures):
+        """The number of the first of pictures that are to stand in a row, known ones too."""
+        self.list += pictures
+        return len(self.list) - len(pictures)
+
+    def forget(self, changed, used):
+        """Drops the pictures of the Blender images that have changed, by identity, and all but the used numbers."""
+        for key, found in list(self._ranges.items()):
+            if key[0] in changed or found is not None and found[0] not in used:
+                del self._ranges[key]
+        kept = {number for found in self._ranges.values() if found is not None for number in range(found[0], sum(found))}
+        for number in range(len(self.list)):
+            if number not in kept and number not in used:
+                self.list[number] = _NOTHING
 
 
 class NoPictures:

@@ -1,6 +1,7 @@
 """Everything that the depsgraph shows: meshes once each, and a table of where they stand."""
 
 from array import array
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -22,17 +23,47 @@ _LEAKS_FIRST = bpy.app.version < (5, 0)
 _POLL_EVERY = 256
 
 
+class Places(NamedTuple):
+    """Where the rows of a table find their matrices, in a depsgraph that shows the same entries."""
+
+    entries: np.ndarray  # of each row
+    count: int  # of all entries
+    placements: np.ndarray  # of each row, -1 for none
+    exact: tuple  # (4, 4) by those numbers
+    one_by_one: bool
+
+    def matrices(self, depsgraph):
+        """(rows, 3, 4)."""
+        columns = self._columns(depsgraph.object_instances)
+        matrices = columns[self.entries, :, :3].transpose(0, 2, 1).astype(float, "C")
+        rows = np.flatnonzero(self.placements >= 0)
+        if len(rows):
+            whole = columns[self.entries[rows]].transpose(0, 2, 1).astype(float)
+            matrices[rows] = (whole @ np.array(self.exact)[self.placements[rows]])[:, :3]
+        return matrices
+
+    def _columns(self, walk):
+        """(entries, 4, 4): the columns of all matrices. A second walk is faster than an object of Python's for each entry."""
+        if self.one_by_one:
+            return np.array([entry.matrix_world for entry in walk], np.float32).transpose(0, 2, 1)
+        columns = np.empty(16 * self.count, np.float32)
+        walk.foreach_get("matrix_world", columns)
+        return columns.reshape(-1, 4, 4)
+
+
 class Instances:
     """Collects entries; to_table() and meshes give the snapshot's parts, lights the lamps met on the way.
 
     There may be millions: of each entry only numbers are kept, and matrices are read all at once.
     """
 
-    def __init__(self, depsgraph, materials, messages, kept=None):
+    def __init__(self, depsgraph, materials, messages, kept=None, parts=None, space=None):
+        """space: a SpaceView3D, whose local view and filters leave objects out."""
         self.depsgraph = depsgraph
         self.messages = messages
         self.lights = []
-        self._objects = Objects(depsgraph, materials, messages, kept)
+        self._space = space
+        self._objects = Objects(depsgraph, materials, messages, kept, parts)
         self._rows = {}
         self._narrowed = {}
         self._checked_hair = set()
@@ -42,6 +73,7 @@ class Instances:
         self._entries = array("I")
         self._entry_count = 0
         self._first_is_text = False
+        self.places = None
 
     @property
     def meshes(self):
@@ -55,6 +87,8 @@ class Instances:
             if number % _POLL_EVERY == 0:
                 poll()
             thing = entry.object
+            if self._space is not None and not thing.visible_in_viewport_get(self._space):
+                continue
             if thing.type != "MESH":
                 if number == 0:
                     self._first_is_text = thing.type in _SHOWN_AS_MESH
@@ -94,7 +128,11 @@ class Instances:
                 starts[look.slots] = len(slots)
                 slots.extend(look.slots)
         poll()
-        matrices = self._matrices(column([look.placement for look in looks], np.int32))
+        placements = column([look.placement for look in looks], np.int32)
+        leaks = _LEAKS_FIRST and self._first_is_text
+        entries = np.frombuffer(self._entries, np.uint32)
+        self.places = Places(entries, self._entry_count, placements, tuple(self._objects.placements), leaks)
+        matrices = self.places.matrices(self.depsgraph)
         poll()
         return InstanceTable(
             matrices=matrices,
@@ -111,25 +149,6 @@ class Instances:
             names=self._names,
             slots=slots,
         )
-
-    def _matrices(self, placements):
-        """(rows, 3, 4)."""
-        columns, entries = self._columns(), np.frombuffer(self._entries, np.uint32)
-        matrices = columns[entries, :, :3].transpose(0, 2, 1).astype(float, "C")
-        exact = np.flatnonzero(placements >= 0)
-        if len(exact):
-            whole = columns[entries[exact]].transpose(0, 2, 1).astype(float)
-            matrices[exact] = (whole @ np.array(self._objects.placements)[placements[exact]])[:, :3]
-        return matrices
-
-    def _columns(self):
-        """(entries, 4, 4): the columns of all matrices. A second walk is faster than an object of Python's for each entry."""
-        walk = self.depsgraph.object_instances
-        if _LEAKS_FIRST and self._first_is_text:
-            return np.array([entry.matrix_world for entry in walk], np.float32).transpose(0, 2, 1)
-        columns = np.empty(16 * self._entry_count, np.float32)
-        walk.foreach_get("matrix_world", columns)
-        return columns.reshape(-1, 4, 4)
 
     def _narrowed_by(self, instancer):
         if instancer is None:

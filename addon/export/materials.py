@@ -1,5 +1,7 @@
 """Blender materials as lobes: their weights and values, what they emit, let through, and where they move the surface."""
 
+from typing import NamedTuple
+
 import bpy
 
 from ..bindings import snapshot
@@ -25,14 +27,22 @@ _DEFAULT = snapshot.Material(name="default grey", lobes=(_DEFAULT_LOBE,))
 _BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
 
 
+class _Exported(NamedTuple):
+    material: snapshot.Material
+    attributes: frozenset = frozenset()  # names of the mesh attributes that it reads
+    objects: frozenset = frozenset()  # identities of the objects whose place it reads
+
+
 class Materials:
     """Numbers the materials that objects ask for; each is read once."""
 
-    def __init__(self, messages, override=None, images=None, depsgraph=None):
+    def __init__(self, messages, override=None, images=None, depsgraph=None, parts=None):
+        """parts: of earlier exports, a Parts."""
         self.messages = messages
         self.override = override
         self.images = Images() if images is None else images
         self.depsgraph = depsgraph
+        self._parts = parts
         self.list = []
         self._numbers = {}
         self._attributes = []
@@ -43,12 +53,19 @@ class Materials:
         key = None if material is None else material.original.as_pointer()
         if key not in self._numbers:
             self._numbers[key] = len(self.list)
-            exported, attributes = _DEFAULT, frozenset()
-            if material is not None:
-                exported, attributes = _export(material, self.messages, asker, self.images, self.depsgraph)
-            self.list.append(exported)
-            self._attributes.append(attributes)
+            exported = _Exported(_DEFAULT) if material is None else self._read(material, asker)
+            self.list.append(exported.material)
+            self._attributes.append(exported.attributes)
         return self._numbers[key]
+
+    def _read(self, material, asker):
+        if self._parts is None:
+            return _export(material, self.messages, asker, self.images, self.depsgraph)
+
+        def read(messages, images):
+            return _export(material, messages, asker, images, self.depsgraph)
+
+        return self._parts.shader(material, self.messages, read)
 
     def attributes(self, numbers):
         """Names of the mesh attributes that these materials read: what export_mesh takes as wanted."""
@@ -56,7 +73,7 @@ class Materials:
 
 
 def _export(material, messages, asker, images, depsgraph):
-    """(Material, names of mesh attributes). asker is the object that is met first with it: messages name it too."""
+    """An _Exported. asker is the object that is met first with it: messages name it too."""
     who = f"material '{material.name}'" + ("" if asker is None else f" on object '{asker}'")
     own = material.lancer
     graph = NodeGraph(who, messages, images, depsgraph)
@@ -67,14 +84,15 @@ def _export(material, messages, asker, images, depsgraph):
         "flags": _flags(material),
     }
     if own.model != "NODES":
-        return snapshot.Material(lobes=_own_model(own, who, messages), **common), frozenset()
+        return _Exported(snapshot.Material(lobes=_own_model(own, who, messages), **common))
     if bpy.app.version < (5, 0) and not material.use_nodes:
         color = messages.color(material.diffuse_color, who, "viewport colour")
-        return snapshot.Material(lobes=(snapshot.Lobe(LobeKind.LAMBERT, color),), **common), frozenset()
+        return _Exported(snapshot.Material(lobes=(snapshot.Lobe(LobeKind.LAMBERT, color),), **common))
     values = _from_nodes(material, graph)
     common["flags"] |= values.pop("flags", 0)
     common["ambient"] = _color(graph.add(common["ambient"], values.pop("ambient", 0.0)))
-    return snapshot.Material(nodes=graph.nodes, **values, **common), frozenset(graph.attributes)
+    exported = snapshot.Material(nodes=graph.nodes, **values, **common)
+    return _Exported(exported, frozenset(graph.attributes), frozenset(graph.objects))
 
 
 def _flags(material):

@@ -36,8 +36,9 @@ class Look(NamedTuple):
 class Objects:
     """Reads each object once; meshes, looks and placements are lists in the order of their numbers."""
 
-    def __init__(self, depsgraph, materials, messages, kept=None):
-        """kept: of earlier frames, a Kept."""
+    def __init__(self, depsgraph, materials, messages, kept=None, parts=None):
+        """kept: of earlier frames, a Kept; parts: of earlier exports for a window, a Parts."""
+        self._parts = parts
         self._export_mesh = export_mesh if kept is None else kept.meshes(export_mesh)
         self.scene = depsgraph.scene
         self.view_layer = depsgraph.view_layer
@@ -86,6 +87,8 @@ class Objects:
         that are read from one stay allocated for ever.
         """
         poll()
+        if self._parts is not None:
+            self._parts.count("objects")
         name = thing.name
         if original_key not in self._checked:
             self._checked.add(original_key)
@@ -131,9 +134,7 @@ class Objects:
         copies = self._meshes.setdefault(data_key, [])
         found = next((copy for copy in copies if copy[0] >= wanted), None)
         if found is None:
-            original = thing.original.data
-            with shown_mesh(thing, owner) as mesh:
-                data = self._export_mesh(mesh, name if original is None else original.name, poll, wanted)
+            data = self._read_mesh(thing, owner, name, data_key, wanted, poll)
             poll()
             used = (0,) if data.material_slots is None else tuple(np.unique(data.material_slots).tolist())
             number = -1
@@ -147,6 +148,14 @@ class Objects:
         if number < 0 and not any(modifier.type == "NODES" for modifier in thing.modifiers):
             self.messages.add(f"object '{name}': has no faces, it is left out")
         return number, used
+
+    def _read_mesh(self, thing, owner, name, data_key, wanted, poll):
+        def read():
+            original = thing.original.data
+            with shown_mesh(thing, owner) as mesh:
+                return self._export_mesh(mesh, name if original is None else original.name, poll, wanted)
+
+        return read() if self._parts is None else self._parts.mesh(thing, owner, data_key, wanted, read)
 
     def _placement(self, thing, owner, name, kind, data_key):
         """The number of what brings the unit shape to where the object's mesh is; -1 where the mesh has no vertices."""

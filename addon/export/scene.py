@@ -20,6 +20,10 @@ class ExportOptions:
     camera: object = None  # the object to look through; None = the scene's
     passes: tuple = (Pass.COMBINED,)
     kept: object = None  # a Kept, of earlier frames
+    # Of a window:
+    view: object = None  # a snapshot.Camera in the place of an object
+    space: object = None  # the SpaceView3D that leaves objects out
+    parts: object = None  # a Parts, of earlier exports
 
 
 def export_scene(depsgraph, options=None, poll=None):
@@ -35,7 +39,7 @@ def export_scene(depsgraph, options=None, poll=None):
     scene = depsgraph.scene
     view_layer = depsgraph.view_layer
     # Ask for camera and settings first: what is missing there should not cost an export.
-    camera = export_camera(options.camera or scene.camera, depsgraph, messages)
+    camera = options.view or export_camera(options.camera or scene.camera, depsgraph, messages)
     # Scene and view layer are the user's own, in which nothing of the animation has arrived.
     world = _evaluated(getattr(view_layer, "world_override", None) or scene.world, depsgraph)
     override = _evaluated(view_layer.material_override, depsgraph)
@@ -43,22 +47,35 @@ def export_scene(depsgraph, options=None, poll=None):
     check_scene(scene, messages)
     check_passes(scene, options.passes, messages)
     check_view_layer(scene, view_layer, messages)
-    images = Images(obey, options.kept)
-    materials = Materials(messages, override, images, depsgraph)
-    instances = Instances(depsgraph, materials, messages, options.kept)
+    parts = options.parts
+    if parts is not None:
+        again = parts.begin(depsgraph, obey)
+        if again is not None:
+            snapshot, told = again
+            messages.merge(told)
+            return snapshot.replaced(camera=camera, settings=settings), messages
+    images = Images(obey, options.kept) if parts is None else parts.images
+    materials = Materials(messages, override, images, depsgraph, parts)
+    instances = Instances(depsgraph, materials, messages, options.kept, parts, options.space)
     instances.collect(obey)
-    sky = export_world(world if view_layer.use_sky else None, images, depsgraph, messages)
+    sky = world if view_layer.use_sky else None
+    if parts is None or sky is None:
+        exported = export_world(sky, images, depsgraph, messages)
+    else:
+        exported = parts.shader(sky, messages, lambda told, pictures: export_world(sky, pictures, depsgraph, told))
     snapshot = SceneSnapshot(
         meshes=tuple(instances.meshes),
         instances=instances.to_table(obey),
         materials=tuple(materials.list),
         lights=tuple(instances.lights),
         images=tuple(images.list),
-        world=sky,
+        world=exported.world,
         camera=camera,
         settings=settings,
     )
     obey()
+    if parts is not None:
+        parts.end(snapshot, messages, instances.places)
     return snapshot, messages
 
 

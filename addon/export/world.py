@@ -1,5 +1,7 @@
 """The world: one radiance, or nodes over the direction; or the course's six pictures."""
 
+from typing import NamedTuple
+
 import bpy
 import numpy as np
 
@@ -15,10 +17,15 @@ from .visibility import hidden_from
 CUBE_SIDES = tuple(f"cube_{sign}_{axis}" for axis in "xyz" for sign in ("positive", "negative"))
 
 
+class Sky(NamedTuple):
+    world: snapshot.World
+    objects: frozenset = frozenset()  # identities of the objects whose place its nodes read
+
+
 def export_world(world, images, depsgraph, messages):
-    """images: the registry that all materials share."""
+    """A Sky. images: the registry that all materials share."""
     if world is None:
-        return snapshot.World()
+        return Sky(snapshot.World())
     who = f"world '{world.name}'"
     graph = NodeGraph(who, messages, images, depsgraph)
     own = world.lancer
@@ -35,13 +42,14 @@ def export_world(world, images, depsgraph, messages):
             f"{who}: Sampling None is not supported, Auto is used; behind objects that cast no shadow it is brighter",
             "feature:sky that is not sampled",
         )
-    return snapshot.World(
+    sky = snapshot.World(
         radiance=radiance,
         ambient=messages.color(own.ambient_color, who, "ambient colour") if own.use_ambient_color else None,
         nodes=graph.nodes,
         hidden_from=hidden_from(getattr(world, "cycles_visibility", None)),
         map_resolution=cycles.sample_map_resolution if method == "MANUAL" else 0,
     )
+    return Sky(sky, frozenset(graph.objects))
 
 
 def _nodes(world, graph, who, messages):
@@ -62,8 +70,7 @@ def _cube(own, graph, who, messages):
     first = sides[0][0]
     if [number for number, _ in sides] != list(range(first, first + 6)):
         # The core wants them in a row: say them again where a picture stands for two sides or for something else, too.
-        first = len(graph.images.list)
-        graph.images.list += [picture for _, picture in sides]
+        first = graph.images.repeat([picture for _, picture in sides])
     direction = graph.emit(NodeKind.COORDINATE, option=Coordinate.GENERATED)
     shown = graph.emit(
         NodeKind.ENVIRONMENT, direction, option=Environment.CUBE, flags=int(Extension.EXTEND), image=first, image_count=6

@@ -1,0 +1,167 @@
+"""What a window has read of a scene: only what the depsgraph says has changed is read again.
+
+    parts = Parts()
+    snapshot, messages = export_scene(depsgraph, ExportOptions(view=camera, parts=parts))
+
+The snapshot is the same as without parts; parts.counts tells what was read for it. For a depsgraph of which every update is
+exported, as those of windows are.
+"""
+
+import dataclasses
+from typing import NamedTuple
+
+import bpy
+
+from ..of_scenes import identity
+from .images import Images
+from .messages import Messages
+
+_CHANGES_WITH_TIME = ("MOVIE", "SEQUENCE")
+
+
+class _Mesh(NamedTuple):
+    owners: frozenset  # identities of what changes it
+    size: tuple  # of Blender's mesh
+    data: object
+
+
+class _Shader(NamedTuple):
+    """What the nodes of a material or of the world gave."""
+
+    exported: object
+    messages: Messages
+    pictures: frozenset  # identities of Blender's images
+    numbers: frozenset
+    with_time: bool
+
+
+class _Asked:
+    """Stands for Images, and notes what one shader asks of it."""
+
+    def __init__(self, images):
+        self._images = images
+        self.pictures, self.numbers_used, self.with_time = set(), set(), False
+
+    @property
+    def list(self):
+        return self._images.list
+
+    def numbers(self, image, user, tell):
+        found = self._images.numbers(image, user, tell)
+        self.pictures.add(identity(image))
+        self.with_time = self.with_time or image.source in _CHANGES_WITH_TIME
+        if found is not None:
+            self.numbers_used.update(range(found[0], sum(found)))
+        return found
+
+    def repeat(self, pictures):
+        first = self._images.repeat(pictures)
+        self.numbers_used.update(range(first, first + len(pictures)))
+        return first
+
+
+class Parts:
+    def __init__(self):
+        self.images = Images()
+        self.counts = {}
+        self._meshes, self._used_meshes = {}, {}
+        self._shaders, self._used_shaders = {}, {}
+        self._frame = None
+        self._last = None  # snapshot, Messages and Places of the last export
+
+    def begin(self, depsgraph, obey):
+        """Forgets what has changed since the last export.
+
+        (snapshot, Messages) where objects have moved and nothing else has; else None, and end() is to come.
+        """
+        self._used_meshes, self._used_shaders = {}, {}
+        self.counts = dict.fromkeys(("objects", "meshes", "shaders", "images"), 0)
+        self.images.obey = obey
+        updates = [_Update(update) for update in depsgraph.updates]
+        forgotten = self._forget(updates, depsgraph.scene.frame_current_final)
+        last, self._last = self._last, None
+        if last is None or forgotten or not updates or not all(update.moves_only for update in updates):
+            return None
+        snapshot, messages, places = last
+        try:
+            matrices = places.matrices(depsgraph)
+        except (RuntimeError, TypeError):
+            # Another number of entries is there than was: foreach_get refuses.
+            return None
+        snapshot = snapshot.replaced(instances=dataclasses.replace(snapshot.instances, matrices=matrices))
+        self._last = snapshot, messages, places
+        return snapshot, messages
+
+    def _forget(self, updates, frame):
+        """Whether there was anything to forget."""
+        changed = {update.key for update in updates}
+        reshaped = {update.key for update in updates if update.reshapes}
+        moved = {update.key for update in updates if update.moves}
+        pictures = {update.key for update in updates if update.is_picture}
+        later, self._frame = frame != self._frame, frame
+        before = len(self._meshes), len(self._shaders)
+        self._meshes = {key: mesh for key, mesh in self._meshes.items() if not mesh.owners & reshaped}
+        for key, shader in list(self._shaders.items()):
+            by_others = shader.pictures & pictures or shader.exported.objects & moved
+            if key in changed or by_others or shader.with_time and later:
+                del self._shaders[key]
+        if pictures:
+            self.images.forget(pictures, self._numbers())
+        return before != (len(self._meshes), len(self._shaders))
+
+    def mesh(self, thing, owner, data_key, wanted, read):
+        """The mesh of an evaluated object, by read() where it is not there."""
+        data = thing.data
+        size = len(data.vertices), len(data.loops), len(data.polygons)
+        original = thing.original.data
+        key = data_key, identity(original) if original is not None else None, wanted
+        owners = frozenset(identity(item) for item in (thing, owner, original) if item is not None)
+        found = self._meshes.get(key)
+        if found is None or found.size != size:
+            self.count("meshes")
+            found = _Mesh(owners, size, read())
+        self._used_meshes[key] = found._replace(owners=found.owners | owners)
+        return found.data
+
+    def shader(self, block, messages, read):
+        """What read(messages, images) gives of a material or world; it has the identities of objects that it was read from."""
+        key = identity(block)
+        found = self._shaders.get(key)
+        if found is None:
+            self.count("shaders")
+            asked, told, known = _Asked(self.images), Messages(), len(self.images.list)
+            exported = read(told, asked)
+            self.count("images", len(self.images.list) - known)
+            found = _Shader(exported, told, frozenset(asked.pictures), frozenset(asked.numbers_used), asked.with_time)
+        self._used_shaders[key] = found
+        messages.merge(found.messages)
+        return found.exported
+
+    def count(self, kind, number=1):
+        self.counts[kind] += number
+
+    def end(self, snapshot, messages, places):
+        """Keeps what this export has used."""
+        self._meshes, self._used_meshes = self._used_meshes, {}
+        self._shaders, self._used_shaders = self._used_shaders, {}
+        self.images.forget((), self._numbers())
+        self._last = snapshot, messages, places
+
+    def _numbers(self):
+        return frozenset().union(*(shader.numbers for shader in self._shaders.values()))
+
+
+class _Update:
+    """What one of the depsgraph's updates means for an export."""
+
+    def __init__(self, update):
+        block = update.id
+        is_object = isinstance(block, bpy.types.Object)
+        self.key = identity(block)
+        self.is_picture = isinstance(block, bpy.types.Image)
+        self.moves = update.is_updated_transform
+        # A new material is told to all objects and meshes that show it, which keep their shape.
+        self.reshapes = update.is_updated_geometry
+        # Lamps are read together with their place.
+        is_lamp = is_object and block.type == "LIGHT"
+        self.moves_only = is_object and self.moves and not (self.reshapes or update.is_updated_shading or is_lamp)

@@ -1,0 +1,106 @@
+"""What a region of a 3D view shows: the part of it that is rendered, and a camera for that part alone."""
+
+from typing import NamedTuple
+
+import numpy as np
+from mathutils import Vector
+
+from ..bindings import snapshot
+from ..bindings.enums import CameraKind
+from .camera import camera_fields, rigid, window_of
+
+
+class Rectangle(NamedTuple):
+    """In pixels of the region, from its lower left corner."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+    def cut(self, other):
+        x, y = max(self.x, other.x), max(self.y, other.y)
+        right = min(self.x + self.width, other.x + other.width)
+        top = min(self.y + self.height, other.y + other.height)
+        return Rectangle(x, y, max(0, right - x), max(0, top - y))
+
+
+class View(NamedTuple):
+    rectangle: Rectangle
+    camera: snapshot.Camera  # its image is the rectangle, a pixel of the region each
+
+    def coarser(self, size):
+        """The same camera for pixels of size times size of the region's."""
+        width, height = (max(1, round(side / size)) for side in self.rectangle[2:])
+        return self.camera.replaced(width=width, height=height, region_width=width, region_height=height)
+
+
+def export_view(region, region_data, space, depsgraph, messages):
+    """The View of a region; None where nothing of it is to be rendered. region_data: a RegionView3D; space: its SpaceView3D."""
+    whole = Rectangle(0, 0, region.width, region.height)
+    thing = space.camera if region_data.view_perspective == "CAMERA" else None
+    if thing is not None and thing.type == "CAMERA":
+        return _through_camera(thing.evaluated_get(depsgraph), whole, region_data, depsgraph, messages)
+    rectangle = whole
+    if space.use_render_border:
+        edges = space.render_border_min_x, space.render_border_max_x, space.render_border_min_y, space.render_border_max_y
+        rectangle = _border(whole, edges, whole)
+    if min(rectangle[2:]) < 1:
+        return None
+    kind = CameraKind.PERSPECTIVE if region_data.is_perspective else CameraKind.ORTHOGRAPHIC
+    matrix = rigid(np.array(region_data.view_matrix.inverted(), float), "view", messages)
+    start, end = space.clip_start, space.clip_end
+    if kind == CameraKind.ORTHOGRAPHIC:
+        # Blender shows as much behind the place that it looks from as before it.
+        matrix[:, 3] += end * matrix[:, 2]
+        start, end = 0.0, 2.0 * end
+    window = _part(window_of(region_data.window_matrix, kind), whole, rectangle)
+    size = {"width": rectangle.width, "height": rectangle.height}
+    return View(rectangle, snapshot.Camera(matrix, kind, window=window, clip_start=start, clip_end=end, **size))
+
+
+def _through_camera(thing, whole, region_data, depsgraph, messages):
+    render = depsgraph.scene.render
+    frame = _frame(thing, whole, region_data, depsgraph.scene)
+    rectangle = whole
+    if render.use_border:
+        edges = render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y
+        rectangle = _border(frame, edges, whole)
+    if min(rectangle[2:]) < 1:
+        return None
+    fields = camera_fields(thing, depsgraph, messages)
+    kind = fields["kind"]
+    if kind in (CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC):
+        # Blender's own projection of the region knows how the camera's picture lies in it.
+        window = _part(window_of(region_data.window_matrix, kind), whole, rectangle)
+    else:
+        x, y = thing.data.shift_x, thing.data.shift_y
+        window = _part((x, 1.0 + x, y, 1.0 + y), frame, rectangle)
+    return View(rectangle, snapshot.Camera(width=rectangle.width, height=rectangle.height, window=window, **fields))
+
+
+def _part(window, whole, part):
+    """The window of a part of the rectangle that has the given one."""
+    left, right, bottom, top = window
+    x, y = (right - left) / whole.width, (top - bottom) / whole.height
+    start = left + (part.x - whole.x) * x, bottom + (part.y - whole.y) * y
+    return start[0], start[0] + part.width * x, start[1], start[1] + part.height * y
+
+
+def _frame(thing, whole, region_data, scene):
+    """The rectangle, in fractions of pixels, in which the camera's picture stands; it may reach beyond the region."""
+    matrix = region_data.perspective_matrix @ thing.matrix_world.normalized()
+    corners = [matrix @ Vector((*corner, 1.0)) for corner in thing.data.view_frame(scene=scene)]
+    places = np.array([[corner.x / corner.w, corner.y / corner.w] for corner in corners])
+    low, high = ((0.5 + 0.5 * places.min(axis=0)), (0.5 + 0.5 * places.max(axis=0)))
+    size = np.array((whole.width, whole.height))
+    return Rectangle(*(low * size).tolist(), *((high - low) * size).tolist())
+
+
+def _border(frame, edges, whole):
+    """The pixels of the region that a border, as fractions of the frame, leaves."""
+    left, right, bottom, top = edges
+    x, y = round(frame.x + left * frame.width), round(frame.y + bottom * frame.height)
+    width = round(frame.x + right * frame.width) - x
+    height = round(frame.y + top * frame.height) - y
+    return Rectangle(x, y, max(0, width), max(0, height)).cut(whole)

@@ -1,0 +1,225 @@
+"""A window's exports after one edit each: what was read for them, and whether the snapshot is that of an export of everything."""
+
+import dataclasses
+import os
+import tempfile
+
+import bpy
+import numpy as np
+import stage
+
+from addon.bindings import snapshot
+from addon.export.parts import Parts
+from addon.export.scene import ExportOptions, export_scene
+
+KINDS = ("objects", "meshes", "shaders", "images")
+
+
+def _picture(name, value):
+    path = os.path.join(tempfile.mkdtemp(), f"{name}.png")
+    image = bpy.data.images.new(name, 8, 8)
+    image.pixels.foreach_set(np.tile(np.array([value, 0.5, 0.25, 1.0], np.float32), 64))
+    image.filepath_raw, image.file_format = path, "PNG"
+    image.save()
+    bpy.data.images.remove(image)
+    return bpy.data.images.load(path)
+
+
+def _pictured(name, image):
+    material = stage.shader("ShaderNodeEmission", name)
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    tree.links.new(node.outputs["Color"], next(n for n in tree.nodes if n.type == "EMISSION").inputs["Color"])
+    return material
+
+
+def _grouped(name, group):
+    """A material whose colour is in a node group."""
+    material = stage.shader(name=name)
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeGroup")
+    node.node_tree = group
+    tree.links.new(node.outputs[0], next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
+    return material
+
+
+def _group():
+    group = bpy.data.node_groups.new("Colours", "ShaderNodeTree")
+    if hasattr(group, "interface"):
+        group.interface.new_socket("Color", in_out="OUTPUT", socket_type="NodeSocketColor")
+    else:
+        group.outputs.new("NodeSocketColor", "Color")
+    color, out = group.nodes.new("ShaderNodeRGB"), group.nodes.new("NodeGroupOutput")
+    group.links.new(color.outputs[0], out.inputs[0])
+    return group
+
+
+def _placed(name, thing):
+    """A material that is coloured by the coordinates of another object."""
+    material = stage.shader(name=name)
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexCoord")
+    node.object = thing
+    tree.links.new(node.outputs["Object"], next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
+    return material
+
+
+def _box(number, name, material, data=None):
+    if data is not None:
+        item = stage.link(name, data, (number, 0, 0))
+    else:
+        item = stage.cube(0.8, material, location=(number, 0, 0))
+        item.data.uv_layers.new()
+        item.name = item.data.name = name
+    return item
+
+
+def _build():
+    """Seven objects that show meshes, five of these; six materials and a world; two pictures."""
+    scene = stage.empty()
+    first, second = _picture("first", 0.25), _picture("second", 0.75)
+    plain = _box(0, "Plain", stage.shader(name="Plain", Color=(0.8, 0.4, 0.2)))
+    _box(1, "Twin", None, plain.data)
+    _box(2, "Pictured", _pictured("First", first))
+    _box(3, "Other", _pictured("Second", second))
+    empty = bpy.data.objects.new("Place", None)
+    scene.collection.objects.link(empty)
+    _box(4, "Placed", _placed("Placed", empty))
+    keyed = _box(5, "Keyed", _grouped("Grouped", _group()))
+    keyed.shape_key_add(name="Basis")
+    keyed.shape_key_add(name="Wide").data[0].co.z += 0.8
+    key = keyed.data.shape_keys.key_blocks["Wide"]
+    for frame, value in ((1, 0.0), (3, 1.0)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+    _box(6, "Lone", bpy.data.materials["Plain"], plain.data.copy())
+    stage.light("POINT", 100.0, (0, -3, 5))
+    stage.sky()
+    stage.camera()
+    scene.frame_set(1)
+    return scene
+
+
+def _edit_mesh():
+    mesh = bpy.data.objects["Plain"].data
+    mesh.vertices[0].co.x += 0.25
+    mesh.update()
+
+
+def _node(material, kind):
+    return next(node for node in bpy.data.materials[material].node_tree.nodes if node.type == kind)
+
+
+def _edit_material():
+    _node("Plain", "BSDF_DIFFUSE").inputs["Color"].default_value = (0.1, 0.9, 0.3, 1.0)
+
+
+def _edit_group():
+    next(n for n in bpy.data.node_groups["Colours"].nodes if n.type == "RGB").outputs[0].default_value = (0.9, 0.1, 0.3, 1.0)
+
+
+def _paint():
+    image = bpy.data.images[next(image.name for image in bpy.data.images if image.name.startswith("first"))]
+    image.pixels.foreach_set(np.full(256, 0.5, np.float32))
+    image.update()
+    image.update_tag()
+
+
+def _swap_pictures():
+    _node("First", "TEX_IMAGE").image = _node("Second", "TEX_IMAGE").image
+
+
+def _bend():
+    bpy.data.objects["Twin"].modifiers.new("Bend", "SIMPLE_DEFORM").angle = 1.0
+
+
+def _set(path, value):
+    def edit():
+        owner, name = path.rsplit(".", 1)
+        target = eval(owner, {"bpy": bpy, "objects": bpy.data.objects, "scene": bpy.context.scene})
+        setattr(target, name, value)
+
+    return edit
+
+
+EDITS = {
+    "nothing": _set("scene.cursor.location", (1, 2, 3)),
+    "moved object": _set("objects['Lone'].location", (6, 1, 0)),
+    "moved twice": _set("objects['Lone'].rotation_euler", (0, 0, 1)),
+    "moved camera": _set("objects['Camera'].location", (1, -6, 3)),
+    "moved lamp": _set("objects['Light'].location", (1, -3, 5)),
+    "moved place": _set("objects['Place'].location", (1, 1, 1)),
+    "edited material": _edit_material,
+    "edited group": _edit_group,
+    "edited mesh": _edit_mesh,
+    "edited world": _set("scene.world.node_tree.nodes['Background'].inputs['Strength'].default_value", 2.0),
+    "edited lamp": _set("bpy.data.lights[0].energy", 50.0),
+    "animated frame": lambda: bpy.context.scene.frame_set(2),
+    "still frame": lambda: bpy.context.scene.frame_set(5) or bpy.context.scene.frame_set(6),
+    "hidden object": _set("objects['Other'].hide_viewport", True),
+    "shown object": _set("objects['Other'].hide_viewport", False),
+    "painted picture": _paint,
+    "other picture": _swap_pictures,
+    "modifier": _bend,
+}
+
+
+class _Window:
+    """Exports at each of the depsgraph's updates, as a window does."""
+
+    def __init__(self):
+        self.parts = Parts()
+        self.camera = snapshot.Camera()
+        self.exports = []
+
+    def export(self, _scene, depsgraph):
+        options = ExportOptions(view=self.camera, parts=self.parts)
+        got, messages = export_scene(depsgraph, options)
+        whole, others = export_scene(depsgraph, dataclasses.replace(options, parts=None))
+        self.exports.append((dict(self.parts.counts), _plain(got) == _plain(whole), messages.lines() == others.lines()))
+
+
+def _plain(given):
+    """With pictures, materials and meshes in the places where they are asked for: their numbers may differ."""
+    table = given.instances
+    rows = [
+        (given.meshes[mesh], tuple(_material(given, table.slots[first + i]) for i in range(count)), matrix.tolist())
+        for mesh, first, count, matrix in zip(table.meshes, table.first_slots, table.slot_counts, table.matrices, strict=True)
+    ]
+    return rows, given.lights, _with_pictures(given, given.world), given.settings
+
+
+def _material(given, number):
+    return _with_pictures(given, given.materials[number])
+
+
+def _with_pictures(given, shader):
+    nodes = [dataclasses.replace(node, image=0) for node in shader.nodes]
+    images = [given.images[node.image + i] for node in shader.nodes for i in range(node.image_count)]
+    return dataclasses.replace(shader, nodes=tuple(nodes)), tuple(images)
+
+
+def edits():
+    """{edit: counts of all exports that it led to, same snapshot, same messages}"""
+    _build()
+    window = _Window()
+    results = {}
+    bpy.context.view_layer.update()
+    window.export(None, bpy.context.evaluated_depsgraph_get())
+    results["first"] = window.exports.pop()
+    handlers = bpy.app.handlers
+    handlers.depsgraph_update_post.append(window.export)
+    handlers.frame_change_post.append(window.export)
+    try:
+        for name, edit in EDITS.items():
+            edit()
+            bpy.context.view_layer.update()
+            counts = {kind: sum(export[0][kind] for export in window.exports) for kind in KINDS}
+            alike = [all(export[i] for export in window.exports) for i in (1, 2)]
+            results[name] = (counts, *alike, len(window.exports))
+            window.exports.clear()
+    finally:
+        handlers.depsgraph_update_post.remove(window.export)
+        handlers.frame_change_post.remove(window.export)
+    return results
