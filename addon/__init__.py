@@ -37,6 +37,7 @@ def register():
         measuring,
         preferences,
         presets,
+        preview,
         properties,
         quality,
         render_job,
@@ -44,10 +45,11 @@ def register():
     )
     from .export import main_thread
     from .registering import add_all
+    from .viewport import viewport
 
     modules = (properties, preferences, main_thread, engine, measuring, features, quality, check_scene, course_groups, presets)
-    # A render that goes on is ended first, while all is there.
-    modules += (ui, bug_report, manual, render_job)
+    # What renders is ended first, while all is there.
+    modules += (ui, bug_report, manual, viewport, preview, render_job)
     add_all(modules, lambda module: module.register(), lambda module: module.unregister())
     _registered.extend(modules)
     # Blender as a Python module hangs (4.5) or crashes (4.2) at exit while an engine class is registered; the program itself

@@ -9,7 +9,7 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import as_rendered, denoise, passes, redraw, render_job, stamp
+from . import as_rendered, denoise, passes, preview, redraw, render_job, stamp
 from .bindings.abi import LancerError
 from .bindings.schedule import SAMPLES, TARGET, TIME, Schedule
 from .bindings.session import Cancelled, Session
@@ -24,6 +24,7 @@ from .of_scenes import OfScenes
 from .pace import Pace
 from .picture import Picture
 from .priority import lowered
+from .viewport.viewport import Viewport
 
 # Of the last render of each scene, for the panel and for scripts: numbers, and Messages. The numbers are those of the last view
 # layer; "layers" has those of all, by their names.
@@ -55,7 +56,7 @@ _REMAINING = {SAMPLES: "", TARGET: " to the target error", TIME: " of the time l
 class LancerRenderEngine(bpy.types.RenderEngine):
     bl_idname = main_thread.ENGINE
     bl_label = "Lancer"
-    bl_use_preview = False
+    bl_use_preview = True
     bl_use_postprocess = True
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
@@ -65,11 +66,14 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     _picture = None
     _uses = ()
     _gave_up = False
+    _viewport = None
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register_passes(self, scene, renderlayer)
 
     def update(self, data=None, depsgraph=None):
+        if self.is_preview:
+            return
         if as_rendered.is_wanted():
             as_rendered.take(self, depsgraph)
             return
@@ -78,6 +82,9 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             self._guarded(depsgraph.scene, self._export, depsgraph)
 
     def render(self, depsgraph):
+        if self.is_preview:
+            preview.render(self, depsgraph)
+            return
         if as_rendered.is_wanted():
             return
         with self._working():
@@ -94,6 +101,18 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 # The layers that were to follow do not come any more.
                 self._picture = None
             redraw.properties_after_render()
+
+    def view_update(self, context, depsgraph):
+        self._view().update(context, depsgraph)
+
+    def view_draw(self, context, depsgraph):
+        self._view().draw(context, depsgraph)
+
+    def _view(self):
+        if self._viewport is None:
+            # It goes with the engine, which Blender frees when the view is over.
+            self._viewport = Viewport(self)
+        return self._viewport
 
     @contextlib.contextmanager
     def _working(self):

@@ -32,7 +32,7 @@ class OfScenes(MutableMapping):
 
 
 def identity(block):
-    """What stays the same of a scene, or another data-block, when it is renamed, edited and undone, and is that of no later one.
+    """What stays the same of a scene, or of other data, when it is renamed, edited and undone, and is that of no later one.
 
     Blenders before 4.1 tell its address only, which a later one may have: there one with another name is another one.
     """

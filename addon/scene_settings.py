@@ -45,6 +45,29 @@ class LancerSceneSettings(bpy.types.PropertyGroup):
         soft_max=3600.0,
         default=0.0,
     )
+    preview_samples: IntProperty(
+        name="Viewport Samples",
+        description="Rays through each pixel of a 3D view in Rendered shading, after which it rests; 0 = it never does",
+        min=0,
+        soft_max=4096,
+        max=1 << 24,
+        default=1024,
+    )
+    preview_start_resolution: IntProperty(
+        name="Start Resolution",
+        description="While a 3D view moves, and right after a change, its pixels become as coarse as it takes to show a "
+        "picture at once, but the shorter side keeps this many",
+        subtype="PIXEL",
+        min=8,
+        soft_max=1024,
+        max=16384,
+        default=64,
+    )
+    use_preview_denoising: BoolProperty(
+        name="Viewport Denoising",
+        description="Have Blender's Open Image Denoise guess what lies under the noise of 3D views in Rendered shading",
+        default=False,
+    )
     seed: IntProperty(name="Seed", description="Another number gives another pattern of noise", min=0, default=0)
     use_animated_seed: BoolProperty(
         name="Animate Seed", description="Another pattern of noise in each frame of an animation", default=False

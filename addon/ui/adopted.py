@@ -26,21 +26,17 @@ _REPLACED = {
     "RENDER_PT_simplify_render",
     "RENDER_PT_simplify_viewport",
 }
-# What has no effect: previews, stereoscopy, Freestyle, the light of volumes and strands.
+# What has no effect: stereoscopy, Freestyle, the light of volumes and strands.
 _WITHOUT_EFFECT = {
     "DATA_PT_camera_stereoscopy",
-    "DATA_PT_preview",
     "DATA_PT_volume_render",
     "MATERIAL_PT_freestyle_line",
-    "MATERIAL_PT_preview",
     "PARTICLE_PT_hair_shape",
     "PARTICLE_PT_render_path",
     "PARTICLE_PT_render_path_timing",
     "RENDER_PT_freestyle",
     "RENDER_PT_output_views",
     "RENDER_PT_stereoscopy",
-    "TEXTURE_PT_preview",
-    "WORLD_PT_preview",
 }
 
 

@@ -1,9 +1,10 @@
-"""The panel that tells how the last render went: its error, its speed, and what of the scene it could not show."""
+"""The panels that tell how the last render went, its error and its speed, and what of the scene could not be shown."""
 
 import bpy
 
 from .. import engine, stamp
 from ..harm import Harm
+from ..viewport import viewport
 from .render import LancerRenderPanel
 from .sentences import sentence
 
@@ -29,10 +30,27 @@ class LANCER_RENDER_PT_messages(LancerRenderPanel, bpy.types.Panel):
         if messages is None:
             column.label(text="Nothing rendered yet")
             return
-        if all(message.harm == Harm.HINT for message in messages.told()):
-            sentence(column, context, "All of the scene was rendered as it is", "CHECKMARK")
-        for message in messages.told():
-            sentence(column, context, message.line, "INFO" if message.harm == Harm.HINT else "ERROR")
+        _draw_messages(column, context, messages, "All of the scene was rendered as it is")
 
 
-CLASSES = (LANCER_RENDER_PT_messages,)
+class LANCER_RENDER_PT_viewport_messages(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Messages of the Viewport"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.scene in viewport.last_messages
+
+    def draw(self, context):
+        column = self.layout.column(align=True)
+        _draw_messages(column, context, viewport.last_messages[context.scene], "All of the scene is shown as it is")
+
+
+def _draw_messages(column, context, messages, none):
+    if all(message.harm == Harm.HINT for message in messages.told()):
+        sentence(column, context, none, "CHECKMARK")
+    for message in messages.told():
+        sentence(column, context, message.line, "INFO" if message.harm == Harm.HINT else "ERROR")
+
+
+CLASSES = (LANCER_RENDER_PT_messages, LANCER_RENDER_PT_viewport_messages)

@@ -67,6 +67,22 @@ def draw_measuring(column, scene, operator, doing="Measuring"):
     return True
 
 
+class LANCER_RENDER_PT_sampling_viewport(LancerRenderPanel, bpy.types.Panel):
+    """Of 3D views in Rendered shading."""
+
+    bl_label = "Viewport"
+    bl_parent_id = "LANCER_RENDER_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        settings = context.scene.lancer
+        column = self._column()
+        column.prop(settings, "preview_samples", text="Samples")
+        row = column.row()
+        row.active = settings.integrator != "NORMALS" and not denoise.missing()
+        row.prop(settings, "use_preview_denoising", text="Denoise")
+
+
 class LANCER_RENDER_PT_denoising(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Denoise"
     bl_parent_id = "LANCER_RENDER_PT_sampling"
@@ -251,6 +267,16 @@ class LANCER_RENDER_PT_acceleration(LancerRenderPanel, bpy.types.Panel):
         column.prop(context.scene.lancer, "features")
 
 
+class LANCER_RENDER_PT_performance_viewport(LancerRenderPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "LANCER_RENDER_PT_performance"
+
+    def draw(self, context):
+        column = self._column()
+        column.prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
+        column.prop(context.scene.lancer, "preview_start_resolution", text="Start Pixels")
+
+
 class LANCER_RENDER_PT_final_render(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Final Render"
     bl_parent_id = "LANCER_RENDER_PT_performance"
@@ -261,6 +287,7 @@ class LANCER_RENDER_PT_final_render(LancerRenderPanel, bpy.types.Panel):
 
 CLASSES = (
     LANCER_RENDER_PT_sampling,
+    LANCER_RENDER_PT_sampling_viewport,
     LANCER_RENDER_PT_denoising,
     LANCER_RENDER_PT_sampling_advanced,
     LANCER_RENDER_PT_light_paths,
@@ -277,5 +304,6 @@ CLASSES = (
     LANCER_RENDER_PT_performance,
     LANCER_RENDER_PT_threads,
     LANCER_RENDER_PT_acceleration,
+    LANCER_RENDER_PT_performance_viewport,
     LANCER_RENDER_PT_final_render,
 )

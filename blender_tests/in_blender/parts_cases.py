@@ -1,4 +1,4 @@
-"""A window's exports after one edit each: what was read for them, and whether the snapshot is that of an export of everything."""
+"""A window's exports after one edit each: what was read, and whether the snapshot is that of an export of everything."""
 
 import dataclasses
 import os

@@ -1,0 +1,81 @@
+"""Small pictures of a material, a world or a lamp, for Blender's preview panels and icons.
+
+Blender renders them of scenes of its own, in threads of its own, beside all else that the engine does: nothing is told of them.
+"""
+
+import contextlib
+import dataclasses
+import logging
+import threading
+import time
+
+from . import passes
+from .bindings.abi import LancerError
+from .bindings.enums import Pass
+from .bindings.schedule import Schedule
+from .bindings.session import Cancelled, Session
+from .export import main_thread
+from .export.scene import ExportOptions, export_scene
+from .priority import lowered
+
+_SAMPLES = 64
+_STEP = 0.02
+_PATIENCE = 0.02  # seconds between two looks whether all are over
+_WANTED = (passes.RenderPass("Combined", "RGBA", "COLOR", Pass.COMBINED),)
+
+_ending = threading.Event()
+_running = set()
+
+
+def render(engine, depsgraph):
+    """In the place of engine.render(): shows what the depsgraph has, ever finer."""
+    with _counted():
+        try:
+            _render(engine, depsgraph, lambda: _ending.is_set() or engine.test_break())
+        except Cancelled:
+            pass
+        except LancerError as error:
+            engine.error_set(f"Lancer: {error}")
+        except Exception as error:
+            logging.getLogger(__name__).exception("a preview failed")
+            engine.error_set(f"Lancer: {type(error).__name__}: {error}")
+
+
+def _render(engine, depsgraph, is_over):
+    snapshot, _ = export_scene(depsgraph, ExportOptions(engine.camera_override), is_over)
+    settings = dataclasses.replace(snapshot.settings, samples=_SAMPLES, target_error=0.0, time_limit=0.0)
+    snapshot.set("settings", settings)
+    with lowered(lambda: Session.upload(snapshot, poll=is_over, release=True)) as session:
+        result = engine.begin_result(0, 0, session.camera.region_width, session.camera.region_height)
+        try:
+            schedule = Schedule(session)
+            while schedule.start():
+                while not schedule.wait(_STEP).finished:
+                    if is_over():
+                        schedule.cancel()
+                passes.fill(result.layers[0], session.read, _WANTED)
+                engine.update_result(result)
+        finally:
+            engine.end_result(result)
+
+
+@contextlib.contextmanager
+def _counted():
+    this = object()
+    _running.add(this)
+    try:
+        yield
+    finally:
+        _running.discard(this)
+
+
+def register():
+    _ending.clear()
+
+
+def unregister():
+    """Waits for those that are being rendered: they use the engine's class."""
+    _ending.set()
+    while _running:
+        main_thread.serve()
+        time.sleep(_PATIENCE)

@@ -1,0 +1,198 @@
+"""One 3D view in Rendered shading: what Blender tells of its scene goes to a painter, and the newest picture to the screen."""
+
+import logging
+import weakref
+
+import bpy
+from bpy.app.handlers import persistent
+
+from .. import denoise, redraw
+from ..bindings import snapshot
+from ..bindings.abi import LancerError
+from ..bindings.enums import Pass
+from ..export.messages import Messages
+from ..export.parts import Parts
+from ..export.scene import ExportOptions, export_scene
+from ..export.settings import export_settings
+from ..export.view import export_view
+from ..harm import Harm
+from ..of_scenes import OfScenes
+from .canvas import Canvas
+from .painter import Painter, Wanted
+from .sizes import coarsest
+
+# What the newest export for a view of each scene could not show as it is: Messages.
+last_messages = OfScenes()
+
+_TICK = 0.01  # seconds between two looks for a new picture
+_MANY = 1 << 24
+# Of settings, what the scene in the library is built by.
+_BUILT_BY = ("accelerator", "threads")
+_NO_CAMERA = snapshot.Camera()
+_FILTERS = tuple(name for name in bpy.types.SpaceView3D.bl_rna.properties.keys() if name.startswith("show_object_viewport"))
+
+_open = weakref.WeakSet()
+
+
+class Viewport:
+    """Belongs to one engine of Blender's, and ends with it: nothing else may hold it for long."""
+
+    def __init__(self, engine):
+        self._engine = weakref.ref(engine)
+        self._parts, self._canvas = Parts(), Canvas()
+        self._contents = self._wanted = None
+        self._sight = None
+        self._failure = ""
+        self._losses = 0  # messages that tell of more than a hint
+        self._drawn = None  # the Picture that is on the screen, and why there is none of what is wanted
+        self.painter = Painter()
+        self.painter.start()
+        weakref.finalize(self, self.painter.close)
+        _open.add(self)
+
+    def update(self, context, depsgraph):
+        """Reads what has changed."""
+        try:
+            self._export(context, depsgraph)
+            self._failure = ""
+        except LancerError as error:
+            self._failure = str(error)
+        except Exception as error:
+            logging.getLogger(__name__).exception("the viewport's export failed")
+            self._failure = f"{type(error).__name__}: {error}"
+
+    def draw(self, context, depsgraph):
+        engine = self._engine()
+        sight = _sight(context.space_data)
+        if self._contents is None or sight != self._sight:
+            # Blender tells of no update where a view starts, or shows other objects than before.
+            self.update(context, depsgraph)
+        view = self._view(context, depsgraph)
+        if self._contents is not None and view is not None:
+            self._want(engine, depsgraph, view)
+        self._drawn = self.painter.picture, self.painter.failure
+        picture = self._drawn[0]
+        if picture is not None and view is not None:
+            self._canvas.draw(picture.image, view.rectangle)
+        engine.update_stats("", self._text(picture))
+        _watch()
+
+    def look(self):
+        """Has the view drawn where there is something new. Whether there may be more to come."""
+        picture, failure = self.painter.picture, self.painter.failure
+        if self._drawn is None or picture is not self._drawn[0] or failure != self._drawn[1]:
+            engine = self._engine()
+            if engine is not None:
+                engine.tag_redraw()
+        return self.painter.is_busy
+
+    def _export(self, context, depsgraph):
+        self._sight = _sight(context.space_data)
+        options = ExportOptions(view=_NO_CAMERA, passes=(Pass.COMBINED,), space=context.space_data, parts=self._parts)
+        contents, messages = export_scene(depsgraph, options)
+        self._set_contents(contents, contents.settings)
+        told = last_messages.get(depsgraph.scene)
+        last_messages[depsgraph.scene] = messages
+        if told is None or told.lines() != messages.lines():
+            redraw.properties()
+        self._losses = sum(message.harm > Harm.HINT for message in messages.told())
+
+    def _set_contents(self, contents, settings):
+        contents = contents.replaced(settings=snapshot.Settings(**{name: getattr(settings, name) for name in _BUILT_BY}))
+        if self._contents is None or contents != self._contents:
+            self._contents = contents
+
+    def _view(self, context, depsgraph):
+        """The part of the region to be rendered and its camera; None where there is none."""
+        told = Messages()
+        try:
+            view = export_view(context.region, context.region_data, context.space_data, depsgraph, told)
+        except LancerError as error:
+            self._failure = str(error)
+            return None
+        if depsgraph.scene in last_messages:
+            last_messages[depsgraph.scene].merge(told)
+        return view
+
+    def _want(self, engine, depsgraph, view):
+        own = depsgraph.scene.lancer
+        # Of add-ons' settings Blender tells no update.
+        settings = export_settings(depsgraph, (Pass.COMBINED,), None, Messages())
+        self._set_contents(self._contents, settings)
+        settings = settings.replaced(samples=own.preview_samples or _MANY, target_error=0.0, time_limit=0.0)
+        finest = max(1, engine.get_preview_pixel_size(depsgraph.scene))
+        denoising = own.use_preview_denoising and own.integrator != "NORMALS" and not denoise.missing()
+        most = coarsest(view.rectangle, finest, own.preview_start_resolution)
+        wanted = Wanted(self._contents, settings, view, finest, most, denoising)
+        if self._wanted is None or not _same(wanted, self._wanted):
+            self._wanted = wanted
+            self.painter.want(wanted)
+
+    def _text(self, picture):
+        if self._failure or self.painter.failure:
+            return f"Lancer: {self._failure or self.painter.failure}"
+        if self.painter.is_building:
+            return "Building the scene"
+        own = self._wanted.settings.samples if self._wanted else 0
+        samples = f"Sample {picture.samples}" + (f"/{own}" if own != _MANY else "")
+        if picture.size > picture.wanted.finest:
+            return f"{samples} of 1 in {picture.size**2} pixels"
+        parts = [samples]
+        if picture.error is not None and picture.error.known:
+            parts.append(f"Error {picture.error.error:.1%}")
+        if picture.denoised:
+            parts.append("denoised")
+        if self._losses:
+            parts.append(f"{self._losses} message{'s' if self._losses > 1 else ''} in the render properties")
+        return " | ".join(parts)
+
+
+def _same(a, b):
+    """Whether two Wanted ask for the same picture."""
+    return a.contents is b.contents and a[1:] == b[1:]
+
+
+def _sight(space):
+    """What a view leaves out of the scene by itself."""
+    return space.local_view is not None, *(getattr(space, name) for name in _FILTERS)
+
+
+def _watch():
+    if not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=_TICK, persistent=True)
+
+
+def _tick():
+    rendering = bpy.app.is_job_running("RENDER")
+    busy = False
+    for viewport in list(_open):
+        viewport.painter.waits = rendering
+        busy = viewport.look() or busy
+    return _TICK if busy else None
+
+
+def end():
+    """Ends all views and waits until their threads are gone."""
+    painters = [viewport.painter for viewport in _open]
+    for painter in painters:
+        painter.close()
+    for painter in painters:
+        painter.join()
+
+
+@persistent
+def _forget(*_):
+    """Another file's scenes may have the same names."""
+    last_messages.clear()
+
+
+def register():
+    bpy.app.handlers.load_pre.append(_forget)
+
+
+def unregister():
+    end()
+    bpy.app.handlers.load_pre.remove(_forget)
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+    last_messages.clear()

@@ -1,0 +1,117 @@
+"""Rendered shading in a real window of Debian's Blender 3.4.1: what is shown, what edits do to it, and how it ends."""
+
+import json
+import os
+import subprocess
+
+import blenders
+import pytest
+import windows
+from conftest import HERE
+
+SCREEN = (1280, 800)
+# What the program says of files and of itself.
+_KNOWN = ("Blender ", "Info: ", "Read blend: ", "Read prefs: ", "Saved session recovery", "Saved: ")
+_PATIENCE = 1500
+ENDINGS = ("toggle", "undo", "mode", "engine", "load", "addon", "quad", "window", "f12")
+
+
+@pytest.fixture(scope="module")
+def display():
+    with windows.screen(*SCREEN) as name:
+        yield name
+
+
+@pytest.fixture
+def window(display, tmp_path):
+    def run(case, *arguments):
+        """The result of a case of in_blender/viewport_steps.py; whatever else is said on the terminal fails."""
+        script = os.path.join(HERE, "in_blender", "window_viewport.py")
+        place = ["-p", "0", "0", *map(str, SCREEN)]
+        done = subprocess.run(
+            [blenders.program(), "--factory-startup", *place, "-P", script, "--", str(tmp_path), case, *map(str, arguments)],
+            env=blenders.environment(tmp_path, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1"),
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=_PATIENCE,
+        )
+        said = [line for line in (done.stdout + done.stderr).splitlines() if line and not line.startswith(_KNOWN)]
+        assert done.returncode == 0, said[-20:]
+        with open(tmp_path / "result.json", encoding="utf-8") as file:
+            result = json.load(file)
+        assert "error" not in result, result["error"]
+        assert not said
+        return result
+
+    return run
+
+
+def test_a_view_shows_points_where_blender_shows_them(window):
+    got = window("places")
+    # Blender projects in single precision: 2^-24 of some thousand pixels, times the dozen operations of two matrices.
+    assert {name: far for name, (far, *_) in got.items() if far > 1e-3} == {}
+    rectangles = {name: values[1:5] for name, values in got.items()}
+    width, height = got["free"][5:]
+    assert rectangles["free"] == rectangles["camera"] == rectangles["shifted"] == [0, 0, width, height]
+    assert rectangles["border"] == [round(0.2 * width), round(0.3 * height), *(round(0.5 * width), round(0.6 * height))]
+    x, y, w, h = rectangles["camera_border"]
+    assert 0 < x < x + w < width and 0 < y < y + h < height and rectangles["camera_orthographic"] == [x, y, w, h]
+
+
+def test_a_view_through_the_camera_is_what_f12_renders(window):
+    """The same samples, but for the border's rounding to whole pixels, half of one: edges of 8 x 8 blocks move by 1/16.
+
+    Of blocks as these some tenth has an edge with a contrast of at most the mean, so 1/160 is left of it.
+    """
+    got = window("alike")
+    assert set(got) == {"camera", "shifted", "blurred", "panoramic", "camera_orthographic"}
+    assert {name: value for name, value in got.items() if value > 1 / 160} == {}
+
+
+def test_a_view_refines(window):
+    got = window("refining")
+    assert got["done"]
+    sizes, samples = zip(*got["drawn"], strict=True)
+    # Ever finer, then ever more samples.
+    assert list(sizes) == sorted(sizes, reverse=True) and sizes[-1] == 1
+    assert list(samples) == sorted(samples) and samples[-1] == 16
+    assert got["texts"][0] == "Building the scene"
+    assert got["texts"][-1].startswith("Sample 16/16 | Error ")
+
+
+def test_edits_show_the_last_picture_until_the_new_one_is_there(window):
+    got = window("edits")
+    assert all(result["done"] and result["always"] and result["ordered"] and result["change"] > 0.0 for result in got.values())
+    assert [name for name, result in got.items() if not result["rebuilt"]] == ["film", "bounces", "turned"]
+
+
+def test_what_changes_no_picture_renders_nothing(window):
+    assert window("selects") == {"same": True}
+
+
+def test_colours_on_the_screen_are_those_of_the_display_transform(window):
+    """sRGB's curve of 0.5, 0.25 and 0.1 gives 187.5, 136.96 and 88.9."""
+    assert window("screen")["color"] in ([187, 137, 89], [188, 137, 89])
+
+
+@pytest.mark.parametrize("kind", ENDINGS)
+def test_whatever_ends_a_view_leaves_nothing_behind(window, kind):
+    assert window("stress", kind, 3) == {"went": 3, "threads": 1, "left": []}
+
+
+def test_the_program_can_be_left_while_a_view_renders(window):
+    assert window("leave")["rendered"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ENDINGS)
+def test_a_hundred_endings(window, kind):
+    assert window("stress", kind, 100) == {"went": 100, "threads": 1, "left": []}
+
+
+@pytest.mark.slow
+def test_a_hundred_leavings(window):
+    for _ in range(100):
+        assert window("leave")["rendered"]
