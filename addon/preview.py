@@ -53,8 +53,9 @@ def _render(engine, depsgraph, is_over):
                 while not schedule.wait(_STEP).finished:
                     if is_over():
                         schedule.cancel()
-                passes.fill(result.layers[0], session.read, _WANTED)
-                engine.update_result(result)
+                if not is_over():
+                    passes.fill(result.layers[0], session.read, _WANTED)
+                    engine.update_result(result)
         finally:
             engine.end_result(result)
 

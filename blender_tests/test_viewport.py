@@ -55,7 +55,8 @@ def test_a_view_shows_points_where_blender_shows_them(window):
     rectangles = {name: values[1:5] for name, values in got.items()}
     width, height = got["free"][5:]
     assert rectangles["free"] == rectangles["camera"] == rectangles["shifted"] == [0, 0, width, height]
-    assert rectangles["border"] == [round(0.2 * width), round(0.3 * height), *(round(0.5 * width), round(0.6 * height))]
+    left, right, bottom, top = (round(edge * side) for edge, side in ((0.2, width), (0.7, width), (0.3, height), (0.9, height)))
+    assert rectangles["border"] == [left, bottom, right - left, top - bottom]
     x, y, w, h = rectangles["camera_border"]
     assert 0 < x < x + w < width and 0 < y < y + h < height and rectangles["camera_orthographic"] == [x, y, w, h]
 

@@ -14,6 +14,16 @@ class LancerWorldPanel(LancerPanel):
         return super().poll(context) and context.world is not None
 
 
+class LANCER_WORLD_PT_preview(LancerWorldPanel, bpy.types.Panel):
+    """Blender has such panels for materials and lamps; this one is Cycles' own."""
+
+    bl_label = "Preview"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        self.layout.template_preview(context.world)
+
+
 class LANCER_WORLD_PT_surface(LancerWorldPanel, bpy.types.Panel):
     bl_label = "Surface"
 
@@ -98,6 +108,7 @@ class LANCER_WORLD_PT_classic(LancerWorldPanel, bpy.types.Panel):
 
 
 CLASSES = (
+    LANCER_WORLD_PT_preview,
     LANCER_WORLD_PT_surface,
     LANCER_WORLD_PT_mist,
     LANCER_WORLD_PT_ambient_occlusion,
