@@ -18,7 +18,7 @@ DECLARATION = "denoised: the error given is that of the picture before denoising
 _AS_IT_IS = "the picture is shown with its noise"
 # What guides the network, as in Cycles by default.
 _GUIDES = (Pass.ALBEDO, Pass.DENOISING_NORMAL)
-GUIDE_SAMPLES = 32
+_GUIDE_SAMPLES = 32
 
 
 def wanted(scene, view_layer):
@@ -43,15 +43,14 @@ def ready(scene, view_layer):
     return wanted(scene, view_layer) and not missing()
 
 
-def apply(session, poll=None, tell=None, guides=None):
+def apply(session, poll=None, tell=None):
     """(Denoised, "") of the session's picture; (None, "") where poll() said to stop; (None, why) where it failed.
 
-    tell(text) is called while it works. guides: what render_guides gave for the same view; by default it is asked now.
+    tell(text) is called while it works.
     """
     started = time.monotonic()
     try:
-        if guides is None:
-            guides = render_guides(session, poll, tell)
+        guides = _guides(session, poll, tell)
         color = session.read(Pass.COMBINED)
         threads = session.settings.threads
 
@@ -69,8 +68,8 @@ def apply(session, poll=None, tell=None, guides=None):
         return None, f"{error}; {_AS_IT_IS}"
 
 
-def render_guides(session, poll=None, tell=None):
-    """Albedo and normal of the picture's own first samples. Raises Cancelled.
+def _guides(session, poll, tell):
+    """Albedo and normal of the picture's own first samples.
 
     They are rendered by themselves: beside them each sample of the picture would take longer, and few of them are enough.
     """
@@ -79,7 +78,7 @@ def render_guides(session, poll=None, tell=None):
     if tell is not None:
         tell("Denoising: looking at surfaces")
     rendered = session.statistics().samples // (session.camera.region_width * session.camera.region_height)
-    samples = max(1, min(rendered, GUIDE_SAMPLES))
+    samples = max(1, min(rendered, _GUIDE_SAMPLES))
     settings = dataclasses.replace(session.settings, passes=(Pass.COMBINED, *_GUIDES), samples=samples)
     with lowered(lambda: Session(session.scene, session.camera, settings)) as guides:
         if not guides.render_all(samples, poll) or (poll is not None and poll()):

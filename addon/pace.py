@@ -1,5 +1,6 @@
 """Work beside the rendering that may take no more than its share of the time."""
 
+import contextlib
 import time
 
 
@@ -25,7 +26,12 @@ class Pace:
         return self._last is None or time.monotonic() - self._last > self.interval
 
     def spend(self, work):
+        with self.spending():
+            work()
+
+    @contextlib.contextmanager
+    def spending(self):
         before = time.monotonic()
-        work()
+        yield
         self._last = time.monotonic()
         self.cost = self._last - before

@@ -99,7 +99,7 @@ def test_colours_on_the_screen_are_those_of_the_display_transform(window):
 
 @pytest.mark.parametrize("kind", ENDINGS)
 def test_whatever_ends_a_view_leaves_nothing_behind(window, kind):
-    assert window("stress", kind, 3) == {"went": 3, "threads": 1, "left": []}
+    assert window("stress", kind, 3) == {"went": 3, "views": 1, "left": []}
 
 
 def test_the_program_can_be_left_while_a_view_renders(window):
@@ -109,7 +109,7 @@ def test_the_program_can_be_left_while_a_view_renders(window):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ENDINGS)
 def test_a_hundred_endings(window, kind):
-    assert window("stress", kind, 100) == {"went": 100, "threads": 1, "left": []}
+    assert window("stress", kind, 100) == {"went": 100, "views": 1, "left": []}
 
 
 @pytest.mark.slow

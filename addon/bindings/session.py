@@ -153,6 +153,11 @@ class Scene(_Handle, SceneProbes):
 
     def fill(self, snapshot, poll=None, release=False):
         """Copies the snapshot into the library. release: takes out of it what has been copied, so that none is held twice."""
+        for _ in self.filling(snapshot, release):
+            _obey(poll)
+
+    def filling(self, snapshot, release=False):
+        """fill() in pieces: yields after each thing that was copied, so that one of them is the longest that it takes."""
         library, handle = self.library, self.handle
         # What refers to another thing comes after it.
         for add, to_struct, name in (
@@ -168,24 +173,31 @@ class Scene(_Handle, SceneProbes):
                 # The struct holds addresses only, of what must live until the call is over.
                 record = records.pop()
                 self._check(add(handle, ctypes.byref(to_struct(record))))
-                _obey(poll)
+                yield
             record = None
         self._check(library.lancer_scene_set_world(handle, ctypes.byref(marshal.world(snapshot.world))))
-        _obey(poll)
+        yield
         if len(snapshot.instances):
             self._check(library.lancer_scene_add_instances(handle, *marshal.instances(snapshot.instances)))
-            _obey(poll)
+            yield
         if release:
             snapshot.set("instances", InstanceTable())
 
     def commit(self, accelerator=abi.Accelerator.BVH, threads=0, poll=None):
-        self._check(self.library.lancer_scene_commit(self.handle, int(accelerator), int(threads)))
-        while self._check(self.library.lancer_scene_wait(self.handle, int(_STEP * 1000))) is Status.RUNNING:
+        self.begin_commit(accelerator, threads)
+        while not self.is_committed(_STEP):
             if poll is not None and poll():
                 self._check(self.library.lancer_scene_cancel(self.handle))
-                while self._check(self.library.lancer_scene_wait(self.handle, int(_STEP * 1000))) is Status.RUNNING:
+                while not self.is_committed(_STEP):
                     pass
                 raise Cancelled
+
+    def begin_commit(self, accelerator=abi.Accelerator.BVH, threads=0):
+        self._check(self.library.lancer_scene_commit(self.handle, int(accelerator), int(threads)))
+
+    def is_committed(self, seconds=0.0):
+        """Whether the commit is over, after waiting at most that long; raises what made it fail."""
+        return self._check(self.library.lancer_scene_wait(self.handle, int(seconds * 1000))) is not Status.RUNNING
 
     def messages(self):
         """What the library left out or replaced, a line each."""

@@ -1,32 +1,34 @@
-"""The thread of one view: builds the scene that is wanted, renders the view that is wanted, ever finer. Knows no bpy data."""
+"""Builds the scene that a view wants and renders what it shows, ever finer. Knows no bpy data.
+
+The library works in threads of its own. Here nothing waits for it: step() goes on as far as it can, in the thread that calls
+it. Blender reads contexts of scripts without Python's lock in places, so a thread of Python's would end it now and then.
+"""
 
 import dataclasses
 import logging
-import threading
 import time
 from typing import NamedTuple
 
 import numpy as np
 
-from .. import denoise, priority
+from .. import priority
 from ..bindings.abi import LancerError
+from ..bindings.enums import Pass
 from ..bindings.schedule import Schedule
-from ..bindings.session import Cancelled, PictureError, Scene, Session
+from ..bindings.session import PictureError, Scene, Session
 from ..bindings.snapshot import SceneSnapshot, Settings
 from ..export.view import View
 from ..pace import Pace
+from .cleaner import GUIDES, Cleaner
 from .sizes import PixelSizes
 
-_STEP = 0.005
 # Seconds that work may take before what is wanted later ends it: a view that moves all the time must show something, too.
 _BRIEF = 0.25
-# Of the picture that refines: seconds between two that are shown, and the share of the time for showing, for asking for the
-# error, for denoising.
+# Of copying a scene into the library, between two other things that Blender does.
+_PIECE = 0.02
+# Of the picture that refines: seconds between two that are shown, and the share of the time for showing and for denoising.
 _SHOW_EVERY, _SHOW_SHARE = 0.15, 0.1
-_ERROR_EVERY, _ERROR_SHARE = 0.5, 0.03
-_DENOISE_EVERY, _DENOISE_SHARE = 0.3, 0.3
-# Times as many samples as what guides the denoising now was made of are worth better guides.
-_BETTER_GUIDES = 4
+_DENOISE_EVERY, _DENOISE_SHARE = 0.3, 0.5
 
 
 class Wanted(NamedTuple):
@@ -47,77 +49,88 @@ class Picture(NamedTuple):
     denoised: bool
 
 
-class Painter(threading.Thread):
+class Painter:
     """picture is the newest one; failure is why there is none of what is wanted; messages are the library's own."""
 
     def __init__(self):
-        super().__init__(name="lancer viewport", daemon=True)
         self.picture = None
         self.failure = ""
         self.messages = ()
-        self.waits = False  # for another one's render: nothing is refined beyond what was asked for first
-        self._changed = threading.Condition()
-        self._wanted = None
-        self._served = None
-        self._closing = False
+        self.waits = False  # for a render of others: nothing is refined beyond the sample that is being made
+        self._wanted = self._served = None
         self._scene = self._contents = None
         self._sizes = PixelSizes()
+        self._work = None  # a generator, which yields where it would have to wait
+        self._works_on = None  # the Wanted that it serves
+        self._began = 0.0
+        self._brief = False  # whether it may be finished, if it is soon, though another thing is wanted by now
 
     def want(self, wanted):
-        with self._changed:
-            self._wanted = wanted
-            self._changed.notify()
-
-    def close(self):
-        """Asks for the end, without waiting for it."""
-        with self._changed:
-            self._closing = True
-            self._changed.notify()
+        self._wanted = wanted
 
     @property
     def is_busy(self):
-        return self.is_alive() and self._served is not self._wanted
+        return self._served is not self._wanted
 
     @property
     def is_building(self):
         return self.is_busy and self._contents is not self._wanted.contents
 
-    def run(self):
-        priority.lower()
-        while (wanted := self._next()) is not None:
-            try:
-                if self._contents is wanted.contents:
-                    self._refine(wanted)
-                    self._served = wanted
-                else:
-                    self._build(wanted)
-                self.failure = ""
-            except Cancelled:
-                continue
-            except LancerError as error:
-                self._fail(wanted, str(error))
-            except MemoryError:
-                self._fail(wanted, "not enough memory for this scene")
-            except Exception as error:
-                logging.getLogger(__name__).exception("the viewport failed")
-                self._fail(wanted, f"{type(error).__name__}: {error}")
+    def step(self):
+        """Does what can be done now."""
+        try:
+            while self.is_busy and self._advance():
+                pass
+        except LancerError as error:
+            self._fail(str(error))
+        except MemoryError:
+            self._fail("not enough memory for this scene")
+        except Exception as error:
+            logging.getLogger(__name__).exception("the viewport failed")
+            self._fail(f"{type(error).__name__}: {error}")
+
+    def close(self):
+        """Ends all work and frees what the library holds."""
+        self._stop()
         self._drop()
+        self._wanted = self._served = None
 
-    def _next(self):
-        """What is wanted and not yet served; None at the end."""
-        with self._changed:
-            self._changed.wait_for(lambda: self._closing or self._wanted is not self._served)
-            return None if self._closing else self._wanted
-
-    def _fail(self, wanted, text):
-        self.failure = text
-        self._served = wanted
-
-    def _is_over(self, began, same):
-        """Whether work on something older may end: same tells of what is wanted now whether that work serves it, too."""
-        if self._closing:
+    def _advance(self):
+        """Whether there is more to do at once."""
+        if self._work is None:
+            self._begin(self._wanted)
+        elif self._is_late():
+            self._stop()
             return True
-        return not same(self._wanted) and time.monotonic() - began > _BRIEF
+        try:
+            next(self._work)
+        except StopIteration:
+            self._work = None
+            return True
+        return False
+
+    def _begin(self, wanted):
+        self._works_on, self._began = wanted, time.monotonic()
+        self._brief = True
+        self._work = self._refine(wanted) if self._contents is wanted.contents else self._build(wanted)
+
+    def _is_late(self):
+        """Whether what is being done is not wanted any more."""
+        now, then = self._wanted, self._works_on
+        building = self._contents is not then.contents
+        if now is then or building and now.contents is then.contents:
+            return False
+        return not self._brief or time.monotonic() - self._began > _BRIEF
+
+    def _stop(self):
+        if self._work is not None:
+            self._work.close()
+            self._work = None
+
+    def _fail(self, text):
+        self._work = None
+        self.failure = text
+        self._served = self._wanted
 
     def _drop(self):
         self._contents = None
@@ -128,98 +141,70 @@ class Painter(threading.Thread):
     def _build(self, wanted):
         # Two scenes at once would take twice the memory.
         self._drop()
+        scene, contents = Scene(), wanted.contents
+        try:
+            yield from self._filled(scene, contents)
+            settings = contents.settings
+            priority.lowered(lambda: scene.begin_commit(settings.accelerator, settings.threads))
+            while not scene.is_committed():
+                yield
+        except BaseException:
+            scene.close()
+            raise
+        self.messages, self.failure = scene.messages(), ""
+        self._scene, self._contents = scene, contents
+
+    @staticmethod
+    def _filled(scene, contents):
         began = time.monotonic()
-        self._scene = Scene.upload(
-            wanted.contents, poll=lambda: self._is_over(began, lambda now: now.contents is wanted.contents)
-        )
-        self.messages = self._scene.messages()
-        self._contents = wanted.contents
+        for _ in scene.filling(contents):
+            if time.monotonic() - began > _PIECE:
+                yield
+                began = time.monotonic()
 
     def _refine(self, wanted):
         rectangle = wanted.view.rectangle
         size = self._sizes.first(rectangle, wanted.finest, wanted.coarsest)
-        shown = False
         while size > wanted.finest:
-            self._render(wanted, size, brief=not shown)
-            shown = True
+            yield from self._render(wanted, size, 1)
             size = self._sizes.after(size, rectangle, wanted.finest)
-        self._render(wanted, size, brief=not shown)
+        yield from self._render(wanted, size, wanted.settings.samples)
+        self._served, self.failure = wanted, ""
 
-    def _render(self, wanted, size, brief):
-        """One sample of the view with pixels of that size; at the finest, all samples. brief: let be finished what is brief."""
+    def _render(self, wanted, size, samples):
+        """The view with pixels of that size."""
         began = time.monotonic()
-        is_last = size == wanted.finest
-        settings = wanted.settings if is_last else dataclasses.replace(wanted.settings, samples=1)
+        denoising = wanted.denoising and size == wanted.finest
+        passes = (Pass.COMBINED, *GUIDES) if denoising else (Pass.COMBINED,)
+        settings = dataclasses.replace(wanted.settings, samples=samples, passes=passes)
         camera = wanted.view.coarser(size)
-        with Session(self._scene, camera, settings) as session:
+        with priority.lowered(lambda: Session(self._scene, camera, settings)) as session:
             schedule = Schedule(session)
-            shown = _Shown(session, schedule, wanted, size, self._is_wanted)
+            schedule.longest = _SHOW_EVERY
+            pace = Pace(_DENOISE_SHARE, _DENOISE_EVERY) if denoising else Pace(_SHOW_SHARE, _SHOW_EVERY)
+            looked = 1
             while schedule.start():
-                while not schedule.wait(_STEP).finished:
-                    may_finish = brief and schedule.samples == 0
-                    if self._is_over(began if may_finish else 0.0, lambda now: now is wanted):
-                        schedule.cancel()
-                        raise Cancelled
+                while not schedule.wait(0.0).finished:
+                    yield
                 if schedule.samples == 1:
                     self._sizes.learn(camera.width * camera.height, time.monotonic() - began)
-                picture = shown.picture(denoising=wanted.denoising and is_last)
-                if picture is not None:
-                    self.picture = picture
-                schedule.longest = shown.interval
-                self._pause(wanted)
+                # To ask for the error takes as long as to draw some pictures.
+                if schedule.samples >= 2 * looked or samples > 1 and schedule.over:
+                    looked = schedule.samples
+                    schedule.look()
+                if pace.due or schedule.over:
+                    image = yield from self._image(session, pace, denoising)
+                    self.picture = Picture(image, wanted, size, schedule.samples, schedule.error, denoising)
+                    schedule.longest = max(_SHOW_EVERY, pace.interval)
+                    self._brief = False
+                while self.waits:
+                    yield
 
-    def _is_wanted(self, wanted):
-        return self._wanted is wanted and not self._closing
-
-    def _pause(self, wanted):
-        """Gives way to another render, as long as nothing else is wanted."""
-        with self._changed:
-            while self.waits and self._is_wanted(wanted):
-                self._changed.wait(0.1)
-        if not self._is_wanted(wanted):
-            raise Cancelled
-
-
-class _Shown:
-    """Which of the states of a session are shown, and as what."""
-
-    def __init__(self, session, schedule, wanted, size, is_wanted):
-        self._session, self._schedule, self._wanted, self._size = session, schedule, wanted, size
-        self._is_wanted = is_wanted
-        self._picture, self._error = Pace(_SHOW_SHARE, _SHOW_EVERY), Pace(_ERROR_SHARE, _ERROR_EVERY)
-        self._denoising = Pace(_DENOISE_SHARE, _DENOISE_EVERY)
-        self._guides, self._guided_by = None, 0
-        self._made = None
-
-    @property
-    def interval(self):
-        return self._picture.interval
-
-    def picture(self, denoising):
-        """The Picture as it is now; None where it is too early for another one."""
-        samples = self._schedule.samples
-        if samples > 1 and (self._error.due or self._schedule.over):
-            self._error.spend(self._schedule.look)
-        pace, make = (self._denoising, self._denoised) if denoising else (self._picture, self._session.read)
-        if not (pace.due or self._schedule.over):
-            return None
-        pace.spend(lambda: self._make(make))
-        return Picture(self._made, self._wanted, self._size, samples, self._schedule.error, denoising)
-
-    def _make(self, make):
-        self._made = make()
-
-    def _denoised(self):
-        def poll():
-            return not self._is_wanted(self._wanted)
-
-        samples = self._schedule.samples
-        # Few samples make rough guides.
-        if samples >= _BETTER_GUIDES * self._guided_by and self._guided_by < denoise.GUIDE_SAMPLES:
-            self._guides, self._guided_by = denoise.render_guides(self._session, poll), samples
-        denoised, failure = denoise.apply(self._session, poll, guides=self._guides)
-        if failure:
-            raise LancerError(failure)
-        if denoised is None:
-            raise Cancelled
-        return denoised.image
+    def _image(self, session, pace, denoising):
+        with pace.spending():
+            if not denoising:
+                return session.read()
+            with Cleaner(session) as cleaner:
+                while not cleaner.is_over:
+                    yield
+                return cleaner.image()

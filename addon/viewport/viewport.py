@@ -24,7 +24,7 @@ from .sizes import coarsest
 # What the newest export for a view of each scene could not show as it is: Messages.
 last_messages = OfScenes()
 
-_TICK = 0.01  # seconds between two looks for a new picture
+_TICK = 0.005  # seconds between two steps
 _MANY = 1 << 24
 # Of settings, what the scene in the library is built by.
 _BUILT_BY = ("accelerator", "threads")
@@ -46,7 +46,6 @@ class Viewport:
         self._losses = 0  # messages that tell of more than a hint
         self._drawn = None  # the Picture that is on the screen, and why there is none of what is wanted
         self.painter = Painter()
-        self.painter.start()
         weakref.finalize(self, self.painter.close)
         _open.add(self)
 
@@ -77,8 +76,9 @@ class Viewport:
         engine.update_stats("", self._text(picture))
         _watch()
 
-    def look(self):
-        """Has the view drawn where there is something new. Whether there may be more to come."""
+    def step(self):
+        """Goes on, and has the view drawn where there is something new. Whether there may be more to come."""
+        self.painter.step()
         picture, failure = self.painter.picture, self.painter.failure
         if self._drawn is None or picture is not self._drawn[0] or failure != self._drawn[1]:
             engine = self._engine()
@@ -127,13 +127,16 @@ class Viewport:
         if self._wanted is None or not _same(wanted, self._wanted):
             self._wanted = wanted
             self.painter.want(wanted)
+            self.painter.step()
 
     def _text(self, picture):
         if self._failure or self.painter.failure:
             return f"Lancer: {self._failure or self.painter.failure}"
         if self.painter.is_building:
             return "Building the scene"
-        own = self._wanted.settings.samples if self._wanted else 0
+        if picture is None:
+            return ""
+        own = picture.wanted.settings.samples
         samples = f"Sample {picture.samples}" + (f"/{own}" if own != _MANY else "")
         if picture.size > picture.wanted.finest:
             return f"{samples} of 1 in {picture.size**2} pixels"
@@ -167,17 +170,8 @@ def _tick():
     busy = False
     for viewport in list(_open):
         viewport.painter.waits = rendering
-        busy = viewport.look() or busy
+        busy = viewport.step() or busy
     return _TICK if busy else None
-
-
-def end():
-    """Ends all views and waits until their threads are gone."""
-    painters = [viewport.painter for viewport in _open]
-    for painter in painters:
-        painter.close()
-    for painter in painters:
-        painter.join()
 
 
 @persistent
@@ -191,7 +185,8 @@ def register():
 
 
 def unregister():
-    end()
+    for viewport in list(_open):
+        viewport.painter.close()
     bpy.app.handlers.load_pre.remove(_forget)
     if bpy.app.timers.is_registered(_tick):
         bpy.app.timers.unregister(_tick)
