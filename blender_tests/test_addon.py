@@ -114,7 +114,8 @@ def test_panels(case):
     assert old not in sampling["quality"] and old in sampling["quality of other settings"]
     # What users look for is there.
     assert {"integrator", "quality", "target_error", "samples", "time_limit"} <= set(sampling["plain"])
-    assert shown["LANCER_RENDER_PT_messages"]["plain"] != shown["LANCER_RENDER_PT_messages"]["rendered"]
+    for panel in ("LANCER_RENDER_PT_messages", "LANCER_RENDER_PT_viewport_messages"):
+        assert shown[panel]["plain"] != shown[panel]["rendered"]
     assert "nodes" in shown["LANCER_MATERIAL_PT_surface"]["plain"] and "nodes" in shown["LANCER_WORLD_PT_surface"]["plain"]
     assert "kd" in shown["LANCER_MATERIAL_PT_surface"]["PHONG"] and "ior" in shown["LANCER_MATERIAL_PT_surface"]["KD_KS"]
     lamp = shown["LANCER_DATA_PT_light"]
@@ -125,21 +126,33 @@ def test_panels(case):
 
 # Of each tab some panels that belong there, in their order, and what has no effect.
 EXPECTED = {
-    "render": ["sampling", "denoising", "light_paths", "simplify", "film", "performance", "messages", "uses", "check"],
+    "render": [
+        "sampling",
+        "sampling_viewport",
+        "denoising",
+        "light_paths",
+        "simplify",
+        "film",
+        "performance",
+        "messages",
+        "uses",
+        "check",
+    ],
     "view_layer": ["passes", "filter", "override"],
-    "world": ["surface", "mist", "ambient_occlusion", "ray_visibility", "settings"],
+    "world": ["preview", "surface", "mist", "ambient_occlusion", "ray_visibility", "settings"],
     "object of a mesh": ["shading", "shadow_terminator"],
     "material of a mesh": ["surface", "rendered", "displacement", "settings"],
     "data of a light": ["light", "light_settings", "light_nodes", "classic_light"],
 }
 BLENDERS_OWN = {
-    "material of a mesh": {"EEVEE_MATERIAL_PT_context_material"},
+    "material of a mesh": {"EEVEE_MATERIAL_PT_context_material", "MATERIAL_PT_preview"},
+    "data of a light": {"DATA_PT_preview"},
     "data of a camera": {"DATA_PT_lens", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture", "DATA_PT_camera"},
     "object of a mesh": {"OBJECT_PT_visibility", "OBJECT_PT_relations"},
     "object of a light": {"OBJECT_PT_visibility"},
     "output": {"RENDER_PT_format", "RENDER_PT_output", "RENDER_PT_post_processing"},
 }
-WITHOUT_EFFECT = ("preview", "stereoscopy", "output_views", "freestyle", "linking", "motion_blur", "eevee", "volume", "hair")
+WITHOUT_EFFECT = ("stereoscopy", "output_views", "freestyle", "linking", "motion_blur", "eevee", "volume", "hair")
 
 
 @both

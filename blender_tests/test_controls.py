@@ -32,6 +32,7 @@ OF_OTHERS = {
     "feature_set": "told with adaptive subdivision alone",
     "frame_current": "chosen in the timeline",
     "grease_pencil": "of passes that Blender draws",
+    "height": "of regions and pictures; of mist, which EEVEE alone has",
     "holdout": "of materials; of collections, in the Outliner",
     "indirect_only": "of collections, in the Outliner",
     "look": "of an object's table row; of the display",

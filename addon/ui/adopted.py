@@ -12,6 +12,7 @@ _OF_EEVEE = {
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
     "EEVEE_MATERIAL_PT_context_material",
+    "MATERIAL_PT_preview",
 }
 # What Lancer shows otherwise, or elsewhere.
 _REPLACED = {

@@ -37,13 +37,13 @@ class LANCER_RENDER_PT_viewport_messages(LancerRenderPanel, bpy.types.Panel):
     bl_label = "Messages of the Viewport"
     bl_options = {"DEFAULT_CLOSED"}
 
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and context.scene in viewport.last_messages
-
     def draw(self, context):
         column = self.layout.column(align=True)
-        _draw_messages(column, context, viewport.last_messages[context.scene], "All of the scene is shown as it is")
+        messages = viewport.last_messages.get(context.scene.name)
+        if messages is None:
+            column.label(text="No view in Rendered shading yet")
+        else:
+            _draw_messages(column, context, messages, "All of the scene is shown as it is")
 
 
 def _draw_messages(column, context, messages, none):

@@ -11,9 +11,11 @@ def _variants(context):
     """The context again and again, with other choices made."""
     from addon import engine, measuring
     from addon.bindings.hints import Cost, Costs
+    from addon.viewport import viewport
 
     yield "plain"
     bpy.ops.render.render()
+    viewport.last_messages[context.scene] = engine.last_messages[context.scene]
     yield "rendered"
     bpy.ops.lancer.check_scene()
     yield "checked"

@@ -74,6 +74,8 @@ def _call(call, *arguments, **options):
         if node is not None and (socket.node != node or node.id_data != tree):
             raise ValueError("the socket is of another node")
         record.words.append("nodes")
+    elif name == "template_preview":
+        record.words.append("preview")
     elif name == "label":
         record.words.append(options.get("text", ""))
     for owner, identifier in zip(values, values[1:], strict=False):
