@@ -202,6 +202,19 @@ def _window(figures):
     return _all("gaps of Blender's main loop while it renders in a window, against Cycles", "1.0x", parts)
 
 
+def _view(figures):
+    parts = []
+    for name, words, limit in (("edits", "edit", 0.2), ("moves", "camera move", 0.1)):
+        ours, theirs = (get(figures, "view", engine, name) for engine in ("LANCER", "CYCLES"))
+        beside = "" if theirs is None else f" (Cycles {theirs:.2f} s)"
+        parts.append(_part(f"first picture after {words}{beside}:", ours, "{:.2f} s", lambda x, limit=limit: x <= limit))
+    ours, theirs = (get(figures, "view", engine, "pictures_per_second") for engine in ("LANCER", "CYCLES"))
+    size = get(figures, "view", "LANCER", "pixel_size")
+    beside = "" if theirs is None or size is None else f" (pixels of {size:.0f} x {size:.0f}; Cycles {theirs:.1f})"
+    parts.append(_part(f"pictures a second while it turns{beside}:", ours, "{:.1f}", lambda x: x >= 8.0))
+    return _all("3D view in Rendered shading, balls, 960 x 540, software GL", "0.2 s; 0.1 s; 8 a second", parts)
+
+
 def _leaks(figures):
     """A leak is a leak among any number of rays; none says enough only of as many as the goal names."""
     count, rays = get(figures, "rays", "leaks"), get(figures, "rays", "leak_rays") or 0
@@ -236,4 +249,5 @@ _ROWS = (
     _lights,
     _threads,
     _window,
+    _view,
 )

@@ -87,6 +87,7 @@ def measure_rest(figures, arguments, say):
     if "lancer" in figures["rays"] and "clock" in figures["limits"]:
         figures["roofline"] = roofline.rows(figures["limits"], figures["rays"], threads)
     attempt(figures, "window", say, window.gaps, rounds, 5.0 if arguments.quick else 20.0, threads)
+    attempt(figures, "view", say, window.view, rounds, threads)
     attempt(figures, "classic", say, classic.measure, rounds, threads, arguments.quick)
     if not arguments.quick:
         attempt(figures, "accelerators", say, extras.accelerators, rounds, threads)
