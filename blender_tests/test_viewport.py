@@ -97,6 +97,27 @@ def test_colours_on_the_screen_are_those_of_the_display_transform(window):
     assert window("screen")["color"] in ([187, 137, 89], [188, 137, 89])
 
 
+def test_a_picture_is_drawn_the_right_way_up_with_its_alpha(window):
+    got = window("canvas")
+    assert got["low"] == [0.25, 0.0, 0.0, 1.0] and got["corner"] == [0.125, 0.125, 0.125, 0.5]
+    # The brightest that a texture of half precision holds.
+    assert got["high"] == [0.0, 65504.0, 0.0, 1.0]
+    assert got["outside"] == got["left"] == [0.0] * 4
+
+
+def test_a_view_renders_what_it_shows(window):
+    """Four objects and a lamp; the ball alone in local view, where its lamp is not."""
+    got = window("filtered")
+    assert got == {"all": [4, 1], "local": [1, 0], "without lamps": [4, 0], "done": True, "size": 2}
+
+
+def test_an_animation_plays(window):
+    got = window("plays")
+    assert got["frames"] > 2 and got["at"] > 2
+    # Whatever of an object is animated may have changed, but for its shape.
+    assert got["read"] == {"objects": 4, "meshes": 0, "shaders": 0, "images": 0}
+
+
 @pytest.mark.parametrize("kind", ENDINGS)
 def test_whatever_ends_a_view_leaves_nothing_behind(window, kind):
     assert window("stress", kind, 3) == {"went": 3, "views": 1, "left": []}

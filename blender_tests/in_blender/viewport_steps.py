@@ -6,17 +6,19 @@ import threading
 import time
 
 import bpy
+import gpu
 import numpy as np
 import stage
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from mathutils import Quaternion, Vector
+from mathutils import Matrix, Quaternion, Vector
 
 import addon
 from addon.bindings.session import Scene, Session
 from addon.export.messages import Messages
 from addon.export.scene import export_scene
-from addon.export.view import export_view
+from addon.export.view import Rectangle, export_view
 from addon.viewport import viewport
+from addon.viewport.canvas import Canvas
 
 _LOOK = 0.05
 _PATIENCE = 60.0
@@ -342,6 +344,80 @@ def screen(folder):
     pixels = pixels.reshape(height, width, 4)
     x, y = view.region.x + view.region.width // 2, view.region.y + view.region.height // 2
     return {"color": (255 * pixels[y, x, :3]).round().tolist()}
+
+
+def filtered(folder):
+    """How many objects are rendered in local view and under filters, and how fine the finest pixels are."""
+    scene = build(samples=1)
+    view = View()
+    view.render()
+    yield from until(finished)
+
+    def rendered():
+        return [len(shown()._contents.instances), len(shown()._contents.lights)]
+
+    result = {"all": rendered()}
+    ball = bpy.data.objects["Ball"]
+    ball.select_set(True)
+    bpy.context.view_layer.objects.active = ball
+    with view.override():
+        bpy.ops.view3d.localview(frame_selected=False)
+    yield 0.3
+    result["local"] = rendered()
+    with view.override():
+        bpy.ops.view3d.localview(frame_selected=False)
+    yield 0.3
+    view.space.show_object_viewport_light = False
+    view.area.tag_redraw()
+    yield 0.3
+    result["without lamps"] = rendered()
+    scene.render.preview_pixel_size = "2"
+    view.area.tag_redraw()
+    yield 0.3
+    result["done"] = yield from until(finished)
+    result["size"] = shown().painter.picture.size
+    return result
+
+
+def plays(folder):
+    """An animation that is played: whether pictures of several frames are shown, and nothing is read but what moves."""
+    scene = build(samples=100)
+    ball = bpy.data.objects["Ball"]
+    for frame, x in ((1, -1.0), (50, 1.0)):
+        ball.location.x = x
+        ball.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    view = View()
+    view.render()
+    yield from until(lambda: shown() is not None and shown().painter.picture is not None)
+    with _Record() as record:
+        with view.override():
+            bpy.ops.screen.animation_play()
+        yield 3.0
+        with view.override():
+            bpy.ops.screen.animation_cancel(restore_frame=False)
+    contents = {id(picture.wanted.contents) for _, picture, _ in record.draws}
+    return {"frames": len(contents), "read": shown()._parts.counts, "at": scene.frame_current}
+
+
+def canvas(folder):
+    """What a picture of 4 x 2 pixels becomes in a framebuffer of 64 x 48: colours inside, at a corner, and outside."""
+    yield 0.1
+    image = np.zeros((2, 4, 4), np.float32)
+    image[..., 3] = 1.0
+    image[0, :, 0], image[1, :, 1], image[0, 0] = 0.25, 1e30, (0.125, 0.125, 0.125, 0.5)
+    target = gpu.types.GPUOffScreen(64, 48, format="RGBA16F")
+    with target.bind():
+        framebuffer = gpu.state.active_framebuffer_get()
+        framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0))
+        with gpu.matrix.push_pop():
+            gpu.matrix.load_matrix(Matrix.Identity(4))
+            gpu.matrix.load_projection_matrix(Matrix(((2 / 64, 0, 0, -1), (0, 2 / 48, 0, -1), (0, 0, -1, 0), (0, 0, 0, 1))))
+            Canvas().draw(image, Rectangle(8, 8, 32, 16))
+        drawn = np.array(framebuffer.read_color(0, 0, 64, 48, 4, 0, "FLOAT").to_list())
+    target.free()
+    places = {"low": (9, 30), "high": (23, 30), "corner": (9, 9), "outside": (30, 50), "left": (12, 4)}
+    return {name: drawn[place].tolist() for name, place in places.items()}
 
 
 # ---- endings ----------------------------------------------------------------------------------------------------------
