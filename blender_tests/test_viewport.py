@@ -118,6 +118,12 @@ def test_an_animation_plays(window):
     assert got["read"] == {"objects": 4, "meshes": 0, "shaders": 0, "images": 0}
 
 
+def test_changing_the_size_of_a_view_leaks_no_copy_of_the_scene(window):
+    """Thirty changes: a copy left behind by each would be thirty copies, of the arrays alone."""
+    got = window("resized")
+    assert got["copy"] > 8.0 and got["growth"] < 5.0 * got["copy"]
+
+
 @pytest.mark.parametrize("kind", ENDINGS)
 def test_whatever_ends_a_view_leaves_nothing_behind(window, kind):
     assert window("stress", kind, 3) == {"went": 3, "views": 1, "left": []}

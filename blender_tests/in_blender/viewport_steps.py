@@ -7,6 +7,7 @@ import time
 
 import bpy
 import gpu
+import memory_now
 import numpy as np
 import stage
 from bpy_extras.view3d_utils import location_3d_to_region_2d
@@ -398,6 +399,31 @@ def plays(folder):
             bpy.ops.screen.animation_cancel(restore_frame=False)
     contents = {id(picture.wanted.contents) for _, picture, _ in record.draws}
     return {"frames": len(contents), "read": shown()._parts.counts, "at": scene.frame_current}
+
+
+def resized(folder):
+    """Mebibytes that Blender has grown by, from the tenth to the last of many changes of the view's size; and of one copy."""
+    build(samples=0)
+    data = bpy.data.meshes.new("Heavy")
+    side = 500
+    x, y = np.meshgrid(np.linspace(-1.0, 1.0, side), np.linspace(-1.0, 1.0, side))
+    places = np.stack([x, y, np.sin(9.0 * x) * np.sin(9.0 * y)], axis=2).reshape(-1, 3)
+    first = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
+    data.from_pydata(places.tolist(), [], np.stack([first, first + 1, first + side + 1, first + side], 1).tolist())
+    stage.link("Heavy", data)
+    View().render()
+    held = []
+    for _ in range(40):
+        before = View().region.width
+        with View().override():
+            bpy.ops.screen.screen_full_area(use_hide_panels=True)
+        yield 0.3
+        assert View().region.width != before
+        View().render()
+        yield from until(lambda: shown() is not None and shown().painter.picture is not None)
+        held.append(memory_now.held()["resident"])
+    copy = sum(array.nbytes for mesh in shown()._contents.meshes for array in vars(mesh).values() if hasattr(array, "nbytes"))
+    return {"growth": (held[-1] - held[9]) / 2**20, "copy": copy / 2**20}
 
 
 def canvas(folder):
