@@ -46,7 +46,7 @@ def test_denoising(tmp_path):
 
 
 def test_the_first_picture_is_as_coarse_as_it_must_be():
-    """At a million pixels a second 0.05 s are 50 000 pixels: of 960 x 540 a picture of 240 x 135 is the finest below it."""
+    """At a million pixels a second 0.07 s are 70 000 pixels: of 960 x 540 a picture of 240 x 135 is the finest below it."""
     sizes, region = PixelSizes(), Rectangle(960, 540)
     assert coarsest(region, 1, 64) == 8 and coarsest(region, 2, 64) == 8 and coarsest(Rectangle(60, 60), 1, 64) == 1
     assert sizes.first(region, 1, 8) == 8

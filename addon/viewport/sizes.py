@@ -3,7 +3,7 @@
 import math
 
 # Seconds that the first picture after a change may take, and each finer one before the finest.
-_FIRST, _NEXT = 0.05, 0.25
+_FIRST, _NEXT = 0.07, 0.25
 # The speed that was measured last counts this much: the rays of one view are not those of another.
 _NEWEST = 0.5
 
