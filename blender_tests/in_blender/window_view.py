@@ -2,8 +2,7 @@
 
 blender --factory-startup -p 0 0 960 540 -P window_view.py -- ANSWER.json ENGINE THREADS
 
-What is on the screen is read back from a small part of it, for any engine alike. That part is looked at before each drawing, so
-that the view is drawn all the time and everything is seen one drawing late.
+What an engine has drawn is read back from a small part of it, right after, for any engine alike.
 """
 
 import json
@@ -12,6 +11,7 @@ import sys
 import time
 
 import bpy
+import cycles
 import gpu
 import numpy as np
 from mathutils import Quaternion
@@ -25,7 +25,6 @@ from scenes import spheres  # noqa: E402
 
 ANSWER, ENGINE, THREADS = sys.argv[sys.argv.index("--") + 1 :]
 PART = 32
-DRAW_EVERY = 0.004
 SETTLING, RESTING, TURNING = 4.0, 1.5, 4.0  # seconds
 TIMES = 5
 STEP = 0.02  # radians of the turn, each time that Blender's loop comes by
@@ -41,17 +40,18 @@ def view():
     return window, area, next(region for region in area.regions if region.type == "WINDOW")
 
 
-def look():
-    region = view()[2]
-    place = region.width // 2 - PART // 2, region.height // 2 - PART // 2
-    part = gpu.state.active_framebuffer_get().read_color(*place, PART, PART, 4, 0, "FLOAT")
-    values = np.array(part.to_list(), np.float32)[:, :, :3]
-    seen.append((time.monotonic(), float(values.mean()), hash(values.tobytes())))
+def watch(engine):
+    """Looks at all that an engine's class draws."""
+    plain = engine.view_draw
 
+    def view_draw(self, context, depsgraph):
+        plain(self, context, depsgraph)
+        place = context.region.width // 2 - PART // 2, context.region.height // 2 - PART // 2
+        part = gpu.state.active_framebuffer_get().read_color(*place, PART, PART, 4, 0, "FLOAT")
+        values = np.array(part.to_list(), np.float32)[:, :, :3]
+        seen.append((time.monotonic(), float(values.mean()), hash(values.tobytes())))
 
-def draw():
-    view()[1].tag_redraw()
-    return DRAW_EVERY
+    engine.view_draw = view_draw
 
 
 def delay(change):
@@ -82,8 +82,6 @@ def measure():
     yield 0.5
     scene.render.engine = ENGINE
     space.shading.type = "RENDERED"
-    bpy.types.SpaceView3D.draw_handler_add(look, (), "WINDOW", "PRE_VIEW")
-    bpy.app.timers.register(draw)
     yield SETTLING
     background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND").inputs["Strength"]
     edits, moves = [], []
@@ -131,6 +129,7 @@ addon.register()
 bpy.ops.wm.read_factory_settings(use_empty=True)
 addon.unregister()
 addon.register()
+watch(addon.engine.LancerRenderEngine if ENGINE == "LANCER" else cycles.CyclesRender)
 scene = bpy.context.scene
 spheres.build_balls(scene)
 scene.render.threads_mode, scene.render.threads = "FIXED", int(THREADS)
