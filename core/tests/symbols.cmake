@@ -1,7 +1,26 @@
 # cmake -DNM=... (-DLIBRARY=liblancer.so | -DOBJECTS=a.o;b.o) -P symbols.cmake
 
-# The library shows lancer_* and nothing else.
+# The library shows lancer_* and nothing else, and asks no other library for elementary functions: each rounds them in its own way,
+# where pictures are to have the same bits. What IEEE 754 or C99 leave no choice in may be asked: fmod(), sqrt(), floor(), ldexp()
+# and their like; not fmin() and fmax(), whose zeros may have either sign.
 if(DEFINED LIBRARY)
+  execute_process(COMMAND ${NM} -D --undefined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE text RESULT_VARIABLE code)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "nm failed on ${LIBRARY}")
+  endif()
+  set(functions "a?(sin|cos|tan)h?|atan2|sincos|sinpi|cospi|exp|exp2|exp10|pow10|expm1|log|log2|log10|log1p|pow|cbrt|hypot|erf|erfc")
+  string(APPEND functions "|[lt]gamma|gamma|[jy][01n]|fma|fmin|fmax|rsqrt|remquo")
+  string(REGEX MATCHALL "[^\n]+" lines "${text}")
+  set(count 0)
+  foreach(line IN LISTS lines)
+    math(EXPR count "${count} + 1")
+    if(line MATCHES "^(__)?(${functions})[fl]?(_r|_finite)?(@[^ ]*)? U")
+      message(SEND_ERROR "imported, but rounded otherwise elsewhere: ${line}")
+    endif()
+  endforeach()
+  if(count EQUAL 0)
+    message(FATAL_ERROR "${LIBRARY} imports nothing at all: nm tells another thing than this test reads")
+  endif()
   execute_process(COMMAND ${NM} -D --defined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE text RESULT_VARIABLE code)
   if(NOT code EQUAL 0)
     message(FATAL_ERROR "nm failed on ${LIBRARY}")

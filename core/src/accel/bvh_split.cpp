@@ -3,6 +3,8 @@
 #include "accel/parallel.h"
 
 #include <array>
+#include <utility>
+#include <vector>
 
 namespace lancer {
 
@@ -185,11 +187,17 @@ void RangeSplitter::split_by_count(const BuildRange &range, BuildRange sides[2])
   const Float4 extent = range.centroids.hi - range.centroids.lo;
   const int axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : (extent[1] >= extent[2] ? 1 : 2);
   const uint32_t middle = range.begin + range.count() / 2;
-  if (extent[axis] > 0.0f)
-    std::nth_element(r + range.begin, r + middle, r + range.end, [axis](const BuildRef &a, const BuildRef &b) {
-      const float x = a.centroid()[axis], y = b.centroid()[axis];
-      return x != y ? x < y : a.id() < b.id();
-    });
+  if (extent[axis] > 0.0f) {
+    // Ties go by number, and each side keeps its order: so every machine builds the same tree.
+    const auto key = [axis](const BuildRef &ref) { return std::pair(ref.centroid()[axis], ref.id()); };
+    std::vector<std::pair<float, uint32_t>> keys;
+    for (uint32_t i = range.begin; i < range.end; ++i)
+      keys.push_back(key(r[i]));
+    const auto first = keys.begin() + (middle - range.begin);
+    std::nth_element(keys.begin(), first, keys.end());
+    std::stable_partition(r + range.begin, r + range.end,
+                          [&, least = *first](const BuildRef &ref) { return key(ref) < least; });
+  }
   sides[0].begin = range.begin;
   sides[0].end = sides[1].begin = middle;
   sides[1].end = range.end;

@@ -219,7 +219,7 @@ private:
       faces.ranks.push_back(marked);
       marked += static_cast<uint32_t>(std::popcount(word));
     }
-    std::sort(patches.begin(), patches.end(), [](const Patch &a, const Patch &b) { return a.face < b.face; });
+    std::stable_sort(patches.begin(), patches.end(), [](const Patch &a, const Patch &b) { return a.face < b.face; });
     std::vector<CoverPatch> own;
     // Words of bits are in the order of candidates. The halves of one face come together.
     for (size_t begin = 0, end; begin < candidates.size(); begin = end) {

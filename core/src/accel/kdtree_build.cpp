@@ -1,8 +1,10 @@
 #include "accel/kdtree.h"
 #include "accel/parallel.h"
+#include "sampling/elementary.h"
 
 #include <cmath>
 #include <new>
+#include <numbers>
 
 namespace lancer {
 namespace {
@@ -34,7 +36,8 @@ struct Subtree {
 class Builder {
 public:
   Builder(const std::vector<Box> &b, float test, const BuildContext &c)
-      : boxes(b), test_cost(test), max_depth(static_cast<uint32_t>(8.0 + 1.3 * std::log2(static_cast<double>(b.size()) + 1.0))),
+      : boxes(b), test_cost(test),
+        max_depth(static_cast<uint32_t>(8.0 + 1.3 * std::numbers::log2e * log(static_cast<double>(b.size()) + 1.0))),
         context(c) {}
 
   // Builds the cell into tree; cells of at most task_size items are left to tasks, where given.

@@ -1,6 +1,7 @@
 #include "accel/placed_scene.h"
 
 #include "accel/ray.h"
+#include "sampling/elementary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +93,7 @@ Extent shape_box(const Instance &instance) {
   glm::dvec3 half = m * round_trip(instance, glm::dvec3(1.0));
   for (int i = 0; i < 3; ++i)
     half[i] += instance.kind == ShapeKind::Sphere ? glm::length(glm::dvec3(m[0][i], m[1][i], m[2][i]))
-                                                  : std::hypot(m[0][i], m[1][i]) + m[2][i];
+                                                  : hypot(m[0][i], m[1][i]) + m[2][i];
   const glm::dvec3 middle = instance.to_world.point(glm::dvec3(0.0));
   return {middle - half, middle + half};
 }

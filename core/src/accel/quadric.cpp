@@ -1,6 +1,7 @@
 #include "accel/quadric.h"
 
 #include "accel/edge_sides.h"
+#include "sampling/elementary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +108,7 @@ Interval unit_nappe(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
   // Along the cone's own lines this is next to nothing: it needs all of its digits.
   const glm::dvec3 m(difference_of_products(o.y, d.z, -w, d.y), difference_of_products(-w, d.x, o.x, d.z),
                      difference_of_products(o.x, d.y, o.y, d.x));
-  const double across = 0.5 * std::hypot(m.x, m.y), around = std::abs(m.z);
+  const double across = 0.5 * hypot(m.x, m.y), around = std::abs(m.z);
   const double discriminant = (across - around) * (across + around);
   const double a = (d.x * d.x + d.y * d.y) - 0.25 * d.z * d.z;
   const double b = -(o.x * d.x + o.y * d.y + 0.25 * w * d.z);
@@ -208,10 +209,10 @@ SurfacePoint quadric_point(ShapeKind kind, const glm::dvec3 &o, const glm::dvec3
 glm::dvec2 quadric_uv(ShapeKind kind, const glm::dvec3 &p) {
   if (kind == ShapeKind::Plane)
     return {p.x, p.y};
-  const double turn = std::atan2(p.y, p.x) * (0.5 * std::numbers::inv_pi);
+  const double turn = atan2(p.y, p.x) * (0.5 * std::numbers::inv_pi);
   const double angle = turn < 0.0 ? std::min(turn + 1.0, std::nextafter(1.0, 0.0)) : turn;
   if (kind == ShapeKind::Sphere)
-    return {angle, 0.5 + std::atan2(p.z, std::hypot(p.x, p.y)) * std::numbers::inv_pi};
+    return {angle, 0.5 + atan2(p.z, hypot(p.x, p.y)) * std::numbers::inv_pi};
   return {angle, 0.5 * (p.z + 1.0)};
 }
 

@@ -8,6 +8,7 @@
 #include "bsdf/fresnel.h"
 #include "bsdf/lobe.h"
 #include "bsdf/matte.h"
+#include "sampling/elementary.h"
 #include "sampling/warp.h"
 
 namespace lancer {
@@ -66,7 +67,7 @@ inline ColorValue ashikhmin_eval(const Lobe &lobe, const glm::vec3 &wo, const gl
     return {};
   // cos^e of h from its sine: log(cos) = log1p(-sin^2) / 2 keeps narrow lobes apart.
   const float across = sin2 > 0.0f ? (n_x * h.x * h.x + n_y * h.y * h.y) / sin2 : 0.0f;
-  const float power = sin2 < 1.0f ? std::exp(0.5f * across * std::log1p(-sin2)) : (across > 0.0f ? 0.0f : 1.0f);
+  const float power = sin2 < 1.0f ? exp(0.5f * across * log1p(-sin2)) : (across > 0.0f ? 0.0f : 1.0f);
   const float pdf = std::sqrt((n_x + 1.0f) * (n_y + 1.0f)) * (0.125f * kInvPi) * power / cos_h;
   // A float cannot hold it where both directions are opposite along the horizon.
   if (!std::isfinite(pdf))
@@ -78,13 +79,13 @@ inline glm::vec3 ashikhmin_sample(const Lobe &lobe, const glm::vec3 &wo, glm::ve
   const float n_x = ashikhmin_exponent(lobe.alpha_x), n_y = ashikhmin_exponent(lobe.alpha_y);
   // An ellipse of azimuths, quadrant by quadrant so that nothing is divided by 0.
   const float quadrant = std::floor(4.0f * u.x), share = 4.0f * u.x - quadrant;
-  const float phi_quarter =
-      std::atan2(std::sqrt(n_x + 1.0f) * std::sin(0.5f * kPi * share), std::sqrt(n_y + 1.0f) * std::cos(0.5f * kPi * share));
+  const SinCos even = sin_cos_turn(0.25f * share);
+  const float phi_quarter = atan2(std::sqrt(n_x + 1.0f) * even.sin, std::sqrt(n_y + 1.0f) * even.cos);
   const bool mirrored = quadrant == 1.0f || quadrant == 3.0f;
   const float phi = (mirrored ? -phi_quarter : phi_quarter) + kPi * std::ceil(0.5f * quadrant);
-  const float c = std::cos(phi), s = std::sin(phi);
+  const float c = cos(phi), s = sin(phi);
   // 1 - cos(theta) by expm1, as narrow lobes need.
-  const float x = -std::expm1(std::log1p(-u.y) / (n_x * c * c + n_y * s * s + 1.0f));
+  const float x = -expm1(log1p(-u.y) / (n_x * c * c + n_y * s * s + 1.0f));
   const float sin_theta = std::sqrt(x * (2.0f - x));
   const glm::vec3 h(sin_theta * c, sin_theta * s, 1.0f - x);
   return reflect_about(wo, h);
@@ -96,7 +97,7 @@ inline float gtr1_d(const glm::vec3 &h, float alpha) {
   if (a2 >= 1.0f)
     return kInvPi;
   const float sin2 = h.x * h.x + h.y * h.y;
-  return (1.0f - a2) / (-kPi * std::log(a2) * (a2 + sin2 * (1.0f - a2)));
+  return (1.0f - a2) / (-kPi * log(a2) * (a2 + sin2 * (1.0f - a2)));
 }
 
 // Smith's G1 of GGX with the fixed alpha 0.25.
@@ -118,9 +119,10 @@ inline ColorValue clear_coat_eval(const Lobe &lobe, const glm::vec3 &wo, const g
 inline glm::vec3 clear_coat_sample(const Lobe &lobe, const glm::vec3 &wo, glm::vec2 u) {
   const float a2 = lobe.alpha_x * lobe.alpha_x;
   // cos^2 = (1 - a2^(1 - u)) / (1 - a2), so that sin^2 = a2 (a2^(-u) - 1) / (1 - a2).
-  const float sin2 = a2 < 1.0f ? a2 * std::expm1(-u.x * std::log(a2)) / (1.0f - a2) : u.x;
-  const float sin_theta = std::sqrt(std::min(sin2, 1.0f)), phi = 2.0f * kPi * u.y;
-  const glm::vec3 h(sin_theta * std::cos(phi), sin_theta * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - sin2)));
+  const float sin2 = a2 < 1.0f ? a2 * expm1(-u.x * log(a2)) / (1.0f - a2) : u.x;
+  const float sin_theta = std::sqrt(std::min(sin2, 1.0f));
+  const SinCos phi = sin_cos_turn(u.y);
+  const glm::vec3 h(sin_theta * phi.cos, sin_theta * phi.sin, std::sqrt(std::max(0.0f, 1.0f - sin2)));
   return reflect_about(wo, h);
 }
 

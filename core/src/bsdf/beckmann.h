@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
+#include "sampling/elementary.h"
 #include "sampling/erf_inverse.h"
 #include "sampling/warp.h"
 
@@ -20,7 +21,7 @@ inline float beckmann_d(float tan2, float alpha) {
   if (!(tan2 <= 87.0f * alpha2))
     return 0.0f;
   const float sec2 = 1.0f + tan2;
-  return std::exp(-tan2 / alpha2) * sec2 * sec2 * kInvPi / alpha2;
+  return exp(-tan2 / alpha2) * sec2 * sec2 * kInvPi / alpha2;
 }
 
 // The masking parameter a = 1 / (alpha tan(theta)); infinite along n.
@@ -42,7 +43,7 @@ inline float beckmann_g1_exact(float a) {
     return 1.0f;
   constexpr float inv_2_sqrt_pi = 0.5f * std::numbers::inv_sqrtpi_v<float>;
   // Over a common denominator, so that a = 0 is no division by zero.
-  return a / (a + inv_2_sqrt_pi * std::exp(-a * a) - 0.5f * a * std::erfc(a));
+  return a / (a + inv_2_sqrt_pi * exp(-a * a) - 0.5f * a * erfc(a));
 }
 
 // Slope along wo's azimuth, in units of alpha, of a normal visible from masking parameter a: density (a - x) exp(-x^2), x < a.
@@ -51,17 +52,17 @@ inline double beckmann_visible_slope(float a_float, float u_float) {
   const double a = a_float;
   // The middle of the float's cell: 0 would ask for the end of an infinite tail.
   const double u = static_cast<double>(u_float) + 0x1p-25;
-  const auto integral = [&](double x, double exp_x2) { return a * half_sqrt_pi * std::erfc(-x) + 0.5 * exp_x2; };
-  const double total = integral(a, std::exp(-a * a));
+  const auto integral = [&](double x, double exp_x2) { return a * half_sqrt_pi * erfc(-x) + 0.5 * exp_x2; };
+  const double total = integral(a, exp(-a * a));
   // Start from a power law between both ends of erf(x), within 0.03 of the root.
-  const double top = std::erf(a);
+  const double top = erf(a);
   const double k = 0.43 + 0.57 * a * a / (a * a + 5.0);
-  const double start = top - (1.0 + top) * std::pow(1.0 - u, k);
+  const double start = top - (1.0 + top) * exp(k * log(1.0 - u));
   double low = -6.0, high = a;
   double x = std::clamp(static_cast<double>(erf_inverse(static_cast<float>(std::clamp(start, -1.0 + 0x1p-23, 1.0 - 0x1p-23)))),
                         low, high);
   for (int i = 0; i < 60; ++i) {
-    const double exp_x2 = std::exp(-x * x);
+    const double exp_x2 = exp(-x * x);
     const double error = integral(x, exp_x2) / total - u;
     if (std::abs(error) < 0x1p-30)
       break;
@@ -83,8 +84,8 @@ inline float beckmann_visible_angle(float eccentricity, float u) {
   // Newton from above: the function is convex between 0 and pi, so every step falls towards the root.
   float phi = std::min(mean + eccentricity, kPi);
   for (int i = 0; i < 20; ++i) {
-    const float error = phi - eccentricity * std::sin(phi) - mean;
-    const float step = error / (1.0f - eccentricity * std::cos(phi));
+    const float error = phi - eccentricity * sin(phi) - mean;
+    const float step = error / (1.0f - eccentricity * cos(phi));
     if (!(step > 0x1p-22f * phi))
       break;
     phi -= step;
@@ -106,9 +107,9 @@ inline glm::vec3 beckmann_sample_visible(const glm::vec3 &wo, float alpha_x, flo
     slope = {static_cast<float>(beckmann_visible_slope(a, u.x)), erf_inverse(2.0f * u.y + (0x1p-24f - 1.0f))};
   } else {
     // Nothing is masked: Gaussian in length (log1p keeps the digits of small u), and turned by the projected area alone.
-    const float r = std::sqrt(-std::log1p(-u.x));
+    const float r = std::sqrt(-log1p(-u.x));
     const float phi = beckmann_visible_angle(std::min(r / a, 1.0f), u.y);
-    slope = {r * std::cos(phi), r * std::sin(phi)};
+    slope = {r * cos(phi), r * sin(phi)};
   }
   // Turn it to wo's azimuth and stretch it again; the normal leans against the slope.
   const float x = alpha_x * (azimuth.x * slope.x - azimuth.y * slope.y);

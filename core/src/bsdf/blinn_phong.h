@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "bsdf/beckmann.h"
 #include "bsdf/lobe.h"
 #include "bsdf/lobe_value.h"
 #include "bsdf/phong.h"
+#include "sampling/elementary.h"
 
 namespace lancer {
 
@@ -16,8 +18,8 @@ inline LobeValue blinn_phong_eval_pdf(const Lobe &lobe, const glm::vec3 &wo, con
     return {};
   // cos^n from tan^2, which keeps its digits near n where the cosine has none.
   const float n = lobe.shininess;
-  const float power = n > 0.0f ? std::exp(-0.5f * n * std::log1p(tan2_theta(h))) : 1.0f;
-  const float f = (n + 2.0f) * (0.125f * kInvPi) * ((n + 4.0f) / (std::exp2(-0.5f * n) + n)) * power;
+  const float power = n > 0.0f ? exp(-0.5f * n * log1p(tan2_theta(h))) : 1.0f;
+  const float f = (n + 2.0f) * (0.125f * kInvPi) * ((n + 4.0f) / (exp(-0.5f * std::numbers::ln2_v<float> * n) + n)) * power;
   // Half vectors of density (n + 1) / (2 pi) cos^n become directions of density / (4 wo.h), which a float cannot hold where
   // both directions are opposite along the horizon.
   const float pdf = (n + 1.0f) * (0.125f * kInvPi) * power / cos_oh;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "bsdf/build.h"
+#include "sampling/elementary.h"
 
 namespace lancer {
 
@@ -62,7 +63,7 @@ glm::vec3 reflecting_normal(const Bsdf &bsdf, const glm::vec3 &n) {
 }
 
 glm::vec3 turn_about(const glm::vec3 &t, const glm::vec3 &axis, float turns) {
-  const float angle = 2.0f * std::numbers::pi_v<float> * turns, c = std::cos(angle), s = std::sin(angle);
+  const float angle = 2.0f * std::numbers::pi_v<float> * turns, c = cos(angle), s = sin(angle);
   return c * t + s * glm::cross(axis, t) + (1.0f - c) * glm::dot(axis, t) * axis;
 }
 

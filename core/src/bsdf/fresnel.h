@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 struct Fresnel {
@@ -44,7 +46,7 @@ inline float fresnel_conductor(float cos_i, float n, float k) {
   const float c = std::clamp(cos_i, 0.0f, 1.0f), c2 = c * c, sin2 = (1.0f - c) * (1.0f + c);
   // The square root u + i v of (n + i k)^2 - sin^2.
   const float re = (n - k) * (n + k) - sin2, im = 2.0f * n * k;
-  const float length = std::hypot(re, im);
+  const float length = hypot(re, im);
   const float u2 = std::max(0.5f * (length + re), 0.0f), v2 = std::max(0.5f * (length - re), 0.0f);
   const float u = std::sqrt(u2);
   // Polarised across the plane of incidence, then along it: rp = rs times a further ratio.

@@ -9,6 +9,7 @@
 #include "bsdf/lobe.h"
 #include "bsdf/lobe_value.h"
 #include "bsdf/minnaert.h"
+#include "sampling/elementary.h"
 #include "sampling/warp.h"
 
 namespace lancer {
@@ -34,7 +35,7 @@ inline float schlick_weight(float cos_theta) { return fifth_power(std::clamp(1.0
 inline float oren_nayar_g(float cos_theta) {
   const float c = std::clamp(cos_theta, 0.0f, 1.0f);
   const float s = std::sqrt((1.0f - c) * (1.0f + c));
-  return s * (std::atan2(s, c) - 2.0f / 3.0f - s * c) + 2.0f / 3.0f * s * c * (1.0f + s + s * s) / (1.0f + s);
+  return s * (atan2(s, c) - 2.0f / 3.0f - s * c) + 2.0f / 3.0f * s * c * (1.0f + s + s * s) / (1.0f + s);
 }
 
 // Blender's Diffuse BSDF. weight carries the colour; preserving: the form of 4.3 and newer, whose lost light comes back with
@@ -130,7 +131,7 @@ inline ColorValue velvet_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::
   const float exponent = h.z * h.z / sin2 * inv_sigma2;
   if (!(sin2 > 0.0f && cos_ho > 0.0f && std::isfinite(exponent)))
     return {glm::vec3(0.0f), pdf};
-  const float d = std::exp(-exponent) * inv_sigma2 * kInvPi / (sin2 * sin2);
+  const float d = exp(-exponent) * inv_sigma2 * kInvPi / (sin2 * sin2);
   const float ratio = 2.0f * h.z / cos_ho;
   const float g = std::min({1.0f, ratio * wo.z, ratio * wi.z});
   return {glm::vec3(0.25f * d * g / wo.z), pdf};
@@ -173,8 +174,9 @@ inline ColorValue matte_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::v
 inline glm::vec3 matte_sample(const Lobe &lobe, glm::vec2 u) {
   if (lobe.variant == static_cast<uint8_t>(Matte::Velvet)) {
     // Even over the hemisphere: velvet is brightest along the horizon.
-    const float sin_theta = std::sqrt((1.0f - u.x) * (1.0f + u.x)), phi = 2.0f * kPi * u.y;
-    return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), u.x};
+    const float sin_theta = std::sqrt((1.0f - u.x) * (1.0f + u.x));
+    const SinCos phi = sin_cos_turn(u.y);
+    return {sin_theta * phi.cos, sin_theta * phi.sin, u.x};
   }
   if (lobe.variant == static_cast<uint8_t>(Matte::Minnaert))
     return minnaert_sample(lobe, u);

@@ -10,6 +10,7 @@
 #include "bsdf/lobe_value.h"
 #include "bsdf/matte.h"
 #include "bsdf/microfacet_fresnel.h"
+#include "sampling/elementary.h"
 
 namespace lancer {
 
@@ -42,7 +43,7 @@ inline float facet_d(const Lobe &lobe, const glm::vec3 &h) {
     return ggx_d(h, lobe.alpha_x, lobe.alpha_y);
   const float x = h.x / lobe.alpha_x, y = h.y / lobe.alpha_y, z2 = h.z * h.z, exponent = (x * x + y * y) / z2;
   // Beyond exp(-87) of the top a float holds 0.
-  return exponent <= 87.0f ? std::exp(-exponent) * kInvPi / (lobe.alpha_x * lobe.alpha_y * z2 * z2) : 0.0f;
+  return exponent <= 87.0f ? exp(-exponent) * kInvPi / (lobe.alpha_x * lobe.alpha_y * z2 * z2) : 0.0f;
 }
 
 // The share of the facets of Beckmann that w sees, exactly.

@@ -16,6 +16,7 @@
 #include "bsdf/lobe.h"
 #include "bsdf/lobe_value.h"
 #include "bsdf/phong.h"
+#include "sampling/elementary.h"
 #include "sampling/warp.h"
 
 namespace lancer {
@@ -25,12 +26,12 @@ inline constexpr float kLowestLogCosine = -40.0f;
 
 // log max(cos, m), from the tangent, which keeps its digits near the normal; behind the surface as on the horizon.
 inline float minnaert_log_cosine(const Lobe &lobe, const glm::vec3 &w) {
-  return w.z > 0.0f ? std::max(-0.5f * std::log1p(tan2_theta(w)), lobe.alpha_x) : lobe.alpha_x;
+  return w.z > 0.0f ? std::max(-0.5f * log1p(tan2_theta(w)), lobe.alpha_x) : lobe.alpha_x;
 }
 
 // (cos of w)^(k - 1), bounded.
 inline float minnaert_power(const Lobe &lobe, const glm::vec3 &w) {
-  return std::exp((lobe.shininess - 1.0f) * minnaert_log_cosine(lobe, w));
+  return exp((lobe.shininess - 1.0f) * minnaert_log_cosine(lobe, w));
 }
 
 // The parts of A / (2 pi) above m and below it.
@@ -39,7 +40,7 @@ struct MinnaertParts {
 };
 inline MinnaertParts minnaert_parts(const Lobe &lobe) {
   const float exponent = (lobe.shininess + 1.0f) * lobe.alpha_x; // of m^(k + 1)
-  return {-std::expm1(exponent) / (lobe.shininess + 1.0f), 0.5f * std::exp(exponent)};
+  return {-expm1(exponent) / (lobe.shininess + 1.0f), 0.5f * exp(exponent)};
 }
 
 // lobe: its colour and k are set; alpha_x becomes log m, alpha_y 1 / A, energy what f owes to wo. rho: the largest channel of
@@ -48,7 +49,7 @@ inline void complete_minnaert(Lobe &lobe, float rho, const glm::vec3 &wo) {
   const float k = lobe.shininess;
   lobe.alpha_x = kLowestLogCosine;
   if (k < 1.0f)
-    lobe.alpha_x = std::max(std::log(std::min(rho, 1.0f)) / (1.0f - k), kLowestLogCosine);
+    lobe.alpha_x = std::max(log(std::min(rho, 1.0f)) / (1.0f - k), kLowestLogCosine);
   const MinnaertParts parts = minnaert_parts(lobe);
   lobe.alpha_y = 1.0f / (2.0f * kPi * (parts.above + parts.below));
   lobe.energy = minnaert_power(lobe, wo);
@@ -68,9 +69,10 @@ inline glm::vec3 minnaert_sample(const Lobe &lobe, glm::vec2 u) {
   if (inside < parts.above || parts.below == 0.0f)
     return sample_cosine_power(lobe.shininess, {std::min(inside * (lobe.shininess + 1.0f), 1.0f), u.y});
   const float rest = (1.0f - u.x) * (parts.above + parts.below) / parts.below;
-  const float cosine = std::exp(lobe.alpha_x) * std::sqrt(std::min(rest, 1.0f));
-  const float sine = std::sqrt((1.0f - cosine) * (1.0f + cosine)), phi = 2.0f * kPi * u.y;
-  return {sine * std::cos(phi), sine * std::sin(phi), cosine};
+  const float cosine = exp(lobe.alpha_x) * std::sqrt(std::min(rest, 1.0f));
+  const float sine = std::sqrt((1.0f - cosine) * (1.0f + cosine));
+  const SinCos phi = sin_cos_turn(u.y);
+  return {sine * phi.cos, sine * phi.sin, cosine};
 }
 
 } // namespace lancer

@@ -6,16 +6,17 @@
 #include "bsdf/frame.h"
 #include "bsdf/lobe.h"
 #include "bsdf/lobe_value.h"
+#include "sampling/elementary.h"
 #include "sampling/warp.h"
 
 namespace lancer {
 
 // A direction around +z with density (n + 1) / (2 pi) cos^n: 1 - cos comes from expm1, which keeps narrow lobes apart.
 inline glm::vec3 sample_cosine_power(float n, glm::vec2 u) {
-  const float x = -std::expm1(std::log1p(-u.x) / (n + 1.0f));
+  const float x = -expm1(log1p(-u.x) / (n + 1.0f));
   const float sin_theta = std::sqrt(x * (2.0f - x));
-  const float phi = 2.0f * kPi * u.y;
-  return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1.0f - x};
+  const SinCos phi = sin_cos_turn(u.y);
+  return {sin_theta * phi.cos, sin_theta * phi.sin, 1.0f - x};
 }
 
 inline LobeValue phong_eval_pdf(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
@@ -25,7 +26,7 @@ inline LobeValue phong_eval_pdf(const Lobe &lobe, const glm::vec3 &wo, const glm
   if (!(one_minus_cos < 1.0f))
     return {};
   const float n = lobe.shininess;
-  const float power = std::exp(n * std::log1p(-one_minus_cos)) * (0.5f * kInvPi);
+  const float power = exp(n * log1p(-one_minus_cos)) * (0.5f * kInvPi);
   return {(n + 2.0f) * power, (n + 1.0f) * power};
 }
 

@@ -7,6 +7,7 @@
 #include "bsdf/microfacet_fresnel.h"
 #include "bsdf/principled.h"
 #include "bsdf/sheen.h"
+#include "sampling/elementary.h"
 
 namespace lancer {
 
@@ -27,7 +28,7 @@ glm::vec3 below(const glm::vec3 &weight, const glm::vec3 &albedo) {
 glm::vec3 through_coat(const glm::vec3 &tint, float cos_o, float ior, float coat) {
   const float sin = std::sqrt(std::max(0.0f, (1.0f - cos_o) * (1.0f + cos_o))) / ior;
   const float depth = 1.0f / std::sqrt((1.0f - sin) * (1.0f + sin));
-  return glm::mix(glm::vec3(1.0f), glm::pow(tint, glm::vec3(depth)), coat);
+  return glm::mix(glm::vec3(1.0f), glm::vec3(pow(tint.x, depth), pow(tint.y, depth), pow(tint.z, depth)), coat);
 }
 
 Grain base_grain(const LobeInputs &lobe, const PrincipledInputs &in) {

@@ -3,20 +3,10 @@
 #pragma once
 
 #include "bsdf/wide_bsdf.h"
+#include "sampling/exponential.h"
 
 namespace lancer {
 namespace {
-
-// std::exp of the lanes of m, by the same function that the general code calls.
-LANCER_LANE F exp_of(F x, M m) {
-  alignas(64) float values[kLanes];
-  store(values, x);
-  for (uint32_t left = bits(m); left; left &= left - 1) {
-    const int lane = __builtin_ctz(left);
-    values[lane] = __builtin_expf(values[lane]);
-  }
-  return load(values);
-}
 
 // beckmann_g1() of beckmann_a(), over the cosine.
 LANCER_LANE F masked_over_cosine(const V3 &w, F alpha) {
@@ -34,7 +24,7 @@ LANCER_LANE F coating_value(const V3 &wo, F masked, const V3 &wi, F alpha, F ior
   if (!any(m))
     return zero;
   const F sec2 = F(1.0f) + tan2;
-  const F d = exp_of(-tan2 / alpha2, m) * sec2 * sec2 * F(kInvPi) / alpha2;
+  const F d = narrow(exp_within(widen(-tan2 / alpha2))) * sec2 * sec2 * F(kInvPi) / alpha2;
   const F f = F(0.25f) * d * fresnel_dielectric(cos_oh, ior).reflectance * masked * masked_over_cosine(wi, alpha);
   return select(m & (d != zero), f, zero);
 }

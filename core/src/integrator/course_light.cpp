@@ -4,6 +4,7 @@
 #include "bsdf/microfacet_fresnel.h"
 #include "bsdf/phong.h"
 #include "sampling/color.h"
+#include "sampling/elementary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ double attenuation(Falloff falloff, double ratio) {
   case Falloff::Smooth:
     return rest * rest;
   case Falloff::Gaussian:
-    return std::exp(-ratio * ratio);
+    return exp(-ratio * ratio);
   case Falloff::Physical:
   case Falloff::Constant:
     break;
@@ -32,7 +33,7 @@ double attenuation(Falloff falloff, double ratio) {
 }
 
 // A power of a cosine that is 0 from behind; x^0 is 1 in front.
-float lobe_power(float cosine, float n) { return cosine > 0.0f ? std::pow(std::min(cosine, 1.0f), n) : 0.0f; }
+float lobe_power(float cosine, float n) { return cosine > 0.0f ? pow(std::min(cosine, 1.0f), n) : 0.0f; }
 
 constexpr uint32_t kCourseShapes = shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Beckmann) |
                                    shape_bit(LobeShape::Phong) | shape_bit(LobeShape::BlinnPhong);

@@ -1,6 +1,7 @@
 #include "integrator/first_surface.h"
 
 #include "sampling/color.h"
+#include "sampling/elementary.h"
 #include "sampling/nearest_float.h"
 
 #include <algorithm>
@@ -79,7 +80,7 @@ float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings
   if (!(settings.mist_depth > 0.0f))
     return 0.0f;
   const double ratio = std::clamp((distance - double(settings.mist_start)) / double(settings.mist_depth), 0.0, 1.0);
-  return float(std::pow(ratio, double(settings.mist_falloff)));
+  return pow(float(ratio), settings.mist_falloff);
 }
 
 } // namespace lancer

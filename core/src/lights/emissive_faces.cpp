@@ -158,7 +158,7 @@ LightBounds EmissiveFaces::bounds(const Instance &placed) const {
     result.cone.theta_o = glm::pi<double>();
   else
     result.cone.axis = glm::normalize(m * own.cone.axis);
-  result.energy *= std::pow(std::abs(glm::determinant(m)), 2.0 / 3.0);
+  result.energy *= mean_area_scale(m);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include "accel/quadric.h"
 #include "lights/seen_face.h"
+#include "sampling/angle.h"
 #include "sampling/warp.h"
 
 #include <cmath>
@@ -37,7 +38,8 @@ UnitPoint unit_point(ShapeKind kind, int part, const glm::vec2 &u) {
     const glm::dvec3 p = glm::normalize(glm::dvec3(warp_sphere(u)));
     return {p, p};
   }
-  const double phi = glm::two_pi<double>() * double(u.y), c = std::cos(phi), s = std::sin(phi);
+  double s, c;
+  sin_cos_turn(double(u.y), s, c);
   if (kind == ShapeKind::Cylinder)
     return {{c, s, 2.0 * double(u.x) - 1.0}, {c, s, 0.0}};
   // The cone's radius grows linearly from the apex, so its square is uniform.
@@ -107,7 +109,7 @@ Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, c
   for (int corner = 0; corner < 8; ++corner)
     bounds_.grow(placed.to_world.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
   bounds_.cone = {{0.0, 0.0, 1.0}, glm::pi<double>(), glm::half_pi<double>()};
-  bounds_.energy = level * part_area(placed.kind, 0) * std::pow(std::abs(glm::determinant(placed.to_world.linear)), 2.0 / 3.0);
+  bounds_.energy = level * part_area(placed.kind, 0) * mean_area_scale(placed.to_world.linear);
 }
 
 LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 namespace {
@@ -34,7 +36,7 @@ void LightCone::add(const LightCone &other) {
   theta_e = std::max(wide.theta_e, narrow.theta_e);
   if (theta_o + kContained >= kPi)
     return;
-  const double cosine = glm::dot(wide.axis, narrow.axis), apart = std::acos(std::clamp(cosine, -1.0, 1.0));
+  const double cosine = glm::dot(wide.axis, narrow.axis), apart = acos(std::clamp(cosine, -1.0, 1.0));
   if (theta_o + kContained >= std::min(kPi, apart + narrow.theta_o))
     return;
   // Else turn its axis towards the other until both fit.
@@ -48,15 +50,14 @@ void LightCone::add(const LightCone &other) {
     return;
   }
   const double turn = theta_o - wide.theta_o;
-  axis = glm::normalize(wide.axis * std::cos(turn) + glm::normalize(narrow.axis - wide.axis * cosine) * std::sin(turn));
+  axis = glm::normalize(wide.axis * cos(turn) + glm::normalize(narrow.axis - wide.axis * cosine) * sin(turn));
 }
 
 double LightCone::measure() const {
   if (empty())
     return 0.0;
-  const double theta_w = std::min(kPi, theta_o + theta_e), cos_o = std::cos(theta_o), sin_o = std::sin(theta_o);
-  return 2.0 * kPi * (1.0 - cos_o) +
-         0.5 * kPi * (2.0 * (theta_w - theta_o) * sin_o - std::cos(theta_o - 2.0 * theta_w) + cos_o);
+  const double theta_w = std::min(kPi, theta_o + theta_e), cos_o = cos(theta_o), sin_o = sin(theta_o);
+  return 2.0 * kPi * (1.0 - cos_o) + 0.5 * kPi * (2.0 * (theta_w - theta_o) * sin_o - cos(theta_o - 2.0 * theta_w) + cos_o);
 }
 
 bool LightBounds::behind(const glm::dvec3 &p, const glm::dvec3 &n) const {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace lancer {
 
@@ -69,12 +71,15 @@ LightCut find_cut(const std::vector<DescribedLight> &lights, uint32_t begin, uin
 void make_cut(std::vector<DescribedLight> &lights, uint32_t begin, uint32_t end, const LightCut &cut) {
   if (cut.axis < 0)
     return;
-  // Ties go by number, so that every machine builds the same tree.
-  std::nth_element(lights.begin() + begin, lights.begin() + cut.middle, lights.begin() + end,
-                   [axis = cut.axis](const DescribedLight &a, const DescribedLight &b) {
-                     const double x = place(a)[axis], y = place(b)[axis];
-                     return x < y || (x == y && a.light.number < b.light.number);
-                   });
+  // Ties go by number, and each side keeps its order, in which its lights are added up: so every machine builds the same tree.
+  const auto key = [&](const DescribedLight &light) { return std::pair(place(light)[cut.axis], light.light.number); };
+  std::vector<std::pair<double, uint32_t>> keys;
+  for (uint32_t i = begin; i < end; ++i)
+    keys.push_back(key(lights[i]));
+  const auto middle = keys.begin() + (cut.middle - begin);
+  std::nth_element(keys.begin(), middle, keys.end());
+  std::stable_partition(lights.begin() + begin, lights.begin() + end,
+                        [&, first = *middle](const DescribedLight &light) { return key(light) < first; });
 }
 
 LightBounds prepare(std::vector<DescribedLight> &lights) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 namespace {
@@ -20,12 +22,13 @@ void set_axes(Light &light, const Affine &map) {
     light.y = -light.y;
 }
 
-// No wider than this, in normalised units, of which the scene is at least 512 wide: a scene far from the origin keeps the shadows
-// of what stands before a lamp.
+// No wider than this, in normalised units, of which the scene is at least 512 wide: a scene far from the origin keeps the
+// shadows of what stands before a lamp.
 constexpr double kMostApart = 0x1p-7;
 
-// By how much a lamp and a face that are meant to lie in one plane may be apart, in normalised units. Blender computes placements
-// in float and keeps corners as floats: locations, axes and corners of both are some ten halves of a last place off together.
+// By how much a lamp and a face that are meant to lie in one plane may be apart, in normalised units. Blender computes
+// placements in float and keeps corners as floats: locations, axes and corners of both are some ten halves of a last place off
+// together.
 double apart_by_rounding(const LightDescription &from, double scale) {
   const glm::dvec3 &p = from.to_world.translation;
   const double reach = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + 0.5 * double(from.size.x + from.size.y);
@@ -47,7 +50,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.radius = double(from.radius) * scale;
   light.soft_falloff = from.soft_falloff;
   if (from.kind == LightKind::Spot) {
-    light.cos_half_angle = std::cos(0.5 * double(from.spot_angle));
+    light.cos_half_angle = cos(0.5 * double(from.spot_angle));
     light.blend_width = (1.0 - light.cos_half_angle) * double(from.spot_blend);
     light.spot_cosine = from.spot_cosine;
     light.stretch_x = double(from.size.x);
@@ -56,9 +59,9 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   // A flat disk cannot fill half of the sky.
   const double sun_angle = from.sun_flat ? std::min(double(from.sun_angle), glm::radians(179.9)) : double(from.sun_angle);
   // 1 - cos(a) = 2 sin^2(a / 2), exact for the smallest suns.
-  const double s = std::sin(0.25 * sun_angle);
+  const double s = sin(0.25 * sun_angle);
   light.one_minus_cos_sun = 2.0 * s * s;
-  light.flat_radius = from.sun_flat ? std::tan(0.5 * sun_angle) : 0.0;
+  light.flat_radius = from.sun_flat ? tan(0.5 * sun_angle) : 0.0;
   // A disk that is smaller than a float direction can tell is a direction.
   if (0.5 * double(from.sun_angle) < 0x1p-24)
     light.one_minus_cos_sun = 0.0;
@@ -70,7 +73,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
   if (from.spread < glm::pi<float>()) {
     const double half = 0.5 * std::max(double(from.spread), 1e-3);
-    light.tan_half_spread = std::tan(half);
+    light.tan_half_spread = tan(half);
     light.spread_scale = 1.0 / (light.tan_half_spread - half);
   }
   light.hidden_from = from.hidden_from;

@@ -2,6 +2,7 @@
 
 #include "lights/float4.h"
 #include "sampling/color.h"
+#include "sampling/elementary.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -22,8 +23,8 @@ double level(const glm::dvec3 &emission) {
 
 // Half the widest opening of a spot.
 double spot_reach(const Light &light) {
-  const double half = std::acos(std::clamp(light.cos_half_angle, 0.0, 1.0));
-  return half < 0.5 * kPi - 1e-6 ? std::atan(std::tan(half) * std::max(light.stretch_x, light.stretch_y)) : 0.5 * kPi;
+  const double half = acos(std::clamp(light.cos_half_angle, 0.0, 1.0));
+  return half < 0.5 * kPi - 1e-6 ? atan(tan(half) * std::max(light.stretch_x, light.stretch_y)) : 0.5 * kPi;
 }
 
 // What a round light fills, and how far its parts are.
@@ -128,11 +129,11 @@ Importance importance(const LightQuery &query, const TreeLight &light) {
 ShineCone shine_cone(const LightCone &cone) {
   ShineCone result;
   result.axis = glm::vec3(cone.axis);
-  result.cos_o = float(std::cos(cone.theta_o));
-  result.sin_o = float(std::sin(cone.theta_o));
+  result.cos_o = float(cos(cone.theta_o));
+  result.sin_o = float(sin(cone.theta_o));
   const double all = cone.theta_o + cone.theta_e, full = cone.theta_e - cone.theta_o;
-  result.cos_all = all >= kPi ? -2.0f : float(std::cos(all));
-  result.cos_full = full < 0.0 ? 2.0f : float(std::cos(full));
+  result.cos_all = all >= kPi ? -2.0f : float(cos(all));
+  result.cos_full = full < 0.0 ? 2.0f : float(cos(full));
   return result;
 }
 
@@ -171,7 +172,7 @@ DescribedLight describe(const Light &light, uint32_t number) {
     }
     known.spot = true;
     bounds.cone.theta_e = spot_reach(light);
-    known.cos_e = float(std::cos(bounds.cone.theta_e));
+    known.cos_e = float(cos(bounds.cone.theta_e));
     known.blend = float(light.blend_width);
     if (!(light.cos_half_angle < 1.0))
       bounds.energy = 0.0;
@@ -184,14 +185,14 @@ DescribedLight describe(const Light &light, uint32_t number) {
       bounds.grow(light.position + (corner & 1 ? light.half_x : -light.half_x) * light.x +
                   (corner & 2 ? light.half_y : -light.half_y) * light.y);
     if (light.spread_scale != 0.0)
-      bounds.cone.theta_e = std::atan(light.tan_half_spread);
-    known.cos_e = float(std::cos(bounds.cone.theta_e));
+      bounds.cone.theta_e = atan(light.tan_half_spread);
+    known.cos_e = float(cos(bounds.cone.theta_e));
     bounds.energy *= light.area;
     break;
   case LightKind::Sun:
     known.kind = TreeLight::Kind::Sun;
     known.axis = glm::vec3(light.z);
-    bounds.cone.theta_e = std::acos(1.0 - std::min(light.one_minus_cos_sun, 1.0));
+    bounds.cone.theta_e = acos(1.0 - std::min(light.one_minus_cos_sun, 1.0));
     known.cos_e = float(1.0 - std::min(light.one_minus_cos_sun, 1.0));
     bounds.grow(glm::dvec3(0.0));
     break;

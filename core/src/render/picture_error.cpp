@@ -1,6 +1,7 @@
 #include "render/picture_error.h"
 
 #include "render/alike.h"
+#include "sampling/elementary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,7 @@ double gaussian_reach(double confidence) {
   double low = 0.0, high = 40.0;
   while (high - low > 1e-12) {
     const double middle = 0.5 * (low + high);
-    (std::erf(middle / std::sqrt(2.0)) < confidence ? low : high) = middle;
+    (erf(middle / std::sqrt(2.0)) < confidence ? low : high) = middle;
   }
   return low;
 }
@@ -83,7 +84,7 @@ PictureError picture_error(const LuminanceMap &map, const RelativeVariance &rela
   }
   constexpr double kSpread = 2.0;
   const double spread = sum > 0.0 ? 0.5 * std::sqrt(kSpread * squares) / sum : 0.0;
-  const double reach = std::exp(gaussian_reach(confidence) * spread);
+  const double reach = exp(gaussian_reach(confidence) * spread);
   result.low = std::min(low, high) / reach;
   result.high = std::max(low, high) * reach;
   result.error = std::sqrt(low * high);

@@ -31,8 +31,11 @@ void reserve_memory() {
 FloatEnvironment::FloatEnvironment() : saved_(_mm_getcsr()) { _mm_setcsr(0x1f80); }
 FloatEnvironment::~FloatEnvironment() { _mm_setcsr(saved_); }
 #else
-FloatEnvironment::FloatEnvironment() = default;
-FloatEnvironment::~FloatEnvironment() = default;
+FloatEnvironment::FloatEnvironment() {
+  std::fegetenv(&saved_);
+  std::fesetenv(FE_DFL_ENV);
+}
+FloatEnvironment::~FloatEnvironment() { std::fesetenv(&saved_); }
 #endif
 
 ThreadPool::ThreadPool(uint32_t count) {

@@ -4,6 +4,7 @@
 #include "render/processors.h"
 
 #include <atomic>
+#include <cfenv>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -53,7 +54,11 @@ public:
   FloatEnvironment &operator=(const FloatEnvironment &) = delete;
 
 private:
+#if defined(__SSE2__)
   uint32_t saved_ = 0;
+#else
+  std::fenv_t saved_;
+#endif
 };
 
 } // namespace lancer

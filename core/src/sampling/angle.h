@@ -30,20 +30,29 @@ template <class Double> [[gnu::always_inline]] inline Double angle(Double y, Dou
   return select(y < zero, -of_half, of_half);
 }
 
-// Sine and cosine of u turns, u in [0, 1]. Fitted to 5e-20 and 4e-18: what is left is rounding.
+// What the sine and the cosine of x, |x| <= pi/4, are beside x and 1 - x^2 / 2, of x^2: the first times x^3, the second times
+// x^4. Fitted to 5e-20 and 4e-18 of both functions.
+template <class Double> [[gnu::always_inline]] inline Double sine_rest(Double z) {
+  const Double z2 = z * z;
+  return (Double(-0.16666666666666632) + z * Double(0.008333333333322418)) +
+         z2 * ((Double(-0.00019841269829812405) + z * Double(2.7557313693580386e-06)) +
+               z2 * (Double(-2.5050758385411525e-08) + z * Double(1.5896811850312827e-10)));
+}
+template <class Double> [[gnu::always_inline]] inline Double cosine_rest(Double z) {
+  const Double z2 = z * z;
+  return (Double(0.0416666666666666) + z * Double(-0.0013888888888874131)) +
+         z2 * ((Double(2.4801587289486992e-05) + z * Double(-2.7557314353783e-07)) +
+               z2 * (Double(2.087572347823226e-09) + z * Double(-1.1359658803746477e-11)));
+}
+
+// Sine and cosine of u turns, u in [0, 1].
 template <class Double> [[gnu::always_inline]] inline void sin_cos_turn(Double u, Double &sine, Double &cosine) {
   // Subtract the nearest quarter, which is exact. A sum of this size has no fraction.
   const Double whole(0x1.8p52);
   const Double quarter = (Double(4.0) * u + whole) - whole;
   const Double x = Double(6.283185307179586) * (u - Double(0.25) * quarter);
   const Double z = x * x, z2 = z * z;
-  const Double s = (Double(-0.16666666666666632) + z * Double(0.008333333333322418)) +
-                   z2 * ((Double(-0.00019841269829812405) + z * Double(2.7557313693580386e-06)) +
-                         z2 * (Double(-2.5050758385411525e-08) + z * Double(1.5896811850312827e-10)));
-  const Double c = (Double(0.0416666666666666) + z * Double(-0.0013888888888874131)) +
-                   z2 * ((Double(2.4801587289486992e-05) + z * Double(-2.7557314353783e-07)) +
-                         z2 * (Double(2.087572347823226e-09) + z * Double(-1.1359658803746477e-11)));
-  const Double sin_x = x + x * z * s, cos_x = Double(1.0) - Double(0.5) * z + z2 * c;
+  const Double sin_x = x + x * z * sine_rest(z), cos_x = Double(1.0) - Double(0.5) * z + z2 * cosine_rest(z);
   // Turn back by it.
   const auto first = quarter == Double(1.0), second = quarter == Double(2.0), third = quarter == Double(3.0);
   const auto crossed = first | third;

@@ -1,6 +1,7 @@
 #include "sampling/direction_map.h"
 
 #include "sampling/angle.h"
+#include "sampling/elementary.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -37,7 +38,7 @@ DirectionMap::DirectionMap(uint32_t width, uint32_t height, const std::vector<fl
     : width_(width), height_(height) {
   const uint32_t half = (height + 1) / 2;
   for (uint32_t row = 0; row <= half; ++row) {
-    const double s = std::sin(0.5 * glm::pi<double>() * (double(row) / height));
+    const double s = sin(0.5 * glm::pi<double>() * (double(row) / height));
     versines_.push_back(2.0 * s * s);
   }
   for (uint32_t row = 0; row < half; ++row)
@@ -92,7 +93,7 @@ double DirectionMap::density(uint32_t column, uint32_t row) const {
 
 glm::dvec3 DirectionMap::direction(double column, double row) const {
   const double theta = glm::pi<double>() * (row / height_), phi = glm::pi<double>() * (2.0 * column / width_ - 1.0);
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+  return {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
 }
 
 glm::dvec3 DirectionMap::inside_cell(uint32_t column, uint32_t row, const glm::dvec2 &inside) const {

@@ -3,11 +3,13 @@
 
 #include <cmath>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 // Relative error below 4e-7 for |y| < 1. Giles, "Approximating the erfinv function", GPU Computing Gems 2, 2010.
 inline float erf_inverse(float y) {
-  float w = -std::log((1.0f - y) * (1.0f + y));
+  float w = -log((1.0f - y) * (1.0f + y));
   float p;
   if (w < 5.0f) {
     w -= 2.5f;

@@ -253,6 +253,12 @@ LANCER_LANE D sign(D a) {
           (DoubleVector)((LongWordVector)sign_and(a.hi, 1ull << 63) | one)};
 }
 
+// 2 to the power of a whole number within +-1022, as that of exponential.h.
+LANCER_LANE D power_of_two(D whole) {
+  const D digits = whole + D(0x1.8p52 + 1023.0);
+  return {(DoubleVector)((LongWordVector)digits.lo << 52), (DoubleVector)((LongWordVector)digits.hi << 52)};
+}
+
 // Towards zero, of what an int32 holds; and back.
 LANCER_LANE U truncate(F a) { return U((WordVector) __builtin_convertvector(a.v, IntVector)); }
 LANCER_LANE F to_float(U a) { return F(__builtin_convertvector((IntVector)a.v, FloatVector)); }

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 enum class FilterKind : unsigned { Box = 0, BlackmanHarris = 1 };
@@ -34,7 +36,7 @@ public:
   // The four-term Blackman-Harris window over its full width, x in [0, 1].
   static double blackman_harris(double x) {
     const double t = 2.0 * std::numbers::pi * x;
-    return 0.35875 - 0.48829 * std::cos(t) + 0.14128 * std::cos(2.0 * t) - 0.01168 * std::cos(3.0 * t);
+    return 0.35875 - 0.48829 * cos(t) + 0.14128 * cos(2.0 * t) - 0.01168 * cos(3.0 * t);
   }
 
   // Offset from the pixel's middle in pixels, in [-width / 2, width / 2], never falling as u rises.

@@ -6,6 +6,8 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 struct SphericalTriangle {
@@ -17,7 +19,7 @@ struct SphericalTriangle {
       : a(to_a / glm::length(to_a)), b(to_b / glm::length(to_b)), c(to_c / glm::length(to_c)) {
     // Van Oosterom, Strackee, "The solid angle of a plane triangle", 1983.
     const double triple = std::abs(glm::dot(a, glm::cross(b, c)));
-    solid_angle = 2.0 * std::atan2(triple, 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+    solid_angle = 2.0 * atan2(triple, 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
     if (!(solid_angle > 0.0))
       solid_angle = 0.0;
   }
@@ -28,7 +30,7 @@ struct SphericalTriangle {
     const glm::dvec3 c_along = across(c, a);
     const double cos_alpha = std::clamp(glm::dot(across(b, a), c_along), -1.0, 1.0);
     const double sin_alpha = std::sqrt((1.0 - cos_alpha) * (1.0 + cos_alpha));
-    const double cut = u.x * solid_angle, sin_cut = std::sin(cut), cos_cut = std::cos(cut);
+    const double cut = u.x * solid_angle, sin_cut = sin(cut), cos_cut = cos(cut);
     const double sin_phi = sin_cut * cos_alpha - cos_cut * sin_alpha, cos_phi = cos_cut * cos_alpha + sin_cut * sin_alpha;
     const double k1 = cos_phi - cos_alpha, k2 = sin_phi + sin_alpha * glm::dot(a, b);
     const double below = (k2 * sin_phi + k1 * cos_phi) * sin_alpha;

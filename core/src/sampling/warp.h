@@ -38,8 +38,8 @@ inline float warp_cosine_hemisphere_pdf(float cos_theta) { return std::max(0.0f,
 // Uniform over all directions.
 inline glm::vec3 warp_sphere(glm::vec2 u) {
   const float sin_theta = 2.0f * std::sqrt(u.x * (1.0f - u.x));
-  const float phi = 2.0f * kPi * u.y;
-  return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1.0f - 2.0f * u.x};
+  const SinCos phi = sin_cos_turn(u.y);
+  return {sin_theta * phi.cos, sin_theta * phi.sin, 1.0f - 2.0f * u.x};
 }
 inline float warp_sphere_pdf() { return 0.25f * kInvPi; }
 
@@ -50,8 +50,8 @@ inline float one_minus_cos(float sin2) { return sin2 / (1.0f + std::sqrt(std::ma
 inline glm::vec3 warp_cone(glm::vec2 u, float one_minus_cos_max) {
   const float x = u.x * one_minus_cos_max;
   const float sin_theta = std::sqrt(x * (2.0f - x));
-  const float phi = 2.0f * kPi * u.y;
-  return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1.0f - x};
+  const SinCos phi = sin_cos_turn(u.y);
+  return {sin_theta * phi.cos, sin_theta * phi.sin, 1.0f - x};
 }
 inline float warp_cone_pdf(float one_minus_cos_max) { return 0.5f * kInvPi / one_minus_cos_max; }
 

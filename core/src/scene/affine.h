@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 // p' = linear * p + translation, in double: the composition of placements is where far-away scenes lose their digits.
@@ -43,6 +45,9 @@ inline Affine inverse(const Affine &a) {
   const glm::dmat3 m = glm::inverse(a.linear);
   return {m, -(m * a.translation)};
 }
+
+// How much areas grow under a map, over all ways that they may face.
+inline double mean_area_scale(const glm::dmat3 &map) { return exp(2.0 / 3.0 * log(std::abs(glm::determinant(map)))); }
 
 // A vector without length stays 0.
 template <class T> glm::vec<3, T> unit_or_zero(const glm::vec<3, T> &v) {

@@ -1,5 +1,6 @@
 #include "scene/camera.h"
 
+#include "sampling/elementary.h"
 #include "sampling/warp.h"
 #include "scene/panorama.h"
 
@@ -68,8 +69,8 @@ glm::dvec2 Camera::aperture(const glm::vec2 &u) const {
   const double across = std::sqrt(scaled - blade), along = double(u.y) * across;
   const double half = glm::pi<double>() / aperture_blades;
   // Its corners: the middle, and the rim at half a blade to either side.
-  const glm::dvec2 p(across * std::cos(half), (2.0 * along - across) * std::sin(half));
-  const double turn = aperture_rotation + 2.0 * half * blade, c = std::cos(turn), s = std::sin(turn);
+  const glm::dvec2 p(across * cos(half), (2.0 * along - across) * sin(half));
+  const double turn = aperture_rotation + 2.0 * half * blade, c = cos(turn), s = sin(turn);
   return {(c * p.x - s * p.y) / aperture_ratio, s * p.x + c * p.y};
 }
 

@@ -1,4 +1,5 @@
 // Checks and copies lights; a value that no light can have is replaced and said.
+#include "sampling/elementary.h"
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
@@ -80,8 +81,7 @@ void add_light(Description &description, const lancer_light &source) {
     light.spot_cosine = source.spot_cosine != 0;
     light.sun_angle = reader.read("sun angle", source.sun_angle, 0.0f, glm::pi<float>());
     if (light.kind == LightKind::Sun)
-      light.sun_angle =
-          reader.not_too_small("sun angle", light.sun_angle, std::sin(0.5 * double(light.sun_angle)), light.emission);
+      light.sun_angle = reader.not_too_small("sun angle", light.sun_angle, sin(0.5 * double(light.sun_angle)), light.emission);
     light.sun_flat = source.sun_flat != 0;
     // A spot needs some stretch; whoever leaves it 0 has a round one in mind.
     const float smallest = light.kind == LightKind::Spot ? 1e-6f : 0.0f;

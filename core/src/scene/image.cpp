@@ -1,5 +1,6 @@
 #include "scene/image.h"
 
+#include "sampling/elementary.h"
 #include "sampling/plain_vectors.h"
 #include "scene/wide_image.h"
 
@@ -21,7 +22,7 @@ float unit(float value) { return value; }
 float srgb_to_linear(float c) {
   if (c < 0.04045f)
     return c < 0.0f ? 0.0f : c * (1.0f / 12.92f);
-  return std::pow((c + 0.055f) * (1.0f / 1.055f), 2.4f);
+  return pow((c + 0.055f) * (1.0f / 1.055f), 2.4f);
 }
 
 // The curve at the 256 values that a byte can have.

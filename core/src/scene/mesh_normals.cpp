@@ -5,6 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 namespace {
@@ -25,7 +27,7 @@ std::vector<glm::vec3> normals_by_angle(const Mesh &mesh) {
       const glm::dvec3 p(mesh.vertex(i, corner));
       const glm::dvec3 a = unit_or_zero(glm::dvec3(mesh.vertex(i, (corner + 1) % 3)) - p);
       const glm::dvec3 b = unit_or_zero(glm::dvec3(mesh.vertex(i, (corner + 2) % 3)) - p);
-      sums[mesh.triangles[i][corner]] += std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * n;
+      sums[mesh.triangles[i][corner]] += atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * n;
     }
   }
   return units(sums);

@@ -1,4 +1,5 @@
 // Mixing and changing colours, as Blender's Mix and Gamma nodes have it.
+#include "sampling/elementary.h"
 #include "scene/node_site.h"
 
 #include <algorithm>
@@ -130,7 +131,7 @@ glm::vec4 gamma(const Inputs &in) {
     return scalar(1.0f);
   glm::vec3 c = in[0];
   for (int i = 0; i < 3; ++i)
-    c[i] = c[i] > 0.0f ? std::pow(c[i], exponent) : c[i];
+    c[i] = c[i] > 0.0f ? pow(c[i], exponent) : c[i];
   return solid(c);
 }
 

@@ -1,5 +1,6 @@
 // From vectors to pictures: flat, box, sphere and tube projection, tiles, and the environment's maps.
 #include "sampling/angle.h"
+#include "sampling/elementary.h"
 #include "scene/node_site.h"
 
 #include <cmath>
@@ -43,15 +44,15 @@ const Image *tile_at(const Inputs &in, const Site &site, glm::vec2 &uv) {
 glm::vec2 on_sphere(const glm::vec3 &p) {
   if (p == glm::vec3(0.0f))
     return glm::vec2(0.0f);
-  const float radius = std::hypot(p.x, p.y);
-  const float u = radius > 0.0f ? 0.5f - std::atan2(p.x, p.y) / glm::two_pi<float>() : 0.0f;
-  return {u, 0.5f + std::atan2(p.z, radius) / glm::pi<float>()};
+  const float radius = hypot(p.x, p.y);
+  const float u = radius > 0.0f ? 0.5f - atan2(p.x, p.y) / glm::two_pi<float>() : 0.0f;
+  return {u, 0.5f + atan2(p.z, radius) / glm::pi<float>()};
 }
 
 glm::vec2 on_tube(const glm::vec3 &p) {
   if (p.x == 0.0f && p.y == 0.0f)
     return glm::vec2(0.0f);
-  return {0.5f - std::atan2(p.x, p.y) / glm::two_pi<float>(), 0.5f * (p.z + 1.0f)};
+  return {0.5f - atan2(p.x, p.y) / glm::two_pi<float>(), 0.5f * (p.z + 1.0f)};
 }
 
 // Shares of the three sides of a box for a normal with n.x + n.y + n.z = 1, all positive. Think of a triangle whose corners are

@@ -1,4 +1,5 @@
 // Arithmetic of numbers and vectors, as Blender's Math, Vector Math and Mapping nodes have it: what is undefined gives 0.
+#include "sampling/elementary.h"
 #include "scene/node_site.h"
 
 #include <algorithm>
@@ -10,6 +11,11 @@ namespace lancer {
 
 namespace {
 
+// Of a number and what is none the number, as C99's fmin() and fmax(); of zeros of both signs the first, which those leave
+// open.
+float least(float a, float b) { return b < a || a != a ? b : a; }
+float largest(float a, float b) { return b > a || a != a ? b : a; }
+
 float divide(float a, float b) { return b != 0.0f ? a / b : 0.0f; }
 float modulo(float a, float b) { return b != 0.0f ? std::fmod(a, b) : 0.0f; }
 float fraction(float a) { return a - std::floor(a); }
@@ -19,18 +25,18 @@ float power(float a, float b) {
     return 0.0f;
   if (b == 0.0f)
     return 1.0f;
-  return a == 0.0f ? 0.0f : std::pow(a, b);
+  return a == 0.0f ? 0.0f : pow(a, b);
 }
 
-float logarithm(float a, float base) { return a > 0.0f && base > 0.0f ? divide(std::log(a), std::log(base)) : 0.0f; }
+float logarithm(float a, float base) { return a > 0.0f && base > 0.0f ? divide(log(a), log(base)) : 0.0f; }
 
 // The smaller, rounded off over the distance k.
 float smooth_minimum(float a, float b, float k) {
-  const float least = std::fmin(a, b);
+  const float smaller = least(a, b);
   if (k == 0.0f)
-    return least;
-  const float h = std::fmax(k - std::abs(a - b), 0.0f) / k;
-  return least - h * h * h * k / 6.0f;
+    return smaller;
+  const float h = largest(k - std::abs(a - b), 0.0f) / k;
+  return smaller - h * h * h * k / 6.0f;
 }
 
 float wrap(float a, float high, float low) {
@@ -49,7 +55,7 @@ template <class Function> glm::vec3 each(const glm::vec3 &a, const glm::vec3 &b,
 } // namespace
 
 glm::mat3 rotation(const glm::vec3 &angles) {
-  const glm::vec3 c = each(angles, [](float a) { return std::cos(a); }), s = each(angles, [](float a) { return std::sin(a); });
+  const glm::vec3 c = each(angles, [](float a) { return cos(a); }), s = each(angles, [](float a) { return sin(a); });
   const glm::mat3 x(1.0f, 0.0f, 0.0f, 0.0f, c.x, s.x, 0.0f, -s.x, c.x);
   const glm::mat3 y(c.y, 0.0f, -s.y, 0.0f, 1.0f, 0.0f, s.y, 0.0f, c.y);
   const glm::mat3 z(c.z, s.z, 0.0f, -s.z, c.z, 0.0f, 0.0f, 0.0f, 1.0f);
@@ -80,11 +86,11 @@ float math(uint32_t operation, float a, float b, float c) {
   case LANCER_MATH_ABSOLUTE:
     return std::abs(a);
   case LANCER_MATH_EXPONENT:
-    return std::exp(a);
+    return exp(a);
   case LANCER_MATH_MINIMUM:
-    return std::fmin(a, b);
+    return least(a, b);
   case LANCER_MATH_MAXIMUM:
-    return std::fmax(a, b);
+    return largest(a, b);
   case LANCER_MATH_LESS_THAN:
     return a < b ? 1.0f : 0.0f;
   case LANCER_MATH_GREATER_THAN:
@@ -93,7 +99,7 @@ float math(uint32_t operation, float a, float b, float c) {
     return a == 0.0f ? 0.0f : a < 0.0f ? -1.0f : 1.0f;
   case LANCER_MATH_COMPARE:
     // Blender's smallest tolerance: one unit in the last place of 1.
-    return a == b || std::abs(a - b) <= std::fmax(c, std::numeric_limits<float>::epsilon()) ? 1.0f : 0.0f;
+    return a == b || std::abs(a - b) <= largest(c, std::numeric_limits<float>::epsilon()) ? 1.0f : 0.0f;
   case LANCER_MATH_SMOOTH_MIN:
     return smooth_minimum(a, b, c);
   case LANCER_MATH_SMOOTH_MAX:
@@ -119,25 +125,25 @@ float math(uint32_t operation, float a, float b, float c) {
   case LANCER_MATH_PINGPONG:
     return pingpong(a, b);
   case LANCER_MATH_SINE:
-    return std::sin(a);
+    return sin(a);
   case LANCER_MATH_COSINE:
-    return std::cos(a);
+    return cos(a);
   case LANCER_MATH_TANGENT:
-    return std::tan(a);
+    return tan(a);
   case LANCER_MATH_ARCSINE:
-    return std::asin(std::clamp(a, -1.0f, 1.0f));
+    return asin(std::clamp(a, -1.0f, 1.0f));
   case LANCER_MATH_ARCCOSINE:
-    return std::acos(std::clamp(a, -1.0f, 1.0f));
+    return acos(std::clamp(a, -1.0f, 1.0f));
   case LANCER_MATH_ARCTANGENT:
-    return std::atan(a);
+    return atan(a);
   case LANCER_MATH_ARCTAN2:
-    return a == 0.0f && b == 0.0f ? 0.0f : std::atan2(a, b);
+    return a == 0.0f && b == 0.0f ? 0.0f : atan2(a, b);
   case LANCER_MATH_SINH:
-    return std::sinh(a);
+    return sinh(a);
   case LANCER_MATH_COSH:
-    return std::cosh(a);
+    return cosh(a);
   case LANCER_MATH_TANH:
-    return std::tanh(a);
+    return tanh(a);
   case LANCER_MATH_RADIANS:
     return a * (pi / 180.0f);
   case LANCER_MATH_DEGREES:
@@ -197,11 +203,11 @@ glm::vec4 vector_math(const Inputs &in) {
   case LANCER_VECTOR_SNAP:
     return solid(glm::floor(each(a, b, divide)) * b);
   case LANCER_VECTOR_SINE:
-    return solid(each(a, [](float x) { return std::sin(x); }));
+    return solid(each(a, [](float x) { return sin(x); }));
   case LANCER_VECTOR_COSINE:
-    return solid(each(a, [](float x) { return std::cos(x); }));
+    return solid(each(a, [](float x) { return cos(x); }));
   case LANCER_VECTOR_TANGENT:
-    return solid(each(a, [](float x) { return std::tan(x); }));
+    return solid(each(a, [](float x) { return tan(x); }));
   default:
     return solid(glm::vec3(0.0f));
   }

@@ -1,5 +1,6 @@
 // Normals and what depends on them: normal maps, tangents, displacement, Fresnel and layer weight, bumps.
 #include "bsdf/fresnel.h"
+#include "sampling/elementary.h"
 #include "scene/attribute.h"
 #include "scene/node_site.h"
 #include "scene/scene.h"
@@ -158,7 +159,7 @@ float layer_weight(const Inputs &in, const Site &site) {
   if (blend == 0.5f)
     return 1.0f - cosine;
   const float share = glm::clamp(blend, 0.0f, 1.0f - 1e-5f);
-  return 1.0f - std::pow(cosine, share < 0.5f ? 2.0f * share : 0.5f / (1.0f - share));
+  return 1.0f - pow(cosine, share < 0.5f ? 2.0f * share : 0.5f / (1.0f - share));
 }
 
 } // namespace lancer

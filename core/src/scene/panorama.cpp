@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "sampling/elementary.h"
+
 namespace lancer {
 
 namespace {
@@ -12,7 +14,7 @@ namespace {
 glm::dvec3 off_axis(double theta, const glm::dvec2 &across) {
   const double length = glm::length(across);
   const glm::dvec2 unit = length > 0.0 ? across / length : glm::dvec2(1.0, 0.0);
-  return {unit.x * std::sin(theta), unit.y * std::sin(theta), -std::cos(theta)};
+  return {unit.x * sin(theta), unit.y * sin(theta), -cos(theta)};
 }
 
 // The angle from the axis that a lens of the polynomial kind gives to a point at r mm from the middle; its sign turns the
@@ -38,7 +40,7 @@ double polynomial_radius(const Camera &camera, double theta) {
 
 // Where the direction across the axis, scaled to length r, lies in a sensor.
 glm::dvec2 on_sensor(const glm::dvec3 &d, double r, double width, double height) {
-  const double across = std::hypot(d.x, d.y);
+  const double across = hypot(d.x, d.y);
   const glm::dvec2 unit = across > 0.0 ? glm::dvec2(d.x, d.y) / across : glm::dvec2(0.0);
   return {r * unit.x / width + 0.5, r * unit.y / height + 0.5};
 }
@@ -51,7 +53,7 @@ glm::dvec3 panorama_direction(const Camera &camera, const glm::dvec2 &place) {
   switch (camera.kind) {
   case CameraKind::Equirectangular: {
     const double latitude = glm::mix(p[0], p[1], place.y), longitude = glm::mix(p[2], p[3], place.x);
-    return {std::cos(latitude) * std::sin(longitude), std::sin(latitude), -std::cos(latitude) * std::cos(longitude)};
+    return {cos(latitude) * sin(longitude), sin(latitude), -cos(latitude) * cos(longitude)};
   }
   case CameraKind::FisheyeEquidistant: {
     const double r = 2.0 * glm::length(middle);
@@ -60,9 +62,9 @@ glm::dvec3 panorama_direction(const Camera &camera, const glm::dvec2 &place) {
   case CameraKind::FisheyeEquisolid: {
     const glm::dvec2 sensor = middle * glm::dvec2(p[2], p[3]);
     const double r = glm::length(sensor), lens = p[0];
-    if (r > 2.0 * lens * std::sin(0.25 * p[1]) || r > 2.0 * lens)
+    if (r > 2.0 * lens * sin(0.25 * p[1]) || r > 2.0 * lens)
       return glm::dvec3(0.0);
-    return off_axis(2.0 * std::asin(r / (2.0 * lens)), sensor);
+    return off_axis(2.0 * asin(r / (2.0 * lens)), sensor);
   }
   case CameraKind::FisheyePolynomial: {
     const glm::dvec2 sensor = middle * glm::dvec2(p[1], p[2]);
@@ -80,7 +82,7 @@ glm::dvec3 panorama_direction(const Camera &camera, const glm::dvec2 &place) {
   }
   case CameraKind::Cylindrical: {
     const double longitude = glm::mix(p[0], p[1], place.x), height = glm::mix(p[2], p[3], place.y) / p[4];
-    return glm::normalize(glm::dvec3(std::sin(longitude), height, -std::cos(longitude)));
+    return glm::normalize(glm::dvec3(sin(longitude), height, -cos(longitude)));
   }
   case CameraKind::Perspective:
   case CameraKind::Orthographic:
@@ -91,16 +93,16 @@ glm::dvec3 panorama_direction(const Camera &camera, const glm::dvec2 &place) {
 
 glm::dvec2 panorama_place(const Camera &camera, const glm::dvec3 &d) {
   const auto &p = camera.panorama;
-  const double theta = std::atan2(std::hypot(d.x, d.y), -d.z), longitude = std::atan2(d.x, -d.z);
+  const double theta = atan2(hypot(d.x, d.y), -d.z), longitude = atan2(d.x, -d.z);
   switch (camera.kind) {
   case CameraKind::Equirectangular: {
-    const double latitude = std::atan2(d.y, std::hypot(d.x, d.z));
+    const double latitude = atan2(d.y, hypot(d.x, d.z));
     return {(longitude - p[2]) / (p[3] - p[2]), (latitude - p[0]) / (p[1] - p[0])};
   }
   case CameraKind::FisheyeEquidistant:
     return on_sensor(d, theta / p[0], 1.0, 1.0);
   case CameraKind::FisheyeEquisolid:
-    return on_sensor(d, 2.0 * p[0] * std::sin(0.5 * theta), p[2], p[3]);
+    return on_sensor(d, 2.0 * p[0] * sin(0.5 * theta), p[2], p[3]);
   case CameraKind::FisheyePolynomial:
     return on_sensor(d, polynomial_radius(camera, theta), p[1], p[2]);
   case CameraKind::MirrorBall: {
@@ -109,7 +111,7 @@ glm::dvec2 panorama_place(const Camera &camera, const glm::dvec3 &d) {
     return {0.5 * (d.x * scale + 1.0), 0.5 * (d.y * scale + 1.0)};
   }
   case CameraKind::Cylindrical: {
-    const double height = d.y / std::hypot(d.x, d.z) * p[4];
+    const double height = d.y / hypot(d.x, d.z) * p[4];
     return {(longitude - p[0]) / (p[1] - p[0]), (height - p[2]) / (p[3] - p[2])};
   }
   case CameraKind::Perspective:

@@ -1,0 +1,53 @@
+// Elementary functions with the same bits from every library, compiler and processor: of + - * / and sqrt, which IEEE 754
+// rounds, of comparisons and of the numbers' bits alone. Special values are those of C99's annex F.
+//
+// Of the true value, those of double are within 1 unit in the last place (exp, log, sin, cos), 1.5 (log1p, cosh below 700, erf,
+// hypot), 3 (expm1, sinh, cosh, tanh, tan, atan, atan2, asin, acos) or 5 (erfc), whatever the argument. Those of float round
+// them once: within 0.500001 units.
+#pragma once
+
+namespace lancer {
+
+double exp(double x);
+double expm1(double x);
+double sinh(double x);
+double cosh(double x);
+double tanh(double x);
+double log(double x);
+double log1p(double x);
+double sin(double x);
+double cos(double x);
+double tan(double x);
+double asin(double x);
+double acos(double x);
+double atan(double x);
+double atan2(double y, double x);
+double hypot(double x, double y);
+double erf(double x);
+double erfc(double x);
+
+// Of floats alone: a product of the logarithm of doubles would lose a dozen bits.
+float pow(float x, float y);
+
+[[gnu::always_inline]] inline float exp(float x) { return static_cast<float>(exp(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float expm1(float x) { return static_cast<float>(expm1(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float sinh(float x) { return static_cast<float>(sinh(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float cosh(float x) { return static_cast<float>(cosh(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float tanh(float x) { return static_cast<float>(tanh(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float log(float x) { return static_cast<float>(log(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float log1p(float x) { return static_cast<float>(log1p(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float sin(float x) { return static_cast<float>(sin(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float cos(float x) { return static_cast<float>(cos(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float tan(float x) { return static_cast<float>(tan(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float asin(float x) { return static_cast<float>(asin(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float acos(float x) { return static_cast<float>(acos(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float atan(float x) { return static_cast<float>(atan(static_cast<double>(x))); }
+[[gnu::always_inline]] inline float atan2(float y, float x) {
+  return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x)));
+}
+[[gnu::always_inline]] inline float hypot(float x, float y) {
+  return static_cast<float>(hypot(static_cast<double>(x), static_cast<double>(y)));
+}
+[[gnu::always_inline]] inline float erfc(float x) { return static_cast<float>(erfc(static_cast<double>(x))); }
+
+} // namespace lancer
