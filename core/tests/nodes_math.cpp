@@ -1,10 +1,13 @@
 // Math, Vector Math, Mapping and the colour nodes against closed forms in double, over pairs of values with all signs.
 #include "nodes_lab.h"
 
+#include "scene/node_site.h"
+
 #include <cmath>
 #include <functional>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 #include <map>
 
 using namespace lancer_test;
@@ -94,6 +97,17 @@ TEST(NodesMath, EveryOperation) {
           EXPECT_NEAR(got.x, expected, tolerance) << "operation " << operation << " of " << a << ", " << b << ", " << c;
           EXPECT_EQ(got, glm::vec4(got.x, got.x, got.x, 1.0f));
         }
+}
+
+// C99's fmin() and fmax(), but that the first of two zeros counts, whose signs those leave to each library.
+TEST(NodesMath, TheFirstOfZerosAndTheNumberBesideNone) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (const uint32_t operation : {LANCER_MATH_MINIMUM, LANCER_MATH_MAXIMUM}) {
+    EXPECT_TRUE(std::signbit(math(operation, -0.0f, 0.0f, 0.0f))) << operation;
+    EXPECT_FALSE(std::signbit(math(operation, 0.0f, -0.0f, 0.0f))) << operation;
+    EXPECT_EQ(math(operation, none, 2.0f, 0.0f), 2.0f) << operation;
+    EXPECT_EQ(math(operation, 2.0f, none, 0.0f), 2.0f) << operation;
+  }
 }
 
 TEST(NodesMath, ClampedWhereAsked) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <ostream>
 #include <vector>
 
 namespace lancer {
@@ -52,6 +53,8 @@ const Function kFunctions[] = {
     LANCER_FUNCTION(asin, 3.0, -1.0, 1.0, 0x1b58edd21ace5492),    LANCER_FUNCTION(acos, 3.0, -1.0, 1.0, 0x18b37bd7cacfd14c),
     LANCER_FUNCTION(atan, 3.0, -3.0, 3.0, 0xdd138e3cae0b9217),    LANCER_FUNCTION(erfc, 5.0, -3.0, 26.0, 0x0c0c12c8eed087b5),
 };
+
+void PrintTo(const Function &f, std::ostream *out) { *out << f.name; }
 
 class Elementary : public testing::TestWithParam<Function> {};
 
