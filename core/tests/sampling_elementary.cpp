@@ -51,7 +51,7 @@ const Function kFunctions[] = {
     LANCER_FUNCTION(log1p, 1.5, -0.9, 3.0, 0xa67337f2d4d4ddb9),   LANCER_FUNCTION(sin, 1.0, -10.0, 10.0, 0xc6d837a409ee49e7),
     LANCER_FUNCTION(cos, 1.0, -10.0, 10.0, 0x8eced90f2c33051a),   LANCER_FUNCTION(tan, 3.0, -10.0, 10.0, 0x0710bdb433f67d00),
     LANCER_FUNCTION(asin, 3.0, -1.0, 1.0, 0x1b58edd21ace5492),    LANCER_FUNCTION(acos, 3.0, -1.0, 1.0, 0x18b37bd7cacfd14c),
-    LANCER_FUNCTION(atan, 3.0, -3.0, 3.0, 0xdd138e3cae0b9217),    LANCER_FUNCTION(erfc, 5.0, -3.0, 26.0, 0x0c0c12c8eed087b5),
+    LANCER_FUNCTION(atan, 3.0, -3.0, 3.0, 0xdd138e3cae0b9217),    LANCER_FUNCTION(erfc, 6.0, -3.0, 26.0, 0x2ce08f70398881b7),
 };
 
 void PrintTo(const Function &f, std::ostream *out) { *out << f.name; }

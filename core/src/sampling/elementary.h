@@ -2,7 +2,7 @@
 // rounds, of comparisons and of the numbers' bits alone. Special values are those of C99's annex F.
 //
 // Of the true value, those of double are within 1 unit in the last place (exp, log, sin, cos), 1.5 (log1p, cosh below 700, erf,
-// hypot), 3 (expm1, sinh, cosh, tanh, tan, atan, atan2, asin, acos) or 5 (erfc), whatever the argument. Those of float round
+// hypot), 3 (expm1, sinh, cosh, tanh, tan, atan, atan2, asin, acos) or 6 (erfc), whatever the argument. Those of float round
 // them once: within 0.500001 units.
 #pragma once
 
