@@ -20,6 +20,7 @@ uint32_t bin_count(uint32_t refs) { return std::min(kMaxBins, 4 + refs / 4); }
 
 Binning make_binning(const Box &centroids, uint32_t bins) {
   Binning binning{centroids.lo, {}};
+  binning.origin[3] = 1.0f; // what the free lane holds vanishes beside it
   for (int axis = 0; axis < 3; ++axis) {
     const float extent = centroids.hi[axis] - centroids.lo[axis];
     const float s = static_cast<float>(bins) * 0.999999f / extent;
