@@ -106,7 +106,9 @@ LANCER_SIMD void enter_mesh_packet(const PlacedShape &shape, const Entering &e, 
   }
   // Shear the largest axis upright.
   for (uint32_t i = 0; i < kPacket; ++i) {
-    const double up = r.longest[i] == 2 ? r.d[2][i] : (r.longest[i] == 1 ? r.d[1][i] : r.d[0][i]);
+    // Two choices between values at hand: of three places in memory clang makes a switch, and no vectors.
+    const double x = r.d[0][i], y = r.d[1][i], z = r.d[2][i];
+    const double lying = r.longest[i] == 1 ? y : x, up = r.longest[i] == 2 ? z : lying;
     for (uint32_t k = 0; k < 3; ++k) {
       r.o[k][i] = r.q[k][i] + centre[k];
       r.shear[k][i] = r.d[k][i] / up;
