@@ -16,7 +16,7 @@ int main(int count, char **folders) {
   std::sort(files.begin(), files.end());
   for (const std::filesystem::path &path : files) {
     // Said first: the last name is that of the file which does not end well.
-    std::printf("%s\n", path.filename().c_str());
+    std::printf("%s\n", path.filename().string().c_str());
     std::fflush(stdout);
     std::ifstream file(path, std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

@@ -24,7 +24,9 @@
 extern "C" {
 #endif
 
-#if defined(__GNUC__)
+#if defined(_WIN32) && defined(LANCER_IS_BUILT)
+#define LANCER_API __declspec(dllexport)
+#elif defined(__GNUC__) && !defined(_WIN32)
 #define LANCER_API __attribute__((visibility("default")))
 #else
 #define LANCER_API

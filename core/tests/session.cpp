@@ -1,10 +1,10 @@
 // Whole renders through the C interface: determinism, cancelling, lifetime of handles, replay.
+#include "scene/memory.h"
 #include "tiny_scene.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <thread>
-#include <unistd.h>
 
 namespace {
 
@@ -166,7 +166,7 @@ TEST(Session, RefusesWhatNoFilmCanHave) {
 
 TEST(Session, RefusesSamplesWhoseSumsNoFilmCanKeep) {
   // One sum of every pixel takes half of what a film may have; seven samples wait in three.
-  const double most = 0.8 * double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  const double most = 0.8 * lancer::physical_memory();
   const auto side = uint32_t(std::sqrt(most / 2.0 / (4 * sizeof(double))));
   const lancer_scene scene = make_scene();
   const lancer_camera camera = make_camera(side, side);

@@ -100,7 +100,7 @@ uint32_t allowed_processors() {
 
 } // namespace
 
-uint32_t usable_processors(const std::string &root) {
+uint32_t usable_processors([[maybe_unused]] const std::string &root) {
   uint32_t count = std::max(1u, std::thread::hardware_concurrency());
 #if defined(__linux__)
   if (const uint32_t allowed = allowed_processors())

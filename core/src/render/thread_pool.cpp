@@ -3,6 +3,7 @@
 #include "accel/parallel.h"
 
 #include <algorithm>
+#include <cfenv>
 #include <chrono>
 #include <memory>
 #include <utility>
@@ -25,18 +26,30 @@ void reserve_memory() {
   *static_cast<volatile char *>(memory.get()) = 0;
 }
 
+#if defined(__SSE2__)
+// Every exception is masked; the rest is zero.
+constexpr uint64_t kPlainFloats = 0x1f80;
+uint64_t float_control() { return _mm_getcsr(); }
+void set_float_control(uint64_t value) { _mm_setcsr(static_cast<uint32_t>(value)); }
+#elif defined(__aarch64__)
+constexpr uint64_t kPlainFloats = 0;
+uint64_t float_control() {
+  uint64_t value;
+  asm volatile("mrs %0, fpcr" : "=r"(value));
+  return value;
+}
+void set_float_control(uint64_t value) { asm volatile("msr fpcr, %0" : : "r"(value)); }
+#else
+// What C knows of: the rounding.
+constexpr uint64_t kPlainFloats = FE_TONEAREST;
+uint64_t float_control() { return uint64_t(std::fegetround()); }
+void set_float_control(uint64_t value) { std::fesetround(int(value)); }
+#endif
+
 } // namespace
 
-#if defined(__SSE2__)
-FloatEnvironment::FloatEnvironment() : saved_(_mm_getcsr()) { _mm_setcsr(0x1f80); }
-FloatEnvironment::~FloatEnvironment() { _mm_setcsr(saved_); }
-#else
-FloatEnvironment::FloatEnvironment() {
-  std::fegetenv(&saved_);
-  std::fesetenv(FE_DFL_ENV);
-}
-FloatEnvironment::~FloatEnvironment() { std::fesetenv(&saved_); }
-#endif
+FloatEnvironment::FloatEnvironment() : saved_(float_control()) { set_float_control(kPlainFloats); }
+FloatEnvironment::~FloatEnvironment() { set_float_control(saved_); }
 
 ThreadPool::ThreadPool(uint32_t count) {
   try {

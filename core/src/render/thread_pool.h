@@ -4,7 +4,6 @@
 #include "render/processors.h"
 
 #include <atomic>
-#include <cfenv>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -54,11 +53,7 @@ public:
   FloatEnvironment &operator=(const FloatEnvironment &) = delete;
 
 private:
-#if defined(__SSE2__)
-  uint32_t saved_ = 0;
-#else
-  std::fenv_t saved_;
-#endif
+  uint64_t saved_;
 };
 
 } // namespace lancer
