@@ -10,6 +10,7 @@ import oidn_versions
 import pytest
 from bindings import abi, denoiser, oidn
 from bindings.abi import LancerError
+from bindings.mapped import on_linux
 from bindings.session import Cancelled
 
 HEIGHT, WIDTH = 96, 128
@@ -174,7 +175,7 @@ def test_where_it_is_looked_for(tmp_path, mapped, beside, found):
     rows += [f"7f02-7f03 r-xp 00000000 08:01 1234       {tmp_path / name}\n" for name in mapped]
     maps.write_text("".join(rows * 2))
     wanted = beside[-1] if found is None else found
-    assert oidn.find(str(maps)) == (str(tmp_path / wanted) if wanted else None)
+    assert oidn.find(on_linux(str(maps))) == (str(tmp_path / wanted) if wanted else None)
 
 
 def test_a_missing_library_is_told(tmp_path, monkeypatch):

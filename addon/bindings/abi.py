@@ -1,5 +1,6 @@
 """lancer.h in ctypes: its functions, and the loading of the library. Its structs and numbers are found here too."""
 
+import contextlib
 import ctypes
 import functools
 import mmap
@@ -15,6 +16,8 @@ from .structs import STRUCTS, Camera, Error, Image, Light, Material, Mesh, Progr
 from .structs import Array as _Array
 
 ABI_VERSION = 4
+
+_FILES = {"win32": ("lancer", ".dll"), "darwin": ("liblancer", ".dylib")}
 UINT32_MAX = 0xFFFFFFFF
 
 _u32, _u64 = c_uint32, c_uint64
@@ -75,10 +78,17 @@ class LancerError(Exception):
 
 
 def library_path():
-    """Where the build puts the library and where the add-on loads it from."""
-    names = {"win32": "lancer.dll", "darwin": "liblancer.dylib"}
+    """Where the build puts the library and where the add-on loads it from.
+
+    The zips mark its name with what it holds: a process that has loaded one file takes another of that name for the same, so
+    that an update would run with the library that it replaced.
+    """
     folder = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "lib")
-    return os.path.join(folder, names.get(sys.platform, "liblancer.so"))
+    stem, ending = _FILES.get(sys.platform, ("liblancer", ".so"))
+    found = []
+    with contextlib.suppress(OSError):
+        found = [entry for entry in os.scandir(folder) if entry.name.startswith(stem) and entry.name.endswith(ending)]
+    return max(found, key=lambda entry: entry.stat().st_mtime).path if found else os.path.join(folder, stem + ending)
 
 
 def load_library(path=None):
@@ -100,7 +110,8 @@ def _load(path):
     except OSError as error:
         if not _has_room(2 * os.path.getsize(path)):
             raise LancerError(f"there is not enough memory or address space to load Lancer's library ({error})") from None
-        raise LancerError(f"Lancer's library cannot be loaded ({error}): {remedy}") from None
+        # Not every system says which file it was.
+        raise LancerError(f"Lancer's library cannot be loaded ({error}; {path}): {remedy}") from None
     try:
         for name, (result, arguments) in _QUERIES.items():
             function = getattr(library, name)

@@ -9,9 +9,10 @@ import ctypes
 import functools
 import os
 import re
+import sys
 from ctypes import c_bool, c_char_p, c_double, c_int, c_size_t, c_void_p
 
-from . import elf
+from . import elf, mapped
 from .abi import LancerError
 
 MISSING = "Open Image Denoise is missing: this Blender brings no library libOpenImageDenoise"
@@ -21,8 +22,9 @@ CANCELLED = 6
 
 Monitor = ctypes.CFUNCTYPE(c_bool, c_void_p, c_double)
 
-_LIBRARY = re.compile(r"libOpenImageDenoise\.so(\.\d+)*$")
-_TBB = re.compile(r"libtbb\.so(\.\d+)*$")
+# As Linux, Windows and macOS call them.
+_LIBRARY = re.compile(r"libOpenImageDenoise\.so(\.\d+)*|OpenImageDenoise\.dll|libOpenImageDenoise(\.\d+)*\.dylib")
+_TBB = re.compile(r"libtbb\.so(\.\d+)*|tbb\d*\.dll|libtbb(\.\d+)*\.dylib")
 
 _COMMON = {
     "oidnNewDevice": (c_void_p, (c_int,)),
@@ -46,13 +48,13 @@ _RENAMED = {
 }
 
 
-def find(maps="/proc/self/maps"):
-    """The path of the library that this process's Blender brings, or None."""
-    mapped = _mapped_files(maps)
-    for path in mapped:
+def find(files=None):
+    """The path of the library that this process's Blender brings, or None. files: what is taken for the process's libraries."""
+    files = mapped.files() if files is None else files
+    for path in files:
         if _LIBRARY.fullmatch(os.path.basename(path)) and os.path.isfile(path):
             return path
-    for path in mapped:
+    for path in files:
         if _TBB.fullmatch(os.path.basename(path)):
             folder = os.path.dirname(path)
             with contextlib.suppress(OSError):
@@ -81,16 +83,6 @@ def fault(library, device):
     return code, (text.value or b"an error without a name").decode("utf-8", "replace")
 
 
-def _mapped_files(maps):
-    """The files that are mapped into this process, each once, in order of their places."""
-    try:
-        with open(maps, encoding="utf-8", errors="surrogateescape") as file:
-            fields = [line.rstrip("\n").split(None, 5) for line in file]
-    except OSError:
-        return []
-    return list(dict.fromkeys(row[5] for row in fields if len(row) == 6 and row[5].startswith("/")))
-
-
 def _major(name):
     numbers = re.findall(r"\d+", name)
     return int(numbers[0]) if numbers else 0
@@ -108,7 +100,7 @@ def _load(path):
     """path: None is the program itself."""
     where = path or "in the program"
     try:
-        what = elf.fault(path) if path else None
+        what = elf.fault(path) if path and sys.platform.startswith("linux") else None
         if what:
             raise LancerError(f"Open Image Denoise {what} ({where})")
         library = ctypes.CDLL(path)
