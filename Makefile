@@ -32,9 +32,12 @@ compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
 # Runs a command into a log: silent when it goes well, all of it when it does not. $(call logged,LOG,COMMAND)
 logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 
-.PHONY: build render test test-slow bench accuracy tradeoff features parity corpus course sanitize fuzz addon format clean help
-.PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-bench
-.PHONY: python-run python-test python-dev python-bench python-charts core-programs core-tests
+platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
+zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
+
+.PHONY: build render test test-slow test-platforms bench accuracy tradeoff features parity corpus course sanitize fuzz addon addons format clean help
+.PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
+.PHONY: python-run python-test python-dev python-bench python-charts python-zig core-programs core-tests
 
 build: packages-build ## build the core; the library lands in addon/lib, where the add-on loads it
 	@mkdir -p build
@@ -117,8 +120,16 @@ corpus: packages-run python-run build ## files of others, by Lancer and by Cycle
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PX),--pixels $(PX)) $(if $(BLENDER),--blender "$(BLENDER)") \
 	  $(if $(README),--readme)
 
-addon: packages-run python-run build ## the zips to install: build/lancer-VERSION.zip (Blender 4.2+) and -blender3.zip (3.x)
+addon: packages-run python-run build ## the zips for this machine: build/lancer-VERSION-PLATFORM.zip (Blender 4.2+) and -blender3.zip (3.x)
 	@$(python) .ci/package.py
+
+addons: packages-run python-run python-zig ## the zips for Linux, Windows and macOS, into build/addons: make addons [ONLY=windows-x64]
+	@for platform in $(or $(ONLY),$(platforms)); do \
+	  echo "== core for $$platform"; JOBS=$(JOBS) .ci/cross.sh $$platform "$(zig)" lancer || exit 1; done
+	@LANCER_ZIG="$(zig)" $(python) .ci/package.py build/platforms $(or $(ONLY),$(platforms))
+
+test-platforms: packages-platforms python-test python-zig ## run what this machine can of the other platforms' libraries: make test-platforms [ONLY=windows-x64]
+	@LANCER_ZIG="$(zig)" JOBS=$(JOBS) .ci/test_platforms.sh $(python) $(or $(ONLY),$(platforms))
 
 format: packages-format python-dev ## lay out C++ and Python text
 	@$(VENV)/bin/ruff check --quiet --fix . && $(VENV)/bin/ruff format --quiet .
@@ -131,7 +142,7 @@ clean: ## remove what was built (not .venv)
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1~\2/p' Makefile | awk -F'~' '{ printf "%-17s %s\n", $$1, $$2 }'
 
-packages-build packages-run packages-test packages-fuzz packages-format: packages-%:
+packages-build packages-run packages-test packages-fuzz packages-format packages-platforms: packages-%:
 	@PYTHON='$(PYTHON)' .ci/packages.sh $*
 
 # What only a peer of the benchmark needs may be missing: the benchmark names that peer as missing.
@@ -149,6 +160,9 @@ python-run: packages-run
 
 python-test: packages-test
 	@$(PYTHON) .ci/environment.py $(VENV) run test
+
+python-zig: packages-run
+	@$(PYTHON) .ci/environment.py build/zig zig
 
 python-dev: packages-format
 	@$(PYTHON) .ci/environment.py $(VENV) dev

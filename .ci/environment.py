@@ -20,11 +20,14 @@ def dotted(version):
     return ".".join(map(str, version))
 
 
-def read_groups():
+def read_groups(names):
+    """The project's own groups, and those of the tools that are named."""
     import tomllib
 
     with open(os.path.join(ROOT, "pyproject.toml"), "rb") as file:
-        return tomllib.load(file)["project"]["optional-dependencies"]
+        told = tomllib.load(file)
+    tools = {name: lines for name, lines in told["dependency-groups"].items() if name in names}
+    return {**told["project"]["optional-dependencies"], **tools}
 
 
 def read_record(path):
@@ -41,7 +44,7 @@ def main(folder, wanted, optional):
             f"Blender's Python module needs Python {' or '.join(map(dotted, SUPPORTED))}, and {sys.executable} is "
             f"{dotted(sys.version_info[:2])}: name another one, as in `make render PYTHON=python{dotted(SUPPORTED[0])}`."
         )
-    groups = read_groups()
+    groups = read_groups(wanted)
     identity = hashlib.sha256(json.dumps([groups, sys.version, sys.base_prefix], sort_keys=True).encode()).hexdigest()
     record_path = os.path.join(folder, "lancer.json")
     record = read_record(record_path)

@@ -1,13 +1,18 @@
-"""The two zips that Blender installs, made of addon/ as it stands: an extension (4.2 and newer) and a classic add-on (3.x).
+"""The zips that Blender installs, made of addon/ as it stands: for each platform an extension (4.2 and newer) and a classic
+add-on (3.x), each with that platform's library alone.
+
+    package.py                  for this machine, with the library in addon/lib, into build/
+    package.py FOLDER PLATFORM...   with the libraries in FOLDER/PLATFORM/lib, into build/addons/; LANCER_ZIG is what built them
 
 The same files give the same bytes: entries are sorted and carry no date of their own.
 """
 
 import ast
-import re
+import hashlib
+import os
+import platform
 import subprocess
 import sys
-import tomllib
 import zipfile
 from pathlib import Path
 
@@ -15,48 +20,78 @@ ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon"
 BUILD = ROOT / "build"
 OLDEST_DATE = (1980, 1, 1, 0, 0, 0)
+LIBRARIES = {"linux": "liblancer.so", "windows": "lancer.dll", "macos": "liblancer.dylib"}
+GLM_NOTICE = Path("/usr/share/doc/libglm-dev/copyright")
+# What zig links into the library: of the C++ and C libraries' notices, by where its package has them.
+ZIG_NOTICES = {
+    "libc++": "libcxx/LICENSE.TXT",
+    "libc++abi": "libcxxabi/LICENSE.TXT",
+    "libunwind": "libunwind/LICENSE.TXT",
+    "compiler-rt": "../LICENSE",
+}
+SYSTEM_NOTICES = {"linux": {"glibc": "libc/glibc/LICENSES"}, "windows": {"mingw-w64": "libc/mingw/COPYING"}, "macos": {}}
 
 
 def read_version():
-    """The release, which four files must name alike."""
-    versions = {
-        "addon/blender_manifest.toml": tomllib.loads((ADDON / "blender_manifest.toml").read_text())["version"],
-        "pyproject.toml": tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"],
-        "core/CMakeLists.txt": re.search(r"project\(lancer VERSION ([\d.]+)", (ROOT / "core/CMakeLists.txt").read_text())[1],
-        "addon/__init__.py": ".".join(str(part) for part in read_bl_info()["version"]),
-    }
-    if len(set(versions.values())) != 1:
-        sys.exit("The release differs from file to file: " + ", ".join(f"{name} says {v}" for name, v in versions.items()))
-    return versions["pyproject.toml"]
-
-
-def read_bl_info():
+    """The release, which bl_info says: Blender 3.x reads it without running the file."""
     for node in ast.parse((ADDON / "__init__.py").read_text()).body:
         if isinstance(node, ast.Assign) and any(getattr(target, "id", None) == "bl_info" for target in node.targets):
-            return ast.literal_eval(node.value)
+            return ".".join(map(str, ast.literal_eval(node.value)["version"]))
     sys.exit("addon/__init__.py has no bl_info, which Blender 3.x needs to install a zip.")
 
 
-def list_files():
-    """Path inside the add-on -> file."""
+def this_platform():
+    machine = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64"}.get(platform.machine().lower(), platform.machine())
+    return f"linux-{machine}"
+
+
+def manifest(version, tag):
+    lines = [line for line in (ADDON / "blender_manifest.toml").read_text().splitlines() if not line.startswith("#")]
+    place = lines.index('id = "lancer"') + 1
+    return "\n".join([*lines[:place], f'version = "{version}"', f'platforms = ["{tag}"]', *lines[place:], ""]).encode()
+
+
+def marked(library):
+    """Its name with a mark of what it holds, after which the add-on takes an update for another library."""
+    return f"{library.stem}-{hashlib.sha256(library.read_bytes()).hexdigest()[:12]}{library.suffix}"
+
+
+def notices(tag, zig):
+    """Name in the zip -> file: what the licences of those parts ask for that the library holds beside our own."""
+    found = {"GLM": GLM_NOTICE}
+    if zig:
+        sources = Path(zig).resolve().parent / "lib"
+        system = SYSTEM_NOTICES[tag.split("-")[0]]
+        found |= {name: sources / place for name, place in (ZIG_NOTICES | system).items()}
+        missing = [str(path) for path in found.values() if not path.is_file()]
+        if missing:
+            sys.exit("Licence notices are missing: " + ", ".join(missing))
+    return {f"licenses/{name}.txt": path for name, path in found.items() if path.is_file()}
+
+
+def list_files(version, tag, library, zig):
+    """Path inside the add-on -> its bytes."""
+    if not library.is_file():
+        sys.exit(f"{library} is missing: it has to be built first.")
     files = {
-        path.relative_to(ADDON).as_posix(): path
+        path.relative_to(ADDON).as_posix(): path.read_bytes()
         for path in ADDON.rglob("*")
-        if path.is_file() and "__pycache__" not in path.parts and not path.name.startswith(".")
+        if path.is_file() and path.parent.name not in ("__pycache__", "lib") and not path.name.startswith(".")
     }
-    if "lib/liblancer.so" not in files:
-        sys.exit("addon/lib/liblancer.so is missing: run `make` first.")
-    return {**files, "LICENSE": ROOT / "LICENSE"}
+    files["blender_manifest.toml"] = manifest(version, tag)
+    files[f"lib/{marked(library)}"] = library.read_bytes()
+    files["LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    return files | {name: path.read_bytes() for name, path in notices(tag, zig).items()}
 
 
 def write_zip(path, files):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        for name, file in sorted(files.items()):
+        for name, data in sorted(files.items()):
             entry = zipfile.ZipInfo(name, OLDEST_DATE)
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (0o755 if name.endswith(".so") else 0o644) << 16
-            archive.writestr(entry, file.read_bytes())
-    print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1e6:.1f} MB")
+            entry.external_attr = (0o755 if name.endswith((".so", ".dylib", ".dll")) else 0o644) << 16
+            archive.writestr(entry, data)
+    print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1e6:.1f} MB", flush=True)
 
 
 def validate(path):
@@ -69,16 +104,28 @@ def validate(path):
         sys.exit(f"Blender refuses {path.name}:\n{result.stdout}{result.stderr}")
 
 
-def main():
-    version = read_version()
-    files = list_files()
-    BUILD.mkdir(exist_ok=True)
-    extension = BUILD / f"lancer-{version}.zip"
+def package(folder, version, tag, library, zig=None):
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob(f"lancer-*-{tag}*.zip"):
+        old.unlink()
+    files = list_files(version, tag, library, zig)
+    extension = folder / f"lancer-{version}-{tag}.zip"
     write_zip(extension, files)
     validate(extension)
-    classic = {f"lancer/{name}": file for name, file in files.items() if name != "blender_manifest.toml"}
-    write_zip(BUILD / f"lancer-{version}-blender3.zip", classic)
+    del files["blender_manifest.toml"]
+    write_zip(folder / f"lancer-{version}-{tag}-blender3.zip", {f"lancer/{name}": data for name, data in files.items()})
+
+
+def main(arguments):
+    version = read_version()
+    if not arguments:
+        package(BUILD, version, this_platform(), ADDON / "lib" / LIBRARIES["linux"])
+        return
+    built, *tags = arguments
+    for tag in tags:
+        library = Path(built) / tag / "lib" / LIBRARIES[tag.split("-")[0]]
+        package(BUILD / "addons", version, tag, library, os.environ["LANCER_ZIG"])
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

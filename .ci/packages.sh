@@ -1,6 +1,6 @@
 #!/bin/sh
-# packages.sh SET...    installs what is missing of the named sets (build, run, test, fuzz, format, and of the benchmark's peers
-# povray, llvm) with one call of apt-get.
+# packages.sh SET...    installs what is missing of the named sets (build, run, test, fuzz, format, platforms, and of the benchmark's
+# peers povray, llvm) with one call of apt-get.
 # Each thing is looked for by what it gives (a command, a library, a header), so that a copy from elsewhere is good enough.
 set -eu
 
@@ -63,6 +63,16 @@ want_fuzz() {
   want_test
   want clang-19 command_is_there clang++-19
   want libclang-rt-19-dev file_is_there "/usr/lib/llvm-19/lib/clang/19/lib/linux/libclang_rt.fuzzer-*.a"
+}
+
+# What runs and reads the libraries of other systems.
+want_platforms() {
+  want_test
+  want debootstrap command_is_there debootstrap
+  want qemu-user-static command_is_there qemu-aarch64-static
+  want wine64 file_is_there "/usr/lib/wine/wine64"
+  want llvm command_is_there llvm-readobj
+  want maven command_is_there mvn
 }
 
 want_povray() {

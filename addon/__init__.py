@@ -3,12 +3,14 @@
 bl_info = {
     "name": "Lancer",
     "author": "The Lancer authors",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "location": "Render properties > Render Engine",
     "description": "Ray tracing with global illumination, and the classic recursive ray tracer",
     "category": "Render",
 }
+# Blender 4.2 and newer take bl_info away from an extension, or put another in its place.
+VERSION = ".".join(map(str, bl_info["version"]))
 
 _registered = []
 

@@ -36,14 +36,14 @@ def versions():
     """Of all that takes part in a render."""
     import numpy
 
-    from . import bl_info
+    from . import VERSION
 
     try:
         library = load_library().lancer_version().decode()
     except LancerError as error:
         library = str(error)
     return {
-        "Lancer": ".".join(map(str, bl_info["version"])),
+        "Lancer": VERSION,
         "library": library,
         "Blender": f"{bpy.app.version_string} {bpy.app.build_hash.decode()}",
         "Python": platform.python_version(),

@@ -194,7 +194,7 @@ def accelerators(kinds, **settings):
 def versions():
     return {
         "blender": bpy.app.version_string,
-        "lancer": ".".join(map(str, addon.bl_info["version"])),
+        "lancer": addon.VERSION,
         "python": sys.version.split()[0],
     }
 
