@@ -174,9 +174,8 @@ std::vector<Rule> all_with_rule(const Scene &scene) {
   all.push_back({"brute force", build(AcceleratorKind::BruteForce)});
   all.push_back({"kd-tree", build(AcceleratorKind::KdTree)});
   for (const char *instruction_set : {"sse4", "avx2", "avx512"}) {
-    setenv("LANCER_ISA", instruction_set, 1);
+    const AskedSet asked(instruction_set);
     all.push_back({std::string("bvh ") + instruction_set, build(AcceleratorKind::Bvh)});
-    unsetenv("LANCER_ISA");
   }
   return all;
 }

@@ -1,13 +1,12 @@
 // How many digits of t exact surfaces keep: spheres, cylinders, cones and planes of any size, seen from next to them, at
 // grazing angles.
 #include "accel_scenes.h"
+#include "quad.h"
 
 #include <gtest/gtest.h>
 
 namespace lancer::test {
 namespace {
-
-__extension__ using Quad = __float128;
 
 Quad root_of(Quad x) {
   if (!(x > 0))

@@ -1,13 +1,12 @@
 // Exact surfaces: the accuracy of t, starts on the surface, closed rims, and points put back onto the surface.
 #include "accel/quadric.h"
 #include "accel_scenes.h"
+#include "quad.h"
 
 #include <gtest/gtest.h>
 
 namespace lancer::test {
 namespace {
-
-__extension__ using Quad = __float128;
 
 Quad quad_sqrt(Quad x) {
   Quad r = std::sqrt(static_cast<double>(x));

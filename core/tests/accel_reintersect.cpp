@@ -1,5 +1,6 @@
 // A ray that leaves a surface meets neither that surface nor what lies beside or below it.
 #include "accel_scenes.h"
+#include "quad.h"
 
 #include "scene/surface.h"
 
@@ -7,8 +8,6 @@
 
 namespace lancer::test {
 namespace {
-
-__extension__ using Quad = __float128;
 
 // How far p is above the plane through a, b, c, times their normal's length, in 113 bits: exact for floats of up to 2^30 apart.
 double above(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c, const glm::vec3 &p) {

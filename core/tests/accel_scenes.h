@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accel/accelerator.h"
+#include "asked_set.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -118,10 +119,8 @@ struct Contestant {
 };
 
 inline std::unique_ptr<Accelerator> build_bvh_for(const char *instruction_set, const Geometry &geometry, uint32_t threads) {
-  setenv("LANCER_ISA", instruction_set, 1);
-  std::unique_ptr<Accelerator> bvh = build_accelerator(AcceleratorKind::Bvh, geometry, {threads, nullptr});
-  unsetenv("LANCER_ISA");
-  return bvh;
+  const AskedSet asked(instruction_set);
+  return build_accelerator(AcceleratorKind::Bvh, geometry, {threads, nullptr});
 }
 
 // The oracle first.

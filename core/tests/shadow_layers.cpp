@@ -1,10 +1,10 @@
 // Shadow rays through layers: within one traversal as from hit to hit, and the same bits whoever traverses.
+#include "asked_set.h"
 #include "foliage.h"
 
 #include "integrator/shadow.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace lancer_test {
 namespace {
@@ -138,16 +138,10 @@ TEST(ShadowLayers, EveryAcceleratorGivesTheSameBits) {
   const std::vector<glm::vec3> expected =
       one_traversal(*foliage(Writing::Plain, {.accelerator = AcceleratorKind::BruteForce}), 8);
   EXPECT_EQ(one_traversal(*foliage(Writing::Plain, {.accelerator = AcceleratorKind::KdTree}), 8), expected);
-  const char *before = std::getenv("LANCER_ISA");
-  const std::string kept = before ? before : "";
   for (const char *instruction_set : {"sse4", "avx2", "avx512"}) {
-    setenv("LANCER_ISA", instruction_set, 1);
+    const lancer::test::AskedSet asked(instruction_set);
     EXPECT_EQ(one_traversal(*foliage(Writing::Plain), 8), expected) << instruction_set;
   }
-  if (before)
-    setenv("LANCER_ISA", kept.c_str(), 1);
-  else
-    unsetenv("LANCER_ISA");
 }
 
 TEST(ShadowLayers, APicturesAlphaAloneSaysWhatItsNodesSay) {

@@ -1,0 +1,33 @@
+// The instruction set that the environment asks for, while it lives.
+#pragma once
+
+#include <cstdlib>
+#include <string>
+
+namespace lancer::test {
+
+class AskedSet {
+public:
+  explicit AskedSet(const char *name) {
+    const char *before = std::getenv(kName);
+    before_ = before ? before : "";
+    set(name);
+  }
+  ~AskedSet() { set(before_.c_str()); }
+  AskedSet(const AskedSet &) = delete;
+  AskedSet &operator=(const AskedSet &) = delete;
+
+private:
+  static constexpr const char *kName = "LANCER_ISA";
+  // Empty is as good as none.
+  static void set(const char *value) {
+#if defined(_WIN32)
+    _putenv_s(kName, value);
+#else
+    setenv(kName, value, 1);
+#endif
+  }
+  std::string before_;
+};
+
+} // namespace lancer::test
