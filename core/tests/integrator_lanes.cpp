@@ -3,6 +3,7 @@
 #include "random_scenes.h"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 namespace lancer_test {
 namespace {
@@ -84,7 +85,7 @@ void add_lights(Studio &studio, Random &random, bool few) {
   lamp.kind = LANCER_AREA;
   lamp.size[0] = 2.0f;
   lamp.size[1] = 1.0f;
-  lamp.spread = random() % 2 ? float(M_PI) : 1.0f;
+  lamp.spread = random() % 2 ? float(std::numbers::pi) : 1.0f;
   lamp.shape = random() % 2 ? LANCER_RECTANGLE : LANCER_ELLIPSE;
   lamp.hidden_from = random() % 2 ? 0u : uint32_t(LANCER_RAY_GLOSSY);
   lamp.matrix[3] = -2.0;

@@ -4,6 +4,7 @@
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
+#include <numbers>
 #include <random>
 
 namespace lancer_test {
@@ -17,7 +18,7 @@ struct Ball {
     constexpr uint32_t around = 8, rows = 5;
     for (uint32_t row = 0; row <= rows; ++row)
       for (uint32_t i = 0; i < around; ++i) {
-        const double theta = M_PI * (row + 0.02) / (rows + 0.04), phi = 2.0 * M_PI * i / around;
+        const double theta = std::numbers::pi * (row + 0.02) / (rows + 0.04), phi = 2.0 * std::numbers::pi * i / around;
         for (const double x : {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)})
           positions.push_back(float(x));
       }

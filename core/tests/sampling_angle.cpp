@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <random>
 
 namespace lancer {
@@ -26,12 +27,13 @@ TEST(Angle, OfDirectionsAllAround) {
 TEST(Angle, WhereOctantsMeet) {
   EXPECT_EQ(angle(0.0, 0.0), 0.0);
   EXPECT_EQ(angle(0.0, 1.0), 0.0);
-  EXPECT_EQ(angle(1.0, 0.0), M_PI_2);
-  EXPECT_EQ(angle(-1.0, 0.0), -M_PI_2);
-  EXPECT_EQ(angle(0.0, -1.0), M_PI);
+  EXPECT_EQ(angle(1.0, 0.0), (std::numbers::pi / 2.0));
+  EXPECT_EQ(angle(-1.0, 0.0), -(std::numbers::pi / 2.0));
+  EXPECT_EQ(angle(0.0, -1.0), std::numbers::pi);
   for (int eighth = -15; eighth <= 16; ++eighth)
     for (const double apart : {-1e-9, -1e-16, 0.0, 1e-16, 1e-9}) {
-      const double phi = eighth * M_PI / 16.0 + apart, y = std::sin(phi), x = std::cos(phi), want = std::atan2(y, x);
+      const double phi = eighth * std::numbers::pi / 16.0 + apart, y = std::sin(phi), x = std::cos(phi),
+                   want = std::atan2(y, x);
       EXPECT_LE(std::abs(angle(y, x) - want), kBound * std::abs(want)) << eighth << " " << apart;
     }
 }
@@ -43,7 +45,7 @@ TEST(Angle, SineAndCosineOfATurn) {
     double sine, cosine;
     sin_cos_turn(u, sine, cosine);
     // Reduce before multiplying, so that the library's angle is as good.
-    const double quarter = std::round(4.0 * u), x = 2.0 * M_PI * (u - 0.25 * quarter);
+    const double quarter = std::round(4.0 * u), x = 2.0 * std::numbers::pi * (u - 0.25 * quarter);
     const double s = std::sin(x), c = std::cos(x);
     const double want_s = quarter == 1.0 ? c : quarter == 2.0 ? -s : quarter == 3.0 ? -c : s;
     const double want_c = quarter == 1.0 ? -s : quarter == 2.0 ? -c : quarter == 3.0 ? s : c;

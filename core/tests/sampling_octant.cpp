@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numbers>
 
 namespace lancer {
 namespace {
@@ -13,7 +14,7 @@ constexpr double kBound = 1.85 * 0x1p-24;
 
 TEST(Octant, SineAndCosine) {
   for (int i = -100000; i <= 100000; ++i) {
-    const float x = 0.25f * float(M_PI) * float(i) / 100000.0f;
+    const float x = 0.25f * float(std::numbers::pi) * float(i) / 100000.0f;
     EXPECT_LE(std::abs(double(sin_octant(x)) - std::sin(double(x))), kBound * std::abs(std::sin(double(x)))) << x;
     EXPECT_LE(std::abs(double(cos_octant(x)) - std::cos(double(x))), kBound * std::cos(double(x))) << x;
   }
@@ -25,8 +26,8 @@ TEST(Octant, ATurn) {
   for (int i = 0; i <= (1 << 20); ++i) {
     const float u = float(i) * 0x1p-20f;
     const SinCos turn = sin_cos_turn(u);
-    EXPECT_NEAR(turn.sin, std::sin(2.0 * M_PI * double(u)), kBound + angle) << u;
-    EXPECT_NEAR(turn.cos, std::cos(2.0 * M_PI * double(u)), kBound + angle) << u;
+    EXPECT_NEAR(turn.sin, std::sin(2.0 * std::numbers::pi * double(u)), kBound + angle) << u;
+    EXPECT_NEAR(turn.cos, std::cos(2.0 * std::numbers::pi * double(u)), kBound + angle) << u;
   }
   EXPECT_EQ(sin_cos_turn(0.25f).cos, 0.0f);
   EXPECT_EQ(sin_cos_turn(0.5f).sin, 0.0f);
