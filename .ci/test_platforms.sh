@@ -1,0 +1,151 @@
+#!/bin/sh
+# test_platforms.sh PYTHON PLATFORM...    runs the C++ tests and those of the bindings with the libraries of other platforms: of
+# Linux on the oldest Debian that is served, of arm64 under qemu, of Windows under wine. What cannot be run is looked at.
+set -eu
+
+python=$1
+shift
+places=$PWD/build/platforms
+roots=$places/roots
+oldest=bullseye
+# A Windows Python that Maven's registry has whole, and a C library of Microsoft's for it: wine's own lacks what numpy calls.
+windows_python=org.bytedeco:cpython:3.12.1-1.5.10:jar:windows-x86_64
+windows_runtime=org.bytedeco:javacpp:1.5.10:jar:windows-x86_64
+# What the bindings' tests stand on; those that need a compiler or another process stay at home.
+packages="numpy scipy pytest iniconfig packaging pluggy pygments colorama trimesh mpmath"
+tests="test_abi test_abi_handles test_abi_sessions test_abi_states test_library_file test_snapshot test_classic test_camera
+  test_nodes test_uses test_hints test_forecast"
+
+say() { echo "== $*"; }
+as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
+
+# A folder with the files of a Debian's packages; nothing in it is ever set up. root NAME RELEASE ARCHITECTURE PACKAGES
+root() {
+  [ ! -e "$roots/$1.done" ] || return 0
+  say "root $1: Debian $2, $3"
+  mkdir -p "$roots"
+  as_root rm -rf "${roots:?}/$1"
+  as_root debootstrap --foreign --variant=minbase --arch="$3" ${4:+--include="$4"} "$2" "$roots/$1" >"$roots/$1.log" 2>&1 ||
+    { tail -20 "$roots/$1.log"; exit 1; }
+  for package in "$roots/$1"/var/cache/apt/archives/*.deb; do as_root dpkg-deb -x "$package" "$roots/$1"; done
+  touch "$roots/$1.done"
+}
+
+# wheels FOLDER PYTHON_VERSION PIP_PLATFORM...
+wheels() {
+  [ ! -e "$1.done" ] || return 0
+  folder=$1 version=$2
+  shift 2
+  say "Python packages for $1"
+  rm -rf "$folder"
+  for name in "$@"; do set -- "$@" --platform "$name"; shift; done
+  # shellcheck disable=SC2086 # names of packages
+  "$python" -m pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --target "$folder" \
+    --python-version "$version" "$@" $packages
+  touch "$folder.done"
+}
+
+# The project as it would be on the other system. stage PLATFORM
+stage() {
+  tree=$places/$1/tree
+  rm -rf "$tree"
+  mkdir -p "$tree/core"
+  cp -a addon blender_tests scenes pyproject.toml "$tree"
+  cp -a core/include "$tree/core"
+  rm -rf "$tree/addon/lib"
+  cp -a "$places/$1/lib" "$tree/addon/lib"
+}
+
+# files: the tests' paths in the staged tree.
+files() { for name in $tests; do printf 'blender_tests/%s.py ' "$name"; done; }
+
+# cpp PLATFORM COMMAND...: the C++ tests and all that fuzzing has found, behind a command that runs the platform's programs.
+cpp() {
+  platform=$1 ending=
+  shift
+  [ "$platform" != windows-x64 ] || ending=.exe
+  say "$platform: C++ tests"
+  "$@" "$places/$platform/lancer_tests$ending" --gtest_brief=1 --gtest_filter="${LANCER_CPP_TESTS:-*}" </dev/null 2>&1 |
+    tee "$places/$platform/tests.log" | grep -E '^\[  (PASSED|FAILED)|tests from|Failure' || true
+  grep -q '^\[  PASSED  \]' "$places/$platform/tests.log" && ! grep -q '^\[  FAILED' "$places/$platform/tests.log"
+  "$@" "$places/$platform/lancer_replay$ending" core/fuzz/corpus </dev/null >"$places/$platform/replay.log" 2>&1
+}
+
+# python_tests PLATFORM COMMAND...: those of the bindings. A pipe, for wine's Python cannot write to a file.
+python_tests() {
+  platform=$1
+  shift
+  say "$platform: tests of the bindings"
+  # shellcheck disable=SC2046 # names of files
+  (cd "$places/$platform/tree" && "$@" -m pytest -q -p no:cacheprovider -m "not slow" $(files) </dev/null 2>&1) |
+    tee "$places/$platform/bindings.log" | tail -3
+  grep -qE '^[0-9]+ passed' "$places/$platform/bindings.log"
+}
+
+linux_x64() {
+  root "$oldest" "$oldest" amd64 ""
+  cpp linux-x64 "$roots/$oldest/lib64/ld-linux-x86-64.so.2" \
+    --library-path "$roots/$oldest/lib/x86_64-linux-gnu:$roots/$oldest/usr/lib/x86_64-linux-gnu"
+  say "linux-x64: the library with the C library of $oldest"
+  "$roots/$oldest/lib64/ld-linux-x86-64.so.2" \
+    --library-path "$roots/$oldest/lib/x86_64-linux-gnu:$roots/$oldest/usr/lib/x86_64-linux-gnu" "$places/linux-x64/lancer_render"
+  stage linux-x64
+  python_tests linux-x64 "$python"
+}
+
+linux_arm64() {
+  root arm64 bookworm arm64 python3
+  cpp linux-arm64 qemu-aarch64-static -L "$roots/arm64"
+  wheels "$places/python-arm64" 3.11 manylinux_2_28_aarch64 manylinux_2_27_aarch64 manylinux2014_aarch64
+  stage linux-arm64
+  PYTHONPATH=$places/python-arm64 PYTHONDONTWRITEBYTECODE=1 \
+    python_tests linux-arm64 qemu-aarch64-static -L "$roots/arm64" "$roots/arm64/usr/bin/python3.11"
+}
+
+windows_x64() {
+  # A home of its own; no windows and no other systems' machines inside it.
+  export WINEPREFIX="$places/wine" WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml=;ucrtbase=n,b"
+  if [ ! -e "$WINEPREFIX.done" ]; then
+    say "Windows' Python"
+    mkdir -p "$places/jars"
+    for artifact in $windows_python $windows_runtime; do
+      mvn -q -B org.apache.maven.plugins:maven-dependency-plugin:3.6.1:copy -Dartifact="$artifact" \
+        -DoutputDirectory="$places/jars"
+    done
+    rm -rf "$places/windows" && mkdir -p "$places/windows"
+    "$python" -c 'import sys, zipfile
+for path in sys.argv[2:]:
+    zipfile.ZipFile(path).extractall(sys.argv[1])' "$places/windows" "$places"/jars/*.jar
+    # Asks wine for what it has not; Python goes without.
+    find "$places/windows" -name _wmi.pyd -delete
+    home=$places/windows/org/bytedeco/cpython/windows-x86_64
+    cp "$home"/lib/vcruntime*.dll "$places/windows/org/bytedeco/javacpp/windows-x86_64/ucrtbase.dll" "$home"
+    # The programs of the C++ tests look for it beside them, or in the system.
+    /usr/lib/wine/wine64 wineboot -i >/dev/null 2>&1 || true
+    touch "$WINEPREFIX.done"
+  fi
+  home=$places/windows/org/bytedeco/cpython/windows-x86_64
+  WINEDLLOVERRIDES="mscoree,mshtml=" cpp windows-x64 /usr/lib/wine/wine64
+  wheels "$places/python-windows" 3.12 win_amd64
+  stage windows-x64
+  PYTHONHOME="Z:$home" PYTHONPATH="Z:$places/python-windows" PYTHONDONTWRITEBYTECODE=1 \
+    python_tests windows-x64 /usr/lib/wine/wine64 "$home/python.exe"
+}
+
+for platform in "$@"; do
+  say "$platform"
+  case $platform in
+  macos-*) .ci/cross.sh "$platform" "$LANCER_ZIG" lancer ;;
+  linux-*) .ci/cross.sh "$platform" "$LANCER_ZIG" lancer lancer_tests lancer_replay lancer_render -- -DLANCER_TESTS=ON ;;
+  *) .ci/cross.sh "$platform" "$LANCER_ZIG" lancer lancer_tests lancer_replay -- -DLANCER_TESTS=ON ;;
+  esac
+  for library in "$places/$platform/lib/"*lancer.dylib "$places/$platform/lib/"*lancer.so "$places/$platform/lib/"*lancer.dll; do
+    [ ! -e "$library" ] || "$python" .ci/check_library.py "$platform" "$library"
+  done
+  case $platform in
+  linux-x64) linux_x64 ;;
+  linux-arm64) linux_arm64 ;;
+  windows-x64) windows_x64 ;;
+  macos-*) say "$platform: looked at, not run: there is nothing that runs it here" ;;
+  esac
+done
