@@ -41,10 +41,7 @@ def export_view(region, region_data, space, depsgraph, messages):
     thing = space.camera if region_data.view_perspective == "CAMERA" else None
     if thing is not None and thing.type == "CAMERA":
         return _through_camera(thing.evaluated_get(depsgraph), whole, region_data, depsgraph, messages)
-    rectangle = whole
-    if space.use_render_border:
-        edges = space.render_border_min_x, space.render_border_max_x, space.render_border_min_y, space.render_border_max_y
-        rectangle = _border(whole, edges, whole)
+    rectangle = _border(space, "render_border", whole, whole) if space.use_render_border else whole
     if min(rectangle[2:]) < 1:
         return None
     kind = CameraKind.PERSPECTIVE if region_data.is_perspective else CameraKind.ORTHOGRAPHIC
@@ -62,10 +59,7 @@ def export_view(region, region_data, space, depsgraph, messages):
 def _through_camera(thing, whole, region_data, depsgraph, messages):
     render = depsgraph.scene.render
     frame = _frame(thing, whole, region_data, depsgraph.scene)
-    rectangle = whole
-    if render.use_border:
-        edges = render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y
-        rectangle = _border(frame, edges, whole)
+    rectangle = _border(render, "border", frame, whole) if render.use_border else whole
     if min(rectangle[2:]) < 1:
         return None
     fields = camera_fields(thing, depsgraph, messages)
@@ -97,9 +91,9 @@ def _frame(thing, whole, region_data, scene):
     return Rectangle(*(low * size).tolist(), *((high - low) * size).tolist())
 
 
-def _border(frame, edges, whole):
-    """The pixels of the region that a border, as fractions of the frame, leaves."""
-    left, right, bottom, top = edges
+def _border(owner, prefix, frame, whole):
+    """The pixels of the region that an owner's border, in fractions of the frame, leaves."""
+    left, right, bottom, top = (getattr(owner, f"{prefix}_{edge}") for edge in ("min_x", "max_x", "min_y", "max_y"))
     x, y = round(frame.x + left * frame.width), round(frame.y + bottom * frame.height)
     width = round(frame.x + right * frame.width) - x
     height = round(frame.y + top * frame.height) - y
