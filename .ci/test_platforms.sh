@@ -11,10 +11,10 @@ oldest=bullseye
 # A Windows Python that Maven's registry has whole, and a C library of Microsoft's for it: wine's own lacks what numpy calls.
 windows_python=org.bytedeco:cpython:3.12.1-1.5.10:jar:windows-x86_64
 windows_runtime=org.bytedeco:javacpp:1.5.10:jar:windows-x86_64
-# What the bindings' tests stand on; those that need a compiler or another process stay at home.
+# What the bindings' tests stand on; those that need a compiler or another process, or measure time, stay at home.
 packages="numpy scipy pytest iniconfig packaging pluggy pygments colorama trimesh mpmath"
 tests="test_abi test_abi_handles test_abi_sessions test_abi_states test_library_file test_snapshot test_classic test_camera
-  test_nodes test_uses test_hints test_forecast"
+  test_nodes test_uses test_pass_values"
 
 say() { echo "== $*"; }
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
@@ -36,7 +36,7 @@ wheels() {
   [ ! -e "$1.done" ] || return 0
   folder=$1 version=$2
   shift 2
-  say "Python packages for $1"
+  say "Python packages: $folder"
   rm -rf "$folder"
   for name in "$@"; do set -- "$@" --platform "$name"; shift; done
   # shellcheck disable=SC2086 # names of packages
@@ -120,7 +120,6 @@ for path in sys.argv[2:]:
     find "$places/windows" -name _wmi.pyd -delete
     home=$places/windows/org/bytedeco/cpython/windows-x86_64
     cp "$home"/lib/vcruntime*.dll "$places/windows/org/bytedeco/javacpp/windows-x86_64/ucrtbase.dll" "$home"
-    # The programs of the C++ tests look for it beside them, or in the system.
     /usr/lib/wine/wine64 wineboot -i >/dev/null 2>&1 || true
     touch "$WINEPREFIX.done"
   fi
