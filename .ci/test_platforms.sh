@@ -84,11 +84,11 @@ python_tests() {
 
 linux_x64() {
   root "$oldest" "$oldest" amd64 ""
-  cpp linux-x64 "$roots/$oldest/lib64/ld-linux-x86-64.so.2" \
-    --library-path "$roots/$oldest/lib/x86_64-linux-gnu:$roots/$oldest/usr/lib/x86_64-linux-gnu"
+  system=$roots/$oldest/lib/x86_64-linux-gnu
+  set -- "$system/ld-linux-x86-64.so.2" --library-path "$system:$roots/$oldest/usr/lib/x86_64-linux-gnu"
   say "linux-x64: the library with the C library of $oldest"
-  "$roots/$oldest/lib64/ld-linux-x86-64.so.2" \
-    --library-path "$roots/$oldest/lib/x86_64-linux-gnu:$roots/$oldest/usr/lib/x86_64-linux-gnu" "$places/linux-x64/lancer_render"
+  "$@" "$places/linux-x64/lancer_render"
+  cpp linux-x64 "$@"
   stage linux-x64
   python_tests linux-x64 "$python"
 }
