@@ -21,7 +21,7 @@ def _picture(name, color=(1.0, 1.0, 1.0, 1.0), width=8, height=4):
 
 def _exported(messages, images=None):
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return export_world(bpy.context.scene.world, images or Images(), depsgraph, messages)
+    return export_world(bpy.context.scene.world, images or Images(), depsgraph, messages).world
 
 
 def _tree():
