@@ -173,7 +173,6 @@ class Painter:
 
     def _render(self, wanted, size, samples):
         """The view with pixels of that size."""
-        began = time.monotonic()
         denoising = wanted.denoising and size == wanted.finest
         passes = (Pass.COMBINED, *GUIDES) if denoising else (Pass.COMBINED,)
         settings = dataclasses.replace(wanted.settings, samples=samples, passes=passes)
@@ -184,10 +183,11 @@ class Painter:
             pace = Pace(_DENOISE_SHARE, _DENOISE_EVERY) if denoising else Pace(_SHOW_SHARE, _SHOW_EVERY)
             looked = 1
             while schedule.start():
-                while not schedule.wait(0.0).finished:
+                while not (progress := schedule.wait(0.0)).finished:
                     yield
                 if schedule.samples == 1:
-                    self._sizes.learn(camera.width * camera.height, time.monotonic() - began)
+                    # Without what every picture takes, however coarse.
+                    self._sizes.learn(camera.width * camera.height, progress.seconds)
                 # To ask for the error takes as long as to draw some pictures.
                 if schedule.samples >= 2 * looked or samples > 1 and schedule.over:
                     looked = schedule.samples

@@ -15,7 +15,7 @@ class PixelSizes:
         self._rate = 0.0  # pixels a second
 
     def learn(self, pixels, seconds):
-        """From a picture of one sample a pixel, all that it took counted."""
+        """From a picture of one sample a pixel and the seconds that its rays took."""
         rate = pixels / max(seconds, 1e-6)
         self._rate = rate if self._rate == 0.0 else self._rate + _NEWEST * (rate - self._rate)
 
