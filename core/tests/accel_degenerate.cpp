@@ -116,7 +116,13 @@ TEST(AcceleratorDegenerate, CancelledBuildThrows) {
 
 TEST(AcceleratorDegenerate, InstructionSetIsNamed) {
   const Geometry geometry;
-  EXPECT_STREQ(build_bvh_for("sse4", geometry, 1)->instruction_set(), "sse4");
+#if defined(__x86_64__)
+  const char *const told = "sse4";
+#else
+  // Other processors have one set, whatever is asked for.
+  const char *const told = "generic";
+#endif
+  EXPECT_STREQ(build_bvh_for("sse4", geometry, 1)->instruction_set(), told);
   EXPECT_NE(build_accelerator(AcceleratorKind::Bvh, geometry, {})->instruction_set(), nullptr);
 }
 
