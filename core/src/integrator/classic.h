@@ -68,8 +68,7 @@ private:
   void miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result);
   void record(Branch &branch, const Surface &surface, double t, SampleResult &result);
   void add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result);
-  void add_direct_light(const Branch &branch, const Surface &surface, const Ray &ray, const Hit &hit,
-                        SampleResult &result);
+  void add_direct_light(const Branch &branch, const Surface &surface, const Ray &ray, const Hit &hit, SampleResult &result);
   void branch_out(const Branch &branch, const Surface &surface, const Surface &met, const Ray &ray, const Hit &hit,
                   SampleResult &result);
   void spawn(Branch child, const Surface &surface, const glm::vec3 &direction, const glm::vec3 &weight, uint32_t kind,
