@@ -15,7 +15,7 @@ from .priority import lowered
 
 DECLARATION = "denoised: the error given is that of the picture before denoising"
 
-_AS_IT_IS = "the picture is shown with its noise"
+AS_IT_IS = "the picture is shown with its noise"
 # What guides the network, as in Cycles by default.
 _GUIDES = (Pass.ALBEDO, Pass.DENOISING_NORMAL)
 _GUIDE_SAMPLES = 32
@@ -35,7 +35,7 @@ def missing():
     try:
         oidn.load()
     except LancerError as error:
-        return f"{error}; {_AS_IT_IS}"
+        return f"{error}; {AS_IT_IS}"
     return ""
 
 
@@ -63,9 +63,9 @@ def apply(session, poll=None, tell=None):
     except Cancelled:
         return None, ""
     except MemoryError:
-        return None, f"there is not enough memory for denoising; {_AS_IT_IS}"
+        return None, f"there is not enough memory for denoising; {AS_IT_IS}"
     except LancerError as error:
-        return None, f"{error}; {_AS_IT_IS}"
+        return None, f"{error}; {AS_IT_IS}"
 
 
 def _guides(session, poll, tell):

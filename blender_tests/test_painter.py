@@ -45,6 +45,12 @@ def test_denoising(tmp_path):
     assert got["roughness"][1] < 0.5 * got["roughness"][0]
 
 
+def test_a_denoiser_that_fails_is_told(case):
+    got = case("denoiser_fails")
+    assert got["told"] == ["Open Image Denoise: out of order; the picture is shown with its noise"]
+    assert (got["denoised"], got["samples"], got["failure"], got["left"]) == (False, 4, "", 0)
+
+
 def test_the_first_picture_is_as_coarse_as_it_must_be():
     """At a million pixels a second 0.07 s are 70 000 pixels: of 960 x 540 a picture of 240 x 135 is the finest below it."""
     sizes, region = PixelSizes(), Rectangle(960, 540)

@@ -25,7 +25,7 @@ def display():
 @pytest.fixture
 def window(display, tmp_path):
     def run(case, *arguments):
-        """The result of a case of in_blender/viewport_steps.py; whatever else is said on the terminal fails."""
+        """The result of a case of in_blender/viewport_*.py; whatever else is said on the terminal fails."""
         script = os.path.join(HERE, "in_blender", "window_viewport.py")
         place = ["-p", "0", "0", *map(str, SCREEN)]
         done = subprocess.run(
@@ -109,6 +109,16 @@ def test_a_view_renders_what_it_shows(window):
     """Four objects and a lamp; the ball alone in local view, where its lamp is not."""
     got = window("filtered")
     assert got == {"all": [4, 1], "local": [1, 0], "without lamps": [4, 0], "done": True, "size": 2}
+
+
+def test_a_view_tells_what_it_loses(window):
+    """What the export, the library and denoising leave out, each once; and a camera that cannot be looked through."""
+    got = window("tells")
+    for word in ("Wireframe", "without area", "shown with its noise"):
+        assert [line for line in got["lines"] if word in line and "times)" not in line], word
+    # The face without area is a hint.
+    assert got["text"].endswith("2 messages in the render properties")
+    assert got["blind"].startswith("Lancer: camera 'Camera': its scale is zero") and got["seeing"].startswith("Sample ")
 
 
 def test_an_animation_plays(window):

@@ -57,13 +57,14 @@ def export_view(region, region_data, space, depsgraph, messages):
 
 
 def _through_camera(thing, whole, region_data, depsgraph, messages):
+    # Ask for the camera first: what cannot be looked through has no frame.
+    fields = camera_fields(thing, depsgraph, messages)
+    kind = fields["kind"]
     render = depsgraph.scene.render
     frame = _frame(thing, whole, region_data, depsgraph.scene)
     rectangle = _border(render, "border", frame, whole) if render.use_border else whole
     if min(rectangle[2:]) < 1:
         return None
-    fields = camera_fields(thing, depsgraph, messages)
-    kind = fields["kind"]
     if kind in (CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC):
         # Blender's own projection of the region knows how the camera's picture lies in it.
         window = _part(window_of(region_data.window_matrix, kind), whole, rectangle)

@@ -1,1 +1,1 @@
-"""Rendered shading of 3D views: one thread and one picture for each."""
+"""Rendered shading of 3D views: each has a scene and a picture of its own."""

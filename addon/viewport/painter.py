@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import priority
+from .. import denoise, priority
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
 from ..bindings.schedule import Schedule
@@ -50,7 +50,7 @@ class Picture(NamedTuple):
 
 
 class Painter:
-    """picture is the newest one; failure is why there is none of what is wanted; messages are the library's own."""
+    """picture is the newest one; failure is why there is none of what is wanted; messages are lines of the library's."""
 
     def __init__(self):
         self.picture = None
@@ -193,18 +193,24 @@ class Painter:
                     looked = schedule.samples
                     schedule.look()
                 if pace.due or schedule.over:
-                    image = yield from self._image(session, pace, denoising)
-                    self.picture = Picture(image, wanted, size, schedule.samples, schedule.error, denoising)
+                    with pace.spending():
+                        clean = (yield from self._clean(session)) if denoising else None
+                        image = session.read() if clean is None else clean
+                    self.picture = Picture(image, wanted, size, schedule.samples, schedule.error, clean is not None)
                     schedule.longest = max(_SHOW_EVERY, pace.interval)
                     self._brief = False
                 while self.waits:
                     yield
 
-    def _image(self, session, pace, denoising):
-        with pace.spending():
-            if not denoising:
-                return session.read()
+    def _clean(self, session):
+        """The picture without its noise; None, with a message, where that fails."""
+        try:
             with Cleaner(session) as cleaner:
                 while not cleaner.is_over:
                     yield
                 return cleaner.image()
+        except (LancerError, MemoryError) as error:
+            line = f"{error or 'there is not enough memory for denoising'}; {denoise.AS_IT_IS}"
+            if line not in self.messages:
+                self.messages = (*self.messages, line)
+        return None

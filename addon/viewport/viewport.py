@@ -42,8 +42,9 @@ class Viewport:
         self._parts, self._canvas = Parts(), Canvas()
         self._contents = self._wanted = None
         self._sight = None
-        self._failure = ""
-        self._losses = 0  # messages that tell of more than a hint
+        self._failure = self._blindness = ""  # why nothing could be read of the scene, of the camera
+        self._messages = Messages()  # those in last_messages
+        self._library = None  # what of the painter's messages is among them
         self._drawn = None  # the Picture that is on the screen, and why there is none of what is wanted
         self.painter = Painter()
         weakref.finalize(self, self.painter.close)
@@ -79,6 +80,9 @@ class Viewport:
     def step(self):
         """Goes on, and has the view drawn where there is something new. Whether there may be more to come."""
         self.painter.step()
+        if not self.painter.is_building and self.painter.messages is not self._library:
+            self._library = self.painter.messages
+            self._tell(Messages.of_library(self._library))
         picture, failure = self.painter.picture, self.painter.failure
         if self._drawn is None or picture is not self._drawn[0] or failure != self._drawn[1]:
             engine = self._engine()
@@ -91,11 +95,19 @@ class Viewport:
         options = ExportOptions(view=_NO_CAMERA, passes=(Pass.COMBINED,), space=context.space_data, parts=self._parts)
         contents, messages = export_scene(depsgraph, options)
         self._set_contents(contents, contents.settings)
-        told = last_messages.get(depsgraph.scene)
+        before, self._messages, self._library = self._messages, messages, None
         last_messages[depsgraph.scene] = messages
-        if told is None or told.lines() != messages.lines():
+        if before.lines() != messages.lines():
             redraw.properties()
-        self._losses = sum(message.harm > Harm.HINT for message in messages.told())
+
+    def _tell(self, messages):
+        """Adds what is not there yet: each drawing meets the same again."""
+        known = {message.text for message in self._messages.told()}
+        new = [message for message in messages.told() if message.text not in known]
+        for message in new:
+            self._messages.add(message.text, message.key, message.harm)
+        if new:
+            redraw.properties()
 
     def _set_contents(self, contents, settings):
         contents = contents.replaced(settings=snapshot.Settings(**{name: getattr(settings, name) for name in _BUILT_BY}))
@@ -108,10 +120,10 @@ class Viewport:
         try:
             view = export_view(context.region, context.region_data, context.space_data, depsgraph, told)
         except LancerError as error:
-            self._failure = str(error)
+            self._blindness = str(error)
             return None
-        if depsgraph.scene in last_messages:
-            last_messages[depsgraph.scene].merge(told)
+        self._blindness = ""
+        self._tell(told)
         return view
 
     def _want(self, engine, depsgraph, view):
@@ -121,7 +133,10 @@ class Viewport:
         self._set_contents(self._contents, settings)
         settings = settings.replaced(samples=own.preview_samples or _MANY, target_error=0.0, time_limit=0.0)
         finest = max(1, engine.get_preview_pixel_size(depsgraph.scene))
-        denoising = own.use_preview_denoising and own.integrator != "NORMALS" and not denoise.missing()
+        denoising = own.use_preview_denoising and own.integrator != "NORMALS"
+        if denoising and denoise.missing():
+            self._tell(Messages([denoise.missing()]))
+            denoising = False
         most = coarsest(view.rectangle, finest, own.preview_start_resolution)
         wanted = Wanted(self._contents, settings, view, finest, most, denoising)
         if self._wanted is None or not _same(wanted, self._wanted):
@@ -130,8 +145,9 @@ class Viewport:
             self.painter.step()
 
     def _text(self, picture):
-        if self._failure or self.painter.failure:
-            return f"Lancer: {self._failure or self.painter.failure}"
+        failure = self._failure or self._blindness or self.painter.failure
+        if failure:
+            return f"Lancer: {failure}"
         if self.painter.is_building:
             return "Building the scene"
         if picture is None:
@@ -145,8 +161,9 @@ class Viewport:
             parts.append(f"Error {picture.error.error:.1%}")
         if picture.denoised:
             parts.append("denoised")
-        if self._losses:
-            parts.append(f"{self._losses} message{'s' if self._losses > 1 else ''} in the render properties")
+        losses = sum(message.harm > Harm.HINT for message in self._messages.told())
+        if losses:
+            parts.append(f"{losses} message{'s' if losses > 1 else ''} in the render properties")
         return " | ".join(parts)
 
 

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import stage
 
-from addon.bindings import snapshot
+from addon.bindings import denoiser, snapshot
+from addon.bindings.abi import LancerError
 from addon.bindings.session import Scene, Session
 from addon.export.scene import export_scene
 from addon.export.view import Rectangle, View
@@ -119,6 +120,30 @@ def fails():
     painter.want(wanted)
     _until(painter, lambda: painter.picture is not None and not painter.is_busy)
     return {"told": told, "failure": painter.failure, "right": painter.picture.wanted is wanted, "left": _left(painter)}
+
+
+def denoiser_fails():
+    """The picture stays as it is, and why is told once."""
+
+    def broken(*_, **__):
+        raise LancerError("Open Image Denoise: out of order")
+
+    whole = _contents(samples=4)
+    painter = Painter()
+    plain, denoiser.denoise = denoiser.denoise, broken
+    try:
+        painter.want(_wanted(whole, _view(whole), denoising=True))
+        _until(painter, lambda: not painter.is_busy)
+    finally:
+        denoiser.denoise = plain
+    picture = painter.picture
+    return {
+        "told": [line for line in painter.messages if "out of order" in line],
+        "denoised": picture.denoised,
+        "samples": picture.samples,
+        "failure": painter.failure,
+        "left": _left(painter),
+    }
 
 
 def denoises():

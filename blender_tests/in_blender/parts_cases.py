@@ -25,23 +25,27 @@ def _picture(name, value):
     return bpy.data.images.load(path)
 
 
-def _pictured(name, image):
-    material = stage.shader("ShaderNodeEmission", name)
+def _fed(name, kind, output, make):
+    """A material whose colour comes from a node of that kind, which make(node) sets."""
+    material = stage.shader(name=name)
     tree = material.node_tree
-    node = tree.nodes.new("ShaderNodeTexImage")
-    node.image = image
-    tree.links.new(node.outputs["Color"], next(n for n in tree.nodes if n.type == "EMISSION").inputs["Color"])
+    node = tree.nodes.new(kind)
+    make(node)
+    tree.links.new(node.outputs[output], next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
     return material
+
+
+def _pictured(name, image):
+    return _fed(name, "ShaderNodeTexImage", "Color", lambda node: setattr(node, "image", image))
 
 
 def _grouped(name, group):
-    """A material whose colour is in a node group."""
-    material = stage.shader(name=name)
-    tree = material.node_tree
-    node = tree.nodes.new("ShaderNodeGroup")
-    node.node_tree = group
-    tree.links.new(node.outputs[0], next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
-    return material
+    return _fed(name, "ShaderNodeGroup", 0, lambda node: setattr(node, "node_tree", group))
+
+
+def _placed(name, thing):
+    """Coloured by the coordinates of another object."""
+    return _fed(name, "ShaderNodeTexCoord", "Object", lambda node: setattr(node, "object", thing))
 
 
 def _group():
@@ -53,16 +57,6 @@ def _group():
     color, out = group.nodes.new("ShaderNodeRGB"), group.nodes.new("NodeGroupOutput")
     group.links.new(color.outputs[0], out.inputs[0])
     return group
-
-
-def _placed(name, thing):
-    """A material that is coloured by the coordinates of another object."""
-    material = stage.shader(name=name)
-    tree = material.node_tree
-    node = tree.nodes.new("ShaderNodeTexCoord")
-    node.object = thing
-    tree.links.new(node.outputs["Object"], next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
-    return material
 
 
 def _box(number, name, material, data=None):

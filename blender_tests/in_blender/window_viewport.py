@@ -2,7 +2,7 @@
 
     blender --factory-startup -P window_viewport.py -- FOLDER CASE [ARGUMENT...]
 
-runs the case of that name in viewport_steps.py, a generator: it yields the seconds until Blender comes back to it, and its
+runs the case of that name in one of viewport_*.py, a generator: it yields the seconds until Blender comes back to it, and its
 result goes to FOLDER/result.json. Then Blender is quit.
 """
 
@@ -16,7 +16,9 @@ import bpy
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [os.path.dirname(os.path.dirname(HERE)), HERE]
 
-import viewport_steps  # noqa: E402
+import viewport_endings  # noqa: E402
+import viewport_places  # noqa: E402
+import viewport_shown  # noqa: E402
 
 import addon  # noqa: E402
 
@@ -45,5 +47,6 @@ def step():
 addon.register()
 bpy.context.preferences.view.show_splash = False
 bpy.context.preferences.filepaths.use_auto_save_temporary_files = False
-steps = getattr(viewport_steps, CASE)(FOLDER, *ARGUMENTS)
+case = next(getattr(place, CASE) for place in (viewport_places, viewport_shown, viewport_endings) if hasattr(place, CASE))
+steps = case(FOLDER, *ARGUMENTS)
 bpy.app.timers.register(step, first_interval=_STARTING, persistent=True)

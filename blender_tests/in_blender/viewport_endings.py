@@ -1,0 +1,118 @@
+"""Whatever ends a 3D view that renders: again and again, and what is left of it."""
+
+import bpy
+from viewport_stage import View, build, left, shown, until
+
+import addon
+from addon.viewport import viewport
+
+
+def _toggle(view):
+    view.space.shading.type = "SOLID"
+    yield 0.05
+    view.render()
+
+
+def _undo(view):
+    with view.override():
+        bpy.ops.ed.undo_push(message="before")
+        bpy.data.objects["Ball"].location.x += 0.1
+        bpy.ops.ed.undo_push(message="after")
+    yield 0.02
+    with view.override():
+        bpy.ops.ed.undo()
+    yield 0.02
+    with view.override():
+        bpy.ops.ed.redo()
+
+
+def _mode(view):
+    bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
+    with view.override():
+        bpy.ops.object.mode_set(mode="EDIT")
+    yield 0.05
+    with view.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def _engine(view):
+    scene = bpy.context.scene
+    scene.render.engine = "BLENDER_WORKBENCH"
+    yield 0.05
+    scene.render.engine = "LANCER"
+
+
+def _load(view):
+    bpy.ops.wm.open_mainfile(filepath=_load.path)
+    yield 0.05
+
+
+def _addon(view):
+    addon.unregister()
+    yield 0.05
+    addon.register()
+    bpy.context.scene.render.engine = "LANCER"
+
+
+def _quad(view):
+    with view.override():
+        bpy.ops.screen.region_quadview()
+    yield 0.1
+    with view.override():
+        bpy.ops.screen.region_quadview()
+
+
+def _window(view):
+    """Another window with a view of its own, closed while it renders."""
+    with view.override():
+        bpy.ops.wm.window_new_main()
+    yield 0.1
+    other = bpy.context.window_manager.windows[-1]
+    area = next(area for area in other.screen.areas if area.type == "VIEW_3D")
+    area.spaces.active.shading.type = "RENDERED"
+    yield 0.2
+    with bpy.context.temp_override(window=other):
+        bpy.ops.wm.window_close()
+
+
+def _f12(view):
+    """A render beside the view."""
+    with view.override():
+        bpy.ops.render.render("INVOKE_DEFAULT")
+    yield 0.1
+    yield from until(lambda: not bpy.app.is_job_running("RENDER"))
+
+
+KINDS = {
+    "toggle": _toggle, "undo": _undo, "mode": _mode, "engine": _engine, "load": _load, "addon": _addon, "quad": _quad,
+    "window": _window, "f12": _f12,
+}  # fmt: skip
+
+
+def stress(folder, kind, count):
+    """The same thing again and again while the view renders: how often it went well, and what threads are left."""
+    build(samples=0)
+    view = View()
+    _load.path = f"{folder}/scene.blend"
+    view.render()
+    bpy.ops.wm.save_as_mainfile(filepath=_load.path)
+    went = 0
+    for number in range(int(count)):
+        yield from KINDS[kind](View())
+        # Another moment each time.
+        yield 0.01 * (number % 12)
+        View().render()
+        went += yield from until(lambda: shown() is not None and shown().painter.picture is not None)
+    views = len(viewport._open)
+    View().space.shading.type = "SOLID"
+    yield from until(lambda: not left(), 5.0)
+    return {"went": went, "views": views, "left": left()}
+
+
+def leave(folder):
+    """The program is quit while the view renders; its own way out takes the add-on away."""
+    build(samples=0)
+    view = View()
+    view.render()
+    rendered = yield from until(lambda: shown() is not None and shown().painter.picture is not None)
+    return {"rendered": rendered, "quits": False}

@@ -1,0 +1,230 @@
+"""What a 3D view shows while it refines, after edits, and of what it is asked to leave out."""
+
+import bpy
+import gpu
+import memory_now
+import numpy as np
+import stage
+from mathutils import Matrix, Quaternion
+from viewport_stage import Record, View, build, finished, shown, until
+
+from addon.export.view import Rectangle
+from addon.viewport import viewport
+from addon.viewport.canvas import Canvas
+
+
+def refining(folder):
+    """From the first picture to the last: sizes and samples of what was drawn, and the last text."""
+    build(samples=16)
+    view = View()
+    with Record() as record:
+        view.render()
+        done = yield from until(finished)
+        yield 0.2
+    drawn = [(picture.size, picture.samples) for _, picture, _ in record.draws if picture is not None]
+    return {"done": done, "drawn": drawn, "texts": [text for *_, text in record.draws]}
+
+
+def edits(folder):
+    """After each edit: whether something was always shown, never again what was before, and how much the picture changed."""
+    scene = build(samples=4)
+    view = View()
+    view.render()
+    yield from until(finished)
+    ball, body = bpy.data.objects["Ball"], bpy.data.objects["Cube"]
+    material = ball.active_material.node_tree.nodes
+
+    def color():
+        next(node for node in material if node.type == "BSDF_DIFFUSE").inputs["Color"].default_value = (0.9, 0.9, 0.1, 1)
+
+    def mesh():
+        body.data.vertices[0].co.x -= 0.5
+        body.data.update()
+
+    changes = {
+        "moved": lambda: setattr(ball, "location", (1, 1, 0.5)),
+        "coloured": color,
+        "bent": mesh,
+        "brighter": lambda: setattr(bpy.data.objects["Light"].data, "energy", 800.0),
+        "film": lambda: setattr(scene.render, "film_transparent", True),
+        "bounces": lambda: setattr(scene.lancer, "max_bounces", 0),
+        "turned": lambda: setattr(view.data, "view_rotation", Quaternion((0, 0, 1), 0.5) @ view.data.view_rotation),
+    }
+    result = {}
+    for name, change in changes.items():
+        before = shown().painter.picture
+        with Record() as record:
+            change()
+            view.area.tag_redraw()
+            done = yield from until(lambda before=before: shown()._wanted is not before.wanted and finished())
+            yield 0.1
+        after = shown().painter.picture
+        pictures = [picture for _, picture, _ in record.draws]
+        order = [before, *pictures]
+        ages = [picture is not before for picture in order]
+        result[name] = {
+            "done": done,
+            "always": all(picture is not None for picture in pictures),
+            "ordered": ages == sorted(ages),
+            "rebuilt": after.wanted.contents is not before.wanted.contents,
+            "change": float(np.abs(after.image - before.image).mean()) if after.image.shape == before.image.shape else 1.0,
+        }
+    return result
+
+
+def selects(folder):
+    """What a click that changes no picture costs: whether anything is rendered anew."""
+    build(samples=2)
+    view = View()
+    view.render()
+    yield from until(finished)
+    before = shown().painter.picture
+    bpy.data.objects["Ball"].select_set(True)
+    bpy.context.scene.cursor.location = (1, 1, 1)
+    yield 0.5
+    return {"same": shown().painter.picture is before}
+
+
+def screen(folder):
+    """A glowing wall before the view, whose colour on the screen is the display transform's: the scene is ready for a shot."""
+    scene = stage.empty(64, 64)
+    stage.sky((0.5, 0.25, 0.1))
+    stage.camera()
+    scene.lancer.preview_samples = 1
+    view = View()
+    view.render()
+    yield from until(finished)
+    yield 0.3
+    bpy.ops.screen.screenshot(filepath=f"{folder}/shot.png")
+    image = bpy.data.images.load(f"{folder}/shot.png")
+    width, height = image.size
+    pixels = np.empty(4 * width * height, np.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, 4)
+    x, y = view.region.x + view.region.width // 2, view.region.y + view.region.height // 2
+    return {"color": (255 * pixels[y, x, :3]).round().tolist()}
+
+
+def filtered(folder):
+    """How many objects are rendered in local view and under filters, and how fine the finest pixels are."""
+    scene = build(samples=1)
+    view = View()
+    view.render()
+    yield from until(finished)
+
+    def rendered():
+        return [len(shown()._contents.instances), len(shown()._contents.lights)]
+
+    result = {"all": rendered()}
+    ball = bpy.data.objects["Ball"]
+    ball.select_set(True)
+    bpy.context.view_layer.objects.active = ball
+    with view.override():
+        bpy.ops.view3d.localview(frame_selected=False)
+    yield 0.3
+    result["local"] = rendered()
+    with view.override():
+        bpy.ops.view3d.localview(frame_selected=False)
+    yield 0.3
+    view.space.show_object_viewport_light = False
+    view.area.tag_redraw()
+    yield 0.3
+    result["without lamps"] = rendered()
+    scene.render.preview_pixel_size = "2"
+    view.area.tag_redraw()
+    yield 0.3
+    result["done"] = yield from until(finished)
+    result["size"] = shown().painter.picture.size
+    return result
+
+
+def tells(folder):
+    """The messages of a scene that loses something everywhere, the view's text, and that of a camera without scale."""
+    scene = build(samples=2)
+    tree = bpy.data.objects["Cube"].active_material.node_tree
+    body = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
+    tree.links.new(tree.nodes.new("ShaderNodeWireframe").outputs[0], body.inputs["Roughness"])
+    stage.mesh("Thin", [(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0)], [(0, 1, 2), (0, 1, 3)])
+    scene.lancer.use_preview_denoising = True
+    view = View()
+    view.render()
+    yield from until(finished)
+    yield 0.3
+    with Record() as record:
+        view.area.tag_redraw()
+        yield 0.3
+        result = {"lines": viewport.last_messages[scene].lines(), "text": record.draws[-1][2]}
+        scene.camera.scale = (0, 0, 0)
+        view.data.view_perspective = "CAMERA"
+        yield 0.5
+        result["blind"] = record.draws[-1][2]
+        view.data.view_perspective = "PERSP"
+        yield 0.5
+        result["seeing"] = record.draws[-1][2]
+    return result
+
+
+def plays(folder):
+    """An animation that is played: whether pictures of several frames are shown, and nothing is read but what moves."""
+    scene = build(samples=100)
+    ball = bpy.data.objects["Ball"]
+    for frame, x in ((1, -1.0), (50, 1.0)):
+        ball.location.x = x
+        ball.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    view = View()
+    view.render()
+    yield from until(lambda: shown() is not None and shown().painter.picture is not None)
+    with Record() as record:
+        with view.override():
+            bpy.ops.screen.animation_play()
+        yield 3.0
+        with view.override():
+            bpy.ops.screen.animation_cancel(restore_frame=False)
+    contents = {id(picture.wanted.contents) for _, picture, _ in record.draws}
+    return {"frames": len(contents), "read": shown()._parts.counts, "at": scene.frame_current}
+
+
+def resized(folder):
+    """Mebibytes that Blender has grown by, from the tenth to the last of many changes of the view's size; and of one copy."""
+    build(samples=0)
+    data = bpy.data.meshes.new("Heavy")
+    side = 500
+    x, y = np.meshgrid(np.linspace(-1.0, 1.0, side), np.linspace(-1.0, 1.0, side))
+    places = np.stack([x, y, np.sin(9.0 * x) * np.sin(9.0 * y)], axis=2).reshape(-1, 3)
+    first = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
+    data.from_pydata(places.tolist(), [], np.stack([first, first + 1, first + side + 1, first + side], 1).tolist())
+    stage.link("Heavy", data)
+    View().render()
+    held = []
+    for _ in range(40):
+        before = View().region.width
+        with View().override():
+            bpy.ops.screen.screen_full_area(use_hide_panels=True)
+        yield 0.3
+        assert View().region.width != before
+        View().render()
+        yield from until(lambda: shown() is not None and shown().painter.picture is not None)
+        held.append(memory_now.held()["resident"])
+    copy = sum(array.nbytes for mesh in shown()._contents.meshes for array in vars(mesh).values() if hasattr(array, "nbytes"))
+    return {"growth": (held[-1] - held[9]) / 2**20, "copy": copy / 2**20}
+
+
+def canvas(folder):
+    """What a picture of 4 x 2 pixels becomes in a framebuffer of 64 x 48: colours inside, at a corner, and outside."""
+    yield 0.1
+    image = np.zeros((2, 4, 4), np.float32)
+    image[..., 3] = 1.0
+    image[0, :, 0], image[1, :, 1], image[0, 0] = 0.25, 1e30, (0.125, 0.125, 0.125, 0.5)
+    target = gpu.types.GPUOffScreen(64, 48, format="RGBA16F")
+    with target.bind():
+        framebuffer = gpu.state.active_framebuffer_get()
+        framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0))
+        with gpu.matrix.push_pop():
+            gpu.matrix.load_matrix(Matrix.Identity(4))
+            gpu.matrix.load_projection_matrix(Matrix(((2 / 64, 0, 0, -1), (0, 2 / 48, 0, -1), (0, 0, -1, 0), (0, 0, 0, 1))))
+            Canvas().draw(image, Rectangle(8, 8, 32, 16))
+        drawn = np.array(framebuffer.read_color(0, 0, 64, 48, 4, 0, "FLOAT").to_list())
+    target.free()
+    places = {"low": (9, 30), "high": (23, 30), "corner": (9, 9), "outside": (30, 50), "left": (12, 4)}
+    return {name: drawn[place].tolist() for name, place in places.items()}

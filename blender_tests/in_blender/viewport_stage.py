@@ -1,0 +1,103 @@
+"""A 3D view in Rendered shading inside a real window, and what is asked of it; what waits is a generator of seconds."""
+
+import gc
+import threading
+import time
+
+import bpy
+import stage
+
+from addon.bindings.session import Scene, Session
+from addon.viewport import viewport
+
+_LOOK = 0.05
+_PATIENCE = 60.0
+
+
+class View:
+    """The first 3D view of the first window."""
+
+    def __init__(self):
+        self.window = bpy.context.window_manager.windows[0]
+        self.area = next(area for area in self.window.screen.areas if area.type == "VIEW_3D")
+        self.region = next(region for region in self.area.regions if region.type == "WINDOW")
+        self.space = self.area.spaces.active
+        self.data = self.space.region_3d
+
+    def override(self):
+        """For a moment: Blender's own loop reads such a context without Python's lock."""
+        return bpy.context.temp_override(window=self.window, screen=self.window.screen, area=self.area, region=self.region)
+
+    def render(self):
+        self.space.shading.type = "RENDERED"
+        self.space.overlay.show_overlays = False
+        self.space.show_gizmo = False
+
+
+def build(samples=8):
+    """Three things of three colours on a floor, under a lamp and a sky."""
+    scene = stage.empty(160, 120)
+    stage.plane(8.0, stage.shader(Color=(0.6, 0.6, 0.6)))
+    stage.cube(0.8, stage.shader(Color=(0.8, 0.1, 0.1)), location=(-1, 0, 0.4))
+    stage.ball(0.5, stage.shader(Color=(0.1, 0.8, 0.1)), location=(1, 0, 0.5))
+    stage.cube(0.4, stage.shader("ShaderNodeEmission", Color=(0.1, 0.1, 0.9)), location=(0, 1, 1))
+    stage.light("POINT", 200.0, (2, -3, 4))
+    stage.sky()
+    stage.camera()
+    scene.lancer.preview_samples = samples
+    return scene
+
+
+def shown():
+    """The Viewport that is open, or None."""
+    return next(iter(viewport._open), None)
+
+
+def until(condition, patience=_PATIENCE):
+    """Waits; whether it has come true."""
+    limit = time.monotonic() + patience
+    while not condition():
+        if time.monotonic() > limit:
+            return False
+        yield _LOOK
+    return True
+
+
+def finished():
+    """Whether all samples of what is shown are there."""
+    view = shown()
+    if view is None or view.painter.picture is None or view._wanted is None:
+        return False
+    picture = view.painter.picture
+    wanted = view._wanted
+    return picture.wanted is wanted and picture.size == wanted.finest and picture.samples == wanted.settings.samples
+
+
+def left():
+    """What is open of the library, and threads of our own."""
+    gc.collect()
+    handles = [thing for thing in gc.get_objects() if type(thing) in (Scene, Session)]
+    things = [type(handle).__name__ for handle in handles if handle._finalizer.alive]
+    return things + [thread.name for thread in threading.enumerate() if "lancer" in thread.name]
+
+
+class Record:
+    """Notes each drawing: when, by which generation of the scene, how fine, how many samples."""
+
+    def __init__(self):
+        self.draws = []
+        self._plain = viewport.Viewport.draw
+
+    def __enter__(self):
+        record, plain = self, self._plain
+
+        def draw(self, context, depsgraph):
+            plain(self, context, depsgraph)
+            picture = self._drawn[0]
+            record.draws.append((time.monotonic(), picture, self._text(picture)))
+
+        viewport.Viewport.draw = draw
+        return self
+
+    def __exit__(self, *_):
+        viewport.Viewport.draw = self._plain
