@@ -121,6 +121,15 @@ def test_a_view_tells_what_it_loses(window):
     assert got["blind"].startswith("Lancer: camera 'Camera': its scale is zero") and got["seeing"].startswith("Sample ")
 
 
+def test_previews_show_materials_worlds_and_lamps(window):
+    """Each in its own colour, which has at least half as much again as the others."""
+    got = window("previews")
+    assert got["rendered"] >= 3
+    for name, channel in (("material", 0), ("world", 2), ("light", 1)):
+        color = got["colors"][name]
+        assert color[channel] > 1.5 * max(value for i, value in enumerate(color) if i != channel), name
+
+
 def test_an_animation_plays(window):
     got = window("plays")
     assert got["frames"] > 2 and got["at"] > 2

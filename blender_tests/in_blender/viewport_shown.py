@@ -8,6 +8,7 @@ import stage
 from mathutils import Matrix, Quaternion
 from viewport_stage import Record, View, build, finished, shown, until
 
+from addon import preview
 from addon.export.view import Rectangle
 from addon.viewport import viewport
 from addon.viewport.canvas import Canvas
@@ -136,6 +137,33 @@ def filtered(folder):
     result["done"] = yield from until(finished)
     result["size"] = shown().painter.picture.size
     return result
+
+
+def previews(folder):
+    """Mean colours of the icons of a red material, a blue world and a dim green lamp; how many Lancer has rendered."""
+    scene = build()
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.1, 0.1, 0.9, 1.0)
+    lamp = bpy.data.objects["Light"].data
+    lamp.color, lamp.energy = (0.1, 0.9, 0.1), 1.0
+    things = {"material": bpy.data.objects["Cube"].active_material, "world": scene.world, "light": lamp}
+    rendered, plain = [], preview.render
+
+    def render(engine, depsgraph):
+        plain(engine, depsgraph)
+        rendered.append(engine.resolution_x)
+
+    preview.render = render
+    colors = {}
+    for name, thing in things.items():
+        before = len(rendered)
+        with View().override():
+            with bpy.context.temp_override(id=thing):
+                bpy.ops.ed.lib_id_generate_preview()
+        yield from until(lambda before=before: len(rendered) > before, 20.0)
+        yield 1.0
+        colors[name] = np.array(thing.preview.image_pixels_float[:]).reshape(-1, 4)[:, :3].mean(axis=0).tolist()
+    preview.render = plain
+    return {"colors": colors, "rendered": len(rendered)}
 
 
 def tells(folder):
