@@ -60,6 +60,11 @@ class Messages:
                 new._count(message)
         return new
 
+    def copy(self):
+        messages = Messages()
+        messages.merge(self)
+        return messages
+
     def replaced(self, old, new):
         """The same messages with other words in the place of some."""
         messages = Messages()

@@ -90,7 +90,7 @@ class Parts:
             return None
         snapshot = snapshot.replaced(instances=dataclasses.replace(snapshot.instances, matrices=matrices))
         self._last = snapshot, messages, places
-        return snapshot, messages
+        return snapshot, messages.copy()
 
     def _forget(self, updates, frame):
         """Whether there was anything to forget."""
@@ -145,7 +145,7 @@ class Parts:
         self._meshes, self._used_meshes = self._used_meshes, {}
         self._shaders, self._used_shaders = self._used_shaders, {}
         self.images.forget((), self._numbers())
-        self._last = snapshot, messages, places
+        self._last = snapshot, messages.copy(), places
 
     def _numbers(self):
         return frozenset().union(*(shader.numbers for shader in self._shaders.values()))

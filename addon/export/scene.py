@@ -51,8 +51,8 @@ def export_scene(depsgraph, options=None, poll=None):
     if parts is not None:
         again = parts.begin(depsgraph, obey)
         if again is not None:
-            snapshot, told = again
-            messages.merge(told)
+            # Its messages are all there are: what was checked up to here has not changed either.
+            snapshot, messages = again
             return snapshot.replaced(camera=camera, settings=settings), messages
     images = Images(obey, options.kept) if parts is None else parts.images
     materials = Materials(messages, override, images, depsgraph, parts)

@@ -72,6 +72,8 @@ def _box(number, name, material, data=None):
 def _build():
     """Seven objects that show meshes, five of these; six materials and a world; two pictures."""
     scene = stage.empty()
+    # One of Cycles' settings of which the export tells.
+    scene.cycles.diffuse_bounces = 2
     first, second = _picture("first", 0.25), _picture("second", 0.75)
     plain = _box(0, "Plain", stage.shader(name="Plain", Color=(0.8, 0.4, 0.2)))
     _box(1, "Twin", None, plain.data)
