@@ -1,10 +1,15 @@
 #!/bin/sh
 # test_platforms.sh PYTHON PLATFORM...    runs the C++ tests and those of the bindings with the libraries of other platforms: of
-# Linux on the oldest Debian that is served, of arm64 under qemu, of Windows under wine. What cannot be run is looked at.
+# Linux on the oldest Debian that is served, of arm64 under qemu, of Windows under wine. What cannot be run is looked at. The zips
+# of this machine's platform are installed, and Rendered shading runs in windows of the next Debian's Blender.
 set -eu
 
-python=$1
+case $1 in
+/*) python=$1 ;;
+*) python=$PWD/$1 ;;
+esac
 shift
+JOBS=${JOBS:-2}
 places=$PWD/build/platforms
 roots=$places/roots
 oldest=bullseye
@@ -29,6 +34,19 @@ root() {
     { tail -20 "$roots/$1.log"; exit 1; }
   for package in "$roots/$1"/var/cache/apt/archives/*.deb; do as_root dpkg-deb -x "$package" "$roots/$1"; done
   touch "$roots/$1.done"
+}
+
+# The next Debian with its Blender, set up, for next_blender.sh.
+next_debian() {
+  [ ! -e "$roots/trixie.done" ] || return 0
+  say "root trixie: Debian 13 and its Blender"
+  mkdir -p "$roots"
+  as_root rm -rf "$roots/trixie"
+  as_root debootstrap --variant=minbase --include=blender,python3-numpy,libgl1-mesa-dri,libegl1 trixie "$roots/trixie" \
+    >"$roots/trixie.log" 2>&1 || { tail -20 "$roots/trixie.log"; exit 1; }
+  # Blender reads which disks there are.
+  as_root ln -sf /proc/self/mounts "$roots/trixie/etc/mtab"
+  touch "$roots/trixie.done"
 }
 
 # wheels FOLDER PYTHON_VERSION PIP_PLATFORM...
@@ -59,15 +77,27 @@ stage() {
 # files: the tests' paths in the staged tree.
 files() { for name in $tests; do printf 'blender_tests/%s.py ' "$name"; done; }
 
-# cpp PLATFORM COMMAND...: the C++ tests and all that fuzzing has found, behind a command that runs the platform's programs.
+# cpp PLATFORM COMMAND...: the C++ tests and all that fuzzing has found, behind a command that runs the platform's programs. As
+# many processes as there are processors share the tests: under qemu they take the better part of an hour.
 cpp() {
-  platform=$1 ending=
+  platform=$1 ending='' shard=0
   shift
   [ "$platform" != windows-x64 ] || ending=.exe
   say "$platform: C++ tests"
-  "$@" "$places/$platform/lancer_tests$ending" --gtest_brief=1 --gtest_filter="${LANCER_CPP_TESTS:-*}" </dev/null 2>&1 |
-    tee "$places/$platform/tests.log" | grep -E '^\[  (PASSED|FAILED)|tests from|Failure' || true
-  grep -q '^\[  PASSED  \]' "$places/$platform/tests.log" && ! grep -q '^\[  FAILED' "$places/$platform/tests.log"
+  while [ "$shard" -lt "$JOBS" ]; do
+    GTEST_TOTAL_SHARDS=$JOBS GTEST_SHARD_INDEX=$shard "$@" "$places/$platform/lancer_tests$ending" \
+      --gtest_filter="${LANCER_CPP_TESTS:-*}" </dev/null 2>&1 | cat >"$places/$platform/tests-$shard.log" &
+    shard=$((shard + 1))
+  done
+  wait
+  failed=
+  while [ "$shard" -gt 0 ]; do
+    shard=$((shard - 1))
+    log=$places/$platform/tests-$shard.log
+    grep -E '^\[  (PASSED|FAILED)|Failure' "$log" || true
+    { grep -q '^\[  PASSED  \]' "$log" && ! grep -q '^\[  FAILED' "$log"; } || failed="$failed $log"
+  done
+  [ -z "$failed" ] || { say "$platform: C++ tests failed, or did not come to their end:$failed"; exit 1; }
   "$@" "$places/$platform/lancer_replay$ending" core/fuzz/corpus </dev/null >"$places/$platform/replay.log" 2>&1
 }
 
@@ -91,6 +121,20 @@ linux_x64() {
   cpp linux-x64 "$@"
   stage linux-x64
   python_tests linux-x64 "$python"
+  say "linux-x64: the zips in the Blenders that are here"
+  "$python" .ci/package.py "$places" linux-x64
+  in_blender "" test_install.py
+  next_debian
+  say "linux-x64: the zips and Rendered shading in the next Debian's Blender"
+  in_blender "$PWD/.ci/next_blender.sh" test_install.py test_viewport.py -k "not module"
+}
+
+# in_blender PROGRAM FILE... [OPTION...]: tests with the zips and the library of linux-x64, in Debian's Blender where PROGRAM is empty.
+in_blender() {
+  program=$1 zips=$PWD/build/addons
+  shift
+  (cd "$places/linux-x64/tree/blender_tests" && TMPDIR=/tmp LANCER_TEST_ZIPS=$zips LANCER_TEST_BLENDER=$program \
+    "$python" -m pytest -q -p no:cacheprovider "$@")
 }
 
 linux_arm64() {

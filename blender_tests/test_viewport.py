@@ -10,8 +10,8 @@ import windows
 from conftest import HERE
 
 SCREEN = (1280, 800)
-# What the program says of files and of itself.
-_KNOWN = ("Blender ", "Info: ", "Read blend: ", "Read prefs: ", "Saved session recovery", "Saved: ")
+# What the program says of files and of itself; Blender 4.3 of its own keymap, too.
+_KNOWN = ("register_class(...):", "Blender ", "Info: ", "Read blend: ", "Read prefs: ", "Saved session recovery", "Saved: ")
 _PATIENCE = 1500
 ENDINGS = ("toggle", "undo", "mode", "engine", "load", "addon", "quad", "window", "f12")
 

@@ -1,0 +1,22 @@
+#!/bin/sh
+# next_blender.sh ARGUMENT...    runs the next Debian's Blender in the root that test_platforms.sh makes. The project and /tmp are
+# where they are outside, and there is no network. The mounts are the process's own and end with it.
+set -eu
+
+project=$(cd "$(dirname "$0")/.." && pwd)
+sudo=
+[ "$(id -u)" -eq 0 ] || sudo="sudo -E"
+# Mounts stay inside where that can be asked for: not in a root within a root, whose own are private or nobody's.
+inside=private
+$sudo unshare --mount true 2>/dev/null || inside=unchanged
+# shellcheck disable=SC2016 # the inner shell's own arguments
+exec $sudo unshare --mount --propagation $inside --net sh -euc '
+  root=$1 project=$2 folder=$3 owner=$4
+  shift 4
+  mount --rbind /dev "$root/dev"
+  mount -t proc proc "$root/proc"
+  mount --bind /tmp "$root/tmp"
+  mkdir -p "$root$project"
+  mount --bind "$project" "$root$project"
+  exec chroot --userspec="$owner" "$root" /usr/bin/env -C "$folder" LANG=C.UTF-8 /usr/bin/blender "$@"
+' sh "$project/build/platforms/roots/trixie" "$project" "$PWD" "$(id -u):$(id -g)" "$@"
