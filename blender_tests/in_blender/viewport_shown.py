@@ -1,12 +1,14 @@
 """What a 3D view shows while it refines, after edits, and of what it is asked to leave out."""
 
+import threading
+
 import bpy
 import gpu
 import memory_now
 import numpy as np
 import stage
 from mathutils import Matrix, Quaternion
-from viewport_stage import Record, View, build, finished, shown, until
+from viewport_stage import Record, View, build, finished, left, shown, until
 
 from addon import preview
 from addon.export.view import Rectangle
@@ -190,6 +192,36 @@ def tells(folder):
         yield 0.5
         result["seeing"] = record.draws[-1][2]
     return result
+
+
+def cleans(folder):
+    """With denoising, after an edit that comes while it works, and without: what is said, and how much neighbours differ."""
+    scene = build(samples=4)
+    view = View()
+
+    def look():
+        done = yield from until(lambda: shown() is not None and shown()._wanted is not wanted and finished())
+        yield 0.2
+        picture = shown().painter.picture
+        differs = float(np.abs(np.diff(picture.image[..., :3], axis=1)).mean())
+        return {"done": done, "denoised": picture.denoised, "text": shown()._text(picture), "differs": differs}
+
+    wanted, result = None, {}
+    scene.lancer.use_preview_denoising = True
+    view.render()
+    result["on"] = yield from look()
+    wanted = shown()._wanted
+    bpy.data.objects["Ball"].location = (1, 1, 0.5)
+    cleaning = yield from until(lambda: any("denoising" in thread.name for thread in threading.enumerate()))
+    bpy.data.objects["Ball"].location = (1, 0, 0.5)
+    result["edited"] = {"cleaning": cleaning, **(yield from look())}
+    wanted = shown()._wanted
+    scene.lancer.use_preview_denoising = False
+    view.area.tag_redraw()
+    result["off"] = yield from look()
+    view.space.shading.type = "SOLID"
+    yield from until(lambda: not left())
+    return {**result, "left": left()}
 
 
 def plays(folder):
