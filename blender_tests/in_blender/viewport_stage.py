@@ -11,7 +11,7 @@ from addon.bindings.session import Scene, Session
 from addon.viewport import viewport
 
 _LOOK = 0.05
-_PATIENCE = 60.0
+_PATIENCE = 300.0
 
 
 class View:
