@@ -37,7 +37,8 @@ def older(path, folder):
             if name.endswith("blender_manifest.toml"):
                 data = data.replace(*(text.encode() for text in dotted))
             elif name.endswith("__init__.py"):
-                data = data.replace(str(new).encode(), str(old).encode())
+                # Python takes a file of the same size and second for the one that it has compiled.
+                data = data.replace(str(new).encode(), str(old).encode()) + b"\n"
             elif "/liblancer" in "/" + name:
                 data = data.replace(*(text.encode() + b"\0" for text in dotted))
                 name = f"{name.split('-')[0]}-{hashlib.sha256(data).hexdigest()[:12]}.so"
