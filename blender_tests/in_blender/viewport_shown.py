@@ -1,5 +1,7 @@
 """What a 3D view shows while it refines, after edits, and of what it is asked to leave out."""
 
+import json
+import os
 import threading
 
 import bpy
@@ -89,7 +91,7 @@ def selects(folder):
 
 
 def screen(folder):
-    """A glowing wall before the view, whose colour on the screen is the display transform's: the scene is ready for a shot."""
+    """A glowing wall before the view: its middle from the screen's top left goes to middle.json, until shot is there."""
     scene = stage.empty(64, 64)
     stage.sky((0.5, 0.25, 0.1))
     stage.camera()
@@ -98,14 +100,12 @@ def screen(folder):
     view.render()
     yield from until(finished)
     yield 0.3
-    bpy.ops.screen.screenshot(filepath=f"{folder}/shot.png")
-    image = bpy.data.images.load(f"{folder}/shot.png")
-    width, height = image.size
-    pixels = np.empty(4 * width * height, np.float32)
-    image.pixels.foreach_get(pixels)
-    pixels = pixels.reshape(height, width, 4)
     x, y = view.region.x + view.region.width // 2, view.region.y + view.region.height // 2
-    return {"color": (255 * pixels[y, x, :3]).round().tolist()}
+    with open(f"{folder}/middle.part", "w", encoding="utf-8") as file:
+        json.dump([x, view.window.height - 1 - y], file)
+    os.rename(f"{folder}/middle.part", f"{folder}/middle.json")
+    yield from until(lambda: os.path.exists(f"{folder}/shot"))
+    return {}
 
 
 def filtered(folder):
