@@ -44,8 +44,6 @@ next_debian() {
   as_root rm -rf "$roots/trixie"
   as_root debootstrap --variant=minbase --include=blender,python3-numpy,libgl1-mesa-dri,libegl1 trixie "$roots/trixie" \
     >"$roots/trixie.log" 2>&1 || { tail -20 "$roots/trixie.log"; exit 1; }
-  # Blender reads which disks there are.
-  as_root ln -sf /proc/self/mounts "$roots/trixie/etc/mtab"
   touch "$roots/trixie.done"
 }
 
