@@ -94,8 +94,9 @@ def test_a_view_refines(window):
     # Ever finer, then ever more samples.
     assert list(sizes) == sorted(sizes, reverse=True) and sizes[-1] == 1
     assert list(samples) == sorted(samples) and samples[-1] == 16
-    assert got["texts"][0] == "Building the scene"
-    assert got["texts"][-1].startswith("Sample 16/16 | Error ")
+    # A scene as small as this may be built before the first drawing.
+    assert set(got["waiting"]) <= {"Building the scene", ""}
+    assert got["last"].startswith("Sample 16/16 | Error ")
 
 
 def test_edits_show_the_last_picture_until_the_new_one_is_there(window):

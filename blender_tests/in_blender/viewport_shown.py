@@ -19,7 +19,7 @@ from addon.viewport.canvas import Canvas
 
 
 def refining(folder):
-    """From the first picture to the last: sizes and samples of what was drawn, and the last text."""
+    """From the first picture to the last: sizes and samples of what was drawn, what was said before and at the end."""
     build(samples=16)
     view = View()
     with Record() as record:
@@ -27,7 +27,8 @@ def refining(folder):
         done = yield from until(finished)
         yield 0.2
     drawn = [(picture.size, picture.samples) for _, picture, _ in record.draws if picture is not None]
-    return {"done": done, "drawn": drawn, "texts": [text for *_, text in record.draws]}
+    waiting = [text for _, picture, text in record.draws if picture is None]
+    return {"done": done, "drawn": drawn, "waiting": waiting, "last": record.draws[-1][2]}
 
 
 def edits(folder):
