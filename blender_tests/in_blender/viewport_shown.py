@@ -119,25 +119,26 @@ def filtered(folder):
     def rendered():
         return [len(shown()._contents.instances), len(shown()._contents.lights)]
 
+    def changed(before):
+        yield from until(lambda: rendered() != before)
+        return rendered()
+
     result = {"all": rendered()}
     ball = bpy.data.objects["Ball"]
     ball.select_set(True)
     bpy.context.view_layer.objects.active = ball
     with view.override():
         bpy.ops.view3d.localview(frame_selected=False)
-    yield 0.3
-    result["local"] = rendered()
+    result["local"] = yield from changed(result["all"])
     with view.override():
         bpy.ops.view3d.localview(frame_selected=False)
-    yield 0.3
+    before = yield from changed(result["local"])
     view.space.show_object_viewport_light = False
     view.area.tag_redraw()
-    yield 0.3
-    result["without lamps"] = rendered()
+    result["without lamps"] = yield from changed(before)
     scene.render.preview_pixel_size = "2"
     view.area.tag_redraw()
-    yield 0.3
-    result["done"] = yield from until(finished)
+    result["done"] = yield from until(lambda: finished() and shown()._wanted.finest > 1)
     result["size"] = shown().painter.picture.size
     return result
 
@@ -162,7 +163,7 @@ def previews(folder):
         with View().override():
             with bpy.context.temp_override(id=thing):
                 bpy.ops.ed.lib_id_generate_preview()
-        yield from until(lambda before=before: len(rendered) > before, 20.0)
+        yield from until(lambda before=before: len(rendered) > before)
         yield 1.0
         colors[name] = np.array(thing.preview.image_pixels_float[:]).reshape(-1, 4)[:, :3].mean(axis=0).tolist()
     preview.render = plain
@@ -183,14 +184,14 @@ def tells(folder):
     yield 0.3
     with Record() as record:
         view.area.tag_redraw()
-        yield 0.3
+        yield from until(lambda: record.draws)
         result = {"lines": viewport.last_messages[scene].lines(), "text": record.draws[-1][2]}
         scene.camera.scale = (0, 0, 0)
         view.data.view_perspective = "CAMERA"
-        yield 0.5
+        yield from until(lambda: record.draws[-1][2].startswith("Lancer: "))
         result["blind"] = record.draws[-1][2]
         view.data.view_perspective = "PERSP"
-        yield 0.5
+        yield from until(lambda: record.draws[-1][2].startswith("Sample "))
         result["seeing"] = record.draws[-1][2]
     return result
 
@@ -237,13 +238,16 @@ def plays(folder):
     view.render()
     yield from until(lambda: shown() is not None and shown().painter.picture is not None)
     with Record() as record:
+
+        def frames():
+            return len({id(picture.wanted.contents) for _, picture, _ in record.draws})
+
         with view.override():
             bpy.ops.screen.animation_play()
-        yield 3.0
+        yield from until(lambda: frames() > 2 and scene.frame_current > 2)
         with view.override():
             bpy.ops.screen.animation_cancel(restore_frame=False)
-    contents = {id(picture.wanted.contents) for _, picture, _ in record.draws}
-    return {"frames": len(contents), "read": shown()._parts.counts, "at": scene.frame_current}
+    return {"frames": frames(), "read": shown()._parts.counts, "at": scene.frame_current}
 
 
 def resized(folder):
