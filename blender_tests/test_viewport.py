@@ -39,21 +39,23 @@ def window(display, tmp_path):
         """The result of a case of in_blender/viewport_*.py; whatever else is said on the terminal fails."""
         script = os.path.join(HERE, "in_blender", "window_viewport.py")
         place = ["-p", "0", "0", *map(str, SCREEN)]
+        # Line by line: Blender has more than one buffer for the same pipe, and would break lines of one with those of another.
+        start = ["stdbuf", "-oL", blenders.program(), "--factory-startup", *place, "-P", script]
         process = subprocess.Popen(
-            [blenders.program(), "--factory-startup", *place, "-P", script, "--", str(tmp_path), case, *map(str, arguments)],
+            [*start, "--", str(tmp_path), case, *map(str, arguments)],
             env=blenders.environment(tmp_path, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1", **extra),
             cwd=tmp_path,
             stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
+            stderr=subprocess.PIPE,
             text=True,
             errors="replace",
         )
         try:
             meanwhile(process)
-            text, _ = process.communicate(timeout=_PATIENCE)
+            out, errors = process.communicate(timeout=_PATIENCE)
         finally:
             process.kill()
-        said = [line for line in text.splitlines() if line and not line.startswith(_KNOWN)]
+        said = [line for line in (out + errors).splitlines() if line and not line.startswith(_KNOWN)]
         assert process.returncode == 0, said[-20:]
         with open(tmp_path / "result.json", encoding="utf-8") as file:
             result = json.load(file)
