@@ -1,4 +1,4 @@
-"""Rendered shading in a real window of Debian's Blender 3.4.1: what is shown, what edits do to it, and how it ends."""
+"""Rendered shading in a real window of Blender: what is shown, what edits do to it, and how it ends."""
 
 import json
 import os

@@ -89,6 +89,17 @@ TEST(ImagesLookup, NoNumberIsBlack) {
     }
 }
 
+// The texel beside it is the same one again, and the one beyond that.
+TEST(ImagesLookup, OneTexelIsSeenEverywhere) {
+  const Image image = picture<float>(1, 1, 1, {0.75f});
+  for (const Extension extension : {Extension::Repeat, Extension::Extend, Extension::Mirror})
+    for (const Interpolation interpolation : {Interpolation::Closest, Interpolation::Linear, Interpolation::Cubic})
+      // A float below 0 whose distance from the whole number below it rounds to 1.
+      for (const float u : {-1e-9f, 0.0f, 0.25f, 0.5f, 0.75f, 1.0f, 1.25f, 1.75f, 2.0f, -0.3f})
+        // Weights of the spline are rounded four times, along two axes.
+        EXPECT_NEAR(grey(image, u, u, extension, interpolation), 0.75f, 8.0f * 0x1p-24f) << u;
+}
+
 TEST(ImagesLookup, ChannelsAndDepths) {
   const glm::vec2 uv(0.5f);
   const auto look = [&](const Image &image) { return lookup(image, uv, Extension::Repeat, Interpolation::Linear, false); };
