@@ -25,6 +25,7 @@ from bindings.enums import Pass  # noqa: E402
 from bindings.npz import SnapshotError  # noqa: E402
 from bindings.session import LancerError, Session  # noqa: E402
 from bindings.snapshot import SceneSnapshot  # noqa: E402
+from rich_snapshot import rich  # noqa: E402
 
 # The one under test, or another build of it.
 LIBRARY = load_library(os.environ.get("LANCER_LIBRARY"))
@@ -174,10 +175,8 @@ def try_file(path):
 
 
 def main(log, folder, first, count, seconds=0.0):
-    import test_snapshot
-
     good, path = os.path.join(folder, "good.npz"), os.path.join(folder, "spoiled.npz")
-    test_snapshot.rich().save(good)
+    rich().save(good)
     with open(good, "rb") as file:
         data = file.read()
     outcomes, seed, end = {}, int(first), time.monotonic() + float(seconds)

@@ -15,7 +15,7 @@ from bindings.npz import SnapshotError
 from bindings.snapshot import Image
 from blenders import MODULE, PROGRAM
 from conftest import ROOT
-from test_snapshot import rich
+from rich_snapshot import rich
 
 FACTS = {"versions": {"Blender": "9.9"}, "messages": []}
 

@@ -22,7 +22,7 @@ import conftest, dataclasses, gc
 from bindings.abi import Pass
 from bindings.session import Session
 from memory_now import held
-from test_snapshot import rich
+from rich_snapshot import rich
 held_after = []
 even = rich()
 refined = dataclasses.replace(even, settings=dataclasses.replace(even.settings, samples=4, target_error=0.01))

@@ -12,7 +12,7 @@ from bindings.npz import SnapshotError
 from bindings.session import LancerError, Session
 from bindings.snapshot import SceneSnapshot
 from conftest import HERE
-from test_snapshot import rich
+from rich_snapshot import rich
 
 SPOILED = 400
 
