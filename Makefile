@@ -95,28 +95,28 @@ ifneq ($(BEFORE),)
 	@$(call logged,build/configure-before.log,cmake -S build/before/core -B build/before/build -G Ninja)
 	@cmake --build build/before/build --target lancer $(compile)
 endif
-	@$(python) blender_tests/bench/run.py $(if $(BEFORE),--before build/before) $(if $(QUICK),--quick) \
+	@$(python) blender_tests/tools/bench/run.py $(if $(BEFORE),--before build/before) $(if $(QUICK),--quick) \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(README),--readme)
 
 features: packages-run python-run build ## what each feature costs where used, and where only compiled in: make features [QUICK=1] [ONLY=glass]
-	@$(python) blender_tests/bench/features.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+	@$(python) blender_tests/tools/features/run.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 tradeoff: packages-run python-charts build ## error against seconds: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
-	@$(python) blender_tests/bench/tradeoff.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
+	@$(python) blender_tests/tools/tradeoff/run.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(QUICK),--quick) $(if $(README),--readme)
 
 accuracy: packages-run python-run build ## is the error that renders tell true: make accuracy [QUICK=1] [ONLY='glass*']
-	@$(python) blender_tests/bench/accuracy.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+	@$(python) blender_tests/tools/accuracy/run.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 course: packages-test python-test build ## the course's texts, chapter by chapter, measured now: make course [QUICK=1] [ONLY=shadows]
 	@$(python) scenes/course/run.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
-	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P scenes/parity/run.py --,$(python) scenes/parity/run.py) \
+	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P blender_tests/tools/parity/run.py --,$(python) blender_tests/tools/parity/run.py) \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
 
 corpus: packages-run python-run build ## files of others, by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1]
-	@$(python) blender_tests/corpus/run.py $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
+	@$(python) blender_tests/tools/corpus/run.py $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PX),--pixels $(PX)) $(if $(BLENDER),--blender "$(BLENDER)") \
 	  $(if $(README),--readme)
 

@@ -9,7 +9,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 
 # `import bindings` is the add-on's own package, reached without the add-on's top, which needs bpy.
-for folder in (os.path.join(ROOT, "addon"), ROOT, HERE):
+for folder in (os.path.join(ROOT, "addon"), ROOT, HERE, os.path.join(HERE, "helpers")):
     if folder not in sys.path:
         sys.path.insert(0, folder)
 

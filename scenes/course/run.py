@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 # The small scenes and closed forms of the tests, and the bindings as these import them.
-sys.path[:0] = [str(ROOT), str(ROOT / "addon"), str(ROOT / "blender_tests")]
+sys.path[:0] = [str(ROOT), str(ROOT / "addon"), str(ROOT / "blender_tests" / "helpers")]
 
 import bpy  # noqa: E402
 

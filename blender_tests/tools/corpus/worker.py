@@ -1,0 +1,121 @@
+"""One file in one Blender, for one engine: answers requests, a line of JSON each, until they end.
+
+Runs under a Python that has bpy (worker.py FD), and inside Blender: blender -b --factory-startup -P worker.py -- FD
+FD: the file descriptor that answers go to; what Blender and libraries print is of no interest.
+"""
+
+import json
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
+
+import bpy  # noqa: E402
+import numpy as np  # noqa: E402
+
+import addon  # noqa: E402
+from tools.bench import process  # noqa: E402
+from tools.bench.written import own_clock, read_floats, write_floats  # noqa: E402
+from tools.corpus import alike, framing  # noqa: E402
+
+
+def open_file(path, pixels, threads):
+    """Opens a file of anybody's without running what it brings along, and tells what it is."""
+    bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+    scene = bpy.context.scene
+    told = []
+    engine = scene.render.engine
+    layer, layers = alike.choose_layer(scene)
+    told.append(framing.find_camera(scene, layer))
+    if layers > 1:
+        told.append(f"the first of {layers} view layers is rendered, '{layer.name}'")
+    missing = alike.missing_libraries()
+    if missing:
+        told.append(f"{len(missing)} linked libraries are not there: {', '.join(missing[:3])}")
+    alike_ = alike.make_alike(scene, pixels, threads)
+    return {
+        "saved_by": ".".join(map(str, bpy.data.version[:2])),
+        "blender": bpy.app.version_string,
+        "engine": engine,
+        "layers": layers,
+        "told": [text for text in told if text],
+        "alike": alike_,
+    }
+
+
+def render(engine, samples, seed, picture):
+    """F12. Seconds by the engine's own clock and by the wall, memory above Blender's with the file, the picture as .npy."""
+    scene = bpy.context.scene
+    scene.render.engine = engine
+    alike.set_samples(scene, samples, seed)
+    write_floats(scene)
+    with tempfile.TemporaryDirectory() as folder, _timed_export() as export:
+        scene.render.filepath = os.path.join(folder, "picture.exr")
+        process.reset_peak()
+        before, start = process.memory("VmRSS"), time.perf_counter()
+        bpy.ops.render.render(write_still=True)
+        result = {"wall": time.perf_counter() - start, "peak_bytes": max(0, process.memory("VmHWM") - before)}
+        if not os.path.exists(scene.render.filepath):
+            raise RuntimeError(f"{engine} wrote no picture")
+        result["seconds"] = own_clock(scene)
+        values = read_floats(scene)
+    np.save(picture, values)
+    result["size"] = [values.shape[1], values.shape[0]]
+    if engine == "LANCER":
+        statistics = addon.engine.last_statistics[scene.name]
+        wanted = ("build_seconds", "wide_vertices", "narrow_vertices", "kernel", "features", "triangles", "instances", "lights")
+        result |= {name: statistics[name] for name in wanted}
+        result |= {"messages": list(addon.engine.last_messages[scene.name]), "missing": addon.engine.last_missing[scene.name]}
+        result["export_seconds"] = sum(export)
+    return result
+
+
+class _timed_export:
+    """As a context: the list of seconds that the exports of renders took meanwhile."""
+
+    def __enter__(self):
+        self.export, seconds = addon.engine.export_scene, []
+
+        def timed(*arguments):
+            start = time.perf_counter()
+            try:
+                return self.export(*arguments)
+            finally:
+                seconds.append(time.perf_counter() - start)
+
+        addon.engine.export_scene = timed
+        return seconds
+
+    def __exit__(self, *_):
+        addon.engine.export_scene = self.export
+
+
+TASKS = {"open": open_file, "render": render}
+
+
+def serve(answers):
+    for line in sys.stdin:
+        request = json.loads(line)
+        try:
+            answer = TASKS[request.pop("task")](**request)
+        except Exception as error:
+            # What Blender raises has its reports in it, a line each.
+            lines = [text for text in str(error).splitlines() if text.strip()] or [type(error).__name__]
+            answer = {"error": lines[0][:500]}
+        answers.write(json.dumps(answer) + "\n")
+        answers.flush()
+
+
+def main():
+    addon.register()
+    with os.fdopen(int(sys.argv[-1]), "w", encoding="utf-8") as answers:
+        serve(answers)
+    process.leave()
+
+
+if __name__ == "__main__":
+    main()
