@@ -25,6 +25,7 @@ PX ?=
 
 python := $(VENV)/bin/python
 core := build/core
+tools := blender_tests/tools/start.py
 cmake := cmake -S core -G Ninja $(if $(WERROR),-DLANCER_WERROR=$(WERROR))
 # Ninja's moving line is for terminals; a log gets warnings and errors only.
 compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
@@ -95,28 +96,28 @@ ifneq ($(BEFORE),)
 	@$(call logged,build/configure-before.log,cmake -S build/before/core -B build/before/build -G Ninja)
 	@cmake --build build/before/build --target lancer $(compile)
 endif
-	@$(python) blender_tests/tools/bench/run.py $(if $(BEFORE),--before build/before) $(if $(QUICK),--quick) \
+	@$(python) $(tools) bench.run $(if $(BEFORE),--before build/before) $(if $(QUICK),--quick) \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(README),--readme)
 
 features: packages-run python-run build ## what each feature costs where used, and where only compiled in: make features [QUICK=1] [ONLY=glass]
-	@$(python) blender_tests/tools/features/run.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+	@$(python) $(tools) features.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 tradeoff: packages-run python-charts build ## error against seconds: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
-	@$(python) blender_tests/tools/tradeoff/run.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
+	@$(python) $(tools) tradeoff.run $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(QUICK),--quick) $(if $(README),--readme)
 
 accuracy: packages-run python-run build ## is the error that renders tell true: make accuracy [QUICK=1] [ONLY='glass*']
-	@$(python) blender_tests/tools/accuracy/run.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+	@$(python) $(tools) accuracy.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 course: packages-test python-test build ## the course's texts, chapter by chapter, measured now: make course [QUICK=1] [ONLY=shadows]
-	@$(python) scenes/course/run.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+	@$(python) $(tools) course.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
-	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P blender_tests/tools/parity/run.py --,$(python) blender_tests/tools/parity/run.py) \
+	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P $(tools) --,$(python) $(tools)) parity.run \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
 
 corpus: packages-run python-run build ## files of others, by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1]
-	@$(python) blender_tests/tools/corpus/run.py $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
+	@$(python) $(tools) corpus.run $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PX),--pixels $(PX)) $(if $(BLENDER),--blender "$(BLENDER)") \
 	  $(if $(README),--readme)
 

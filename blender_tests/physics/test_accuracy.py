@@ -14,6 +14,7 @@ from scipy import stats
 from significance import LEVEL
 from tiny_scenes import showroom
 from tools.accuracy import figures, scenes
+from tools.harness.errors import Reference, luminance
 
 SEEDS = 6
 BUILDERS = {"half_black": scenes.half_black, "soft_shadow": scenes.soft_shadow, "glossy": scenes.glossy}
@@ -40,8 +41,8 @@ def measured(name):
             wanted = dataclasses.replace(snapshot.settings, threads=0, samples=512, seed=1001 + seed)
             with Session(scene, snapshot.camera, wanted) as session:
                 session.render_all()
-                parts.append(figures.luminance(session.read()))
-    return snapshot, figures.Reference(np.stack(parts))
+                parts.append(luminance(session.read()))
+    return snapshot, Reference(np.stack(parts))
 
 
 def test_bars_hold_the_pixels_and_intervals_the_errors():
@@ -51,11 +52,11 @@ def test_bars_hold_the_pixels_and_intervals_the_errors():
         for seed in range(SEEDS):
             with Session.upload(settings(snapshot, threads=0, samples=64, seed=seed)) as session:
                 session.render_all()
-                told, picture = session.error(), figures.luminance(session.read())
+                told, picture = session.error(), luminance(session.read())
                 good = figures.inside(picture, session.read(Pass.ERROR)[..., 0], reference)
             inside += int(good[reference.noisy].sum())
             pixels += int(reference.noisy.sum())
-            held += told.low <= figures.real_error(picture, reference) <= told.bound
+            held += told.low <= reference.distance(picture) <= told.bound
     # 95 +- 1.5 % are promised; chance adds that of as many pixels, which are independent.
     low, high = (stats.binom.ppf(p, pixels, share) for p, share in ((LEVEL, 0.935), (1.0 - LEVEL, 0.965)))
     assert low <= inside <= high, f"{inside / pixels:.4f}"
@@ -73,8 +74,8 @@ def test_targets_are_met_without_bias():
                 schedule = drive(session)
                 assert schedule.reason is TARGET
                 assert schedule.error.bound <= 0.15
-                pictures.append(figures.luminance(session.read()))
-            met += figures.real_error(pictures[-1], reference) <= 0.15
+                pictures.append(luminance(session.read()))
+            met += reference.distance(pictures[-1]) <= 0.15
         scores.append(figures.bias(np.stack(pictures), reference)["whole"])
     assert met >= stats.binom.ppf(LEVEL, SEEDS * len(BUILDERS), 0.95)
     assert np.abs(scores).max() <= 4.0, scores

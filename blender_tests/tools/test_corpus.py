@@ -8,8 +8,9 @@ import subprocess
 import numpy as np
 import pytest
 
-from tools.corpus import clones, measure, noise, page, readme, run, sources, verdicts
-from tools.corpus.conversation import Ended
+from tools.corpus import clones, measure, noise, page, run, sources, verdicts
+from tools.harness.conversation import Ended
+from tools.harness.page import marks
 
 SIZE = (24, 32)
 PLAN = measure.Plan(budget=1.0, rounds=2, most=16)
@@ -204,21 +205,19 @@ def test_the_page_has_every_row_and_asks_no_network(tmp_path):
     assert "http" not in text and json.loads((tmp_path / "corpus.json").read_text())["files"][0]["name"] == "a"
 
 
-def test_the_readme_tells_date_commit_counts_and_what_is_missing(tmp_path):
+def test_the_summary_tells_date_commit_counts_and_what_is_missing(tmp_path):
     path = tmp_path / "README.md"
-    path.write_text(f"before\n{readme.BEGIN}\nold\n{readme.END}\nafter\n")
-    readme.update(path, figures())
+    begin, end = marks("corpus", "corpus")
+    path.write_text(f"before\n{begin}\nold\n{end}\nafter\n")
+    page.update_tables(figures(), path)
     text = path.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
     for words in ("2026-01-02, commit abc1234", "1 differs without a message", "| noise | 2 | 2 | 3 |", "`g`, `h`", "4.00x"):
         assert words in text, words
-    with pytest.raises(ValueError, match="lacks the lines"):
-        path.write_text("no place for it")
-        readme.update(path, figures())
 
 
 def arguments(folder):
-    fields = {"output": folder / "out", "quick": False, "blender": "", "worker": run.WORKER}
+    fields = {"output": folder / "out", "quick": False, "blender": "", "worker": None}
     return argparse.Namespace(**fields)
 
 

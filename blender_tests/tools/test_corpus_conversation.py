@@ -5,7 +5,7 @@ import textwrap
 
 import pytest
 
-from tools.corpus.conversation import Conversation, Ended
+from tools.harness.conversation import Conversation, Ended
 
 WORKER = """
     import json, os, signal, sys, time

@@ -8,7 +8,9 @@ import sys
 import blenders
 import pytest
 from blenders import MODULE, PROGRAM
-from conftest import HERE
+
+from tools.harness.places import TOOLS
+from tools.harness.workers import START
 
 
 @pytest.fixture(scope="module")
@@ -21,8 +23,7 @@ def folder(tmp_path_factory):
 
 def run(folder, output, *arguments):
     """(exit code, what was said, the record)"""
-    script = os.path.join(HERE, "tools", "corpus", "run.py")
-    command = [sys.executable, script, "--folder", folder, "--output", output, "--quick"]
+    command = [sys.executable, START, "corpus.run", "--folder", folder, "--output", output, "--quick"]
     command += ["--pixels", "48", "--budget", "1", "--threads", "2", *arguments]
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=600)
     record = output / "corpus.json"
@@ -95,7 +96,7 @@ def test_an_engine_that_dies_is_a_row(folder, tmp_path):
     """The process of the one engine ends by a signal while it renders; the run goes on, and fails in the end."""
     script = tmp_path / "worker.py"
     script.write_text(
-        f"import os, signal, sys\nsys.path.insert(0, {HERE!r})\n"
+        f"import os, signal, sys\nsys.path.insert(0, {str(TOOLS)!r})\nimport start\n"
         "from tools.corpus import worker\nrender = worker.render\n"
         "def dies(engine, **fields):\n"
         "    if engine == os.environ['DIES']:\n"

@@ -1,32 +1,32 @@
 """`make course QUICK=1`: every figure is within its bounds, and the page is whole."""
 
 import json
-import os
 import re
 import subprocess
 import sys
 
 import blenders
 import pytest
-from conftest import ROOT
 
-RUN = os.path.join(ROOT, "scenes", "course", "run.py")
+from tools.harness.places import TOOLS
+from tools.harness.workers import START
+
 # A chapter whose only figure is off, in the place of a real one.
 OFF = """
-import runpy, sys
-sys.argv = sys.argv[1:]
-sys.path[:0] = [{root!r}, {root!r} + "/addon", {root!r} + "/blender_tests/helpers"]
+import sys
+sys.path.insert(0, {tools!r})
+import start
 from scenes.course import lighting
-from scenes.course.chapter import Figure
+from tools.course import run
+from tools.harness.f12 import registered
 lighting.CHAPTERS[2].__globals__["worst"] = lambda *_: {deviation}
-runpy.run_path(sys.argv[0], run_name="__main__")
+sys.exit(registered(run.main))
 """
 
 
 def report(folder, *arguments, deviation=None):
-    command = [sys.executable, RUN, "--quick", "--output", str(folder), *arguments]
-    if deviation is not None:
-        command[1:1] = ["-c", OFF.format(root=ROOT, deviation=deviation)]
+    start = [START, "course.run"] if deviation is None else ["-c", OFF.format(tools=str(TOOLS), deviation=deviation)]
+    command = [sys.executable, *start, "--quick", "--output", str(folder), *arguments]
     done = subprocess.run(command, env=blenders.environment(folder), capture_output=True, text=True, timeout=600)
     return done.returncode, done.stdout + done.stderr
 

@@ -51,7 +51,7 @@ def test_verdicts():
     assert features_page.verdict(value(0.019, 0.005), 0.02) is None
 
 
-def test_the_page_holds_every_figure():
+def test_the_page_holds_every_figure(tmp_path):
     found = {"used": {"cost": 0.5, "uncertainty": 0.01, "kernel": "path all"}}
     idle = {"cost": 0.031, "uncertainty": 0.002, "kernel": "path <all>"}
     figures = {
@@ -64,7 +64,8 @@ def test_the_page_holds_every_figure():
             "lens": {"PATH": found},
         },
     }
-    text = features_page.page(figures)
+    features_page.write(figures, tmp_path)
+    text = (tmp_path / "index.html").read_text()
     assert "+50.0 % ± 1.0" in text and "+3.1 % ± 0.2" in text and "missed" in text and "path &lt;all&gt;" in text
     assert text.count("missed") == 1 and "not idle" in text
     assert text.count("<tr>") == 3

@@ -3,6 +3,7 @@
 import collections
 import json
 import os
+import pathlib
 import sys
 import tempfile
 
@@ -139,7 +140,7 @@ def _page():
             _contest(folder, "shown", different, lambda _: {"Combined": 1.5 * _GREY}, lambda _: {"Combined": _GREY}),
             _contest(folder, "hidden", {"since": (99, 0)}, None, None),
         ]
-        page.write(outcomes, folder, "Lancer and Cycles")
+        page.write(outcomes, pathlib.Path(folder), "Lancer and Cycles")
         with open(os.path.join(folder, "index.html"), encoding="utf-8") as file:
             text = file.read()
         with open(os.path.join(folder, "parity.json"), encoding="utf-8") as file:
@@ -153,7 +154,7 @@ def _exit_code(verdict):
     genuine, argv = contest.run, sys.argv
     contest.run = lambda case, *_, **__: contest.Outcome(case, next(verdicts))
     with tempfile.TemporaryDirectory() as folder:
-        sys.argv = ["run.py", "--", "--only", "point_hard,point_soft", "--output", folder]
+        sys.argv = ["run.py", "--only", "point_hard,point_soft", "--output", folder]
         try:
             return run.main()
         finally:

@@ -1,20 +1,17 @@
-"""cycles.py measure ARGUMENTS: what the noise threshold of Cycles comes to, inside Blender's Python module."""
+"""start.py accuracy.cycles measure JSON: what the noise threshold of Cycles comes to, inside Blender's Python module."""
 
-import os
-import sys
-import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "addon"), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
+import bpy
+import numpy as np
 
-import bpy  # noqa: E402
-import exr  # noqa: E402
-import numpy as np  # noqa: E402
+from tools.bench import worker
+from tools.harness import process
+from tools.harness.errors import Reference, luminance, root_mean_square
+from tools.harness.f12 import press_f12, registered
+from tools.harness.kept import kept_picture
 
-import addon  # noqa: E402
-from tools.accuracy import figures  # noqa: E402
-from tools.bench import process, worker  # noqa: E402
+from . import figures
 
 _REFERENCE_PARTS = 4
 _REFERENCE_SEED = 1001
@@ -25,30 +22,22 @@ _MOST_SAMPLES = 4096
 def render(scene, samples, seed):
     """Luminances as Cycles renders them. How many samples it took for them it does not tell: its pass has shares."""
     worker.set_samples(scene, samples, seed)
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = os.path.join(folder, "picture.exr")
-        bpy.ops.render.render(write_still=True)
-        layers = exr.read(scene.render.filepath)
-    combined = next(value for name, value in layers.items() if "Combined" in name or len(layers) == 1)
-    return figures.luminance(combined[..., :3])
+    # Row 0 above, as references that are kept have it.
+    return luminance(press_f12(scene).picture[::-1])
 
 
 def measure(name, threads, width, height, folder, seeds=8, thresholds=(0.05, 0.02, 0.01), reference=8192):
     scene = worker.set_up(name, threads, width, height)
     scene.render.engine = "CYCLES"
-    image = scene.render.image_settings
-    if hasattr(image, "media_type"):
-        image.media_type = "MULTI_LAYER_IMAGE"
-    image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
-    converged = figures.Reference(np.stack(list(_reference(scene, name, Path(folder), reference))))
+    converged = Reference(np.stack(list(_reference(scene, name, Path(folder), reference))))
     result = []
     scene.cycles.use_adaptive_sampling = True
     scene.cycles.adaptive_min_samples = 0
     for threshold in thresholds:
         scene.cycles.adaptive_threshold = threshold
         runs = [render(scene, _MOST_SAMPLES, seed) for seed in range(seeds)]
-        real = [figures.real_error(picture, converged) for picture in runs]
-        own = figures.root_mean_square(real)
+        real = [converged.distance(picture) for picture in runs]
+        own = root_mean_square(real)
         result.append(
             {
                 "threshold": threshold,
@@ -64,18 +53,11 @@ def _reference(scene, name, folder, samples):
     """Without a threshold; each part is kept."""
     scene.cycles.use_adaptive_sampling = False
     count = samples // _REFERENCE_PARTS
-    folder.mkdir(parents=True, exist_ok=True)
     for number in range(_REFERENCE_PARTS):
         size = f"{scene.render.resolution_x}x{scene.render.resolution_y}"
         path = folder / f"{name}-{size}-cycles-{bpy.app.version_string}-{count}-{number}.npy"
-        if not path.exists():
-            np.save(path, render(scene, count, _REFERENCE_SEED + number))
-        yield np.load(path)
+        yield kept_picture(path, lambda _, seed=_REFERENCE_SEED + number: render(scene, count, seed))
 
 
 if __name__ == "__main__":
-    addon.register()
-    try:
-        process.answer({"measure": measure})
-    finally:
-        addon.unregister()
+    registered(lambda: process.answer(measure))

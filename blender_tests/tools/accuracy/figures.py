@@ -1,69 +1,20 @@
-"""How true a told error is: what lies inside its bar, what an interval holds, what is biased. Arrays in, numbers out.
+"""How true a told error is: what lies inside its bar, what is biased. Arrays in, numbers out.
 
-The error of a picture is the root mean square over its pixels of (luminance - truth) / (truth + 1 % of the mean truth). The
-truth is a reference with noise of its own, known from its parts: that noise is added to bars and taken off errors.
+A reference's own noise is added to bars.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 
+from tools.harness.errors import ROUNDING
+
 BAR = 1.96
-_BT709 = np.array([0.2126, 0.7152, 0.0722])
-_FLOOR = 0.01
-# A pixel's three channels and its bar are floats: four roundings of 2^-24, and one bit to spare.
-_ROUNDING = 2.0**-21
 BLOCK = 16
-
-
-def luminance(picture):
-    """(height, width) in double."""
-    return np.asarray(picture, np.float64)[..., :3] @ _BT709
-
-
-@dataclass(frozen=True)
-class Reference:
-    """Luminances of independent pictures of equal weight, (parts, height, width)."""
-
-    parts: np.ndarray
-
-    @property
-    def mean(self):
-        return self.parts.mean(axis=0)
-
-    @property
-    def variance(self):
-        """Of the mean."""
-        return self.parts.var(axis=0, ddof=1) / len(self.parts)
-
-    @property
-    def level(self):
-        """What errors are relative to."""
-        mean = self.mean
-        return mean + _FLOOR * mean.mean()
-
-    @property
-    def error(self):
-        """Of the reference itself."""
-        return float(np.sqrt(np.mean(self.variance / self.level**2)))
-
-    @property
-    def noisy(self):
-        """Which pixels have any noise; the others are right at the first sample."""
-        return np.ptp(self.parts, axis=0) > _ROUNDING * np.abs(self.mean)
-
-
-def real_error(picture, reference):
-    """Of a picture's luminances, less what the reference's own noise adds."""
-    level = reference.level
-    squares = np.mean(((picture - reference.mean) / level) ** 2) - np.mean(reference.variance / level**2)
-    return float(np.sqrt(max(0.0, squares)))
 
 
 def inside(picture, bars, reference):
     """Which pixels lie within 1.96 standard errors of the truth."""
     reach = BAR * np.sqrt(np.asarray(bars, np.float64) ** 2 + reference.variance)
-    return np.abs(picture - reference.mean) <= reach + _ROUNDING * np.abs(reference.mean)
+    return np.abs(picture - reference.mean) <= reach + ROUNDING * np.abs(reference.mean)
 
 
 def scores(pictures, reference):
@@ -74,7 +25,7 @@ def scores(pictures, reference):
     """
     a, b = pictures.var(axis=0, ddof=1) / len(pictures), reference.var(axis=0, ddof=1) / len(reference)
     difference = pictures.mean(axis=0) - reference.mean(axis=0)
-    clean = np.abs(difference) <= _ROUNDING * np.abs(reference.mean(axis=0))
+    clean = np.abs(difference) <= ROUNDING * np.abs(reference.mean(axis=0))
     with np.errstate(divide="ignore", invalid="ignore"):
         t = difference / np.sqrt(a + b)
         freedom = (a + b) ** 2 / (a**2 / (len(pictures) - 1) + b**2 / (len(reference) - 1))
@@ -103,7 +54,3 @@ def bias(pictures, reference):
         "relative_error": float(spread / truth),
         "blocks": [float(z) for z in parts.ravel()],
     }
-
-
-def root_mean_square(values):
-    return float(np.sqrt(np.mean(np.square(np.asarray(values, np.float64)))))

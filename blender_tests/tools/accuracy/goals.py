@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tools.bench.goals import Verdict
+from tools.harness.verdicts import Verdict
 
 
 def judge(scenes):

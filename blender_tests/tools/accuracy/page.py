@@ -1,10 +1,9 @@
 """The page of `make accuracy`, from accuracy.json alone."""
 
-import html
-
 import numpy as np
 
-from tools.bench.page import STYLE, _goal_cells, _table
+from tools.harness import page, verdicts
+from tools.harness.page import element, percent
 
 _EVEN = ["scene", "samples", "reference: samples", "its share of the error's square", "pixels inside, of the noisy", "of all"]
 _EVEN += ["interval holds", "with what cannot be excluded", "told / real", "high / real"]
@@ -16,21 +15,21 @@ _CYCLES += ["bias", "bias z", "blocks beyond 4", "reference's share"]
 
 
 def write(figures, folder):
+    scenes = figures["scenes"].items()
     parts = [
-        f"<h1>Is the error that renders tell true? {html.escape(figures['commit'])}</h1>",
-        f"<p>{html.escape(describe(figures))}</p>",
-        _table(["what", "goal", "measured", ""], [_goal_cells(goal) for goal in figures["goals"]]),
-        "<h2>Even samples: bars and intervals</h2>",
-        _table(_EVEN, [row for name, scene in figures["scenes"].items() for row in _even(name, scene)]),
-        "<h2>Target errors</h2><p>A target that would take more samples than are affordable here is scaled up.</p>",
-        _table(_TARGET, [_target(name, run) for name, scene in figures["scenes"].items() for run in scene["targets"]]),
-        "<h2>Cycles, noise threshold, for the record</h2>",
-        "<p>Its noise threshold is no promise of an error as defined here, and it tells neither bars nor intervals: what can be"
-        " measured is the error that its pictures have, against its own reference, and whether their mean is biased.</p>",
-        _table(_CYCLES, [row for name, scene in figures["cycles"].items() for row in _cycles(name, scene)]),
+        describe(figures),
+        page.table(verdicts.HEAD, [verdicts.row(goal) for goal in figures["goals"]]),
+        element("h2", "Even samples: bars and intervals"),
+        page.table(_EVEN, [row for name, scene in scenes for row in _even(name, scene)]),
+        element("h2", "Target errors"),
+        "A target that would take more samples than are affordable here is scaled up.",
+        page.table(_TARGET, [_target(name, run) for name, scene in scenes for run in scene["targets"]]),
+        element("h2", "Cycles, noise threshold, for the record"),
+        "Its noise threshold is no promise of an error as defined here, and it tells neither bars nor intervals: what can be"
+        " measured is the error that its pictures have, against its own reference, and whether their mean is biased.",
+        page.table(_CYCLES, [row for name, scene in figures["cycles"].items() for row in _cycles(name, scene)]),
     ]
-    head = f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>Accuracy</title><style>{STYLE}</style></head><body>'
-    (folder / "index.html").write_text(head + "\n".join(parts) + "</body></html>\n", encoding="utf-8")
+    page.write(folder, "accuracy", figures, f"Is the error that renders tell true? {figures['commit']}", parts)
 
 
 def describe(figures):
@@ -40,10 +39,6 @@ def describe(figures):
         "error: root mean square over pixels of (luminance - truth) / (truth + 1 % of its mean), less the reference's own"
         " noise, which is added to bars. z: the mean of all pictures against the reference, with both standard errors."
     )
-
-
-def percent(value, digits=1):
-    return f"{100 * value:.{digits}f} %"
 
 
 def _bias(bias):

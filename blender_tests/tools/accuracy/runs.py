@@ -11,6 +11,9 @@ from bindings.abi import Pass
 from bindings.schedule import SAMPLES, TARGET, Schedule
 from bindings.session import Scene, Session
 
+from tools.harness.errors import Reference, luminance, root_mean_square
+from tools.harness.kept import kept_picture
+
 from . import figures
 
 REFERENCE_PARTS = 8
@@ -74,18 +77,16 @@ class Measured:
         """Each part is kept in a file of its own: a run that was broken off goes on with the next."""
         key, count = self._fingerprint(), self.samples // REFERENCE_PARTS
 
-        def part(number):
-            kept = self.folder / "references" / f"{self.name}-{key}-{count}-{number}.npy"
-            if not kept.exists():
-                kept.parent.mkdir(parents=True, exist_ok=True)
-                with self._session(_REFERENCE_SEED + number, samples=count) as session:
-                    session.render_all()
-                    unfinished = kept.with_suffix(".part.npy")
-                    np.save(unfinished, figures.luminance(session.read()))
-                unfinished.rename(kept)
-            return np.load(kept)
+        def render(number):
+            with self._session(_REFERENCE_SEED + number, samples=count) as session:
+                session.render_all()
+                return luminance(session.read())
 
-        return figures.Reference(np.stack(self._each(part, range(REFERENCE_PARTS), f"reference of {self.samples} samples")))
+        def part(number):
+            path = self.folder / "references" / f"{self.name}-{key}-{count}-{number}.npy"
+            return kept_picture(path, lambda _: render(number))
+
+        return Reference(np.stack(self._each(part, range(REFERENCE_PARTS), f"reference of {self.samples} samples")))
 
     def _even(self, reference):
         """By count of samples, the same for every pixel: bars and intervals. And the errors told at the largest count."""
@@ -98,7 +99,7 @@ class Measured:
                     while not session.wait(1.0).finished:
                         pass
                     first = count
-                    results.append((figures.luminance(session.read()), session.read(Pass.ERROR)[..., 0], session.error()))
+                    results.append((luminance(session.read()), session.read(Pass.ERROR)[..., 0], session.error()))
             return results
 
         runs = self._each(run, range(self.plan.seeds), "even samples")
@@ -123,7 +124,7 @@ class Measured:
                         while not schedule.wait(1.0).finished:
                             pass
                     samples = session.statistics().samples / schedule.pixels
-                    return figures.luminance(session.read()), samples, schedule.reason, schedule.error
+                    return luminance(session.read()), samples, schedule.reason, schedule.error
 
             runs = self._each(run, range(self.plan.seeds), f"target {target:g}")
             result.append({"asked": asked, "target": target, **self._judge(runs, target, reference)})
@@ -131,7 +132,7 @@ class Measured:
 
     def _judge(self, runs, target, reference):
         pictures = np.stack([run[0] for run in runs])
-        real = [figures.real_error(picture, reference) for picture in pictures]
+        real = [reference.distance(picture) for picture in pictures]
         samples = float(np.mean([run[1] for run in runs]))
         # What the same number of samples would have done, spread evenly.
         spent = max(1, round(samples))
@@ -139,10 +140,10 @@ class Measured:
         def even(seed):
             with self._session(seed, samples=spent) as session:
                 session.render_all()
-                return figures.real_error(figures.luminance(session.read()), reference)
+                return reference.distance(luminance(session.read()))
 
-        evenly = figures.root_mean_square(self._each(even, range(100, 104), "the same samples evenly"))
-        own = figures.root_mean_square(real)
+        evenly = root_mean_square(self._each(even, range(100, 104), "the same samples evenly"))
+        own = root_mean_square(real)
         return {
             "met": float(np.mean([error <= target for error in real])),
             "ended_by_target": float(np.mean([run[2] is TARGET for run in runs])),
@@ -164,12 +165,12 @@ def _compare(runs, reference):
         good = figures.inside(picture, bars, reference)
         within.append(float(good[noisy].mean()) if noisy.any() else None)
         within_all.append(float(good.mean()))
-        error = figures.real_error(picture, reference)
+        error = reference.distance(picture)
         real.append(error)
         holds.append(told.low <= error <= told.high)
         bounded.append(told.low <= error <= told.bound)
     pictures = np.stack([run[0] for run in runs])
-    own = figures.root_mean_square(real)
+    own = root_mean_square(real)
     return {
         "inside": within,
         "inside_all": within_all,

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from fnmatch import fnmatch
 
 import numpy as np
 import tiny_scenes
@@ -12,6 +11,8 @@ from bindings.snapshot import Camera, Instance, Light, SceneSnapshot
 from tiny_scenes import beckmann, lambert, look_at, move, plane, quad, rotate_x, rotate_y, scale, sphere
 
 from tools.bench import jobs
+from tools.harness.options import wanted
+from tools.harness.places import BUILD
 
 WIDTH, HEIGHT = 96, 64
 MIRROR = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(0.9, 0.85, 0.8)),))
@@ -165,7 +166,7 @@ def from_blender(name):
     """The scene of that name in scenes/, as the add-on exports it."""
 
     def build():
-        path = jobs.ROOT / "build" / "accuracy" / "scenes" / f"{name}.npz"
+        path = BUILD / "accuracy" / "scenes" / f"{name}.npz"
         if not path.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
             size = {"width": WIDTH, "height": HEIGHT, "samples": 64}
@@ -184,10 +185,9 @@ SCENES = (
 )
 
 # What a short run looks at.
-_QUICK = ("half_black", "glossy", "room")
+_QUICK = "half_black,glossy,room"
 
 
 def chosen(only="", quick=False):
     """Those whose names match one of the comma-separated patterns."""
-    patterns = [pattern for pattern in only.split(",") if pattern] or (_QUICK if quick else ["*"])
-    return [scene for scene in SCENES if any(fnmatch(scene.name, pattern) for pattern in patterns)]
+    return [scene for scene in SCENES if wanted(only or (_QUICK if quick else ""), scene.name)]

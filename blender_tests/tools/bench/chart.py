@@ -1,4 +1,4 @@
-"""The chart of a run, as SVG and PNG, and the pictures that it is about."""
+"""The chart of a run, as SVG and PNG."""
 
 import numpy as np
 
@@ -9,14 +9,6 @@ _COLORS = {
     "mitsuba_scalar": "#9bc8aa",
     "luxcore": "#8e6bb0",
 }
-
-
-def write_picture(path, picture, white):
-    """Linear values with row 0 below, through the sRGB curve; white is what becomes 1."""
-    from matplotlib import image
-
-    linear = np.clip(np.nan_to_num(picture[::-1, :, :3]) / white, 0.0, 1.0)
-    image.imsave(path, np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055))
 
 
 def write(figures, folder):

@@ -1,8 +1,28 @@
 """One scene, all renderers: the pictures compared, then timed by turns."""
 
+import hashlib
+
 import numpy as np
 
-from . import chart, compare, estimates, jobs, plan, references
+from tools.harness import estimates, pictures
+from tools.harness.kept import kept_picture
+from tools.harness.turns import by_turns, middle, middles
+from tools.harness.workers import Failed
+
+from . import jobs, plan
+
+# Of the two halves of references: far from the seeds of the rounds.
+_REFERENCE_SEEDS = (1001, 1002)
+
+
+def digest_of_scene(path):
+    """Of the arrays in a snapshot's file, whatever their packing."""
+    result = hashlib.sha256()
+    with np.load(path) as arrays:
+        for name in sorted(arrays.files):
+            result.update(name.encode())
+            result.update(np.ascontiguousarray(arrays[name]).tobytes())
+    return result.hexdigest()[:16]
 
 
 class Contest:
@@ -20,7 +40,7 @@ class Contest:
         self.snapshots[scene.name] = snapshot
         try:
             result.update(jobs.in_blender("snapshot", path=snapshot, **self._settings(scene)))
-        except jobs.Failed as reason:
+        except Failed as reason:
             self.say(f"{scene.name}: cannot be built: {reason}")
             return {**result, "failed": str(reason)}
         able = []
@@ -32,9 +52,9 @@ class Contest:
                 result["renderers"][renderer.key] = {"cannot": reason}
         found = self._references(scene, snapshot, able, result["renderers"])
         self._compare(scene, {key: picture for key, (picture, _) in found.items()}, result["renderers"])
-        pictures = self._rounds(scene, able, result["renderers"])
+        shown = self._rounds(scene, able, result["renderers"])
         if not found:
-            self._compare(scene, pictures, result["renderers"])
+            self._compare(scene, shown, result["renderers"])
         for renderer in able:
             self._conclude(renderer, found, result["renderers"][renderer.key])
         return result
@@ -77,72 +97,82 @@ class Contest:
                 continue
             self.say(f"{scene.name}: reference of {renderer.title}")
             try:
-                found[renderer.key] = references.find(renderer, self.versions[renderer.key], scene, snapshot, self.render)
-            except jobs.Failed as reason:
+                found[renderer.key] = self._reference(scene, snapshot, renderer)
+            except Failed as reason:
                 records[renderer.key]["failed"] = str(reason)
                 self.say(f"{scene.name}: {renderer.title} failed: {reason}")
         return found
 
-    def _compare(self, scene, pictures, records):
+    def _reference(self, scene, snapshot, renderer):
+        """A renderer's own converged picture, for its own errors, and the variance of its pixels."""
+        key = f"{self.versions[renderer.key]} {digest_of_scene(snapshot)} {scene.reference}"
+        name = f"{scene.name}-{renderer.key}-{hashlib.sha256(key.encode()).hexdigest()[:16]}"
+        halves = []
+        for number, seed in enumerate(_REFERENCE_SEEDS):
+            settings = {"samples": scene.reference // 2, "seed": seed, "first_look": False}
+
+            def render(path, settings=settings):
+                self.render(renderer, scene, picture=str(path), **settings)
+
+            halves.append(kept_picture(jobs.OUTPUT / "references" / f"{name}-{number}.npy", render))
+        return estimates.join_halves(*halves)
+
+    def _compare(self, scene, shown, records):
         """Everyone's picture with ours; another one is marked, and counts nowhere."""
-        if "lancer" not in pictures:
+        if "lancer" not in shown:
             return
         # The brightest hundredth is white, in all of them alike.
-        white = float(np.percentile(pictures["lancer"], 99)) or 1.0
-        for key, picture in pictures.items():
+        white = float(np.percentile(shown["lancer"], 99)) or 1.0
+        for key, picture in shown.items():
             path = jobs.OUTPUT / "pictures" / f"{scene.name}-{key}.png"
-            chart.write_picture(path, picture, white)
+            pictures.write_picture(path, picture, white)
             if key == "lancer":
                 continue
-            figures = compare.difference(pictures["lancer"], picture)
+            figures = pictures.difference(shown["lancer"], picture)
             tolerance = plan.BY_KEY[key].tolerance
-            records[key]["difference"] = {**figures, "tolerance": tolerance, "same": compare.is_same(figures, tolerance)}
+            records[key]["difference"] = {**figures, "tolerance": tolerance, "same": pictures.is_same(figures, tolerance)}
 
     def _rounds(self, scene, able, records):
         """Everyone once a round, with the round's seed; gives the mean picture of each."""
-        folder = jobs.OUTPUT / "pictures"
-        sums = {}
-        for number in range(scene.rounds):
-            for renderer in able:
-                record = records[renderer.key]
-                if "failed" in record or not record.get("difference", {"same": True})["same"]:
-                    continue
-                path = folder / f"{scene.name}-{renderer.key}-{number}.npy"
-                try:
-                    figures = self.render(renderer, scene, scene.samples, seed=number + 1, picture=str(path))
-                except jobs.Failed as reason:
-                    record["failed"] = str(reason)
-                    self.say(f"{scene.name}: {renderer.title} failed: {reason}")
-                    continue
-                figures["samples_per_second"] = figures["samples"] / figures["render_seconds"]
-                record.setdefault("rounds", []).append(figures)
-                picture = np.load(path)
-                path.unlink()
-                sums[renderer.key] = sums.get(renderer.key, 0.0) + picture / scene.rounds
-                record.setdefault("pictures", []).append(picture)
-                self.say(f"{scene.name}: {renderer.title} {figures['samples_per_second'] / 1e6:.3f} million samples/s")
-        return sums
+        by_turns(scene.rounds, able, lambda renderer, number: self._round(scene, renderer, number, records[renderer.key]))
+        rendered = {key: record.get("pictures", []) for key, record in records.items()}
+        return {key: sum(found) / scene.rounds for key, found in rendered.items() if found}
+
+    def _round(self, scene, renderer, number, record):
+        if "failed" in record or not record.get("difference", {"same": True})["same"]:
+            return
+        path = jobs.OUTPUT / "pictures" / f"{scene.name}-{renderer.key}-{number}.npy"
+        try:
+            figures = self.render(renderer, scene, scene.samples, seed=number + 1, picture=str(path))
+        except Failed as reason:
+            record["failed"] = str(reason)
+            self.say(f"{scene.name}: {renderer.title} failed: {reason}")
+            return
+        figures["samples_per_second"] = figures["samples"] / figures["render_seconds"]
+        record.setdefault("rounds", []).append(figures)
+        record.setdefault("pictures", []).append(np.load(path))
+        path.unlink()
+        self.say(f"{scene.name}: {renderer.title} {figures['samples_per_second'] / 1e6:.3f} million samples/s")
 
     def _conclude(self, renderer, found, record):
         """Medians over the rounds, and what the pictures say of the error."""
-        rounds, pictures = record.get("rounds", []), record.pop("pictures", [])
+        rounds, rendered = record.get("rounds", []), record.pop("pictures", [])
         if not rounds:
             return
-        for name in ("samples_per_second", "setup_seconds", "first_pixel_seconds", "peak_bytes", "render_seconds"):
-            record[name] = estimates.middle(figures[name] for figures in rounds)
+        names = ("samples_per_second", "setup_seconds", "first_pixel_seconds", "peak_bytes", "render_seconds")
+        record.update(middles(rounds, names))
         record["clock"] = rounds[0]["clock"]
         if "rays" in rounds[0]:
             seconds = [figures["render_seconds"] for figures in rounds]
             record["rays_per_second"] = {
-                kind: estimates.middle(f["rays"][kind] / s for f, s in zip(rounds, seconds, strict=True))
-                for kind in rounds[0]["rays"]
+                kind: middle(f["rays"][kind] / s for f, s in zip(rounds, seconds, strict=True)) for kind in rounds[0]["rays"]
             }
         if renderer.key not in found:
             return
         reference, variance = found[renderer.key]
-        errors = [estimates.squared_error(picture, reference, variance) for picture in pictures]
+        errors = [estimates.squared_error(picture, reference, variance) for picture in rendered]
         seconds = [figures["render_seconds"] for figures in rounds]
-        record["mse"] = estimates.middle(errors)
+        record["mse"] = middle(errors)
         record["reference_variance"] = variance
         record["errors"], record["seconds"] = errors, seconds
         record["efficiency"] = estimates.efficiency(errors, seconds)

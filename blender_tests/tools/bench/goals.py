@@ -1,21 +1,9 @@
 """The speed goals, each with what this run measured, from the figures of bench.json alone."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from . import estimates
-
-NOT_MEASURED = "not measured"
-
-
-@dataclass(frozen=True)
-class Verdict:
-    what: str
-    goal: str
-    measured: str
-    reached: bool | None  # None: not measured
-
-    def as_dict(self):
-        return {"what": self.what, "goal": self.goal, "measured": self.measured, "reached": self.reached}
+from tools.harness import estimates
+from tools.harness.verdicts import NOT_MEASURED, Verdict
 
 
 def judge(figures):

@@ -1,39 +1,36 @@
-"""What a run leaves: bench.json, index.html, and the README's table."""
+"""What a run of the benchmark leaves: bench.json, index.html, and the tables of README files."""
 
-import html
-import json
+from tools.harness import page, verdicts
+from tools.harness.page import element, lines
+from tools.harness.places import README, TABLES
 
-from . import goals
-
-BEGIN = "<!-- bench: written by `make bench README=1` -->"
-END = "<!-- bench: end -->"
-
-STYLE = """
-body { font: 14px sans-serif; margin: 24px; color: #222; background: #f4f4f4 }
-table { border-collapse: collapse; background: #fff; margin-bottom: 24px } td, th { padding: 4px 8px; border: 1px solid #ccc }
-td { text-align: right } td.text, th.text { text-align: left }
-.yes { color: #07702c } .no { color: #b00020 } .absent { color: #777 }
-img.picture { width: 192px; image-rendering: pixelated; display: block; background: #000 }
-"""
+_STYLE = "img.picture { width: 192px }"
+# What is measured beside scenes and rays.
+_REST = ("first_look", "first_shown", "million", "instances", "build", "threads_scaling", "classic", "accelerators", "before")
+# Of the table for users.
+_USERS = ("lancer", "cycles")
 
 
 def write(figures, folder, chart_names):
-    (folder / "bench.json").write_text(json.dumps(figures, indent=1) + "\n")
+    charts = (element("img", None, src=name, alt="chart") for name in chart_names if name.endswith(".svg"))
     parts = [
-        f"<h1>Benchmark of {html.escape(figures['commit'])}</h1><p>{html.escape(describe(figures))}</p>",
-        _table(["what", "goal", "measured", ""], [_goal_cells(goal) for goal in figures["goals"]]),
-        "".join(f'<img src="{name}" alt="chart">' for name in chart_names if name.endswith(".svg")),
-        "<h2>Scenes</h2>",
-        *(_scene(name, scene, figures) for name, scene in figures["scenes"].items()),
-        "<h2>Rays</h2>",
-        _rays(figures.get("rays", {})),
-        "<h2>Beside the scenes</h2>",
+        describe(figures),
+        page.table(verdicts.HEAD, [verdicts.row(goal) for goal in figures["goals"]]),
+        *charts,
+        _heading("Scenes"),
+        *(part for name, scene in figures["scenes"].items() for part in _scene(name, scene, figures)),
+        _heading("Rays"),
+        *_rays(figures.get("rays", {})),
+        _heading("Beside the scenes"),
         _rest(figures),
-        "<h2>Roofline</h2>",
-        _roofline(figures),
+        _heading("Roofline"),
+        *_roofline(figures),
     ]
-    head = f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>Benchmark</title><style>{STYLE}</style></head><body>'
-    (folder / "index.html").write_text(head + "\n".join(parts) + "</body></html>\n", encoding="utf-8")
+    page.write(folder, "bench", figures, f"Benchmark of {figures['commit']}", parts, _STYLE)
+
+
+def _heading(text):
+    return element("h2", text)
 
 
 def describe(figures):
@@ -47,43 +44,19 @@ def describe(figures):
     return text + (". Missing: " + "; ".join(missing) if missing else ".")
 
 
-def _table(head, rows):
-    def cells(row, tag):
-        return "".join(f"<{tag} {_class(number, cell)}>{_plain(cell)}</{tag}>" for number, cell in enumerate(row))
-
-    lines = [f"<tr>{cells(head, 'th')}</tr>", *(f"<tr>{cells(row, 'td')}</tr>" for row in rows)]
-    return "<table>" + "\n".join(lines) + "</table>"
-
-
-def _class(number, cell):
-    kind = cell[1] if isinstance(cell, tuple) else ""
-    return f'class="{"text " if number == 0 else ""}{kind}"'
-
-
-def _plain(cell):
-    return html.escape(str(cell[0] if isinstance(cell, tuple) else cell))
-
-
-def _goal_cells(goal):
-    state = {True: ("reached", "yes"), False: ("missed", "no"), None: (goals.NOT_MEASURED, "absent")}[goal["reached"]]
-    return [goal["what"], goal["goal"], goal["measured"], state]
-
-
 def _scene(name, scene, figures):
     width, height = scene["size"]
-    title = f"<h3>{html.escape(name)}: {html.escape(scene['title'])}</h3>"
+    yield element("h3", f"{name}: {scene['title']}")
     if scene.get("failed"):
-        return f'{title}<p class="no">{html.escape(scene["failed"])}</p>'
-    told = f"{width} x {height}, {scene['samples']} samples a pixel, {scene['triangles']} triangles, {scene['lights']} lamps"
+        yield element("p", scene["failed"], class_="no")
+        return
+    yield f"{width} x {height}, {scene['samples']} samples a pixel, {scene['triangles']} triangles, {scene['lights']} lamps"
     head = ["renderer", "million samples/s", "spread", "million rays/s", "set-up s", "first sample s", "peak MB"]
     head += ["squared error", "efficiency", "95 %", "difference: median, 90th percentile, level", "clock"]
-    rows = [_renderer(figures["renderers"][key]["title"], record) for key, record in scene["renderers"].items()]
-    images = "".join(
-        f'<td><img class="picture" src="pictures/{name}-{key}.png"></td>'
-        for key, record in scene["renderers"].items()
-        if "cannot" not in record and "failed" not in record
-    )
-    return f"{title}<p>{told}</p>{_table(head, rows)}<table><tr>{images}</tr></table>"
+    yield page.table(head, [_renderer(figures["renderers"][key]["title"], one) for key, one in scene["renderers"].items()])
+    shown = [key for key, record in scene["renderers"].items() if "cannot" not in record and "failed" not in record]
+    images = lines((element("img", None, class_="picture", src=f"pictures/{name}-{key}.png") for key in shown), "</td><td>")
+    yield page.Markup(f"<table><tr><td>{images}</td></tr></table>")
 
 
 def _renderer(title, record):
@@ -117,25 +90,23 @@ def _renderer(title, record):
 
 
 def _rays(rays):
-    if not rays:
-        return "<p>not measured</p>"
-    if "missing" in rays:
-        return f'<p class="no">{html.escape(rays["missing"])}</p>'
-    rows = []
+    if not rays or "missing" in rays:
+        yield element("p", rays.get("missing", verdicts.NOT_MEASURED), class_="no")
+        return
     kinds = ("primary", "diffuse", "shadow")
-    ours = ["Lancer", *(f"{rays['lancer'][kind]['median'] / 1e6:.2f}" for kind in kinds)]
-    rows.append(ours)
+    rows = [["Lancer", *(f"{rays['lancer'][kind]['median'] / 1e6:.2f}" for kind in kinds)]]
     embree = rays.get("embree", {})
     for quality in ("fast", "robust"):
         for mode in embree.get(quality, {}).get("primary", {}):
             values = [embree[quality][kind][mode]["median"] / 1e6 for kind in kinds]
             rows.append([f"Embree {embree['version']} {quality}, {mode}", *(f"{value:.2f}" for value in values)])
-    told = f"<p>Embree: {html.escape(embree['missing'])}</p>" if "missing" in embree else ""
-    return told + _table(["million rays/s", *kinds], rows)
+    if "missing" in embree:
+        yield f"Embree: {embree['missing']}"
+    yield page.table(["million rays/s", *kinds], rows)
 
 
 def _rest(figures):
-    """What is measured beside scenes and rays: a line for each figure that has a median."""
+    """A line for each figure that has a median."""
     rows = []
 
     def walk(name, value):
@@ -147,59 +118,58 @@ def _rest(figures):
             for key, inner in value.items():
                 walk(f"{name}, {key.replace('_', ' ')}", inner)
 
-    for name in (
-        "first_look",
-        "first_shown",
-        "million",
-        "instances",
-        "build",
-        "threads_scaling",
-        "classic",
-        "accelerators",
-        "before",
-    ):
+    for name in _REST:
         walk(name.replace("_", " "), figures.get(name))
-    return _table(["what", "median", "smallest", "largest"], rows) if rows else "<p>not measured</p>"
+    return page.table(["what", "median", "smallest", "largest"], rows) if rows else verdicts.NOT_MEASURED
 
 
 def _roofline(figures):
     """What the machine can do, and how near the library's rays come to it where their nodes and leaves are counted."""
     limits, rows = figures.get("limits", {}), figures.get("roofline", [])
     if "clock" not in limits:
-        return "<p>not measured</p>"
-    told = f"<p>Clock {limits['clock'] / 1e9:.2f} GHz, by additions that wait for one another.</p>"
+        yield verdicts.NOT_MEASURED
+        return
+    yield f"Clock {limits['clock'] / 1e9:.2f} GHz, by additions that wait for one another."
     levels = [
         [n, f"{limits[n]['latency'] * 1e9:.1f}", f"{limits[n]['bandwidth'] / 1e9:.1f}"] for n in ("l1", "l2", "l3", "memory")
     ]
-    told += _table(["memory", "latency, ns", "reading, GB/s, all threads"], levels)
+    yield page.table(["memory", "latency, ns", "reading, GB/s, all threads"], levels)
     if not rows:
-        return told + "<p>Nodes and leaves a ray: no counters.</p>"
+        yield "Nodes and leaves a ray: no counters."
+        return
     head = ["rays", "nodes a ray", "leaves a ray", "bound, million rays/s", "measured", "fraction"]
     million = {"bound": 1e-6, "measured": 1e-6}
     keys = ("nodes", "leaves", "bound", "measured", "fraction")
-    return told + _table(head, [[row["what"], *(f"{row[key] * million.get(key, 1.0):.3g}" for key in keys)] for row in rows])
+    yield page.table(head, [[row["what"], *(f"{row[key] * million.get(key, 1.0):.3g}" for key in keys)] for row in rows])
 
 
-def readme_table(figures):
-    """The lines between the two markers."""
-    keys = [key for key, renderer in figures["renderers"].items() if not renderer.get("missing")]
+def update_tables(figures, tables=TABLES, readme=README):
+    """All figures for developers, samples/s beside Cycles for users."""
+    told = f"{describe(figures)} Commit {figures['commit']}."
+    goals = page.markdown(verdicts.HEAD, [verdicts.plain_row(goal) for goal in figures["goals"]])
+    everyone = [key for key, renderer in figures["renderers"].items() if not renderer.get("missing")]
+    page.put_between(tables, "bench", [told, _rates(figures, everyone), goals])
+    ours = [key for key in _USERS if key in everyone]
+    shown = {name: scene for name, scene in figures["scenes"].items() if _measured(scene, ours)}
+    told = f"{figures['machine']['processor']}, {figures['threads']} threads; commit {figures['commit']}."
+    page.put_between(readme, "speed", [_rates({**figures, "scenes": shown}, ours), told], program="bench")
+
+
+def _measured(scene, keys):
+    return all("samples_per_second" in scene["renderers"].get(key, {}) for key in keys)
+
+
+def _rates(figures, keys):
     titles = [f"{figures['renderers'][key]['title']} {figures['renderers'][key]['version']}" for key in keys]
-    lines = [f"{describe(figures)} Commit {figures['commit']}.", ""]
-    lines += ["| million samples/s | " + " | ".join(titles) + " |", "| --- |" + " --- |" * len(keys)]
+    rows = []
     for name, scene in figures["scenes"].items():
-        if scene.get("failed"):
-            lines.append(f"| {name}: {scene['failed']} |" + " |" * len(keys))
-            continue
-        cells = [_readme_cell(scene["renderers"].get(key)) for key in keys]
-        lines.append(f"| {name}: {scene['title']} | " + " | ".join(cells) + " |")
-    lines += ["", "| goal | asked | measured | |", "| --- | --- | --- | --- |"]
-    marks = {True: "reached", False: "missed", None: ""}
-    for goal in figures["goals"]:
-        lines.append(f"| {goal['what']} | {goal['goal']} | {goal['measured']} | {marks[goal['reached']]} |")
-    return "\n".join(lines)
+        failed = scene.get("failed")
+        cells = [""] * len(keys) if failed else [_rate(scene["renderers"].get(key)) for key in keys]
+        rows.append([f"{name}: {failed or scene['title']}", *cells])
+    return page.markdown(["million samples/s", *titles], rows)
 
 
-def _readme_cell(record):
+def _rate(record):
     if record is None:
         return ""
     if "cannot" in record:
@@ -209,16 +179,3 @@ def _readme_cell(record):
     if not record.get("difference", {"same": True})["same"]:
         return "another picture"
     return f"{record['samples_per_second']['median'] / 1e6:.2f}" if "samples_per_second" in record else ""
-
-
-def update_readme(path, figures):
-    replace_between(path, BEGIN, END, readme_table(figures))
-
-
-def replace_between(path, begin, end, text):
-    """Puts text between two lines of a file that are there already."""
-    whole = path.read_text(encoding="utf-8")
-    if begin not in whole or end not in whole:
-        raise ValueError(f"{path.name} lacks the lines between which the table belongs: {begin} and {end}")
-    before, rest = whole.split(begin, 1)
-    path.write_text(f"{before}{begin}\n{text}\n{end}{rest.split(end, 1)[1]}", encoding="utf-8")

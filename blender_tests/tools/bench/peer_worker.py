@@ -1,21 +1,17 @@
-"""peer_worker.py TASK ARGUMENTS: one measurement of another renderer, on a snapshot. Arguments and answer are JSON."""
+"""start.py bench.peer_worker TASK JSON: one measurement of another renderer, on a snapshot; the answer is JSON."""
 
 import importlib
-import sys
 import time
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-from addon.bindings.snapshot import SceneSnapshot  # noqa: E402
-from tools.bench import peers, process  # noqa: E402
+from addon.bindings.snapshot import SceneSnapshot
+from tools.bench import peers
+from tools.harness import process
 
 
 def _adapter(module):
-    return importlib.import_module(f"bench.peers.{module}")
+    return importlib.import_module(f"tools.bench.peers.{module}")
 
 
 def version(module, option=None):
@@ -57,5 +53,5 @@ def render(module, snapshot, threads, samples, seed, option=None, picture=None, 
 
 
 if __name__ == "__main__":
-    process.answer({task.__name__: task for task in (version, check, render)})
+    process.answer(version, check, render)
     process.leave()

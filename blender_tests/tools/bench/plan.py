@@ -1,7 +1,8 @@
 """What is measured: renderers, scenes, sizes, samples, rounds."""
 
 from dataclasses import dataclass, replace
-from fnmatch import fnmatch
+
+from tools.harness.options import wanted
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,4 @@ def _quick(scene):
 
 def scenes(only="", quick=False):
     """The scenes whose names match one of the comma-separated patterns; all without any."""
-    patterns = [pattern for pattern in only.split(",") if pattern]
-    chosen = [scene for scene in SCENES if not patterns or any(fnmatch(scene.name, pattern) for pattern in patterns)]
-    return [_quick(scene) if quick else scene for scene in chosen]
+    return [_quick(scene) if quick else scene for scene in SCENES if wanted(only, scene.name)]

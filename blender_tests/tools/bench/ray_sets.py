@@ -1,23 +1,17 @@
-"""ray_sets.py write ARGUMENTS: the file of triangles and rays that the drivers in rays/ read. Arguments and answer are JSON.
+"""start.py bench.ray_sets write JSON: the file of triangles and rays that the drivers in rays/ read; the answer is JSON.
 
 The rays are those of a path tracer on a snapshot: primary ones in small squares of pixels, two diffuse bounces in the order in
 which their pixels come, and shadow rays towards the first lamp that has a place.
 """
 
-import sys
-from pathlib import Path
+import numpy as np
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
-
-import numpy as np  # noqa: E402
-
-from addon.bindings.enums import LightKind  # noqa: E402
-from addon.bindings.session import Scene  # noqa: E402
-from addon.bindings.snapshot import InstanceTable, MeshData, SceneSnapshot  # noqa: E402
-from tools.bench import process  # noqa: E402
-from tools.bench.peers.geometry import placements  # noqa: E402
-from tools.bench.peers.view import read_view  # noqa: E402
+from addon.bindings.enums import LightKind
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import InstanceTable, MeshData, SceneSnapshot
+from tools.bench.peers.geometry import placements
+from tools.bench.peers.view import read_view
+from tools.harness import process
 
 # Squares of this many pixels a side are neighbours in the file, so that packets of 4, 8 and 16 are coherent.
 _SQUARE = 4
@@ -111,4 +105,4 @@ def _rays(origins, directions, tmax):
 
 
 if __name__ == "__main__":
-    process.answer({"write": write})
+    process.answer(write)

@@ -1,38 +1,43 @@
-"""Bare rays: Embree's and ours on the same triangles and rays, and the time that each takes to build."""
+"""Bare rays: Embree's and ours on the same triangles and rays, the time that each takes to build, and their bound."""
 
-import json
 import sys
 from pathlib import Path
 
-from . import estimates, jobs
+from tools.harness import workers
+from tools.harness.places import BUILD, TOOLS
+from tools.harness.turns import by_turns, middle
 
-_SOURCES = jobs.HERE / "rays"
+from . import jobs
+
+_SOURCES = TOOLS / "bench" / "rays"
 _PASSES = 3
 _KINDS = ("primary", "diffuse", "shadow")
+# What a ray asks of the processor: a step through a node of eight boxes keeps the two floating-point ports busy for some 11
+# cycles, a block of four triangles for 22, so that nodes and blocks a ray bound the rays a second of a core by its clock alone;
+# caches only take from it.
+NODE_CYCLES, LEAF_CYCLES = 11.0, 22.0
 
 
 def find_embree():
     found = sorted(Path(sys.prefix).glob("lib/python*/site-packages/embreex.libs/libembree4*"))
     if not found:
-        raise jobs.Failed("the Python package embreex, which brings Embree, is not installed")
+        raise workers.Failed("the Python package embreex, which brings Embree, is not installed")
     return str(found[0])
 
 
 def build_drivers():
     """(our driver, Embree's), compiled with the system's compiler."""
-    ours = jobs.ROOT / "build" / "core"
-    jobs.build("cmake", "-S", "core", "-B", ours, "-G", "Ninja", "-DLANCER_BENCH=ON")
-    jobs.build("cmake", "--build", ours, "--target", "lancer_rays")
+    ours = BUILD / "core"
+    workers.build("cmake", "-S", "core", "-B", ours, "-G", "Ninja", "-DLANCER_BENCH=ON")
+    workers.build("cmake", "--build", ours, "--target", "lancer_rays")
     theirs = jobs.OUTPUT / "embree_rays"
-    jobs.build("c++", "-O3", "-std=c++20", "-pthread", _SOURCES / "embree.cpp", "-o", theirs, "-ldl")
+    workers.build("c++", "-O3", "-std=c++20", "-pthread", _SOURCES / "embree.cpp", "-o", theirs, "-ldl")
     return ours / "lancer_rays", theirs
 
 
 def write_work(name, snapshot, count, seed=1):
     path = jobs.OUTPUT / "scenes" / f"{name}.rays"
-    arguments = {"snapshot": str(snapshot), "path": str(path), "count": count, "seed": seed}
-    told = jobs.run([sys.executable, str(jobs.HERE / "ray_sets.py"), "write", json.dumps(arguments)])
-    return path, told
+    return path, workers.ask("bench.ray_sets", "write", snapshot=str(snapshot), path=str(path), count=count, seed=seed)
 
 
 def measure(snapshot, count, rounds, threads, leak_rays):
@@ -40,17 +45,18 @@ def measure(snapshot, count, rounds, threads, leak_rays):
     work, told = write_work("rays", snapshot, count)
     ours, theirs = build_drivers()
     result = {"triangles": told["triangles"], "rays": told["rays"]}
-    mine, embree = [], []
-    library = None
+    drivers = {"lancer": [ours]}
     try:
-        library = find_embree()
-    except jobs.Failed as reason:
+        drivers["embree"] = [theirs, find_embree()]
+    except workers.Failed as reason:
         result["embree"] = {"missing": str(reason)}
-    for _ in range(rounds):
-        mine.append(jobs.run([str(ours), str(work), str(threads), str(_PASSES)]))
-        if library:
-            embree.append(jobs.run([str(theirs), library, str(work), str(threads), str(_PASSES)]))
-    result["lancer"] = {kind: estimates.middle(answer[kind]["rate"] for answer in mine) for kind in _KINDS}
+
+    def trace(name, _, threads=threads):
+        return workers.run([*drivers[name], work, threads, _PASSES])
+
+    answers = by_turns(rounds, drivers, trace)
+    mine, embree = answers["lancer"], answers.get("embree")
+    result["lancer"] = {kind: middle(answer[kind]["rate"] for answer in mine) for kind in _KINDS}
     result["lancer"]["instruction_set"] = mine[0]["instruction_set"]
     # What a ray asks of the tree, where the driver counts it.
     counted = {kind: {name: mine[0][kind][name] for name in ("nodes", "leaves")} for kind in _KINDS if "nodes" in mine[0][kind]}
@@ -61,18 +67,14 @@ def measure(snapshot, count, rounds, threads, leak_rays):
         result["embree"]["version"] = embree[0]["version"]
         result["agreement"] = {kind: _agreement(mine[0], embree[0], kind, told) for kind in _KINDS}
     # On one thread too, once: what several threads share shows in the difference.
-    result["one_thread"] = {"lancer": jobs.run([str(ours), str(work), "1", str(_PASSES)])}
-    if library:
-        result["one_thread"]["embree"] = jobs.run([str(theirs), library, str(work), "1", str(_PASSES)])
+    result["one_thread"] = {name: trace(name, 0, threads=1) for name in drivers}
     result.update(_leaks(ours, threads, leak_rays))
     return result
 
 
 def _embree(answers, quality):
     modes = [mode for mode in answers[0][quality]["primary"] if mode != "hits"]
-    return {
-        kind: {mode: estimates.middle(answer[quality][kind][mode] for answer in answers) for mode in modes} for kind in _KINDS
-    }
+    return {kind: {mode: middle(answer[quality][kind][mode] for answer in answers) for mode in modes} for kind in _KINDS}
 
 
 def _agreement(ours, theirs, kind, told):
@@ -92,7 +94,7 @@ def _leaks(driver, threads, count):
         file.write(np.array([len(ball.vertices), len(ball.faces), 0], np.uint32).tobytes())
         file.write((ball.vertices * bumps).astype(np.float32).tobytes())
         file.write(ball.faces.astype(np.uint32).tobytes())
-    answer = jobs.run([str(driver), str(path), str(threads), "1", str(count)])
+    answer = workers.run([driver, path, threads, 1, count])
     return {"leak_rays": answer["leak_rays"], "leaks": answer["leaks"]}
 
 
@@ -100,13 +102,34 @@ def build_times(snapshot, rounds, threads):
     """Seconds that both take to build over the triangles of a snapshot, by turns."""
     work, told = write_work("build", snapshot, 0)
     ours, theirs = build_drivers()
-    mine, embree = [], []
-    library = find_embree()
-    for _ in range(rounds):
-        mine.append(jobs.run([str(ours), str(work), str(threads), "1"])["build_seconds"])
-        embree.append(jobs.run([str(theirs), library, str(work), str(threads), "1"])["fast"]["build_seconds"])
+    drivers = {"lancer": [ours], "embree": [theirs, find_embree()]}
+    answers = by_turns(rounds, drivers, lambda name, _: workers.run([*drivers[name], work, threads, 1]))
     return {
         "triangles": told["triangles"],
-        "lancer_seconds": estimates.middle(mine),
-        "embree_seconds": estimates.middle(embree),
+        "lancer_seconds": middle(answer["build_seconds"] for answer in answers["lancer"]),
+        "embree_seconds": middle(answer["fast"]["build_seconds"] for answer in answers["embree"]),
     }
+
+
+def limits(threads):
+    """Clock, latencies and bandwidths of this machine."""
+    program = jobs.OUTPUT / "machine_limits"
+    source = TOOLS / "bench" / "rays" / "machine.cpp"
+    # It runs here and now, and is to show what this very processor can do.
+    workers.build("c++", "-O3", "-std=c++20", "-march=native", "-pthread", source, "-o", program)
+    return workers.run([program, threads])
+
+
+def bound(nodes, leaves, clock, threads):
+    """Rays a second that so many nodes and leaves a ray allow."""
+    return threads * clock / (nodes * NODE_CYCLES + leaves * LEAF_CYCLES)
+
+
+def roofline(machine, rays, threads):
+    """A row for each kind of ray whose nodes and leaves the library has counted; none where it counts nothing."""
+    result = []
+    for kind, counts in rays.get("counts", {}).items():
+        roof = bound(counts["nodes"], counts["leaves"], machine["clock"], threads)
+        rate = rays["lancer"][kind]["median"]
+        result.append({"what": kind, **counts, "bound": roof, "measured": rate, "fraction": rate / roof})
+    return result

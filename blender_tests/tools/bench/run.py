@@ -4,52 +4,38 @@ Every measurement runs in a process of its own, and competitors take turns, so t
 Figures are medians over the rounds.
 """
 
-import argparse
-import sys
-import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
+from tools.harness import options, verdicts
+from tools.harness.places import ROOT, digest_of_library, header
+from tools.harness.progress import Progress
+from tools.harness.workers import Failed
 
-from tools.bench import chart, classic, contest, extras, goals, jobs, page, plan, rays, roofline, window  # noqa: E402
+from . import chart, classic, contest, extras, goals, jobs, page, plan, rays, window
 
 # Seconds that a short run waits for another renderer.
 _QUICK_LIMIT = 45.0
 
 
 def read_arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="small pictures, few samples: some minutes")
-    parser.add_argument("--only", default="", help="comma-separated patterns of scene names, as 'balls*'; nothing else runs")
+    patterns = "comma-separated patterns of scene names, as 'balls*'; nothing else runs"
+    quick = "small pictures, few samples: some minutes"
+    parser = options.parser(__doc__, quick=quick, only=patterns, threads=2, readme=True)
     parser.add_argument("--rounds", type=int, default=3, help="of what is measured beside the scenes")
-    parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--before", type=Path, help="the built tree of another revision: it alone is compared with")
-    parser.add_argument("--readme", action="store_true", help="put the figures into README.md")
     return parser.parse_args()
-
-
-class Log:
-    """Tells what was measured, with the seconds since the start."""
-
-    def __init__(self):
-        self.started = time.monotonic()
-
-    def __call__(self, text):
-        print(f"{time.monotonic() - self.started:7.1f}  {text}", flush=True)
 
 
 def find_renderers(say):
     """(versions, missing): by key, the version of those that run, and why others do not."""
     own = jobs.in_blender("versions")
-    library = jobs.digest_of_file(ROOT / "addon" / "lib" / "liblancer.so")
-    versions = {"lancer": f"{own['lancer']} ({library[:8]})", "cycles": own["blender"]}
+    versions = {"lancer": f"{own['lancer']} ({digest_of_library()[:8]})", "cycles": own["blender"]}
     missing = {}
     for renderer in plan.RENDERERS:
         if renderer.module:
             try:
                 versions[renderer.key] = jobs.with_peer("version", renderer.module, option=renderer.option)["version"]
-            except jobs.Failed as reason:
+            except Failed as reason:
                 missing[renderer.key] = str(reason)
                 say(f"{renderer.title} is missing: {reason}")
     return versions, missing
@@ -59,7 +45,7 @@ def attempt(figures, key, say, measure, *arguments, **settings):
     """figures[key] = measure(...), or why it could not be measured."""
     try:
         figures[key] = measure(*arguments, **settings)
-    except jobs.Failed as reason:
+    except Failed as reason:
         figures[key] = {"missing": str(reason)}
         say(f"{key}: not measured: {reason}")
     else:
@@ -83,9 +69,9 @@ def measure_rest(figures, arguments, say):
     balls, million = (jobs.OUTPUT / "scenes" / f"{name}-rays.npz" for name in ("balls", "million"))
     attempt(figures, "rays", say, rays.measure, balls, count, rounds, threads, leaks)
     attempt(figures, "build", say, rays.build_times, million, rounds, threads)
-    attempt(figures, "limits", say, roofline.measure, threads)
+    attempt(figures, "limits", say, rays.limits, threads)
     if "lancer" in figures["rays"] and "clock" in figures["limits"]:
-        figures["roofline"] = roofline.rows(figures["limits"], figures["rays"], threads)
+        figures["roofline"] = rays.roofline(figures["limits"], figures["rays"], threads)
     attempt(figures, "window", say, window.gaps, rounds, 5.0 if arguments.quick else 20.0, threads)
     attempt(figures, "view", say, window.view, rounds, threads)
     attempt(figures, "classic", say, classic.measure, rounds, threads, arguments.quick)
@@ -94,11 +80,11 @@ def measure_rest(figures, arguments, say):
 
 
 def main():
-    arguments, say = read_arguments(), Log()
+    arguments, say = read_arguments(), Progress()
     for name in ("scenes", "pictures"):
         (jobs.OUTPUT / name).mkdir(parents=True, exist_ok=True)
     versions, missing = find_renderers(say)
-    figures = {"machine": jobs.machine(), "threads": arguments.threads, "commit": jobs.commit(), "quick": arguments.quick}
+    figures = {**header(arguments.quick), "threads": arguments.threads}
     figures["renderers"] = {
         r.key: {"title": r.title, "version": versions.get(r.key), "missing": missing.get(r.key)} for r in plan.RENDERERS
     }
@@ -112,15 +98,13 @@ def main():
             figures["scenes"][scene.name] = everyone.measure(scene)
         if not arguments.only:
             measure_rest(figures, arguments, say)
-    verdicts = goals.judge(figures)
-    figures["goals"] = [verdict.as_dict() for verdict in verdicts]
+    figures["goals"] = [verdict.as_dict() for verdict in goals.judge(figures)]
     names = chart.write(figures, jobs.OUTPUT) if figures["scenes"] else []
     page.write(figures, jobs.OUTPUT, names)
-    for verdict in verdicts if figures["scenes"] else ():
-        state = {True: "reached", False: "missed", None: ""}[verdict.reached]
-        print(f"{verdict.what:<88} {verdict.measured:<60} {state}")
+    if figures["scenes"]:
+        verdicts.tell(figures["goals"])
     if arguments.readme:
-        page.update_readme(ROOT / "README.md", figures)
+        page.update_tables(figures)
     print((jobs.OUTPUT / "index.html").relative_to(ROOT))
 
 

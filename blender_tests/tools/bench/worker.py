@@ -1,24 +1,20 @@
-"""worker.py TASK ARGUMENTS: one measurement inside Blender's Python module. Arguments and answer are JSON."""
+"""start.py bench.worker TASK JSON: one measurement inside Blender's Python module; the answer is JSON."""
 
 import os
 import sys
 import tempfile
 import time
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
+import bpy
+import numpy as np
 
-import bpy  # noqa: E402
-import numpy as np  # noqa: E402
-
-import addon  # noqa: E402
-import scenes  # noqa: E402
-from addon.bindings import abi  # noqa: E402
-from addon.bindings.session import Scene, Session  # noqa: E402
-from addon.export.scene import export_scene  # noqa: E402
-from tools.bench import process  # noqa: E402
-from tools.bench.written import own_clock, read_floats, write_floats  # noqa: E402
+import addon
+import scenes
+from addon.bindings import abi
+from addon.bindings.session import Scene, Session
+from addon.export.scene import export_scene
+from tools.harness import process
+from tools.harness.f12 import press_f12, registered
 
 
 def set_up(name, threads, width=None, height=None, samples=None, bounces=12, seed=0):
@@ -94,26 +90,19 @@ def render(engine, name, threads, width, height, samples, seed, bounces=12, pict
     """F12 with one sample, then with all of them; the rate is that of the engine's own clock, which starts at the first ray."""
     scene = set_up(name, threads, width, height, samples, bounces)
     scene.render.engine = engine
-    write_floats(scene)
     bpy.context.view_layer.update()
-    result = {"samples": samples * width * height}
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = os.path.join(folder, "picture.exr")
-        process.reset_peak()
-        before = process.memory("VmRSS")
-        if first_look:
-            set_samples(scene, 1, 0)
-            start = time.perf_counter()
-            bpy.ops.render.render(write_still=True)
-            result["first_pixel_seconds"] = time.perf_counter() - start
-            result["setup_seconds"] = result["first_pixel_seconds"] - own_clock(scene)
-        set_samples(scene, samples, seed)
-        bpy.ops.render.render(write_still=True)
-        result["peak_bytes"] = process.memory("VmHWM") - before
-        result["render_seconds"] = own_clock(scene)
-        result["clock"] = "the engine's own clock"
-        if picture:
-            np.save(picture, read_floats(scene)[..., :3])
+    process.reset_peak()
+    before, result = process.memory("VmRSS"), {"samples": samples * width * height}
+    if first_look:
+        set_samples(scene, 1, 0)
+        first = press_f12(scene)
+        result |= {"first_pixel_seconds": first.wall, "setup_seconds": first.wall - first.seconds}
+    set_samples(scene, samples, seed)
+    rendered = press_f12(scene)
+    result |= {"render_seconds": rendered.seconds, "clock": "the engine's own clock"}
+    result["peak_bytes"] = rendered.peak - before
+    if picture:
+        np.save(picture, rendered.picture[..., :3])
     if engine == "LANCER":
         statistics = addon.engine.last_statistics[scene.name]
         result["rays"] = {kind: statistics[f"{kind}_rays"] for kind in ("camera", "bounce", "shadow")}
@@ -202,8 +191,4 @@ def versions():
 TASKS = (f12, first_shown, render, snapshot, prepare, accelerators, versions)
 
 if __name__ == "__main__":
-    addon.register()
-    try:
-        process.answer({task.__name__: task for task in TASKS})
-    finally:
-        addon.unregister()
+    registered(lambda: process.answer(*TASKS))

@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from scenes.parity import figures
-from tools.parity import page
+from tools.harness.conversation import Ended
+from tools.harness.pictures import write_pair
+from tools.harness.turns import by_turns
+from tools.parity.page import as_record
 
 from . import noise
-from .conversation import Ended
 
 # Real files mix Principled and multiple scattering with everything else.
 KIND = figures.KINDS["LOBES"]
@@ -145,13 +147,9 @@ class Measurement:
 
     def _look(self, samples, first_seed):
         """Renders by turns and judges: fills the row."""
-        pictures, seconds = {engine: [] for engine in ENGINES}, dict.fromkeys(ENGINES, 0.0)
-        for number in range(self.plan.rounds):
-            for engine in ENGINES:
-                picture, found = self._render(engine, samples, first_seed + number)
-                pictures[engine].append(picture)
-                seconds[engine] += found["seconds"]
-        ours, theirs = (np.array(pictures[engine], np.float64) for engine in ENGINES)
+        found = by_turns(self.plan.rounds, ENGINES, lambda engine, number: self._render(engine, samples, first_seed + number))
+        seconds = {engine: sum(told["seconds"] for _, told in found[engine]) for engine in ENGINES}
+        ours, theirs = (np.array([picture for picture, _ in found[engine]], np.float64) for engine in ENGINES)
         self._judge(ours, theirs)
         pixels = ours.shape[1] * ours.shape[2]
         for engine in ENGINES:
@@ -174,7 +172,7 @@ class Measurement:
 
         worst = max(parts, key=badness)
         numbers, name = figures.decisive(parts[worst], KIND.limit), names[worst]
-        self.row["parity"] = {**page.as_record(numbers), "part": worst, "name": name}
+        self.row["parity"] = {**as_record(numbers), "part": worst, "name": name}
         mean, p99 = f"mean {numbers.mean:.2%}", f"99th percentile {numbers.p99:.2%}"
         sentence = f"{worst}: {mean}, {p99}; noise {numbers.noise_mean:.2%} and {numbers.noise_p99:.2%}"
         if name == "fail":
@@ -199,7 +197,7 @@ class Measurement:
         """Pictures for the page, row 0 above."""
         self.pictures.mkdir(parents=True, exist_ok=True)
         flipped = (np.nan_to_num(values[::-1, :, :3], posinf=0.0, neginf=0.0) for values in (ours, theirs))
-        self.row["pictures"] = page.write_pictures(str(self.pictures), self.file.slug, *flipped)
+        self.row["pictures"] = write_pair(str(self.pictures), self.file.slug, *flipped)
 
     def _show_alone(self, probes):
         if probes:

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from tools.bench import estimates
+from tools.harness import estimates
+from tools.harness.errors import level_of, luminance
 
 # Share of the pixels that a comparison leaves out: those where either engine's variance is largest. What a few fireflies add is
 # another number with every seed.
 _LEFT_OUT = 0.01
 _GROUPS = 32
-_LUMINANCE = (0.2126, 0.7152, 0.0722)  # ITU-R BT.709
 
 
 def relative_variance(ours, theirs):
@@ -16,10 +16,9 @@ def relative_variance(ours, theirs):
 
     ours, theirs: (seeds, h, w, channels) each, the same number of samples in all.
     """
-    maps = [np.asarray(pictures, np.float64)[..., :3] @ np.array(_LUMINANCE) for pictures in (ours, theirs)]
+    maps = [luminance(pictures) for pictures in (ours, theirs)]
     # Both are measured against the same level: half the squared difference of two is the variance of each.
-    level = 0.5 * (maps[0].mean(axis=0) + maps[1].mean(axis=0))
-    scale = np.abs(level) + 0.01 * np.abs(level).mean()
+    scale = level_of(np.abs(0.5 * (maps[0].mean(axis=0) + maps[1].mean(axis=0))))
     scale = np.where(scale > 0.0, scale, 1.0)
     return tuple(values.var(axis=0, ddof=1) / scale**2 for values in maps)
 

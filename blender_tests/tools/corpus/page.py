@@ -1,13 +1,15 @@
-"""The page of a run: every file with both pictures, their difference, figures and messages, in a table that can be sorted."""
+"""What a run leaves: the page of every file with both pictures and figures, in a table that can be sorted; and the summary."""
 
-import html
-import json
 from pathlib import Path
 
-from tools.bench.page import STYLE
+from tools.harness import page
+from tools.harness.page import element, lines, markdown, percent, times
+from tools.harness.places import TABLES
 
 from . import verdicts
 
+_MOST_MISSING = 12
+_GROUPS = (("files with equal pictures", "equal"), ("all files", "all"))
 _STYLE = """
 h1 { font-size: 20px } button { margin-right: 6px }
 table.files td { vertical-align: top } table.sortable th { cursor: pointer; user-select: none }
@@ -23,29 +25,26 @@ _HEAD += ("wide", "Lancer set-up, s", "export", "build", "Cycles set-up", "Lance
 
 
 def write(figures, folder):
-    """Writes index.html; figures: as corpus.json has them."""
+    """Writes index.html and corpus.json."""
     rows = sorted(figures["files"], key=lambda row: (verdicts.ORDER.index(row["verdict"]), row["name"]))
     found = figures["summary"]
-    script = (Path(__file__).with_name("table.js")).read_text(encoding="utf-8")
-    buttons = "".join(
-        f'<button data-verdict="{verdict}">{count} {html.escape(verdicts.words(verdict, count))}</button>'
-        for verdict, count in found["counts"].items()
-    )
+    buttons = {"": f"all {found['files']} files"}
+    buttons |= {verdict: f"{count} {verdicts.words(verdict, count)}" for verdict, count in found["counts"].items()}
     parts = [
-        f"<h1>Files as their authors left them: {html.escape(figures['commit'])}</h1>",
-        f"<p>{html.escape(describe(figures))}</p>",
-        f'<p><button data-verdict="">all {found["files"]} files</button>{buttons}</p>',
-        _means(found["means"]),
-        _missing(found["missing"]),
-        '<table class="files sortable"><thead><tr>' + "".join(f"<th>{name}</th>" for name in _HEAD) + "</tr></thead><tbody>",
-        *(_row(row) for row in rows),
-        "</tbody></table>",
+        describe(figures),
+        lines((element("button", text, data_verdict=verdict) for verdict, text in buttons.items()), ""),
+        page.table(*_means(found["means"], wide=True)),
+        page.table(
+            ["what is missing", "files made right, given all before", "in all", "files that have it", "uses"],
+            [[row[name] for name in ("key", "completes", "total", "files", "uses")] for row in found["missing"]],
+        )
+        if found["missing"]
+        else "",
+        page.table(_HEAD, [_row(row) for row in rows], "files sortable"),
     ]
-    head = f'<meta charset="utf-8"><title>Corpus</title><style>{STYLE}{_STYLE}</style>'
-    text = "\n".join(parts)
-    page = f"<!DOCTYPE html><html><head>{head}</head><body>{text}<script>{script}</script></body></html>\n"
-    (folder / "index.html").write_text(page, encoding="utf-8")
-    (folder / "corpus.json").write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
+    script = (Path(__file__).with_name("table.js")).read_text(encoding="utf-8")
+    title = f"Files as their authors left them: {figures['commit']}"
+    page.write(folder, "corpus", figures, title, parts, _STYLE, script)
 
 
 def describe(figures):
@@ -59,26 +58,15 @@ def describe(figures):
     )
 
 
-def _means(means):
-    head = ["Lancer over Cycles, geometric means", "files", "samples/s", "variance", "efficiency", "least efficiency", "wide"]
-    lines = ["".join(f"<th>{name}</th>" for name in head)]
-    for title, key in (("files with equal pictures", "equal"), ("all files", "all")):
+def _means(means, wide=False):
+    """(head, rows); wide: with the share of the vertices that kernels of many lanes shaded."""
+    rows = []
+    for title, key in _GROUPS:
         found = means[key]
-        cells = [_times(found[name]) for name in ("speed", "variance", "efficiency", "least_efficiency")]
-        cells = [str(found["files"]), *cells, _percent(found["wide_share"])]
-        lines.append(f'<td class="text">{title}</td>' + "".join(f"<td>{cell}</td>" for cell in cells))
-    return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
-
-
-def _missing(ranked):
-    if not ranked:
-        return ""
-    head = ["what is missing", "files made right, given all before", "in all", "files that have it", "uses"]
-    lines = ["".join(f"<th>{name}</th>" for name in head)]
-    for row in ranked:
-        cells = (row["completes"], row["total"], row["files"], row["uses"])
-        lines.append(f'<td class="text">{html.escape(row["key"])}</td>' + "".join(f"<td>{cell}</td>" for cell in cells))
-    return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
+        cells = [times(found[name]) for name in ("speed", "variance", "efficiency", "least_efficiency")]
+        rows.append([title, found["files"], *cells, *([percent(found["wide_share"], 2)] if wide else [])])
+    head = ["Lancer over Cycles, geometric means", "files", "samples/s", "variance", "efficiency", "least efficiency"]
+    return [*head, *(["wide"] if wide else [])], rows
 
 
 def _row(row):
@@ -87,31 +75,26 @@ def _row(row):
     )
     verdict, parity = row["verdict"], row.get("parity", {})
     ours, theirs = (row["engines"].get(engine, {}) for engine in ("LANCER", "CYCLES"))
+    shown = [f"pictures/{name}" for name in row.get("pictures", ())]
+    images = [element("a", element("img", None, src=name, loading="lazy"), href=name) for name in shown]
+    missing = lines(f"{key} ({count})" for key, count in row["missing"].items())
     cells = [
-        f'<td class="name">{html.escape(row["name"])}<br><span class="what">{html.escape(what)}</span></td>',
-        f'<td class="text {verdict}" data-value="{verdicts.ORDER.index(verdict)}">{html.escape(verdicts.words(verdict))}</td>',
-        *(
-            f'<td><a href="pictures/{name}"><img src="pictures/{name}" loading="lazy"></a></td>'
-            for name in row.get("pictures", ())
-        ),
-        *(["<td></td>"] * (3 - len(row.get("pictures", ())))),
-        _cell(parity.get("mean"), _percent),
-        _cell(parity.get("p99"), _percent),
-        _cell(parity.get("noise_mean"), _percent),
-        _cell(row.get("speed"), _times),
-        _cell(row.get("variance", {}).get("ratio"), _times),
-        _cell(row.get("efficiency"), _times),
-        _cell(verdicts.wide_share(row), _percent),
-        _cell(ours.get("setup_seconds"), _seconds),
-        _cell(ours.get("export_seconds"), _seconds),
-        _cell(ours.get("build_seconds"), _seconds),
-        _cell(theirs.get("setup_seconds"), _seconds),
-        _cell(ours.get("peak_bytes"), _megabytes),
-        _cell(theirs.get("peak_bytes"), _megabytes),
-        f'<td class="text" data-value="{len(row["missing"])}">{_lines(f"{k} ({n})" for k, n in row["missing"].items())}</td>',
-        f'<td class="remarks"><div>{_lines(_remarks(row))}</div></td>',
+        (lines((row["name"], element("span", what, class_="what"))), "name"),
+        (verdicts.words(verdict), f"text {verdict}", verdicts.ORDER.index(verdict)),
+        *images,
+        *[""] * (3 - len(images)),
+        *(_number(parity.get(name), lambda value: percent(value, 2)) for name in ("mean", "p99", "noise_mean")),
+        _number(row.get("speed"), times),
+        _number(row.get("variance", {}).get("ratio"), times),
+        _number(row.get("efficiency"), times),
+        _number(verdicts.wide_share(row), lambda value: percent(value, 2)),
+        *(_number(ours.get(name), _seconds) for name in ("setup_seconds", "export_seconds", "build_seconds")),
+        _number(theirs.get("setup_seconds"), _seconds),
+        *(_number(engine.get("peak_bytes"), _megabytes) for engine in (ours, theirs)),
+        (missing, "text", len(row["missing"])),
+        (element("div", lines(_remarks(row))), "remarks"),
     ]
-    return f'<tr data-verdict="{verdict}">{"".join(cells)}</tr>'
+    return page.row(cells, data_verdict=verdict)
 
 
 def _remarks(row):
@@ -123,20 +106,8 @@ def _remarks(row):
     yield from (f"Lancer: {text}" for text in row["messages"])
 
 
-def _lines(texts):
-    return "<br>".join(html.escape(text) for text in texts)
-
-
-def _cell(value, words):
-    return '<td data-value=""></td>' if value is None else f'<td data-value="{value}">{words(value)}</td>'
-
-
-def _percent(value):
-    return "" if value is None else f"{value:.2%}"
-
-
-def _times(value):
-    return "" if value is None else f"{value:.2f}x"
+def _number(value, words):
+    return ("", "", "") if value is None else (words(value), "", value)
 
 
 def _seconds(value):
@@ -145,3 +116,29 @@ def _seconds(value):
 
 def _megabytes(value):
     return f"{value / 1e6:.0f}"
+
+
+def summary(figures):
+    """The parts of the summary in a table of Markdown."""
+    found, machine, plan = figures["summary"], figures["machine"], figures["plan"]
+    yield f"{figures['date']}, commit {figures['commit']}, Blender {figures['blender']}; {machine['processor']}, " + (
+        f"{plan['threads']} threads, {plan['pixels']} pixels" + ("; a short run." if figures["quick"] else ".")
+    )
+    yield verdicts.sentence(found) + "."
+    yield markdown(*_means(found["means"]))
+    untold = [row["name"] for row in figures["files"] if row["verdict"] in verdicts.FAULTS]
+    if untold:
+        yield "To be mended: " + ", ".join(f"`{name}`" for name in untold) + "."
+    if found["missing"]:
+        head = ["what is missing", "files made right", "in all", "files that have it"]
+        rows = [[_plain(row["key"]), row["completes"], row["total"], row["files"]] for row in found["missing"][:_MOST_MISSING]]
+        yield markdown(head, rows)
+
+
+def _plain(key):
+    """Of "node:Noise Texture" and "feature:volume"."""
+    return f"{key.removeprefix('node:')} node" if key.startswith("node:") else key.removeprefix("feature:")
+
+
+def update_tables(figures, path=TABLES):
+    page.put_between(path, "corpus", summary(figures))

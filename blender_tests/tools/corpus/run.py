@@ -6,22 +6,21 @@ What a file has been measured at is kept, so a run that was broken off goes on w
 
 import argparse
 import datetime
-import hashlib
 import os
 import shlex
 import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
+from tools.harness import options
+from tools.harness.conversation import Conversation
+from tools.harness.kept import kept
+from tools.harness.places import ROOT, digest_of_file, digest_of_files, digest_of_library, header, machine
+from tools.harness.progress import Progress
+from tools.harness.workers import START
 
-from tools.bench import jobs  # noqa: E402
-from tools.bench.longer import Line, kept  # noqa: E402
-from tools.corpus import measure, page, readme, sources, verdicts  # noqa: E402
-from tools.corpus.conversation import Conversation  # noqa: E402
+from . import measure, page, sources, verdicts
 
-WORKER = Path(__file__).with_name("worker.py")
 # Two processes have a file open at a time.
 _SHARE_OF_MEMORY = 0.4
 # What decides a row; the rest of this folder makes pages of them.
@@ -29,27 +28,24 @@ _MEASURING = ("alike", "framing", "measure", "noise", "worker")
 
 
 def read_arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    patterns = "comma-separated patterns of names, file names or kinds, as 'donut*'"
+    settings = {"only": patterns, "threads": os.cpu_count(), "readme": True, "output": "corpus"}
+    parser = options.parser(__doc__, quick="few samples: some seconds a file", **settings)
     parser.add_argument("--folder", type=Path, help="whose .blend files are rendered; default: those of scenes/corpus.toml")
     parser.add_argument("--clones", type=Path, help="folder of clones, owner+name or owner/name, that the list is taken out of")
     parser.add_argument("--list", type=Path, default=ROOT / "scenes" / "corpus.toml", help="in place of scenes/corpus.toml")
-    parser.add_argument("--only", default="", help="comma-separated patterns of names, file names or kinds, as 'donut*'")
-    parser.add_argument("--quick", action="store_true", help="few samples: some seconds a file")
     parser.add_argument("--pixels", type=int, default=320, help="of the longer side")
     parser.add_argument("--budget", type=float, help="seconds for the renders of a file")
     parser.add_argument("--limit", type=float, help="seconds after which one render counts as hung")
-    parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--memory", type=float, help="GB that one process may take; default: 40 %% of the machine's")
     parser.add_argument("--blender", default="", help="a Blender program in place of this Python's module")
-    parser.add_argument("--readme", action="store_true", help="put the summary into README.md")
-    parser.add_argument("--output", type=Path, default=ROOT / "build" / "corpus")
-    parser.add_argument("--worker", type=Path, default=WORKER, help=argparse.SUPPRESS)
+    parser.add_argument("--worker", type=Path, help=argparse.SUPPRESS)
     return parser.parse_args()
 
 
 def make_plan(arguments):
     plan = measure.QUICK if arguments.quick else measure.Plan()
-    memory = 1e9 * arguments.memory if arguments.memory else _SHARE_OF_MEMORY * jobs.machine()["memory_gib"] * 2**30
+    memory = 1e9 * arguments.memory if arguments.memory else _SHARE_OF_MEMORY * machine()["memory_gib"] * 2**30
     given = {"budget": arguments.budget, "limit": arguments.limit}
     given = {name: value for name, value in given.items() if value is not None}
     return replace(plan, pixels=arguments.pixels, threads=arguments.threads, memory=memory, **given)
@@ -61,8 +57,9 @@ class Workers:
     def __init__(self, arguments):
         self.output = arguments.output
         blender = shlex.split(arguments.blender)
-        options = ["-b", "--factory-startup", "--python-exit-code", "3", "-P", arguments.worker, "--"]
-        self.command = [*blender, *options] if blender else [sys.executable, arguments.worker]
+        script, *module = [arguments.worker] if arguments.worker else [START, "corpus.worker"]
+        settings = ["-b", "--factory-startup", "--python-exit-code", "3", "-P", script, "--"]
+        self.command = [*blender, *settings, *module] if blender else [sys.executable, script, *module]
         home = str(self.output / "home")
         keep = {name: value for name, value in os.environ.items() if not name.startswith(("BLENDER_", "XDG_", "DISPLAY"))}
         self.environment = {**keep, "HOME": home}
@@ -81,21 +78,13 @@ def find_files(arguments):
     return sources.chosen(files, arguments.only)
 
 
-def digest_of(paths):
-    """Of the names and contents of files."""
-    digest = hashlib.sha256()
-    for path in sorted(paths):
-        digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
 class Kept:
     """What a result depends on."""
 
     def __init__(self, arguments, plan):
-        own = {"library": jobs.digest_of_file(ROOT / "addon" / "lib" / "liblancer.so")}
-        own |= {"addon": digest_of((ROOT / "addon").rglob("*.py"))}
-        own |= {"corpus": digest_of(Path(__file__).with_name(f"{name}.py") for name in _MEASURING)}
+        own = {"library": digest_of_library()}
+        own |= {"addon": digest_of_files((ROOT / "addon").rglob("*.py"))}
+        own |= {"corpus": digest_of_files(Path(__file__).with_name(f"{name}.py") for name in _MEASURING)}
         self.own = {**own, "plan": asdict(plan), "blender": arguments.blender}
         self.folder = arguments.output / "results"
         self.suffix = "-quick" if arguments.quick else ""
@@ -103,15 +92,15 @@ class Kept:
     def row(self, file, work):
         if file.missing:
             return work()
-        key = {**self.own, "file": jobs.digest_of_file(file.path), "kind": file.kind, "note": file.note}
+        key = {**self.own, "file": digest_of_file(file.path), "kind": file.kind, "note": file.note}
         return kept(self.folder / f"{file.slug}{self.suffix}.json", key, work)
 
 
-class Progress:
-    """The line on the terminal: where the run is, and how long it will still take."""
+class Place:
+    """Where the run is, and how long it will still take."""
 
     def __init__(self, count):
-        self.line, self.count, self.number, self.measured = Line(), count, 0, []
+        self.say, self.count, self.number, self.measured = Progress(), count, 0, []
 
     def begin(self, file):
         self.number += 1
@@ -122,7 +111,7 @@ class Progress:
         if self.measured:
             seconds = sum(self.measured) / len(self.measured) * (self.count - self.number + 1)
             left = f", {datetime.timedelta(seconds=round(seconds))} left"
-        self.line.show(f"file {self.number} of {self.count}{left}: {self.name[-60:]}: {text}")
+        self.say.show(f"file {self.number} of {self.count}{left}: {self.name[-60:]}: {text}")
 
     def end(self, row, fresh):
         if fresh:
@@ -130,21 +119,21 @@ class Progress:
         told = f"{verdicts.words(row['verdict'])}{'' if fresh else ' (kept)'}; {row['sentence']}"
         if "efficiency" in row:
             told += f"; speed {row['speed']:.2f}x, efficiency {row['efficiency']:.2f}x"
-        self.line.end(f"{self.number}/{self.count} {self.name}: {told}")
+        self.say(f"{self.number}/{self.count} {self.name}: {told}")
 
 
 def measure_all(files, arguments, plan, figures):
-    workers, results, progress = Workers(arguments), Kept(arguments, plan), Progress(len(files))
+    workers, results, place = Workers(arguments), Kept(arguments, plan), Place(len(files))
     for file in files:
-        progress.begin(file)
+        place.begin(file)
         fresh = []
 
         def work(file=file, fresh=fresh):
             fresh.append(True)
-            return measure.Measurement(file, plan, workers.start, arguments.output / "pictures", progress.show).run()
+            return measure.Measurement(file, plan, workers.start, arguments.output / "pictures", place.show).run()
 
         row = results.row(file, work)
-        progress.end(row, bool(fresh))
+        place.end(row, bool(fresh))
         figures["files"].append(row)
         # A run takes long: what there is so far can be looked at.
         write(figures, arguments.output)
@@ -164,8 +153,7 @@ def main():
     files = find_files(arguments)
     if not files:
         sys.exit(f"no .blend file{f' is called {arguments.only}' if arguments.only else ' is there'}")
-    figures = {"date": datetime.date.today().isoformat(), "commit": jobs.commit(), "machine": jobs.machine()}
-    figures |= {"quick": arguments.quick, "plan": asdict(plan), "files": []}
+    figures = {"date": datetime.date.today().isoformat(), **header(arguments.quick), "plan": asdict(plan), "files": []}
     measure_all(files, arguments, plan, figures)
     print(verdicts.sentence(figures["summary"]))
     for key in ("equal", "all"):
@@ -177,7 +165,7 @@ def main():
     for row in figures["summary"]["missing"]:
         print(f"{row['key']}: {row['completes']} made right, {row['total']} in all; {row['files']} files have it")
     if arguments.readme:
-        readme.update(ROOT / "README.md", figures)
+        page.update_tables(figures)
     print(os.path.relpath(arguments.output / "index.html"))
     return int(any(row["verdict"] in verdicts.FAULTS for row in figures["files"]))
 

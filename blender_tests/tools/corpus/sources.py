@@ -1,11 +1,12 @@
 """Which files there are: all of a folder, or those that scenes/corpus.toml names, out of local clones."""
 
-import fnmatch
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
 import tomllib
+
+from tools.harness.options import wanted
 
 from . import clones
 
@@ -23,10 +24,6 @@ class File:
         """A file name of its own for what is kept of it."""
         plain = "".join(c if c.isalnum() or c in "-." else "_" for c in self.name)
         return f"{plain[-80:]}-{hashlib.sha256(self.name.encode()).hexdigest()[:8]}"
-
-    def matches(self, patterns):
-        names = (self.name.lower(), Path(self.name).name.lower(), self.kind)
-        return not patterns or any(fnmatch.fnmatchcase(name, pattern.lower()) for name in names for pattern in patterns)
 
 
 def in_folder(folder):
@@ -75,5 +72,4 @@ def _checked(file):
 
 
 def chosen(files, only):
-    patterns = [pattern.strip() for pattern in only.split(",") if pattern.strip()]
-    return [file for file in files if file.matches(patterns)]
+    return [file for file in files if wanted(only, file.name, Path(file.name).name, file.kind)]

@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 
-from tools.bench import estimates
+from tools.harness import estimates
 
 # What each verdict says of one file and of several, in the order of the page.
 _WORDS = {

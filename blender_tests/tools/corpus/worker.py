@@ -1,26 +1,21 @@
 """One file in one Blender, for one engine: answers requests, a line of JSON each, until they end.
 
-Runs under a Python that has bpy (worker.py FD), and inside Blender: blender -b --factory-startup -P worker.py -- FD
+Runs under a Python that has bpy (start.py corpus.worker FD), and inside Blender: blender -b -P start.py -- corpus.worker FD
 FD: the file descriptor that answers go to; what Blender and libraries print is of no interest.
 """
 
 import json
 import os
 import sys
-import tempfile
 import time
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
+import bpy
+import numpy as np
 
-import bpy  # noqa: E402
-import numpy as np  # noqa: E402
-
-import addon  # noqa: E402
-from tools.bench import process  # noqa: E402
-from tools.bench.written import own_clock, read_floats, write_floats  # noqa: E402
-from tools.corpus import alike, framing  # noqa: E402
+import addon
+from tools.corpus import alike, framing
+from tools.harness import process
+from tools.harness.f12 import press_f12
 
 
 def open_file(path, pixels, threads):
@@ -52,19 +47,13 @@ def render(engine, samples, seed, picture):
     scene = bpy.context.scene
     scene.render.engine = engine
     alike.set_samples(scene, samples, seed)
-    write_floats(scene)
-    with tempfile.TemporaryDirectory() as folder, _timed_export() as export:
-        scene.render.filepath = os.path.join(folder, "picture.exr")
-        process.reset_peak()
-        before, start = process.memory("VmRSS"), time.perf_counter()
-        bpy.ops.render.render(write_still=True)
-        result = {"wall": time.perf_counter() - start, "peak_bytes": max(0, process.memory("VmHWM") - before)}
-        if not os.path.exists(scene.render.filepath):
-            raise RuntimeError(f"{engine} wrote no picture")
-        result["seconds"] = own_clock(scene)
-        values = read_floats(scene)
-    np.save(picture, values)
-    result["size"] = [values.shape[1], values.shape[0]]
+    process.reset_peak()
+    before = process.memory("VmRSS")
+    with _timed_export() as export:
+        rendered = press_f12(scene)
+    result = {"wall": rendered.wall, "seconds": rendered.seconds, "peak_bytes": max(0, rendered.peak - before)}
+    np.save(picture, rendered.picture)
+    result["size"] = [*rendered.picture.shape[1::-1]]
     if engine == "LANCER":
         statistics = addon.engine.last_statistics[scene.name]
         wanted = ("build_seconds", "wide_vertices", "narrow_vertices", "kernel", "features", "triangles", "instances", "lights")

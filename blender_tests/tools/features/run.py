@@ -5,25 +5,20 @@ time; each round makes both anew, so that no chance of memory stays with one of 
 the 95 % interval of the median.
 """
 
-import argparse
-import json
-import sys
 import time
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers"), str(ROOT / "addon")]
+import tiny_scenes as tiny
+from bindings.enums import Integrator
+from bindings.hints import median_with_uncertainty
+from bindings.session import Session
 
-import tiny_scenes as tiny  # noqa: E402
-from bindings.enums import Integrator  # noqa: E402
-from bindings.hints import median_with_uncertainty  # noqa: E402
-from bindings.session import Session  # noqa: E402
+from tools.harness import options
+from tools.harness.places import BUILD, ROOT, header
+from tools.harness.progress import Progress
 
-from tools.bench import jobs  # noqa: E402
-from tools.features import cases as feature_cases  # noqa: E402
-from tools.features import page as features_page  # noqa: E402
+from . import cases, page
 
-OUTPUT = ROOT / "build" / "features"
+OUTPUT = BUILD / "features"
 # At most so much where a feature is only compiled in.
 GOAL = 0.02
 _RUN_SECONDS = 0.05
@@ -31,10 +26,8 @@ _LEAST_ROUNDS = 8
 
 
 def read_arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="fewer rounds: wide intervals, a few minutes")
-    parser.add_argument("--only", default="", help="comma-separated parts of features' names")
-    return parser.parse_args()
+    parts = "comma-separated parts of features' names"
+    return options.parser(__doc__, quick="fewer rounds: wide intervals, a few minutes", only=parts).parse_args()
 
 
 def seconds_of(snapshot, samples):
@@ -73,7 +66,7 @@ def compare(base, other, wanted, limit):
 
 
 def measure(case, integrator, quick):
-    base = tiny.with_settings(feature_cases.minimal(), integrator=integrator)
+    base = tiny.with_settings(cases.minimal(), integrator=integrator)
     result = {}
     if case.used is not None:
         result["used"] = compare(base, case.used(base), 0.02, 2.0 if quick else 6.0)
@@ -86,20 +79,18 @@ def measure(case, integrator, quick):
 
 
 def main():
-    arguments, started = read_arguments(), time.monotonic()
-    patterns = [pattern for pattern in arguments.only.split(",") if pattern]
-    cases = [c for c in feature_cases.CASES if not patterns or any(pattern in c.name for pattern in patterns)]
-    figures = {"machine": jobs.machine(), "commit": jobs.commit(), "goal": GOAL, "quick": arguments.quick, "cases": {}}
-    OUTPUT.mkdir(parents=True, exist_ok=True)
+    arguments, say = read_arguments(), Progress()
+    parts = ",".join(f"*{part}*" for part in arguments.only.split(",") if part)
+    chosen = [case for case in cases.CASES if options.wanted(parts, case.name)]
+    figures = {**header(arguments.quick), "goal": GOAL, "cases": {}}
     for integrator in (Integrator.PATH, Integrator.CLASSIC):
-        for case in cases:
+        for case in chosen:
             found = measure(case, integrator, arguments.quick)
             figures["cases"].setdefault(case.name, {})[integrator.name] = found
-            told = ", ".join(f"{kind} {features_page.percent(value)}" for kind, value in found.items())
-            print(f"{time.monotonic() - started:7.1f}  {integrator.name:<8} {case.name:<40} {told}", flush=True)
+            told = ", ".join(f"{kind} {page.percent(value)}" for kind, value in found.items())
+            say(f"{integrator.name:<8} {case.name:<40} {told}")
             # A run takes long: what there is so far can be looked at.
-            (OUTPUT / "features.json").write_text(json.dumps(figures, indent=1) + "\n")
-            (OUTPUT / "index.html").write_text(features_page.page(figures), encoding="utf-8")
+            page.write(figures, OUTPUT)
     print((OUTPUT / "index.html").relative_to(ROOT))
 
 

@@ -1,44 +1,36 @@
 """Renders the parity scenes with Lancer and Cycles and judges them: `make parity`.
 
-Runs under a Python that has bpy, and inside Blender: blender -b --factory-startup -P run.py -- ARGUMENTS
+Runs under a Python that has bpy, and inside Blender.
 """
 
-import argparse
 import contextlib
 import os
 import sys
 import tempfile
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests"), str(ROOT / "blender_tests" / "helpers")]
+import bpy
 
-import bpy  # noqa: E402
+from scenes.parity import catalogue, figures
+from scenes.render import captured_output
+from tools.harness import options
+from tools.harness.f12 import registered
+from tools.harness.progress import Progress
 
-import addon  # noqa: E402
-from scenes.parity import catalogue, figures  # noqa: E402
-from scenes.render import captured_output  # noqa: E402
-from tools.parity import contest, page  # noqa: E402
+from . import contest, page
 
 # What `make test` renders each half with: the limits then allow for the noise.
 QUICK_SAMPLES = 32
 
 
 def read_arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--only", default="", help="comma-separated patterns of scene names or subjects, as 'lights*'")
-    parser.add_argument(
-        "--quick",
-        action="store_true",
-        help="few samples; what their noise explains is no failure, as long as that is at most three limits",
-    )
+    patterns = "comma-separated patterns of scene names or subjects, as 'lights*'"
+    quick = "few samples; what their noise explains is no failure, as long as that is at most three limits"
+    parser = options.parser(__doc__, quick=quick, only=patterns, output="parity")
     parser.add_argument("--subset", action="store_true", help="the scenes of `make test` alone")
     parser.add_argument("--most-samples", type=int, default=1024, help="of each half of each engine")
     parser.add_argument("--self-check", action="store_true", help="Cycles against Cycles: the judge must find no difference")
     parser.add_argument("--list", action="store_true", help="name the scenes and render none")
-    parser.add_argument("--output", type=Path, default=ROOT / "build" / "parity")
-    own = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
-    return parser.parse_args([] if bpy.app.binary_path and "--" not in sys.argv else own)
+    return parser.parse_args()
 
 
 @contextlib.contextmanager
@@ -84,24 +76,21 @@ def main():
     outcomes = []
     log = errors_in(arguments.output / "console.log")
     with captured_output() as (terminal, _), log, tempfile.TemporaryDirectory() as folder:
-        terminal.write(f"{title}: {len(cases)} scenes\n")
+        say = Progress(terminal)
+        say(f"{title}: {len(cases)} scenes")
         for case in cases:
+            say.show(case.name)
             if arguments.quick:
                 case = catalogue.smaller(case)
             most = QUICK_SAMPLES if arguments.quick else arguments.most_samples
             outcome = contest.run(case, folder, pair, most, noise_aware=arguments.quick)
             outcomes.append(outcome)
-            terminal.write(line(outcome) + "\n")
+            say(line(outcome))
             # A crash in a later scene must not take the page of the earlier ones with it.
-            page.write(outcomes, str(arguments.output), title)
+            page.write(outcomes, arguments.output, title)
         terminal.write(f"{page.summary(outcomes)}\n{os.path.relpath(arguments.output / 'index.html')}\n")
     return int(any(outcome.verdict in ("fail", "noise", "error") for outcome in outcomes))
 
 
 if __name__ == "__main__":
-    addon.register()
-    try:
-        status = main()
-    finally:
-        addon.unregister()
-    sys.exit(status)
+    sys.exit(registered(main))

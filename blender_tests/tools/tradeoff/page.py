@@ -1,12 +1,11 @@
-"""The page and the tables of `make tradeoff`, and the README's."""
+"""The page and the tables of `make tradeoff`."""
 
-import html
 import shutil
 
-from tools.bench.page import STYLE
+from tools.harness import page
+from tools.harness.page import element, markdown
+from tools.harness.places import ROOT, TABLES
 
-BEGIN = "<!-- tradeoff: written by `make tradeoff README=1` -->"
-END = "<!-- tradeoff: end -->"
 _TITLES = {"PATH": "Lancer PATH", "PATH, meshes": "Lancer PATH, meshes for exact shapes"}
 
 
@@ -105,33 +104,17 @@ def where(figures):
 
 
 def write(figures, folder):
-    told = "".join(f"<p>{html.escape(text)}</p>" for text in (where(figures), *caption(figures)))
-    parts = [f"<h1>Error and seconds: {html.escape(figures['scene'])}</h1>", '<img src="tradeoff.svg" width="900">', told]
-    for title, head, rows in tables(figures):
-        lines = ["".join(f"<th>{html.escape(cell)}</th>" for cell in head)]
-        lines += ["".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows]
-        parts.append(f"<h2>{html.escape(title)}</h2><table>" + "\n".join(f"<tr>{line}</tr>" for line in lines) + "</table>")
-    style = f'<meta charset="utf-8"><title>Error and seconds</title><style>{STYLE}</style>'
-    page = f"<!DOCTYPE html><html><head>{style}</head><body>{''.join(parts)}</body></html>\n"
-    (folder / "index.html").write_text(page, encoding="utf-8")
-    text = "\n\n".join([where(figures), *caption(figures)])
-    text += "".join(f"\n\n## {title}\n\n{markdown(head, rows)}" for title, head, rows in tables(figures))
-    (folder / "table.md").write_text(f"# Error and seconds: {figures['scene']}\n\n{text}\n", encoding="utf-8")
+    told, title = [where(figures), *caption(figures)], f"Error and seconds: {figures['scene']}"
+    parts = [element("img", None, src="tradeoff.svg", width=900), *told]
+    text = "\n\n".join([f"# {title}", *told])
+    for name, head, rows in tables(figures):
+        parts += [element("h2", name), page.table(head, rows)]
+        text += f"\n\n## {name}\n\n{markdown(head, rows)}"
+    page.write(folder, "tradeoff", figures, title, parts)
+    (folder / "table.md").write_text(f"{text}\n", encoding="utf-8")
 
 
-def markdown(head, rows):
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def update_readme(root, folder, figures):
-    path = root / "README.md"
-    text = path.read_text(encoding="utf-8")
-    if BEGIN not in text or END not in text:
-        raise ValueError(f"{path.name} lacks the lines between which the table belongs: {BEGIN} and {END}")
-    shutil.copyfile(folder / "tradeoff.png", root / "scenes" / "tradeoff.png")
-    before, rest = text.split(BEGIN, 1)
-    after = rest.split(END, 1)[1]
-    picture = "![Error against seconds, both logarithmic: Lancer's curves beside Cycles'](scenes/tradeoff.png)"
-    parts = [picture, where(figures), markdown(*presets_table(figures)), markdown(*equal_table(figures))]
-    path.write_text(f"{before}{BEGIN}\n" + "\n\n".join(parts) + f"\n{END}{after}", encoding="utf-8")
+def update_tables(figures, folder, path=TABLES):
+    parts = [where(figures), markdown(*presets_table(figures)), markdown(*equal_table(figures))]
+    page.put_between(path, "tradeoff", parts)
+    shutil.copyfile(folder / "tradeoff.png", ROOT / "scenes" / "tradeoff.png")

@@ -1,9 +1,7 @@
 """Renders for `make tradeoff`: Lancer's sessions and Cycles' F12, timed, with their pictures."""
 
 import dataclasses
-import tempfile
 import time
-from pathlib import Path
 
 import bpy
 import numpy as np
@@ -12,7 +10,8 @@ from addon.bindings.enums import InstanceKind, Integrator, Pass
 from addon.bindings.schedule import Schedule
 from addon.bindings.session import Scene, Session
 from addon.export.scene import export_scene
-from tools.bench import worker, written
+from tools.bench import worker
+from tools.harness.f12 import press_f12
 
 _DEEPEST_CLASSIC = 16
 
@@ -78,12 +77,9 @@ class Cycles:
     def render(self, seed, samples):
         """(seconds, picture)."""
         self.scene.render.engine = "CYCLES"
-        written.write_floats(self.scene)
         worker.set_samples(self.scene, samples, seed)
-        with tempfile.TemporaryDirectory() as folder:
-            self.scene.render.filepath = str(Path(folder) / "picture.exr")
-            bpy.ops.render.render(write_still=True, scene=self.scene.name)
-            return written.own_clock(self.scene), written.read_floats(self.scene)[..., :3]
+        rendered = press_f12(self.scene)
+        return rendered.seconds, rendered.picture[..., :3]
 
 
 def without_exact_shapes(scene):

@@ -1,18 +1,11 @@
-"""Figures from repeated measurements: errors, efficiency, and how sure they are."""
+"""Figures of repeated measurements: squared errors, efficiency, and how sure they are."""
 
 import functools
 import math
-import statistics
 
 import numpy as np
 
 _RESAMPLES = 2000
-
-
-def middle(values):
-    """Median, smallest and largest."""
-    values = list(values)
-    return {"median": statistics.median(values), "min": min(values), "max": max(values)}
 
 
 def squared_error(picture, reference, reference_variance=0.0):

@@ -5,8 +5,6 @@ import os
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-
 
 def memory(field):
     """A figure of this process in bytes: VmRSS now, or VmHWM, the peak since reset_peak."""
@@ -20,9 +18,10 @@ def reset_peak():
     Path("/proc/self/clear_refs").write_text("5")
 
 
-def answer(tasks):
+def answer(*tasks):
     """Runs the task that the command line names with its JSON, and prints the JSON that it returns as the last line."""
-    result = tasks[sys.argv[1]](**json.loads(sys.argv[2]))
+    by_name = {task.__name__: task for task in tasks}
+    result = by_name[sys.argv[1]](**json.loads(sys.argv[2]))
     sys.stdout.flush()
     print("\n" + json.dumps(result), flush=True)
 
