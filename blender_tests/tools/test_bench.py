@@ -124,7 +124,7 @@ def test_tables_replace_what_is_between_the_marks(tmp_path):
     # Users see what both of two renderers were measured at.
     text = readme.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
-    assert "| one: a scene | 4.00 | 1.00 |" in text and "Mitsuba" not in text and "alone" not in text
+    assert "| a scene | 4.00 | 1.00 |" in text and "Mitsuba" not in text and "alone" not in text
 
 
 def test_roofline_is_the_clock_over_the_cycles_of_a_ray():

@@ -9,6 +9,7 @@ from tools.harness import estimates, page, pictures, turns, workers
 from tools.harness.errors import Reference, luminance
 from tools.harness.kept import kept, kept_picture
 from tools.harness.options import wanted
+from tools.harness.places import README, TABLES
 from tools.harness.progress import Progress
 
 
@@ -196,3 +197,13 @@ def test_a_table_replaces_what_is_between_the_marks(tmp_path):
     assert path.read_text() == f"before\n{begin}\nnew\n\ntable\n{end}\nafter\n"
     with pytest.raises(ValueError, match="lacks the lines"):
         page.put_between(path, "other", ["new"])
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "program"),
+    [(TABLES, "bench", "bench"), (TABLES, "tradeoff", "tradeoff"), (TABLES, "corpus", "corpus"), (README, "speed", "bench")],
+)
+def test_the_project_has_a_place_for_each_table(path, name, program):
+    text = path.read_text(encoding="utf-8")
+    begin, end = page.marks(name, program)
+    assert text.count(begin) == text.count(end) == 1 and text.index(begin) < text.index(end)

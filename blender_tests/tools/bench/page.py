@@ -152,20 +152,20 @@ def update_tables(figures, tables=TABLES, readme=README):
     ours = [key for key in _USERS if key in everyone]
     shown = {name: scene for name, scene in figures["scenes"].items() if _measured(scene, ours)}
     told = f"{figures['machine']['processor']}, {figures['threads']} threads; commit {figures['commit']}."
-    page.put_between(readme, "speed", [_rates({**figures, "scenes": shown}, ours), told], program="bench")
+    page.put_between(readme, "speed", [_rates({**figures, "scenes": shown}, ours, named=False), told], program="bench")
 
 
 def _measured(scene, keys):
     return all("samples_per_second" in scene["renderers"].get(key, {}) for key in keys)
 
 
-def _rates(figures, keys):
+def _rates(figures, keys, named=True):
     titles = [f"{figures['renderers'][key]['title']} {figures['renderers'][key]['version']}" for key in keys]
     rows = []
     for name, scene in figures["scenes"].items():
         failed = scene.get("failed")
         cells = [""] * len(keys) if failed else [_rate(scene["renderers"].get(key)) for key in keys]
-        rows.append([f"{name}: {failed or scene['title']}", *cells])
+        rows.append([f"{name}: " * named + (failed or scene["title"]), *cells])
     return page.markdown(["million samples/s", *titles], rows)
 
 
