@@ -1,4 +1,4 @@
-"""A window's export reads again only what the depsgraph says has changed, and gives what an export of everything gives."""
+"""Views and animations read again only what has changed, and give what an export of everything gives."""
 
 import blenders
 import pytest
@@ -39,9 +39,24 @@ EXPECTED = {
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_edits(which, tmp_path):
+    """Of a window, by what the depsgraph says has changed."""
     got = blenders.run(which, tmp_path, "parts_cases", "edits")
     got.pop("console")
     read = {name: tuple(result[0].values()) for name, result in got.items()}
     assert read == EXPECTED
     assert not [name for name, result in got.items() if not result[1]], "another snapshot than that of an export of everything"
     assert not [name for name, result in got.items() if not result[2]], "other messages"
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+@pytest.mark.parametrize("persistent", ["no", "yes"])
+def test_frames_keep_what_does_not_change(which, tmp_path, persistent):
+    """Of nine meshes a shape key, two modifiers and a face's slot change one each; of two pictures one file is written anew."""
+    got = blenders.run(which, tmp_path, "kept_cases", "frames", persistent)
+    # A render of one frame keeps nothing, and tells nothing of it.
+    assert got["alone"] == [[None] * 4] * 3
+    assert got["counts"] == [[9, 0, 2, 0], [4, 5, 1, 1], [4, 5, 1, 1]]
+    assert min(got["bytes"]) > 0 and min(got["changes"]) > 0.01
+    assert got["differences"] == [0.0] * 3
+    # Persistent Data is for the next render, too, but not for another file.
+    assert got["left"] == (1 if persistent == "yes" else 0) and got["after another file"] == 0

@@ -1,4 +1,4 @@
-"""Small rules of Cycles that the exporter follows, beside what Cycles of the same Blender shows for the same scene."""
+"""Small rules of Cycles that the exporter follows, and values that it folds, beside what Cycles of the same Blender shows."""
 
 import blenders
 import numpy as np
@@ -7,6 +7,9 @@ from blenders import MODULE, PROGRAM
 
 # Nothing varies over these pictures: what is left is the rounding of single precision, 2^-24, of a dozen products.
 LIMIT = 1e-6
+# Cycles shows values on top of 128, of which single precision keeps 2^-17 = 7.6e-6, and computes with numbers up to 8 in its
+# own single precision, whose rounding of 2^-24 some ten steps add up to 5e-6.
+VALUE_LIMIT = 2e-5
 
 
 @pytest.fixture(params=[MODULE, PROGRAM])
@@ -57,3 +60,14 @@ def test_one_attribute_name_is_cycles_own(case):
     theirs, ours = case("names", "generated")["generated"]
     assert theirs[:2] != pytest.approx([0.25, 0.5], abs=0.025)
     assert ours == pytest.approx(theirs, abs=0.025)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+@pytest.mark.parametrize("name, least", [("mathematics", 70), ("vectors", 55), ("colours", 70), ("links", 12)])
+def test_folded_values(which, name, least, tmp_path):
+    """Value nodes with constants."""
+    got = blenders.run(which, tmp_path, "value_cases", name)
+    got.pop("console")
+    assert len(got) >= least
+    wrong = {what: pair for what, pair in got.items() if np.abs(np.subtract(*pair)).max() > VALUE_LIMIT}
+    assert not wrong

@@ -8,9 +8,8 @@ import pytest
 from tools.harness import estimates, page, pictures, turns, workers
 from tools.harness.errors import Reference, luminance
 from tools.harness.kept import kept, kept_picture
-from tools.harness.options import wanted
 from tools.harness.places import README, TABLES
-from tools.harness.progress import Progress
+from tools.harness.terminal import Progress, wanted
 
 
 def test_squared_error_takes_off_the_references_noise():
@@ -92,7 +91,12 @@ def test_competitors_take_turns():
 
 
 def test_patterns_choose_by_any_name():
-    assert wanted("", "balls") and wanted("room, BALL*", "balls") and wanted("interior", "a.blend", "interior")
+    assert (
+        wanted("", "balls")
+        and wanted("room, BALL*", "balls")
+        and wanted("interior", "a.blend", "interior")
+        and wanted("kitch*", "Kitchen")
+    )
     assert not wanted("ball", "balls") and not wanted("room,*s2", "balls")
 
 
@@ -193,8 +197,8 @@ def test_a_table_replaces_what_is_between_the_marks(tmp_path):
     path = tmp_path / "README.md"
     begin, end = page.marks("speed", "bench")
     path.write_text(f"before\n{begin}\nold\n{end}\nafter\n")
-    page.put_between(path, "speed", ["new", "", "table"], "bench")
-    assert path.read_text() == f"before\n{begin}\nnew\n\ntable\n{end}\nafter\n"
+    page.put_between(path, "speed", ["new", "", "table", "last"], "bench")
+    assert path.read_text() == f"before\n{begin}\nnew\n\ntable\n\nlast\n{end}\nafter\n"
     with pytest.raises(ValueError, match="lacks the lines"):
         page.put_between(path, "other", ["new"])
 

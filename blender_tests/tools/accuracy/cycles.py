@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from tools.bench import worker
-from tools.harness import process
+from tools.harness import workers
 from tools.harness.errors import Reference, luminance, root_mean_square
 from tools.harness.f12 import press_f12, registered
 from tools.harness.kept import kept_picture
@@ -60,4 +60,4 @@ def _reference(scene, name, folder, samples):
 
 
 if __name__ == "__main__":
-    registered(lambda: process.answer(measure))
+    registered(lambda: workers.answer(measure))

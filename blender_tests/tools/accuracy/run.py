@@ -7,10 +7,10 @@ Beside it, for the record, the same for the noise threshold of Cycles.
 
 import dataclasses
 
-from tools.harness import options, verdicts, workers
+from tools.harness import verdicts, workers
 from tools.harness.kept import kept
 from tools.harness.places import BUILD, ROOT, digest_of_library, header
-from tools.harness.progress import Progress
+from tools.harness.terminal import Progress, make_parser
 
 from . import goals, page, runs, scenes
 
@@ -24,7 +24,7 @@ CYCLES_LIMIT = 3600.0
 def read_arguments():
     quick = "three scenes, six seeds, one target: a minute or two"
     patterns = "comma-separated patterns of scene names, as 'glass*'"
-    parser = options.parser(__doc__, quick=quick, only=patterns, threads=2)
+    parser = make_parser(__doc__, quick=quick, only=patterns, threads=2)
     parser.add_argument("--no-cycles", action="store_true", help="leave Cycles out")
     return parser.parse_args()
 

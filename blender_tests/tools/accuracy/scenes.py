@@ -11,8 +11,8 @@ from bindings.snapshot import Camera, Instance, Light, SceneSnapshot
 from tiny_scenes import beckmann, lambert, look_at, move, plane, quad, rotate_x, rotate_y, scale, sphere
 
 from tools.bench import jobs
-from tools.harness.options import wanted
 from tools.harness.places import BUILD
+from tools.harness.terminal import wanted
 
 WIDTH, HEIGHT = 96, 64
 MIRROR = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(0.9, 0.85, 0.8)),))

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tools.harness import pictures, process, workers
+from tools.harness import pictures, workers
 from tools.harness.turns import by_turns, middle, ratio
 
 from . import jobs
@@ -65,4 +65,4 @@ def measure(rounds, threads, quick):
 
 
 if __name__ == "__main__":
-    process.answer(trace)
+    workers.answer(trace)

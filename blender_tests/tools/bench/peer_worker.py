@@ -7,7 +7,7 @@ import numpy as np
 
 from addon.bindings.snapshot import SceneSnapshot
 from tools.bench import peers
-from tools.harness import process
+from tools.harness import workers
 
 
 def _adapter(module):
@@ -38,20 +38,20 @@ def render(module, snapshot, threads, samples, seed, option=None, picture=None, 
     result = {"samples": samples * pixels}
     # Import before the clock starts, as Blender is up before F12.
     adapter.version(option) if option else adapter.version()
-    process.reset_peak()
-    before, started = process.memory("VmRSS"), time.perf_counter()
+    workers.reset_peak()
+    before, started = workers.memory("VmRSS"), time.perf_counter()
     renderer = adapter.Renderer(loaded, threads, option)
     result["setup_seconds"] = time.perf_counter() - started
     if first_look:
         renderer.render(1, 0)
         result["first_pixel_seconds"] = time.perf_counter() - started
     values, result["render_seconds"], result["clock"] = renderer.render(samples, seed)
-    result["peak_bytes"] = process.memory("VmHWM") - before
+    result["peak_bytes"] = workers.memory("VmHWM") - before
     if picture:
         np.save(picture, values)
     return result
 
 
 if __name__ == "__main__":
-    process.answer(version, check, render)
-    process.leave()
+    workers.answer(version, check, render)
+    workers.leave()

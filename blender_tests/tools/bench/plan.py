@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from tools.harness.options import wanted
+from tools.harness.terminal import wanted
 
 
 @dataclass(frozen=True)

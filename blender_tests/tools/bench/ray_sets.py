@@ -11,7 +11,7 @@ from addon.bindings.session import Scene
 from addon.bindings.snapshot import InstanceTable, MeshData, SceneSnapshot
 from tools.bench.peers.geometry import placements
 from tools.bench.peers.view import read_view
-from tools.harness import process
+from tools.harness import workers
 
 # Squares of this many pixels a side are neighbours in the file, so that packets of 4, 8 and 16 are coherent.
 _SQUARE = 4
@@ -105,4 +105,4 @@ def _rays(origins, directions, tmax):
 
 
 if __name__ == "__main__":
-    process.answer(write)
+    workers.answer(write)

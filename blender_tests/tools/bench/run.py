@@ -6,9 +6,9 @@ Figures are medians over the rounds.
 
 from pathlib import Path
 
-from tools.harness import options, verdicts
+from tools.harness import verdicts
 from tools.harness.places import ROOT, digest_of_library, header
-from tools.harness.progress import Progress
+from tools.harness.terminal import Progress, make_parser
 from tools.harness.workers import Failed
 
 from . import chart, classic, contest, extras, goals, jobs, page, plan, rays, window
@@ -20,7 +20,7 @@ _QUICK_LIMIT = 45.0
 def read_arguments():
     patterns = "comma-separated patterns of scene names, as 'balls*'; nothing else runs"
     quick = "small pictures, few samples: some minutes"
-    parser = options.parser(__doc__, quick=quick, only=patterns, threads=2, readme=True)
+    parser = make_parser(__doc__, quick=quick, only=patterns, threads=2, readme=True)
     parser.add_argument("--rounds", type=int, default=3, help="of what is measured beside the scenes")
     parser.add_argument("--before", type=Path, help="the built tree of another revision: it alone is compared with")
     return parser.parse_args()

@@ -13,7 +13,7 @@ import scenes
 from addon.bindings import abi
 from addon.bindings.session import Scene, Session
 from addon.export.scene import export_scene
-from tools.harness import process
+from tools.harness import workers
 from tools.harness.f12 import press_f12, registered
 
 
@@ -59,13 +59,13 @@ def f12(engine, **settings):
     bpy.context.view_layer.update()
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = os.path.join(folder, "picture.png")
-        process.reset_peak()
-        before, start = process.memory("VmRSS"), time.perf_counter()
+        workers.reset_peak()
+        before, start = workers.memory("VmRSS"), time.perf_counter()
         bpy.ops.render.render(write_still=True)
         seconds = time.perf_counter() - start
         if not os.path.exists(scene.render.filepath):
             raise RuntimeError(f"{engine} wrote no picture")
-    return {"seconds": seconds, "peak_bytes": process.memory("VmHWM") - before}
+    return {"seconds": seconds, "peak_bytes": workers.memory("VmHWM") - before}
 
 
 def first_shown(**settings):
@@ -91,8 +91,8 @@ def render(engine, name, threads, width, height, samples, seed, bounces=12, pict
     scene = set_up(name, threads, width, height, samples, bounces)
     scene.render.engine = engine
     bpy.context.view_layer.update()
-    process.reset_peak()
-    before, result = process.memory("VmRSS"), {"samples": samples * width * height}
+    workers.reset_peak()
+    before, result = workers.memory("VmRSS"), {"samples": samples * width * height}
     if first_look:
         set_samples(scene, 1, 0)
         first = press_f12(scene)
@@ -134,8 +134,8 @@ def prepare(**settings):
     """Export, upload and build, each by itself, and the bytes that they take on top of Blender's own."""
     set_up(**settings)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    process.reset_peak()
-    before, start = process.memory("VmRSS"), time.perf_counter()
+    workers.reset_peak()
+    before, start = workers.memory("VmRSS"), time.perf_counter()
     exported_scene, _ = export_scene(depsgraph)
     exported = time.perf_counter()
     with Scene(None) as scene:
@@ -143,8 +143,8 @@ def prepare(**settings):
         filled = time.perf_counter()
         scene.commit(exported_scene.settings.accelerator, settings["threads"])
         built = time.perf_counter()
-        peak = process.memory("VmHWM") - before
-        kept = process.memory("VmRSS") - before
+        peak = workers.memory("VmHWM") - before
+        kept = workers.memory("VmRSS") - before
         with Session(scene, exported_scene.camera, exported_scene.settings) as session:
             statistics = session.statistics()
     triangles = sum(len(mesh.triangles) for mesh in exported_scene.meshes)
@@ -191,4 +191,4 @@ def versions():
 TASKS = (f12, first_shown, render, snapshot, prepare, accelerators, versions)
 
 if __name__ == "__main__":
-    registered(lambda: process.answer(*TASKS))
+    registered(lambda: workers.answer(*TASKS))

@@ -12,11 +12,10 @@ import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from tools.harness import options
 from tools.harness.conversation import Conversation
 from tools.harness.kept import kept
 from tools.harness.places import ROOT, digest_of_file, digest_of_files, digest_of_library, header, machine
-from tools.harness.progress import Progress
+from tools.harness.terminal import Progress, make_parser
 from tools.harness.workers import START
 
 from . import measure, page, sources, verdicts
@@ -30,7 +29,7 @@ _MEASURING = ("alike", "framing", "measure", "noise", "worker")
 def read_arguments():
     patterns = "comma-separated patterns of names, file names or kinds, as 'donut*'"
     settings = {"only": patterns, "threads": os.cpu_count(), "readme": True, "output": "corpus"}
-    parser = options.parser(__doc__, quick="few samples: some seconds a file", **settings)
+    parser = make_parser(__doc__, quick="few samples: some seconds a file", **settings)
     parser.add_argument("--folder", type=Path, help="whose .blend files are rendered; default: those of scenes/corpus.toml")
     parser.add_argument("--clones", type=Path, help="folder of clones, owner+name or owner/name, that the list is taken out of")
     parser.add_argument("--list", type=Path, default=ROOT / "scenes" / "corpus.toml", help="in place of scenes/corpus.toml")

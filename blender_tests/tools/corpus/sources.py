@@ -6,7 +6,7 @@ from pathlib import Path
 
 import tomllib
 
-from tools.harness.options import wanted
+from tools.harness.terminal import wanted
 
 from . import clones
 

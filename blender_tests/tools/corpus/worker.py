@@ -14,7 +14,7 @@ import numpy as np
 
 import addon
 from tools.corpus import alike, framing
-from tools.harness import process
+from tools.harness import workers
 from tools.harness.f12 import press_f12
 
 
@@ -47,8 +47,8 @@ def render(engine, samples, seed, picture):
     scene = bpy.context.scene
     scene.render.engine = engine
     alike.set_samples(scene, samples, seed)
-    process.reset_peak()
-    before = process.memory("VmRSS")
+    workers.reset_peak()
+    before = workers.memory("VmRSS")
     with _timed_export() as export:
         rendered = press_f12(scene)
     result = {"wall": rendered.wall, "seconds": rendered.seconds, "peak_bytes": max(0, rendered.peak - before)}
@@ -103,7 +103,7 @@ def main():
     addon.register()
     with os.fdopen(int(sys.argv[-1]), "w", encoding="utf-8") as answers:
         serve(answers)
-    process.leave()
+    workers.leave()
 
 
 if __name__ == "__main__":

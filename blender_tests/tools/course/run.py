@@ -6,16 +6,15 @@ import bpy
 
 from scenes.course.contents import PROSE, make_chapter
 from scenes.render import captured_output
-from tools.harness import options
 from tools.harness.f12 import registered
-from tools.harness.progress import Progress
+from tools.harness.terminal import Progress, make_parser
 
 from . import page
 
 
 def read_arguments():
     only = "a part of the names of the chapters wanted"
-    return options.parser(__doc__, quick="smaller pictures and fewer rays", only=only, output="course").parse_args()
+    return make_parser(__doc__, quick="smaller pictures and fewer rays", only=only, output="course").parse_args()
 
 
 def main():

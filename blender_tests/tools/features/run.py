@@ -12,9 +12,8 @@ from bindings.enums import Integrator
 from bindings.hints import median_with_uncertainty
 from bindings.session import Session
 
-from tools.harness import options
 from tools.harness.places import BUILD, ROOT, header
-from tools.harness.progress import Progress
+from tools.harness.terminal import Progress, make_parser, wanted
 
 from . import cases, page
 
@@ -27,7 +26,7 @@ _LEAST_ROUNDS = 8
 
 def read_arguments():
     parts = "comma-separated parts of features' names"
-    return options.parser(__doc__, quick="fewer rounds: wide intervals, a few minutes", only=parts).parse_args()
+    return make_parser(__doc__, quick="fewer rounds: wide intervals, a few minutes", only=parts).parse_args()
 
 
 def seconds_of(snapshot, samples):
@@ -46,8 +45,8 @@ def samples_for(snapshot):
     return max(1, round(4 * _RUN_SECONDS / seconds))
 
 
-def compare(base, other, wanted, limit):
-    """Time of other over that of base for the same samples; rounds until the interval is wanted, or for limit seconds."""
+def compare(base, other, interval, limit):
+    """Time of other over that of base for the same samples; rounds until the interval is as small, or for limit seconds."""
     samples = samples_for(base)
     start, ratios = time.monotonic(), []
     while True:
@@ -58,7 +57,7 @@ def compare(base, other, wanted, limit):
         a += seconds_of(base, samples)[0]
         ratios.append(b / a)
         ratio, uncertainty = median_with_uncertainty(ratios)
-        enough = uncertainty < wanted * max(1.0, ratio) or time.monotonic() - start > limit
+        enough = uncertainty < interval * max(1.0, ratio) or time.monotonic() - start > limit
         if len(ratios) >= _LEAST_ROUNDS and enough:
             break
     figures = {"cost": ratio - 1.0, "uncertainty": uncertainty, "rounds": len(ratios)}
@@ -81,7 +80,7 @@ def measure(case, integrator, quick):
 def main():
     arguments, say = read_arguments(), Progress()
     parts = ",".join(f"*{part}*" for part in arguments.only.split(",") if part)
-    chosen = [case for case in cases.CASES if options.wanted(parts, case.name)]
+    chosen = [case for case in cases.CASES if wanted(parts, case.name)]
     figures = {**header(arguments.quick), "goal": GOAL, "cases": {}}
     for integrator in (Integrator.PATH, Integrator.CLASSIC):
         for case in chosen:

@@ -12,7 +12,7 @@ import numpy as np
 
 import addon
 
-from . import process
+from . import workers
 
 
 def registered(work):
@@ -38,7 +38,7 @@ def press_f12(scene):
         scene.render.filepath = os.path.join(folder, "picture.exr")
         start = time.perf_counter()
         bpy.ops.render.render(write_still=True, scene=scene.name)
-        wall, peak = time.perf_counter() - start, process.memory("VmHWM")
+        wall, peak = time.perf_counter() - start, workers.memory("VmHWM")
         if not os.path.exists(scene.render.filepath):
             raise RuntimeError(f"{scene.render.engine} wrote no picture")
         values = next(iter(exr.read(scene.render.filepath).values()))

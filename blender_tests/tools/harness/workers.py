@@ -1,9 +1,10 @@
-"""Measurements in processes of their own: each prints its answer as JSON, or says why it has none."""
+"""Measurements in processes of their own: who asks, and what answers, as JSON in the last line that it prints."""
 
 import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 from .places import ROOT, TOOLS
 
@@ -31,7 +32,7 @@ def run(command, root=ROOT, environment=None, limit=None):
 
 
 def ask(module, task, /, limit=None, environment=None, **arguments):
-    """The answer of a task of a module of tools: of one that calls process.answer."""
+    """The answer of a task of a module of tools: of one that calls answer."""
     return run([sys.executable, START, module, task, json.dumps(arguments)], environment=environment, limit=limit)
 
 
@@ -40,3 +41,30 @@ def build(*command):
     result = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True)
     if result.returncode:
         raise Failed((result.stderr or result.stdout or f"{command[0]} failed").strip().splitlines()[-1][:300])
+
+
+def memory(field):
+    """A figure of this process in bytes: VmRSS now, or VmHWM, the peak since reset_peak."""
+    for line in Path("/proc/self/status").read_text().splitlines():
+        if line.startswith(field + ":"):
+            return 1024 * int(line.split()[1])
+    raise KeyError(field)
+
+
+def reset_peak():
+    Path("/proc/self/clear_refs").write_text("5")
+
+
+def answer(*tasks):
+    """Runs the task that the command line names with its JSON, and prints the JSON that it returns as the last line."""
+    by_name = {task.__name__: task for task in tasks}
+    result = by_name[sys.argv[1]](**json.loads(sys.argv[2]))
+    sys.stdout.flush()
+    print("\n" + json.dumps(result), flush=True)
+
+
+def leave():
+    """Ends the process at once: some libraries abort where Python takes them apart."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)

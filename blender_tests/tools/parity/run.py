@@ -12,9 +12,8 @@ import bpy
 
 from scenes.parity import catalogue, figures
 from scenes.render import captured_output
-from tools.harness import options
 from tools.harness.f12 import registered
-from tools.harness.progress import Progress
+from tools.harness.terminal import Progress, make_parser
 
 from . import contest, page
 
@@ -25,7 +24,7 @@ QUICK_SAMPLES = 32
 def read_arguments():
     patterns = "comma-separated patterns of scene names or subjects, as 'lights*'"
     quick = "few samples; what their noise explains is no failure, as long as that is at most three limits"
-    parser = options.parser(__doc__, quick=quick, only=patterns, output="parity")
+    parser = make_parser(__doc__, quick=quick, only=patterns, output="parity")
     parser.add_argument("--subset", action="store_true", help="the scenes of `make test` alone")
     parser.add_argument("--most-samples", type=int, default=1024, help="of each half of each engine")
     parser.add_argument("--self-check", action="store_true", help="Cycles against Cycles: the judge must find no difference")

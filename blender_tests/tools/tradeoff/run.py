@@ -15,11 +15,11 @@ from addon.bindings.enums import Integrator
 from addon.scene_settings import QUALITIES
 from scenes.render import captured_output
 from tools.bench import worker
-from tools.harness import options, pictures
+from tools.harness import pictures
 from tools.harness.errors import Reference
 from tools.harness.f12 import registered
 from tools.harness.places import header
-from tools.harness.progress import Progress
+from tools.harness.terminal import Progress, make_parser
 
 from . import chart, curves, page, runs
 
@@ -36,7 +36,7 @@ _LONG_SEEDS = 1
 
 def read_arguments():
     quick = "few samples, and no FINAL: some minutes"
-    parser = options.parser(__doc__, quick=quick, threads=2, readme=True, output="tradeoff")
+    parser = make_parser(__doc__, quick=quick, threads=2, readme=True, output="tradeoff")
     parser.add_argument("--blend", type=Path, help="a file of Blender; default: the showcase")
     parser.add_argument("--samples", type=int, help=f"of the reference; default: {_REFERENCE}")
     arguments = parser.parse_args()
