@@ -16,15 +16,15 @@ import time
 import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-for folder in (os.path.join(os.path.dirname(HERE), "addon"), os.path.dirname(HERE), HERE):
+for folder in (os.path.dirname(HERE), HERE):
     if folder not in sys.path:
         sys.path.insert(0, folder)
 
-from bindings.abi import load_library  # noqa: E402
-from bindings.enums import Pass  # noqa: E402
-from bindings.npz import SnapshotError  # noqa: E402
-from bindings.session import LancerError, Session  # noqa: E402
-from bindings.snapshot import SceneSnapshot  # noqa: E402
+from addon.bindings.abi import load_library  # noqa: E402
+from addon.bindings.enums import Pass  # noqa: E402
+from addon.bindings.npz import SnapshotError  # noqa: E402
+from addon.bindings.session import LancerError, Session  # noqa: E402
+from addon.bindings.snapshot import SceneSnapshot  # noqa: E402
 
 # The one under test, or another build of it.
 LIBRARY = load_library(os.environ.get("LANCER_LIBRARY"))

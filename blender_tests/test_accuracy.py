@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 from bench import accuracy_figures as figures
 from bench import accuracy_scenes as scenes
-from bindings import schedule as schedules
-from bindings.abi import LancerError, Pass, Status
-from bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
-from bindings.session import Scene, Session
-from bindings.snapshot import Settings
 from scipy import stats
 from significance import LEVEL
 from tiny_scenes import showroom
+
+from addon.bindings import schedule as schedules
+from addon.bindings.abi import LancerError, Pass, Status
+from addon.bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
+from addon.bindings.session import Scene, Session
+from addon.bindings.snapshot import Settings
 
 SEEDS = 6
 BUILDERS = {"half_black": scenes.half_black, "soft_shadow": scenes.soft_shadow, "glossy": scenes.glossy}

@@ -10,12 +10,13 @@ import zipfile
 import blenders
 import numpy as np
 import pytest
-from bindings import bug_report
-from bindings.npz import SnapshotError
-from bindings.snapshot import Image
 from blenders import MODULE, PROGRAM
 from conftest import ROOT
 from test_snapshot import rich
+
+from addon.bindings import bug_report
+from addon.bindings.npz import SnapshotError
+from addon.bindings.snapshot import Image
 
 FACTS = {"versions": {"Blender": "9.9"}, "messages": []}
 

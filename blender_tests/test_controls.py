@@ -7,7 +7,8 @@ import blenders
 import pytest
 from blenders import MODULE, PROGRAM
 from conftest import ROOT
-from export.controls import CONTROLS, OWN
+
+from addon.export.controls import CONTROLS, OWN
 
 # What acts and is no setting of its own in the Properties editor, and what is then.
 ELSEWHERE = {

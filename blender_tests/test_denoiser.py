@@ -8,10 +8,11 @@ import threading
 import numpy as np
 import oidn_versions
 import pytest
-from bindings import abi, denoiser, oidn
-from bindings.abi import LancerError
-from bindings.mapped import on_linux
-from bindings.session import Cancelled
+
+from addon.bindings import abi, denoiser, oidn
+from addon.bindings.abi import LancerError
+from addon.bindings.mapped import on_linux
+from addon.bindings.session import Cancelled
 
 HEIGHT, WIDTH = 96, 128
 

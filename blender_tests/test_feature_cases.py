@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from bench import feature_cases, features_page
-from bindings.enums import Features
-from bindings.session import Session
+
+from addon.bindings.enums import Features
+from addon.bindings.session import Session
 
 CASES = {case.name: case for case in feature_cases.CASES}
 IDLE = [name for name, case in CASES.items() if case.idle]

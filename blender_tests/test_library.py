@@ -7,8 +7,9 @@ import subprocess
 import sys
 
 import pytest
-from bindings import abi
 from conftest import ROOT
+
+from addon.bindings import abi
 
 HEADER = os.path.join(ROOT, "core", "include", "lancer.h")
 

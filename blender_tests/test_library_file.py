@@ -3,7 +3,7 @@
 import os
 import sys
 
-from bindings import abi, mapped
+from addon.bindings import abi, mapped
 
 NAMES = {"win32": ("lancer.dll", "lancer-0a1b2c.dll"), "darwin": ("liblancer.dylib", "liblancer-0a1b2c.dylib")}
 

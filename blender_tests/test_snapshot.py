@@ -5,12 +5,14 @@ import weakref
 
 import numpy as np
 import pytest
-from bindings import structs
-from bindings.abi import Pass
-from bindings.enums import Domain, LobeKind, NodeKind
-from bindings.npz import save_npz
-from bindings.session import Session
-from bindings.snapshot import (
+from tiny_scenes import quad, showroom
+
+from addon.bindings import structs
+from addon.bindings.abi import Pass
+from addon.bindings.enums import Domain, LobeKind, NodeKind
+from addon.bindings.npz import save_npz
+from addon.bindings.session import Session
+from addon.bindings.snapshot import (
     Image,
     Lobe,
     Material,
@@ -22,7 +24,6 @@ from bindings.snapshot import (
     SceneSnapshot,
     World,
 )
-from tiny_scenes import quad, showroom
 
 
 def rich():

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "addon"), str(ROOT / "blender_tests")]
+sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests")]
 
 from bench import accuracy_goals, accuracy_page, accuracy_runs, accuracy_scenes, jobs  # noqa: E402
 from bench.longer import Line, kept  # noqa: E402

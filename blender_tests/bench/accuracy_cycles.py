@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "addon"), str(ROOT / "blender_tests")]
+sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests")]
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402

@@ -7,9 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from bindings.abi import Pass
-from bindings.schedule import SAMPLES, TARGET, Schedule
-from bindings.session import Scene, Session
+
+from addon.bindings.abi import Pass
+from addon.bindings.schedule import SAMPLES, TARGET, Schedule
+from addon.bindings.session import Scene, Session
 
 from . import accuracy_figures as figures
 

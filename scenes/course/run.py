@@ -6,8 +6,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-# The small scenes and closed forms of the tests, and the bindings as these import them.
-sys.path[:0] = [str(ROOT), str(ROOT / "addon"), str(ROOT / "blender_tests")]
+# The small scenes and closed forms of the tests.
+sys.path[:0] = [str(ROOT), str(ROOT / "blender_tests")]
 
 import bpy  # noqa: E402
 
