@@ -9,19 +9,21 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import as_rendered, denoise, passes, preview, redraw, render_job, stamp
+from . import as_rendered, passes, preview, redraw, render_job
 from .bindings.abi import LancerError
-from .bindings.schedule import SAMPLES, TARGET, TIME, Schedule
 from .bindings.session import Cancelled, Session
-from .bindings.uses import used_features
 from .check_scene import quick_check
+from .denoise import view_layer as denoise
 from .export import main_thread
 from .export.kept import Kept
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
 from .harm import Harm
+from .measure import stamp
+from .measure.pace import Pace
+from .measure.schedule import SAMPLES, TARGET, TIME, Schedule
+from .measure.uses import used_features
 from .of_scenes import OfScenes
-from .pace import Pace
 from .picture import Picture
 from .priority import lowered
 from .viewport.viewport import Viewport

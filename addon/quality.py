@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import bpy
 
-from . import measuring, stamp
-from .bindings.forecast import classic_seconds, forecast
-from .bindings.pilot import measure
+from . import measuring
+from .measure import stamp
+from .measure.forecast import classic_seconds, forecast
+from .measure.pilot import measure
 from .of_scenes import OfScenes
 from .scene_settings import QUALITIES
 

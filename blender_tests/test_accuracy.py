@@ -11,11 +11,11 @@ from scipy import stats
 from significance import LEVEL
 from tiny_scenes import showroom
 
-from addon.bindings import schedule as schedules
 from addon.bindings.abi import LancerError, Pass, Status
-from addon.bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
 from addon.bindings.session import Scene, Session
 from addon.bindings.snapshot import Settings
+from addon.measure import schedule as schedules
+from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
 
 SEEDS = 6
 BUILDERS = {"half_black": scenes.half_black, "soft_shadow": scenes.soft_shadow, "glossy": scenes.glossy}

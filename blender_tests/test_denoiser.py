@@ -9,10 +9,11 @@ import numpy as np
 import oidn_versions
 import pytest
 
-from addon.bindings import abi, denoiser, oidn
+from addon.bindings import abi
 from addon.bindings.abi import LancerError
-from addon.bindings.mapped import on_linux
 from addon.bindings.session import Cancelled
+from addon.denoise import denoiser, oidn
+from addon.denoise.mapped import on_linux
 
 HEIGHT, WIDTH = 96, 128
 

@@ -8,11 +8,11 @@ import pytest
 import tiny_scenes as tiny
 
 from addon.bindings.abi import LancerError
-from addon.bindings.forecast import Range, classic_seconds, forecast, slope
-from addon.bindings.pilot import Measured, Point, measure
-from addon.bindings.schedule import SAMPLES, TARGET, TIME, Schedule
 from addon.bindings.session import Cancelled, Session
 from addon.bindings.snapshot import Camera, Light, Material
+from addon.measure.forecast import Range, classic_seconds, forecast, slope
+from addon.measure.pilot import Measured, Point, measure
+from addon.measure.schedule import SAMPLES, TARGET, TIME, Schedule
 
 RATE = 2e-6  # seconds of a pixel's sample
 REACH = 1.96

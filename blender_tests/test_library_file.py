@@ -3,7 +3,8 @@
 import os
 import sys
 
-from addon.bindings import abi, mapped
+from addon.bindings import abi
+from addon.denoise import mapped
 
 NAMES = {"win32": ("lancer.dll", "lancer-0a1b2c.dll"), "darwin": ("liblancer.dylib", "liblancer-0a1b2c.dylib")}
 

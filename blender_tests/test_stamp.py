@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from addon import stamp
-from addon.bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME
 from addon.bindings.snapshot import Settings
+from addon.measure import stamp
+from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME
 
 
 def numbers(error, bound, ended_by=SAMPLES, samples=100, seconds=20.0, **more):

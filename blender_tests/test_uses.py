@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 import tiny_scenes as tiny
 
-from addon.bindings import plainer_scene, uses
 from addon.bindings.enums import Coordinate, LightKind, LobeKind, NodeKind, Pass, Shading
-from addon.bindings.parameters import without_idle_nodes
 from addon.bindings.session import Session
 from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Principled, World
 from addon.bindings.snapshot import Instance, InstanceTable, Light
-from addon.bindings.uses import kernel_in_words, used_features, without
+from addon.measure import plainer_scene, uses
+from addon.measure.parameters import without_idle_nodes
+from addon.measure.uses import kernel_in_words, used_features, without
 
 # Ours and the core's words for the same thing.
 SAME = {

@@ -8,14 +8,14 @@ import sys
 import bpy
 import numpy as np
 
-from addon import stamp
 from addon.bindings import bug_report
 from addon.bindings.abi import LancerError
 from addon.bindings.npz import SnapshotError
-from addon.bindings.schedule import Schedule
 from addon.bindings.session import Session
-from addon.bindings.uses import kernel_in_words, used_features
 from addon.export.messages import Messages
+from addon.measure import stamp
+from addon.measure.schedule import Schedule
+from addon.measure.uses import kernel_in_words, used_features
 
 
 def load(path, samples=None):

@@ -2,8 +2,9 @@
 
 import bpy
 
-from .. import engine, stamp
+from .. import engine
 from ..harm import Harm
+from ..measure import stamp
 from ..viewport import viewport
 from .render import LancerRenderPanel
 from .sentences import sentence

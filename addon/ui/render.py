@@ -3,7 +3,8 @@
 import bpy
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
-from .. import denoise, measuring, presets, quality
+from .. import measuring, presets, quality
+from ..denoise import view_layer as denoise
 from .panel import LancerPanel, setting, uses_classic
 from .sentences import sentence
 

@@ -11,14 +11,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import denoise, priority
+from .. import priority
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
-from ..bindings.schedule import Schedule
 from ..bindings.session import PictureError, Scene, Session
 from ..bindings.snapshot import SceneSnapshot, Settings
+from ..denoise import view_layer as denoise
 from ..export.view import View
-from ..pace import Pace
+from ..measure.pace import Pace
+from ..measure.schedule import Schedule
 from .cleaner import GUIDES, Cleaner
 from .sizes import PixelSizes
 

@@ -6,10 +6,11 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from .. import denoise, redraw
+from .. import redraw
 from ..bindings import snapshot
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
+from ..denoise import view_layer as denoise
 from ..export.messages import Messages
 from ..export.parts import Parts
 from ..export.scene import ExportOptions, export_scene

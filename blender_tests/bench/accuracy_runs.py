@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from addon.bindings.abi import Pass
-from addon.bindings.schedule import SAMPLES, TARGET, Schedule
 from addon.bindings.session import Scene, Session
+from addon.measure.schedule import SAMPLES, TARGET, Schedule
 
 from . import accuracy_figures as figures
 

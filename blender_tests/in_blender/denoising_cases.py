@@ -10,7 +10,8 @@ import bpy
 import numpy as np
 import stage
 
-from addon import denoise, engine
+from addon import engine
+from addon.denoise import view_layer as denoise
 from scenes.parity import exr
 
 

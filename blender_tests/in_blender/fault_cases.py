@@ -202,7 +202,7 @@ class _Refusing:
 
 def stereo():
     """Whether both eyes of a denoised picture are what is denoised, and not the noisy picture."""
-    from addon.bindings import oidn  # noqa: F401 - fails early where it cannot be had
+    from addon.denoise import oidn  # noqa: F401 - fails early where it cannot be had
 
     scene = stage.room(width=32, height=24, samples=2)
     scene.lancer.use_denoising = True

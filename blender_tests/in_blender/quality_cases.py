@@ -56,7 +56,7 @@ def measured():
 def words():
     """How intervals of seconds are told."""
     from addon import quality
-    from addon.bindings.forecast import Range
+    from addon.measure.forecast import Range
 
     spans = {"sure": (60, 60, 60), "wide": (60, 20, 300), "untold": (900, 6, 133200), "short": (2, 0.2, 9)}
     return {name: quality.seconds(Range(*values)) for name, values in spans.items()}

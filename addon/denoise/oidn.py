@@ -12,8 +12,9 @@ import re
 import sys
 from ctypes import c_bool, c_char_p, c_double, c_int, c_size_t, c_void_p
 
-from . import elf, mapped
-from .abi import LancerError
+from ..bindings import elf
+from ..bindings.abi import LancerError
+from . import mapped
 
 MISSING = "Open Image Denoise is missing: this Blender brings no library libOpenImageDenoise"
 CPU = 1

@@ -4,8 +4,8 @@ import dataclasses
 import math
 from enum import IntEnum
 
-from .bindings.enums import Integrator
-from .bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME
+from ..bindings.enums import Integrator
+from .schedule import CANCELLED, SAMPLES, TARGET, TIME
 
 # Less than this is not worth a sentence.
 _NOTHING = 5e-5

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..bindings.enums import InstanceFlag, InstanceKind, LightKind, Pass
+from ..bindings.session import Scene
+from ..bindings.shading import NodeRef
+from ..bindings.snapshot import SceneSnapshot
 from . import plainer, plainer_scene
-from .enums import InstanceFlag, InstanceKind, LightKind, Pass
 from .parameters import is_zero
-from .session import Scene
-from .shading import NodeRef
-from .snapshot import SceneSnapshot
 
 _MOST_OWNERS = 8  # named; the count is of all
 

@@ -11,7 +11,7 @@ import math
 import time
 from dataclasses import dataclass
 
-from .session import Cancelled, Scene, Session
+from ..bindings.session import Cancelled, Scene, Session
 from .uses import used_features, without
 
 LEAST_SAVING = 0.03

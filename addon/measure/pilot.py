@@ -11,11 +11,11 @@ import math
 import time
 from dataclasses import dataclass
 
-from .abi import LancerError
-from .enums import Integrator
+from ..bindings.abi import LancerError
+from ..bindings.enums import Integrator
+from ..bindings.session import Cancelled, Scene, Session
 from .hints import small_picture
 from .schedule import PILOT
-from .session import Cancelled, Scene, Session
 
 # Pixels of the larger of the small pictures.
 _FEWEST, _MOST = 1024, 36864
