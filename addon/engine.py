@@ -19,10 +19,9 @@ from .export.kept import Kept
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
 from .harm import Harm
-from .measure import stamp
-from .measure.pace import Pace
-from .measure.schedule import SAMPLES, TARGET, TIME, Schedule
-from .measure.uses import used_features
+from .measure import render_report
+from .measure.scene_features import used_features
+from .measure.schedule import SAMPLES, TARGET, TIME, Schedule, TimeShare
 from .of_scenes import OfScenes
 from .picture import Picture
 from .priority import lowered
@@ -34,7 +33,7 @@ last_statistics = OfScenes()
 last_messages = OfScenes()
 # What that render could not show as Cycles does: {key of Messages.add: how often}.
 last_missing = OfScenes()
-# Of the last measurement of each scene: a hints.Costs.
+# Of the last measurement of each scene: a costs.Costs.
 last_costs = OfScenes()
 # Of the scenes that are being animated or have Persistent Data: what is not read again.
 _kept = OfScenes()
@@ -233,7 +232,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _run(self, schedule, show):
         """Renders range by range, shows what there is now and then, and ends for Esc."""
-        picture, error = Pace(_SHOW_SHARE, _SHOW_EVERY), Pace(_ERROR_SHARE, _TELL_EVERY)
+        picture, error = TimeShare(_SHOW_SHARE, _SHOW_EVERY), TimeShare(_ERROR_SHARE, _TELL_EVERY)
         told = time.monotonic()
         while schedule.start():
             first = not picture.begun
@@ -264,7 +263,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         # Small windows cut off the end.
         parts = [f"Remaining {_clock(seconds)}{_REMAINING[reason]}"]
         if schedule.error is not None and schedule.error.known:
-            parts.append(f"Error {stamp.interval(schedule.error)}")
+            parts.append(f"Error {render_report.interval(schedule.error)}")
         parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
         self.update_stats("", " | ".join(parts))
 
@@ -286,7 +285,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             count = statistics.invalid_samples
             text = f"{count} samples were not finite and are left out, the first at pixel {place}"
             self._tell(scene, Messages([text], Harm.WRONG))
-        numbers = stamp.account(session, schedule)
+        numbers = render_report.account(session, schedule)
         numbers.update(denoise.statistics(denoised))
         held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
@@ -296,12 +295,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         # Only what get_result gives reaches the file.
         stamped = self.get_result()
         several = len(stamped.layers) > 1
-        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings, layer if several else "")
+        lines = numbers["accuracy"] = render_report.lines(numbers, session.settings, layer if several else "")
         layers = last_statistics.get(scene, {}).get("layers", {})
         last_statistics[scene] = {**numbers, "layers": {**layers, layer: numbers}}
         if scene in last_costs:
             keep_costs(scene, last_costs[scene])
-        for name, value in stamp.fields(numbers, session.settings):
+        for name, value in render_report.fields(numbers, session.settings):
             stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
         self.update_stats("", lines[0])
         # Headless, what is reported goes to the terminal; in a window the panel has it.

@@ -5,7 +5,7 @@ import functools
 import bpy
 
 from . import engine, measuring
-from .measure.hints import measure_costs
+from .measure.costs import measure_costs
 from .of_scenes import OfScenes
 
 # Of what the figures in engine.last_costs were measured, by the scene.

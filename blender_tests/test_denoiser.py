@@ -13,7 +13,7 @@ from addon.bindings import abi
 from addon.bindings.abi import LancerError
 from addon.bindings.session import Cancelled
 from addon.denoise import denoiser, oidn
-from addon.denoise.mapped import on_linux
+from addon.denoise.loaded_libraries import on_linux
 
 HEIGHT, WIDTH = 96, 128
 

@@ -10,7 +10,7 @@ from addon.bindings.enums import LobeKind
 from addon.bindings.session import Cancelled
 from addon.bindings.shading import Lobe, Material
 from addon.bindings.snapshot import Camera, Light
-from addon.measure.hints import Cost, measure_costs, median_with_uncertainty, small_picture
+from addon.measure.costs import Cost, measure_costs, median_with_uncertainty, small_picture
 
 
 def shells(count=24):

@@ -4,7 +4,7 @@ import bpy
 
 from .. import engine
 from ..harm import Harm
-from ..measure import stamp
+from ..measure import render_report
 from ..viewport import viewport
 from .render import LancerRenderPanel
 from .sentences import sentence
@@ -19,7 +19,7 @@ class LANCER_RENDER_PT_messages(LancerRenderPanel, bpy.types.Panel):
         statistics = engine.last_statistics.get(context.scene.name)
         if statistics is not None:
             # The error, then what it does not count.
-            for line in stamp.of_layers(statistics):
+            for line in render_report.of_layers(statistics):
                 for part in line.split("; "):
                     sentence(column, context, part[0].upper() + part[1:])
             rate = f"{statistics['rays_per_second'] / 1e6:.2f} million rays per second"

@@ -3,7 +3,7 @@
 import bpy
 
 from .. import engine, features
-from ..measure.uses import kernel_in_words
+from ..measure.scene_features import kernel_in_words
 from .render import LancerRenderPanel, draw_measuring
 from .sentences import sentence
 

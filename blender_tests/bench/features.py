@@ -18,7 +18,7 @@ import tiny_scenes as tiny  # noqa: E402
 
 from addon.bindings.enums import Integrator  # noqa: E402
 from addon.bindings.session import Session  # noqa: E402
-from addon.measure.hints import median_with_uncertainty  # noqa: E402
+from addon.measure.costs import median_with_uncertainty  # noqa: E402
 from bench import feature_cases, features_page, jobs  # noqa: E402
 
 OUTPUT = ROOT / "build" / "features"

@@ -12,7 +12,7 @@ import time
 from dataclasses import dataclass
 
 from ..bindings.session import Cancelled, Scene, Session
-from .uses import used_features, without
+from .scene_features import used_features, without
 
 LEAST_SAVING = 0.03
 _PIXELS = 16384

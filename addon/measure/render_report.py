@@ -1,4 +1,4 @@
-"""The account of a render in words: for the file's metadata, for the terminal, for the panel."""
+"""Figures of a finished render, and what they say in words: for the file's metadata, for the terminal, for the panel."""
 
 import dataclasses
 import math
