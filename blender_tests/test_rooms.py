@@ -9,11 +9,11 @@ from conftest import ROOT
 ADDON = Path(ROOT, "addon")
 # A file imports files of its own rank and of those before it. Rooms are named as folders, other files without their ending.
 RANKS = (
-    "bindings harm of_scenes priority registering scene_copy",
+    "bindings severity by_scene priority registering scene_copy",
     "measure denoise checks export",
-    "passes as_rendered picture redraw render_job",
+    "passes render_export picture redraw render_job",
     "engine viewport check_scene measuring preview",
-    "scene_settings properties preferences presets bug_report course_groups features quality manual ui",
+    "scene_settings properties preferences presets bug_report course_groups measure_features measure_quality manual ui",
     "__init__",
 )
 RANK = {name: rank for rank, names in enumerate(RANKS) for name in names.split()}
@@ -66,4 +66,4 @@ def test_rooms_without_blender(place):
         names = set(imported(path))
         assert not names & {".bpy", ".bpy_extras", ".mathutils", ".gpu", ".blf"}, path
         # Nor by way of another file.
-        assert {name for name in names if not name.startswith(".")} <= {*WITHOUT_BLENDER, "harm"}, path
+        assert {name for name in names if not name.startswith(".")} <= {*WITHOUT_BLENDER, "severity"}, path

@@ -3,8 +3,8 @@
 import bpy
 
 from .. import engine
-from ..harm import Harm
 from ..measure import render_report
+from ..severity import Severity
 from ..viewport import viewport
 from .render import LancerRenderPanel
 from .sentences import sentence
@@ -48,10 +48,10 @@ class LANCER_RENDER_PT_viewport_messages(LancerRenderPanel, bpy.types.Panel):
 
 
 def _draw_messages(column, context, messages, none):
-    if all(message.harm == Harm.HINT for message in messages.told()):
+    if all(message.severity == Severity.HINT for message in messages.told()):
         sentence(column, context, none, "CHECKMARK")
     for message in messages.told():
-        sentence(column, context, message.line, "INFO" if message.harm == Harm.HINT else "ERROR")
+        sentence(column, context, message.line, "INFO" if message.severity == Severity.HINT else "ERROR")
 
 
 CLASSES = (LANCER_RENDER_PT_messages, LANCER_RENDER_PT_viewport_messages)

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import bpy
 
 from . import measuring
+from .by_scene import ByScene
 from .measure import render_report
 from .measure.forecast import classic_seconds, forecast
 from .measure.trial_renders import measure
-from .of_scenes import OfScenes
 from .scene_settings import QUALITIES
 
 # An interval whose ends differ by more than this factor says nothing to plan by, unless even its upper end is short (seconds).
@@ -21,7 +21,7 @@ _TELLING = 20.0
 _SHORT = 20.0
 
 # Kept, by the scene.
-measured = OfScenes()
+measured = ByScene()
 
 
 @dataclass
