@@ -36,7 +36,7 @@ logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
 zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
-.PHONY: build render test test-slow test-platforms bench accuracy tradeoff features parity corpus course sanitize fuzz addon addons format clean help
+.PHONY: build render test test-slow test-platforms bench accuracy tradeoff features parity corpus course sanitize fuzz addon addons bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
 .PHONY: python-run python-test python-dev python-bench python-charts python-zig core-programs core-tests
 
@@ -131,6 +131,9 @@ addons: packages-run python-run python-zig ## the zips for Linux, Windows and ma
 
 test-platforms: packages-platforms python-test python-zig ## run what this machine can of the other platforms' libraries: make test-platforms [ONLY=windows-x64]
 	@LANCER_ZIG="$(zig)" JOBS=$(JOBS) .ci/test_platforms.sh $(python) $(or $(ONLY),$(platforms))
+
+bindings: ## write the Python side of the C interface anew, after core/include/lancer.h has changed
+	@$(PYTHON) .ci/bindings.py
 
 format: packages-format python-dev ## lay out C++ and Python text
 	@$(VENV)/bin/ruff check --quiet --fix . && $(VENV)/bin/ruff format --quiet .

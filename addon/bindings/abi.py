@@ -10,12 +10,10 @@ from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_size_t, c_ui
 
 from . import elf
 from .enums import *  # noqa: F403 - abi is the one name under which others find the whole interface
-from .enums import Status
+from .enums import ABI_VERSION, Status
 from .structs import *  # noqa: F403
 from .structs import STRUCTS, Camera, Error, Image, Light, Material, Mesh, Progress, Settings, Statistics, World
 from .structs import Array as _Array
-
-ABI_VERSION = 4
 
 _FILES = {"win32": ("lancer", ".dll"), "darwin": ("liblancer", ".dylib")}
 UINT32_MAX = 0xFFFFFFFF

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..bindings.enums import Coordinate, MappingType, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
-from ..of_scenes import identity
+from ..by_scene import identity
 from .arithmetic import THIRDS, divide
 from .attributes import attribute_name, tangents_name
 from .fold import rotation

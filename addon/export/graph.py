@@ -16,7 +16,7 @@ import bpy
 from ..bindings import snapshot
 from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
-from ..harm import Harm
+from ..severity import Severity
 from . import colors, coordinates, maths, normals, textures
 from .arithmetic import THIRDS, is_constant, single, triple
 from .colorspace import luminance_weights
@@ -82,7 +82,7 @@ class NodeGraph:
         if key not in numbers:
             if len(self._nodes) >= _MOST_NODES:
                 text = f"has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest"
-                self.messages.add(f"{self.owner}: {text}", "feature:many nodes", harm=Harm.WRONG)
+                self.messages.add(f"{self.owner}: {text}", "feature:many nodes", severity=Severity.WRONG)
                 return _UNKNOWN[self.unknown]
             numbers[key] = len(self._nodes)
             self._nodes.append(node)
@@ -151,10 +151,12 @@ class NodeGraph:
 
     # ---- reading ----
 
-    def tell(self, site, text, key=None, harm=Harm.DIFFERENT):
+    def tell(self, site, text, key=None, severity=Severity.DIFFERENT):
         """key: of Messages.add; by default the node itself is what is missing, "" where nothing is."""
         node = _site(site).node
-        self.messages.add(f"{self.owner}, node '{node.name}': {text}", f"node:{node.bl_label}" if key is None else key, harm)
+        self.messages.add(
+            f"{self.owner}, node '{node.name}': {text}", f"node:{node.bl_label}" if key is None else key, severity
+        )
 
     def parameter(self, site, names, default=0.0, kind="number", low=-math.inf, high=math.inf):
         """The input of a node that has one of the names, made usable; default where this Blender has none.
@@ -229,7 +231,9 @@ class NodeGraph:
         """The value of an origin as a colour; the unknown one where it has none."""
         value = self._output(origin.site, origin.output)
         if value is None:
-            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used", harm=Harm.WRONG)
+            self.tell(
+                origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used", severity=Severity.WRONG
+            )
             return _UNKNOWN[self.unknown]
         return _three(value)
 
@@ -274,7 +278,7 @@ class NodeGraph:
         source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
         if socket.type == "RGBA":
             told = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
-            self.tell(site, told, _key(origin), Harm.WRONG)
+            self.tell(site, told, _key(origin), Severity.WRONG)
             return _UNKNOWN[self.unknown]
         value = _constant(socket)
         told = f"{value:g}" if isinstance(value, float) else ", ".join(f"{x:g}" for x in value)

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import InstanceTable
-from ..harm import Harm
+from ..severity import Severity
 from .checks import check_hair
 from .lights import export_light
 from .objects import Objects
@@ -178,7 +178,7 @@ class Instances:
                 self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
             text = f"object '{thing.name}': type {thing.type} is not supported, it is left out"
-            self.messages.add(text, f"feature:{thing.type.lower()} object", harm=Harm.LEFT_OUT)
+            self.messages.add(text, f"feature:{thing.type.lower()} object", severity=Severity.LEFT_OUT)
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

@@ -6,7 +6,7 @@ import bpy
 
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag
-from ..harm import Harm
+from ..severity import Severity
 from .arithmetic import is_constant, triple
 from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph
@@ -133,13 +133,13 @@ def _from_nodes(material, graph):
     who, messages, tree = graph.owner, graph.messages, material.node_tree
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
-        messages.add(f"{who}: has no Material Output node that Cycles takes, black is used", harm=Harm.WRONG)
+        messages.add(f"{who}: has no Material Output node that Cycles takes, black is used", severity=Severity.WRONG)
         return {"lobes": ()}
     site = Site(output)
     has_surface = graph.is_linked(site, ("Surface",))
     if graph.is_linked(site, ("Volume",)):
         shown = "its surface alone is shown" if has_surface else "nothing of it is shown"
-        messages.add(f"{who}: volumes are not supported, {shown}", "feature:volume", harm=Harm.LEFT_OUT)
+        messages.add(f"{who}: volumes are not supported, {shown}", "feature:volume", severity=Severity.LEFT_OUT)
         if not has_surface:
             return {"lobes": (), "transmittance": (1.0, 1.0, 1.0)}
     values = _displacement(material, graph, site)

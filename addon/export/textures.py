@@ -10,7 +10,7 @@ from ..bindings.enums import (
     Projection,
     VectorOperation,
 )
-from ..harm import Harm
+from ..severity import Severity
 from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
 from .maths import transformed
@@ -72,9 +72,9 @@ def _environment_texture(graph, site, output):
 def _picture(graph, site):
     node = site.node
     if node.image is None or graph.images is None:
-        graph.tell(site, "has no image, magenta is used", "", harm=Harm.WRONG)
+        graph.tell(site, "has no image, magenta is used", "", severity=Severity.WRONG)
         return None
-    return graph.images.numbers(node.image, node.image_user, lambda text, key="", **harm: graph.tell(site, text, key, **harm))
+    return graph.images.numbers(node.image, node.image_user, lambda text, key="", **more: graph.tell(site, text, key, **more))
 
 
 def _has_color_under_alpha(image):

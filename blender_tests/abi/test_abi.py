@@ -5,9 +5,10 @@ import re
 
 import numpy as np
 import pytest
-from bindings import abi
-from bindings.abi import Status
 from raw import IDENTITY, add, refused
+
+from addon.bindings import abi
+from addon.bindings.abi import Status
 
 NAN, INF = float("nan"), float("inf")
 

@@ -4,9 +4,10 @@ import ctypes
 
 import numpy as np
 import pytest
-from bindings import abi
-from bindings.abi import Status
 from raw import FOREIGN, add, refused
+
+from addon.bindings import abi
+from addon.bindings.abi import Status
 
 
 def calls_on_scenes(raw):

@@ -5,9 +5,10 @@ import math
 
 import numpy as np
 import pytest
-from bindings import abi
-from bindings.abi import Pass, Status
 from raw import refused
+
+from addon.bindings import abi
+from addon.bindings.abi import Pass, Status
 
 NAN, INF = float("nan"), float("inf")
 

@@ -4,9 +4,10 @@ import ctypes
 import threading
 
 import numpy as np
-from bindings import abi
-from bindings.abi import Accelerator, Status
 from raw import Raw
+
+from addon.bindings import abi
+from addon.bindings.abi import Accelerator, Status
 
 
 def refused(result, status=Status.ERROR_STATE):

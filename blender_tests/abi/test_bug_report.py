@@ -10,12 +10,13 @@ import zipfile
 import blenders
 import numpy as np
 import pytest
-from bindings import bug_report
-from bindings.npz import SnapshotError
-from bindings.snapshot import Image
 from blenders import MODULE, PROGRAM
 from conftest import ROOT
 from rich_snapshot import rich
+
+from addon.bindings import bug_report
+from addon.bindings.npz import SnapshotError
+from addon.bindings.snapshot import Image
 
 FACTS = {"versions": {"Blender": "9.9"}, "messages": []}
 
@@ -103,7 +104,7 @@ def test_blender_saves_what_a_maintainer_needs(which, tmp_path):
     assert facts["settings"]["cycles"]["max_bounces"] == 10
     # No path of the user's is among the settings.
     assert "secret" not in json.dumps(facts["settings"])
-    told = [(message["text"], message["harm"]) for message in facts["messages"]]
+    told = [(message["text"], message["severity"]) for message in facts["messages"]]
     assert told == [("object 'Cube': material slot 1 is empty, grey is used", "HINT")] and len(facts["exported"]) == 1
     assert facts["statistics"]["error"] > 0.0 and facts["statistics"]["accuracy"]
     assert "It holds the geometry and the pictures of the scene" in got["console"]
@@ -113,7 +114,7 @@ def test_blender_saves_what_a_maintainer_needs(which, tmp_path):
         assert word in got["console"]
     with zipfile.ZipFile(tmp_path / "failed.zip") as archive:
         (failure,) = json.loads(archive.read("report.json"))["exported"]
-    assert failure["harm"] == "FAILED" and "camera" in failure["text"]
+    assert failure["severity"] == "FAILED" and "camera" in failure["text"]
     assert "the report could not be written" in got["error"]
 
 

@@ -4,10 +4,12 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 
 import pytest
-from bindings import abi
 from conftest import ROOT
+
+from addon.bindings import abi
 
 HEADER = os.path.join(ROOT, "core", "include", "lancer.h")
 
@@ -110,11 +112,29 @@ def test_header_is_c99(tmp_path):
         assert done.returncode == 0, done.stderr
 
 
-def test_bindings_name_every_function_and_number_of_the_header(tmp_path):
-    """The header's functions and enum values, told by the compiler's view of it, are those of bindings/abi.py."""
+def test_bindings_are_those_that_the_header_gives_now(tmp_path):
+    """Whoever changes the header says so to Python by `make bindings`."""
+    subprocess.run([sys.executable, os.path.join(ROOT, ".ci", "bindings.py"), HEADER, tmp_path], check=True)
+    for name in ("enums.py", "structs.py"):
+        with open(os.path.join(ROOT, "addon", "bindings", name), encoding="utf-8") as file:
+            assert file.read() == (tmp_path / name).read_text(encoding="utf-8"), name
+
+
+def test_bindings_name_every_function_of_the_header():
     text = open(HEADER, encoding="utf-8").read()
     functions = set(re.findall(r"^LANCER_API [^;]*?\b(lancer_\w+)\(", text, re.M))
     assert functions == set(abi._CALLS) | set(abi._QUERIES)
+
+
+def assert_that_c_holds(tmp_path, facts):
+    checks = "".join(f'_Static_assert({fact}, "{fact}");\n' for fact in facts)
+    (tmp_path / "facts.c").write_text('#include "lancer.h"\n' + checks)
+    command = ["gcc", "-std=c11", "-I", os.path.dirname(HEADER), "-fsyntax-only", tmp_path / "facts.c"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_numbers_are_those_that_the_compiler_reads(tmp_path):
     enums = {
         "LANCER_PASS_": abi.Pass,
         "LANCER_FALLOFF_": abi.Falloff,
@@ -123,6 +143,9 @@ def test_bindings_name_every_function_and_number_of_the_header(tmp_path):
         "LANCER_FEATURES_": abi.Features,
         "LANCER_FILTER_": abi.PixelFilter,
         "LANCER_NORMALS_": abi.NormalDomain,
+        "LANCER_RULES_": abi.Rules,
+        "LANCER_MATERIAL_": abi.MaterialFlag,
+        "LANCER_INSTANCE_": abi.InstanceFlag,
     }
     plain = [
         abi.Status,
@@ -134,14 +157,21 @@ def test_bindings_name_every_function_and_number_of_the_header(tmp_path):
         abi.CameraKind,
         abi.Integrator,
     ]
-    names = [(p + m.name, int(m)) for p, e in enums.items() for m in e] + [
-        ("LANCER_" + m.name, int(m)) for e in plain for m in e
-    ]
-    checks = "".join(f'_Static_assert({name} == {value}, "{name}");\n' for name, value in names)
-    (tmp_path / "numbers.c").write_text('#include "lancer.h"\n' + checks)
-    command = ["gcc", "-std=c11", "-I", os.path.dirname(HEADER), "-fsyntax-only", tmp_path / "numbers.c"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    names = [(p + m.name, int(m)) for p, e in enums.items() for m in e]
+    names += [("LANCER_" + m.name, int(m)) for e in plain for m in e]
+    assert_that_c_holds(tmp_path, [f"{name} == {value}" for name, value in names])
+
+
+def test_structs_lie_as_the_compiler_lays_them(tmp_path):
+    facts = []
+    for number, structure in abi.STRUCTS.items():
+        name = f"lancer_{number.name.lower()}"
+        facts.append(f"sizeof({name}) == {abi.ctypes.sizeof(structure)}")
+        for field, *_ in structure._fields_:
+            place = getattr(structure, field)
+            facts.append(f"offsetof({name}, {field}) == {place.offset}")
+            facts.append(f"sizeof((({name} *)0)->{field}) == {place.size}")
+    assert_that_c_holds(tmp_path, facts)
 
 
 def test_exported_symbols(library):

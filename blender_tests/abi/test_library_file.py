@@ -3,16 +3,17 @@
 import os
 import sys
 
-from bindings import abi, mapped
+from addon.bindings import abi
+from addon.denoise import loaded_libraries
 
 NAMES = {"win32": ("lancer.dll", "lancer-0a1b2c.dll"), "darwin": ("liblancer.dylib", "liblancer-0a1b2c.dylib")}
 
 
 def test_the_process_names_it(library):
     path = abi.library_path()
-    assert any(os.path.isfile(found) and os.path.samefile(found, path) for found in mapped.files())
+    assert any(os.path.isfile(found) and os.path.samefile(found, path) for found in loaded_libraries.files())
     # Of each file once, and more than this one.
-    assert len(mapped.files()) == len(set(mapped.files())) > 3
+    assert len(loaded_libraries.files()) == len(set(loaded_libraries.files())) > 3
 
 
 def test_a_name_with_a_mark_is_found_and_the_newest_taken(tmp_path, monkeypatch):

@@ -5,12 +5,14 @@ import weakref
 
 import numpy as np
 import pytest
-from bindings.abi import Pass
-from bindings.npz import save_npz
-from bindings.session import Session
-from bindings.snapshot import Lobe, SceneSnapshot
 from rich_snapshot import rich
 from tiny_scenes import showroom
+
+from addon.bindings import structs
+from addon.bindings.abi import Pass
+from addon.bindings.npz import save_npz
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Lobe, Material, Principled, SceneSnapshot, World
 
 
 @pytest.fixture
@@ -110,3 +112,17 @@ def test_a_released_snapshot_renders_the_same_bits_and_is_let_go():
         assert first.render_all(2) and second.render_all(2)
         assert np.array_equal(first.read(Pass.COMBINED), second.read(Pass.COMBINED))
     assert given != kept and len(kept.meshes) == len(arrays)
+
+
+@pytest.mark.parametrize("record", [Principled, Lobe, Material, World])
+def test_a_record_has_the_parameters_of_its_struct(record):
+    """Those that the class names and those that it does not, which are 0 unless they are given."""
+    names = [name for name, kind in getattr(structs, record.__name__)._fields_ if kind is structs.Parameter]
+    assert names and set(names) <= {field.name for field in dataclasses.fields(record)}
+    given = record(**{name: number for number, name in enumerate(names)})
+    assert [getattr(given, name) for name in names] == [float(number) for number in range(len(names))]
+
+
+def test_a_parameter_that_is_not_named_is_zero():
+    assert (Principled().coat, Lobe().rotation, Material().holdout) == (0.0, 0.0, 0.0)
+    assert Principled().base_color == (0.8, 0.8, 0.8)

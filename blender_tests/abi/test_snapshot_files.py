@@ -8,11 +8,12 @@ import sys
 
 import numpy as np
 import pytest
-from bindings.npz import SnapshotError
-from bindings.session import LancerError, Session
-from bindings.snapshot import SceneSnapshot
 from conftest import HERE
 from rich_snapshot import rich
+
+from addon.bindings.npz import SnapshotError
+from addon.bindings.session import LancerError, Session
+from addon.bindings.snapshot import SceneSnapshot
 
 SPOILED = 400
 

@@ -8,9 +8,10 @@ import sys
 
 import blenders
 import pytest
-from bindings.abi import Status
 from blenders import MODULE, PROGRAM
 from conftest import HERE, ROOT
+
+from addon.bindings.abi import Status
 
 both = pytest.mark.parametrize("which", [MODULE, PROGRAM])
 
@@ -241,9 +242,9 @@ import dataclasses, json, os, resource, sys
 sys.path[:0] = [{root!r} + "/addon", {here!r}]
 import numpy as np
 import tiny_scenes
-from bindings.abi import LancerError
-from bindings.session import Scene, Session
-from bindings.snapshot import Instance, MeshData
+from addon.bindings.abi import LancerError
+from addon.bindings.session import Scene, Session
+from addon.bindings.snapshot import Instance, MeshData
 
 step, n, extra = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 x, y = np.meshgrid(np.linspace(0, 1, n, dtype=np.float32), np.linspace(0, 1, n, dtype=np.float32))

@@ -25,7 +25,7 @@ from addon.bindings.enums import Integrator, LobeKind, MathOperation, NodeKind, 
 from addon.bindings.snapshot import Image, Lobe, Material, Node, NodeRef, Principled, Settings
 from addon.checks import twins
 from addon.checks.check import check_snapshot
-from addon.checks.finding import Finding, Harm, by_harm, lines
+from addon.checks.finding import Finding, Severity, by_severity, lines
 from addon.checks.subject import Subject
 
 
@@ -69,7 +69,7 @@ def of(kind, **fields):
 )
 def test_materials_outside_the_model(bad, good):
     finding = only(shown(bad))
-    assert (finding.kind, finding.harm, finding.material, finding.object) == ("closures", Harm.WRONG, "m", "thing")
+    assert (finding.kind, finding.severity, finding.material, finding.object) == ("closures", Severity.WRONG, "m", "thing")
     assert found(shown(good)) == []
 
 
@@ -138,7 +138,7 @@ def test_lamps_that_give_nothing():
     weak = dataclasses.replace(LAMP, name="weak", emission=(1e-15,) * 3)
     for lamp in (black, weak):
         finding = only(one(ball(), lights=(LAMP, lamp)))
-        assert (finding.kind, finding.harm, finding.light) == ("lights", Harm.HINT, lamp.name)
+        assert (finding.kind, finding.severity, finding.light) == ("lights", Severity.HINT, lamp.name)
         # It may be animated: nobody is told unasked.
         assert found(one(ball(), lights=(LAMP, lamp)), thorough=False) == []
     assert found(one(ball(), lights=(LAMP, dataclasses.replace(LAMP, emission=(1e-3,) * 3)))) == []
@@ -154,7 +154,7 @@ def test_what_hurts_most_comes_first_and_few_of_a_kind():
         [box(), *(sheet(1.0, f"sheet {number}") for number in range(14)), ball()],
     )
     findings = check_snapshot(snapshot)
-    assert [finding.harm for finding in findings] == sorted((finding.harm for finding in findings), reverse=True)
+    assert [finding.severity for finding in findings] == sorted((finding.severity for finding in findings), reverse=True)
     told = lines(findings)
     assert len(told) == 4 and told[2].endswith("(and 11 more objects)") and told[3].startswith("object 'b'")
     assert all("\n" not in line and line.count("; ") == 1 for line in told)
@@ -162,10 +162,10 @@ def test_what_hurts_most_comes_first_and_few_of_a_kind():
 
 def test_lines_say_who_where_and_what_to_do():
     finding = Finding(
-        "glass", Harm.WRONG, "is open", "close it", object="Vase", mesh="Vase", material="Glass", place=(1, 2.5, 1e7)
+        "glass", Severity.WRONG, "is open", "close it", object="Vase", mesh="Vase", material="Glass", place=(1, 2.5, 1e7)
     )
     assert lines([finding]) == ["object 'Vase' (mesh 'Vase', material 'Glass') near (1, 2.5, 1e+07): is open; close it"]
-    assert by_harm([dataclasses.replace(finding, harm=Harm.HINT), finding])[0] is finding
+    assert by_severity([dataclasses.replace(finding, severity=Severity.HINT), finding])[0] is finding
 
 
 def test_a_mesh_shared_by_many_is_told_once():

@@ -28,7 +28,7 @@ from tiny_scenes import look_at, move, rotate_x, rotate_y, scale
 from addon.bindings.enums import CameraKind, Ray
 from addon.bindings.snapshot import MeshData
 from addon.checks.facets import mesh_facets
-from addon.checks.finding import Harm
+from addon.checks.finding import Severity
 
 COINCIDENT = [("coincident", "WRONG")]
 TOUCHING = [("coincident", "HINT")]
@@ -44,7 +44,7 @@ def two(first=GREY_, second=RED_, matrix=None, mesh=None, camera=EYE):
 @pytest.mark.parametrize("thorough", [True, False])
 def test_two_planes_at_one_height(thorough):
     finding = only(two(), thorough)
-    assert finding.kind == "coincident" and finding.harm == Harm.WRONG
+    assert finding.kind == "coincident" and finding.severity == Severity.WRONG
     assert {finding.object, *finding.what.split("'")} >= {"one", "two"}
     assert abs(finding.place[2]) < 1e-6 and max(map(abs, finding.place)) <= 2.0
     # Wherever they face.
@@ -77,7 +77,7 @@ def test_planes_in_any_position(turn):
 def test_planes_that_look_alike(thorough):
     """Lancer shows them as one, Cycles has each shadow the other: told where the picture shows enough of it."""
     finding = only(two(GREY_, GREY_), thorough)
-    assert finding.key and finding.harm == Harm.DIFFERENT and "Cycles would show them darker" in finding.what
+    assert finding.key and finding.severity == Severity.DIFFERENT and "Cycles would show them darker" in finding.what
     assert {finding.object, *finding.what.split("'")} >= {"one", "two"}
     twin = dataclasses.replace(GREY, name="grey.001")
     snapshot = scene([placed(0, 0), placed(1, 1, name="two")], [sheet(), sheet(3.0)], materials=(GREY, twin))
@@ -93,7 +93,7 @@ def test_planes_that_look_alike(thorough):
         far = both[0] + np.float32((0.0, 900.0, height))
         pairs = MeshData("pairs", np.concatenate((both[0], far)), np.concatenate((both[1], both[1] + 8)))
         finding = only(one(pairs, GREY_), thorough)
-        assert finding.harm == Harm.DIFFERENT and abs(finding.place[1]) < 4.0
+        assert finding.severity == Severity.DIFFERENT and abs(finding.place[1]) < 4.0
     # Flush tops of two bodies, seen from above and from below.
     tops = [placed(0, GREY_, name="one"), placed(0, GREY_, move(0.3, 0.2, 0.1), name="two")]
     assert found(scene(tops, [box()]), thorough) == []
@@ -119,12 +119,12 @@ def test_planes_that_look_alike(thorough):
 @pytest.mark.parametrize("thorough", [True, False])
 def test_copies_that_cycles_shows_darker(thorough):
     finding = only(scene([placed(0, GREY_, name="one"), placed(0, GREY_, name="two")], [sheet()]), thorough)
-    assert finding.key and finding.harm == Harm.DIFFERENT and "Cycles would show them darker" in finding.what
+    assert finding.key and finding.severity == Severity.DIFFERENT and "Cycles would show them darker" in finding.what
     for turn in (slice(None), slice(None, None, -1)):
         board = sheet(parts=4)
         double = dataclasses.replace(board, triangles=np.concatenate((board.triangles, board.triangles[:, turn])))
         finding = only(one(double, GREY_), thorough)
-        assert finding.key and finding.harm == Harm.DIFFERENT and "Cycles would show them darker" in finding.what
+        assert finding.key and finding.severity == Severity.DIFFERENT and "Cycles would show them darker" in finding.what
     # Light that counts twice, or red that fights grey, is another matter.
     assert "Cycles" not in only(two(GREY_, RED_), thorough).what
 
@@ -222,7 +222,11 @@ def test_copies_in_place(thorough):
     """A copy that was not moved costs time; where light passes it costs the look."""
     snapshot = scene([placed(0, GREY_, move(1, 2, 3), "one"), placed(0, GREY_, move(1, 2, 3), "two")], [ball()])
     finding = only(snapshot, thorough)
-    assert (finding.kind, finding.harm, finding.object) == ("coincident", Harm.DIFFERENT, "two") and "'one'" in finding.what
+    assert (finding.kind, finding.severity, finding.object) == (
+        "coincident",
+        Severity.DIFFERENT,
+        "two",
+    ) and "'one'" in finding.what
     # Its mesh may be a copy, too.
     copied = scene([placed(0, GREY_, name="one"), placed(1, GREY_, name="two")], [ball(), ball(name="ball.001")])
     assert found(copied, thorough) == [("coincident", "DIFFERENT")]
@@ -266,7 +270,7 @@ def test_small_faces_of_a_mesh_on_instances_of_another(thorough):
     real = MeshData("real", np.concatenate(points), np.concatenate([leaf.triangles + 4 * k for k in range(len(turns))]))
     leaves = [placed(1, RED_, turn, name="leaf") for turn in turns]
     finding = only(scene([placed(0, GREY_, name="tree"), *leaves], [real, leaf]), thorough)
-    assert finding.kind == "coincident" and finding.harm == Harm.WRONG and finding.key
+    assert finding.kind == "coincident" and finding.severity == Severity.WRONG and finding.key
     assert {finding.object, *finding.what.split("'")} >= {"tree", "leaf"}
     # A quarter of a leaf away they are apart.
     moved = [placed(1, RED_, turn @ move(0, 0, 0.05), name="leaf") for turn in turns]

@@ -24,7 +24,7 @@ from tiny_scenes import move, rotate_x, rotate_y, scale
 
 from addon.bindings.enums import LightKind, Shading
 from addon.bindings.snapshot import Light, MeshData
-from addon.checks.finding import Harm
+from addon.checks.finding import Severity
 
 GLASS_WRONG, NORMALS, PRECISION = [("glass", "WRONG")], [("normals", "WRONG")], [("precision", "WRONG")]
 
@@ -33,7 +33,7 @@ GLASS_WRONG, NORMALS, PRECISION = [("glass", "WRONG")], [("normals", "WRONG")], 
 @pytest.mark.parametrize("material", [GLASS_, CLEAR_])
 def test_open_glass(material, thorough):
     finding = only(one(box(faces=BOX_FACES[2:]), material, move(5, 0, 0)), thorough)
-    assert (finding.kind, finding.harm) == ("glass", Harm.WRONG)
+    assert (finding.kind, finding.severity) == ("glass", Severity.WRONG)
     assert "4 edges" in finding.what and "Solidify" in finding.advice
     assert (finding.object, finding.mesh, finding.material) == ("thing", "box", ("glass", "clear")[material == CLEAR_])
     # The place is on the body, where it stands in the world.
@@ -116,7 +116,7 @@ def test_custom_normals_that_point_away():
     some = rng.random(corners.shape[:2]) < 0.1
     corners[some] *= -1.0
     finding = only(one(dataclasses.replace(mesh, normals=corners)))
-    assert finding.kind == "normals" and finding.harm == Harm.WRONG and 100 < finding.faces < len(mesh.triangles)
+    assert finding.kind == "normals" and finding.severity == Severity.WRONG and 100 < finding.faces < len(mesh.triangles)
     assert abs(np.linalg.norm(finding.place) - 1.0) < 0.1
     assert found(one(dataclasses.replace(mesh, normals=corners)), thorough=False) == NORMALS
     # A corner of a thousand.
@@ -152,7 +152,7 @@ def test_large_flat_faces_shaded_as_round(thorough):
     cube = box(normals=box().positions)
     finding = only(one(cube, lights=(panel,)), thorough)
     # Corners lean by the angle between a face and the diagonal.
-    assert (finding.kind, finding.harm, finding.faces) == ("normals", Harm.HINT, 12) and "by 55 degrees" in finding.what
+    assert (finding.kind, finding.severity, finding.faces) == ("normals", Severity.HINT, 12) and "by 55 degrees" in finding.what
     assert finding.key
     # What is round has no flat faces; flat shading shows them as they are; true points of light do not ask.
     assert found(one(ball(), lights=(panel,)), thorough) == []
@@ -172,7 +172,7 @@ def test_the_larger_fault_of_normals_is_told(thorough, whole):
     count = round(whole * len(flat.triangles))
     normals = np.array([[down] * 3] * count + [[up, down, up]] * (len(flat.triangles) - count))
     finding = only(one(dataclasses.replace(flat, normals=normals)), thorough)
-    assert finding.harm == Harm.WRONG and finding.weight > 0.5
+    assert finding.severity == Severity.WRONG and finding.weight > 0.5
     assert ("light falls on from behind" if whole > 0.5 else "at some corners") in finding.what
 
 

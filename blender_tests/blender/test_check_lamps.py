@@ -9,7 +9,7 @@ from tiny_scenes import move, rotate_x, rotate_y
 
 from addon.bindings.enums import AreaShape, LightKind, Ray
 from addon.bindings.snapshot import Light, MeshData
-from addon.checks.finding import Harm
+from addon.checks.finding import Severity
 
 PANEL = Light("panel", move(0, 0, 3) @ np.eye(4), LightKind.AREA, emission=(1, 1, 1), size=(1.0, 0.5))
 IN_A_FACE = [("lights", "DIFFERENT")]
@@ -23,7 +23,7 @@ def lit(light, ceiling=None, matrix=None, **fields):
 @pytest.mark.parametrize("thorough", [True, False])
 def test_a_lamp_in_a_ceiling(thorough):
     finding = only(lit(PANEL), thorough)
-    assert (finding.light, finding.harm) == ("panel", Harm.DIFFERENT) and "'ceiling'" in finding.what and finding.key
+    assert (finding.light, finding.severity) == ("panel", Severity.DIFFERENT) and "'ceiling'" in finding.what and finding.key
     # A step of the place is no distance; many steps are.
     assert found(lit(dataclasses.replace(PANEL, matrix=move(0, 0, 3.0 - 1e-7))), thorough) == IN_A_FACE
     assert found(lit(dataclasses.replace(PANEL, matrix=move(0, 0, 3.0 - 1e-4))), thorough) == []

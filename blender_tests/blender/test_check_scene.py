@@ -26,10 +26,10 @@ def case(request, tmp_path):
 def test_flaws_and_near_misses(case):
     got = case("flaws")
     assert set(got) - {"console"} == set(EXPECTED)
-    for name, (kind, harm, thing, words) in EXPECTED.items():
+    for name, (kind, severity, thing, words) in EXPECTED.items():
         (findings, told), (none, nothing) = got[name]
         assert len(findings) == 1, (name, findings)
-        assert findings[0][0] == kind and harm in findings[0][1] and thing in findings[0][2], (name, findings)
+        assert findings[0][0] == kind and severity in findings[0][1] and thing in findings[0][2], (name, findings)
         # F12 says the same by itself, and warns on the terminal.
         assert len(told) == 1 and words in told[0], (name, told)
         assert f"Lancer: {told[0]}" in got["console"], name

@@ -7,7 +7,8 @@ import blenders
 import pytest
 from blenders import MODULE, PROGRAM
 from conftest import ROOT
-from export.controls import CONTROLS, OWN
+
+from addon.export.controls import CONTROLS, OWN
 
 # What acts and is no setting of its own in the Properties editor, and what is then.
 ELSEWHERE = {
@@ -47,7 +48,7 @@ OF_OTHERS = {
 }
 # The export, and what beside it reads which passes are wanted.
 ADDON = pathlib.Path(ROOT, "addon")
-READERS = (*ADDON.glob("export/*.py"), ADDON / "passes.py", ADDON / "denoise.py")
+READERS = (*ADDON.glob("export/*.py"), ADDON / "passes.py", ADDON / "denoise" / "view_layer.py")
 
 
 @pytest.fixture(scope="module", params=[MODULE, PROGRAM])

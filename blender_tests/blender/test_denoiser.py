@@ -8,10 +8,12 @@ import threading
 import numpy as np
 import oidn_versions
 import pytest
-from bindings import abi, denoiser, oidn
-from bindings.abi import LancerError
-from bindings.mapped import on_linux
-from bindings.session import Cancelled
+
+from addon.bindings import abi
+from addon.bindings.abi import LancerError
+from addon.bindings.session import Cancelled
+from addon.denoise import denoiser, oidn
+from addon.denoise.loaded_libraries import on_linux
 
 HEIGHT, WIDTH = 96, 128
 

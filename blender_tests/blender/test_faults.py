@@ -82,7 +82,7 @@ def test_threads_of_a_window_give_way(tmp_path):
 LITTLE_ROOM = """
 import resource, sys
 sys.path.insert(0, {root!r} + "/addon")
-from bindings.abi import LancerError, load_library
+from addon.bindings.abi import LancerError, load_library
 
 with open("/proc/self/statm") as file:
     used = int(file.read().split()[0]) * resource.getpagesize()
@@ -110,7 +110,7 @@ THREADS = """
 import sys
 sys.path[:0] = [{root!r} + "/addon", {root!r} + "/blender_tests/helpers"]
 import tiny_scenes
-from bindings.session import Session
+from addon.bindings.session import Session
 snapshot = tiny_scenes.scene([], [], threads=0)
 with Session.upload(snapshot) as session:
     print(session.statistics().threads)

@@ -6,12 +6,13 @@ import math
 import numpy as np
 import pytest
 import tiny_scenes as tiny
-from bindings.abi import LancerError
-from bindings.forecast import Range, classic_seconds, forecast, slope
-from bindings.pilot import Measured, Point, measure
-from bindings.schedule import SAMPLES, TARGET, TIME, Schedule
-from bindings.session import Cancelled, Session
-from bindings.snapshot import Camera, Light, Material
+
+from addon.bindings.abi import LancerError
+from addon.bindings.session import Cancelled, Session
+from addon.bindings.snapshot import Camera, Light, Material
+from addon.measure.forecast import Range, classic_seconds, forecast, slope
+from addon.measure.schedule import SAMPLES, TARGET, TIME, Schedule
+from addon.measure.trial_renders import Measured, Point, measure
 
 RATE = 2e-6  # seconds of a pixel's sample
 REACH = 1.96

@@ -7,19 +7,19 @@ from check_scenes import placed, scene, sheet
 
 from addon.bindings.session import Session
 from addon.export.messages import Messages
-from addon.harm import Harm
+from addon.severity import Severity
 
 
 def test_what_hurts_most_comes_first():
     messages = Messages()
     messages.add("a setting differs")
-    messages.add("a hint", harm=Harm.HINT)
-    messages.add("an object is left out", harm=Harm.LEFT_OUT)
-    messages.add("a picture is missing", harm=Harm.WRONG)
-    messages.add("another setting differs", harm=Harm.DIFFERENT)
-    messages.add("an object is left out", harm=Harm.LEFT_OUT)
-    messages.add("no picture", harm=Harm.FAILED)
-    messages.add("slow", harm=Harm.WASTE)
+    messages.add("a hint", severity=Severity.HINT)
+    messages.add("an object is left out", severity=Severity.LEFT_OUT)
+    messages.add("a picture is missing", severity=Severity.WRONG)
+    messages.add("another setting differs", severity=Severity.DIFFERENT)
+    messages.add("an object is left out", severity=Severity.LEFT_OUT)
+    messages.add("no picture", severity=Severity.FAILED)
+    messages.add("slow", severity=Severity.WASTE)
     assert messages.lines() == list(messages) == [
         "no picture", "a picture is missing", "an object is left out (2 times)", "a setting differs",
         "another setting differs", "slow", "a hint",
@@ -28,19 +28,19 @@ def test_what_hurts_most_comes_first():
 
 def test_what_is_told_twice_keeps_its_greatest_harm_and_its_key():
     messages = Messages()
-    messages.add("the same", "node:Bevel", Harm.HINT)
-    messages.add("the same", harm=Harm.WRONG)
+    messages.add("the same", "node:Bevel", Severity.HINT)
+    messages.add("the same", severity=Severity.WRONG)
     (message,) = messages.told()
-    assert message == ("the same", "node:Bevel", Harm.WRONG, 2)
+    assert message == ("the same", "node:Bevel", Severity.WRONG, 2)
     assert messages.missing() == {"node:Bevel": 2}
 
 
 def test_merging_gives_what_is_new():
     messages = Messages(["known"])
-    more = Messages(["known", "new"], Harm.WRONG)
-    more.add("new", harm=Harm.WRONG)
-    assert messages.merge(more).told() == [("new", "", Harm.WRONG, 2)]
-    assert messages.told() == [("known", "", Harm.WRONG, 2), ("new", "", Harm.WRONG, 2)]
+    more = Messages(["known", "new"], Severity.WRONG)
+    more.add("new", severity=Severity.WRONG)
+    assert messages.merge(more).told() == [("new", "", Severity.WRONG, 2)]
+    assert messages.told() == [("known", "", Severity.WRONG, 2), ("new", "", Severity.WRONG, 2)]
     assert len(messages.merge(more)) == 0
 
 
@@ -49,5 +49,5 @@ def test_messages_of_the_library_have_their_harm():
     flat = dataclasses.replace(sheet(), triangles=np.array([[0, 1, 2], [0, 1, 1]], np.uint32))
     with Session.upload(scene([placed(), placed(matrix=np.full((4, 4), np.nan))], [flat])) as session:
         told = Messages.of_library(session.messages()).told()
-    assert [message.harm for message in told] == [Harm.LEFT_OUT, Harm.HINT], told
+    assert [message.severity for message in told] == [Severity.LEFT_OUT, Severity.HINT], told
     assert "left out" in told[0].text and "without area" in told[1].text

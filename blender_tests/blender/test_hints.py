@@ -5,11 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 import tiny_scenes as tiny
-from bindings.enums import LobeKind
-from bindings.hints import Cost, measure_costs, median_with_uncertainty, small_picture
-from bindings.session import Cancelled
-from bindings.shading import Lobe, Material
-from bindings.snapshot import Camera, Light
+
+from addon.bindings.enums import LobeKind
+from addon.bindings.session import Cancelled
+from addon.bindings.shading import Lobe, Material
+from addon.bindings.snapshot import Camera, Light
+from addon.measure.costs import Cost, measure_costs, median_with_uncertainty, small_picture
 
 
 def shells(count=24):

@@ -19,8 +19,8 @@ LOOP = """
 import sys
 sys.path[:0] = sys.argv[2:]
 import conftest, dataclasses, gc
-from bindings.abi import Pass
-from bindings.session import Session
+from addon.bindings.abi import Pass
+from addon.bindings.session import Session
 from memory_now import held
 from rich_snapshot import rich
 held_after = []

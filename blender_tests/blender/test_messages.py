@@ -46,11 +46,11 @@ def test_the_error_of_a_layer_outlasts_the_next(which, tmp_path):
 def test_light_paths_that_differ_are_told_in_one_line(case):
     got = case("light_paths", "setting_cases")
     # As Blender starts with them they are no fault; only what somebody has set in Cycles is one.
-    harms = got.pop("harms")
+    severities = got.pop("severities")
     hints = {"start", "few bounces here", "same number", "same clamp", "own clamp", "clamped here alone"}
-    assert {name: harm for name, (harm,) in harms.items()} == {
-        name: "HINT" if name in hints else "DIFFERENT" for name in harms
-    } and len(harms) == 8
+    assert {name: severity for name, (severity,) in severities.items()} == {
+        name: "HINT" if name in hints else "DIFFERENT" for name in severities
+    } and len(severities) == 8
 
     def line(theirs, ours):
         return [f"scene 'Scene': Cycles limits light by {theirs}, Lancer by {ours}: set Light Paths alike to compare"]

@@ -3,7 +3,8 @@
 import blenders
 import pytest
 from blenders import MODULE, PROGRAM
-from viewport.sizes import PixelSizes, coarsest
+
+from addon.viewport.sizes import PixelSizes, coarsest
 
 
 class Rectangle:

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from addon import stamp
-from addon.bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME
 from addon.bindings.snapshot import Settings
+from addon.measure import render_report
+from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME
 
 
 def numbers(error, bound, ended_by=SAMPLES, samples=100, seconds=20.0, **more):
@@ -16,7 +16,7 @@ def numbers(error, bound, ended_by=SAMPLES, samples=100, seconds=20.0, **more):
 
 
 def told(values, **settings):
-    return stamp.lines(values, Settings(**{"samples": 100, "target_error": 0.1, **settings}))
+    return render_report.lines(values, Settings(**{"samples": 100, "target_error": 0.1, **settings}))
 
 
 def test_a_target_that_was_missed_is_told_first_with_what_helps():
@@ -56,14 +56,14 @@ def test_an_unknown_error_has_missed_its_target():
 
 def test_view_layers_are_named():
     values, settings = numbers(0.25, 0.5), Settings(target_error=0.1)
-    one, other = (stamp.lines(values, settings, layer) for layer in ("Front", "Back"))
+    one, other = (render_report.lines(values, settings, layer) for layer in ("Front", "Back"))
     assert all(line.startswith("view layer 'Front': ") for line in one) and len(one) == len(other) == 3
     layers = {"Front": {"accuracy": one}, "Back": {"accuracy": other}}
-    assert stamp.of_layers({"accuracy": other, "layers": layers}) == one + other
-    assert stamp.of_layers({"accuracy": other}) == other
+    assert render_report.of_layers({"accuracy": other, "layers": layers}) == one + other
+    assert render_report.of_layers({"accuracy": other}) == other
 
 
 def test_durations():
     words = {0.0123: "0.0 s", 9.94: "9.9 s", 9.96: "10 s", 99.0: "99 s", 100.0: "1.7 min", 5400.0: "90 min", 6000.0: "1.7 h"}
-    assert {value: stamp.duration(value) for value in words} == words
-    assert stamp.duration(math.inf) == "unknown"
+    assert {value: render_report.duration(value) for value in words} == words
+    assert render_report.duration(math.inf) == "unknown"

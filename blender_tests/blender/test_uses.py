@@ -6,13 +6,14 @@ import math
 import numpy as np
 import pytest
 import tiny_scenes as tiny
-from bindings import plainer_scene, uses
-from bindings.enums import Coordinate, LightKind, LobeKind, NodeKind, Pass, Shading
-from bindings.parameters import without_idle_nodes
-from bindings.session import Session
-from bindings.shading import Image, Lobe, Material, Node, NodeRef, Principled, World
-from bindings.snapshot import Instance, InstanceTable, Light
-from bindings.uses import kernel_in_words, used_features, without
+
+from addon.bindings.enums import Coordinate, LightKind, LobeKind, NodeKind, Pass, Shading
+from addon.bindings.session import Session
+from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Principled, World
+from addon.bindings.snapshot import Instance, InstanceTable, Light
+from addon.measure import scene_features, simpler_scene
+from addon.measure.parameters import without_idle_nodes
+from addon.measure.scene_features import kernel_in_words, used_features, without
 
 # Ours and the core's words for the same thing.
 SAME = {
@@ -111,7 +112,7 @@ REMOVABLE = [feature.name for feature in used_features(everything()) if feature.
 
 
 def test_the_whole_scene_has_all_that_can_be_taken_away():
-    assert REMOVABLE == [kind.name for kind in uses._KINDS if kind.without]
+    assert REMOVABLE == [kind.name for kind in scene_features._KINDS if kind.without]
 
 
 @pytest.mark.parametrize("name", [None, *REMOVABLE])
@@ -211,7 +212,7 @@ def test_a_sky_becomes_its_mean():
 def test_an_area_lamp_keeps_its_power():
     """Over the half space in front of it, a quarter of pi^2 radiance area ... as a point that shines alike everywhere there."""
     lamp = Light("area", kind=LightKind.AREA, emission=(3.0, 3.0, 3.0), size=(2.0, 0.5))
-    point = plainer_scene.point_lamps(tiny.scene(lights=[lamp])).lights[0]
+    point = simpler_scene.point_lamps(tiny.scene(lights=[lamp])).lights[0]
     assert point.kind == LightKind.SPOT and point.spot_angle == math.pi
     # Power of the area: pi L A. Of the point: 2 pi I.
     assert 2.0 * math.pi * point.emission[0] == pytest.approx(math.pi * 3.0 * 1.0, rel=1e-12)

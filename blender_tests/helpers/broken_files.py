@@ -17,16 +17,17 @@ import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
-for folder in (os.path.join(ROOT, "addon"), ROOT, HERE):
+for folder in (ROOT, HERE):
     if folder not in sys.path:
         sys.path.insert(0, folder)
 
-from bindings.abi import load_library  # noqa: E402
-from bindings.enums import Pass  # noqa: E402
-from bindings.npz import SnapshotError  # noqa: E402
-from bindings.session import LancerError, Session  # noqa: E402
-from bindings.snapshot import SceneSnapshot  # noqa: E402
 from rich_snapshot import rich  # noqa: E402
+
+from addon.bindings.abi import load_library  # noqa: E402
+from addon.bindings.enums import Pass  # noqa: E402
+from addon.bindings.npz import SnapshotError  # noqa: E402
+from addon.bindings.session import LancerError, Session  # noqa: E402
+from addon.bindings.snapshot import SceneSnapshot  # noqa: E402
 
 # The one under test, or another build of it.
 LIBRARY = load_library(os.environ.get("LANCER_LIBRARY"))

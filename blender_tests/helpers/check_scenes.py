@@ -99,8 +99,8 @@ def one(mesh, material=0, matrix=None, **fields):
 
 
 def found(snapshot, thorough=True):
-    """(kind, harm's name) of all findings, sorted."""
-    return sorted((finding.kind, finding.harm.name) for finding in check_snapshot(snapshot, thorough))
+    """(kind, severity's name) of all findings, sorted."""
+    return sorted((finding.kind, finding.severity.name) for finding in check_snapshot(snapshot, thorough))
 
 
 def only(snapshot, thorough=True):

@@ -1,9 +1,10 @@
 """Single pixels of the course's ray tracer: the eye, the lamp and the sky that its tests share."""
 
 import tiny_scenes
-from bindings.abi import Integrator, LightKind
-from bindings.snapshot import Light, Lobe, Material
 from tiny_scenes import move, pencil, plane, rgb
+
+from addon.bindings.abi import Integrator, LightKind
+from addon.bindings.snapshot import Light, Lobe, Material
 
 # One sample through the middle of everything has no noise: only float32 products, a dozen at 6e-8.
 EXACT = 2e-6

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import tiny_scenes
-from bindings.abi import Features, Integrator, LightKind
-from bindings.session import Session
-from bindings.snapshot import Instance, Light, Lobe, Material
 from tiny_scenes import move, rotate_x
+
+from addon.bindings.abi import Features, Integrator, LightKind
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Instance, Light, Lobe, Material
 
 WHITE = (1.0, 1.0, 1.0)
 BOTH = (Integrator.PATH, Integrator.CLASSIC)

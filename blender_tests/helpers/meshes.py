@@ -5,8 +5,9 @@ import os
 import numpy as np
 import pytest
 import trimesh
-from bindings.snapshot import MeshData
 from conftest import ROOT
+
+from addon.bindings.snapshot import MeshData
 
 MODELS = os.path.join(ROOT, "..", "shared", "models")
 CLOSED = ("spot", "fandisk", "rocker-arm", "cheburashka")

@@ -2,8 +2,8 @@
 
 import math
 
-from bindings.enums import Distribution, LobeKind, Rules
-from bindings.shading import Lobe, Principled
+from addon.bindings.enums import Distribution, LobeKind, Rules
+from addon.bindings.shading import Lobe, Principled
 
 ANGLES = (5.0, 30.0, 60.0, 75.0, 85.0)
 ROUGHNESSES = (0.1, 0.3, 0.6, 1.0)

@@ -3,8 +3,9 @@
 import ctypes
 
 import numpy as np
-from bindings import abi
-from bindings.abi import Status
+
+from addon.bindings import abi
+from addon.bindings.abi import Status
 
 IDENTITY = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0)
 # Far from any number that a fresh library hands out.

@@ -3,9 +3,10 @@
 import dataclasses
 
 import numpy as np
-from bindings.enums import Domain, LobeKind, NodeKind
-from bindings.snapshot import Image, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, Principled, World
 from tiny_scenes import quad, showroom
+
+from addon.bindings.enums import Domain, LobeKind, NodeKind
+from addon.bindings.snapshot import Image, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, Principled, World
 
 
 def rich():

@@ -5,10 +5,11 @@ import dataclasses
 import numpy as np
 import tiny_scenes
 import trimesh
-from bindings.abi import CameraKind, Falloff, InstanceKind, Integrator, Pass
-from bindings.enums import Coordinate, LightKind, LobeKind, NodeKind
-from bindings.snapshot import Camera, Image, Instance, Light, Lobe, Material, MeshData, Node, NodeRef, Principled, World
 from tiny_scenes import beckmann, lambert, look_at, move, plane, quad, rotate_x, rotate_y, scale, showroom, sphere, veiled
+
+from addon.bindings.abi import CameraKind, Falloff, InstanceKind, Integrator, Pass
+from addon.bindings.enums import Coordinate, LightKind, LobeKind, NodeKind
+from addon.bindings.snapshot import Camera, Image, Instance, Light, Lobe, Material, MeshData, Node, NodeRef, Principled, World
 
 PIXELS = 24
 SMOOTH = MeshData.from_trimesh(trimesh.creation.icosphere(2), "smooth", smooth=True)

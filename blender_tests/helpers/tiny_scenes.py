@@ -3,9 +3,10 @@
 import dataclasses
 
 import numpy as np
-from bindings.abi import CameraKind, InstanceKind, LightKind, LobeKind, Pass
-from bindings.session import Session
-from bindings.snapshot import Camera, Instance, InstanceTable, Light, Lobe, Material, MeshData, SceneSnapshot, Settings
+
+from addon.bindings.abi import CameraKind, InstanceKind, LightKind, LobeKind, Pass
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Camera, Instance, InstanceTable, Light, Lobe, Material, MeshData, SceneSnapshot, Settings
 
 
 def move(x=0.0, y=0.0, z=0.0):

@@ -4,10 +4,11 @@ import meshes
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import UINT32_MAX, Accelerator
-from bindings.session import Scene
-from bindings.snapshot import Instance
 from tiny_scenes import move, rotate_x, rotate_y, scale
+
+from addon.bindings.abi import UINT32_MAX, Accelerator
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Instance
 
 
 def upload(library, instances, mesh_list, accelerator):

@@ -5,16 +5,17 @@ import functools
 
 import numpy as np
 import pytest
-from bindings import schedule as schedules
-from bindings.abi import LancerError, Pass, Status
-from bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
-from bindings.session import Scene, Session
-from bindings.snapshot import Settings
 from scipy import stats
 from significance import LEVEL
 from tiny_scenes import showroom
 from tools.accuracy import figures, scenes
 from tools.harness.errors import Reference, luminance
+
+from addon.bindings.abi import LancerError, Pass, Status
+from addon.bindings.session import Scene, Session
+from addon.bindings.snapshot import Settings
+from addon.measure import schedule as schedules
+from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME, Schedule
 
 SEEDS = 6
 BUILDERS = {"half_black": scenes.half_black, "soft_shadow": scenes.soft_shadow, "glossy": scenes.glossy}

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import LobeKind
-from bindings.session import Scene
-from bindings.snapshot import Lobe, Material
 from charts import Half, Power, Slopes, Sphere, histogram, integrate_cells, unit
 from significance import LEVEL, chi_square, mean_and_error, midpoints, sidak, uniforms, z_test
+
+from addon.bindings.abi import LobeKind
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Lobe, Material
 
 COSINES = [1.0, 0.9, 0.5, 0.1, 0.01]
 ALPHAS = [1e-4, 1e-3, 0.01, 0.1, 0.3, 0.5, 0.7, 1.0]

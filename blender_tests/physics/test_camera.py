@@ -6,11 +6,12 @@ import math
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import CameraKind, Pass, PixelFilter
-from bindings.session import Session, pixel_filter, sampler
-from bindings.snapshot import Camera
 from significance import LEVEL, chi_square, midpoints, uniforms
 from tiny_scenes import look_at, move, rotate_x, scale
+
+from addon.bindings.abi import CameraKind, Pass, PixelFilter
+from addon.bindings.session import Session, pixel_filter, sampler
+from addon.bindings.snapshot import Camera
 
 WINDOW = (-0.3, 0.5, -0.2, 0.25)
 MATRIX = look_at((3.0, -4.0, 2.0), (0.5, 0.0, 0.3))

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 import reference
 import tiny_scenes
-from bindings.abi import Falloff, Integrator, LightKind, LobeKind, Shading
-from bindings.enums import Coordinate, Environment, NodeKind, Ray
-from bindings.session import Session
-from bindings.snapshot import Image, Instance, Light, Lobe, Material, MeshData, Node, NodeRef, World
 from course import EXACT, EYE, LAMP, classic, color, lamp, mirrored_sky, specular
 from tiny_scenes import lambert, move, pencil, plane, rgb, rotate_x, scale, sphere
+
+from addon.bindings.abi import Falloff, Integrator, LightKind, LobeKind, Shading
+from addon.bindings.enums import Coordinate, Environment, NodeKind, Ray
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Image, Instance, Light, Lobe, Material, MeshData, Node, NodeRef, World
 
 
 def test_diffuse():

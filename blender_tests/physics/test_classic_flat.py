@@ -6,12 +6,13 @@ import math
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import CameraKind, Integrator, LancerError, LobeKind, Pass, Shading
-from bindings.enums import Domain, NodeKind
-from bindings.session import Session
-from bindings.snapshot import Camera, Instance, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, World
 from course import EXACT, lamp, specular
 from tiny_scenes import lambert, look_at, move, pencil, scale, sphere
+
+from addon.bindings.abi import CameraKind, Integrator, LancerError, LobeKind, Pass, Shading
+from addon.bindings.enums import Domain, NodeKind
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Camera, Instance, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, World
 
 EYE = np.array([1.0, -2.0, 6.0])
 SOURCE = np.array([0.5, 0.25, 3.0])

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 import reference
 import tiny_scenes
-from bindings.enums import Distribution, LobeKind, Ray, Rules
-from bindings.snapshot import Instance, Lobe, Material, Principled, World
 from course import EXACT, classic, color, lamp, mirrored_sky, specular
 from tiny_scenes import move, pencil, plane, scale
+
+from addon.bindings.enums import Distribution, LobeKind, Ray, Rules
+from addon.bindings.snapshot import Instance, Lobe, Material, Principled, World
 
 
 def smooth(kind, **fields):

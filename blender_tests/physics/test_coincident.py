@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from bindings.abi import Accelerator, InstanceKind, LightKind
-from bindings.snapshot import Camera, Instance, Light, MeshData
 from ten_scenes import SMOOTH
 from tiny_scenes import lambert, look_at, move, quad, render, rotate_x, rotate_y, scene
+
+from addon.bindings.abi import Accelerator, InstanceKind, LightKind
+from addon.bindings.snapshot import Camera, Instance, Light, MeshData
 
 PLACE = rotate_x(0.3) @ rotate_y(0.2) @ move(0.1, 0.2, 0.3)
 QUAD = quad(2.0)

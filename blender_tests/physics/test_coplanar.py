@@ -4,10 +4,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-from bindings.abi import Accelerator, InstanceKind, LightKind
-from bindings.snapshot import Camera, Instance, Light, MeshData
 from ten_scenes import GLASS
 from tiny_scenes import lambert, look_at, move, plane, quad, render, rotate_x, rotate_y, scale, scene, veiled
+
+from addon.bindings.abi import Accelerator, InstanceKind, LightKind
+from addon.bindings.snapshot import Camera, Instance, Light, MeshData
 
 RED, GREEN = lambert((0.8, 0, 0)), lambert((0, 0.8, 0))
 PLACE = move(0.1, 0.2, 0.3) @ rotate_x(0.3) @ rotate_y(0.2)

@@ -6,11 +6,12 @@ import math
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import Integrator, LobeKind
-from bindings.enums import Domain, NodeKind
-from bindings.snapshot import Instance, Lobe, Material, MeshAttribute, Node, NodeRef
 from course import EXACT, color, lamp
 from tiny_scenes import lambert, pencil, plane, sphere
+
+from addon.bindings.abi import Integrator, LobeKind
+from addon.bindings.enums import Domain, NodeKind
+from addon.bindings.snapshot import Instance, Lobe, Material, MeshAttribute, Node, NodeRef
 
 
 def minnaert(k, rho=0.4):

@@ -8,10 +8,11 @@ import sys
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import Accelerator, Features, Integrator, LancerError, LightKind, Pass, PixelFilter, Status
-from bindings.session import Scene, Session
 from conftest import HERE, ROOT
 from tiny_scenes import showroom
+
+from addon.bindings.abi import Accelerator, Features, Integrator, LancerError, LightKind, Pass, PixelFilter, Status
+from addon.bindings.session import Scene, Session
 
 INTEGRATORS = [Integrator.PATH, Integrator.CLASSIC, Integrator.NORMALS]
 
@@ -230,7 +231,7 @@ ISA_SCRIPT = """
 import sys
 sys.path[:0] = sys.argv[2:]
 import hashlib, tiny_scenes, test_determinism
-from bindings.session import Session
+from addon.bindings.session import Session
 h = hashlib.sha256()
 for integrator in test_determinism.INTEGRATORS:
     snapshot = test_determinism.picture(integrator=integrator)
@@ -251,7 +252,7 @@ def test_instruction_sets(tmp_path):
     for isa in ("", "sse4", "avx2", "avx512"):
         out = tmp_path / f"isa{isa}"
         environment = {**os.environ, "LANCER_ISA": isa} if isa else {k: v for k, v in os.environ.items() if k != "LANCER_ISA"}
-        command = [sys.executable, "-c", ISA_SCRIPT, str(out), os.path.join(ROOT, "addon"), *places]
+        command = [sys.executable, "-c", ISA_SCRIPT, str(out), ROOT, *places]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, cwd=ROOT)
         assert done.returncode == 0, done.stderr
         results[isa] = out.read_text().split(" ")

@@ -4,9 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
-from bindings.abi import CameraKind, LancerError, Pass
-from bindings.session import Session
 from tiny_scenes import scene, showroom, sphere
+
+from addon.bindings.abi import CameraKind, LancerError, Pass
+from addon.bindings.session import Session
 
 SHOT = showroom(12, samples=2)
 # window: half its width; 1e-300 is a telescope's whose pixels are one, 1e300 a view of 180 degrees.

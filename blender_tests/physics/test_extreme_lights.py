@@ -6,11 +6,12 @@ import math
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import AreaShape, LightKind, LobeKind
-from bindings.session import Session
-from bindings.snapshot import Instance, Material
 from extreme_rooms import TURNS, lamp, one, pictures, room, square
 from tiny_scenes import move, rotate_x, scale
+
+from addon.bindings.abi import AreaShape, LightKind, LobeKind
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Instance, Material
 
 LAMPS = {
     "point": lamp(),

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 import reference
 import tiny_scenes
-from bindings.abi import LightKind, LobeKind
-from bindings.enums import Distribution, Rules
-from bindings.snapshot import Instance, Lobe, Material, Principled
 from extreme_rooms import TURNS, WHITE, lamp, one, pictures, room
 from tiny_scenes import move, rotate_x
+
+from addon.bindings.abi import LightKind, LobeKind
+from addon.bindings.enums import Distribution, Rules
+from addon.bindings.snapshot import Instance, Lobe, Material, Principled
 
 ROUGHNESSES = [0.0, 1e-6, 1e-3, 0.7, 1.0]
 IORS = [1.0, 1.0 + 2.0**-23, 0.9, 1.5, 1e3, 1e19]
@@ -195,8 +196,8 @@ def test_sockets_beyond_their_range(library, socket):
 @pytest.mark.parametrize("kind", [kind for kind in LobeKind if kind >= LobeKind.DIFFUSE], ids=lambda kind: kind.name)
 def test_nodes_that_leave_the_range(library, kind):
     """Textures may drive any socket anywhere: a picture comes out, and none that shines by itself."""
-    from bindings.enums import Coordinate, NodeKind, VectorOperation
-    from bindings.snapshot import Node, NodeRef
+    from addon.bindings.enums import Coordinate, NodeKind, VectorOperation
+    from addon.bindings.snapshot import Node, NodeRef
 
     sockets = ["weight", "normal", "tangent"]
     sockets += (

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import LobeKind
-from bindings.snapshot import Instance, Lobe, Material
 from significance import LEVEL, mean_and_error, z_test
 from tiny_scenes import furnace, move, rotate_x, scale, sphere
+
+from addon.bindings.abi import LobeKind
+from addon.bindings.snapshot import Instance, Lobe, Material
 
 # Pixels that all see the same point are independent estimates of one number.
 PIXELS = 32

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import Pass
-from bindings.session import Session
-from bindings.snapshot import Instance, Lobe, Material, MeshData
 from significance import mean_and_error
+
+from addon.bindings.abi import Pass
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Instance, Lobe, Material, MeshData
 
 ALBEDO = 0.5
 PIXELS = 32

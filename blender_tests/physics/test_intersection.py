@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 import reference
 import tiny_scenes
-from bindings.abi import UINT32_MAX, Accelerator, InstanceKind
-from bindings.session import Scene
-from bindings.snapshot import Instance, MeshData
 from tiny_scenes import move, plane, rotate_x, rotate_y, scale, sphere
+
+from addon.bindings.abi import UINT32_MAX, Accelerator, InstanceKind
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Instance, MeshData
 
 U = 2.0**-53
 

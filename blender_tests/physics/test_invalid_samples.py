@@ -4,11 +4,12 @@ import blenders
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.enums import LightKind, LobeKind, Pass
-from bindings.session import Session
-from bindings.snapshot import Camera, Light, Lobe, Material
 from blenders import MODULE
 from tiny_scenes import lambert, look_at, move, plane, rotate_x
+
+from addon.bindings.enums import LightKind, LobeKind, Pass
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Camera, Light, Lobe, Material
 
 SIDE, SAMPLES = 16, 4
 

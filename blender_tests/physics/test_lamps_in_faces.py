@@ -5,9 +5,10 @@ Where its plane is no plane of the axes rounding sets corners of the face before
 
 import numpy as np
 import pytest
-from bindings.abi import AreaShape, Integrator, LightKind, LobeKind
-from bindings.snapshot import Camera, Instance, Light, Lobe, Material
 from tiny_scenes import lambert, look_at, move, quad, render, rotate_x, rotate_y, scene
+
+from addon.bindings.abi import AreaShape, Integrator, LightKind, LobeKind
+from addon.bindings.snapshot import Camera, Instance, Light, Lobe, Material
 
 MIRROR = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(1, 1, 1)),))
 # Every lamp is also looked at by a ray: more than a few of them are found by a tree.

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.abi import AreaShape, LancerError, LightKind
-from bindings.session import Scene
-from bindings.snapshot import Instance, Light, Material, MeshData
 from charts import Sphere, histogram, unit
 from significance import LEVEL, chi_square, sidak, uniforms
 from tiny_scenes import move, rotate_x, rotate_y, scale
+
+from addon.bindings.abi import AreaShape, LancerError, LightKind
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Instance, Light, Material, MeshData
 
 COUNT = 100000
 TENT = MeshData(

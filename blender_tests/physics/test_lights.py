@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 import reference
 import tiny_scenes
-from bindings.abi import AreaShape, LightKind
-from bindings.session import Scene
-from bindings.snapshot import Light
 from blenders import MODULE, PROGRAM
 from significance import midpoints
 from tiny_scenes import move, rotate_x, rotate_y
+
+from addon.bindings.abi import AreaShape, LightKind
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Light
 
 # The contract with the artist: exact light units to 1e-4.
 LIMIT = 1e-4

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import reference
 import tiny_scenes
-from bindings.session import Scene, microfacet
+
+from addon.bindings.session import Scene, microfacet
 
 # Inputs are float32 and taken digit for digit by the reference, so that only the evaluation differs: a dozen float32
 # operations of 6e-8 each stay below 1e-6, and exp(-x) adds x times the relative error of its argument.

@@ -4,8 +4,9 @@ import itertools
 
 import numpy as np
 import pytest
-from bindings.abi import LancerError
-from bindings.enums import (
+
+from addon.bindings.abi import LancerError
+from addon.bindings.enums import (
     AlphaMode,
     Coordinate,
     Domain,
@@ -17,8 +18,8 @@ from bindings.enums import (
     NodeKind,
     Transfer,
 )
-from bindings.session import Scene
-from bindings.snapshot import (
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import (
     Image,
     Instance,
     InstanceTable,

@@ -6,10 +6,11 @@ import math
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.enums import CameraKind, Integrator, LobeKind, Pass
-from bindings.session import Session
-from bindings.snapshot import Camera, Instance, Lobe, Material
 from tiny_scenes import lambert, move, pencil, plane, rotate_y, scale, scene, sphere
+
+from addon.bindings.enums import CameraKind, Integrator, LobeKind, Pass
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Camera, Instance, Lobe, Material
 
 # A few float roundings of numbers that are at most 1.
 EXACT = 1e-6

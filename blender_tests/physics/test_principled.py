@@ -8,10 +8,11 @@ import numpy as np
 import principled_specs
 import pytest
 import tiny_scenes
-from bindings.session import Scene
-from bindings.snapshot import Material
 from blenders import MODULE, PROGRAM
 from principled_specs import ANGLES, SUNS
+
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Material
 
 # A third of a percent is less than an eye can tell apart. The tables of lost light agree with exact integrals to 0.1 %.
 LIMIT = 0.003

@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 import ten_scenes
 import trimesh
-from bindings.enums import CameraKind, InstanceKind, LightKind, Pass
-from bindings.session import Session
-from bindings.snapshot import Camera, Instance, Light, Material, MeshData
 from ten_scenes import PIXELS, TEN, moved, resized, resized_meshes
 from tiny_scenes import lambert, look_at, move, plane, quad, rotate_x, scale, scene, sphere
+
+from addon.bindings.enums import CameraKind, InstanceKind, LightKind, Pass
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Camera, Instance, Light, Material, MeshData
 
 SIZES = (1e-6, 1e-3, 1e3, 1e6, 1e9)
 POWERS = (-30, -20, 20, 30)

@@ -7,7 +7,11 @@ import blenders
 import numpy as np
 import pytest
 import tiny_scenes
-from bindings.enums import (
+from blenders import MODULE, PROGRAM
+from charts import unit
+from significance import LEVEL, chi_square, uniforms
+
+from addon.bindings.enums import (
     AlphaMode,
     CameraKind,
     Coordinate,
@@ -20,12 +24,9 @@ from bindings.enums import (
     Pass,
     Ray,
 )
-from bindings.session import Scene, Session
-from bindings.shading import Image, Material, Node, NodeRef, World
-from bindings.snapshot import Camera, Light
-from blenders import MODULE, PROGRAM
-from charts import unit
-from significance import LEVEL, chi_square, uniforms
+from addon.bindings.session import Scene, Session
+from addon.bindings.shading import Image, Material, Node, NodeRef, World
+from addon.bindings.snapshot import Camera, Light
 
 DIRECTION = Node(kind=NodeKind.COORDINATE, option=Coordinate.GENERATED)
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from bindings.enums import Features
-from bindings.session import Session
 
+from addon.bindings.enums import Features
+from addon.bindings.session import Session
 from tools.features import cases as feature_cases
 from tools.features import page as features_page
 

@@ -95,7 +95,7 @@ uint32_t Records::nodes(const Filled &filled, const lancer_node *&out) {
 lancer_principled Records::principled() {
   lancer_principled p = {};
   p.rules = bytes_.choice(3);
-  p.distribution = bytes_.rarely(100) ? uint32_t(LANCER_MULTI_GGX) : bytes_.choice(4);
+  p.distribution = bytes_.rarely(100) ? uint32_t(LANCER_DISTRIBUTION_MULTI_GGX) : bytes_.choice(4);
   p.option = bytes_.choice(2);
   p.base_color = parameter(0.8f);
   p.metallic = parameter(0.0f);

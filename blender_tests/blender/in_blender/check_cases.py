@@ -102,7 +102,7 @@ def _findings():
     before = bpy.context.view_layer.objects.active
     assert bpy.ops.lancer.check_scene() == {"FINISHED"}
     assert bpy.context.view_layer.objects.active == before
-    return [(finding.kind, finding.harm.name, finding.object) for finding in check_scene.last_findings[scene.name]]
+    return [(finding.kind, finding.severity.name, finding.object) for finding in check_scene.last_findings[scene.name]]
 
 
 def _told():

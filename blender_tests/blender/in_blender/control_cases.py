@@ -8,8 +8,8 @@ import bpy
 import recording
 import stage
 
-from addon import denoise
 from addon.bindings.abi import LancerError
+from addon.denoise import view_layer as denoise
 from addon.export.scene import ExportOptions, export_scene
 from addon.passes import render_passes
 

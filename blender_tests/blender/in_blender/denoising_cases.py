@@ -11,7 +11,8 @@ import exr
 import numpy as np
 import stage
 
-from addon import denoise, engine
+from addon import engine
+from addon.denoise import view_layer as denoise
 
 
 def _scene(width=64, height=48, samples=4):

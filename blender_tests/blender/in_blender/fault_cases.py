@@ -15,7 +15,7 @@ _FREE = 10**6  # samples that no time limit of these cases leaves room for
 def as_rendered():
     """What is measured beside what F12 exports, and what is left of the look at it."""
     import addon
-    from addon import as_rendered
+    from addon import render_export
 
     scene = stage.room(width=16, height=12, samples=1)
     layered = bpy.data.objects["Cube"].modifiers.new("Subdivision", "SUBSURF")
@@ -43,7 +43,7 @@ def as_rendered():
     before, done = _picture_of("before"), list(calls)
     users = {thing.name: thing.users for thing in (*bpy.data.objects, *bpy.data.collections, *bpy.data.materials)}
     statistics = dict(addon.engine.last_statistics)
-    found = as_rendered.export(bpy.context)
+    found = render_export.export(bpy.context)
     after = {thing.name: thing.users for thing in (*bpy.data.objects, *bpy.data.collections, *bpy.data.materials)}
     meshes, snapshot, messages = exported[0]
     for name in ("render_init", "render_pre", "render_complete"):
@@ -80,13 +80,13 @@ def _picture_of(name):
 
 def without_camera():
     """What measuring says where there is no camera, and what is left."""
-    from addon import as_rendered
+    from addon import render_export
     from addon.bindings.abi import LancerError
 
     scene = stage.room()
     scene.camera = None
     try:
-        as_rendered.export(bpy.context)
+        render_export.export(bpy.context)
         text = ""
     except LancerError as error:
         text = str(error)
@@ -202,7 +202,7 @@ class _Refusing:
 
 def stereo():
     """Whether both eyes of a denoised picture are what is denoised, and not the noisy picture."""
-    from addon.bindings import oidn  # noqa: F401 - fails early where it cannot be had
+    from addon.denoise import oidn  # noqa: F401 - fails early where it cannot be had
 
     scene = stage.room(width=32, height=24, samples=2)
     scene.lancer.use_denoising = True

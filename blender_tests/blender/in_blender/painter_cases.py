@@ -9,9 +9,10 @@ import bpy
 import numpy as np
 import stage
 
-from addon.bindings import denoiser, snapshot
+from addon.bindings import snapshot
 from addon.bindings.abi import LancerError
 from addon.bindings.session import Scene, Session
+from addon.denoise import denoiser
 from addon.export.scene import export_scene
 from addon.export.view import Rectangle, View
 from addon.viewport.painter import Painter, Wanted

@@ -10,7 +10,7 @@ import stage
 def _variants(context):
     """The context again and again, with other choices made."""
     from addon import engine, measuring
-    from addon.bindings.hints import Cost, Costs
+    from addon.measure.costs import Cost, Costs
     from addon.viewport import viewport
 
     yield "plain"

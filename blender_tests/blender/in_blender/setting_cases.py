@@ -48,7 +48,7 @@ _LIGHT_PATHS = {
 
 
 def light_paths():
-    result = {"harms": {}}
+    result = {"severities": {}}
     for name, (theirs, ours) in _LIGHT_PATHS.items():
         bpy.ops.wm.read_factory_settings(use_empty=False)
         scene = bpy.context.scene
@@ -58,7 +58,7 @@ def light_paths():
         messages = _told_of_scene()
         result[name] = messages.lines()
         if messages:
-            result["harms"][name] = [message.harm.name for message in messages.told()]
+            result["severities"][name] = [message.severity.name for message in messages.told()]
     return result
 
 

@@ -57,7 +57,7 @@ def plain_data():
 
 def measured():
     """The operator without a window: what it gives and keeps, and whether the file is as it was."""
-    from addon import engine, features
+    from addon import engine, measure_features
 
     scene = _glassy()
     bpy.ops.render.render()
@@ -67,10 +67,10 @@ def measured():
     costs = engine.last_costs[scene.name]
     kept = engine.last_statistics[scene.name]["feature_costs"]
     bpy.ops.render.render()
-    old = [features.is_old(scene)]
+    old = [measure_features.is_old(scene)]
     bpy.data.objects["Cube"].location.x += 0.5
     bpy.context.view_layer.update()
-    old.append(features.is_old(scene))
+    old.append(measure_features.is_old(scene))
     return {
         "result": sorted(result),
         "changed": [key for key in after if after[key] != before.get(key)],

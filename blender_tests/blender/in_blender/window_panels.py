@@ -70,5 +70,10 @@ def load(folder):
     bpy.ops.wm.save_as_mainfile(filepath=path, copy=True)
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         bpy.ops.wm.open_mainfile(filepath=path)
-    known = [*addon.measuring.running, *addon.quality.measured, *addon.engine.last_statistics, *addon.engine.last_messages]
+    known = [
+        *addon.measuring.running,
+        *addon.measure_quality.measured,
+        *addon.engine.last_statistics,
+        *addon.engine.last_messages,
+    ]
     return "knows-" + ("-".join(known) or "nothing")

@@ -7,10 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from bindings.abi import Pass
-from bindings.schedule import SAMPLES, TARGET, Schedule
-from bindings.session import Scene, Session
 
+from addon.bindings.abi import Pass
+from addon.bindings.session import Scene, Session
+from addon.measure.schedule import SAMPLES, TARGET, Schedule
 from tools.harness.errors import Reference, luminance, root_mean_square
 from tools.harness.kept import kept_picture
 

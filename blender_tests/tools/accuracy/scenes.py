@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 import tiny_scenes
-from bindings.enums import AlphaMode, Coordinate, Integrator, LightKind, LobeKind, NodeKind, Pass, PixelFilter
-from bindings.shading import Image, Lobe, Material, Node, NodeRef, World
-from bindings.snapshot import Camera, Instance, Light, SceneSnapshot
 from tiny_scenes import beckmann, lambert, look_at, move, plane, quad, rotate_x, rotate_y, scale, sphere
 
+from addon.bindings.enums import AlphaMode, Coordinate, Integrator, LightKind, LobeKind, NodeKind, Pass, PixelFilter
+from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, World
+from addon.bindings.snapshot import Camera, Instance, Light, SceneSnapshot
 from tools.bench import jobs
 from tools.harness.places import BUILD
 from tools.harness.terminal import wanted

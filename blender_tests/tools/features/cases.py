@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import tiny_scenes as tiny
 import trimesh
-from bindings.enums import (
+
+from addon.bindings.enums import (
     Coordinate,
     Distribution,
     Features,
@@ -27,8 +28,8 @@ from bindings.enums import (
     Ray,
     Shading,
 )
-from bindings.shading import Image, Lobe, Material, Node, NodeRef, Principled, World
-from bindings.snapshot import Camera, Instance, InstanceTable, Light, MeshData
+from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Principled, World
+from addon.bindings.snapshot import Camera, Instance, InstanceTable, Light, MeshData
 
 BALL, FLOOR, SQUARE = range(3)
 SIZE = 96

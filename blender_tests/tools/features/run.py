@@ -8,10 +8,10 @@ the 95 % interval of the median.
 import time
 
 import tiny_scenes as tiny
-from bindings.enums import Integrator
-from bindings.hints import median_with_uncertainty
-from bindings.session import Session
 
+from addon.bindings.enums import Integrator
+from addon.bindings.session import Session
+from addon.measure.costs import median_with_uncertainty
 from tools.harness.places import BUILD, ROOT, header
 from tools.harness.terminal import Progress, make_parser, wanted
 

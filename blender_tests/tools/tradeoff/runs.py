@@ -7,9 +7,9 @@ import bpy
 import numpy as np
 
 from addon.bindings.enums import InstanceKind, Integrator, Pass
-from addon.bindings.schedule import Schedule
 from addon.bindings.session import Scene, Session
 from addon.export.scene import export_scene
+from addon.measure.schedule import Schedule
 from tools.bench import worker
 from tools.harness.f12 import press_f12
 

@@ -145,16 +145,16 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
       bad_argument(where + what + " " + std::to_string(value) + ", which is none");
   };
   check("kind", lobe.kind, LANCER_LOBE_KIND_COUNT);
-  check("distribution", lobe.distribution, LANCER_MULTI_GGX + 1);
+  check("distribution", lobe.distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
   check("option", lobe.option, 2);
-  check("rules", lobe.rules, LANCER_RULES_45 + 1);
+  check("rules", lobe.rules, LANCER_RULES_BLENDER_45 + 1);
   if (lobe.kind != LANCER_PRINCIPLED)
     return;
   if (!lobe.principled)
     bad_argument(where + "no record: principled is NULL");
-  check("distribution", lobe.principled->distribution, LANCER_MULTI_GGX + 1);
+  check("distribution", lobe.principled->distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
   check("option", lobe.principled->option, 2);
-  check("rules", lobe.principled->rules, LANCER_RULES_45 + 1);
+  check("rules", lobe.principled->rules, LANCER_RULES_BLENDER_45 + 1);
 }
 
 // All parameters that decide how a lobe looks.

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..bindings.abi import LancerError
+from ..bindings.session import Cancelled
 from . import oidn
-from .abi import LancerError
-from .session import Cancelled
 
 _STEP = 0.05
 # For the library's own work: large pictures go through it in pieces, which takes a twentieth longer and gives the same picture.

@@ -5,11 +5,11 @@ import functools
 import bpy
 
 from . import engine, measuring
-from .bindings.hints import measure_costs
-from .of_scenes import OfScenes
+from .by_scene import ByScene
+from .measure.costs import measure_costs
 
 # Of what the figures in engine.last_costs were measured, by the scene.
-_states = OfScenes()
+_states = ByScene()
 
 
 def _state(scene):

@@ -11,8 +11,8 @@ import math
 import time
 from dataclasses import dataclass
 
-from .session import Cancelled, Scene, Session
-from .uses import used_features, without
+from ..bindings.session import Cancelled, Scene, Session
+from .scene_features import used_features, without
 
 LEAST_SAVING = 0.03
 _PIXELS = 16384

@@ -7,13 +7,14 @@ while schedule.start():
 schedule.reason, session.error()
 """
 
+import contextlib
 import math
 import time
 
 # Ranges of 1, 1, 2, 4 ... samples as long as one takes no longer than this: then of as many as fit.
 _LONGEST_INTERVAL = 1.0
 # From here on the error is known well enough to decide by.
-PILOT = 16
+FIRST_LOOK = 16
 # Of ending a render whose error is still above its target: one half for the first look, a quarter for the second ...
 _MISTAKE = 0.05
 
@@ -25,7 +26,7 @@ class Schedule:
 
     started: when the time limit began, by time.monotonic().
     Without target and limit all pixels get the same samples. With either, ranges double the samples of every pixel, and from
-    PILOT on those of the pixels that need it most (Session.refine).
+    FIRST_LOOK on those of the pixels that need it most (Session.refine).
     """
 
     def __init__(self, session, started=None):
@@ -135,7 +136,7 @@ class Schedule:
         if not self._refining and self.samples >= self.settings.samples:
             return SAMPLES
         target = self.settings.target_error
-        if self.samples >= PILOT:
+        if self.samples >= FIRST_LOOK:
             self._refining = self.settings.refines and 2 * self.samples <= self.settings.samples or self._refining
             if target > 0.0:
                 self.confidence = 1.0 - 2.0 * _MISTAKE / 2.0 ** (self._looks + 1)
@@ -165,3 +166,39 @@ class Schedule:
             self.reason = TIME
         elif not self._refining:
             self.samples += self._next
+
+
+class TimeShare:
+    """Work beside the rendering that may take no more than its share of the time.
+
+    share: of the time; shortest: seconds between two times at least.
+    """
+
+    def __init__(self, share, shortest):
+        self._share = share
+        self._shortest = shortest
+        self._last = None
+        self.cost = 0.0  # seconds that it took last
+
+    @property
+    def interval(self):
+        return max(self._shortest, self.cost / self._share)
+
+    @property
+    def begun(self):
+        return self._last is not None
+
+    @property
+    def due(self):
+        return self._last is None or time.monotonic() - self._last > self.interval
+
+    def spend(self, work):
+        with self.spending():
+            work()
+
+    @contextlib.contextmanager
+    def spending(self):
+        before = time.monotonic()
+        yield
+        self._last = time.monotonic()
+        self.cost = self._last - before

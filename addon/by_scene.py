@@ -5,7 +5,7 @@ from collections.abc import MutableMapping
 import bpy
 
 
-class OfScenes(MutableMapping):
+class ByScene(MutableMapping):
     """A mapping whose keys are scenes of bpy.data, or the names that they have now; it iterates over names."""
 
     def __init__(self):

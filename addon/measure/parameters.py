@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
-from .enums import NodeKind
-from .shading import Lobe, Material, NodeRef, Principled
+from ..bindings.enums import NodeKind
+from ..bindings.shading import Lobe, Material, NodeRef, Principled
 
 _MATERIAL = Material.PARAMETERS
 _LOBE = Lobe.PARAMETERS

@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 
-class Harm(IntEnum):
+class Severity(IntEnum):
     """In rising order: what hurts most is told first."""
 
     HINT = 0  # no fault, or one that may be meant so: panels show it, and no render warns of it

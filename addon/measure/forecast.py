@@ -1,6 +1,6 @@
-"""How long a render will take and how near it will come, told from the points of pilot.py.
+"""How long a render will take and how near it will come, told from the points of trial_renders.py.
 
-measured = pilot.measure(snapshot, 10.0)
+measured = trial_renders.measure(snapshot, 10.0)
 told = forecast(measured, pixels, target_error=0.03, samples=8192)
 told.seconds.value, told.seconds.low, told.seconds.high, told.error.value ...
 """
@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .pilot import Point
-from .schedule import PILOT, SAMPLES, TARGET, TIME
+from .schedule import FIRST_LOOK, SAMPLES, TARGET, TIME
+from .trial_renders import Point
 
 # The power of the samples with which the error falls, before anything is measured: 1/2 by chance alone, up to 3/4 at edges and
 # 1 in smooth places for samples that fill space evenly, less where more samples keep meeting brighter flashes.
@@ -85,8 +85,8 @@ class _Curve:
             [(math.log(p.samples), _log(b)) for p, b in zip(self.points, levels, strict=True)], _log(target), self.slope
         )
         spread = self._spread(x) / self.slope
-        # A target is looked at from PILOT samples on.
-        return Range(*(max(float(PILOT), math.exp(min(x + step * spread, 40.0))) for step in (0.0, -_REACH, _REACH)))
+        # A target is looked at from FIRST_LOOK samples on.
+        return Range(*(max(float(FIRST_LOOK), math.exp(min(x + step * spread, 40.0))) for step in (0.0, -_REACH, _REACH)))
 
     def samples_within(self, seconds):
         rate, spread = self._rate()
@@ -139,7 +139,7 @@ class _Curve:
         other = _rates(self.measured.even, self.measured.even_pixels)
         spread = 0.5 * math.log(max(rates[-3:]) / min(rates[-3:]))
         # If a quarter of the pixels changes the rate by so much, more of them may change it by as much again.
-        alike = _rates([p for p in self.measured.refined if p.samples <= PILOT], self.measured.pixels)
+        alike = _rates([p for p in self.measured.refined if p.samples <= FIRST_LOOK], self.measured.pixels)
         return rates[-1], math.hypot(spread, math.log(alike[-1] / other[min(len(alike), len(other)) - 1]), _LEAST_SPREAD)
 
 
@@ -191,7 +191,7 @@ def _size_factor(measured, pixels):
 
 
 def _at_pilot(points):
-    return min(points, key=lambda p: abs(p.samples - PILOT))
+    return min(points, key=lambda p: abs(p.samples - FIRST_LOOK))
 
 
 def _even_points(measured):
@@ -199,9 +199,9 @@ def _even_points(measured):
     at = _at_pilot(measured.refined)
     base = _at_pilot(measured.even)
     scale = at.error / base.error if base.error > 0.0 else 1.0
-    pace = at.seconds / base.seconds
+    slower = at.seconds / base.seconds
     later = [p for p in measured.even if p.samples > base.samples]
-    grown = [Point(p.samples, scale * p.error, scale * p.high, p.cannot_exclude, pace * p.seconds) for p in later]
+    grown = [Point(p.samples, scale * p.error, scale * p.high, p.cannot_exclude, slower * p.seconds) for p in later]
     return tuple(p for p in measured.refined if p.samples <= at.samples) + tuple(grown)
 
 

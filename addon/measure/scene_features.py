@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import plainer, plainer_scene
-from .enums import InstanceFlag, InstanceKind, LightKind, Pass
+from ..bindings.enums import InstanceFlag, InstanceKind, LightKind, Pass
+from ..bindings.session import Scene
+from ..bindings.shading import NodeRef
+from ..bindings.snapshot import SceneSnapshot
+from . import simpler_materials, simpler_scene
 from .parameters import is_zero
-from .session import Scene
-from .shading import NodeRef
-from .snapshot import SceneSnapshot
 
 _MOST_OWNERS = 8  # named; the count is of all
 
@@ -145,7 +145,7 @@ def _as_means(numbers_of):
         with Scene.upload(probed, library) as scene:
             for number, nodes in wanted.items():
                 means = {node: scene.node(number, node, _GRID)[:, :3].mean(axis=0, dtype=float).tolist() for node in nodes}
-                materials[number] = plainer.with_constants(materials[number], means)
+                materials[number] = simpler_materials.with_constants(materials[number], means)
         return dataclasses.replace(snapshot, materials=tuple(materials))
 
     return take
@@ -154,7 +154,7 @@ def _as_means(numbers_of):
 def _even_sky(snapshot, library):
     probed = SceneSnapshot(images=snapshot.images, world=snapshot.world)
     with Scene.upload(probed, library) as scene:
-        return plainer_scene.even_sky(snapshot, lambda directions: scene.world(directions)[0])
+        return simpler_scene.even_sky(snapshot, lambda directions: scene.world(directions)[0])
 
 
 def _material(name, what, plain, without, pronoun="it"):
@@ -164,25 +164,25 @@ def _material(name, what, plain, without, pronoun="it"):
 
 # In the order in which they are shown and measured: what costs much first.
 _KINDS = (
-    _material("glass", "refraction", plainer.opaque_glass, "they are opaque, in the same colour"),
-    _material("transparency", "transparency", plainer.opaque, "they are opaque"),
+    _material("glass", "refraction", simpler_materials.opaque_glass, "they are opaque, in the same colour"),
+    _material("transparency", "transparency", simpler_materials.opaque, "they are opaque"),
     _Kind(
         "textures", "{n} material uses pictures", "{n} materials use pictures",
-        _materials_that(plainer.pictured_nodes), _as_means(plainer.pictured_nodes),
+        _materials_that(simpler_materials.pictured_nodes), _as_means(simpler_materials.pictured_nodes),
         "each has the mean of its pictures; what a picture cuts out stays", "them",
     ),
-    _material("bumps", "bumps or normal maps", plainer.even_normals, "surfaces are even", "them"),
+    _material("bumps", "bumps or normal maps", simpler_materials.even_normals, "surfaces are even", "them"),
     _Kind(
-        "emission", "{n} material glows", "{n} materials glow", _changed_by(plainer.dark), _each_material(plainer.dark),
-        "they are dark", "that",
+        "emission", "{n} material glows", "{n} materials glow",
+        _changed_by(simpler_materials.dark), _each_material(simpler_materials.dark), "they are dark", "that",
     ),
     _Kind(
-        "soft-lamps", "{n} lamp has an extent", "{n} lamps have an extent", _lamps_that(plainer_scene.has_extent),
-        _of_snapshot(plainer_scene.point_lamps), "lamps shine from a point, and shadows are sharp",
+        "soft-lamps", "{n} lamp has an extent", "{n} lamps have an extent", _lamps_that(simpler_scene.has_extent),
+        _of_snapshot(simpler_scene.point_lamps), "lamps shine from a point, and shadows are sharp",
     ),
     _Kind(
         "lamps", "", "{n} lamps to choose from", _lamps_that(lambda light: True),
-        _of_snapshot(plainer_scene.one_lamp), "the strongest lamp shines alone", "all but the strongest",
+        _of_snapshot(simpler_scene.one_lamp), "the strongest lamp shines alone", "all but the strongest",
     ),
     _Kind(
         "environment-map", "The sky varies", "The sky varies", _number(_sky_varies), _even_sky,
@@ -190,41 +190,43 @@ _KINDS = (
     ),
     _Kind(
         "lens", "The camera has depth of field", "", _number(lambda snapshot: snapshot.camera.lens_radius > 0.0),
-        _of_snapshot(plainer_scene.pinhole), "everything is sharp",
+        _of_snapshot(simpler_scene.pinhole), "everything is sharp",
     ),
     _Kind(
         "bounces", "", "Light is followed for {n} bounces",
-        _number(lambda snapshot: snapshot.settings.max_bounces), _of_snapshot(plainer_scene.few_bounces),
-        f"it is followed for {plainer_scene.FEW_BOUNCES}", f"those after number {plainer_scene.FEW_BOUNCES}",
+        _number(lambda snapshot: snapshot.settings.max_bounces), _of_snapshot(simpler_scene.few_bounces),
+        f"it is followed for {simpler_scene.FEW_BOUNCES}", f"those after number {simpler_scene.FEW_BOUNCES}",
     ),
     _Kind(
         "passes", "{n} pass is kept beside the picture", "{n} passes are kept beside the picture",
         _number(lambda snapshot: len(set(snapshot.settings.passes) - {Pass.COMBINED})),
-        _of_snapshot(plainer_scene.picture_alone), "the picture is kept alone", "them",
+        _of_snapshot(simpler_scene.picture_alone), "the picture is kept alone", "them",
     ),
-    _material("coat", "a clear coat", plainer.without_coat, "they have none"),
-    _material("metal", "mirrors or metal", plainer.matt_metal, "they are matt, in the same colour", "them"),
-    _material("gloss", "gloss", plainer.without_gloss, "they are matt"),
-    _material("sheen", "sheen", plainer.without_sheen, "they have none"),
-    _material("translucency", "translucency", plainer.without_translucency, "light stays on its side of them"),
-    _material("stretched", "stretched highlights", plainer.round_highlights, "highlights are round", "them"),
-    _material("rough-matt", "rough matt surfaces", plainer.smooth_matt, "they are matt by Lambert's law", "them"),
-    _material("multiscatter", "light between facets", plainer.single_scattering, "it is lost, and rough metal is darker"),
+    _material("coat", "a clear coat", simpler_materials.without_coat, "they have none"),
+    _material("metal", "mirrors or metal", simpler_materials.matt_metal, "they are matt, in the same colour", "them"),
+    _material("gloss", "gloss", simpler_materials.without_gloss, "they are matt"),
+    _material("sheen", "sheen", simpler_materials.without_sheen, "they have none"),
+    _material("translucency", "translucency", simpler_materials.without_translucency, "light stays on its side of them"),
+    _material("stretched", "stretched highlights", simpler_materials.round_highlights, "highlights are round", "them"),
+    _material("rough-matt", "rough matt surfaces", simpler_materials.smooth_matt, "they are matt by Lambert's law", "them"),
+    _material(
+        "multiscatter", "light between facets", simpler_materials.single_scattering, "it is lost, and rough metal is darker",
+    ),
     _Kind(
         "nodes", "{n} material computes values with nodes", "{n} materials compute values with nodes",
-        _materials_that(plainer.computed_nodes), _as_means(plainer.computed_nodes),
+        _materials_that(simpler_materials.computed_nodes), _as_means(simpler_materials.computed_nodes),
         "each value is a constant, as seen from the front", "that",
     ),
     _Kind(
         "smooth", "{n} object has smooth normals", "{n} objects have smooth normals",
-        _objects_where(plainer_scene.is_smooth), _of_snapshot(plainer_scene.flat), "faces are flat", "them",
+        _objects_where(simpler_scene.is_smooth), _of_snapshot(simpler_scene.flat), "faces are flat", "them",
     ),
     _Kind(
         "exact-shapes", "{n} object is an exact shape", "{n} objects are exact shapes",
-        _objects_where(plainer_scene.is_exact), _of_snapshot(plainer_scene.shapes_as_meshes),
+        _objects_where(simpler_scene.is_exact), _of_snapshot(simpler_scene.shapes_as_meshes),
         "they are meshes of 48 sides", "that",
     ),
-    _material("displacement", "displacement", plainer.undisplaced, "their meshes are as modelled"),
+    _material("displacement", "displacement", simpler_materials.undisplaced, "their meshes are as modelled"),
     # What is only named.
     _Kind("triangles", "{n} object is a mesh", "{n} objects are meshes", _objects_of(InstanceKind.MESH)),
     _Kind("instances", "{n} object shares a mesh", "{n} objects share meshes", _objects_where(_is_copy)),
@@ -255,7 +257,7 @@ def used_features(snapshot):
     for kind in _KINDS:
         count, names = kind.owners(snapshot)
         # A single lamp is no choice among lamps, and few bounces are no depth.
-        least = {"lamps": 2, "bounces": plainer_scene.FEW_BOUNCES + 1}.get(kind.name, 1)
+        least = {"lamps": 2, "bounces": simpler_scene.FEW_BOUNCES + 1}.get(kind.name, 1)
         if count >= least:
             text = (kind.one if count == 1 else kind.many or kind.one).format(n=f"{count:,}".replace(",", " "))
             found.append(Feature(kind.name, text, count, names, kind.without, kind.pronoun))

@@ -1,11 +1,11 @@
-"""The account of a render in words: for the file's metadata, for the terminal, for the panel."""
+"""Figures of a finished render, and what they say in words: for the file's metadata, for the terminal, for the panel."""
 
 import dataclasses
 import math
 from enum import IntEnum
 
-from .bindings.enums import Integrator
-from .bindings.schedule import CANCELLED, SAMPLES, TARGET, TIME
+from ..bindings.enums import Integrator
+from .schedule import CANCELLED, SAMPLES, TARGET, TIME
 
 # Less than this is not worth a sentence.
 _NOTHING = 5e-5

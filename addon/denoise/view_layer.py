@@ -7,11 +7,11 @@ import dataclasses
 import functools
 import time
 
-from .bindings import denoiser, oidn
-from .bindings.abi import LancerError
-from .bindings.enums import Pass
-from .bindings.session import Cancelled, Session
-from .priority import lowered
+from ..bindings.abi import LancerError
+from ..bindings.enums import Pass
+from ..bindings.session import Cancelled, Session
+from ..priority import lowered
+from . import denoiser, oidn
 
 DECLARATION = "denoised: the error given is that of the picture before denoising"
 

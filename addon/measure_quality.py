@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import bpy
 
-from . import measuring, stamp
-from .bindings.forecast import classic_seconds, forecast
-from .bindings.pilot import measure
-from .of_scenes import OfScenes
+from . import measuring
+from .by_scene import ByScene
+from .measure import render_report
+from .measure.forecast import classic_seconds, forecast
+from .measure.trial_renders import measure
 from .scene_settings import QUALITIES
 
 # An interval whose ends differ by more than this factor says nothing to plan by, unless even its upper end is short (seconds).
@@ -20,7 +21,7 @@ _TELLING = 20.0
 _SHORT = 20.0
 
 # Kept, by the scene.
-measured = OfScenes()
+measured = ByScene()
 
 
 @dataclass
@@ -58,16 +59,18 @@ def lines(scene):
     """What a panel shows, a line each."""
     for name, told in forecasts(scene):
         error, _ = QUALITIES.get(name.upper(), (scene.lancer.target_error, 0))
-        short = f"; {told.samples.value:.0f} samples end it above its {stamp.percent(error)}" if told.misses(error) else ""
+        short = (
+            f"; {told.samples.value:.0f} samples end it above its {render_report.percent(error)}" if told.misses(error) else ""
+        )
         yield f"{name}: {seconds(told.seconds)}; error {share(told.error)}{short}"
     samples = scene.lancer.samples
     classic = classic_seconds(measured[scene].points, _pixels(scene), samples)
     if classic is not None:
-        yield f"Classic, {samples} sample{'s' if samples > 1 else ''}: about {stamp.duration(classic)}"
+        yield f"Classic, {samples} sample{'s' if samples > 1 else ''}: about {render_report.duration(classic)}"
 
 
 def seconds(told):
-    value, low, high = (stamp.duration(item) for item in (told.value, told.low, told.high))
+    value, low, high = (render_report.duration(item) for item in (told.value, told.low, told.high))
     if low == high:
         return f"about {value}"
     if told.high > _TELLING * told.low:
@@ -78,7 +81,7 @@ def seconds(told):
 
 
 def share(told):
-    return f"{stamp.percent(told.value)}, {stamp.percent(told.low)} to {stamp.percent(told.high)}"
+    return f"{render_report.percent(told.value)}, {render_report.percent(told.low)} to {render_report.percent(told.high)}"
 
 
 class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):

@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 
-from .enums import InstanceKind, LightKind, Pass, Shading
-from .shading import NodeRef, World
-from .snapshot import Light, MeshData
+from ..bindings.enums import InstanceKind, LightKind, Pass, Shading
+from ..bindings.shading import NodeRef, World
+from ..bindings.snapshot import Light, MeshData
 
 FEW_BOUNCES = 3
 # Exact shapes that end, as meshes of this many sides.

@@ -12,8 +12,9 @@ import re
 import sys
 from ctypes import c_bool, c_char_p, c_double, c_int, c_size_t, c_void_p
 
-from . import elf, mapped
-from .abi import LancerError
+from ..bindings import elf
+from ..bindings.abi import LancerError
+from . import loaded_libraries
 
 MISSING = "Open Image Denoise is missing: this Blender brings no library libOpenImageDenoise"
 CPU = 1
@@ -50,7 +51,7 @@ _RENAMED = {
 
 def find(files=None):
     """The path of the library that this process's Blender brings, or None. files: what is taken for the process's libraries."""
-    files = mapped.files() if files is None else files
+    files = loaded_libraries.files() if files is None else files
     for path in files:
         if _LIBRARY.fullmatch(os.path.basename(path)) and os.path.isfile(path):
             return path

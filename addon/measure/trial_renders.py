@@ -11,11 +11,11 @@ import math
 import time
 from dataclasses import dataclass
 
-from .abi import LancerError
-from .enums import Integrator
-from .hints import small_picture
-from .schedule import PILOT
-from .session import Cancelled, Scene, Session
+from ..bindings.abi import LancerError
+from ..bindings.enums import Integrator
+from ..bindings.session import Cancelled, Scene, Session
+from .costs import small_picture
+from .schedule import FIRST_LOOK
 
 # Pixels of the larger of the small pictures.
 _FEWEST, _MOST = 1024, 36864
@@ -50,7 +50,7 @@ class Point:
 class Measured:
     """Points of the two small pictures, in order of samples."""
 
-    refined: tuple  # of the larger; the same for all pixels up to PILOT samples
+    refined: tuple  # of the larger; the same for all pixels up to FIRST_LOOK samples
     even: tuple  # of the smaller
     pixels: int
     even_pixels: int
@@ -89,23 +89,23 @@ class _Run:
         self.settings = dataclasses.replace(self.refining, target_error=0.0)
 
     def cameras(self, seconds):
-        """Of both small pictures: as large as the time allows for PILOT samples of each pixel."""
+        """Of both small pictures: as large as the time allows for FIRST_LOOK samples of each pixel."""
         camera = small_picture(self.camera, _FEWEST)
         with Session(self.scene, camera, self.settings) as session:
             once = self._seconds(session, camera)
-        wanted = _EVEN_SHARE * seconds / (PILOT * max(once, 1e-9))
+        wanted = _EVEN_SHARE * seconds / (FIRST_LOOK * max(once, 1e-9))
         large = small_picture(self.camera, min(max(wanted, _FEWEST), _MOST))
         return large, small_picture(large, max(_pixels(large) / _QUARTER, _LEAST_QUARTER))
 
     def even(self, camera, until):
-        """The same samples for all pixels: PILOT at least, then while there is time."""
+        """The same samples for all pixels: FIRST_LOOK at least, then while there is time."""
         points = []
         self.doing = "All pixels alike"
         with Session(self.scene, camera, self.settings) as session:
             for done in self._doubling(session, camera, points):
                 # The next range takes as long as all before it.
                 late = time.monotonic() + session.statistics().render_seconds > until
-                if done >= PILOT and (late or session.error().bound <= _ENOUGH):
+                if done >= FIRST_LOOK and (late or session.error().bound <= _ENOUGH):
                     break
         return points
 
@@ -114,7 +114,7 @@ class _Run:
         self.doing = "Samples where the error is"
         with Session(self.scene, camera, self.refining) as session:
             for done in self._doubling(session, camera, points):
-                if done >= PILOT:
+                if done >= FIRST_LOOK:
                     break
             while time.monotonic() < self.until:
                 bound = session.error().bound

@@ -77,7 +77,7 @@ def export(context):
     check_view_layer(scene, layer, missed)
     for message in missed.told():
         if message.text not in known:
-            asked.messages.add(message.text, message.key, message.harm)
+            asked.messages.add(message.text, message.key, message.severity)
     return asked
 
 
