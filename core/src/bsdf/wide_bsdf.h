@@ -1,6 +1,6 @@
 // Bsdf for many lanes at once: Lambert and GGX about the shading normal, reflecting or glass, rough or smooth, in layers or
 // side by side. The same operations in the same order as bsdf_terms.h, microfacet.cpp and principled.cpp, so that each lane has
-// their bits. For kernels only, like sampling/lanes.h.
+// their bits. For kernels only, like simd/lanes.h.
 #pragma once
 
 #include "bsdf/lobe.h"

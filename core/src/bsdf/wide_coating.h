@@ -1,5 +1,5 @@
 // The rough coating for many lanes at once, with the bits of coating.h, beckmann.h and fresnel.h. For kernels only, like
-// sampling/lanes.h.
+// simd/lanes.h.
 #pragma once
 
 #include "bsdf/wide_bsdf.h"

@@ -1,9 +1,9 @@
 // Facets of a lobe for many lanes at once: GGX, Fresnel, what is reflected and let through; as in ggx.h, fresnel.h,
-// microfacet_fresnel.h and microfacet_terms.h. For kernels only, like sampling/lanes.h.
+// microfacet_fresnel.h and microfacet_terms.h. For kernels only, like simd/lanes.h.
 #pragma once
 
-#include "sampling/lane_vectors.h"
 #include "sampling/warp.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

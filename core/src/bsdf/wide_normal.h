@@ -1,7 +1,7 @@
-// reflecting_normal() of many lanes. For kernels only, like sampling/lanes.h.
+// reflecting_normal() of many lanes. For kernels only, like simd/lanes.h.
 #pragma once
 
-#include "sampling/lane_vectors.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

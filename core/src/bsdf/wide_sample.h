@@ -1,4 +1,4 @@
-// Directions drawn from a WideBsdf: Bsdf::sample() for many lanes at once. For kernels only, like sampling/lanes.h.
+// Directions drawn from a WideBsdf: Bsdf::sample() for many lanes at once. For kernels only, like simd/lanes.h.
 #pragma once
 
 #include "bsdf/wide_bsdf.h"

@@ -2,11 +2,11 @@
 #include "integrator/camera_kernel.h"
 
 #include "accel/kernel_name.h"
-#include "sampling/lane_vectors.h"
 #include "sampling/wide_filter.h"
 #include "sampling/wide_numbers.h"
 #include "sampling/wide_warp.h"
 #include "scene/camera.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

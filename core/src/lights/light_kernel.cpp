@@ -4,7 +4,7 @@
 #include "accel/kernel_name.h"
 #include "lights/few_lights.h"
 #include "lights/wide_weights.h"
-#include "sampling/lane_vectors.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

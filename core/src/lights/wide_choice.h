@@ -1,10 +1,10 @@
 // FewLights::choose() for many lanes at once, with the bits of few_lights.cpp and tree_light.cpp. For kernels only, like
-// sampling/lanes.h.
+// simd/lanes.h.
 #pragma once
 
 #include "lights/few_lights.h"
 #include "lights/wide_sine.h"
-#include "sampling/lane_vectors.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

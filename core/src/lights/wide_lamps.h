@@ -1,10 +1,10 @@
 // Samples of lights as described for many lanes at once, with the bits of area_light.h, point_light.h and sun_light.h. For
-// kernels only, like sampling/lanes.h.
+// kernels only, like simd/lanes.h.
 #pragma once
 
 #include "lights/area_end.h"
 #include "lights/wide_lamp.h"
-#include "sampling/lane_vectors.h"
+#include "simd/kernel_lanes.h"
 
 #include <numbers>
 

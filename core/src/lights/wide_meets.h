@@ -1,9 +1,9 @@
-// Which of many rays may run into a lamp: meet() without what follows from it. For kernels only, like sampling/lanes.h.
+// Which of many rays may run into a lamp: meet() without what follows from it. For kernels only, like simd/lanes.h.
 #pragma once
 
 #include "lights/wide_lamp.h"
-#include "sampling/lane_vectors.h"
 #include "scene/light.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

@@ -1,7 +1,7 @@
-// sine_of() for many lanes at once, with the bits of light_importance.h. For kernels only, like sampling/lanes.h.
+// sine_of() for many lanes at once, with the bits of light_importance.h. For kernels only, like simd/lanes.h.
 #pragma once
 
-#include "sampling/lanes.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

@@ -1,18 +1,18 @@
 // What the children of a branch are worth at a point, side by side: the upper bound of importance(), of clusters, but that a
-// point within a cluster's ball counts as on its edge. For kernels only, like sampling/lanes.h.
+// point within a cluster's ball counts as on its edge. For kernels only, like simd/lanes.h.
 #pragma once
 
 #include "lights/light_branch.h"
 #include "lights/light_importance.h"
 #include "lights/wide_sine.h"
-#include "sampling/lane_memory.h"
-#include "sampling/lane_widths.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {
 
 constexpr int kChildren = static_cast<int>(kBranchWidth);
 // Registers of doubles that hold one number of each child.
+using DoubleVector = VectorOf<double, kHalf>;
 constexpr int kParts = kChildren / kHalf;
 
 // Of kLanes children from the first on; 0 where nothing can arrive.

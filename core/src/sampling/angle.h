@@ -1,9 +1,9 @@
 // Angles of directions, and directions by angles, in double: the same bits from every library, compiler and number of lanes.
 #pragma once
 
-namespace lancer {
+#include "simd/scalar.h"
 
-[[gnu::always_inline]] inline double select(bool condition, double a, double b) { return condition ? a : b; }
+namespace lancer {
 
 // The angle from (1, 0) to (x, y), in (-pi, pi]: atan2(y, x), but for zeros, which have no sign here. 0 for (0, 0). Double is a
 // double, or lanes of them. Fitted to a relative error of 3e-19: what is left is rounding, about two units in the last place.

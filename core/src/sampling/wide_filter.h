@@ -1,9 +1,8 @@
-// PixelFilter::sample() for many lanes at once. For kernels only, like lanes.h.
+// PixelFilter::sample() for many lanes at once. For kernels only, like simd/lanes.h.
 #pragma once
 
-#include "sampling/lane_memory.h"
-#include "sampling/lane_widths.h"
 #include "sampling/pixel_filter.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

@@ -1,7 +1,7 @@
-// Sampler::get8() for many lanes at once. For kernels only, like lanes.h.
+// Sampler::get8() for many lanes at once. For kernels only, like simd/lanes.h.
 #pragma once
 
-#include "sampling/lanes.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

@@ -1,9 +1,9 @@
-// warp_disk() for many lanes at once. For kernels only, like lanes.h.
+// warp_disk() for many lanes at once. For kernels only, like simd/lanes.h.
 #pragma once
 
-#include "sampling/lanes.h"
 #include "sampling/octant.h"
 #include "sampling/warp.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

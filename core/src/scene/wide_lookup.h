@@ -1,8 +1,8 @@
-// lookup() for many lanes at once with the bits of image.cpp. For kernels only, like sampling/lanes.h.
+// lookup() for many lanes at once with the bits of image.cpp. For kernels only, like simd/lanes.h.
 #pragma once
 
-#include "sampling/lane_vectors.h"
 #include "scene/wide_image.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

@@ -1,8 +1,8 @@
 // surface_at() for triangles, spheres and planes of many lanes at once, with the bits of surface.cpp. For kernels only, like
-// sampling/lanes.h.
+// simd/lanes.h.
 #pragma once
 
-#include "sampling/lane_vectors.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {

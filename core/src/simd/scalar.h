@@ -1,0 +1,69 @@
+// A single number as lanes of width 1: the operations that lanes have beside arithmetic, for float, double, uint32_t and bool.
+// A formula that is a template over its number type then is scalar code, too.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#define LANCER_LANE __attribute__((always_inline)) inline
+
+namespace lancer {
+
+// Conditions of width 1.
+LANCER_LANE bool any(bool m) { return m; }
+LANCER_LANE bool all(bool m) { return m; }
+LANCER_LANE uint32_t bits(bool m) { return m ? 1u : 0u; }
+
+LANCER_LANE float select(bool m, float a, float b) { return m ? a : b; }
+LANCER_LANE double select(bool m, double a, double b) { return m ? a : b; }
+LANCER_LANE uint32_t select(bool m, uint32_t a, uint32_t b) { return m ? a : b; }
+LANCER_LANE bool select(bool m, bool a, bool b) { return m ? a : b; }
+
+// The first where they are equal or not ordered, as std::max and std::min.
+LANCER_LANE float max(float a, float b) { return a < b ? b : a; }
+LANCER_LANE float min(float a, float b) { return b < a ? b : a; }
+LANCER_LANE double max(double a, double b) { return a < b ? b : a; }
+LANCER_LANE double min(double a, double b) { return b < a ? b : a; }
+
+LANCER_LANE float sqrt(float a) { return __builtin_sqrtf(a); }
+LANCER_LANE double sqrt(double a) { return __builtin_sqrt(a); }
+LANCER_LANE float abs(float a) { return __builtin_fabsf(a); }
+LANCER_LANE double abs(double a) { return __builtin_fabs(a); }
+LANCER_LANE float floor(float a) { return __builtin_floorf(a); }
+LANCER_LANE float copysign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
+
+LANCER_LANE float as_float(uint32_t a) { return std::bit_cast<float>(a); }
+LANCER_LANE uint32_t as_word(float a) { return std::bit_cast<uint32_t>(a); }
+LANCER_LANE bool equal(uint32_t a, uint32_t b) { return a == b; }
+
+LANCER_LANE double widen(float a) { return static_cast<double>(a); }
+LANCER_LANE float narrow(double a) { return static_cast<float>(a); }
+// Towards zero, of what an int32 holds; and back.
+LANCER_LANE uint32_t truncate(float a) { return static_cast<uint32_t>(static_cast<int32_t>(a)); }
+LANCER_LANE uint32_t truncate(double a) { return static_cast<uint32_t>(static_cast<int32_t>(a)); }
+LANCER_LANE float to_float(uint32_t a) { return static_cast<float>(static_cast<int32_t>(a)); }
+
+LANCER_LANE float gather(const float *table, uint32_t index) { return table[index]; }
+LANCER_LANE double gather(const double *table, uint32_t index) { return table[index]; }
+LANCER_LANE uint32_t gather(const uint32_t *table, uint32_t index) { return table[index]; }
+// The word that begins at a byte.
+LANCER_LANE uint32_t gather_bytes(const void *table, uint32_t offset) {
+  uint32_t word;
+  __builtin_memcpy(&word, static_cast<const unsigned char *>(table) + offset, 4);
+  return word;
+}
+
+// The number types that belong together: those of as many lanes as F.
+template <class F> struct LanesOf;
+template <> struct LanesOf<float> {
+  static constexpr int kWidth = 1;
+  using Double = double;
+  using Word = uint32_t;
+  using Mask = bool;
+};
+template <class F> using DoubleOf = typename LanesOf<F>::Double;
+template <class F> using WordOf = typename LanesOf<F>::Word;
+template <class F> using MaskOf = typename LanesOf<F>::Mask;
+
+} // namespace lancer

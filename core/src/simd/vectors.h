@@ -1,0 +1,56 @@
+// Vectors of three numbers of any width, with the sums in glm's order.
+#pragma once
+
+#include "simd/scalar.h"
+
+#include <glm/glm.hpp>
+
+namespace lancer {
+
+template <class T> struct Vector3 {
+  T x, y, z;
+
+  Vector3() = default;
+  LANCER_LANE constexpr Vector3(const T &a, const T &b, const T &c) : x(a), y(b), z(c) {}
+  LANCER_LANE explicit constexpr Vector3(const T &a) : x(a), y(a), z(a) {}
+  // Of one colour or direction for all lanes.
+  template <class S>
+  LANCER_LANE constexpr Vector3(const glm::vec<3, S> &v) requires(std::is_constructible_v<T, S>) : x(v.x), y(v.y), z(v.z) {}
+  // Width 1 is glm's own.
+  LANCER_LANE operator glm::vec<3, T>() const requires(std::is_floating_point_v<T>) { return {x, y, z}; }
+
+  friend LANCER_LANE Vector3 operator+(const Vector3 &a, const Vector3 &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend LANCER_LANE Vector3 operator-(const Vector3 &a, const Vector3 &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend LANCER_LANE Vector3 operator*(const Vector3 &a, const Vector3 &b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+  friend LANCER_LANE Vector3 operator/(const Vector3 &a, const Vector3 &b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
+  friend LANCER_LANE Vector3 operator*(const Vector3 &a, const T &s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend LANCER_LANE Vector3 operator*(const T &s, const Vector3 &a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend LANCER_LANE Vector3 operator/(const Vector3 &a, const T &s) { return {a.x / s, a.y / s, a.z / s}; }
+  friend LANCER_LANE Vector3 operator-(const Vector3 &a) { return {-a.x, -a.y, -a.z}; }
+  LANCER_LANE Vector3 &operator+=(const Vector3 &b) { return *this = *this + b; }
+  LANCER_LANE Vector3 &operator*=(const Vector3 &b) { return *this = *this * b; }
+  LANCER_LANE Vector3 &operator*=(const T &s) { return *this = *this * s; }
+
+  friend LANCER_LANE T dot(const Vector3 &a, const Vector3 &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  friend LANCER_LANE Vector3 cross(const Vector3 &a, const Vector3 &b) {
+    return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
+  }
+  friend LANCER_LANE Vector3 normalize(const Vector3 &a) { return a * (T(1) / sqrt(dot(a, a))); }
+  friend LANCER_LANE Vector3 min(const Vector3 &a, const Vector3 &b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
+  friend LANCER_LANE Vector3 max(const Vector3 &a, const Vector3 &b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; }
+  friend LANCER_LANE Vector3 sqrt(const Vector3 &a) { return {sqrt(a.x), sqrt(a.y), sqrt(a.z)}; }
+  template <class M> friend LANCER_LANE Vector3 select(const M &m, const Vector3 &a, const Vector3 &b) {
+    return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+  }
+  friend LANCER_LANE auto same(const Vector3 &a, const Vector3 &b) { return (a.x == b.x) & (a.y == b.y) & (a.z == b.z); }
+  friend LANCER_LANE auto black(const Vector3 &a) { return same(a, Vector3(T(0))); }
+};
+
+template <class T> LANCER_LANE auto widen(const Vector3<T> &a) {
+  return Vector3<DoubleOf<T>>(widen(a.x), widen(a.y), widen(a.z));
+}
+template <class D> LANCER_LANE auto narrow(const Vector3<D> &a) {
+  return Vector3<decltype(narrow(a.x))>(narrow(a.x), narrow(a.y), narrow(a.z));
+}
+
+} // namespace lancer
