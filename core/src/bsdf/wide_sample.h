@@ -2,30 +2,16 @@
 #pragma once
 
 #include "bsdf/wide_bsdf.h"
-#include "sampling/wide_warp.h"
+#include "sampling/warp.h"
 
 namespace lancer {
 namespace {
 
-LANCER_LANE V3 sample_cosine(F u, F v) {
-  F x, y;
-  warp_disk(u, v, x, y);
-  // The disk's radius is known before it is rotated.
-  const F r = max(abs(F(2.0f) * u - F(1.0f)), abs(F(2.0f) * v - F(1.0f)));
-  return {x, y, sqrt((F(1.0f) - r) * (F(1.0f) + r))};
-}
-
 LANCER_LANE V3 sample_visible(const V3 &wo, F alpha_x, F alpha_y, F u, F v) {
   const V3 w = normalize(V3{alpha_x * wo.x, alpha_y * wo.y, wo.z});
   const F s = u * (F(1.0f) + w.z), sin_theta = sqrt(max(F(0.0f), s * (F(2.0f) - s)));
-  // sin_cos_turn()
-  const U quarter = truncate(F(4.0f) * v + F(0.5f));
-  const F x = F(6.28318531f) * (v - F(0.25f) * to_float(quarter));
-  const F so = sin_octant(x), co = cos_octant(x);
-  const M odd = equal(quarter & U(1u), U(1u));
-  const F sine = as_float(as_word(select(odd, co, so)) ^ ((quarter & U(2u)) << 30));
-  const F cosine = as_float(as_word(select(odd, so, co)) ^ (((quarter + U(1u)) & U(2u)) << 30));
-  const V3 h{sin_theta * cosine + w.x, sin_theta * sine + w.y, (F(1.0f) - u) * (F(1.0f) + w.z)};
+  const SinCos phi = sin_cos_turn(v);
+  const V3 h{sin_theta * phi.cos + w.x, sin_theta * phi.sin + w.y, (F(1.0f) - u) * (F(1.0f) + w.z)};
   return normalize(V3{alpha_x * h.x, alpha_y * h.y, h.z});
 }
 
@@ -116,7 +102,7 @@ LANCER_LANE WideSample sample_bsdf(const WideBsdf &bsdf, F u_lobe, F u, F v) {
   V3 h{zero, zero, zero};
   WideDirection direction{h, h, picked.matte, zero != zero};
   if (any(picked.matte))
-    direction.wi = sample_cosine(u, v);
+    direction.wi = warp_cosine_hemisphere(u, v);
   if (any(glossy)) {
     const V3 facet = sample_visible(bsdf.wo, picked.alpha_x, picked.alpha_y, u, v);
     const V3 mirrored = F(2.0f) * dot(bsdf.wo, facet) * facet - bsdf.wo;

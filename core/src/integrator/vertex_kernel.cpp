@@ -8,9 +8,8 @@
 #include "lights/wide_choice.h"
 #include "lights/wide_lamps.h"
 #include "lights/wide_meets.h"
-#include "sampling/sobol_table.h"
-#include "sampling/wide_numbers.h"
-#include "sampling/wide_warp.h"
+#include "sampling/scramble.h"
+#include "sampling/warp.h"
 #include "scene/wide_surface.h"
 
 namespace lancer {
@@ -24,15 +23,14 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
   const U pixel = load(block.pixel + first);
   for (uint32_t i = 0; i < 8; i += 2) {
     const uint32_t dimension = block.dimension + i;
-    F a, b;
-    if (dimension < kJointDimensions) {
-      a = joint_number(pixel, dimension, block.reversed_point[i]);
-      b = joint_number(pixel, dimension + 1, block.reversed_point[i + 1]);
-    } else {
-      pair_numbers(pixel, dimension, block.reversed_sample, a, b);
-    }
-    store(block.u[i] + first, a);
-    store(block.u[i + 1] + first, b);
+    Vector2<F> u;
+    if (dimension < kJointDimensions)
+      u = {scrambled(U(block.reversed_point[i]), pixel, dimension),
+           scrambled(U(block.reversed_point[i + 1]), pixel, dimension + 1)};
+    else
+      u = pair_numbers(U(block.reversed_sample), pixel, dimension);
+    store(block.u[i] + first, u.x);
+    store(block.u[i + 1] + first, u.y);
   }
 }
 
@@ -114,8 +112,7 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
   const M area = asked & equal(kind, number_of(LightKind::Area)), spot = asked & equal(kind, number_of(LightKind::Spot));
   const M round = spot | (asked & equal(kind, number_of(LightKind::Point)));
   const F u = load(block.u[2] + first), v = load(block.u[3] + first);
-  F disk_x, disk_y;
-  warp_disk(u, v, disk_x, disk_y);
+  const auto [disk_x, disk_y] = warp_disk(u, v);
   WideLight light;
   light.target = load3(block.light_target, first);
   light.wi = load3(block.light_wi, first);

@@ -62,6 +62,11 @@ template <> struct LanesOf<float> {
   using Word = uint32_t;
   using Mask = bool;
 };
+// Lanes of floats, or a float.
+template <class F>
+concept FloatLanes = requires {
+  typename LanesOf<F>::Double;
+};
 template <class F> using DoubleOf = typename LanesOf<F>::Double;
 template <class F> using WordOf = typename LanesOf<F>::Word;
 template <class F> using MaskOf = typename LanesOf<F>::Mask;

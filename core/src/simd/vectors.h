@@ -1,4 +1,4 @@
-// Vectors of three numbers of any width, with the sums in glm's order.
+// Vectors of two and of three numbers of any width, with the sums in glm's order.
 #pragma once
 
 #include "simd/scalar.h"
@@ -6,6 +6,13 @@
 #include <glm/glm.hpp>
 
 namespace lancer {
+
+template <class T> struct Vector2 {
+  T x, y;
+
+  // Width 1 is glm's own.
+  LANCER_LANE operator glm::vec<2, T>() const requires(std::is_floating_point_v<T>) { return {x, y}; }
+};
 
 template <class T> struct Vector3 {
   T x, y, z;
