@@ -41,7 +41,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::cho
 
 // Chooses a light for every lane; samples those that kernels do not know.
 template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_lights() {
-  static const WideLamp nothing;
+  static const Light nothing;
   block_.asked = 0;
   uint32_t skies = 0;
   const FewLights &few = scene_.lights.few();
@@ -64,9 +64,9 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     waiting_[lane].light = choice.light;
     block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
     if (choice.light < scene_.lights.lights().size()) {
-      const WideLamp &lamp = scene_.lights.plain_numbers(choice.light);
+      const Light &lamp = scene_.lights.lights()[choice.light];
       block_.lamp[lane] = &lamp;
-      waiting_[lane].far = lamp.kind == uint32_t(LightKind::Sun);
+      waiting_[lane].far = lamp.kind == LightKind::Sun;
       block_.light_pdf[lane] = choice.probability;
       block_.asked |= 1u << lane;
       continue;

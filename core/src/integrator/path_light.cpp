@@ -55,7 +55,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::add
       ways_.end[lane] = way_end(first + lane) + lights.most_before();
     }
     for (const uint32_t number : lights.always_on_the_way()) {
-      const uint32_t met = lanes_.meets(ways_, lights.plain_numbers(number)) & ((1u << count) - 1u);
+      const uint32_t met = lanes_.meets(ways_, lights.lights()[number]) & ((1u << count) - 1u);
       for (uint32_t rest = met; rest != 0; rest &= rest - 1)
         add_light_met(first + size_t(std::countr_zero(rest)), number, results);
     }

@@ -3,12 +3,12 @@
 
 #include "bsdf/wide_lobe.h"
 #include "lights/way_block.h"
-#include "lights/wide_lamp.h"
 
 #include <cstdint>
 
 namespace lancer {
 
+struct Light;
 struct LightNode;
 struct TreeLight;
 
@@ -47,7 +47,7 @@ struct alignas(64) VertexBlock {
   Doubles chosen_probability, chosen_rest;
 
   // Given: the lamp to ask, or the sample of another light, with the probability of its choice in pdf either way.
-  const WideLamp *lamp[kBlockLanes];
+  const Light *lamp[kBlockLanes];
   Doubles light_wi[3], light_target[3], light_pdf;
   Floats light_radiance[3];
   Words light_delta, light_hidden; // bits LANCER_RAY_*

@@ -5,9 +5,8 @@
 #include "bsdf/wide_normal.h"
 #include "bsdf/wide_sample.h"
 #include "lancer.h"
+#include "lights/sample_light.h"
 #include "lights/wide_choice.h"
-#include "lights/wide_lamps.h"
-#include "lights/wide_meets.h"
 #include "sampling/scramble.h"
 #include "sampling/warp.h"
 #include "scene/wide_surface.h"
@@ -101,42 +100,21 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
   const M asked = some(block.asked, first);
   if (!any(asked))
     return;
-  const WideLamp *const *lamps = block.lamp + first;
-  alignas(64) uint32_t kinds[kLanes], softs[kLanes], ellipses[kLanes];
-  for (int i = 0; i < kLanes; ++i) {
-    kinds[i] = lamps[i]->kind;
-    softs[i] = lamps[i]->soft;
-    ellipses[i] = lamps[i]->ellipse;
-  }
-  const U kind = load(kinds);
-  const M area = asked & equal(kind, number_of(LightKind::Area)), spot = asked & equal(kind, number_of(LightKind::Spot));
-  const M round = spot | (asked & equal(kind, number_of(LightKind::Point)));
-  const F u = load(block.u[2] + first), v = load(block.u[3] + first);
-  const auto [disk_x, disk_y] = warp_disk(u, v);
-  WideLight light;
-  light.target = load3(block.light_target, first);
-  light.wi = load3(block.light_wi, first);
-  light.radiance = load3(block.light_radiance, first);
-  light.delta = !equal(load(block.light_delta + first), U(0u));
+  LightSampleLanes<F> sample;
+  sample.target = load3(block.light_target, first);
+  sample.wi = load3(block.light_wi, first);
+  sample.radiance = load3(block.light_radiance, first);
+  sample.delta = !equal(load(block.light_delta + first), U(0u));
   const D probability = load(block.light_pdf + first);
-  light.pdf = select(asked, D(0.0), probability);
-  if (any(area))
-    sample_area(lamps, p, u, v, disk_x, disk_y, area, area & equal(load(ellipses), U(1u)), light);
-  if (any(round)) {
-    M inside;
-    sample_round(lamps, p, disk_x, disk_y, round, equal(load(softs), U(1u)), spot, light, inside);
-    block.odd |= placed_bits(inside, first);
-  }
-  const M sun = asked & equal(kind, number_of(LightKind::Sun));
-  if (any(sun))
-    sample_sun(lamps, disk_x, disk_y, sun, light);
+  sample.pdf = probability;
+  sample_light(EachLight<F>{block.lamp + first}, p, load(block.u[2] + first), load(block.u[3] + first), asked, sample);
   // Dark ones are none.
-  light.pdf = select(asked & black(light.radiance), D(0.0), light.pdf);
-  store3(block.light_target, first, light.target);
-  store3(block.light_wi, first, light.wi);
-  store3(block.light_radiance, first, light.radiance);
-  store(block.light_delta + first, select(light.delta, U(1u), U(0u)));
-  store(block.light_pdf + first, select(asked, light.pdf * probability, light.pdf));
+  sample.pdf = select(asked & black(sample.radiance), D(0.0), sample.pdf);
+  store3(block.light_target, first, sample.target);
+  store3(block.light_wi, first, sample.wi);
+  store3(block.light_radiance, first, sample.radiance);
+  store(block.light_delta + first, select(sample.delta, U(1u), U(0u)));
+  store(block.light_pdf + first, select(asked, sample.pdf * probability, sample.pdf));
 }
 
 // Lanes whose lobes mind that their normal bends.
@@ -242,12 +220,12 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
   }
 }
 
-[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const WideLamp &lamp) {
+[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const Light &light) {
   uint32_t met = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     const D3 d = load3(ways.d, first);
     const D3 wi = d / sqrt(dot(d, d));
-    met |= placed_bits(may_meet(lamp, load3(ways.from, first), wi, load(ways.end + first)), first);
+    met |= placed_bits(may_meet(OneLight<F>{light}, load3(ways.from, first), wi, load(ways.end + first)), first);
   }
   return met;
 }

@@ -12,8 +12,8 @@ struct VertexKernel {
   void (*surfaces)(VertexBlock &block);
   void (*choose)(VertexBlock &block);
   void (*shade)(VertexBlock &block);
-  // Bits of the lanes that may meet the lamp; no other does.
-  uint32_t (*meets)(const WayBlock &ways, const WideLamp &lamp);
+  // Bits of the lanes that may meet the light; no other does.
+  uint32_t (*meets)(const WayBlock &ways, const Light &light);
 };
 
 // Each is the same source, vertex_kernel.cpp, compiled with LANCER_ISA set to the name.

@@ -33,6 +33,9 @@ LANCER_LANE double abs(double a) { return __builtin_fabs(a); }
 LANCER_LANE float floor(float a) { return __builtin_floorf(a); }
 LANCER_LANE float copysign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
 
+// 1 with the sign of a.
+LANCER_LANE double sign(double a) { return __builtin_copysign(1.0, a); }
+
 LANCER_LANE float as_float(uint32_t a) { return std::bit_cast<float>(a); }
 LANCER_LANE uint32_t as_word(float a) { return std::bit_cast<uint32_t>(a); }
 LANCER_LANE bool equal(uint32_t a, uint32_t b) { return a == b; }

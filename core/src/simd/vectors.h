@@ -60,4 +60,7 @@ template <class D> LANCER_LANE auto narrow(const Vector3<D> &a) {
   return Vector3<decltype(narrow(a.x))>(narrow(a.x), narrow(a.y), narrow(a.z));
 }
 
+// Of as many lanes as F.
+template <class F> using Double3Of = Vector3<DoubleOf<F>>;
+
 } // namespace lancer
