@@ -46,9 +46,7 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
   uint32_t skies = 0;
   const FewLights &few = scene_.lights.few();
   if (!few.empty()) {
-    block_.light_nodes = few.nodes().data();
-    block_.tree_lights = few.lights().data();
-    block_.light_root = few.root();
+    block_.light_nodes = few.nodes();
     lanes_.choose(block_);
     choose_of_many();
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bsdf/wide_lobe.h"
+#include "lights/light_choice.h"
 #include "lights/way_block.h"
 
 #include <cstdint>
@@ -9,8 +10,6 @@
 namespace lancer {
 
 struct Light;
-struct LightNode;
-struct TreeLight;
 
 inline constexpr int kBlockLanes = kWays;
 
@@ -40,9 +39,7 @@ struct alignas(64) VertexBlock {
   Floats u[8];
 
   // Given: the tree of LightSet::few(). choose(): one of its lights for each lane, as LightChoice.
-  const LightNode *light_nodes = nullptr;
-  const TreeLight *tree_lights = nullptr;
-  uint32_t light_root = 0;
+  LightNodes light_nodes{};
   alignas(64) Words chosen;
   Doubles chosen_probability, chosen_rest;
 

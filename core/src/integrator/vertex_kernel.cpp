@@ -5,8 +5,8 @@
 #include "bsdf/wide_normal.h"
 #include "bsdf/wide_sample.h"
 #include "lancer.h"
+#include "lights/light_choice.h"
 #include "lights/sample_light.h"
-#include "lights/wide_choice.h"
 #include "sampling/scramble.h"
 #include "sampling/warp.h"
 #include "scene/wide_surface.h"
@@ -86,9 +86,9 @@ LANCER_LANE V3 seen_normal(const VertexBlock &block, int first) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    const WideQuery query{load3(block.p, first), seen_normal(block, first), some(block.transmits, first)};
+    const LightQueryLanes<F> query(load3(block.p, first), seen_normal(block, first), some(block.transmits, first));
     const D u = widen(load(block.u[4] + first)) + D(0x1p-24) * widen(load(block.u[7] + first));
-    const WideChoice choice = choose_light(query, {block.light_nodes, block.tree_lights, block.light_root}, u);
+    const LightChoiceLanes<F> choice = choose_light(query, block.light_nodes, u, mask_of((1u << kLanes) - 1u));
     store(block.chosen + first, choice.number);
     store(block.chosen_probability + first, choice.probability);
     store(block.chosen_rest + first, choice.u);
