@@ -215,6 +215,58 @@ class NodeKind(IntEnum):
     DISPLACEMENT = 19
     GAMMA = 20
     INVERT = 21
+    NOISE = 22
+    VORONOI = 23
+    GRADIENT = 24
+    CURVES = 25
+
+
+class NoiseKind(IntEnum):
+    FBM = 0
+    MULTIFRACTAL = 1
+    HYBRID_MULTIFRACTAL = 2
+    RIDGED_MULTIFRACTAL = 3
+    HETERO_TERRAIN = 4
+
+
+class NoiseFlag(IntFlag):
+    NORMALIZED = 4
+    REPEATS = 8
+    COUNTED = 16
+    COLOR = 32
+
+
+class VoronoiFeature(IntEnum):
+    F1 = 0
+    F2 = 1
+    SMOOTH_F1 = 2
+    DISTANCE_TO_EDGE = 3
+    N_SPHERE_RADIUS = 4
+
+
+class VoronoiMetric(IntEnum):
+    EUCLIDEAN = 0
+    MANHATTAN = 1
+    CHEBYCHEV = 2
+    MINKOWSKI = 3
+
+
+class VoronoiFlag(IntFlag):
+    NORMALIZED = 16
+    COLOR = 32
+    POSITION = 64
+    INTEGERS = 128
+    BOUNDED = 256
+
+
+class GradientKind(IntEnum):
+    LINEAR = 0
+    QUADRATIC = 1
+    EASING = 2
+    DIAGONAL = 3
+    SPHERICAL = 4
+    QUADRATIC_SPHERE = 5
+    RADIAL = 6
 
 
 class Coordinate(IntEnum):

@@ -14,17 +14,18 @@ import math
 import bpy
 
 from ..bindings import snapshot
-from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.enums import AlphaMode, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from ..harm import Harm
-from . import colors, coordinates, maths, normals, textures
+from . import colors, coordinates, curves, maths, normals, procedural, textures
 from .arithmetic import THIRDS, is_constant, single, triple
 from .colorspace import luminance_weights
 from .fold import FOLD, gives_number
 from .sockets import find
 from .walk import Site, Walker
 
-_READERS = {**maths.READERS, **colors.READERS, **coordinates.READERS, **normals.READERS, **textures.READERS}
+_MODULES = (maths, colors, curves, coordinates, normals, textures, procedural)
+_READERS = {kind: reader for module in _MODULES for kind, reader in module.READERS.items()}
 _OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}
@@ -56,6 +57,7 @@ class NodeGraph:
         self.normal = (0.0, 0.0, 0.0)  # what takes the place of the shading normal where it is bumped as a whole
         self.walker = Walker()
         self._nodes = []
+        self._tables = {}
         self._scopes = [_Scope()]
         self._active = set()
         self._is_ahead = False
@@ -97,6 +99,14 @@ class NodeGraph:
             return single(value)
         self.messages.add(f"{self.owner}: a node's result is not finite, 0 is used")
         return 0.0 if gives_number(node) else (0.0, 0.0, 0.0)
+
+    def table(self, values):
+        """The number of the picture that holds a table (n, channels) of single precision as its one row; equal ones are one."""
+        key = values.shape, values.tobytes()
+        if key not in self._tables:
+            picture = snapshot.Image(name="table", texels=values[None], alpha=AlphaMode.CHANNEL_PACKED)
+            self._tables[key] = self.images.repeat([picture])
+        return self._tables[key]
 
     def height_nodes(self, build):
         """(first, value) of build(), with nodes of its own from number first on: BUMP computes them at other places."""

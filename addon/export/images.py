@@ -67,6 +67,9 @@ class NoPictures:
     def numbers(self, image, user, tell):
         return 0, 1
 
+    def repeat(self, pictures):
+        return 0
+
 
 def _frame_path(image, user, tell):
     """The file of the current frame of a sequence; "" for what has one picture only."""

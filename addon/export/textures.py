@@ -41,7 +41,7 @@ def _image_texture(graph, site, output):
         flags |= _STRAIGHT_COLOR
     value = graph.emit(
         NodeKind.IMAGE,
-        _legacy_mapping(graph, site, vector),
+        legacy_mapping(graph, site, vector),
         node.projection_blend if node.projection == "BOX" else 0.0,
         option=Projection[node.projection],
         flags=flags,
@@ -61,7 +61,7 @@ def _environment_texture(graph, site, output):
         vector = coordinate(graph, Coordinate.POSITION)
     return graph.emit(
         NodeKind.ENVIRONMENT,
-        _legacy_mapping(graph, site, vector),
+        legacy_mapping(graph, site, vector),
         option=Environment[node.projection],
         flags=_INTERPOLATION[node.interpolation] << 4,
         image=first,
@@ -81,7 +81,7 @@ def _has_color_under_alpha(image):
     return not image.colorspace_settings.is_data and image.alpha_mode not in ("CHANNEL_PACKED", "NONE")
 
 
-def _legacy_mapping(graph, site, vector):
+def legacy_mapping(graph, site, vector):
     """The mapping that nodes of old files carry within themselves: axes chosen first, then moved."""
     own = site.node.texture_mapping
     kind, location, scale = MappingType[own.vector_type], tuple(own.translation), tuple(own.scale)

@@ -233,7 +233,58 @@ enum {
                                     scale is measured. Gives an offset in object space */
   LANCER_NODE_GAMMA = 20,        /* inputs: colour, exponent */
   LANCER_NODE_INVERT = 21,       /* inputs: factor, colour */
-  LANCER_NODE_COUNT = 22
+  /* inputs: vector; w, scale, distortion; detail, roughness, lacunarity; offset, gain. option LANCER_NOISE_*; flags: dimensions
+   * less 1 in bits 0-1, and LANCER_NOISE_* bits */
+  LANCER_NODE_NOISE = 22,
+  /* inputs: vector; w, scale, randomness; detail, roughness, lacunarity; smoothness, exponent. option LANCER_VORONOI_*; flags:
+   * dimensions less 1 in bits 0-1, LANCER_VORONOI_EUCLIDEAN ... in bits 2-3, and LANCER_VORONOI_* bits */
+  LANCER_NODE_VORONOI = 23,
+  LANCER_NODE_GRADIENT = 24, /* inputs: vector; option LANCER_GRADIENT_* */
+  /* inputs: factor, value. image: one row of at least two floating point texels, as it is in memory: values at equal distances
+   * from matrix[0] to matrix[1]; with one channel a curve of the value's x, with more one of each; option 1: all of x, factor
+   * left out. flag 1: goes on beyond its ends along its first and last line, 2: no lines between values, the one before */
+  LANCER_NODE_CURVES = 25,
+  LANCER_NODE_COUNT = 26
+};
+enum {
+  LANCER_NOISE_FBM = 0,
+  LANCER_NOISE_MULTIFRACTAL,
+  LANCER_NOISE_HYBRID_MULTIFRACTAL,
+  LANCER_NOISE_RIDGED_MULTIFRACTAL,
+  LANCER_NOISE_HETERO_TERRAIN,
+  LANCER_NOISE_COUNT
+};
+enum {
+  LANCER_NOISE_NORMALIZED = 4, /* FBM: 0 ... 1 */
+  LANCER_NOISE_REPEATS = 8,    /* every 100 000 along each axis, as from Blender 4.2 on */
+  LANCER_NOISE_COUNTED = 16,   /* detail is the number of octaves, as of the Musgrave Texture; else one less */
+  LANCER_NOISE_COLOR = 32      /* green and blue are noises of their own */
+};
+enum {
+  LANCER_VORONOI_F1 = 0,
+  LANCER_VORONOI_F2,
+  LANCER_VORONOI_SMOOTH_F1,
+  LANCER_VORONOI_DISTANCE_TO_EDGE,
+  LANCER_VORONOI_N_SPHERE_RADIUS,
+  LANCER_VORONOI_COUNT
+};
+enum { LANCER_VORONOI_EUCLIDEAN = 0, LANCER_VORONOI_MANHATTAN, LANCER_VORONOI_CHEBYCHEV, LANCER_VORONOI_MINKOWSKI };
+enum {
+  LANCER_VORONOI_NORMALIZED = 16,
+  LANCER_VORONOI_COLOR = 32,    /* x, y, z are the colour of the cell; the distance is the fourth number, and all without this */
+  LANCER_VORONOI_POSITION = 64, /* x, y, z are the position of the point, its w the fourth */
+  LANCER_VORONOI_INTEGERS = 128, /* cells are hashed as from Blender 5.0 on */
+  LANCER_VORONOI_BOUNDED = 256   /* nothing is further than 8, as before Blender 4.0 */
+};
+enum {
+  LANCER_GRADIENT_LINEAR = 0,
+  LANCER_GRADIENT_QUADRATIC,
+  LANCER_GRADIENT_EASING,
+  LANCER_GRADIENT_DIAGONAL,
+  LANCER_GRADIENT_SPHERICAL,
+  LANCER_GRADIENT_QUADRATIC_SPHERE,
+  LANCER_GRADIENT_RADIAL,
+  LANCER_GRADIENT_COUNT
 };
 enum {
   LANCER_COORDINATE_GENERATED = 0, /* 0 ... 1 over the mesh's bounds; attribute "generated" where the mesh has it */

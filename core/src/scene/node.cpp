@@ -121,6 +121,18 @@ void run_at(const Program &program, const Schedule &schedule, const Site &site, 
       result = solid(factor * (1.0f - in[1]) + (1.0f - factor) * in[1]);
       break;
     }
+    case LANCER_NODE_NOISE:
+      result = noise(in);
+      break;
+    case LANCER_NODE_VORONOI:
+      result = voronoi(in);
+      break;
+    case LANCER_NODE_GRADIENT:
+      result = gradient(in);
+      break;
+    case LANCER_NODE_CURVES:
+      result = curves(in, site);
+      break;
     default:
       result = glm::vec4(0.0f);
     }
