@@ -219,6 +219,33 @@ class NodeKind(IntEnum):
     VORONOI = 23
     GRADIENT = 24
     CURVES = 25
+    OBJECT_INFO = 26
+    LIGHT_PATH = 27
+
+
+class ObjectFact(IntEnum):
+    LOCATION = 0
+    COLOR = 1
+    INDEX = 2
+    RANDOM = 3
+
+
+class PathFact(IntEnum):
+    IS_CAMERA = 0
+    IS_SHADOW = 1
+    IS_DIFFUSE = 2
+    IS_GLOSSY = 3
+    IS_SINGULAR = 4
+    IS_REFLECTION = 5
+    IS_TRANSMISSION = 6
+    IS_VOLUME = 7
+    LENGTH = 8
+    DEPTH = 9
+    DIFFUSE_DEPTH = 10
+    GLOSSY_DEPTH = 11
+    TRANSPARENT_DEPTH = 12
+    TRANSMISSION_DEPTH = 13
+    PORTAL_DEPTH = 14
 
 
 class NoiseKind(IntEnum):

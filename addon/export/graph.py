@@ -54,6 +54,7 @@ class NodeGraph:
         self.unknown = unknown
         self.attributes = set()  # names of mesh attributes that the nodes read
         self.objects = set()  # identities of the objects whose place they read
+        self.material_index = 0  # of the owner; 0 of what is no material
         self.normal = (0.0, 0.0, 0.0)  # what takes the place of the shading normal where it is bumped as a whole
         self.walker = Walker()
         self._nodes = []

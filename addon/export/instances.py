@@ -8,6 +8,7 @@ import numpy as np
 
 from ..bindings.snapshot import InstanceTable
 from ..harm import Harm
+from .apart import read_infos
 from .checks import check_hair
 from .lights import export_light
 from .objects import Objects
@@ -134,6 +135,9 @@ class Instances:
         self.places = Places(entries, self._entry_count, placements, tuple(self._objects.placements), leaks)
         matrices = self.places.matrices(self.depsgraph)
         poll()
+        infos = None
+        if any(self._objects.materials.tell_apart(look.slots) for look in looks):
+            infos = read_infos(self.depsgraph.object_instances, entries, _POLL_EVERY, poll)
         return InstanceTable(
             matrices=matrices,
             kinds=column([look.kind for look in looks]),
@@ -148,6 +152,7 @@ class Instances:
             name_indices=row_of,
             names=self._names,
             slots=slots,
+            infos=infos,
         )
 
     def _narrowed_by(self, instancer):

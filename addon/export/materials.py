@@ -5,7 +5,7 @@ from typing import NamedTuple
 import bpy
 
 from ..bindings import snapshot
-from ..bindings.enums import LobeKind, MaterialFlag
+from ..bindings.enums import LobeKind, MaterialFlag, NodeKind, ObjectFact
 from ..harm import Harm
 from .arithmetic import is_constant, triple
 from .course_models import PARAMETERS, lobes_of
@@ -24,6 +24,7 @@ _DEFAULT_LOBE = (
 )
 _DEFAULT = snapshot.Material(name="default grey", lobes=(_DEFAULT_LOBE,))
 # Cycles' filter width of the bump that stands for displacement, in pixels; before it was one pixel.
+_APART = (ObjectFact.COLOR, ObjectFact.RANDOM)  # what an OBJECT_INFO node tells that must be read for it
 _BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
 
 
@@ -67,9 +68,17 @@ class Materials:
 
         return self._parts.shader(material, self.messages, read)
 
+    def tell_apart(self, numbers):
+        """Whether one of these materials asks for an object's colour or random number."""
+        return any(_tells_apart(self.list[number]) for number in numbers)
+
     def attributes(self, numbers):
         """Names of the mesh attributes that these materials read: what export_mesh takes as wanted."""
         return frozenset().union(*(self._attributes[number] for number in numbers))
+
+
+def _tells_apart(material):
+    return any(node.kind == NodeKind.OBJECT_INFO and node.option in _APART for node in material.nodes)
 
 
 def _export(material, messages, asker, images, depsgraph):
@@ -77,6 +86,7 @@ def _export(material, messages, asker, images, depsgraph):
     who = f"material '{material.name}'" + ("" if asker is None else f" on object '{asker}'")
     own = material.lancer
     graph = NodeGraph(who, messages, images, depsgraph)
+    graph.material_index = max(0, material.pass_index)
     common = {
         "name": material.name,
         "ambient": messages.color(own.ka, who, "ambient colour"),

@@ -44,7 +44,10 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
   else if (node.kind == LANCER_NODE_MIX)
     node.option %= LANCER_MIX_COUNT + 1;
   else
-    node.option %= node.kind == LANCER_NODE_NORMAL_MAP ? 6 : node.kind == LANCER_NODE_SEPARATE ? 3 : 4;
+    node.option %= node.kind == LANCER_NODE_NORMAL_MAP || node.kind == LANCER_NODE_NOISE || node.kind == LANCER_NODE_VORONOI ? 6
+                   : node.kind == LANCER_NODE_GRADIENT                                                                       ? 8
+                   : node.kind == LANCER_NODE_SEPARATE                                                                       ? 3
+                                                       : 4;
   const bool picture = node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT;
   if (picture) {
     // One after the other: of operands the compiler chooses which comes first.

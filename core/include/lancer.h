@@ -244,7 +244,35 @@ enum {
    * from matrix[0] to matrix[1]; with one channel a curve of the value's x, with more one of each; option 1: all of x, factor
    * left out. flag 1: goes on beyond its ends along its first and last line, 2: no lines between values, the one before */
   LANCER_NODE_CURVES = 25,
-  LANCER_NODE_COUNT = 26
+  LANCER_NODE_OBJECT_INFO = 26, /* of the object that is met; option LANCER_OBJECT_* */
+  LANCER_NODE_LIGHT_PATH = 27,  /* of the ray that has met it, or the world; option LANCER_PATH_* */
+  LANCER_NODE_COUNT = 28
+};
+enum {
+  LANCER_OBJECT_LOCATION = 0, /* of its frame's origin */
+  LANCER_OBJECT_COLOR,        /* and alpha */
+  LANCER_OBJECT_INDEX,
+  LANCER_OBJECT_RANDOM,
+  LANCER_OBJECT_COUNT
+};
+/* 1 or 0; a length in scene units; or how many scatterings, of that kind, or surfaces passed straight through came before. */
+enum {
+  LANCER_PATH_IS_CAMERA = 0,
+  LANCER_PATH_IS_SHADOW,
+  LANCER_PATH_IS_DIFFUSE,
+  LANCER_PATH_IS_GLOSSY,
+  LANCER_PATH_IS_SINGULAR,
+  LANCER_PATH_IS_REFLECTION,
+  LANCER_PATH_IS_TRANSMISSION,
+  LANCER_PATH_IS_VOLUME,
+  LANCER_PATH_LENGTH,
+  LANCER_PATH_DEPTH,
+  LANCER_PATH_DIFFUSE_DEPTH,
+  LANCER_PATH_GLOSSY_DEPTH,
+  LANCER_PATH_TRANSPARENT_DEPTH,
+  LANCER_PATH_TRANSMISSION_DEPTH,
+  LANCER_PATH_PORTAL_DEPTH,
+  LANCER_PATH_COUNT
 };
 enum {
   LANCER_NOISE_FBM = 0,
@@ -578,6 +606,9 @@ LANCER_API lancer_status lancer_scene_add_light(lancer_scene scene, const lancer
 LANCER_API lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, const lancer_instance *instances,
                                                     uint32_t slot_count, const uint32_t *slots, const char *names,
                                                     size_t names_size);
+/* For OBJECT_INFO nodes: infos[count][5], colour, alpha and the random number of the first count instances in order of adding,
+ * those left out included. Others are white and 0. */
+LANCER_API lancer_status lancer_scene_set_object_infos(lancer_scene scene, uint32_t count, const float *infos);
 /* Pictures are numbered in the order in which they are added. */
 LANCER_API lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image);
 

@@ -1,7 +1,4 @@
 // Textures and curves at widths 1, 4, 8 and 16: equal bits, whatever the numbers are.
-// Lanes wider than this unit's registers are passed between its own functions alone.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 #include "nodes/curves.h"
 #include "nodes/gradient.h"
 #include "nodes/noise.h"

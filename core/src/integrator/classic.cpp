@@ -86,7 +86,7 @@ void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const 
   if (!(branch.kinds & ~scene_.world.hidden_from))
     return;
   const glm::vec3 sky = scene_.lights.environment().radiance(glm::dvec3(direction), shader_.values(), &camera_,
-                                                             branch.depth == 0 ? &eye : nullptr);
+                                                             branch.depth == 0 ? &eye : nullptr, {.kinds = branch.kinds});
   add(branch, branch.weight * sky, true, result);
 }
 
@@ -111,7 +111,11 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
     wo = -glm::vec3(glm::normalize(view));
     way = glm::length(view) + (from_camera ? 0.0 : branch.passed * glm::length(ray.d));
   }
-  shader_.shade(surface, {.wo = wo, .footprint = float(cone_.base + way * cone_.spread)}, point_);
+  shader_.shade(surface,
+                {.wo = wo,
+                 .footprint = float(cone_.base + way * cone_.spread),
+                 .path = {.kinds = branch.kinds, .depth = float(branch.depth)}},
+                point_);
   if (trace)
     trace->push_back({scene_.normalisation.to_world(met.p), hit.t / scene_.normalisation.scale, surface.ns, branch.weight,
                       result.radiance, met.instance, met.primitive, met.material, branch.depth});

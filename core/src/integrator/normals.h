@@ -37,7 +37,7 @@ public:
         continue;
       }
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-      shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d))}, point_);
+      shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .path = {.kinds = LANCER_RAY_CAMERA}}, point_);
       // This picture shows every surface whole.
       point_.transmittance = glm::vec3(0.0f);
       record_first_surface(scene_, settings_, surface, point_, hits_[i].t, result);
@@ -58,7 +58,8 @@ private:
     if (settings_.film_transparent)
       result.alpha = 0.0f;
     else if (!(scene_.world.hidden_from & LANCER_RAY_CAMERA))
-      result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), shader_.values(), &camera_, &ray.o);
+      result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), shader_.values(), &camera_, &ray.o,
+                                                             {.kinds = LANCER_RAY_CAMERA});
   }
 
   const Scene &scene_;

@@ -165,8 +165,10 @@ void PathIntegrator<Shapes, Layers>::shade_surface(Path &path, const Ray &ray, d
 // How a path looks at what it meets at t.
 template <uint32_t Shapes, bool Layers>
 View PathIntegrator<Shapes, Layers>::view_of(const Path &path, const Ray &ray, double t) const {
-  const double way = path.length + t * glm::length(ray.d);
-  return {.wo = glm::vec3(-glm::normalize(ray.d)), .footprint = float(cone_.base + way * cone_.spread)};
+  const double unit = glm::length(ray.d), way = path.length + t * unit;
+  return {.wo = glm::vec3(-glm::normalize(ray.d)),
+          .footprint = float(cone_.base + way * cone_.spread),
+          .path = light_path(path, (t - ray.tmin) * unit)};
 }
 
 template <uint32_t Shapes, bool Layers>
@@ -243,6 +245,7 @@ bool PathIntegrator<Shapes, Layers>::scatter(Path &path, const Surface &surface,
   path.normal = point_.bsdf.ns;
   path.transmits = point_.bsdf.transmits;
   path.kinds = ray_kind(sample);
+  path.story.scatter(sample.component == Component::Diffuse, sample.transmitted, sample.delta);
   path.layers = 0;
   path.passed = 0.0;
   ++path.scatterings;

@@ -7,6 +7,7 @@
 #include "integrator/late_light.h"
 #include "integrator/layers_met.h"
 #include "integrator/light_passes.h"
+#include "integrator/path_story.h"
 #include "integrator/picture_kernel.h"
 #include "integrator/sample.h"
 #include "integrator/scene_lights.h"
@@ -54,6 +55,7 @@ private:
     uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
     uint32_t layers = 0;                // passed straight through since the last scattering
     uint32_t passed_through = 0;        // and in all
+    PathStory story;                    // for nodes that ask
     bool in_view = true;                // what it meets is still the picture itself: nothing reflected, no glass that counts
     bool last = false;                  // the next surface ends it
     double passed = 0.0;                // length of the way since the last scattering, through layers
@@ -75,6 +77,11 @@ private:
       return pass > 0.0f && (pass >= 1.0f || sampler.get1(dimension) < pass);
     }
   };
+
+  // What nodes see of a path whose ray is so long, in normalised units: from where it may meet something.
+  LightPath<float> light_path(const Path &path, double length) const {
+    return path.story.told(float(length / scene_.normalisation.scale), path.scatterings, path.passed_through);
+  }
 
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
   struct Record {

@@ -140,8 +140,10 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask
     surface.primitive = hit.primitive;
     surface.material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
     const double way = paths_[waiting.number].length + hit.t * block_.length[lane];
-    const NodeColors colors =
-        shader_.colors(surface, {.wo = get(block_.wo, lane), .footprint = float(cone_.base + way * cone_.spread)});
+    const NodeColors colors = shader_.colors(
+        surface, {.wo = get(block_.wo, lane),
+                  .footprint = float(cone_.base + way * cone_.spread),
+                  .path = light_path(paths_[waiting.number], (hit.t - rays_[waiting.number].tmin) * block_.length[lane])});
     put(colors.weight, block_.weight, lane);
     put(colors.base, block_.base, lane);
     block_.through[lane] = mean(colors.transmittance);
@@ -204,6 +206,8 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
                : block_.glossy >> lane & 1    ? LANCER_RAY_GLOSSY
                                               : LANCER_RAY_DIFFUSE;
   next.passed_through = path.passed_through;
+  next.story = path.story;
+  next.story.scatter(next.kinds == LANCER_RAY_DIFFUSE, next.kinds == LANCER_RAY_TRANSMISSION, next.pdf == 0.0);
   next.in_view = false;
   next.length = path.length + hit.t * block_.length[lane];
   leave(hit, get(block_.next_origin, lane), glm::dvec3(get(block_.wi, lane)), std::numeric_limits<double>::infinity(),

@@ -44,7 +44,11 @@ void PathIntegrator<Shapes, Layers>::miss(size_t number, std::span<SampleResult>
 template <uint32_t Shapes, bool Layers>
 glm::vec3 PathIntegrator<Shapes, Layers>::environment_towards(const Path &path, const glm::dvec3 &wi) {
   const glm::dvec3 *eye = path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr;
-  return scene_.lights.environment().radiance(wi, shader_.values(), &camera_, eye);
+  LightPath<float> seen_by = light_path(path, 0.0);
+  seen_by.length = std::numeric_limits<float>::max();
+  // What lies beyond everything counts as one scattering more, as in Cycles.
+  seen_by.depth += 1.0f;
+  return scene_.lights.environment().radiance(wi, shader_.values(), &camera_, eye, seen_by);
 }
 
 // The environment is sampled as a light, too. pdf: of its sample.

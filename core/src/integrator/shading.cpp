@@ -85,7 +85,8 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
     run_painted(material, material.transmittance_nodes, hit);
   } else {
     const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-    run_nodes(material, material.transmittance_nodes, surface, {.wo = glm::vec3(-glm::normalize(ray.d))});
+    run_nodes(material, material.transmittance_nodes, surface,
+              {.wo = glm::vec3(-glm::normalize(ray.d)), .path = {.kinds = LANCER_RAY_SHADOW}});
   }
   return glm::max(value_of(material.transmittance, values_), 0.0f);
 }
@@ -138,6 +139,7 @@ void Shader::run_nodes(const Material &material, const Schedule &schedule, const
   context_.surface = &surface;
   context_.wo = view.wo;
   context_.footprint = view.footprint;
+  context_.path = view.path;
   run(material.program, schedule, context_, values_);
 }
 

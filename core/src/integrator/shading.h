@@ -34,6 +34,7 @@ struct NodeColors {
 struct View {
   glm::vec3 wo{0, 0, 1};  // unit, world, away from the surface
   float footprint = 0.0f; // radius that a pixel covers there, normalised units
+  LightPath<float> path;  // of the ray that has met it; asked of a light by no ray
 };
 
 // Evaluates materials at surfaces. One object per thread: it keeps the nodes' values.

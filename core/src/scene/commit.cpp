@@ -156,8 +156,8 @@ uint32_t Scene::face_number(uint32_t instance, uint32_t primitive) const {
 }
 
 size_t Scene::geometry_bytes() const {
-  size_t bytes = geometry.instances.size() * sizeof(Instance) + slots.size() * sizeof(uint32_t) + passing.size() +
-                 clearing.size() + lights.bytes();
+  size_t bytes = geometry.instances.size() * sizeof(Instance) + geometry.object_infos.size() * sizeof(ObjectInfo) +
+                 slots.size() * sizeof(uint32_t) + passing.size() + clearing.size() + lights.bytes();
   for (const Mesh &mesh : geometry.meshes) {
     bytes += mesh.positions.size() * sizeof(glm::vec3) + mesh.triangles.size() * sizeof(glm::uvec3) +
              (mesh.normals.size() + mesh.smooth_normals.size() + mesh.colors.size()) * sizeof(glm::vec3) +

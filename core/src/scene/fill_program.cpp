@@ -70,6 +70,10 @@ Shape shape_of(const lancer_node &node) {
     return {1, LANCER_GRADIENT_COUNT, false};
   case LANCER_NODE_CURVES:
     return {2, 2, true};
+  case LANCER_NODE_OBJECT_INFO:
+    return {0, LANCER_OBJECT_COUNT, false};
+  case LANCER_NODE_LIGHT_PATH:
+    return {0, LANCER_PATH_COUNT, false};
   default:
     return {2, 0, false};
   }

@@ -133,6 +133,12 @@ void run_at(const Program &program, const Schedule &schedule, const Site &site, 
     case LANCER_NODE_CURVES:
       result = curves(in, site);
       break;
+    case LANCER_NODE_OBJECT_INFO:
+      result = object_info(node, site);
+      break;
+    case LANCER_NODE_LIGHT_PATH:
+      result = scalar(light_path_value(node.option, site.context->path));
+      break;
     default:
       result = glm::vec4(0.0f);
     }

@@ -58,6 +58,7 @@ float math(uint32_t operation, float a, float b, float c);
 glm::vec4 vector_math(const Inputs &in);
 glm::vec4 mix(const Inputs &in);
 glm::vec4 gamma(const Inputs &in);
+glm::vec4 object_info(const Node &node, const Site &site);
 glm::vec4 noise(const Inputs &in);
 glm::vec4 voronoi(const Inputs &in);
 glm::vec4 gradient(const Inputs &in);
