@@ -151,7 +151,8 @@ def test_wrong_nodes(raw):
         refused(result, "material 'Paint'", f"node {len(nodes) - 1}", *words)
 
     plain = raw.node()
-    refused_with(raw.node(kind=22), words=["kind", "22"])
+    none = max(kinds) + 1
+    refused_with(raw.node(kind=none), words=["kind", str(none)])
     for kind, options in (
         (kinds.COORDINATE, 13),
         (kinds.MATH, 41),
@@ -159,6 +160,11 @@ def test_wrong_nodes(raw):
         (kinds.MIX, 19),
         (kinds.MAPPING, 4),
         (kinds.SEPARATE, 3),
+        (kinds.NOISE, 5),
+        (kinds.VORONOI, 5),
+        (kinds.GRADIENT, 7),
+        (kinds.OBJECT_INFO, 4),
+        (kinds.LIGHT_PATH, 15),
     ):
         refused_with(raw.node(kind=kind, option=options), words=["option", str(options)])
     # A node sees only those before it.
@@ -166,6 +172,7 @@ def test_wrong_nodes(raw):
         refused_with(raw.node(kind=kinds.GAMMA, inputs=[raw.reference(node)]), words=[str(node)])
     refused_with(plain, raw.node(kind=kinds.BUMP, first=2), words=["first", "2"])
     refused_with(raw.node(kind=kinds.IMAGE, image_count=1), words=["image", "0 images"])
+    refused_with(raw.node(kind=kinds.CURVES), words=["image 0", "0 images"])
     assert raw.call("lancer_scene_add_image", scene, ctypes.byref(raw.image(kind=abi.TexelKind.FLOAT)))[0] == Status.OK
     refused_with(raw.node(kind=kinds.IMAGE, image=2**32 - 1, image_count=2), words=["1 images"])
     for value in (NAN, INF):

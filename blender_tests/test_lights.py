@@ -279,5 +279,5 @@ def test_lights_that_are_not_known_keep_their_power(which, tmp_path):
     got = blenders.run(which, tmp_path, "light_cases", "unknown")
     share, messages = got["TexImage"]
     assert share == 1.0 and len(messages) == 1 and "its own power is used" in messages[0]
-    share, messages = got["TexNoise"]
+    share, messages = got["TexMagic"]
     assert share == 1.0 and len(messages) == 1 and "white is used" in messages[0]

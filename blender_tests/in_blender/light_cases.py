@@ -66,7 +66,7 @@ def export():
 def unknown():
     """What a light shines whose nodes hold a picture, or a colour that nobody knows: [watts of the plain lamp's, messages]."""
     result = {}
-    for kind in ("TexImage", "TexNoise"):
+    for kind in ("TexImage", "TexMagic"):
         stage.empty()
         plain, shown = stage.light("POINT"), stage.light("POINT")
         tree, emission = _nodes(shown)

@@ -26,10 +26,10 @@ def thin():
 def unknown_sources():
     """Inputs of every type that a texture feeds which Lancer does not know."""
     tree = Tree("fed")
-    noise = tree.node("TexNoise")
+    magic = tree.node("TexMagic")
     node = tree.node("BsdfGlossy", distribution="GGX", Color=(0.9, 0.1, 0.1), Roughness=0.37)
-    factor = next(socket for socket in noise.outputs if socket.type == "VALUE")
-    color = next(socket for socket in noise.outputs if socket.type == "RGBA")
+    factor = next(socket for socket in magic.outputs if socket.type == "VALUE")
+    color = next(socket for socket in magic.outputs if socket.type == "RGBA")
     tree.tree.links.new(factor, node.inputs["Roughness"])
     tree.tree.links.new(color, node.inputs["Color"])
     tree.show(node.outputs[0])
