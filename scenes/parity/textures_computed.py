@@ -133,7 +133,10 @@ def color_ramp_of(scene, ramp):
     _shown(scene, build)
 
 
-@variants(values={name.lower().replace(" ", "_"): name for name in ("Location", "Color", "Alpha", "Object Index", "Random")})
+@variants(
+    quick=True,
+    values={name.lower().replace(" ", "_"): name for name in ("Location", "Color", "Alpha", "Object Index", "Random")},
+)
 def object_info(scene, output):
     """Three balls of one material, and a fourth brought in by a collection."""
     surface = material(lambda nodes: nodes.add("ShaderNodeEmission", Color=_between(nodes, output)))
@@ -210,7 +213,7 @@ def light_path_of_world(scene, output):
     camera(scene, (0, -4.5, 1.8), (0, 0, 0.6))
 
 
-@case()
+@case(quick=True)
 def light_path_shadow(scene):
     """What is solid to look at lets light pass."""
 
@@ -226,7 +229,7 @@ def light_path_shadow(scene):
     camera(scene, (0, -4.5, 1.8), (0, 0, 0.6))
 
 
-@case()
+@case(quick=True)
 def light_path_length(scene):
     def build(nodes):
         length = nodes.add("ShaderNodeMath", _path(nodes, "Ray Length"), 0.1, props={"operation": "MULTIPLY"})
