@@ -25,6 +25,7 @@ PX ?=
 
 python := $(VENV)/bin/python
 core := build/core
+tools := blender_tests/tools/start.py
 cmake := cmake -S core -G Ninja $(if $(WERROR),-DLANCER_WERROR=$(WERROR))
 # Ninja's moving line is for terminals; a log gets warnings and errors only.
 compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
@@ -35,7 +36,7 @@ logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
 zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
-.PHONY: build render test test-slow test-platforms bench accuracy tradeoff features parity corpus course sanitize fuzz addon addons format clean help
+.PHONY: build render test test-slow test-platforms bench accuracy tradeoff features parity corpus course sanitize fuzz addon addons bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
 .PHONY: python-run python-test python-dev python-bench python-charts python-zig core-programs core-tests
 
@@ -95,28 +96,28 @@ ifneq ($(BEFORE),)
 	@$(call logged,build/configure-before.log,cmake -S build/before/core -B build/before/build -G Ninja)
 	@cmake --build build/before/build --target lancer $(compile)
 endif
-	@$(python) blender_tests/bench/run.py $(if $(BEFORE),--before build/before) $(if $(QUICK),--quick) \
+	@$(python) $(tools) bench.run $(if $(BEFORE),--before build/before) $(if $(QUICK),--quick) \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(README),--readme)
 
 features: packages-run python-run build ## what each feature costs where used, and where only compiled in: make features [QUICK=1] [ONLY=glass]
-	@$(python) blender_tests/bench/features.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+	@$(python) $(tools) features.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 tradeoff: packages-run python-charts build ## error against seconds: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
-	@$(python) blender_tests/bench/tradeoff.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
+	@$(python) $(tools) tradeoff.run $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(QUICK),--quick) $(if $(README),--readme)
 
 accuracy: packages-run python-run build ## is the error that renders tell true: make accuracy [QUICK=1] [ONLY='glass*']
-	@$(python) blender_tests/bench/accuracy.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+	@$(python) $(tools) accuracy.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 course: packages-test python-test build ## the course's texts, chapter by chapter, measured now: make course [QUICK=1] [ONLY=shadows]
-	@$(python) scenes/course/run.py $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
+	@$(python) $(tools) course.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
-	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P scenes/parity/run.py --,$(python) scenes/parity/run.py) \
+	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P $(tools) --,$(python) $(tools)) parity.run \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
 
 corpus: packages-run python-run build ## files of others, by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1]
-	@$(python) blender_tests/corpus/run.py $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
+	@$(python) $(tools) corpus.run $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PX),--pixels $(PX)) $(if $(BLENDER),--blender "$(BLENDER)") \
 	  $(if $(README),--readme)
 
@@ -130,6 +131,9 @@ addons: packages-run python-run python-zig ## the zips for Linux, Windows and ma
 
 test-platforms: packages-platforms python-test python-zig ## run what this machine can of the other platforms' libraries: make test-platforms [ONLY=windows-x64]
 	@LANCER_ZIG="$(zig)" JOBS=$(JOBS) .ci/test_platforms.sh $(python) $(or $(ONLY),$(platforms))
+
+bindings: ## write the Python side of the C interface anew, after core/include/lancer.h has changed
+	@$(PYTHON) .ci/bindings.py
 
 format: packages-format python-dev ## lay out C++ and Python text
 	@$(VENV)/bin/ruff check --quiet --fix . && $(VENV)/bin/ruff format --quiet .

@@ -76,7 +76,7 @@ def list_files(version, tag, library, zig):
     files = {
         path.relative_to(ADDON).as_posix(): path.read_bytes()
         for path in ADDON.rglob("*")
-        if path.is_file() and path.parent.name not in ("__pycache__", "lib") and not path.name.startswith(".")
+        if path.is_file() and path.parent.name not in ("__pycache__", "lib") and path.suffix != ".md" and path.name[0] != "."
     }
     files["blender_manifest.toml"] = manifest(version, tag)
     files[f"lib/{marked(library)}"] = library.read_bytes()

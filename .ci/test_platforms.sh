@@ -18,8 +18,8 @@ windows_python=org.bytedeco:cpython:3.12.1-1.5.10:jar:windows-x86_64
 windows_runtime=org.bytedeco:javacpp:1.5.10:jar:windows-x86_64
 # What the bindings' tests stand on; those that need a compiler or another process, or measure time, stay at home.
 packages="numpy scipy pytest iniconfig packaging pluggy pygments colorama trimesh mpmath"
-tests="test_abi test_abi_handles test_abi_sessions test_abi_states test_library_file test_snapshot test_classic test_camera
-  test_nodes test_uses test_pass_values"
+tests="abi/test_abi abi/test_abi_handles abi/test_abi_sessions abi/test_abi_states abi/test_library_file abi/test_snapshot
+  physics/test_classic physics/test_camera physics/test_nodes physics/test_pass_values blender/test_uses"
 
 say() { echo "== $*"; }
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
@@ -121,10 +121,10 @@ linux_x64() {
   python_tests linux-x64 "$python"
   say "linux-x64: the zips in the Blenders that are here"
   "$python" .ci/package.py "$places" linux-x64
-  in_blender "" test_install.py
+  in_blender "" blender/test_install.py
   next_debian
   say "linux-x64: the zips and Rendered shading in the next Debian's Blender"
-  in_blender "$PWD/.ci/next_blender.sh" test_install.py test_viewport.py -k "not module"
+  in_blender "$PWD/.ci/next_blender.sh" blender/test_install.py blender/test_viewport.py -k "not module"
 }
 
 # in_blender PROGRAM FILE... [OPTION...]: tests with the zips and the library of linux-x64, in Debian's Blender where PROGRAM is empty.

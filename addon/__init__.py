@@ -34,14 +34,14 @@ def register():
         check_scene,
         course_groups,
         engine,
-        features,
         manual,
+        measure_features,
+        measure_quality,
         measuring,
         preferences,
         presets,
         preview,
         properties,
-        quality,
         render_job,
         ui,
     )
@@ -49,7 +49,18 @@ def register():
     from .registering import add_all
     from .viewport import viewport
 
-    modules = (properties, preferences, main_thread, engine, measuring, features, quality, check_scene, course_groups, presets)
+    modules = (
+        properties,
+        preferences,
+        main_thread,
+        engine,
+        measuring,
+        measure_features,
+        measure_quality,
+        check_scene,
+        course_groups,
+        presets,
+    )
     # What renders is ended first, while all is there.
     modules += (ui, bug_report, manual, viewport, preview, render_job)
     add_all(modules, lambda module: module.register(), lambda module: module.unregister())

@@ -6,12 +6,12 @@ import platform
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from . import as_rendered, engine
+from . import engine, render_export
 from .bindings import bug_report
 from .bindings.abi import LancerError, load_library
 from .export.messages import Messages
-from .harm import Harm
 from .registering import add_all
+from .severity import Severity
 
 _HOLDS = "It holds the geometry and the pictures of the scene"
 
@@ -55,7 +55,7 @@ def versions():
 
 
 def _plain(messages):
-    return [message._asdict() | {"harm": message.harm.name} for message in messages.told()]
+    return [message._asdict() | {"severity": message.severity.name} for message in messages.told()]
 
 
 def facts(scene, exported):
@@ -78,12 +78,12 @@ def facts(scene, exported):
 def _exported(context):
     """(snapshot or None, Messages): a scene that cannot be exported is a fault worth a report, too."""
     try:
-        export = as_rendered.export(context)
+        export = render_export.export(context)
         return export.snapshot, export.messages
     except LancerError as error:
-        return None, Messages([str(error)], Harm.FAILED)
+        return None, Messages([str(error)], Severity.FAILED)
     except Exception as error:
-        return None, Messages([f"the export failed ({type(error).__name__}: {error})"], Harm.FAILED)
+        return None, Messages([f"the export failed ({type(error).__name__}: {error})"], Severity.FAILED)
 
 
 def _size(size):

@@ -7,15 +7,15 @@ from bpy.app.handlers import persistent
 
 from . import measuring
 from .bindings.session import Cancelled
+from .by_scene import ByScene
 from .checks.check import check_snapshot
 from .checks.finding import lines, shortened, told
 from .export.messages import Messages
-from .of_scenes import OfScenes
 from .registering import add_all
 
 # Of the last Check Scene of each scene: findings, and what the export could not take as it is.
-last_findings = OfScenes()
-last_messages = OfScenes()
+last_findings = ByScene()
+last_messages = ByScene()
 
 
 def quick_check(scene, snapshot, poll):
@@ -30,7 +30,7 @@ def quick_check(scene, snapshot, poll):
     try:
         messages = Messages()
         for finding, left in shortened(check_snapshot(snapshot, thorough=False, poll=obey)):
-            messages.add(told(finding, left), finding.key, finding.harm)
+            messages.add(told(finding, left), finding.key, finding.severity)
         return messages
     except Cancelled:
         raise

@@ -9,33 +9,34 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import as_rendered, denoise, passes, preview, redraw, render_job, stamp
+from . import passes, preview, redraw, render_export, render_job
 from .bindings.abi import LancerError
-from .bindings.schedule import SAMPLES, TARGET, TIME, Schedule
 from .bindings.session import Cancelled, Session
-from .bindings.uses import used_features
+from .by_scene import ByScene
 from .check_scene import quick_check
+from .denoise import view_layer as denoise
 from .export import main_thread
 from .export.kept import Kept
 from .export.messages import Messages
 from .export.scene import ExportOptions, export_scene
-from .harm import Harm
-from .of_scenes import OfScenes
-from .pace import Pace
+from .measure import render_report
+from .measure.scene_features import used_features
+from .measure.schedule import SAMPLES, TARGET, TIME, Schedule, TimeShare
 from .picture import Picture
 from .priority import lowered
+from .severity import Severity
 from .viewport.viewport import Viewport
 
 # Of the last render of each scene, for the panel and for scripts: numbers, and Messages. The numbers are those of the last view
 # layer; "layers" has those of all, by their names.
-last_statistics = OfScenes()
-last_messages = OfScenes()
+last_statistics = ByScene()
+last_messages = ByScene()
 # What that render could not show as Cycles does: {key of Messages.add: how often}.
-last_missing = OfScenes()
-# Of the last measurement of each scene: a hints.Costs.
-last_costs = OfScenes()
+last_missing = ByScene()
+# Of the last measurement of each scene: a costs.Costs.
+last_costs = ByScene()
 # Of the scenes that are being animated or have Persistent Data: what is not read again.
-_kept = OfScenes()
+_kept = ByScene()
 # What the library holds, by kind: names of last_statistics.
 MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 
@@ -74,8 +75,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def update(self, data=None, depsgraph=None):
         if self.is_preview:
             return
-        if as_rendered.is_wanted():
-            as_rendered.take(self, depsgraph)
+        if render_export.is_wanted():
+            render_export.take(self, depsgraph)
             return
         with self._working():
             self._begin(depsgraph)
@@ -85,7 +86,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         if self.is_preview:
             preview.render(self, depsgraph)
             return
-        if as_rendered.is_wanted():
+        if render_export.is_wanted():
             return
         with self._working():
             if self._snapshot is not None:
@@ -165,7 +166,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             logging.getLogger(__name__).exception("render failed")
             text = f"{type(error).__name__}: {error}"
         self._snapshot = None
-        self._picture.messages.add(text, harm=Harm.FAILED)
+        self._picture.messages.add(text, severity=Severity.FAILED)
         last_messages[scene] = self._picture.messages
         self._fail(text)
 
@@ -231,7 +232,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _run(self, schedule, show):
         """Renders range by range, shows what there is now and then, and ends for Esc."""
-        picture, error = Pace(_SHOW_SHARE, _SHOW_EVERY), Pace(_ERROR_SHARE, _TELL_EVERY)
+        picture, error = TimeShare(_SHOW_SHARE, _SHOW_EVERY), TimeShare(_ERROR_SHARE, _TELL_EVERY)
         told = time.monotonic()
         while schedule.start():
             first = not picture.begun
@@ -262,14 +263,14 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         # Small windows cut off the end.
         parts = [f"Remaining {_clock(seconds)}{_REMAINING[reason]}"]
         if schedule.error is not None and schedule.error.known:
-            parts.append(f"Error {stamp.interval(schedule.error)}")
+            parts.append(f"Error {render_report.interval(schedule.error)}")
         parts += [f"Sample {samples:.0f}/{schedule.settings.samples}", f"{rate:.2f} M rays/s"]
         self.update_stats("", " | ".join(parts))
 
     def _tell(self, scene, messages):
         """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
         room = max(0, _MAX_REPORTS - len(self._picture.messages))
-        new = [message for message in self._picture.messages.merge(messages).told() if message.harm > Harm.HINT]
+        new = [message for message in self._picture.messages.merge(messages).told() if message.severity > Severity.HINT]
         last_messages[scene] = self._picture.messages
         last_missing[scene] = self._picture.messages.missing()
         for message in new[:room]:
@@ -283,8 +284,8 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             place = f"({statistics.invalid_x}, {statistics.invalid_y}), sample {statistics.invalid_sample}"
             count = statistics.invalid_samples
             text = f"{count} samples were not finite and are left out, the first at pixel {place}"
-            self._tell(scene, Messages([text], Harm.WRONG))
-        numbers = stamp.account(session, schedule)
+            self._tell(scene, Messages([text], Severity.WRONG))
+        numbers = render_report.account(session, schedule)
         numbers.update(denoise.statistics(denoised))
         held = sum(numbers[name] for name in MEMORY) / 2**20
         self.update_memory_stats(memory_used=held, memory_peak=held + numbers["denoising_bytes"] / 2**20)
@@ -294,12 +295,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         # Only what get_result gives reaches the file.
         stamped = self.get_result()
         several = len(stamped.layers) > 1
-        lines = numbers["accuracy"] = stamp.lines(numbers, session.settings, layer if several else "")
+        lines = numbers["accuracy"] = render_report.lines(numbers, session.settings, layer if several else "")
         layers = last_statistics.get(scene, {}).get("layers", {})
         last_statistics[scene] = {**numbers, "layers": {**layers, layer: numbers}}
         if scene in last_costs:
             keep_costs(scene, last_costs[scene])
-        for name, value in stamp.fields(numbers, session.settings):
+        for name, value in render_report.fields(numbers, session.settings):
             stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
         self.update_stats("", lines[0])
         # Headless, what is reported goes to the terminal; in a window the panel has it.

@@ -9,16 +9,16 @@ import threading
 import bpy
 from bpy.app.handlers import persistent
 
-from . import as_rendered, of_scenes, priority, redraw
+from . import by_scene, priority, redraw, render_export
 from .bindings.abi import LancerError
 from .bindings.session import Cancelled
 
 # (operator's bl_idname, fraction, text) of the work that runs, by its scene.
-running = of_scenes.OfScenes()
+running = by_scene.ByScene()
 # The threads of those beside a window, each with the timer that looks at it.
 _looked_at = []
 # How often objects, materials or lights have changed since figures are kept, by the scene.
-_changes = of_scenes.OfScenes()
+_changes = by_scene.ByScene()
 
 _TICK = 0.1
 
@@ -134,7 +134,7 @@ class Measuring:
         _watch_figures()
 
     def _show(self):
-        scene = of_scenes.find(self._scene)
+        scene = by_scene.find(self._scene)
         fraction, text = self._measurement.progress
         text = "Stopping" if self._measurement.stop.is_set() else text
         if scene is not None:
@@ -149,9 +149,9 @@ class Measuring:
         redraw.properties()
 
     def _started(self, context):
-        self._scene = of_scenes.identity(context.scene)
+        self._scene = by_scene.identity(context.scene)
         try:
-            export = as_rendered.export(context)
+            export = render_export.export(context)
         except LancerError as error:
             self.report({"ERROR"}, f"Lancer: {error}")
             return None
@@ -176,7 +176,7 @@ class Measuring:
             if measurement is not None and measurement.error:
                 self.report({"ERROR"}, f"Lancer: {measurement.error}")
             return False
-        scene = of_scenes.find(self._scene)
+        scene = by_scene.find(self._scene)
         if scene is None:
             self.report({"WARNING"}, "Lancer: the scene of which figures were measured is gone")
             return False

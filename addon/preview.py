@@ -12,10 +12,10 @@ import time
 from . import passes
 from .bindings.abi import LancerError
 from .bindings.enums import Pass
-from .bindings.schedule import Schedule
 from .bindings.session import Cancelled, Session
 from .export import main_thread
 from .export.scene import ExportOptions, export_scene
+from .measure.schedule import Schedule
 from .priority import lowered
 
 _SAMPLES = 64

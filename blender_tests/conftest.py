@@ -9,7 +9,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 
 # `import bindings` is the add-on's own package, reached without the add-on's top, which needs bpy.
-for folder in (os.path.join(ROOT, "addon"), ROOT, HERE):
+for folder in (ROOT, HERE, os.path.join(HERE, "helpers")):
     if folder not in sys.path:
         sys.path.insert(0, folder)
 
@@ -17,7 +17,7 @@ for folder in (os.path.join(ROOT, "addon"), ROOT, HERE):
 @pytest.fixture(scope="session")
 def library():
     """The library under test with typed functions; where it is missing, every test of the core fails with the reason."""
-    from bindings import abi
+    from addon.bindings import abi
 
     return abi.load_library()
 
@@ -25,8 +25,9 @@ def library():
 @pytest.fixture(autouse=True)
 def all_samples_finite(request):
     """No render of any test may drop a sample, unless the test is about that."""
-    from bindings.session import Session
     from invalid_samples import watched
+
+    from addon.bindings.session import Session
 
     with watched(Session) as found:
         yield

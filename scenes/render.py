@@ -16,7 +16,7 @@ import bpy  # noqa: E402
 
 import addon  # noqa: E402
 import scenes  # noqa: E402
-from addon.bindings.uses import kernel_in_words  # noqa: E402
+from addon.measure.scene_features import kernel_in_words  # noqa: E402
 from scenes import replay  # noqa: E402
 
 FORMATS = {".png": "PNG", ".exr": "OPEN_EXR", ".jpg": "JPEG", ".jpeg": "JPEG", ".tif": "TIFF", ".tiff": "TIFF", ".hdr": "HDR"}

@@ -8,14 +8,14 @@ import sys
 import bpy
 import numpy as np
 
-from addon import stamp
 from addon.bindings import bug_report
 from addon.bindings.abi import LancerError
 from addon.bindings.npz import SnapshotError
-from addon.bindings.schedule import Schedule
 from addon.bindings.session import Session
-from addon.bindings.uses import kernel_in_words, used_features
 from addon.export.messages import Messages
+from addon.measure import render_report
+from addon.measure.scene_features import kernel_in_words, used_features
+from addon.measure.schedule import Schedule
 
 
 def load(path, samples=None):
@@ -43,7 +43,7 @@ def render(snapshot, show):
                     show(f"Sample {progress.samples // schedule.pixels}/{schedule.settings.samples}")
                     if progress.finished:
                         break
-            numbers = stamp.account(session, schedule) | {"denoised": ""}
+            numbers = render_report.account(session, schedule) | {"denoised": ""}
             return session.read(), Messages.of_library(session.messages()), numbers
     except LancerError as error:
         sys.exit(f"Lancer: {error}")
@@ -73,10 +73,10 @@ def report(snapshot, facts, messages, numbers):
     for message in facts.get("exported", ()):
         yield f"reported: {message['text']}"
     yield from messages.lines()
-    yield from stamp.lines(numbers, snapshot.settings)
+    yield from render_report.lines(numbers, snapshot.settings)
     before = (facts.get("statistics") or {}).get("error", math.inf)
     if math.isfinite(before):
-        yield f"reported error: {stamp.percent(before)}"
+        yield f"reported error: {render_report.percent(before)}"
     yield f"{numbers['rays_per_second'] / 1e6:.2f} million rays/s, {numbers['threads']} threads, {numbers['instruction_set']}"
     yield from (feature.text for feature in used_features(snapshot))
     yield f"shaded by the code for {kernel_in_words(numbers['kernel'])}"

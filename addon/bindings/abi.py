@@ -10,12 +10,10 @@ from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_size_t, c_ui
 
 from . import elf
 from .enums import *  # noqa: F403 - abi is the one name under which others find the whole interface
-from .enums import Status
+from .enums import ABI_VERSION, Status
 from .structs import *  # noqa: F403
 from .structs import STRUCTS, Camera, Error, Image, Light, Material, Mesh, Progress, Settings, Statistics, World
 from .structs import Array as _Array
-
-ABI_VERSION = 4
 
 _FILES = {"win32": ("lancer", ".dll"), "darwin": ("liblancer", ".dylib")}
 UINT32_MAX = 0xFFFFFFFF
@@ -29,6 +27,7 @@ _CALLS = {
     "lancer_scene_add_material": (_u64, POINTER(Material)),
     "lancer_scene_add_light": (_u64, POINTER(Light)),
     "lancer_scene_add_instances": (_u64, _u32, _Array, _u32, _Array, c_char_p, c_size_t),
+    "lancer_scene_set_object_infos": (_u64, _u32, _Array),
     "lancer_scene_add_image": (_u64, POINTER(Image)),
     "lancer_scene_set_world": (_u64, POINTER(World)),
     "lancer_scene_commit": (_u64, _u32, _u32),

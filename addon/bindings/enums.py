@@ -1,6 +1,11 @@
-"""The numbers of lancer.h."""
+"""The numbers of the interface.
+
+Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+"""
 
 from enum import IntEnum, IntFlag
+
+ABI_VERSION = 4
 
 
 class Status(IntEnum):
@@ -44,7 +49,17 @@ class NormalDomain(IntEnum):
     CORNER = 2
 
 
+class Domain(IntEnum):
+    """What an attribute has one value for."""
+
+    VERTEX = 0
+    FACE = 1
+    CORNER = 2
+
+
 class InstanceKind(IntEnum):
+    """Exact surfaces stand in their own unit frame; the instance's matrix places, scales and shears them."""
+
     MESH = 0
     SPHERE = 1
     PLANE = 2
@@ -53,125 +68,27 @@ class InstanceKind(IntEnum):
 
 
 class Shading(IntEnum):
+    """How normals are used, and in CLASSIC where light is computed."""
+
     AS_MESH = 0
     FLAT = 1
     GOURAUD = 2
     PHONG = 3
 
 
-class LobeKind(IntEnum):
-    LAMBERT = 0
-    BECKMANN = 1
-    MIRROR = 2
-    DIELECTRIC = 3
-    PHONG = 4
-    BLINN_PHONG = 5
-    DIFFUSE = 6
-    GLOSSY = 7
-    GLASS = 8
-    REFRACTION = 9
-    CONDUCTOR = 10
-    SHEEN = 11
-    TRANSLUCENT = 12
-    PRINCIPLED = 13
-    MINNAERT = 14
+class Ray(IntFlag):
+    """Rays by what sent them."""
+
+    CAMERA = 1
+    DIFFUSE = 2
+    GLOSSY = 4
+    TRANSMISSION = 8
+    SHADOW = 16
+    VOLUME = 32
 
 
-class LightKind(IntEnum):
-    POINT = 0
-    SPOT = 1
-    SUN = 2
-    AREA = 3
-
-
-class AreaShape(IntEnum):
-    RECTANGLE = 0
-    ELLIPSE = 1
-
-
-class Falloff(IntEnum):
-    PHYSICAL = 0
-    CONSTANT = 1
-    LINEAR = 2
-    QUADRATIC = 3
-    SMOOTH = 4
-    GAUSSIAN = 5
-
-
-class Accelerator(IntEnum):
-    BVH = 0
-    KDTREE = 1
-    BRUTE_FORCE = 2
-
-
-class CameraKind(IntEnum):
-    PERSPECTIVE = 0
-    ORTHOGRAPHIC = 1
-    EQUIRECTANGULAR = 2
-    FISHEYE_EQUIDISTANT = 3
-    FISHEYE_EQUISOLID = 4
-    FISHEYE_POLYNOMIAL = 5
-    MIRROR_BALL = 6
-    CYLINDRICAL = 7
-
-
-class Integrator(IntEnum):
-    PATH = 0
-    CLASSIC = 1
-    NORMALS = 2
-
-
-class PixelFilter(IntEnum):
-    BOX = 0
-    BLACKMAN_HARRIS = 1
-
-
-class Features(IntEnum):
-    SCENE = 0
-    ALL = 1
-
-
-class Pass(IntEnum):
-    COMBINED = 0
-    DEPTH = 1
-    NORMAL = 2
-    ALBEDO = 3
-    POSITION = 4
-    OBJECT_INDEX = 5
-    MATERIAL_INDEX = 6
-    UV = 7
-    MIST = 8
-    EMISSION = 9
-    ENVIRONMENT = 10
-    AMBIENT_OCCLUSION = 11
-    DIFFUSE_DIRECT = 12
-    DIFFUSE_INDIRECT = 13
-    DIFFUSE_COLOR = 14
-    GLOSSY_DIRECT = 15
-    GLOSSY_INDIRECT = 16
-    GLOSSY_COLOR = 17
-    TRANSMISSION_DIRECT = 18
-    TRANSMISSION_INDIRECT = 19
-    TRANSMISSION_COLOR = 20
-    DENOISING_NORMAL = 21
-    DENOISING_DEPTH = 22
-    ERROR = 23
-
-    @property
-    def channels(self):
-        """How many numbers a pixel of the pass has."""
-        return _CHANNELS.get(self, 3)
-
-
-_CHANNELS = {Pass.COMBINED: 4} | dict.fromkeys(
-    (Pass.DEPTH, Pass.OBJECT_INDEX, Pass.MATERIAL_INDEX, Pass.MIST, Pass.DENOISING_DEPTH, Pass.ERROR), 1
-)
-
-
-class Domain(IntEnum):
-    VERTEX = 0
-    FACE = 1
-    CORNER = 2
+class InstanceFlag(IntFlag):
+    HOLDOUT = 1
 
 
 class TexelKind(IntEnum):
@@ -181,11 +98,15 @@ class TexelKind(IntEnum):
 
 
 class Transfer(IntEnum):
+    """How a texel becomes scene-linear, after interpolation."""
+
     LINEAR = 0
     SRGB = 1
 
 
 class AlphaMode(IntEnum):
+    """What the fourth channel does."""
+
     ASSOCIATED = 0
     STRAIGHT = 1
     CHANNEL_PACKED = 2
@@ -193,6 +114,8 @@ class AlphaMode(IntEnum):
 
 
 class NodeKind(IntEnum):
+    """Nodes compute values where a ray meets a surface."""
+
     COORDINATE = 0
     ATTRIBUTE = 1
     IMAGE = 2
@@ -215,6 +138,88 @@ class NodeKind(IntEnum):
     DISPLACEMENT = 19
     GAMMA = 20
     INVERT = 21
+    NOISE = 22
+    VORONOI = 23
+    GRADIENT = 24
+    CURVES = 25
+    OBJECT_INFO = 26
+    LIGHT_PATH = 27
+
+
+class ObjectFact(IntEnum):
+    LOCATION = 0
+    COLOR = 1
+    INDEX = 2
+    RANDOM = 3
+
+
+class PathFact(IntEnum):
+    """1 or 0; a length in scene units; or how many scatterings, of that kind, or surfaces passed straight through came
+    before."""
+
+    IS_CAMERA = 0
+    IS_SHADOW = 1
+    IS_DIFFUSE = 2
+    IS_GLOSSY = 3
+    IS_SINGULAR = 4
+    IS_REFLECTION = 5
+    IS_TRANSMISSION = 6
+    IS_VOLUME = 7
+    LENGTH = 8
+    DEPTH = 9
+    DIFFUSE_DEPTH = 10
+    GLOSSY_DEPTH = 11
+    TRANSPARENT_DEPTH = 12
+    TRANSMISSION_DEPTH = 13
+    PORTAL_DEPTH = 14
+
+
+class NoiseKind(IntEnum):
+    FBM = 0
+    MULTIFRACTAL = 1
+    HYBRID_MULTIFRACTAL = 2
+    RIDGED_MULTIFRACTAL = 3
+    HETERO_TERRAIN = 4
+
+
+class NoiseFlag(IntFlag):
+    NORMALIZED = 4
+    REPEATS = 8
+    COUNTED = 16
+    COLOR = 32
+
+
+class VoronoiFeature(IntEnum):
+    F1 = 0
+    F2 = 1
+    SMOOTH_F1 = 2
+    DISTANCE_TO_EDGE = 3
+    N_SPHERE_RADIUS = 4
+
+
+class VoronoiMetric(IntEnum):
+    EUCLIDEAN = 0
+    MANHATTAN = 1
+    CHEBYCHEV = 2
+    MINKOWSKI = 3
+
+
+class VoronoiFlag(IntFlag):
+    NORMALIZED = 16
+    COLOR = 32
+    POSITION = 64
+    INTEGERS = 128
+    BOUNDED = 256
+
+
+class GradientKind(IntEnum):
+    LINEAR = 0
+    QUADRATIC = 1
+    EASING = 2
+    DIAGONAL = 3
+    SPHERICAL = 4
+    QUADRATIC_SPHERE = 5
+    RADIAL = 6
 
 
 class Coordinate(IntEnum):
@@ -267,6 +272,8 @@ class MappingType(IntEnum):
 
 
 class MathOperation(IntEnum):
+    """As Blender's nodes of these names."""
+
     ADD = 0
     SUBTRACT = 1
     MULTIPLY = 2
@@ -359,6 +366,26 @@ class MixMode(IntEnum):
     VALUE = 18
 
 
+class LobeKind(IntEnum):
+    """Lobes, summed."""
+
+    LAMBERT = 0
+    BECKMANN = 1
+    MIRROR = 2
+    DIELECTRIC = 3
+    PHONG = 4
+    BLINN_PHONG = 5
+    DIFFUSE = 6
+    GLOSSY = 7
+    GLASS = 8
+    REFRACTION = 9
+    CONDUCTOR = 10
+    SHEEN = 11
+    TRANSLUCENT = 12
+    PRINCIPLED = 13
+    MINNAERT = 14
+
+
 class Distribution(IntEnum):
     GGX = 0
     BECKMANN = 1
@@ -367,22 +394,11 @@ class Distribution(IntEnum):
 
 
 class Rules(IntEnum):
+    """Whose definitions hold for lobes of nodes."""
+
     BLENDER_3 = 0
     BLENDER_4 = 1
     BLENDER_45 = 2
-
-
-class Ray(IntFlag):
-    CAMERA = 1
-    DIFFUSE = 2
-    GLOSSY = 4
-    TRANSMISSION = 8
-    SHADOW = 16
-    VOLUME = 32
-
-
-class InstanceFlag(IntFlag):
-    HOLDOUT = 1
 
 
 class MaterialFlag(IntFlag):
@@ -390,3 +406,92 @@ class MaterialFlag(IntFlag):
     NOT_A_LIGHT = 2
     OPAQUE_SHADOWS = 4
     KEEP_NORMALS = 8
+
+
+class LightKind(IntEnum):
+    POINT = 0
+    SPOT = 1
+    SUN = 2
+    AREA = 3
+
+
+class AreaShape(IntEnum):
+    RECTANGLE = 0
+    ELLIPSE = 1
+
+
+class Falloff(IntEnum):
+    """CLASSIC's attenuation over the distance d with the light's falloff_radius r."""
+
+    PHYSICAL = 0
+    CONSTANT = 1
+    LINEAR = 2
+    QUADRATIC = 3
+    SMOOTH = 4
+    GAUSSIAN = 5
+
+
+class Accelerator(IntEnum):
+    BVH = 0
+    KDTREE = 1
+    BRUTE_FORCE = 2
+
+
+class CameraKind(IntEnum):
+    PERSPECTIVE = 0
+    ORTHOGRAPHIC = 1
+    EQUIRECTANGULAR = 2
+    FISHEYE_EQUIDISTANT = 3
+    FISHEYE_EQUISOLID = 4
+    FISHEYE_POLYNOMIAL = 5
+    MIRROR_BALL = 6
+    CYLINDRICAL = 7
+
+
+class Integrator(IntEnum):
+    PATH = 0
+    CLASSIC = 1
+    NORMALS = 2
+
+
+class PixelFilter(IntEnum):
+    BOX = 0
+    BLACKMAN_HARRIS = 1
+
+
+class Features(IntEnum):
+    SCENE = 0
+    ALL = 1
+
+
+class Pass(IntEnum):
+    """Passes; the film keeps those whose bit (1u << pass) is in lancer_settings.passes."""
+
+    COMBINED = 0
+    DEPTH = 1
+    NORMAL = 2
+    ALBEDO = 3
+    POSITION = 4
+    OBJECT_INDEX = 5
+    MATERIAL_INDEX = 6
+    UV = 7
+    MIST = 8
+    EMISSION = 9
+    ENVIRONMENT = 10
+    AMBIENT_OCCLUSION = 11
+    DIFFUSE_DIRECT = 12
+    DIFFUSE_INDIRECT = 13
+    DIFFUSE_COLOR = 14
+    GLOSSY_DIRECT = 15
+    GLOSSY_INDIRECT = 16
+    GLOSSY_COLOR = 17
+    TRANSMISSION_DIRECT = 18
+    TRANSMISSION_INDIRECT = 19
+    TRANSMISSION_COLOR = 20
+    DENOISING_NORMAL = 21
+    DENOISING_DEPTH = 22
+    ERROR = 23
+
+    @property
+    def channels(self):
+        return (4, 1, 3, 3, 3, 1, 1, 3, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1)[self]

@@ -4,6 +4,7 @@ A struct holds addresses of the record's own arrays, so the record must outlive 
 """
 
 import ctypes
+import functools
 
 import numpy as np
 
@@ -34,8 +35,32 @@ def _parameter(value):
     return abi.Parameter((ctypes.c_float * 3)(*vector), -1)
 
 
-def _parameters(record):
-    return {name: _parameter(getattr(record, name)) for name in record.PARAMETERS}
+def _same(value):
+    return value
+
+
+# How a record's value becomes a member of each type; members of other types are given by whoever knows them.
+_MEMBERS = {
+    ctypes.c_char_p: _text,
+    abi.Array: _address,
+    abi.Parameter: _parameter,
+    ctypes.c_double * 12: _row_major,
+    ctypes.c_uint32: int,
+    ctypes.c_float: _same,
+    ctypes.c_double: _same,
+    **{ctypes.c_float * n: _same for n in (2, 3, 9, 12)},
+    **{ctypes.c_double * n: _same for n in (4, 8)},
+}
+
+
+@functools.cache
+def _members(kind):
+    return tuple((name, _MEMBERS.get(member)) for name, member in kind._fields_ if not name.startswith("reserved"))
+
+
+def _struct(kind, record, /, **given):
+    """The record as a struct of that kind: what is not given is what the record has by the member's name."""
+    return kind(**{name: given[name] if name in given else made(getattr(record, name)) for name, made in _members(kind)})
 
 
 def _many(kind, structs):
@@ -48,25 +73,15 @@ def mesh(m):
     domain = abi.NormalDomain.NONE
     if m.normals is not None:
         domain = abi.NormalDomain.VERTEX if m.normals.ndim == 2 else abi.NormalDomain.CORNER
-    return abi.Mesh(
-        name=_text(m.name),
-        positions=_address(m.positions),
-        triangles=_address(m.triangles),
-        normals=_address(m.normals),
-        uvs=_address(m.uvs),
-        colors=_address(m.colors),
-        material_slots=_address(m.material_slots),
-        polygons=_address(m.polygons),
-        attributes=_many(abi.Attribute, map(_attribute, m.attributes)),
+    return _struct(
+        abi.Mesh,
+        m,
+        attributes=_many(abi.Attribute, (_struct(abi.Attribute, a, channels=a.values.shape[1]) for a in m.attributes)),
         vertex_count=len(m.positions),
         triangle_count=len(m.triangles),
         normal_domain=domain,
         attribute_count=len(m.attributes),
     )
-
-
-def _attribute(a):
-    return abi.Attribute(name=_text(a.name), values=_address(a.values), domain=int(a.domain), channels=a.values.shape[1])
 
 
 def instances(table):
@@ -100,150 +115,40 @@ _TEXELS = {
 
 def image(i):
     height, width, channels = i.texels.shape
-    return abi.Image(
-        name=_text(i.name),
-        texels=_address(i.texels),
-        width=width,
-        height=height,
-        channels=channels,
-        kind=_TEXELS[i.texels.dtype],
-        transfer=int(i.transfer),
-        alpha=int(i.alpha),
-        tile=i.tile,
-        matrix=i.matrix,
-    )
+    return _struct(abi.Image, i, width=width, height=height, channels=channels, kind=_TEXELS[i.texels.dtype])
 
 
 def _node(n):
     # What a node leaves unsaid is 0, and no reference.
     inputs = (abi.Parameter * 5)(*map(_parameter, n.inputs + (0.0,) * (5 - len(n.inputs))))
-    return abi.Node(
-        kind=int(n.kind),
-        option=int(n.option),
-        flags=int(n.flags),
-        image=n.image,
-        image_count=n.image_count,
-        first=n.first,
-        name=_text(n.name),
-        inputs=inputs,
-        matrix=n.matrix,
-    )
+    return _struct(abi.Node, n, inputs=inputs)
 
 
-def _principled(p):
-    return abi.Principled(rules=int(p.rules), distribution=int(p.distribution), option=int(p.option), **_parameters(p))
+def _nodes(owner):
+    return {"nodes": _many(abi.Node, map(_node, owner.nodes)), "node_count": len(owner.nodes)}
 
 
 def _lobe(lobe):
-    principled = None if lobe.principled is None else ctypes.pointer(_principled(lobe.principled))
-    return abi.Lobe(
-        kind=int(lobe.kind),
-        distribution=int(lobe.distribution),
-        option=int(lobe.option),
-        rules=int(lobe.rules),
-        principled=principled,
-        **_parameters(lobe),
-    )
+    principled = None if lobe.principled is None else ctypes.pointer(_struct(abi.Principled, lobe.principled))
+    return _struct(abi.Lobe, lobe, principled=principled)
 
 
 def material(m):
-    return abi.Material(
-        name=_text(m.name),
-        lobes=_many(abi.Lobe, map(_lobe, m.lobes)),
-        nodes=_many(abi.Node, map(_node, m.nodes)),
-        lobe_count=len(m.lobes),
-        node_count=len(m.nodes),
-        material_index=m.material_index,
-        flags=int(m.flags),
-        **_parameters(m),
-    )
+    return _struct(abi.Material, m, lobes=_many(abi.Lobe, map(_lobe, m.lobes)), lobe_count=len(m.lobes), **_nodes(m))
 
 
 def world(w):
-    return abi.World(
-        nodes=_many(abi.Node, map(_node, w.nodes)),
-        node_count=len(w.nodes),
-        hidden_from=int(w.hidden_from),
-        radiance=_parameter(w.radiance),
-        ambient=(0.0, 0.0, 0.0) if w.ambient is None else w.ambient,
-        use_ambient=w.ambient is not None,
-        map_resolution=w.map_resolution,
-    )
+    ambient = (0.0, 0.0, 0.0) if w.ambient is None else w.ambient
+    return _struct(abi.World, w, ambient=ambient, use_ambient=w.ambient is not None, **_nodes(w))
 
 
 def light(li):
-    return abi.Light(
-        name=_text(li.name),
-        matrix=_row_major(li.matrix),
-        kind=int(li.kind),
-        emission=li.emission,
-        radius=li.radius,
-        soft_falloff=int(li.soft_falloff),
-        spot_angle=li.spot_angle,
-        spot_blend=li.spot_blend,
-        spot_cosine=li.spot_cosine,
-        sun_angle=li.sun_angle,
-        sun_flat=li.sun_flat,
-        size=li.size,
-        shape=int(li.shape),
-        spread=li.spread,
-        hidden_from=int(li.hidden_from),
-        no_shadow=int(li.no_shadow),
-        falloff=int(li.falloff),
-        falloff_radius=li.falloff_radius,
-        ambient_color=li.ambient_color,
-        diffuse_color=li.diffuse_color,
-        specular_color=li.specular_color,
-    )
+    return _struct(abi.Light, li)
 
 
 def camera(c):
-    return abi.Camera(
-        matrix=_row_major(c.matrix),
-        kind=int(c.kind),
-        width=c.width,
-        height=c.height,
-        x=c.x,
-        y=c.y,
-        region_width=c.region_width,
-        region_height=c.region_height,
-        aperture_blades=c.aperture_blades,
-        window=c.window,
-        panorama=c.panorama,
-        clip_start=c.clip_start,
-        clip_end=c.clip_end,
-        lens_radius=c.lens_radius,
-        focal_distance=c.focal_distance,
-        aperture_rotation=c.aperture_rotation,
-        aperture_ratio=c.aperture_ratio,
-    )
+    return _struct(abi.Camera, c)
 
 
 def settings(s):
-    return abi.Settings(
-        integrator=int(s.integrator),
-        samples=s.samples,
-        seed=s.seed,
-        max_bounces=s.max_bounces,
-        contribution_threshold=s.contribution_threshold,
-        clamp_indirect=s.clamp_indirect,
-        pixel_filter=int(s.pixel_filter),
-        filter_width=s.filter_width,
-        film_transparent=int(s.film_transparent),
-        transparent_glass=int(s.transparent_glass),
-        glass_roughness=s.glass_roughness,
-        transparent_bounces=s.transparent_bounces,
-        transparent_shadows=s.transparent_shadows,
-        alpha_threshold=s.alpha_threshold,
-        environment_reflections=int(s.environment_reflections),
-        occlusion_distance=s.occlusion_distance,
-        mist_start=s.mist_start,
-        mist_depth=s.mist_depth,
-        mist_falloff=s.mist_falloff,
-        blended_features=int(s.blended_features),
-        features=int(s.features),
-        passes=sum(1 << p for p in set(s.passes)),
-        threads=s.threads,
-        tile_size=s.tile_size,
-        refines=int(s.refines),
-    )
+    return _struct(abi.Settings, s, passes=sum(1 << p for p in set(s.passes)))

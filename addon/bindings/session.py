@@ -179,6 +179,9 @@ class Scene(_Handle, SceneProbes):
         yield
         if len(snapshot.instances):
             self._check(library.lancer_scene_add_instances(handle, *marshal.instances(snapshot.instances)))
+            if snapshot.instances.infos is not None:
+                infos = snapshot.instances.infos
+                self._check(library.lancer_scene_set_object_infos(handle, len(infos), infos.ctypes.data))
             yield
         if release:
             snapshot.set("instances", InstanceTable())

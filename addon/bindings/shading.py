@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from . import structs
 from .enums import AlphaMode, Distribution, LobeKind, NodeKind, Rules, Transfer
 from .npz import register
 from .record import Record, array
@@ -33,9 +34,16 @@ def _parameter(value):
 
 
 class _Parameters(Record):
-    """Turns every field named in PARAMETERS into a parameter."""
+    """Has the parameters of a struct of lancer.h, also those that the class does not name, which are 0 where not given."""
 
     PARAMETERS = ()
+
+    def __init_subclass__(cls, struct):
+        cls.PARAMETERS = tuple(name for name, kind in struct._fields_ if kind is structs.Parameter)
+        for name in cls.PARAMETERS:
+            if name not in cls.__annotations__:
+                cls.__annotations__[name] = object
+                setattr(cls, name, 0.0)
 
     def __post_init__(self):
         for name in self.PARAMETERS:
@@ -86,41 +94,27 @@ class Node(Record):
 
 @register
 @dataclass(frozen=True, eq=False)
-class Principled(_Parameters):
+class Principled(_Parameters, struct=structs.Principled):
     rules: int = Rules.BLENDER_45
     distribution: int = Distribution.MULTI_GGX
     option: int = 1
     base_color: object = (0.8, 0.8, 0.8)
-    metallic: object = 0.0
     roughness: object = 0.5
     ior: object = 1.5
-    diffuse_roughness: object = 0.0
     specular: object = 0.5
     specular_tint: object = _WHITE
-    anisotropic: object = 0.0
-    anisotropic_rotation: object = 0.0
-    transmission: object = 0.0
-    transmission_roughness: object = 0.0
-    coat: object = 0.0
     coat_roughness: object = 0.03
     coat_ior: object = 1.5
     coat_tint: object = _WHITE
     coat_normal: object = _BLACK
-    sheen: object = 0.0
     sheen_roughness: object = 0.5
     sheen_tint: object = _WHITE
     emission: object = _BLACK
 
-    PARAMETERS = (
-        "base_color", "metallic", "roughness", "ior", "diffuse_roughness", "specular", "specular_tint", "anisotropic",
-        "anisotropic_rotation", "transmission", "transmission_roughness", "coat", "coat_roughness", "coat_ior", "coat_tint",
-        "coat_normal", "sheen", "sheen_roughness", "sheen_tint", "emission",
-    )  # fmt: skip
-
 
 @register
 @dataclass(frozen=True, eq=False)
-class Lobe(_Parameters):
+class Lobe(_Parameters, struct=structs.Lobe):
     kind: int = LobeKind.LAMBERT
     color: object = (0.8, 0.8, 0.8)
     roughness: object = 0.5  # alpha itself for BECKMANN, else the socket's value
@@ -128,8 +122,6 @@ class Lobe(_Parameters):
     shininess: object = 50.0  # the exponent of PHONG and BLINN_PHONG; k of MINNAERT, 1 is Lambert
     weight: object = _WHITE
     edge: object = _WHITE
-    anisotropy: object = 0.0
-    rotation: object = 0.0
     normal: object = _BLACK
     tangent: object = _BLACK
     distribution: int = Distribution.GGX
@@ -137,27 +129,20 @@ class Lobe(_Parameters):
     rules: int = Rules.BLENDER_45
     principled: Principled | None = None
 
-    PARAMETERS = (
-        "color", "roughness", "ior", "shininess", "weight", "edge", "anisotropy", "rotation", "normal", "tangent",
-    )  # fmt: skip
-
 
 @register
 @dataclass(frozen=True, eq=False)
-class Material(_Parameters):
+class Material(_Parameters, struct=structs.Material):
     name: str = ""
     lobes: tuple[Lobe, ...] = (Lobe(),)
     emission: object = _BLACK
     transmittance: object = _BLACK
-    holdout: object = 0.0
     ambient: object = _BLACK
     displacement: object = _BLACK
     normal: object = _BLACK
     nodes: tuple[Node, ...] = ()
     flags: int = 0  # MaterialFlag
     material_index: int = 0
-
-    PARAMETERS = ("emission", "transmittance", "holdout", "ambient", "displacement", "normal")
 
     def __post_init__(self):
         super().__post_init__()
@@ -167,14 +152,12 @@ class Material(_Parameters):
 
 @register
 @dataclass(frozen=True, eq=False)
-class World(_Parameters):
+class World(_Parameters, struct=structs.World):
     radiance: object = _BLACK
     nodes: tuple[Node, ...] = ()
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0
     ambient: tuple | None = None  # light from everywhere that Ka reflects in CLASSIC; None: the mean of the radiance
-
-    PARAMETERS = ("radiance",)
 
     def __post_init__(self):
         super().__post_init__()

@@ -129,6 +129,7 @@ class InstanceTable(Record):
     hidden_from: np.ndarray | None = None  # zeros where not given
     flags: np.ndarray | None = None
     terminators: np.ndarray | None = None  # float
+    infos: np.ndarray | None = None  # (n, 5): colour, alpha and random number, for nodes that ask; None: white and 0
     names: tuple[str, ...] = ()
     slots: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
 
@@ -141,6 +142,8 @@ class InstanceTable(Record):
         if self.terminators is None:
             self.set("terminators", np.zeros(count, np.float32))
         self.set("terminators", array(self.terminators, np.float32, (count,), "terminators"))
+        if self.infos is not None:
+            self.set("infos", array(self.infos, np.float32, (count, 5), "infos"))
         for name in _INSTANCE_COLUMNS:
             self.set(name, array(getattr(self, name), np.uint32, (count,), name))
         self.set("slots", array(self.slots, np.uint32, (None,), "slots"))

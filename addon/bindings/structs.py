@@ -1,4 +1,7 @@
-"""The structs of lancer.h in ctypes, field by field."""
+"""The structs of the interface in ctypes, field by field.
+
+Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+"""
 
 from ctypes import POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_uint32, c_uint64, c_void_p
 
@@ -9,10 +12,19 @@ Array = c_void_p
 
 
 class Attribute(Structure):
-    _fields_ = [("name", c_char_p), ("values", Array), ("domain", c_uint32), ("channels", c_uint32)]
+    """A named attribute of a mesh, for nodes."""
+
+    _fields_ = [
+        ("name", c_char_p),
+        ("values", Array),
+        ("domain", c_uint32),
+        ("channels", c_uint32),
+    ]
 
 
 class Mesh(Structure):
+    """A triangle mesh in object space, shared by any number of instances."""
+
     _fields_ = [
         ("name", c_char_p),
         ("positions", Array),
@@ -31,6 +43,8 @@ class Mesh(Structure):
 
 
 class Instance(Structure):
+    """One placed object."""
+
     _fields_ = [
         ("matrix", c_double * 12),
         ("kind", c_uint32),
@@ -64,7 +78,12 @@ class Image(Structure):
 
 
 class Parameter(Structure):
-    _fields_ = [("value", c_float * 3), ("node", c_int32)]
+    """A value of a material, light or world."""
+
+    _fields_ = [
+        ("value", c_float * 3),
+        ("node", c_int32),
+    ]
 
 
 class Node(Structure):
@@ -82,6 +101,8 @@ class Node(Structure):
 
 
 class Principled(Structure):
+    """The Principled BSDF's inputs under their newest names."""
+
     _fields_ = [
         ("rules", c_uint32),
         ("distribution", c_uint32),
@@ -148,20 +169,9 @@ class Material(Structure):
     ]
 
 
-class World(Structure):
-    _fields_ = [
-        ("nodes", POINTER(Node)),
-        ("node_count", c_uint32),
-        ("hidden_from", c_uint32),
-        ("radiance", Parameter),
-        ("ambient", c_float * 3),
-        ("use_ambient", c_uint32),
-        ("map_resolution", c_uint32),
-        ("reserved", c_uint32),
-    ]
-
-
 class Light(Structure):
+    """A light shines along its local -z."""
+
     _fields_ = [
         ("name", c_char_p),
         ("matrix", c_double * 12),
@@ -187,7 +197,24 @@ class Light(Structure):
     ]
 
 
+class World(Structure):
+    """What lies beyond everything."""
+
+    _fields_ = [
+        ("nodes", POINTER(Node)),
+        ("node_count", c_uint32),
+        ("hidden_from", c_uint32),
+        ("radiance", Parameter),
+        ("ambient", c_float * 3),
+        ("use_ambient", c_uint32),
+        ("map_resolution", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
 class Camera(Structure):
+    """The camera looks along its local -z, y up."""
+
     _fields_ = [
         ("matrix", c_double * 12),
         ("kind", c_uint32),
@@ -240,7 +267,12 @@ class Settings(Structure):
 
 
 class Progress(Structure):
-    _fields_ = [("fraction", c_double), ("seconds", c_double), ("samples", c_uint64), ("rays", c_uint64)]
+    _fields_ = [
+        ("fraction", c_double),
+        ("seconds", c_double),
+        ("samples", c_uint64),
+        ("rays", c_uint64),
+    ]
 
 
 class Statistics(Structure):
@@ -272,6 +304,8 @@ class Statistics(Structure):
 
 
 class Error(Structure):
+    """How far the picture is from the converged one."""
+
     _fields_ = [
         ("error", c_double),
         ("low", c_double),
@@ -282,6 +316,22 @@ class Error(Structure):
         ("planned_samples", c_double),
         ("least_samples", c_uint32),
         ("most_samples", c_uint32),
+    ]
+
+
+class Vertex(Structure):
+    """One vertex of a replayed sample."""
+
+    _fields_ = [
+        ("position", c_double * 3),
+        ("t", c_double),
+        ("normal", c_float * 3),
+        ("beta", c_float * 3),
+        ("radiance", c_float * 3),
+        ("instance", c_uint32),
+        ("primitive", c_uint32),
+        ("material", c_uint32),
+        ("depth", c_uint32),
     ]
 
 
@@ -301,17 +351,26 @@ class Hit(Structure):
     ]
 
 
-class Vertex(Structure):
+class BsdfSample(Structure):
     _fields_ = [
-        ("position", c_double * 3),
-        ("t", c_double),
-        ("normal", c_float * 3),
-        ("beta", c_float * 3),
-        ("radiance", c_float * 3),
-        ("instance", c_uint32),
-        ("primitive", c_uint32),
-        ("material", c_uint32),
-        ("depth", c_uint32),
+        ("wi", c_float * 3),
+        ("weight", c_float * 3),
+        ("pdf", c_float),
+        ("delta", c_uint32),
+    ]
+
+
+class LobeInfo(Structure):
+    """A lobe as it stands for one wo, after nodes and layers."""
+
+    _fields_ = [
+        ("kind", c_uint32),
+        ("component", c_uint32),
+        ("weight", c_float * 3),
+        ("albedo", c_float * 3),
+        ("roughness", c_float * 2),
+        ("ior", c_float),
+        ("probability", c_float),
     ]
 
 
@@ -323,22 +382,6 @@ class LightSample(Structure):
         ("pdf", c_float),
         ("delta", c_uint32),
         ("reserved", c_uint32),
-    ]
-
-
-class BsdfSample(Structure):
-    _fields_ = [("wi", c_float * 3), ("weight", c_float * 3), ("pdf", c_float), ("delta", c_uint32)]
-
-
-class LobeInfo(Structure):
-    _fields_ = [
-        ("kind", c_uint32),
-        ("component", c_uint32),
-        ("weight", c_float * 3),
-        ("albedo", c_float * 3),
-        ("roughness", c_float * 2),
-        ("ior", c_float),
-        ("probability", c_float),
     ]
 
 

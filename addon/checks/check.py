@@ -4,7 +4,7 @@ import numpy as np
 
 from .closures import check_closures
 from .coincident import check_coincident, flat_parts
-from .finding import by_harm
+from .finding import by_severity
 from .glass import check_glass
 from .laid_over import check_laid_over
 from .lamps_in_faces import check_lamps_in_faces
@@ -25,7 +25,7 @@ def check_snapshot(snapshot, thorough=True, poll=None):
     # What is not finite is left out by the core, which tells of it; here it compares as false.
     with np.errstate(all="ignore"):
         found = _all_findings(Subject(snapshot, thorough, poll))
-    return by_harm(finding for finding in found if thorough or finding.harm or finding.key)
+    return by_severity(finding for finding in found if thorough or finding.severity or finding.key)
 
 
 def _all_findings(subject):

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..bindings.enums import Integrator, LobeKind
 from ..bindings.shading import NodeRef
-from .finding import Finding, Harm
+from .finding import Finding, Severity
 from .ranges import Ranges
 from .traits import clear_lobes
 
@@ -34,9 +34,9 @@ def check_closures(subject):
         subject.poll()
         material = snapshot.materials[number]
         ranges = Ranges(material.nodes, snapshot.images)
-        for harm, what, advice, weight in _flaws(material, ranges, snapshot.settings):
+        for severity, what, advice, weight in _flaws(material, ranges, snapshot.settings):
             name = subject.name(used[number])
-            yield Finding("closures", harm, what, advice, object=name, material=material.name, weight=weight)
+            yield Finding("closures", severity, what, advice, object=name, material=material.name, weight=weight)
 
 
 def _first_rows(subject):
@@ -88,9 +88,9 @@ def _outside(material, ranges):
             told.add(name)
             beyond = low if not low >= 0.0 else high
             of = "goes to" if isinstance(value, NodeRef) else "is"
-            harm = Harm.HINT if isinstance(value, NodeRef) else Harm.WRONG
+            severity = Severity.HINT if isinstance(value, NodeRef) else Severity.WRONG
             yield (
-                harm,
+                severity,
                 f"{name.replace('_', ' ')} {of} {beyond:.4g}, and only 0 to 1 means something",
                 "bring it into that range",
                 share,
@@ -100,7 +100,7 @@ def _outside(material, ranges):
         if share and not low > 0.0 and name not in told:
             told.add(name)
             of = "goes down to" if isinstance(value, NodeRef) else "is"
-            yield Harm.WRONG, f"{name} {of} {low:.4g}, which no matter has", "use 1.33 for water, 1.5 for glass", share
+            yield Severity.WRONG, f"{name} {of} {low:.4g}, which no matter has", "use 1.33 for water, 1.5 for glass", share
 
 
 def _extremes(ranges, value, least=None):
@@ -131,7 +131,7 @@ def _clear(material, ranges):
             if white and len(material.lobes) == 1 and "invisible" not in told:
                 told.add("invisible")
                 yield (
-                    Harm.WASTE,
+                    Severity.WASTE,
                     f"glass with IOR {low:.7g} bends and mirrors no light: it cannot be seen",
                     "use 1.33 for water, 1.5 for glass",
                     1.0,
@@ -139,7 +139,7 @@ def _clear(material, ranges):
         elif low < 1.0 - _NEARLY_ONE and "thin" not in told:
             told.add("thin")
             yield (
-                Harm.HINT,
+                Severity.HINT,
                 f"IOR {low:.4g} is below 1, which is right for air within water or glass alone",
                 "use 1.33 for water, 1.5 for glass",
                 1.0 / low,
@@ -163,7 +163,7 @@ def _growing(material, ranges, settings):
             if len(values) and bright.mean() >= _SHARE_OF_TEXELS:
                 share = float(bright.mean())
                 yield (
-                    Harm.WRONG,
+                    Severity.WRONG,
                     f"its picture of colours goes up to {values.max():.4g}: above 1 light grows with every bounce",
                     "darken the picture, or clamp it to 1",
                     share,
@@ -174,14 +174,14 @@ def _growing(material, ranges, settings):
     highest = float(total.max())
     if math.isfinite(highest) and highest > _MORE_THAN_ALL:
         yield (
-            Harm.WRONG,
+            Severity.WRONG,
             f"sends back {highest:.4g} times the light that it gets, so that light grows with every bounce",
             "keep colours, and the sum of added shaders, below 1",
             highest,
         )
     elif diffuse_white and min(total) >= 1.0 and settings.max_bounces >= _LONG:
         yield (
-            Harm.HINT,
+            Severity.HINT,
             f"keeps all light: with {settings.max_bounces} bounces paths in closed rooms end late",
             "use 0.9 or less for white paint",
             1.0,

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..bindings.enums import CameraKind, InstanceKind
 from .edges import corner_keys, edge_faults
-from .finding import IN_ONE_PLANE, SHADOWED, Finding, Harm, told_number
+from .finding import IN_ONE_PLANE, SHADOWED, Finding, Severity, told_number
 from .framing import LEAST_SHARE, share_of_plane
 from .overlap import overlapping_triangles
 from .planes import gather, in_one_plane, pairs_of
@@ -98,18 +98,18 @@ class _Hurts:
         return traits[first].scatters or traits[first].emits or traits[first].passes or not self.subject.alike(first, second)
 
     def words(self, one, other):
-        """(Harm, what, advice); None where one hides the other from the camera."""
+        """(Severity, what, advice); None where one hides the other from the camera."""
         world, traits = self.world, self.subject.traits
         first, second = int(world.materials[one]), int(world.materials[other])
         if self._rests(one, other) or self._rests(other, one):
             return (
-                Harm.HINT,
+                Severity.HINT,
                 "touch exactly where one is glass: it stands on the other as if glued, with no air between",
                 "move it away a little if there shall be air",
             )
         if traits[first].refracts or traits[second].refracts:
             return (
-                Harm.WRONG,
+                Severity.WRONG,
                 "touch exactly where one is glass: only one of both surfaces is there, what is opaque before glass",
                 "move one of them a little, or let them overlap",
             )
@@ -119,13 +119,17 @@ class _Hurts:
             if self._share(one, other) < LEAST_SHARE:
                 return None
             return (
-                Harm.DIFFERENT,
+                Severity.DIFFERENT,
                 f"lie in the same plane and look alike: {SHADOWED}",
                 "delete one of them, or move it a little",
             )
         if self.subject.alike(first, second):
-            return Harm.WRONG, "lie in the same plane, and their light counts twice", "delete one of them, or move it a little"
-        return Harm.WRONG, "lie in the same plane, and only one of them is seen", "move one of them a little"
+            return (
+                Severity.WRONG,
+                "lie in the same plane, and their light counts twice",
+                "delete one of them, or move it a little",
+            )
+        return Severity.WRONG, "lie in the same plane, and only one of them is seen", "move one of them a little"
 
     def _rests(self, glass, ground):
         """Whether glass stands on something opaque: that is there in its stead, and light in the glass ends on it, rightly."""
@@ -204,12 +208,12 @@ def corners_of(subject, facets, world, part, origin):
 
 def _finding(subject, world, one, other, words, place, count, weight):
     first, second = int(world.rows[one]), int(world.rows[other])
-    harm, what, advice = words
+    severity, what, advice = words
     partner = f"object '{subject.name(second)}'" if first != second else "others of its own faces"
     material = subject.material_name(int(world.materials[one]))
     return Finding(
         "coincident",
-        harm,
+        severity,
         f"{told_number(count, 'face')} and {partner} {what}",
         advice,
         object=subject.name(first),
@@ -217,5 +221,5 @@ def _finding(subject, world, one, other, words, place, count, weight):
         faces=count,
         place=place,
         weight=weight,
-        key=IN_ONE_PLANE if harm > Harm.WASTE else "",
+        key=IN_ONE_PLANE if severity > Severity.WASTE else "",
     )

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..harm import Harm
+from ..severity import Severity
 
 _LINES_OF_A_KIND = 3
 
@@ -10,7 +10,7 @@ _LINES_OF_A_KIND = 3
 @dataclass(frozen=True)
 class Finding:
     kind: str  # one of KINDS
-    harm: Harm
+    severity: Severity
     what: str  # the sentence, without who and where
     advice: str
     object: str = ""
@@ -65,18 +65,18 @@ def told_number(count, one):
     return f"{count} {one}" if count == 1 else f"{count} {one}s"
 
 
-def by_harm(findings):
+def by_severity(findings):
     """What hurts most comes first; within a kind what there is most of."""
     order = list(KINDS)
-    return sorted(findings, key=lambda f: (-f.harm, order.index(f.kind), -f.weight, f.who))
+    return sorted(findings, key=lambda f: (-f.severity, order.index(f.kind), -f.weight, f.who))
 
 
 def shortened(findings):
-    """(Finding, further objects of the same kind that are left out after it): a few of each kind, in the order of harm."""
+    """(Finding, further objects of the same kind that are left out after it): a few of each kind, in the order of severity."""
     kept, left = [], {}
-    for finding in by_harm(findings):
-        key = finding.kind, finding.harm
-        shown = [number for number, other in enumerate(kept) if (other.kind, other.harm) == key]
+    for finding in by_severity(findings):
+        key = finding.kind, finding.severity
+        shown = [number for number, other in enumerate(kept) if (other.kind, other.severity) == key]
         if len(shown) < _LINES_OF_A_KIND:
             kept.append(finding)
         else:

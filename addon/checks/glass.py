@@ -3,7 +3,7 @@
 import numpy as np
 
 from .edges import corner_keys, edge_faults, is_balanced, shells
-from .finding import Finding, Harm, told_number
+from .finding import Finding, Severity, told_number
 
 _LARGEST_FOR_SHELLS = 400_000
 _MOST_TURNED = 256
@@ -26,7 +26,7 @@ def _finding(subject, number, mesh, row, what, advice, faces, at):
     clear = next(n for n in subject.materials_of(row) if subject.traits[n].refracts)
     return Finding(
         "glass",
-        Harm.WRONG,
+        Severity.WRONG,
         what,
         advice,
         object=subject.name(row),

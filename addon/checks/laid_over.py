@@ -7,7 +7,7 @@ import numpy as np
 
 from .coincident import is_plain
 from .facets import facets_of
-from .finding import IN_ONE_PLANE, SHADOWED, Finding, Harm, told_number
+from .finding import IN_ONE_PLANE, SHADOWED, Finding, Severity, told_number
 from .framing import LEAST_SHARE, share_of_triangles
 from .overlap import box_pairs, triangles_over
 from .subject import step
@@ -39,7 +39,7 @@ def check_laid_over(subject):
         share, place, over, part = max(parts, key=lambda found: found[0])
         yield Finding(
             "coincident",
-            Harm.DIFFERENT if share >= LEAST_SHARE else Harm.HINT,
+            Severity.DIFFERENT if share >= LEAST_SHARE else Severity.HINT,
             f"{told_number(len(over), 'face')} lie in the same plane as others that they overlap: {SHADOWED}",
             "in Edit Mode delete those beneath, or move them a little",
             object=subject.name(row),

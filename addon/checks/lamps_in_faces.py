@@ -4,7 +4,7 @@ import numpy as np
 
 from ..bindings.enums import LightKind, Ray
 from .coincident import corners_of
-from .finding import Finding, Harm
+from .finding import Finding, Severity
 from .overlap import overlapping_triangles
 from .planes import World, in_one_plane
 from .subject import step
@@ -35,7 +35,7 @@ def check_lamps_in_faces(subject, facets, world):
         what = f"lies exactly in a face of object '{subject.name(int(world.rows[part]))}'"
         yield Finding(
             "lights",
-            Harm.DIFFERENT,
+            Severity.DIFFERENT,
             f"{what}: Cycles would show it weaker, as the face hides part of it",
             "move it a little to the side that it shines to",
             light=light.name,

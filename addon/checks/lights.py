@@ -1,7 +1,7 @@
 """Light that is not there, and light too weak to be seen beside the rest."""
 
 from ..bindings.enums import Integrator, Pass
-from .finding import Finding, Harm
+from .finding import Finding, Severity
 from .traits import is_zero
 
 # Sums of single precision lose what is 2^-24 of them; lamps may stand some 200 times nearer, which brings the square of that.
@@ -17,17 +17,17 @@ def check_lights(subject):
         # Who asks for other passes may want those alone, as of a layer of masks.
         if set(snapshot.settings.passes) == {Pass.COMBINED}:
             what, advice = "nothing gives light, so that the picture will be black", "add a lamp or a world colour"
-            yield Finding("lights", Harm.WRONG, what, advice)
+            yield Finding("lights", Severity.WRONG, what, advice)
         return
     strongest = max(levels, default=0.0)
     for light, level in zip(snapshot.lights, levels, strict=True):
         place = tuple(light.matrix[:, 3].tolist())
         if not level > 0.0:
             what = "gives no light: its power or colour is 0"
-            yield Finding("lights", Harm.HINT, what, "delete or hide it", light=light.name, place=place)
+            yield Finding("lights", Severity.HINT, what, "delete or hide it", light=light.name, place=place)
         elif level < _UNSEEN * strongest:
             what = f"is {strongest / level:.2g} times weaker than the strongest lamp, beside which it is lost in rounding"
-            yield Finding("lights", Harm.HINT, what, "delete it, or weaken the other", light=light.name, place=place)
+            yield Finding("lights", Severity.HINT, what, "delete it, or weaken the other", light=light.name, place=place)
 
 
 def _any_emission(subject):

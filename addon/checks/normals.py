@@ -4,7 +4,7 @@ import numpy as np
 
 from ..bindings.enums import Shading
 from .edges import corner_keys, edge_faults, vertex_keys
-from .finding import Finding, Harm, told_number
+from .finding import Finding, Severity, told_number
 from .sides import corners, crossed, dots, lengths, middle
 
 # A share of the mesh's area: less is not seen, and slivers, whose own direction is rounding, have next to none.
@@ -30,19 +30,19 @@ def check_normals(subject):
         some, total = some & ~whole, areas.sum()
         folds = _folds(mesh, faces, some)
         groups = [
-            (harm, float(areas[bad].sum() / total) if total > 0.0 else 0.0, bad)
-            for harm, bad in ((Harm.WRONG, some & ~folds), (Harm.WRONG, whole), (Harm.HINT, folds))
+            (severity, float(areas[bad].sum() / total) if total > 0.0 else 0.0, bad)
+            for severity, bad in ((Severity.WRONG, some & ~folds), (Severity.WRONG, whole), (Severity.HINT, folds))
         ]
         groups = [group for group in groups if group[1] >= _SHARE]
         if not groups:
             continue
-        harm, share, bad = max(groups, key=lambda group: group[:2])
+        severity, share, bad = max(groups, key=lambda group: group[:2])
         worst = np.flatnonzero(bad)[np.argmax(areas[bad])]
         count = round(bad.sum() * len(mesh.triangles) / asked)
-        what, advice = _words(subject, number, mesh, harm, count, bad is whole)
+        what, advice = _words(subject, number, mesh, severity, count, bad is whole)
         yield Finding(
             "normals",
-            harm,
+            severity,
             what,
             advice,
             object=subject.name(row),
@@ -117,7 +117,7 @@ def _folds(mesh, faces, bad):
     return folds
 
 
-def _words(subject, number, mesh, harm, count, whole):
+def _words(subject, number, mesh, severity, count, whole):
     where = told_number(count, "face")
     if _has_flipped(subject, number, mesh):
         return (
@@ -129,7 +129,7 @@ def _words(subject, number, mesh, harm, count, whole):
             f"shading normals point into the surface on {where}, which light falls on from behind",
             "clear custom split normals, or recalculate them",
         )
-    if harm == Harm.WRONG:
+    if severity == Severity.WRONG:
         return (
             f"shading normals point away from the surface at some corners of {where}, which shows as dark patches",
             "clear custom normals, mark sharp edges or shade it flat",

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..bindings.enums import InstanceKind
-from .finding import Finding, Harm, told_number
+from .finding import Finding, Severity, told_number
 from .sides import corners, dots, lengths
 from .subject import step
 
@@ -66,7 +66,7 @@ def _judge(subject, number, mesh, row, few, places, count):
     faces = round(share * len(mesh.triangles))
     return Finding(
         "precision",
-        Harm.WRONG,
+        Severity.WRONG,
         f"{told_number(faces, 'face')} no larger than a few steps of Blender's numbers: so far from its origin a step is "
         f"{steps[worst] * stretch:.2g}, and the smallest edge {edges[worst] * stretch:.2g}",
         "model it near its own origin and export it again: what is rounded is lost",
@@ -123,7 +123,7 @@ def _check_places(subject):
     place = table.matrices[worst][:, 3]
     yield Finding(
         "precision",
-        Harm.WRONG,
+        Severity.WRONG,
         f"its size of {sizes[worst]:.2g} is hardly more than the step of Blender's numbers there, {steps[worst]:.2g}, so that "
         f"it cannot stand where it should{'' if len(bad) == 1 else f', like {len(bad) - 1} more'}",
         "move the scene to the origin",
@@ -146,7 +146,7 @@ def _check_shear(subject):
     worst = bad[np.argmin(volumes[volumes < _FLATTEST])]
     yield Finding(
         "precision",
-        Harm.WRONG,
+        Severity.WRONG,
         "its transform is sheared until almost nothing of its thickness is left, and rounding decides which way it faces"
         f"{'' if len(bad) == 1 else f', like that of {len(bad) - 1} more'}",
         "apply the scale of its parents, or shear it less",

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bindings.enums import LightKind, Shading
 from .facets import facets_of
-from .finding import Finding, Harm, told_number
+from .finding import Finding, Severity, told_number
 from .framing import share_of_triangles
 from .sides import corners, crossed, dots, lengths
 
@@ -36,7 +36,7 @@ def check_round_faces(subject):
         angle = np.degrees(np.arccos(cosine))
         yield Finding(
             "normals",
-            Harm.HINT,
+            Severity.HINT,
             f"{told_number(len(faces), 'flat face')} are shaded as if they were round, by {angle:.0f} degrees at the corners: "
             "light along them may differ from Cycles' by a few percent",
             "add a Weighted Normal modifier, or shade it smooth by angle",

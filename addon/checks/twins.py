@@ -4,7 +4,7 @@ import numpy as np
 
 from ..bindings.enums import InstanceKind
 from .edges import corner_keys, mixed
-from .finding import IN_ONE_PLANE, SHADOWED, Finding, Harm, told_number
+from .finding import IN_ONE_PLANE, SHADOWED, Finding, Severity, told_number
 from .framing import LEAST_SHARE, share_of_triangles
 
 
@@ -67,7 +67,7 @@ def check_twins(subject, rows):
         what = f"stands exactly where object '{other}' does, with the same faces"
         yield Finding(
             "coincident",
-            Harm.DIFFERENT if darker else Harm.WASTE if harmless else Harm.WRONG,
+            Severity.DIFFERENT if darker else Severity.WASTE if harmless else Severity.WRONG,
             (what if copies == 1 else f"{what}, like {copies - 1} more") + (f": {SHADOWED}" if darker else ""),
             "delete the copy",
             object=name,
@@ -120,11 +120,11 @@ def check_double_faces(subject):
         places = subject.world(row, corners.reshape(-1, 3)).reshape(-1, 3, 3)
         darker = subject.seen_by_camera(row) and any(subject.traits[number].scatters for number in subject.materials_of(row))
         felt = darker and share_of_triangles(subject.snapshot.camera, places) >= LEAST_SHARE
-        harm = Harm.WRONG if hurts.any() else Harm.DIFFERENT if felt else Harm.HINT
+        severity = Severity.WRONG if hurts.any() else Severity.DIFFERENT if felt else Severity.HINT
         what = f"{told_number(len(shown), 'face')} lie exactly on other faces of the mesh"
         yield Finding(
             "coincident",
-            harm,
+            severity,
             f"{what}: {SHADOWED}" if darker else what,
             "in Edit Mode, Mesh > Merge > By Distance, then delete what is left twice",
             object=subject.name(row),
@@ -133,7 +133,7 @@ def check_double_faces(subject):
             faces=len(shown),
             place=tuple(places[0].mean(axis=0).tolist()),
             weight=share,
-            key=IN_ONE_PLANE if harm > Harm.WASTE or darker else "",
+            key=IN_ONE_PLANE if severity > Severity.WASTE or darker else "",
         )
 
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ..bindings.enums import Pass
-from ..harm import Harm
+from ..severity import Severity
 from .cycles_settings import check_cycles
 
 # As passes.py renders them, by the names of a view layer's switches.
@@ -52,7 +52,7 @@ def check_view_layer(scene, view_layer, messages):
         messages.add(f"{who}: Freestyle is not supported by Lancer, Blender draws its lines with EEVEE over the picture")
     names = _missing_passes(view_layer)
     if names:
-        messages.add(f"{who}: these passes are not supported: {', '.join(names)}", harm=Harm.LEFT_OUT)
+        messages.add(f"{who}: these passes are not supported: {', '.join(names)}", severity=Severity.LEFT_OUT)
 
 
 def _missing_passes(view_layer):
@@ -122,7 +122,7 @@ def check_hair(thing, messages):
         system = modifier.particle_system
         if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
             text = f"hair of particle system '{system.name}' is not supported, it is left out"
-            messages.add(f"object '{thing.name}': {text}", "feature:hair particles", harm=Harm.LEFT_OUT)
+            messages.add(f"object '{thing.name}': {text}", "feature:hair particles", severity=Severity.LEFT_OUT)
 
 
 def check_linking(thing, kind, messages):

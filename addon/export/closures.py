@@ -1,7 +1,7 @@
 """What each shader node adds to a surface: lobes, light, passage and holes."""
 
 from ..bindings.enums import Distribution, LobeKind
-from ..harm import Harm
+from ..severity import Severity
 from .arithmetic import is_constant
 from .course_models import read_group
 from .distributions import read_distribution
@@ -133,7 +133,9 @@ def _portal(surface, site, weight):
 
 
 def _volume(surface, site, weight):
-    surface.graph.tell(site, f"{site.node.bl_label} is a volume and has no surface, nothing is shown", harm=Harm.LEFT_OUT)
+    surface.graph.tell(
+        site, f"{site.node.bl_label} is a volume and has no surface, nothing is shown", severity=Severity.LEFT_OUT
+    )
 
 
 def read_unknown(surface, site, weight):

@@ -8,6 +8,7 @@ from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 from . import fold_colors
 from .arithmetic import clamp, triple
+from .curves import ramp_by_table
 from .maths import smooth_step
 
 _NEUTRAL_HUE = 0.5  # of Hue Saturation Value: the socket that turns nothing
@@ -145,7 +146,7 @@ def _ramp(graph, site, output):
         color = tuple(ramp.evaluate(clamp(factor)))
         return color[3] if is_alpha else color[:3]
     if ramp.color_mode != "RGB" or ramp.interpolation not in ("LINEAR", "CONSTANT", "EASE"):
-        graph.tell(site, f"{ramp.color_mode} {ramp.interpolation} interpolation is not supported, linear RGB is used")
+        return ramp_by_table(graph, ramp, factor, is_alpha)
     stops = [(stop.position, (stop.color[3],) * 3 if is_alpha else tuple(stop.color[:3])) for stop in ramp.elements]
     m = MathOperation
     result = stops[0][1]
@@ -171,26 +172,12 @@ def _blackbody(graph, site, output):
     return graph.vector_op(v.MAXIMUM, color, (0.0,) * 3)
 
 
-def _curves(graph, site, output):
-    node = site.node
-    factor, color = graph.input(site, node.inputs[0]), graph.input(site, node.inputs[1])
-    if isinstance(color, NodeRef):
-        graph.tell(site, "RGB Curves is not supported where its input varies, the colour is passed unchanged")
-        return color
-    mapping = node.mapping
-    mapping.initialize()
-    curves = mapping.curves
-    curved = tuple(float(mapping.evaluate(curves[i], mapping.evaluate(curves[3], clamp(color[i])))) for i in range(3))
-    return graph.mix(factor, color, curved)
-
-
 READERS = {
     "BLACKBODY": _blackbody,
     "BRIGHTCONTRAST": _brightness,
     "COMBHSV": _combine_color,
     "COMBINE_COLOR": _combine_color,
     "COMBRGB": _combine_color,
-    "CURVE_RGB": _curves,
     "GAMMA": _gamma,
     "HUE_SAT": _hue_saturation,
     "INVERT": _invert,

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..bindings.enums import Coordinate, MappingType, NodeKind, VectorOperation
+from ..bindings.enums import Coordinate, MappingType, NodeKind, ObjectFact, PathFact, VectorOperation
 from ..bindings.shading import NodeRef
-from ..of_scenes import identity
+from ..by_scene import identity
 from .arithmetic import THIRDS, divide
 from .attributes import attribute_name, tangents_name
 from .fold import rotation
@@ -29,6 +29,30 @@ _GEOMETRY = {
     "Incoming": Coordinate.INCOMING,
     "Parametric": Coordinate.PARAMETRIC,
     "Backfacing": Coordinate.BACKFACING,
+}
+_OBJECT_FACTS = {
+    "Location": ObjectFact.LOCATION,
+    "Color": ObjectFact.COLOR,
+    "Alpha": ObjectFact.COLOR,
+    "Object Index": ObjectFact.INDEX,
+    "Random": ObjectFact.RANDOM,
+}
+_PATH_FACTS = {
+    "Is Camera Ray": PathFact.IS_CAMERA,
+    "Is Shadow Ray": PathFact.IS_SHADOW,
+    "Is Diffuse Ray": PathFact.IS_DIFFUSE,
+    "Is Glossy Ray": PathFact.IS_GLOSSY,
+    "Is Singular Ray": PathFact.IS_SINGULAR,
+    "Is Reflection Ray": PathFact.IS_REFLECTION,
+    "Is Transmission Ray": PathFact.IS_TRANSMISSION,
+    "Is Volume Scatter Ray": PathFact.IS_VOLUME,
+    "Ray Length": PathFact.LENGTH,
+    "Ray Depth": PathFact.DEPTH,
+    "Diffuse Depth": PathFact.DIFFUSE_DEPTH,
+    "Glossy Depth": PathFact.GLOSSY_DEPTH,
+    "Transparent Depth": PathFact.TRANSPARENT_DEPTH,
+    "Transmission Depth": PathFact.TRANSMISSION_DEPTH,
+    "Portal Depth": PathFact.PORTAL_DEPTH,
 }
 
 
@@ -138,6 +162,17 @@ def mapping_matrix(kind, location, angles, scale):
     return [(*row, -sum(x * y for x, y in zip(row, location, strict=True))) for row in linear]
 
 
+def _object_info(graph, site, output):
+    if output.identifier == "Material Index":
+        return float(graph.material_index)
+    value = graph.emit(NodeKind.OBJECT_INFO, option=_OBJECT_FACTS[output.identifier])
+    return graph.emit(NodeKind.ALPHA, value) if output.identifier == "Alpha" else value
+
+
+def _light_path(graph, site, output):
+    return graph.emit(NodeKind.LIGHT_PATH, option=_PATH_FACTS[output.identifier])
+
+
 def _transform(graph, site, output):
     node = site.node
     return graph.value(site, 0) if node.convert_from == node.convert_to else None
@@ -145,8 +180,10 @@ def _transform(graph, site, output):
 
 READERS = {
     "ATTRIBUTE": _attribute,
+    "LIGHT_PATH": _light_path,
     "MAPPING": _mapping,
     "NEW_GEOMETRY": _geometry,
+    "OBJECT_INFO": _object_info,
     "TANGENT": _tangent,
     "TEX_COORD": _texture_coordinate,
     "UVMAP": _uv_map,

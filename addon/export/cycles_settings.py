@@ -6,7 +6,7 @@ Lancer's settings stand for (samples, filter, seed, transparent bounces) are not
 need not be.
 """
 
-from ..harm import Harm
+from ..severity import Severity
 
 _KINDS = ("diffuse", "glossy", "transmission")
 
@@ -16,8 +16,8 @@ def check_cycles(scene, messages):
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
         return
-    for text, harm in _light_paths(scene.lancer, cycles):
-        messages.add(f"scene '{scene.name}': {text}", harm=harm)
+    for text, severity in _light_paths(scene.lancer, cycles):
+        messages.add(f"scene '{scene.name}': {text}", severity=severity)
     for text in (*_light(cycles), *_simplified(scene, cycles)):
         messages.add(f"scene '{scene.name}': {text}")
 
@@ -43,8 +43,8 @@ def _light_paths(own, cycles):
         ours.append(f"Clamp Indirect {own.clamp_indirect:g}")
     if theirs:
         told = _listed([words for _, words in theirs])
-        harm = Harm.DIFFERENT if any(_changed(cycles, name) for name, _ in theirs) else Harm.HINT
-        yield f"Cycles limits light by {told}, Lancer by {_listed(ours)}: set Light Paths alike to compare", harm
+        severity = Severity.DIFFERENT if any(_changed(cycles, name) for name, _ in theirs) else Severity.HINT
+        yield f"Cycles limits light by {told}, Lancer by {_listed(ours)}: set Light Paths alike to compare", severity
 
 
 def _listed(words):

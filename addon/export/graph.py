@@ -14,17 +14,18 @@ import math
 import bpy
 
 from ..bindings import snapshot
-from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.enums import AlphaMode, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
-from ..harm import Harm
-from . import colors, coordinates, maths, normals, textures
+from ..severity import Severity
+from . import colors, coordinates, curves, maths, normals, procedural, textures
 from .arithmetic import THIRDS, is_constant, single, triple
 from .colorspace import luminance_weights
 from .fold import FOLD, gives_number
 from .sockets import find
 from .walk import Site, Walker
 
-_READERS = {**maths.READERS, **colors.READERS, **coordinates.READERS, **normals.READERS, **textures.READERS}
+_MODULES = (maths, colors, curves, coordinates, normals, textures, procedural)
+_READERS = {kind: reader for module in _MODULES for kind, reader in module.READERS.items()}
 _OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}
@@ -53,9 +54,11 @@ class NodeGraph:
         self.unknown = unknown
         self.attributes = set()  # names of mesh attributes that the nodes read
         self.objects = set()  # identities of the objects whose place they read
+        self.material_index = 0  # of the owner; 0 of what is no material
         self.normal = (0.0, 0.0, 0.0)  # what takes the place of the shading normal where it is bumped as a whole
         self.walker = Walker()
         self._nodes = []
+        self._tables = {}
         self._scopes = [_Scope()]
         self._active = set()
         self._is_ahead = False
@@ -82,7 +85,7 @@ class NodeGraph:
         if key not in numbers:
             if len(self._nodes) >= _MOST_NODES:
                 text = f"has more than {_MOST_NODES} nodes, {self.unknown} is used for the rest"
-                self.messages.add(f"{self.owner}: {text}", "feature:many nodes", harm=Harm.WRONG)
+                self.messages.add(f"{self.owner}: {text}", "feature:many nodes", severity=Severity.WRONG)
                 return _UNKNOWN[self.unknown]
             numbers[key] = len(self._nodes)
             self._nodes.append(node)
@@ -97,6 +100,14 @@ class NodeGraph:
             return single(value)
         self.messages.add(f"{self.owner}: a node's result is not finite, 0 is used")
         return 0.0 if gives_number(node) else (0.0, 0.0, 0.0)
+
+    def table(self, values):
+        """The number of the picture that holds a table (n, channels) of single precision as its one row; equal ones are one."""
+        key = values.shape, values.tobytes()
+        if key not in self._tables:
+            picture = snapshot.Image(name="table", texels=values[None], alpha=AlphaMode.CHANNEL_PACKED)
+            self._tables[key] = self.images.repeat([picture])
+        return self._tables[key]
 
     def height_nodes(self, build):
         """(first, value) of build(), with nodes of its own from number first on: BUMP computes them at other places."""
@@ -151,10 +162,12 @@ class NodeGraph:
 
     # ---- reading ----
 
-    def tell(self, site, text, key=None, harm=Harm.DIFFERENT):
+    def tell(self, site, text, key=None, severity=Severity.DIFFERENT):
         """key: of Messages.add; by default the node itself is what is missing, "" where nothing is."""
         node = _site(site).node
-        self.messages.add(f"{self.owner}, node '{node.name}': {text}", f"node:{node.bl_label}" if key is None else key, harm)
+        self.messages.add(
+            f"{self.owner}, node '{node.name}': {text}", f"node:{node.bl_label}" if key is None else key, severity
+        )
 
     def parameter(self, site, names, default=0.0, kind="number", low=-math.inf, high=math.inf):
         """The input of a node that has one of the names, made usable; default where this Blender has none.
@@ -229,7 +242,9 @@ class NodeGraph:
         """The value of an origin as a colour; the unknown one where it has none."""
         value = self._output(origin.site, origin.output)
         if value is None:
-            self.tell(origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used", harm=Harm.WRONG)
+            self.tell(
+                origin.site, f"{origin.site.node.bl_label} is not supported, {self.unknown} is used", severity=Severity.WRONG
+            )
             return _UNKNOWN[self.unknown]
         return _three(value)
 
@@ -274,7 +289,7 @@ class NodeGraph:
         source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
         if socket.type == "RGBA":
             told = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
-            self.tell(site, told, _key(origin), Harm.WRONG)
+            self.tell(site, told, _key(origin), Severity.WRONG)
             return _UNKNOWN[self.unknown]
         value = _constant(socket)
         told = f"{value:g}" if isinstance(value, float) else ", ".join(f"{x:g}" for x in value)

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Transfer
-from ..harm import Harm
-from ..of_scenes import identity
+from ..by_scene import identity
+from ..severity import Severity
 from . import main_thread
 from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
 
@@ -32,7 +32,7 @@ class Images:
         self._ranges = {}
 
     def numbers(self, image, user, tell):
-        """(first, count) of a Blender image, more for tiles; None where there is none. tell takes text, key and harm."""
+        """(first, count) of a Blender image, more for tiles; None where there is none. tell takes text, key and severity."""
         path = _frame_path(image, user, tell)
         key = (identity(image), image.colorspace_settings.name, image.alpha_mode, path)
         if key not in self._ranges:
@@ -42,7 +42,10 @@ class Images:
                 self.list += read(image, path, tell)
             self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
         if self._ranges[key] is None:
-            tell(f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used", harm=Harm.WRONG)
+            tell(
+                f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used",
+                severity=Severity.WRONG,
+            )
         return self._ranges[key]
 
     def repeat(self, pictures):
@@ -66,6 +69,9 @@ class NoPictures:
 
     def numbers(self, image, user, tell):
         return 0, 1
+
+    def repeat(self, pictures):
+        return 0
 
 
 def _frame_path(image, user, tell):
@@ -131,7 +137,7 @@ def _read_tile(image, number, tell):
     if not pictures and len(image.tiles) == 1:
         pictures = _read(image, image, tell, _space(image), number)
     if not pictures:
-        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out", harm=Harm.LEFT_OUT)
+        tell(f"tile {number} of image '{image.name}' cannot be read ({path}), it is left out", severity=Severity.LEFT_OUT)
     return pictures
 
 
@@ -162,7 +168,7 @@ def _read(image, source, tell, space, tile=0, is_stored=False):
         # Only now Blender has looked at the file. It gives scripts no pixels of its layers.
         if source.type == "MULTILAYER":
             text = "is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used"
-            tell(f"image '{image.name}' {text}", "feature:multilayer EXR", harm=Harm.WRONG)
+            tell(f"image '{image.name}' {text}", "feature:multilayer EXR", severity=Severity.WRONG)
             return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
         return []
     values = floats(source)

@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import InstanceTable
-from ..harm import Harm
+from ..severity import Severity
+from .apart import read_infos
 from .checks import check_hair
 from .lights import export_light
 from .objects import Objects
@@ -134,6 +135,9 @@ class Instances:
         self.places = Places(entries, self._entry_count, placements, tuple(self._objects.placements), leaks)
         matrices = self.places.matrices(self.depsgraph)
         poll()
+        infos = None
+        if any(self._objects.materials.tell_apart(look.slots) for look in looks):
+            infos = read_infos(self.depsgraph.object_instances, entries, _POLL_EVERY, poll)
         return InstanceTable(
             matrices=matrices,
             kinds=column([look.kind for look in looks]),
@@ -148,6 +152,7 @@ class Instances:
             name_indices=row_of,
             names=self._names,
             slots=slots,
+            infos=infos,
         )
 
     def _narrowed_by(self, instancer):
@@ -178,7 +183,7 @@ class Instances:
                 self.lights.append(light)
         elif thing.type not in _SHOWN_AS_MESH and thing.type not in _SHOWS_NOTHING:
             text = f"object '{thing.name}': type {thing.type} is not supported, it is left out"
-            self.messages.add(text, f"feature:{thing.type.lower()} object", harm=Harm.LEFT_OUT)
+            self.messages.add(text, f"feature:{thing.type.lower()} object", severity=Severity.LEFT_OUT)
 
     def _check_hair(self, thing):
         key = thing.original.as_pointer()

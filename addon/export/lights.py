@@ -8,7 +8,7 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
-from ..harm import Harm
+from ..severity import Severity
 from .checks import check_linking
 from .graph import NodeGraph
 from .images import NoPictures
@@ -24,7 +24,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
     who = f"light '{thing.name}'"
     matrix = np.array(matrix_world, float)
     if not np.isfinite(matrix).all():
-        messages.add(f"{who}: its transform is not finite, it is left out", harm=Harm.LEFT_OUT)
+        messages.add(f"{who}: its transform is not finite, it is left out", severity=Severity.LEFT_OUT)
         return None
     # A portal gives no light: it tells Cycles where to look for the sky's.
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
@@ -39,7 +39,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
     elif kind == LightKind.SPOT:
         size = _stretch(matrix)
     if kind == LightKind.AREA and not size[0] * size[1] > 0.0:
-        messages.add(f"{who}: its area is zero, it is left out", harm=Harm.LEFT_OUT)
+        messages.add(f"{who}: its area is zero, it is left out", severity=Severity.LEFT_OUT)
         return None
     # A picture varies, so that none is read.
     graph = NodeGraph(who, messages, NoPictures(), depsgraph, unknown="white")

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import bpy
 
 from ..bindings import snapshot
-from ..bindings.enums import LobeKind, MaterialFlag
-from ..harm import Harm
+from ..bindings.enums import LobeKind, MaterialFlag, NodeKind, ObjectFact
+from ..severity import Severity
 from .arithmetic import is_constant, triple
 from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph
@@ -24,6 +24,7 @@ _DEFAULT_LOBE = (
 )
 _DEFAULT = snapshot.Material(name="default grey", lobes=(_DEFAULT_LOBE,))
 # Cycles' filter width of the bump that stands for displacement, in pixels; before it was one pixel.
+_APART = (ObjectFact.COLOR, ObjectFact.RANDOM)  # what an OBJECT_INFO node tells that must be read for it
 _BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
 
 
@@ -67,9 +68,17 @@ class Materials:
 
         return self._parts.shader(material, self.messages, read)
 
+    def tell_apart(self, numbers):
+        """Whether one of these materials asks for an object's colour or random number."""
+        return any(_tells_apart(self.list[number]) for number in numbers)
+
     def attributes(self, numbers):
         """Names of the mesh attributes that these materials read: what export_mesh takes as wanted."""
         return frozenset().union(*(self._attributes[number] for number in numbers))
+
+
+def _tells_apart(material):
+    return any(node.kind == NodeKind.OBJECT_INFO and node.option in _APART for node in material.nodes)
 
 
 def _export(material, messages, asker, images, depsgraph):
@@ -77,6 +86,7 @@ def _export(material, messages, asker, images, depsgraph):
     who = f"material '{material.name}'" + ("" if asker is None else f" on object '{asker}'")
     own = material.lancer
     graph = NodeGraph(who, messages, images, depsgraph)
+    graph.material_index = max(0, material.pass_index)
     common = {
         "name": material.name,
         "ambient": messages.color(own.ka, who, "ambient colour"),
@@ -133,13 +143,13 @@ def _from_nodes(material, graph):
     who, messages, tree = graph.owner, graph.messages, material.node_tree
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
-        messages.add(f"{who}: has no Material Output node that Cycles takes, black is used", harm=Harm.WRONG)
+        messages.add(f"{who}: has no Material Output node that Cycles takes, black is used", severity=Severity.WRONG)
         return {"lobes": ()}
     site = Site(output)
     has_surface = graph.is_linked(site, ("Surface",))
     if graph.is_linked(site, ("Volume",)):
         shown = "its surface alone is shown" if has_surface else "nothing of it is shown"
-        messages.add(f"{who}: volumes are not supported, {shown}", "feature:volume", harm=Harm.LEFT_OUT)
+        messages.add(f"{who}: volumes are not supported, {shown}", "feature:volume", severity=Severity.LEFT_OUT)
         if not has_surface:
             return {"lobes": (), "transmittance": (1.0, 1.0, 1.0)}
     values = _displacement(material, graph, site)

@@ -150,34 +150,9 @@ def transformed(graph, vector, rows):
     return graph.emit(NodeKind.TRANSFORM, vector, matrix=flat)
 
 
-def _float_curve(graph, site, output):
-    factor, value = graph.value(site, 0), graph.value(site, 1)
-    if isinstance(value, NodeRef):
-        graph.tell(site, "Float Curve is not supported where its input varies, the value is passed unchanged")
-        return value
-    mapping = site.node.mapping
-    mapping.initialize()
-    curved = float(mapping.evaluate(mapping.curves[0], value))
-    return graph.op(MathOperation.MULTIPLY_ADD, factor, curved - value, value)
-
-
-def _vector_curve(graph, site, output):
-    factor, vector = graph.value(site, 0), graph.value(site, 1)
-    if isinstance(vector, NodeRef):
-        graph.tell(site, "Vector Curves is not supported where its input varies, the vector is passed unchanged")
-        return vector
-    mapping = site.node.mapping
-    mapping.initialize()
-    curved = tuple(float(mapping.evaluate(mapping.curves[i], vector[i])) for i in range(3))
-    change = tuple(b - a for a, b in zip(vector, curved, strict=True))
-    return graph.vector_op(VectorOperation.ADD, vector, graph.vector_op(VectorOperation.SCALE, change, scale=factor))
-
-
 READERS = {
     "CLAMP": _clamp,
     "COMBXYZ": _combine,
-    "CURVE_FLOAT": _float_curve,
-    "CURVE_VEC": _vector_curve,
     "MAP_RANGE": _map_range,
     "MATH": _math,
     "NORMAL": _normal,

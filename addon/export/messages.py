@@ -3,13 +3,13 @@
 import math
 from typing import NamedTuple
 
-from ..harm import Harm
+from ..severity import Severity
 
 
 class Message(NamedTuple):
     text: str
     key: str
-    harm: Harm
+    severity: Severity
     count: int = 1
 
     @property
@@ -17,38 +17,42 @@ class Message(NamedTuple):
         return self.text if self.count == 1 else f"{self.text} ({self.count} times)"
 
 
-# What the library's own messages say of their harm; others are of something that is shown otherwise.
-_OF_LIBRARY = (("without area were left out", Harm.HINT), ("left out", Harm.LEFT_OUT), ("gives no light", Harm.LEFT_OUT))
+# What the library's own messages say of their severity; others are of something that is shown otherwise.
+_OF_LIBRARY = (
+    ("without area were left out", Severity.HINT),
+    ("left out", Severity.LEFT_OUT),
+    ("gives no light", Severity.LEFT_OUT),
+)
 
 
 class Messages:
     """Sentences, what hurts most first, else in order of their first arrival; a sentence met again is only counted."""
 
-    def __init__(self, lines=(), harm=Harm.DIFFERENT):
+    def __init__(self, lines=(), severity=Severity.DIFFERENT):
         self._messages = {}
         for text in lines:
-            self.add(text, harm=harm)
+            self.add(text, severity=severity)
 
     @classmethod
     def of_library(cls, lines):
         """Of the lines that a Session gives."""
         messages = cls()
         for text in lines:
-            messages.add(text, harm=next((harm for word, harm in _OF_LIBRARY if word in text), Harm.DIFFERENT))
+            messages.add(text, severity=next((severity for word, severity in _OF_LIBRARY if word in text), Severity.DIFFERENT))
         return messages
 
-    def add(self, text, key="", harm=Harm.DIFFERENT):
+    def add(self, text, key="", severity=Severity.DIFFERENT):
         """key: what is missing, for programs: "node:" and the node's label, or "feature:" and its name.
 
         Whoever asks for it gets another picture than Cycles'. What merely warns has no key.
         """
-        self._count(Message(text, key, harm))
+        self._count(Message(text, key, severity))
 
     def _count(self, message):
         """Whether it is new here."""
         known = self._messages.get(message.text)
         if known is not None:
-            message = known._replace(count=known.count + message.count, harm=max(known.harm, message.harm))
+            message = known._replace(count=known.count + message.count, severity=max(known.severity, message.severity))
         self._messages[message.text] = message
         return known is None
 
@@ -80,7 +84,7 @@ class Messages:
 
     def told(self):
         """Each Message, what hurts most first."""
-        return sorted(self._messages.values(), key=lambda message: -message.harm)
+        return sorted(self._messages.values(), key=lambda message: -message.severity)
 
     def lines(self):
         return [message.line for message in self.told()]

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
-from ..harm import Harm
+from ..severity import Severity
 from .arithmetic import is_constant
 from .attributes import POLYGONS, named_attributes
 from .checks import check_object
@@ -169,7 +169,7 @@ class Objects:
                 self.placements.append(placement)
         if number < 0:
             self.messages.add(
-                f"object '{name}': has no vertices to place its exact shape by, it is left out", harm=Harm.LEFT_OUT
+                f"object '{name}': has no vertices to place its exact shape by, it is left out", severity=Severity.LEFT_OUT
             )
         return number
 
@@ -186,7 +186,7 @@ class Objects:
             return
         for number in sorted({min(slot, len(materials) - 1) for slot in used}):
             if materials[number] is None:
-                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used", harm=Harm.HINT)
+                self.messages.add(f"object '{name}': material slot {number + 1} is empty, grey is used", severity=Severity.HINT)
 
 
 def _has_special_collections(view_layer):

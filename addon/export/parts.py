@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ..of_scenes import identity
+from ..by_scene import identity
 from .images import Images
 from .messages import Messages
 

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MathOperation, Rules
 from ..bindings.shading import NodeRef
-from ..harm import Harm
+from ..severity import Severity
 from .arithmetic import is_constant, triple
 from .closures import CLOSURES, read_unknown
 from .coordinates import default_tangent
@@ -192,5 +192,5 @@ def emission_of(graph: NodeGraph, tree, kind):
     surface.read(Site(output), output.inputs["Surface"])
     if surface.lobes or not is_constant(surface.transmittance, 0.0) or not is_constant(surface.holdout, 0.0):
         text = "only Background and Emission shine, other shaders are left out"
-        graph.messages.add(f"{graph.owner}: {text}", "feature:surfaces of worlds and lights", harm=Harm.LEFT_OUT)
+        graph.messages.add(f"{graph.owner}: {text}", "feature:surfaces of worlds and lights", severity=Severity.LEFT_OUT)
     return surface.emission if isinstance(surface.emission, NodeRef) else triple(surface.emission)

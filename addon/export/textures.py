@@ -10,7 +10,7 @@ from ..bindings.enums import (
     Projection,
     VectorOperation,
 )
-from ..harm import Harm
+from ..severity import Severity
 from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
 from .maths import transformed
@@ -41,7 +41,7 @@ def _image_texture(graph, site, output):
         flags |= _STRAIGHT_COLOR
     value = graph.emit(
         NodeKind.IMAGE,
-        _legacy_mapping(graph, site, vector),
+        legacy_mapping(graph, site, vector),
         node.projection_blend if node.projection == "BOX" else 0.0,
         option=Projection[node.projection],
         flags=flags,
@@ -61,7 +61,7 @@ def _environment_texture(graph, site, output):
         vector = coordinate(graph, Coordinate.POSITION)
     return graph.emit(
         NodeKind.ENVIRONMENT,
-        _legacy_mapping(graph, site, vector),
+        legacy_mapping(graph, site, vector),
         option=Environment[node.projection],
         flags=_INTERPOLATION[node.interpolation] << 4,
         image=first,
@@ -72,16 +72,16 @@ def _environment_texture(graph, site, output):
 def _picture(graph, site):
     node = site.node
     if node.image is None or graph.images is None:
-        graph.tell(site, "has no image, magenta is used", "", harm=Harm.WRONG)
+        graph.tell(site, "has no image, magenta is used", "", severity=Severity.WRONG)
         return None
-    return graph.images.numbers(node.image, node.image_user, lambda text, key="", **harm: graph.tell(site, text, key, **harm))
+    return graph.images.numbers(node.image, node.image_user, lambda text, key="", **more: graph.tell(site, text, key, **more))
 
 
 def _has_color_under_alpha(image):
     return not image.colorspace_settings.is_data and image.alpha_mode not in ("CHANNEL_PACKED", "NONE")
 
 
-def _legacy_mapping(graph, site, vector):
+def legacy_mapping(graph, site, vector):
     """The mapping that nodes of old files carry within themselves: axes chosen first, then moved."""
     own = site.node.texture_mapping
     kind, location, scale = MappingType[own.vector_type], tuple(own.translation), tuple(own.scale)

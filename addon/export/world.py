@@ -7,7 +7,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind
-from ..harm import Harm
+from ..severity import Severity
 from .graph import NodeGraph
 from .sockets import output_node
 from .surface import emission_of
@@ -60,7 +60,7 @@ def _nodes(world, graph, who, messages):
         return 0.0, 0.0, 0.0
     if output.inputs["Volume"].is_linked:
         text = f"{who}: volumes are not supported, its background alone is shown"
-        messages.add(text, "feature:volume of the world", harm=Harm.LEFT_OUT)
+        messages.add(text, "feature:volume of the world", severity=Severity.LEFT_OUT)
     return emission_of(graph, world.node_tree, "OUTPUT_WORLD")
 
 
@@ -84,9 +84,9 @@ def _side(image, name, images, who, messages):
     found = None
     if image is not None:
         found = images.numbers(
-            image, None, lambda text, key="", **harm: messages.add(f"{who}, side {name}: {text}", key, **harm)
+            image, None, lambda text, key="", **more: messages.add(f"{who}, side {name}: {text}", key, **more)
         )
     if found is not None:
         return found[0], images.list[found[0]]
-    messages.add(f"{who}: side {name} of its cube has no picture, it is black", harm=Harm.WRONG)
+    messages.add(f"{who}: side {name} of its cube has no picture, it is black", severity=Severity.WRONG)
     return -1, snapshot.Image(name="black", texels=np.zeros((1, 1, 3), np.uint8), alpha=AlphaMode.NONE)

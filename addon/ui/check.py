@@ -3,12 +3,12 @@
 import bpy
 
 from .. import check_scene
-from ..checks.finding import Harm, shortened, told
+from ..checks.finding import Severity, shortened, told
 from .render import LancerRenderPanel, draw_measuring
 from .sentences import sentence
 
 _CHECK = "lancer.check_scene"
-_ICONS = {Harm.WRONG: "ERROR", Harm.DIFFERENT: "ERROR", Harm.WASTE: "TIME", Harm.HINT: "INFO"}
+_ICONS = {Severity.WRONG: "ERROR", Severity.DIFFERENT: "ERROR", Severity.WASTE: "TIME", Severity.HINT: "INFO"}
 
 
 class LANCER_RENDER_PT_check(LancerRenderPanel, bpy.types.Panel):
@@ -30,7 +30,7 @@ class LANCER_RENDER_PT_check(LancerRenderPanel, bpy.types.Panel):
             column.label(text="Nothing found that would hurt", icon="CHECKMARK")
         for finding, left in shortened(findings):
             name = finding.object or finding.light
-            row = sentence(column, context, told(finding, left), _ICONS[finding.harm], buttons=1 if name else 0)
+            row = sentence(column, context, told(finding, left), _ICONS[finding.severity], buttons=1 if name else 0)
             if name:
                 row.operator("lancer.select_object", text="", icon="RESTRICT_SELECT_OFF").name = name
         for line in messages:

@@ -2,8 +2,9 @@
 
 import bpy
 
-from .. import engine, stamp
-from ..harm import Harm
+from .. import engine
+from ..measure import render_report
+from ..severity import Severity
 from ..viewport import viewport
 from .render import LancerRenderPanel
 from .sentences import sentence
@@ -18,7 +19,7 @@ class LANCER_RENDER_PT_messages(LancerRenderPanel, bpy.types.Panel):
         statistics = engine.last_statistics.get(context.scene.name)
         if statistics is not None:
             # The error, then what it does not count.
-            for line in stamp.of_layers(statistics):
+            for line in render_report.of_layers(statistics):
                 for part in line.split("; "):
                     sentence(column, context, part[0].upper() + part[1:])
             rate = f"{statistics['rays_per_second'] / 1e6:.2f} million rays per second"
@@ -47,10 +48,10 @@ class LANCER_RENDER_PT_viewport_messages(LancerRenderPanel, bpy.types.Panel):
 
 
 def _draw_messages(column, context, messages, none):
-    if all(message.harm == Harm.HINT for message in messages.told()):
+    if all(message.severity == Severity.HINT for message in messages.told()):
         sentence(column, context, none, "CHECKMARK")
     for message in messages.told():
-        sentence(column, context, message.line, "INFO" if message.harm == Harm.HINT else "ERROR")
+        sentence(column, context, message.line, "INFO" if message.severity == Severity.HINT else "ERROR")
 
 
 CLASSES = (LANCER_RENDER_PT_messages, LANCER_RENDER_PT_viewport_messages)

@@ -3,7 +3,8 @@
 import bpy
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
-from .. import denoise, measuring, presets, quality
+from .. import measure_quality, measuring, presets
+from ..denoise import view_layer as denoise
 from .panel import LancerPanel, setting, uses_classic
 from .sentences import sentence
 
@@ -47,11 +48,11 @@ def _draw_forecast(column, context):
     if draw_measuring(column, scene, _MEASURE):
         return
     column.operator(_MEASURE, icon="TIME")
-    if scene.name not in quality.measured:
+    if scene.name not in measure_quality.measured:
         return
-    if quality.is_old(scene):
+    if measure_quality.is_old(scene):
         sentence(column, context, "Measured before the last changes", "ERROR")
-    for line in quality.lines(scene):
+    for line in measure_quality.lines(scene):
         # Panels are narrow.
         for part in line.split("; "):
             sentence(column, context, part)

@@ -2,8 +2,8 @@
 
 import bpy
 
-from .. import engine, features
-from ..bindings.uses import kernel_in_words
+from .. import engine, measure_features
+from ..measure.scene_features import kernel_in_words
 from .render import LancerRenderPanel, draw_measuring
 from .sentences import sentence
 
@@ -49,7 +49,7 @@ class LANCER_RENDER_PT_uses(LancerRenderPanel, bpy.types.Panel):
         costs = engine.last_costs.get(name)
         if costs is None:
             return
-        if features.is_old(context.scene):
+        if measure_features.is_old(context.scene):
             sentence(column, context, "Measured before the last changes", "ERROR")
         if not costs.hints:
             which = "None of the features that were measured" if costs.skipped else "No feature"

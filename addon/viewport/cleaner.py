@@ -2,9 +2,9 @@
 
 import threading
 
-from ..bindings import denoiser
 from ..bindings.enums import Pass
 from ..bindings.session import Cancelled
+from ..denoise import denoiser
 
 # Passes of the session that it needs beside Combined.
 GUIDES = (Pass.ALBEDO, Pass.DENOISING_NORMAL)

@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import denoise, priority
+from .. import priority
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
-from ..bindings.schedule import Schedule
 from ..bindings.session import PictureError, Scene, Session
 from ..bindings.snapshot import SceneSnapshot, Settings
+from ..denoise import view_layer as denoise
 from ..export.view import View
-from ..pace import Pace
+from ..measure.schedule import Schedule, TimeShare
 from .cleaner import GUIDES, Cleaner
 from .sizes import PixelSizes
 
@@ -180,7 +180,7 @@ class Painter:
         with priority.lowered(lambda: Session(self._scene, camera, settings)) as session:
             schedule = Schedule(session)
             schedule.longest = _SHOW_EVERY
-            pace = Pace(_DENOISE_SHARE, _DENOISE_EVERY) if denoising else Pace(_SHOW_SHARE, _SHOW_EVERY)
+            shown = TimeShare(_DENOISE_SHARE, _DENOISE_EVERY) if denoising else TimeShare(_SHOW_SHARE, _SHOW_EVERY)
             looked = 1
             while schedule.start():
                 while not (progress := schedule.wait(0.0)).finished:
@@ -192,12 +192,12 @@ class Painter:
                 if schedule.samples >= 2 * looked or samples > 1 and schedule.over:
                     looked = schedule.samples
                     schedule.look()
-                if pace.due or schedule.over:
-                    with pace.spending():
+                if shown.due or schedule.over:
+                    with shown.spending():
                         clean = (yield from self._clean(session)) if denoising else None
                         image = session.read() if clean is None else clean
                     self.picture = Picture(image, wanted, size, schedule.samples, schedule.error, clean is not None)
-                    schedule.longest = max(_SHOW_EVERY, pace.interval)
+                    schedule.longest = max(_SHOW_EVERY, shown.interval)
                     self._brief = False
                 while self.waits:
                     yield

@@ -6,23 +6,24 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from .. import denoise, redraw
+from .. import redraw
 from ..bindings import snapshot
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
+from ..by_scene import ByScene
+from ..denoise import view_layer as denoise
 from ..export.messages import Messages
 from ..export.parts import Parts
 from ..export.scene import ExportOptions, export_scene
 from ..export.settings import export_settings
 from ..export.view import export_view
-from ..harm import Harm
-from ..of_scenes import OfScenes
+from ..severity import Severity
 from .canvas import Canvas
 from .painter import Painter, Wanted
 from .sizes import coarsest
 
 # What the newest export for a view of each scene could not show as it is: Messages.
-last_messages = OfScenes()
+last_messages = ByScene()
 
 _TICK = 0.005  # seconds between two steps
 _MANY = 1 << 24
@@ -105,7 +106,7 @@ class Viewport:
         known = {message.text for message in self._messages.told()}
         new = [message for message in messages.told() if message.text not in known]
         for message in new:
-            self._messages.add(message.text, message.key, message.harm)
+            self._messages.add(message.text, message.key, message.severity)
         if new:
             redraw.properties()
 
@@ -161,7 +162,7 @@ class Viewport:
             parts.append(f"Error {picture.error.error:.1%}")
         if picture.denoised:
             parts.append("denoised")
-        losses = sum(message.harm > Harm.HINT for message in self._messages.told())
+        losses = sum(message.severity > Severity.HINT for message in self._messages.told())
         if losses:
             parts.append(f"{losses} message{'s' if losses > 1 else ''} in the render properties")
         return " | ".join(parts)

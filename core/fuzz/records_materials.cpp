@@ -44,7 +44,10 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
   else if (node.kind == LANCER_NODE_MIX)
     node.option %= LANCER_MIX_COUNT + 1;
   else
-    node.option %= node.kind == LANCER_NODE_NORMAL_MAP ? 6 : node.kind == LANCER_NODE_SEPARATE ? 3 : 4;
+    node.option %= node.kind == LANCER_NODE_NORMAL_MAP || node.kind == LANCER_NODE_NOISE || node.kind == LANCER_NODE_VORONOI ? 6
+                   : node.kind == LANCER_NODE_GRADIENT                                                                       ? 8
+                   : node.kind == LANCER_NODE_SEPARATE                                                                       ? 3
+                                                       : 4;
   const bool picture = node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT;
   if (picture) {
     // One after the other: of operands the compiler chooses which comes first.
@@ -95,7 +98,7 @@ uint32_t Records::nodes(const Filled &filled, const lancer_node *&out) {
 lancer_principled Records::principled() {
   lancer_principled p = {};
   p.rules = bytes_.choice(3);
-  p.distribution = bytes_.rarely(100) ? uint32_t(LANCER_MULTI_GGX) : bytes_.choice(4);
+  p.distribution = bytes_.rarely(100) ? uint32_t(LANCER_DISTRIBUTION_MULTI_GGX) : bytes_.choice(4);
   p.option = bytes_.choice(2);
   p.base_color = parameter(0.8f);
   p.metallic = parameter(0.0f);

@@ -87,10 +87,10 @@ LANCER_API uint32_t lancer_sizeof(uint32_t which);
 
 /* ---- geometry --------------------------------------------------------------------------------------------------- */
 
-enum { LANCER_NORMALS_NONE = 0, LANCER_NORMALS_VERTEX = 1, LANCER_NORMALS_CORNER = 2 };
+enum lancer_normal_domain { LANCER_NORMALS_NONE = 0, LANCER_NORMALS_VERTEX = 1, LANCER_NORMALS_CORNER = 2 };
 
 /* What an attribute has one value for. */
-enum { LANCER_DOMAIN_VERTEX = 0, LANCER_DOMAIN_FACE = 1, LANCER_DOMAIN_CORNER = 2 };
+enum lancer_domain { LANCER_DOMAIN_VERTEX = 0, LANCER_DOMAIN_FACE = 1, LANCER_DOMAIN_CORNER = 2 };
 
 /* A named attribute of a mesh, for nodes: further UV maps and colours, tangents, coordinates. Interpolated linearly. */
 typedef struct lancer_attribute {
@@ -123,7 +123,7 @@ typedef struct lancer_mesh {
  *   PLANE     z = 0, without end; the normal is +z
  *   CYLINDER  x^2 + y^2 = 1 for -1 <= z <= 1, closed by both disks
  *   CONE      apex (0, 0, 1), base disk of radius 1 at z = -1, closed by the disk */
-enum { LANCER_MESH = 0, LANCER_SPHERE = 1, LANCER_PLANE = 2, LANCER_CYLINDER = 3, LANCER_CONE = 4 };
+enum lancer_instance_kind { LANCER_MESH = 0, LANCER_SPHERE = 1, LANCER_PLANE = 2, LANCER_CYLINDER = 3, LANCER_CONE = 4 };
 
 /* How normals are used, and in CLASSIC where light is computed.
  *   AS_MESH  the mesh's normals; without any, the faces'
@@ -133,10 +133,15 @@ enum { LANCER_MESH = 0, LANCER_SPHERE = 1, LANCER_PLANE = 2, LANCER_CYLINDER = 3
  *            position and the other passes of places stay those of the pixel
  *   GOURAUD  CLASSIC computes illumination at the vertices and interpolates it; PATH takes it as PHONG
  *   PHONG    normals interpolated, by area where the mesh has none */
-enum { LANCER_SHADING_AS_MESH = 0, LANCER_SHADING_FLAT = 1, LANCER_SHADING_GOURAUD = 2, LANCER_SHADING_PHONG = 3 };
+enum lancer_shading {
+  LANCER_SHADING_AS_MESH = 0,
+  LANCER_SHADING_FLAT = 1,
+  LANCER_SHADING_GOURAUD = 2,
+  LANCER_SHADING_PHONG = 3
+};
 
 /* Rays by what sent them. A thing hidden from some of them is not there for those rays. */
-enum {
+enum lancer_ray {
   LANCER_RAY_CAMERA = 1,
   LANCER_RAY_DIFFUSE = 2,
   LANCER_RAY_GLOSSY = 4,
@@ -145,7 +150,7 @@ enum {
   LANCER_RAY_VOLUME = 32
 };
 
-enum { LANCER_INSTANCE_HOLDOUT = 1 /* a hole in the picture: alpha 0 where it is seen */ };
+enum lancer_instance_flag { LANCER_INSTANCE_HOLDOUT = 1 /* a hole in the picture: alpha 0 where it is seen */ };
 
 /* One placed object. */
 typedef struct lancer_instance {
@@ -165,12 +170,17 @@ typedef struct lancer_instance {
 
 /* ---- images ----------------------------------------------------------------------------------------------------- */
 
-enum { LANCER_TEXEL_U8 = 0, LANCER_TEXEL_U16 = 1, LANCER_TEXEL_FLOAT = 2 };
+enum lancer_texel_kind { LANCER_TEXEL_U8 = 0, LANCER_TEXEL_U16 = 1, LANCER_TEXEL_FLOAT = 2 };
 /* How a texel becomes scene-linear, after interpolation: as it is, or decoded by the sRGB curve; then multiplied by matrix. */
-enum { LANCER_TRANSFER_LINEAR = 0, LANCER_TRANSFER_SRGB = 1 };
+enum lancer_transfer { LANCER_TRANSFER_LINEAR = 0, LANCER_TRANSFER_SRGB = 1 };
 /* What the fourth channel does. ASSOCIATED: colour is premultiplied in memory. STRAIGHT: it is not, and is multiplied on the
  * way. CHANNEL_PACKED: colour and alpha are independent. NONE: alpha is 1. */
-enum { LANCER_ALPHA_ASSOCIATED = 0, LANCER_ALPHA_STRAIGHT = 1, LANCER_ALPHA_CHANNEL_PACKED = 2, LANCER_ALPHA_NONE = 3 };
+enum lancer_alpha_mode {
+  LANCER_ALPHA_ASSOCIATED = 0,
+  LANCER_ALPHA_STRAIGHT = 1,
+  LANCER_ALPHA_CHANNEL_PACKED = 2,
+  LANCER_ALPHA_NONE = 3
+};
 
 typedef struct lancer_image {
   const char *name;
@@ -197,7 +207,7 @@ typedef struct lancer_parameter {
 /* Nodes compute values where a ray meets a surface. Each has up to five inputs, refers only to nodes before it, and gives four
  * numbers: x, y, z or RGB, and alpha (1 where it has none). A scalar is in all of x, y, z. Vectors are in the world unless said
  * otherwise; lengths in scene units. */
-enum {
+enum lancer_node_kind {
   /* option LANCER_COORDINATE_*; matrix: world to object for OBJECT with flag 1; name: the UV map of UV ("" = the mesh's own) */
   LANCER_NODE_COORDINATE = 0,
   LANCER_NODE_ATTRIBUTE = 1, /* name: of the attribute; "" = the mesh's own colours */
@@ -233,9 +243,93 @@ enum {
                                     scale is measured. Gives an offset in object space */
   LANCER_NODE_GAMMA = 20,        /* inputs: colour, exponent */
   LANCER_NODE_INVERT = 21,       /* inputs: factor, colour */
-  LANCER_NODE_COUNT = 22
+  /* inputs: vector; w, scale, distortion; detail, roughness, lacunarity; offset, gain. option LANCER_NOISE_*; flags: dimensions
+   * less 1 in bits 0-1, and LANCER_NOISE_* bits */
+  LANCER_NODE_NOISE = 22,
+  /* inputs: vector; w, scale, randomness; detail, roughness, lacunarity; smoothness, exponent. option LANCER_VORONOI_*; flags:
+   * dimensions less 1 in bits 0-1, LANCER_VORONOI_EUCLIDEAN ... in bits 2-3, and LANCER_VORONOI_* bits */
+  LANCER_NODE_VORONOI = 23,
+  LANCER_NODE_GRADIENT = 24, /* inputs: vector; option LANCER_GRADIENT_* */
+  /* inputs: factor, value. image: one row of at least two floating point texels, as it is in memory: values at equal distances
+   * from matrix[0] to matrix[1]; with one channel a curve of the value's x, with more one of each; option 1: all of x, factor
+   * left out. flag 1: goes on beyond its ends along its first and last line, 2: no lines between values, the one before */
+  LANCER_NODE_CURVES = 25,
+  LANCER_NODE_OBJECT_INFO = 26, /* of the object that is met; option LANCER_OBJECT_* */
+  LANCER_NODE_LIGHT_PATH = 27,  /* of the ray that has met it, or the world; option LANCER_PATH_* */
+  LANCER_NODE_COUNT = 28
 };
-enum {
+enum lancer_object_fact {
+  LANCER_OBJECT_LOCATION = 0, /* of its frame's origin */
+  LANCER_OBJECT_COLOR,        /* and alpha */
+  LANCER_OBJECT_INDEX,
+  LANCER_OBJECT_RANDOM,
+  LANCER_OBJECT_COUNT
+};
+/* 1 or 0; a length in scene units; or how many scatterings, of that kind, or surfaces passed straight through came before. */
+enum lancer_path_fact {
+  LANCER_PATH_IS_CAMERA = 0,
+  LANCER_PATH_IS_SHADOW,
+  LANCER_PATH_IS_DIFFUSE,
+  LANCER_PATH_IS_GLOSSY,
+  LANCER_PATH_IS_SINGULAR,
+  LANCER_PATH_IS_REFLECTION,
+  LANCER_PATH_IS_TRANSMISSION,
+  LANCER_PATH_IS_VOLUME,
+  LANCER_PATH_LENGTH,
+  LANCER_PATH_DEPTH,
+  LANCER_PATH_DIFFUSE_DEPTH,
+  LANCER_PATH_GLOSSY_DEPTH,
+  LANCER_PATH_TRANSPARENT_DEPTH,
+  LANCER_PATH_TRANSMISSION_DEPTH,
+  LANCER_PATH_PORTAL_DEPTH,
+  LANCER_PATH_COUNT
+};
+enum lancer_noise_kind {
+  LANCER_NOISE_FBM = 0,
+  LANCER_NOISE_MULTIFRACTAL,
+  LANCER_NOISE_HYBRID_MULTIFRACTAL,
+  LANCER_NOISE_RIDGED_MULTIFRACTAL,
+  LANCER_NOISE_HETERO_TERRAIN,
+  LANCER_NOISE_COUNT
+};
+enum lancer_noise_flag {
+  LANCER_NOISE_NORMALIZED = 4, /* FBM: 0 ... 1 */
+  LANCER_NOISE_REPEATS = 8,    /* every 100 000 along each axis, as from Blender 4.2 on */
+  LANCER_NOISE_COUNTED = 16,   /* detail is the number of octaves, as of the Musgrave Texture; else one less */
+  LANCER_NOISE_COLOR = 32      /* green and blue are noises of their own */
+};
+enum lancer_voronoi_feature {
+  LANCER_VORONOI_F1 = 0,
+  LANCER_VORONOI_F2,
+  LANCER_VORONOI_SMOOTH_F1,
+  LANCER_VORONOI_DISTANCE_TO_EDGE,
+  LANCER_VORONOI_N_SPHERE_RADIUS,
+  LANCER_VORONOI_COUNT
+};
+enum lancer_voronoi_metric {
+  LANCER_VORONOI_EUCLIDEAN = 0,
+  LANCER_VORONOI_MANHATTAN,
+  LANCER_VORONOI_CHEBYCHEV,
+  LANCER_VORONOI_MINKOWSKI
+};
+enum lancer_voronoi_flag {
+  LANCER_VORONOI_NORMALIZED = 16,
+  LANCER_VORONOI_COLOR = 32, /* x, y, z are the colour of the cell; the distance is the fourth number, and all without this */
+  LANCER_VORONOI_POSITION = 64,  /* x, y, z are the position of the point, its w the fourth */
+  LANCER_VORONOI_INTEGERS = 128, /* cells are hashed as from Blender 5.0 on */
+  LANCER_VORONOI_BOUNDED = 256   /* nothing is further than 8, as before Blender 4.0 */
+};
+enum lancer_gradient_kind {
+  LANCER_GRADIENT_LINEAR = 0,
+  LANCER_GRADIENT_QUADRATIC,
+  LANCER_GRADIENT_EASING,
+  LANCER_GRADIENT_DIAGONAL,
+  LANCER_GRADIENT_SPHERICAL,
+  LANCER_GRADIENT_QUADRATIC_SPHERE,
+  LANCER_GRADIENT_RADIAL,
+  LANCER_GRADIENT_COUNT
+};
+enum lancer_coordinate {
   LANCER_COORDINATE_GENERATED = 0, /* 0 ... 1 over the mesh's bounds; attribute "generated" where the mesh has it */
   LANCER_COORDINATE_NORMAL = 1,    /* object space */
   LANCER_COORDINATE_UV = 2,
@@ -251,13 +345,22 @@ enum {
   LANCER_COORDINATE_PARAMETRIC = 12,    /* barycentric weights of vertex 0 and 1, Blender's */
   LANCER_COORDINATE_COUNT = 13
 };
-enum { LANCER_PROJECT_FLAT = 0, LANCER_PROJECT_BOX = 1, LANCER_PROJECT_SPHERE = 2, LANCER_PROJECT_TUBE = 3 };
-enum { LANCER_EXTEND_REPEAT = 0, LANCER_EXTEND_EXTEND = 1, LANCER_EXTEND_CLIP = 2, LANCER_EXTEND_MIRROR = 3 };
-enum { LANCER_INTERPOLATE_LINEAR = 0, LANCER_INTERPOLATE_CLOSEST = 1, LANCER_INTERPOLATE_CUBIC = 2 };
-enum { LANCER_ENVIRONMENT_EQUIRECTANGULAR = 0, LANCER_ENVIRONMENT_MIRROR_BALL = 1, LANCER_ENVIRONMENT_CUBE = 2 };
-enum { LANCER_MAPPING_POINT = 0, LANCER_MAPPING_TEXTURE = 1, LANCER_MAPPING_VECTOR = 2, LANCER_MAPPING_NORMAL = 3 };
+enum lancer_projection { LANCER_PROJECT_FLAT = 0, LANCER_PROJECT_BOX = 1, LANCER_PROJECT_SPHERE = 2, LANCER_PROJECT_TUBE = 3 };
+enum lancer_extension { LANCER_EXTEND_REPEAT = 0, LANCER_EXTEND_EXTEND = 1, LANCER_EXTEND_CLIP = 2, LANCER_EXTEND_MIRROR = 3 };
+enum lancer_interpolation { LANCER_INTERPOLATE_LINEAR = 0, LANCER_INTERPOLATE_CLOSEST = 1, LANCER_INTERPOLATE_CUBIC = 2 };
+enum lancer_environment {
+  LANCER_ENVIRONMENT_EQUIRECTANGULAR = 0,
+  LANCER_ENVIRONMENT_MIRROR_BALL = 1,
+  LANCER_ENVIRONMENT_CUBE = 2
+};
+enum lancer_mapping_type {
+  LANCER_MAPPING_POINT = 0,
+  LANCER_MAPPING_TEXTURE = 1,
+  LANCER_MAPPING_VECTOR = 2,
+  LANCER_MAPPING_NORMAL = 3
+};
 /* As Blender's nodes of these names. */
-enum {
+enum lancer_math_operation {
   LANCER_MATH_ADD = 0,
   LANCER_MATH_SUBTRACT,
   LANCER_MATH_MULTIPLY,
@@ -301,7 +404,7 @@ enum {
   LANCER_MATH_DEGREES,
   LANCER_MATH_COUNT
 };
-enum {
+enum lancer_vector_operation {
   LANCER_VECTOR_ADD = 0,
   LANCER_VECTOR_SUBTRACT,
   LANCER_VECTOR_MULTIPLY,
@@ -328,7 +431,7 @@ enum {
   LANCER_VECTOR_TANGENT,
   LANCER_VECTOR_COUNT
 };
-enum {
+enum lancer_mix_mode {
   LANCER_MIX_MIX = 0,
   LANCER_MIX_DARKEN,
   LANCER_MIX_MULTIPLY,
@@ -387,7 +490,7 @@ typedef struct lancer_node {
  *   TRANSLUCENT  color/pi on the other side
  *   PRINCIPLED   as its record says */
 /* clang-format on */
-enum {
+enum lancer_lobe_kind {
   LANCER_LAMBERT = 0,
   LANCER_BECKMANN = 1,
   LANCER_MIRROR = 2,
@@ -405,15 +508,20 @@ enum {
   LANCER_MINNAERT = 14,
   LANCER_LOBE_KIND_COUNT = 15
 };
-enum { LANCER_GGX = 0, LANCER_BECKMANN_DISTRIBUTION = 1, LANCER_ASHIKHMIN_SHIRLEY = 2, LANCER_MULTI_GGX = 3 };
+enum lancer_distribution {
+  LANCER_DISTRIBUTION_GGX = 0,
+  LANCER_DISTRIBUTION_BECKMANN = 1,
+  LANCER_DISTRIBUTION_ASHIKHMIN_SHIRLEY = 2,
+  LANCER_DISTRIBUTION_MULTI_GGX = 3
+};
 /* Whose definitions hold for lobes of nodes: those of Blender 3.x, of 4.0 to 4.4, of 4.5 and newer. */
-enum { LANCER_RULES_3 = 0, LANCER_RULES_4 = 1, LANCER_RULES_45 = 2 };
+enum lancer_rules { LANCER_RULES_BLENDER_3 = 0, LANCER_RULES_BLENDER_4 = 1, LANCER_RULES_BLENDER_45 = 2 };
 
 /* The Principled BSDF's inputs under their newest names. Before 4.0 some mean another thing: specular is the level over 0.08,
  * specular_tint[0] a share of the base colour, sheen_tint[0] and coat likewise; transmission_roughness exists there alone. */
 typedef struct lancer_principled {
   uint32_t rules;        /* LANCER_RULES_* */
-  uint32_t distribution; /* LANCER_GGX or LANCER_MULTI_GGX */
+  uint32_t distribution; /* LANCER_DISTRIBUTION_GGX or LANCER_DISTRIBUTION_MULTI_GGX */
   uint32_t option;       /* as of DIFFUSE, for diffuse_roughness */
   uint32_t reserved;
   lancer_parameter base_color, metallic, roughness, ior;
@@ -428,7 +536,7 @@ typedef struct lancer_principled {
 
 typedef struct lancer_lobe {
   uint32_t kind;                         /* LANCER_LAMBERT ... */
-  uint32_t distribution;                 /* LANCER_GGX ...; GLOSSY, GLASS, REFRACTION, CONDUCTOR, SHEEN */
+  uint32_t distribution;                 /* LANCER_DISTRIBUTION_GGX ...; GLOSSY, GLASS, REFRACTION, CONDUCTOR, SHEEN */
   uint32_t option;                       /* as the kind says */
   uint32_t rules;                        /* LANCER_RULES_* */
   lancer_parameter weight;               /* RGB, times everything: the shares of Mix Shaders above it */
@@ -443,7 +551,7 @@ typedef struct lancer_lobe {
   const lancer_principled *principled;   /* PRINCIPLED */
 } lancer_lobe;
 
-enum {
+enum lancer_material_flag {
   LANCER_MATERIAL_NO_BUMP_CORRECTION = 1, /* bumps darken as they are, without a smooth end of the lit side */
   LANCER_MATERIAL_NOT_A_LIGHT = 2,        /* it shines, but is only found by chance, never sampled */
   LANCER_MATERIAL_OPAQUE_SHADOWS = 4,     /* transmittance lets no shadow ray pass */
@@ -470,12 +578,12 @@ typedef struct lancer_material {
 
 /* ---- lights ----------------------------------------------------------------------------------------------------- */
 
-enum { LANCER_POINT = 0, LANCER_SPOT = 1, LANCER_SUN = 2, LANCER_AREA = 3 };
-enum { LANCER_RECTANGLE = 0, LANCER_ELLIPSE = 1 };
+enum lancer_light_kind { LANCER_POINT = 0, LANCER_SPOT = 1, LANCER_SUN = 2, LANCER_AREA = 3 };
+enum lancer_area_shape { LANCER_RECTANGLE = 0, LANCER_ELLIPSE = 1 };
 /* CLASSIC's attenuation over the distance d with the light's falloff_radius r:
  * PHYSICAL 1/d^2 | CONSTANT 1 | LINEAR max(0, 1-d/r) | QUADRATIC max(0, 1-d^2/r^2) | SMOOTH max(0, 1-d^2/r^2)^2 | GAUSSIAN
  * exp(-d^2/r^2) */
-enum {
+enum lancer_falloff {
   LANCER_FALLOFF_PHYSICAL = 0,
   LANCER_FALLOFF_CONSTANT = 1,
   LANCER_FALLOFF_LINEAR = 2,
@@ -527,6 +635,9 @@ LANCER_API lancer_status lancer_scene_add_light(lancer_scene scene, const lancer
 LANCER_API lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, const lancer_instance *instances,
                                                     uint32_t slot_count, const uint32_t *slots, const char *names,
                                                     size_t names_size);
+/* For OBJECT_INFO nodes: infos[count][5], colour, alpha and the random number of the first count instances in order of adding,
+ * those left out included. Others are white and 0. */
+LANCER_API lancer_status lancer_scene_set_object_infos(lancer_scene scene, uint32_t count, const float *infos);
 /* Pictures are numbered in the order in which they are added. */
 LANCER_API lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image);
 
@@ -548,7 +659,7 @@ typedef struct lancer_world {
 /* Black until set. */
 LANCER_API lancer_status lancer_scene_set_world(lancer_scene scene, const lancer_world *world);
 
-enum { LANCER_BVH = 0, LANCER_KDTREE = 1, LANCER_BRUTE_FORCE = 2 };
+enum lancer_accelerator { LANCER_BVH = 0, LANCER_KDTREE = 1, LANCER_BRUTE_FORCE = 2 };
 /* Starts the build on threads threads (0 = all): checks, normalises, finds features, builds the accelerator. Once only. */
 LANCER_API lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint32_t threads);
 /* Waits at most the given time. LANCER_OK: committed, ready for sessions. */
@@ -560,7 +671,7 @@ LANCER_API lancer_status lancer_scene_messages(lancer_scene scene, char *text, s
 
 /* ---- session: camera, settings, film ----------------------------------------------------------------------------- */
 
-enum {
+enum lancer_camera_kind {
   LANCER_PERSPECTIVE = 0,
   LANCER_ORTHOGRAPHIC = 1,
   LANCER_EQUIRECTANGULAR = 2,     /* panorama: latitude_min, latitude_max, longitude_min, longitude_max */
@@ -589,39 +700,39 @@ typedef struct lancer_camera {
   double aperture_ratio;       /* height of the bokeh over its width; 1 = round */
 } lancer_camera;
 
-enum { LANCER_PATH = 0, LANCER_CLASSIC = 1, LANCER_NORMALS = 2 };
-enum { LANCER_FILTER_BOX = 0, LANCER_FILTER_BLACKMAN_HARRIS = 1 };
-enum { LANCER_FEATURES_SCENE = 0, LANCER_FEATURES_ALL = 1 };
+enum lancer_integrator { LANCER_PATH = 0, LANCER_CLASSIC = 1, LANCER_NORMALS = 2 };
+enum lancer_pixel_filter { LANCER_FILTER_BOX = 0, LANCER_FILTER_BLACKMAN_HARRIS = 1 };
+enum lancer_features { LANCER_FEATURES_SCENE = 0, LANCER_FEATURES_ALL = 1 };
 
 /* Passes; the film keeps those whose bit (1u << pass) is in lancer_settings.passes. Channels in brackets; "mean": over samples;
  * "sample 0": of the first sample, unfiltered. A component's direct and indirect light are divided by its colour (a channel
  * without colour gets the mean of the other two, or of the one that has some), so that
  *   COMBINED = DIFFUSE_COLOR (DIFFUSE_DIRECT + DIFFUSE_INDIRECT) + GLOSSY_... + TRANSMISSION_... + EMISSION + ENVIRONMENT.
  * Light passes are PATH's; CLASSIC and NORMALS give them as 0. */
-enum {
-  LANCER_PASS_COMBINED = 0,           /* [4] premultiplied */
-  LANCER_PASS_DEPTH = 1,              /* [1] along the camera's z (panoramas: distance); 1e10 where nothing is. Sample 0 */
-  LANCER_PASS_NORMAL = 2,             /* [3] shading normal, world, mean */
-  LANCER_PASS_ALBEDO = 3,             /* [3] for denoising: sum of the lobes' albedos, mean */
-  LANCER_PASS_POSITION = 4,           /* [3] world. Sample 0 */
-  LANCER_PASS_OBJECT_INDEX = 5,       /* [1] sample 0 */
-  LANCER_PASS_MATERIAL_INDEX = 6,     /* [1] sample 0 */
-  LANCER_PASS_UV = 7,                 /* [3] u, v, 1, mean */
-  LANCER_PASS_MIST = 8,               /* [1] mean */
-  LANCER_PASS_EMISSION = 9,           /* [3] */
-  LANCER_PASS_ENVIRONMENT = 10,       /* [3] */
-  LANCER_PASS_AMBIENT_OCCLUSION = 11, /* [3] */
-  LANCER_PASS_DIFFUSE_DIRECT = 12,    /* [3] */
-  LANCER_PASS_DIFFUSE_INDIRECT = 13,
-  LANCER_PASS_DIFFUSE_COLOR = 14,
-  LANCER_PASS_GLOSSY_DIRECT = 15,
-  LANCER_PASS_GLOSSY_INDIRECT = 16,
-  LANCER_PASS_GLOSSY_COLOR = 17,
-  LANCER_PASS_TRANSMISSION_DIRECT = 18,
-  LANCER_PASS_TRANSMISSION_INDIRECT = 19,
-  LANCER_PASS_TRANSMISSION_COLOR = 20,
-  LANCER_PASS_DENOISING_NORMAL = 21, /* [3] camera space, mean */
-  LANCER_PASS_DENOISING_DEPTH = 22,  /* [1] mean */
+enum lancer_pass {
+  LANCER_PASS_COMBINED = 0,               /* [4] premultiplied */
+  LANCER_PASS_DEPTH = 1,                  /* [1] along the camera's z (panoramas: distance); 1e10 where nothing is. Sample 0 */
+  LANCER_PASS_NORMAL = 2,                 /* [3] shading normal, world, mean */
+  LANCER_PASS_ALBEDO = 3,                 /* [3] for denoising: sum of the lobes' albedos, mean */
+  LANCER_PASS_POSITION = 4,               /* [3] world. Sample 0 */
+  LANCER_PASS_OBJECT_INDEX = 5,           /* [1] sample 0 */
+  LANCER_PASS_MATERIAL_INDEX = 6,         /* [1] sample 0 */
+  LANCER_PASS_UV = 7,                     /* [3] u, v, 1, mean */
+  LANCER_PASS_MIST = 8,                   /* [1] mean */
+  LANCER_PASS_EMISSION = 9,               /* [3] */
+  LANCER_PASS_ENVIRONMENT = 10,           /* [3] */
+  LANCER_PASS_AMBIENT_OCCLUSION = 11,     /* [3] */
+  LANCER_PASS_DIFFUSE_DIRECT = 12,        /* [3] */
+  LANCER_PASS_DIFFUSE_INDIRECT = 13,      /* [3] */
+  LANCER_PASS_DIFFUSE_COLOR = 14,         /* [3] */
+  LANCER_PASS_GLOSSY_DIRECT = 15,         /* [3] */
+  LANCER_PASS_GLOSSY_INDIRECT = 16,       /* [3] */
+  LANCER_PASS_GLOSSY_COLOR = 17,          /* [3] */
+  LANCER_PASS_TRANSMISSION_DIRECT = 18,   /* [3] */
+  LANCER_PASS_TRANSMISSION_INDIRECT = 19, /* [3] */
+  LANCER_PASS_TRANSMISSION_COLOR = 20,    /* [3] */
+  LANCER_PASS_DENOISING_NORMAL = 21,      /* [3] camera space, mean */
+  LANCER_PASS_DENOISING_DEPTH = 22,       /* [1] mean */
   LANCER_PASS_ERROR = 23, /* [1] standard error of the mean luminance; infinity before every replicate has a sample. Always
                              kept */
   LANCER_PASS_COUNT = 24

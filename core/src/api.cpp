@@ -85,6 +85,11 @@ lancer_status lancer_scene_add_instances(lancer_scene scene, uint32_t count, con
   });
 }
 
+lancer_status lancer_scene_set_object_infos(lancer_scene scene, uint32_t count, const float *infos) {
+  return fill_scene(scene, infos, "object infos",
+                    [&](Description &description) { set_object_infos(description, count, infos); });
+}
+
 lancer_status lancer_scene_add_image(lancer_scene scene, const lancer_image *image) {
   return fill_scene(scene, image, "image", [&](Description &description) { add_image(description, *image); });
 }

@@ -169,7 +169,7 @@ namespace lancer {{
 // The microfibre sheen as Cycles' pictures show it, in 1/{per}: a, b and albedo at roughness = j/{last} (rows) and
 // cos(wo) = i/{last} (three columns each). A node that no picture can show, as the lobe is black around it, is 0.
 inline constexpr int kSheenNodes = {nodes};
-inline constexpr int32_t kSheen[kSheenNodes][kSheenNodes][3] = {{
+constexpr int32_t kSheen[kSheenNodes][kSheenNodes][3] = {{
 """
 
 

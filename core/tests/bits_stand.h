@@ -63,7 +63,7 @@ inline lancer_material plain() {
 // As the newest Blender has it, which kernels of many lanes know: a diffuse one is smooth.
 inline lancer_lobe newest(uint32_t kind, float color, float roughness = 0.0f) {
   lancer_lobe one = lobe(kind, color, roughness);
-  one.rules = LANCER_RULES_45;
+  one.rules = LANCER_RULES_BLENDER_45;
   return one;
 }
 

@@ -23,8 +23,8 @@ struct Place {
   bool correction = true;
 };
 
-Bsdf at(const Place &place, const LobeInputs &lobe, bool with_translucent = false) {
-  Bsdf bsdf;
+Bsdf<float> at(const Place &place, const LobeInputs<float> &lobe, bool with_translucent = false) {
+  Bsdf<float> bsdf;
   bsdf.begin(place.wo, place.ns, place.ng, false, place.correction);
   add_lobe(bsdf, lobe);
   if (with_translucent)
@@ -33,8 +33,8 @@ Bsdf at(const Place &place, const LobeInputs &lobe, bool with_translucent = fals
   return bsdf;
 }
 
-LobeInputs about(LobeKind kind, const glm::vec3 &n, Rules rules = Rules::Blender45) {
-  LobeInputs inputs = described(kind, 0.5f);
+LobeInputs<float> about(LobeKind kind, const glm::vec3 &n, Rules rules = Rules::Blender45) {
+  LobeInputs<float> inputs = described(kind, 0.5f);
   inputs.normal = n;
   inputs.rules = rules;
   return inputs;
@@ -48,7 +48,7 @@ TEST(BsdfBump, FromBehindTheSmoothNormal) {
   const glm::vec3 wo = direction(0.1, 0.0), ns = tilted(40.0, std::numbers::pi);
   const Place place{wo, ns, kUp};
   ASSERT_LT(glm::dot(wo, ns), 0.0f);
-  const LobeInputs clay = about(LobeKind::Diffuse, glm::vec3(0.0f));
+  const LobeInputs<float> clay = about(LobeKind::Diffuse, glm::vec3(0.0f));
   const double a = 1.0 / (std::numbers::pi + 0.5 * (0.5 * std::numbers::pi - 2.0 / 3.0)), b = 0.5 * a;
   // Turned away from the viewer, and towards it.
   for (const glm::vec3 &wi : {direction(0.9, 2.0), direction(0.9, 0.3)}) {
@@ -61,7 +61,7 @@ TEST(BsdfBump, FromBehindTheSmoothNormal) {
     const double t = glm::dot(glm::dvec3(wi), glm::dvec3(wo)), term = t > 0.0 ? t / cos_i : t;
     EXPECT_NEAR(at(place, clay).eval(wi).f().x, cos_i * (a + b * term), 8.0 * kUlp);
   }
-  const Bsdf gloss = at(place, about(LobeKind::Glossy, glm::vec3(0.0f)));
+  const Bsdf<float> gloss = at(place, about(LobeKind::Glossy, glm::vec3(0.0f)));
   ASSERT_EQ(gloss.count, 1);
   EXPECT_GT(gloss.wo_local[gloss.lobes[0].frame].z, 0.0f);
   EXPECT_GT(gloss.albedo().x, 0.0f);
@@ -74,15 +74,15 @@ TEST(BsdfBump, NothingIsSampledThroughTheSurface) {
                         LobeKind::Conductor, LobeKind::Sheen, LobeKind::Translucent, LobeKind::Minnaert})
     for (int k = 0; k < 500; ++k) {
       const glm::vec3 ns = tilted(40.0 * random.uniform(), 7.0 * random.uniform());
-      LobeInputs lobe = about(kind, tilted(60.0 * random.uniform(), 7.0 * random.uniform()));
+      LobeInputs<float> lobe = about(kind, tilted(60.0 * random.uniform(), 7.0 * random.uniform()));
       lobe.shininess = 5.0f;
       lobe.roughness = k % 3 == 0 ? 0.0f : 0.6f;
       const Place place{direction(0.05 + 0.95 * random.uniform(), 7.0 * random.uniform()), ns, kUp};
       // A lobe that goes through must not lend its density to one that reflects.
-      const Bsdf bsdf = at(place, lobe), mixed = at(place, lobe, true);
+      const Bsdf<float> bsdf = at(place, lobe), mixed = at(place, lobe, true);
       for (int i = 0; i < 20; ++i) {
         const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-        for (const BsdfSample &sample : {bsdf.sample(u, {x, y}), mixed.sample(u, {x, y})})
+        for (const BsdfSample<float> &sample : {bsdf.sample(u, x, y), mixed.sample(u, x, y)})
           if (sample.pdf > 0.0f) {
             ASSERT_EQ(sample.transmitted, sample.wi.z < 0.0f) << static_cast<int>(kind);
           }
@@ -102,15 +102,15 @@ TEST(BsdfBump, WhatRefractsInBlender3MayPassTheWrongWay) {
   for (const auto &[kind, facets] :
        {std::pair{LobeKind::Refraction, Facets::Ggx}, std::pair{LobeKind::Glass, Facets::MultiGgx}})
     for (const Rules rules : {Rules::Blender3, Rules::Blender4}) {
-      LobeInputs lobe = about(kind, glm::vec3(0.0f), rules);
+      LobeInputs<float> lobe = about(kind, glm::vec3(0.0f), rules);
       lobe.distribution = facets;
       lobe.roughness = 0.9f;
-      const Bsdf bsdf = at(place, lobe);
+      const Bsdf<float> bsdf = at(place, lobe);
       Random random(5);
       int strays = 0;
       for (int k = 0; k < 1000; ++k) {
         const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-        const BsdfSample sample = bsdf.sample(u, {x, y});
+        const BsdfSample<float> sample = bsdf.sample(u, x, y);
         if (sample.pdf > 0.0f && sample.transmitted != (sample.wi.z < 0.0f)) {
           ++strays;
           // The sampler knows its half vector; the value finds it again from directions that may nearly cancel: of 100000
@@ -126,7 +126,7 @@ TEST(BsdfBump, InterpolatedNormalsMeetLightsAsTheSmoothSurfaceWould) {
   // 5 degrees below the surface, 25 above the horizon of the shading normal.
   const Place place{direction(0.8, 0.0), tilted(30.0, 0.0), kUp};
   const glm::vec3 wi = tilted(95.0, 0.0);
-  const BsdfValue value = at(place, described(LobeKind::Lambert)).eval(wi);
+  const BsdfValue<float> value = at(place, described(LobeKind::Lambert)).eval(wi);
   EXPECT_NEAR(value.f().x, std::cos(65.0 / 180.0 * std::numbers::pi) / std::numbers::pi, 8.0 * kUlp);
   EXPECT_EQ(value.pdf, 0.0f);
 }
@@ -167,7 +167,7 @@ TEST(BsdfBump, ReflectionsRiseAboveTheSurface) {
   for (int k = 0; k < 20000; ++k) {
     const glm::vec3 wo = direction(1e-3 + random.uniform() * (1.0 - 1e-3), 7.0 * random.uniform());
     const glm::vec3 n = tilted(85.0 * random.uniform(), 7.0 * random.uniform());
-    Bsdf bsdf;
+    Bsdf<float> bsdf;
     bsdf.begin(wo, kUp, kUp, false, true);
     const glm::vec3 m = reflecting_normal(bsdf, n);
     const double height = 2.0 * glm::dot(glm::dvec3(m), glm::dvec3(wo)) * m.z - wo.z;
@@ -191,7 +191,7 @@ TEST(BsdfBump, ReflectionsRiseAboveTheSurface) {
 }
 
 TEST(BsdfBump, SeveralFramesAreKeptApart) {
-  Bsdf bsdf;
+  Bsdf<float> bsdf;
   bsdf.begin(direction(0.5), kUp, kUp, false, true);
   EXPECT_EQ(add_frame(bsdf, glm::vec3(0.0f), glm::vec3(0.0f)), 0);
   EXPECT_EQ(add_frame(bsdf, 2.0f * kUp, glm::vec3(0.0f)), 0);

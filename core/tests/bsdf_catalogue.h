@@ -24,27 +24,27 @@ inline std::vector<double> heights() {
 
 struct Known {
   std::string name;
-  std::function<void(Bsdf &, const glm::vec3 &)> look; // from wo
-  double width = 0.0;                                  // of its narrowest lobe, in slopes of the half vector; 0: wide
-  float ior = 1.0f;                                    // by which what goes through is bent, from outside; 1: nothing does
+  std::function<void(Bsdf<float> &, const glm::vec3 &)> look; // from wo
+  double width = 0.0;                                         // of its narrowest lobe, in slopes of the half vector; 0: wide
+  float ior = 1.0f; // by which what goes through is bent, from outside; 1: nothing does
   // f(a, b) is f(b, a), times ior^2 through the surface.
   bool reciprocal = true;
 
-  Bsdf from(const glm::vec3 &wo) const {
-    Bsdf bsdf;
+  Bsdf<float> from(const glm::vec3 &wo) const {
+    Bsdf<float> bsdf;
     look(bsdf, wo);
     return bsdf;
   }
 };
 
-inline Known known(const std::string &name, std::vector<LobeInputs> lobes, double width = 0.0, float ior = 1.0f,
+inline Known known(const std::string &name, std::vector<LobeInputs<float>> lobes, double width = 0.0, float ior = 1.0f,
                    bool reciprocal = true) {
-  return {name, [lobes](Bsdf &bsdf, const glm::vec3 &wo) { look(bsdf, lobes, wo); }, width, ior, reciprocal};
+  return {name, [lobes](Bsdf<float> &bsdf, const glm::vec3 &wo) { look(bsdf, lobes, wo); }, width, ior, reciprocal};
 }
 
-inline LobeInputs at_alpha(LobeKind kind, Facets facets, double alpha, float ior = 1.5f) {
+inline LobeInputs<float> at_alpha(LobeKind kind, Facets facets, double alpha, float ior = 1.5f) {
   const bool alpha_itself = kind == LobeKind::Beckmann;
-  LobeInputs inputs = described(kind, static_cast<float>(alpha_itself ? alpha : std::sqrt(alpha)), ior);
+  LobeInputs<float> inputs = described(kind, static_cast<float>(alpha_itself ? alpha : std::sqrt(alpha)), ior);
   inputs.distribution = facets;
   inputs.tangent = {1.0f, 0.0f, 0.0f};
   return inputs;
@@ -58,7 +58,7 @@ inline std::vector<Known> facet_lobes(double alpha) {
   const float infinity = std::numeric_limits<float>::infinity();
   const float below = 0.6f, above = 1.5f;
   std::vector<Known> all;
-  const auto add = [&](const std::string &name, const LobeInputs &inputs, float ior = 1.0f, double width = 0.0,
+  const auto add = [&](const std::string &name, const LobeInputs<float> &inputs, float ior = 1.0f, double width = 0.0,
                        bool reciprocal = true) {
     all.push_back(known(name + ", alpha " + std::to_string(alpha), {inputs}, width > 0.0 ? width : alpha, ior, reciprocal));
   };
@@ -69,11 +69,11 @@ inline std::vector<Known> facet_lobes(double alpha) {
   // Energy that is given back depends on the side that looks.
   add("GGX of several bounces", at_alpha(LobeKind::Glossy, Facets::MultiGgx, alpha), 1.0f, alpha, false);
   for (const Facets facets : {Facets::Ggx, Facets::Beckmann}) {
-    LobeInputs stretched = at_alpha(LobeKind::Glossy, facets, 0.5 * alpha);
+    LobeInputs<float> stretched = at_alpha(LobeKind::Glossy, facets, 0.5 * alpha);
     stretched.anisotropy = 0.5f;
     add(facets == Facets::Ggx ? "stretched GGX" : "stretched Beckmann", stretched, 1.0f, 0.25 * alpha);
   }
-  LobeInputs metal = at_alpha(LobeKind::Conductor, Facets::Ggx, alpha);
+  LobeInputs<float> metal = at_alpha(LobeKind::Conductor, Facets::Ggx, alpha);
   metal.color = {0.9f, 0.6f, 0.2f};
   metal.edge = {0.9f, 0.8f, 0.4f};
   add("metal by F82", metal);
@@ -88,7 +88,7 @@ inline std::vector<Known> facet_lobes(double alpha) {
     add("refraction" + which, at_alpha(LobeKind::Refraction, Facets::Ggx, alpha, ior), ior);
   }
   add("glass of several bounces", at_alpha(LobeKind::Glass, Facets::MultiGgx, alpha, above), above, alpha, false);
-  LobeInputs old = at_alpha(LobeKind::Glossy, Facets::Ggx, alpha);
+  LobeInputs<float> old = at_alpha(LobeKind::Glossy, Facets::Ggx, alpha);
   old.rules = Rules::Blender3;
   add("GGX of Blender 3", old);
   return all;
@@ -98,23 +98,23 @@ inline std::vector<Known> facet_lobes(double alpha) {
 inline std::vector<Known> other_lobes(double alpha) {
   const std::string rough = ", alpha " + std::to_string(alpha);
   const float shininess = shininess_of(alpha), infinity = std::numeric_limits<float>::infinity();
-  const LobeInputs diffuse = described(LobeKind::Lambert, 0.0f, 1.5f, 0.0f, {0.6f, 0.3f, 0.1f});
-  const LobeInputs coat = at_alpha(LobeKind::Beckmann, Facets::Beckmann, alpha);
+  const LobeInputs<float> diffuse = described(LobeKind::Lambert, 0.0f, 1.5f, 0.0f, {0.6f, 0.3f, 0.1f});
+  const LobeInputs<float> coat = at_alpha(LobeKind::Beckmann, Facets::Beckmann, alpha);
   std::vector<Known> all;
   all.push_back(known("Lambert", {diffuse}));
   all.push_back(known("Phong" + rough, {described(LobeKind::Phong, 0.0f, 1.5f, shininess)}, alpha));
   all.push_back(known("Blinn-Phong" + rough, {described(LobeKind::BlinnPhong, 0.0f, 1.5f, shininess)}, alpha));
   all.push_back(known("Ashikhmin-Shirley" + rough, {at_alpha(LobeKind::Glossy, Facets::AshikhminShirley, alpha)}, alpha));
-  LobeInputs cloth = at_alpha(LobeKind::Sheen, Facets::Ggx, alpha), velvet = cloth;
+  LobeInputs<float> cloth = at_alpha(LobeKind::Sheen, Facets::Ggx, alpha), velvet = cloth;
   velvet.distribution = Facets::Beckmann;
   all.push_back(known("sheen" + rough, {cloth}, 0.0, 1.0f, false));
   all.push_back(known("velvet" + rough, {velvet}));
-  LobeInputs clay = at_alpha(LobeKind::Diffuse, Facets::Ggx, alpha * alpha);
+  LobeInputs<float> clay = at_alpha(LobeKind::Diffuse, Facets::Ggx, alpha * alpha);
   clay.color = {0.8f, 0.4f, 0.1f};
   all.push_back(known("Oren-Nayar" + rough, {clay}));
   clay.option = 1;
   all.push_back(known("preserving Oren-Nayar" + rough, {clay}));
-  const LobeInputs leaf = described(LobeKind::Translucent, 0.0f, 1.5f, 0.0f, {0.2f, 0.6f, 0.1f});
+  const LobeInputs<float> leaf = described(LobeKind::Translucent, 0.0f, 1.5f, 0.0f, {0.2f, 0.6f, 0.1f});
   all.push_back(known("translucent", {leaf}));
   all.push_back(known("coated" + rough, {diffuse, coat}, alpha));
   all.push_back(known("mirror of half" + rough,
@@ -123,7 +123,7 @@ inline std::vector<Known> other_lobes(double alpha) {
                       alpha));
   all.push_back(known("glossy leaf" + rough, {leaf, clay, at_alpha(LobeKind::Glossy, Facets::Ggx, alpha)}, alpha));
   for (const Rules rules : kAllRules) {
-    PrincipledInputs in = plain(rules);
+    PrincipledInputs<float> in = plain(rules);
     in.roughness = static_cast<float>(std::sqrt(alpha));
     in.coat_roughness = std::min(1.0f, 1.5f * in.roughness);
     in.metallic = 0.3f;
@@ -131,7 +131,7 @@ inline std::vector<Known> other_lobes(double alpha) {
     in.sheen = 0.3f;
     in.transmission = 0.2f;
     in.transmission_roughness = 0.3f * in.roughness;
-    const auto look_at = [in](Bsdf &bsdf, const glm::vec3 &wo) { look(bsdf, in, wo); };
+    const auto look_at = [in](Bsdf<float> &bsdf, const glm::vec3 &wo) { look(bsdf, in, wo); };
     all.push_back({"Principled " + std::to_string(int(rules)) + rough, look_at, alpha, 1.5f, false});
   }
   return all;

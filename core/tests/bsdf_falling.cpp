@@ -51,8 +51,8 @@ constexpr Facet kFacets[] = {
 
 double p_of_facets(const Facet &facet, double alpha, double cosine, int draws, uint64_t seed, double wrong = 1.0) {
   const glm::vec3 wo = direction(cosine);
-  Lobe lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), float(alpha), float(std::min(1.0, facet.aspect * alpha)),
-                              Rules::Blender45);
+  Lobe<float> lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), float(alpha),
+                                     float(std::min(1.0, facet.aspect * alpha)), Rules::Blender45);
   lobe.beckmann = facet.beckmann;
   const auto place = [&](const glm::vec3 &h) {
     return glm::dvec2(testing::slope_to_x(std::hypot(double{h.x}, double{h.y}) / h.z, alpha), testing::turn(h.y, h.x));
@@ -61,7 +61,9 @@ double p_of_facets(const Facet &facet, double alpha, double cosine, int draws, u
     double jacobian;
     const glm::dvec3 h = testing::half_vector_at(at, alpha, jacobian);
     const double cos_oh = glm::dot(glm::dvec3(wo), h);
-    return cos_oh > 0.0 ? jacobian * cos_oh * double{facet_d(lobe, glm::vec3(h))} * double{facet_g1(lobe, wo)} : 0.0;
+    return cos_oh > 0.0
+               ? jacobian * cos_oh * double{facet_d(lobe, glm::vec3(h))} * double{facet_g1(lobe, wo, facet_hidden(lobe, wo))}
+               : 0.0;
   };
   std::vector<double> expected, observed(kCells, 0.0);
   expect_cells(density, draws, expected);
@@ -69,8 +71,8 @@ double p_of_facets(const Facet &facet, double alpha, double cosine, int draws, u
   const float alpha_x = lobe.alpha_x * float(wrong), alpha_y = lobe.alpha_y;
   for (int k = 0; k < draws; ++k) {
     const float x = random.uniform(), y = random.uniform();
-    const glm::vec3 h = facet.beckmann ? beckmann_sample_visible(wo, alpha_x, alpha_y, {x, y})
-                                       : ggx_sample_visible(wo, alpha_x, alpha_y, {x, y});
+    const glm::vec3 h =
+        facet.beckmann ? beckmann_sample_visible(wo, alpha_x, alpha_y, x, y) : ggx_sample_visible(wo, alpha_x, alpha_y, x, y);
     observed[cell_of(place(h))] += 1.0;
   }
   return testing::chi_square_test(observed, expected);
@@ -122,7 +124,7 @@ double most_draws(const Known &lobe, double cosine) {
 
 double p_of_directions(const Known &lobe, double cosine, int draws, uint64_t seed) {
   const glm::vec3 wo = direction(cosine);
-  const Bsdf bsdf = lobe.from(wo);
+  const Bsdf<float> bsdf = lobe.from(wo);
   const Sides sides(lobe, wo);
   std::vector<double> expected, observed(2 * kCells + 1, 0.0);
   for (const testing::Domain *domain : {&sides.above, &sides.below})
@@ -135,7 +137,7 @@ double p_of_directions(const Known &lobe, double cosine, int draws, uint64_t see
   Random random(seed);
   for (int k = 0; k < draws; ++k) {
     const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-    const BsdfSample sample = bsdf.sample(u, {x, y});
+    const BsdfSample<float> sample = bsdf.sample(u, x, y);
     observed[sample.delta || !(sample.pdf > 0.0f) ? 2 * kCells : sides.cell(sample.wi)] += 1.0;
   }
   return testing::chi_square_test(observed, expected);

@@ -32,14 +32,15 @@ std::vector<float> indices(int count) {
 
 // What a white lobe gives back of the light from wo: the integral over its sampler's numbers of what each brings, which is
 // bounded and smooth but where the horizon cuts it.
-double given_back(const Bsdf &bsdf) {
+double given_back(const Bsdf<float> &bsdf) {
   constexpr int kSide = 16;
   double sum = 0.0;
   for (int i = 0; i < kSide; ++i)
     for (int j = 0; j < kSide; ++j) {
       // Sides in the order of the golden ratio, which is even over any stretch.
       const double side = std::fmod(0.5 + 0.6180339887498949 * (i * kSide + j), 1.0);
-      const BsdfSample sample = bsdf.sample(float(side), (glm::vec2(i, j) + 0.5f) / float(kSide));
+      const BsdfSample<float> sample =
+          bsdf.sample(float(side), (float(i) + 0.5f) / float(kSide), (float(j) + 0.5f) / float(kSide));
       if (sample.pdf > 0.0f)
         sum += double{std::max({sample.weight.x, sample.weight.y, sample.weight.z})};
     }
@@ -66,8 +67,8 @@ constexpr Kind kKinds[] = {{"coating", LobeKind::Beckmann, Facets::Beckmann, tru
                            {"metal", LobeKind::Conductor, Facets::Ggx},
                            {"Beckmann metal", LobeKind::Conductor, Facets::Beckmann}};
 
-LobeInputs inputs_of(const Kind &kind, double alpha, float ior) {
-  LobeInputs inputs = testing::at_alpha(kind.kind, kind.facets, alpha, ior);
+LobeInputs<float> inputs_of(const Kind &kind, double alpha, float ior) {
+  LobeInputs<float> inputs = testing::at_alpha(kind.kind, kind.facets, alpha, ior);
   inputs.anisotropy = kind.anisotropy;
   if (kind.kind == LobeKind::Conductor)
     inputs.edge = glm::vec3(1.0f);
@@ -81,7 +82,7 @@ TEST(BsdfGrid, FacetsGiveBackNoMoreThanTheyGet) {
       for (int a = 0; a < side; ++a)
         for (int c = 0; c < side; ++c) {
           const double alpha = between(2e-5, 1.0, a, side), cosine = between(1e-3, 1.0, c, side);
-          const Bsdf bsdf = testing::seen({inputs_of(kind, alpha, ior)}, direction(cosine));
+          const Bsdf<float> bsdf = testing::seen({inputs_of(kind, alpha, ior)}, direction(cosine));
           EXPECT_LE(given_back(bsdf), 1.0 + 1e-5) << kind.name << " " << ior << ", alpha " << alpha << " from " << cosine;
         }
 }
@@ -93,13 +94,15 @@ TEST(BsdfGrid, VisibleFacetsIntegrateToOne) {
         for (const double cosine : {1.0, 0.9, 0.5, 0.1, 1e-2, 1e-3}) {
           const glm::vec3 wo = direction(cosine);
           const float across = static_cast<float>(std::min(1.0, aspect * alpha));
-          Lobe lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), float(alpha), across, Rules::Blender45);
+          Lobe<float> lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), float(alpha), across, Rules::Blender45);
           lobe.beckmann = beckmann;
           const auto visible = [&](const glm::dvec2 &place) {
             double jacobian;
             const glm::dvec3 h = testing::half_vector_at(place, alpha, jacobian);
             const double cos_oh = glm::dot(glm::dvec3(wo), h);
-            return cos_oh > 0.0 ? jacobian * cos_oh * double{facet_d(lobe, glm::vec3(h))} * double{facet_g1(lobe, wo)} : 0.0;
+            return cos_oh > 0.0 ? jacobian * cos_oh * double{facet_d(lobe, glm::vec3(h))} *
+                                      double{facet_g1(lobe, wo, facet_hidden(lobe, wo))}
+                                : 0.0;
           };
           EXPECT_NEAR(testing::integrate_square(visible, 32, 1e-8), 1.0, 1e-5)
               << beckmann << " " << alpha << " " << across << " " << cosine;
@@ -119,18 +122,18 @@ TEST(BsdfGrid, DensitiesAreThoseOfTheFacets) {
       for (int a = 0; a < side; ++a)
         for (int c = 0; c < side; ++c) {
           const double alpha = between(2e-5, 1.0, a, side), cosine = between(1e-3, 1.0, c, side);
-          const Bsdf bsdf = testing::seen({inputs_of(kind, alpha, ior)}, direction(cosine));
-          const Lobe &lobe = bsdf.lobes[0];
+          const Bsdf<float> bsdf = testing::seen({inputs_of(kind, alpha, ior)}, direction(cosine));
+          const Lobe<float> &lobe = bsdf.lobes[0];
           const glm::vec3 &wo = bsdf.wo_local[lobe.frame];
           for (int k = 0; k < facets && !lobe.delta; ++k) {
             const float x = random.uniform(), y = random.uniform();
-            const glm::vec3 h = lobe.beckmann ? beckmann_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, {x, y})
-                                              : ggx_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, {x, y});
+            const glm::vec3 h = lobe.beckmann ? beckmann_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, x, y)
+                                              : ggx_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, x, y);
             const double cos_oh = glm::dot(wo, h);
             if (!(cos_oh > 0.0))
               continue;
-            const FacetResponse response = facet_response(lobe, float(cos_oh));
-            const double visible = cos_oh * double{facet_d(lobe, h)} * double{facet_g1(lobe, wo)},
+            const FacetResponse<float> response = facet_response(lobe, float(cos_oh));
+            const double visible = cos_oh * double{facet_d(lobe, h)} * double{facet_g1(lobe, wo, facet_hidden(lobe, wo))},
                          share = response.reflected_share();
             const auto what = [&] {
               return ::testing::Message() << kind.name << " " << ior << ", alpha " << alpha << " from " << cosine;
@@ -142,7 +145,7 @@ TEST(BsdfGrid, DensitiesAreThoseOfTheFacets) {
             }
             if (!refracts(lobe) || lobe.delta_through || !(response.cos_t > 0.0f))
               continue;
-            const glm::vec3 wi = refract_about(wo, h, lobe.ior, response.cos_t);
+            const glm::vec3 wi = testing::bent_about(wo, h, lobe.ior, response.cos_t);
             if (!(wi.z < 0.0f))
               continue;
             // The solid angle that a facet's own spans, without the difference of two near cosines.

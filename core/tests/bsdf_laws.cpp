@@ -7,6 +7,7 @@
 #include "bsdf/albedo_tables.h"
 #include "bsdf/ggx.h"
 #include "bsdf_catalogue.h"
+#include "bsdf_facets.h"
 #include "statistics.h"
 
 namespace lancer {
@@ -17,10 +18,10 @@ using testing::Known;
 using testing::Random;
 
 // A lobe of facets is asked with the half vector that its own sampler would have, which float directions do not hold.
-ColorValue by_facet(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi, const glm::vec3 &h) {
+ColorValue<float> by_facet(const Lobe<float> &lobe, const glm::vec3 &wo, const glm::vec3 &wi, const glm::vec3 &h) {
   if (lobe.shape == LobeShape::Microfacet)
     return wi.z > 0.0f ? microfacet_eval_reflected(lobe, wo, wi, h) : microfacet_eval_through(lobe, wo, wi, h);
-  const LobeValue grey =
+  const LobeValue<float> grey =
       lobe.shape == LobeShape::Beckmann ? coating_eval_pdf(lobe, wo, wi, h) : blinn_phong_eval_pdf(lobe, wo, h);
   return {glm::vec3(grey.f * wi.z), grey.pdf};
 }
@@ -73,8 +74,8 @@ Pair by_height(const glm::dvec3 &wo, const glm::dvec2 &place, bool through, doub
 }
 
 // Of what facets send to one side. wo: in their frame.
-Whole over_facets(const Lobe &lobe, const glm::vec3 &wo, double width, bool through) {
-  const auto integral = [&](const std::function<double(const ColorValue &)> &part) {
+Whole over_facets(const Lobe<float> &lobe, const glm::vec3 &wo, double width, bool through) {
+  const auto integral = [&](const std::function<double(const ColorValue<float> &)> &part) {
     return testing::integrate_square(
         [&](const glm::dvec2 &place) {
           const Pair pair = width < kWide ? by_slopes(glm::dvec3(wo), place, width, through, double{lobe.ior})
@@ -84,15 +85,15 @@ Whole over_facets(const Lobe &lobe, const glm::vec3 &wo, double width, bool thro
         16, 4e-7, glm::dvec2(0.0), glm::dvec2(1.0),
         testing::slow() ? testing::Refinement{0x1p-20, 11} : testing::Refinement{0x1p-18, 9});
   };
-  const double f = integral([&](const ColorValue &value) {
+  const double f = integral([&](const ColorValue<float> &value) {
     const glm::vec3 colored = lobe.color * value.f;
     return double{std::max({colored.x, colored.y, colored.z})};
   });
-  return {f, integral([](const ColorValue &value) { return double{value.pdf}; })};
+  return {f, integral([](const ColorValue<float> &value) { return double{value.pdf}; })};
 }
 
 // Of all directions; width: of a narrow lobe above the surface, 0: none.
-Whole over_directions(const Bsdf &bsdf, double width) {
+Whole over_directions(const Bsdf<float> &bsdf, double width) {
   Whole whole;
   const testing::Domain above = width > 0.0 ? testing::half_vector_domain(bsdf.wo, width) : testing::direction_domain();
   for (const testing::Domain &domain : {above, testing::below_domain()}) {
@@ -144,18 +145,19 @@ template <class Find> double found(const Find &find, int rows) {
   return sum;
 }
 
-double found_by_facets(const Lobe &lobe, const glm::vec3 &wo, int rows) {
+double found_by_facets(const Lobe<float> &lobe, const glm::vec3 &wo, int rows) {
   const auto find = [&](const glm::vec2 &u) -> Outcome {
     if (lobe.shape != LobeShape::Microfacet) {
-      const LobeDirection d = lobe.shape == LobeShape::Beckmann ? coating_sample(lobe, wo, u) : blinn_phong_sample(lobe, wo, u);
-      return d.wi.z > 0.0f ? Outcome{1, 1.0} : Outcome{};
+      const glm::vec3 h = lobe.shape == LobeShape::Beckmann ? beckmann_sample_visible(wo, lobe.alpha_x, lobe.alpha_x, u.x, u.y)
+                                                            : sample_cosine_power(lobe.shininess, u.x, u.y);
+      return reflect_about(wo, h).z > 0.0f ? Outcome{1, 1.0} : Outcome{};
     }
-    const glm::vec3 h = lobe.beckmann ? beckmann_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, u)
-                                      : ggx_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, u);
-    const FacetResponse response = facet_response(lobe, glm::dot(wo, h));
+    const glm::vec3 h = lobe.beckmann ? beckmann_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, u.x, u.y)
+                                      : ggx_sample_visible(wo, lobe.alpha_x, lobe.alpha_y, u.x, u.y);
+    const FacetResponse<float> response = facet_response(lobe, glm::dot(wo, h));
     const double mirrored = response.reflected_share();
     const bool above = reflect_about(wo, h).z > 0.0f;
-    const bool below = refracts(lobe) && response.cos_t > 0.0f && refract_about(wo, h, lobe.ior, response.cos_t).z < 0.0f;
+    const bool below = refracts(lobe) && response.cos_t > 0.0f && testing::bent_about(wo, h, lobe.ior, response.cos_t).z < 0.0f;
     const bool total = refracts(lobe) && !(response.cos_t > 0.0f);
     return {above + 2 * below + 4 * total, (above ? mirrored : 0.0) + (below ? 1.0 - mirrored : 0.0)};
   };
@@ -164,7 +166,7 @@ double found_by_facets(const Lobe &lobe, const glm::vec3 &wo, int rows) {
 
 // What the directional albedo exceeds 1 by, of lobes whose energy a table holds: between its nodes a straight line stands for
 // the curve, which is monotonous there, so that it ends at the largest of its corners.
-double table_excess(const Lobe &lobe, double cosine) {
+double table_excess(const Lobe<float> &lobe, double cosine) {
   if (lobe.energy == 1.0f)
     return 0.0;
   const float roughness = std::sqrt(std::sqrt(lobe.alpha_x * lobe.alpha_y)), c = static_cast<float>(cosine);
@@ -188,9 +190,9 @@ TEST(BsdfLaws, FacetsKeepTheirEnergyAndTheirProbability) {
   for (const double alpha : testing::slow() ? testing::roughnesses() : std::vector<double>{2e-5, 0.3})
     for (const Known &known : testing::facet_lobes(alpha))
       for (const double cosine : testing::heights()) {
-        const Bsdf bsdf = known.from(direction(cosine));
+        const Bsdf<float> bsdf = known.from(direction(cosine));
         ASSERT_EQ(bsdf.count, 1);
-        const Lobe &lobe = bsdf.lobes[0];
+        const Lobe<float> &lobe = bsdf.lobes[0];
         if (lobe.delta)
           continue;
         const glm::vec3 &wo = bsdf.wo_local[lobe.frame];
@@ -217,7 +219,7 @@ TEST(BsdfLaws, NoOtherLobeGivesBackMoreThanItGets) {
   std::vector<Known> all;
   for (const double alpha : testing::slow() ? std::vector<double>{0.1, 0.3, 0.5, 0.7, 1.0} : std::vector<double>{0.1, 1.0}) {
     const std::string rough = ", alpha " + std::to_string(alpha);
-    const auto add = [&](const char *name, LobeInputs inputs) {
+    const auto add = [&](const char *name, LobeInputs<float> inputs) {
       inputs.color = glm::vec3(1.0f);
       all.push_back(testing::known(name + rough, {inputs}));
     };
@@ -229,14 +231,14 @@ TEST(BsdfLaws, NoOtherLobeGivesBackMoreThanItGets) {
     add("Oren-Nayar", testing::at_alpha(LobeKind::Diffuse, Facets::Ggx, alpha));
     for (const Rules rules : {Rules::Blender4, Rules::Blender45})
       for (const float metallic : {0.0f, 0.5f}) {
-        PrincipledInputs in = testing::plain(rules);
+        PrincipledInputs<float> in = testing::plain(rules);
         in.distribution = Facets::Ggx;
         in.base_color = glm::vec3(1.0f);
         in.roughness = in.coat_roughness = in.sheen_roughness = float(std::sqrt(alpha));
         in.metallic = metallic;
         in.coat = in.sheen = 0.5f;
         all.push_back({"Principled " + std::to_string(int(rules)) + rough,
-                       [in](Bsdf &bsdf, const glm::vec3 &wo) { testing::look(bsdf, in, wo); }});
+                       [in](Bsdf<float> &bsdf, const glm::vec3 &wo) { testing::look(bsdf, in, wo); }});
       }
   }
   // Narrow ones, as far as half vectors of float directions tell them apart: those carry 2^-24 over |wo + wi|.
@@ -256,10 +258,10 @@ TEST(BsdfLaws, NoOtherLobeGivesBackMoreThanItGets) {
 
 // What roundings of the cosine, once from either side, do to what a lobe's facets reflect or let through: 2^-22 of a sum of
 // three products each.
-double conditioned(const Lobe &lobe, float cosine, bool through) {
+double conditioned(const Lobe<float> &lobe, float cosine, bool through) {
   constexpr float kStep = 1e-4f;
   const auto response = [&](float c) {
-    const FacetResponse r = facet_response(lobe, c);
+    const FacetResponse<float> r = facet_response(lobe, c);
     return double{through ? r.through.x : r.reflected.x};
   };
   if (lobe.shape != LobeShape::Microfacet)
@@ -280,28 +282,28 @@ TEST(BsdfLaws, LightGoesBothWaysAlike) {
       for (int k = 0; k < 200; ++k) {
         const glm::vec3 wo = direction(0.1 + 0.9 * random.uniform(), 7.0 * random.uniform());
         const float x = random.uniform(), y = random.uniform();
-        const Bsdf bsdf = known.from(wo);
-        const Lobe &lobe = bsdf.lobes[0];
+        const Bsdf<float> bsdf = known.from(wo);
+        const Lobe<float> &lobe = bsdf.lobes[0];
         if (lobe.delta)
           continue;
         const glm::vec3 wo_l = bsdf.wo_local[lobe.frame];
-        const glm::vec3 h = ggx_sample_visible(wo_l, lobe.alpha_x, lobe.alpha_y, {x, y});
+        const glm::vec3 h = ggx_sample_visible(wo_l, lobe.alpha_x, lobe.alpha_y, x, y);
         const float cos_oh = glm::dot(wo_l, h);
         if (const glm::vec3 wi = reflect_about(wo_l, h); wi.z > 0.1f && cos_oh > 0.1f && reflects(lobe)) {
-          const Bsdf other = known.from(bsdf.frames[lobe.frame].to_world(wi));
+          const Bsdf<float> other = known.from(bsdf.frames[lobe.frame].to_world(wi));
           const double there = by_facet(lobe, wo_l, wi, h).f.x / wi.z,
                        back = by_facet(other.lobes[0], wi, wo_l, h).f.x / wo_l.z;
           EXPECT_NEAR(there, back, (4e-6 + conditioned(lobe, cos_oh, false)) * there + 1e-30) << known.name;
         }
         if (!refracts(lobe) || lobe.delta_through)
           continue;
-        const FacetResponse response = facet_response(lobe, cos_oh);
-        const glm::vec3 wi = refract_about(wo_l, h, lobe.ior, response.cos_t);
+        const FacetResponse<float> response = facet_response(lobe, cos_oh);
+        const glm::vec3 wi = testing::bent_about(wo_l, h, lobe.ior, response.cos_t);
         if (!(response.cos_t > 0.1f && wi.z < -0.1f && cos_oh > 0.1f))
           continue;
         // From the other side the same facet has its own normal; axes turn with the side.
-        const Bsdf other = known.from(bsdf.frames[lobe.frame].to_world(wi));
-        const Lobe &under = other.lobes[0];
+        const Bsdf<float> other = known.from(bsdf.frames[lobe.frame].to_world(wi));
+        const Lobe<float> &under = other.lobes[0];
         const glm::vec3 h_under = -other.frames[under.frame].to_local(bsdf.frames[lobe.frame].to_world(h));
         const glm::vec3 to = other.frames[under.frame].to_local(bsdf.frames[lobe.frame].to_world(wo_l));
         const double there = by_facet(lobe, wo_l, wi, h).f.x / -wi.z;

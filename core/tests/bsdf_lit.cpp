@@ -18,8 +18,8 @@ using testing::Random;
 
 constexpr float kAlpha = 0.36f;
 
-LobeInputs boundary(LobeKind kind, float ior) {
-  LobeInputs inputs = described(kind, 0.6f, ior, 0.0f, {0.9f, 0.6f, 0.3f});
+LobeInputs<float> boundary(LobeKind kind, float ior) {
+  LobeInputs<float> inputs = described(kind, 0.6f, ior, 0.0f, {0.9f, 0.6f, 0.3f});
   inputs.distribution = Facets::Ggx;
   return inputs;
 }
@@ -60,9 +60,9 @@ TEST(BsdfLit, IsTheValueWhereAFacetConnects) {
         const glm::vec3 wi = direction(2.0 * random.uniform() - 1.0, 7.0 * random.uniform());
         if (wi.z < 0.0f && kind != LobeKind::Translucent && !Facet(wo, wi, ior).connects())
           continue;
-        Bsdf bsdf;
+        Bsdf<float> bsdf;
         look(bsdf, {boundary(kind, ior)}, wo);
-        const BsdfValue value = bsdf.eval(wi), lit = bsdf.eval_lit(wi);
+        const BsdfValue<float> value = bsdf.eval(wi), lit = bsdf.eval_lit(wi);
         EXPECT_EQ(lit.f(), value.f());
         EXPECT_EQ(lit.pdf, value.pdf);
         connected += value.pdf > 0.0f;
@@ -83,10 +83,10 @@ TEST(BsdfLit, PassesLightWhereNoFacetConnects) {
       if (facet.connects() || std::min(std::abs(facet.cos_o), std::abs(facet.cos_i)) < 1e-3)
         continue;
       ++apart;
-      Bsdf bsdf;
+      Bsdf<float> bsdf;
       look(bsdf, {boundary(LobeKind::Refraction, ior)}, wo);
       EXPECT_EQ(bsdf.eval(wi).f(), glm::vec3(0.0f));
-      const BsdfValue lit = bsdf.eval_lit(wi);
+      const BsdfValue<float> lit = bsdf.eval_lit(wi);
       const double expected = refracted(wo, wi, ior);
       // The inputs' roundings move wo + eta wi, no shorter than |1 - eta| = 0.3, by 2 ulp, which D's slope of at most 8 in
       // the angle (1 / alpha^2) and the square of the length multiply; cosines of 1e-3 lose three digits.

@@ -33,8 +33,8 @@ TEST(Microfacet, GgxMatchesItsTextbookForm) {
     for (int k = 0; k < 200; ++k) {
       const glm::vec3 wo = direction(0.3 + 0.7 * random.uniform());
       const float x = random.uniform(), y = random.uniform();
-      const Bsdf bsdf = seen({rough(LobeKind::Glossy, Facets::Ggx, std::sqrt(alpha))}, wo);
-      const BsdfSample sample = bsdf.sample(0.5f, {0.9f * x, y});
+      const Bsdf<float> bsdf = seen({rough(LobeKind::Glossy, Facets::Ggx, std::sqrt(alpha))}, wo);
+      const BsdfSample<float> sample = bsdf.sample(0.5f, 0.9f * x, y);
       if (!(sample.wi.z > 0.1f))
         continue;
       using Long = long double;
@@ -53,11 +53,11 @@ TEST(Microfacet, BeckmannOfBlender3IsTheCoatingWithoutFresnel) {
   Random random(2);
   for (float roughness : {0.2f, 0.6f, 1.0f})
     for (int k = 0; k < 500; ++k) {
-      LobeInputs inputs = rough(LobeKind::Glossy, Facets::Beckmann, roughness);
+      LobeInputs<float> inputs = rough(LobeKind::Glossy, Facets::Beckmann, roughness);
       inputs.rules = Rules::Blender3;
       const glm::vec3 wo = direction(0.05 + 0.95 * random.uniform()), wi = direction(0.05 + 0.95 * random.uniform(), 4.0);
-      const Bsdf facets = seen({inputs}, wo);
-      const Bsdf coating = seen({described(LobeKind::Beckmann, facets.lobes[0].alpha_x, kInfinity)}, wo);
+      const Bsdf<float> facets = seen({inputs}, wo);
+      const Bsdf<float> coating = seen({described(LobeKind::Beckmann, facets.lobes[0].alpha_x, kInfinity)}, wo);
       // Facets seen by both directions are no more than those that each sees, exactly.
       float fitted = 1.0f, exact = 1.0f;
       for (const glm::vec3 &w : {wo, wi}) {
@@ -85,7 +85,7 @@ TEST(Microfacet, ConductorMatchesComplexArithmetic) {
 }
 
 TEST(Microfacet, F82HoldsItsTintAtTheEdge) {
-  Lobe lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), 0.1f, 0.1f, Rules::Blender45);
+  Lobe<float> lobe = make_microfacet(Scatter::Reflect, 0, glm::vec3(1.0f), 0.1f, 0.1f, Rules::Blender45);
   const glm::vec3 f0(0.9f, 0.5f, 0.1f), tint(1.0f, 0.5f, 0.25f);
   set_f82(lobe, f0, tint);
   const float c = 1.0f / 7.0f, fifth = std::pow(6.0f / 7.0f, 5.0f);
@@ -100,7 +100,7 @@ TEST(Microfacet, AlbedoTablesHoldExactIntegrals) {
   for (int y : {1, 8, 20, 31})
     for (int x : {6, 15, 31}) {
       const float cosine = static_cast<float>(y) / 31.0f, roughness = static_cast<float>(x) / 31.0f;
-      const Bsdf bsdf = seen({rough(LobeKind::Glossy, Facets::Ggx, roughness)}, direction(cosine));
+      const Bsdf<float> bsdf = seen({rough(LobeKind::Glossy, Facets::Ggx, roughness)}, direction(cosine));
       EXPECT_NEAR(ggx_albedo(roughness, cosine), reflected(bsdf, roughness * roughness), 3e-5) << cosine << " " << roughness;
     }
   for (int y : {3, 9, 15})
@@ -108,7 +108,7 @@ TEST(Microfacet, AlbedoTablesHoldExactIntegrals) {
       for (int z : {3, 7, 11}) {
         const float cosine = static_cast<float>(y) / 15.0f, roughness = static_cast<float>(x) / 15.0f;
         const float r = static_cast<float>(z * z) / 225.0f, ior = (1.0f + r) / (1.0f - r);
-        const Bsdf outside = seen({rough(LobeKind::Glass, Facets::Ggx, roughness, ior)}, direction(cosine));
+        const Bsdf<float> outside = seen({rough(LobeKind::Glass, Facets::Ggx, roughness, ior)}, direction(cosine));
         EXPECT_NEAR(glass_albedo(roughness, cosine, ior),
                     reflected(outside, roughness * roughness) + through(outside, roughness * roughness, ior), 5e-5)
             << cosine << " " << roughness << " " << ior;
@@ -142,7 +142,7 @@ TEST(Microfacet, MixIsTheMeanOverFacetsThatReflect) {
         double sum = 0.0, sum2 = 0.0;
         for (int k = 0; k < draws; ++k) {
           const float u = random.uniform(), v = random.uniform();
-          const glm::vec3 h = ggx_sample_visible(wo, alpha, alpha, {u, v});
+          const glm::vec3 h = ggx_sample_visible(wo, alpha, alpha, u, v);
           const float f0 = f0_of_ior(ior), f = fresnel_dielectric(glm::dot(wo, h), ior);
           const double s = reflect_about(wo, h).z > 0.0f ? (f - f0) / (1.0f - f0) : 0.0;
           sum += s;
@@ -159,9 +159,9 @@ TEST(Microfacet, SmoothGlassIsTheDielectric) {
   for (float ior : {0.8f, 1.0f, 1.0f + 0x1p-23f, 1.5f, 3.0f})
     for (double cosine : {1.0, 0.4, -0.4, -0.9})
       for (float u : {0.0f, 0.3f, 0.9f}) {
-        const Bsdf facets = seen({rough(LobeKind::Glass, Facets::MultiGgx, 0.0f, ior)}, direction(cosine));
-        const Bsdf smooth = seen({described(LobeKind::Dielectric, 0.0f, ior)}, direction(cosine));
-        const BsdfSample a = facets.sample(u, {0.5f, 0.5f}), b = smooth.sample(u, {0.5f, 0.5f});
+        const Bsdf<float> facets = seen({rough(LobeKind::Glass, Facets::MultiGgx, 0.0f, ior)}, direction(cosine));
+        const Bsdf<float> smooth = seen({described(LobeKind::Dielectric, 0.0f, ior)}, direction(cosine));
+        const BsdfSample<float> a = facets.sample(u, 0.5f, 0.5f), b = smooth.sample(u, 0.5f, 0.5f);
         EXPECT_EQ(a.wi, b.wi);
         EXPECT_TRUE(a.delta && !facets.smooth);
         EXPECT_EQ(a.transmitted, b.transmitted);
@@ -185,16 +185,16 @@ TEST(Microfacet, RoughnessBeyondItsRange) {
 }
 
 TEST(Microfacet, IndexOneIsNotThere) {
-  const Bsdf bsdf = seen({rough(LobeKind::Glass, Facets::Ggx, 0.7f, 1.0f)}, direction(0.3));
-  const BsdfSample sample = bsdf.sample(0.5f, {0.3f, 0.7f});
+  const Bsdf<float> bsdf = seen({rough(LobeKind::Glass, Facets::Ggx, 0.7f, 1.0f)}, direction(0.3));
+  const BsdfSample<float> sample = bsdf.sample(0.5f, 0.3f, 0.7f);
   EXPECT_EQ(sample.wi, -direction(0.3));
   EXPECT_EQ(sample.weight.x, 1.0f);
   EXPECT_TRUE(sample.delta && sample.transmitted);
 }
 
 TEST(Microfacet, ComponentsTellReflectionFromTransmission) {
-  const Bsdf glass = seen({rough(LobeKind::Glass, Facets::Ggx, 0.5f)}, direction(0.5));
-  const BsdfValue up = glass.eval(direction(0.6, 4.0)), down = glass.eval(-direction(0.9));
+  const Bsdf<float> glass = seen({rough(LobeKind::Glass, Facets::Ggx, 0.5f)}, direction(0.5));
+  const BsdfValue<float> up = glass.eval(direction(0.6, 4.0)), down = glass.eval(-direction(0.9));
   EXPECT_GT(up.part[1].x, 0.0f);
   EXPECT_EQ(up.part[1], up.f());
   EXPECT_GT(down.part[2].x, 0.0f);
@@ -204,7 +204,7 @@ TEST(Microfacet, ComponentsTellReflectionFromTransmission) {
   Random random(9);
   for (int k = 0; k < 200; ++k) {
     const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-    const BsdfSample sample = glass.sample(u, {x, y});
+    const BsdfSample<float> sample = glass.sample(u, x, y);
     if (!(sample.pdf > 0.0f))
       continue;
     EXPECT_EQ(sample.component, sample.transmitted ? Component::Transmission : Component::Glossy);

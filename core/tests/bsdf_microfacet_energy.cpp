@@ -26,14 +26,14 @@ TEST(Microfacet, NoLobeScattersMoreThanItGets) {
       const double alpha = roughness * roughness;
       for (Facets facets : {Facets::Ggx, Facets::Beckmann})
         for (Rules rules : {Rules::Blender3, Rules::Blender45}) {
-          LobeInputs glossy = rough(LobeKind::Glossy, facets, roughness);
+          LobeInputs<float> glossy = rough(LobeKind::Glossy, facets, roughness);
           glossy.rules = rules;
           // Quadrature and floats; Beckmann's rational masking may miss the exact one by 0.35 %.
           const double slack = facets == Facets::Ggx ? 2e-5 : 0.0035;
           EXPECT_LE(reflected(seen({glossy}, direction(cosine)), alpha), 1.0 + slack) << cosine << " " << roughness;
         }
       for (float ior : {1.5f, 0.8f}) {
-        const Bsdf glass = seen({rough(LobeKind::Glass, Facets::Ggx, roughness, ior)}, direction(cosine));
+        const Bsdf<float> glass = seen({rough(LobeKind::Glass, Facets::Ggx, roughness, ior)}, direction(cosine));
         EXPECT_LE(reflected(glass, alpha) + through(glass, alpha, ior), 1.0 + 2e-5) << cosine << " " << roughness << " " << ior;
       }
     }
@@ -45,21 +45,21 @@ TEST(Microfacet, MultipleScatteringLosesNothing) {
   for (int y : {4, 16, 31})
     for (int x : {8, 16, 31}) {
       const float cosine = static_cast<float>(y) / 31.0f, roughness = static_cast<float>(x) / 31.0f;
-      const Bsdf bsdf = seen({rough(LobeKind::Glossy, Facets::MultiGgx, roughness)}, direction(cosine));
+      const Bsdf<float> bsdf = seen({rough(LobeKind::Glossy, Facets::MultiGgx, roughness)}, direction(cosine));
       EXPECT_NEAR(reflected(bsdf, roughness * roughness), 1.0, 6e-5) << cosine << " " << roughness;
     }
   Random random(8);
   for (int k = 0; k < 40; ++k) {
     const float roughness = 0.3f + 0.7f * random.uniform(), cosine = 0.15f + 0.85f * random.uniform();
-    const Bsdf bsdf = seen({rough(LobeKind::Glossy, Facets::MultiGgx, roughness)}, direction(cosine));
+    const Bsdf<float> bsdf = seen({rough(LobeKind::Glossy, Facets::MultiGgx, roughness)}, direction(cosine));
     EXPECT_NEAR(reflected(bsdf, roughness * roughness), 1.0, 3e-3) << cosine << " " << roughness;
   }
 }
 
 TEST(Microfacet, FurtherBouncesTakeTheColour) {
-  LobeInputs inputs = rough(LobeKind::Glossy, Facets::MultiGgx, 1.0f);
+  LobeInputs<float> inputs = rough(LobeKind::Glossy, Facets::MultiGgx, 1.0f);
   inputs.color = glm::vec3(0.5f);
-  const Bsdf bsdf = seen({inputs}, direction(1.0));
+  const Bsdf<float> bsdf = seen({inputs}, direction(1.0));
   const double e = ggx_albedo(1.0f, 1.0f), mean = ggx_mean_albedo(1.0f), f = 0.5;
   // One bounce f E, all further ones f (1 - E) times f mean / (1 - f (1 - mean)).
   const double expected = f * (e + (1.0 - e) * f * mean / (1.0 - f * (1.0 - mean)));
@@ -71,7 +71,7 @@ TEST(Microfacet, IsReciprocal) {
   for (float roughness : {0.3f, 0.7f, 1.0f})
     for (Facets facets : {Facets::Ggx, Facets::Beckmann})
       for (int k = 0; k < 1000; ++k) {
-        const std::vector<LobeInputs> glossy{rough(LobeKind::Glossy, facets, roughness)};
+        const std::vector<LobeInputs<float>> glossy{rough(LobeKind::Glossy, facets, roughness)};
         const glm::vec3 wo = direction(0.1 + 0.9 * random.uniform(), 7.0 * random.uniform()),
                         wi = direction(0.1 + 0.9 * random.uniform(), 7.0 * random.uniform());
         // |wo + wi| >= 0.2 and |wo + 1.5 wi'| >= 0.5: half vectors carry 2^-22 over that, 1.2e-6 at most. Where they lean by
@@ -83,7 +83,7 @@ TEST(Microfacet, IsReciprocal) {
           ASSERT_NEAR(forth, back, tolerance * forth + std::numeric_limits<float>::min());
         }
         // Through glass: f from outside is eta^2 of that from inside, for radiance that is not scaled at the boundary.
-        const std::vector<LobeInputs> glass{rough(LobeKind::Glass, facets, roughness)};
+        const std::vector<LobeInputs<float>> glass{rough(LobeKind::Glass, facets, roughness)};
         const glm::vec3 under = wi * glm::vec3(1.0f, 1.0f, -1.0f);
         const double in = seen(glass, wo).eval(under).f().x / wi.z, out = seen(glass, under).eval(wo).f().x / wo.z;
         const glm::vec3 h = glm::normalize(-(wo + 1.5f * under));
@@ -106,23 +106,23 @@ TEST(Microfacet, StaysFiniteAtEveryExtreme) {
           for (float anisotropy : {0.0f, 1.0f, -1.0f}) {
             if (facets == Facets::AshikhminShirley && kind != LobeKind::Glossy)
               continue;
-            LobeInputs inputs = rough(kind, facets, roughness, ior);
+            LobeInputs<float> inputs = rough(kind, facets, roughness, ior);
             inputs.anisotropy = anisotropy;
             inputs.option = 1;
             for (double c : cosines)
               for (double sign : {1.0, -1.0}) {
-                const Bsdf bsdf = seen({inputs}, direction(c * sign));
+                const Bsdf<float> bsdf = seen({inputs}, direction(c * sign));
                 ASSERT_TRUE(finite(bsdf.albedo())) << static_cast<int>(kind) << " " << roughness << " " << ior << " " << c;
                 for (double ci : cosines)
                   for (double side : {1.0, -1.0}) {
-                    const BsdfValue value = bsdf.eval(direction(ci * side, 0.8 + std::numbers::pi));
+                    const BsdfValue<float> value = bsdf.eval(direction(ci * side, 0.8 + std::numbers::pi));
                     ASSERT_TRUE(finite(value.f()) && value.f().x >= 0.0f && value.pdf >= 0.0f && std::isfinite(value.pdf))
                         << static_cast<int>(kind) << " " << static_cast<int>(facets) << " " << roughness << " " << ior << " "
                         << anisotropy << " " << c << " " << ci << " " << side;
                   }
                 for (float x : corners)
                   for (float y : corners) {
-                    const BsdfSample sample = bsdf.sample(x, {y, x});
+                    const BsdfSample<float> sample = bsdf.sample(x, y, x);
                     ASSERT_TRUE(finite(sample.weight) && std::isfinite(sample.pdf))
                         << static_cast<int>(kind) << " " << roughness << " " << ior << " " << c << " " << x << " " << y;
                     ASSERT_TRUE(sample.weight.x >= 0.0f && sample.pdf >= 0.0f);

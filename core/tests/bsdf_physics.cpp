@@ -20,7 +20,7 @@ using testing::turned_over;
 
 const float kInfinity = std::numeric_limits<float>::infinity();
 
-using Lobes = std::vector<LobeInputs>;
+using Lobes = std::vector<LobeInputs<float>>;
 
 Lobes single(LobeKind kind, float alpha = 0.0f, float ior = 1.5f, float shininess = 0.0f) {
   return {described(kind, alpha, ior, shininess)};
@@ -28,7 +28,7 @@ Lobes single(LobeKind kind, float alpha = 0.0f, float ior = 1.5f, float shinines
 
 // width: of a microfacet lobe, in slopes; 0 for the others.
 double albedo(const Lobes &lobes, const glm::vec3 &wo, double width) {
-  const Bsdf bsdf = seen(lobes, wo);
+  const Bsdf<float> bsdf = seen(lobes, wo);
   const testing::Domain domain = width > 0.0 ? testing::half_vector_domain(wo, width) : testing::direction_domain();
   return testing::integrate_square(domain.density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).f().x}; }), 16, 4e-7);
 }
@@ -64,10 +64,10 @@ TEST(BsdfPhysics, SingleDirectionsCarryAtMostTheirColour) {
   Random random(2);
   for (double cosine : {1.0, 0.5, 0.02, -0.02, -0.5, -1.0})
     for (const Lobes &lobes : {single(LobeKind::Mirror), single(LobeKind::Dielectric), single(LobeKind::Beckmann, 1e-6f)}) {
-      const Bsdf bsdf = seen(lobes, direction(cosine));
+      const Bsdf<float> bsdf = seen(lobes, direction(cosine));
       for (int k = 0; k < 100; ++k) {
         const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-        const BsdfSample sample = bsdf.sample(u, {x, y});
+        const BsdfSample<float> sample = bsdf.sample(u, x, y);
         ASSERT_TRUE(sample.delta);
         ASSERT_LE(sample.weight.x, 1.0f);
         ASSERT_EQ(bsdf.eval(sample.wi).pdf, 0.0f);
@@ -77,13 +77,13 @@ TEST(BsdfPhysics, SingleDirectionsCarryAtMostTheirColour) {
         }
       }
     }
-  EXPECT_EQ(seen(single(LobeKind::Beckmann, 1e-6f), {0, 0, 1}).sample(0.5f, {0.5f, 0.5f}).weight.x,
+  EXPECT_EQ(seen(single(LobeKind::Beckmann, 1e-6f), {0, 0, 1}).sample(0.5f, 0.5f, 0.5f).weight.x,
             fresnel_dielectric(1.0f, 1.5f));
 }
 
 TEST(BsdfPhysics, GlassOfIndexOneIsNotThere) {
   const glm::vec3 wo = direction(0.3);
-  const BsdfSample sample = seen(single(LobeKind::Dielectric, 0, 1.0f), wo).sample(0.5f, {0.0f, 0.5f});
+  const BsdfSample<float> sample = seen(single(LobeKind::Dielectric, 0, 1.0f), wo).sample(0.5f, 0.0f, 0.5f);
   EXPECT_EQ(sample.wi, -wo);
   EXPECT_EQ(sample.weight.x, 1.0f);
   EXPECT_EQ(sample.pdf, 1.0f);
@@ -93,7 +93,7 @@ TEST(BsdfPhysics, GlassReflectsTotallyFromInside) {
   // Beyond asin(1 / 1.5) = 41.8 degrees every choice is the mirror.
   const glm::vec3 wo = -direction(0.7);
   for (float u : {0.0f, 0.5f, 1.0f - 0x1p-24f}) {
-    const BsdfSample sample = seen(single(LobeKind::Dielectric), wo).sample(u, {0.5f, 0.5f});
+    const BsdfSample<float> sample = seen(single(LobeKind::Dielectric), wo).sample(u, 0.5f, 0.5f);
     EXPECT_EQ(sample.wi, reflect_local(wo));
     EXPECT_EQ(sample.pdf, 1.0f);
   }
@@ -130,15 +130,15 @@ TEST(BsdfPhysics, BothSidesAreAlike) {
     for (int k = 0; k < 500; ++k) {
       const glm::vec3 wo = direction(random.uniform(), 7.0 * random.uniform()),
                       wi = direction(random.uniform(), 7.0 * random.uniform());
-      const Bsdf up = seen(lobes, wo), down = seen(lobes, turned_over(wo));
-      const BsdfValue above = up.eval(wi), below = down.eval(turned_over(wi));
+      const Bsdf<float> up = seen(lobes, wo), down = seen(lobes, turned_over(wo));
+      const BsdfValue<float> above = up.eval(wi), below = down.eval(turned_over(wi));
       ASSERT_EQ(above.f(), below.f());
       ASSERT_EQ(above.pdf, below.pdf);
       const glm::vec3 other_side = wi * glm::vec3(1.0f, 1.0f, -1.0f);
       ASSERT_EQ(up.eval(other_side).pdf, 0.0f);
       ASSERT_EQ(up.eval(other_side).f(), glm::vec3(0.0f));
       const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-      const BsdfSample over = up.sample(u, {x, y}), under = down.sample(u, {x, y});
+      const BsdfSample<float> over = up.sample(u, x, y), under = down.sample(u, x, y);
       ASSERT_EQ(turned_over(over.wi), under.wi);
       ASSERT_EQ(over.weight, under.weight);
     }
@@ -161,15 +161,15 @@ TEST(BsdfPhysics, StaysFiniteAtEveryExtreme) {
               lobes.push_back(described(LobeKind::Lambert));
             for (double c : cosines)
               for (double sign : {1.0, -1.0}) {
-                const Bsdf bsdf = seen(lobes, direction(c * sign));
+                const Bsdf<float> bsdf = seen(lobes, direction(c * sign));
                 for (double ci : cosines) {
-                  const BsdfValue value = bsdf.eval(direction(ci * sign, 0.8 + std::numbers::pi));
+                  const BsdfValue<float> value = bsdf.eval(direction(ci * sign, 0.8 + std::numbers::pi));
                   ASSERT_TRUE(finite(value.f()) && value.f().x >= 0.0f && value.pdf >= 0.0f)
                       << c << " " << ci << " " << alpha << " " << ior;
                 }
                 for (float x : corners)
                   for (float y : corners) {
-                    const BsdfSample sample = bsdf.sample(x, {x, y});
+                    const BsdfSample<float> sample = bsdf.sample(x, x, y);
                     ASSERT_TRUE(finite(sample.weight) && std::isfinite(sample.pdf))
                         << c << " " << alpha << " " << ior << " " << x << " " << y;
                     ASSERT_TRUE(sample.weight.x >= 0.0f && sample.pdf >= 0.0f);
@@ -185,8 +185,8 @@ TEST(BsdfPhysics, StaysFiniteAtEveryExtreme) {
 
 TEST(BsdfPhysics, BlackAndEmptySurfacesGiveNothing) {
   for (const Lobes &lobes : {Lobes{}, Lobes{described(LobeKind::Lambert, 0, 1, 0, glm::vec3(0.0f))}}) {
-    const Bsdf bsdf = seen(lobes, {0, 0, 1});
-    EXPECT_EQ(bsdf.sample(0.5f, {0.5f, 0.5f}).pdf, 0.0f);
+    const Bsdf<float> bsdf = seen(lobes, {0, 0, 1});
+    EXPECT_EQ(bsdf.sample(0.5f, 0.5f, 0.5f).pdf, 0.0f);
     EXPECT_FALSE(bsdf.smooth);
     EXPECT_EQ(bsdf.albedo(), glm::vec3(0.0f));
   }
@@ -198,7 +198,7 @@ TEST(BsdfPhysics, KnowsItsLobes) {
   EXPECT_FALSE(seen(lobes, {0, 0, 1}).smooth);
   lobes.push_back(described(LobeKind::Lambert, 0, 1, 0, {0.5f, 0.0f, 0.25f}));
   lobes.push_back(described(LobeKind::Mirror, 0, 1, 0, {0.25f, 0.5f, 0.0f}));
-  const Bsdf bsdf = seen(lobes, {0, 0, 1});
+  const Bsdf<float> bsdf = seen(lobes, {0, 0, 1});
   EXPECT_TRUE(bsdf.smooth);
   EXPECT_EQ(bsdf.shown(Component::Diffuse), glm::vec3(0.5f, 0.0f, 0.25f));
   EXPECT_EQ(bsdf.shown(Component::Transmission), glm::vec3(0.0f));
@@ -212,7 +212,7 @@ TEST(Frame, IsOrthonormalEverywhere) {
     // Every third normal lies within 1e-4 of a pole, where constructions of this kind break.
     const double z = k % 3 == 0 ? (1.0 - 5e-9 * random.uniform()) : 2.0 * random.uniform() - 1.0;
     const glm::vec3 n = direction(k % 2 == 0 ? z : -z, 7.0 * random.uniform());
-    const Frame frame(n);
+    const Frame<float> frame(n);
     // Three products of unit vectors, each rounded to an ulp, with n itself rounded.
     const float tolerance = 4.0f * 0x1p-23f;
     ASSERT_NEAR(glm::dot(frame.t, frame.b), 0.0f, tolerance);

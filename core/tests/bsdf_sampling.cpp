@@ -20,7 +20,7 @@ using testing::seen;
 
 struct Case {
   std::string name;
-  std::vector<LobeInputs> lobes;
+  std::vector<LobeInputs<float>> lobes;
   double width = 0.0; // of the narrowest microfacet lobe, in slopes of the half vector; 0: none
   double delta = 0.0; // probability of the delta lobes, known from how the case is built
 
@@ -29,13 +29,13 @@ struct Case {
   }
 };
 
-LobeInputs lobe(LobeKind kind, float color, float alpha = 0.0f, float ior = 1.5f, float shininess = 0.0f) {
+LobeInputs<float> lobe(LobeKind kind, float color, float alpha = 0.0f, float ior = 1.5f, float shininess = 0.0f) {
   return described(kind, alpha, ior, shininess, glm::vec3(color, 0.5f * color, 0.25f * color));
 }
 
 std::vector<Case> cases() {
   const float infinity = std::numeric_limits<float>::infinity();
-  const LobeInputs diffuse = lobe(LobeKind::Lambert, 0.6f);
+  const LobeInputs<float> diffuse = lobe(LobeKind::Lambert, 0.6f);
   std::vector<Case> all{{"Lambert", {diffuse}}};
   for (float alpha : {1e-3f, 1e-2f, 0.1f, 0.5f, 1.0f})
     all.push_back({"Beckmann " + std::to_string(alpha), {lobe(LobeKind::Beckmann, 1.0f, alpha, infinity)}, alpha});
@@ -67,7 +67,7 @@ struct Verdict {
 };
 
 // Draws from one Bsdf, expects what another one's pdf says.
-Verdict judge(const Bsdf &drawn, const Bsdf &expected_of, const Case &c, const glm::vec3 &wo, uint64_t seed) {
+Verdict judge(const Bsdf<float> &drawn, const Bsdf<float> &expected_of, const Case &c, const glm::vec3 &wo, uint64_t seed) {
   const testing::Domain domain = c.domain(wo);
   const testing::SquareFunction pdf = domain.density([&](const glm::vec3 &wi) { return double{expected_of.eval(wi).pdf}; });
   constexpr std::size_t rejected = kSide * kSide, delta = rejected + 1;
@@ -90,7 +90,7 @@ Verdict judge(const Bsdf &drawn, const Bsdf &expected_of, const Case &c, const g
   double sum = 0.0, sum2 = 0.0;
   for (int k = 0; k < kDraws; ++k) {
     const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-    const BsdfSample sample = drawn.sample(u, {x, y});
+    const BsdfSample<float> sample = drawn.sample(u, x, y);
     if (sample.delta) {
       observed[delta] += 1.0;
     } else if (!(sample.pdf > 0.0f)) {
@@ -118,7 +118,7 @@ TEST(BsdfSampling, DirectionsFollowThePdfAndWeightsTheAlbedo) {
   uint64_t seed = 100;
   for (const Case &c : all)
     for (double cosine : kCosines) {
-      const Bsdf bsdf = seen(c.lobes, direction(cosine));
+      const Bsdf<float> bsdf = seen(c.lobes, direction(cosine));
       const Verdict verdict = judge(bsdf, bsdf, c, direction(cosine), ++seed);
       EXPECT_GT(verdict.p, level) << c.name << ", cos " << cosine;
       EXPECT_GT(verdict.weight_p, level) << c.name << ", cos " << cosine;
@@ -130,7 +130,7 @@ TEST(BsdfSampling, AWrongRoughnessIsSeen) {
   for (float alpha : {1e-3f, 0.1f})
     for (double cosine : {1.0, 0.1}) {
       const Case wrong{"", {lobe(LobeKind::Beckmann, 1.0f, 1.02f * alpha)}, alpha};
-      const Bsdf right = seen({lobe(LobeKind::Beckmann, 1.0f, alpha)}, direction(cosine));
+      const Bsdf<float> right = seen({lobe(LobeKind::Beckmann, 1.0f, alpha)}, direction(cosine));
       EXPECT_LT(judge(right, seen(wrong.lobes, direction(cosine)), wrong, direction(cosine), 1).p, 1e-6)
           << alpha << " " << cosine;
     }
@@ -160,13 +160,13 @@ TEST(BsdfSampling, ThePdfIntegratesToWhatIsNotRejected) {
   // reach it (tan 45 degrees) only beyond exp(-1 / alpha^2) < 1e-10. Tolerance as for visible normals, times wi's own rounding.
   for (float alpha : {1e-2f, 0.1f, 0.2f}) {
     const glm::vec3 wo = direction(1.0);
-    const Bsdf bsdf = seen({lobe(LobeKind::Beckmann, 1.0f, alpha)}, wo);
+    const Bsdf<float> bsdf = seen({lobe(LobeKind::Beckmann, 1.0f, alpha)}, wo);
     const testing::Domain domain = testing::half_vector_domain(wo, alpha);
     const auto pdf = domain.density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).pdf}; });
     EXPECT_NEAR(testing::integrate_square(pdf, 16, 1e-7), 1.0, 1e-5) << alpha;
   }
   for (double cosine : kCosines) {
-    const Bsdf diffuse = seen({lobe(LobeKind::Lambert, 1.0f)}, direction(cosine));
+    const Bsdf<float> diffuse = seen({lobe(LobeKind::Lambert, 1.0f)}, direction(cosine));
     const auto pdf = testing::direction_domain().density([&](const glm::vec3 &wi) { return double{diffuse.eval(wi).pdf}; });
     EXPECT_NEAR(testing::integrate_square(pdf, 16, 1e-7), 1.0, 1e-5) << cosine;
   }
@@ -180,13 +180,13 @@ TEST(BsdfSampling, WeightPdfAndValueAgree) {
   for (const Case &c : cases())
     for (double cosine : kCosines) {
       const glm::vec3 wo = direction(cosine);
-      const Bsdf bsdf = seen(c.lobes, wo);
+      const Bsdf<float> bsdf = seen(c.lobes, wo);
       for (int k = 0; k < 1000; ++k) {
         const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-        const BsdfSample sample = bsdf.sample(u, {x, y});
+        const BsdfSample<float> sample = bsdf.sample(u, x, y);
         if (sample.delta || !(sample.pdf > 0.0f))
           continue;
-        const BsdfValue value = bsdf.eval(sample.wi);
+        const BsdfValue<float> value = bsdf.eval(sample.wi);
         const double s = std::min(1.0, double{sample.wi.z} + wo.z);
         const double tolerance = 1e-5 + 8.0 * 0x1p-22 / ((c.width > 0.0 ? c.width : 0.1) * s) + 0x1p-21 / (s * s);
         ASSERT_NEAR(value.pdf / sample.pdf, 1.0, tolerance) << c.name << " " << cosine;
@@ -201,15 +201,15 @@ TEST(BsdfSampling, PhongKeepsItsShapeHoweverNarrow) {
   for (float n : {10.0f, 1e3f, 1e5f})
     for (double cosine : {0.7, 0.01}) {
       const glm::vec3 wo = direction(cosine);
-      const Frame frame(reflect_local(wo));
+      const Frame<float> frame(reflect_local(wo));
       const glm::dvec3 t(frame.t), b(frame.b), mirrored(frame.n);
       std::vector<double> observed(16 * 16, 0.0);
       Random random(12);
       for (int k = 0; k < kDraws; ++k) {
         const float x = random.uniform(), y = random.uniform();
-        Lobe phong;
+        Lobe<float> phong;
         phong.shininess = n;
-        const glm::dvec3 wi(phong_sample(phong, wo, {x, y}).wi);
+        const glm::dvec3 wi(phong_sample(phong, wo, x, y));
         const glm::dvec3 difference = wi - mirrored;
         const double level = std::exp((n + 1.0) * std::log1p(-std::min(1.0, 0.5 * glm::dot(difference, difference))));
         const double turn = std::atan2(glm::dot(wi, b), glm::dot(wi, t)) / (2.0 * std::numbers::pi) + 0.5;
@@ -228,12 +228,12 @@ TEST(BsdfSampling, GlassReflectsWithProbabilityFresnel) {
   for (float side : {1.0f, -1.0f}) {
     glm::vec3 wo = direction(0.8);
     wo.z *= side;
-    const Bsdf glass = seen({lobe(LobeKind::Dielectric, 0.8f, 0, 1.5f)}, wo);
+    const Bsdf<float> glass = seen({lobe(LobeKind::Dielectric, 0.8f, 0, 1.5f)}, wo);
     const float reflectance = fresnel_dielectric(0.8f, side > 0.0f ? 1.5f : 1.0f / 1.5f);
     double reflected = 0.0;
     for (int k = 0; k < kDraws; ++k) {
       const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-      const BsdfSample sample = glass.sample(u, {x, y});
+      const BsdfSample<float> sample = glass.sample(u, x, y);
       ASSERT_TRUE(sample.delta);
       ASSERT_EQ(sample.weight.x, 0.8f);
       const bool same_side = sample.wi.z * side > 0.0f;

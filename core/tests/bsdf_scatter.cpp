@@ -19,8 +19,8 @@ using testing::Random;
 
 constexpr int kDraws = 250000, kSide = 16, kCells = kSide * kSide;
 
-LobeInputs rough(LobeKind kind, Facets facets, float roughness, float ior = 1.5f, float anisotropy = 0.0f) {
-  LobeInputs inputs = described(kind, roughness, ior, 0.0f, {0.9f, 0.6f, 0.3f});
+LobeInputs<float> rough(LobeKind kind, Facets facets, float roughness, float ior = 1.5f, float anisotropy = 0.0f) {
+  LobeInputs<float> inputs = described(kind, roughness, ior, 0.0f, {0.9f, 0.6f, 0.3f});
   inputs.distribution = facets;
   inputs.anisotropy = anisotropy;
   inputs.rotation = 0.1f;
@@ -30,7 +30,7 @@ LobeInputs rough(LobeKind kind, Facets facets, float roughness, float ior = 1.5f
 
 struct Case {
   std::string name;
-  std::vector<LobeInputs> lobes;
+  std::vector<LobeInputs<float>> lobes;
   double width = 0.0; // of the narrowest lobe, in slopes of the half vector; 0: wide
   float ior = 1.5f;   // by which what goes through is bent, from outside
   // Of the shading normal and of a lobe's own, against the surface.
@@ -65,14 +65,14 @@ struct Verdict {
 
 // wo above the plane, seen in the case's own frame: inside turns the surface over.
 Verdict judge(const Case &c, const glm::vec3 &wo, bool inside, uint64_t seed, const Case *expected_case = nullptr) {
-  const auto look = [&](Bsdf &bsdf, const Case &as) {
+  const auto look = [&](Bsdf<float> &bsdf, const Case &as) {
     const glm::vec3 ng(0.0f, 0.0f, 1.0f);
     bsdf.begin(wo, as.ns, ng, inside, true);
-    for (const LobeInputs &lobe : as.lobes)
+    for (const LobeInputs<float> &lobe : as.lobes)
       add_lobe(bsdf, lobe);
     bsdf.complete();
   };
-  Bsdf bsdf, other;
+  Bsdf<float> bsdf, other;
   look(bsdf, c);
   look(other, expected_case ? *expected_case : c);
   const Sides sides(c, wo, inside ? 1.0f / c.ior : c.ior);
@@ -90,9 +90,9 @@ Verdict judge(const Case &c, const glm::vec3 &wo, bool inside, uint64_t seed, co
         inside_mass += mass;
       }
     const auto value = domain->density([&](const glm::vec3 &wi) {
-      const BsdfValue drawn = bsdf.eval(wi, c.drawn(wi));
+      const BsdfValue<float> drawn = bsdf.eval(wi, c.drawn(wi));
       // What no facet connects weighs where another lobe draws it, and stands in the density that it is divided by.
-      const BsdfValue lit = bsdf.eval_lit(wi), facets = bsdf.eval(wi);
+      const BsdfValue<float> lit = bsdf.eval_lit(wi), facets = bsdf.eval(wi);
       const double f = drawn.f().x + lit.f().x - facets.f().x, density = drawn.pdf + lit.pdf - facets.pdf;
       return drawn.pdf > 0.0f ? f * drawn.pdf / density : 0.0;
     });
@@ -103,7 +103,7 @@ Verdict judge(const Case &c, const glm::vec3 &wo, bool inside, uint64_t seed, co
   double sum = 0.0, sum2 = 0.0;
   for (int k = 0; k < kDraws; ++k) {
     const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-    const BsdfSample sample = bsdf.sample(u, {x, y});
+    const BsdfSample<float> sample = bsdf.sample(u, x, y);
     if (!(sample.pdf > 0.0f)) {
       observed.back() += 1.0;
       continue;
@@ -137,14 +137,14 @@ std::vector<Case> cases() {
     all.push_back({"along", {rough(LobeKind::Glossy, facets, 0.5f, 1.5f, 0.7f)}, 0.2});
     all.push_back({"across", {rough(LobeKind::Glossy, facets, 0.4f, 1.5f, -0.5f)}, 0.1});
   }
-  LobeInputs metal = rough(LobeKind::Conductor, Facets::MultiGgx, 0.4f, 1.5f, 0.8f);
+  LobeInputs<float> metal = rough(LobeKind::Conductor, Facets::MultiGgx, 0.4f, 1.5f, 0.8f);
   metal.edge = {0.5f, 0.7f, 0.9f};
   all.push_back({"metal", {metal}, 0.1});
   metal.option = 1;
   metal.color = {0.2f, 0.9f, 1.4f};
   metal.edge = {3.9f, 2.4f, 2.1f};
   all.push_back({"gold", {metal}, 0.1});
-  LobeInputs old = rough(LobeKind::Glass, Facets::Ggx, 0.5f);
+  LobeInputs<float> old = rough(LobeKind::Glass, Facets::Ggx, 0.5f);
   old.rules = Rules::Blender3;
   all.push_back({"glass of Blender 3", {old}, 0.25});
   // About a normal that looks away from its face it draws on both sides.
@@ -153,24 +153,24 @@ std::vector<Case> cases() {
   all.push_back({.name = "glass of Blender 3 away", .lobes = {old}, .ns = away, .strays = true});
   old.distribution = Facets::MultiGgx;
   all.push_back({.name = "multiple glass of Blender 3 away", .lobes = {old}, .ns = away, .strays = true});
-  LobeInputs shirley = rough(LobeKind::Glossy, Facets::AshikhminShirley, 0.6f, 1.5f, 0.4f);
-  LobeInputs cloth = rough(LobeKind::Sheen, Facets::Ggx, 0.4f);
-  LobeInputs leaf = described(LobeKind::Translucent, 0.0f, 1.5f, 0.0f, {0.2f, 0.6f, 0.1f});
-  LobeInputs clay = described(LobeKind::Diffuse, 0.7f, 1.5f, 0.0f, {0.7f, 0.5f, 0.4f});
+  LobeInputs<float> shirley = rough(LobeKind::Glossy, Facets::AshikhminShirley, 0.6f, 1.5f, 0.4f);
+  LobeInputs<float> cloth = rough(LobeKind::Sheen, Facets::Ggx, 0.4f);
+  LobeInputs<float> leaf = described(LobeKind::Translucent, 0.0f, 1.5f, 0.0f, {0.2f, 0.6f, 0.1f});
+  LobeInputs<float> clay = described(LobeKind::Diffuse, 0.7f, 1.5f, 0.0f, {0.7f, 0.5f, 0.4f});
   clay.option = 1;
   all.push_back({"wide", {leaf, clay, cloth, shirley}});
   all.push_back({"everything", {leaf, clay, rough(LobeKind::Glass, Facets::MultiGgx, 0.8f), cloth}});
   // Bumped: the shading normal tilts, and two lobes have normals of their own.
-  LobeInputs bumped = clay;
+  LobeInputs<float> bumped = clay;
   bumped.normal = glm::normalize(glm::vec3(0.5f, -0.2f, 1.0f));
-  LobeInputs bumped_gloss = rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f);
+  LobeInputs<float> bumped_gloss = rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f);
   bumped_gloss.normal = glm::normalize(glm::vec3(-0.4f, 0.3f, 1.0f));
   all.push_back({"bumped", {bumped, bumped_gloss, leaf}, 0.0, 1.5f, glm::normalize(glm::vec3(0.2f, 0.3f, 1.0f)), 1});
-  LobeInputs bent_leaf = leaf;
+  LobeInputs<float> bent_leaf = leaf;
   bent_leaf.normal = bumped.normal;
   all.push_back({"bumped leaf", {bent_leaf, clay}, 0.0, 1.5f, glm::normalize(glm::vec3(-0.2f, 0.3f, 1.0f)), -1, 0});
   // A normal map that does not turn with the surface: the lobe faces inwards and gives nothing above, where it still draws.
-  LobeInputs turned = clay;
+  LobeInputs<float> turned = clay;
   turned.normal = glm::normalize(glm::vec3(0.9f, 0.1f, -0.4f));
   all.push_back({"turned away", {turned, rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f)}});
   // A coarse mesh: seen at a grazing angle the interpolated normal looks away from the viewer.

@@ -15,9 +15,9 @@ inline glm::vec3 direction(double cosine, double phi = 0.8) {
 }
 
 // roughness is alpha for Beckmann and of the socket for Blender's.
-inline LobeInputs described(LobeKind kind, float roughness = 0.0f, float ior = 1.5f, float shininess = 0.0f,
-                            const glm::vec3 &color = glm::vec3(1.0f)) {
-  LobeInputs inputs;
+inline LobeInputs<float> described(LobeKind kind, float roughness = 0.0f, float ior = 1.5f, float shininess = 0.0f,
+                                   const glm::vec3 &color = glm::vec3(1.0f)) {
+  LobeInputs<float> inputs;
   inputs.kind = kind;
   inputs.roughness = roughness;
   inputs.ior = ior;
@@ -27,17 +27,17 @@ inline LobeInputs described(LobeKind kind, float roughness = 0.0f, float ior = 1
 }
 
 // The plane z = 0, whose outward side is up.
-inline void look(Bsdf &bsdf, const std::vector<LobeInputs> &lobes, const glm::vec3 &wo) {
+inline void look(Bsdf<float> &bsdf, const std::vector<LobeInputs<float>> &lobes, const glm::vec3 &wo) {
   const bool inside = wo.z < 0.0f;
   const glm::vec3 n(0.0f, 0.0f, inside ? -1.0f : 1.0f);
   bsdf.begin(wo, n, n, inside, true);
-  for (const LobeInputs &lobe : lobes)
+  for (const LobeInputs<float> &lobe : lobes)
     add_lobe(bsdf, lobe);
   bsdf.complete();
 }
 
-inline Bsdf seen(const std::vector<LobeInputs> &lobes, const glm::vec3 &wo) {
-  Bsdf bsdf;
+inline Bsdf<float> seen(const std::vector<LobeInputs<float>> &lobes, const glm::vec3 &wo) {
+  Bsdf<float> bsdf;
   look(bsdf, lobes, wo);
   return bsdf;
 }

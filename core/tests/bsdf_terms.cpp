@@ -130,7 +130,7 @@ TEST(Fresnel, TakesTheEndsOfItsRange) {
     EXPECT_EQ(fresnel_dielectric(c, infinity), 1.0f);
     EXPECT_EQ(fresnel_dielectric(c, 0.0f), 1.0f);
     for (float eta : {1e-38f, 0.9f, 1.0f - 0x1p-24f, 1.0f + 0x1p-23f, 1.5f, 1e19f, 3e38f}) {
-      const Fresnel boundary = fresnel(c, eta);
+      const Fresnel<float> boundary = fresnel(c, eta);
       EXPECT_TRUE(boundary.reflectance >= 0.0f && boundary.reflectance <= 1.0f) << c << " " << eta;
       EXPECT_TRUE(boundary.cos_t >= 0.0f && boundary.cos_t <= 1.0f) << c << " " << eta;
     }
@@ -305,7 +305,7 @@ TEST(Coating, MatchesMpmath) {
        1.22974495865311e-15},
   };
   for (const auto &v : values) {
-    std::vector<LobeInputs> lobes{testing::described(LobeKind::Beckmann, v.alpha, v.ior)};
+    std::vector<LobeInputs<float>> lobes{testing::described(LobeKind::Beckmann, v.alpha, v.ior)};
     // wo + wi rounds by an ulp of 1 or less, which at the slope s <= 1.2 alpha moves exp(-s^2 / alpha^2) by 2 s / alpha times
     // the error over alpha. Fresnel's slope at eta near 1 and the other factors stay within 42 roundings.
     const double tolerance = (42.0 + 2.4 * 2.0 / v.alpha) * kUlp;

@@ -14,7 +14,7 @@ float seen_through(int panes, float clamp, bool clear) {
   studio.settings.film_transparent = studio.settings.transparent_glass = clear;
   lancer_lobe glass = lobe(LANCER_REFRACTION, 1.0f, 0.0f);
   glass.ior = constant(1.0f);
-  glass.rules = LANCER_RULES_45;
+  glass.rules = LANCER_RULES_BLENDER_45;
   const uint32_t wall = studio.add({}, glow(10.0f)), pane = studio.add({glass});
   studio.place(LANCER_PLANE, wall);
   for (int i = 0; i < panes; ++i)

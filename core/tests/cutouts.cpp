@@ -45,37 +45,5 @@ TEST(Cutouts, OtherFormulas) {
   EXPECT_FALSE(changed([](Material &m) { m.program.nodes[2].option = LANCER_PROJECT_BOX; }).painted);
 }
 
-// As kernels look it up. One of the materials that they shade.
-ColorPicture looked_up(Writing writing, void (*change)(Material &) = nullptr) {
-  Description description;
-  add_leaf_picture(description);
-  add_foliage_materials(description, writing);
-  if (change)
-    change(description.materials[0]);
-  std::vector<WideMaterial> wide(description.materials.size());
-  wide[0].nodes = 1;
-  return make_color_pictures(description.materials, wide, description.images)[0];
-}
-
-TEST(Cutouts, KernelsKnowThemByTheSameNodes) {
-  for (const Writing writing : {Writing::Plain, Writing::Mixed}) {
-    const ColorPicture leaf = looked_up(writing);
-    EXPECT_TRUE(leaf.image && leaf.covers && leaf.clears);
-    EXPECT_EQ(leaf.clamped, writing == Writing::Mixed);
-    EXPECT_EQ(leaf.whole, 1.0f);
-  }
-  // A part of it that is always clear.
-  const ColorPicture half = looked_up(Writing::Plain, [](Material &m) { m.program.nodes[5].inputs[0].value.x = 0.5f; });
-  EXPECT_TRUE(half.image);
-  EXPECT_EQ(half.whole, 0.5f);
-  // What only the nodes know.
-  EXPECT_FALSE(looked_up(Writing::Disguised).image);
-  EXPECT_FALSE(looked_up(Writing::Mixed, [](Material &m) { m.program.nodes[4].inputs[1].value.x = 0.5f; }).image);
-  EXPECT_FALSE(looked_up(Writing::Mixed, [](Material &m) { m.program.nodes[5].flags = 1; }).image);
-  // Alpha as it is and clamped, and the alpha of something else.
-  EXPECT_FALSE(looked_up(Writing::Mixed, [](Material &m) { m.lobes[0].weight.node = 3; }).image);
-  EXPECT_FALSE(looked_up(Writing::Plain, [](Material &m) { m.program.nodes[3].inputs[0].node = 0; }).image);
-}
-
 } // namespace
 } // namespace lancer_test

@@ -12,7 +12,7 @@ const glm::vec3 kWall(0.8f, 0.4f, 0.2f), kMetal(0.9f, 0.6f, 0.3f), kSky(0.6f, 0.
 lancer_lobe colored(uint32_t kind, const glm::vec3 &color, float roughness = 0.3f) {
   lancer_lobe result = lobe(kind, 1.0f, roughness);
   result.color = constant(color.x, color.y, color.z);
-  result.rules = LANCER_RULES_45;
+  result.rules = LANCER_RULES_BLENDER_45;
   return result;
 }
 

@@ -118,7 +118,7 @@ lancer_principled all_layers(uint32_t rules) {
 }
 
 TEST(MaterialRoom, PrincipledCountsItsLayers) {
-  for (const uint32_t rules : {LANCER_RULES_3, LANCER_RULES_45}) {
+  for (const uint32_t rules : {LANCER_RULES_BLENDER_3, LANCER_RULES_BLENDER_45}) {
     const lancer_principled principled = all_layers(rules);
     lancer_lobe layered = lobe(LANCER_PRINCIPLED, 0.5f);
     layered.rules = rules;
@@ -129,7 +129,7 @@ TEST(MaterialRoom, PrincipledCountsItsLayers) {
     EXPECT_EQ(description.messages.text(), "");
     // Frames: the shading normal; 4: the cloth's, the coat's, the stretched, the matte; 3: the coat's, the stretched, the
     // glass's.
-    EXPECT_EQ(room_of(description.materials[0]).frames, rules == LANCER_RULES_3 ? 4u : 5u);
+    EXPECT_EQ(room_of(description.materials[0]).frames, rules == LANCER_RULES_BLENDER_3 ? 4u : 5u);
     const Material twelve = many(12, layered, description);
     EXPECT_EQ(room_of(twelve).lobes, 72u);
     EXPECT_NE(description.messages.text().find("material 'Wood': 72 lobes may meet in one place, the first 64 are kept\n"),

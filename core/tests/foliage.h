@@ -54,7 +54,7 @@ inline void add_foliage_materials(Description &description, Writing writing, flo
   matt.color = result_of(2);
   matt.weight = result_of(writing == Writing::Mixed ? 4 : 3);
   // So that kernels shade it.
-  matt.rules = LANCER_RULES_45;
+  matt.rules = LANCER_RULES_BLENDER_45;
   lancer_material leaf = black(), pane = black(), solid = black();
   leaf.name = pane.name = solid.name = "material";
   leaf.lobes = &matt;

@@ -18,7 +18,7 @@ struct Worst {
     const glm::dvec3 t(1.0 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x),
         b(n.x * n.y * a, sign + n.y * n.y * a, -n.y);
     EXPECT_LE(std::abs(glm::dot(t, b)) + std::abs(glm::dot(t, n)) + std::abs(glm::dot(b, n)), 0x1p-49);
-    const Frame frame{glm::vec3(n)};
+    const Frame<float> frame{glm::vec3(n)};
     const glm::dvec3 axis[3] = {frame.t, frame.b, frame.n}, exact[3] = {t, b, n};
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k)

@@ -16,9 +16,10 @@ std::vector<lancer_lobe> mixture(Random &random) {
     one = lobe(kinds[random() % 4], 0.0f, random() % 4 ? number(random, 0.02f, 1.0f) : 0.0f);
     if (one.kind == LANCER_DIFFUSE)
       one.roughness = constant(random() % 6 ? 0.0f : 0.5f);
-    const uint32_t distributions[] = {LANCER_GGX, LANCER_MULTI_GGX, LANCER_MULTI_GGX, LANCER_BECKMANN_DISTRIBUTION};
+    const uint32_t distributions[] = {LANCER_DISTRIBUTION_GGX, LANCER_DISTRIBUTION_MULTI_GGX, LANCER_DISTRIBUTION_MULTI_GGX,
+                                      LANCER_DISTRIBUTION_BECKMANN};
     one.distribution = distributions[random() % 8 ? random() % 3 : 3];
-    one.rules = random() % 2 ? LANCER_RULES_4 : LANCER_RULES_45;
+    one.rules = random() % 2 ? LANCER_RULES_BLENDER_4 : LANCER_RULES_BLENDER_45;
     one.color = random() % 8 ? color(random) : constant(0.0f);
     one.edge = color(random);
     one.ior = constant(random() % 2 ? number(random, 1.0f, 2.5f) : random() % 2 ? 1.0f : 0.7f);

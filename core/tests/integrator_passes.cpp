@@ -11,7 +11,7 @@ namespace {
 // Without metal, glass, sheen, coat and light.
 lancer_principled plain_principled() {
   lancer_principled p = {};
-  p.rules = LANCER_RULES_45;
+  p.rules = LANCER_RULES_BLENDER_45;
   for (lancer_parameter *input :
        {&p.metallic, &p.diffuse_roughness, &p.specular, &p.anisotropic, &p.anisotropic_rotation, &p.transmission,
         &p.transmission_roughness, &p.coat, &p.coat_roughness, &p.coat_normal, &p.sheen, &p.emission})

@@ -24,7 +24,7 @@ void add_sender(Studio &studio, uint32_t ray, bool single) {
     sender = single ? lobe(LANCER_MIRROR, 1.0f) : lobe(LANCER_GLOSSY, 1.0f, 0.7f);
   if (ray == LANCER_RAY_TRANSMISSION)
     sender = lobe(LANCER_REFRACTION, 1.0f, single ? 0.0f : 0.7f);
-  sender.rules = LANCER_RULES_45;
+  sender.rules = LANCER_RULES_BLENDER_45;
   if (ray != LANCER_RAY_CAMERA)
     studio.place(LANCER_PLANE, studio.add({sender}));
 }

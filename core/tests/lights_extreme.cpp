@@ -5,11 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "bsdf_domain.h"
-#include "lights/area_light.h"
 #include "lights/few_lights.h"
 #include "lights/light_tree.h"
-#include "lights/point_light.h"
-#include "lights/sun_light.h"
+#include "lights/round_light.h"
 #include "statistics.h"
 
 namespace lancer {
@@ -38,7 +36,9 @@ Light rectangle(double half_x, double half_y, const glm::dvec3 &position, const 
   light.position = position;
   light.emission = glm::dvec3(1.0);
   light.z = glm::normalize(facing);
-  complete_frame(light.z, light.x, light.y);
+  const FrameAxes axes = complete_frame(Vector3<double>(light.z));
+  light.x = axes.s;
+  light.y = axes.t;
   light.half_x = half_x;
   light.half_y = half_y;
   light.area = 4.0 * half_x * half_y;
@@ -70,7 +70,7 @@ TEST(LightsExtreme, RectanglesFillTheirSolidAngle) {
         const glm::dvec3 p(0.0);
         const double mean = testing::integrate_square(
             [&](const glm::dvec2 &u) {
-              const LightSample sample = sample_area(light, p, glm::vec2(u));
+              const LightSample sample = lancer::sample(light, p, glm::vec2(u));
               return sample.pdf > 0.0 ? 1.0 / sample.pdf : 0.0;
             },
             2, 0.0);
@@ -86,13 +86,13 @@ TEST(LightsExtreme, BallsFillTheirCone) {
     light.emission = glm::dvec3(1.0);
     light.radius = 1.0;
     light.soft_falloff = false;
-    const LightSample sample = sample_point(light, glm::dvec3(0.0), {0.3f, 0.7f});
+    const LightSample sample = lancer::sample(light, glm::dvec3(0.0), {0.3f, 0.7f});
     const long double d = distance, sin2 = 1.0l / (d * d), cosine = std::sqrt((d - 1.0l) * (d + 1.0l)) / d;
     const long double angle = 2.0l * glm::pi<long double>() * sin2 / (1.0l + cosine);
     ASSERT_GT(sample.pdf, 0.0) << distance;
     EXPECT_NEAR(double(angle * sample.pdf), 1.0, 1e-9) << distance;
     // What a ray finds is what is sampled, with the same density; directions near the rim may round beyond it.
-    const LightHit hit = meet_point(light, glm::dvec3(0.0), glm::normalize(light.position));
+    const LightHit hit = meet(light, glm::dvec3(0.0), glm::normalize(light.position));
     EXPECT_NEAR(hit.pdf / sample.pdf, 1.0, 1e-12) << distance;
   }
 }
@@ -104,7 +104,7 @@ TEST(LightsExtreme, SunsFillTheirDisk) {
     light.emission = glm::dvec3(1.0);
     const double s = std::sin(0.25 * angle);
     light.one_minus_cos_sun = 2.0 * s * s;
-    const LightSample sample = sample_sun(light, {0.4f, 0.6f});
+    const LightSample sample = lancer::sample(light, glm::dvec3(0.0), {0.4f, 0.6f});
     const long double quarter = std::sin(0.25l * angle);
     EXPECT_NEAR(double(4.0l * glm::pi<long double>() * quarter * quarter * sample.pdf), 1.0, 1e-12) << angle;
   }
@@ -124,14 +124,14 @@ TEST(LightsExtreme, DensitiesAreNumbers) {
         for (const double x : {0.0, 1e-30, 0.5, 1.0, 1e6})
           for (const float u : {0.0f, 0.5f, 1.0f - 0x1p-24f}) {
             const glm::dvec3 p(x, 0.0, 0.0);
-            for (const LightSample &sample : {sample_area(area, p, {u, u}), sample_point(ball, p, {u, u})})
+            for (const LightSample &sample : {lancer::sample(area, p, {u, u}), lancer::sample(ball, p, {u, u})})
               if (sample.pdf > 0.0) {
                 // Turned into the frame of a lamp so far away that the frame's own roundings count.
                 EXPECT_NEAR(glm::length(sample.wi), 1.0, 128.0 * 0x1p-53);
                 EXPECT_FALSE(std::isnan(sample.radiance.x) || std::isnan(sample.distance));
               }
             for (const glm::dvec3 &wi : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::normalize(glm::dvec3(1, 0, 1e-9))})
-              for (const LightHit &hit : {meet_area(area, p, wi), meet_point(ball, p, wi)}) {
+              for (const LightHit &hit : {meet(area, p, wi), meet(ball, p, wi)}) {
                 EXPECT_FALSE(std::isnan(hit.pdf) || hit.pdf < 0.0 || std::isnan(hit.radiance.x));
               }
           }

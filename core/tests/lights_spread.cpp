@@ -1,5 +1,5 @@
 // Area lights of little spread: only the part that shines on a point is sampled, and nothing beside the light.
-#include "lights/area_light.h"
+#include "lights/light.h"
 
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
@@ -24,11 +24,11 @@ TEST(AreaLightSpread, IsSampledWhereItShinesOnThePoint) {
   const glm::dvec3 p = light.position - 1.5 * light.z + 0.65 * (light.x + light.y);
   int met = 0;
   for (int i = 0; i < 1000; ++i) {
-    const LightSample s = sample_area(light, p, {uniform(random), uniform(random)});
+    const LightSample s = sample(light, p, {uniform(random), uniform(random)});
     if (!(s.pdf > 0.0))
       continue;
     ++met;
-    const LightHit hit = meet_area(light, p, s.wi);
+    const LightHit hit = meet(light, p, s.wi);
     // The way there and back is some roundings of double.
     EXPECT_NEAR(hit.distance, s.distance, 1e-12);
     EXPECT_NEAR(hit.pdf, s.pdf, 1e-9 * s.pdf);

@@ -27,7 +27,7 @@ std::unique_ptr<Studio> plane(Bump bump, const glm::dvec3 &sun = {0, 0, 1}, doub
       node(LANCER_NODE_VECTOR_MATH, LANCER_VECTOR_DOT_PRODUCT, {result_of(0), constant(kSlope.x, kSlope.y, kSlope.z)}),
       node(LANCER_NODE_BUMP, 0, {constant(1.0f), constant(1.0f), result_of(1), constant(0.0f), constant(1.0f)})};
   lancer_lobe white = lobe(LANCER_LAMBERT, 1.0f);
-  white.rules = LANCER_RULES_45;
+  white.rules = LANCER_RULES_BLENDER_45;
   white.normal = bump == Bump::Lobe ? result_of(2) : lobe_normal;
   lancer_material material = black();
   material.flags = flags;
@@ -84,7 +84,7 @@ std::unique_ptr<Studio> aslant(lancer_lobe look) {
   mesh.vertex_count = 3;
   mesh.triangle_count = 1;
   studio->add(mesh);
-  look.rules = LANCER_RULES_45;
+  look.rules = LANCER_RULES_BLENDER_45;
   studio->place(LANCER_MESH, studio->add({look}));
   studio->add(studio->sun({0.2, 0, 1}, std::numbers::pi_v<float>));
   studio->look({-4, 0, 1}, {0, 0, 0});

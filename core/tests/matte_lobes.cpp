@@ -21,20 +21,24 @@ using testing::Random;
 
 struct Case {
   std::string name;
-  std::function<Lobe(const glm::vec3 &wo)> make;
+  std::function<Lobe<float>(const glm::vec3 &wo)> make;
   bool reciprocal = true;
 };
 
-ColorValue value_of(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
+ColorValue<float> value_of(const Lobe<float> &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
   if (lobe.shape == LobeShape::Matte)
     return matte_eval(lobe, wo, wi);
   return lobe.shape == LobeShape::Sheen ? sheen_eval(lobe, wo, wi) : gloss_eval(lobe, wo, wi);
 }
 
-glm::vec3 drawn(const Lobe &lobe, const glm::vec3 &wo, glm::vec2 u) {
-  if (lobe.shape == LobeShape::Matte)
-    return matte_sample(lobe, u);
-  return lobe.shape == LobeShape::Sheen ? sheen_sample(lobe, wo, u) : gloss_sample(lobe, wo, u);
+glm::vec3 drawn(const Lobe<float> &lobe, const glm::vec3 &wo, glm::vec2 u) {
+  if (lobe.shape == LobeShape::Matte) {
+    const glm::vec3 w = is_matte(lobe, Matte::Velvet)     ? velvet_sample(u.x, u.y)
+                        : is_matte(lobe, Matte::Minnaert) ? minnaert_sample(lobe, u.x, u.y)
+                                                          : glm::vec3(warp_cosine_hemisphere(u.x, u.y));
+    return matte_transmits(lobe) ? glm::vec3(w.x, w.y, -w.z) : w;
+  }
+  return lobe.shape == LobeShape::Sheen ? sheen_sample(lobe, wo, u.x, u.y) : gloss_sample(lobe, wo, u.x, u.y);
 }
 
 std::vector<Case> cases() {
@@ -51,7 +55,7 @@ std::vector<Case> cases() {
     all.push_back({"stretched" + name, [=](const glm::vec3 &) { return make_ashikhmin(white, r, 0.4f * r); }});
     all.push_back({"clear coat" + name, [=](const glm::vec3 &wo) { return make_clear_coat(white, r, wo.z); }});
   }
-  all.push_back({"dust", [=](const glm::vec3 &) { return make_matte(Matte::DustSheen, white); }});
+  all.push_back({"dust", [=](const glm::vec3 &) { return make_matte<float>(Matte::DustSheen, white); }});
   for (const float k : {0.0f, 0.5f, 1.0f, 4.0f})
     for (const float rho : {0.2f, 0.9f})
       all.push_back({"Minnaert " + std::to_string(k) + ", " + std::to_string(rho),
@@ -63,7 +67,7 @@ double over_directions(const std::function<double(const glm::vec3 &)> &f) {
   return testing::integrate_square(testing::direction_domain().density(f), 8, 1e-6);
 }
 
-double albedo(const Lobe &lobe, const glm::vec3 &wo, int channel = 0) {
+double albedo(const Lobe<float> &lobe, const glm::vec3 &wo, int channel = 0) {
   return over_directions([&](const glm::vec3 &wi) { return double{value_of(lobe, wo, wi).f[channel]}; });
 }
 
@@ -76,7 +80,7 @@ TEST(MatteLobes, FallAsTheirDensitySays) {
   for (const Case &c : all)
     for (const double cosine : cosines) {
       const glm::vec3 wo = direction(cosine);
-      const Lobe lobe = c.make(wo);
+      const Lobe<float> lobe = c.make(wo);
       const testing::Domain domain = testing::direction_domain();
       const testing::SquareFunction pdf =
           domain.density([&](const glm::vec3 &wi) { return double{value_of(lobe, wo, wi).pdf}; });
@@ -128,7 +132,7 @@ TEST(MatteLobes, AreDarkBehind) {
     EXPECT_EQ(value_of(c.make(wo), wo, below).f, glm::vec3(0.0f)) << c.name;
     EXPECT_EQ(value_of(c.make(wo), wo, below).pdf, 0.0f) << c.name;
   }
-  const Lobe paper = make_translucent(glm::vec3(1.0f));
+  const Lobe<float> paper = make_matte<float>(Matte::Translucent, glm::vec3(1.0f));
   EXPECT_EQ(value_of(paper, wo, direction(0.3)).f, glm::vec3(0.0f));
   EXPECT_NEAR(value_of(paper, wo, below).f.x, 0.3 / std::numbers::pi, 1e-7);
   EXPECT_LT(drawn(paper, wo, {0.3f, 0.6f}).z, 0.0f);
@@ -136,7 +140,7 @@ TEST(MatteLobes, AreDarkBehind) {
 
 // The model has edges where wi is as high as wo and where both are a quarter turn apart: cells that end there see smooth
 // functions.
-double oren_nayar_albedo(const Lobe &lobe, const glm::vec3 &wo) {
+double oren_nayar_albedo(const Lobe<float> &lobe, const glm::vec3 &wo) {
   const testing::SquareFunction f =
       testing::direction_domain().density([&](const glm::vec3 &wi) { return double{matte_eval(lobe, wo, wi).f.x}; });
   return testing::integrate_square(f, 4, 1e-7, {0.0, 0.0}, {wo.z, 1.0}) +
@@ -149,7 +153,7 @@ TEST(MatteLobes, OrenNayarKeepsItsLight) {
   for (const float r : {1e-4f, 0.2f, 0.7f, 1.0f})
     for (const double cosine : {1.0, 0.7, 0.3, 0.05, 1e-3}) {
       const glm::vec3 wo = direction(cosine, 0.0);
-      const Lobe single = make_diffuse(white, white, r, false, wo.z), all = make_diffuse(white, white, r, true, wo.z);
+      const Lobe<float> single = make_diffuse(white, white, r, false, wo.z), all = make_diffuse(white, white, r, true, wo.z);
       const double expected = single.alpha_x * std::numbers::pi + single.alpha_y * oren_nayar_g(wo.z);
       // Some thirty float roundings.
       EXPECT_NEAR(oren_nayar_albedo(single, wo), expected, 3e-6) << r << " " << cosine;
@@ -190,7 +194,7 @@ TEST(MatteLobes, SheenScattersItsAlbedo) {
   for (const float r : {0.1f, 0.5f, 1.0f})
     for (const double cosine : {0.9, 0.4, 0.1}) {
       const glm::vec3 wo = direction(cosine);
-      const Lobe lobe = make_sheen(weight, r, wo.z);
+      const Lobe<float> lobe = make_sheen(weight, r, wo.z);
       EXPECT_NEAR(albedo(lobe, wo), 1.0, 1e-4) << r << " " << cosine;
       EXPECT_EQ(lobe.albedo, lobe.color);
       EXPECT_LE(lobe.albedo.x, weight.x);
@@ -221,7 +225,7 @@ TEST(MatteLobes, SheenIsLinearBetweenItsNodes) {
 TEST(MatteLobes, SheenWithHardlyAnAlbedoIsNothing) {
   const glm::vec3 white(1.0f);
   EXPECT_GT(make_sheen(white, 1.0f / 31.0f, 3.25f / 31.0f).color.x, 1e-5f);
-  const Lobe lobe = make_sheen(white, 1.0f / 31.0f, 3.75f / 31.0f);
+  const Lobe<float> lobe = make_sheen(white, 1.0f / 31.0f, 3.75f / 31.0f);
   EXPECT_EQ(lobe.color, glm::vec3(0.0f));
   EXPECT_EQ(lobe.albedo, glm::vec3(0.0f));
 }
@@ -232,14 +236,14 @@ TEST(MatteLobes, AshikhminSamplesWeighItsIntegral) {
   for (const float r : {0.6f, 1.0f})
     for (const float degrees : {20.0f, 65.0f, 80.0f}) {
       const glm::vec3 wo = direction(std::cos(glm::radians(degrees)));
-      const Lobe lobe = make_ashikhmin(glm::vec3(1.0f), r * r, r * r);
+      const Lobe<float> lobe = make_ashikhmin(glm::vec3(1.0f), r * r, r * r);
       double sum = 0.0;
       for (int i = 0; i < kSide; ++i)
         for (int j = 0; j < kSide; ++j) {
           // Half vectors turn as roots of u.y and of 1 - u.y do; of t they turn evenly at both ends.
           const double t = (j + 0.5) / kSide, u = t * t * (3.0 - 2.0 * t), du = 6.0 * t * (1.0 - t);
           const glm::vec3 wi = drawn(lobe, wo, glm::vec2((i + 0.5) / kSide, u));
-          const ColorValue term = wi.z > 0.0f ? value_of(lobe, wo, wi) : ColorValue{};
+          const ColorValue<float> term = wi.z > 0.0f ? value_of(lobe, wo, wi) : ColorValue<float>{};
           sum += term.pdf > 0.0f ? du * double{term.f.x} / term.pdf : 0.0;
         }
       // A grid's middles are off by 1 / (24 kSide^2) of the slope with which a row begins, here 6, and of that by which it
@@ -255,7 +259,7 @@ TEST(MatteLobes, GlossGoesOverIntoAMirror) {
   EXPECT_TRUE(make_clear_coat(glm::vec3(1.0f), 0.0f, 0.5f).delta);
   const glm::vec3 wo(0.0f, 0.0f, 1.0f);
   // A quarter of what a dielectric of IOR 1.5 reflects along its normal.
-  const Lobe coat = make_clear_coat(glm::vec3(1.0f), 0.0f, wo.z);
+  const Lobe<float> coat = make_clear_coat(glm::vec3(1.0f), 0.0f, wo.z);
   EXPECT_NEAR(coat.color.x * gloss_delta_weight(coat, wo), 0.01f, 1e-8f);
   EXPECT_NEAR(coat.albedo.x, 0.01f, 1e-8f);
 }

@@ -18,7 +18,7 @@ using testing::seen;
 
 constexpr double kPiExact = std::numbers::pi;
 
-Bsdf minnaert(float k, const glm::vec3 &color, const glm::vec3 &wo) {
+Bsdf<float> minnaert(float k, const glm::vec3 &color, const glm::vec3 &wo) {
   return seen({described(LobeKind::Minnaert, 0.0f, 1.5f, k, color)}, wo);
 }
 
@@ -62,8 +62,8 @@ TEST(Minnaert, OneIsLambert) {
   Random random(3);
   for (int i = 0; i < 200; ++i) {
     const glm::vec3 wo = direction(0.01 + 0.99 * random.uniform()), wi = direction(0.01 + 0.99 * random.uniform(), 3.0);
-    const Bsdf lambert = seen({described(LobeKind::Lambert, 0, 1.5f, 0, glm::vec3(0.7f))}, wo);
-    const BsdfValue one = minnaert(1.0f, glm::vec3(0.7f), wo).eval(wi), other = lambert.eval(wi);
+    const Bsdf<float> lambert = seen({described(LobeKind::Lambert, 0, 1.5f, 0, glm::vec3(0.7f))}, wo);
+    const BsdfValue<float> one = minnaert(1.0f, glm::vec3(0.7f), wo).eval(wi), other = lambert.eval(wi);
     // A handful of roundings of 6e-8.
     EXPECT_NEAR(one.f().x / other.f().x, 1.0, 5e-7);
     EXPECT_NEAR(one.pdf / other.pdf, 1.0, 5e-7);
@@ -84,7 +84,7 @@ TEST(Minnaert, SmallKMakesAFullMoonFlat) {
 }
 
 double albedo(float k, const glm::vec3 &color, const glm::vec3 &wo, int channel) {
-  const Bsdf bsdf = minnaert(k, color, wo);
+  const Bsdf<float> bsdf = minnaert(k, color, wo);
   return testing::integrate_square(
       testing::direction_domain().density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).f()[channel]}; }), 16, 1e-7);
 }
@@ -97,7 +97,7 @@ TEST(Minnaert, AlbedoIsItsClosedFormAndAtMostOne) {
         const glm::vec3 wo = direction(cosine), color(rho, 0.3f * rho, 0.0f);
         const double m = k < 1.0f ? std::pow(rho, 1.0 / (1.0 - k)) : 0.0;
         const double want = rho * std::pow(std::max(double{wo.z}, m), k - 1.0);
-        const Bsdf bsdf = minnaert(k, color, wo);
+        const Bsdf<float> bsdf = minnaert(k, color, wo);
         EXPECT_NEAR(albedo(k, color, wo, 0), want, 1e-5 * std::max(want, 0.1)) << k << " " << rho << " " << cosine;
         EXPECT_NEAR(bsdf.albedo().x, want, 2e-6 + 2e-5 * std::abs(k - 1.0) * want) << k << " " << rho << " " << cosine;
         EXPECT_LE(bsdf.albedo().x, 1.0f + 4e-6f) << k << " " << rho << " " << cosine;
@@ -107,7 +107,7 @@ TEST(Minnaert, AlbedoIsItsClosedFormAndAtMostOne) {
 
 TEST(Minnaert, AMixtureKeepsTheBoundOfItsColour) {
   // Half of a surface is half of what the whole one gives: the weight is no colour.
-  LobeInputs half = described(LobeKind::Minnaert, 0.0f, 1.5f, 0.5f, glm::vec3(0.6f));
+  LobeInputs<float> half = described(LobeKind::Minnaert, 0.0f, 1.5f, 0.5f, glm::vec3(0.6f));
   half.weight = glm::vec3(0.5f);
   const glm::vec3 wo = direction(0.1), wi = direction(0.2);
   EXPECT_FLOAT_EQ(seen({half}, wo).eval(wi).f().x, 0.5f * minnaert(0.5f, glm::vec3(0.6f), wo).eval(wi).f().x);
@@ -119,10 +119,10 @@ TEST(Minnaert, EverySampleHasTheAlbedoAsItsWeight) {
   for (const float k : {0.0f, 0.4f, 1.0f, 3.0f, 300.0f})
     for (const double cosine : {1.0, 0.3, 0.01}) {
       const glm::vec3 wo = direction(cosine), color(0.4f, 0.2f, 0.1f);
-      const Bsdf bsdf = minnaert(k, color, wo);
+      const Bsdf<float> bsdf = minnaert(k, color, wo);
       for (int i = 0; i < 200; ++i) {
         const float u = random.uniform(), x = random.uniform(), y = random.uniform();
-        const BsdfSample sample = bsdf.sample(u, {x, y});
+        const BsdfSample<float> sample = bsdf.sample(u, x, y);
         if (bsdf.albedo().x == 0.0f || !(sample.pdf > 0.0f))
           continue;
         EXPECT_NEAR(sample.weight.x / bsdf.albedo().x, 1.0f, 1e-5f) << k << " " << cosine;
@@ -136,18 +136,18 @@ TEST(Minnaert, ExtremesStayFinite) {
     for (const float rho : {0.0f, 1e-38f, 1e-10f, 1.0f, 1e30f})
       for (const float z : {-0.3f, 0.0f, 1e-38f, 1e-20f, 1e-7f, 1.0f}) {
         const glm::vec3 wo(std::sqrt(1.0f - z * z), 0.0f, z);
-        Bsdf bsdf;
+        Bsdf<float> bsdf;
         const glm::vec3 up(0, 0, 1);
         bsdf.begin(wo, up, up, false, true);
         add_lobe(bsdf, described(LobeKind::Minnaert, 0.0f, 1.5f, k, glm::vec3(rho)));
         bsdf.complete();
         for (const float wi_z : {1e-38f, 1e-20f, 1e-3f, 1.0f}) {
-          const BsdfValue value = bsdf.eval({std::sqrt(1.0f - wi_z * wi_z), 0.0f, wi_z});
+          const BsdfValue<float> value = bsdf.eval({std::sqrt(1.0f - wi_z * wi_z), 0.0f, wi_z});
           EXPECT_TRUE(std::isfinite(value.f().x) && value.f().x >= 0.0f) << k << " " << rho << " " << z << " " << wi_z;
           EXPECT_TRUE(std::isfinite(value.pdf)) << k << " " << rho << " " << z;
         }
         for (const float x : {0.0f, 0.3f, 1.0f - 0x1p-24f}) {
-          const BsdfSample sample = bsdf.sample(random.uniform(), {x, random.uniform()});
+          const BsdfSample<float> sample = bsdf.sample(random.uniform(), x, random.uniform());
           EXPECT_TRUE(std::isfinite(sample.wi.x) && std::isfinite(sample.weight.x) && std::isfinite(sample.pdf))
               << k << " " << rho << " " << z << " " << x;
         }

@@ -68,7 +68,7 @@ std::string refusal(const lancer_node &bad) {
 
 TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   EXPECT_EQ(refusal(add(result_of(0))), "");
-  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind 22 is none");
+  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind 28 is none");
   EXPECT_EQ(refusal(node(LANCER_NODE_MATH, LANCER_MATH_COUNT)), "material 'Wood': node 1: option 41 >= 41 options");
   EXPECT_EQ(refusal(add(result_of(1))), "material 'Wood': node 1: input 0 names node 1, which does not come before it");
   EXPECT_EQ(refusal(add(result_of(-2))), "material 'Wood': node 1: input 0 names node -2, which does not come before it");
@@ -187,7 +187,7 @@ TEST(NodesProgram, ValuesOfNodesAreBroughtIntoRange) {
     const glm::vec4 values(value);
     return evaluate(lobe, std::span(&values, 1));
   };
-  const LobeInputs low = at(-3.0f), high = at(7.0f), none = at(NAN);
+  const LobeInputs<float> low = at(-3.0f), high = at(7.0f), none = at(NAN);
   EXPECT_EQ(low.color, glm::vec3(0.0f));
   EXPECT_EQ(low.roughness, 0.0f);
   EXPECT_EQ(low.ior, 1e-5f);

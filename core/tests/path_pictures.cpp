@@ -49,7 +49,7 @@ uint32_t add_pictured(Studio &studio, Random &random, uint32_t image) {
   }
   // Not rough, so that kernels know it.
   lancer_lobe matte = lobe(LANCER_DIFFUSE, 0.8f, 0.0f);
-  matte.rules = LANCER_RULES_45;
+  matte.rules = LANCER_RULES_BLENDER_45;
   matte.color = result_of(1);
   if (random() % 2)
     matte.weight = result_of(share);

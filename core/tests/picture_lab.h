@@ -160,7 +160,7 @@ private:
 // As the newest Blender has it.
 inline lancer_lobe newest(uint32_t kind, float color, float roughness = 0.3f) {
   lancer_lobe result = lobe(kind, color, roughness);
-  result.rules = LANCER_RULES_45;
+  result.rules = LANCER_RULES_BLENDER_45;
   return result;
 }
 

@@ -12,8 +12,8 @@ namespace lancer::testing {
 
 inline constexpr Rules kAllRules[] = {Rules::Blender3, Rules::Blender4, Rules::Blender45};
 
-inline PrincipledInputs plain(Rules rules) {
-  PrincipledInputs in;
+inline PrincipledInputs<float> plain(Rules rules) {
+  PrincipledInputs<float> in;
   in.rules = rules;
   in.base_color = {0.8f, 0.5f, 0.2f};
   if (rules == Rules::Blender3) {
@@ -23,11 +23,12 @@ inline PrincipledInputs plain(Rules rules) {
   return in;
 }
 
-inline void look(Bsdf &bsdf, const PrincipledInputs &in, const glm::vec3 &wo, const glm::vec3 &weight = glm::vec3(1.0f)) {
+inline void look(Bsdf<float> &bsdf, const PrincipledInputs<float> &in, const glm::vec3 &wo,
+                 const glm::vec3 &weight = glm::vec3(1.0f)) {
   const bool inside = wo.z < 0.0f;
   const glm::vec3 n(0.0f, 0.0f, inside ? -1.0f : 1.0f);
   bsdf.begin(wo, n, n, inside, true);
-  LobeInputs lobe = described(LobeKind::Principled);
+  LobeInputs<float> lobe = described(LobeKind::Principled);
   lobe.rules = in.rules;
   lobe.weight = weight;
   lobe.tangent = {1.0f, 0.0f, 0.0f};
@@ -35,15 +36,15 @@ inline void look(Bsdf &bsdf, const PrincipledInputs &in, const glm::vec3 &wo, co
   bsdf.complete();
 }
 
-inline glm::vec3 value(const PrincipledInputs &in, const glm::vec3 &wo, const glm::vec3 &wi,
+inline glm::vec3 value(const PrincipledInputs<float> &in, const glm::vec3 &wo, const glm::vec3 &wi,
                        const glm::vec3 &weight = glm::vec3(1.0f)) {
-  Bsdf bsdf;
+  Bsdf<float> bsdf;
   look(bsdf, in, wo, weight);
   return bsdf.eval(wi).f();
 }
 
-inline glm::vec3 emitted(const PrincipledInputs &in, const glm::vec3 &wo) {
-  Bsdf bsdf;
+inline glm::vec3 emitted(const PrincipledInputs<float> &in, const glm::vec3 &wo) {
+  Bsdf<float> bsdf;
   look(bsdf, in, wo);
   return bsdf.emission;
 }

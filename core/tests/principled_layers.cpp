@@ -18,9 +18,9 @@ struct Mean {
 };
 
 // Light from a white sky, by the sampler, with its standard error from rows of a jittered grid.
-Mean under_sky(const PrincipledInputs &in, const glm::vec3 &wo, uint64_t seed) {
+Mean under_sky(const PrincipledInputs<float> &in, const glm::vec3 &wo, uint64_t seed) {
   constexpr int kRows = 32, kSide = 24;
-  Bsdf bsdf;
+  Bsdf<float> bsdf;
   look(bsdf, in, wo);
   Random random(seed);
   Mean mean;
@@ -29,9 +29,11 @@ Mean under_sky(const PrincipledInputs &in, const glm::vec3 &wo, uint64_t seed) {
     glm::dvec3 sum(0.0);
     for (int i = 0; i < kSide; ++i)
       for (int j = 0; j < kSide; ++j) {
-        const glm::vec2 u((static_cast<float>(i) + random.uniform()) / kSide,
-                          (static_cast<float>(j) + random.uniform()) / kSide);
-        sum += glm::dvec3(bsdf.sample(random.uniform(), glm::min(u, glm::vec2(1.0f - 0x1p-24f))).weight);
+        const auto within = [&](int cell) {
+          return std::min((static_cast<float>(cell) + random.uniform()) / kSide, 1.0f - 0x1p-24f);
+        };
+        const float u = within(i), v = within(j);
+        sum += glm::dvec3(bsdf.sample(random.uniform(), u, v).weight);
       }
     sum /= kSide * kSide;
     mean.value += sum / double{kRows};
@@ -44,7 +46,7 @@ Mean under_sky(const PrincipledInputs &in, const glm::vec3 &wo, uint64_t seed) {
 TEST(Principled, WeightScalesAll) {
   const glm::vec3 wo = direction(0.6), wi = direction(0.4, 3.0), weight(0.3f, 0.6f, 0.9f);
   for (const Rules rules : kAllRules) {
-    PrincipledInputs in = plain(rules);
+    PrincipledInputs<float> in = plain(rules);
     in.metallic = 0.3f;
     in.coat = 0.5f;
     in.transmission = 0.2f;
@@ -57,7 +59,7 @@ TEST(Principled, WeightScalesAll) {
 
 TEST(Principled, WithoutGlossIsLambert) {
   const glm::vec3 wo = direction(0.3), wi = direction(0.7, 2.0);
-  PrincipledInputs in = plain(Rules::Blender45);
+  PrincipledInputs<float> in = plain(Rules::Blender45);
   const glm::vec3 lambert = in.base_color * (wi.z * std::numbers::inv_pi_v<float>);
   in.ior = 1.0f;
   expect_near(value(in, wo, wi), lambert, kRounding, "IOR 1");
@@ -70,13 +72,13 @@ TEST(Principled, WithoutGlossIsLambert) {
 TEST(Principled, AbsentLayersCostNothing) {
   const glm::vec3 wo = direction(0.6), wi = direction(0.4, 3.0);
   for (const Rules rules : kAllRules) {
-    PrincipledInputs in = plain(rules), odd = in;
+    PrincipledInputs<float> in = plain(rules), odd = in;
     odd.coat_roughness = 0.9f;
     odd.coat_tint = {0.1f, 0.2f, 0.3f};
     odd.sheen_roughness = 0.1f;
     odd.coat_ior = 3.0f;
     EXPECT_EQ(value(in, wo, wi), value(odd, wo, wi));
-    Bsdf bsdf;
+    Bsdf<float> bsdf;
     look(bsdf, odd, wo);
     EXPECT_EQ(bsdf.count, 2);
     in.metallic = 1.0f;
@@ -88,7 +90,7 @@ TEST(Principled, AbsentLayersCostNothing) {
 TEST(Principled, MetalAndPlasticMixByTheirShare) {
   const glm::vec3 wo = direction(0.6), wi = direction(0.4, 3.0);
   for (const Rules rules : kAllRules) {
-    PrincipledInputs in = plain(rules);
+    PrincipledInputs<float> in = plain(rules);
     in.roughness = 0.4f;
     const glm::vec3 plastic = value(in, wo, wi);
     in.metallic = 1.0f;
@@ -104,7 +106,7 @@ TEST(Principled, WhiteMetalLosesNothing) {
   for (const Rules rules : {Rules::Blender4, Rules::Blender45})
     for (const float roughness : {0.05f, 0.5f, 1.0f})
       for (const double cosine : {0.95, 0.5, 0.2}) {
-        PrincipledInputs in = plain(rules);
+        PrincipledInputs<float> in = plain(rules);
         in.base_color = glm::vec3(1.0f);
         in.metallic = 1.0f;
         in.roughness = roughness;
@@ -119,7 +121,7 @@ TEST(Principled, MakesNoLight) {
   Random random(3);
   const auto any = [&] { return random.uniform() < 0.3f ? std::floor(2.0f * random.uniform()) : random.uniform(); };
   for (int k = 0; k < 120; ++k) {
-    PrincipledInputs in = plain(random.uniform() < 0.5f ? Rules::Blender4 : Rules::Blender45);
+    PrincipledInputs<float> in = plain(random.uniform() < 0.5f ? Rules::Blender4 : Rules::Blender45);
     in.base_color = glm::vec3(1.0f);
     in.metallic = any();
     in.roughness = any();
@@ -142,12 +144,12 @@ TEST(Principled, MakesNoLight) {
 
 TEST(Principled, ClothTakesWhatItScatters) {
   const glm::vec3 wo = direction(0.3), wi = direction(0.7, 2.0);
-  PrincipledInputs in = plain(Rules::Blender45);
+  PrincipledInputs<float> in = plain(Rules::Blender45);
   in.emission = {1.0f, 2.0f, 3.0f};
   const glm::vec3 bare = value(in, wo, wi);
   in.sheen = 0.7f;
   in.sheen_roughness = 0.6f;
-  const Lobe cloth = make_sheen(glm::vec3(0.7f), 0.6f, wo.z);
+  const Lobe<float> cloth = make_sheen(glm::vec3(0.7f), 0.6f, wo.z);
   const float left = 1.0f - cloth.albedo.x;
   expect_near(emitted(in, wo), left * in.emission, kRounding, "emission");
   expect_near(value(in, wo, wi), left * bare + cloth.color * sheen_eval(cloth, wo, wi).f, kRounding, "value");
@@ -155,7 +157,7 @@ TEST(Principled, ClothTakesWhatItScatters) {
 
 // A coat that bends nothing reflects nothing, and colours by Beer's law along the straight way.
 TEST(Principled, CoatColoursByBeersLaw) {
-  PrincipledInputs in = plain(Rules::Blender45);
+  PrincipledInputs<float> in = plain(Rules::Blender45);
   in.emission = glm::vec3(1.0f);
   in.coat = 1.0f;
   in.coat_ior = 1.0f;
@@ -174,18 +176,18 @@ TEST(Principled, CoatColoursByBeersLaw) {
 
 TEST(Principled, CoatOfBlender3IsAdded) {
   const glm::vec3 wo = direction(0.6, 0.0), wi = direction(0.5, std::numbers::pi);
-  PrincipledInputs in = plain(Rules::Blender3);
+  PrincipledInputs<float> in = plain(Rules::Blender3);
   const glm::vec3 bare = value(in, wo, wi);
   in.coat = 0.8f;
   in.coat_roughness = 0.3f;
-  const Lobe coat = make_clear_coat(glm::vec3(0.8f), 0.09f, wo.z);
+  const Lobe<float> coat = make_clear_coat(glm::vec3(0.8f), 0.09f, wo.z);
   expect_near(value(in, wo, wi) - bare, coat.color * gloss_eval(coat, wo, wi).f, 2e-5f, "coat");
 }
 
 // The index that bends the level bends the reflection at the normal with it: level 1 doubles F0, at most to 99 %.
 TEST(Principled, LevelScalesTheReflectionAtTheNormal) {
   const glm::vec3 n(0.0f, 0.0f, 1.0f);
-  PrincipledInputs in = plain(Rules::Blender45);
+  PrincipledInputs<float> in = plain(Rules::Blender45);
   in.base_color = glm::vec3(0.0f);
   in.roughness = 0.02f;
   for (const float level : {0.25f, 0.5f, 1.0f}) {

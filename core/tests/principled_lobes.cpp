@@ -5,6 +5,7 @@
 
 #include "bsdf/fresnel.h"
 #include "principled_lab.h"
+#include "scene/ready_lobes.h"
 #include "statistics.h"
 
 namespace lancer {
@@ -15,10 +16,10 @@ using namespace testing;
 // Cycles 3 shows the weights of its closures in the passes, newer ones what they scatter.
 TEST(Principled, PassesOfBlender3ShowNoFresnel) {
   const glm::vec3 wo = direction(0.6), weight(0.3f, 0.6f, 0.9f);
-  PrincipledInputs in = plain(Rules::Blender3);
+  PrincipledInputs<float> in = plain(Rules::Blender3);
   in.metallic = 0.4f;
   in.coat = 0.3f;
-  Bsdf bsdf;
+  Bsdf<float> bsdf;
   look(bsdf, in, wo, weight);
   expect_near(bsdf.shown(Component::Glossy), 2.0f * weight, kRounding, "reflection and coat");
   expect_near(bsdf.shown(Component::Diffuse), 0.6f * in.base_color * weight, kRounding, "diffuse");
@@ -32,7 +33,7 @@ TEST(Principled, PassesOfBlender3ShowNoFresnel) {
   expect_near(bsdf.shown(Component::Transmission), (1.0f - reflectance) * in.base_color * weight, kRounding, "through");
 
   for (const Rules rules : {Rules::Blender4, Rules::Blender45}) {
-    PrincipledInputs newer = plain(rules);
+    PrincipledInputs<float> newer = plain(rules);
     newer.metallic = 0.4f;
     newer.coat = 0.3f;
     look(bsdf, newer, wo, weight);
@@ -42,22 +43,22 @@ TEST(Principled, PassesOfBlender3ShowNoFresnel) {
 }
 
 TEST(Principled, GlassKnowsItsInside) {
-  PrincipledInputs in = plain(Rules::Blender45);
+  PrincipledInputs<float> in = plain(Rules::Blender45);
   in.base_color = glm::vec3(1.0f);
   in.transmission = 1.0f;
   in.roughness = 0.0f;
   // Beyond the critical angle of 41.8 degrees all is reflected from inside, and not from outside.
   const float cosine = 0.7f;
-  Bsdf bsdf;
+  Bsdf<float> bsdf;
   look(bsdf, in, direction(-cosine));
   for (const float u : {0.01f, 0.5f, 0.99f}) {
-    const BsdfSample sample = bsdf.sample(u, {0.5f, 0.5f});
+    const BsdfSample<float> sample = bsdf.sample(u, 0.5f, 0.5f);
     EXPECT_TRUE(sample.delta);
     EXPECT_LT(sample.wi.z, 0.0f);
     EXPECT_NEAR(sample.weight.x, 1.0f, 2e-3f);
   }
   look(bsdf, in, direction(cosine));
-  const BsdfSample through = bsdf.sample(0.99f, {0.5f, 0.5f});
+  const BsdfSample<float> through = bsdf.sample(0.99f, 0.5f, 0.5f);
   EXPECT_LT(through.wi.z, 0.0f);
   EXPECT_TRUE(through.transmitted);
   // Snell: the sine of cosine 0.7 is divided by 1.5.
@@ -70,11 +71,11 @@ TEST(Principled, HasOneFrameWithoutOtherNormals) {
   for (int k = 0; k < 200; ++k) {
     const glm::vec3 n = glm::normalize(direction(0.1 + 0.9 * random.uniform(), 6.28 * random.uniform()));
     for (const Rules rules : kAllRules) {
-      PrincipledInputs in = plain(rules);
+      PrincipledInputs<float> in = plain(rules);
       in.coat = in.sheen = in.metallic = in.transmission = 0.5f;
-      LobeInputs lobe = testing::described(LobeKind::Principled);
+      LobeInputs<float> lobe = testing::described(LobeKind::Principled);
       lobe.rules = rules;
-      Bsdf bsdf;
+      Bsdf<float> bsdf;
       bsdf.begin(n, n, n, false, true);
       add_principled(bsdf, lobe, in);
       EXPECT_EQ(bsdf.frame_count, 1);
@@ -86,7 +87,7 @@ TEST(Principled, HasOneFrameWithoutOtherNormals) {
 TEST(Principled, KeptLayersAreThoseMadeInPlace) {
   Random random(11);
   for (int k = 0; k < 2000; ++k) {
-    PrincipledInputs in = plain(k % 2 ? Rules::Blender4 : Rules::Blender45);
+    PrincipledInputs<float> in = plain(k % 2 ? Rules::Blender4 : Rules::Blender45);
     in.roughness = random.uniform();
     in.coat_roughness = random.uniform();
     in.ior = 0.8f + random.uniform();
@@ -95,15 +96,20 @@ TEST(Principled, KeptLayersAreThoseMadeInPlace) {
     in.coat = k % 4 ? 0.0f : random.uniform();
     in.metallic = k % 5 ? 0.0f : random.uniform();
     in.transmission = k % 7 ? 0.0f : random.uniform();
-    LobeInputs lobe = testing::described(LobeKind::Principled);
+    LobeInputs<float> lobe = testing::described(LobeKind::Principled);
     lobe.rules = in.rules;
     lobe.tangent = {1.0f, 0.0f, 0.0f};
-    LayerPlan kept = plan_layers(lobe, in, Sides::Both);
-    keep_rows(kept);
     const bool inside = k % 2;
+    ReadyLobe ready;
+    float f0;
+    for (const LayerRow &row : kLayers)
+      for (const bool side : {false, true})
+        if (row.facets && (row.layer != PrincipledLayer::Gloss || plastic_ior(in, f0) != 1.0f))
+          ready.plans[side][static_cast<int>(row.layer)] = keep(plan_layer(row.layer, lobe, in, side));
+    const LaneLobes<float> kept{{&ready}, inside};
     const glm::vec3 wo = direction(random.uniform()), wi = direction(random.uniform(), 6.28 * random.uniform()), n(0, 0, 1);
-    Bsdf planned, in_place;
-    for (Bsdf *bsdf : {&planned, &in_place}) {
+    Bsdf<float> planned, in_place;
+    for (Bsdf<float> *bsdf : {&planned, &in_place}) {
       bsdf->begin(wo, n, n, inside, true);
       bsdf == &planned ? add_layers(*bsdf, lobe, in, kept) : add_principled(*bsdf, lobe, in);
       bsdf->complete();
@@ -122,7 +128,7 @@ TEST(Principled, StaysFiniteForAnyInput) {
   const glm::vec3 wo = direction(0.6), wi = direction(0.4, 3.0);
   for (const Rules rules : kAllRules)
     for (const float x : {-1.0f, 0.0f, 1.0f, 2.0f, 1e6f}) {
-      PrincipledInputs in = plain(rules);
+      PrincipledInputs<float> in = plain(rules);
       in.metallic = in.roughness = in.specular = in.transmission = in.coat = in.sheen = in.ior = in.coat_ior = x;
       in.anisotropic = in.coat_roughness = in.sheen_roughness = in.diffuse_roughness = in.transmission_roughness = x;
       const glm::vec3 f = value(in, wo, wi);

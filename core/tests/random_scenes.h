@@ -83,8 +83,8 @@ template <class Picture> void expect_the_same_one_by_one(uint32_t seeds, double 
 // All layers that kernels know, and some that they do not.
 inline lancer_principled principled(Random &random) {
   lancer_principled p = {};
-  p.rules = random() % 2 ? LANCER_RULES_4 : LANCER_RULES_45;
-  p.distribution = random() % 2 ? LANCER_GGX : LANCER_MULTI_GGX;
+  p.rules = random() % 2 ? LANCER_RULES_BLENDER_4 : LANCER_RULES_BLENDER_45;
+  p.distribution = random() % 2 ? LANCER_DISTRIBUTION_GGX : LANCER_DISTRIBUTION_MULTI_GGX;
   p.option = 1;
   p.base_color = color(random);
   p.metallic = constant(share(random));

@@ -46,15 +46,15 @@ struct Layered {
   // f |cos|, as a shader makes the lobe with that value of the node, or all of it in place.
   glm::vec3 value(const glm::vec4 &node, bool in_place, const glm::vec3 &wo, const glm::vec3 &wi) const {
     const LobeDescription &lobe = material.lobes[0];
-    const LobeInputs inputs = evaluate(lobe, std::span(&node, 1));
-    const PrincipledInputs principled = evaluate(*lobe.principled, std::span(&node, 1));
+    const LobeInputs<float> inputs = evaluate(lobe, std::span(&node, 1));
+    const PrincipledInputs<float> principled = evaluate(*lobe.principled, std::span(&node, 1));
     const glm::vec3 n(0.0f, 0.0f, 1.0f);
-    Bsdf bsdf;
+    Bsdf<float> bsdf;
     bsdf.begin(wo, n, n, false, true);
     if (in_place)
       add_principled(bsdf, inputs, principled);
     else
-      add_layers(bsdf, inputs, principled, material.ready[0].layers.value());
+      add_principled(bsdf, inputs, principled, LaneLobes<float>{{&material.ready[0]}});
     bsdf.complete();
     return bsdf.eval(wi).f() + bsdf.emission;
   }
@@ -104,29 +104,90 @@ TEST(ReadyLobes, WhatANodeVariesIsMadeInPlace) {
     }
 }
 
-// Seen about a normal that leans: lobes that reflect may be bent, so that none of them is made before.
-TEST(ReadyLobes, OfFlatSurfacesOnlyWhereTheyMayBeBent) {
-  for (const LobeKind kind : {LobeKind::Lambert, LobeKind::Mirror, LobeKind::Phong, LobeKind::BlinnPhong})
-    for (const Rules rules : {Rules::Blender3, Rules::Blender45}) {
-      Material material;
-      LobeDescription &lobe = material.lobes.emplace_back();
-      lobe.kind = kind;
-      lobe.rules = rules;
-      lobe.color = lobe.shininess = Parameter{glm::vec3(0.5f)};
-      const ReadyLobe ready = make_ready_lobes(material)[0];
-      ASSERT_TRUE(ready.whole);
-      EXPECT_EQ(ready.flat_only, kind != LobeKind::Lambert || rules == Rules::Blender3);
-      // The same as in place about the surface's own normal.
-      const glm::vec3 wo = direction(0.4), wi = direction(0.7, 2.0), n(0.0f, 0.0f, 1.0f);
-      Bsdf once, in_place;
-      for (Bsdf *bsdf : {&once, &in_place}) {
-        bsdf->begin(wo, n, n, false, true);
-        bsdf == &once ? add(*bsdf, ready.lobe) : add_lobe(*bsdf, ready.inputs);
-        bsdf->complete();
-      }
-      EXPECT_EQ(once.eval(wi).f(), in_place.eval(wi).f());
-      EXPECT_EQ(once.albedo(), in_place.albedo());
+// A material of one lobe of facets.
+Material of_facets(LobeKind kind, Rules rules = Rules::Blender45, Facets facets = Facets::MultiGgx) {
+  Material material;
+  LobeDescription &lobe = material.lobes.emplace_back();
+  lobe.kind = kind;
+  lobe.rules = rules;
+  lobe.distribution = facets;
+  lobe.color = Parameter{{0.8f, 0.5f, 0.2f}};
+  lobe.weight = Parameter{{0.7f, 0.9f, 1.0f}};
+  lobe.roughness = Parameter{glm::vec3(0.4f)};
+  lobe.ior = Parameter{glm::vec3(1.25f)};
+  material.ready = make_ready_lobes(material);
+  return material;
+}
+
+TEST(ReadyLobes, FacetsThatNothingChangesArePlanned) {
+  const auto is_planned = [](const Material &material) { return make_ready_lobes(material)[0].has(PrincipledLayer::Gloss); };
+  for (const LobeKind kind : {LobeKind::Glossy, LobeKind::Conductor, LobeKind::Glass})
+    for (const Rules rules : {Rules::Blender4, Rules::Blender45}) {
+      Material material = of_facets(kind, rules);
+      EXPECT_TRUE(is_planned(material));
+      // What varies, and what lies along the surface, is made where it is met.
+      material.program.nodes.resize(1);
+      EXPECT_FALSE(is_planned(material));
+      material.program.nodes.clear();
+      material.lobes[0].anisotropy = Parameter{glm::vec3(0.5f)};
+      EXPECT_EQ(is_planned(material), kind == LobeKind::Glass);
     }
+  EXPECT_FALSE(is_planned(of_facets(LobeKind::Glossy, Rules::Blender3)));
+  EXPECT_FALSE(is_planned(of_facets(LobeKind::Glossy, Rules::Blender45, Facets::AshikhminShirley)));
+  for (const LobeKind kind : {LobeKind::Lambert, LobeKind::Diffuse, LobeKind::Refraction, LobeKind::Beckmann})
+    EXPECT_FALSE(is_planned(of_facets(kind)));
+}
+
+TEST(ReadyLobes, PlannedFacetsAreThoseMadeInPlace) {
+  Random random(7);
+  for (const LobeKind kind : {LobeKind::Glossy, LobeKind::Conductor, LobeKind::Glass})
+    for (const Facets facets : {Facets::Ggx, Facets::Beckmann, Facets::MultiGgx})
+      for (const bool inside : {false, true}) {
+        const Material material = of_facets(kind, Rules::Blender45, facets);
+        const ReadyLobe &ready = material.ready[0];
+        const glm::vec3 wo = direction(0.2 + 0.7 * random.uniform()), wi = direction(0.7, 2.0), n(0.0f, 0.0f, 1.0f);
+        Bsdf<float> planned, in_place;
+        for (Bsdf<float> *bsdf : {&planned, &in_place}) {
+          bsdf->begin(wo, n, n, inside, true);
+          bsdf == &planned ? add_kept(*bsdf, ready.inputs, LaneLobes<float>{{&ready}, inside}) : add_lobe(*bsdf, ready.inputs);
+          bsdf->complete();
+        }
+        // One factor alone, read along the cosine first or last.
+        for (const glm::vec3 &w : {wi, -wi})
+          for (int c = 0; c < 3; ++c) {
+            const float a = planned.eval(w).f()[c], b = in_place.eval(w).f()[c];
+            EXPECT_NEAR(a, b, 16.0f * 0x1p-24f * b);
+          }
+      }
+}
+
+// A Principled with these shares of its layers.
+std::vector<ReadyLobe> of_layers(float coat, float metallic, float transmission, float ior = 1.25f) {
+  auto p = std::make_shared<PrincipledDescription>();
+  p->coat = Parameter{glm::vec3(coat)};
+  p->metallic = Parameter{glm::vec3(metallic)};
+  p->transmission = Parameter{glm::vec3(transmission)};
+  p->ior = Parameter{glm::vec3(ior)};
+  p->specular = Parameter{glm::vec3(0.5f)};
+  Material material;
+  LobeDescription &lobe = material.lobes.emplace_back();
+  lobe.kind = LobeKind::Principled;
+  lobe.principled = std::move(p);
+  return make_ready_lobes(material);
+}
+
+TEST(ReadyLobes, LayersThatAreThereArePlannedForBothSides) {
+  using L = PrincipledLayer;
+  const ReadyLobe all = of_layers(0.5f, 0.5f, 0.5f)[0], none = of_layers(0.0f, 0.0f, 0.0f, 1.0f)[0];
+  for (const L layer : {L::Coat, L::Metal, L::Glass, L::Gloss}) {
+    EXPECT_TRUE(all.has(layer));
+    EXPECT_TRUE(all.plan(layer, true));
+    EXPECT_FALSE(none.has(layer));
+  }
+  for (const L layer : {L::Sheen, L::Emission, L::Diffuse})
+    EXPECT_FALSE(all.has(layer));
+  EXPECT_EQ(all.plan(L::Glass, false)->plan.lobe.ior, 1.25f);
+  EXPECT_EQ(all.plan(L::Glass, true)->plan.lobe.ior, 1.0f / 1.25f);
 }
 
 } // namespace

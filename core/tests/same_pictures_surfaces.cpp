@@ -9,10 +9,10 @@ TEST(SamePictures, GlassAndCutOuts) {
   Stand stand;
   stand.floor();
   std::vector<uint32_t> materials;
-  for (const uint32_t distribution : {LANCER_GGX, LANCER_BECKMANN_DISTRIBUTION, LANCER_MULTI_GGX}) {
+  for (const uint32_t distribution : {LANCER_DISTRIBUTION_GGX, LANCER_DISTRIBUTION_BECKMANN, LANCER_DISTRIBUTION_MULTI_GGX}) {
     lancer_lobe glass = lobe(LANCER_GLASS, 0.875f, 0.25f * float(distribution));
     glass.distribution = distribution;
-    glass.rules = distribution == LANCER_MULTI_GGX ? LANCER_RULES_45 : LANCER_RULES_3;
+    glass.rules = distribution == LANCER_DISTRIBUTION_MULTI_GGX ? LANCER_RULES_BLENDER_45 : LANCER_RULES_BLENDER_3;
     materials.push_back(stand.material({glass}));
   }
   materials.push_back(stand.material({lobe(LANCER_DIELECTRIC, 1.0f)}));
@@ -48,7 +48,8 @@ TEST(SamePictures, GlassAndCutOuts) {
 TEST(SamePictures, LobesOfAllKinds) {
   Stand stand;
   stand.floor();
-  const uint32_t distributions[] = {LANCER_GGX, LANCER_BECKMANN_DISTRIBUTION, LANCER_ASHIKHMIN_SHIRLEY, LANCER_MULTI_GGX};
+  const uint32_t distributions[] = {LANCER_DISTRIBUTION_GGX, LANCER_DISTRIBUTION_BECKMANN,
+                                    LANCER_DISTRIBUTION_ASHIKHMIN_SHIRLEY, LANCER_DISTRIBUTION_MULTI_GGX};
   uint32_t number = 0;
   for (uint32_t kind = 0; kind < LANCER_LOBE_KIND_COUNT; ++kind)
     for (const uint32_t distribution : distributions) {
@@ -84,7 +85,7 @@ TEST(SamePictures, Principled) {
   for (uint32_t i = 0; i < 24; ++i) {
     lancer_principled record = {};
     record.rules = i % 3;
-    record.distribution = i % 2 ? LANCER_MULTI_GGX : LANCER_GGX;
+    record.distribution = i % 2 ? LANCER_DISTRIBUTION_MULTI_GGX : LANCER_DISTRIBUTION_GGX;
     record.option = i / 3 % 2;
     record.base_color = dice.color();
     for (lancer_parameter lancer_principled::*input :

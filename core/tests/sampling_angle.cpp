@@ -42,14 +42,13 @@ TEST(Angle, SineAndCosineOfATurn) {
   double worst = 0.0;
   for (int i = 0; i <= 1000000; ++i) {
     const double u = i / 1000000.0;
-    double sine, cosine;
-    sin_cos_turn(u, sine, cosine);
+    const SinCos turn = sin_cos_turn(u);
     // Reduce before multiplying, so that the library's angle is as good.
     const double quarter = std::round(4.0 * u), x = 2.0 * std::numbers::pi * (u - 0.25 * quarter);
     const double s = std::sin(x), c = std::cos(x);
     const double want_s = quarter == 1.0 ? c : quarter == 2.0 ? -s : quarter == 3.0 ? -c : s;
     const double want_c = quarter == 1.0 ? -s : quarter == 2.0 ? -c : quarter == 3.0 ? s : c;
-    worst = std::max({worst, std::abs(sine - want_s), std::abs(cosine - want_c)});
+    worst = std::max({worst, std::abs(turn.sin - want_s), std::abs(turn.cos - want_c)});
   }
   // At most 1, by two roundings of 2^-53: of the last sum, and of the square beside it.
   EXPECT_LE(worst, 0x1p-52);

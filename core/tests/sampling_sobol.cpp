@@ -210,7 +210,7 @@ TEST(Hash, FlipsHalfOfTheBits) {
 }
 
 TEST(Hash, CombineKeepsTheOrderOfCoordinates) {
-  EXPECT_NE(hash_combine(hash_combine(1, 2), 3), hash_combine(hash_combine(1, 3), 2));
+  EXPECT_NE(hash_combine(hash_combine(1u, 2u), 3u), hash_combine(hash_combine(1u, 3u), 2u));
 }
 
 } // namespace

@@ -218,7 +218,7 @@ std::unique_ptr<Studio> ball(float terminator, uint32_t kind = LANCER_MESH, uint
   studio->add(shape.mesh());
   // By the newest rules: older ones bend the normal where a reflection would meet the face.
   lancer_lobe white = lobe(LANCER_LAMBERT, 1.0f);
-  white.rules = LANCER_RULES_45;
+  white.rules = LANCER_RULES_BLENDER_45;
   lancer_instance &instance = studio->place(kind, studio->add({white}));
   instance.terminator = terminator;
   instance.shading = shading;

@@ -33,14 +33,19 @@ TEST(VertexCounts, LanesShadeTheUsualSurfaceOfAPictureAlone) {
   }
 }
 
-TEST(VertexCounts, TheGeneralCodeShadesTheRest) {
-  // Beside the picture another pass; a lobe that lanes do not know.
+TEST(VertexCounts, LanesShadeWhateverElseIsAsked) {
+  // Beside the picture another pass; a lobe of few scenes.
   for (const lancer_statistics &statistics :
-       {seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kMore, 2), seen(newest(LANCER_SHEEN, 0.5f), kPicture, 2),
-        seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kPicture, 2, LANCER_NORMALS)}) {
-    EXPECT_EQ(statistics.wide_vertices, 0u);
-    EXPECT_EQ(statistics.narrow_vertices, kRays);
+       {seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kMore, 2), seen(newest(LANCER_SHEEN, 0.5f), kPicture, 2)}) {
+    EXPECT_EQ(statistics.wide_vertices, kRays);
+    EXPECT_EQ(statistics.narrow_vertices, 0u);
   }
+}
+
+TEST(VertexCounts, ThePictureOfNormalsIsShadedOneByOne) {
+  const lancer_statistics statistics = seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kPicture, 2, LANCER_NORMALS);
+  EXPECT_EQ(statistics.wide_vertices, 0u);
+  EXPECT_EQ(statistics.narrow_vertices, kRays);
 }
 
 TEST(VertexCounts, ClassicCountsItsVerticesToo) {

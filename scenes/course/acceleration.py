@@ -3,9 +3,10 @@
 import dataclasses
 
 import numpy as np
-from bindings.abi import Accelerator
-from bindings.session import Scene, Session
 from tiny_scenes import with_settings
+
+from addon.bindings.abi import Accelerator
+from addon.bindings.session import Scene, Session
 
 from . import studio
 from .chapter import Figure, Picture

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import tiny_scenes
-from bindings.abi import InstanceKind, Integrator
-from bindings.session import Scene, Session
-from bindings.snapshot import Instance, MeshData
 from tiny_scenes import lambert, rotate_x
+
+from addon.bindings.abi import InstanceKind, Integrator
+from addon.bindings.session import Scene, Session
+from addon.bindings.snapshot import Instance, MeshData
 
 from . import studio
 from .chapter import Figure, Picture, worst

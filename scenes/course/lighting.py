@@ -6,10 +6,11 @@ import math
 import numpy as np
 import reference
 import tiny_scenes
-from bindings.abi import Falloff, LightKind, LobeKind
-from bindings.session import Scene, microfacet
-from bindings.snapshot import Light, Lobe, Material, World
 from tiny_scenes import lambert, move, plane, rgb, rotate_x, sphere
+
+from addon.bindings.abi import Falloff, LightKind, LobeKind
+from addon.bindings.session import Scene, microfacet
+from addon.bindings.snapshot import Light, Lobe, Material, World
 
 from . import studio
 from .chapter import Figure, Picture, worst

@@ -6,10 +6,11 @@ import math
 import numpy as np
 import ten_scenes
 import tiny_scenes
-from bindings.abi import Integrator, LobeKind, Pass
-from bindings.session import Session
-from bindings.snapshot import Camera, Instance, Light, Lobe, Material, MeshData
 from tiny_scenes import lambert, look_at, move, plane, rgb, sphere
+
+from addon.bindings.abi import Integrator, LobeKind, Pass
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Camera, Instance, Light, Lobe, Material, MeshData
 
 from . import studio
 from .chapter import Figure, Picture, worst

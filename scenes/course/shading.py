@@ -5,9 +5,10 @@ import math
 
 import numpy as np
 import trimesh
-from bindings.abi import LobeKind, Shading
-from bindings.snapshot import Instance, Lobe, Material, MeshData
 from tiny_scenes import lambert, plane, sphere
+
+from addon.bindings.abi import LobeKind, Shading
+from addon.bindings.snapshot import Instance, Lobe, Material, MeshData
 
 from . import studio
 from .chapter import Figure, Picture, worst

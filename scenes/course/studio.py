@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import tiny_scenes
-from bindings.abi import Integrator, LightKind, Pass
-from bindings.session import Session
-from bindings.snapshot import Camera, Light, SceneSnapshot
 from tiny_scenes import look_at, move, rgb
+
+from addon.bindings.abi import Integrator, LightKind, Pass
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Camera, Light, SceneSnapshot
 
 # One sample through the middle of all has no noise.
 SINGLE = 2e-6

@@ -5,12 +5,12 @@ import math
 
 import numpy as np
 import tiny_scenes
-from bindings.abi import Integrator, LobeKind
-from bindings.enums import Coordinate, Environment, Extension, Interpolation, NodeKind
-from bindings.session import Scene
-from bindings.snapshot import Image, Instance, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, World
 from tiny_scenes import lambert, plane, rgb, sphere
 
+from addon.bindings.abi import Integrator, LobeKind
+from addon.bindings.enums import Coordinate, Environment, Extension, Interpolation, NodeKind
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Image, Instance, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, World
 from addon.course_groups import group_of
 from addon.export.course_models import MODELS, PARAMETERS, parameters_of
 from scenes import parts, pictures

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import reference
 import tiny_scenes
-from bindings.abi import InstanceKind, Integrator, LightKind, LobeKind
-from bindings.session import Session
-from bindings.snapshot import Instance, Light, Lobe, Material, MeshData
 from tiny_scenes import beckmann, lambert, move, plane, rgb, rotate_x, scale, sphere
+
+from addon.bindings.abi import InstanceKind, Integrator, LightKind, LobeKind
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Instance, Light, Lobe, Material, MeshData
 
 from . import studio
 from .chapter import Figure, Picture, worst

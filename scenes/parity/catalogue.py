@@ -19,6 +19,7 @@ SUBJECTS = (
     "textures_files",
     "textures_coordinates",
     "textures_normals",
+    "textures_computed",
     "lights_shapes",
     "lights_switches",
     "lights_exact",

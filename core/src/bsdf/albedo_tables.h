@@ -4,9 +4,8 @@
 #pragma once
 
 #include "sampling/on_axis.h"
+#include "simd/scalar.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 namespace lancer {
@@ -22,33 +21,44 @@ extern const uint16_t kGlassMean[2][kCoarse * kCoarse];            // [index][ro
 extern const uint16_t kDielectricMix[kCoarse * kCoarse * kCoarse]; // [index][cosine][roughness]
 extern const uint16_t kFifthPowerMix[kCoarse * kCoarse];           // [cosine][roughness]
 
-inline float read1(const uint16_t *table, int n, float x) {
+// Where x lies between the nodes of an axis: the one before it, and the way to the next.
+template <class F> struct AxisPlace { F node, rest; };
+template <class F> LANCER_LANE AxisPlace<F> place_on_axis(F x, int n) {
   x = on_axis(x) * static_cast<float>(n - 1);
-  const int i = std::min(static_cast<int>(x), n - 2);
-  const float t = x - static_cast<float>(i), a = table[i], b = table[i + 1];
-  return (a + (b - a) * t) * (1.0f / 65535.0f);
+  const F node = min(to_float(truncate(x)), F(static_cast<float>(n - 2)));
+  return {node, x - node};
 }
-// The same of a row of floats.
-inline float read_row(const float *row, int n, float x) {
-  x = on_axis(x) * static_cast<float>(n - 1);
-  const int i = std::min(static_cast<int>(x), n - 2);
-  return row[i] + (row[i + 1] - row[i]) * (x - static_cast<float>(i));
+template <class F> LANCER_LANE F between(const AxisPlace<F> &at, F a, F b) { return a + (b - a) * at.rest; }
+
+// x: along the last index, whose first value has the number first.
+template <class F> LANCER_LANE F read_line(const uint16_t *table, F first, const AxisPlace<F> &x) {
+  // One word holds both of its neighbours.
+  const WordOf<F> at = truncate(first + x.node), pair = gather_bytes(table, at + at);
+  return between(x, to_float(pair & WordOf<F>(0xffffu)), to_float(pair >> 16)) * (1.0f / 65535.0f);
 }
-inline float read2(const uint16_t *table, int n, float y, float x) {
-  y = on_axis(y) * static_cast<float>(n - 1);
-  const int i = std::min(static_cast<int>(y), n - 2);
-  const float t = y - static_cast<float>(i), a = read1(table + n * i, n, x), b = read1(table + n * (i + 1), n, x);
-  return a + (b - a) * t;
+template <class F>
+LANCER_LANE F read_plane(const uint16_t *table, int n, F first, const AxisPlace<F> &y, const AxisPlace<F> &x) {
+  const F low = first + y.node * static_cast<float>(n);
+  return between(y, read_line(table, low, x), read_line(table, low + static_cast<float>(n), x));
 }
-inline float read3(const uint16_t *table, int n, float z, float y, float x) {
-  z = on_axis(z) * static_cast<float>(n - 1);
-  const int i = std::min(static_cast<int>(z), n - 2);
-  const float t = z - static_cast<float>(i), a = read2(table + n * n * i, n, y, x), b = read2(table + n * n * (i + 1), n, y, x);
-  return a + (b - a) * t;
+template <class F> LANCER_LANE F read1(const uint16_t *table, int n, F x) {
+  return read_line(table, F(0.0f), place_on_axis(x, n));
+}
+template <class F> LANCER_LANE F read2(const uint16_t *table, int n, F y, F x) {
+  return read_plane(table, n, F(0.0f), place_on_axis(y, n), place_on_axis(x, n));
+}
+// sheet: of which table of n^3 each lane reads.
+template <class F> LANCER_LANE F read3(const uint16_t *table, int n, F sheet, F z, F y, F x) {
+  const AxisPlace<F> at_z = place_on_axis(z, n), at_y = place_on_axis(y, n), at_x = place_on_axis(x, n);
+  const F low = (sheet * static_cast<float>(n) + at_z.node) * static_cast<float>(n * n);
+  return between(at_z, read_plane(table, n, low, at_y, at_x),
+                 read_plane(table, n, low + static_cast<float>(n * n), at_y, at_x));
 }
 
 // Where an index above or below 1 lies on the axis 0 ... 1: fourth root of the reflectance at the normal.
-inline float index_axis(float ior) { return std::isinf(ior) ? 1.0f : std::sqrt(std::abs((ior - 1.0f) / (ior + 1.0f))); }
+template <class F> LANCER_LANE F index_axis(F ior) {
+  return select(abs(ior) < __builtin_inff(), sqrt(abs((ior - 1.0f) / (ior + 1.0f))), F(1.0f));
+}
 
 } // namespace tables
 
@@ -60,23 +70,31 @@ struct AlbedoRows {
 
 // roughness: of the socket, the root of alpha. cos_o: of wo.
 // What facets that reflect all send out at once, and its mean over a white sky.
-inline float ggx_albedo(float roughness, float cos_o) { return tables::read2(tables::kGgx, tables::kFine, cos_o, roughness); }
-inline float ggx_mean_albedo(float roughness) { return tables::read1(tables::kGgxMean, tables::kFine, roughness); }
+template <class F> LANCER_LANE F ggx_albedo(F roughness, F cos_o) {
+  return tables::read2(tables::kGgx, tables::kFine, cos_o, roughness);
+}
+template <class F> LANCER_LANE F ggx_mean_albedo(F roughness) {
+  return tables::read1(tables::kGgxMean, tables::kFine, roughness);
+}
 
 // The same for clear glass; ior as seen from wo's side.
-inline float glass_albedo(float roughness, float cos_o, float ior) {
-  return tables::read3(tables::kGlass[ior < 1.0f], tables::kCoarse, tables::index_axis(ior), cos_o, roughness);
+template <class F> LANCER_LANE F glass_albedo(F roughness, F cos_o, F ior) {
+  const F inside = select(ior < 1.0f, F(1.0f), F(0.0f));
+  return tables::read3(&tables::kGlass[0][0], tables::kCoarse, inside, tables::index_axis(ior), cos_o, roughness);
 }
-inline float glass_mean_albedo(float roughness, float ior) {
-  return tables::read2(tables::kGlassMean[ior < 1.0f], tables::kCoarse, tables::index_axis(ior), roughness);
+template <class F> LANCER_LANE F glass_mean_albedo(F roughness, F ior) {
+  constexpr int n = tables::kCoarse;
+  const F first = select(ior < 1.0f, F(static_cast<float>(n * n)), F(0.0f));
+  return tables::read_plane(&tables::kGlassMean[0][0], n, first, tables::place_on_axis(tables::index_axis(ior), n),
+                            tables::place_on_axis(roughness, n));
 }
 
 // How far between f0 and f90 the facets reflect that are seen and send light out: along the dielectric's curve (the one seen
 // from outside, for both sides), and along (1 - cos)^5.
-inline float dielectric_mix(float roughness, float cos_o, float ior) {
-  return tables::read3(tables::kDielectricMix, tables::kCoarse, tables::index_axis(ior), cos_o, roughness);
+template <class F> LANCER_LANE F dielectric_mix(F roughness, F cos_o, F ior) {
+  return tables::read3(tables::kDielectricMix, tables::kCoarse, F(0.0f), tables::index_axis(ior), cos_o, roughness);
 }
-inline float fifth_power_mix(float roughness, float cos_o) {
+template <class F> LANCER_LANE F fifth_power_mix(F roughness, F cos_o) {
   return tables::read2(tables::kFifthPowerMix, tables::kCoarse, cos_o, roughness);
 }
 

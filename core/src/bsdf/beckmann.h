@@ -3,47 +3,47 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/glm.hpp>
 #include <numbers>
 
 #include "sampling/elementary.h"
 #include "sampling/erf_inverse.h"
 #include "sampling/warp.h"
+#include "simd/vectors.h"
 
 namespace lancer {
 
 // tan^2 of a direction's angle to n. Never from 1 - cos^2, which loses a small roughness in rounding.
-inline float tan2_theta(const glm::vec3 &w) { return (w.x * w.x + w.y * w.y) / (w.z * w.z); }
+template <class V> LANCER_LANE NumberOf<V> tan2_theta(const V &w) { return (w.x * w.x + w.y * w.y) / (w.z * w.z); }
 
 // D: density of microfacet normals per solid angle. Beyond exp(-87) of the top a float holds 0.
-inline float beckmann_d(float tan2, float alpha) {
-  const float alpha2 = alpha * alpha;
-  if (!(tan2 <= 87.0f * alpha2))
-    return 0.0f;
-  const float sec2 = 1.0f + tan2;
-  return exp(-tan2 / alpha2) * sec2 * sec2 * kInvPi / alpha2;
+template <class F> LANCER_LANE F beckmann_d(F tan2, F alpha) {
+  const F alpha2 = alpha * alpha, sec2 = 1.0f + tan2;
+  const auto near = tan2 <= 87.0f * alpha2;
+  if (!any(near))
+    return F(0.0f);
+  return select(near, exp(-tan2 / alpha2) * sec2 * sec2 * kInvPi / alpha2, F(0.0f));
 }
 
 // The masking parameter a = 1 / (alpha tan(theta)); infinite along n.
-inline float beckmann_a(const glm::vec3 &w, float alpha) { return w.z / (alpha * std::sqrt(w.x * w.x + w.y * w.y)); }
+template <class F> LANCER_LANE F beckmann_a(const Vec3<F> &w, F alpha) { return w.z / (alpha * sqrt(w.x * w.x + w.y * w.y)); }
 
 // Walter's rational fit of G1, which is the value of the model; the fit exceeds 1 just below its end.
-inline float beckmann_g1(float a) {
-  if (!(a < 1.6f))
-    return 1.0f;
-  return std::min(1.0f, a * (3.535f + 2.181f * a) / (1.0f + a * (2.276f + 2.577f * a)));
+template <class F> LANCER_LANE F beckmann_g1(F a) {
+  const F fit = min(F(1.0f), a * (3.535f + 2.181f * a) / (1.0f + a * (2.276f + 2.577f * a)));
+  return select(a < 1.6f, fit, F(1.0f));
 }
 
 // Beyond this a the share that masking takes is below erfc(4) = 2e-8, less than a float can tell.
 inline constexpr float kUnmasked = 4.0f;
 
 // The exact G1, which makes the density of visible normals integrate to 1.
-inline float beckmann_g1_exact(float a) {
-  if (!(a < kUnmasked))
-    return 1.0f;
+template <class F> LANCER_LANE F beckmann_g1_exact(F a) {
+  const auto masked = a < kUnmasked;
+  if (!any(masked))
+    return F(1.0f);
   constexpr float inv_2_sqrt_pi = 0.5f * std::numbers::inv_sqrtpi_v<float>;
   // Over a common denominator, so that a = 0 is no division by zero.
-  return a / (a + inv_2_sqrt_pi * exp(-a * a) - 0.5f * a * erfc(a));
+  return select(masked, a / (a + inv_2_sqrt_pi * exp(-a * a) - 0.5f * a * erfc(a)), F(1.0f));
 }
 
 // Slope along wo's azimuth, in units of alpha, of a normal visible from masking parameter a: density (a - x) exp(-x^2), x < a.
@@ -94,27 +94,34 @@ inline float beckmann_visible_angle(float eccentricity, float u) {
 }
 
 // A normal h visible from wo (wo.z > 0), density G1_exact(wo) max(0, wo.h) D(h) / wo.z per solid angle of h.
-inline glm::vec3 beckmann_sample_visible(const glm::vec3 &wo, float alpha_x, float alpha_y, glm::vec2 u) {
+template <class F> LANCER_LANE Vec3<F> beckmann_sample_visible(const Vec3<F> &wo, F alpha_x, F alpha_y, F u, F v) {
   // Squeeze the facets to roughness 1; wo goes along.
-  const glm::vec3 w(alpha_x * wo.x, alpha_y * wo.y, wo.z);
-  const float sin_theta = std::sqrt(w.x * w.x + w.y * w.y);
-  const float a = w.z / sin_theta;
-  const glm::vec2 azimuth = sin_theta > 0.0f ? glm::vec2(w.x, w.y) / sin_theta : glm::vec2(1.0f, 0.0f);
+  const F along = alpha_x * wo.x, across = alpha_y * wo.y;
+  const F sin_theta = sqrt(along * along + across * across);
+  const F a = wo.z / sin_theta;
+  const auto tilted = sin_theta > 0.0f;
+  const F azimuth_x = select(tilted, along / sin_theta, F(1.0f)), azimuth_y = select(tilted, across / sin_theta, F(0.0f));
   // Draw the slope along wo's azimuth and across it.
-  glm::vec2 slope;
-  if (a < kUnmasked) {
+  F slope_x(0.0f), slope_y(0.0f);
+  const auto masked = a < kUnmasked;
+  if (any(masked)) {
     // The part along it by its visible share; the part across as it is, Gaussian.
-    slope = {static_cast<float>(beckmann_visible_slope(a, u.x)), erf_inverse(2.0f * u.y + (0x1p-24f - 1.0f))};
-  } else {
+    slope_x = each(a, u, [](float of, float number) {
+      return of < kUnmasked ? static_cast<float>(beckmann_visible_slope(of, number)) : 0.0f;
+    });
+    slope_y = erf_inverse(2.0f * v + (0x1p-24f - 1.0f));
+  }
+  if (any(!masked)) {
     // Nothing is masked: Gaussian in length (log1p keeps the digits of small u), and turned by the projected area alone.
-    const float r = std::sqrt(-log1p(-u.x));
-    const float phi = beckmann_visible_angle(std::min(r / a, 1.0f), u.y);
-    slope = {r * cos(phi), r * sin(phi)};
+    const F r = sqrt(-log1p(-u));
+    const F phi = each(min(r / a, F(1.0f)), v, beckmann_visible_angle);
+    slope_x = select(masked, slope_x, r * cos(phi));
+    slope_y = select(masked, slope_y, r * sin(phi));
   }
   // Turn it to wo's azimuth and stretch it again; the normal leans against the slope.
-  const float x = alpha_x * (azimuth.x * slope.x - azimuth.y * slope.y);
-  const float y = alpha_y * (azimuth.y * slope.x + azimuth.x * slope.y);
-  return glm::normalize(glm::vec3(-x, -y, 1.0f));
+  const F x = alpha_x * (azimuth_x * slope_x - azimuth_y * slope_y);
+  const F y = alpha_y * (azimuth_y * slope_x + azimuth_x * slope_y);
+  return normalize(Vec3<F>(-x, -y, F(1.0f)));
 }
 
 } // namespace lancer

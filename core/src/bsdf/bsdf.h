@@ -3,27 +3,30 @@
 
 #include "bsdf/frame.h"
 #include "bsdf/lobe.h"
+#include "bsdf/lobe_value.h"
 
 namespace lancer {
 
 // Light scattered from wi towards wo, by component: f |cos(wi)|, and the density with which sample() would have taken wi.
-struct BsdfValue {
-  glm::vec3 part[3] = {glm::vec3(0.0f), glm::vec3(0.0f), glm::vec3(0.0f)}; // by Component
-  float pdf = 0.0f;
+template <class F> struct BsdfValue {
+  using V = Vec3<F>;
+  V part[3] = {V(F(0.0f)), V(F(0.0f)), V(F(0.0f))}; // by Component
+  F pdf{0.0f};
 
-  glm::vec3 f() const { return part[0] + part[1] + part[2]; }
+  LANCER_LANE V f() const { return part[0] + part[1] + part[2]; }
 };
 
 // weight 0 = no sample: the path ends there.
-struct BsdfSample {
-  glm::vec3 wi{0.0f};     // world, unit
-  glm::vec3 weight{0.0f}; // f |cos(wi)| / pdf over all smooth lobes, or the single direction's weight over its probability
-  glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // of weight that is diffuse, glossy; the rest is transmission
-  float pdf = 0.0f;                         // per solid angle; for a single direction the probability of having chosen it
-  bool delta = false;                       // a single direction: evaluation and pdf elsewhere are 0
-  Component component = Component::Diffuse; // of the chosen lobe
-  bool transmitted = false;                 // it goes through the surface
-  float alpha2 = 1.0f;                      // alpha_x alpha_y of the chosen lobe; 0 for a single direction
+template <class F> struct BsdfSample {
+  using V = Vec3<F>;
+  V wi{F(0.0f)};     // world, unit
+  V weight{F(0.0f)}; // f |cos(wi)| / pdf over all smooth lobes, or the single direction's weight over its probability
+  V share[2] = {V(F(0.0f)), V(F(0.0f))};     // of weight that is diffuse, glossy; the rest is transmission
+  F pdf{0.0f};                               // per solid angle; for a single direction the probability of having chosen it
+  MaskOf<F> delta = uniform<F>(false);       // a single direction: evaluation and pdf elsewhere are 0
+  MaskOf<F> transmitted = uniform<F>(false); // it goes through the surface
+  WordOf<F> component{0u};                   // Component of the chosen lobe
+  F alpha2{1.0f};                            // alpha_x alpha_y of the chosen lobe; 0 for a single direction
 };
 
 // Contract
@@ -47,66 +50,75 @@ struct BsdfSample {
 //             - ng: sample() never takes a direction that would pass the surface the wrong way, so its pdf is 0; of lobes that
 //               refract by the rules of Blender 3 it does, as Cycles 3. The value stays: lights are met as on the smooth
 //               surface that interpolated normals stand for, and what is in the way of the shadow ray decides.
-//   Shapes    bits shape_bit(...) of the shapes that can occur; the code of others is left out, the results are the same.
-struct Bsdf {
-  glm::vec3 wo{0, 0, 1}, ns{0, 0, 1}, ng{0, 0, 1};
-  bool inside = false;
+//   Lanes     F is float, or lanes of it: every lane is a place of its own, with lobes of the same code. A lobe that is black
+//   in a
+//             lane is not there in it.
+template <class F> struct Bsdf {
+  using V = Vec3<F>;
+  using B = MaskOf<F>;
+
+  V wo{F(0.0f), F(0.0f), F(1.0f)}, ns{F(0.0f), F(0.0f), F(1.0f)}, ng{F(0.0f), F(0.0f), F(1.0f)};
+  B inside = uniform<F>(false);
+  B flat = uniform<F>(true);       // ns is ng
+  B smooth = uniform<F>(false);    // some lobe is more than single directions; set by complete()
+  B transmits = uniform<F>(false); // some lobe lets light through; set by complete()
   bool bump_correction = true;
-  bool flat = true;       // ns is ng
-  bool smooth = false;    // some lobe is more than single directions; set by complete()
-  bool transmits = false; // some lobe lets light through; set by complete()
-  bool shares = true;     // samples say their shares by component
-  uint32_t shapes = 0;    // shape_bit of the lobes that are there
+  bool shares = true; // samples say their shares by component
   int frame_count = 0;
   int count = 0;
-  glm::vec3 emission{0.0f}; // what layered lobes emit towards wo
+  V emission{F(0.0f)}; // what layered lobes emit towards wo
   // Neither is initialised: only the first frame_count and count entries exist.
   union {
-    Frame frames[kMaxFrames];
+    Frame<F> frames[kMaxFrames];
   };
-  glm::vec3 wo_local[kMaxFrames]; // wo in each of the frames
   union {
-    Lobe lobes[kMaxLobes];
+    V wo_local[kMaxFrames]; // wo in each of the frames
+  };
+  // The first frame that is the same in a lane: its number, or its own.
+  union {
+    WordOf<F> first_same[kMaxFrames];
+  };
+  union {
+    Lobe<F> lobes[kMaxLobes];
   };
 
   Bsdf() {}
 
-  void begin(const glm::vec3 &wo, const glm::vec3 &ns, const glm::vec3 &ng, bool inside, bool bump_correction);
+  void begin(const V &wo, const V &ns, const V &ng, B inside, bool bump_correction);
   void complete();
+  // Adds a lobe unless it is black or no room is left.
+  void add(const Lobe<F> &lobe);
 
   // drawn: the lobe that drew wi, as sample() weighs it; -1: none.
-  template <uint32_t Shapes = kAllShapes> BsdfValue eval(const glm::vec3 &wi, int drawn = -1) const;
-  // For light samples.
-  template <uint32_t Shapes = kAllShapes> BsdfValue eval_lit(const glm::vec3 &wi) const;
-  // u_lobe picks the lobe, and what it says beyond that picks reflection or refraction; u the direction; all in [0, 1).
-  template <uint32_t Shapes = kAllShapes> BsdfSample sample(float u_lobe, glm::vec2 u) const;
+  BsdfValue<F> eval(const V &wi, int drawn = -1) const;
+  // For light samples. shapes: bits of the lobes that are asked.
+  BsdfValue<F> eval_lit(const V &wi, uint32_t shapes = kAllShapes) const;
+  // u_lobe picks the lobe, and what it says beyond that picks reflection or refraction; u and v the direction; all in [0, 1).
+  BsdfSample<F> sample(F u_lobe, F u, F v) const;
 
   // Sum of the lobes' albedos.
-  glm::vec3 albedo() const;
+  V albedo() const;
   // What the passes call the colour of a component: the albedo, except for lobes that Cycles 3 shows without Fresnel.
-  glm::vec3 shown(Component component) const;
+  V shown(Component component) const;
 
 private:
   // Directions of one wi in all frames.
   struct Local {
-    glm::vec3 wi[kMaxFrames];
-    float cos_ng; // to ng
+    V wi[kMaxFrames];
+    F cos_ng; // to ng
   };
-  // The lobe that drew wi, with the half vector that its sampler had, if it had one.
+  // The lobe that drew wi in each lane, with the half vector that its sampler had, if it had one.
   struct Drawn {
-    int lobe = -1;
-    bool has_h = false;
-    glm::vec3 h{0.0f};
+    WordOf<F> lobe, frame;
+    B has_h;
+    V h;
   };
+  struct Direction;
 
-  template <uint32_t Shapes> static bool is(const Lobe &lobe, LobeShape shape);
-  template <uint32_t Shapes> static bool is_delta(const Lobe &lobe);
-  template <uint32_t Shapes> BsdfValue sum(const Local &local, const Drawn &drawn, bool lit) const;
-  template <uint32_t Shapes> BsdfSample sample_delta(const Lobe &lobe, float u) const;
-  template <uint32_t Shapes> BsdfSample sample_smooth(int chosen, float u_side, glm::vec2 u) const;
-  BsdfSample single(const Lobe &lobe, const glm::vec3 &wi, const glm::vec3 &weight, float probability) const;
-  void turn_to_frames(const glm::vec3 &wi, int known, const glm::vec3 &wi_known, Local &local) const;
-  int pick(float &u) const;
+  void turn_to_frames(const V &wi, const WordOf<F> &known, const V &wi_known, B single, Local &local) const;
+  ColorValue<F> smooth_value(const Lobe<F> &lobe, const V &wi, const V &h) const;
+  BsdfValue<F> sum(const Local &local, const Drawn &drawn, bool lit, uint32_t shapes = kAllShapes) const;
+  void draw(const Lobe<F> &lobe, B mine, F u_side, F u, F v, Direction &direction) const;
 };
 
 } // namespace lancer

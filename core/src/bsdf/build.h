@@ -3,28 +3,228 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/inputs.h"
+#include "bsdf/microfacet.h"
+#include "bsdf/normals.h"
 
 namespace lancer {
 
-// The bits of the shapes that a kind can become.
-uint32_t shapes_of(LobeKind kind);
+// Each node adds to a BSDF between begin() and complete(); what finds no room any more is dropped. add_principled() is in
+// principled.h.
+template <class F>
+LANCER_LANE Lobe<F> course_lobe(LobeShape shape, Component component, uint8_t frame, const LobeInputs<F> &inputs) {
+  Lobe<F> lobe;
+  lobe.shape = shape;
+  lobe.component = component;
+  lobe.frame = frame;
+  lobe.rules = inputs.rules;
+  lobe.color = lobe.albedo = colored_weight(inputs);
+  lobe.ior = inputs.ior;
+  lobe.shininess = inputs.shininess;
+  return lobe;
+}
 
-// Both add to a BSDF between begin() and complete(); black lobes are left out, and what finds no room any more is dropped.
-void add_lobe(Bsdf &bsdf, const LobeInputs &inputs);
-// lobe carries weight, normal and tangent.
-void add_principled(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &principled);
+template <class F> LANCER_LANE void add_matte(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  using V = Vec3<F>;
+  const bool translucent = inputs.kind == LobeKind::Translucent;
+  const V n = translucent ? reflecting_normal(bsdf, inputs.normal) : wide_normal(bsdf, inputs.normal, inputs.rules);
+  const uint8_t frame = add_frame(bsdf, n);
+  const V &wo = bsdf.wo_local[frame], weight = colored_weight(inputs);
+  Lobe<F> lobe;
+  switch (inputs.kind) {
+  case LobeKind::Diffuse:
+    lobe = make_diffuse(weight, inputs.color, inputs.roughness, inputs.option != 0, wo.z);
+    break;
+  case LobeKind::Minnaert: {
+    const F rho = max(max(max(inputs.color.x, inputs.color.y), inputs.color.z), F(0.0f));
+    lobe = make_minnaert(weight, inputs.shininess, rho, wo);
+    break;
+  }
+  case LobeKind::Sheen: {
+    const F roughness = clamp01(inputs.roughness);
+    lobe = inputs.distribution == Facets::Beckmann ? make_velvet(weight, roughness) : make_sheen(weight, roughness, wo.z);
+    break;
+  }
+  case LobeKind::Translucent:
+    lobe = make_matte<F>(Matte::Translucent, weight);
+    break;
+  default:
+    lobe = course_lobe(LobeShape::Lambert, Component::Diffuse, frame, inputs);
+    break;
+  }
+  lobe.frame = frame;
+  lobe.rules = inputs.rules;
+  bsdf.add(lobe);
+}
 
-// The number of a frame about the normal n with tangent t (0 = any); the shading frame where both are 0. Where room is out, the
-// shading frame.
-uint8_t add_frame(Bsdf &bsdf, const glm::vec3 &n, const glm::vec3 &t);
+// Roughness along the tangent and across it, and the frame that they lie in.
+template <class F> struct Stretched {
+  F alpha_x, alpha_y;
+  uint8_t frame;
+};
 
-// A unit normal for lobes that reflect: n (0 = the shading normal) if what it mirrors from wo stays above the surface, else
-// turned towards ng just far enough. As it is where the material wants no bump correction.
-glm::vec3 reflecting_normal(const Bsdf &bsdf, const glm::vec3 &n);
-// n itself or, where it is 0, the shading normal.
-glm::vec3 normal_or_shading(const Bsdf &bsdf, const glm::vec3 &n);
+// axis: what the tangent is turned about; along, across: factors on the roughness in lanes of stretched ones.
+template <class F>
+LANCER_LANE Stretched<F> stretched(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Vec3<F> &n, const Vec3<F> &axis, F alpha,
+                                   MaskOf<F> is_stretched, F along, F across) {
+  using V = Vec3<F>;
+  const V none(F(0.0f));
+  if (!any(is_stretched))
+    return {alpha, alpha, add_frame(bsdf, n, none)};
+  const V turned = select(inputs.rotation != F(0.0f), turn_about(inputs.tangent, axis, inputs.rotation), inputs.tangent);
+  return {select(is_stretched, alpha * along, alpha), select(is_stretched, alpha * across, alpha),
+          add_frame(bsdf, n, select(is_stretched, turned, none))};
+}
 
-// t turned about the unit axis by turns, counter-clockwise seen from its tip.
-glm::vec3 turn_about(const glm::vec3 &t, const glm::vec3 &axis, float turns);
+// The Glossy node's: squeezed one way as it is drawn out the other.
+template <class F> LANCER_LANE Stretched<F> glossy_roughness(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Vec3<F> &n) {
+  const F alpha = alpha_of(inputs.roughness), anisotropy = min(max(inputs.anisotropy, F(-0.99f)), F(0.99f));
+  const auto negative = anisotropy < 0.0f;
+  const F shorter = select(negative, 1.0f + anisotropy, 1.0f - anisotropy), longer = 1.0f / shorter;
+  return stretched(bsdf, inputs, n, n, alpha, abs(anisotropy) > 1e-4f, select(negative, longer, shorter),
+                   select(negative, shorter, longer));
+}
+
+// The Metallic node's, as Principled has it.
+template <class F> LANCER_LANE Stretched<F> conductor_roughness(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Vec3<F> &n) {
+  const F alpha = alpha_of(inputs.roughness), anisotropy = clamp01(inputs.anisotropy);
+  const F aspect = sqrt(1.0f - 0.9f * anisotropy);
+  return stretched(bsdf, inputs, n, normal_or_shading(bsdf, inputs.normal), alpha, anisotropy != F(0.0f), 1.0f / aspect,
+                   aspect);
+}
+
+// The index from wo's side; Cycles keeps the node's away from 0.
+template <class F> LANCER_LANE F index_from(MaskOf<F> inside, F ior) {
+  const F outside = max(ior, F(1e-5f));
+  return select(inside, 1.0f / outside, outside);
+}
+
+template <class F> LANCER_LANE void add_facets(Bsdf<F> &bsdf, Lobe<F> lobe, const LobeInputs<F> &inputs, bool preserving) {
+  lobe.beckmann = inputs.distribution == Facets::Beckmann;
+  complete_microfacet(lobe, bsdf.wo_local[lobe.frame].z, uniform<F>(preserving));
+  bsdf.add(lobe);
+}
+
+// The facets of the nodes Glossy, Metallic and Glass, not by the rules of Blender 3 but where that preserves energy, still to
+// be completed; with the weight of the node in color.
+template <class F>
+LANCER_LANE Lobe<F> facets_of(const LobeInputs<F> &inputs, uint8_t frame, F alpha_x, F alpha_y, MaskOf<F> inside) {
+  using V = Vec3<F>;
+  const V none(F(0.0f));
+  if (inputs.kind == LobeKind::Glass) {
+    const F eta = index_from(inside, inputs.ior);
+    const V color = max(inputs.color, none);
+    Lobe<F> lobe = make_microfacet(Scatter::Both, frame, inputs.weight, alpha_x, alpha_y, inputs.rules);
+    set_schlick(lobe, V(f0_of_ior(eta)), V(F(1.0f)), eta, color, color);
+    return lobe;
+  }
+  const bool conductor = inputs.kind == LobeKind::Conductor;
+  const V weight = conductor ? inputs.weight : colored_weight(inputs);
+  Lobe<F> lobe = make_microfacet(Scatter::Reflect, frame, weight, alpha_x, alpha_y, inputs.rules);
+  if (!conductor)
+    set_constant(lobe, inputs.color);
+  else if (inputs.option == 0)
+    set_f82(lobe, clamp01(inputs.color), clamp01(inputs.edge));
+  else
+    set_conductor(lobe, max(inputs.color, none), max(inputs.edge, none));
+  return lobe;
+}
+
+// Of inputs without a direction along the surface.
+template <class F> LANCER_LANE MicrofacetPlan<F> plan_facets(const LobeInputs<F> &inputs, MaskOf<F> inside) {
+  const F alpha = alpha_of(inputs.roughness);
+  Lobe<F> lobe = facets_of(inputs, 0, alpha, alpha, inside);
+  lobe.beckmann = inputs.distribution == Facets::Beckmann;
+  return plan_microfacet(lobe, uniform<F>(inputs.distribution == Facets::MultiGgx));
+}
+
+template <class F> LANCER_LANE void add_glossy(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  const Stretched<F> s = glossy_roughness(bsdf, inputs, reflecting_normal(bsdf, inputs.normal));
+  if (inputs.distribution == Facets::AshikhminShirley) {
+    Lobe<F> lobe = make_ashikhmin(colored_weight(inputs), s.alpha_x, s.alpha_y);
+    lobe.frame = s.frame;
+    lobe.rules = inputs.rules;
+    bsdf.add(lobe);
+    return;
+  }
+  add_facets(bsdf, facets_of(inputs, s.frame, s.alpha_x, s.alpha_y, bsdf.inside), inputs,
+             inputs.distribution == Facets::MultiGgx);
+}
+
+template <class F> LANCER_LANE void add_conductor(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  const Stretched<F> s = conductor_roughness(bsdf, inputs, reflecting_normal(bsdf, inputs.normal));
+  add_facets(bsdf, facets_of(inputs, s.frame, s.alpha_x, s.alpha_y, bsdf.inside), inputs,
+             inputs.distribution == Facets::MultiGgx);
+}
+
+template <class F> LANCER_LANE void add_refraction(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
+  const F alpha = inputs.roughness * inputs.roughness; // below 0, too
+  Lobe<F> lobe = make_microfacet(Scatter::Refract, frame, colored_weight(inputs), alpha, alpha, inputs.rules);
+  lobe.ior = index_from(bsdf.inside, inputs.ior);
+  add_facets(bsdf, lobe, inputs, false);
+}
+
+template <class F> LANCER_LANE void add_glass(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
+  const F alpha = alpha_of(inputs.roughness), eta = index_from(bsdf.inside, inputs.ior);
+  const bool preserving = inputs.distribution == Facets::MultiGgx;
+  if (inputs.rules == Rules::Blender3 && !preserving) {
+    // Blender 3.x: Fresnel of the smooth surface shares the light between two lobes of facets without Fresnel.
+    const F f = fresnel_dielectric(bsdf.wo_local[frame].z, eta);
+    for (Scatter scatter : {Scatter::Reflect, Scatter::Refract}) {
+      const F share = scatter == Scatter::Reflect ? f : 1.0f - f;
+      Lobe<F> lobe = make_microfacet(scatter, frame, colored_weight(inputs) * share, alpha, alpha, inputs.rules);
+      lobe.ior = eta;
+      add_facets(bsdf, lobe, inputs, false);
+    }
+    return;
+  }
+  add_facets(bsdf, facets_of(inputs, frame, alpha, alpha, bsdf.inside), inputs, preserving);
+}
+
+// What the course describes beside Lambert.
+template <class F> LANCER_LANE void add_of_course(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
+  const Vec3<F> &wo = bsdf.wo_local[frame];
+  const LobeShape shape = inputs.kind == LobeKind::Beckmann     ? LobeShape::Beckmann
+                          : inputs.kind == LobeKind::Dielectric ? LobeShape::Dielectric
+                          : inputs.kind == LobeKind::Mirror     ? LobeShape::Mirror
+                          : inputs.kind == LobeKind::Phong      ? LobeShape::Phong
+                                                                : LobeShape::BlinnPhong;
+  Lobe<F> lobe = course_lobe(shape, Component::Glossy, frame, inputs);
+  lobe.delta = uniform<F>(shape == LobeShape::Mirror || shape == LobeShape::Dielectric);
+  if (shape == LobeShape::Beckmann) {
+    lobe.alpha_x = lobe.alpha_y = inputs.roughness;
+    lobe.delta = lobe.alpha_x < kMirrorAlpha;
+    lobe.albedo *= coating_albedo_estimate(lobe, wo);
+  } else if (shape == LobeShape::Dielectric) {
+    lobe.ior = select(bsdf.inside, 1.0f / inputs.ior, inputs.ior);
+    lobe.through = lobe.color * (1.0f - fresnel_dielectric(wo.z, lobe.ior));
+  }
+  bsdf.add(lobe);
+}
+
+template <class F> void add_lobe(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+  switch (inputs.kind) {
+  case LobeKind::Lambert:
+  case LobeKind::Diffuse:
+  case LobeKind::Sheen:
+  case LobeKind::Translucent:
+  case LobeKind::Minnaert:
+    return add_matte(bsdf, inputs);
+  case LobeKind::Glossy:
+    return add_glossy(bsdf, inputs);
+  case LobeKind::Glass:
+    return add_glass(bsdf, inputs);
+  case LobeKind::Refraction:
+    return add_refraction(bsdf, inputs);
+  case LobeKind::Conductor:
+    return add_conductor(bsdf, inputs);
+  case LobeKind::Principled:
+    return;
+  default:
+    return add_of_course(bsdf, inputs);
+  }
+}
 
 } // namespace lancer

@@ -1,63 +1,58 @@
 // Where a lobe's normal and the shading normal disagree: what bump and normal maps must not light, and how the lit side ends.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "bsdf/lobe.h"
 #include "bsdf/matte.h"
 
 namespace lancer {
 
 // Whether the lit side of a bump ends smoothly: lobes that scatter widely.
-inline bool ends_smoothly(const Lobe &lobe) {
+template <class F> bool ends_smoothly(const Lobe<F> &lobe) {
   return lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen;
 }
 
-// Whether bump takes light from a direction, as Cycles asks it: of what a lobe draws itself only where it reflects widely, of
+// Where bump takes light from a direction, as Cycles asks it: of what a lobe draws itself only where it reflects widely, of
 // all other light of every lobe but velvet.
-inline bool bump_acts(const Lobe &lobe, bool drawn) {
-  if (lobe.shape == LobeShape::Matte && matte_transmits(lobe))
+template <class F> LANCER_LANE MaskOf<F> bump_acts(const Lobe<F> &lobe, MaskOf<F> drawn) {
+  if (matte_transmits(lobe))
     return !drawn;
-  if (lobe.shape == LobeShape::Matte && lobe.variant == static_cast<uint8_t>(Matte::Velvet))
+  if (is_matte(lobe, Matte::Velvet))
     return drawn;
-  return !drawn || ends_smoothly(lobe);
+  return ends_smoothly(lobe) ? uniform<F>(true) : !drawn;
 }
 
 // Chiang, Li, Burley, "Taming the shadow terminator", 2019: a cubic in the ratio of cosines.
-inline float chiang_shadowing(float cos_ns, float cos_n, float cos_tilt, bool softened) {
-  const float ratio = cos_ns / (cos_n * cos_tilt);
-  if (!(ratio > 0.0f))
-    return 0.0f;
-  if (!softened || ratio >= 1.0f)
-    return 1.0f;
-  return ratio * (1.0f + ratio * (1.0f - ratio));
+template <class F> LANCER_LANE F chiang_shadowing(F cos_ns, F cos_n, F cos_tilt, bool softened) {
+  const F zero(0.0f), one(1.0f), ratio = cos_ns / (cos_n * cos_tilt);
+  const F soft = softened ? select(ratio >= one, one, ratio * (1.0f + ratio * (1.0f - ratio))) : one;
+  return select(ratio > zero, soft, zero);
 }
 
 // Conty Estevez, Lecocq, Stein, "A microfacet-based shadowing function to solve the bump terminator problem", 2019: the bump
 // stands for facets of GGX whose roughness follows from its tilt.
-inline float conty_shadowing(float cos_ns, float cos_tilt) {
-  const float c = std::abs(cos_ns), tilt = std::abs(cos_tilt);
-  if (c >= 1.0f || tilt >= 1.0f)
-    return 1.0f;
-  const auto tan2 = [](float x) { return (1.0f - x) * (1.0f + x) / (x * x); };
-  const float alpha2 = std::min(0.125f * tan2(tilt), 1.0f);
-  return 2.0f / (1.0f + std::sqrt(1.0f + alpha2 * tan2(c)));
+template <class F> LANCER_LANE F conty_shadowing(F cos_ns, F cos_tilt) {
+  const F one(1.0f), c = abs(cos_ns), tilt = abs(cos_tilt);
+  const auto tan2 = [](F x) __attribute__((always_inline)) { return (1.0f - x) * (1.0f + x) / (x * x); };
+  const F alpha2 = min(0.125f * tan2(tilt), one);
+  return select((c >= one) | (tilt >= one), one, 2.0f / (1.0f + sqrt(1.0f + alpha2 * tan2(c))));
 }
 
 // What a lobe about n keeps of light from a direction with cosines cos_ns to the shading normal ns and cos_n to n.
-inline float bump_factor(const Lobe &lobe, const glm::vec3 &n, const glm::vec3 &ns, float cos_ns, float cos_n,
-                         bool correction) {
-  if (n == ns)
-    return 1.0f;
-  const float cos_tilt = glm::dot(n, ns);
+template <class F>
+LANCER_LANE F bump_factor(const Lobe<F> &lobe, const Vec3<F> &n, const Vec3<F> &ns, F cos_ns, F cos_n, bool correction) {
+  const F one(1.0f), cos_tilt = dot(n, ns);
   const bool smooth_end = ends_smoothly(lobe);
-  if (lobe.rules != Rules::Blender45 && smooth_end)
-    return chiang_shadowing(cos_ns, cos_n, cos_tilt, correction);
-  // On the other side of the surface than the lobe believes; Blender 3.x asked this of wide lobes only.
-  if (lobe.rules != Rules::Blender3 && cos_ns * cos_tilt * cos_n < 0.0f)
-    return 0.0f;
-  return smooth_end && correction ? conty_shadowing(cos_ns, cos_tilt) : 1.0f;
+  F kept = one;
+  if (lobe.rules != Rules::Blender45 && smooth_end) {
+    kept = chiang_shadowing(cos_ns, cos_n, cos_tilt, correction);
+  } else {
+    if (smooth_end && correction)
+      kept = conty_shadowing(cos_ns, cos_tilt);
+    // On the other side of the surface than the lobe believes; Blender 3.x asked this of wide lobes only.
+    if (lobe.rules != Rules::Blender3)
+      kept = select(cos_ns * cos_tilt * cos_n < 0.0f, F(0.0f), kept);
+  }
+  return select(same(n, ns), one, kept);
 }
 
 } // namespace lancer

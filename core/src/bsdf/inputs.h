@@ -1,8 +1,9 @@
 // Lobes as a material describes them, with every parameter a value: what the BSDF of one place is built from.
 #pragma once
 
+#include "simd/vectors.h"
+
 #include <cstdint>
-#include <glm/glm.hpp>
 
 namespace lancer {
 
@@ -31,38 +32,43 @@ enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, Mult
 // Whose definitions hold: Blender 3.x, 4.0 ... 4.4, 4.5 and newer.
 enum class Rules : uint32_t { Blender3 = 0, Blender4 = 1, Blender45 = 2 };
 
-struct LobeInputs {
+// Their numbers are those of every lane; what they are is the same in all lanes.
+template <class F> struct LobeInputs {
+  using V = Vec3<F>;
   LobeKind kind = LobeKind::Lambert;
   Rules rules = Rules::Blender45;
   Facets distribution = Facets::Ggx;
   uint32_t option = 0;
-  glm::vec3 weight{1.0f};
-  glm::vec3 color{0.0f};
-  float roughness = 0.0f, ior = 1.5f, shininess = 0.0f;
-  glm::vec3 edge{1.0f};
-  float anisotropy = 0.0f, rotation = 0.0f;
-  glm::vec3 normal{0.0f}, tangent{0.0f}; // world; 0 = the shading normal, any tangent
+  V weight{F(1.0f)};
+  V color{F(0.0f)};
+  F roughness{0.0f}, ior{1.5f}, shininess{0.0f};
+  V edge{F(1.0f)};
+  F anisotropy{0.0f}, rotation{0.0f};
+  V normal{F(0.0f)}, tangent{F(0.0f)}; // world; 0 = the shading normal, any tangent
 };
 
 // The weight of a lobe that its colour scales.
-inline glm::vec3 colored_weight(const LobeInputs &inputs) { return inputs.weight * glm::max(inputs.color, 0.0f); }
+template <class F> LANCER_LANE Vec3<F> colored_weight(const LobeInputs<F> &inputs) {
+  return inputs.weight * max(inputs.color, Vec3<F>(F(0.0f)));
+}
 
 // weight, normal and tangent are those of the lobe that carries the record.
-struct PrincipledInputs {
+template <class F> struct PrincipledInputs {
+  using V = Vec3<F>;
   Rules rules = Rules::Blender45;
   Facets distribution = Facets::MultiGgx;
   uint32_t option = 1; // of the diffuse lobe
-  glm::vec3 base_color{0.8f};
-  float metallic = 0.0f, roughness = 0.5f, ior = 1.5f, diffuse_roughness = 0.0f;
-  float specular = 0.5f;
-  glm::vec3 specular_tint{1.0f};
-  float anisotropic = 0.0f, anisotropic_rotation = 0.0f;
-  float transmission = 0.0f, transmission_roughness = 0.0f;
-  float coat = 0.0f, coat_roughness = 0.03f, coat_ior = 1.5f;
-  glm::vec3 coat_tint{1.0f}, coat_normal{0.0f};
-  float sheen = 0.0f, sheen_roughness = 0.5f;
-  glm::vec3 sheen_tint{1.0f};
-  glm::vec3 emission{0.0f};
+  V base_color{F(0.8f)};
+  F metallic{0.0f}, roughness{0.5f}, ior{1.5f}, diffuse_roughness{0.0f};
+  F specular{0.5f};
+  V specular_tint{F(1.0f)};
+  F anisotropic{0.0f}, anisotropic_rotation{0.0f};
+  F transmission{0.0f}, transmission_roughness{0.0f};
+  F coat{0.0f}, coat_roughness{0.03f}, coat_ior{1.5f};
+  V coat_tint{F(1.0f)}, coat_normal{F(0.0f)};
+  F sheen{0.0f}, sheen_roughness{0.5f};
+  V sheen_tint{F(1.0f)};
+  V emission{F(0.0f)};
 };
 
 } // namespace lancer

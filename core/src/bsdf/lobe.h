@@ -1,11 +1,12 @@
-// A lobe of one place, ready to be evaluated and sampled: what is left of a material after nodes, layers and wo.
+// A lobe of one place in every lane, ready to be evaluated and sampled: what is left of a material after nodes, layers and wo.
 #pragma once
 
 #include "bsdf/inputs.h"
+#include "simd/vectors.h"
 
 namespace lancer {
 
-// Which mathematics a lobe follows; bits of Shapes select what a kernel knows.
+// Which mathematics a lobe follows.
 enum class LobeShape : uint8_t {
   Lambert = 0,    // color / pi
   Beckmann = 1,   // the course's coating: exact Fresnel, Walter's G1
@@ -24,6 +25,7 @@ inline constexpr uint32_t kAllShapes = (1u << kLobeShapes) - 1u;
 
 // The kinds of light that passes and ray visibility tell apart.
 enum class Component : uint8_t { Diffuse = 0, Glossy = 1, Transmission = 2 };
+constexpr bool operator==(uint32_t number, Component component) { return number == static_cast<uint32_t>(component); }
 
 // Where the facets of Microfacet send light; Lobe::variant.
 enum class Scatter : uint8_t { Reflect = 1, Refract = 2, Both = 3 };
@@ -41,28 +43,34 @@ enum class FresnelKind : uint8_t {
 inline constexpr int kMaxFrames = 16;
 inline constexpr int kMaxLobes = 64;
 
-struct Lobe {
+// What it is, is the same in all lanes; its numbers differ.
+template <class F> struct Lobe {
+  using V = Vec3<F>;
+  using B = MaskOf<F>;
+
   LobeShape shape = LobeShape::Lambert;
   uint8_t variant = 0;                      // of Matte, Ashikhmin; of Microfacet: Scatter
   Component component = Component::Diffuse; // of what stays on the side of wo, where a lobe does both
   uint8_t frame = 0;                        // of Bsdf::frames
   bool beckmann = false;                    // the facets' distribution; else GGX
-  bool delta = false;                       // a single direction: too smooth to be evaluated
-  bool delta_through = false; // what Microfacet refracts goes in a single direction, even if what it reflects does not
   FresnelKind fresnel = FresnelKind::None;
   Rules rules = Rules::Blender45;
-  glm::vec3 color{0.0f};                // times everything
-  float probability = 0.0f;             // of being sampled, set when the BSDF is complete
-  float alpha_x = 0.0f, alpha_y = 0.0f; // or the one roughness in alpha_x
-  float ior = 1.5f;                     // seen from wo's side: beyond over before
-  float shininess = 0.0f;
-  float energy = 1.0f; // what multiple scattering multiplies the single one with
-  float shown = 0.0f;  // the colour of the passes is color times this; 0: it is the albedo
-  glm::vec3 f0{0.0f}, f90{1.0f}, b{0.0f};
-  float lowest = 0.0f, per_range = 1.0f;          // Schlick: of ior, at the normal, and 1 over what is left to 1
-  glm::vec3 reflection{1.0f}, transmission{1.0f}; // tints
-  glm::vec3 albedo{0.0f};                         // share of light from wo that is scattered, color included
-  glm::vec3 through{0.0f};                        // the part of albedo that goes through, of lobes that do both
+
+  B delta = uniform<F>(false);         // a single direction: too smooth to be evaluated
+  B delta_through = uniform<F>(false); // what Microfacet refracts goes in a single direction, even if what it reflects does not
+  V color{F(0.0f)};                    // times everything
+  F probability{0.0f};                 // of being sampled, set when the BSDF is complete
+  F alpha_x{0.0f}, alpha_y{0.0f};      // or the one roughness in alpha_x
+  F ior{1.5f};                         // seen from wo's side: beyond over before
+  F shininess{0.0f};
+  F energy{1.0f}; // what multiple scattering multiplies the single one with
+  F shown{0.0f};  // the colour of the passes is color times this; 0: it is the albedo
+  V f0{F(0.0f)}, f90{F(1.0f)}, b{F(0.0f)};
+  F lowest{0.0f}, per_range{1.0f};              // Schlick: of ior, at the normal, and 1 over what is left to 1
+  V reflection{F(1.0f)}, transmission{F(1.0f)}; // tints
+  V albedo{F(0.0f)};                            // share of light from wo that is scattered, color included
+  V through{F(0.0f)};                           // the part of albedo that goes through, of lobes that do both
+  F hidden{0.0f}, g1{0.0f};                     // of Microfacet, from wo: facet_hidden(), facet_g1()
 };
 
 } // namespace lancer

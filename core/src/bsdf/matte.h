@@ -1,72 +1,65 @@
-// Smooth, wide lobes, told apart by Lobe::variant: Oren-Nayar, Burley's diffuse, velvet, the dust sheen of 3.x, translucency,
-// Minnaert.
-// Local frame, wo.z > 0. Values are f |cos(wi)| without the lobe's colour.
+// Lambert, and the other smooth, wide lobes, told apart by Lobe::variant: Oren-Nayar, Burley's diffuse, velvet, the dust sheen
+// of 3.x, translucency, Minnaert. Local frame, wo.z > 0. Values are f |cos(wi)| without the lobe's colour.
 #pragma once
-
-#include <algorithm>
-#include <cmath>
 
 #include "bsdf/lobe.h"
 #include "bsdf/lobe_value.h"
 #include "bsdf/minnaert.h"
-#include "sampling/elementary.h"
 #include "sampling/warp.h"
 
 namespace lancer {
 
 enum class Matte : uint8_t { OrenNayar = 0, Burley = 1, Velvet = 2, DustSheen = 3, Translucent = 4, Minnaert = 5 };
-
-// Coloured, with the cosine in it; pdf per solid angle of wi.
-struct ColorValue {
-  glm::vec3 f{0.0f};
-  float pdf = 0.0f;
-};
+template <class F> bool is_matte(const Lobe<F> &lobe, Matte variant) {
+  return lobe.shape == LobeShape::Matte && lobe.variant == static_cast<uint8_t>(variant);
+}
 
 // Below this roughness Cycles takes Lambert in place of Oren-Nayar.
 inline constexpr float kLambertRoughness = 1e-5f;
 
-inline float fifth_power(float x) { return x * x * (x * x) * x; }
+template <class F> LANCER_LANE F fifth_power(F x) { return x * x * (x * x) * x; }
 
 // (1 - cos)^5, Schlick's weight.
-inline float schlick_weight(float cos_theta) { return fifth_power(std::clamp(1.0f - cos_theta, 0.0f, 1.0f)); }
+template <class F> LANCER_LANE F schlick_weight(F cos_theta) { return fifth_power(clamp01(1.0f - cos_theta)); }
 
 // The part of Fujii's directional albedo that the roughness scales. (1 - s^3) tan is taken apart so that the horizon needs no
 // case of its own.
-inline float oren_nayar_g(float cos_theta) {
-  const float c = std::clamp(cos_theta, 0.0f, 1.0f);
-  const float s = std::sqrt((1.0f - c) * (1.0f + c));
+template <class F> LANCER_LANE F oren_nayar_g(F cos_theta) {
+  const F c = clamp01(cos_theta);
+  const F s = sqrt((1.0f - c) * (1.0f + c));
   return s * (atan2(s, c) - 2.0f / 3.0f - s * c) + 2.0f / 3.0f * s * c * (1.0f + s + s * s) / (1.0f + s);
 }
 
 // Blender's Diffuse BSDF. weight carries the colour; preserving: the form of 4.3 and newer, whose lost light comes back with
-// the colour's share of each further bounce. A smooth one is Lambert.
-inline Lobe make_diffuse(const glm::vec3 &weight, const glm::vec3 &color, float roughness, bool preserving, float cos_o) {
-  Lobe lobe;
+// the colour's share of each further bounce. A smooth one is Lambert: alpha_x is 0.
+template <class F>
+LANCER_LANE Lobe<F> make_diffuse(const Vec3<F> &weight, const Vec3<F> &color, F roughness, bool preserving, F cos_o) {
+  Lobe<F> lobe;
   lobe.component = Component::Diffuse;
   lobe.color = lobe.albedo = weight;
-  if (!(roughness >= kLambertRoughness)) {
-    lobe.shape = LobeShape::Lambert;
+  lobe.shape = LobeShape::Lambert;
+  const auto rough = roughness >= kLambertRoughness;
+  if (!any(rough))
     return lobe;
-  }
   lobe.shape = LobeShape::Matte;
   lobe.variant = static_cast<uint8_t>(Matte::OrenNayar);
-  const float sigma = std::min(roughness, 1.0f);
-  const float a = 1.0f / (kPi + sigma * (0.5f * kPi - 2.0f / 3.0f)), b = sigma * a;
-  lobe.alpha_x = a;
+  const F sigma = min(roughness, F(1.0f));
+  const F a = 1.0f / (kPi + sigma * (0.5f * kPi - 2.0f / 3.0f)), b = sigma * a;
+  lobe.alpha_x = select(rough, a, F(0.0f));
   lobe.alpha_y = b;
-  lobe.f0 = glm::vec3(0.0f);
+  lobe.f0 = Vec3<F>(F(0.0f));
   if (preserving) {
     // Light that single scattering loses, spread by the reciprocal product of what both directions lack.
-    const glm::vec3 rho = glm::clamp(color, 0.0f, 1.0f);
-    const float mean = a * kPi + (2.0f * kPi - 5.6f) / 3.0f * b;
-    const glm::vec3 bounces = rho * rho * (mean / (1.0f - mean)) / (1.0f - rho * (1.0f - mean));
+    const Vec3<F> rho = clamp01(color), one(F(1.0f));
+    const F mean = a * kPi + (2.0f * kPi - 5.6f) / 3.0f * b;
+    const Vec3<F> bounces = rho * rho * (mean / (1.0f - mean)) / (one - rho * (1.0f - mean));
     lobe.f0 = kInvPi * bounces * (1.0f - (a * kPi + b * oren_nayar_g(cos_o)));
   }
   return lobe;
 }
 
-inline Lobe make_matte(Matte variant, const glm::vec3 &weight) {
-  Lobe lobe;
+template <class F> LANCER_LANE Lobe<F> make_matte(Matte variant, const Vec3<F> &weight) {
+  Lobe<F> lobe;
   lobe.shape = LobeShape::Matte;
   lobe.variant = static_cast<uint8_t>(variant);
   lobe.component = Component::Diffuse;
@@ -75,113 +68,113 @@ inline Lobe make_matte(Matte variant, const glm::vec3 &weight) {
 }
 
 // Principled's diffuse of 3.x.
-inline Lobe make_burley(const glm::vec3 &weight, float roughness) {
-  Lobe lobe = make_matte(Matte::Burley, weight);
+template <class F> LANCER_LANE Lobe<F> make_burley(const Vec3<F> &weight, F roughness) {
+  Lobe<F> lobe = make_matte<F>(Matte::Burley, weight);
   lobe.alpha_x = roughness;
   return lobe;
 }
 
 // Ashikhmin's velvet; Cycles keeps sigma at 0.01 or more.
-inline Lobe make_velvet(const glm::vec3 &weight, float sigma) {
-  Lobe lobe = make_matte(Matte::Velvet, weight);
-  const float s = std::clamp(sigma, 0.01f, 1.0f);
+template <class F> LANCER_LANE Lobe<F> make_velvet(const Vec3<F> &weight, F sigma) {
+  Lobe<F> lobe = make_matte<F>(Matte::Velvet, weight);
+  const F s = min(max(sigma, F(0.01f)), F(1.0f));
   lobe.alpha_x = 1.0f / (s * s);
   return lobe;
 }
 
-// Light that comes out behind. As in Cycles it counts as diffuse: in passes, and for lights that are hidden from such rays.
-inline Lobe make_translucent(const glm::vec3 &weight) { return make_matte(Matte::Translucent, weight); }
-
 // The course's Minnaert; rho as of complete_minnaert.
-inline Lobe make_minnaert(const glm::vec3 &weight, float k, float rho, const glm::vec3 &wo) {
-  Lobe lobe = make_matte(Matte::Minnaert, weight);
+template <class F> LANCER_LANE Lobe<F> make_minnaert(const Vec3<F> &weight, F k, F rho, const Vec3<F> &wo) {
+  Lobe<F> lobe = make_matte<F>(Matte::Minnaert, weight);
   lobe.shininess = k;
   complete_minnaert(lobe, rho, wo);
   return lobe;
 }
 
-inline bool matte_transmits(const Lobe &lobe) { return lobe.variant == static_cast<uint8_t>(Matte::Translucent); }
+// Light that comes out behind counts as diffuse, as in Cycles: in passes, and for lights that are hidden from such rays.
+template <class F> bool matte_transmits(const Lobe<F> &lobe) { return is_matte(lobe, Matte::Translucent); }
 
-inline ColorValue oren_nayar_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
-  const float a = lobe.alpha_x, b = lobe.alpha_y;
-  const float cos_o = std::max(wo.z, 0.0f);
-  float t = glm::dot(wi, wo) - wi.z * cos_o;
-  if (t > 0.0f)
-    t /= std::max(wi.z, cos_o);
-  glm::vec3 f(a + b * t);
-  if (lobe.f0 != glm::vec3(0.0f))
-    f += lobe.f0 * (1.0f - (a * kPi + b * oren_nayar_g(wi.z)));
-  return {f * wi.z, warp_cosine_hemisphere_pdf(wi.z)};
+// f cos, which is also the density of its sampler.
+template <class V> LANCER_LANE ColorValue<NumberOf<V>> lambert_eval(const V &wi) {
+  const NumberOf<V> value = warp_cosine_hemisphere_pdf(wi.z);
+  return {V(value), value};
 }
 
-inline ColorValue burley_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
-  const float view = schlick_weight(wo.z), light = schlick_weight(wi.z);
+template <class F> LANCER_LANE ColorValue<F> oren_nayar_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
+  const F a = lobe.alpha_x, b = lobe.alpha_y, cos_o = max(wo.z, F(0.0f));
+  F t = dot(wi, wo) - wi.z * cos_o;
+  t = select(t > 0.0f, t / max(wi.z, cos_o), t);
+  Vec3<F> f(a + b * t);
+  const auto returned = !black(lobe.f0);
+  if (any(returned))
+    f = select(returned, f + lobe.f0 * (1.0f - (a * kPi + b * oren_nayar_g(wi.z))), f);
+  const F pdf = warp_cosine_hemisphere_pdf(wi.z);
+  const auto rough = a > 0.0f;
+  return {select(rough, f * wi.z, Vec3<F>(pdf)), pdf};
+}
+
+template <class F> LANCER_LANE ColorValue<F> burley_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
+  const F view = schlick_weight(wo.z), light = schlick_weight(wi.z);
   // 2 cos^2 of the difference angle is 1 + wi.wo; it scales the light that turns back.
-  const float back = lobe.alpha_x * (glm::dot(wi, wo) + 1.0f);
-  const float f = (1.0f - 0.5f * view) * (1.0f - 0.5f * light) + back * (light + view + light * view * (back - 1.0f));
-  return {glm::vec3(f * wi.z * kInvPi), warp_cosine_hemisphere_pdf(wi.z)};
+  const F back = lobe.alpha_x * (dot(wi, wo) + 1.0f);
+  const F f = (1.0f - 0.5f * view) * (1.0f - 0.5f * light) + back * (light + view + light * view * (back - 1.0f));
+  return {Vec3<F>(f * wi.z * kInvPi), warp_cosine_hemisphere_pdf(wi.z)};
 }
 
-inline ColorValue velvet_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
-  const float pdf = 0.5f * kInvPi;
-  const glm::vec3 h = half_vector(wo, wi);
-  const float sin2 = h.x * h.x + h.y * h.y, cos_ho = glm::dot(h, wo);
-  const float inv_sigma2 = lobe.alpha_x;
+template <class F> LANCER_LANE ColorValue<F> velvet_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
+  const F zero(0.0f), pdf(0.5f * kInvPi);
+  const Vec3<F> h = half_vector(wo, wi);
+  const F sin2 = h.x * h.x + h.y * h.y, cos_ho = dot(h, wo);
+  const F inv_sigma2 = lobe.alpha_x;
   // Fibres that stand across the normal: an inverted Gaussian, which vanishes faster than any power of the sine.
-  const float exponent = h.z * h.z / sin2 * inv_sigma2;
-  if (!(sin2 > 0.0f && cos_ho > 0.0f && std::isfinite(exponent)))
-    return {glm::vec3(0.0f), pdf};
-  const float d = exp(-exponent) * inv_sigma2 * kInvPi / (sin2 * sin2);
-  const float ratio = 2.0f * h.z / cos_ho;
-  const float g = std::min({1.0f, ratio * wo.z, ratio * wi.z});
-  return {glm::vec3(0.25f * d * g / wo.z), pdf};
+  const F exponent = h.z * h.z / sin2 * inv_sigma2;
+  const auto there = (sin2 > zero) & (cos_ho > zero) & (abs(exponent) < __builtin_inff());
+  const F d = exp(-exponent) * inv_sigma2 * kInvPi / (sin2 * sin2);
+  const F ratio = 2.0f * h.z / cos_ho;
+  const F g = min(min(F(1.0f), ratio * wo.z), ratio * wi.z);
+  return {select(there, Vec3<F>(0.25f * d * g / wo.z), Vec3<F>(zero)), pdf};
 }
 
-inline ColorValue dust_sheen_eval(const glm::vec3 &wo, const glm::vec3 &wi) {
-  const float cos_h = glm::dot(wi, half_vector(wo, wi));
-  return {glm::vec3(schlick_weight(cos_h) * wi.z), warp_cosine_hemisphere_pdf(wi.z)};
+template <class V> LANCER_LANE ColorValue<NumberOf<V>> dust_sheen_eval(const V &wo, const V &wi) {
+  const NumberOf<V> cos_h = dot(wi, half_vector(wo, wi));
+  return {V(schlick_weight(cos_h) * wi.z), warp_cosine_hemisphere_pdf(wi.z)};
 }
 
 // 0 where wi is on the wrong side: above for translucency, below for all others. Velvet and dust are also 0 where wo is behind
 // the normal; the others go on as at the horizon, as where a coarse mesh's interpolated normal looks away from the viewer.
-inline ColorValue matte_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
-  if (matte_transmits(lobe)) {
-    const float value = std::max(-wi.z, 0.0f) * kInvPi;
-    return {glm::vec3(value), value};
-  }
-  if (!(wi.z > 0.0f))
-    return {};
+template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
+  const F zero(0.0f);
+  const auto above = wi.z > zero, seen = above & (wo.z > zero);
   switch (static_cast<Matte>(lobe.variant)) {
   case Matte::OrenNayar:
-    return oren_nayar_eval(lobe, wo, wi);
+    return where<F>(above, oren_nayar_eval(lobe, wo, wi));
   case Matte::Burley:
-    return burley_eval(lobe, wo, wi);
+    return where<F>(above, burley_eval(lobe, wo, wi));
   case Matte::Velvet:
-    return wo.z > 0.0f ? velvet_eval(lobe, wo, wi) : ColorValue{};
+    return where<F>(seen, velvet_eval(lobe, wo, wi));
   case Matte::DustSheen:
-    return wo.z > 0.0f ? dust_sheen_eval(wo, wi) : ColorValue{};
+    return where<F>(seen, dust_sheen_eval(wo, wi));
   case Matte::Minnaert: {
-    const LobeValue value = minnaert_eval_pdf(lobe, wi);
-    return {glm::vec3(value.f), value.pdf};
+    const LobeValue<F> value = minnaert_eval_pdf(lobe, wi);
+    return where<F>(above, {Vec3<F>(value.f), value.pdf});
   }
   case Matte::Translucent:
     break;
   }
-  return {};
+  const F value = max(-wi.z, zero) * kInvPi;
+  return {Vec3<F>(value), value};
 }
 
-// A direction with the density that matte_eval tells.
-inline glm::vec3 matte_sample(const Lobe &lobe, glm::vec2 u) {
-  if (lobe.variant == static_cast<uint8_t>(Matte::Velvet)) {
-    // Even over the hemisphere: velvet is brightest along the horizon.
-    const float sin_theta = std::sqrt((1.0f - u.x) * (1.0f + u.x));
-    const SinCos phi = sin_cos_turn(u.y);
-    return {sin_theta * phi.cos, sin_theta * phi.sin, u.x};
-  }
-  if (lobe.variant == static_cast<uint8_t>(Matte::Minnaert))
-    return minnaert_sample(lobe, u);
-  const glm::vec3 w = warp_cosine_hemisphere(u);
-  return matte_transmits(lobe) ? glm::vec3(w.x, w.y, -w.z) : w;
+// Even over the hemisphere: velvet is brightest along the horizon.
+template <class F> LANCER_LANE Vec3<F> velvet_sample(F u, F v) {
+  const F sin_theta = sqrt((1.0f - u) * (1.0f + u));
+  const SinCos<F> phi = sin_cos_turn(v);
+  return {sin_theta * phi.cos, sin_theta * phi.sin, u};
+}
+
+// Whether a lobe draws directions by the cosine: all of one number may share the warp.
+template <class F> bool draws_cosines(const Lobe<F> &lobe) {
+  return lobe.shape == LobeShape::Lambert ||
+         (lobe.shape == LobeShape::Matte && !is_matte(lobe, Matte::Velvet) && !is_matte(lobe, Matte::Minnaert));
 }
 
 } // namespace lancer

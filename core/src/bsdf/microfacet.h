@@ -5,14 +5,11 @@
 //   complete_microfacet(lobe, cos_o, preserving);    then: smoothness, energy, albedo
 #pragma once
 
-#include <algorithm>
-#include <memory>
-
-#include "bsdf/bsdf.h"
+#include "bsdf/albedo_tables.h"
+#include "bsdf/microfacet_fresnel.h"
+#include "bsdf/microfacet_terms.h"
 
 namespace lancer {
-
-struct AlbedoRows;
 
 // Below this product of both roughnesses Cycles takes a lobe for a mirror; ours is a little above it, where float half vectors
 // stop telling directions apart (alpha 2e-5).
@@ -20,51 +17,247 @@ inline constexpr float kMirrorAlpha2 = 4e-10f;
 inline constexpr float kMirrorAlpha2Blender3 = 1e-7f;
 
 // From the roughness of nodes that stay within 0 ... 1.
-inline float alpha_of(float roughness) {
-  const float within = std::clamp(roughness, 0.0f, 1.0f);
+template <class F> LANCER_LANE F alpha_of(F roughness) {
+  const F within = clamp01(roughness);
   return within * within;
 }
 
 // The lobe reflects all (FresnelKind::None) until one of the following is set.
-Lobe make_microfacet(Scatter scatter, uint8_t frame, const glm::vec3 &color, float alpha_x, float alpha_y, Rules rules);
+template <class F>
+LANCER_LANE Lobe<F> make_microfacet(Scatter scatter, uint8_t frame, const Vec3<F> &color, F alpha_x, F alpha_y, Rules rules) {
+  Lobe<F> lobe;
+  lobe.shape = LobeShape::Microfacet;
+  lobe.variant = static_cast<uint8_t>(scatter);
+  lobe.component = scatter == Scatter::Refract ? Component::Transmission : Component::Glossy;
+  lobe.frame = frame;
+  lobe.rules = rules;
+  lobe.color = color;
+  lobe.shown = F(rules == Rules::Blender3 && scatter != Scatter::Both ? 1.0f : 0.0f);
+  lobe.alpha_x = clamp01(alpha_x);
+  lobe.alpha_y = clamp01(alpha_y);
+  lobe.ior = F(1.0f);
+  lobe.f0 = Vec3<F>(F(1.0f));
+  return lobe;
+}
 
 // further: what each further bounce keeps; the node's colour, where color carries it together with other weights.
-void set_constant(Lobe &lobe, const glm::vec3 &further);
-// ior as seen from wo's side.
-void set_dielectric(Lobe &lobe, float ior);
-void set_conductor(Lobe &lobe, const glm::vec3 &n, const glm::vec3 &k);
-// tint: factor on Schlick's curve at 82 degrees.
-void set_f82(Lobe &lobe, const glm::vec3 &f0, const glm::vec3 &tint);
-// f0 ... f90 along the curve of the dielectric; ior as seen from wo's side.
-void set_schlick(Lobe &lobe, const glm::vec3 &f0, const glm::vec3 &f90, float ior, const glm::vec3 &reflection,
-                 const glm::vec3 &transmission);
-// f0 ... 1 along the curve of the dielectric, Blender 3.x.
-void set_principled3(Lobe &lobe, const glm::vec3 &f0, float ior);
+template <class F> LANCER_LANE void set_constant(Lobe<F> &lobe, const Vec3<F> &further) {
+  lobe.fresnel = FresnelKind::None;
+  lobe.f0 = further;
+}
 
-// cos_o: wo.z in the lobe's frame. preserving: gives back the light that single scattering loses (GGX only), with the colour
-// that further bounces give it; afterwards color holds that share, too. The albedo is what Cycles takes for it: Fresnel
-// averaged over the facets that are seen, or of a smooth surface.
-void complete_microfacet(Lobe &lobe, float cos_o, bool preserving);
+// ior as seen from wo's side.
+template <class F> LANCER_LANE void set_dielectric(Lobe<F> &lobe, F ior) {
+  lobe.fresnel = FresnelKind::Dielectric;
+  lobe.ior = ior;
+}
+
+template <class F> LANCER_LANE void set_conductor(Lobe<F> &lobe, const Vec3<F> &n, const Vec3<F> &k) {
+  lobe.fresnel = FresnelKind::Conductor;
+  lobe.f0 = n;
+  lobe.f90 = k;
+}
+
+// Schlick's curve at the angle of cosine 1/7, and what b has to be there per unit of difference.
+inline constexpr float kSix7 = 6.0f / 7.0f, kFifth = kSix7 * kSix7 * kSix7 * kSix7 * kSix7;
+inline constexpr float kEdgeScale = 7.0f / (kFifth * kSix7);
+template <class V> LANCER_LANE V schlick_at_edge(const V &f0) {
+  using F = NumberOf<V>;
+  return f0 + (V(F(1.0f)) - f0) * F(kFifth);
+}
+
+// tint: factor on Schlick's curve at 82 degrees.
+template <class F> LANCER_LANE void set_f82(Lobe<F> &lobe, const Vec3<F> &f0, const Vec3<F> &tint) {
+  lobe.fresnel = FresnelKind::F82;
+  lobe.f0 = f0;
+  lobe.b = schlick_at_edge(f0) * F(kEdgeScale) * (Vec3<F>(F(1.0f)) - tint);
+}
+
+// The dielectric whose curve Schlick's follows; one that reflects all is at its end everywhere.
+template <class F> LANCER_LANE void set_curve(Lobe<F> &lobe, F ior) {
+  lobe.ior = ior;
+  const F lowest = f0_of_ior(ior), range = 1.0f - lowest;
+  const auto bends = range > 0.0f;
+  lobe.lowest = select(bends, lowest, F(-1.0f));
+  lobe.per_range = select(bends, 1.0f / range, F(1.0f));
+}
+
+// f0 ... f90 along the curve of the dielectric; ior as seen from wo's side.
+template <class F>
+LANCER_LANE void set_schlick(Lobe<F> &lobe, const Vec3<F> &f0, const Vec3<F> &f90, F ior, const Vec3<F> &reflection,
+                             const Vec3<F> &transmission) {
+  lobe.fresnel = FresnelKind::Schlick;
+  lobe.f0 = clamp01(f0);
+  lobe.f90 = f90;
+  set_curve(lobe, ior);
+  lobe.reflection = reflection;
+  lobe.transmission = transmission;
+}
+
+// f0 ... 1 along the curve of the dielectric, Blender 3.x.
+template <class F> LANCER_LANE void set_principled3(Lobe<F> &lobe, const Vec3<F> &f0, F ior) {
+  lobe.fresnel = FresnelKind::Principled3;
+  lobe.f0 = clamp01(f0);
+  set_curve(lobe, ior);
+  lobe.transmission = Vec3<F>(F(0.0f));
+}
+
+// The index above 1 whose reflectance at the normal is f0; Cycles ends at 0.99.
+template <class F> LANCER_LANE F ior_of_f0(F f0) {
+  const F root = sqrt(min(max(f0, F(0.0f)), F(0.99f)));
+  return (1.0f + root) / (1.0f - root);
+}
+
+// Share of light from a white sky that a smooth dielectric reflects, outside and inside: the fit of Kulla and Conty 2017.
+template <class F> LANCER_LANE F dielectric_sky(F eta) {
+  const F inside = 0.997118f + eta * (0.1014f - eta * (0.965241f + eta * 0.130607f));
+  const F outside = select(abs(eta) < __builtin_inff(), (eta - 1.0f) / (4.08567f + 1.00071f * eta), F(1.0f));
+  return select(eta < 1.0f, inside, outside);
+}
+
+// The integral of fresnel_f82 over a white sky.
+template <class V> LANCER_LANE V f82_sky(const V &f0, const V &b) {
+  using F = NumberOf<V>;
+  return f0 + (V(F(1.0f)) - f0) * F(1.0f / 21.0f) - b * F(1.0f / 126.0f);
+}
+
+// Colour that a bounce of light between the facets has on average.
+template <class F> LANCER_LANE Vec3<F> further_bounce(const Lobe<F> &lobe) {
+  using V = Vec3<F>;
+  switch (lobe.fresnel) {
+  case FresnelKind::None:
+    return lobe.f0;
+  case FresnelKind::Dielectric:
+    return V(dielectric_sky(lobe.ior));
+  case FresnelKind::Conductor: {
+    // The curve of F82 through the values at the normal and at the edge.
+    const auto at = [&](F cosine) {
+      return V(fresnel_conductor(cosine, lobe.f0.x, lobe.f90.x), fresnel_conductor(cosine, lobe.f0.y, lobe.f90.y),
+               fresnel_conductor(cosine, lobe.f0.z, lobe.f90.z));
+    };
+    const V f0 = at(F(1.0f)), edge = at(F(1.0f / 7.0f));
+    return clamp01(f82_sky(f0, F(kEdgeScale) * (schlick_at_edge(f0) - edge)));
+  }
+  case FresnelKind::F82:
+    return f82_sky(lobe.f0, lobe.b);
+  case FresnelKind::Schlick:
+  case FresnelKind::Principled3:
+    break;
+  }
+  const MaskOf<F> through = !black(lobe.transmission);
+  if (all(through))
+    return lobe.transmission;
+  return select(through, lobe.transmission, lobe.reflection * schlick(lobe, dielectric_sky(lobe.ior)));
+}
+
+// Share of the light lost between facets that further bounces bring back (Turquin 2019, with Kulla and Conty's colour).
+template <class F> LANCER_LANE Vec3<F> further_light(const Lobe<F> &lobe, F roughness) {
+  // Beyond 1 the sum over all bounces would not end.
+  const Vec3<F> one(F(1.0f)), bounce = min(further_bounce(lobe), one);
+  const MaskOf<F> whole = same(bounce, one);
+  if (all(whole))
+    return bounce;
+  const F mean = refracts(lobe) ? glass_mean_albedo(roughness, lobe.ior) : ggx_mean_albedo(roughness);
+  return select(whole, bounce, bounce * mean / (one - bounce * (1.0f - mean)));
+}
 
 // The same in two steps, for lobes whose numbers are the same wherever they are met: the plan, then its look from wo.
-struct MicrofacetPlan {
-  Lobe lobe; // all but color, energy and albedo
-  bool preserving = false;
-  float roughness = 0.0f;
-  glm::vec3 further{1.0f}; // share of the lost light that comes back, by colour
-  // Tables along the cosine, where they are worth reading ahead.
-  std::shared_ptr<const AlbedoRows> rows;
+template <class F> struct MicrofacetPlan {
+  Lobe<F> lobe; // all but color, energy and albedo
+  MaskOf<F> preserving = uniform<F>(false);
+  F roughness{0.0f};
+  Vec3<F> further{F(1.0f)}; // share of the lost light that comes back, by colour
 };
-MicrofacetPlan plan_microfacet(const Lobe &lobe, bool preserving);
-// Reads the tables ahead: for plans that are looked at many times.
-void keep_rows(MicrofacetPlan &plan);
-// color: the weight of the lobe.
-Lobe seen_from(const MicrofacetPlan &plan, float cos_o, const glm::vec3 &color);
 
-// The index above 1 whose reflectance at the normal is f0; Cycles ends at 0.99. f0_of_ior is in microfacet_fresnel.h.
-float ior_of_f0(float f0);
+// What its tables say of a plan along the cosine of wo: looked up.
+template <class F> struct AlbedoLookup {
+  // What single scattering sends out at once.
+  LANCER_LANE F single(const MicrofacetPlan<F> &plan, F cos_o) const {
+    return refracts(plan.lobe) ? glass_albedo(plan.roughness, cos_o, plan.lobe.ior) : ggx_albedo(plan.roughness, cos_o);
+  }
+  // How far the facets reflect between the ends of their curve.
+  LANCER_LANE F mix(const MicrofacetPlan<F> &plan, F cos_o) const {
+    return plan.lobe.fresnel == FresnelKind::F82 ? fifth_power_mix(plan.roughness, cos_o)
+                                                 : dielectric_mix(plan.roughness, cos_o, plan.lobe.ior);
+  }
+};
 
-// Adds a lobe unless it is black or no room is left; the lobe's albedo is there already.
-void add(Bsdf &bsdf, const Lobe &lobe);
+template <class F> LANCER_LANE void set_smoothness(Lobe<F> &lobe) {
+  const F alpha2 = lobe.alpha_x * lobe.alpha_y;
+  lobe.delta = alpha2 <= (lobe.rules == Rules::Blender3 ? kMirrorAlpha2Blender3 : kMirrorAlpha2);
+  if (refracts(lobe)) {
+    // The refracted lobe is narrower than the reflected one by the share by which the index bends.
+    const F bent = abs(1.0f - 1.0f / lobe.ior);
+    lobe.delta_through = (abs(lobe.ior - 1.0f) < kStraightIor) | (alpha2 * bent * bent < kMirrorAlpha2);
+  }
+}
+
+// What Cycles takes for the reflected albedo, without the colour; smooth: of a smooth surface.
+template <class F, class Tables>
+LANCER_LANE Vec3<F> reflected_albedo(const MicrofacetPlan<F> &plan, F cos_o, const FacetResponse<F> &smooth,
+                                     const Tables &tables) {
+  using V = Vec3<F>;
+  const Lobe<F> &lobe = plan.lobe;
+  V mean = smooth.reflected;
+  // Fresnel curves are averaged over the facets.
+  if (lobe.fresnel == FresnelKind::Schlick) {
+    mean = (lobe.f0 + (lobe.f90 - lobe.f0) * tables.mix(plan, cos_o)) * lobe.reflection;
+  } else if (lobe.fresnel == FresnelKind::F82) {
+    mean = lobe.f0 + (V(F(1.0f)) - lobe.f0) * tables.mix(plan, cos_o);
+  } else if (lobe.fresnel == FresnelKind::Dielectric && lobe.rules == Rules::Blender45) {
+    const F f0 = f0_of_ior(lobe.ior);
+    mean = select(lobe.ior > 1.0f, (f0 + (1.0f - f0) * tables.mix(plan, cos_o)) * lobe.reflection, mean);
+  }
+  return select(black(smooth.reflected), V(F(0.0f)), mean);
+}
+
+// Where nothing but the mean over the facets is asked for, and a smooth surface would not be black either.
+template <class F> LANCER_LANE bool needs_no_smooth_response(const Lobe<F> &lobe) {
+  return lobe.fresnel == FresnelKind::Schlick && !refracts(lobe) && !any(black(lobe.f0));
+}
+
+// Gives a lobe its energy, its colour and its albedo from wo. color: the weight of the lobe; cos_o: wo.z in the lobe's frame.
+template <class F, class Tables>
+LANCER_LANE Lobe<F> seen_from(const MicrofacetPlan<F> &plan, F cos_o, const Vec3<F> &color, const Tables &tables) {
+  using V = Vec3<F>;
+  Lobe<F> lobe = plan.lobe;
+  lobe.color = color;
+  if (any(plan.preserving)) {
+    const F single = tables.single(plan, cos_o);
+    lobe.energy = select(plan.preserving, 1.0f / single, F(1.0f));
+    const MaskOf<F> colored = plan.preserving & !same(plan.further, V(F(1.0f)));
+    lobe.color = select(colored, color * (V(single) + plan.further * (1.0f - single)), color);
+  }
+  FacetResponse<F> smooth;
+  smooth.reflected = V(F(1.0f));
+  if (!needs_no_smooth_response(lobe))
+    smooth = facet_response(lobe, cos_o);
+  lobe.albedo = lobe.color * reflected_albedo(plan, cos_o, smooth, tables);
+  if (refracts(lobe)) {
+    const V through = lobe.color * smooth.through;
+    lobe.albedo += through;
+    if (reflects(lobe))
+      lobe.through = through;
+  }
+  return lobe;
+}
+
+// preserving: gives back the light that single scattering loses (GGX only), with the colour that further bounces give it;
+// afterwards color holds that share, too. The albedo is what Cycles takes for it: Fresnel averaged over the facets that are
+// seen, or of a smooth surface.
+template <class F> LANCER_LANE MicrofacetPlan<F> plan_microfacet(const Lobe<F> &lobe, MaskOf<F> preserving) {
+  MicrofacetPlan<F> plan;
+  plan.lobe = lobe;
+  plan.roughness = sqrt(sqrt(lobe.alpha_x * lobe.alpha_y));
+  set_smoothness(plan.lobe);
+  if (lobe.beckmann || !any(preserving))
+    return plan;
+  plan.preserving = preserving;
+  plan.further = select(preserving, further_light(lobe, plan.roughness), plan.further);
+  return plan;
+}
+template <class F> LANCER_LANE void complete_microfacet(Lobe<F> &lobe, F cos_o, MaskOf<F> preserving) {
+  lobe = seen_from(plan_microfacet(lobe, preserving), cos_o, lobe.color, AlbedoLookup<F>());
+}
 
 } // namespace lancer

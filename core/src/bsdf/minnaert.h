@@ -9,15 +9,10 @@
 // f stays reciprocal, is the plain law where m vanishes (k >= 1, or a dark colour), and Lambert for k < 1 and white.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "bsdf/beckmann.h"
 #include "bsdf/lobe.h"
 #include "bsdf/lobe_value.h"
 #include "bsdf/phong.h"
-#include "sampling/elementary.h"
-#include "sampling/warp.h"
 
 namespace lancer {
 
@@ -25,54 +20,50 @@ namespace lancer {
 inline constexpr float kLowestLogCosine = -40.0f;
 
 // log max(cos, m), from the tangent, which keeps its digits near the normal; behind the surface as on the horizon.
-inline float minnaert_log_cosine(const Lobe &lobe, const glm::vec3 &w) {
-  return w.z > 0.0f ? std::max(-0.5f * log1p(tan2_theta(w)), lobe.alpha_x) : lobe.alpha_x;
+template <class F> LANCER_LANE F minnaert_log_cosine(const Lobe<F> &lobe, const Vec3<F> &w) {
+  return select(w.z > 0.0f, max(-0.5f * log1p(tan2_theta(w)), lobe.alpha_x), lobe.alpha_x);
 }
 
 // (cos of w)^(k - 1), bounded.
-inline float minnaert_power(const Lobe &lobe, const glm::vec3 &w) {
+template <class F> LANCER_LANE F minnaert_power(const Lobe<F> &lobe, const Vec3<F> &w) {
   return exp((lobe.shininess - 1.0f) * minnaert_log_cosine(lobe, w));
 }
 
 // The parts of A / (2 pi) above m and below it.
-struct MinnaertParts {
-  float above = 0.0f, below = 0.0f;
-};
-inline MinnaertParts minnaert_parts(const Lobe &lobe) {
-  const float exponent = (lobe.shininess + 1.0f) * lobe.alpha_x; // of m^(k + 1)
+template <class F> struct MinnaertParts { F above, below; };
+template <class F> LANCER_LANE MinnaertParts<F> minnaert_parts(const Lobe<F> &lobe) {
+  const F exponent = (lobe.shininess + 1.0f) * lobe.alpha_x; // of m^(k + 1)
   return {-expm1(exponent) / (lobe.shininess + 1.0f), 0.5f * exp(exponent)};
 }
 
 // lobe: its colour and k are set; alpha_x becomes log m, alpha_y 1 / A, energy what f owes to wo. rho: the largest channel of
 // the surface's own colour, without the weights of mixtures.
-inline void complete_minnaert(Lobe &lobe, float rho, const glm::vec3 &wo) {
-  const float k = lobe.shininess;
-  lobe.alpha_x = kLowestLogCosine;
-  if (k < 1.0f)
-    lobe.alpha_x = std::max(log(std::min(rho, 1.0f)) / (1.0f - k), kLowestLogCosine);
-  const MinnaertParts parts = minnaert_parts(lobe);
+template <class F> LANCER_LANE void complete_minnaert(Lobe<F> &lobe, F rho, const Vec3<F> &wo) {
+  const F k = lobe.shininess, lowest(kLowestLogCosine);
+  lobe.alpha_x = select(k < 1.0f, max(log(min(rho, F(1.0f))) / (1.0f - k), lowest), lowest);
+  const MinnaertParts<F> parts = minnaert_parts(lobe);
   lobe.alpha_y = 1.0f / (2.0f * kPi * (parts.above + parts.below));
   lobe.energy = minnaert_power(lobe, wo);
   lobe.albedo = lobe.color * lobe.energy;
 }
 
 // f cos, and the density of minnaert_sample.
-inline LobeValue minnaert_eval_pdf(const Lobe &lobe, const glm::vec3 &wi) {
-  const float pdf = lobe.alpha_y * minnaert_power(lobe, wi) * wi.z;
+template <class F> LANCER_LANE LobeValue<F> minnaert_eval_pdf(const Lobe<F> &lobe, const Vec3<F> &wi) {
+  const F pdf = lobe.alpha_y * minnaert_power(lobe, wi) * wi.z;
   return {lobe.energy * pdf, pdf};
 }
 
-inline glm::vec3 minnaert_sample(const Lobe &lobe, glm::vec2 u) {
+template <class F> LANCER_LANE Vec3<F> minnaert_sample(const Lobe<F> &lobe, F u, F v) {
   // Above m the share of directions within an angle is 1 - cos^(k + 1), below it the rest falls as sin^2 there.
-  const MinnaertParts parts = minnaert_parts(lobe);
-  const float inside = u.x * (parts.above + parts.below);
-  if (inside < parts.above || parts.below == 0.0f)
-    return sample_cosine_power(lobe.shininess, {std::min(inside * (lobe.shininess + 1.0f), 1.0f), u.y});
-  const float rest = (1.0f - u.x) * (parts.above + parts.below) / parts.below;
-  const float cosine = exp(lobe.alpha_x) * std::sqrt(std::min(rest, 1.0f));
-  const float sine = std::sqrt((1.0f - cosine) * (1.0f + cosine));
-  const SinCos phi = sin_cos_turn(u.y);
-  return {sine * phi.cos, sine * phi.sin, cosine};
+  const MinnaertParts<F> parts = minnaert_parts(lobe);
+  const F inside = u * (parts.above + parts.below);
+  const auto high = (inside < parts.above) | (parts.below == F(0.0f));
+  const Vec3<F> above = sample_cosine_power(lobe.shininess, min(inside * (lobe.shininess + 1.0f), F(1.0f)), v);
+  const F rest = (1.0f - u) * (parts.above + parts.below) / parts.below;
+  const F cosine = exp(lobe.alpha_x) * sqrt(min(rest, F(1.0f)));
+  const F sine = sqrt((1.0f - cosine) * (1.0f + cosine));
+  const SinCos<F> phi = sin_cos_turn(v);
+  return select(high, above, Vec3<F>(sine * phi.cos, sine * phi.sin, cosine));
 }
 
 } // namespace lancer

@@ -1,55 +1,241 @@
-// Principled's two forms, and what of the layered one can be made ahead.
+// The Principled BSDF of Blender 4 and newer: from the artist's sliders to lobes, layer upon layer.
 #pragma once
 
-#include <algorithm>
-#include <optional>
-
 #include "bsdf/build.h"
-#include "bsdf/microfacet.h"
 
 namespace lancer {
 
 // Layers and shares smaller than this are not there, as in Cycles.
 inline constexpr float kLeastLayer = 1e-5f;
 
-inline float unit(float x) { return std::clamp(x, 0.0f, 1.0f); }
-inline glm::vec3 unit(const glm::vec3 &x) { return glm::clamp(x, 0.0f, 1.0f); }
+enum class PrincipledLayer : uint8_t { Sheen, Coat, Emission, Metal, Glass, Gloss, Diffuse };
+inline constexpr int kLayerCount = 7;
+// What a layer leaves of the light for those below it: all, what it does not scatter, or what its share does not take.
+enum class Leaves : uint8_t { All, Unscattered, Unshared };
+// Top to bottom.
+struct LayerRow {
+  PrincipledLayer layer;
+  Leaves leaves;
+  bool facets; // a lobe of microfacets, which may be planned ahead
+};
+constexpr LayerRow kLayers[kLayerCount] = {
+    {PrincipledLayer::Sheen, Leaves::Unscattered, false}, {PrincipledLayer::Coat, Leaves::Unscattered, true},
+    {PrincipledLayer::Emission, Leaves::All, false},      {PrincipledLayer::Metal, Leaves::Unshared, true},
+    {PrincipledLayer::Glass, Leaves::Unshared, true},     {PrincipledLayer::Gloss, Leaves::Unscattered, true},
+    {PrincipledLayer::Diffuse, Leaves::All, false}};
+
+template <class F> LANCER_LANE F cos_in(const Bsdf<F> &bsdf, uint8_t frame) { return max(F(0.0f), bsdf.wo_local[frame].z); }
+template <class V> LANCER_LANE V positive(const V &x) { return max(x, V(NumberOf<V>(0.0f))); }
 
 // Both roughnesses that all lobes of the base share.
-struct Grain {
-  float alpha_x = 0.0f, alpha_y = 0.0f;
-  bool stretched = false; // along the turned tangent
+template <class F> struct Grain {
+  F alpha_x, alpha_y;
+  MaskOf<F> stretched; // along the turned tangent
 };
-inline Grain grain_of(const LobeInputs &lobe, float roughness, float anisotropic) {
-  const float alpha = roughness * roughness;
-  if (!(anisotropic > 0.0f) || lobe.tangent == glm::vec3(0.0f))
-    return {alpha, alpha, false};
-  const float aspect = std::sqrt(std::max(0.0f, 1.0f - 0.9f * anisotropic));
-  return {unit(alpha / aspect), alpha * aspect, true};
+template <class F> LANCER_LANE Grain<F> grain_of(const LobeInputs<F> &lobe, F roughness, F anisotropic) {
+  const F alpha = roughness * roughness, aspect = sqrt(max(F(0.0f), 1.0f - 0.9f * anisotropic));
+  const MaskOf<F> stretched = (anisotropic > 0.0f) & !black(lobe.tangent);
+  return {select(stretched, clamp01(alpha / aspect), alpha), select(stretched, alpha * aspect, alpha), stretched};
+}
+template <class F> LANCER_LANE Grain<F> base_grain(const LobeInputs<F> &lobe, const PrincipledInputs<F> &in) {
+  return grain_of(lobe, clamp01(in.roughness), clamp01(in.anisotropic));
 }
 
-inline float cos_in(const Bsdf &bsdf, uint8_t frame) { return std::max(0.0f, bsdf.wo_local[frame].z); }
-
-// The sides of the surface that a plan is for.
-enum class Sides { Outside, Inside, Both };
-
-// The layers of Blender 4 and newer, as far as neither wo nor what lies above changes them. A layer that is not there is
-// planned where it is needed.
-struct LayerPlan {
-  std::optional<MicrofacetPlan> coat, metal, glass[2], gloss; // glass: from outside, from inside
-
-  // Nothing lies above the diffuse base, and nothing shines below.
-  bool only_diffuse(const PrincipledInputs &in) const {
-    return !coat && !metal && !glass[0] && !glass[1] && !gloss && !(in.sheen > kLeastLayer) && in.emission == glm::vec3(0.0f);
+// The share of a layer in the light that arrives at it; of a layer of no share nothing is there.
+template <class F> LANCER_LANE F share_of(PrincipledLayer layer, const PrincipledInputs<F> &in) {
+  switch (layer) {
+  case PrincipledLayer::Sheen:
+    return in.sheen;
+  case PrincipledLayer::Coat:
+    return in.coat;
+  case PrincipledLayer::Metal:
+    return clamp01(in.metallic);
+  case PrincipledLayer::Glass:
+    return clamp01(in.transmission);
+  default:
+    return F(1.0f);
   }
-};
-// What is kept already is left out.
-LayerPlan plan_layers(const LobeInputs &lobe, const PrincipledInputs &in, Sides sides, const LayerPlan &kept = {});
-// For plans that are looked at many times.
-void keep_rows(LayerPlan &plan);
-void add_layers(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in, const LayerPlan &kept);
+}
 
-// Blender 3.
-void add_sum3(Bsdf &bsdf, const LobeInputs &lobe, const PrincipledInputs &in);
+// What a layer leaves for those below it: one factor for all colours, by the channel that it takes most of.
+template <class V> LANCER_LANE V below(const V &weight, const V &albedo) {
+  using F = NumberOf<V>;
+  const F zero(0.0f);
+  F taken = zero;
+  taken = select(weight.x != zero, max(taken, albedo.x / weight.x), taken);
+  taken = select(weight.y != zero, max(taken, albedo.y / weight.y), taken);
+  taken = select(weight.z != zero, max(taken, albedo.z / weight.z), taken);
+  const F left = 1.0f - taken;
+  // What is no number stays none.
+  return weight * select(left < zero, zero, select(left > F(1.0f), F(1.0f), left));
+}
+
+// The light that a coat's colour lets pass on a slanted way down: Beer's law over 1/cos of the refracted direction.
+template <class F> LANCER_LANE Vec3<F> through_coat(const Vec3<F> &tint, F cos_o, F ior, F coat) {
+  const F sin = sqrt(max(F(0.0f), (1.0f - cos_o) * (1.0f + cos_o))) / ior;
+  const F depth = 1.0f / sqrt((1.0f - sin) * (1.0f + sin));
+  return mix(Vec3<F>(F(1.0f)), Vec3<F>(pow(tint.x, depth), pow(tint.y, depth), pow(tint.z, depth)), coat);
+}
+
+// The index of the plastic, which bends with the artist's level, on its own side of 1; f0: its reflectance at the normal.
+template <class F> LANCER_LANE F plastic_ior(const PrincipledInputs<F> &in, F &f0) {
+  const F ior = max(in.ior, F(1e-5f));
+  f0 = f0_of_ior(ior);
+  const MaskOf<F> moved = in.specular != F(0.5f);
+  if (!any(moved))
+    return ior;
+  f0 = select(moved, f0 * (2.0f * max(in.specular, F(0.0f))), f0);
+  const F bent = ior_of_f0(f0);
+  return select(moved, select(ior < 1.0f, 1.0f / bent, bent), ior);
+}
+
+// The lobe of a layer of facets as far as neither wo nor what lies above changes it, without its weight.
+template <class F>
+LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs<F> &inputs, const PrincipledInputs<F> &in,
+                                         MaskOf<F> inside) {
+  using V = Vec3<F>;
+  const V one(F(1.0f)), none(F(0.0f));
+  bool preserving = in.distribution == Facets::MultiGgx;
+  Lobe<F> lobe;
+  switch (layer) {
+  case PrincipledLayer::Coat: {
+    const F alpha = alpha_of(in.coat_roughness);
+    lobe = make_microfacet(Scatter::Reflect, 0, one, alpha, alpha, in.rules);
+    set_dielectric(lobe, max(in.coat_ior, F(1.0f)));
+    // From Blender 4.5 on it keeps all its light.
+    preserving = in.rules == Rules::Blender45;
+    break;
+  }
+  case PrincipledLayer::Glass: {
+    const F alpha = alpha_of(in.roughness), ior = max(in.ior, F(1e-5f));
+    lobe = make_microfacet(Scatter::Both, 0, one, alpha, alpha, in.rules);
+    set_schlick(lobe, clamp01(f0_of_ior(ior) * positive(in.specular_tint)), one, select(inside, 1.0f / ior, ior), one,
+                sqrt(clamp01(positive(in.base_color))));
+    break;
+  }
+  default: {
+    const Grain<F> grain = base_grain(inputs, in);
+    lobe = make_microfacet(Scatter::Reflect, 0, one, grain.alpha_x, grain.alpha_y, in.rules);
+    if (layer == PrincipledLayer::Metal) {
+      set_f82(lobe, clamp01(positive(in.base_color)), clamp01(positive(in.specular_tint)));
+    } else {
+      F f0;
+      const F eta = plastic_ior(in, f0);
+      set_schlick(lobe, clamp01(f0 * positive(in.specular_tint)), one, eta, one, none);
+    }
+    break;
+  }
+  }
+  return plan_microfacet(lobe, uniform<F>(preserving));
+}
+
+// Plans every layer where it is met.
+template <class F> struct NoPlans {
+  LANCER_LANE bool has(PrincipledLayer) const { return false; }
+  LANCER_LANE Lobe<F> seen(PrincipledLayer, F, const Vec3<F> &) const { return {}; }
+};
+
+// plans: which layers are planned already, and how they are seen under a cosine with a weight.
+template <class F, class Plans>
+void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInputs<F> &in, const Plans &plans) {
+  using V = Vec3<F>;
+  const V none(F(0.0f));
+  const V n = normal_or_shading(bsdf, inputs.normal), n_reflect = reflecting_normal(bsdf, inputs.normal);
+  const V n_coat = normal_or_shading(bsdf, in.coat_normal);
+  V weight = inputs.weight;
+  // Metal, glass and plastic share a normal and a grain, along a tangent where they are stretched.
+  const MaskOf<F> stretched = base_grain(inputs, in).stretched;
+  const V tangent = any(stretched) ? select(stretched, turn_about(inputs.tangent, n, in.anisotropic_rotation), none) : none;
+  int base_frame = -1;
+  for (const LayerRow &row : kLayers) {
+    const F share = share_of(row.layer, in);
+    MaskOf<F> there = share > kLeastLayer;
+    if (!any(there))
+      continue;
+    const auto weighted = [&](const V &color) __attribute__((always_inline)) { return select(there, color, none); };
+    uint8_t frame = 0;
+    Lobe<F> lobe;
+    switch (row.layer) {
+    case PrincipledLayer::Emission:
+      bsdf.emission += in.emission * weight;
+      continue;
+    case PrincipledLayer::Sheen: {
+      // Cloth on top of all, its normal between the base's and the coat's.
+      frame = add_frame(bsdf, select(same(n_coat, n), n, mix(n, n_coat, clamp01(in.coat))));
+      lobe = make_sheen(weighted(share * positive(in.sheen_tint) * weight), clamp01(in.sheen_roughness), cos_in(bsdf, frame));
+      lobe.rules = in.rules;
+      break;
+    }
+    case PrincipledLayer::Diffuse: {
+      const MaskOf<F> bent = !same(n, n_reflect);
+      frame = any(bent) || base_frame < 0 ? add_frame(bsdf, n, select(bent, none, tangent)) : static_cast<uint8_t>(base_frame);
+      const V color = positive(in.base_color);
+      lobe = make_diffuse(color * weight, color, clamp01(in.diffuse_roughness), in.option == 1, cos_in(bsdf, frame));
+      lobe.rules = in.rules;
+      break;
+    }
+    default: {
+      if (row.layer == PrincipledLayer::Coat) {
+        frame = add_frame(bsdf, reflecting_normal(bsdf, n_coat));
+      } else {
+        if (base_frame < 0)
+          base_frame = add_frame(bsdf, n_reflect, tangent);
+        frame = static_cast<uint8_t>(base_frame);
+      }
+      if (row.layer == PrincipledLayer::Gloss && !plans.has(row.layer)) {
+        // Nothing where the surface bends no light.
+        F f0;
+        there = there & (plastic_ior(in, f0) != F(1.0f));
+        if (!any(there))
+          continue;
+      }
+      const F cos_o = cos_in(bsdf, frame);
+      const V color = weighted(row.layer == PrincipledLayer::Gloss ? weight : share * weight);
+      lobe = plans.has(row.layer) ? plans.seen(row.layer, cos_o, color)
+                                  : seen_from(plan_layer(row.layer, inputs, in, bsdf.inside), cos_o, color, AlbedoLookup<F>());
+      break;
+    }
+    }
+    lobe.frame = frame;
+    bsdf.add(lobe);
+    if (row.leaves == Leaves::Unscattered)
+      weight = select(there, below(weight, lobe.albedo), weight);
+    else if (row.leaves == Leaves::Unshared)
+      weight = select(there, weight * (1.0f - share), weight);
+    // The coat colours what passes it twice.
+    if (row.layer == PrincipledLayer::Coat && !all(same(in.coat_tint, V(F(1.0f)))))
+      weight = select(there & !same(in.coat_tint, V(F(1.0f))),
+                      weight * through_coat(positive(in.coat_tint), cos_in(bsdf, frame), lobe.ior, in.coat), weight);
+  }
+}
+
+} // namespace lancer
+
+#include "bsdf/principled3.h"
+
+namespace lancer {
+
+// lobe carries weight, normal and tangent; plans as of add_layers().
+template <class F, class Plans>
+void add_principled(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const PrincipledInputs<F> &principled, const Plans &plans) {
+  if (principled.rules == Rules::Blender3)
+    add_sum3(bsdf, lobe, principled);
+  else
+    add_layers(bsdf, lobe, principled, plans);
+}
+template <class F> void add_principled(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const PrincipledInputs<F> &principled) {
+  add_principled(bsdf, lobe, principled, NoPlans<F>());
+}
+
+// Any other node; its facets may be planned, too.
+template <class F, class Plans> void add_kept(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Plans &plans) {
+  if (!plans.has(PrincipledLayer::Gloss))
+    return add_lobe(bsdf, inputs);
+  const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
+  const bool colored = inputs.kind == LobeKind::Glossy;
+  Lobe<F> lobe = plans.seen(PrincipledLayer::Gloss, bsdf.wo_local[frame].z, colored ? colored_weight(inputs) : inputs.weight);
+  lobe.frame = frame;
+  bsdf.add(lobe);
+}
 
 } // namespace lancer

@@ -3,11 +3,8 @@
 // are f cos(wi) without the colour.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "bsdf/lobe.h"
-#include "bsdf/matte.h"
+#include "bsdf/lobe_value.h"
 #include "bsdf/sheen_table.h"
 #include "sampling/on_axis.h"
 #include "sampling/warp.h"
@@ -15,63 +12,61 @@
 namespace lancer {
 
 // The cosine lobe is stretched by 1/a and sheared by b against the direction of wo along the surface.
-struct SheenFit {
-  float a, b, albedo;
-};
-inline SheenFit sheen_fit(float cos_o, float roughness) {
+template <class F> struct SheenFit { F a, b, albedo; };
+template <class F> LANCER_LANE SheenFit<F> sheen_fit(F cos_o, F roughness) {
   constexpr float kLast = kSheenNodes - 1;
   // Cycles keeps the roughness at 1e-3 or more.
-  const float y = kLast * on_axis(roughness, 1e-3f), x = kLast * on_axis(cos_o);
-  const int j = std::min(static_cast<int>(y), kSheenNodes - 2), i = std::min(static_cast<int>(x), kSheenNodes - 2);
-  const float v = y - static_cast<float>(j), u = x - static_cast<float>(i);
-  float fit[3];
-  for (int k = 0; k < 3; ++k) {
-    const auto node = [&](int row, int column) { return static_cast<float>(kSheen[j + row][i + column][k]); };
-    const float low = (1.0f - u) * node(0, 0) + u * node(0, 1), high = (1.0f - u) * node(1, 0) + u * node(1, 1);
+  const F y = kLast * on_axis(roughness, 1e-3f), x = kLast * on_axis(cos_o);
+  const F row = min(to_float(truncate(y)), F(kSheenNodes - 2)), column = min(to_float(truncate(x)), F(kSheenNodes - 2));
+  const F v = y - row, u = x - column;
+  const auto first = truncate((row * float(kSheenNodes) + column) * 3.0f);
+  const uint32_t *table = reinterpret_cast<const uint32_t *>(&kSheen[0][0][0]);
+  F fit[3];
+  for (uint32_t k = 0; k < 3; ++k) {
+    const auto node = [&](uint32_t down, uint32_t right) __attribute__((always_inline)) {
+      return to_float(gather(table + (down * kSheenNodes + right) * 3 + k, first));
+    };
+    const F low = (1.0f - u) * node(0, 0) + u * node(0, 1), high = (1.0f - u) * node(1, 0) + u * node(1, 1);
     fit[k] = 1e-5f * ((1.0f - v) * low + v * high);
   }
   return {fit[0], fit[1], fit[2]};
 }
 
 // color is black where the layer does nothing: Cycles leaves it out where a or the albedo is below 1e-5.
-inline Lobe make_sheen(const glm::vec3 &weight, float roughness, float cos_o) {
-  SheenFit fit = sheen_fit(cos_o, roughness);
-  if (fit.a < 1e-5f || fit.albedo < 1e-5f)
-    fit = {1.0f, 0.0f, 0.0f};
-  Lobe lobe;
+template <class F> LANCER_LANE Lobe<F> make_sheen(const Vec3<F> &weight, F roughness, F cos_o) {
+  SheenFit<F> fit = sheen_fit(cos_o, roughness);
+  const auto nothing = (fit.a < 1e-5f) | (fit.albedo < 1e-5f);
+  Lobe<F> lobe;
   lobe.shape = LobeShape::Sheen;
   lobe.component = Component::Diffuse;
-  lobe.alpha_x = fit.a;
-  lobe.alpha_y = fit.b;
-  lobe.color = lobe.albedo = fit.albedo * weight;
+  lobe.alpha_x = select(nothing, F(1.0f), fit.a);
+  lobe.alpha_y = select(nothing, F(0.0f), fit.b);
+  lobe.color = lobe.albedo = select(nothing, F(0.0f), fit.albedo) * weight;
   return lobe;
 }
 
-// wi turned about n so that wo lies over +x.
-inline glm::vec3 sheen_turn(const glm::vec3 &wo, const glm::vec3 &w, float sign) {
-  const float length2 = wo.x * wo.x + wo.y * wo.y;
-  if (!(length2 > 0.0f))
-    return w;
-  const float c = wo.x / std::sqrt(length2), s = sign * wo.y / std::sqrt(length2);
-  return {c * w.x + s * w.y, c * w.y - s * w.x, w.z};
+// w turned about n so that wo lies over +x.
+template <class V> LANCER_LANE V sheen_turn(const V &wo, const V &w, float sign) {
+  using F = NumberOf<V>;
+  const F length2 = wo.x * wo.x + wo.y * wo.y;
+  const F c = wo.x / sqrt(length2), s = sign * wo.y / sqrt(length2);
+  return select(length2 > 0.0f, V(c * w.x + s * w.y, c * w.y - s * w.x, w.z), w);
 }
 
 // Value and density are the same.
-inline ColorValue sheen_eval(const Lobe &lobe, const glm::vec3 &wo, const glm::vec3 &wi) {
-  if (!(wi.z > 0.0f))
-    return {};
-  const float a = lobe.alpha_x, b = lobe.alpha_y;
-  const glm::vec3 w = sheen_turn(wo, wi, 1.0f);
-  const float x = a * w.x + b * w.z, y = a * w.y;
-  const float ratio = a / (x * x + y * y + w.z * w.z);
-  const float value = kInvPi * w.z * ratio * ratio;
-  return {glm::vec3(value), value};
+template <class F> LANCER_LANE ColorValue<F> sheen_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
+  const F a = lobe.alpha_x, b = lobe.alpha_y;
+  const Vec3<F> w = sheen_turn(wo, wi, 1.0f);
+  const F x = a * w.x + b * w.z, y = a * w.y;
+  const F ratio = a / (x * x + y * y + w.z * w.z);
+  const F value = kInvPi * w.z * ratio * ratio;
+  return where<F>(wi.z > 0.0f, {Vec3<F>(value), value});
 }
 
-inline glm::vec3 sheen_sample(const Lobe &lobe, const glm::vec3 &wo, glm::vec2 u) {
-  const glm::vec3 w = warp_cosine_hemisphere(u);
-  const float a = lobe.alpha_x, b = lobe.alpha_y;
-  return sheen_turn(wo, glm::normalize(glm::vec3(w.x - w.z * b, w.y, w.z * a)), -1.0f);
+template <class F> LANCER_LANE Vec3<F> sheen_sample(const Lobe<F> &lobe, const Vec3<F> &wo, F u, F v) {
+  const Vec3<F> w = warp_cosine_hemisphere(u, v);
+  const F a = lobe.alpha_x, b = lobe.alpha_y;
+  return sheen_turn(wo, normalize(Vec3<F>(w.x - w.z * b, w.y, w.z * a)), -1.0f);
 }
 
 } // namespace lancer

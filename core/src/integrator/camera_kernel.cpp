@@ -2,9 +2,9 @@
 #include "integrator/camera_kernel.h"
 
 #include "accel/kernel_name.h"
-#include "sampling/wide_filter.h"
-#include "sampling/wide_numbers.h"
-#include "sampling/wide_warp.h"
+#include "sampling/pixel_filter.h"
+#include "sampling/scramble.h"
+#include "sampling/warp.h"
 #include "scene/camera.h"
 #include "simd/kernel_lanes.h"
 
@@ -43,9 +43,8 @@ LANCER_LANE D to_double(U a) { return widen(to_float(a >> 16)) * D(65536.0) + wi
     }
     if (camera.lens_radius > 0.0) {
       // Aim every point of the lens at the same point of the plane in focus.
-      F lens_x, lens_y;
-      warp_disk(u[2], u[3], lens_x, lens_y);
-      const D3 shift{D(camera.lens_radius) * (widen(lens_x) / D(camera.aperture_ratio)), D(camera.lens_radius) * widen(lens_y),
+      const Vector2<F> lens = warp_disk(u[2], u[3]);
+      const D3 shift{D(camera.lens_radius) * (widen(lens.x) / D(camera.aperture_ratio)), D(camera.lens_radius) * widen(lens.y),
                      D(0.0)};
       o = o + shift;
       d = d - shift / D(camera.focal_distance);

@@ -86,7 +86,7 @@ void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const 
   if (!(branch.kinds & ~scene_.world.hidden_from))
     return;
   const glm::vec3 sky = scene_.lights.environment().radiance(glm::dvec3(direction), shader_.values(), &camera_,
-                                                             branch.depth == 0 ? &eye : nullptr);
+                                                             branch.depth == 0 ? &eye : nullptr, {.kinds = branch.kinds});
   add(branch, branch.weight * sky, true, result);
 }
 
@@ -111,7 +111,11 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
     wo = -glm::vec3(glm::normalize(view));
     way = glm::length(view) + (from_camera ? 0.0 : branch.passed * glm::length(ray.d));
   }
-  shader_.shade(surface, {.wo = wo, .footprint = float(cone_.base + way * cone_.spread)}, point_);
+  shader_.shade(surface,
+                {.wo = wo,
+                 .footprint = float(cone_.base + way * cone_.spread),
+                 .path = {.kinds = branch.kinds, .depth = float(branch.depth)}},
+                point_);
   if (trace)
     trace->push_back({scene_.normalisation.to_world(met.p), hit.t / scene_.normalisation.scale, surface.ns, branch.weight,
                       result.radiance, met.instance, met.primitive, met.material, branch.depth});
@@ -122,7 +126,8 @@ void ClassicIntegrator::shade(const Branch &branch, const Ray &ray, const Hit &h
     record(here, met, hit.t, result);
   add(here, here.weight * point_.emission, false, result);
   if (here.features.open)
-    add_denoising_features(scene_, camera_, point_, hit.t * glm::length(ray.d), here.features, result);
+    add_denoising_features(scene_, camera_, mix(point_.bsdf, point_.transmittance, here.features.blended), point_.bsdf.wo,
+                           point_.transmittance, hit.t * glm::length(ray.d), here.features, result);
   // A hole has no light of its own.
   const bool hole = from_camera && scene_.geometry.instances[surface.instance].holdout;
   if (point_.material && !hole) {
@@ -178,7 +183,9 @@ void ClassicIntegrator::add_direct_light(const Branch &branch, const Surface &su
       at.u = corner == 1 ? 1.0 : 0.0;
       at.v = corner == 2 ? 1.0 : 0.0;
       const Surface vertex = surface_at(scene_.geometry, scene_.slots, Ray{}, at);
-      shader_.shade(vertex, {.wo = -glm::vec3(glm::normalize(view_of(branch, ray, vertex.p)))}, corners_[corner]);
+      View view;
+      view.wo = -glm::vec3(glm::normalize(view_of(branch, ray, vertex.p)));
+      shader_.shade(vertex, view, corners_[corner]);
       lit[corner] = {vertex.p, &corners_[corner].bsdf, float(corner == 0 ? 1.0 - hit.u - hit.v : corner == 1 ? hit.u : hit.v)};
     }
   }

@@ -35,8 +35,7 @@ struct alignas(64) CourseBlock {
   Doubles next_origin[3];             // of the mirrored ray
   Floats mirrored[3], next_weight[3]; // its direction, the weight of what it brings
   Floats viewer_ng[3], viewer_ns[3], tangent[3], bitangent[3];
-  Floats wo[3];  // local
-  Floats masked; // of the coating: G1(wo) / wo.z
+  Floats wo[3]; // local
 
   // Given.
   uint32_t count = 0;             // lanes in use, the first ones

@@ -2,8 +2,9 @@
 #include "integrator/course_kernel.h"
 
 #include "accel/kernel_name.h"
-#include "bsdf/wide_coating.h"
-#include "bsdf/wide_normal.h"
+#include "bsdf/coating.h"
+#include "bsdf/frame.h"
+#include "bsdf/normals.h"
 #include "scene/wide_surface.h"
 
 namespace lancer {
@@ -42,19 +43,18 @@ LANCER_LANE void find_surfaces(CourseBlock &block, int first) {
     const V3 out_ns = load3(block.ns, first), out_ng = load3(block.ng, first);
     const M inside = dot(wo_world, out_ng) < zero;
     const V3 ns = select(inside, -out_ns, out_ns), ng = select(inside, -out_ng, out_ng);
-    const WideFrame frame = make_frame(ns);
-    const V3 wo = to_local(frame, wo_world);
-    const F alpha = load(block.alpha + first), ior = load(block.ior + first);
+    const Frame<F> frame(ns);
+    const V3 wo = frame.to_local(wo_world);
+    const F ior = load(block.ior + first);
     store3(block.viewer_ng, first, ng);
     store3(block.viewer_ns, first, ns);
     store3(block.tangent, first, frame.t);
     store3(block.bitangent, first, frame.b);
     store3(block.wo, first, wo);
-    store(block.masked + first, masked_over_cosine(wo, alpha));
-    block.odd |= bits(bends(wo_world, ns, ng)) << first;
+    block.odd |= bits(!reflects_above(wo_world, ns, ng)) << first;
     // What the coating mirrors: course_branches() and spawn().
-    const V3 reflected = load3(block.ks, first) * fresnel_dielectric(wo.z, ior).reflectance;
-    const V3 mirrored = to_world(frame, {-wo.x, -wo.y, wo.z});
+    const V3 reflected = load3(block.ks, first) * fresnel_dielectric(wo.z, ior);
+    const V3 mirrored = frame.to_world(reflect_local(wo));
     const V3 weight = load3(block.weight, first) * reflected;
     const F share = max(max(weight.x, weight.y), weight.z);
     const M mirrors = some(block.coated, first) & (wo.z > zero) & ((reflected.x + reflected.y + reflected.z) / F(3.0f) > zero) &
@@ -91,14 +91,24 @@ LANCER_LANE V3 color(const float (&of)[3]) { return {F(of[0]), F(of[1]), F(of[2]
       ask_point(block, first, lamp, lit);
     const D3 wi_exact = load3(lit.wi, first);
     const V3 wi_world = narrow(wi_exact), wo = load3(block.wo, first);
-    const WideFrame frame{load3(block.tangent, first), load3(block.bitangent, first), load3(block.viewer_ns, first)};
-    const V3 wi = to_local(frame, wi_world);
+    Frame<F> frame;
+    frame.t = load3(block.tangent, first);
+    frame.b = load3(block.bitangent, first);
+    frame.n = load3(block.viewer_ns, first);
+    const V3 wi = frame.to_local(wi_world);
     // course_illumination()
     const M above = some(lit.there, first) & (wi.z > zero);
     const V3 kd = load3(block.kd, first) * (F(kInvPi) * wi.z);
     const V3 diffuse = select(above & some(block.matte, first), kd, dark);
-    const F f = coating_value(wo, load(block.masked + first), wi, load(block.alpha + first), load(block.ior + first),
-                              above & some(block.coated, first) & (wo.z > zero));
+    const M coated = above & some(block.coated, first) & (wo.z > zero);
+    F f = zero;
+    if (any(coated)) {
+      Lobe<F> lobe;
+      lobe.alpha_x = load(block.alpha + first);
+      lobe.ior = load(block.ior + first);
+      const V3 h = half_vector(wo, wi);
+      f = select(coated, coating_eval(lobe, wo, wi, h, coating_d(lobe, wo, h)), zero);
+    }
     const V3 specular = load3(block.ks, first) * (f * wi.z);
     const V3 seen = diffuse * color(lamp.diffuse) + select(f != zero, specular, dark) * color(lamp.specular);
     const V3 sum = load3(lit.irradiance, first) * seen;

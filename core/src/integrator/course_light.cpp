@@ -39,8 +39,8 @@ constexpr uint32_t kCourseShapes = shape_bit(LobeShape::Lambert) | shape_bit(Lob
                                    shape_bit(LobeShape::Phong) | shape_bit(LobeShape::BlinnPhong);
 
 // The direction that goes through a lobe's boundary; straight on where the index bends nothing.
-glm::vec3 refracted(const Bsdf &bsdf, const Lobe &lobe, float cosine) {
-  const Fresnel boundary = fresnel(cosine, lobe.ior);
+glm::vec3 refracted(const Bsdf<float> &bsdf, const Lobe<float> &lobe, float cosine) {
+  const Fresnel<float> boundary = fresnel(cosine, lobe.ior);
   if (lobe.ior == 1.0f || !(boundary.cos_t > 0.0f))
     return -bsdf.wo;
   return bsdf.frames[lobe.frame].to_world(refract_local(bsdf.wo_local[lobe.frame], lobe.ior, boundary.cos_t));
@@ -51,7 +51,7 @@ struct CourseShares {
 };
 
 // What a lobe mirrors of light and what it lets through, seen at that cosine to its normal.
-CourseShares course_shares(const Lobe &lobe, float cosine) {
+CourseShares course_shares(const Lobe<float> &lobe, float cosine) {
   switch (lobe.shape) {
   case LobeShape::Mirror:
     return {lobe.color};
@@ -66,7 +66,7 @@ CourseShares course_shares(const Lobe &lobe, float cosine) {
     // for, so that no light is lost between the two shares.
     if (!lobe.delta && !refracts(lobe))
       return {lobe.albedo};
-    const FacetResponse response = facet_response(lobe, cosine);
+    const FacetResponse<float> response = facet_response(lobe, cosine);
     const glm::vec3 color = lobe.delta ? lobe.color * lobe.energy : lobe.color;
     return {color * response.reflected, color * response.through};
   }
@@ -106,13 +106,13 @@ glm::vec3 course_irradiance(const CourseLight &course, const LightSample &sample
   return glm::vec3(physical * (d * d * attenuation(course.falloff, ratio)));
 }
 
-glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const CourseLight &course,
+glm::vec3 course_illumination(const Bsdf<float> &bsdf, const glm::vec3 &wi_world, const CourseLight &course,
                               const glm::vec3 &irradiance, uint32_t hidden) {
   glm::vec3 diffuse(0.0f), specular(0.0f);
   uint8_t frame = 0;
   glm::vec3 wi = bsdf.frames[0].to_local(wi_world);
   for (int i = 0; i < bsdf.count; ++i) {
-    const Lobe &lobe = bsdf.lobes[i];
+    const Lobe<float> &lobe = bsdf.lobes[i];
     const glm::vec3 &wo = bsdf.wo_local[lobe.frame];
     if (lobe.frame != frame) {
       frame = lobe.frame;
@@ -124,19 +124,17 @@ glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const
       diffuse += lobe.color * (kInvPi * wi.z);
     else if (!(wo.z > 0.0f))
       continue;
-    else if (lobe.shape == LobeShape::Beckmann && !lobe.delta)
-      specular += lobe.color * (coating_eval_pdf(lobe, wo, wi, half_vector(wo, wi)).f * wi.z);
+    else if (const glm::vec3 h = half_vector(wo, wi); lobe.shape == LobeShape::Beckmann && !lobe.delta)
+      specular += lobe.color * (coating_eval(lobe, wo, wi, h, coating_d(lobe, wo, h)) * wi.z);
     else if (lobe.shape == LobeShape::Phong)
       specular += lobe.color * (kInvPi * lobe_power(glm::dot(reflect_local(wi), wo), lobe.shininess));
     else if (lobe.shape == LobeShape::BlinnPhong)
       specular += lobe.color * (kInvPi * lobe_power(half_vector(wo, wi).z, lobe.shininess));
   }
   // Lobes that the course does not know answer as they do in PATH.
-  if (bsdf.shapes & ~kCourseShapes) {
-    const BsdfValue rest = bsdf.eval_lit<kAllShapes & ~kCourseShapes>(wi_world);
-    diffuse += rest.part[size_t(Component::Diffuse)];
-    specular += rest.part[size_t(Component::Glossy)];
-  }
+  const BsdfValue<float> rest = bsdf.eval_lit(wi_world, kAllShapes & ~kCourseShapes);
+  diffuse += rest.part[size_t(Component::Diffuse)];
+  specular += rest.part[size_t(Component::Glossy)];
   if (hidden & LANCER_RAY_DIFFUSE)
     diffuse = glm::vec3(0.0f);
   if (hidden & LANCER_RAY_GLOSSY)
@@ -144,11 +142,11 @@ glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi_world, const
   return irradiance * (diffuse * course.diffuse_color + specular * course.specular_color);
 }
 
-CourseBranches course_branches(const Bsdf &bsdf) {
+CourseBranches course_branches(const Bsdf<float> &bsdf) {
   CourseBranches branches;
   float most_reflected = 0.0f, most_refracted = 0.0f;
   for (int i = 0; i < bsdf.count; ++i) {
-    const Lobe &lobe = bsdf.lobes[i];
+    const Lobe<float> &lobe = bsdf.lobes[i];
     const glm::vec3 &wo = bsdf.wo_local[lobe.frame];
     // From behind its own normal a lobe is not seen.
     if (!(wo.z > 0.0f))

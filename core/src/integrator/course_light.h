@@ -8,7 +8,7 @@ namespace lancer {
 // A place that is lit: a hit point, or a vertex under Gouraud shading with its share of it.
 struct LitPoint {
   glm::dvec3 p{0.0};
-  const Bsdf *bsdf = nullptr;
+  const Bsdf<float> *bsdf = nullptr;
   float weight = 0.0f;
 };
 
@@ -26,8 +26,8 @@ glm::vec3 course_irradiance(const CourseLight &course, const LightSample &sample
 //   everywhere
 // Lobes of other kinds give what they give in PATH, on the viewer's side. hidden: bits LANCER_RAY_* that the light is hidden
 // from.
-glm::vec3 course_illumination(const Bsdf &bsdf, const glm::vec3 &wi, const CourseLight &course, const glm::vec3 &irradiance,
-                              uint32_t hidden);
+glm::vec3 course_illumination(const Bsdf<float> &bsdf, const glm::vec3 &wi, const CourseLight &course,
+                              const glm::vec3 &irradiance, uint32_t hidden);
 
 // Weights of the mirrored and of the refracted ray, F c_s and (1 - F) c_s summed over the lobes, and where they go: as the
 // strongest lobe of each has it, about its own normal.
@@ -35,6 +35,6 @@ struct CourseBranches {
   glm::vec3 reflected{0.0f}, refracted{0.0f};
   glm::vec3 mirrored{0.0f}, through{0.0f}; // world
 };
-CourseBranches course_branches(const Bsdf &bsdf);
+CourseBranches course_branches(const Bsdf<float> &bsdf);
 
 } // namespace lancer

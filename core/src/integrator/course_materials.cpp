@@ -20,7 +20,7 @@ bool is_plain(const Material &material) {
          });
 }
 
-void fill(const Material &material, Bsdf &bsdf, WideCourse &wide) {
+void fill(const Material &material, Bsdf<float> &bsdf, WideCourse &wide) {
   if (!is_plain(material))
     return;
   // Colour, roughness and index are the same from everywhere: look from above.
@@ -29,7 +29,7 @@ void fill(const Material &material, Bsdf &bsdf, WideCourse &wide) {
   for (const ReadyLobe &ready : material.ready)
     add_lobe(bsdf, ready.inputs);
   for (int i = 0; i < bsdf.count; ++i) {
-    const Lobe &lobe = bsdf.lobes[i];
+    const Lobe<float> &lobe = bsdf.lobes[i];
     const bool matte = lobe.shape == LobeShape::Lambert;
     // One of each at most, so that their order has no say.
     if (lobe.delta || (matte ? wide.matte : wide.coated))
@@ -48,7 +48,7 @@ void fill(const Material &material, Bsdf &bsdf, WideCourse &wide) {
 } // namespace
 
 std::vector<WideCourse> make_course_materials(const std::vector<Material> &materials) {
-  const auto bsdf = std::make_unique<Bsdf>();
+  const auto bsdf = std::make_unique<Bsdf<float>>();
   std::vector<WideCourse> all(materials.size());
   for (size_t i = 0; i < materials.size(); ++i)
     fill(materials[i], *bsdf, all[i]);

@@ -2,6 +2,7 @@
 // as Blender 5.2 has it, of all surfaces, each by how much of it is matt.
 #pragma once
 
+#include "integrator/lobe_means.h"
 #include "integrator/sample.h"
 #include "integrator/shading.h"
 
@@ -20,8 +21,8 @@ struct DenoisingFeatures {
 DenoisingFeatures begin_features(const IntegratorSettings &settings, bool wanted);
 
 // Takes in the surface at hand, which lies `distance` (normalised units) behind the last one.
-void add_denoising_features(const Scene &scene, const Camera &camera, const Shaded &shaded, double distance,
-                            DenoisingFeatures &features, SampleResult &result);
+void add_denoising_features(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
+                            const glm::vec3 &transmittance, double distance, DenoisingFeatures &features, SampleResult &result);
 // The camera sees the sky behind what let it pass.
 void add_sky_features(const DenoisingFeatures &features, SampleResult &result);
 

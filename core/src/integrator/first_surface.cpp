@@ -9,19 +9,6 @@
 
 namespace lancer {
 
-glm::vec3 mean_normal(const Bsdf &bsdf, bool diffuse_only) {
-  glm::vec3 sum(0.0f);
-  for (int i = 0; i < bsdf.count; ++i)
-    if (!diffuse_only || bsdf.lobes[i].component == Component::Diffuse)
-      sum += bsdf.frames[bsdf.lobes[i].frame].n * mean(bsdf.lobes[i].color);
-  const float size = largest(glm::abs(sum));
-  if (!std::isnormal(size))
-    return bsdf.ns;
-  // The square of a very dark or bright colour is no float: bring the sum to about 1, which changes no other bit.
-  const int exponent = std::ilogb(size);
-  return glm::normalize(glm::vec3(std::ldexp(sum.x, -exponent), std::ldexp(sum.y, -exponent), std::ldexp(sum.z, -exponent)));
-}
-
 void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result) {
   result.depth = nearest_float(t / scene.normalisation.scale);
   result.position = nearest_float(scene.normalisation.to_world(surface.p));

@@ -2,13 +2,11 @@
 #pragma once
 
 #include "integrator/light_passes.h"
+#include "integrator/lobe_means.h"
 #include "integrator/sample.h"
 #include "integrator/shading.h"
 
 namespace lancer {
-
-// The normals of the lobes, or of those that are diffuse, each with its weight; the shading normal where none has any.
-glm::vec3 mean_normal(const Bsdf &bsdf, bool diffuse_only = false);
 
 // Fills where the camera ray has met a surface: depth, position and indices. t: of the camera ray.
 void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result);

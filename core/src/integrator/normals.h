@@ -37,14 +37,15 @@ public:
         continue;
       }
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-      shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d))}, point_);
+      shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .path = {.kinds = LANCER_RAY_CAMERA}}, point_);
       // This picture shows every surface whole.
       point_.transmittance = glm::vec3(0.0f);
       record_first_surface(scene_, settings_, surface, point_, hits_[i].t, result);
       record_seen(scene_, camera_, settings_, passes_, surface, point_, glm::vec3(1.0f), result);
       DenoisingFeatures features = begin_features(settings_, passes_.features());
       if (features.open)
-        add_denoising_features(scene_, camera_, point_, hits_[i].t * glm::length(ray.d), features, result);
+        add_denoising_features(scene_, camera_, mix(point_.bsdf, point_.transmittance, features.blended), point_.bsdf.wo,
+                               point_.transmittance, hits_[i].t * glm::length(ray.d), features, result);
       result.radiance = 0.5f * surface.ns + 0.5f;
       if (trace)
         trace->push_back({scene_.normalisation.to_world(surface.p), hits_[i].t / scene_.normalisation.scale, surface.ns,
@@ -58,7 +59,8 @@ private:
     if (settings_.film_transparent)
       result.alpha = 0.0f;
     else if (!(scene_.world.hidden_from & LANCER_RAY_CAMERA))
-      result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), shader_.values(), &camera_, &ray.o);
+      result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), shader_.values(), &camera_, &ray.o,
+                                                             {.kinds = LANCER_RAY_CAMERA});
   }
 
   const Scene &scene_;

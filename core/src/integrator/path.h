@@ -7,10 +7,12 @@
 #include "integrator/late_light.h"
 #include "integrator/layers_met.h"
 #include "integrator/light_passes.h"
+#include "integrator/path_story.h"
 #include "integrator/picture_kernel.h"
 #include "integrator/sample.h"
 #include "integrator/scene_lights.h"
 #include "integrator/shading.h"
+#include "integrator/shading_queues.h"
 #include "integrator/shadow.h"
 #include "integrator/texture_prefetch.h"
 #include "integrator/vertex_kernel.h"
@@ -19,22 +21,29 @@
 
 namespace lancer {
 
-// Shapes: bits of the lobe shapes that the kernel knows; Layers: whether surfaces may let light pass straight on.
-template <uint32_t Shapes, bool Layers> class PathIntegrator final : public Integrator {
+class PathIntegrator final : public Integrator {
 public:
-  PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const char *kernel)
+  PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), kernel_(kernel),
-        lanes_(vertex_kernel()), picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
-        any_clear_(Layers && !passes_.features() && std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
-        picture_lanes_(picture_kernel()), late_(settings.max_bounces) {
+        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), lanes_(vertex_kernel()),
+        picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
+        any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
+                   std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
+        picture_lanes_(picture_kernel()), late_(settings.max_bounces), queues_(scene), values_(shader_.values().size()),
+        lobes_(lanes_.lobes_bytes / sizeof(Lobes) + 1) {
     if (scene.lights.environment().varies())
       sky_ = scene.lights.environment().wide();
-    point_.bsdf.shares = passes_.wanted();
+    block_.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
+    block_.lobes = reinterpret_cast<std::byte *>(lobes_.data());
+    block_.shares_wanted = block_.wants_shown = passes_.wanted();
+    block_.wants_normal = settings.passes >> LANCER_PASS_NORMAL & 1;
+    block_.wants_matt_normal = passes_.occlusion();
+    block_.wants_mixture = passes_.features();
+    block_.blended = settings.blended_features;
   }
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
-  const char *kernel() const override { return kernel_; }
+  const char *kernel() const override { return "path"; }
 
 private:
   // By VertexDimension.
@@ -54,6 +63,7 @@ private:
     uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
     uint32_t layers = 0;                // passed straight through since the last scattering
     uint32_t passed_through = 0;        // and in all
+    PathStory story;                    // for nodes that ask
     bool in_view = true;                // what it meets is still the picture itself: nothing reflected, no glass that counts
     bool last = false;                  // the next surface ends it
     double passed = 0.0;                // length of the way since the last scattering, through layers
@@ -76,6 +86,11 @@ private:
     }
   };
 
+  // What nodes see of a path whose ray is so long, in normalised units: from where it may meet something.
+  LightPath<float> light_path(const Path &path, double length) const {
+    return path.story.told(float(length / scene_.normalisation.scale), path.scatterings, path.passed_through);
+  }
+
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
   struct Record {
     bool seen = false;  // the first surface has been recorded
@@ -87,30 +102,35 @@ private:
   // A vertex that waits for the others of its block.
   struct Waiting {
     size_t number; // of its path
-    bool ends;     // it is only asked for its emission
-    uint32_t light;
-    bool far; // the light has no end
+    bool ends;     // nothing is scattered there any more
+    bool nothing;  // a hole, behind which nothing is seen
+    LightSet::Choice choice;
+    bool far;               // the light has no end
+    Mixture<float> mixture; // of its lobes, where passes for denoising are open
     glm::vec3 emission, transmittance;
+
+    // The share that is there.
+    glm::vec3 opacity() const { return glm::clamp(1.0f - transmittance, 0.0f, 1.0f); }
   };
 
   // As the last scattering asked for light.
   static LightQuery query(const Path &path) { return LightQuery(path.from, path.normal, path.transmits); }
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
-  const WideMaterial *for_lanes(uint32_t material, uint32_t instance) const;
-  void put_in_lane(size_t number, uint32_t material, const WideMaterial &wide, std::span<SampleResult> results);
+  void put_in_lane(size_t number, const Material &material);
   void draw_numbers();
   void find_surfaces();
   void ask_nodes();
+  void cut_holes(std::span<SampleResult> results);
+  void record_surfaces(std::span<SampleResult> results);
   LightQuery query(uint32_t lane) const;
   LightSet::Choice choose_light(uint32_t lane) const;
   void choose_of_many();
   void ask_lights();
+  void ask_by_hand(uint32_t lane);
   Surface surface_of(uint32_t lane) const;
   void send_shadow_of(uint32_t lane);
   void leave_lane(uint32_t lane, SampleResult &result);
-  void shade_lanes(std::span<SampleResult> results);
-  void shade_surface(Path &path, const Ray &ray, double t, const Surface &surface, std::span<SampleResult> results,
-                     std::vector<PathVertex> *trace);
+  void shade_block(std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void shade(std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void find_hits(std::span<SampleResult> results, std::vector<PathVertex> *trace);
   bool is_there(size_t ray, const Hit &hit);
@@ -120,7 +140,6 @@ private:
   void add_environment(const Path &path, double pdf, const glm::vec3 &radiance, SampleResult &result);
   void add_missed(std::span<SampleResult> results);
   void ask_sky(uint32_t lanes);
-  uint32_t ask_pictures();
   void add_lights_met(std::span<SampleResult> results);
   void add_light_met(size_t i, uint32_t number, std::span<SampleResult> results);
   double way_end(size_t i) const; // distance from the last scattering to where the ray ends
@@ -128,13 +147,10 @@ private:
   View view_of(const Path &path, const Ray &ray, double t) const;
   void keep_vertex(const Path &path, const Surface &surface, double t, const SampleResult &result,
                    std::vector<PathVertex> &trace) const;
-  void record(const Path &path, const Surface &surface, double t, SampleResult &result);
-  LightSample ask_light(const Surface &surface, const VertexNumbers &u, LightSet::Choice &choice);
-  void send_shadow(const Path &path, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng, const LightSample &light,
-                   uint32_t number, const WaitingLight &waiting, const glm::vec3 &contribution);
-  void sample_light(const Path &path, const Surface &surface, double pass, const VertexNumbers &u);
-  void sample_occlusion(const Path &path, const Surface &surface, const VertexNumbers &u);
-  bool scatter(Path &path, const Surface &surface, double pass, const VertexNumbers &u, Ray &next);
+  void record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
+              const glm::vec3 &opacity, double t, SampleResult &result);
+  void sample_occlusion(uint32_t lane);
+  bool stays_in_view(uint32_t lane) const;
   void pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
   static bool survives(uint32_t scatterings, float u, glm::vec3 &beta);
   void add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment);
@@ -148,9 +164,8 @@ private:
   TexturePrefetch textures_;
   PixelCone cone_;
   LightPasses passes_;
-  const char *kernel_;
   const VertexKernel &lanes_;
-  bool picture_alone_; // no other pass is asked for: vertices may be shaded in lanes, records stay as they begin
+  bool picture_alone_; // no other pass is asked for: records stay as they begin
   LayersMet clear_;    // surfaces on the way of which nothing is there
   bool any_clear_;     // they are passed together; not where passes for denoising add up the ways between them
   VertexBlock block_{};
@@ -160,11 +175,9 @@ private:
   uint32_t waiting_count_ = 0;
   const PictureKernel &picture_lanes_;
   WideSky sky_;
-  ColorBlock colors_{};
   SkyBlock misses_{};
   size_t missed_[kBlockLanes]; // numbers of paths
   uint32_t missed_count_ = 0;
-  Shaded point_; // of the surface at hand
   // The queue: paths_[i] travels along rays_[i].
   std::vector<Path> paths_, next_paths_;
   std::vector<Ray> rays_, next_rays_;
@@ -172,6 +185,17 @@ private:
   std::vector<glm::vec3> indirect_; // per slot, kept back until the path ends
   std::vector<Record> records_;     // per slot
   LateLight late_;
+  ShadingQueues queues_; // paths by the class of the material that they have met
+  // Scratch of the block: what nodes say, and the lobes.
+  struct alignas(64) Values {
+    float of[4][kBlockLanes];
+  };
+  struct alignas(64) Lobes {
+    std::byte of[64];
+  };
+  std::vector<Values> values_;
+  std::vector<Lobes> lobes_;
+  Shaded clear_point_; // of a surface of which nothing is there
 };
 
 std::unique_ptr<Integrator> make_path(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);

@@ -1,10 +1,9 @@
 // Where paths go next: past surfaces that a picture has cut away, all within one traversal.
-#include "integrator/path_kinds.h"
+#include "integrator/path.h"
 
 namespace lancer {
 
-template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::find_hits(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+void PathIntegrator::find_hits(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
   hits_.resize(rays_.size());
   if (!any_clear_)
     return scene_.accelerator->closest_hit(rays_, hits_);
@@ -20,7 +19,7 @@ void PathIntegrator<Shapes, Layers>::find_hits(std::span<SampleResult> results, 
 
 // Whether there is anything of a surface that a ray meets. Where not, its vertex would choose to pass straight on with weight
 // 1, and ask no light for anything.
-template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::is_there(size_t ray, const Hit &hit) {
+bool PathIntegrator::is_there(size_t ray, const Hit &hit) {
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   if (!scene_.cutouts[material].may_end)
     return true;
@@ -38,9 +37,7 @@ template <uint32_t Shapes, bool Layers> bool PathIntegrator<Shapes, Layers>::is_
 }
 
 // Counts the layers before a path's hit, as if it had gone from one to the next.
-template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleResult> results,
-                                                std::vector<PathVertex> *trace) {
+void PathIntegrator::pass_clear(size_t number, std::span<SampleResult> results, std::vector<PathVertex> *trace) {
   Path &path = paths_[number];
   const Ray &ray = rays_[number];
   const Hit end = hits_[number];
@@ -68,17 +65,12 @@ void PathIntegrator<Shapes, Layers>::pass_clear(size_t number, std::span<SampleR
       if (trace)
         keep_vertex(path, surface, hit.t, result, *trace);
       if (recorded) {
-        shader_.shade(surface, view_of(path, ray, hit.t), point_);
-        record(path, surface, hit.t, result);
+        shader_.shade(surface, view_of(path, ray, hit.t), clear_point_);
+        record(path, surface, queues_.material(hit), clear_point_.bsdf.ns, clear_point_.opacity(), hit.t, result);
       }
     }
     path.pass_layers(1, limit);
   }
 }
-
-#define LANCER_PATH(shapes, layers)                                                                                            \
-  template void PathIntegrator<shapes, layers>::find_hits(std::span<SampleResult>, std::vector<PathVertex> *);
-LANCER_PATH_KINDS(LANCER_PATH)
-#undef LANCER_PATH
 
 } // namespace lancer

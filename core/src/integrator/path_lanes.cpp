@@ -1,42 +1,31 @@
 // Vertices of paths that are shaded side by side: into the lanes of a block, through the kernels, and out again.
 #include "integrator/lane_access.h"
-#include "integrator/path_kinds.h"
+#include "integrator/path.h"
+#include "lancer.h"
 #include "sampling/color.h"
 
+#include <bit>
 #include <cmath>
 
 namespace lancer {
 
-// The record of a surface that kernels of many lanes shade; null for the others.
-template <uint32_t Shapes, bool Layers>
-const WideMaterial *PathIntegrator<Shapes, Layers>::for_lanes(uint32_t material, uint32_t instance) const {
-  if (!picture_alone_ || material == kNone || scene_.wide[material].count == 0 || scene_.geometry.instances[instance].holdout)
-    return nullptr;
-  // Only the general code knows what stays in view behind glass.
-  if (settings_.transparent_glass && scene_.wide[material].transmits)
-    return nullptr;
-  return &scene_.wide[material];
-}
-
-template <uint32_t Shapes, bool Layers>
-void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t material, const WideMaterial &wide,
-                                                 std::span<SampleResult> results) {
+void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const Path &path = paths_[number];
-  const bool ends = path.last || path.scatterings > settings_.max_bounces;
-  const Material &described = scene_.materials[material];
-  if (ends && !described.emits() && !described.transmits())
-    return;
   const Hit &hit = hits_[number];
   const Instance &instance = scene_.geometry.instances[hit.instance];
+  const bool ends = path.last || path.scatterings > settings_.max_bounces;
+  if (ends && picture_alone_ && !material.emits() && !material.transmits() && !instance.holdout)
+    return;
   const uint32_t lane = waiting_count_++, bit = 1u << lane;
   // Part by part: a copy of the whole would wait until they have left the processor's stores.
   Waiting &waiting = waiting_[lane];
   waiting.number = number;
   waiting.ends = ends;
-  waiting.light = 0;
+  waiting.nothing = false;
   waiting.far = false;
-  waiting.emission = described.emission.value;
-  waiting.transmittance = glm::max(described.transmittance.value, 0.0f);
+  waiting.emission = material.emission.value;
+  waiting.transmittance = glm::max(material.transmittance.value, 0.0f);
+  block_.through[lane] = material.transmits() ? mean(waiting.transmittance) : 0.0f;
   block_.used |= bit;
   if (ends)
     block_.ends |= bit;
@@ -49,7 +38,7 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
     glm::vec3 n[3];
     if (corner_normals(mesh, instance.shading, hit.primitive, n)) {
       for (int corner = 0; corner < 3; ++corner)
-        put(n[corner], block_.normal[corner], lane);
+        put(n[corner], block_.normals[corner], lane);
       block_.smooth |= bit;
     }
     block_.on_mesh |= bit;
@@ -63,14 +52,7 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
   put(rays_[number].d, block_.d, lane);
   put(path.beta, block_.beta, lane);
   block_.terminator[lane] = instance.kind == ShapeKind::Mesh ? instance.terminator : 0.0f;
-  block_.material[lane] = &wide;
-  if (wide.transmits)
-    block_.transmits |= bit;
-  for (int i = 0; i < 3; ++i) {
-    block_.weight[i][lane] = wide.weight[i];
-    block_.base[i][lane] = wide.base[i];
-  }
-  block_.through[lane] = described.transmits() ? mean(waiting.transmittance) : 0.0f;
+  block_.material[lane] = &material;
   block_.pixel[lane] = path.sampler.pixel();
   // Lanes of one sample and one bounce share the digits that their numbers are made of.
   const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
@@ -81,11 +63,9 @@ void PathIntegrator<Shapes, Layers>::put_in_lane(size_t number, uint32_t materia
   } else if (dimension != block_.dimension || path.sampler.sample() != first_sample_) {
     block_.numbers_given = 1;
   }
-  if (waiting_count_ == kBlockLanes)
-    shade_lanes(results);
 }
 
-template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::draw_numbers() {
+void PathIntegrator::draw_numbers() {
   const Sampler &sampler = paths_[waiting_[0].number].sampler;
   if (!block_.numbers_given) {
     block_.reversed_sample = sampler.reversed_sample();
@@ -101,99 +81,308 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::dra
   }
 }
 
-template <uint32_t Shapes, bool Layers> Surface PathIntegrator<Shapes, Layers>::surface_of(uint32_t lane) const {
-  return surface_at(scene_.geometry, scene_.slots, rays_[waiting_[lane].number], hits_[waiting_[lane].number]);
+// As find_surfaces() has found it.
+Surface PathIntegrator::surface_of(uint32_t lane) const {
+  const Hit &hit = hits_[waiting_[lane].number];
+  if (!(block_.on_mesh >> lane & 1))
+    return surface_at(scene_.geometry, scene_.slots, rays_[waiting_[lane].number], hit);
+  Surface surface;
+  surface.p = get(block_.p, lane);
+  surface.offset = block_.offset[lane];
+  surface.ng = get(block_.ng, lane);
+  surface.ns = get(block_.ns, lane);
+  surface.bary = {hit.u, hit.v};
+  surface.instance = hit.instance;
+  surface.primitive = hit.primitive;
+  surface.material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+  return surface;
 }
 
 // Where each lane's hit is, and what the surface is like there.
-template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::find_surfaces() {
+void PathIntegrator::find_surfaces() {
   lanes_.surfaces(block_);
+  const uint32_t known = (block_.on_mesh | block_.on_sphere | block_.on_plane) & ~block_.odd;
   for (uint32_t lane = 0; lane < waiting_count_; ++lane)
-    if (!((block_.on_mesh | block_.on_sphere | block_.on_plane) >> lane & 1)) {
-      const Surface surface = surface_of(lane);
+    if (!(known >> lane & 1)) {
+      const size_t number = waiting_[lane].number;
+      const Surface surface = surface_at(scene_.geometry, scene_.slots, rays_[number], hits_[number]);
       put(surface.p, block_.p, lane);
       put(surface.ng, block_.ng, lane);
       put(surface.ns, block_.ns, lane);
       block_.offset[lane] = surface.offset;
     }
-  // Glass looks different from inside.
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
-    if (block_.material[lane]->inside && glm::dot(get(block_.wo, lane), get(block_.ng, lane)) < 0.0f)
-      block_.material[lane] += block_.material[lane]->inside;
 }
 
-// Colours that nodes say.
-template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::ask_nodes() {
-  const uint32_t pictured = ask_pictures();
+// What nodes say in every lane.
+void PathIntegrator::ask_nodes() {
+  const Material &material = *block_.material[0];
+  if (material.fixed())
+    return;
   for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    if (!block_.material[lane]->nodes || (pictured >> lane & 1))
-      continue;
     Waiting &waiting = waiting_[lane];
     const Hit &hit = hits_[waiting.number];
-    Surface surface;
-    surface.p = get(block_.p, lane);
-    surface.offset = block_.offset[lane];
-    surface.ng = get(block_.ng, lane);
-    surface.ns = get(block_.ns, lane);
-    surface.bary = block_.on_mesh >> lane & 1 ? glm::dvec2(hit.u, hit.v) : glm::dvec2(0.0);
-    surface.instance = hit.instance;
-    surface.primitive = hit.primitive;
-    surface.material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+    const Surface surface = surface_of(lane);
     const double way = paths_[waiting.number].length + hit.t * block_.length[lane];
-    const NodeColors colors =
-        shader_.colors(surface, {.wo = get(block_.wo, lane), .footprint = float(cone_.base + way * cone_.spread)});
-    put(colors.weight, block_.weight, lane);
-    put(colors.base, block_.base, lane);
-    block_.through[lane] = mean(colors.transmittance);
-    waiting.emission = colors.emission;
-    waiting.transmittance = colors.transmittance;
+    const double unit = block_.length[lane];
+    shader_.run_surface_nodes(material, surface,
+                              {.wo = get(block_.wo, lane),
+                               .footprint = float(cone_.base + way * cone_.spread),
+                               .path = light_path(paths_[waiting.number], (hit.t - rays_[waiting.number].tmin) * unit)});
+    for (const uint16_t node : material.surface_nodes)
+      for (int i = 0; i < 4; ++i)
+        values_[node].of[i][lane] = shader_.values()[node][i];
+  }
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    const Material &of = *block_.material[lane];
+    const auto value = [&](const Parameter &parameter) {
+      if (!parameter.varies())
+        return parameter.value;
+      const auto &node = values_[size_t(parameter.node)].of;
+      return glm::vec3(node[0][lane], node[1][lane], node[2][lane]);
+    };
+    Waiting &waiting = waiting_[lane];
+    waiting.emission = value(of.emission);
+    waiting.transmittance = of.transmits() ? glm::max(value(of.transmittance), 0.0f) : glm::vec3(0.0f);
+    block_.through[lane] = mean(waiting.transmittance);
   }
 }
 
-template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::shade_lanes(std::span<SampleResult> results) {
+// Holes end what the camera sees.
+void PathIntegrator::cut_holes(std::span<SampleResult> results) {
+  block_.holes = 0;
+  if (!(scene_.features & kFeatureHoldout))
+    return;
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    Waiting &waiting = waiting_[lane];
+    const Path &path = paths_[waiting.number];
+    if (path.in_view) {
+      const Parameter &holdout = block_.material[lane]->holdout;
+      const float share =
+          std::clamp(holdout.varies() ? values_[size_t(holdout.node)].of[0][lane] : holdout.value.x, 0.0f, 1.0f);
+      if (scene_.geometry.instances[hits_[waiting.number].instance].holdout) {
+        // All that the object would show becomes the hole.
+        results[path.slot].alpha -= mean(path.beta * waiting.opacity());
+        waiting.emission = glm::vec3(0.0f);
+        waiting.nothing = waiting.transmittance == glm::vec3(0.0f);
+        block_.holes |= 1u << lane;
+      } else if (share > 0.0f) {
+        results[path.slot].alpha -= share * mean(path.beta);
+        waiting.nothing = share >= 1.0f;
+      }
+    }
+  }
+}
+
+// What passes say of the surfaces that the camera sees.
+void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
+  uint32_t seen = 0, featured = 0;
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    const Path &path = paths_[waiting_[lane].number];
+    put(waiting_[lane].transmittance, block_.transmittance, lane);
+    if (waiting_[lane].nothing)
+      continue;
+    seen |= uint32_t(path.in_view) << lane;
+    featured |= uint32_t(records_[path.slot].features.open) << lane;
+  }
+  if (!(seen | featured))
+    return;
+  if (block_.wants_normal | block_.wants_matt_normal | block_.wants_shown | block_.wants_mixture)
+    lanes_.describe(block_);
+  for (uint32_t rest = seen | featured; rest != 0; rest &= rest - 1) {
+    const uint32_t lane = uint32_t(std::countr_zero(rest));
+    const Waiting &waiting = waiting_[lane];
+    const Path &path = paths_[waiting.number];
+    const Hit &hit = hits_[waiting.number];
+    SampleResult &result = results[path.slot];
+    if (seen >> lane & 1) {
+      record(path, surface_of(lane), *block_.material[lane], get(block_.normal, lane), waiting.opacity(), hit.t, result);
+      for (uint32_t component = 0; component < 3 && passes_.wanted(); ++component)
+        result.light[kLightComponents + 3 * component + 2] += path.beta * get(block_.shown[component], lane);
+    }
+    if (featured >> lane & 1)
+      waiting_[lane].mixture = {get(block_.mixed_normal, lane), get(block_.mixed_diffuse, lane),
+                                get(block_.mixed_specular, lane), block_.mixed_all[lane], block_.mixed_matt[lane]};
+  }
+}
+
+LightQuery PathIntegrator::query(uint32_t lane) const {
+  return LightQuery(get(block_.p, lane), get(block_.viewer_ns, lane), block_.transmits >> lane & 1);
+}
+
+LightSet::Choice PathIntegrator::choose_light(uint32_t lane) const {
+  const LightChoice few{block_.chosen[lane], block_.chosen_probability[lane], block_.chosen_rest[lane]};
+  if (!(few.probability > 0.0) || scene_.lights.decided(few.number))
+    return {few.number, 0, few.probability};
+  return scene_.lights.choose_within(scene_.geometry, query(lane), few);
+}
+
+// Goes on with the lanes that have chosen the cluster of all lights with a place.
+void PathIntegrator::choose_of_many() {
+  if (scene_.lights.many().empty())
+    return;
+  LightWalk walks[kBlockLanes];
+  uint32_t lanes[kBlockLanes], count = 0;
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+    if (block_.chosen[lane] == scene_.lights.size() && block_.chosen_probability[lane] > 0.0 && !waiting_[lane].ends) {
+      walks[count] = LightTree::walk(query(lane), block_.chosen_rest[lane]);
+      lanes[count++] = lane;
+    }
+  scene_.lights.many().choose({walks, count});
+  for (uint32_t i = 0; i < count; ++i) {
+    block_.chosen[lanes[i]] = walks[i].number;
+    block_.chosen_probability[lanes[i]] *= walks[i].probability;
+    block_.chosen_rest[lanes[i]] = walks[i].u;
+  }
+}
+
+// Chooses a light for every lane; samples those that kernels do not know.
+void PathIntegrator::ask_lights() {
+  static const Light nothing;
+  block_.asked = 0;
+  uint32_t skies = 0;
+  const FewLights &few = scene_.lights.few();
+  if (!few.empty()) {
+    block_.light_nodes = few.nodes();
+    lanes_.choose(block_);
+    choose_of_many();
+  }
+  for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+    block_.lamp[lane] = &nothing;
+    block_.light_pdf[lane] = 0.0;
+    block_.light_delta[lane] = block_.light_hidden[lane] = 0;
+    if (lane >= waiting_count_ || waiting_[lane].ends || few.empty() || !(block_.scatters >> lane & 1))
+      continue;
+    const LightSet::Choice choice = choose_light(lane);
+    if (!(choice.probability > 0.0))
+      continue;
+    waiting_[lane].choice = choice;
+    block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
+    block_.light_pdf[lane] = choice.probability;
+    if (choice.light < scene_.lights.lights().size()) {
+      const Light &lamp = scene_.lights.lights()[choice.light];
+      block_.lamp[lane] = &lamp;
+      waiting_[lane].far = lamp.kind == LightKind::Sun;
+      block_.asked |= 1u << lane;
+    } else if (choice.light == scene_.lights.environment_light()) {
+      skies |= 1u << lane;
+    } else {
+      ask_by_hand(lane);
+    }
+  }
+  ask_sky(skies);
+}
+
+// A sample of the light that a lane has chosen.
+void PathIntegrator::ask_by_hand(uint32_t lane) {
+  const LightSet::Choice &choice = waiting_[lane].choice;
+  block_.light_pdf[lane] = 0.0;
+  const LightSample light = sample_scene_light(scene_, choice, get(block_.p, lane),
+                                               {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]}, shader_);
+  if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
+    return;
+  waiting_[lane].far = std::isinf(light.distance);
+  put(light.wi, block_.light_wi, lane);
+  put(light.target, block_.light_target, lane);
+  put(light.radiance, block_.light_radiance, lane);
+  block_.light_pdf[lane] = light.pdf * choice.probability;
+  block_.light_delta[lane] = light.delta;
+}
+
+void PathIntegrator::shade_block(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
   if (waiting_count_ == 0)
     return;
   for (uint32_t lane = waiting_count_; lane < kBlockLanes; ++lane) {
     block_.material[lane] = block_.material[0];
     block_.placement[lane] = block_.placement[0];
   }
+  // Ask what is there.
   draw_numbers();
   find_surfaces();
   ask_nodes();
+  cut_holes(results);
+  lanes_.lobes(block_);
+  if (trace)
+    for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+      const Path &path = paths_[waiting_[lane].number];
+      keep_vertex(path, surface_of(lane), hits_[waiting_[lane].number].t, results[path.slot], *trace);
+    }
+  if (!picture_alone_)
+    record_surfaces(results);
+  // Ask for light, and where each path goes on.
   ask_lights();
-  lanes_.shade(block_);
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    const size_t number = waiting_[lane].number;
-    if (block_.odd >> lane & 1)
-      shade_surface(paths_[number], rays_[number], hits_[number].t, surface_of(lane), results, nullptr);
-    else
-      leave_lane(lane, results[paths_[number].slot]);
-  }
+  lanes_.scatter(block_);
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+    if (!waiting_[lane].nothing)
+      leave_lane(lane, results[paths_[waiting_[lane].number].slot]);
   waiting_count_ = 0;
-  block_.used = block_.on_mesh = block_.on_sphere = block_.on_plane = block_.smooth = block_.ends = block_.transmits = 0;
+  block_.used = block_.on_mesh = block_.on_sphere = block_.on_plane = block_.smooth = block_.ends = 0;
+}
+
+void PathIntegrator::send_shadow_of(uint32_t lane) {
+  const Waiting &waiting = waiting_[lane];
+  const Path &path = paths_[waiting.number];
+  const glm::vec3 contribution = get(block_.contribution, lane);
+  WaitingLight shares;
+  for (int component = 0; component < 2 && passes_.wanted(); ++component)
+    shares.share[component] = path.in_view ? get(block_.light_share[component], lane) : records_[path.slot].share[component];
+  if (scene_.lights.no_shadow(waiting.choice.light)) {
+    shares.slot = path.slot;
+    shares.indirect = path.scatterings > 0;
+    return shadows_.push_lit(shares, contribution);
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  Ray &ray = shadows_.push(path.slot, contribution, path.scatterings > 0, path.passed_through);
+  if (passes_.wanted())
+    shadows_.set_shares(shares.share);
+  if (block_.lifted >> lane & 1) {
+    LightSample sample;
+    sample.wi = get(block_.light_wi, lane);
+    sample.target = get(block_.light_target, lane);
+    sample.distance = waiting.far ? infinity : 1.0;
+    ray = shadow_ray(scene_.geometry, surface_of(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
+  } else {
+    const glm::dvec3 o = get(block_.shadow_origin, lane);
+    const glm::dvec3 d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o;
+    leave(hits_[waiting.number], o, d, waiting.far ? infinity : 1.0, LANCER_RAY_SHADOW, ray);
+  }
+}
+
+// Glass that does not count leaves the picture what it was.
+bool PathIntegrator::stays_in_view(uint32_t lane) const {
+  return settings_.transparent_glass && (block_.transmitted >> lane & 1) && !(block_.diffuse >> lane & 1) &&
+         block_.alpha2[lane] <= settings_.glass_alpha2;
 }
 
 // What follows from a shaded lane: its light, its shadow ray, its next ray.
-template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::leave_lane(uint32_t lane, SampleResult &result) {
+void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
   const Waiting &waiting = waiting_[lane];
   Path &path = paths_[waiting.number];
   const Hit &hit = hits_[waiting.number];
-  if (waiting.emission != glm::vec3(0.0f))
-    add_emission(path, surface_of(lane), waiting.emission, result);
+  const glm::vec3 emission = waiting.emission + get(block_.emission, lane);
+  if (emission != glm::vec3(0.0f))
+    add_emission(path, surface_of(lane), emission, result);
+  if (DenoisingFeatures &features = records_[path.slot].features; features.open)
+    add_denoising_features(scene_, camera_, waiting.mixture, get(block_.wo, lane), waiting.transmittance,
+                           hit.t * block_.length[lane], features, result);
   if (path.last)
     return;
   if (!waiting.ends && (block_.lit >> lane & 1))
     send_shadow_of(lane);
-  if constexpr (Layers)
-    if (const float pass = block_.pass[lane]; path.chooses_to_pass(pass))
-      return pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass);
+  if (!waiting.ends && path.scatterings == 0 && passes_.occlusion())
+    sample_occlusion(lane);
+  if (const float pass = block_.pass[lane]; path.chooses_to_pass(pass))
+    return pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass);
   if (waiting.ends || !(block_.sampled >> lane & 1))
     return;
   const uint32_t scatterings = path.scatterings + 1;
-  glm::vec3 beta = get(block_.beta, lane);
+  glm::vec3 beta = get(block_.next_beta, lane);
   if (!survives(scatterings, block_.u[kVertexRoulette][lane], beta))
     return;
   Path &next = next_paths_.emplace_back(path.sampler, path.slot);
+  next.in_view = path.in_view && stays_in_view(lane);
+  if (path.in_view && !next.in_view && passes_.wanted())
+    for (int component = 0; component < 2; ++component)
+      records_[path.slot].share[component] = get(block_.share[component], lane);
   next.beta = beta;
   next.from = get(block_.p, lane);
   next.normal = get(block_.viewer_ns, lane);
@@ -201,21 +390,14 @@ template <uint32_t Shapes, bool Layers> void PathIntegrator<Shapes, Layers>::lea
   next.pdf = block_.pdf[lane];
   next.scatterings = scatterings;
   next.kinds = block_.transmitted >> lane & 1 ? LANCER_RAY_TRANSMISSION
-               : block_.glossy >> lane & 1    ? LANCER_RAY_GLOSSY
-                                              : LANCER_RAY_DIFFUSE;
+               : block_.diffuse >> lane & 1   ? LANCER_RAY_DIFFUSE
+                                              : LANCER_RAY_GLOSSY;
   next.passed_through = path.passed_through;
-  next.in_view = false;
+  next.story = path.story;
+  next.story.scatter(block_.diffuse >> lane & 1, block_.transmitted >> lane & 1, block_.pdf[lane] == 0.0);
   next.length = path.length + hit.t * block_.length[lane];
   leave(hit, get(block_.next_origin, lane), glm::dvec3(get(block_.wi, lane)), std::numeric_limits<double>::infinity(),
         next.kinds, next_rays_.emplace_back());
 }
-
-#define LANCER_PATH(shapes, layers)                                                                                            \
-  template const WideMaterial *PathIntegrator<shapes, layers>::for_lanes(uint32_t, uint32_t) const;                            \
-  template void PathIntegrator<shapes, layers>::put_in_lane(size_t, uint32_t, const WideMaterial &, std::span<SampleResult>);  \
-  template Surface PathIntegrator<shapes, layers>::surface_of(uint32_t) const;                                                 \
-  template void PathIntegrator<shapes, layers>::shade_lanes(std::span<SampleResult>);
-LANCER_PATH_KINDS(LANCER_PATH)
-#undef LANCER_PATH
 
 } // namespace lancer

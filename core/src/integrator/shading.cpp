@@ -1,6 +1,6 @@
 #include "integrator/shading.h"
 
-#include "bsdf/microfacet.h"
+#include "bsdf/principled.h"
 #include "integrator/terminator.h"
 #include "scene/attribute.h"
 
@@ -48,22 +48,6 @@ void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
   result.holdout = std::clamp(value_of(material.holdout, values_).x, 0.0f, 1.0f);
 }
 
-NodeColors Shader::colors(const Surface &surface, const View &view) {
-  const Material &material = scene_.materials[surface.material];
-  run_nodes(material, material.surface_nodes, surface, view);
-  const LobeDescription &lobe = material.lobes.front();
-  NodeColors colors;
-  colors.weight = evaluate(lobe.weight, values_);
-  if (lobe.principled)
-    colors.base = evaluate(lobe.principled->base_color, values_);
-  else
-    colors.base = colors.weight * evaluate(lobe.color, values_);
-  colors.emission = value_of(material.emission, values_);
-  if (material.transmits())
-    colors.transmittance = glm::max(value_of(material.transmittance, values_), 0.0f);
-  return colors;
-}
-
 glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
   const uint32_t number = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   if (number == kNone)
@@ -85,7 +69,8 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
     run_painted(material, material.transmittance_nodes, hit);
   } else {
     const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-    run_nodes(material, material.transmittance_nodes, surface, {.wo = glm::vec3(-glm::normalize(ray.d))});
+    run_nodes(material, material.transmittance_nodes, surface,
+              {.wo = glm::vec3(-glm::normalize(ray.d)), .path = {.kinds = LANCER_RAY_SHADOW}});
   }
   return glm::max(value_of(material.transmittance, values_), 0.0f);
 }
@@ -138,10 +123,11 @@ void Shader::run_nodes(const Material &material, const Schedule &schedule, const
   context_.surface = &surface;
   context_.wo = view.wo;
   context_.footprint = view.footprint;
+  context_.path = view.path;
   run(material.program, schedule, context_, values_);
 }
 
-void Shader::begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf &bsdf) const {
+void Shader::begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf<float> &bsdf) const {
   // Turn both normals to the viewer's side.
   const bool inside = glm::dot(wo, surface.ng) < 0.0f;
   const glm::vec3 ng = inside ? -surface.ng : surface.ng;
@@ -156,33 +142,18 @@ void Shader::begin(const Material &material, const Surface &surface, const glm::
   bsdf.begin(wo, ns, ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
 }
 
-void Shader::add_lobes(const Material &material, Bsdf &bsdf) {
-  if (material.fixed()) {
-    for (const ReadyLobe &ready : material.ready) {
-      if (ready.whole && (bsdf.flat || !ready.flat_only))
-        add(bsdf, ready.lobe);
-      else if (ready.layers)
-        add_layers(bsdf, ready.inputs, ready.principled, *ready.layers);
-      else if (ready.facets)
-        add_facets(bsdf, *ready.facets);
-      else if (ready.inputs.kind == LobeKind::Principled)
-        add_principled(bsdf, ready.inputs, ready.principled);
-      else
-        add_lobe(bsdf, ready.inputs);
-    }
-    return;
-  }
+void Shader::add_lobes(const Material &material, Bsdf<float> &bsdf) {
   for (size_t i = 0; i < material.lobes.size(); ++i) {
     const LobeDescription &lobe = material.lobes[i];
-    const LobeInputs inputs = evaluate(lobe, values_);
+    const ReadyLobe &ready = material.ready[i];
+    const LobeInputs<float> inputs = material.fixed() ? ready.inputs : evaluate(lobe, values_);
     if (inputs.weight == glm::vec3(0.0f))
       continue;
-    if (const auto &layers = material.ready[i].layers)
-      add_layers(bsdf, inputs, evaluate(*lobe.principled, values_), *layers);
-    else if (lobe.principled)
-      add_principled(bsdf, inputs, evaluate(*lobe.principled, values_));
+    const LaneLobes<float> kept{{&ready}, bsdf.inside};
+    if (!lobe.principled)
+      add_kept(bsdf, inputs, kept);
     else
-      add_lobe(bsdf, inputs);
+      add_principled(bsdf, inputs, material.fixed() ? ready.principled : evaluate(*lobe.principled, values_), kept);
   }
 }
 

@@ -14,7 +14,7 @@ namespace lancer {
 // A surface as one direction sees it.
 struct Shaded {
   const Material *material = nullptr; // null: an instance without slots, black
-  Bsdf bsdf;
+  Bsdf<float> bsdf;
   glm::vec3 emission{0.0f};
   glm::vec3 transmittance{0.0f}; // share of light that passes straight on
   float holdout = 0.0f;          // share that becomes a hole in the picture
@@ -24,16 +24,11 @@ struct Shaded {
   glm::vec3 opacity() const { return glm::clamp(1.0f - transmittance, 0.0f, 1.0f); }
 };
 
-// What nodes say of a material that kernels shade.
-struct NodeColors {
-  glm::vec3 weight{1.0f}, base{0.0f}; // as in WideMaterial
-  glm::vec3 emission{0.0f}, transmittance{0.0f};
-};
-
 // How the viewer sees the surface that a material is evaluated for.
 struct View {
-  glm::vec3 wo{0, 0, 1};  // unit, world, away from the surface
-  float footprint = 0.0f; // radius that a pixel covers there, normalised units
+  glm::vec3 wo{0, 0, 1};   // unit, world, away from the surface
+  float footprint = 0.0f;  // radius that a pixel covers there, normalised units
+  LightPath<float> path{}; // of the ray that has met it; asked of a light by no ray
 };
 
 // Evaluates materials at surfaces. One object per thread: it keeps the nodes' values.
@@ -43,8 +38,10 @@ public:
   Shader(const Scene &scene, const Camera *camera);
 
   void shade(const Surface &surface, const View &view, Shaded &result);
-  // Of a material whose WideMaterial has nodes.
-  NodeColors colors(const Surface &surface, const View &view);
+  // Computes what the nodes of a material's surface say, for values().
+  void run_surface_nodes(const Material &material, const Surface &surface, const View &view) {
+    run_nodes(material, material.surface_nodes, surface, view);
+  }
   // Share of a shadow ray's light that passes straight on.
   glm::vec3 transmittance(const Ray &ray, const Hit &hit);
   // Whether there is anything of a surface of a mesh whose cutout may end; where not, light passes as if there were no surface.
@@ -59,10 +56,10 @@ public:
   glm::vec4 node_value(const Surface &surface, uint32_t node, const glm::vec3 &wo);
 
 private:
-  void add_lobes(const Material &material, Bsdf &bsdf);
+  void add_lobes(const Material &material, Bsdf<float> &bsdf);
   void run_painted(const Material &material, const Schedule &schedule, const Hit &hit);
   void run_nodes(const Material &material, const Schedule &schedule, const Surface &surface, const View &view);
-  void begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf &bsdf) const;
+  void begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf<float> &bsdf) const;
 
   const Scene &scene_;
   NodeContext context_;

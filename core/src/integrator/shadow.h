@@ -30,6 +30,11 @@ public:
     waiting.passed = passed;
     return rays_.emplace_back();
   }
+  // Of the light that was pushed last, by component.
+  void set_shares(const glm::vec3 (&share)[2]) {
+    waiting_.back().light.share[0] = share[0];
+    waiting_.back().light.share[1] = share[1];
+  }
 
   // Light that nothing can stop.
   void push_lit(const WaitingLight &waiting, const glm::vec3 &contribution) {

@@ -1,16 +1,16 @@
 // Vertices of paths side by side, from the hit to the rays that leave. Plain numbers: kernels read and write it.
 #pragma once
 
-#include "bsdf/wide_lobe.h"
+#include "lights/light_choice.h"
 #include "lights/way_block.h"
-#include "lights/wide_lamp.h"
 
+#include <cstddef>
 #include <cstdint>
 
 namespace lancer {
 
-struct LightNode;
-struct TreeLight;
+struct Light;
+struct Material;
 
 inline constexpr int kBlockLanes = kWays;
 
@@ -22,16 +22,15 @@ struct alignas(64) VertexBlock {
   // Given: triangles, spheres and planes, and how they were met. o, d: of the ray, d of any length; o and t of spheres and
   // planes alone.
   const double *placement[kBlockLanes]; // Instance::to_world and what follows
-  Floats corner[3][3], normal[3][3];    // of a triangle's corners, object space; by corner, axis
+  Floats corner[3][3], normals[3][3];   // of a triangle's corners, object space; by corner, axis
   Doubles bary[2], d[3], o[3], t;
   Floats terminator; // Instance::terminator
   // Given: what the sampler makes its numbers of. All lanes share the sample and its dimension.
   Words pixel;
   uint32_t dimension = 0, reversed_sample = 0, reversed_point[8] = {};
-  uint32_t numbers_given = 0; // 1: u is given instead
-  alignas(64) const WideMaterial *material[kBlockLanes];
-  Floats weight[3], base[3]; // of WideMaterial
-  Floats through;            // mean of what passes straight on
+  uint32_t numbers_given = 0;                        // 1: u is given instead
+  alignas(64) const Material *material[kBlockLanes]; // all of one class
+  Floats through;                                    // mean of what passes straight on
   Floats beta[3];
 
   // surfaces(): both normals outwards, wo unit. Lanes of other shapes are filled in by hand.
@@ -39,41 +38,61 @@ struct alignas(64) VertexBlock {
   Floats ng[3], ns[3], wo[3];
   Floats u[8];
 
+  // Given: what the nodes of the material say, four floats of every lane each; kernels keep the lobes of all lanes in `lobes`,
+  // which has room for what VertexKernel::lobes_bytes says.
+  const float (*values)[4][kBlockLanes] = nullptr;
+  std::byte *lobes = nullptr;
+  // lobes(): normals and light on the viewer's side.
+  alignas(64) Floats viewer_ns[3], viewer_ng[3];
+  Floats emission[3]; // of layers
+
   // Given: the tree of LightSet::few(). choose(): one of its lights for each lane, as LightChoice.
-  const LightNode *light_nodes = nullptr;
-  const TreeLight *tree_lights = nullptr;
-  uint32_t light_root = 0;
+  LightNodes light_nodes{};
   alignas(64) Words chosen;
   Doubles chosen_probability, chosen_rest;
 
   // Given: the lamp to ask, or the sample of another light, with the probability of its choice in pdf either way.
-  const WideLamp *lamp[kBlockLanes];
+  const Light *lamp[kBlockLanes];
   Doubles light_wi[3], light_target[3], light_pdf;
   Floats light_radiance[3];
   Words light_delta, light_hidden; // bits LANCER_RAY_*
 
-  // shade(): the share of paths that pass straight on; what follows is of the others. Rays start at origin, on the side of
+  // scatter(): the share of paths that pass straight on; what follows is of the others. Rays start at origin, on the side of
   // their direction. Shadow rays end at light_target, or nowhere.
   Floats pass;
   Floats contribution[3];
   Doubles shadow_origin[3], next_origin[3];
-  Floats viewer_ns[3], viewer_ng[3];
-  Floats wi[3]; // beta then is that of the next ray
+  Floats wi[3], next_beta[3]; // of the next ray
   Doubles pdf;
+  Floats alpha2;            // of the lobe that drew it, 0 of a single direction
+  Floats share[2][3];       // of the sample's weight that is diffuse, glossy, where shares are wanted
+  Floats light_share[2][3]; // the same of the contribution
+
+  // Given: what passes ask of the lobes. describe(): what these say.
+  uint32_t wants_normal = 0, wants_matt_normal = 0, wants_shown = 0, wants_mixture = 0;
+  alignas(64) Floats transmittance[3]; // given
+  Floats normal[3], matt_normal[3];    // means of the lobes' normals, of all and of the diffuse ones
+  Floats shown[3][3];                  // colours of the passes, by component
+  Floats mixed_matt, mixed_all, mixed_diffuse[3], mixed_specular[3], mixed_normal[3]; // Mixture of denoising_features.h
 
   // Bits of lanes.
   uint32_t used = 0;
   uint32_t on_mesh = 0, smooth = 0;     // given: triangles; those with normals of their own
   uint32_t on_sphere = 0, on_plane = 0; // given
   uint32_t asked = 0;                   // given: lamp is to be sampled
-  uint32_t transmits = 0;               // given: light is asked for as where light may come through
+  uint32_t inside = 0;                  // surfaces(): seen from within
+  uint32_t transmits = 0;               // lobes(): light may come through
+  uint32_t scatters = 0;                // lobes(): into more than single directions
+  uint32_t shares_wanted = 0;           // given, 1: share and light_share
+  uint32_t blended = 0;                 // given, 1: Mixture by the rule of Blender 5.2
+  uint32_t holes = 0;                   // given: nothing of the lobes is seen
   uint32_t ends = 0;                    // given: nothing is scattered any more
-  uint32_t odd = 0;                     // only the general code can do them: nothing else holds
+  uint32_t odd = 0;                     // surfaces(): what only the general code can do
   uint32_t lit = 0;                     // contribution is not black
   uint32_t lifted = 0;                  // the shadow ray may have to start on the curved surface
   uint32_t sampled = 0;                 // there is a next direction
-  uint32_t glossy = 0;                  // drawn by a glossy lobe
-  uint32_t transmitted = 0;             // it goes through the surface; glossy says nothing then
+  uint32_t diffuse = 0;                 // drawn by a diffuse lobe
+  uint32_t transmitted = 0;             // it goes through the surface
 };
 
 } // namespace lancer

@@ -2,15 +2,14 @@
 #include "integrator/vertex_kernel.h"
 
 #include "accel/kernel_name.h"
-#include "bsdf/wide_normal.h"
-#include "bsdf/wide_sample.h"
+#include "bsdf/principled.h"
+#include "integrator/lobe_means.h"
 #include "lancer.h"
-#include "lights/wide_choice.h"
-#include "lights/wide_lamps.h"
-#include "lights/wide_meets.h"
-#include "sampling/sobol_table.h"
-#include "sampling/wide_numbers.h"
-#include "sampling/wide_warp.h"
+#include "lights/light_choice.h"
+#include "lights/sample_light.h"
+#include "sampling/scramble.h"
+#include "sampling/warp.h"
+#include "scene/material.h"
 #include "scene/wide_surface.h"
 
 namespace lancer {
@@ -24,15 +23,14 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
   const U pixel = load(block.pixel + first);
   for (uint32_t i = 0; i < 8; i += 2) {
     const uint32_t dimension = block.dimension + i;
-    F a, b;
-    if (dimension < kJointDimensions) {
-      a = joint_number(pixel, dimension, block.reversed_point[i]);
-      b = joint_number(pixel, dimension + 1, block.reversed_point[i + 1]);
-    } else {
-      pair_numbers(pixel, dimension, block.reversed_sample, a, b);
-    }
-    store(block.u[i] + first, a);
-    store(block.u[i + 1] + first, b);
+    Vector2<F> u;
+    if (dimension < kJointDimensions)
+      u = {scrambled(U(block.reversed_point[i]), pixel, dimension),
+           scrambled(U(block.reversed_point[i + 1]), pixel, dimension + 1)};
+    else
+      u = pair_numbers(U(block.reversed_sample), pixel, dimension);
+    store(block.u[i] + first, u.x);
+    store(block.u[i + 1] + first, u.y);
   }
 }
 
@@ -66,7 +64,7 @@ LANCER_LANE void store_surface(VertexBlock &block, int first, const WideSurface 
       V3 v[3], n[3];
       for (int corner = 0; corner < 3; ++corner) {
         v[corner] = load3(block.corner[corner], first);
-        n[corner] = load3(block.normal[corner], first);
+        n[corner] = load3(block.normals[corner], first);
       }
       surface = mesh_surface(placements, same, v, n, some(block.smooth, first), load(block.bary[0] + first),
                              load(block.bary[1] + first));
@@ -79,19 +77,13 @@ LANCER_LANE void store_surface(VertexBlock &block, int first, const WideSurface 
   }
 }
 
-// The normal on the viewer's side.
-LANCER_LANE V3 seen_normal(const VertexBlock &block, int first) {
-  const V3 ns = load3(block.ns, first);
-  return select(dot(load3(block.wo, first), load3(block.ng, first)) < F(0.0f), -ns, ns);
-}
-
 [[gnu::flatten]] void choose(VertexBlock &block) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    const WideQuery query{load3(block.p, first), seen_normal(block, first), some(block.transmits, first)};
+    const LightQueryLanes<F> query(load3(block.p, first), load3(block.viewer_ns, first), some(block.transmits, first));
     const D u = widen(load(block.u[4] + first)) + D(0x1p-24) * widen(load(block.u[7] + first));
-    const WideChoice choice = choose_light(query, {block.light_nodes, block.tree_lights, block.light_root}, u);
+    const LightChoiceLanes<F> choice = choose_light(query, block.light_nodes, u, mask_of((1u << kLanes) - 1u));
     store(block.chosen + first, choice.number);
     store(block.chosen_probability + first, choice.probability);
     store(block.chosen_rest + first, choice.u);
@@ -103,51 +95,21 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
   const M asked = some(block.asked, first);
   if (!any(asked))
     return;
-  const WideLamp *const *lamps = block.lamp + first;
-  alignas(64) uint32_t kinds[kLanes], softs[kLanes], ellipses[kLanes];
-  for (int i = 0; i < kLanes; ++i) {
-    kinds[i] = lamps[i]->kind;
-    softs[i] = lamps[i]->soft;
-    ellipses[i] = lamps[i]->ellipse;
-  }
-  const U kind = load(kinds);
-  const M area = asked & equal(kind, number_of(LightKind::Area)), spot = asked & equal(kind, number_of(LightKind::Spot));
-  const M round = spot | (asked & equal(kind, number_of(LightKind::Point)));
-  const F u = load(block.u[2] + first), v = load(block.u[3] + first);
-  F disk_x, disk_y;
-  warp_disk(u, v, disk_x, disk_y);
-  WideLight light;
-  light.target = load3(block.light_target, first);
-  light.wi = load3(block.light_wi, first);
-  light.radiance = load3(block.light_radiance, first);
-  light.delta = !equal(load(block.light_delta + first), U(0u));
+  LightSampleLanes<F> sample;
+  sample.target = load3(block.light_target, first);
+  sample.wi = load3(block.light_wi, first);
+  sample.radiance = load3(block.light_radiance, first);
+  sample.delta = !equal(load(block.light_delta + first), U(0u));
   const D probability = load(block.light_pdf + first);
-  light.pdf = select(asked, D(0.0), probability);
-  if (any(area))
-    sample_area(lamps, p, u, v, disk_x, disk_y, area, area & equal(load(ellipses), U(1u)), light);
-  if (any(round)) {
-    M inside;
-    sample_round(lamps, p, disk_x, disk_y, round, equal(load(softs), U(1u)), spot, light, inside);
-    block.odd |= placed_bits(inside, first);
-  }
-  const M sun = asked & equal(kind, number_of(LightKind::Sun));
-  if (any(sun))
-    sample_sun(lamps, disk_x, disk_y, sun, light);
+  sample.pdf = probability;
+  sample_light(EachLight<F>{block.lamp + first}, p, load(block.u[2] + first), load(block.u[3] + first), asked, sample);
   // Dark ones are none.
-  light.pdf = select(asked & black(light.radiance), D(0.0), light.pdf);
-  store3(block.light_target, first, light.target);
-  store3(block.light_wi, first, light.wi);
-  store3(block.light_radiance, first, light.radiance);
-  store(block.light_delta + first, select(light.delta, U(1u), U(0u)));
-  store(block.light_pdf + first, select(asked, light.pdf * probability, light.pdf));
-}
-
-// Lanes whose lobes mind that their normal bends.
-LANCER_LANE M bent_lanes(const Records &records, const V3 &wo, const V3 &ns, const V3 &ng) {
-  const M may = equal(word(
-                          records, [](const WideMaterial &m) __attribute__((always_inline)) { return m.bends; }),
-                      U(1u));
-  return may & bends(wo, ns, ng);
+  sample.pdf = select(asked & black(sample.radiance), D(0.0), sample.pdf);
+  store3(block.light_target, first, sample.target);
+  store3(block.light_wi, first, sample.wi);
+  store3(block.light_radiance, first, sample.radiance);
+  store(block.light_delta + first, select(sample.delta, U(1u), U(0u)));
+  store(block.light_pdf + first, select(asked, sample.pdf * probability, sample.pdf));
 }
 
 // The power heuristic in ratio form.
@@ -171,86 +133,174 @@ LANCER_LANE M lifted(F limit, const V3 &ns, const V3 &ng, const V3 &wi) {
   return (limit > F(0.0f)) & (amount > F(0.0f));
 }
 
+// The lobes of the lanes from first on: kept from lobes() to scatter().
+Bsdf<F> &lobes_of(VertexBlock &block, int first) { return reinterpret_cast<Bsdf<F> *>(block.lobes)[first / kLanes]; }
+
+// What the nodes of the material say in every lane.
+struct NodeValues {
+  const VertexBlock &block;
+  int first;
+  LANCER_LANE V3 operator()(const Parameter &parameter) const {
+    if (!parameter.varies())
+      return V3(parameter.value);
+    return load3(block.values[parameter.node], first);
+  }
+};
+
+// Adds the lobes of one described; number: of the lobe among the material's.
+void add_described(const VertexBlock &block, int first, size_t number, Bsdf<F> &bsdf) {
+  const Material *const *materials = block.material + first;
+  const LobeDescription &described = materials[0]->lobes[number];
+  LaneLobes<F> ready;
+  ready.inside = bits(bsdf.inside);
+  ready.same = all_same(materials);
+  for (int i = 0; i < kLanes; ++i)
+    ready.of[i] = &materials[i]->ready[number];
+  const bool fixed = materials[0]->fixed();
+  const ParameterReader<F, NodeValues> read{{block, first}};
+  const M hole = some(block.holes, first);
+  const auto without_holes = [&](LobeInputs<F> inputs) __attribute__((always_inline)) {
+    if (block.holes)
+      inputs.weight = select(hole, V3(F(0.0f)), inputs.weight);
+    return inputs;
+  };
+  if (!described.principled) {
+    const LobeInputs<F> inputs = without_holes(fixed ? ready.inputs() : evaluate(described, read));
+    if (any(!black(inputs.weight)))
+      add_kept(bsdf, inputs, ready);
+    return;
+  }
+  const LobeInputs<F> inputs = without_holes(fixed ? ready.principled_carrier() : evaluate(described, read));
+  if (any(!black(inputs.weight)))
+    add_principled(bsdf, inputs, fixed ? ready.principled() : evaluate(*described.principled, read), ready);
+}
+
+void lobes(VertexBlock &block) {
+  block.inside = block.transmits = block.scatters = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const Material &material = *block.material[first];
+    // Look from the viewer's side.
+    const V3 wo = load3(block.wo, first), out_ns = load3(block.ns, first), out_ng = load3(block.ng, first);
+    const M inside = dot(wo, out_ng) < F(0.0f);
+    V3 ns = select(inside, -out_ns, out_ns);
+    const V3 ng = select(inside, -out_ng, out_ng);
+    // A bump of the whole surface stands in for its normal; nodes give it on the viewer's side.
+    if (material.normal.varies())
+      ns = unit_or(NodeValues{block, first}(material.normal), ns);
+    Bsdf<F> &bsdf = *new (&lobes_of(block, first)) Bsdf<F>;
+    bsdf.begin(wo, ns, ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
+    bsdf.shares = block.shares_wanted != 0;
+    for (size_t i = 0; i < material.lobes.size(); ++i)
+      add_described(block, first, i, bsdf);
+    bsdf.complete();
+    store3(block.viewer_ns, first, ns);
+    store3(block.viewer_ng, first, ng);
+    store3(block.emission, first, bsdf.emission);
+    block.inside |= placed_bits(inside, first);
+    block.transmits |= placed_bits(bsdf.transmits, first);
+    block.scatters |= placed_bits(bsdf.smooth, first);
+  }
+}
+
+void describe(VertexBlock &block) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const Bsdf<F> &bsdf = lobes_of(block, first);
+    if (block.wants_normal)
+      store3(block.normal, first, mean_normal(bsdf));
+    if (block.wants_matt_normal)
+      store3(block.matt_normal, first, mean_normal(bsdf, true));
+    for (int component = 0; component < 3 && block.wants_shown; ++component)
+      store3(block.shown[component], first, bsdf.shown(static_cast<Component>(component)));
+    if (!block.wants_mixture)
+      continue;
+    const Mixture<F> mixture = mix(bsdf, load3(block.transmittance, first), block.blended != 0);
+    store3(block.mixed_normal, first, mixture.normal);
+    store3(block.mixed_diffuse, first, mixture.diffuse);
+    store3(block.mixed_specular, first, mixture.specular);
+    store(block.mixed_all + first, mixture.all);
+    store(block.mixed_matt + first, mixture.matt);
+  }
+}
+
 // Shares paths between what passes straight on and what the surface scatters.
-LANCER_LANE F share_passing(VertexBlock &block, int first, const WideBsdf &bsdf) {
+LANCER_LANE F share_passing(VertexBlock &block, int first, const Bsdf<F> &bsdf) {
   const F zero(0.0f), through = load(block.through + first);
   F pass = zero;
   const M passes = through > zero;
-  if (any(passes)) {
-    const V3 sum = albedo(bsdf);
-    const F mean = (sum.x + sum.y + sum.z) / F(3.0f);
-    pass = select(passes, through / (through + select(some(block.ends, first), zero, mean)), zero);
-  }
+  if (any(passes))
+    pass = select(passes, through / (through + select(some(block.ends, first), zero, mean(bsdf.albedo()))), zero);
   store(block.pass + first, pass);
   return pass;
 }
 
+// a / b, 0 where b is.
+LANCER_LANE V3 divided(const V3 &a, const V3 &b) {
+  const F zero(0.0f);
+  return {select(b.x != zero, a.x / b.x, zero), select(b.y != zero, a.y / b.y, zero), select(b.z != zero, a.z / b.z, zero)};
+}
+
 // What the light's sample brings to the viewer where nothing is in its way. scatters: share of paths that do not pass straight
 // on: they find the same light.
-LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, const V3 &ns, const V3 &ng, D scatters) {
+LANCER_LANE void light(VertexBlock &block, int first, const Bsdf<F> &bsdf, D scatters) {
   const F zero(0.0f);
-  const V3 dark{zero, zero, zero};
   const D pdf = load(block.light_pdf + first);
+  const M lit = (pdf > D(0.0)) & some(block.scatters, first);
+  if (!any(lit))
+    return;
   const V3 wi = narrow(load3(block.light_wi, first));
-  const WideValue value = eval_lit(bsdf, wi);
-  const uint32_t *hidden = block.light_hidden + first;
-  const V3 f = select(has_bit(hidden, LANCER_RAY_DIFFUSE), dark, value.diffuse) +
-               select(has_bit(hidden, LANCER_RAY_GLOSSY), dark, value.glossy) +
-               select(has_bit(hidden, LANCER_RAY_TRANSMISSION), dark, value.transmission);
+  BsdfValue<F> value = bsdf.eval_lit(wi);
+  constexpr uint32_t kinds[3] = {LANCER_RAY_DIFFUSE, LANCER_RAY_GLOSSY, LANCER_RAY_TRANSMISSION};
+  for (int component = 0; component < 3; ++component)
+    value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), V3(zero), value.part[component]);
+  const V3 f = value.f();
   // The BSDF finds the same light, unless it is a single direction.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
   // What is scattered of a density is of the order of 1, however narrow the lobe and however bright the light.
   const V3 contribution = load3(block.beta, first) * (f * narrow(widen(weight) / pdf)) * load3(block.light_radiance, first);
   store3(block.contribution, first, contribution);
-  block.lit |= placed_bits((pdf > D(0.0)) & !black(f), first);
-  block.lifted |= placed_bits(lifted(load(block.terminator + first), ns, ng, wi), first);
+  for (int component = 0; component < 2 && block.shares_wanted; ++component)
+    store3(block.light_share[component], first, divided(value.part[component], f));
+  block.lit |= placed_bits(lit & !black(f), first);
+  block.lifted |= placed_bits(lifted(load(block.terminator + first), bsdf.ns, bsdf.ng, wi), first);
 }
 
-[[gnu::flatten]] void shade(VertexBlock &block) {
-  block.lit = block.lifted = block.sampled = block.glossy = block.transmitted = 0;
+void scatter(VertexBlock &block) {
+  block.lit = block.lifted = block.sampled = block.diffuse = block.transmitted = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    const D3 p = load3(block.p, first);
-    ask_lamps(block, first, p);
-    // Look from the viewer's side.
-    const V3 wo = load3(block.wo, first), out_ns = load3(block.ns, first), out_ng = load3(block.ng, first);
-    const M behind = dot(wo, out_ng) < F(0.0f);
-    const V3 ns = select(behind, -out_ns, out_ns), ng = select(behind, -out_ng, out_ng);
-    store3(block.viewer_ns, first, ns);
-    store3(block.viewer_ng, first, ng);
-    Records records{block.material + first, all_same(block.material + first)};
-    uint32_t count = 0;
-    for (int i = 0; i < kLanes; ++i)
-      count = records.of[i]->count > count ? records.of[i]->count : count;
-    block.odd |= placed_bits(bent_lanes(records, wo, ns, ng), first);
-    WideBsdf bsdf;
-    make_bsdf(records, static_cast<int>(count), wo, ns, ng, load3(block.weight, first), load3(block.base, first), bsdf);
-    // Glass of which nothing is left asks for light as other surfaces do.
-    block.odd |= placed_bits(transmits(bsdf) != some(block.transmits, first), first);
-    const D scatters = D(1.0) - widen(share_passing(block, first, bsdf));
-    light(block, first, bsdf, ns, ng, scatters);
+    const Bsdf<F> &bsdf = lobes_of(block, first);
+    const D3 p = load3(block.p, first), outwards = widen(load3(block.ng, first));
     const D offset = load(block.offset + first);
-    const D3 outwards = widen(out_ng);
+    ask_lamps(block, first, p);
+    const D scatters = D(1.0) - widen(share_passing(block, first, bsdf));
+    light(block, first, bsdf, scatters);
     store3(block.shadow_origin, first, origin(p, offset, outwards, load3(block.light_wi, first)));
     // Go on in a direction of the BSDF.
-    const WideSample sample = sample_bsdf(bsdf, load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
+    const BsdfSample<F> sample = bsdf.sample(load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
     store3(block.next_origin, first, origin(p, offset, outwards, widen(sample.wi)));
     store3(block.wi, first, sample.wi);
-    store3(block.beta, first, load3(block.beta, first) * (sample.weight / narrow(scatters)));
-    store(block.pdf + first, widen(sample.pdf) * scatters);
-    block.sampled |= placed_bits(sample.valid, first);
-    block.glossy |= placed_bits(sample.glossy, first);
+    store3(block.next_beta, first, load3(block.beta, first) * (sample.weight / narrow(scatters)));
+    store(block.pdf + first, select(sample.delta, D(0.0), widen(sample.pdf) * scatters));
+    store(block.alpha2 + first, sample.alpha2);
+    for (int component = 0; component < 2 && block.shares_wanted; ++component)
+      store3(block.share[component], first, sample.share[component]);
+    block.sampled |= placed_bits((!black(sample.weight)) & (sample.pdf > F(0.0f)), first);
+    block.diffuse |= placed_bits(equal(sample.component, U(static_cast<uint32_t>(Component::Diffuse))), first);
     block.transmitted |= placed_bits(sample.transmitted, first);
   }
 }
 
-[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const WideLamp &lamp) {
+[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const Light &light) {
   uint32_t met = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     const D3 d = load3(ways.d, first);
     const D3 wi = d / sqrt(dot(d, d));
-    met |= placed_bits(may_meet(lamp, load3(ways.from, first), wi, load(ways.end + first)), first);
+    met |= placed_bits(may_meet(OneLight<F>{light}, load3(ways.from, first), wi, load(ways.end + first)), first);
   }
   return met;
 }
@@ -258,7 +308,7 @@ LANCER_LANE void light(VertexBlock &block, int first, const WideBsdf &bsdf, cons
 } // namespace
 
 namespace LANCER_ISA {
-const VertexKernel vertex_kernel = {LANCER_ISA_NAME, surfaces, choose, shade, meets};
+const VertexKernel vertex_kernel = {surfaces, lobes, describe, choose, scatter, meets, kBlockLanes / kLanes * sizeof(Bsdf<F>)};
 }
 
 } // namespace lancer

@@ -1,5 +1,4 @@
-// Shading of path vertices in vector registers, one copy per instruction set; all give the same bits, and those of the general
-// code: surface_at(), Sampler, LightSet::choose(), sample() of lights, Bsdf, leave().
+// Shading of path vertices in lanes: the surface, its lobes, the choice of a light, scattering.
 #pragma once
 
 #include "accel/kernel_choice.h"
@@ -8,15 +7,16 @@
 namespace lancer {
 
 struct VertexKernel {
-  const char *name;
+  // In this order; nodes are asked after the first, other lights than lamps before the last.
   void (*surfaces)(VertexBlock &block);
+  void (*lobes)(VertexBlock &block);
+  void (*describe)(VertexBlock &block);
   void (*choose)(VertexBlock &block);
-  void (*shade)(VertexBlock &block);
-  // Bits of the lanes that may meet the lamp; no other does.
-  uint32_t (*meets)(const WayBlock &ways, const WideLamp &lamp);
+  void (*scatter)(VertexBlock &block);
+  // Bits of the lanes that may meet the light; no other does.
+  uint32_t (*meets)(const WayBlock &ways, const Light &light);
+  size_t lobes_bytes;
 };
-
-// Each is the same source, vertex_kernel.cpp, compiled with LANCER_ISA set to the name.
 LANCER_DECLARE_KERNEL(VertexKernel, vertex_kernel)
 
 } // namespace lancer

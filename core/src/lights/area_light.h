@@ -1,86 +1,118 @@
 // Area lights: a rectangle or an ellipse that shines to its front.
 #pragma once
 
-#include "lights/area_end.h"
-#include "lights/light.h"
-#include "sampling/warp.h"
-
-#include <cmath>
+#include "lights/light_lanes.h"
 
 namespace lancer {
 
+// At grazing directions a way ends at most this many times Light::apart before the lamp: nothing visible stands in between.
+inline constexpr double kMostAparts = 64.0;
+
+// How long the way is that ends before the lamp, of one that is t long and meets its axis under this cosine: rounding then puts
+// no face of the lamp's own plane, such as the ceiling that it is set into, before the lamp.
+template <class D> LANCER_LANE D area_end(D t, D cosine, D apart) {
+  return max(t - min(apart / cosine, D(kMostAparts) * apart), D(0.5) * t);
+}
+
 // Radiance towards a direction whose cosine with the light's axis is given; narrowed by spread like a honeycomb in front.
-inline glm::vec3 area_radiance(const Light &light, double cosine) {
-  if (light.spread_scale == 0.0)
-    return glm::vec3(light.emission);
-  const double tangent = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))) / cosine;
-  return glm::vec3(light.emission * (std::max(light.tan_half_spread - tangent, 0.0) * light.spread_scale));
+template <template <class> class L, class F>
+LANCER_LANE Vector3<F> area_radiance(const L<F> &light, DoubleOf<F> cosine, MaskOf<F> which) {
+  using D = DoubleOf<F>;
+  const D one(1.0), zero(0.0), scale = light[&Light::spread_scale];
+  const Double3Of<F> emission = light[&Light::emission];
+  const MaskOf<F> narrowed = which & (scale != zero);
+  if (!any(narrowed))
+    return narrow(emission);
+  const D tangent = sqrt(max(zero, (one - cosine) * (one + cosine))) / cosine;
+  const D share = max(light[&Light::tan_half_spread] - tangent, zero) * scale;
+  return select(narrowed, narrow(emission * share), narrow(emission));
 }
 
 // The part of an area light that is worth sampling from a point: where its spread lets light reach the point. A rectangle in
 // units of the half lengths, or all of the ellipse.
-struct AreaPart {
-  glm::dvec2 low{-1.0}, high{1.0};
-  bool ellipse = false;
-  double area = 0.0; // of it, normalised units; 0: nothing arrives
+template <class F> struct AreaPart {
+  Vector2<DoubleOf<F>> low, high;
+  MaskOf<F> ellipse;
+  DoubleOf<F> area; // of it, normalised units; 0: nothing arrives
 };
 
-inline AreaPart area_part(const Light &light, const glm::dvec3 &p) {
-  AreaPart part;
-  part.ellipse = light.ellipse;
-  part.area = light.area;
-  if (light.spread_scale == 0.0)
+template <template <class> class L, class F>
+LANCER_LANE AreaPart<F> area_part(const L<F> &light, const Double3Of<F> &p, MaskOf<F> which) {
+  using D = DoubleOf<F>;
+  const D zero(0.0), one(1.0), least(-1.0), whole = light[&Light::area];
+  AreaPart<F> part{{least, least}, {one, one}, light[&Light::ellipse], whole};
+  const MaskOf<F> narrowed = which & (light[&Light::spread_scale] != zero);
+  if (!any(narrowed))
     return part;
   // Light arrives from within a circle around the foot of p.
-  const glm::dvec3 v = p - light.position;
-  const double radius = -glm::dot(v, light.z) * light.tan_half_spread;
-  const glm::dvec2 half(light.half_x, light.half_y), foot = glm::dvec2(glm::dot(v, light.x), glm::dot(v, light.y)) / half;
-  const glm::dvec2 low = glm::max(foot - radius / half, -1.0), high = glm::min(foot + radius / half, 1.0);
-  const double area = glm::max(high.x - low.x, 0.0) * glm::max(high.y - low.y, 0.0) * half.x * half.y;
-  if (!(area < light.area))
-    return part;
-  return {low, high, false, area};
+  const Double3Of<F> v = p - light[&Light::position];
+  const D radius = -dot(v, light[&Light::z]) * light[&Light::tan_half_spread];
+  const D half_x = light[&Light::half_x], half_y = light[&Light::half_y];
+  const D foot_x = dot(v, light[&Light::x]) / half_x, foot_y = dot(v, light[&Light::y]) / half_y;
+  const D low_x = max(foot_x - radius / half_x, least), low_y = max(foot_y - radius / half_y, least);
+  const D high_x = min(foot_x + radius / half_x, one), high_y = min(foot_y + radius / half_y, one);
+  const D area = max(high_x - low_x, zero) * max(high_y - low_y, zero) * half_x * half_y;
+  const MaskOf<F> smaller = narrowed & (area < whole);
+  part.low = {select(smaller, low_x, part.low.x), select(smaller, low_y, part.low.y)};
+  part.high = {select(smaller, high_x, part.high.x), select(smaller, high_y, part.high.y)};
+  part.area = select(smaller, area, part.area);
+  part.ellipse = part.ellipse & !smaller;
+  return part;
 }
 
-inline bool on_area(const Light &light, double x, double y) {
-  return light.ellipse ? x * x + y * y <= 1.0 : std::abs(x) <= 1.0 && std::abs(y) <= 1.0;
+// disk: warp_disk(u, v).
+template <template <class> class L, class F>
+LANCER_LANE void sample_area(const L<F> &light, const Double3Of<F> &p, F u, F v, const Vector2<F> &disk, MaskOf<F> which,
+                             LightSampleLanes<F> &sample) {
+  using D = DoubleOf<F>;
+  const D one(1.0), zero(0.0), du = widen(u), dv = widen(v);
+  const AreaPart<F> part = area_part(light, p, which);
+  const D x = select(part.ellipse, widen(disk.x), part.low.x * (one - du) + part.high.x * du);
+  const D y = select(part.ellipse, widen(disk.y), part.low.y * (one - dv) + part.high.y * dv);
+  const Double3Of<F> axis_x = light[&Light::x], axis_y = light[&Light::y];
+  const Double3Of<F> to_light =
+      light[&Light::position] + x * light[&Light::half_x] * axis_x + y * light[&Light::half_y] * axis_y - p;
+  const D distance = sqrt(dot(to_light, to_light));
+  const Double3Of<F> wi = to_light / distance;
+  const D cosine = dot(wi, light[&Light::z]);
+  // A rectangle around what is lit of an ellipse may reach beyond it.
+  const MaskOf<F> beside = light[&Light::ellipse] & !part.ellipse & !(x * x + y * y <= one);
+  const MaskOf<F> valid = which & (part.area > zero) & (distance > zero) & (cosine > zero) & !beside;
+  sample.target = select(which, p + area_end(distance, cosine, light[&Light::apart]) * wi, sample.target);
+  sample.wi = select(which, wi, sample.wi);
+  sample.distance = select(which, distance, sample.distance);
+  sample.radiance = select(which, area_radiance(light, cosine, which), sample.radiance);
+  sample.pdf = select(valid, distance * distance / (cosine * part.area), sample.pdf);
 }
 
-inline LightSample sample_area(const Light &light, const glm::dvec3 &p, const glm::vec2 &u) {
-  LightSample sample;
-  const AreaPart part = area_part(light, p);
-  if (!(part.area > 0.0))
-    return sample;
-  const glm::dvec2 d = part.ellipse ? glm::dvec2(warp_disk(u)) : glm::mix(part.low, part.high, glm::dvec2(u));
-  const glm::dvec3 at = light.position + d.x * light.half_x * light.x + d.y * light.half_y * light.y, v = at - p;
-  sample.distance = glm::length(v);
-  if (!(sample.distance > 0.0))
-    return sample;
-  sample.wi = v / sample.distance;
-  const double cosine = glm::dot(sample.wi, light.z);
-  if (!(cosine > 0.0) || (light.ellipse && !part.ellipse && !on_area(light, d.x, d.y)))
-    return sample;
-  sample.target = p + area_end(sample.distance, cosine, light.apart) * sample.wi;
-  sample.pdf = sample.distance * sample.distance / (cosine * part.area);
-  sample.radiance = area_radiance(light, cosine);
-  return sample;
+// Where ways from o along unit wi meet what sampling would choose of the light.
+template <class F> struct AreaMeeting {
+  MaskOf<F> met;
+  DoubleOf<F> t, cosine, area;
+};
+template <template <class> class L, class F>
+LANCER_LANE AreaMeeting<F> find_area(const L<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi) {
+  using D = DoubleOf<F>;
+  const D one(1.0), zero(0.0);
+  const Double3Of<F> position = light[&Light::position], z = light[&Light::z];
+  const D cosine = dot(wi, z), t = dot(position - o, z) / cosine;
+  const Double3Of<F> at = o + t * wi - position;
+  const D x = dot(at, light[&Light::x]) / light[&Light::half_x], y = dot(at, light[&Light::y]) / light[&Light::half_y];
+  const MaskOf<F> front = (cosine > zero) & (t > zero) & (light[&Light::area] > zero);
+  const MaskOf<F> ellipse = light[&Light::ellipse];
+  const MaskOf<F> on_rectangle = (abs(x) <= one) & (abs(y) <= one), on_ellipse = x * x + y * y <= one;
+  const MaskOf<F> on = (ellipse & on_ellipse) | (on_rectangle & !ellipse);
+  const AreaPart<F> part = area_part(light, o, front);
+  const MaskOf<F> within = (part.low.x <= x) & (part.low.y <= y) & (x <= part.high.x) & (y <= part.high.y);
+  const MaskOf<F> met = front & on & within;
+  return {met, t, cosine, part.area};
 }
 
-inline LightHit meet_area(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi) {
-  LightHit hit;
-  const double cosine = glm::dot(wi, light.z), t = glm::dot(light.position - o, light.z) / cosine;
-  if (!(cosine > 0.0) || !(t > 0.0) || !(light.area > 0.0))
-    return hit;
-  const glm::dvec3 at = o + t * wi - light.position;
-  const glm::dvec2 d(glm::dot(at, light.x) / light.half_x, glm::dot(at, light.y) / light.half_y);
-  const AreaPart part = area_part(light, o);
-  const bool inside = glm::all(glm::lessThanEqual(part.low, d)) && glm::all(glm::lessThanEqual(d, part.high));
-  if (!on_area(light, d.x, d.y) || !inside)
-    return hit;
-  hit.radiance = area_radiance(light, cosine);
-  hit.pdf = t * t / (cosine * part.area);
-  hit.distance = area_end(t, cosine, light.apart);
-  return hit;
+template <template <class> class L, class F>
+LANCER_LANE LightHitLanes<F> meet_area(const L<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi) {
+  const AreaMeeting<F> at = find_area(light, o, wi);
+  return {area_radiance(light, at.cosine, at.met), select(at.met, at.t * at.t / (at.cosine * at.area), DoubleOf<F>(0.0)),
+          area_end(at.t, at.cosine, light[&Light::apart])};
 }
 
 } // namespace lancer

@@ -38,13 +38,12 @@ UnitPoint unit_point(ShapeKind kind, int part, const glm::vec2 &u) {
     const glm::dvec3 p = glm::normalize(glm::dvec3(warp_sphere(u)));
     return {p, p};
   }
-  double s, c;
-  sin_cos_turn(double(u.y), s, c);
+  const SinCos turn = sin_cos_turn(double(u.y));
   if (kind == ShapeKind::Cylinder)
-    return {{c, s, 2.0 * double(u.x) - 1.0}, {c, s, 0.0}};
+    return {{turn.cos, turn.sin, 2.0 * double(u.x) - 1.0}, {turn.cos, turn.sin, 0.0}};
   // The cone's radius grows linearly from the apex, so its square is uniform.
   const double r = std::sqrt(double(u.x));
-  return {{r * c, r * s, 1.0 - 2.0 * r}, glm::normalize(glm::dvec3(2.0 * c, 2.0 * s, 1.0))};
+  return {{r * turn.cos, r * turn.sin, 1.0 - 2.0 * r}, glm::normalize(glm::dvec3(2.0 * turn.cos, 2.0 * turn.sin, 1.0))};
 }
 
 // How much a map enlarges an area with unit object normal n.

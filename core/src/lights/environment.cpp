@@ -64,14 +64,15 @@ Environment::Environment(const World &world, const std::vector<Image> &images, c
     make_map(context);
 }
 
-glm::vec3 Environment::evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
-                                const glm::dvec3 *eye) const {
+glm::vec3 Environment::evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye,
+                                const LightPath<float> &path) const {
   NodeContext context;
   context.images = images_;
   context.normalisation = normalisation_;
   context.camera = camera;
   context.wo = glm::vec3(-wi);
   context.eye = eye;
+  context.path = path;
   run(world_->program, world_->schedule, context, values);
   return value_of(world_->radiance, values);
 }

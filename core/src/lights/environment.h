@@ -33,10 +33,10 @@ public:
   double mean() const { return mean_; }
 
   // wi: unit, world. values: room for all nodes of the world. camera: for the nodes, may be null. eye: where a camera ray
-  // starts; null for other rays.
-  glm::vec3 radiance(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera,
-                     const glm::dvec3 *eye = nullptr) const {
-    return varies() ? evaluate(wi, values, camera, eye) : constant_;
+  // starts; null for other rays. path: of the ray that sees it; none where it is sampled as a light.
+  glm::vec3 radiance(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye = nullptr,
+                     const LightPath<float> &path = {}) const {
+    return varies() ? evaluate(wi, values, camera, eye, path) : constant_;
   }
   // No sample where it does not vary.
   LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera) const;
@@ -49,7 +49,8 @@ public:
   size_t bytes() const { return map_.bytes(); }
 
 private:
-  glm::vec3 evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye) const;
+  glm::vec3 evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye,
+                     const LightPath<float> &path = {}) const;
   void make_map(const BuildContext &context);
 
   const World *world_ = nullptr;

@@ -3,25 +3,11 @@
 // Cycles; between clusters the upper bounds decide.
 #pragma once
 
-#include "lights/tree_light.h"
-#include "sampling/distribution.h"
+#include "lights/light_choice.h"
 
-#include <array>
-#include <span>
 #include <vector>
 
 namespace lancer {
-
-// The most lights of a leaf.
-inline constexpr uint32_t kLeafLights = 8;
-
-// Children stand side by side from an even number on; a leaf holds a stretch of lights.
-struct LightNode {
-  ClusterShape shape;
-  uint32_t first = 0;      // child, or light of a leaf
-  uint32_t count : 31 = 0; // lights of a leaf; 0: it has children
-  uint32_t distant : 1 = 0;
-};
 
 class FewLights {
 public:
@@ -34,10 +20,8 @@ public:
 
   // u in [0, 1): one number for the whole way down.
   LightChoice choose(const LightQuery &query, double u) const;
-  // The tree itself, for kernels. root: a node, or kNone for the pair of 0 and 1.
-  const std::vector<LightNode> &nodes() const { return nodes_; }
-  const std::vector<TreeLight> &lights() const { return lights_; }
-  uint32_t root() const { return root_; }
+  // The tree itself, for kernels.
+  LightNodes nodes() const { return {nodes_.data(), lights_.data(), root_}; }
   // With which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
@@ -51,13 +35,7 @@ private:
     bool distant;
   };
 
-  Importance weigh(const LightQuery &query, uint32_t node) const;
-  // Of the two nodes of a pair; both 0 where neither can contribute.
-  glm::dvec2 shares(const LightQuery &query, uint32_t pair) const;
-  std::span<Importance> weigh_leaf(const LightQuery &query, const LightNode &node,
-                                   std::array<Importance, kLeafLights> &room) const;
-  LightChoice choose_of_leaf(const LightQuery &query, const LightNode &node, double u) const;
-  double share_of_leaf(const LightQuery &query, const LightNode &node, uint32_t place) const;
+  double share_of_leaf(const LightQueryLanes<float> &query, const LightNode &node, uint32_t place) const;
   void split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
 
   std::vector<LightNode> nodes_; // 0 and 1 are what is near and what is distant

@@ -1,34 +1,18 @@
 #include "lights/light.h"
 
-#include "lights/area_light.h"
-#include "lights/sun_light.h"
+#include "lights/sample_light.h"
 
 namespace lancer {
 
 LightSample sample(const Light &light, const glm::dvec3 &p, const glm::vec2 &u) {
-  switch (light.kind) {
-  case LightKind::Point:
-  case LightKind::Spot:
-    return sample_point(light, p, u);
-  case LightKind::Sun:
-    return sample_sun(light, u);
-  case LightKind::Area:
-    return sample_area(light, p, u);
-  }
-  return {};
+  LightSampleLanes<float> found{};
+  sample_light(OneLight<float>{light}, Vector3<double>(p), u.x, u.y, true, found);
+  return {found.target, found.wi, found.distance, found.radiance, found.pdf, found.delta};
 }
 
 LightHit meet(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi) {
-  switch (light.kind) {
-  case LightKind::Point:
-  case LightKind::Spot:
-    return meet_point(light, o, wi);
-  case LightKind::Sun:
-    return meet_sun(light, wi);
-  case LightKind::Area:
-    return meet_area(light, o, wi);
-  }
-  return {};
+  const LightHitLanes<float> hit = meet_light(OneLight<float>{light}, Vector3<double>(o), Vector3<double>(wi));
+  return hit.pdf > 0.0 ? LightHit{hit.radiance, hit.pdf, hit.distance} : LightHit{};
 }
 
 bool has_extent(const Light &light) {

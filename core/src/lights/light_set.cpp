@@ -1,7 +1,6 @@
 #include "lights/light_set.h"
 
-#include "lights/area_end.h"
-#include "sampling/plain_vectors.h"
+#include "lights/area_light.h"
 
 #include <algorithm>
 #include <set>
@@ -13,40 +12,12 @@ namespace {
 // As many lights with a place are chosen from as in Cycles, which costs more for each and leaves more noise.
 constexpr size_t kFew = 4;
 
-WideLamp make_wide(const Light &light) {
-  WideLamp lamp;
-  lamp.kind = uint32_t(light.kind);
-  lamp.soft = light.soft_falloff;
-  lamp.spot_cosine = light.spot_cosine;
-  lamp.ellipse = light.ellipse;
-  copy(light.position, lamp.position);
-  copy(light.x, lamp.x);
-  copy(light.y, lamp.y);
-  copy(light.z, lamp.z);
-  copy(light.emission, lamp.emission);
-  lamp.radius = light.radius;
-  lamp.cos_half_angle = light.cos_half_angle;
-  lamp.blend_width = light.blend_width;
-  lamp.stretch_x = light.stretch_x;
-  lamp.stretch_y = light.stretch_y;
-  lamp.half_x = light.half_x;
-  lamp.half_y = light.half_y;
-  lamp.area = light.area;
-  lamp.tan_half_spread = light.tan_half_spread;
-  lamp.spread_scale = light.spread_scale;
-  lamp.apart = light.apart;
-  lamp.one_minus_cos_sun = light.one_minus_cos_sun;
-  lamp.flat_radius = light.flat_radius;
-  return lamp;
-}
-
 } // namespace
 
 LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
                    const BuildContext &context)
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
   for (const Light &light : lights_) {
-    wide_lamps_.push_back(make_wide(light));
     most_before_ = std::max(most_before_, kMostAparts * light.apart);
     switches_.push_back(light.hidden_from | (light.no_shadow ? kNoShadow : 0));
   }
@@ -116,7 +87,7 @@ double LightSet::probability(const Geometry &geometry, const LightQuery &query, 
 }
 
 size_t LightSet::bytes() const {
-  size_t bytes = environment_.bytes() + lights_.size() * (sizeof(Light) + sizeof(WideLamp)) +
+  size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) +
                  (emitter_of_.size() + switches_.size()) * sizeof(uint32_t) + few_.bytes() + many_.bytes();
   std::set<const EmissiveFaces *> counted;
   for (const Emitter &emitter : emitters_) {

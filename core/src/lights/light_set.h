@@ -5,7 +5,6 @@
 #include "lights/environment.h"
 #include "lights/few_lights.h"
 #include "lights/light_tree.h"
-#include "lights/wide_lamp.h"
 
 namespace lancer {
 
@@ -56,9 +55,6 @@ public:
   double probability(const LightQuery &query, uint32_t light) const;
   double probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const;
 
-  // Of a light as described, for kernels.
-  const WideLamp &plain_numbers(uint32_t light) const { return wide_lamps_[light]; }
-
   // The emitter of an instance; null if it has none.
   const Emitter *emitter_of(uint32_t instance) const {
     return emitter_of_.empty() || emitter_of_[instance] == kNone ? nullptr : &emitters_[emitter_of_[instance]];
@@ -77,7 +73,6 @@ private:
   static constexpr uint32_t kNoShadow = 1u << 31;
 
   std::vector<Light> lights_;
-  std::vector<WideLamp> wide_lamps_;
   // hidden_from() and no_shadow() of all: asked for more lights than anything else, they stay in the cache.
   std::vector<uint32_t> switches_;
   std::vector<Emitter> emitters_;

@@ -1,14 +1,16 @@
 #include "lights/light_tree.h"
 
+#include "lights/light_importance.h"
+#include "sampling/plain_vectors.h"
+
 namespace lancer {
 
 LightWalk LightTree::walk(const LightQuery &query, double u) {
+  const LightQueryLanes<float> asked(Vector3<double>(query.p), Vector3<float>(query.n), query.transmits);
   LightWalk walk;
-  for (int axis = 0; axis < 3; ++axis) {
-    walk.p[axis] = query.p_float[axis];
-    walk.n[axis] = query.n[axis];
-  }
-  walk.slack = query.slack;
+  copy(glm::vec3(asked.p_float), walk.p);
+  copy(query.n, walk.n);
+  walk.slack = asked.slack;
   walk.transmits = query.transmits;
   walk.u = u;
   return walk;

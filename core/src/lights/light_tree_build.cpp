@@ -1,5 +1,6 @@
 #include "accel/parallel.h"
 #include "lights/light_cut.h"
+#include "lights/light_importance.h"
 #include "lights/light_tree.h"
 
 #include <algorithm>

@@ -1,63 +1,80 @@
 // A sun: parallel light, or a disk of the sky, even or flat.
 #pragma once
 
-#include "lights/point_light.h"
+#include "lights/round_light.h"
+
+#include <limits>
 
 namespace lancer {
 
 // The disk towards the direction whose cosine to the middle is given. The sun's irradiance is that at normal incidence.
-struct SunDisk {
-  glm::vec3 radiance{0.0f};
-  double pdf = 0.0;
+template <class F> struct SunDisk {
+  Vector3<F> radiance;
+  DoubleOf<F> pdf;
 };
 
-inline SunDisk sun_disk(const Light &light, double cosine) {
-  if (light.flat_radius == 0.0) {
-    // E = pi L sin^2(half angle).
-    const double x = light.one_minus_cos_sun, sin2 = x * (2.0 - x);
-    return {glm::vec3(light.emission / (glm::pi<double>() * sin2)), 1.0 / (glm::two_pi<double>() * x)};
+template <template <class> class L, class F>
+LANCER_LANE SunDisk<F> sun_disk(const L<F> &light, DoubleOf<F> cosine, MaskOf<F> flat) {
+  using D = DoubleOf<F>;
+  const D one(1.0), two(2.0), pi(std::numbers::pi), size = light[&Light::one_minus_cos_sun];
+  const Double3Of<F> emission = light[&Light::emission];
+  // E = pi L sin^2(half angle).
+  SunDisk<F> disk{narrow(emission / (pi * (size * (two - size)))), one / (D(2.0 * std::numbers::pi) * size)};
+  if (any(flat)) {
+    // At distance 1 every part of the flat disk gives as much light as it is large: per solid angle 1 / cos^3. Its mean cosine
+    // is 2 / (sqrt(1 + r^2) + 1).
+    const D radius = light[&Light::flat_radius], r2 = radius * radius, pdf = one / (pi * r2 * cosine * cosine * cosine);
+    disk.radiance = select(flat, narrow(emission * (D(0.5) * (sqrt(one + r2) + one) * pdf)), disk.radiance);
+    disk.pdf = select(flat, pdf, disk.pdf);
   }
-  // At distance 1 every part of the flat disk gives as much light as it is large: per solid angle 1 / cos^3. Its mean cosine
-  // is 2 / (sqrt(1 + r^2) + 1).
-  const double r2 = light.flat_radius * light.flat_radius;
-  const double pdf = 1.0 / (glm::pi<double>() * r2 * cosine * cosine * cosine);
-  return {glm::vec3(light.emission * (0.5 * (std::sqrt(1.0 + r2) + 1.0) * pdf)), pdf};
+  return disk;
 }
 
-inline LightSample sample_sun(const Light &light, const glm::vec2 &u) {
-  LightSample sample;
-  sample.distance = std::numeric_limits<double>::infinity();
-  if (light.one_minus_cos_sun == 0.0) {
-    sample.wi = light.z;
-    sample.radiance = glm::vec3(light.emission);
-    sample.pdf = 1.0;
-    sample.delta = true;
-    return sample;
+// disk: warp_disk() of the sample's numbers.
+template <template <class> class L, class F>
+LANCER_LANE void sample_sun(const L<F> &light, const Vector2<F> &disk, MaskOf<F> which, LightSampleLanes<F> &sample) {
+  using D = DoubleOf<F>;
+  using M = MaskOf<F>;
+  const D zero(0.0), size = light[&Light::one_minus_cos_sun], radius = light[&Light::flat_radius];
+  const Double3Of<F> x = light[&Light::x], y = light[&Light::y], z = light[&Light::z];
+  const M single = which & (size == zero), wide = which & !single, flat = wide & (radius != zero);
+  const Vector2<D> place{widen(disk.x), widen(disk.y)};
+  Double3Of<F> wi = z;
+  if (any(wide & !flat))
+    wi = select(wide & !flat, cone_direction(z, {x, y}, size, place), wi);
+  if (any(flat))
+    wi = select(flat, normalize(z + radius * place.x * x + radius * place.y * y), wi);
+  Vector3<F> radiance = narrow(light[&Light::emission]);
+  D pdf(1.0);
+  if (any(wide)) {
+    const SunDisk<F> seen = sun_disk(light, dot(wi, z), flat);
+    radiance = select(wide, seen.radiance, radiance);
+    pdf = select(wide, seen.pdf, pdf);
   }
-  if (light.flat_radius == 0.0) {
-    sample.wi = cone_direction(light.z, light.x, light.y, light.one_minus_cos_sun, u);
-  } else {
-    const glm::dvec2 d = light.flat_radius * glm::dvec2(warp_disk(u));
-    sample.wi = glm::normalize(light.z + d.x * light.x + d.y * light.y);
-  }
-  const SunDisk disk = sun_disk(light, glm::dot(sample.wi, light.z));
-  sample.radiance = disk.radiance;
-  sample.pdf = disk.pdf;
-  return sample;
+  sample.wi = select(which, wi, sample.wi);
+  sample.distance = select(which, D(std::numeric_limits<double>::infinity()), sample.distance);
+  sample.radiance = select(which, radiance, sample.radiance);
+  sample.pdf = select(which, pdf, sample.pdf);
+  sample.delta = sample.delta | single;
 }
 
-inline LightHit meet_sun(const Light &light, const glm::dvec3 &wi) {
-  LightHit hit;
-  // |wi - z|^2 = 2 (1 - cos): no cancellation however small the sun.
-  const glm::dvec3 apart = wi - light.z;
-  const double one_minus_cos = 0.5 * glm::dot(apart, apart);
-  if (light.one_minus_cos_sun == 0.0 || !(one_minus_cos <= light.one_minus_cos_sun))
-    return hit;
-  const SunDisk disk = sun_disk(light, 1.0 - one_minus_cos);
-  hit.radiance = disk.radiance;
-  hit.pdf = disk.pdf;
-  hit.distance = std::numeric_limits<double>::infinity();
-  return hit;
+// |wi - z|^2 = 2 (1 - cos): no cancellation however small the sun.
+template <template <class> class L, class F>
+LANCER_LANE DoubleOf<F> one_minus_cos_to(const L<F> &light, const Double3Of<F> &wi) {
+  const Double3Of<F> apart = wi - light[&Light::z];
+  return DoubleOf<F>(0.5) * dot(apart, apart);
+}
+template <template <class> class L, class F> LANCER_LANE MaskOf<F> is_on_sun(const L<F> &light, DoubleOf<F> one_minus_cos) {
+  const DoubleOf<F> size = light[&Light::one_minus_cos_sun];
+  return (size != DoubleOf<F>(0.0)) & (one_minus_cos <= size);
+}
+
+template <template <class> class L, class F> LANCER_LANE LightHitLanes<F> meet_sun(const L<F> &light, const Double3Of<F> &wi) {
+  using D = DoubleOf<F>;
+  const D one_minus_cos = one_minus_cos_to(light, wi);
+  const MaskOf<F> on = is_on_sun(light, one_minus_cos);
+  const SunDisk<F> disk = sun_disk(light, D(1.0) - one_minus_cos, light[&Light::flat_radius] != D(0.0));
+  return {disk.radiance, select(on, disk.pdf, D(0.0)), D(std::numeric_limits<double>::infinity())};
 }
 
 } // namespace lancer

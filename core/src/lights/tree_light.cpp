@@ -1,6 +1,5 @@
 #include "lights/tree_light.h"
 
-#include "lights/float4.h"
 #include "sampling/color.h"
 #include "sampling/elementary.h"
 
@@ -27,104 +26,7 @@ double spot_reach(const Light &light) {
   return half < 0.5 * kPi - 1e-6 ? atan(tan(half) * std::max(light.stretch_x, light.stretch_y)) : 0.5 * kPi;
 }
 
-// What a round light fills, and how far its parts are.
-LightView view_round(const TreeLight &light, const glm::vec3 &to, float d) {
-  LightView view;
-  view.to = to;
-  const float r2 = light.radius * light.radius, d2 = d * d;
-  view.near2 = d2;
-  if (light.kind == TreeLight::Kind::Disk) {
-    view.far2 = std::max(d2 + r2, kNearest2);
-    view.sin_u = std::sqrt(r2 / view.far2);
-    view.cos_u = std::sqrt(d2 / view.far2);
-  } else if (d2 > r2) {
-    const float sin2 = r2 / d2;
-    view.sin_u = std::sqrt(sin2);
-    view.cos_u = std::sqrt(1.0f - sin2);
-    view.far2 = d2 / std::max(1.0f - sin2, 0x1p-24f);
-  } else {
-    // Within the ball: light from everywhere, as strong as at 0.7 of its radius.
-    view.cos_u = -1.0f;
-    view.near2 = view.far2 = 0.5f * r2;
-  }
-  return view;
-}
-
-Importance round_importance(const LightQuery &query, const TreeLight &light, const glm::vec3 &to, float d) {
-  const LightView view = view_round(light, to, d);
-  ShineCone cone;
-  if (!light.spot)
-    return importance(query, view, cone, 1.0f, light.energy);
-  cone.axis = light.axis;
-  cone.cos_all = cone.cos_full = light.cos_e;
-  // The best that its rim lets through.
-  const float cos_theta = -glm::dot(light.axis, to);
-  const float best = cos_theta >= view.cos_u ? 1.0f : cos_theta * view.cos_u + sine_of(cos_theta) * view.sin_u;
-  const float inside = best - light.cos_e + kCosineSlack;
-  if (!(inside > 0.0f))
-    return {};
-  const float t = inside < light.blend ? inside / light.blend : 1.0f;
-  return importance(query, view, cone, cos_theta, std::max(light.energy * t * t * (3.0f - 2.0f * t), kLeastImportance));
-}
-
-float largest_of(Float4 x) { return std::max(std::max(x[0], x[1]), std::max(x[2], x[3])); }
-
-Importance area_importance(const LightQuery &query, const TreeLight &light, const glm::vec3 &to, float d, const glm::vec3 &v) {
-  // Look at the four corners.
-  const Float4 along_u{1.0f, -1.0f, 1.0f, -1.0f}, along_v{1.0f, 1.0f, -1.0f, -1.0f};
-  const Float4 x = v.x + along_u * light.u.x + along_v * light.v.x, y = v.y + along_u * light.u.y + along_v * light.v.y,
-               z = v.z + along_u * light.u.z + along_v * light.v.z;
-  const Float4 d2 = x * x + y * y + z * z, per_d = 1.0f / sqrt4(larger4(d2, all4(kNearest2)));
-  const Float4 ax = x * per_d - to.x, ay = y * per_d - to.y, az = z * per_d - to.z, apart = ax * ax + ay * ay + az * az;
-  const Float4 above = query.n.x * x + query.n.y * y + query.n.z * z;
-  // |a - b|^2 = 2 (1 - cos): no cancellation however small the light.
-  const float one_minus_cos = 0.5f * largest_of(apart);
-  LightView view;
-  view.to = to;
-  view.near2 = d * d;
-  view.far2 = std::max(view.near2, largest_of(d2));
-  view.cos_u = 1.0f - one_minus_cos;
-  view.sin_u = std::sqrt(std::max(0.0f, one_minus_cos * (2.0f - one_minus_cos)));
-  const float facing = glm::dot(light.axis, to), slack = kCosineSlack * std::sqrt(view.far2);
-  if (!query.transmits && !(facing < kCosineSlack && largest_of(above) > -slack))
-    return {};
-  ShineCone cone;
-  cone.axis = light.axis;
-  cone.cos_all = cone.cos_full = light.cos_e;
-  return importance(query, view, cone, -facing, light.energy);
-}
-
 } // namespace
-
-Importance importance(const LightQuery &query, const TreeLight &light) {
-  if (light.kind == TreeLight::Kind::Sun) {
-    LightView view;
-    view.to = light.axis;
-    view.cos_u = light.cos_e;
-    view.sin_u = sine_of(view.cos_u);
-    view.far2 = 1.0f / std::max(view.cos_u * view.cos_u, 0x1p-40f);
-    ShineCone cone;
-    cone.cos_all = cone.cos_full = light.cos_e;
-    return importance(query, view, cone, 1.0f, light.energy);
-  }
-  if (light.kind == TreeLight::Kind::Sky)
-    return {light.energy, 0.0f};
-  if (light.kind == TreeLight::Kind::Cluster) {
-    ClusterShape shape;
-    shape.centre = glm::vec3(light.centre);
-    shape.half = light.u;
-    shape.cone = light.cone;
-    shape.energy = light.energy;
-    return importance(query, shape);
-  }
-  // In double: a lamp may stand closer than float can tell.
-  const glm::vec3 v(light.centre - query.p);
-  const float d = glm::length(v);
-  const glm::vec3 to = d > 0.0f ? v / d : glm::vec3(0.0f);
-  if (light.kind == TreeLight::Kind::Area)
-    return area_importance(query, light, to, d, v);
-  return round_importance(query, light, to, d);
-}
 
 ShineCone shine_cone(const LightCone &cone) {
   ShineCone result;

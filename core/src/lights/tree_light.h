@@ -3,15 +3,31 @@
 
 #include "lights/light.h"
 #include "lights/light_bounds.h"
-#include "lights/light_importance.h"
 
 namespace lancer {
+
+// A point of a surface and its shading normal that ask for light, and whether it may also come through from behind.
+struct LightQuery {
+  glm::dvec3 p{0.0};
+  glm::vec3 n{0, 0, 1};
+  bool transmits = false;
+
+  LightQuery(const glm::dvec3 &point, const glm::vec3 &normal, bool through) : p(point), n(normal), transmits(through) {}
+};
 
 // A light, or a face of one, that was chosen.
 struct LightChoice {
   uint32_t number = 0;      // as the tree's user counts
   double probability = 0.0; // 0: no light can contribute
   double u = 0.0;           // what is left of the random number, uniform in [0, 1)
+};
+
+// Where a light leaves: LightCone, in cosines.
+struct ShineCone {
+  glm::vec3 axis{0, 0, 1};
+  float cos_o = 1.0f, sin_o = 0.0f;
+  float cos_all = 0.0f;  // of theta_o + theta_e; -2 where that is beyond pi
+  float cos_full = 0.0f; // of theta_e - theta_o; 2 where that is negative
 };
 
 // A box of lights. A distant one lies beyond everything, towards -axis.
@@ -57,34 +73,5 @@ DescribedLight describe_cluster(const LightBounds &bounds, uint32_t number);
 ShineCone shine_cone(const LightCone &cone);
 // Padded by what float may lose.
 ClusterShape cluster_shape(const LightBounds &bounds);
-
-Importance importance(const LightQuery &query, const TreeLight &light);
-
-// Of clusters, which are what a choice asks most.
-inline Importance importance(const LightQuery &query, const ClusterShape &cluster) {
-  const glm::vec3 v = cluster.centre - query.p_float;
-  const float d2 = glm::dot(v, v), r2 = glm::dot(cluster.half, cluster.half);
-  // Nothing of the box is above the surface.
-  const float reach = glm::dot(glm::abs(query.n), cluster.half) + query.slack;
-  if (!query.transmits && !(glm::dot(query.n, v) + reach > 0.0f))
-    return {};
-  LightView view;
-  const float d = std::sqrt(d2);
-  view.to = d > 0.0f ? v / d : glm::vec3(0.0f);
-  const float sin2 = d2 > r2 ? r2 / d2 : 0.0f;
-  view.sin_u = std::sqrt(sin2);
-  view.cos_u = d2 > r2 ? std::sqrt(1.0f - sin2) : -1.0f;
-  view.near2 = view.far2 = std::max(d2, 0.25f * r2);
-  return importance(query, view, cluster.cone, -glm::dot(cluster.cone.axis, view.to), cluster.energy);
-}
-
-// Of distant ones: a disk of the sky at distance 1.
-inline Importance importance_far(const LightQuery &query, const ClusterShape &cluster) {
-  LightView view;
-  view.to = -cluster.cone.axis;
-  view.cos_u = std::max(cluster.cone.cos_all, -1.0f);
-  view.sin_u = sine_of(view.cos_u);
-  return importance(query, view, cluster.cone, 1.0f, cluster.energy);
-}
 
 } // namespace lancer

@@ -54,9 +54,8 @@ LANCER_LANE D3 sample_map(const DirectionTable &map, F u, F v, D &pdf) {
   const D from = gather(map.versines, pole), to = gather(map.versines, pole + U(1u));
   const D y = select(upper, row.u, one - row.u), x = from * (one - y) + to * y;
   const D across = sqrt(x * (D(2.0) - x)), up = select(upper, one - x, x - one);
-  D sine, cosine;
-  sin_cos_turn((to_double(column.index) + column.u) / D(static_cast<double>(map.width)), sine, cosine);
-  return {-(across * cosine), -(across * sine), up};
+  const SinCos turn = sin_cos_turn((to_double(column.index) + column.u) / D(static_cast<double>(map.width)));
+  return {-(across * turn.cos), -(across * turn.sin), up};
 }
 
 LANCER_LANE MapPlace<D> place_of(const V3 &direction) {

@@ -4,7 +4,6 @@
 
 #include "lights/light_branch.h"
 #include "lights/light_importance.h"
-#include "lights/wide_sine.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {

@@ -67,7 +67,7 @@ private:
 };
 
 // A lobe's kind as lancer.h names what it has become.
-uint32_t kind_of(const Lobe &lobe) {
+uint32_t kind_of(const Lobe<float> &lobe) {
   switch (lobe.shape) {
   case LobeShape::Lambert:
     return LANCER_LAMBERT;
@@ -103,7 +103,7 @@ void probe_bsdf(const Scene &scene, uint32_t material, uint32_t count, const flo
   Stage stage(scene, material);
   for (uint32_t i = 0; i < count; ++i) {
     const glm::vec3 w = vec3_at(wi, i);
-    const BsdfValue value = stage.seen_from(vec3_at(wo, i)).bsdf.eval(w);
+    const BsdfValue<float> value = stage.seen_from(vec3_at(wo, i)).bsdf.eval(w);
     const float cosine = std::abs(w.z);
     store(f + size_t(3) * i, cosine > 0.0f ? value.f() / cosine : glm::vec3(0.0f));
     pdf[i] = value.pdf;
@@ -116,7 +116,7 @@ void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, co
   Stage stage(scene, material);
   for (uint32_t i = 0; i < count; ++i) {
     const glm::vec3 numbers = vec3_at(u, i);
-    const BsdfSample sample = stage.seen_from(vec3_at(wo, i)).bsdf.sample(numbers.x, {numbers.y, numbers.z});
+    const BsdfSample<float> sample = stage.seen_from(vec3_at(wo, i)).bsdf.sample(numbers.x, numbers.y, numbers.z);
     store(samples[i].wi, sample.wi);
     store(samples[i].weight, sample.weight);
     samples[i].pdf = sample.pdf;
@@ -130,7 +130,7 @@ void probe_lobes(const Scene &scene, uint32_t material, const float *wo, lancer_
   const Shaded &seen = stage.seen_from(vec3_at(wo, 0));
   *count = uint32_t(seen.bsdf.count);
   for (uint32_t i = 0; i < std::min(capacity, *count); ++i) {
-    const Lobe &lobe = seen.bsdf.lobes[i];
+    const Lobe<float> &lobe = seen.bsdf.lobes[i];
     lancer_lobe_info &info = lobes[i];
     info = {};
     info.kind = kind_of(lobe);

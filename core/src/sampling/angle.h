@@ -1,13 +1,13 @@
 // Angles of directions, and directions by angles, in double: the same bits from every library, compiler and number of lanes.
 #pragma once
 
-#include "simd/scalar.h"
+#include "sampling/octant.h"
 
 namespace lancer {
 
 // The angle from (1, 0) to (x, y), in (-pi, pi]: atan2(y, x), but for zeros, which have no sign here. 0 for (0, 0). Double is a
 // double, or lanes of them. Fitted to a relative error of 3e-19: what is left is rounding, about two units in the last place.
-template <class Double> [[gnu::always_inline]] inline Double angle(Double y, Double x) {
+template <class Double> LANCER_LANE Double angle(Double y, Double x) {
   const Double zero(0.0), quarter(1.5707963267948966), half(3.141592653589793);
   // Within the first octant, and there from its middle where that is nearer: the tangent is at most that of pi/8.
   const Double a = select(x < zero, -x, x), b = select(y < zero, -y, y);
@@ -32,13 +32,13 @@ template <class Double> [[gnu::always_inline]] inline Double angle(Double y, Dou
 
 // What the sine and the cosine of x, |x| <= pi/4, are beside x and 1 - x^2 / 2, of x^2: the first times x^3, the second times
 // x^4. Fitted to 5e-20 and 4e-18 of both functions.
-template <class Double> [[gnu::always_inline]] inline Double sine_rest(Double z) {
+template <class Double> LANCER_LANE Double sine_rest(Double z) {
   const Double z2 = z * z;
   return (Double(-0.16666666666666632) + z * Double(0.008333333333322418)) +
          z2 * ((Double(-0.00019841269829812405) + z * Double(2.7557313693580386e-06)) +
                z2 * (Double(-2.5050758385411525e-08) + z * Double(1.5896811850312827e-10)));
 }
-template <class Double> [[gnu::always_inline]] inline Double cosine_rest(Double z) {
+template <class Double> LANCER_LANE Double cosine_rest(Double z) {
   const Double z2 = z * z;
   return (Double(0.0416666666666666) + z * Double(-0.0013888888888874131)) +
          z2 * ((Double(2.4801587289486992e-05) + z * Double(-2.7557314353783e-07)) +
@@ -46,7 +46,8 @@ template <class Double> [[gnu::always_inline]] inline Double cosine_rest(Double 
 }
 
 // Sine and cosine of u turns, u in [0, 1].
-template <class Double> [[gnu::always_inline]] inline void sin_cos_turn(Double u, Double &sine, Double &cosine) {
+template <class Double>
+requires(!FloatLanes<Double>) LANCER_LANE SinCos<Double> sin_cos_turn(Double u) {
   // Subtract the nearest quarter, which is exact. A sum of this size has no fraction.
   const Double whole(0x1.8p52);
   const Double quarter = (Double(4.0) * u + whole) - whole;
@@ -57,15 +58,13 @@ template <class Double> [[gnu::always_inline]] inline void sin_cos_turn(Double u
   const auto first = quarter == Double(1.0), second = quarter == Double(2.0), third = quarter == Double(3.0);
   const auto crossed = first | third;
   const Double across = select(crossed, cos_x, sin_x), along = select(crossed, sin_x, cos_x);
-  sine = select(second | third, -across, across);
-  cosine = select(first | second, -along, along);
+  return {select(second | third, -across, across), select(first | second, -along, along)};
 }
 
 // Where a direction of any length lies on a map of all of them: x in turns, -1/2 ... 1/2 from +x towards +y, y in half turns
 // up from the horizon, -1/2 ... 1/2.
 template <class Double> struct MapPlace { Double x, y; };
-template <class Double>
-[[gnu::always_inline]] inline MapPlace<Double> place_on_map(Double x, Double y, Double z, Double across) {
+template <class Double> LANCER_LANE MapPlace<Double> place_on_map(Double x, Double y, Double z, Double across) {
   return {angle(y, x) * Double(0.15915494309189535), angle(z, across) * Double(0.3183098861837907)};
 }
 

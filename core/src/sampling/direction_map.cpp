@@ -103,9 +103,8 @@ glm::dvec3 DirectionMap::inside_cell(uint32_t column, uint32_t row, const glm::d
   const double y = upper ? inside.y : 1.0 - inside.y, x = from * (1.0 - y) + to * y;
   const double across = std::sqrt(x * (2.0 - x)), up = upper ? 1.0 - x : x - 1.0;
   // Columns begin half a turn away.
-  double sine, cosine;
-  sin_cos_turn((column + inside.x) / width_, sine, cosine);
-  return {-(across * cosine), -(across * sine), up};
+  const SinCos turn = sin_cos_turn((column + inside.x) / width_);
+  return {-(across * turn.cos), -(across * turn.sin), up};
 }
 
 DirectionTable DirectionMap::table() const {

@@ -6,6 +6,9 @@
 // them once: within 0.500001 units.
 #pragma once
 
+#include "sampling/exponential.h"
+#include "simd/scalar.h"
+
 namespace lancer {
 
 double exp(double x);
@@ -49,5 +52,41 @@ float pow(float x, float y);
   return static_cast<float>(hypot(static_cast<double>(x), static_cast<double>(y)));
 }
 [[gnu::always_inline]] inline float erfc(float x) { return static_cast<float>(erfc(static_cast<double>(x))); }
+
+// Of lanes. Beyond what a float holds of it, exp() need not be told apart.
+template <class F>
+concept ManyLanes = LanesOf<F>::kWidth >
+1;
+template <ManyLanes F> LANCER_LANE F exp(F x) {
+  using D = DoubleOf<F>;
+  return narrow(exp_within(min(max(widen(x), D(-700.0)), D(700.0))));
+}
+template <ManyLanes F> LANCER_LANE F expm1(F x) {
+  return each(x, [](float a) { return expm1(a); });
+}
+template <ManyLanes F> LANCER_LANE F log(F x) {
+  return each(x, [](float a) { return log(a); });
+}
+template <ManyLanes F> LANCER_LANE F log1p(F x) {
+  return each(x, [](float a) { return log1p(a); });
+}
+template <ManyLanes F> LANCER_LANE F sin(F x) {
+  return each(x, [](float a) { return sin(a); });
+}
+template <ManyLanes F> LANCER_LANE F cos(F x) {
+  return each(x, [](float a) { return cos(a); });
+}
+template <ManyLanes F> LANCER_LANE F erfc(F x) {
+  return each(x, [](float a) { return erfc(a); });
+}
+template <ManyLanes F> LANCER_LANE F atan2(F y, F x) {
+  return each(y, x, [](float a, float b) { return atan2(a, b); });
+}
+template <ManyLanes F> LANCER_LANE F pow(F x, F y) {
+  return each(x, y, [](float a, float b) { return pow(a, b); });
+}
+template <ManyLanes F> LANCER_LANE F hypot(F x, F y) {
+  return each(x, y, [](float a, float b) { return hypot(a, b); });
+}
 
 } // namespace lancer

@@ -1,11 +1,11 @@
 // Where a table is read.
 #pragma once
 
-#include <algorithm>
+#include "simd/scalar.h"
 
 namespace lancer {
 
 // low ... 1. What is no number is low: it must not become a place beyond a table.
-inline float on_axis(float x, float low = 0.0f) { return std::min(std::max(low, x), 1.0f); }
+template <class F> LANCER_LANE F on_axis(F x, float low = 0.0f) { return min(max(F(low), x), F(1.0f)); }
 
 } // namespace lancer

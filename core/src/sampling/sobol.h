@@ -2,11 +2,9 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <glm/glm.hpp>
 
-#include "sampling/hash.h"
-#include "sampling/sobol_table.h"
+#include "sampling/scramble.h"
 
 namespace lancer {
 
@@ -31,14 +29,13 @@ public:
   // What the numbers of all pixels in a sample's replicate depend on.
   static uint32_t replicate_key(uint32_t seed, uint32_t sample) { return hash_combine(hash(seed), sample % kReplicates); }
 
-  float get1(uint32_t dimension) const { return scrambled(unscrambled(dimension), dimension); }
+  float get1(uint32_t dimension) const { return scrambled(unscrambled(dimension), pixel_, dimension); }
 
   // Dimensions d and d + 1; from 16 on d is even.
   glm::vec2 get2(uint32_t dimension) const {
     if (dimension < kJointDimensions)
       return {get1(dimension), get1(dimension + 1)};
-    const uint32_t index = shuffled_index(dimension / 2);
-    return {scrambled(index, dimension & ~1u), scrambled(sobol::reversed_second_dimension(index), dimension | 1u)};
+    return pair_numbers(reversed_, pixel_, dimension);
   }
 
   // Dimensions d ... d + 7, d a multiple of 4: the same numbers, computed side by side in vector registers (a fifth of the
@@ -51,7 +48,7 @@ public:
     } else {
       uint32_t index[4];
       for (uint32_t i = 0; i < 4; ++i)
-        index[i] = shuffled_index(dimension / 2 + i);
+        index[i] = shuffled_index(reversed_, pixel_, dimension / 2 + i);
       for (uint32_t i = 0; i < 4; ++i) {
         reversed[2 * i] = index[i];
         reversed[2 * i + 1] = sobol::reversed_second_dimension(index[i]);
@@ -59,7 +56,7 @@ public:
     }
     std::array<float, 8> numbers;
     for (uint32_t i = 0; i < 8; ++i)
-      numbers[i] = scrambled(reversed[i], dimension + i);
+      numbers[i] = scrambled(reversed[i], pixel_, dimension + i);
     return numbers;
   }
 
@@ -70,35 +67,12 @@ public:
   uint32_t reversed_sample() const { return reversed_; }
 
 private:
-  // Owen's nested scrambling on reversed digits: each digit is flipped by a hash of the digits before it. Sums, and products
-  // with even numbers, carry upwards only, which is exactly that dependence.
-  static uint32_t nested_scramble(uint32_t x, uint32_t seed) {
-    x ^= x * 0x3d20adeau;
-    x += seed;
-    x *= seed >> 16 | 1u;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-    return x;
-  }
-
-  // A float has 24 digits: the rest is cut, so that 1 is never reached.
-  float scrambled(uint32_t reversed, uint32_t dimension) const {
-    const uint32_t x = sobol::reverse_bits(nested_scramble(reversed, hash_combine(pixel_, dimension)));
-    return static_cast<float>(static_cast<int32_t>(x >> 8)) * 0x1p-24f;
-  }
-
   // The sequence's own digits, reversed.
   uint32_t unscrambled(uint32_t dimension) const {
     if (dimension < kJointDimensions)
       return sobol::reversed_point(sample_, dimension);
-    const uint32_t index = shuffled_index(dimension / 2);
+    const uint32_t index = shuffled_index(reversed_, pixel_, dimension / 2);
     return dimension % 2 == 0 ? index : sobol::reversed_second_dimension(index);
-  }
-
-  // Scrambling an index is a permutation that keeps every aligned power-of-two block together.
-  uint32_t shuffled_index(uint32_t pair) const {
-    const uint32_t key = hash_combine(pixel_, 0x80000000u | pair);
-    return sobol::reverse_bits(nested_scramble(reversed_, key));
   }
 
   uint32_t pixel_;

@@ -1,8 +1,9 @@
 // The Sobol sequence of Joe and Kuo in 16 dimensions.
 #pragma once
 
+#include "simd/scalar.h"
+
 #include <array>
-#include <cstdint>
 
 namespace lancer {
 
@@ -10,12 +11,13 @@ inline constexpr uint32_t kJointDimensions = 16;
 
 namespace sobol {
 
-constexpr uint32_t reverse_bits(uint32_t x) {
+// U is a uint32_t, or lanes of them.
+template <class U> LANCER_LANE constexpr U reverse_bits(U x) {
   x = x >> 16 | x << 16;
-  x = (x & 0xff00ff00u) >> 8 | (x & 0x00ff00ffu) << 8;
-  x = (x & 0xf0f0f0f0u) >> 4 | (x & 0x0f0f0f0fu) << 4;
-  x = (x & 0xccccccccu) >> 2 | (x & 0x33333333u) << 2;
-  return (x & 0xaaaaaaaau) >> 1 | (x & 0x55555555u) << 1;
+  x = (x & U(0xff00ff00u)) >> 8 | (x & U(0x00ff00ffu)) << 8;
+  x = (x & U(0xf0f0f0f0u)) >> 4 | (x & U(0x0f0f0f0fu)) << 4;
+  x = (x & U(0xccccccccu)) >> 2 | (x & U(0x33333333u)) << 2;
+  return (x & U(0xaaaaaaaau)) >> 1 | (x & U(0x55555555u)) << 1;
 }
 
 using NibbleTable = std::array<std::array<std::array<uint32_t, 16>, 8>, kJointDimensions>;
@@ -34,13 +36,12 @@ inline uint32_t reversed_point(uint32_t index, uint32_t dimension) {
 }
 
 // The second Sobol dimension is Pascal's triangle modulo 2, which factors into five shifts; the first is the index itself.
-constexpr uint32_t reversed_second_dimension(uint32_t index) {
-  index ^= (index & 0xaaaaaaaau) >> 1;
-  index ^= (index & 0xccccccccu) >> 2;
-  index ^= (index & 0xf0f0f0f0u) >> 4;
-  index ^= (index & 0xff00ff00u) >> 8;
-  index ^= index >> 16;
-  return index;
+template <class U> LANCER_LANE constexpr U reversed_second_dimension(U index) {
+  index = index ^ (index & U(0xaaaaaaaau)) >> 1;
+  index = index ^ (index & U(0xccccccccu)) >> 2;
+  index = index ^ (index & U(0xf0f0f0f0u)) >> 4;
+  index = index ^ (index & U(0xff00ff00u)) >> 8;
+  return index ^ index >> 16;
 }
 
 } // namespace sobol

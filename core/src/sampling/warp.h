@@ -1,12 +1,11 @@
-// From the unit square to disks, directions and triangles; each warp stands beside its density.
+// From the unit square to disks, directions and triangles; each warp stands beside its density. F is a float, or lanes of them.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <glm/glm.hpp>
 #include <numbers>
 
 #include "sampling/octant.h"
+#include "simd/vectors.h"
 
 namespace lancer {
 
@@ -14,56 +13,54 @@ inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 
 // Uniform on the unit disk; squares around the middle become circles, so that neighbours stay neighbours.
-inline glm::vec2 warp_disk(glm::vec2 u) {
-  const float a = 2.0f * u.x - 1.0f, b = 2.0f * u.y - 1.0f;
-  if (a == 0.0f && b == 0.0f)
-    return {0.0f, 0.0f};
-  if (std::abs(a) > std::abs(b)) {
-    const float phi = 0.25f * kPi * (b / a);
-    return {a * cos_octant(phi), a * sin_octant(phi)};
-  }
-  const float phi = 0.25f * kPi * (a / b);
-  return {b * sin_octant(phi), b * cos_octant(phi)};
+template <class F> LANCER_LANE Vector2<F> warp_disk(F u, F v) {
+  const F a = F(2.0f) * u - F(1.0f), b = F(2.0f) * v - F(1.0f), zero(0.0f);
+  const MaskOf<F> wide = abs(a) > abs(b), middle = (a == zero) & (b == zero);
+  const F radius = select(wide, a, b), phi = F(0.25f * kPi) * (select(wide, b, a) / radius);
+  const F s = sin_octant(phi), c = cos_octant(phi);
+  return {select(middle, zero, radius * select(wide, c, s)), select(middle, zero, radius * select(wide, s, c))};
 }
+LANCER_LANE glm::vec2 warp_disk(const glm::vec2 &u) { return warp_disk(u.x, u.y); }
 
 // Directions around +z with a density proportional to the cosine.
-inline glm::vec3 warp_cosine_hemisphere(glm::vec2 u) {
-  const glm::vec2 p = warp_disk(u);
+template <class F> LANCER_LANE Vector3<F> warp_cosine_hemisphere(F u, F v) {
+  const Vector2<F> p = warp_disk(u, v);
   // The disk's radius is known before it is rotated: (1 - r)(1 + r) keeps its digits at grazing angles.
-  const float r = std::max(std::abs(2.0f * u.x - 1.0f), std::abs(2.0f * u.y - 1.0f));
-  return {p.x, p.y, std::sqrt((1.0f - r) * (1.0f + r))};
+  const F r = max(abs(F(2.0f) * u - F(1.0f)), abs(F(2.0f) * v - F(1.0f)));
+  return {p.x, p.y, sqrt((F(1.0f) - r) * (F(1.0f) + r))};
 }
-inline float warp_cosine_hemisphere_pdf(float cos_theta) { return std::max(0.0f, cos_theta) * kInvPi; }
+LANCER_LANE glm::vec3 warp_cosine_hemisphere(const glm::vec2 &u) { return warp_cosine_hemisphere(u.x, u.y); }
+template <class F> LANCER_LANE F warp_cosine_hemisphere_pdf(F cos_theta) { return max(F(0.0f), cos_theta) * F(kInvPi); }
 
 // Uniform over all directions.
-inline glm::vec3 warp_sphere(glm::vec2 u) {
-  const float sin_theta = 2.0f * std::sqrt(u.x * (1.0f - u.x));
-  const SinCos phi = sin_cos_turn(u.y);
-  return {sin_theta * phi.cos, sin_theta * phi.sin, 1.0f - 2.0f * u.x};
+template <class F> LANCER_LANE Vector3<F> warp_sphere(F u, F v) {
+  const F sin_theta = F(2.0f) * sqrt(u * (F(1.0f) - u));
+  const SinCos phi = sin_cos_turn(v);
+  return {sin_theta * phi.cos, sin_theta * phi.sin, F(1.0f) - F(2.0f) * u};
 }
-inline float warp_sphere_pdf() { return 0.25f * kInvPi; }
+LANCER_LANE glm::vec3 warp_sphere(const glm::vec2 &u) { return warp_sphere(u.x, u.y); }
+LANCER_LANE float warp_sphere_pdf() { return 0.25f * kInvPi; }
 
 // 1 - cos(theta) from sin(theta)^2, without the cancellation: a cone keeps its size however narrow it is.
-inline float one_minus_cos(float sin2) { return sin2 / (1.0f + std::sqrt(std::max(0.0f, 1.0f - sin2))); }
+template <class F> LANCER_LANE F one_minus_cos(F sin2) { return sin2 / (F(1.0f) + sqrt(max(F(0.0f), F(1.0f) - sin2))); }
 
 // Uniform over the cone of directions around +z with cos(theta) >= 1 - one_minus_cos_max.
-inline glm::vec3 warp_cone(glm::vec2 u, float one_minus_cos_max) {
-  const float x = u.x * one_minus_cos_max;
-  const float sin_theta = std::sqrt(x * (2.0f - x));
-  const SinCos phi = sin_cos_turn(u.y);
-  return {sin_theta * phi.cos, sin_theta * phi.sin, 1.0f - x};
+template <class F> LANCER_LANE Vector3<F> warp_cone(F u, F v, F one_minus_cos_max) {
+  const F x = u * one_minus_cos_max;
+  const F sin_theta = sqrt(x * (F(2.0f) - x));
+  const SinCos phi = sin_cos_turn(v);
+  return {sin_theta * phi.cos, sin_theta * phi.sin, F(1.0f) - x};
 }
-inline float warp_cone_pdf(float one_minus_cos_max) { return 0.5f * kInvPi / one_minus_cos_max; }
+LANCER_LANE glm::vec3 warp_cone(const glm::vec2 &u, float one_minus_cos_max) { return warp_cone(u.x, u.y, one_minus_cos_max); }
+template <class F> LANCER_LANE F warp_cone_pdf(F one_minus_cos_max) { return F(0.5f * kInvPi) / one_minus_cos_max; }
 
 // Uniform on a triangle: barycentric weights of corners 1 and 2. The square is folded over its diagonal, not squeezed into a
 // corner.
-inline glm::vec2 warp_triangle(glm::vec2 u) {
-  if (u.y > u.x) {
-    const float half = 0.5f * u.x;
-    return {half, u.y - half};
-  }
-  const float half = 0.5f * u.y;
-  return {u.x - half, half};
+template <class F> LANCER_LANE Vector2<F> warp_triangle(F u, F v) {
+  const MaskOf<F> above = v > u;
+  const F half = F(0.5f) * select(above, u, v);
+  return {select(above, half, u - half), select(above, v - half, half)};
 }
+LANCER_LANE glm::vec2 warp_triangle(const glm::vec2 &u) { return warp_triangle(u.x, u.y); }
 
 } // namespace lancer

@@ -119,7 +119,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->geometry = std::move(description.geometry);
   scene->slots = std::move(description.slots);
   scene->materials = std::move(description.materials);
-  scene->wide = make_wide_materials(scene->materials);
+  scene->classes = shading_classes(scene->materials);
   scene->images = std::move(description.images);
   scene->cutouts = make_cutouts(scene->materials, scene->images);
   scene->passing =
@@ -127,7 +127,6 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->clearing = find_instances(*scene, [&](const Instance &instance, uint32_t material) {
     return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].may_end;
   });
-  scene->pictures = make_color_pictures(scene->materials, scene->wide, scene->images);
   scene->world = std::move(description.world);
   for (Instance &instance : scene->geometry.instances) {
     instance.place(scene->normalisation.to_normalised(instance.to_world));
@@ -156,8 +155,8 @@ uint32_t Scene::face_number(uint32_t instance, uint32_t primitive) const {
 }
 
 size_t Scene::geometry_bytes() const {
-  size_t bytes = geometry.instances.size() * sizeof(Instance) + slots.size() * sizeof(uint32_t) + passing.size() +
-                 clearing.size() + lights.bytes();
+  size_t bytes = geometry.instances.size() * sizeof(Instance) + geometry.object_infos.size() * sizeof(ObjectInfo) +
+                 slots.size() * sizeof(uint32_t) + passing.size() + clearing.size() + lights.bytes();
   for (const Mesh &mesh : geometry.meshes) {
     bytes += mesh.positions.size() * sizeof(glm::vec3) + mesh.triangles.size() * sizeof(glm::uvec3) +
              (mesh.normals.size() + mesh.smooth_normals.size() + mesh.colors.size()) * sizeof(glm::vec3) +

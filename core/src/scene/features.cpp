@@ -1,6 +1,6 @@
 #include "scene/features.h"
 
-#include "bsdf/build.h"
+#include "bsdf/lobe.h"
 #include "scene/description.h"
 #include "scene/passing.h"
 
@@ -9,6 +9,41 @@
 namespace lancer {
 
 namespace {
+
+// The shapes that a kind can become.
+uint32_t shapes_of(LobeKind kind) {
+  switch (kind) {
+  case LobeKind::Lambert:
+    return shape_bit(LobeShape::Lambert);
+  case LobeKind::Beckmann:
+    return shape_bit(LobeShape::Beckmann);
+  case LobeKind::Mirror:
+    return shape_bit(LobeShape::Mirror);
+  case LobeKind::Dielectric:
+    return shape_bit(LobeShape::Dielectric);
+  case LobeKind::Phong:
+    return shape_bit(LobeShape::Phong);
+  case LobeKind::BlinnPhong:
+    return shape_bit(LobeShape::BlinnPhong);
+  case LobeKind::Diffuse:
+    return shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Matte);
+  case LobeKind::Glossy:
+    return shape_bit(LobeShape::Microfacet) | shape_bit(LobeShape::Ashikhmin);
+  case LobeKind::Glass:
+  case LobeKind::Refraction:
+  case LobeKind::Conductor:
+    return shape_bit(LobeShape::Microfacet);
+  case LobeKind::Sheen:
+    return shape_bit(LobeShape::Sheen) | shape_bit(LobeShape::Matte);
+  case LobeKind::Translucent:
+  case LobeKind::Minnaert:
+    return shape_bit(LobeShape::Matte);
+  case LobeKind::Principled:
+    return shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Matte) | shape_bit(LobeShape::Microfacet) |
+           shape_bit(LobeShape::Ashikhmin) | shape_bit(LobeShape::Sheen);
+  }
+  return kAllShapes;
+}
 
 uint32_t shape_feature(ShapeKind kind) {
   switch (kind) {
@@ -43,7 +78,7 @@ bool may_reflect(const PrincipledDescription &principled) {
 // What a Principled lobe can become, without the layers that it has not.
 uint32_t principled_shapes(const PrincipledDescription &principled) {
   uint32_t shapes = shapes_of(LobeKind::Principled);
-  if (principled.constants.rules == Rules::Blender3)
+  if (principled.rules == Rules::Blender3)
     return shapes;
   shapes &= ~shape_bit(LobeShape::Ashikhmin);
   if (!may_reflect(principled))

@@ -103,4 +103,21 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
   description.instances_given += count;
 }
 
+void set_object_infos(Description &description, uint32_t count, const float *infos) {
+  constexpr uint32_t kNumbers = 5;
+  if (count > description.instances_given)
+    bad_argument("object infos: " + std::to_string(count) + " for " + std::to_string(description.instances_given) +
+                 " instances");
+  for (size_t i = 0; i < size_t(count) * kNumbers; ++i)
+    if (!std::isfinite(infos[i]))
+      bad_argument("object infos: number " + std::to_string(i % kNumbers) + " of instance " + std::to_string(i / kNumbers) +
+                   " is " + to_text(infos[i]));
+  std::vector<ObjectInfo> all(count);
+  for (size_t i = 0; i < count; ++i) {
+    const float *info = infos + i * kNumbers;
+    all[i] = {{info[0], info[1], info[2], info[3]}, info[4]};
+  }
+  description.geometry.object_infos = std::move(all);
+}
+
 } // namespace lancer

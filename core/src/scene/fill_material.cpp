@@ -73,9 +73,9 @@ private:
 
 std::shared_ptr<const PrincipledDescription> read_principled(const MaterialReader &reader, const lancer_principled &given) {
   auto principled = std::make_shared<PrincipledDescription>();
-  principled->constants.rules = static_cast<Rules>(given.rules);
-  principled->constants.distribution = static_cast<Facets>(given.distribution);
-  principled->constants.option = given.option;
+  principled->rules = static_cast<Rules>(given.rules);
+  principled->distribution = static_cast<Facets>(given.distribution);
+  principled->option = given.option;
   principled->base_color = reader.read_color("base colour", given.base_color);
   principled->metallic = reader.read_share("metallic", given.metallic);
   principled->roughness = reader.read_share("roughness", given.roughness, 0.5f);
@@ -145,16 +145,16 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
       bad_argument(where + what + " " + std::to_string(value) + ", which is none");
   };
   check("kind", lobe.kind, LANCER_LOBE_KIND_COUNT);
-  check("distribution", lobe.distribution, LANCER_MULTI_GGX + 1);
+  check("distribution", lobe.distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
   check("option", lobe.option, 2);
-  check("rules", lobe.rules, LANCER_RULES_45 + 1);
+  check("rules", lobe.rules, LANCER_RULES_BLENDER_45 + 1);
   if (lobe.kind != LANCER_PRINCIPLED)
     return;
   if (!lobe.principled)
     bad_argument(where + "no record: principled is NULL");
-  check("distribution", lobe.principled->distribution, LANCER_MULTI_GGX + 1);
+  check("distribution", lobe.principled->distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
   check("option", lobe.principled->option, 2);
-  check("rules", lobe.principled->rules, LANCER_RULES_45 + 1);
+  check("rules", lobe.principled->rules, LANCER_RULES_BLENDER_45 + 1);
 }
 
 // All parameters that decide how a lobe looks.

@@ -62,6 +62,18 @@ Shape shape_of(const lancer_node &node) {
     return {3, 0, false};
   case LANCER_NODE_DISPLACEMENT:
     return {4, 2, false};
+  case LANCER_NODE_NOISE:
+    return {4, LANCER_NOISE_COUNT, false};
+  case LANCER_NODE_VORONOI:
+    return {4, LANCER_VORONOI_COUNT, false};
+  case LANCER_NODE_GRADIENT:
+    return {1, LANCER_GRADIENT_COUNT, false};
+  case LANCER_NODE_CURVES:
+    return {2, 2, true};
+  case LANCER_NODE_OBJECT_INFO:
+    return {0, LANCER_OBJECT_COUNT, false};
+  case LANCER_NODE_LIGHT_PATH:
+    return {0, LANCER_PATH_COUNT, false};
   default:
     return {2, 0, false};
   }
@@ -81,6 +93,13 @@ uint32_t flags_of(uint32_t kind) {
   case LANCER_NODE_IMAGE:
   case LANCER_NODE_ENVIRONMENT:
     return 0xff | 256;
+  case LANCER_NODE_NOISE:
+    return 3 | LANCER_NOISE_NORMALIZED | LANCER_NOISE_REPEATS | LANCER_NOISE_COUNTED | LANCER_NOISE_COLOR;
+  case LANCER_NODE_VORONOI:
+    return 3 | 3 << 2 | LANCER_VORONOI_NORMALIZED | LANCER_VORONOI_COLOR | LANCER_VORONOI_POSITION | LANCER_VORONOI_INTEGERS |
+           LANCER_VORONOI_BOUNDED;
+  case LANCER_NODE_CURVES:
+    return 1 | 2;
   default:
     return 0;
   }
@@ -108,6 +127,8 @@ public:
       read_matrix(given, node);
     if (given.kind == LANCER_NODE_IMAGE || given.kind == LANCER_NODE_ENVIRONMENT)
       read_pictures(given, node);
+    if (given.kind == LANCER_NODE_CURVES)
+      read_table(given, node);
     if (given.kind == LANCER_NODE_BUMP) {
       if (given.first > at)
         bad_argument(where_ + "first " + std::to_string(given.first) + " comes after it");
@@ -155,6 +176,17 @@ private:
       bad_argument(where_ + std::to_string(given.image_count) + " images for the 6 sides of a cube");
     node.image = given.image;
     node.image_count = given.image_count;
+  }
+
+  void read_table(const lancer_node &given, Node &node) const {
+    if (given.image >= description_.images.size())
+      bad_argument(where_ + "image " + std::to_string(given.image) + " >= " + std::to_string(description_.images.size()) +
+                   " images");
+    const Image &table = description_.images[given.image];
+    if (table.kind != TexelKind::Float || table.height != 1 || table.width < 2)
+      bad_argument(where_ + "image " + std::to_string(given.image) + " is no row of floating point texels");
+    node.image = given.image;
+    node.image_count = 1;
   }
 
   // Turns names into numbers, those that the kind stands for as well.

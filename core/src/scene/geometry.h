@@ -78,9 +78,16 @@ struct Instance {
 // The largest of the coordinates' absolute values.
 double largest_coordinate(const glm::dvec3 &v);
 
+// What OBJECT_INFO nodes tell of an object.
+struct ObjectInfo {
+  glm::vec4 color{1.0f};
+  float random = 0.0f;
+};
+
 struct Geometry {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
+  std::vector<ObjectInfo> object_infos; // by Instance::number; what is missing is as it begins
 };
 
 } // namespace lancer

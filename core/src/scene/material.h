@@ -15,7 +15,9 @@ namespace lancer {
 inline constexpr float kBrightest = 1e30f;
 
 struct PrincipledDescription {
-  PrincipledInputs constants; // rules, distribution, option, and what is not in parameters
+  Rules rules = Rules::Blender45;
+  Facets distribution = Facets::MultiGgx;
+  uint32_t option = 1; // of the diffuse lobe
   Parameter base_color, metallic, roughness, ior, diffuse_roughness, specular, specular_tint, anisotropic, anisotropic_rotation,
       transmission, transmission_roughness, coat, coat_roughness, coat_ior, coat_tint, coat_normal, sheen, sheen_roughness,
       sheen_tint, emission;
@@ -57,10 +59,108 @@ struct Material {
 // Of a scalar.
 inline bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
 
-// A described lobe with its values of one place, brought into the ranges that the models know; what is no number becomes 0.
-glm::vec3 evaluate(const Parameter &color, std::span<const glm::vec4> values);
-glm::vec3 in_range(const glm::vec3 &color);
-LobeInputs evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values);
-PrincipledInputs evaluate(const PrincipledDescription &principled, std::span<const glm::vec4> values);
+// Comparisons are turned so that NaN gives low.
+template <class F> LANCER_LANE F within(F value, float low, float high) {
+  return select(value > low, select(value < high, value, F(high)), F(low));
+}
+
+// The values of nodes at one place.
+struct PlaceValues {
+  std::span<const glm::vec4> values;
+  glm::vec3 operator()(const Parameter &parameter) const { return value_of(parameter, values); }
+};
+
+// Reads parameters, brought into the ranges that the models know; what is no number becomes 0. Values: gives a parameter's
+// value in every lane.
+template <class F, class Values> struct ParameterReader {
+  using V = Vec3<F>;
+  Values values;
+
+  LANCER_LANE V color(const Parameter &parameter, float high = kBrightest) const {
+    const V c = values(parameter);
+    return {within(c.x, 0.0f, high), within(c.y, 0.0f, high), within(c.z, 0.0f, high)};
+  }
+  LANCER_LANE F scalar(const Parameter &parameter, float low, float high) const {
+    return within(values(parameter).x, low, high);
+  }
+  LANCER_LANE F share(const Parameter &parameter) const { return scalar(parameter, 0.0f, 1.0f); }
+  LANCER_LANE F ior(const Parameter &parameter, float low) const { return scalar(parameter, low, __builtin_inff()); }
+  LANCER_LANE F turns(const Parameter &parameter) const {
+    const F value = values(parameter).x;
+    return select(abs(value) < __builtin_inff(), value, F(0.0f));
+  }
+  // Unit, or 0.
+  LANCER_LANE V direction(const Parameter &parameter) const {
+    const V v = values(parameter);
+    const F length = sqrt(dot(v, v));
+    return select((length > 0.0f) & (length < __builtin_inff()), v / length, V(F(0.0f)));
+  }
+};
+
+// Blender's smallest index; the course's lobes take what they are given.
+inline constexpr float kSmallestIor = 1e-5f;
+
+// A described lobe with its values of one place.
+template <class F, class Values>
+LANCER_LANE LobeInputs<F> evaluate(const LobeDescription &lobe, const ParameterReader<F, Values> &read) {
+  LobeInputs<F> inputs;
+  inputs.kind = lobe.kind;
+  inputs.rules = lobe.rules;
+  inputs.distribution = lobe.distribution;
+  inputs.option = lobe.option;
+  inputs.weight = read.color(lobe.weight);
+  inputs.normal = read.direction(lobe.normal);
+  inputs.tangent = read.direction(lobe.tangent);
+  if (lobe.principled)
+    return inputs;
+  const bool f82 = lobe.kind == LobeKind::Conductor && lobe.option == 0;
+  inputs.color = read.color(lobe.color, f82 ? 1.0f : kBrightest);
+  inputs.roughness = read.share(lobe.roughness);
+  inputs.ior = read.ior(lobe.ior, lobe.kind < LobeKind::Diffuse ? 0.0f : kSmallestIor);
+  inputs.shininess = read.scalar(lobe.shininess, 0.0f, 1e8f);
+  if (lobe.kind == LobeKind::Conductor)
+    inputs.edge = read.color(lobe.edge, f82 ? 1.0f : kBrightest);
+  inputs.anisotropy = read.scalar(lobe.anisotropy, -0.99f, 0.99f);
+  inputs.rotation = read.turns(lobe.rotation);
+  return inputs;
+}
+template <class F, class Values>
+LANCER_LANE PrincipledInputs<F> evaluate(const PrincipledDescription &principled, const ParameterReader<F, Values> &read) {
+  PrincipledInputs<F> inputs;
+  inputs.rules = principled.rules;
+  inputs.distribution = principled.distribution;
+  inputs.option = principled.option;
+  inputs.base_color = read.color(principled.base_color);
+  inputs.metallic = read.share(principled.metallic);
+  inputs.roughness = read.share(principled.roughness);
+  inputs.ior = read.ior(principled.ior, kSmallestIor);
+  inputs.diffuse_roughness = read.share(principled.diffuse_roughness);
+  inputs.specular = read.scalar(principled.specular, 0.0f, kBrightest);
+  inputs.specular_tint = read.color(principled.specular_tint);
+  inputs.anisotropic = read.share(principled.anisotropic);
+  inputs.anisotropic_rotation = read.turns(principled.anisotropic_rotation);
+  inputs.transmission = read.share(principled.transmission);
+  inputs.transmission_roughness = read.share(principled.transmission_roughness);
+  inputs.coat = read.scalar(principled.coat, 0.0f, kBrightest);
+  inputs.coat_roughness = read.share(principled.coat_roughness);
+  inputs.coat_ior = read.ior(principled.coat_ior, 1.0f);
+  inputs.coat_tint = read.color(principled.coat_tint);
+  inputs.coat_normal = read.direction(principled.coat_normal);
+  inputs.sheen = read.scalar(principled.sheen, 0.0f, kBrightest);
+  inputs.sheen_roughness = read.share(principled.sheen_roughness);
+  inputs.sheen_tint = read.color(principled.sheen_tint);
+  inputs.emission = read.color(principled.emission);
+  return inputs;
+}
+inline LobeInputs<float> evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values) {
+  return evaluate(lobe, ParameterReader<float, PlaceValues>{{values}});
+}
+inline PrincipledInputs<float> evaluate(const PrincipledDescription &principled, std::span<const glm::vec4> values) {
+  return evaluate(principled, ParameterReader<float, PlaceValues>{{values}});
+}
+// The light that a weight or an emission stands for.
+inline glm::vec3 evaluate(const Parameter &color, std::span<const glm::vec4> values) {
+  return ParameterReader<float, PlaceValues>{{values}}.color(color);
+}
 
 } // namespace lancer

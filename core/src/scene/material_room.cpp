@@ -42,7 +42,7 @@ private:
 
 // The Principled BSDF: its layers, top to bottom.
 size_t add_principled(const LobeDescription &lobe, const PrincipledDescription &in, Frames &frames) {
-  const bool old = in.constants.rules == Rules::Blender3;
+  const bool old = in.rules == Rules::Blender3;
   const bool metal = may_be_positive(in.metallic), glass = may_be_positive(in.transmission);
   const bool sheen = may_be_positive(in.sheen), coat = may_be_positive(in.coat);
   if (sheen && !old && key_of(lobe.normal) != key_of(in.coat_normal))

@@ -121,6 +121,24 @@ void run_at(const Program &program, const Schedule &schedule, const Site &site, 
       result = solid(factor * (1.0f - in[1]) + (1.0f - factor) * in[1]);
       break;
     }
+    case LANCER_NODE_NOISE:
+      result = noise(in);
+      break;
+    case LANCER_NODE_VORONOI:
+      result = voronoi(in);
+      break;
+    case LANCER_NODE_GRADIENT:
+      result = gradient(in);
+      break;
+    case LANCER_NODE_CURVES:
+      result = curves(in, site);
+      break;
+    case LANCER_NODE_OBJECT_INFO:
+      result = object_info(node, site);
+      break;
+    case LANCER_NODE_LIGHT_PATH:
+      result = scalar(light_path_value(node.option, site.context->path));
+      break;
     default:
       result = glm::vec4(0.0f);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lancer.h"
+#include "nodes/light_path.h"
 #include "scene/image.h"
 #include "scene/surface.h"
 
@@ -57,6 +58,7 @@ struct NodeContext {
   glm::vec3 wo{0, 0, 1};            // unit, towards the viewer; for the world minus the direction
   float footprint = 0.0f;           // radius of what a pixel covers here, in normalised units: the step of BUMP; 0: no bumps
   const glm::dvec3 *eye = nullptr;  // for the world: where the camera ray starts; null: any other ray
+  LightPath<float> path;            // of the ray
 };
 
 // Computes the scheduled nodes into values, which has room for all nodes of the program.

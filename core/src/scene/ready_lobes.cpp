@@ -1,71 +1,107 @@
 #include "scene/ready_lobes.h"
 
-#include "bsdf/build.h"
 #include "scene/material.h"
 
-#include <algorithm>
-#include <memory>
 #include <span>
 
 namespace lancer {
 
 namespace {
 
-// Makes all of a lobe where neither wo nor the place changes it.
-void make_whole(const PrincipledInputs *principled, ReadyLobe &ready) {
-  const LobeInputs &inputs = ready.inputs;
-  bool matte = inputs.kind == LobeKind::Lambert || (inputs.kind == LobeKind::Diffuse && inputs.roughness == 0.0f);
-  const bool course = inputs.kind == LobeKind::Mirror || inputs.kind == LobeKind::Phong || inputs.kind == LobeKind::BlinnPhong;
-  if (principled && principled->rules != Rules::Blender3) {
-    LayerPlan &plan = ready.layers.emplace(plan_layers(inputs, *principled, Sides::Both));
-    keep_rows(plan);
-    matte = plan.only_diffuse(*principled) && principled->diffuse_roughness == 0.0f;
-  }
-  if ((!matte && !course) || inputs.normal != glm::vec3(0.0f))
-    return;
-  const auto bsdf = std::make_unique<Bsdf>();
-  const glm::vec3 up(0.0f, 0.0f, 1.0f);
-  bsdf->begin(up, up, up, false, true);
-  if (principled)
-    add_principled(*bsdf, inputs, *principled);
-  else
-    add_lobe(*bsdf, inputs);
-  if (bsdf->count != 1)
-    return;
-  ready.lobe = bsdf->lobes[0];
-  ready.whole = true;
-  // About an interpolated normal reflecting lobes, and in Blender 3.x all, may be bent.
-  ready.flat_only = course || inputs.rules == Rules::Blender3;
-}
-
 bool vary(std::initializer_list<const Parameter *> parameters) {
   return std::any_of(parameters.begin(), parameters.end(), [](const Parameter *parameter) { return parameter->varies(); });
 }
 
-// The layers of a Principled that its nodes leave as they are.
-LayerPlan unvarying_layers(const LobeDescription &lobe, std::span<const glm::vec4> values) {
+// Whether nodes change the plan of a layer.
+bool varies(PrincipledLayer layer, const LobeDescription &lobe) {
   const PrincipledDescription &p = *lobe.principled;
-  // Where a share varies plan what it may be the share of.
-  PrincipledInputs in = evaluate(p, values);
-  for (const auto &[share, value] :
-       {std::pair(&p.coat, &in.coat), {&p.metallic, &in.metallic}, {&p.transmission, &in.transmission}})
-    if (share->varies())
-      *value = 0.5f;
-  LayerPlan plan = plan_layers(evaluate(lobe, values), in, Sides::Both);
   const bool grain = vary({&p.roughness, &p.anisotropic, &lobe.tangent});
-  if (vary({&p.coat_roughness, &p.coat_ior}))
-    plan.coat.reset();
-  if (grain || vary({&p.base_color, &p.specular_tint}))
-    plan.metal.reset();
-  if (vary({&p.roughness, &p.ior, &p.specular_tint, &p.base_color}))
-    plan.glass[0].reset(), plan.glass[1].reset();
-  if (grain || vary({&p.ior, &p.specular, &p.specular_tint}))
-    plan.gloss.reset();
-  keep_rows(plan);
-  return plan;
+  switch (layer) {
+  case PrincipledLayer::Coat:
+    return vary({&p.coat_roughness, &p.coat_ior});
+  case PrincipledLayer::Metal:
+    return grain || vary({&p.base_color, &p.specular_tint});
+  case PrincipledLayer::Glass:
+    return vary({&p.roughness, &p.ior, &p.specular_tint, &p.base_color});
+  default:
+    return grain || vary({&p.ior, &p.specular, &p.specular_tint});
+  }
+}
+
+const Parameter *share_parameter(PrincipledLayer layer, const PrincipledDescription &p) {
+  switch (layer) {
+  case PrincipledLayer::Coat:
+    return &p.coat;
+  case PrincipledLayer::Metal:
+    return &p.metallic;
+  case PrincipledLayer::Glass:
+    return &p.transmission;
+  default:
+    return nullptr;
+  }
+}
+
+void keep_layers(const LobeDescription &lobe, ReadyLobe &ready) {
+  for (const LayerRow &row : kLayers) {
+    const Parameter *share = share_parameter(row.layer, *lobe.principled);
+    const bool may_be_there = share_of(row.layer, ready.principled) > kLeastLayer || (share && share->varies());
+    if (!row.facets || !may_be_there || varies(row.layer, lobe))
+      continue;
+    // A plastic that bends no light is not there.
+    float f0;
+    if (row.layer == PrincipledLayer::Gloss && plastic_ior(ready.principled, f0) == 1.0f)
+      continue;
+    for (const bool inside : {false, true})
+      ready.plans[inside][static_cast<int>(row.layer)] = keep(plan_layer(row.layer, ready.inputs, ready.principled, inside));
+  }
+}
+
+// Facets of a node that nothing changes, where they have no direction along the surface.
+void keep_facets(ReadyLobe &ready) {
+  const LobeInputs<float> &inputs = ready.inputs;
+  const bool glass = inputs.kind == LobeKind::Glass, conductor = inputs.kind == LobeKind::Conductor;
+  const bool glossy = inputs.kind == LobeKind::Glossy && inputs.distribution != Facets::AshikhminShirley;
+  if (inputs.rules == Rules::Blender3 || (!glass && (inputs.anisotropy != 0.0f || !(conductor || glossy))))
+    return;
+  for (const bool inside : {false, true})
+    ready.plans[inside][static_cast<int>(PrincipledLayer::Gloss)] = keep(plan_facets(inputs, inside));
 }
 
 } // namespace
+
+PrincipledParts::PrincipledParts(const ReadyLobe &ready) {
+  const PrincipledInputs<float> &in = ready.principled;
+  const glm::vec3 none(0.0f);
+  normal = ready.inputs.normal != none;
+  tangent = in.anisotropic > 0.0f && ready.inputs.tangent != none;
+  coat_normal = in.coat_normal != none;
+  coat_tint = in.coat_tint != glm::vec3(1.0f);
+  diffuse_roughness = in.diffuse_roughness != 0.0f;
+  emission = in.emission != none;
+  sheen = in.sheen > kLeastLayer;
+  coat = in.coat > kLeastLayer;
+  metal = in.metallic > (in.rules == Rules::Blender3 ? 0.0f : kLeastLayer);
+  glass = in.transmission > (in.rules == Rules::Blender3 ? 0.0f : kLeastLayer);
+}
+
+std::string ReadyLobe::code() const {
+  std::string code;
+  const auto add = [&](auto number) { code += char('0' + int(number)); };
+  const bool is_principled = inputs.kind == LobeKind::Principled;
+  add(inputs.kind);
+  add(is_principled ? principled.rules : inputs.rules);
+  add(is_principled ? principled.distribution : inputs.distribution);
+  add(is_principled ? principled.option : inputs.option);
+  for (const auto &plan : plans[0])
+    add(plan != nullptr);
+  if (!is_principled)
+    return code;
+  const PrincipledParts parts(*this);
+  for (const bool part : {parts.normal, parts.tangent, parts.coat_normal, parts.coat_tint, parts.diffuse_roughness,
+                          parts.emission, parts.sheen, parts.coat, parts.metal, parts.glass})
+    add(part);
+  return code;
+}
 
 std::vector<ReadyLobe> make_ready_lobes(const Material &material) {
   // Stands for what the nodes say in parts that no node has a say in.
@@ -73,14 +109,13 @@ std::vector<ReadyLobe> make_ready_lobes(const Material &material) {
   std::vector<ReadyLobe> all;
   for (const LobeDescription &lobe : material.lobes) {
     ReadyLobe &ready = all.emplace_back();
-    if (material.fixed()) {
-      ready.inputs = evaluate(lobe, nothing);
-      if (lobe.principled)
-        ready.principled = evaluate(*lobe.principled, nothing);
-      make_whole(lobe.principled ? &ready.principled : nullptr, ready);
-      ready.facets = plan_facets(ready.inputs);
-    } else if (lobe.principled && lobe.principled->constants.rules != Rules::Blender3)
-      ready.layers = unvarying_layers(lobe, nothing);
+    ready.inputs = evaluate(lobe, nothing);
+    if (lobe.principled)
+      ready.principled = evaluate(*lobe.principled, nothing);
+    if (lobe.principled && lobe.principled->rules != Rules::Blender3)
+      keep_layers(lobe, ready);
+    else if (!lobe.principled && material.fixed())
+      keep_facets(ready);
   }
   return all;
 }

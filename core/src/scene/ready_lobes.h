@@ -1,10 +1,9 @@
 // What of a material's lobes is the same wherever the material is met, made once when the material is added.
 #pragma once
 
-#include "bsdf/facet_plans.h"
-#include "bsdf/principled.h"
+#include "bsdf/kept_plans.h"
 
-#include <optional>
+#include <string>
 #include <vector>
 
 namespace lancer {
@@ -12,18 +11,141 @@ namespace lancer {
 struct Material;
 
 struct ReadyLobe {
-  // Where the material has no nodes.
-  LobeInputs inputs;
-  PrincipledInputs principled;
+  // As nodes leave them: what varies is 0 here.
+  LobeInputs<float> inputs;
+  PrincipledInputs<float> principled;
+  // By side (outside, inside) and Layer. Of facets of other nodes the only one is that of PrincipledLayer::Gloss.
+  std::shared_ptr<const KeptPlan> plans[2][kLayerCount];
 
-  bool whole = false;               // `lobe` is all of it
-  bool flat_only = false;           // only where the shading normal is the geometric one
-  Lobe lobe;                        // where it is whole
-  std::optional<LayerPlan> layers;  // of Principled: those that are the same
-  std::optional<FacetPlans> facets; // of a node of facets, where the material has no nodes
+  // What code it needs, where no node has a say: lobes of one code differ in numbers alone.
+  std::string code() const;
+
+  bool has(PrincipledLayer layer) const { return plans[0][static_cast<int>(layer)] != nullptr; }
+  const KeptPlan *plan(PrincipledLayer layer, bool inside) const { return plans[inside][static_cast<int>(layer)].get(); }
 };
 
 // One for each lobe.
 std::vector<ReadyLobe> make_ready_lobes(const Material &material);
+
+// Which of a Principled's inputs are other than nothing: the rest need not be read.
+struct PrincipledParts {
+  explicit PrincipledParts(const ReadyLobe &ready);
+  bool normal, tangent, coat_normal, coat_tint, diffuse_roughness, emission, sheen, coat, metal, glass;
+};
+
+// A lobe of every lane, all of one code.
+template <class F> struct LaneLobes {
+  const ReadyLobe *of[LanesOf<F>::kWidth];
+  uint32_t inside = 0; // bits of lanes
+  bool same = true;    // all lanes have one
+
+  template <class Get> LANCER_LANE F number(const Get &get) const {
+    if (same)
+      return F(get(*of[0]));
+    return from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]); });
+  }
+  template <class Get> LANCER_LANE Vec3<F> vector(const Get &get) const {
+    if (same)
+      return Vec3<F>(get(*of[0]));
+    return {from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).x; }),
+            from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).y; }),
+            from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).z; })};
+  }
+
+  // The inputs of lobes that no node has a say in.
+#define LANCER_OF(member)                                                                                                      \
+  [](const ReadyLobe &r) __attribute__((always_inline)) { return r.member; }
+  LANCER_LANE LobeInputs<F> inputs() const {
+    const LobeInputs<float> &first = of[0]->inputs;
+    LobeInputs<F> in;
+    in.kind = first.kind;
+    in.rules = first.rules;
+    in.distribution = first.distribution;
+    in.option = first.option;
+    in.weight = vector(LANCER_OF(inputs.weight));
+    in.normal = vector(LANCER_OF(inputs.normal));
+    in.tangent = vector(LANCER_OF(inputs.tangent));
+    in.color = vector(LANCER_OF(inputs.color));
+    if (first.kind == LobeKind::Lambert)
+      return in;
+    in.roughness = number(LANCER_OF(inputs.roughness));
+    in.ior = number(LANCER_OF(inputs.ior));
+    in.shininess = number(LANCER_OF(inputs.shininess));
+    in.edge = vector(LANCER_OF(inputs.edge));
+    in.anisotropy = number(LANCER_OF(inputs.anisotropy));
+    in.rotation = number(LANCER_OF(inputs.rotation));
+    return in;
+  }
+  // Of Principled: what all of its layers share, beside what principled() reads.
+  LANCER_LANE LobeInputs<F> principled_carrier() const {
+    const LobeInputs<float> &first = of[0]->inputs;
+    const PrincipledParts parts(*of[0]);
+    LobeInputs<F> in;
+    in.kind = first.kind;
+    in.rules = first.rules;
+    in.weight = vector(LANCER_OF(inputs.weight));
+    if (parts.normal)
+      in.normal = vector(LANCER_OF(inputs.normal));
+    if (parts.tangent)
+      in.tangent = vector(LANCER_OF(inputs.tangent));
+    return in;
+  }
+  LANCER_LANE PrincipledInputs<F> principled() const {
+    const ReadyLobe &first = *of[0];
+    const PrincipledParts parts(first);
+    PrincipledInputs<F> in;
+    in.rules = first.principled.rules;
+    in.distribution = first.principled.distribution;
+    in.option = first.principled.option;
+    in.base_color = vector(LANCER_OF(principled.base_color));
+    const bool old = in.rules == Rules::Blender3;
+    if (parts.metal)
+      in.metallic = number(LANCER_OF(principled.metallic));
+    if (parts.glass)
+      in.transmission = number(LANCER_OF(principled.transmission));
+    if (parts.coat)
+      in.coat = number(LANCER_OF(principled.coat));
+    if (parts.coat_tint)
+      in.coat_tint = vector(LANCER_OF(principled.coat_tint));
+    if (parts.coat_normal)
+      in.coat_normal = vector(LANCER_OF(principled.coat_normal));
+    if (parts.diffuse_roughness)
+      in.diffuse_roughness = number(LANCER_OF(principled.diffuse_roughness));
+    if (parts.emission)
+      in.emission = vector(LANCER_OF(principled.emission));
+    if (parts.sheen) {
+      in.sheen = number(LANCER_OF(principled.sheen));
+      in.sheen_roughness = number(LANCER_OF(principled.sheen_roughness));
+      in.sheen_tint = vector(LANCER_OF(principled.sheen_tint));
+    }
+    // The rest is in plans, where those are kept.
+    const bool planned =
+        !old && first.has(PrincipledLayer::Gloss) && (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent;
+    if (planned)
+      return in;
+    in.roughness = number(LANCER_OF(principled.roughness));
+    in.ior = number(LANCER_OF(principled.ior));
+    in.specular = number(LANCER_OF(principled.specular));
+    in.specular_tint = vector(LANCER_OF(principled.specular_tint));
+    in.anisotropic = number(LANCER_OF(principled.anisotropic));
+    in.anisotropic_rotation = number(LANCER_OF(principled.anisotropic_rotation));
+    in.transmission_roughness = number(LANCER_OF(principled.transmission_roughness));
+    in.coat_roughness = number(LANCER_OF(principled.coat_roughness));
+    in.coat_ior = number(LANCER_OF(principled.coat_ior));
+    return in;
+  }
+#undef LANCER_OF
+
+  // The layers that are planned: as of add_layers().
+  LANCER_LANE bool has(PrincipledLayer layer) const { return of[0]->has(layer); }
+  LANCER_LANE Lobe<F> seen(PrincipledLayer layer, F cos_o, const Vec3<F> &color) const {
+    LanePlans<F> plans;
+    for (int i = 0; i < LanesOf<F>::kWidth; ++i) {
+      plans.of[i] = of[i]->plan(layer, inside >> i & 1);
+      plans.same = plans.same && plans.of[i] == plans.of[0];
+    }
+    return plans.seen(cos_o, color);
+  }
+};
 
 } // namespace lancer

@@ -3,11 +3,10 @@
 
 #include "accel/accelerator.h"
 #include "lights/light_set.h"
-#include "scene/color_pictures.h"
 #include "scene/cutout.h"
 #include "scene/description.h"
 #include "scene/features.h"
-#include "scene/wide_materials.h"
+#include "scene/shading_classes.h"
 
 namespace lancer {
 
@@ -26,12 +25,11 @@ struct Scene {
   Geometry geometry; // normalised
   std::vector<uint32_t> slots;
   std::vector<Material> materials;
-  std::vector<WideMaterial> wide; // by material
-  std::vector<Cutout> cutouts;    // by material
-  std::vector<uint8_t> passing;   // by instance: some of its materials may let light pass straight on
-  std::vector<uint8_t> clearing;  // by instance: there may be nothing of it at some places, as cutouts say
+  std::vector<uint32_t> classes; // by material, as shading_classes() has them
+  std::vector<Cutout> cutouts;   // by material
+  std::vector<uint8_t> passing;  // by instance: some of its materials may let light pass straight on
+  std::vector<uint8_t> clearing; // by instance: there may be nothing of it at some places, as cutouts say
   std::vector<Image> images;
-  std::vector<ColorPicture> pictures; // by material
   World world;
   LightSet lights;
   Normalisation normalisation;

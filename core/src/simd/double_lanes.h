@@ -179,6 +179,7 @@ template <int W> struct LanesOf<Float<W>> {
   using Double = lancer::Double<W>;
   using Word = lancer::Word<W>;
   using Mask = lancer::Mask<W>;
+  static LANCER_LANE Mask uniform(bool m) { return mask_from<W>(m ? (1u << W) - 1u : 0u); }
 };
 
 } // namespace lancer

@@ -26,6 +26,7 @@ template <int W> struct Mask {
   friend LANCER_LANE Mask operator|(Mask a, Mask b) { return {a.v | b.v}; }
   friend LANCER_LANE Mask operator!(Mask a) { return {~a.v}; }
   friend LANCER_LANE Mask operator!=(Mask a, Mask b) { return {a.v ^ b.v}; }
+  friend LANCER_LANE Mask select(Mask m, Mask a, Mask b) { return (m & a) | ((!m) & b); }
 };
 
 #if defined(__AVX512F__)
@@ -39,6 +40,7 @@ template <> struct Mask<16> {
   friend LANCER_LANE Mask operator|(Mask a, Mask b) { return {a.v | b.v}; }
   friend LANCER_LANE Mask operator!(Mask a) { return {~a.v & 0xffffu}; }
   friend LANCER_LANE Mask operator!=(Mask a, Mask b) { return {a.v ^ b.v}; }
+  friend LANCER_LANE Mask select(Mask m, Mask a, Mask b) { return (m & a) | ((!m) & b); }
 };
 LANCER_LANE uint32_t bits(Mask<16> m) { return m.v; }
 #endif
@@ -234,6 +236,18 @@ template <int W> struct Float {
     return Word<W>((VectorOf<uint32_t, W>)__builtin_convertvector(a.v, VectorOf<int32_t, W>));
   }
 };
+template <int W> LANCER_LANE float lane(Float<W> a, int i) { return a.v[i]; }
+template <int W> LANCER_LANE uint32_t lane(Word<W> a, int i) { return a.v[i]; }
+template <int W, class Function> LANCER_LANE Float<W> each(Float<W> a, const Function &f) {
+  for (int i = 0; i < W; ++i)
+    a.v[i] = f(a.v[i]);
+  return a;
+}
+template <int W, class Function> LANCER_LANE Float<W> each(Float<W> a, Float<W> b, const Function &f) {
+  for (int i = 0; i < W; ++i)
+    a.v[i] = f(a.v[i], b.v[i]);
+  return a;
+}
 template <int W> LANCER_LANE Float<W> as_float(Word<W> a) { return Float<W>((VectorOf<float, W>)a.v); }
 template <int W> LANCER_LANE Float<W> to_float(Word<W> a) {
   return Float<W>(__builtin_convertvector((VectorOf<int32_t, W>)a.v, VectorOf<float, W>));

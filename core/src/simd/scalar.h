@@ -33,6 +33,9 @@ LANCER_LANE double abs(double a) { return __builtin_fabs(a); }
 LANCER_LANE float floor(float a) { return __builtin_floorf(a); }
 LANCER_LANE float copysign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
 
+// 1 with the sign of a.
+LANCER_LANE double sign(double a) { return __builtin_copysign(1.0, a); }
+
 LANCER_LANE float as_float(uint32_t a) { return std::bit_cast<float>(a); }
 LANCER_LANE uint32_t as_word(float a) { return std::bit_cast<uint32_t>(a); }
 LANCER_LANE bool equal(uint32_t a, uint32_t b) { return a == b; }
@@ -61,9 +64,39 @@ template <> struct LanesOf<float> {
   using Double = double;
   using Word = uint32_t;
   using Mask = bool;
+  static LANCER_LANE Mask uniform(bool m) { return m; }
+};
+// Lanes of floats, or a float.
+template <class F>
+concept FloatLanes = requires {
+  typename LanesOf<F>::Double;
 };
 template <class F> using DoubleOf = typename LanesOf<F>::Double;
 template <class F> using WordOf = typename LanesOf<F>::Word;
 template <class F> using MaskOf = typename LanesOf<F>::Mask;
+// The same condition in all lanes.
+template <class F> LANCER_LANE MaskOf<F> uniform(bool m) { return LanesOf<F>::uniform(m); }
+
+// One lane of many, and all lanes from a function of their number.
+LANCER_LANE float lane(float a, int) { return a; }
+LANCER_LANE double lane(double a, int) { return a; }
+LANCER_LANE uint32_t lane(uint32_t a, int) { return a; }
+template <class F, class Function> LANCER_LANE F from_lanes(const Function &f) {
+  if constexpr (LanesOf<F>::kWidth == 1)
+    return f(0);
+  else {
+    // By way of memory: numbers put into a register one by one wait for each other.
+    alignas(64) decltype(f(0)) of[LanesOf<F>::kWidth];
+    for (int i = 0; i < LanesOf<F>::kWidth; ++i)
+      of[i] = f(i);
+    F r;
+    __builtin_memcpy(&r, of, sizeof(r));
+    return r;
+  }
+}
+
+// A scalar function of every lane, for what is too rare to be written for lanes.
+template <class Function> LANCER_LANE float each(float a, const Function &f) { return f(a); }
+template <class Function> LANCER_LANE float each(float a, float b, const Function &f) { return f(a, b); }
 
 } // namespace lancer

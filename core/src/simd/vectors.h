@@ -1,11 +1,19 @@
-// Vectors of three numbers of any width, with the sums in glm's order.
+// Vectors of two and of three numbers of any width, with the sums in glm's order.
 #pragma once
 
 #include "simd/scalar.h"
 
 #include <glm/glm.hpp>
+#include <type_traits>
 
 namespace lancer {
+
+template <class T> struct Vector2 {
+  T x, y;
+
+  // Width 1 is glm's own.
+  LANCER_LANE operator glm::vec<2, T>() const requires(std::is_floating_point_v<T>) { return {x, y}; }
+};
 
 template <class T> struct Vector3 {
   T x, y, z;
@@ -38,6 +46,7 @@ template <class T> struct Vector3 {
   friend LANCER_LANE Vector3 normalize(const Vector3 &a) { return a * (T(1) / sqrt(dot(a, a))); }
   friend LANCER_LANE Vector3 min(const Vector3 &a, const Vector3 &b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
   friend LANCER_LANE Vector3 max(const Vector3 &a, const Vector3 &b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; }
+  friend LANCER_LANE Vector3 abs(const Vector3 &a) { return {abs(a.x), abs(a.y), abs(a.z)}; }
   friend LANCER_LANE Vector3 sqrt(const Vector3 &a) { return {sqrt(a.x), sqrt(a.y), sqrt(a.z)}; }
   template <class M> friend LANCER_LANE Vector3 select(const M &m, const Vector3 &a, const Vector3 &b) {
     return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
@@ -46,11 +55,35 @@ template <class T> struct Vector3 {
   friend LANCER_LANE auto black(const Vector3 &a) { return same(a, Vector3(T(0))); }
 };
 
+// Vectors as formulas have them: glm's own of one number, Vector3 of lanes.
+template <class F> struct VectorOfNumbers { using Type = Vector3<F>; };
+template <> struct VectorOfNumbers<float> { using Type = glm::vec3; };
+template <> struct VectorOfNumbers<double> { using Type = glm::dvec3; };
+template <class F> using Vec3 = typename VectorOfNumbers<F>::Type;
+template <class V> using NumberOf = std::remove_cvref_t<decltype(V::x)>;
+
+LANCER_LANE glm::vec3 select(bool m, const glm::vec3 &a, const glm::vec3 &b) { return m ? a : b; }
+LANCER_LANE glm::dvec3 select(bool m, const glm::dvec3 &a, const glm::dvec3 &b) { return m ? a : b; }
+LANCER_LANE bool same(const glm::vec3 &a, const glm::vec3 &b) { return a == b; }
+LANCER_LANE bool black(const glm::vec3 &a) { return a == glm::vec3(0.0f); }
+LANCER_LANE glm::dvec3 widen(const glm::vec3 &a) { return glm::dvec3(a); }
+LANCER_LANE glm::vec3 narrow(const glm::dvec3 &a) { return glm::vec3(a); }
+
+// From a to b.
+template <class T> LANCER_LANE Vector3<T> mix(const Vector3<T> &a, const Vector3<T> &b, const T &t) {
+  return a * (T(1) - t) + b * t;
+}
+// Of a number or a vector.
+template <class T> LANCER_LANE T clamp01(const T &x) { return min(max(x, T(0)), T(1)); }
+
 template <class T> LANCER_LANE auto widen(const Vector3<T> &a) {
   return Vector3<DoubleOf<T>>(widen(a.x), widen(a.y), widen(a.z));
 }
 template <class D> LANCER_LANE auto narrow(const Vector3<D> &a) {
   return Vector3<decltype(narrow(a.x))>(narrow(a.x), narrow(a.y), narrow(a.z));
 }
+
+// Of as many lanes as F.
+template <class F> using Double3Of = Vector3<DoubleOf<F>>;
 
 } // namespace lancer

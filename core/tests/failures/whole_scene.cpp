@@ -131,7 +131,7 @@ void WholeScene::make_materials() {
   paint_nodes.push_back(node(LANCER_NODE_NORMAL_MAP, 0, {parameter(0.5f), result_of(1)}));
   paint_nodes.push_back(node(LANCER_NODE_DISPLACEMENT, 0, {result_of(1), parameter(0.5f), parameter(0.1f), parameter(0.0f)}));
   principled = {};
-  principled.rules = LANCER_RULES_45;
+  principled.rules = LANCER_RULES_BLENDER_45;
   principled.base_color = result_of(1);
   for (lancer_parameter *p :
        {&principled.metallic, &principled.diffuse_roughness, &principled.specular_tint, &principled.anisotropic,
@@ -144,7 +144,7 @@ void WholeScene::make_materials() {
   principled.ior = principled.coat_ior = parameter(1.5f);
   paint_lobes = {lobe(LANCER_PRINCIPLED, 0.5f)};
   paint_lobes[0].principled = &principled;
-  paint_lobes[0].rules = LANCER_RULES_45;
+  paint_lobes[0].rules = LANCER_RULES_BLENDER_45;
   paint_lobes[0].normal = result_of(height + 1);
   lancer_material paint = black("paint");
   paint.displacement = result_of(height + 3);

@@ -1,0 +1,155 @@
+"""The interface's numbers and structs in Python, made of the C header.
+
+    bindings.py              writes addon/bindings/enums.py and structs.py, from core/include/lancer.h
+    bindings.py HEADER FOLDER     of another header, into another folder
+
+The header is read in the plain style in which it is written: an enum is named lancer_something, or by the typedef on the line
+above it; a struct has one kind of member on a line. Names follow by rule:
+  - lancer_light_sample is LightSample; its docstring is the first sentence of the comment above it.
+  - A member of an enum loses the words with which all members of that enum begin; ..._COUNT is none.
+  - An enum without 0 has bits, and is an IntFlag.
+  - Where comments of members begin with [n], as those of passes do, n is its number of channels.
+"""
+
+import re
+import sys
+import textwrap
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+HEADER = ROOT / "core" / "include" / "lancer.h"
+FOLDER = ROOT / "addon" / "bindings"
+WIDTH = 128
+
+HEAD = '''"""{what}
+
+Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+"""
+'''
+NUMBERS = {"char": "c_char", "float": "c_float", "double": "c_double"} | {
+    f"{sign}int{bits}_t": f"c_{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)
+}
+COMMENT = r"(?:/\*(?P<comment>(?:(?!\*/).)*)\*/\n)?"
+ENUM = re.compile(
+    COMMENT + r"(?:typedef int32_t lancer_(?P<typedef>\w+);\n)?(?:typedef )?enum(?: lancer_(?P<name>\w+))? \{(?P<body>[^}]*)\}",
+    re.DOTALL,
+)
+STRUCT = re.compile(COMMENT + r"typedef struct lancer_(?P<name>\w+) \{\n(?P<body>.*?)\n\} lancer_(?P=name);", re.DOTALL)
+VALUE = re.compile(r"(LANCER_\w+)(?: = (\d+))?,?(?:\s*\[(\d)\])?")
+MEMBER = re.compile(r"(?P<const>const )?(?P<type>\w+) (?P<names>[^;]+);")
+
+
+def class_name(name):
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def docstring(comment):
+    """The first sentence of a comment, as a class has it; nothing without one."""
+    words = " ".join(re.sub(r"^ \* ?", "", line).strip() for line in (comment or "").splitlines())
+    sentence = re.match(r"(.*?)[.:](?:\s|$)", words)
+    if not sentence:
+        return []
+    first, *rest = textwrap.wrap(f'"""{sentence[1]}."""', WIDTH - 4)
+    return [f"    {line}" for line in (first, *rest)] + [""]
+
+
+def without_comments(text):
+    """But for the [n] with which some begin."""
+    return re.sub(r"/\* (\[\d\])?.*?\*/", r"\1", text, flags=re.DOTALL)
+
+
+def values(body):
+    """(name, value, channels) of an enum's members; those without a number follow the one before."""
+    found, following = [], 0
+    for name, value, channels in VALUE.findall(without_comments(body)):
+        following = int(value) if value else following
+        if not name.endswith("_COUNT"):
+            found.append((name, following, int(channels or 0)))
+        following += 1
+    return found
+
+
+def shortened(names):
+    """Without the words with which all of them begin, as far as names are left that Python can have."""
+    words = [name.split("_") for name in names]
+    alike = 0
+    while all(len(w) > alike + 1 and w[alike] == words[0][alike] and not w[alike + 1][0].isdigit() for w in words):
+        alike += 1
+    return ["_".join(w[alike:]) for w in words]
+
+
+def enum_class(match):
+    name = match["name"] or match["typedef"]
+    if not name:
+        sys.exit(f"An enum of {HEADER.name} has no name: {match['body'].split()[0]}")
+    members = values(match["body"])
+    kind = "IntEnum" if any(value == 0 for _, value, _ in members) else "IntFlag"
+    lines = [f"class {class_name(name)}({kind}):", *docstring(match["comment"])]
+    names = shortened([long for long, _, _ in members])
+    lines += [f"    {short} = {value}" for short, (_, value, _) in zip(names, members, strict=True)]
+    channels = tuple(number for _, _, number in members)
+    if any(channels):
+        lines += ["", "    @property", "    def channels(self):", f"        return {channels}[self]"]
+    return "\n".join(lines)
+
+
+def field_type(member, length):
+    """In ctypes; numbers behind a pointer are arrays, as addresses."""
+    kind = member["type"]
+    if member["pointer"]:
+        if kind == "char":
+            return "c_char_p"
+        return f"POINTER({class_name(kind.removeprefix('lancer_'))})" if kind.startswith("lancer_") else "Array"
+    found = NUMBERS[kind] if kind in NUMBERS else class_name(kind.removeprefix("lancer_"))
+    return f"{found} * {length}" if length else found
+
+
+def fields(body):
+    """(name, type) of a struct's members."""
+    for member in MEMBER.finditer(without_comments(body)):
+        for item in member["names"].split(","):
+            pointer, name, length = re.fullmatch(r"(\*?)(\w+)(?:\[(\d+)\])?", item.strip()).groups()
+            yield name, field_type({"type": member["type"], "pointer": pointer}, length)
+
+
+def struct_class(match):
+    lines = [f"class {class_name(match['name'])}(Structure):", *docstring(match["comment"]), "    _fields_ = ["]
+    lines += [f'        ("{name}", {kind}),' for name, kind in fields(match["body"])]
+    return "\n".join([*lines, "    ]"])
+
+
+def enums_text(header):
+    version = re.search(r"#define LANCER_ABI_VERSION (\d+)u", header)[1]
+    classes = [enum_class(match) for match in ENUM.finditer(header)]
+    head = HEAD.format(what="The numbers of the interface.")
+    return "\n\n\n".join([f"{head}\nfrom enum import IntEnum, IntFlag\n\nABI_VERSION = {version}", *classes]) + "\n"
+
+
+def structs_text(header):
+    found = {match["name"]: match for match in STRUCT.finditer(header)}
+    listed = next(match for match in ENUM.finditer(header) if match["name"] == "struct")
+    numbered = shortened([name for name, _, _ in values(listed["body"])])
+    if {name.upper() for name in found} != set(numbered):
+        sys.exit(f"lancer_struct and the structs of {HEADER.name} differ: {sorted({n.upper() for n in found} ^ set(numbered))}")
+    classes = [struct_class(match) for match in found.values()]
+    used = sorted(set(re.findall(r"\bc_\w+", "\n".join(classes))) | {"c_void_p"})
+    head = [
+        HEAD.format(what="The structs of the interface in ctypes, field by field."),
+        f"from ctypes import POINTER, Structure, {', '.join(used)}\n",
+        "from .enums import Struct\n",
+        "# Arrays cross as plain addresses: numpy gives them without a conversion for each element type.",
+        "Array = c_void_p",
+    ]
+    table = ["STRUCTS = {", *(f"    Struct.{name}: {class_name(name)}," for name in numbered), "}"]
+    return "\n\n\n".join(["\n".join(head), *classes, "\n".join(table)]) + "\n"
+
+
+def main(header=HEADER, folder=FOLDER):
+    # Directions to the formatter stand between a comment and what it is about.
+    text = re.sub(r"/\* clang-format \w+ \*/\n", "", Path(header).read_text(encoding="utf-8"))
+    for name, made in (("enums.py", enums_text(text)), ("structs.py", structs_text(text))):
+        (Path(folder) / name).write_text(made, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

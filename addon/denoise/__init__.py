@@ -1,0 +1,1 @@
+"""Pictures without their noise, by the library that Blender brings."""

@@ -1,0 +1,81 @@
+"""Curves of colours, vectors and numbers, as the tables that Cycles makes of them. Readers take (graph, site, output)."""
+
+import bpy
+import numpy as np
+
+from ..bindings.enums import NodeKind
+from ..bindings.shading import NodeRef
+from .arithmetic import mix
+
+_STEPS = 256
+# As many values as steps, or one more, so that 1 is a step's end as 0 is.
+_VALUES = _STEPS + int(bpy.app.version >= (4, 0))
+_EXTRAPOLATES, _STEPPED = 1, 2
+_OF_NUMBER = 1
+
+
+def _ready(mapping):
+    mapping.initialize()
+    return mapping
+
+
+def _ends(curves):
+    """The interval over which the curves have points: what a table covers."""
+    return min(curve.points[0].location[0] for curve in curves), max(curve.points[-1].location[0] for curve in curves)
+
+
+def _curved(graph, mapping, functions, curves, factor, value):
+    """functions[i](x) in channel i, by a table over where the curves have points; curves: those that decide where."""
+    low, high = _ends(curves)
+    places = low + np.arange(_VALUES) / (_VALUES - 1) * (high - low)
+    table = np.array([[function(x) for function in functions] for x in places.tolist()], np.float32)
+    flags = _EXTRAPOLATES if mapping.extend == "EXTRAPOLATED" else 0
+    return graph.emit(
+        NodeKind.CURVES, factor, value, image=graph.table(table), image_count=1, flags=flags, matrix=(low, high, *(0.0,) * 10)
+    )
+
+
+def _rgb(graph, site, output):
+    factor, color = (graph.input(site, socket) for socket in site.node.inputs[:2])
+    mapping = _ready(site.node.mapping)
+    *channels, combined = mapping.curves[:4]
+    functions = [lambda x, c=c: mapping.evaluate(c, mapping.evaluate(combined, x)) for c in channels]
+    if isinstance(color, NodeRef):
+        return _curved(graph, mapping, functions, mapping.curves[:4], factor, color)
+    return graph.mix(factor, color, tuple(float(function(x)) for function, x in zip(functions, color, strict=True)))
+
+
+def _vector(graph, site, output):
+    factor, vector = (graph.value(site, number) for number in (0, 1))
+    mapping = _ready(site.node.mapping)
+    functions = [lambda x, c=c: mapping.evaluate(c, x) for c in mapping.curves[:3]]
+    if isinstance(vector, NodeRef) or isinstance(factor, NodeRef):
+        return _curved(graph, mapping, functions, mapping.curves[:3], factor, vector)
+    return tuple(mix(factor, x, float(function(x))) for function, x in zip(functions, vector, strict=True))
+
+
+def _number(graph, site, output):
+    factor, value = (graph.value(site, number) for number in (0, 1))
+    mapping = _ready(site.node.mapping)
+
+    def function(x):
+        return mapping.evaluate(mapping.curves[0], x)
+
+    if isinstance(value, NodeRef) or isinstance(factor, NodeRef):
+        return _curved(graph, mapping, [function], mapping.curves[:1], factor, value)
+    return mix(factor, value, float(function(value)))
+
+
+def ramp_by_table(graph, ramp, factor, is_alpha):
+    """A colour ramp of any interpolation and colour mode, of a factor that varies."""
+    places = (np.arange(_VALUES) / (_VALUES - 1)).tolist()
+    table = np.array([tuple(ramp.evaluate(x)) for x in places], np.float32)
+    flags = _STEPPED if ramp.interpolation == "CONSTANT" else 0
+    matrix = (0.0, 1.0, *(0.0,) * 10)
+    value = graph.emit(
+        NodeKind.CURVES, 1.0, factor, option=_OF_NUMBER, image=graph.table(table), image_count=1, flags=flags, matrix=matrix
+    )
+    return graph.emit(NodeKind.ALPHA, value) if is_alpha else value
+
+
+READERS = {"CURVE_FLOAT": _number, "CURVE_RGB": _rgb, "CURVE_VEC": _vector}

@@ -1,0 +1,1 @@
+"""What a render costs and how near it comes, told beforehand and afterwards; numpy, no bpy."""

@@ -1,0 +1,98 @@
+"""What feeds the parameters of a material: which nodes, how to put constants in their place, and which nodes are left over."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from ..bindings.enums import NodeKind
+from ..bindings.shading import Lobe, Material, NodeRef, Principled
+
+_MATERIAL = Material.PARAMETERS
+_LOBE = Lobe.PARAMETERS
+_PRINCIPLED = Principled.PARAMETERS
+
+
+def is_zero(value):
+    """Whether a parameter is the constant 0; the result of a node may be anything."""
+    if isinstance(value, NodeRef):
+        return False
+    return not any(value) if isinstance(value, tuple) else value == 0.0
+
+
+def may_be_positive(value):
+    if isinstance(value, NodeRef):
+        return True
+    return max(value) > 0.0 if isinstance(value, tuple) else value > 0.0
+
+
+def sources(nodes, value):
+    """Numbers of all nodes that a parameter depends on."""
+    found, open_ = set(), [value.node] if isinstance(value, NodeRef) else []
+    while open_:
+        number = open_.pop()
+        if number in found:
+            continue
+        found.add(number)
+        node = nodes[number]
+        open_.extend(x.node for x in node.inputs if isinstance(x, NodeRef))
+        # What a bump asks for its height is a range of nodes.
+        if node.kind == NodeKind.BUMP:
+            open_.extend(range(node.first, number))
+    return found
+
+
+def kinds_of_sources(nodes, value):
+    return {nodes[number].kind for number in sources(nodes, value)}
+
+
+def map_parameters(material, change):
+    """The material with change(owner, name, value) for every parameter; owner: "material", "lobe" or "principled"."""
+
+    def mapped(record, owner, names):
+        values = {name: change(owner, name, getattr(record, name)) for name in names}
+        return {name: value for name, value in values.items() if value is not getattr(record, name)}
+
+    lobes = []
+    for lobe in material.lobes:
+        changes = mapped(lobe, "lobe", _LOBE)
+        if lobe.principled is not None and (inner := mapped(lobe.principled, "principled", _PRINCIPLED)):
+            changes["principled"] = dataclasses.replace(lobe.principled, **inner)
+        lobes.append(dataclasses.replace(lobe, **changes) if changes else lobe)
+    changes = mapped(material, "material", _MATERIAL)
+    if any(new is not old for new, old in zip(lobes, material.lobes, strict=True)):
+        changes["lobes"] = tuple(lobes)
+    return dataclasses.replace(material, **changes) if changes else material
+
+
+def parameters(material):
+    """(owner, name, value) of every parameter."""
+    found = []
+
+    def note(owner, name, value):
+        found.append((owner, name, value))
+        return value
+
+    map_parameters(material, note)
+    return found
+
+
+def without_idle_nodes(material):
+    """The material without the nodes that no parameter depends on."""
+    used = set()
+    for _, _, value in parameters(material):
+        used |= sources(material.nodes, value)
+    if len(used) == len(material.nodes):
+        return material
+    order = sorted(used)
+    number_of = {old: new for new, old in enumerate(order)}
+
+    def renumbered(value):
+        return NodeRef(number_of[value.node]) if isinstance(value, NodeRef) else value
+
+    nodes = []
+    for old in order:
+        node = material.nodes[old]
+        first = number_of[node.first] if node.kind == NodeKind.BUMP else node.first
+        nodes.append(dataclasses.replace(node, inputs=tuple(map(renumbered, node.inputs)), first=first))
+    material = map_parameters(material, lambda owner, name, value: renumbered(value))
+    return dataclasses.replace(material, nodes=tuple(nodes))

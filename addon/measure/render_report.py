@@ -1,0 +1,152 @@
+"""Figures of a finished render, and what they say in words: for the file's metadata, for the terminal, for the panel."""
+
+import dataclasses
+import math
+from enum import IntEnum
+
+from ..bindings.enums import Integrator
+from .schedule import CANCELLED, SAMPLES, TARGET, TIME
+
+# Less than this is not worth a sentence.
+_NOTHING = 5e-5
+
+
+def percent(share):
+    """A share with two digits that mean something."""
+    if not math.isfinite(share):
+        return "unknown"
+    return f"{100.0 * share:.3g} %" if share >= 0.0995 else f"{100.0 * share:.2g} %"
+
+
+def interval(numbers):
+    """The error and the interval in which it lies with 95 % confidence; numbers: a PictureError."""
+    return f"{percent(numbers.error)} ({percent(numbers.low)} to {percent(numbers.high)})"
+
+
+def duration(value):
+    """Seconds with two digits that mean something, in the unit that one would say."""
+    if not math.isfinite(value):
+        return "unknown"
+    for limit, unit, name in ((99.5, 1.0, "s"), (99.5 * 60.0, 60.0, "min"), (math.inf, 3600.0, "h")):
+        if value < limit:
+            value /= unit
+            return f"{value:.1f} {name}" if value < 9.95 else f"{value:.0f} {name}"
+
+
+def account(session, schedule):
+    """What a Session that a Schedule has driven tells of itself, by the names that engine.last_statistics has."""
+    statistics, error = session.statistics(), session.error()
+    numbers = dataclasses.asdict(statistics)
+    numbers["pixel_samples"] = numbers["samples"]
+    numbers["samples"] = error.least_samples
+    numbers["samples_most"] = error.most_samples
+    numbers["samples_mean"] = statistics.samples / schedule.pixels
+    numbers["seconds"] = statistics.render_seconds
+    numbers["rays"] = statistics.rays
+    numbers["rays_per_second"] = statistics.rays_per_second
+    numbers["version"] = session.library.lancer_version().decode()
+    numbers["ended_by"] = schedule.reason or CANCELLED
+    numbers["error"] = error.error
+    for name in ("low", "high", "cannot_exclude", "clipped", "missing"):
+        numbers[f"error_{name}"] = getattr(error, name)
+    return numbers
+
+
+def of_layers(statistics):
+    """The lines of all view layers of a render, of engine.last_statistics."""
+    return [line for numbers in statistics.get("layers", {"": statistics}).values() for line in numbers["accuracy"]]
+
+
+def lines(numbers, settings, layer=""):
+    """Sentences on the accuracy of a render: numbers as in engine.last_statistics, settings of its snapshot.
+
+    layer: the view layer's name where there are several. The first line tells the error, or that its target was missed.
+    """
+    told = [*missed(numbers, settings), *_accuracy(numbers, settings)]
+    return [f"view layer '{layer}': {line}" for line in told] if layer else told
+
+
+def missed(numbers, settings):
+    """A sentence where the target error was not reached, with what is expected to reach it."""
+    target, bound = settings.target_error, numbers["error_high"] + numbers["error_cannot_exclude"]
+    if target <= 0.0 or bound <= target or numbers["ended_by"] in (TARGET, CANCELLED):
+        return
+    if not math.isfinite(bound):
+        yield f"{percent(target)} was not reached: the error is not known before there are two samples a pixel"
+        return
+    # The error falls with the root of the number of samples.
+    more = (bound / target) ** 2
+    helps = []
+    samples = numbers["samples_most"] * more
+    if numbers["ended_by"] == SAMPLES or samples > settings.samples:
+        helps.append(f"about {_two_digits_up(samples)} Samples")
+    if settings.time_limit > 0.0:
+        seconds = settings.time_limit + numbers["seconds"] * (more - 1.0)
+        if numbers["ended_by"] == TIME:
+            helps.append(f"a Time Limit of about {duration(seconds)}")
+    error, most = percent(numbers["error"]), percent(bound)
+    yield f"{percent(target)} was not reached: {error}, at most {most}; it would take {' and '.join(helps)}"
+
+
+def _two_digits_up(number):
+    step = 10 ** max(0, math.floor(math.log10(number)) - 1)
+    return math.ceil(number / step) * step
+
+
+def _accuracy(numbers, settings):
+    samples = f"{numbers['samples']} samples"
+    if numbers["samples_most"] > numbers["samples"]:
+        samples = f"{numbers['samples']} to {numbers['samples_most']} samples a pixel, {numbers['samples_mean']:.0f} on average"
+    how = CANCELLED if numbers["ended_by"] == CANCELLED else f"ended by {numbers['ended_by']}"
+    ended = f"{samples} in {numbers['seconds']:.1f} s, {how}"
+    if math.isfinite(numbers["error"]):
+        low, high = percent(numbers["error_low"]), percent(numbers["error_high"])
+        text = f"error {percent(numbers['error'])}, with 95 % confidence between {low} and {high}; {ended}"
+    else:
+        text = f"error unknown: it takes two samples a pixel; {ended}"
+    return [text, *biases(numbers, settings)]
+
+
+def biases(numbers, settings):
+    """What the error does not count, a sentence each."""
+    if numbers["error_cannot_exclude"] > _NOTHING and math.isfinite(numbers["error_cannot_exclude"]):
+        yield f"light in flashes that no sample has met could add {percent(numbers['error_cannot_exclude'])} to the error"
+    if settings.clamp_indirect > 0.0:
+        yield f"clamping has taken {percent(numbers['error_clipped'])} of the light: the picture is that much too dark"
+    if settings.integrator == Integrator.PATH:
+        missing = numbers["error_missing"]
+        if math.isinf(missing):
+            yield f"light beyond {settings.max_bounces} bounces is left out, and the last of them finds no less than the others"
+        elif missing > _NOTHING:
+            yield f"light beyond {settings.max_bounces} bounces is left out: about {percent(missing)}"
+    if numbers["denoised"]:
+        yield numbers["denoised"]
+
+
+def fields(numbers, settings):
+    """(name, text) pairs for the metadata of a file."""
+    for name in ("error", "error_low", "error_high", "error_cannot_exclude", "error_clipped", "error_missing"):
+        yield name, f"{numbers[name]:.6g}"
+    yield "samples", str(numbers["samples"])
+    yield "samples_most", str(numbers["samples_most"])
+    yield "samples_mean", f"{numbers['samples_mean']:.6g}"
+    yield "seconds", f"{numbers['seconds']:.3f}"
+    yield "ended_by", numbers["ended_by"]
+    yield "invalid_samples", str(numbers["invalid_samples"])
+    yield "seed", str(settings.seed)
+    yield "settings", ", ".join(_changed(settings))
+    yield "features", numbers["features"]
+    yield "kernel", f"{numbers['kernel']}, {numbers['instruction_set']}"
+    if numbers["denoised"]:
+        yield "denoising", numbers["denoised"]
+    yield "version", numbers["version"]
+
+
+def _changed(settings):
+    for field in dataclasses.fields(settings):
+        value = getattr(settings, field.name)
+        if field.name in ("passes", "threads", "tile_size", "seed"):
+            continue
+        if isinstance(value, IntEnum):
+            value = value.name
+        yield f"{field.name} {value:.6g}" if isinstance(value, float) else f"{field.name} {value}"

@@ -1,0 +1,204 @@
+"""What a session renders next, until samples, a target error or a time limit end it.
+
+schedule = Schedule(session)
+while schedule.start():
+    while not schedule.wait(0.05).finished:
+        ...
+schedule.reason, session.error()
+"""
+
+import contextlib
+import math
+import time
+
+# Ranges of 1, 1, 2, 4 ... samples as long as one takes no longer than this: then of as many as fit.
+_LONGEST_INTERVAL = 1.0
+# From here on the error is known well enough to decide by.
+FIRST_LOOK = 16
+# Of ending a render whose error is still above its target: one half for the first look, a quarter for the second ...
+_MISTAKE = 0.05
+
+SAMPLES, TARGET, TIME, CANCELLED = "samples", "target error", "time limit", "cancelled"
+
+
+class Schedule:
+    """Drives a Session by its settings: samples, target_error, time_limit.
+
+    started: when the time limit began, by time.monotonic().
+    Without target and limit all pixels get the same samples. With either, ranges double the samples of every pixel, and from
+    FIRST_LOOK on those of the pixels that need it most (Session.refine).
+    """
+
+    def __init__(self, session, started=None):
+        self.session = session
+        self.settings = session.settings
+        self.reason = None  # why it ended
+        self.longest = _LONGEST_INTERVAL
+        self.samples = 0  # of every pixel, at least
+        self.error = None  # the last PictureError that was asked for
+        self.confidence = 1.0 - _MISTAKE
+        self.reserve = 0.0  # seconds of the time limit that are needed after the last sample
+        self._started = time.monotonic() if started is None else started
+        self._looks = 0
+        self._refining = False
+        self._stopping = False
+        self._range = (0.0, 0)  # when it was started, pixel samples before it
+        self._seconds_per_sample = 0.0
+        self._progress = None
+        self.pixels = session.camera.region_width * session.camera.region_height
+
+    def start(self):
+        """Starts the next range; False when there is none."""
+        if self.over:
+            return False
+        self._refining = self._refining and self._refine()
+        self._next = 0
+        if not self._refining:
+            self._next = self._count()
+            if self._next == 0:
+                self.reason = SAMPLES
+                return False
+            self.session.render(self.samples, self._next)
+        self._range = (time.monotonic(), self._progress.samples if self._progress else 0)
+        return True
+
+    def wait(self, seconds):
+        """Session.wait, which also stops the range when time is up."""
+        progress = self.session.wait(seconds)
+        if progress.finished:
+            self._finished(progress)
+        elif self.late and not self._stopping and self.samples > 0:
+            self._stopping = True
+            self.session.stop()
+        self._progress = progress
+        return progress
+
+    def cancel(self):
+        self.session.cancel()
+
+    @property
+    def over(self):
+        """Whether there is no other range to come; the error is asked for where a target hangs on it."""
+        if self.reason is None and (self._progress is None or self._progress.finished):
+            self.reason = self._ended()
+        return self.reason is not None
+
+    @property
+    def late(self):
+        limit = self.settings.time_limit
+        return limit > 0.0 and time.monotonic() >= self._started + limit - self.reserve
+
+    def look(self):
+        """Asks for the error as it is now."""
+        self.error = self.session.error()
+        return self.error
+
+    def remaining(self):
+        """(seconds, reason): what is expected to end the render first, and in how long; infinity while nothing is known."""
+        ends = []
+        limit = self.settings.time_limit
+        if limit > 0.0:
+            ends.append((max(0.0, self._started + limit - time.monotonic()), TIME))
+        progress = self._progress
+        if progress is not None and progress.samples > 0 and progress.seconds > 0.0:
+            rate = progress.samples / progress.seconds
+            target = self.settings.target_error
+            known = self.error is not None and self.error.known
+            if target > 0.0 and known:
+                needed = self._needed(progress, target)
+                ends.append((needed / rate, TARGET))
+            # With a target the limit of samples is far beyond what most scenes need.
+            if target <= 0.0 or known:
+                ends.append((max(0.0, self.settings.samples * self.pixels - progress.samples) / rate, SAMPLES))
+        return min(ends, default=(math.inf, SAMPLES))
+
+    @property
+    def fraction(self):
+        """Share of the whole render that is done, as far as it can be foretold."""
+        seconds, reason = self.remaining()
+        elapsed = time.monotonic() - self._started
+        if reason is SAMPLES:
+            done = self._progress.samples if self._progress else 0
+            return min(1.0, done / (self.settings.samples * self.pixels))
+        return min(1.0, elapsed / max(elapsed + seconds, 1e-9))
+
+    def _needed(self, progress, target):
+        """Pixel samples that the target still wants: as planned, or as if the error fell evenly with their square root."""
+        if self._refining and self.error.planned_samples > 0.0:
+            return max(0.0, self.error.planned_samples - (progress.samples - self._range[1]))
+        return progress.samples * max(0.0, (self.error.bound / target) ** 2 - 1.0)
+
+    def _ended(self):
+        if self._progress is not None and self._progress.cancelled:
+            return CANCELLED
+        if self.samples > 0 and self.late:
+            return TIME
+        if not self._refining and self.samples >= self.settings.samples:
+            return SAMPLES
+        target = self.settings.target_error
+        if self.samples >= FIRST_LOOK:
+            self._refining = self.settings.refines and 2 * self.samples <= self.settings.samples or self._refining
+            if target > 0.0:
+                self.confidence = 1.0 - 2.0 * _MISTAKE / 2.0 ** (self._looks + 1)
+                self._looks += 1
+                self.error = self.session.error(self.confidence)
+                if self.error.bound <= target:
+                    return TARGET
+        return None
+
+    def _refine(self):
+        """Whether a round began. If not, no pixel can be doubled, so all have the same number, the largest power of two."""
+        if self.session.refine(self.settings.target_error, self.confidence):
+            return True
+        self.samples = self.session.error().most_samples
+        return False
+
+    def _count(self):
+        """Samples of the next range, where all pixels get the same."""
+        count = max(1, self.samples)
+        if not self.settings.refines and self._seconds_per_sample > 0.0:
+            count = min(count, max(1, int(self.longest / self._seconds_per_sample)))
+        return min(count, self.settings.samples - self.samples)
+
+    def _finished(self, progress):
+        self._seconds_per_sample = (time.monotonic() - self._range[0]) / max(1, self._next)
+        if self._stopping:
+            self.reason = TIME
+        elif not self._refining:
+            self.samples += self._next
+
+
+class TimeShare:
+    """Work beside the rendering that may take no more than its share of the time.
+
+    share: of the time; shortest: seconds between two times at least.
+    """
+
+    def __init__(self, share, shortest):
+        self._share = share
+        self._shortest = shortest
+        self._last = None
+        self.cost = 0.0  # seconds that it took last
+
+    @property
+    def interval(self):
+        return max(self._shortest, self.cost / self._share)
+
+    @property
+    def begun(self):
+        return self._last is not None
+
+    @property
+    def due(self):
+        return self._last is None or time.monotonic() - self._last > self.interval
+
+    def spend(self, work):
+        with self.spending():
+            work()
+
+    @contextlib.contextmanager
+    def spending(self):
+        before = time.monotonic()
+        yield
+        self._last = time.monotonic()
+        self.cost = self._last - before

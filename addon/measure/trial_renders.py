@@ -1,0 +1,179 @@
+"""Short renders of small pictures of a scene, from which forecast.py tells how long the whole one will take.
+
+One small picture gets samples where the error is, as a render with a target does; the other, of a quarter of its pixels, gets
+the same everywhere. Between the two sizes they show how the error depends on the size of the picture.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from dataclasses import dataclass
+
+from ..bindings.abi import LancerError
+from ..bindings.enums import Integrator
+from ..bindings.session import Cancelled, Scene, Session
+from .costs import small_picture
+from .schedule import FIRST_LOOK
+
+# Pixels of the larger of the small pictures.
+_FEWEST, _MOST = 1024, 36864
+_QUARTER, _LEAST_QUARTER = 4, 64
+# Of the time: for the samples that all pixels get, of either picture.
+_EVEN_SHARE = 0.2
+_FIRST = 8  # samples before which an error is not worth a point
+_NEXT = 0.7  # of the last bound: the target of the next round
+_DEEPEST = 1 << 16  # samples of a pixel
+_ENOUGH = 0.01  # an error below which nothing more is asked
+_CLASSIC_DEPTH = 16  # the core's own limit
+_REACH = 1.96  # of 95 % of a Gaussian
+
+
+@dataclass(frozen=True)
+class Point:
+    """samples: of a pixel, on average; seconds: since the first sample."""
+
+    samples: float
+    error: float
+    high: float
+    cannot_exclude: float
+    seconds: float
+
+    @property
+    def spread(self):
+        """Of the error's logarithm, one standard deviation."""
+        return math.log(max(self.high / self.error, 1.0)) / _REACH if self.error > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Points of the two small pictures, in order of samples."""
+
+    refined: tuple  # of the larger; the same for all pixels up to FIRST_LOOK samples
+    even: tuple  # of the smaller
+    pixels: int
+    even_pixels: int
+    before: float = 0.0  # seconds from F12 to the first sample
+    classic_seconds: float = 0.0  # of a pixel's sample in CLASSIC; 0 = not measured
+
+
+def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None):
+    """Measured, in about so many seconds. Raises Cancelled where poll asks for it; tell(fraction, text) hears how far it is."""
+    started = time.monotonic()
+    tell = tell or (lambda fraction, text: None)
+    with Scene.upload(snapshot, library, poll) as scene:
+        begun = time.monotonic()
+
+        def show(text):
+            tell(min(1.0, (time.monotonic() - begun) / max(seconds, 1e-9)), text)
+
+        run = _Run(scene, snapshot, begun + seconds, poll, show)
+        classic = run.classic() if snapshot.settings.integrator == Integrator.PATH else 0.0
+        large, small = run.cameras(seconds)
+        even = run.even(small, begun + 2.0 * _EVEN_SHARE * seconds)
+        refined = run.refined(large)
+    if not (even and refined):
+        raise LancerError("so small a picture cannot tell its error")
+    return Measured(tuple(refined), tuple(even), _pixels(large), _pixels(small), begun - started, classic)
+
+
+class _Run:
+    """The renders of one measurement."""
+
+    def __init__(self, scene, snapshot, until, poll, show):
+        self.scene, self.camera, self.poll, self.until, self.show = scene, snapshot.camera, poll, until, show
+        self.doing = "A look at the scene"
+        # With a target the film is laid out for refinement.
+        self.refining = dataclasses.replace(snapshot.settings, target_error=1e-6, time_limit=0.0, samples=_DEEPEST)
+        self.settings = dataclasses.replace(self.refining, target_error=0.0)
+
+    def cameras(self, seconds):
+        """Of both small pictures: as large as the time allows for FIRST_LOOK samples of each pixel."""
+        camera = small_picture(self.camera, _FEWEST)
+        with Session(self.scene, camera, self.settings) as session:
+            once = self._seconds(session, camera)
+        wanted = _EVEN_SHARE * seconds / (FIRST_LOOK * max(once, 1e-9))
+        large = small_picture(self.camera, min(max(wanted, _FEWEST), _MOST))
+        return large, small_picture(large, max(_pixels(large) / _QUARTER, _LEAST_QUARTER))
+
+    def even(self, camera, until):
+        """The same samples for all pixels: FIRST_LOOK at least, then while there is time."""
+        points = []
+        self.doing = "All pixels alike"
+        with Session(self.scene, camera, self.settings) as session:
+            for done in self._doubling(session, camera, points):
+                # The next range takes as long as all before it.
+                late = time.monotonic() + session.statistics().render_seconds > until
+                if done >= FIRST_LOOK and (late or session.error().bound <= _ENOUGH):
+                    break
+        return points
+
+    def refined(self, camera):
+        points = []
+        self.doing = "Samples where the error is"
+        with Session(self.scene, camera, self.refining) as session:
+            for done in self._doubling(session, camera, points):
+                if done >= FIRST_LOOK:
+                    break
+            while time.monotonic() < self.until:
+                bound = session.error().bound
+                if not _ENOUGH < bound < math.inf or not session.refine(_NEXT * bound):
+                    break
+                self._wait(session, until=self.until)
+                _add(points, session, camera)
+        return points
+
+    def _doubling(self, session, camera, points):
+        """Samples of each pixel, 1, 2, 4 ..., as they are there; each adds its point."""
+        done = 0
+        while done < _DEEPEST:
+            self._render(session, done, max(1, done))
+            done += max(1, done)
+            _add(points, session, camera)
+            yield done
+
+    def classic(self):
+        """Seconds of a pixel's sample of the other integrator."""
+        bounces = min(self.settings.max_bounces, _CLASSIC_DEPTH)
+        camera = small_picture(self.camera, 4 * _FEWEST)
+        settings = dataclasses.replace(self.settings, integrator=Integrator.CLASSIC, max_bounces=bounces)
+        with Session(self.scene, camera, settings) as session:
+            return self._seconds(session, camera)
+
+    def _seconds(self, session, camera):
+        """Of a pixel's sample; the first look at a scene, which brings it into the caches, is not timed."""
+        self._render(session, 0, 1)
+        before = session.statistics().render_seconds
+        self._render(session, 1, 3)
+        return (session.statistics().render_seconds - before) / (3 * _pixels(camera))
+
+    def _render(self, session, first, count):
+        session.render(first, count)
+        self._wait(session)
+
+    def _wait(self, session, until=math.inf):
+        stopped = False
+        while True:
+            progress = session.wait(0.05)
+            self.show(self.doing)
+            if progress.finished:
+                break
+            if self.poll is not None and self.poll():
+                session.cancel()
+            elif not stopped and time.monotonic() > until:
+                stopped = True
+                session.stop()
+        if progress.cancelled:
+            raise Cancelled
+
+
+def _pixels(camera):
+    return camera.region_width * camera.region_height
+
+
+def _add(points, session, camera):
+    error, statistics = session.error(), session.statistics()
+    samples = statistics.samples / _pixels(camera)
+    if samples >= _FIRST and error.known and not (points and points[-1].samples >= samples):
+        points.append(Point(samples, error.error, error.high, error.cannot_exclude, statistics.render_seconds))

@@ -1,0 +1,56 @@
+"""What the features of a scene cost, measured on what F12 would render. The figures are kept in engine.last_costs."""
+
+import functools
+
+import bpy
+
+from . import engine, measuring
+from .by_scene import ByScene
+from .measure.costs import measure_costs
+
+# Of what the figures in engine.last_costs were measured, by the scene.
+_states = ByScene()
+
+
+def _state(scene):
+    # The seconds are those of a whole frame.
+    render = scene.render
+    return *measuring.state(scene), scene.lancer.samples, render.resolution_x, render.resolution_percentage
+
+
+def is_old(scene):
+    return scene in _states and _states[scene] != _state(scene)
+
+
+class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
+    bl_idname = "lancer.measure_features"
+    bl_label = "Measure What Features Cost"
+    figures = _states
+    bl_description = (
+        "Renders small pictures of the scene with and without each of its features in turn, and tells how much time each "
+        "takes. Nothing in the scene is changed. Esc stops it"
+    )
+
+    seconds: bpy.props.FloatProperty(
+        name="Seconds", description="How long to measure; more seconds give narrower figures", min=0.1, default=10.0
+    )
+
+    def work(self):
+        return functools.partial(measure_costs, seconds=self.seconds)
+
+    def begun(self, context, snapshot):
+        self._state = _state(context.scene)
+
+    def keep(self, scene, measurement):
+        _states[scene] = self._state
+        engine.keep_costs(scene, measurement.found)
+        for cost in measurement.found.hints:
+            self.report({"INFO"}, f"Lancer: {cost.text}. Without: {cost.without}")
+
+
+def register():
+    bpy.utils.register_class(LANCER_OT_measure_features)
+
+
+def unregister():
+    bpy.utils.unregister_class(LANCER_OT_measure_features)

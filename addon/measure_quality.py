@@ -1,0 +1,122 @@
+"""What the presets of quality will cost and give on this scene: measured by an operator, told beside each of them.
+
+The measurement is kept in this session, and is told to be old once what it depends on has changed.
+"""
+
+import dataclasses
+import functools
+from dataclasses import dataclass
+
+import bpy
+
+from . import measuring
+from .by_scene import ByScene
+from .measure import render_report
+from .measure.forecast import classic_seconds, forecast
+from .measure.trial_renders import measure
+from .scene_settings import QUALITIES
+
+# An interval whose ends differ by more than this factor says nothing to plan by, unless even its upper end is short (seconds).
+_TELLING = 20.0
+_SHORT = 20.0
+
+# Kept, by the scene.
+measured = ByScene()
+
+
+@dataclass
+class Kept:
+    points: object  # forecast.Measured
+    pixels: int  # of the picture then
+    size: float  # of the resolution then, by which a later one is scaled
+    state: tuple  # measuring.state then
+
+
+def is_old(scene):
+    return measured[scene].state != measuring.state(scene)
+
+
+def _size(scene):
+    render = scene.render
+    return render.resolution_x * render.resolution_y * render.resolution_percentage**2
+
+
+def _pixels(scene):
+    """Of the picture as it would be rendered now."""
+    kept = measured[scene]
+    return kept.pixels * _size(scene) / kept.size
+
+
+def forecasts(scene):
+    """(name, Forecast) of each preset and of the numbers that are set now."""
+    kept, own, pixels = measured[scene], scene.lancer, _pixels(scene)
+    for name, (error, samples) in QUALITIES.items():
+        yield name.capitalize(), forecast(kept.points, pixels, error, samples)
+    yield "As set", forecast(kept.points, pixels, own.target_error, own.samples, own.time_limit)
+
+
+def lines(scene):
+    """What a panel shows, a line each."""
+    for name, told in forecasts(scene):
+        error, _ = QUALITIES.get(name.upper(), (scene.lancer.target_error, 0))
+        short = (
+            f"; {told.samples.value:.0f} samples end it above its {render_report.percent(error)}" if told.misses(error) else ""
+        )
+        yield f"{name}: {seconds(told.seconds)}; error {share(told.error)}{short}"
+    samples = scene.lancer.samples
+    classic = classic_seconds(measured[scene].points, _pixels(scene), samples)
+    if classic is not None:
+        yield f"Classic, {samples} sample{'s' if samples > 1 else ''}: about {render_report.duration(classic)}"
+
+
+def seconds(told):
+    value, low, high = (render_report.duration(item) for item in (told.value, told.low, told.high))
+    if low == high:
+        return f"about {value}"
+    if told.high > _TELLING * told.low:
+        return f"at most {high}" if told.high < _SHORT else "the time cannot be told"
+    # Panels are narrow: a unit that both have is told once.
+    number, _, unit = low.partition(" ")
+    return f"about {value}, {number if high.endswith(f' {unit}') else low} to {high}"
+
+
+def share(told):
+    return f"{render_report.percent(told.value)}, {render_report.percent(told.low)} to {render_report.percent(told.high)}"
+
+
+class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
+    bl_idname = "lancer.measure_quality"
+    bl_label = "Measure Speed and Accuracy"
+    figures = measured
+    bl_description = (
+        "Renders small pictures of the scene for some seconds, and tells how long each quality will take at the full size "
+        "and how near it will come. Nothing in the scene is changed. Esc stops it"
+    )
+
+    seconds: bpy.props.FloatProperty(
+        name="Seconds", description="How long to measure; more seconds give narrower figures", min=0.1, default=10.0
+    )
+
+    def work(self):
+        return functools.partial(measure, seconds=self.seconds)
+
+    def begun(self, context, snapshot):
+        camera = snapshot.camera
+        pixels = camera.region_width * camera.region_height
+        self._kept = Kept(None, pixels, _size(context.scene), measuring.state(context.scene))
+
+    def keep(self, scene, measurement):
+        found = measurement.found
+        # F12 exports the scene, too.
+        self._kept.points = dataclasses.replace(found, before=found.before + measurement.exporting)
+        measured[scene] = self._kept
+        for line in lines(scene):
+            self.report({"INFO"}, f"Lancer: {line}")
+
+
+def register():
+    bpy.utils.register_class(LANCER_OT_measure_quality)
+
+
+def unregister():
+    bpy.utils.unregister_class(LANCER_OT_measure_quality)

@@ -1,0 +1,69 @@
+"""The add-on's rooms: imports go down the ranks, and what measures or checks runs without Blender."""
+
+import ast
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+ADDON = Path(ROOT, "addon")
+# A file imports files of its own rank and of those before it. Rooms are named as folders, other files without their ending.
+RANKS = (
+    "bindings severity by_scene priority registering scene_copy",
+    "measure denoise checks export",
+    "passes render_export picture redraw render_job",
+    "engine viewport check_scene measuring preview",
+    "scene_settings properties preferences presets bug_report course_groups measure_features measure_quality manual ui",
+    "__init__",
+)
+RANK = {name: rank for rank, names in enumerate(RANKS) for name in names.split()}
+WITHOUT_BLENDER = ("bindings", "checks", "measure")
+
+
+def place_of(path):
+    return path.relative_to(ADDON).parts[0].removesuffix(".py")
+
+
+def imported(path):
+    """Names that a file imports: those of the add-on as places, others with a dot before them."""
+    depth = len(path.relative_to(ADDON).parts)
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from ("." + alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            yield "." + node.module.split(".")[0]
+        elif isinstance(node, ast.ImportFrom) and node.level == depth:
+            # Of `from .. import x` either x is a file or a room, or it stands in __init__.
+            names = [node.module.split(".")[0]] if node.module else [alias.name for alias in node.names]
+            yield from (name if name in RANK else "__init__" for name in names)
+
+
+FILES = sorted(path for path in ADDON.rglob("*.py"))
+PLACES = sorted({place_of(path) for path in FILES})
+
+
+def test_every_place_has_a_rank():
+    assert PLACES == sorted(RANK)
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_imports_go_down(place):
+    for path in (path for path in FILES if place_of(path) == place):
+        wanted = {name for name in imported(path) if not name.startswith(".")} - {place}
+        if place == "bug_report":
+            # The release is said beside the registration alone.
+            wanted.discard("__init__")
+        higher = {name for name in wanted if RANK[name] > RANK[place]}
+        assert not higher, f"{path.relative_to(ADDON)} imports {sorted(higher)} from above"
+        if (ADDON / place).is_dir():
+            beside = {name for name in wanted if RANK[name] == RANK[place] and (ADDON / name).is_dir()}
+            assert not beside, f"{path.relative_to(ADDON)} imports {sorted(beside)} from beside"
+
+
+@pytest.mark.parametrize("place", WITHOUT_BLENDER)
+def test_rooms_without_blender(place):
+    for path in (ADDON / place).rglob("*.py"):
+        names = set(imported(path))
+        assert not names & {".bpy", ".bpy_extras", ".mathutils", ".gpu", ".blf"}, path
+        # Nor by way of another file.
+        assert {name for name in names if not name.startswith(".")} <= {*WITHOUT_BLENDER, "severity"}, path

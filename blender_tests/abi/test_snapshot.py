@@ -1,0 +1,128 @@
+"""A snapshot in a file is the snapshot: it loads equal, compares by every number, and renders the same bits."""
+
+import dataclasses
+import weakref
+
+import numpy as np
+import pytest
+from rich_snapshot import rich
+from tiny_scenes import showroom
+
+from addon.bindings import structs
+from addon.bindings.abi import Pass
+from addon.bindings.npz import save_npz
+from addon.bindings.session import Session
+from addon.bindings.snapshot import Lobe, Material, Principled, SceneSnapshot, World
+
+
+@pytest.fixture
+def saved(tmp_path):
+    path = str(tmp_path / "scene.npz")
+    rich().save(path)
+    return path
+
+
+def leaves(item, path=()):
+    """The path of every number, text and array within a record."""
+    if dataclasses.is_dataclass(item):
+        for field in dataclasses.fields(item):
+            yield from leaves(getattr(item, field.name), (*path, field.name))
+    elif isinstance(item, tuple):
+        for number, part in enumerate(item):
+            yield from leaves(part, (*path, number))
+    elif item is not None:
+        yield path
+
+
+def changed(item, path):
+    """A copy in which the leaf at the path differs in one number."""
+    if path:
+        key, rest = path[0], path[1:]
+        if isinstance(item, tuple):
+            return (*item[:key], changed(item[key], rest), *item[key + 1 :])
+        return dataclasses.replace(item, **{key: changed(getattr(item, key), rest)})
+    if isinstance(item, np.ndarray):
+        copy = item.copy()
+        flat = copy.reshape(-1)
+        # An index stays within its table: name 7 of 8 becomes name 6.
+        flat[-1] = np.nextafter(flat[-1], flat.dtype.type(np.inf)) if copy.dtype.kind == "f" else flat[-1] ^ 1
+        return copy
+    if isinstance(item, str):
+        return item + "x"
+    if isinstance(item, bool):
+        return not item
+    return item + 1 if isinstance(item, int) else float(np.nextafter(item, np.inf))
+
+
+def differs(item, path, from_this):
+    """Whether one step at the path shows; a table that no longer fits its mesh, or no pass, is refused by the record."""
+    try:
+        return changed(item, path) != from_this
+    except ValueError as error:
+        return "rows in domain" in str(error) or "is not a valid Pass" in str(error)
+
+
+def test_a_loaded_snapshot_equals_the_saved_one(saved):
+    loaded = SceneSnapshot.load(saved)
+    assert loaded == rich()
+    assert loaded.meshes[1].uvs.dtype == np.float32 and loaded.instances.matrices.dtype == np.float64
+    assert loaded.meshes[0].normals is None
+
+
+def test_a_file_of_another_record_is_refused(tmp_path):
+    path = str(tmp_path / "lobe.npz")
+    save_npz(Lobe(), path)
+    with pytest.raises(ValueError, match="holds no scene snapshot"):
+        SceneSnapshot.load(path)
+
+
+def test_one_number_makes_a_difference(saved):
+    """Each field in turn, by the smallest step that its type knows; the file keeps that step."""
+    loaded, paths = SceneSnapshot.load(saved), list(leaves(rich()))
+    assert len(paths) > 200
+    assert [path for path in paths if not differs(loaded, path, rich())] == []
+
+
+def test_the_smallest_step_survives_the_file(tmp_path):
+    other = changed(rich(), ("lights", 1, "emission", 2))
+    path = str(tmp_path / "other.npz")
+    other.save(path)
+    assert SceneSnapshot.load(path) == other and SceneSnapshot.load(path) != rich()
+
+
+def test_the_loaded_snapshot_renders_the_same_bits(saved):
+    def bits(snapshot):
+        with Session.upload(snapshot) as session:
+            assert session.render_all()
+            return {which.name: session.read(which).tobytes() for which in Pass}
+
+    first, again = bits(rich()), bits(SceneSnapshot.load(saved))
+    assert [name for name in first if first[name] != again[name]] == []
+    # Equal zeros would prove nothing.
+    assert np.frombuffer(first["COMBINED"], np.float32).std() > 0.01
+
+
+def test_a_released_snapshot_renders_the_same_bits_and_is_let_go():
+    kept, given = showroom(), showroom()
+    arrays = [weakref.ref(mesh.positions) for mesh in given.meshes]
+    assert arrays and given == kept
+    with Session.upload(kept) as first, Session.upload(given, release=True) as second:
+        assert (given.meshes, given.materials, given.lights, len(given.instances)) == ((), (), (), 0)
+        assert not any(array() is not None for array in arrays)
+        assert first.render_all(2) and second.render_all(2)
+        assert np.array_equal(first.read(Pass.COMBINED), second.read(Pass.COMBINED))
+    assert given != kept and len(kept.meshes) == len(arrays)
+
+
+@pytest.mark.parametrize("record", [Principled, Lobe, Material, World])
+def test_a_record_has_the_parameters_of_its_struct(record):
+    """Those that the class names and those that it does not, which are 0 unless they are given."""
+    names = [name for name, kind in getattr(structs, record.__name__)._fields_ if kind is structs.Parameter]
+    assert names and set(names) <= {field.name for field in dataclasses.fields(record)}
+    given = record(**{name: number for number, name in enumerate(names)})
+    assert [getattr(given, name) for name in names] == [float(number) for number in range(len(names))]
+
+
+def test_a_parameter_that_is_not_named_is_zero():
+    assert (Principled().coat, Lobe().rotation, Material().holdout) == (0.0, 0.0, 0.0)
+    assert Principled().base_color == (0.8, 0.8, 0.8)

@@ -1,0 +1,197 @@
+"""F12 with denoising: what is in the file, what stays as it was, and what is told."""
+
+import hashlib
+import os
+import signal
+import tempfile
+import threading
+
+import bpy
+import exr
+import numpy as np
+import stage
+
+from addon import engine
+from addon.denoise import view_layer as denoise
+
+
+def _scene(width=64, height=48, samples=4):
+    """Matt, mirroring, glass and clear things before a sky."""
+    scene = stage.empty(width, height, samples)
+    stage.plane(material=stage.shader(Color=(0.6, 0.5, 0.4)))
+    stage.cube(material=stage.shader(Color=(0.8, 0.2, 0.1)), location=(-1.2, 0, 0.5))
+    stage.cube(material=stage.shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.8, 0.7), Roughness=0.0), location=(1.2, 0.5, 0.5))
+    stage.ball(0.5, stage.shader("ShaderNodeBsdfGlass", IOR=1.4), segments=16, location=(0, -1, 0.5))
+    for step in range(3):
+        clear = stage.shader("ShaderNodeBsdfTransparent", Color=(0.9, 0.7, 0.8))
+        stage.plane(1.0, clear, location=(-0.8, -1.5 - 0.2 * step, 0.6), rotation=(1.5, 0, 0))
+    stage.light(energy=300.0)
+    stage.sky()
+    stage.camera((0, -5, 1.6), (0, 0, 0.7))
+    return scene
+
+
+def _render(scene, denoising, layer=None):
+    """{pass: picture} of a view layer, what was told, the statistics, and the file's bytes."""
+    scene.lancer.use_denoising = denoising
+    path = os.path.join(tempfile.mkdtemp(), "passes.exr")
+    exr.write_settings(scene, path)
+    bpy.ops.render.render(write_still=True)
+    with open(path, "rb") as file:
+        data = file.read()
+    return exr.read(path, layer), list(engine.last_messages[scene.name]), engine.last_statistics[scene.name], data
+
+
+def _compare(scene, layer=None):
+    """The same scene without and with denoising."""
+    raw, _, before, data = _render(scene, False, layer)
+    pictures, messages, statistics, stamped = _render(scene, True, layer)
+    combined = pictures["Combined"]
+    declaration = denoise.DECLARATION.encode()
+    return {
+        "version": list(bpy.app.version),
+        "passes": sorted(pictures),
+        "passes without": sorted(raw),
+        "noisy is raw": np.array_equal(pictures.get("Noisy Image"), raw["Combined"]),
+        "alpha is raw": np.array_equal(combined[..., 3], raw["Combined"][..., 3]),
+        "combined is raw": np.array_equal(combined, raw["Combined"]),
+        "others are raw": all(np.array_equal(pictures[name], raw[name]) for name in raw if name != "Combined"),
+        "alphas": [float(combined[..., 3].min()), float(combined[..., 3].max())],
+        "finite": bool(np.isfinite(combined).all()),
+        "size": list(combined.shape),
+        "picture": hashlib.sha256(combined.tobytes()).hexdigest(),
+        "messages": messages,
+        "statistics": {name: value for name, value in statistics.items() if name.startswith("denois")},
+        "film alike": statistics["film_bytes"] == before["film_bytes"],
+        "stamped": [declaration in data, declaration in stamped],
+    }
+
+
+def plain():
+    return _compare(_scene())
+
+
+def classic():
+    scene = _scene()
+    scene.lancer.integrator = "CLASSIC"
+    return _compare(scene)
+
+
+def passes():
+    """Beside other passes, those for denoising among them."""
+    scene = _scene()
+    layer = scene.view_layers[0]
+    layer.use_pass_normal = layer.use_pass_diffuse_direct = True
+    layer.cycles.denoising_store_passes = True
+    return _compare(scene)
+
+
+def border():
+    scene = _scene()
+    render = scene.render
+    render.use_border = render.use_crop_to_border = True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.25, 0.75, 0.25, 1.0
+    return _compare(scene)
+
+
+def transparent():
+    scene = _scene()
+    scene.render.film_transparent = True
+    return _compare(scene)
+
+
+def view_layers():
+    """Two layers, of which the second does not want it."""
+    scene = _scene()
+    names = [scene.view_layers[0].name, scene.view_layers.new("Raw").name]
+    scene.view_layers["Raw"].cycles.use_denoising = False
+    return [_compare(scene, name) for name in names]
+
+
+def normals():
+    scene = _scene()
+    scene.lancer.integrator = "NORMALS"
+    return _compare(scene)
+
+
+def several():
+    """Many cases of one process."""
+    return {
+        case.__name__: case()
+        for case in (plain, classic, passes, border, transparent, view_layers, normals, failing, as_cycles, nearer)
+    } | {how: stopped(how) for how in ("poll", "at once")}
+
+
+def stopped(how):
+    """Ended as soon as a share is told: by what is polled, or by Ctrl-C of this Python; or even before."""
+    scene = _scene(samples=1)
+    raw, *_ = _render(scene, False)
+    original, said, result = denoise.apply, [], {}
+
+    def apply(session, _, tell):
+        def hear(text):
+            said.append(text)
+            tell(text)
+            if how == "interrupt" and "%" in text:
+                os.kill(os.getpid(), signal.SIGINT)
+
+        return original(session, lambda: how == "poll" and "%" in said[-1] or how == "at once", hear)
+
+    denoise.apply = apply
+    if how == "interrupt":
+        # As in a terminal: what a shell starts in the background ignores Ctrl-C.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        pictures, _, statistics, data = _render(scene, True)
+        result["raw"] = all(np.array_equal(pictures[name], raw["Combined"]) for name in ("Combined", "Noisy Image"))
+        result["denoised"] = statistics["denoised"]
+        result["stamped"] = denoise.DECLARATION.encode() in data
+    except RuntimeError as error:
+        result["error"] = str(error)
+    finally:
+        denoise.apply = original
+    working = [thread.name for thread in threading.enumerate() if "denoising" in thread.name]
+    return {**result, "said": said, "messages": list(engine.last_messages[scene.name]), "working": working}
+
+
+def failing():
+    """The library gives up in the middle."""
+    original = denoise.denoiser.denoise
+
+    def fail(*_, **__):
+        raise denoise.LancerError("Open Image Denoise: out of memory")
+
+    denoise.denoiser.denoise = fail
+    try:
+        return _compare(_scene())
+    finally:
+        denoise.denoiser.denoise = original
+
+
+def as_cycles():
+    """The passes of both engines for the same switches."""
+    names = {"version": list(bpy.app.version)}
+    for store in (False, True):
+        scene = _scene(16, 16, 1)
+        scene.view_layers[0].cycles.denoising_store_passes = store
+        ours = _render(scene, True)[0]
+        scene.render.engine = "CYCLES"
+        scene.cycles.samples, scene.cycles.use_denoising = 1, True
+        path = os.path.join(tempfile.mkdtemp(), "cycles.exr")
+        exr.write_settings(scene, path)
+        bpy.ops.render.render(write_still=True)
+        names[str(store)] = [{name: picture.shape[2] for name, picture in each.items()} for each in (ours, exr.read(path))]
+    return names
+
+
+def nearer():
+    """Errors against a converged picture: with noise and without, of 16 samples."""
+    scene = _scene(96, 64, 16)
+    pictures = _render(scene, True)[0]
+    scene.lancer.samples, scene.lancer.seed = 1024, 1
+    truth = _render(scene, False)[0]["Combined"][..., :3].astype(np.float64)
+
+    def error(name):
+        return float(np.mean((pictures[name][..., :3] - truth) ** 2 / (truth**2 + 0.01 * np.mean(truth) ** 2)))
+
+    return {"raw": error("Noisy Image"), "denoised": error("Combined")}

@@ -1,0 +1,80 @@
+"""Lamps with all their switches as they arrive in a snapshot."""
+
+import bpy
+import stage
+
+from addon.export.lights import export_light
+from addon.export.messages import Messages
+
+
+def _export(thing, messages):
+    bpy.context.view_layer.update()
+    return export_light(thing, thing.matrix_world, messages)
+
+
+def _told(light):
+    return {"hidden_from": int(light.hidden_from), "no_shadow": bool(light.no_shadow), "size": list(light.size)}
+
+
+def _nodes(thing, color=(1.0, 1.0, 1.0), strength=1.0):
+    """An Emission node under the light's output."""
+    light = thing.data
+    if bpy.app.version < (5, 2):
+        light.use_nodes = True
+    tree = light.node_tree
+    tree.nodes.clear()
+    emission, output = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeOutputLight")
+    emission.inputs["Color"].default_value = (*color, 1.0)
+    emission.inputs["Strength"].default_value = strength
+    tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    return tree, emission
+
+
+def export():
+    stage.empty()
+    messages = Messages()
+    result = {"version": list(bpy.app.version)}
+    result["plain"] = _told(_export(stage.light("SPOT"), messages))
+    seen = stage.light("POINT")
+    seen.visible_camera, seen.visible_glossy, seen.visible_volume_scatter = True, False, False
+    result["seen"] = _told(_export(seen, messages))
+    unshadowed = stage.light("SUN")
+    owner = unshadowed.data.cycles if hasattr(unshadowed.data.cycles, "cast_shadow") else unshadowed.data
+    setattr(owner, "cast_shadow" if owner is not unshadowed.data else "use_shadow", False)
+    result["unshadowed"] = _told(_export(unshadowed, messages))
+    stretched = stage.light("SPOT", rotation=(0.3, 0.2, 0.1))
+    stretched.scale = (6.0, 1.0, 2.0)
+    result["stretched"] = _told(_export(stretched, messages))
+    portal = stage.light("AREA")
+    portal.data.cycles.is_portal = True
+    result["portal"] = _export(portal, messages)
+    plain, colored = stage.light("POINT"), stage.light("POINT")
+    _nodes(colored, (0.5, 0.25, 1.0), 3.0)
+    levels = [_export(thing, messages).emission for thing in (colored, plain)]
+    result["nodes"] = [a / b for a, b in zip(*levels, strict=True)]
+    result["messages"] = messages.lines()
+    textured = stage.light("POINT")
+    tree, emission = _nodes(textured)
+    coordinate = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinate.outputs["Normal"], emission.inputs["Color"])
+    lost = Messages()
+    _export(textured, lost)
+    result["textured"] = lost.lines()
+    return result
+
+
+def unknown():
+    """What a light shines whose nodes hold a picture, or a colour that nobody knows: [watts of the plain lamp's, messages]."""
+    result = {}
+    for kind in ("TexImage", "TexMagic"):
+        stage.empty()
+        plain, shown = stage.light("POINT"), stage.light("POINT")
+        tree, emission = _nodes(shown)
+        node = tree.nodes.new("ShaderNode" + kind)
+        if kind == "TexImage":
+            node.image = bpy.data.images.new("picture", 4, 4)
+        tree.links.new(node.outputs["Color"], emission.inputs["Color"])
+        messages = Messages()
+        share = _export(shown, messages).emission[0] / _export(plain, Messages()).emission[0]
+        result[kind] = [share, messages.lines()]
+    return result

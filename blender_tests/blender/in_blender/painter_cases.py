@@ -1,0 +1,169 @@
+"""The painter of a view without a window: what it shows is what a session gives, and what is wanted later comes first."""
+
+import dataclasses
+import gc
+import threading
+import time
+
+import bpy
+import numpy as np
+import stage
+
+from addon.bindings import snapshot
+from addon.bindings.abi import LancerError
+from addon.bindings.session import Scene, Session
+from addon.denoise import denoiser
+from addon.export.scene import export_scene
+from addon.export.view import Rectangle, View
+from addon.viewport.painter import Painter, Wanted
+from addon.viewport.sizes import coarsest
+
+_PATIENCE = 60.0
+
+
+def _contents(samples=8):
+    stage.room()
+    whole, _ = export_scene(bpy.context.evaluated_depsgraph_get())
+    return whole.replaced(settings=dataclasses.replace(whole.settings, samples=samples, target_error=0.0, time_limit=0.0))
+
+
+def _view(whole, width=96, height=64):
+    size = {"width": width, "height": height, "region_width": width, "region_height": height, "x": 0, "y": 0}
+    return View(Rectangle(0, 0, width, height), whole.camera.replaced(**size))
+
+
+def _wanted(whole, view, finest=1, denoising=False):
+    return Wanted(whole, whole.settings, view, finest, coarsest(view.rectangle, finest, 16), denoising)
+
+
+def _until(painter, condition):
+    limit = time.monotonic() + _PATIENCE
+    while not condition():
+        assert time.monotonic() < limit
+        painter.step()
+        time.sleep(0.005)
+
+
+def _left(painter):
+    """What is open of the library after the end."""
+    painter.close()
+    gc.collect()
+    return sum(type(thing) in (Scene, Session) and thing._finalizer.alive for thing in gc.get_objects())
+
+
+def bits():
+    """Whether the finished pictures of two views, at two pixel sizes, are those of a session, bit for bit; how they came."""
+    whole = _contents()
+    painter = Painter()
+    equal, sizes = [], []
+    for width, finest in ((96, 1), (50, 1), (96, 2)):
+        wanted = _wanted(whole, _view(whole, width), finest)
+        painter.want(wanted)
+        _until(painter, lambda: not painter.is_busy)
+        picture = painter.picture
+        with Session.upload(whole.replaced(camera=wanted.view.coarser(finest))) as session:
+            session.render_all(8)
+            equal.append(bool(np.array_equal(session.read(), picture.image)) and picture.wanted is wanted)
+        sizes.append((picture.size, picture.samples, *picture.image.shape))
+    return {"equal": equal, "sizes": sizes, "left": _left(painter), "failure": painter.failure}
+
+
+def _sphere(rings, segments):
+    """A mesh of many triangles, made without Blender."""
+    theta, phi = np.meshgrid(np.linspace(0.01, 3.13, rings), np.linspace(0.0, 6.28, segments, endpoint=False), indexing="ij")
+    places = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=2).reshape(-1, 3)
+    first = (np.arange(rings - 1)[:, None] * segments + np.arange(segments)).ravel()
+    after = (np.arange(rings - 1)[:, None] * segments + (np.arange(segments) + 1) % segments).ravel()
+    faces = np.concatenate(
+        [np.stack([first, first + segments, after], 1), np.stack([after, first + segments, after + segments], 1)]
+    )
+    return snapshot.MeshData("sphere", places, faces)
+
+
+def newest():
+    """A heavy scene, then a light one: the heavy one is given up. A view that moves all the time is shown all the time."""
+    light = _contents(samples=100000)
+    meshes = (_sphere(1200, 1200),)
+    heavy = light.replaced(meshes=meshes, instances=snapshot.InstanceTable.build([{"mesh": 0, "name": "sphere"}]))
+    painter = Painter()
+    view = _view(light)
+    painter.want(_wanted(heavy, view))
+    started = time.monotonic()
+    while time.monotonic() < started + 0.4:
+        painter.step()
+        time.sleep(0.005)
+    started = painter.is_building
+    wanted = _wanted(light, view)
+    painter.want(wanted)
+    _until(painter, lambda: painter.picture is not None)
+    first = painter.picture.wanted is wanted
+    shown = []
+    for step in range(40):
+        matrix = light.camera.matrix.copy()
+        matrix[0, 3] += 0.01 * step
+        painter.want(_wanted(light, View(view.rectangle, view.camera.replaced(matrix=matrix))))
+        painter.step()
+        time.sleep(0.02)
+        shown.append(painter.picture.wanted.view.camera.matrix[0, 3])
+    return {"building": started, "first": first, "shown": len(set(shown)), "left": _left(painter)}
+
+
+def fails():
+    """What cannot be rendered is told, and what is wanted after it is rendered."""
+    whole = _contents()
+    painter = Painter()
+    view = _view(whole)
+    wrong = whole.replaced(meshes=(snapshot.MeshData("bad", np.zeros((3, 3)), [[0, 1, 7]]),))
+    painter.want(_wanted(wrong, view))
+    _until(painter, lambda: painter.failure)
+    told = painter.failure
+    wanted = _wanted(whole, view)
+    painter.want(wanted)
+    _until(painter, lambda: painter.picture is not None and not painter.is_busy)
+    return {"told": told, "failure": painter.failure, "right": painter.picture.wanted is wanted, "left": _left(painter)}
+
+
+def denoiser_fails():
+    """The picture stays as it is, and why is told once."""
+
+    def broken(*_, **__):
+        raise LancerError("Open Image Denoise: out of order")
+
+    whole = _contents(samples=4)
+    painter = Painter()
+    plain, denoiser.denoise = denoiser.denoise, broken
+    try:
+        painter.want(_wanted(whole, _view(whole), denoising=True))
+        _until(painter, lambda: not painter.is_busy)
+    finally:
+        denoiser.denoise = plain
+    picture = painter.picture
+    return {
+        "told": [line for line in painter.messages if "out of order" in line],
+        "denoised": picture.denoised,
+        "samples": picture.samples,
+        "failure": painter.failure,
+        "left": _left(painter),
+    }
+
+
+def denoises():
+    """The finished picture with and without denoising: how much of the noise is left, and whether alpha is as it was."""
+    whole = _contents(samples=4)
+    painter = Painter()
+    view = _view(whole, 192, 128)
+    pictures = []
+    for denoising in (False, True):
+        painter.want(_wanted(whole, view, denoising=denoising))
+        _until(painter, lambda: not painter.is_busy)
+        pictures.append(painter.picture)
+    noisy, clean = (picture.image for picture in pictures)
+    roughness = [float(np.abs(np.diff(image[:, :, :3], n=2, axis=1)).mean()) for image in (noisy, clean)]
+    return {
+        "denoised": [picture.denoised for picture in pictures],
+        "roughness": roughness,
+        "alpha": bool(np.array_equal(noisy[:, :, 3], clean[:, :, 3])),
+        "failure": painter.failure,
+        "left": _left(painter),
+        "threads": [thread.name for thread in threading.enumerate() if "lancer" in thread.name],
+    }

@@ -1,0 +1,72 @@
+"""Speed and accuracy of the presets, measured by the operator."""
+
+import bpy
+import stage
+from uses_cases import plain_data
+
+
+def _values(told):
+    return [told.seconds.low, told.seconds.value, told.seconds.high, told.error.low, told.error.value, told.error.high]
+
+
+def measured():
+    """The operator without a window: what it keeps and tells, whether the file is as it was, and a render that was foretold."""
+    from addon import engine, measure_quality
+
+    scene = stage.room(width=64, height=36, samples=64)
+    # Matrices of new objects are made by the first look at them.
+    bpy.context.view_layer.update()
+    before = plain_data()
+    result = bpy.ops.lancer.measure_quality(seconds=1.0)
+    after = plain_data()
+    told = {name: _values(forecast) for name, forecast in measure_quality.forecasts(scene)}
+    lines = list(measure_quality.lines(scene))
+    bpy.ops.render.render()
+    numbers = engine.last_statistics[scene.name]
+    old = {"rendered": measure_quality.is_old(scene)}
+    scene.lancer.samples = 128
+    more = dict(measure_quality.forecasts(scene))["As set"]
+    scene.render.resolution_percentage = 200
+    larger = dict(measure_quality.forecasts(scene))["As set"]
+    old["other samples and size"] = measure_quality.is_old(scene)
+    scene.render.resolution_percentage = 100
+    scene.lancer.max_bounces = 2
+    old["other bounces"] = measure_quality.is_old(scene)
+    scene.lancer.max_bounces = 10
+    old["bounces again"] = measure_quality.is_old(scene)
+    bpy.data.objects["Cube"].location.x += 0.5
+    bpy.context.view_layer.update()
+    old["moved"] = measure_quality.is_old(scene)
+    bpy.ops.lancer.measure_quality(seconds=0.2)
+    old["measured again"] = measure_quality.is_old(scene)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    return {
+        "result": sorted(result),
+        "changed": [key for key in after if after[key] != before.get(key)],
+        "told": told,
+        "lines": lines,
+        "rendered": [numbers["seconds"], numbers["error"], numbers["error_low"], numbers["error_high"]],
+        "more": _values(more),
+        "larger": _values(larger),
+        "old": old,
+        "left": len(measure_quality.measured),
+    }
+
+
+def words():
+    """How intervals of seconds are told."""
+    from addon import measure_quality
+    from addon.measure.forecast import Range
+
+    spans = {"sure": (60, 60, 60), "wide": (60, 20, 300), "untold": (900, 6, 133200), "short": (2, 0.2, 9)}
+    return {name: measure_quality.seconds(Range(*values)) for name, values in spans.items()}
+
+
+def missed():
+    """The lines of a target that the samples do not suffice for."""
+    from addon import measure_quality
+
+    scene = stage.room(width=32, height=18, samples=16)
+    scene.lancer.target_error = 1e-4
+    bpy.ops.lancer.measure_quality(seconds=0.5)
+    return list(measure_quality.lines(scene))

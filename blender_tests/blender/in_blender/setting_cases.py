@@ -1,0 +1,138 @@
+"""What single settings of scenes and objects make a render tell."""
+
+import bpy
+import stage
+
+# Each of these differs from Lancer's own, and says so by a word.
+_SETTINGS = {
+    "film_exposure": (2.0, "exposure"),
+    "use_fast_gi": (True, "Fast GI"),
+    "sample_clamp_direct": (1.0, "Clamp Direct"),
+    "caustics_reflective": (False, "reflective caustics"),
+    "caustics_refractive": (False, "refractive caustics"),
+    "blur_glossy": (2.0, "Filter Glossy 2"),
+    "diffuse_bounces": (0, "Diffuse 0"),
+    "glossy_bounces": (1, "Glossy 1"),
+    "transmission_bounces": (2, "Transmission 2"),
+}
+# And these change noise or time alone, are Lancer's own, or mean the same here.
+_NEUTRAL = {
+    "samples": 7, "seed": 5, "transparent_max_bounces": 3, "volume_bounces": 3, "diffuse_bounces": 64, "glossy_bounces": 10,
+    "pixel_filter_type": "BOX", "use_adaptive_sampling": False, "light_sampling_threshold": 0.1,
+    "min_light_bounces": 3, "use_camera_cull": True, "texture_limit_render": "128", "ao_bounces_render": 3,
+}  # fmt: skip
+
+
+def _told_of_scene():
+    from addon.export.checks import check_scene
+    from addon.export.messages import Messages
+
+    messages = Messages()
+    check_scene(bpy.context.scene, messages)
+    return messages
+
+
+# name: (settings of Cycles, settings of Lancer), all others as Blender starts with them.
+_LIGHT_PATHS = {
+    "start": ({}, {}),
+    "few bounces here": ({}, {"max_bounces": 3}),
+    "same number": ({"max_bounces": 10}, {}),
+    "few bounces there": ({"max_bounces": 3}, {}),
+    "few of light through glass": ({"transmission_bounces": 2}, {}),
+    "same clamp": ({}, {"clamp_indirect": 10.0}),
+    "own clamp": ({}, {"clamp_indirect": 2.5}),
+    "clamped here alone": ({"sample_clamp_indirect": 0.0}, {"clamp_indirect": 2.5}),
+    "classic": ({}, {"integrator": "CLASSIC"}),
+    "normals": ({}, {"integrator": "NORMALS"}),
+}
+
+
+def light_paths():
+    result = {"severities": {}}
+    for name, (theirs, ours) in _LIGHT_PATHS.items():
+        bpy.ops.wm.read_factory_settings(use_empty=False)
+        scene = bpy.context.scene
+        for owner, changes in ((scene.cycles, theirs), (scene.lancer, ours)):
+            for field, value in changes.items():
+                setattr(owner, field, value)
+        messages = _told_of_scene()
+        result[name] = messages.lines()
+        if messages:
+            result["severities"][name] = [message.severity.name for message in messages.told()]
+    return result
+
+
+def settings():
+    """Messages of light paths as Lancer's, of neutral changes, and of each other change by itself."""
+
+    def told():
+        return _told_of_scene().lines()
+
+    bpy.ops.wm.read_factory_settings(use_empty=False)
+    stage.light_paths_alike(bpy.context.scene)
+    result = {"alike": told(), "words": {}}
+    for name, value in _NEUTRAL.items():
+        setattr(bpy.context.scene.cycles, name, value)
+    result["neutral"] = told()
+    bpy.ops.wm.read_factory_settings(use_empty=False)
+    stage.light_paths_alike(bpy.context.scene)
+    cycles = bpy.context.scene.cycles
+    for name, (value, word) in _SETTINGS.items():
+        start = getattr(cycles, name)
+        setattr(cycles, name, value)
+        result["words"][word] = told()
+        setattr(cycles, name, start)
+    render, cube = bpy.context.scene.render, bpy.data.objects["Cube"]
+    render.use_simplify = True
+    result["simplify"] = told()
+    for switch in ("use_camera_cull", "use_distance_cull"):
+        setattr(cycles, switch, True)
+        result["nobody culled"] = told()
+        setattr(cube.cycles, switch, True)
+        result["words"][switch.split("_")[1] + " culling"] = told()
+        setattr(cycles, switch, False)
+    bpy.context.scene.camera.data.type = "PANO"
+    cycles.use_camera_cull = True
+    result["panorama"] = told()
+    cycles.use_camera_cull = False
+    cycles.texture_limit_render = "256"
+    result["words"]["Texture Limit"] = told()
+    return result
+
+
+def objects():
+    """Messages of single objects: plain, then with each setting that is not supported."""
+    from addon.export.checks import check_object
+    from addon.export.messages import Messages
+
+    def told(thing):
+        messages = Messages()
+        check_object(thing, scene, messages)
+        return messages.lines()
+
+    scene = stage.empty()
+    cube = stage.cube()
+    result = {"plain": told(cube)}
+    new = hasattr(cube, "shadow_terminator_shading_offset")
+    owner, name = (cube, "shadow_terminator_shading_offset") if new else (cube.cycles, "shadow_terminator_offset")
+    setattr(owner, name, 0.2)
+    result["terminator"] = told(cube)
+    setattr(owner, name, 0.0)
+    cube.cycles.is_caustics_receiver = True
+    result["caustics"] = told(cube)
+    cube.cycles.is_caustics_receiver = False
+    modifier = cube.modifiers.new("Round", "SUBSURF")
+    result["divided"] = told(cube)
+    if hasattr(modifier, "use_adaptive_subdivision"):
+        modifier.use_adaptive_subdivision = True
+    else:
+        cube.cycles.use_adaptive_subdivision = True
+        result["supported features"] = told(cube)
+        scene.cycles.feature_set = "EXPERIMENTAL"
+    result["adaptive"] = told(cube)
+    modifier.show_render = False
+    result["not rendered"] = told(cube)
+    modifier.show_render = True
+    cube.modifiers.new("Last", "SMOOTH")
+    result["not last"] = told(cube)
+    return result

@@ -1,0 +1,97 @@
+"""What stands in for inputs and features that Lancer lacks, and what it says about them."""
+
+import bpy
+from material_cases import Tree, answer
+
+# By the first Blender that has the input.
+THIN = {"Thin Film Thickness": (4, 2), "Thin Wall": (5, 2)}
+
+
+def thin():
+    """{input: messages} of a Principled node for each that this Blender shall have, and of a plain one."""
+    result = {}
+    for name, since in {"": (0, 0), **THIN}.items():
+        if bpy.app.version < since:
+            continue
+        tree = Tree(name or "plain")
+        node = tree.node("BsdfPrincipled")
+        if name:
+            socket = node.inputs[name]
+            socket.default_value = True if socket.type == "BOOLEAN" else 300.0
+        tree.show(node.outputs[0])
+        result[name] = answer(tree.material)[tree.material.name]["messages"]
+    return result
+
+
+def unknown_sources():
+    """Inputs of every type that a texture feeds which Lancer does not know."""
+    tree = Tree("fed")
+    magic = tree.node("TexMagic")
+    node = tree.node("BsdfGlossy", distribution="GGX", Color=(0.9, 0.1, 0.1), Roughness=0.37)
+    factor = next(socket for socket in magic.outputs if socket.type == "VALUE")
+    color = next(socket for socket in magic.outputs if socket.type == "RGBA")
+    tree.tree.links.new(factor, node.inputs["Roughness"])
+    tree.tree.links.new(color, node.inputs["Color"])
+    tree.show(node.outputs[0])
+    got = answer(tree.material)["fed"]
+    return {"lobes": got["lobes"], "messages": got["messages"]}
+
+
+def samplers():
+    """{name: messages} of surfaces on either side of where Cycles' own samplers weigh the sky otherwise."""
+    old = bpy.app.version < (4, 0)
+    stretched = "BsdfAnisotropic" if old else "BsdfGlossy"
+    coat = "Clearcoat" if old else "Coat_Weight"
+    cases = {
+        "smooth lacquer": ("BsdfGlossy", {"distribution": "ASHIKHMIN_SHIRLEY", "Roughness": 0.25}),
+        "rough lacquer": ("BsdfGlossy", {"distribution": "ASHIKHMIN_SHIRLEY", "Roughness": 0.3}),
+        "varying lacquer": ("BsdfGlossy", {"distribution": "ASHIKHMIN_SHIRLEY", "Roughness": None}),
+        "matt": ("BsdfGlossy", {"distribution": "BECKMANN", "Roughness": 0.9}),
+        "even": (stretched, {"distribution": "BECKMANN", "Roughness": 0.9, "Anisotropy": 0.0}),
+        "mirror": (stretched, {"distribution": "BECKMANN", "Roughness": 0.0, "Anisotropy": 0.5}),
+        "brushed ggx": (stretched, {"distribution": "GGX", "Roughness": 0.4, "Anisotropy": 0.5}),
+        "brushed": (stretched, {"distribution": "BECKMANN", "Roughness": 0.4, "Anisotropy": -0.5}),
+        "varying brushed": (stretched, {"distribution": "BECKMANN", "Roughness": 0.4, "Anisotropy": None}),
+        "bare": ("BsdfPrincipled", {"distribution": "GGX", coat: 0.0}),
+        "coated": ("BsdfPrincipled", {"distribution": "GGX", coat: 0.1}),
+        "varying coat": ("BsdfPrincipled", {"distribution": "GGX", coat: None}),
+    }
+    result = {}
+    for name, (kind, inputs) in cases.items():
+        tree = Tree(name)
+        inputs = {key: tree.varying() if value is None else value for key, value in inputs.items()}
+        result[name] = answer(tree.show(tree.node(kind, **inputs).outputs[0]))[name]["messages"]
+    return result
+
+
+def clear_beside():
+    """{name: messages} of what stands beside a Transparent part, and the lobe of a rough Diffuse in a mix."""
+    cases = {
+        "leaf": ("BsdfTranslucent", {}),
+        "frosted": ("BsdfGlass", {"Roughness": 0.3}),
+        "clear": ("BsdfGlass", {"Roughness": 0.0}),
+        "wall": ("BsdfDiffuse", {}),
+        "clay": ("BsdfDiffuse", {"Roughness": 0.5, "Color": (0.5, 0.25, 0.125)}),
+    }
+    result = {}
+    for name, (kind, inputs) in cases.items():
+        tree = Tree(name)
+        pane = tree.node("BsdfTransparent").outputs[0]
+        result[name] = answer(tree.show(tree.shaders("MixShader", pane, tree.node(kind, **inputs).outputs[0])))[name]
+    return result
+
+
+def facets():
+    """{node: messages} of each that lights facets by one another, and of one that does not."""
+    kinds = {
+        "BsdfPrincipled": "MULTI_GGX",
+        "BsdfGlass": "MULTI_GGX",
+        "BsdfAnisotropic": "MULTI_GGX",
+        "BsdfRefraction": "GGX",
+    }
+    result = {}
+    for kind, distribution in kinds.items():
+        tree = Tree(kind)
+        tree.show(tree.node(kind, distribution=distribution).outputs[0])
+        result[kind] = answer(tree.material)[kind]["messages"]
+    return result

@@ -1,0 +1,52 @@
+"""Inside a real window: a 3D view in Rendered shading, what is done to it, and what it shows meanwhile.
+
+    blender --factory-startup -P window_viewport.py -- FOLDER CASE [ARGUMENT...]
+
+runs the case of that name in one of viewport_*.py, a generator: it yields the seconds until Blender comes back to it, and its
+result goes to FOLDER/result.json. Then Blender is quit.
+"""
+
+import json
+import os
+import sys
+import traceback
+
+import bpy
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [os.path.dirname(os.path.dirname(os.path.dirname(HERE))), HERE]
+
+import viewport_endings  # noqa: E402
+import viewport_places  # noqa: E402
+import viewport_shown  # noqa: E402
+
+import addon  # noqa: E402
+
+FOLDER, CASE, *ARGUMENTS = sys.argv[sys.argv.index("--") + 1 :]
+_STARTING = 1.0  # seconds until the window is there
+
+
+def end(result):
+    with open(os.path.join(FOLDER, "result.json"), "w", encoding="utf-8") as file:
+        json.dump(result, file)
+    if result.get("quits", True):
+        addon.unregister()
+    bpy.ops.wm.quit_blender()
+
+
+def step():
+    try:
+        return next(steps)
+    except StopIteration as over:
+        end(over.value)
+    except Exception:
+        end({"error": traceback.format_exc()})
+    return None
+
+
+addon.register()
+bpy.context.preferences.view.show_splash = False
+bpy.context.preferences.filepaths.use_auto_save_temporary_files = False
+case = next(getattr(place, CASE) for place in (viewport_places, viewport_shown, viewport_endings) if hasattr(place, CASE))
+steps = case(FOLDER, *ARGUMENTS)
+bpy.app.timers.register(step, first_interval=_STARTING, persistent=True)

@@ -1,0 +1,100 @@
+"""Every setting that the export reads is in reach, and none that has no effect is shown."""
+
+import ast
+import pathlib
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+from conftest import ROOT
+
+from addon.export.controls import CONTROLS, OWN
+
+# What acts and is no setting of its own in the Properties editor, and what is then.
+ELSEWHERE = {
+    "Camera.angle_x": "Camera.angle stands for it",
+    "Camera.angle_y": "Camera.angle stands for it",
+    "CyclesVisibilitySettings.scatter": "light of volumes, which are not supported",
+    "CyclesVisibilitySettings.shadow": "worlds cast none, and Cycles does not show it either",
+    "Object.dimensions": "the scale, in the sidebar of the view",
+    "Object.visible_volume_scatter": "light of volumes, which are not supported",
+    "RenderSettings.border_max_x": "drawn in the view, with Ctrl+B",
+    "RenderSettings.border_max_y": "drawn in the view, with Ctrl+B",
+    "RenderSettings.border_min_x": "drawn in the view, with Ctrl+B",
+    "RenderSettings.border_min_y": "drawn in the view, with Ctrl+B",
+}
+# Names in the export's text that are settings' as well and do not act on the scene of this test.
+OF_OTHERS = {
+    "blocker_collection": "light linking, told as not supported",
+    "data": "the data-block itself",
+    "denoiser": "of the library that denoises",
+    "exposure": "of lamps; of the display in Blenders whose lamps have none",
+    "extend": "a list's method; of curves' display",
+    "feature_set": "told with adaptive subdivision alone",
+    "frame_current": "chosen in the timeline",
+    "grease_pencil": "of passes that Blender draws",
+    "height": "of regions and pictures; of mist, which EEVEE alone has",
+    "holdout": "of materials; of collections, in the Outliner",
+    "indirect_only": "of collections, in the Outliner",
+    "look": "of an object's table row; of the display",
+    "matrix": "of cameras and lamps in a snapshot",
+    "matrix_world": "the result of location, rotation and scale",
+    "metallic": "a socket of a shader node",
+    "receiver_collection": "light linking, told as not supported",
+    "shadow_terminator_offset": "told as not supported, in the Blenders that keep it in Cycles",
+    "use_adaptive_subdivision": "told as not supported, with a modifier",
+    "use_custom_distance": "told as not supported before 4.2",
+    "use_shadow": "acts before 4.2 where the Cycles add-on is off",
+}
+# The export, and what beside it reads which passes are wanted.
+ADDON = pathlib.Path(ROOT, "addon")
+READERS = (*ADDON.glob("export/*.py"), ADDON / "passes.py", ADDON / "denoise" / "view_layer.py")
+
+
+@pytest.fixture(scope="module", params=[MODULE, PROGRAM])
+def found(request, tmp_path_factory):
+    got = blenders.run(request.param, tmp_path_factory.mktemp("controls"), "control_cases", "controls")
+    return {what: set(names) for what, names in got.items() if what not in ("version", "console")} | {"version": got["version"]}
+
+
+def acts_in(entry, version):
+    return list(entry.since) <= version < list(entry.before)
+
+
+def listed(version):
+    """What the export says that it reads."""
+    return {f"{entry.owner}.{name}" for entry in CONTROLS if acts_in(entry, version) for name in entry.names}
+
+
+def test_the_export_reads_what_it_lists(found):
+    others = {name for name in found["act"] if not name.startswith(OWN)}
+    assert others - set(ELSEWHERE) == listed(found["version"])
+
+
+def test_what_the_export_reads_is_shown(found):
+    own = {name for name in found["known"] if name.startswith(OWN)}
+    assert listed(found["version"]) | own | {"RenderSettings.use_persistent_data"} <= found["shown"]
+    assert found["act"] - found["shown"] <= set(ELSEWHERE)
+
+
+def test_what_is_not_supported_is_hidden(found):
+    """A setting that changes messages alone has no effect."""
+    assert {"RenderSettings.use_motion_blur", "RenderSettings.use_multiview"} <= found["tell"]
+    assert not found["tell"] & found["shown"]
+
+
+def test_nothing_is_shown_twice(found):
+    """Blender's panel Viewport Display, which is there for every engine, shows three of them too."""
+    also = {"Material.diffuse_color", "Material.pass_index", "World.color"}
+    assert {name.rpartition(".")[0] for name in found["twice"]} & found["act"] <= also
+
+
+def test_no_name_in_the_export_is_a_setting_that_nothing_is_known_of(found):
+    """A setting may be read and not act on this scene: its name is in the export's text all the same."""
+    nodes = [node for path in READERS for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    names = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
+    names |= {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    acting = {name.split(".")[1] for name in found["act"] | found["tell"]}
+    in_others = {name for entry in CONTROLS if not acts_in(entry, found["version"]) for name in entry.names}
+    unknown = {name for name in found["known"] if name.split(".")[1] in names - acting - in_others - set(OF_OTHERS)}
+    assert not {name for name in unknown if not name.startswith(OWN)}

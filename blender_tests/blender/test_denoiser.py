@@ -1,0 +1,198 @@
+"""Open Image Denoise through ctypes, without Blender around it: the library that this Python's bpy module brings.
+
+Each test runs twice: with that library as it is, of version 2, and behind the functions that version 1 has in their places.
+"""
+
+import threading
+
+import numpy as np
+import oidn_versions
+import pytest
+
+from addon.bindings import abi
+from addon.bindings.abi import LancerError
+from addon.bindings.session import Cancelled
+from addon.denoise import denoiser, oidn
+from addon.denoise.loaded_libraries import on_linux
+
+HEIGHT, WIDTH = 96, 128
+
+
+@pytest.fixture(scope="module", params=[2, 1], ids=["version 2", "version 1"])
+def library(request, tmp_path_factory):
+    if request.param == 2:
+        yield oidn.load(oidn_versions.newer())
+        return
+    path, environment = oidn_versions.older(tmp_path_factory.mktemp("oidn"))
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in environment.items():
+            patch.setenv(name, value)
+        yield oidn.load(path)
+
+
+@pytest.fixture(scope="module")
+def pictures():
+    """A chequered wall under a light that grows to the right: as it is, with noise, and what a camera ray finds."""
+    y, x = np.mgrid[:HEIGHT, :WIDTH]
+    even = ((x // 20 + y // 20) % 2 == 0)[..., None]
+    albedo = np.where(even, np.float32([0.8, 0.2, 0.1]), np.float32([0.1, 0.3, 0.7]))
+    truth = albedo * (0.2 + x / WIDTH).astype(np.float32)[..., None]
+    noise = np.random.default_rng(1).gamma(0.5, 2.0, (HEIGHT, WIDTH, 1)).astype(np.float32)
+    normal = np.broadcast_to(np.float32([0.0, 0.0, 1.0]), albedo.shape)
+    return truth, truth * noise, albedo, normal
+
+
+def error(image, truth):
+    """Relative mean square error, without overflow."""
+    image, truth = image.astype(np.float64), truth.astype(np.float64)
+    return np.mean((image - truth) ** 2 / (truth**2 + 0.01 * np.mean(truth) ** 2))
+
+
+def test_noise_goes_and_guides_help(library, pictures):
+    truth, noisy, albedo, normal = pictures
+    guided = denoiser.denoise(noisy, albedo, normal, library=library)
+    alone = denoiser.denoise(noisy, library=library)
+    assert error(guided.image, truth) < error(alone.image, truth) < error(noisy, truth)
+    assert guided.seconds > 0.0
+    assert guided.version == "1.4.3" or "1.4.3" not in library._name and guided.version.startswith("2.")
+    # The images alone: colours and two guides of three floats.
+    assert guided.memory_bytes >= 3 * 12 * HEIGHT * WIDTH
+
+
+def test_what_is_given_stays_and_alpha_too(library, pictures):
+    _, noisy, albedo, normal = pictures
+    alpha = np.random.default_rng(2).random((HEIGHT, WIDTH, 1), np.float32)
+    given = np.concatenate([noisy, alpha], axis=2), albedo, normal
+    before = [array.tobytes() for array in given]
+    image = denoiser.denoise(*given, library=library).image
+    assert [array.tobytes() for array in given] == before
+    assert image[..., 3].tobytes() == alpha[..., 0].tobytes()
+    assert np.array_equal(image[..., :3], denoiser.denoise(noisy, albedo, normal, library=library).image)
+
+
+@pytest.mark.parametrize("exponent", [-100, -40, 40, 100])
+def test_brightness_does_not_matter(library, pictures, exponent):
+    """A power of two changes no digit before the network, nor after it."""
+    _, noisy, albedo, normal = pictures
+    image = denoiser.denoise(noisy, albedo, normal, library=library).image
+    scaled = denoiser.denoise(np.ldexp(noisy, exponent), albedo, normal, library=library).image
+    assert np.array_equal(np.ldexp(scaled, -exponent), image)
+
+
+def test_one_bright_pixel_spoils_nothing(library, pictures):
+    truth, noisy, albedo, normal = pictures
+    bright = noisy.copy()
+    bright[40, 50] = 1e30
+    assert error(denoiser.denoise(bright, albedo, normal, library=library).image, truth) < error(noisy, truth)
+
+
+def test_a_lamp_in_the_picture_stays_as_bright(library, pictures):
+    truth, noisy, albedo, normal = pictures
+    lamp = noisy.copy()
+    lamp[30:50, 40:60] = 1e30
+    image = denoiser.denoise(lamp, albedo, normal, library=library).image
+    # The network sees at least half of what it gets of a lamp, or takes it for noise.
+    assert (image[32:48, 42:58] > 0.5e30).all()
+    # Away from its edge the wall is as it was.
+    assert error(image[70:], truth[70:]) < error(noisy[70:], truth[70:])
+
+
+def test_black_stays_black(library, pictures):
+    _, noisy, albedo, normal = pictures
+    assert not denoiser.denoise(np.zeros_like(noisy), albedo, normal, library=library).image.any()
+
+
+@pytest.mark.parametrize(
+    "shapes, words",
+    [
+        (((8, 8), None, None), "colours of shape"),
+        (((8, 8, 2), None, None), "colours of shape"),
+        (((0, 8, 3), None, None), "colours of shape"),
+        (((8, 8, 3), (8, 7, 3), None), "albedo of shape"),
+        (((8, 8, 3), (8, 8, 4), None), "albedo of shape"),
+        (((8, 8, 3), (8, 8, 3), (4, 8, 3)), "normal of shape"),
+        (((8, 8, 3), None, (8, 8, 3)), "needs an albedo"),
+    ],
+)
+def test_wrong_shapes_are_errors(library, shapes, words):
+    arrays = [None if shape is None else np.ones(shape, np.float32) for shape in shapes]
+    with pytest.raises(LancerError, match=words):
+        denoiser.denoise(*arrays, library=library)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+@pytest.mark.parametrize("which, name", [(0, "colour"), (1, "albedo"), (2, "normal")])
+def test_what_is_not_finite_is_an_error(library, value, which, name):
+    arrays = [np.ones((8, 8, 3), np.float32) for _ in range(3)]
+    arrays[which][3, 4, 1] = value
+    with pytest.raises(LancerError, match=f"{name} is not finite"):
+        denoiser.denoise(*arrays, library=library)
+
+
+def test_it_ends_when_it_is_told_to(library, pictures):
+    _, noisy, albedo, normal = pictures
+    seen = []
+    with pytest.raises(Cancelled):
+        denoiser.denoise(noisy, albedo, normal, library=library, poll=lambda: len(seen) > 0, tell=seen.append)
+    assert len(seen) == 1 and not working()
+    # It goes on to work.
+    denoiser.denoise(noisy, albedo, normal, library=library, tell=seen.append)
+    assert seen[1:] == sorted(seen[1:]) and 0.0 <= seen[1] and seen[-1] <= 1.0
+
+
+def test_an_interrupted_caller_leaves_no_work_behind(library, pictures):
+    def poll():
+        raise KeyboardInterrupt
+
+    _, noisy, albedo, normal = pictures
+    with pytest.raises(KeyboardInterrupt):
+        denoiser.denoise(noisy, albedo, normal, library=library, poll=poll)
+    assert not working()
+
+
+def working():
+    return [thread for thread in threading.enumerate() if "denoising" in thread.name]
+
+
+@pytest.mark.parametrize(
+    "mapped, beside, found",
+    [
+        (("a/libOpenImageDenoise.so.2", "b/libtbb.so.12"), ("b/libOpenImageDenoise.so.2",), "a/libOpenImageDenoise.so.2"),
+        (("a/libOpenImageDenoise_core.so.2.3.3", "a/libtbb.so.12.8"), ("a/libOpenImageDenoise.so.2",), None),
+        (("a b/libtbb.so.12.8",), ("a b/libOpenImageDenoise.so.1", "a b/libOpenImageDenoise.so.2"), None),
+        (("a/libOpenImageDenoise.so.2 (deleted)", "a/libtbb.so.2"), ("c/libOpenImageDenoise.so.2",), ""),
+        (("a/libm.so.6",), ("a/libOpenImageDenoise.so.2",), ""),
+    ],
+    ids=["the one in use", "beside the TBB in use", "the newest", "deleted", "another TBB would come"],
+)
+def test_where_it_is_looked_for(tmp_path, mapped, beside, found):
+    """found: None is the last file beside, "" is none."""
+    for name in (*mapped, *beside):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        if "deleted" not in name:
+            path.touch()
+    maps = tmp_path / "maps"
+    rows = ["7f00-7f01 r-xp 00000000 08:01 1234  \n", "7f01-7f02 rw-p 00000000 00:00 0 [heap]\n"]
+    rows += [f"7f02-7f03 r-xp 00000000 08:01 1234       {tmp_path / name}\n" for name in mapped]
+    maps.write_text("".join(rows * 2))
+    wanted = beside[-1] if found is None else found
+    assert oidn.find(on_linux(str(maps))) == (str(tmp_path / wanted) if wanted else None)
+
+
+def test_a_missing_library_is_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(oidn, "find", lambda: None)
+    with pytest.raises(LancerError, match="Open Image Denoise is missing"):
+        oidn.load()
+    with pytest.raises(LancerError, match="cannot be loaded"):
+        oidn.load(tmp_path / "nowhere.so")
+
+
+def test_a_wrong_library_is_told(tmp_path, library):
+    with pytest.raises(LancerError, match="has no function oidn"):
+        oidn.load(abi.library_path())
+    cut = tmp_path / "libOpenImageDenoise.so.2"
+    with open(library._name, "rb") as file:
+        cut.write_bytes(file.read(5000))
+    with pytest.raises(LancerError, match="is cut short"):
+        oidn.load(cut)

@@ -1,0 +1,53 @@
+"""In which order messages are told, and which are told at all."""
+
+import dataclasses
+
+import numpy as np
+from check_scenes import placed, scene, sheet
+
+from addon.bindings.session import Session
+from addon.export.messages import Messages
+from addon.severity import Severity
+
+
+def test_what_hurts_most_comes_first():
+    messages = Messages()
+    messages.add("a setting differs")
+    messages.add("a hint", severity=Severity.HINT)
+    messages.add("an object is left out", severity=Severity.LEFT_OUT)
+    messages.add("a picture is missing", severity=Severity.WRONG)
+    messages.add("another setting differs", severity=Severity.DIFFERENT)
+    messages.add("an object is left out", severity=Severity.LEFT_OUT)
+    messages.add("no picture", severity=Severity.FAILED)
+    messages.add("slow", severity=Severity.WASTE)
+    assert messages.lines() == list(messages) == [
+        "no picture", "a picture is missing", "an object is left out (2 times)", "a setting differs",
+        "another setting differs", "slow", "a hint",
+    ]  # fmt: skip
+
+
+def test_what_is_told_twice_keeps_its_greatest_harm_and_its_key():
+    messages = Messages()
+    messages.add("the same", "node:Bevel", Severity.HINT)
+    messages.add("the same", severity=Severity.WRONG)
+    (message,) = messages.told()
+    assert message == ("the same", "node:Bevel", Severity.WRONG, 2)
+    assert messages.missing() == {"node:Bevel": 2}
+
+
+def test_merging_gives_what_is_new():
+    messages = Messages(["known"])
+    more = Messages(["known", "new"], Severity.WRONG)
+    more.add("new", severity=Severity.WRONG)
+    assert messages.merge(more).told() == [("new", "", Severity.WRONG, 2)]
+    assert messages.told() == [("known", "", Severity.WRONG, 2), ("new", "", Severity.WRONG, 2)]
+    assert len(messages.merge(more)) == 0
+
+
+def test_messages_of_the_library_have_their_harm():
+    """From the library itself: faces that nobody can see are no fault, an object that is left out is one."""
+    flat = dataclasses.replace(sheet(), triangles=np.array([[0, 1, 2], [0, 1, 1]], np.uint32))
+    with Session.upload(scene([placed(), placed(matrix=np.full((4, 4), np.nan))], [flat])) as session:
+        told = Messages.of_library(session.messages()).told()
+    assert [message.severity for message in told] == [Severity.LEFT_OUT, Severity.HINT], told
+    assert "left out" in told[0].text and "without area" in told[1].text

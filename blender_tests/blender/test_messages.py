@@ -1,0 +1,121 @@
+"""What a render tells, in the bpy module of this Python and in Debian's Blender 3.4.1."""
+
+import json
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+
+pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
+
+
+@pytest.fixture
+def case(which, tmp_path):
+    return lambda name, where="message_cases": blenders.run(which, tmp_path, where, name)
+
+
+def test_each_render_tells_its_own(case):
+    """Persistent Data keeps the engine from render to render, but not what it said."""
+    got = case("persistent")
+    assert len(got["first"]) == 3 and got["second"] == got["first"]
+    # The cube that is gone takes its message along.
+    assert got["fewer"] == [line for line in got["first"] if "'Cube.001'" not in line] and len(got["fewer"]) == 2
+    assert got["animation"] == got["fewer"]
+    assert got["samples"][0] == got["samples"][1]
+
+
+def test_the_messages_of_view_layers_add_up(case):
+    got = case("layers")
+    for kept in (False, True):
+        alone, both = got[f"second {kept}"], got[f"both {kept}"]
+        # Each layer shows all: what one alone says once, both say twice.
+        assert len(alone) == 3 and alone[0].endswith("magenta is used (2 times)")
+        assert both == [alone[0].replace("(2 times)", "(4 times)"), f"{alone[1]} (2 times)", f"{alone[2]} (2 times)"]
+
+
+def test_the_error_of_a_layer_outlasts_the_next(which, tmp_path):
+    """The panel keeps the error beside what the other layer tells. The program in the background ends with exit code 1."""
+    path = tmp_path / "panel.json"
+    code, said, got = blenders.attempt(which, tmp_path, "message_cases", "failed_layer", path)
+    assert code == (0 if which == MODULE else 1) and "the first layer fails" in (got or said), said[-2000:]
+    panel = json.loads(path.read_text(encoding="utf-8"))
+    assert panel[0] == "the first layer fails" and len(panel) == 3, panel
+    assert "magenta" in panel[1] and "'Cube'" in panel[2]
+
+
+def test_light_paths_that_differ_are_told_in_one_line(case):
+    got = case("light_paths", "setting_cases")
+    # As Blender starts with them they are no fault; only what somebody has set in Cycles is one.
+    severities = got.pop("severities")
+    hints = {"start", "few bounces here", "same number", "same clamp", "own clamp", "clamped here alone"}
+    assert {name: severity for name, (severity,) in severities.items()} == {
+        name: "HINT" if name in hints else "DIFFERENT" for name in severities
+    } and len(severities) == 8
+
+    def line(theirs, ours):
+        return [f"scene 'Scene': Cycles limits light by {theirs}, Lancer by {ours}: set Light Paths alike to compare"]
+
+    rest = "Filter Glossy 1 and Clamp Indirect 10"
+    kinds = "Diffuse 4, Glossy 4"
+    assert got["start"] == line(f"Total 12, {kinds}, {rest}", "Max Bounces 10")
+    # Four bounces of a kind are no limit where three end the path.
+    assert got["few bounces here"] == line(f"Total 12, {rest}", "Max Bounces 3")
+    assert got["same number"] == line(f"{kinds}, {rest}", "Max Bounces 10")
+    assert got["few bounces there"] == line(f"Total 3, {rest}", "Max Bounces 10")
+    assert got["few of light through glass"] == line(f"Total 12, {kinds}, Transmission 2, {rest}", "Max Bounces 10")
+    assert got["same clamp"] == line(f"Total 12, {kinds} and Filter Glossy 1", "Max Bounces 10 and Clamp Indirect 10")
+    assert got["own clamp"] == line(f"Total 12, {kinds}, {rest}", "Max Bounces 10 and Clamp Indirect 2.5")
+    assert got["clamped here alone"] == line(f"Total 12, {kinds} and Filter Glossy 1", "Max Bounces 10 and Clamp Indirect 2.5")
+    # These are pictures of their own, which no settings make Cycles'.
+    assert got["classic"] == got["normals"] == []
+
+
+def test_settings_of_cycles_without_counterpart(case):
+    got = case("settings", "setting_cases")
+    assert got["alike"] == got["neutral"] == got["simplify"] == got["nobody culled"] == got["panorama"] == []
+    assert len(got["words"]) == 12
+    for word, lines in got["words"].items():
+        assert len(lines) == 1 and word in lines[0] and lines[0].startswith("scene 'Scene'"), (word, lines)
+
+
+def test_settings_of_objects_without_counterpart(case):
+    got = case("objects", "setting_cases")
+    for silent in ("plain", "divided", "not rendered", "not last"):
+        assert got[silent] == [], silent
+    assert got.get("supported features", []) == []
+    words = {
+        "terminator": "shadow terminator is left out, use the geometry offset",
+        "caustics": "shadow caustics",
+        "adaptive": "'Round'",
+    }
+    for name, word in words.items():
+        assert len(got[name]) == 1 and word in got[name][0] and "object 'Cube'" in got[name][0], name
+
+
+def test_what_is_left_out_says_what_is_shown_instead(case):
+    got = case("left_out")
+    expected = {
+        "object 'Smoke': type VOLUME is not supported, it is left out",
+        "material 'Fog' on object 'Cube': volumes are not supported, nothing of it is shown",
+        "material 'Milk' on object 'Cube.001': volumes are not supported, its surface alone is shown",
+        "light 'Light': its own limit of 3 bounces is not supported, the scene's Max Bounces is used",
+        "world 'World': its own limit of 4 bounces is not supported, the scene's Max Bounces is used",
+        "world 'World': volumes are not supported, its background alone is shown",
+    }
+    if got["version"] < [4, 2]:
+        expected.add("light 'Light': custom distance is not supported, its light reaches on as in Cycles")
+    assert set(got["told"]) == expected and len(got["told"]) == len(expected)
+
+
+def test_groups_of_addons_are_entered(case):
+    got = case("custom_group")
+    assert got["emission"] == [0.25, 0.5, 0.75] and got["messages"] == []
+
+
+def test_passes_that_an_integrator_leaves_black_are_named(case):
+    got = case("empty_passes")
+    assert got["PATH"] == {"black": [], "told": []}
+    for integrator, title in (("CLASSIC", "Classic"), ("NORMALS", "Normals")):
+        black, (line,) = got[integrator]["black"], got[integrator]["told"]
+        assert title in line and "Path Tracing" in line
+        assert len(line.split(": ")[-1].split(", ")) == len(black) > 0, (black, line)

@@ -1,0 +1,32 @@
+"""Textures that are computed, and curves: the core's nodes beside Cycles of the same Blender, at the same places."""
+
+import blenders
+import pytest
+from blenders import MODULE, PROGRAM
+
+# The side of each setting's square in pixels; what is asked of a million points holds for these as well.
+SIDE = 24
+SHARE = 0.999  # of the points are within a thousandth of the range of Cycles' values
+
+
+def _judged(which, folder, name, least):
+    got = blenders.run(which, folder, "procedural_cases", name, SIDE)
+    got.pop("console")
+    assert len(got) >= least
+    assert all(points == SIDE * SIDE for points, *_ in got.values())
+    # A setting that shows one value alone proves little; some of noise without octaves do.
+    flat = [setting for setting, (_, span, *_) in got.items() if span <= 1e-3]
+    assert len(flat) <= len(got) / 5, flat
+    wrong = {setting: numbers for setting, numbers in got.items() if numbers[2] < SHARE}
+    assert not wrong
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+@pytest.mark.parametrize("name, least", [("noise", 19), ("voronoi", 100), ("gradient", 7), ("curves", 30)])
+def test_procedural_nodes(which, name, least, tmp_path):
+    _judged(which, tmp_path, name, least)
+
+
+def test_musgrave(tmp_path):
+    """The node of Blender before 4.1."""
+    _judged(PROGRAM, tmp_path, "musgrave", 80)

@@ -1,0 +1,69 @@
+"""What a render says of its accuracy: a target that was missed, what would reach it, and of which view layer."""
+
+import math
+
+import pytest
+
+from addon.bindings.snapshot import Settings
+from addon.measure import render_report
+from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME
+
+
+def numbers(error, bound, ended_by=SAMPLES, samples=100, seconds=20.0, **more):
+    values = {"error": error, "error_low": 0.8 * error, "error_high": 0.9 * bound, "error_cannot_exclude": 0.1 * bound}
+    values |= {"error_clipped": 0.0, "error_missing": 0.0, "ended_by": ended_by, "seconds": seconds, "denoised": ""}
+    return values | {"samples": samples, "samples_most": samples, "samples_mean": float(samples)} | more
+
+
+def told(values, **settings):
+    return render_report.lines(values, Settings(**{"samples": 100, "target_error": 0.1, **settings}))
+
+
+def test_a_target_that_was_missed_is_told_first_with_what_helps():
+    # A fifth of the error takes 25 times the samples: 2500.
+    first, second, *_ = told(numbers(0.25, 0.5))
+    assert first == "10 % was not reached: 25 %, at most 50 %; it would take about 2500 Samples"
+    assert second.startswith("error 25 %, with 95 % confidence between 20 % and 45 %")
+    # Of 10 s beside the samples there are still 10 s.
+    first, *_ = told(numbers(0.25, 0.5, TIME, 16), samples=1024, time_limit=30.0)
+    assert first == "10 % was not reached: 25 %, at most 50 %; it would take a Time Limit of about 8.5 min"
+    # More time alone would end at the samples.
+    first, *_ = told(numbers(0.25, 0.5, TIME, 16), samples=128, time_limit=30.0)
+    assert first.endswith("it would take about 400 Samples and a Time Limit of about 8.5 min")
+    # Two digits, rounded up: fewer would be too few.
+    first, *_ = told(numbers(0.25, 0.333, samples=1000), samples=1000)
+    assert first.endswith("about 12000 Samples")
+
+
+@pytest.mark.parametrize(
+    "values, settings",
+    [
+        (numbers(0.05, 0.09, TARGET), {}),
+        # It was looked at for the last time before the last samples came.
+        (numbers(0.05, 0.09, SAMPLES), {}),
+        (numbers(0.25, 0.5, CANCELLED), {}),
+        (numbers(0.25, 0.5), {"target_error": 0.0}),
+    ],
+)
+def test_nothing_is_missed(values, settings):
+    assert told(values, **settings)[0].startswith("error ")
+
+
+def test_an_unknown_error_has_missed_its_target():
+    first, second = told(numbers(math.inf, math.inf, samples=1), samples=1)
+    assert first.startswith("10 % was not reached: the error is not known") and second.startswith("error unknown")
+
+
+def test_view_layers_are_named():
+    values, settings = numbers(0.25, 0.5), Settings(target_error=0.1)
+    one, other = (render_report.lines(values, settings, layer) for layer in ("Front", "Back"))
+    assert all(line.startswith("view layer 'Front': ") for line in one) and len(one) == len(other) == 3
+    layers = {"Front": {"accuracy": one}, "Back": {"accuracy": other}}
+    assert render_report.of_layers({"accuracy": other, "layers": layers}) == one + other
+    assert render_report.of_layers({"accuracy": other}) == other
+
+
+def test_durations():
+    words = {0.0123: "0.0 s", 9.94: "9.9 s", 9.96: "10 s", 99.0: "99 s", 100.0: "1.7 min", 5400.0: "90 min", 6000.0: "1.7 h"}
+    assert {value: render_report.duration(value) for value in words} == words
+    assert render_report.duration(math.inf) == "unknown"

@@ -1,0 +1,284 @@
+"""Light units against closed forms: by the light probes, and by the picture of an albedo-1 Lambert plane."""
+
+import math
+
+import blenders
+import numpy as np
+import pytest
+import reference
+import tiny_scenes
+from blenders import MODULE, PROGRAM
+from significance import midpoints
+from tiny_scenes import move, rotate_x, rotate_y
+
+from addon.bindings.abi import AreaShape, LightKind
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Light
+
+# The contract with the artist: exact light units to 1e-4.
+LIMIT = 1e-4
+# The midpoint rule on 256 x 256 points integrates these gentle integrands to 1e-5 and better.
+GRID = midpoints(256, 256)
+
+
+def irradiance(light, point=(0, 0, 0), normal=(0, 0, 1), library=None):
+    """E at a point with a normal by the light's own sampler."""
+    with Scene.upload(tiny_scenes.scene([], [], [light]), library) as scene:
+        samples = scene.light(0, [point], GRID)
+    cosine = np.maximum(0.0, samples.wi @ np.asarray(normal, float))
+    valid = samples.pdf > 0
+    value = samples.radiance[:, 0].astype(float) * cosine / np.where(valid, samples.pdf, 1.0)
+    return np.where(valid, value, 0.0).mean()
+
+
+def quadrature(light_points, normals, areas, radiance):
+    """E at the origin (normal +z) of a surface of constant radiance given by many small pieces."""
+    d2 = np.sum(light_points**2, axis=1)
+    w = light_points / np.sqrt(d2)[:, None]
+    return np.sum(radiance * np.maximum(0, w[:, 2]) * np.maximum(0, -np.sum(w * normals, axis=1)) / d2 * areas)
+
+
+def point(**fields):
+    fields.setdefault("matrix", move(z=2))
+    return Light("lamp", kind=LightKind.POINT, emission=(3, 2, 1), **fields)
+
+
+def area(z=2.0, **fields):
+    return Light("lamp", matrix=move(z=z), kind=LightKind.AREA, emission=(3, 3, 3), **fields)
+
+
+def disk_on_axis(diameter, distance):
+    """E / L below the middle of a disk that faces down."""
+    r = diameter / 2
+    return math.pi * r * r / (distance * distance + r * r)
+
+
+def spread_factor(spread):
+    """Keeps the lamp's flux: pi over the integral of (1 - tan/tan(s/2)) cos over the cone, which is pi (1 - (s/2)/tan(s/2))."""
+    half = spread / 2
+    return math.tan(half) / (math.tan(half) - half)
+
+
+def spread_on_axis(diameter, distance, spread):
+    """E / L below the middle of a disk whose emission fades like 1 - tan/tan(s/2): the integral over its rings."""
+    limit = min(diameter / 2, distance * math.tan(spread / 2))
+    r = (np.arange(200000) + 0.5) / 200000 * limit
+    cosine2 = distance**2 / (distance**2 + r**2)
+    fade = 1 - r / distance / math.tan(spread / 2)
+    return spread_factor(spread) * np.sum(fade * cosine2**2 / distance**2 * 2 * math.pi * r) * limit / 200000
+
+
+# light, E of the red channel at the origin with normal +z
+CLOSED_FORMS = {
+    "point": (point(), 3 / 4),
+    "point aside": (point(matrix=move(1.5, 0, 2)), 3 / 6.25 * 2 / 2.5),
+    "point behind": (point(matrix=move(z=-1)), 0.0),
+    "disk facing": (point(radius=1.0), 3 / (4 + 1)),
+    "disk facing aside": (point(matrix=move(3, 0, 4), radius=1.0), 3 / (25 + 1) * 0.8),
+    "ball": (point(radius=1.0, soft_falloff=False), 3 / 4),
+    "small ball": (point(radius=1e-4, soft_falloff=False), 3 / 4),
+    "ball aside": (point(matrix=move(3, 0, 4), radius=1.0, soft_falloff=False), 3 / 25 * 0.8),
+    "far ball": (point(matrix=move(z=1e5), radius=1e-2, soft_falloff=False), 3e-10),
+    "sun": (Light("sun", kind=LightKind.SUN, emission=(3, 3, 3)), 3.0),
+    "sun with a disk": (Light("sun", kind=LightKind.SUN, emission=(3, 3, 3), sun_angle=0.2), 3.0),
+    "small sun": (Light("sun", kind=LightKind.SUN, emission=(3, 3, 3), sun_angle=1e-4), 3.0),
+    "flat sun": (Light("sun", kind=LightKind.SUN, emission=(3, 3, 3), sun_angle=1.5, sun_flat=True), 3.0),
+    "slanting sun": (Light("sun", rotate_x(1.0), LightKind.SUN, emission=(3, 3, 3), sun_angle=0.1), 3 * math.cos(1.0)),
+    "square": (area(), 3 * float(reference.rectangle_irradiance(1, 1, 2))),
+    "rectangle": (area(size=(3, 0.5)), 3 * float(reference.rectangle_irradiance(3, 0.5, 2))),
+    "large square": (area(size=(20, 20)), 3 * float(reference.rectangle_irradiance(20, 20, 2))),
+    "tiny square": (area(size=(1e-3, 1e-3)), 3 * 1e-6 / 4),
+    "square seen from behind": (area(z=-2.0), 0.0),
+    "disk": (area(size=(1, 1), shape=AreaShape.ELLIPSE), 3 * disk_on_axis(1, 2)),
+    "large disk": (area(size=(9, 9), shape=AreaShape.ELLIPSE), 3 * disk_on_axis(9, 2)),
+    "far ellipse": (area(z=1e4, size=(2, 1), shape=AreaShape.ELLIPSE), 3 * math.pi / 2 * 1e-8),
+    "spread disk": (area(z=10, size=(1, 1), shape=AreaShape.ELLIPSE, spread=1.0), 3 * spread_on_axis(1, 10, 1.0)),
+    "spread large disk": (area(size=(9, 9), shape=AreaShape.ELLIPSE, spread=1.0), 3 * spread_on_axis(9, 2, 1.0)),
+}
+
+
+def test_spread_is_blenders():
+    """As measured in Blender 4.5: one radian multiplies E by 11.714 for a square of 0.1 m, 10 m away."""
+    side = 0.1
+    fade = 1 - side * (math.sqrt(2) + math.asinh(1)) / 6 / 10 / math.tan(0.5)
+    assert abs(spread_factor(1.0) * fade - 11.714) < 5e-3
+
+
+# Only the picture joins light sampling to BSDF sampling, which a lamp over all of the sky needs.
+HUGE = {"huge square": (area(size=(2000, 2000)), 3 * float(reference.rectangle_irradiance(2000, 2000, 2)))}
+
+
+@pytest.mark.parametrize("name", CLOSED_FORMS)
+def test_probe(library, name):
+    light, want = CLOSED_FORMS[name]
+    # A fading cone has a kink at its rim, which a grid knows to its own step.
+    limit = 1e-3 if name == "spread large disk" else LIMIT
+    assert np.isclose(irradiance(light, library=library), want, rtol=limit, atol=0.0), name
+
+
+@pytest.mark.parametrize("name", {**CLOSED_FORMS, **HUGE})
+def test_picture(library, name):
+    """L = E/pi leaves an albedo-1 Lambert plane, without bounces."""
+    light, want = {**CLOSED_FORMS, **HUGE}[name]
+    # 32 x 32 pixels see the same point, each with its own stratified samples: 1024 estimates of one number.
+    pixels = 1 if light.radius == 0 and light.sun_angle == 0 and light.kind != LightKind.AREA else 32
+    eye = (30.0, 40.0, 0.5 if "huge" in name or "large" in name else 5.0)
+    snapshot = tiny_scenes.scene(
+        [tiny_scenes.plane()], [tiny_scenes.lambert()], [light], camera=tiny_scenes.pencil(eye, pixels=pixels), samples=256
+    )
+    picture = tiny_scenes.render(snapshot)[..., :3].reshape(-1, 3)
+    got = picture.mean(axis=0)
+    error = picture[:, 0].std(ddof=1) / math.sqrt(len(picture)) if len(picture) > 1 else 0.0
+    ratio = np.array(light.emission) / light.emission[0]
+    # LIMIT and the noise, at 4 standard errors; lamps that fill much of the sky are noisier, but never blindly so.
+    assert error <= (2e-3 if "huge" in name or "large" in name else 1e-4) * want
+    assert np.all(np.abs(got - want / math.pi * ratio) <= (LIMIT * want / math.pi + 4 * error) * ratio), got / want * math.pi
+    # The three channels carry one noise.
+    assert np.allclose(got / ratio, got[0], rtol=1e-6)
+
+
+def grid_of_rectangle(width, height, count=400):
+    x, y = ((np.arange(count) + 0.5) / count - 0.5) * width, ((np.arange(count) + 0.5) / count - 0.5) * height
+    return np.stack([a.ravel() for a in np.meshgrid(x, y)], axis=1), width * height / count**2
+
+
+@pytest.mark.parametrize("shape", AreaShape)
+@pytest.mark.parametrize("position", [(0, 0, 3), (2, 1, 3), (5, 0, 0.8), (40, -30, 20)])
+def test_area_lights_off_axis_against_quadrature(library, shape, position):
+    matrix = move(*position) @ rotate_y(0.4) @ rotate_x(-0.3)
+    size = (1.5, 0.8)
+    light = Light("lamp", matrix=matrix, kind=LightKind.AREA, emission=(2, 2, 2), size=size, shape=shape)
+    xy, piece = grid_of_rectangle(*size)
+    if shape == AreaShape.ELLIPSE:
+        xy = xy[(2 * xy[:, 0] / size[0]) ** 2 + (2 * xy[:, 1] / size[1]) ** 2 <= 1]
+        piece = math.pi / 4 * size[0] * size[1] / len(xy)
+    points = np.concatenate([xy, np.zeros((len(xy), 1)), np.ones((len(xy), 1))], axis=1) @ matrix[:3].T
+    want = quadrature(points, -matrix[:3, 2], piece, 2.0)
+    assert np.isclose(irradiance(light, library=library), want, rtol=LIMIT)
+
+
+def test_only_the_front_of_an_area_light_shines(library):
+    light = area(z=-1.0)
+    assert irradiance(light, normal=(0, 0, -1), library=library) == 0.0
+    assert irradiance(light, point=(0, 0, -2), library=library) > 0.0
+
+
+@pytest.mark.parametrize("blend", [0.0, 0.15, 1.0])
+def test_spot_cone_and_blend(library, blend):
+    """The intensity is the point's, not renormalised; at the rim a smooth step over the cosine, (1 - cos(half)) blend wide."""
+    half, height = 0.5, 2.0
+    light = Light("spot", move(z=height), LightKind.SPOT, emission=(3, 3, 3), spot_angle=2 * half, spot_blend=blend)
+    with Scene.upload(tiny_scenes.scene([], [], [light]), library) as scene:
+        angles = np.array([0.0, 0.1, 0.3, 0.4, 0.45, 0.49, 0.51, 0.6, 1.5, 3.0])
+        points = np.stack([np.sin(angles), 0 * angles, height - np.cos(angles)], axis=1)
+        samples = scene.light(0, points, [[0.5, 0.5]])
+    edge = (1 - math.cos(half)) * blend
+    for angle, got in zip(angles, np.where(samples.pdf > 0, samples.radiance[:, 0], 0), strict=True):
+        over = math.cos(angle) - math.cos(half)
+        want = 3 * (float(over > 0) if edge == 0 else reference.smoothstep(over / edge))
+        # The cosine is good to 1e-7, the edge is 1e-2 wide and the step's slope 1.5.
+        assert abs(got - want) <= 1e-4 * 3, (angle, got, want)
+
+
+def test_stretched_spot(library):
+    """An object scaled unevenly stretches its spot's cone: twice as wide, half as high."""
+    half, height = 0.5, 2.0
+    fields = dict(spot_angle=2 * half, spot_blend=0.3)
+    round_spot = Light("spot", move(z=height), LightKind.SPOT, emission=(3, 3, 3), **fields)
+    stretched = Light("spot", move(z=height), LightKind.SPOT, emission=(3, 3, 3), size=(2.0, 0.5), **fields)
+    below = np.stack([a.ravel() for a in np.meshgrid(np.linspace(-2, 2, 21), np.linspace(-2, 2, 21))], axis=1)
+
+    def intensity(light, xy):
+        points = np.concatenate([xy, np.zeros((len(xy), 1))], axis=1)
+        with Scene.upload(tiny_scenes.scene([], [], [light]), library) as scene:
+            samples = scene.light(0, points, [[0.5, 0.5]])
+        return np.where(samples.pdf > 0, samples.radiance[:, 0], 0) * (np.sum(xy**2, axis=1) + height**2)
+
+    got, want = intensity(stretched, below), intensity(round_spot, below / [2.0, 0.5])
+    # One rounding to float on each side of a step whose slope is 1.5 over a rim of 1/30.
+    assert np.allclose(got, want, rtol=0, atol=1e-4) and np.any(got > 0) and np.any(got == 0)
+
+
+def test_spot_of_old_blenders(library):
+    """Before 4.0 the intensity also falls with the cosine of the angle to the axis."""
+    light = Light("spot", move(z=2), LightKind.SPOT, emission=(3, 3, 3), spot_angle=2.5, spot_blend=0.0, spot_cosine=True)
+    for angle in (0.0, 0.5, 1.0):
+        point = (2 * math.tan(angle), 0, 0)
+        want = 3 * math.cos(angle) * (math.cos(angle) / 2) ** 2 * math.cos(angle)
+        assert np.isclose(irradiance(light, point, library=library), want, rtol=LIMIT)
+
+
+def test_spot_angles_of_half_and_full_turns(library):
+    for full in (math.radians(1), math.pi):
+        light = Light("spot", move(z=2), LightKind.SPOT, emission=(3, 3, 3), spot_angle=full, spot_blend=0.0)
+        assert np.isclose(irradiance(light, library=library), 0.75, rtol=LIMIT)
+
+
+def test_constant_environment(library):
+    """E = pi L on an open plane, so an albedo-1 plane shows L itself; seen directly it is L."""
+    snapshot = tiny_scenes.scene(
+        [tiny_scenes.plane()],
+        [tiny_scenes.lambert()],
+        [],
+        world=(0.7, 0.5, 0.2),
+        samples=256,
+        camera=tiny_scenes.pencil((1, 0, 1), pixels=16),
+    )
+    assert np.allclose(tiny_scenes.radiance(snapshot), (0.7, 0.5, 0.2), rtol=LIMIT)
+    empty = tiny_scenes.scene(world=(0.7, 0.5, 0.2))
+    # One rounding to float32 each way.
+    assert np.allclose(tiny_scenes.radiance(empty), (0.7, 0.5, 0.2), rtol=2e-7)
+
+
+def test_mesh_light_equals_area_light(library):
+    """A glowing square mesh gives what a rectangle of the same radiance gives."""
+    glow = tiny_scenes.Material("glow", lobes=(), emission=(3, 3, 3))
+    lamp = tiny_scenes.Instance(mesh=0, matrix=move(z=2) @ rotate_x(np.pi), materials=(1,))
+    snapshot = tiny_scenes.scene(
+        [tiny_scenes.plane(), lamp],
+        [tiny_scenes.lambert(), glow],
+        [],
+        [tiny_scenes.quad(1.0)],
+        samples=256,
+        camera=tiny_scenes.pencil((3, 4, 1), pixels=32),
+    )
+    want = 3 * float(reference.rectangle_irradiance(1, 1, 2)) / math.pi
+    assert np.allclose(tiny_scenes.radiance(snapshot), want, rtol=2 * LIMIT)
+
+
+def test_exact_sphere_as_lamp(library):
+    """A glowing exact sphere: E = pi L r^2/d^2."""
+    glow = tiny_scenes.Material("glow", lobes=(), emission=(3, 3, 3))
+    snapshot = tiny_scenes.scene(
+        [tiny_scenes.plane(), tiny_scenes.sphere(1, move(z=3))],
+        [tiny_scenes.lambert(), glow],
+        samples=1024,
+        camera=tiny_scenes.pencil((3, 4, 1), pixels=32),
+    )
+    got = tiny_scenes.radiance(snapshot)
+    # Where the sphere is found by hemisphere sampling alone, p = 1/9 of 1e6 samples hits: 4 standard errors are 1.1 %.
+    limit = 4 * math.sqrt(8 / 1024**2)
+    assert np.allclose(got, 3 / 9, rtol=limit)
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_export(which, tmp_path):
+    """Units are judged against Cycles; here: which rays see a lamp, shadows, stretch, portals, nodes, and what is said."""
+    got = blenders.run(which, tmp_path, "light_cases", "export")
+    new = got["version"] >= [4, 0]
+    assert got["plain"] == {"hidden_from": 1, "no_shadow": False, "size": [1.0, 1.0]}
+    assert got["seen"]["hidden_from"] == 4 + 32 and got["unshadowed"]["no_shadow"]
+    assert np.allclose(got["stretched"]["size"], (3.0, 0.5) if new else (1.0, 1.0))
+    assert got["portal"] is None
+    assert np.allclose(got["nodes"], np.array((0.5, 0.25, 1.0)) * 3.0)
+    assert got["messages"] == []
+    assert any("not supported, its own power is used" in line for line in got["textured"]), got["textured"]
+
+
+@pytest.mark.parametrize("which", [MODULE, PROGRAM])
+def test_lights_that_are_not_known_keep_their_power(which, tmp_path):
+    got = blenders.run(which, tmp_path, "light_cases", "unknown")
+    share, messages = got["TexImage"]
+    assert share == 1.0 and len(messages) == 1 and "its own power is used" in messages[0]
+    share, messages = got["TexMagic"]
+    assert share == 1.0 and len(messages) == 1 and "white is used" in messages[0]

@@ -1,0 +1,112 @@
+"""Principled and the wide lobes against Cycles: exact values under suns, and all light under a white sky, lobe by lobe."""
+
+import json
+import math
+
+import blenders
+import numpy as np
+import principled_specs
+import pytest
+import tiny_scenes
+from blenders import MODULE, PROGRAM
+from principled_specs import ANGLES, SUNS
+
+from addon.bindings.session import Scene
+from addon.bindings.snapshot import Material
+
+# A third of a percent is less than an eye can tell apart. The tables of lost light agree with exact integrals to 0.1 %.
+LIMIT = 0.003
+SAMPLES = 512
+
+
+@pytest.fixture(scope="module", params=[MODULE, PROGRAM], ids=["module", "program"])
+def measured(request, library, tmp_path_factory):
+    """The specs, what Cycles answers and a scene that holds the same materials."""
+    folder = tmp_path_factory.mktemp("principled")
+    version = tuple(blenders.run(request.param, folder, "principled_cases", "version"))
+    specs = principled_specs.specs(version)
+    asked = folder / "asked.json"
+    nodes = [node for _, node, _ in specs]
+    asked.write_text(json.dumps({"specs": nodes, "angles": ANGLES, "suns": SUNS, "samples": SAMPLES}))
+    got = blenders.run(request.param, folder, "principled_cases", "measure", asked)
+    materials = [Material(name, lobes=(lobe,)) for name, _, lobe in specs]
+    with Scene.upload(tiny_scenes.scene([], materials), library) as scene:
+        yield version, specs, {key: np.array(got[key]) for key in ("sky", "noise", "sun")}, scene
+
+
+def frame(angle):
+    """Tangent, bitangent and normal of a cell turned by that angle, as rows; the view is +z."""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    return np.array([(c, 0.0, -s), (0.0, 1.0, 0.0), (s, 0.0, c)])
+
+
+def bends(wo, wi, ior):
+    """Whether some facet can bend wo into wi, or both are on one side. Cycles gives light to all other pairs, too: its
+    evaluation leaves that check out."""
+    h = -(wo + ior * wi)
+    h = h * np.sign(h[:, 2:])
+    return (wi[:, 2] > 0.0) | ((h @ wo > 0.0) & ((h * wi).sum(axis=1) < 0.0))
+
+
+def figures(name, angle, ours, theirs):
+    return f"{name}, seen at {angle} degrees: Lancer {np.round(ours, 5).tolist()}, Cycles {np.round(theirs, 5).tolist()}"
+
+
+def test_suns(measured):
+    """f cos of each pair of directions, without noise."""
+    version, specs, got, scene = measured
+    wrong = []
+    for i, (name, _, lobe) in enumerate(specs):
+        for j, angle in enumerate(ANGLES):
+            wo, wi = frame(angle) @ (0.0, 0.0, 1.0), np.array(SUNS) @ frame(angle).T
+            f, _ = scene.bsdf(i, wo, wi)
+            emission = scene.lobes(i, wo)[1]
+            possible = bends(wo, wi, lobe.principled.ior if lobe.principled else 1.0)
+            ours, theirs = f * np.abs(wi[:, 2:]) + emission, got["sun"][:, i, j]
+            # In the darkest directions half a percent of the brightest one, or of what a white surface gives, is nothing.
+            scale = np.maximum(theirs, max(0.1 * theirs.max(), 0.01))
+            allowed = LIMIT * scale
+            if np.any((np.abs(ours - theirs) > allowed)[possible]):
+                wrong.append(figures(name, angle, ours[possible], theirs[possible]))
+    assert not wrong, f"{len(wrong)} of {len(specs) * len(ANGLES)} in Blender {version}\n" + "\n".join(wrong[:20])
+
+
+def has_honest_sampler(version, lobe):
+    """Cycles' samplers of two lobes do not follow the densities that they tell: light from a sky is not the integral of the
+    values there. Ashikhmin-Shirley keeps half vectors that face away; the coat of 3.x draws from another distribution."""
+    if lobe.principled:
+        return version >= (4, 0) or lobe.principled.coat == 0.0
+    return lobe.distribution.name != "ASHIKHMIN_SHIRLEY"
+
+
+def white_sky(scene, material, wo):
+    """Mean weight of samples and its standard error, from shifts of a three-dimensional lattice (powers of the number whose
+    fourth power is itself plus 1: the generalised golden ratio)."""
+    step = 1.2207440846057596 ** -np.arange(1.0, 4.0)
+    grid = np.outer(np.arange(8192), step)
+    means = []
+    for shift in np.random.default_rng(1).random((16, 3)):
+        u = np.minimum((grid + shift) % 1.0, 1.0 - 2.0**-24)
+        means.append(scene.bsdf_sample(material, wo, u).weight.mean(axis=0, dtype=np.float64))
+    return np.mean(means, axis=0), np.std(means, axis=0, ddof=1) / math.sqrt(len(means))
+
+
+def test_sky(measured):
+    """All light that a surface sends to the viewer under a white sky."""
+    version, specs, got, scene = measured
+    wrong, noise = [], []
+    for i, (name, _, lobe) in enumerate(specs):
+        if not has_honest_sampler(version, lobe):
+            continue
+        for j, angle in enumerate(ANGLES):
+            wo = frame(angle) @ (0.0, 0.0, 1.0)
+            ours, error = white_sky(scene, i, wo)
+            ours += scene.lobes(i, wo)[1]
+            theirs, error = got["sky"][i, j], np.hypot(error, got["noise"][i, j])
+            noise.append(error / np.maximum(theirs, 0.1))
+            # Of 1500 values one in 16 000 lies beyond 4 standard errors by chance; with the limit on top none does.
+            if np.any(np.abs(ours - theirs) > LIMIT * np.maximum(theirs, 0.1) + 4.0 * error):
+                wrong.append(figures(name, angle, ours, theirs))
+    # Noise that hides an error twice the limit would make this a test of nothing.
+    assert np.percentile(noise, 95) < LIMIT / 2
+    assert not wrong, f"{len(wrong)} of {len(specs) * len(ANGLES)} in Blender {version}\n" + "\n".join(wrong[:20])

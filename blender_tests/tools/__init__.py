@@ -1,0 +1,1 @@
+"""The measuring programs, each with tests of its own."""

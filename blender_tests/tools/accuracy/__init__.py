@@ -1,0 +1,1 @@
+"""Is the error that renders tell true: `make accuracy`."""

@@ -1,0 +1,56 @@
+"""How true a told error is: what lies inside its bar, what is biased. Arrays in, numbers out.
+
+A reference's own noise is added to bars.
+"""
+
+import numpy as np
+
+from tools.harness.errors import ROUNDING
+
+BAR = 1.96
+BLOCK = 16
+
+
+def inside(picture, bars, reference):
+    """Which pixels lie within 1.96 standard errors of the truth."""
+    reach = BAR * np.sqrt(np.asarray(bars, np.float64) ** 2 + reference.variance)
+    return np.abs(picture - reference.mean) <= reach + ROUNDING * np.abs(reference.mean)
+
+
+def scores(pictures, reference):
+    """Difference of two means of independent pictures, (count, ...) each, in standard errors of a Gaussian.
+
+    Few pictures know their spread badly: Welch's t is turned into the Gaussian number of equal chance (Wallace, "Bounds on
+    normal approximations to Student's and the chi-square distributions", 1959).
+    """
+    a, b = pictures.var(axis=0, ddof=1) / len(pictures), reference.var(axis=0, ddof=1) / len(reference)
+    difference = pictures.mean(axis=0) - reference.mean(axis=0)
+    clean = np.abs(difference) <= ROUNDING * np.abs(reference.mean(axis=0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = difference / np.sqrt(a + b)
+        freedom = (a + b) ** 2 / (a**2 / (len(pictures) - 1) + b**2 / (len(reference) - 1))
+        z = np.sign(t) * (8 * freedom + 1) / (8 * freedom + 3) * np.sqrt(freedom * np.log1p(t * t / freedom))
+    return np.where(clean, 0.0, np.where(np.isnan(z), np.inf, z))
+
+
+def blocks(pictures):
+    """Means over squares of 16 x 16, what is left over at the edges counted with their neighbours: (count, rows, columns)."""
+    height, width = pictures.shape[1:]
+    rows, columns = (np.arange(max(1, size // BLOCK)) * BLOCK for size in (height, width))
+    sums = np.add.reduceat(np.add.reduceat(pictures, rows, axis=1), columns, axis=2)
+    return sums / np.outer(np.diff([*rows, height]), np.diff([*columns, width]))
+
+
+def bias(pictures, reference):
+    """z of the whole picture and of its blocks; and how much the mean of all pictures is off, with its standard error."""
+    whole = scores(pictures.mean(axis=(1, 2)), reference.parts.mean(axis=(1, 2)))
+    parts = scores(blocks(pictures), blocks(reference.parts))
+    truth = reference.mean.mean()
+    of_pictures, of_parts = (a.mean(axis=(1, 2)) for a in (pictures, reference.parts))
+    spread = np.sqrt(of_pictures.var(ddof=1) / len(pictures) + of_parts.var(ddof=1) / len(of_parts))
+    return {
+        "whole": float(whole),
+        "relative": float(of_pictures.mean() / truth - 1.0),
+        "relative_error": float(spread / truth),
+        "blocks": [float(z) for z in parts.ravel()],
+    }

@@ -1,0 +1,241 @@
+"""The speed goals, each with what this run measured, from the figures of bench.json alone."""
+
+from dataclasses import replace
+
+from tools.harness import estimates
+from tools.harness.verdicts import NOT_MEASURED, Verdict
+
+
+def judge(figures):
+    """A Verdict for each row of the table."""
+    return [row(figures) for row in _ROWS]
+
+
+def shown(figures, key):
+    """(scene, our record, theirs) where both were timed on the same picture."""
+    for name, scene in figures.get("scenes", {}).items():
+        ours, theirs = (scene.get("renderers", {}).get(k, {}) for k in ("lancer", key))
+        same = theirs.get("difference", {"same": True})["same"]
+        if "samples_per_second" in ours and "samples_per_second" in theirs and same:
+            yield name, ours, theirs
+
+
+def rate_ratios(figures, key):
+    result = {}
+    for name, ours, theirs in shown(figures, key):
+        result[name] = ours["samples_per_second"]["median"] / theirs["samples_per_second"]["median"]
+    return result
+
+
+def efficiency_ratios(figures, key):
+    result = {}
+    for name, ours, theirs in shown(figures, key):
+        if ours.get("errors") and theirs.get("errors"):
+            pairs = [(record["errors"], record["seconds"]) for record in (ours, theirs)]
+            result[name] = estimates.efficiency_ratio(*pairs)["value"]
+    return result
+
+
+def get(figures, *keys):
+    """figures[key][key] ..., or None where one is missing; the median of what has one."""
+    for key in keys:
+        if not isinstance(figures, dict) or key not in figures:
+            return None
+        figures = figures[key]
+    return figures.get("median") if isinstance(figures, dict) else figures
+
+
+def over(a, b):
+    return None if a is None or b is None or b == 0 else a / b
+
+
+def at_least(what, goal, value, limit, text="{:.2f}x"):
+    return _verdict(what, goal, value, text, lambda: value >= limit)
+
+
+def at_most(what, goal, value, limit, text="{:.2f}x"):
+    return _verdict(what, goal, value, text, lambda: value <= limit)
+
+
+def _verdict(what, goal, value, text, reached):
+    if value is None:
+        return Verdict(what, goal, NOT_MEASURED, None)
+    return Verdict(what, goal, text.format(value), reached())
+
+
+def _ratios(what, goal, ratios, mean_limit, least_limit):
+    """Geometric mean and the scene where it is least; either limit may be None."""
+    if not ratios:
+        return Verdict(what, goal, NOT_MEASURED, None)
+    mean, worst = estimates.geometric_mean(ratios.values()), min(ratios, key=ratios.get)
+    text = f"{mean:.2f}x, least {ratios[worst]:.2f}x ({worst}), {len(ratios)} scenes"
+    reached = (mean_limit is None or mean >= mean_limit) and (least_limit is None or ratios[worst] >= least_limit)
+    return Verdict(what, goal, text, reached)
+
+
+def _all(what, goal, parts):
+    """Several figures that all have to hold: (text, value, reached)."""
+    texts = [f"{name} {NOT_MEASURED}" if value is None else f"{name} {text}" for name, value, text, _ in parts]
+    if all(value is None for _, value, _, _ in parts):
+        return Verdict(what, goal, NOT_MEASURED, None)
+    known = [reached for _, value, _, reached in parts if value is not None]
+    reached = False if not all(known) else (True if len(known) == len(parts) else None)
+    return Verdict(what, goal, "; ".join(texts), reached)
+
+
+def _part(name, value, text, reached):
+    return name, value, "" if value is None else text.format(value), None if value is None else reached(value)
+
+
+def _rays_closest(figures):
+    ours = get(figures, "rays", "lancer", "diffuse")
+    fast = over(ours, get(figures, "rays", "embree", "fast", "diffuse", "single"))
+    robust = over(ours, get(figures, "rays", "embree", "robust", "diffuse", "single"))
+    return _all(
+        "closest-hit rays/s, diffuse bounces, against Embree 4.4 single ray",
+        "1.0x fast mode, 1.2x robust mode",
+        [
+            _part("fast", fast, "{:.2f}x", lambda x: x >= 1.0),
+            _part("robust", robust, "{:.2f}x", lambda x: x >= 1.2),
+        ],
+    )
+
+
+def _rays_other(figures):
+    parts = []
+    for kind in ("primary", "shadow"):
+        modes = get_dict(figures, "rays", "embree", "fast", kind)
+        best = max((get(modes, mode) for mode in modes), default=None)
+        value = over(get(figures, "rays", "lancer", kind), best)
+        parts.append(_part(kind, value, "{:.2f}x", lambda x: x >= 1.0))
+    return _all("primary and shadow rays/s against Embree 4.4, best of its single and packet modes", "1.0x", parts)
+
+
+def get_dict(figures, *keys):
+    for key in keys:
+        figures = figures.get(key, {}) if isinstance(figures, dict) else {}
+    return figures
+
+
+def _build(figures):
+    ratio = over(get(figures, "build", "embree_seconds"), get(figures, "build", "lancer_seconds"))
+    held = get(figures, "million", "held_bytes_per_triangle")
+    return _all(
+        "BVH build, 1 million triangles",
+        "not slower than Embree's medium quality; under 120 bytes a triangle",
+        [
+            _part("Embree's time / ours", ratio, "{:.2f}", lambda x: x >= 1.0),
+            _part("bytes a triangle", held, "{:.0f}", lambda x: x < 120.0),
+        ],
+    )
+
+
+def _instances(figures):
+    seconds = get(figures, "instances", "total_seconds")
+    memory = get(figures, "instances", "peak_bytes")
+    return _all(
+        "20 000 instances x 15 744 triangles: export, upload and build",
+        "under 1 s, under 250 MB above Blender's own",
+        [
+            _part("seconds", seconds, "{:.2f}", lambda x: x < 1.0),
+            _part("MB", None if memory is None else memory / 1e6, "{:.0f}", lambda x: x < 250.0),
+        ],
+    )
+
+
+def _first_sample(figures):
+    parts = []
+    for name in ("balls", "million"):
+        look = get_dict(figures, "first_look", name)
+        time = over(get(look, "CYCLES", "seconds"), get(look, "LANCER", "seconds"))
+        memory = over(get(look, "LANCER", "peak_bytes"), get(look, "CYCLES", "peak_bytes"))
+        parts.append(_part(f"{name}: Cycles' time / ours", time, "{:.2f}", lambda x: x >= 1.0))
+        parts.append(_part("our memory / Cycles'", memory, "{:.2f}", lambda x: x <= 1.0))
+    goal = "not slower; memory above Blender's own not more than Cycles'"
+    return _all("F12 to the end of the first sample, against Cycles: balls; 1 million triangles", goal, parts)
+
+
+def _lights(figures):
+    def seconds(name):
+        return over(1.0, get(figures, "scenes", name, "renderers", "lancer", "samples_per_second"))
+
+    few, many, most = (seconds(name) for name in ("lights2", "lights200", "lights10k"))
+    return _all(
+        "many lights: cost of a sample against that with 2",
+        "200: at most 1.5x; 10 000: at most 2.5x",
+        [
+            _part("200:", over(many, few), "{:.2f}x", lambda x: x <= 1.5),
+            _part("10 000:", over(most, few), "{:.2f}x", lambda x: x <= 2.5),
+        ],
+    )
+
+
+def _exact(figures):
+    rate = "renderers", "lancer", "samples_per_second"
+    ratio = over(get(figures, "scenes", "balls_exact", *rate), get(figures, "scenes", "balls", *rate))
+    return at_least("exact spheres instead of 238 082 triangles, balls, samples/s", "2x", ratio, 2.0)
+
+
+def _threads(figures):
+    ratio = get(figures, "threads_scaling", "times_faster")
+    return at_least("2 threads against 1, balls", "1.9x on 2 real cores", ratio, 1.9)
+
+
+def _window(figures):
+    parts = []
+    for name in ("longest", "median"):
+        ours, theirs = (get(figures, "window", engine, name) for engine in ("LANCER", "CYCLES"))
+        seconds = "" if ours is None or theirs is None else f"{ours:.2f} s, Cycles {theirs:.2f} s:"
+        parts.append(_part(f"{name} {seconds}", over(ours, theirs), "{:.2f}x", lambda x: x <= 1.0))
+    return _all("gaps of Blender's main loop while it renders in a window, against Cycles", "1.0x", parts)
+
+
+def _view(figures):
+    parts = []
+    for name, words, limit in (("edits", "edit", 0.2), ("moves", "camera move", 0.1)):
+        ours, theirs = (get(figures, "view", engine, name) for engine in ("LANCER", "CYCLES"))
+        beside = "" if theirs is None else f" (Cycles {theirs:.2f} s)"
+        parts.append(_part(f"first picture after {words}{beside}:", ours, "{:.2f} s", lambda x, limit=limit: x <= limit))
+    ours, theirs = (get(figures, "view", engine, "pictures_per_second") for engine in ("LANCER", "CYCLES"))
+    size = get(figures, "view", "LANCER", "pixel_size")
+    beside = "" if theirs is None or size is None else f" (pixels of {size:.0f} x {size:.0f}; Cycles {theirs:.1f})"
+    parts.append(_part(f"pictures a second while it turns{beside}:", ours, "{:.1f}", lambda x: x >= 8.0))
+    return _all("3D view in Rendered shading, balls, 960 x 540, software GL", "0.2 s; 0.1 s; 8 a second", parts)
+
+
+def _leaks(figures):
+    """A leak is a leak among any number of rays; none says enough only of as many as the goal names."""
+    count, rays = get(figures, "rays", "leaks"), get(figures, "rays", "leak_rays") or 0
+    verdict = at_most("watertight: rays aimed at edges and vertices that leak", "0 in 1e8", count, 0, f"{{}} in {rays:.3g}")
+    return replace(verdict, reached=None) if verdict.reached and rays < 1e8 else verdict
+
+
+_ROWS = (
+    lambda f: _ratios("samples/s against Cycles", "4x in geometric mean, none below 2x", rate_ratios(f, "cycles"), 4.0, 2.0),
+    lambda f: _ratios(
+        "samples/s against Mitsuba llvm_ad_rgb", "1x or more on every scene", rate_ratios(f, "mitsuba_llvm"), None, 1.0
+    ),
+    lambda f: _ratios(
+        "efficiency against Cycles", "5x in geometric mean, none below 2x", efficiency_ratios(f, "cycles"), 5.0, 2.0
+    ),
+    lambda f: _ratios(
+        "efficiency against Mitsuba llvm_ad_rgb", "1.5x in geometric mean", efficiency_ratios(f, "mitsuba_llvm"), 1.5, None
+    ),
+    _rays_closest,
+    _leaks,
+    _rays_other,
+    _exact,
+    _build,
+    _instances,
+    lambda f: at_least(
+        "CLASSIC on 600 exact spheres against POV-Ray 3.7, rays/s", "5x", get(f, "classic", "times_faster"), 5.0
+    ),
+    _first_sample,
+    lambda f: at_most(
+        "first picture handed to Blender after F12, balls", "0.15 s", get(f, "first_shown", "seconds"), 0.15, "{:.2f} s"
+    ),
+    _lights,
+    _threads,
+    _window,
+    _view,
+)

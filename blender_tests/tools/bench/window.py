@@ -1,0 +1,60 @@
+"""What an artist at a real window waits for: gaps of Blender's main loop in a render, pictures of a 3D view."""
+
+import json
+import subprocess
+import tempfile
+from pathlib import Path
+
+import blenders
+import windows
+
+from tools.harness.places import ROOT
+from tools.harness.turns import by_turns, middle, middles
+from tools.harness.workers import LONGEST, Failed
+
+_SCRIPTS = ROOT / "blender_tests" / "blender" / "in_blender"
+_ENGINES = ("LANCER", "CYCLES")
+_SCREEN = (1280, 800)
+_REGION = (960, 540)
+
+
+def gaps(rounds, seconds, threads):
+    """{engine: {longest, median: seconds}} of Lancer and Cycles by turns."""
+    answers = _answers(rounds, "window_gaps.py", _SCREEN, seconds, threads)
+    return {engine: middles(found, ("longest", "median")) for engine, found in answers.items()}
+
+
+def view(rounds, threads):
+    """{engine: {edits, moves: seconds until seen, pictures_per_second, pixel_size}} of both engines by turns."""
+    answers = _answers(rounds, "window_view.py", _REGION, threads)
+    for answer in (answer for found in answers.values() for answer in found):
+        if answer["region"] != list(_REGION):
+            raise Failed(f"the view has {answer['region']} pixels")
+        # Of several edits and moves in one window.
+        answer.update({name: middle(answer[name])["median"] for name in ("edits", "moves")})
+    names = ("edits", "moves", "pictures_per_second")
+    figures = {engine: middles(found, names) for engine, found in answers.items()}
+    figures["LANCER"].update(middles(answers["LANCER"], ("pixel_size",)))
+    return figures
+
+
+def _answers(rounds, script, size, *arguments):
+    """{engine: what each window answered}"""
+    with windows.screen(*_SCREEN) as display:
+        return by_turns(rounds, _ENGINES, lambda engine, _: _measured(display, script, size, engine, *arguments))
+
+
+def _measured(display, script, size, engine, *arguments):
+    with tempfile.TemporaryDirectory() as folder:
+        answer = Path(folder) / "answer.json"
+        place = ["-p", "0", "0", *map(str, size)]
+        given = [str(answer), engine, *map(str, arguments)]
+        environment = blenders.environment(folder, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1")
+        command = [blenders.program(), "--factory-startup", *place, "-P", str(_SCRIPTS / script), "--", *given]
+        try:
+            subprocess.run(command, env=environment, cwd=folder, capture_output=True, timeout=LONGEST)
+        except subprocess.TimeoutExpired:
+            raise Failed(f"{engine} in a window: not done after {LONGEST:.0f} s") from None
+        if not answer.exists():
+            raise Failed(f"{engine} in a window gave no answer")
+        return json.loads(answer.read_text())

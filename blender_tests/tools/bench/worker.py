@@ -1,0 +1,194 @@
+"""start.py bench.worker TASK JSON: one measurement inside Blender's Python module; the answer is JSON."""
+
+import os
+import sys
+import tempfile
+import time
+
+import bpy
+import numpy as np
+
+import addon
+import scenes
+from addon.bindings import abi
+from addon.bindings.session import Scene, Session
+from addon.export.scene import export_scene
+from tools.harness import workers
+from tools.harness.f12 import press_f12, registered
+
+
+def set_up(name, threads, width=None, height=None, samples=None, bounces=12, seed=0):
+    """The named scene as make_alike has it."""
+    scene = scenes.load(name)
+    scene.render.resolution_x = width or scene.render.resolution_x
+    scene.render.resolution_y = height or scene.render.resolution_y
+    make_alike(scene, threads, bounces)
+    set_samples(scene, samples or scene.lancer.samples, seed)
+    return scene
+
+
+def make_alike(scene, threads, bounces=12):
+    """Settings that mean the same to Lancer and to Cycles: no filter, no adaptive end, nothing clamped by Cycles."""
+    render = scene.render
+    render.threads_mode = "FIXED"
+    render.threads = threads
+    render.use_compositing = render.use_sequencer = False
+    scene.lancer.max_bounces = bounces
+    scene.lancer.pixel_filter = "BOX"
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.use_adaptive_sampling = False
+    cycles.use_denoising = False
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    cycles.blur_glossy = 0.0
+    cycles.light_sampling_threshold = 0.0
+    cycles.pixel_filter_type = "BOX"
+    for kind in ("max", "diffuse", "glossy", "transmission", "transparent_max", "volume"):
+        setattr(cycles, f"{kind}_bounces", bounces)
+
+
+def set_samples(scene, samples, seed):
+    scene.lancer.samples = scene.cycles.samples = samples
+    scene.lancer.seed = scene.cycles.seed = seed
+
+
+def f12(engine, **settings):
+    """The whole of F12 as the artist waits for it, and the peak of memory above the scene in Blender."""
+    scene = set_up(**settings)
+    scene.render.engine = engine
+    bpy.context.view_layer.update()
+    with tempfile.TemporaryDirectory() as folder:
+        scene.render.filepath = os.path.join(folder, "picture.png")
+        workers.reset_peak()
+        before, start = workers.memory("VmRSS"), time.perf_counter()
+        bpy.ops.render.render(write_still=True)
+        seconds = time.perf_counter() - start
+        if not os.path.exists(scene.render.filepath):
+            raise RuntimeError(f"{engine} wrote no picture")
+    return {"seconds": seconds, "peak_bytes": workers.memory("VmHWM") - before}
+
+
+def first_shown(**settings):
+    """Seconds from F12 until the first picture is in the result that Blender then shows."""
+    scene = set_up(**settings)
+    scene.render.engine = "LANCER"
+    bpy.context.view_layer.update()
+    fill, filled = addon.passes.fill, []
+
+    def timed_fill(*arguments):
+        fill(*arguments)
+        filled.append(time.perf_counter())
+
+    addon.passes.fill = timed_fill
+    start = time.perf_counter()
+    bpy.ops.render.render()
+    addon.passes.fill = fill
+    return {"seconds": filled[0] - start}
+
+
+def render(engine, name, threads, width, height, samples, seed, bounces=12, picture=None, first_look=True):
+    """F12 with one sample, then with all of them; the rate is that of the engine's own clock, which starts at the first ray."""
+    scene = set_up(name, threads, width, height, samples, bounces)
+    scene.render.engine = engine
+    bpy.context.view_layer.update()
+    workers.reset_peak()
+    before, result = workers.memory("VmRSS"), {"samples": samples * width * height}
+    if first_look:
+        set_samples(scene, 1, 0)
+        first = press_f12(scene)
+        result |= {"first_pixel_seconds": first.wall, "setup_seconds": first.wall - first.seconds}
+    set_samples(scene, samples, seed)
+    rendered = press_f12(scene)
+    result |= {"render_seconds": rendered.seconds, "clock": "the engine's own clock"}
+    result["peak_bytes"] = rendered.peak - before
+    if picture:
+        np.save(picture, rendered.picture[..., :3])
+    if engine == "LANCER":
+        statistics = addon.engine.last_statistics[scene.name]
+        result["rays"] = {kind: statistics[f"{kind}_rays"] for kind in ("camera", "bounce", "shadow")}
+        result["statistics"] = statistics
+    return result
+
+
+def snapshot(path, **settings):
+    """Writes the scene for those who do not run inside Blender."""
+    set_up(**settings)
+    start = time.perf_counter()
+    exported, _ = export_scene(bpy.context.evaluated_depsgraph_get())
+    seconds = time.perf_counter() - start
+    exported.save(path)
+    triangles = sum(
+        len(exported.meshes[m].triangles)
+        for m, k in zip(exported.instances.meshes, exported.instances.kinds, strict=True)
+        if k == 0
+    )
+    return {
+        "export_seconds": seconds,
+        "triangles": triangles,
+        "instances": len(exported.instances),
+        "lights": len(exported.lights),
+    }
+
+
+def prepare(**settings):
+    """Export, upload and build, each by itself, and the bytes that they take on top of Blender's own."""
+    set_up(**settings)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    workers.reset_peak()
+    before, start = workers.memory("VmRSS"), time.perf_counter()
+    exported_scene, _ = export_scene(depsgraph)
+    exported = time.perf_counter()
+    with Scene(None) as scene:
+        scene.fill(exported_scene)
+        filled = time.perf_counter()
+        scene.commit(exported_scene.settings.accelerator, settings["threads"])
+        built = time.perf_counter()
+        peak = workers.memory("VmHWM") - before
+        kept = workers.memory("VmRSS") - before
+        with Session(scene, exported_scene.camera, exported_scene.settings) as session:
+            statistics = session.statistics()
+    triangles = sum(len(mesh.triangles) for mesh in exported_scene.meshes)
+    return {
+        "triangles": triangles,
+        "instances": len(exported_scene.instances),
+        "export_seconds": exported - start,
+        "upload_seconds": filled - exported,
+        "commit_seconds": built - filled,
+        "build_seconds": built - exported,
+        "total_seconds": built - start,
+        "peak_bytes": peak,
+        "kept_bytes": kept,
+        "peak_bytes_per_triangle": peak / triangles,
+        "held_bytes_per_triangle": (statistics.geometry_bytes + statistics.accelerator_bytes) / triangles,
+    }
+
+
+def accelerators(kinds, **settings):
+    """Rendering alone, once per accelerator, on the same snapshot."""
+    set_up(**settings)
+    exported, _ = export_scene(bpy.context.evaluated_depsgraph_get())
+    result = {}
+    for kind in kinds:
+        with Scene(None) as scene:
+            scene.fill(exported)
+            scene.commit(abi.Accelerator[kind], settings["threads"])
+            with Session(scene, exported.camera, exported.settings) as session:
+                session.render_all(exported.settings.samples)
+                statistics = session.statistics()
+        result[kind] = {"seconds": statistics.render_seconds, "rays_per_second": statistics.rays_per_second}
+    result["instruction_set"] = statistics.instruction_set
+    return result
+
+
+def versions():
+    return {
+        "blender": bpy.app.version_string,
+        "lancer": addon.VERSION,
+        "python": sys.version.split()[0],
+    }
+
+
+TASKS = (f12, first_shown, render, snapshot, prepare, accelerators, versions)
+
+if __name__ == "__main__":
+    registered(lambda: workers.answer(*TASKS))

@@ -1,0 +1,144 @@
+"""What a run leaves: the page of every file with both pictures and figures, in a table that can be sorted; and the summary."""
+
+from pathlib import Path
+
+from tools.harness import page
+from tools.harness.page import element, lines, markdown, percent, times
+from tools.harness.places import TABLES
+
+from . import verdicts
+
+_MOST_MISSING = 12
+_GROUPS = (("files with equal pictures", "equal"), ("all files", "all"))
+_STYLE = """
+h1 { font-size: 20px } button { margin-right: 6px }
+table.files td { vertical-align: top } table.sortable th { cursor: pointer; user-select: none }
+th[data-order=up]::after { content: " \\25b2" } th[data-order=down]::after { content: " \\25bc" }
+td.name { text-align: left; min-width: 170px; overflow-wrap: anywhere } td.remarks { text-align: left; min-width: 320px }
+td.remarks div { max-height: 190px; overflow: auto } .what { color: #777 }
+td img { width: 220px; display: block; background: #000 }
+.untold, .failed { color: #b00020; font-weight: bold } .told, .cycles, .unreadable { color: #9a6700 }
+.equal { color: #07702c } .noise { color: #3d7a4e } .black, .missing { color: #777 }
+"""
+_HEAD = ("file", "verdict", "Lancer", "Cycles", "difference x 8", "mean", "99th", "noise", "speed", "variance", "efficiency")
+_HEAD += ("wide", "Lancer set-up, s", "export", "build", "Cycles set-up", "Lancer MB", "Cycles MB", "missing", "remarks")
+
+
+def write(figures, folder):
+    """Writes index.html and corpus.json."""
+    rows = sorted(figures["files"], key=lambda row: (verdicts.ORDER.index(row["verdict"]), row["name"]))
+    found = figures["summary"]
+    buttons = {"": f"all {found['files']} files"}
+    buttons |= {verdict: f"{count} {verdicts.words(verdict, count)}" for verdict, count in found["counts"].items()}
+    parts = [
+        describe(figures),
+        lines((element("button", text, data_verdict=verdict) for verdict, text in buttons.items()), ""),
+        page.table(*_means(found["means"], wide=True)),
+        page.table(
+            ["what is missing", "files made right, given all before", "in all", "files that have it", "uses"],
+            [[row[name] for name in ("key", "completes", "total", "files", "uses")] for row in found["missing"]],
+        )
+        if found["missing"]
+        else "",
+        page.table(_HEAD, [_row(row) for row in rows], "files sortable"),
+    ]
+    script = (Path(__file__).with_name("table.js")).read_text(encoding="utf-8")
+    title = f"Files as their authors left them: {figures['commit']}"
+    page.write(folder, "corpus", figures, title, parts, _STYLE, script)
+
+
+def describe(figures):
+    machine, plan = figures["machine"], figures["plan"]
+    text = f"{figures['date']}; Blender {figures['blender']}; {machine['processor']}, {plan['threads']} threads; "
+    text += "a short run; " if figures["quick"] else ""
+    return text + (
+        f"{plan['pixels']} pixels on the longer side, {plan['rounds']} seeds of each engine by turns. Speed, variance at equal "
+        "samples and efficiency, 1 / (variance x seconds), are Lancer's over Cycles'; the variance leaves out the hundredth of "
+        "the pixels where either engine's is largest. Wide: share of the vertices that kernels of many lanes shaded."
+    )
+
+
+def _means(means, wide=False):
+    """(head, rows); wide: with the share of the vertices that kernels of many lanes shaded."""
+    rows = []
+    for title, key in _GROUPS:
+        found = means[key]
+        cells = [times(found[name]) for name in ("speed", "variance", "efficiency", "least_efficiency")]
+        rows.append([title, found["files"], *cells, *([percent(found["wide_share"], 2)] if wide else [])])
+    head = ["Lancer over Cycles, geometric means", "files", "samples/s", "variance", "efficiency", "least efficiency"]
+    return [*head, *(["wide"] if wide else [])], rows
+
+
+def _row(row):
+    what = ", ".join(
+        filter(None, (row["kind"], f"Blender {row['saved_by']}" if "saved_by" in row else "", row.get("engine", "")))
+    )
+    verdict, parity = row["verdict"], row.get("parity", {})
+    ours, theirs = (row["engines"].get(engine, {}) for engine in ("LANCER", "CYCLES"))
+    shown = [f"pictures/{name}" for name in row.get("pictures", ())]
+    images = [element("a", element("img", None, src=name, loading="lazy"), href=name) for name in shown]
+    missing = lines(f"{key} ({count})" for key, count in row["missing"].items())
+    cells = [
+        (lines((row["name"], element("span", what, class_="what"))), "name"),
+        (verdicts.words(verdict), f"text {verdict}", verdicts.ORDER.index(verdict)),
+        *images,
+        *[""] * (3 - len(images)),
+        *(_number(parity.get(name), lambda value: percent(value, 2)) for name in ("mean", "p99", "noise_mean")),
+        _number(row.get("speed"), times),
+        _number(row.get("variance", {}).get("ratio"), times),
+        _number(row.get("efficiency"), times),
+        _number(verdicts.wide_share(row), lambda value: percent(value, 2)),
+        *(_number(ours.get(name), _seconds) for name in ("setup_seconds", "export_seconds", "build_seconds")),
+        _number(theirs.get("setup_seconds"), _seconds),
+        *(_number(engine.get("peak_bytes"), _megabytes) for engine in (ours, theirs)),
+        (missing, "text", len(row["missing"])),
+        (element("div", lines(_remarks(row))), "remarks"),
+    ]
+    return page.row(cells, data_verdict=verdict)
+
+
+def _remarks(row):
+    yield from filter(None, (row["sentence"], row["note"], *row["told"]))
+    if row["alike"]:
+        yield "made alike: " + ", ".join(row["alike"])
+    if "samples" in row:
+        yield f"{row['samples']} samples, {row['rounds']} seeds, {row['size'][0]} x {row['size'][1]}, {row['seconds']:.0f} s"
+    yield from (f"Lancer: {text}" for text in row["messages"])
+
+
+def _number(value, words):
+    return ("", "", "") if value is None else (words(value), "", value)
+
+
+def _seconds(value):
+    return f"{value:.2f}"
+
+
+def _megabytes(value):
+    return f"{value / 1e6:.0f}"
+
+
+def summary(figures):
+    """The parts of the summary in a table of Markdown."""
+    found, machine, plan = figures["summary"], figures["machine"], figures["plan"]
+    yield f"{figures['date']}, commit {figures['commit']}, Blender {figures['blender']}; {machine['processor']}, " + (
+        f"{plan['threads']} threads, {plan['pixels']} pixels" + ("; a short run." if figures["quick"] else ".")
+    )
+    yield verdicts.sentence(found) + "."
+    yield markdown(*_means(found["means"]))
+    untold = [row["name"] for row in figures["files"] if row["verdict"] in verdicts.FAULTS]
+    if untold:
+        yield "To be mended: " + ", ".join(f"`{name}`" for name in untold) + "."
+    if found["missing"]:
+        head = ["what is missing", "files made right", "in all", "files that have it"]
+        rows = [[_plain(row["key"]), row["completes"], row["total"], row["files"]] for row in found["missing"][:_MOST_MISSING]]
+        yield markdown(head, rows)
+
+
+def _plain(key):
+    """Of "node:Noise Texture" and "feature:volume"."""
+    return f"{key.removeprefix('node:')} node" if key.startswith("node:") else key.removeprefix("feature:")
+
+
+def update_tables(figures, path=TABLES):
+    page.put_between(path, "corpus", summary(figures))

@@ -1,0 +1,1 @@
+"""The course, chapter by chapter, measured now: `make course`."""

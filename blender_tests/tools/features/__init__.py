@@ -1,0 +1,1 @@
+"""What each feature costs: `make features`."""

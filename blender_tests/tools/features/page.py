@@ -1,0 +1,42 @@
+"""The page of what features cost: one table, with a verdict where a feature is only compiled in."""
+
+from tools.harness import page, verdicts
+
+_TOLD = """A minimal scene, a matt ball on a matt floor under a point lamp, and one feature more at a time. Used: on the ball,
+the lamp, the sky, the camera or in the settings; how much longer the same samples take. Only compiled in: the same scene, in
+which an object behind the camera, a lamp below the floor or a sky that no ray may see has the feature, so that its code is
+there and is not needed. Figures are medians with their 95 % intervals."""
+_HEAD = ["feature", "PATH: used", "only compiled in", "", "kernel", "CLASSIC: used", "only compiled in", ""]
+
+
+def percent(value):
+    return f"{value['cost'] * 100:+.1f} % ± {value['uncertainty'] * 100:.1f}"
+
+
+def verdict(value, goal):
+    """True where it is within the goal, False where it is beyond it for certain, None where the interval holds the goal."""
+    if value["cost"] + value["uncertainty"] <= goal:
+        return True
+    return False if value["cost"] - value["uncertainty"] > goal else None
+
+
+def _judged(idle, goal):
+    return (idle["note"], "absent") if "note" in idle else verdicts.words(verdict(idle, goal), "within the interval")
+
+
+def write(figures, folder):
+    machine = figures["machine"]
+    where = f"{machine['processor']}, {machine['system']}, one thread; commit {figures['commit']}"
+    where += ". A short run." if figures["quick"] else "."
+    rows = [_row(name, found, figures["goal"]) for name, found in figures["cases"].items()]
+    page.write(folder, "features", figures, "What features cost", [where, _TOLD, page.table(_HEAD, rows)])
+
+
+def _row(name, found, goal):
+    cells = [name]
+    for integrator in ("PATH", "CLASSIC"):
+        used, idle = (found.get(integrator, {}).get(kind) for kind in ("used", "idle"))
+        cells += [percent(used) if used else "", percent(idle) if idle else "", _judged(idle, goal) if idle else ""]
+        if integrator == "PATH":
+            cells.append(((idle or used)["kernel"] if found.get(integrator) else "", "text"))
+    return cells

@@ -1,0 +1,1 @@
+"""What all measuring programs share: options, terminal, processes, turns, results that are kept, arithmetic, pages."""

@@ -1,0 +1,59 @@
+"""Where the project, its library and its results are, and what a run was made with and on."""
+
+import hashlib
+import os
+import platform
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+TOOLS = ROOT / "blender_tests" / "tools"
+BUILD = ROOT / "build"
+# The page with the tables of all programs, and the one for users.
+TABLES, README = ROOT / "blender_tests" / "README.md", ROOT / "README.md"
+
+
+def machine():
+    facts = {
+        "processor": platform.machine(),
+        "processors": os.cpu_count(),
+        "system": platform.system(),
+    }
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            facts["processor"] = line.split(":", 1)[1].strip()
+            break
+    facts["memory_gib"] = round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30, 1)
+    # What others have the machine do at the start falls on all figures.
+    facts["load"] = round(os.getloadavg()[0], 2)
+    return facts
+
+
+def commit():
+    """Of the tree, with a + where files differ from it."""
+    name, changed = (
+        subprocess.run(["git", *command], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+        for command in (("rev-parse", "--short", "HEAD"), ("status", "--porcelain"))
+    )
+    return (name or "unknown") + ("+" if changed else "")
+
+
+def header(quick):
+    """What stands in every program's record."""
+    return {"machine": machine(), "commit": commit(), "quick": quick}
+
+
+def digest_of_file(path):
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
+
+
+def digest_of_files(paths):
+    """Of the names and contents of files of the project."""
+    digest = hashlib.sha256()
+    for path in sorted(paths):
+        digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def digest_of_library():
+    return digest_of_file(ROOT / "addon" / "lib" / "liblancer.so")

@@ -1,0 +1,156 @@
+"""Both engines on the same integral: equal bounces and filters, nothing clamped, guessed, stopped early or smoothed."""
+
+import os
+
+import bpy
+import exr
+
+from addon import engine as lancer_engine
+
+# Pass by its name since 5.0: (switch of the view layer, name before 5.0).
+PASSES = {
+    "Combined": ("use_pass_combined", "Combined"),
+    "Depth": ("use_pass_z", "Depth"),
+    "Mist": ("use_pass_mist", "Mist"),
+    "Position": ("use_pass_position", "Position"),
+    "Normal": ("use_pass_normal", "Normal"),
+    "UV": ("use_pass_uv", "UV"),
+    "Object Index": ("use_pass_object_index", "IndexOB"),
+    "Material Index": ("use_pass_material_index", "IndexMA"),
+    "Diffuse Direct": ("use_pass_diffuse_direct", "DiffDir"),
+    "Diffuse Indirect": ("use_pass_diffuse_indirect", "DiffInd"),
+    "Diffuse Color": ("use_pass_diffuse_color", "DiffCol"),
+    "Glossy Direct": ("use_pass_glossy_direct", "GlossDir"),
+    "Glossy Indirect": ("use_pass_glossy_indirect", "GlossInd"),
+    "Glossy Color": ("use_pass_glossy_color", "GlossCol"),
+    "Transmission Direct": ("use_pass_transmission_direct", "TransDir"),
+    "Transmission Indirect": ("use_pass_transmission_indirect", "TransInd"),
+    "Transmission Color": ("use_pass_transmission_color", "TransCol"),
+    "Emission": ("use_pass_emit", "Emit"),
+    "Environment": ("use_pass_environment", "Env"),
+    "Ambient Occlusion": ("use_pass_ambient_occlusion", "AO"),
+    "Denoising Albedo": ("denoising_store_passes", "Denoising Albedo"),
+    "Denoising Normal": ("denoising_store_passes", "Denoising Normal"),
+    "Denoising Depth": ("denoising_store_passes", "Denoising Depth"),
+}
+
+
+def pass_name(name):
+    return name if bpy.app.version >= (5, 0) else PASSES[name][1]
+
+
+def unbias(scene, case, samples, seed):
+    _set_cycles(scene.cycles, case, samples, seed)
+    _set_lancer(scene.lancer, case, samples, seed)
+    for setting in ("film_transparent_glass", "film_transparent_roughness"):
+        # Where Lancer has its own, the scene has set Cycles'.
+        if hasattr(scene.lancer, setting):
+            setattr(scene.lancer, setting, getattr(scene.cycles, setting))
+    scene.render.resolution_x, scene.render.resolution_y = case.size
+    scene.render.resolution_percentage = 100
+    scene.render.use_compositing = scene.render.use_sequencer = False
+    scene.render.use_motion_blur = scene.render.use_simplify = False
+    layer = bpy.context.view_layer
+    # 0: the scene's number.
+    layer.samples = 0
+    # One pass less: Blender 5.0 cannot write two of them where pixels are not square.
+    layer.use_pass_combined = "Combined" in case.passes
+    for name in case.passes:
+        _ask_for(layer, scene, PASSES[name][0])
+
+
+def _ask_for(view_layer, scene, switch):
+    owners = (view_layer.cycles, scene.cycles) if switch == "denoising_store_passes" else (view_layer,)
+    for owner in owners:
+        if hasattr(owner, switch):
+            setattr(owner, switch, True)
+    if switch == "denoising_store_passes" and hasattr(scene.lancer, "use_pass_albedo"):
+        scene.lancer.use_pass_albedo = True
+
+
+def unbias_cycles(cycles, samples, seed):
+    """So many samples of all light, from a sequence whose errors are independent between seeds."""
+    cycles.device, cycles.samples, cycles.seed = "CPU", samples, seed
+    cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = False
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    cycles.blur_glossy = 0.0
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    cycles.use_animated_seed = cycles.use_auto_tile = False
+    # The pattern that older Blenders know under another name; never the one that hides error from the eye.
+    for pattern in ("TABULATED_SOBOL", "PROGRESSIVE_MULTI_JITTER"):
+        try:
+            cycles.sampling_pattern = pattern
+            break
+        except TypeError:
+            continue
+
+
+def _set_cycles(cycles, case, samples, seed):
+    unbias_cycles(cycles, samples, seed)
+    cycles.light_sampling_threshold = 0.0
+    cycles.pixel_filter_type = "BLACKMAN_HARRIS" if case.filter_width else "BOX"
+    cycles.filter_width = case.filter_width or 1.0
+    cycles.film_exposure = case.exposure
+    cycles.max_bounces = case.bounces
+    for kind in ("diffuse", "glossy", "transmission"):
+        setattr(cycles, kind + "_bounces", case.bounces)
+    cycles.volume_bounces = 0
+    cycles.transparent_max_bounces = case.transparent_bounces
+    cycles.min_light_bounces = cycles.min_transparent_bounces = 0
+    if hasattr(cycles, "use_light_tree"):
+        cycles.use_light_tree = False
+
+
+def unbias_lancer(lancer, samples, seed):
+    """So many samples of all light."""
+    lancer.quality, lancer.samples, lancer.seed = "CUSTOM", samples, seed
+    lancer.clamp_indirect = 0.0
+    for setting in ("target_error", "time_limit"):
+        if hasattr(lancer, setting):
+            setattr(lancer, setting, 0.0)
+    if hasattr(lancer, "use_denoising"):
+        lancer.use_denoising = False
+
+
+def _set_lancer(lancer, case, samples, seed):
+    unbias_lancer(lancer, samples, seed)
+    lancer.max_bounces = case.bounces
+    lancer.pixel_filter = "BLACKMAN_HARRIS" if case.filter_width else "BOX"
+    lancer.filter_width = case.filter_width or 1.0
+    if hasattr(lancer, "transparent_bounces"):
+        lancer.transparent_bounces = case.transparent_bounces
+
+
+def _refuse_dropped_samples(statistics):
+    """No scene of the list holds what float cannot."""
+    if statistics["invalid_samples"]:
+        place = tuple(statistics[f"invalid_{name}"] for name in ("x", "y", "sample"))
+        raise RuntimeError(f"{statistics['invalid_samples']} samples were not finite, the first at {place}")
+
+
+def render(scene, engine, case, samples, seed, folder):
+    """{pass: picture} by engine, under the names of Blender 5; Combined in RGB, with its alpha as a pass of its own."""
+    scene.render.engine = engine
+    unbias(scene, case, samples, seed)
+    path = os.path.join(folder, "picture.exr")
+    if os.path.exists(path):
+        os.remove(path)
+    exr.write_settings(scene, path)
+    bpy.ops.render.render(write_still=True)
+    if not os.path.exists(path):
+        raise RuntimeError(f"{engine} wrote no picture")
+    if engine == "LANCER":
+        _refuse_dropped_samples(lancer_engine.last_statistics[scene.name])
+    stored = exr.read(path)
+    result = {}
+    for name in case.passes:
+        picture = stored.get(pass_name(name))
+        if picture is None:
+            continue
+        if name == "Combined":
+            result["Alpha"] = picture[..., 3:4]
+            picture = picture[..., :3]
+            if engine == "LANCER":
+                picture = case.exposure * picture
+        result[name] = picture
+    return result

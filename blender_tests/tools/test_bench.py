@@ -1,0 +1,136 @@
+"""The benchmark's goals, plans, bounds, page and tables."""
+
+import pytest
+
+from tools.bench import goals, page, plan, rays
+from tools.harness.page import marks
+from tools.harness.verdicts import NOT_MEASURED
+
+
+def _record(rate, errors=None, same=True):
+    record = {"samples_per_second": {"median": rate, "min": rate, "max": rate}, "difference": {"same": same}}
+    return {**record, "errors": errors, "seconds": [1.0] * len(errors)} if errors else record
+
+
+def _figures():
+    scenes = {
+        "one": {"lancer": _record(4e6, [1.0, 1.0]), "cycles": _record(1e6, [6.0, 6.0])},
+        "two": {"lancer": _record(2e6), "cycles": _record(2e6), "mitsuba_llvm": {"cannot": "leaves"}},
+        "other": {"lancer": _record(9e6), "cycles": _record(1e6, same=False)},
+    }
+    return {"scenes": {name: {"renderers": records} for name, records in scenes.items()}}
+
+
+def test_goals_take_means_over_scenes_of_the_same_picture():
+    assert goals.rate_ratios(_figures(), "cycles") == {"one": pytest.approx(4.0), "two": pytest.approx(1.0)}
+    assert goals.efficiency_ratios(_figures(), "cycles") == {"one": pytest.approx(6.0)}
+    assert goals.rate_ratios(_figures(), "mitsuba_llvm") == {}
+
+
+def test_goals_name_every_row_and_what_is_not_measured():
+    verdicts = {verdict.what: verdict for verdict in goals.judge(_figures())}
+    assert len(verdicts) == 17
+    rate = verdicts["samples/s against Cycles"]
+    assert (rate.measured, rate.reached) == ("2.00x, least 1.00x (two), 2 scenes", False)
+    assert verdicts["efficiency against Cycles"].reached is True
+    missing = verdicts["samples/s against Mitsuba llvm_ad_rgb"]
+    assert (missing.measured, missing.reached) == (NOT_MEASURED, None)
+
+
+def test_goals_of_several_figures_need_them_all():
+    """One that is missed decides; one that is missing leaves it open."""
+    figures = {"instances": {"total_seconds": {"median": 0.5}}}
+    row = "20 000 instances x 15 744 triangles: export, upload and build"
+
+    def verdict():
+        return next(verdict for verdict in goals.judge(figures) if verdict.what == row)
+
+    assert verdict().reached is None
+    figures["instances"]["peak_bytes"] = {"median": 200e6}
+    assert verdict().reached is True
+    figures["instances"]["total_seconds"] = {"median": 1.5}
+    assert verdict().reached is False
+
+
+@pytest.mark.parametrize(("rays", "leaks", "reached"), [(1e8, 0, True), (1e6, 0, None), (1e6, 3, False)])
+def test_no_leaks_among_few_rays_prove_nothing(rays, leaks, reached):
+    verdicts = goals.judge({"rays": {"leak_rays": rays, "leaks": leaks}})
+    assert next(verdict for verdict in verdicts if verdict.goal == "0 in 1e8").reached is reached
+
+
+def test_plans():
+    names = [scene.name for scene in plan.scenes()]
+    assert names[:2] == ["balls", "balls_exact"] and len(names) == len(set(names))
+    assert [scene.name for scene in plan.scenes("balls*,triangle")] == ["balls", "balls_exact", "triangle"]
+    assert all(scene.rounds >= 5 for scene in plan.scenes() if scene.reference)
+    quick = {scene.name: scene for scene in plan.scenes(quick=True)}
+    assert quick["balls"].rounds == 5 and quick["models"].rounds == 1
+
+
+def test_page_shows_what_was_measured_and_what_was_not(tmp_path):
+    triple = {"median": 3.5e6, "min": 3e6, "max": 4e6}
+    kinds = dict.fromkeys(("primary", "diffuse", "shadow"), triple)
+    level = {"bytes": 1, "latency": 1e-9, "bandwidth": 1e9}
+    figures = {
+        "machine": {"processor": "a processor", "processors": 2, "memory_gib": 4.0, "system": "Linux"},
+        "threads": 2,
+        "quick": True,
+        "commit": "abc",
+        "renderers": {"lancer": {"title": "Lancer", "version": "1", "missing": None}},
+        "scenes": {"gone": {"title": "a scene", "size": [8, 8], "samples": 1, "failed": "no models", "renderers": {}}},
+        "rays": {"lancer": {**kinds, "instruction_set": "avx2"}, "embree": {"missing": "no wheel"}},
+        "limits": {"clock": 3e9, **dict.fromkeys(("l1", "l2", "l3", "memory"), level)},
+        "classic": {"lancer": {"seconds": triple}, "difference": {"median": 0.1, "p90": 0.2, "level": 0.0}},
+        "build": {"missing": "no compiler"},
+        "goals": [],
+    }
+    page.write(figures, tmp_path, [])
+    text = (tmp_path / "index.html").read_text()
+    for words in (
+        "no models",
+        "Embree: no wheel",
+        "no counters",
+        "3.00 GHz",
+        "not measured: no compiler",
+        "classic, lancer, seconds",
+    ):
+        assert words in text
+    assert (tmp_path / "bench.json").exists()
+
+
+def test_tables_replace_what_is_between_the_marks(tmp_path):
+    tables, readme = tmp_path / "tables.md", tmp_path / "README.md"
+    for path, name in ((tables, "bench"), (readme, "speed")):
+        begin, end = marks(name, "bench")
+        path.write_text(f"before\n{begin}\nold\n{end}\nafter\n")
+    machine = {"processor": "a processor", "processors": 2, "memory_gib": 4.0, "system": "Linux"}
+    renderers = {
+        "lancer": {"title": "Lancer", "version": "1", "missing": None},
+        "cycles": {"title": "Cycles", "version": "2", "missing": None},
+        "mitsuba_llvm": {"title": "Mitsuba", "version": "3", "missing": None},
+        "luxcore": {"title": "LuxCore", "version": None, "missing": "no wheel"},
+    }
+    figures = {**_figures(), "machine": machine, "threads": 2, "quick": False, "commit": "abc", "renderers": renderers}
+    figures["goals"] = [verdict.as_dict() for verdict in goals.judge(figures)]
+    for scene in figures["scenes"].values():
+        scene["title"] = "a scene"
+    figures["scenes"]["alone"] = {"title": "no peers", "renderers": {"lancer": _record(1e6)}}
+    page.update_tables(figures, tables, readme)
+    text = tables.read_text()
+    assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
+    assert "| two: a scene | 2.00 | 2.00 | cannot |" in text and "| alone: no peers | 1.00 |  |  |" in text
+    assert "| other: a scene | 9.00 | another picture |  |" in text
+    assert "| samples/s against Cycles |" in text and "LuxCore (no wheel)" in text
+    # Users see what both of two renderers were measured at.
+    text = readme.read_text()
+    assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
+    assert "| a scene | 4.00 | 1.00 |" in text and "Mitsuba" not in text and "alone" not in text
+
+
+def test_roofline_is_the_clock_over_the_cycles_of_a_ray():
+    """15.4 nodes and 4 blocks are 257.4 cycles: 11.4 million rays a second of a core at 2.93 GHz."""
+    assert rays.bound(15.4, 4.0, 2.93e9, 1) == pytest.approx(2.93e9 / 257.4)
+    traced = {"lancer": {"diffuse": {"median": 5e6}}, "counts": {"diffuse": {"nodes": 15.4, "leaves": 4.0}}}
+    (row,) = rays.roofline({"clock": 2.93e9}, traced, 2)
+    assert row["fraction"] == pytest.approx(5e6 / (2 * 2.93e9 / 257.4))
+    assert rays.roofline({"clock": 2.93e9}, {"lancer": {}, "counts": {}}, 2) == []

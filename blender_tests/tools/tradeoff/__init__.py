@@ -1,0 +1,1 @@
+"""Error against seconds: `make tradeoff`."""

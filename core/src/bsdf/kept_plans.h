@@ -1,0 +1,113 @@
+// Plans of facets that are the same wherever their material is met, made once, with their tables read ahead along the cosine.
+#pragma once
+
+#include "bsdf/principled.h"
+
+#include <memory>
+
+namespace lancer {
+
+struct KeptPlan {
+  MicrofacetPlan<float> plan;
+  // In a row: what single scattering sends out, kFine values, or kCoarse of a lobe that refracts; and the mix between the
+  // ends of the curve.
+  float single[tables::kFine] = {}, mix[tables::kCoarse] = {};
+};
+inline std::shared_ptr<const KeptPlan> keep(const MicrofacetPlan<float> &plan) {
+  const AlbedoLookup<float> tables;
+  const auto kept = std::make_shared<KeptPlan>();
+  kept->plan = plan;
+  const int singles = refracts(plan.lobe) ? tables::kCoarse : tables::kFine;
+  for (int i = 0; i < singles; ++i)
+    kept->single[i] = tables.single(plan, float(i) / float(singles - 1));
+  for (int i = 0; i < tables::kCoarse; ++i)
+    kept->mix[i] = tables.mix(plan, float(i) / float(tables::kCoarse - 1));
+  return kept;
+}
+
+// The plan of each lane. All are of one kind of lobe.
+template <class F> struct LanePlans {
+  static constexpr int kWidth = LanesOf<F>::kWidth;
+  const KeptPlan *of[kWidth];
+  bool same = true; // all lanes have one
+
+  // A number of every lane's plan.
+  template <class Get> LANCER_LANE F number(const Get &get) const {
+    if (same)
+      return F(get(*of[0]));
+    return from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]); });
+  }
+  template <class Get> LANCER_LANE Vec3<F> vector(const Get &get) const {
+    if (same)
+      return Vec3<F>(get(*of[0]));
+    return {from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).x; }),
+            from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).y; }),
+            from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).z; })};
+  }
+  template <class Get> LANCER_LANE MaskOf<F> condition(const Get &get) const {
+    return number([&](const KeptPlan &k) __attribute__((always_inline)) { return get(k) ? 1.0f : 0.0f; }) != F(0.0f);
+  }
+
+  // A row at its place: read_row() of each lane.
+  template <class Row> LANCER_LANE F read(const Row &row, int n, F x) const {
+    const tables::AxisPlace<F> at = tables::place_on_axis(x, n);
+    const WordOf<F> first = truncate(at.node);
+    if (same)
+      return tables::between(at, gather(row(*of[0]), first), gather(row(*of[0]) + 1, first));
+    return tables::between(
+        at, from_lanes<F>([&](int i) __attribute__((always_inline)) { return row(*of[i])[lane(first, i)]; }),
+        from_lanes<F>([&](int i) __attribute__((always_inline)) { return row(*of[i])[lane(first, i) + 1]; }));
+  }
+  LANCER_LANE F single(const MicrofacetPlan<F> &plan, F cos_o) const {
+    return read(
+        [](const KeptPlan &k) __attribute__((always_inline)) { return k.single; },
+        refracts(plan.lobe) ? tables::kCoarse : tables::kFine, cos_o);
+  }
+  LANCER_LANE F mix(const MicrofacetPlan<F> &, F cos_o) const {
+    return read(
+        [](const KeptPlan &k) __attribute__((always_inline)) { return k.mix; }, tables::kCoarse, cos_o);
+  }
+
+  // The plans as one, with what their kind of lobe reads.
+  LANCER_LANE MicrofacetPlan<F> plan() const {
+#define LANCER_OF(member)                                                                                                      \
+  [](const KeptPlan &k) __attribute__((always_inline)) { return k.plan.member; }
+    const Lobe<float> &first = of[0]->plan.lobe;
+    MicrofacetPlan<F> plan;
+    Lobe<F> &lobe = plan.lobe;
+    lobe.shape = first.shape;
+    lobe.variant = first.variant;
+    lobe.component = first.component;
+    lobe.beckmann = first.beckmann;
+    lobe.fresnel = first.fresnel;
+    lobe.rules = first.rules;
+    lobe.shown = F(first.shown);
+    lobe.alpha_x = number(LANCER_OF(lobe.alpha_x));
+    lobe.alpha_y = number(LANCER_OF(lobe.alpha_y));
+    lobe.delta = condition(LANCER_OF(lobe.delta));
+    lobe.ior = number(LANCER_OF(lobe.ior));
+    if (first.fresnel != FresnelKind::Dielectric)
+      lobe.f0 = vector(LANCER_OF(lobe.f0));
+    if (first.fresnel == FresnelKind::F82)
+      lobe.b = vector(LANCER_OF(lobe.b));
+    if (first.fresnel == FresnelKind::Conductor)
+      lobe.f90 = vector(LANCER_OF(lobe.f90));
+    if (first.fresnel == FresnelKind::Schlick) {
+      lobe.lowest = number(LANCER_OF(lobe.lowest));
+      lobe.per_range = number(LANCER_OF(lobe.per_range));
+      lobe.reflection = vector(LANCER_OF(lobe.reflection));
+    }
+    if (refracts(lobe)) {
+      lobe.transmission = vector(LANCER_OF(lobe.transmission));
+      lobe.delta_through = condition(LANCER_OF(lobe.delta_through));
+    }
+    plan.preserving = condition(LANCER_OF(preserving));
+    if (any(plan.preserving))
+      plan.further = vector(LANCER_OF(further));
+#undef LANCER_OF
+    return plan;
+  }
+  LANCER_LANE Lobe<F> seen(F cos_o, const Vec3<F> &color) const { return seen_from(plan(), cos_o, color, *this); }
+};
+
+} // namespace lancer

@@ -1,0 +1,80 @@
+// What passes tell of the lobes of a surface as one: their mean normal, and for denoisers how matt they are.
+#pragma once
+
+#include "bsdf/bsdf.h"
+#include "sampling/color.h"
+
+namespace lancer {
+
+// The normals of the lobes, or of those that are diffuse, each with its weight; the shading normal where none has any.
+template <class F> LANCER_LANE Vec3<F> mean_normal(const Bsdf<F> &bsdf, bool diffuse_only = false) {
+  using V = Vec3<F>;
+  V sum(F(0.0f));
+  for (int i = 0; i < bsdf.count; ++i)
+    if (!diffuse_only || bsdf.lobes[i].component == Component::Diffuse)
+      sum += bsdf.frames[bsdf.lobes[i].frame].n * mean(bsdf.lobes[i].color);
+  // The square of a very dark or bright colour is no float: bring the sum to about 1, which changes no other bit.
+  const auto power = as_word(largest(abs(sum))) & WordOf<F>(0x7f800000u);
+  const MaskOf<F> normal = (!equal(power, WordOf<F>(0u))) & !equal(power, WordOf<F>(0x7f800000u));
+  return select(normal, normalize(sum * (1.0f / as_float(power))), bsdf.ns);
+}
+
+// Lobes up to this alpha show what they mirror more than themselves.
+inline constexpr float kMirrorLike = 0.075f;
+
+template <class F> LANCER_LANE F smooth_step(F x) {
+  const F t = clamp01(x);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+// How much of a lobe is matt rather than a mirror: 0 or 1, or blended over twice the limit.
+template <class F> LANCER_LANE F matt_share(const Lobe<F> &lobe, bool blended) {
+  F alpha(0.0f);
+  switch (lobe.shape) {
+  case LobeShape::Mirror:
+  case LobeShape::Dielectric:
+    break;
+  case LobeShape::Beckmann:
+  case LobeShape::Microfacet:
+  case LobeShape::Ashikhmin:
+    alpha = sqrt(lobe.alpha_x * lobe.alpha_y);
+    break;
+  default:
+    return F(1.0f);
+  }
+  if (blended)
+    return smooth_step(alpha / (2.0f * kMirrorLike));
+  return select(alpha > kMirrorLike, F(1.0f), F(0.0f));
+}
+
+// All that a surface scatters, by how matt it is.
+template <class F> struct Mixture {
+  using V = Vec3<F>;
+  V normal{F(0.0f)}, diffuse{F(0.0f)}, specular{F(0.0f)};
+  F all{0.0f}, matt{0.0f};
+};
+
+// Without blending what passes straight on is a mirror, too.
+template <class F> LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, bool blended) {
+  const F zero(0.0f);
+  Mixture<F> mixture;
+  if (!blended) {
+    mixture.specular = transmittance;
+    mixture.all = mean(transmittance);
+    mixture.normal = mixture.all * bsdf.ns;
+  }
+  for (int i = 0; i < bsdf.count; ++i) {
+    const Lobe<F> &lobe = bsdf.lobes[i];
+    const MaskOf<F> there = !black(lobe.color);
+    const F weight = select(there, mean(lobe.albedo), zero), share = matt_share(lobe, blended);
+    mixture.normal += weight * bsdf.frames[lobe.frame].n;
+    mixture.all += weight;
+    mixture.matt += share * weight;
+    mixture.diffuse = select(there, mixture.diffuse + share * lobe.albedo, mixture.diffuse);
+    mixture.specular = select(there, mixture.specular + (1.0f - share) * lobe.albedo, mixture.specular);
+  }
+  mixture.normal = select(mixture.all > zero, mixture.normal / mixture.all, mixture.normal);
+  return mixture;
+}
+
+} // namespace lancer

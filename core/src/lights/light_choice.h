@@ -1,0 +1,166 @@
+// Choices in a binary tree of lights, for lanes that go down it together as far as they agree. F is a float, or lanes of them.
+#pragma once
+
+#include "lights/light_importance.h"
+#include "sampling/distribution.h"
+
+namespace lancer {
+
+// The most lights of a leaf.
+inline constexpr uint32_t kLeafLights = 8;
+
+// Children stand side by side from an even number on; a leaf holds a stretch of lights.
+struct LightNode {
+  ClusterShape shape;
+  uint32_t first = 0;      // child, or light of a leaf
+  uint32_t count : 31 = 0; // lights of a leaf; 0: it has children
+  uint32_t distant : 1 = 0;
+};
+
+struct LightNodes {
+  const LightNode *nodes;
+  const TreeLight *lights;
+  uint32_t root; // a node, or kNone for the pair of 0 and 1
+};
+
+// LightChoice of each lane.
+template <class F> struct LightChoiceLanes {
+  WordOf<F> number;
+  DoubleOf<F> probability, u;
+};
+
+template <class F>
+LANCER_LANE Importance<F> node_importance(const LightQueryLanes<F> &query, const LightNodes &tree, uint32_t number) {
+  const LightNode &node = tree.nodes[number];
+  if (node.count == 1)
+    return importance(query, tree.lights[node.first]);
+  return node.distant ? importance_far(query, node.shape) : importance(query, node.shape);
+}
+
+// Of what may contribute, none counts for less than its part of the strongest.
+template <class F> LANCER_LANE void raise(Importance<F> *parts, uint32_t count) {
+  const F zero(0.0f);
+  F strongest = zero;
+  for (uint32_t i = 0; i < count; ++i)
+    strongest = max(strongest, parts[i].most);
+  const F least = F(kRaised / static_cast<float>(count)) * strongest;
+  for (uint32_t i = 0; i < count; ++i)
+    parts[i].most = select(parts[i].most > zero, max(parts[i].most, least), zero);
+}
+
+// What each of several has of the sum of upper and of lower bounds, averaged; where no lower bound is positive, what can
+// contribute shares that half evenly.
+template <class F> struct ImportanceSums {
+  using D = DoubleOf<F>;
+  D most = D(0.0), least = D(0.0), able = D(0.0);
+
+  LANCER_LANE ImportanceSums(const Importance<F> *parts, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) {
+      most = most + widen(parts[i].most);
+      least = least + widen(parts[i].least);
+      able = select(parts[i].most > F(0.0f), able + D(1.0), able);
+    }
+  }
+  LANCER_LANE D share(const Importance<F> &part) const {
+    const D lower = select(least > D(0.0), widen(part.least) / least, D(1.0) / able);
+    return select(part.most > F(0.0f), D(0.5) * (widen(part.most) / most + lower), D(0.0));
+  }
+};
+
+// Of the two nodes of a pair; both 0 where neither can contribute.
+template <class F>
+LANCER_LANE Vector2<DoubleOf<F>> pair_shares(const LightQueryLanes<F> &query, const LightNodes &tree, uint32_t pair) {
+  using D = DoubleOf<F>;
+  Importance<F> parts[2] = {node_importance(query, tree, pair), node_importance(query, tree, pair + 1)};
+  raise(parts, 2);
+  // A cluster's lower bound is mostly 0 and would share the choices evenly: five times the variance under 200 lamps.
+  if (pair != 0 && (tree.nodes[pair].count != 1 || tree.nodes[pair + 1].count != 1)) {
+    const D zero(0.0), left = widen(parts[0].most), right = widen(parts[1].most), sum = left + right;
+    return {select(sum > zero, left / sum, zero), select(sum > zero, right / sum, zero)};
+  }
+  const ImportanceSums<F> sums(parts, 2);
+  return {sums.share(parts[0]), sums.share(parts[1])};
+}
+
+// Fills in the shares of a leaf's lights; there are two at least.
+template <class F>
+LANCER_LANE void leaf_shares(const LightQueryLanes<F> &query, const LightNodes &tree, const LightNode &node,
+                             DoubleOf<F> *shares) {
+  Importance<F> parts[kLeafLights];
+  for (uint32_t i = 0; i < node.count; ++i)
+    parts[i] = importance(query, tree.lights[node.first + i]);
+  raise(parts, node.count);
+  const ImportanceSums<F> sums(parts, node.count);
+  for (uint32_t i = 0; i < node.count; ++i)
+    shares[i] = sums.share(parts[i]);
+}
+
+// Of the lanes that have come to this leaf.
+template <class F>
+LANCER_LANE void choose_of_leaf(const LightQueryLanes<F> &query, const LightNodes &tree, const LightNode &node, MaskOf<F> here,
+                                LightChoiceLanes<F> &choice) {
+  using D = DoubleOf<F>;
+  using M = MaskOf<F>;
+  using U = WordOf<F>;
+  if (node.count == 1) {
+    choice.number = select(here, U(tree.lights[node.first].number), choice.number);
+    return;
+  }
+  D shares[kLeafLights];
+  leaf_shares(query, tree, node, shares);
+  // Go along the shares; rounding at the end stays with the last that has one.
+  D probability(0.0), left = choice.u, rest = left;
+  M open = here;
+  for (uint32_t i = 0; i < node.count; ++i) {
+    const M there = open & (shares[i] > D(0.0));
+    choice.number = select(there, U(tree.lights[node.first + i].number), choice.number);
+    probability = select(there, shares[i], probability);
+    rest = select(there, min(left / shares[i], D(kBelowOne)), rest);
+    const M last = there & (left < shares[i]), goes_on = there & !last;
+    left = select(goes_on, left - shares[i], left);
+    open = open & !last;
+  }
+  choice.probability = select(here, probability * choice.probability, choice.probability);
+  choice.u = select(here, rest, choice.u);
+}
+
+// u in [0, 1): one number for the whole way down. lanes: those that choose; there is one at least, and a light.
+template <class F>
+LANCER_LANE LightChoiceLanes<F> choose_light(const LightQueryLanes<F> &query, const LightNodes &tree, DoubleOf<F> u,
+                                             MaskOf<F> lanes) {
+  using D = DoubleOf<F>;
+  using M = MaskOf<F>;
+  constexpr uint32_t kPairs = 0xffffffffu;
+  struct Waiting {
+    uint32_t number;
+    M lanes;
+  };
+  LightChoiceLanes<F> choice{WordOf<F>(0u), D(1.0), u};
+  const D zero(0.0);
+  // Each node at most once, with the lanes that go there.
+  Waiting waiting[64];
+  uint32_t size = 0;
+  waiting[size++] = {tree.root, lanes};
+  while (size > 0) {
+    const Waiting at = waiting[--size];
+    if (at.number != kPairs && tree.nodes[at.number].count > 0) {
+      choose_of_leaf(query, tree, tree.nodes[at.number], at.lanes, choice);
+      continue;
+    }
+    const uint32_t pair = at.number == kPairs ? 0 : tree.nodes[at.number].first;
+    const auto [x, y] = pair_shares(query, tree, pair);
+    const M to_right = (y > zero) & !(choice.u < x), some = (x > zero) | to_right;
+    const D share = select(to_right, y, x);
+    const D rest = min(select(to_right, choice.u - x, choice.u) / share, D(kBelowOne));
+    const M going = at.lanes & some, right = going & to_right, left = going & !to_right;
+    choice.u = select(going, rest, choice.u);
+    choice.probability = select(at.lanes, select(some, choice.probability * share, zero), choice.probability);
+    if (any(right))
+      waiting[size++] = {pair + 1, right};
+    if (any(left))
+      waiting[size++] = {pair, left};
+  }
+  return choice;
+}
+
+} // namespace lancer

@@ -1,0 +1,137 @@
+// The Noise Texture: octaves of gradient noise, summed or multiplied in five ways, those of "Texturing and Modeling"
+// (Ebert et al.) as Blender has them; and its Musgrave Texture of before 4.1, which counts octaves otherwise.
+#pragma once
+
+#include "lancer.h"
+#include "nodes/gradient_noise.h"
+#include "simd/vectors.h"
+
+namespace lancer {
+
+template <class F> struct NoiseOctaves { F detail, roughness, lacunarity, offset, gain; };
+
+// How a texture's second and later noises are moved, so that they look like others: 100 ... 200 along each axis.
+constexpr float seed_offset(int dimensions, int seed, int axis) {
+  const uint32_t first = std::bit_cast<uint32_t>(static_cast<float>(seed));
+  const uint32_t one[] = {first}, two[] = {first, std::bit_cast<uint32_t>(static_cast<float>(axis))};
+  const uint32_t hash = dimensions == 1 ? cell_hash(one) : cell_hash(two);
+  return 100.0f + static_cast<float>(hash) * 0x1p-32f * 100.0f;
+}
+template <int N, class F> LANCER_LANE void move_by_seed(F (&p)[N], int seed) {
+  for (int i = 0; i < N; ++i)
+    p[i] = p[i] + F(seed_offset(N, seed, i));
+}
+
+// kind: LANCER_NOISE_*; flags: as the node's.
+template <int N, class F>
+static F octaves_of_noise(uint32_t kind, uint32_t flags, const F (&given)[N], const NoiseOctaves<F> &of) {
+  using M = MaskOf<F>;
+  const F zero(0.0f), one(1.0f);
+  const bool is_terrain = kind == LANCER_NOISE_HETERO_TERRAIN, is_ridged = kind == LANCER_NOISE_RIDGED_MULTIFRACTAL;
+  const F detail = min(F(15.0f), max(zero, of.detail)), roughness = max(zero, of.roughness);
+  // The octaves that count in full, and the share of the one after them.
+  const F whole = floor(detail), rest = detail - whole;
+  F full_octaves = flags & LANCER_NOISE_COUNTED ? whole : whole + one;
+  if (is_terrain || is_ridged)
+    full_octaves = max(one, full_octaves);
+
+  F p[N], scale = one, amplitude = is_terrain || is_ridged ? roughness : one;
+  F total = zero, most = zero, more = zero, value = one, signal = zero, weight = one;
+  if (kind == LANCER_NOISE_HYBRID_MULTIFRACTAL)
+    value = zero;
+  M goes_on = one == one;
+  for (int i = 0; i < N; ++i)
+    p[i] = given[i];
+  for (int octave = 0; octave < 17; ++octave) {
+    const F number(static_cast<float>(octave));
+    const M full = number < full_octaves, partial = (number == full_octaves) & (rest != zero);
+    if (!any(full | partial))
+      break;
+    F q[N];
+    for (int i = 0; i < N; ++i)
+      q[i] = kind == LANCER_NOISE_FBM ? p[i] * scale : p[i];
+    const F noise = signed_noise(q, (flags & LANCER_NOISE_REPEATS) != 0);
+    const F share = select(full, one, select(partial, rest, zero));
+    if (kind == LANCER_NOISE_FBM) {
+      more = select(partial, noise * amplitude, more);
+      total = select(full, total + noise * amplitude, total);
+      most = select(full, most + amplitude, most);
+    } else if (kind == LANCER_NOISE_MULTIFRACTAL) {
+      value = select(full | partial, value * (share * amplitude * noise + one), value);
+    } else if (kind == LANCER_NOISE_HYBRID_MULTIFRACTAL) {
+      goes_on = goes_on & (weight > F(0.001f)) & (full | partial);
+      weight = min(weight, one);
+      signal = (noise + of.offset) * amplitude;
+      value = select(goes_on, value + share * weight * signal, value);
+      weight = select(goes_on, weight * (of.gain * signal), weight);
+    } else if (is_terrain) {
+      const F height = noise + of.offset;
+      value = octave == 0 ? height : select(full | partial, value + share * (height * amplitude * value), value);
+    } else {
+      const F ridge = of.offset - abs(noise);
+      signal = ridge * ridge * (octave == 0 ? one : min(one, max(zero, signal * of.gain)));
+      value = octave == 0 ? signal : select(full, value + signal * amplitude, value);
+    }
+    // The first octave of these two is as it is.
+    if (octave > 0 || !(is_terrain || is_ridged))
+      amplitude = select(full, amplitude * roughness, amplitude);
+    scale = scale * of.lacunarity;
+    for (int i = 0; i < N; ++i)
+      p[i] = kind == LANCER_NOISE_FBM ? p[i] : p[i] * of.lacunarity;
+  }
+  if (kind != LANCER_NOISE_FBM)
+    return value;
+  if (!(flags & LANCER_NOISE_NORMALIZED))
+    return total + rest * more;
+  const F half(0.5f), lower = half * total / most + half;
+  const F upper = half * (total + more) / (most + amplitude) + half;
+  return (one - rest) * lower + rest * upper;
+}
+
+template <int N, class F>
+static Vector3<F> noise_at(uint32_t kind, uint32_t flags, const F (&given)[N], const F &distortion, const NoiseOctaves<F> &of) {
+  F p[N];
+  for (int i = 0; i < N; ++i)
+    p[i] = given[i];
+  if (any(distortion != F(0.0f)))
+    for (int i = 0; i < N; ++i) {
+      F q[N];
+      for (int k = 0; k < N; ++k)
+        q[k] = given[k];
+      move_by_seed(q, i);
+      p[i] = p[i] + signed_noise(q, (flags & LANCER_NOISE_REPEATS) != 0) * distortion;
+    }
+  // Red is the texture's one value; the other channels are it elsewhere.
+  F channels[3];
+  for (int channel = 0; channel < (flags & LANCER_NOISE_COLOR ? 3 : 1); ++channel) {
+    F q[N];
+    for (int i = 0; i < N; ++i)
+      q[i] = p[i];
+    if (channel > 0)
+      move_by_seed(q, N - 1 + channel);
+    channels[channel] = octaves_of_noise(kind, flags, q, of);
+  }
+  if (!(flags & LANCER_NOISE_COLOR))
+    return Vector3<F>(channels[0]);
+  return {channels[0], channels[1], channels[2]};
+}
+
+// The node NOISE: place is w, scale and distortion; octaves detail, roughness and lacunarity; shape offset and gain.
+template <class F>
+LANCER_LANE Vector3<F> noise_texture(uint32_t kind, uint32_t flags, const Vector3<F> &vector, const Vector3<F> &place,
+                                     const Vector3<F> &octaves, const Vector3<F> &shape) {
+  const NoiseOctaves<F> of{octaves.x, octaves.y, octaves.z, shape.x, shape.y};
+  const F x = vector.x * place.y, y = vector.y * place.y, z = vector.z * place.y, w = place.x * place.y;
+  switch (flags & 3) {
+  case 0:
+    return noise_at<1, F>(kind, flags, {w}, place.z, of);
+  case 1:
+    return noise_at<2, F>(kind, flags, {x, y}, place.z, of);
+  case 2:
+    return noise_at<3, F>(kind, flags, {x, y, z}, place.z, of);
+  default:
+    return noise_at<4, F>(kind, flags, {x, y, z, w}, place.z, of);
+  }
+}
+
+} // namespace lancer
