@@ -42,7 +42,7 @@ namespace {
     const M which = some(lanes, first);
     if (!any(which))
       continue;
-    const WideTexel found = look_up(image, load(block.uv[0] + first), load(block.uv[1] + first));
+    const Texel<F> found = look_up(image, load(block.uv[0] + first), load(block.uv[1] + first));
     store3(block.color, first, which, found.color);
     store(block.alpha + first, which, found.alpha);
   }

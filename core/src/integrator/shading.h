@@ -3,6 +3,7 @@
 
 #include "bsdf/principled.h"
 #include "lights/light.h"
+#include "nodes/run.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 

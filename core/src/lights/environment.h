@@ -4,9 +4,13 @@
 #include "accel/accelerator.h"
 #include "lights/light.h"
 #include "lights/wide_sky.h"
+#include "nodes/light_path.h"
 #include "scene/world.h"
 
 namespace lancer {
+
+struct Camera;
+struct Normalisation;
 
 // The map by which directions are sampled: its cells, and how often each is looked at along each of its sides.
 struct MapSize {

@@ -1,10 +1,10 @@
 // The environment for many lanes at once: directions by its map, its density and its picture, with the bits of
-// direction_map.cpp and node_image.cpp. For kernels only, like simd/lanes.h.
+// direction_map.cpp and image_nodes.h. For kernels only, like simd/lanes.h.
 #pragma once
 
 #include "lights/wide_sky.h"
+#include "nodes/look_up.h"
 #include "sampling/angle.h"
-#include "scene/wide_lookup.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {

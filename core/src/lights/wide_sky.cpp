@@ -1,7 +1,7 @@
 #include "lights/wide_sky.h"
 
+#include "nodes/rotation.h"
 #include "sampling/plain_vectors.h"
-#include "scene/node_site.h"
 #include "scene/world.h"
 
 namespace lancer {
@@ -31,7 +31,7 @@ bool add_picture(const World &world, const std::vector<Image> &images, WideSky &
   if (!node || node->kind != LANCER_NODE_ENVIRONMENT || node->option != LANCER_ENVIRONMENT_EQUIRECTANGULAR ||
       node->image_count == 0)
     return false;
-  const std::optional<WideImage> image = wide_image(images[node->image], node->flags);
+  const WideImage image = wide_image(images[node->image], node->flags, false);
   node = world.program.source(node->inputs[0]);
   if (node && is_mapping(*node)) {
     sky.mapped = 1;
@@ -42,9 +42,9 @@ bool add_picture(const World &world, const std::vector<Image> &images, WideSky &
     copy(node->option == LANCER_MAPPING_POINT ? node->inputs[1].value : glm::vec3(0.0f), sky.location);
     node = world.program.source(node->inputs[0]);
   }
-  if (!image || !node || !is_direction(*node))
+  if (!node || !is_direction(*node))
     return false;
-  sky.image = *image;
+  sky.image = image;
   return true;
 }
 

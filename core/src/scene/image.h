@@ -1,4 +1,4 @@
-// Pictures in memory, in their own bit depth, and how a texel becomes a colour.
+// Pictures in memory, in their own bit depth.
 #pragma once
 
 #include "scene/texels.h"
@@ -30,15 +30,5 @@ struct Image {
 
   size_t bytes() const;
 };
-
-// The colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; w is alpha. straight:
-// the colour divided by alpha where the picture's mode keeps it multiplied.
-glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight);
-
-// The alpha alone.
-float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension, Interpolation interpolation);
-
-// Asks memory for the texels that a look-up there will want.
-void prefetch(const Image &image, const glm::vec2 &uv, Extension extension);
 
 } // namespace lancer

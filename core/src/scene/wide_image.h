@@ -1,31 +1,50 @@
-// A picture as kernels read it: its texels and plain numbers.
+// A picture as look-ups read it: its texels and plain numbers, and how it is looked at.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <optional>
+#include "scene/image.h"
+#include "simd/scalar.h"
 
 namespace lancer {
 
-struct Image;
-
-// Steps of the lines that stand for the curve of sRGB between 0 and 1.
+// Steps of the lines that stand for the curve of sRGB between 0 and 1, and those lines' ends; the curve at the 256 values that
+// a byte can have; and anywhere.
 inline constexpr uint32_t kSrgbSteps = 4096;
+const float *srgb_lines();
+const float *srgb_bytes();
+float srgb_to_linear(float c);
 
 struct WideImage {
   const std::byte *texels = nullptr;
-  const float *lines = nullptr; // of the curve; null: the texels are linear
+  const glm::mat3 *matrix = nullptr; // null: decoded colours are in the working space
   uint32_t width = 0, height = 0, channels = 0;
   uint32_t texel_bytes = 0; // of a channel: 1, 2, or 4 for floats
-  uint32_t repeats = 0;     // or its edges go on
-  uint32_t alpha = 0;       // 0: nobody asks, 1: solid, 2: the fourth channel
-  uint32_t straight = 0;    // the colour is divided by it
-  uint32_t has_matrix = 0;
-  float matrix[3][3] = {}; // columns
+  Extension extension = Extension::Repeat;
+  Interpolation interpolation = Interpolation::Linear;
+  bool curve = false;       // texels are of sRGB's, or linear
+  bool large = false;       // offsets in it need more than 32 bits
+  bool straight = false;    // the colour is divided by alpha
+  bool keeps_alpha = false; // in the fourth channel; else 1
+  bool asks_alpha = true;   // or nobody does, and it is 0
 };
 
-// As nodes with these flags look at it, and whether they ask for alpha; nothing where only lookup() can do it. As long as the
-// image is neither changed nor moved.
-std::optional<WideImage> wide_image(const Image &image, uint32_t flags, bool alpha = false);
+// As nodes with these flags look at it, and whether they ask for alpha. As long as the image is neither changed nor moved.
+LANCER_LANE WideImage wide_image(const Image &image, uint32_t flags, bool alpha = true) {
+  const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
+  WideImage r;
+  r.texels = image.texels.get();
+  r.matrix = image.has_matrix ? &image.matrix : nullptr;
+  r.width = image.width;
+  r.height = image.height;
+  r.channels = image.channels;
+  r.texel_bytes = image.kind == TexelKind::U8 ? 1 : image.kind == TexelKind::U16 ? 2 : 4;
+  r.extension = static_cast<Extension>(flags & 0xf);
+  r.interpolation = static_cast<Interpolation>(flags >> 4 & 0xf);
+  r.curve = image.transfer == Transfer::Srgb;
+  r.large = static_cast<uint64_t>(image.width) * image.height * image.channels * r.texel_bytes >= uint64_t(1) << 31;
+  r.keeps_alpha = image.channels == 4 && image.alpha != AlphaMode::None;
+  r.straight = (flags & 256) && multiplied && image.channels > 1;
+  r.asks_alpha = alpha || r.straight;
+  return r;
+}
 
 } // namespace lancer
