@@ -25,7 +25,7 @@ class PathIntegrator final : public Integrator {
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), lanes_(vertex_kernel()),
+        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), lanes_(vertex_kernel()), node_lanes_(node_kernel()),
         picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
                    std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
@@ -34,6 +34,7 @@ public:
     if (scene.lights.environment().varies())
       sky_ = scene.lights.environment().wide();
     block_.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
+    nodes_.scene = shader_.node_scene();
     block_.lobes = reinterpret_cast<std::byte *>(lobes_.data());
     block_.shares_wanted = block_.wants_shown = passes_.wanted();
     block_.wants_normal = settings.passes >> LANCER_PASS_NORMAL & 1;
@@ -120,6 +121,7 @@ private:
   void draw_numbers();
   void find_surfaces();
   void ask_nodes();
+  void place_nodes(const Material &material);
   void cut_holes(std::span<SampleResult> results);
   void record_surfaces(std::span<SampleResult> results);
   LightQuery query(uint32_t lane) const;
@@ -165,6 +167,7 @@ private:
   PixelCone cone_;
   LightPasses passes_;
   const VertexKernel &lanes_;
+  const NodeKernel &node_lanes_;
   bool picture_alone_; // no other pass is asked for: records stay as they begin
   LayersMet clear_;    // surfaces on the way of which nothing is there
   bool any_clear_;     // they are passed together; not where passes for denoising add up the ways between them
@@ -187,13 +190,11 @@ private:
   LateLight late_;
   ShadingQueues queues_; // paths by the class of the material that they have met
   // Scratch of the block: what nodes say, and the lobes.
-  struct alignas(64) Values {
-    float of[4][kBlockLanes];
-  };
   struct alignas(64) Lobes {
     std::byte of[64];
   };
-  std::vector<Values> values_;
+  NodeBlock nodes_;
+  std::vector<NodeLanes> values_;
   std::vector<Lobes> lobes_;
   Shaded clear_point_; // of a surface of which nothing is there
 };

@@ -9,6 +9,8 @@
 
 namespace lancer {
 
+static_assert(kBlockLanes == kNodeLanes);
+
 void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const Path &path = paths_[number];
   const Hit &hit = hits_[number];
@@ -118,32 +120,56 @@ void PathIntegrator::ask_nodes() {
   const Material &material = *block_.material[0];
   if (material.fixed())
     return;
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    Waiting &waiting = waiting_[lane];
-    const Hit &hit = hits_[waiting.number];
-    const Surface surface = surface_of(lane);
-    const double way = paths_[waiting.number].length + hit.t * block_.length[lane];
-    const double unit = block_.length[lane];
-    shader_.run_surface_nodes(material, surface,
-                              {.wo = get(block_.wo, lane),
-                               .footprint = float(cone_.base + way * cone_.spread),
-                               .path = light_path(paths_[waiting.number], (hit.t - rays_[waiting.number].tmin) * unit)});
-    for (const uint16_t node : material.surface_nodes)
-      for (int i = 0; i < 4; ++i)
-        values_[node].of[i][lane] = shader_.values()[node][i];
+  if (!material.surface_nodes.empty()) {
+    place_nodes(material);
+    node_lanes_.run(material.program, material.surface_nodes, nodes_, values_.data());
   }
+  const auto value = [&](const Parameter &parameter, uint32_t lane) {
+    if (!parameter.varies())
+      return parameter.value;
+    const auto &node = values_[size_t(parameter.node)].of;
+    return glm::vec3(node[0][lane], node[1][lane], node[2][lane]);
+  };
   for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
     const Material &of = *block_.material[lane];
-    const auto value = [&](const Parameter &parameter) {
-      if (!parameter.varies())
-        return parameter.value;
-      const auto &node = values_[size_t(parameter.node)].of;
-      return glm::vec3(node[0][lane], node[1][lane], node[2][lane]);
-    };
     Waiting &waiting = waiting_[lane];
-    waiting.emission = value(of.emission);
-    waiting.transmittance = of.transmits() ? glm::max(value(of.transmittance), 0.0f) : glm::vec3(0.0f);
+    waiting.emission = value(of.emission, lane);
+    waiting.transmittance = of.transmits() ? glm::max(value(of.transmittance, lane), 0.0f) : glm::vec3(0.0f);
     block_.through[lane] = mean(waiting.transmittance);
+  }
+}
+
+// Where nodes are asked: at the surfaces of all lanes, with both normals on the viewer's side.
+void PathIntegrator::place_nodes(const Material &material) {
+  nodes_.used = (1u << waiting_count_) - 1u;
+  float side[kBlockLanes];
+  nodes_.backfacing = 0;
+  for (int lane = 0; lane < kBlockLanes; ++lane) {
+    const float facing = block_.ng[0][lane] * block_.wo[0][lane] + block_.ng[1][lane] * block_.wo[1][lane] +
+                         block_.ng[2][lane] * block_.wo[2][lane];
+    side[lane] = facing < 0.0f ? -1.0f : 1.0f;
+    nodes_.backfacing |= uint32_t(facing < 0.0f) << lane;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      nodes_.p[axis][lane] = block_.p[axis][lane];
+      nodes_.wo[axis][lane] = block_.wo[axis][lane];
+      nodes_.ns[axis][lane] = side[lane] * block_.ns[axis][lane];
+      nodes_.ng[axis][lane] = side[lane] * block_.ng[axis][lane];
+    }
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    const size_t number = waiting_[lane].number;
+    const Path &path = paths_[number];
+    const Hit &hit = hits_[number];
+    const double unit = block_.length[lane], way = path.length + hit.t * unit;
+    const bool on_mesh = block_.on_mesh >> lane & 1;
+    nodes_.instance[lane] = hit.instance;
+    nodes_.primitive[lane] = hit.primitive;
+    nodes_.bary[0][lane] = on_mesh ? hit.u : 0.0;
+    nodes_.bary[1][lane] = on_mesh ? hit.v : 0.0;
+    nodes_.footprint[lane] = float(cone_.base + way * cone_.spread);
+    if (material.program.asks_light_path)
+      put(light_path(path, (hit.t - rays_[number].tmin) * unit), nodes_, lane);
   }
 }
 

@@ -1,6 +1,8 @@
 // Up to 16 places at which one program of nodes runs side by side. Plain numbers: kernels read and write it.
 #pragma once
 
+#include "nodes/light_path.h"
+
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -43,6 +45,17 @@ struct alignas(64) NodeBlock {
   float length[kNodeLanes], depth[kNodeLanes], diffuse[kNodeLanes], glossy[kNodeLanes], transmission[kNodeLanes],
       transparent[kNodeLanes], portal[kNodeLanes];
 };
+
+inline void put(const LightPath<float> &path, NodeBlock &block, uint32_t lane) {
+  block.kinds[lane] = path.kinds;
+  block.length[lane] = path.length;
+  block.depth[lane] = path.depth;
+  block.diffuse[lane] = path.diffuse;
+  block.glossy[lane] = path.glossy;
+  block.transmission[lane] = path.transmission;
+  block.transparent[lane] = path.transparent;
+  block.portal[lane] = path.portal;
+}
 
 // What one node gave: x, y, z or RGB, and alpha.
 struct alignas(64) NodeLanes {

@@ -37,6 +37,7 @@ using Schedule = std::vector<uint16_t>;
 struct Program {
   std::vector<Node> nodes;
   std::vector<Schedule> heights; // of each BUMP: those of its nodes [first, this) that its height needs
+  bool asks_light_path = false;  // a node of it does
 
   // The nodes that the parameters need, directly or not, in order; a BUMP's own height nodes are left to it.
   Schedule schedule(std::span<const Parameter> parameters) const;
