@@ -12,9 +12,9 @@ namespace {
     const M which = some(lanes, first);
     if (!any(which))
       continue;
-    D pdf;
-    const D3 wi = sample_map(sky.map, load(block.u[2] + first), load(block.u[3] + first), pdf);
-    pdf = pdf * load(block.light_pdf + first);
+    const DirectionSample<F> found = sample_direction(sky.map, load(block.u[2] + first), load(block.u[3] + first));
+    const D3 wi = found.direction;
+    D pdf = found.pdf * load(block.light_pdf + first);
     if (sky.image.texels) {
       const V3 d = narrow(wi);
       const V3 radiance = picture_at(sky, d, place_of(d));
@@ -31,7 +31,7 @@ namespace {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     const V3 d = narrow(load3(block.wi, first));
     const MapPlace<D> place = place_of(d);
-    store(block.pdf + first, pdf_at(sky.map, place));
+    store(block.pdf + first, direction_pdf<F>(sky.map, place));
     if (sky.image.texels)
       store3(block.radiance, first, picture_at(sky, d, place));
   }
