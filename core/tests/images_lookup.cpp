@@ -2,7 +2,7 @@
 #include "nodes_lab.h"
 
 #include "nodes/image.h"
-#include "scene/wide_image.h"
+#include "nodes/image_view.h"
 
 #include <cmath>
 

@@ -8,7 +8,6 @@
 #include "integrator/layers_met.h"
 #include "integrator/light_passes.h"
 #include "integrator/path_story.h"
-#include "integrator/picture_kernel.h"
 #include "integrator/sample.h"
 #include "integrator/scene_lights.h"
 #include "integrator/shading.h"
@@ -29,12 +28,13 @@ public:
         picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
                    std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
-        picture_lanes_(picture_kernel()), late_(settings.max_bounces), queues_(scene), values_(shader_.values().size()),
+        late_(settings.max_bounces), queues_(scene), values_(shader_.values().size()),
         lobes_(lanes_.lobes_bytes / sizeof(Lobes) + 1) {
     if (scene.lights.environment().varies())
-      sky_ = scene.lights.environment().wide();
+      sky_ = scene.lights.environment().map();
     block_.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
-    nodes_.scene = shader_.node_scene();
+    nodes_.scene = world_nodes_.scene = shader_.node_scene();
+    world_nodes_.surface = false;
     block_.lobes = reinterpret_cast<std::byte *>(lobes_.data());
     block_.shares_wanted = block_.wants_shown = passes_.wanted();
     block_.wants_normal = settings.passes >> LANCER_PASS_NORMAL & 1;
@@ -121,6 +121,13 @@ private:
   void draw_numbers();
   void find_surfaces();
   void ask_nodes();
+  // Of the values of nodes that were computed last.
+  glm::vec3 value_in_lane(const Parameter &parameter, uint32_t lane) const {
+    if (!parameter.varies())
+      return parameter.value;
+    const auto &value = values_[size_t(parameter.node)].of;
+    return {value[0][lane], value[1][lane], value[2][lane]};
+  }
   void place_nodes(const Material &material);
   void cut_holes(std::span<SampleResult> results);
   void record_surfaces(std::span<SampleResult> results);
@@ -138,7 +145,7 @@ private:
   bool is_there(size_t ray, const Hit &hit);
   void pass_clear(size_t number, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void miss(size_t number, std::span<SampleResult> results);
-  glm::vec3 environment_towards(const Path &path, const glm::dvec3 &wi);
+  void ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lanes);
   void add_environment(const Path &path, double pdf, const glm::vec3 &radiance, SampleResult &result);
   void add_missed(std::span<SampleResult> results);
   void ask_sky(uint32_t lanes);
@@ -176,9 +183,8 @@ private:
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane
   uint32_t waiting_count_ = 0;
-  const PictureKernel &picture_lanes_;
-  WideSky sky_;
-  SkyBlock misses_{};
+  DirectionTable sky_;
+  SkyBlock misses_{}, sky_samples_{};
   size_t missed_[kBlockLanes]; // numbers of paths
   uint32_t missed_count_ = 0;
   // The queue: paths_[i] travels along rays_[i].
@@ -193,7 +199,7 @@ private:
   struct alignas(64) Lobes {
     std::byte of[64];
   };
-  NodeBlock nodes_;
+  NodeBlock nodes_, world_nodes_;
   std::vector<NodeLanes> values_;
   std::vector<Lobes> lobes_;
   Shaded clear_point_; // of a surface of which nothing is there

@@ -124,17 +124,11 @@ void PathIntegrator::ask_nodes() {
     place_nodes(material);
     node_lanes_.run(material.program, material.surface_nodes, nodes_, values_.data());
   }
-  const auto value = [&](const Parameter &parameter, uint32_t lane) {
-    if (!parameter.varies())
-      return parameter.value;
-    const auto &node = values_[size_t(parameter.node)].of;
-    return glm::vec3(node[0][lane], node[1][lane], node[2][lane]);
-  };
   for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
     const Material &of = *block_.material[lane];
     Waiting &waiting = waiting_[lane];
-    waiting.emission = value(of.emission, lane);
-    waiting.transmittance = of.transmits() ? glm::max(value(of.transmittance, lane), 0.0f) : glm::vec3(0.0f);
+    waiting.emission = value_in_lane(of.emission, lane);
+    waiting.transmittance = of.transmits() ? glm::max(value_in_lane(of.transmittance, lane), 0.0f) : glm::vec3(0.0f);
     block_.through[lane] = mean(waiting.transmittance);
   }
 }
@@ -184,7 +178,7 @@ void PathIntegrator::cut_holes(std::span<SampleResult> results) {
     if (path.in_view) {
       const Parameter &holdout = block_.material[lane]->holdout;
       const float share =
-          std::clamp(holdout.varies() ? values_[size_t(holdout.node)].of[0][lane] : holdout.value.x, 0.0f, 1.0f);
+          std::clamp(value_in_lane(holdout, lane).x, 0.0f, 1.0f);
       if (scene_.geometry.instances[hits_[waiting.number].instance].holdout) {
         // All that the object would show becomes the hole.
         results[path.slot].alpha -= mean(path.beta * waiting.opacity());

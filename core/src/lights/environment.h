@@ -3,7 +3,7 @@
 
 #include "accel/accelerator.h"
 #include "lights/light.h"
-#include "lights/wide_sky.h"
+#include "sampling/direction_map.h"
 #include "nodes/light_path.h"
 #include "scene/world.h"
 
@@ -48,7 +48,7 @@ public:
   double pdf(const glm::dvec3 &wi) const { return varies() ? map_.pdf(glm::vec3(wi)) : 0.0; }
 
   // For kernels, as long as this is neither changed nor moved; only where it varies.
-  WideSky wide() const { return make_wide_sky(*world_, *images_, map_); }
+  DirectionTable map() const { return map_.table(); }
 
   size_t bytes() const { return map_.bytes(); }
 

@@ -21,7 +21,7 @@ template <class F> LANCER_LANE const Image &picture(const Inputs<F> &in, const S
 }
 
 template <class F> Value<F> look_up(const Inputs<F> &in, const Image &image, const Place<F> &place) {
-  const Texel<F> found = look_up(wide_image(image, in.node.flags), place.u, place.v);
+  const Texel<F> found = look_up(image_view(image, in.node.flags), place.u, place.v);
   return {found.color, found.alpha};
 }
 

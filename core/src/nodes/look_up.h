@@ -1,7 +1,7 @@
 // Looking up pictures, in lanes of F: texels, their weights, and how what is stored becomes a colour. Like lanes.h.
 #pragma once
 
-#include "scene/wide_image.h"
+#include "nodes/image_view.h"
 #include "simd/by_lane.h"
 #include "simd/rounding.h"
 #include "simd/vectors.h"
@@ -116,7 +116,7 @@ template <class F> LANCER_LANE Alpha<F> select(const MaskOf<F> &m, const Alpha<F
 
 // The words that begin this many bytes into a texel.
 template <uint32_t Bytes, class F>
-LANCER_LANE WordOf<F> words_at(const WideImage &image, const F &x, const F &y, uint32_t into) {
+LANCER_LANE WordOf<F> words_at(const ImageView &image, const F &x, const F &y, uint32_t into) {
   using U = WordOf<F>;
   const U column = truncate(x), row = truncate(y);
   const uint32_t texel = image.channels * Bytes;
@@ -139,11 +139,11 @@ template <uint32_t Bytes, class F> LANCER_LANE F channel(const WordOf<F> &word, 
   else
     return to_float((word >> static_cast<int>(8 * byte)) & U(0xffu)) * F(1.0f / 255.0f);
 }
-template <uint32_t Bytes, class F> LANCER_LANE void read(const WideImage &image, const F &x, const F &y, Texel<F> &result) {
+template <uint32_t Bytes, class F> LANCER_LANE void read(const ImageView &image, const F &x, const F &y, Texel<F> &result) {
   // A word holds one float, two or four channels.
   const WordOf<F> word = words_at<Bytes>(image, x, y, 0);
   const F first = channel<Bytes, F>(word, 0);
-  result.alpha = F(image.asks_alpha ? 1.0f : 0.0f);
+  result.alpha = F(1.0f);
   if (image.channels == 1) {
     result.color = {first, first, first};
     return;
@@ -151,12 +151,12 @@ template <uint32_t Bytes, class F> LANCER_LANE void read(const WideImage &image,
   const WordOf<F> second = Bytes == 4 ? words_at<Bytes>(image, x, y, 4) : word;
   const WordOf<F> third = Bytes == 4 ? words_at<Bytes>(image, x, y, 8) : Bytes == 2 ? words_at<Bytes>(image, x, y, 4) : word;
   result.color = {first, channel<Bytes, F>(second, Bytes == 4 ? 0 : Bytes), channel<Bytes, F>(third, Bytes == 1 ? 2 : 0)};
-  if (image.keeps_alpha && image.asks_alpha)
+  if (image.keeps_alpha)
     result.alpha = channel<Bytes, F>(Bytes == 4 ? words_at<Bytes>(image, x, y, 12) : third, Bytes == 4   ? 0
                                                                                             : Bytes == 2 ? 2
                                                                                                          : 3);
 }
-template <uint32_t Bytes, class F> LANCER_LANE void read(const WideImage &image, const F &x, const F &y, Alpha<F> &result) {
+template <uint32_t Bytes, class F> LANCER_LANE void read(const ImageView &image, const F &x, const F &y, Alpha<F> &result) {
   result.alpha = F(1.0f);
   if (image.keeps_alpha)
     result.alpha = channel<Bytes, F>(words_at<Bytes>(image, x, y,
@@ -169,7 +169,7 @@ template <uint32_t Bytes, class F> LANCER_LANE void read(const WideImage &image,
 }
 
 template <uint32_t Bytes, class Found, class F>
-LANCER_LANE Found between(const WideImage &image, const Taps<F> &across, const Taps<F> &up) {
+LANCER_LANE Found between(const ImageView &image, const Taps<F> &across, const Taps<F> &up) {
   const auto at = [&](int x, int y) __attribute__((always_inline)) {
     Found texel;
     read<Bytes>(image, across.at[x], up.at[y], texel);
@@ -201,7 +201,7 @@ LANCER_LANE Found between(const WideImage &image, const Taps<F> &across, const T
   return select(whole, found, sum);
 }
 
-template <class Found, class F> LANCER_LANE Found found_at(const WideImage &image, const F &u, const F &v) {
+template <class Found, class F> LANCER_LANE Found found_at(const ImageView &image, const F &u, const F &v) {
   const Taps<F> across = taps(u, image.width, image.extension, image.interpolation);
   const Taps<F> up = taps(v, image.height, image.extension, image.interpolation);
   return image.texel_bytes == 4   ? between<4, Found>(image, across, up)
@@ -226,13 +226,13 @@ template <class F> LANCER_LANE F decode_byte(const F &value) {
 }
 
 // The colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; 0 at what is no place.
-template <class F> LANCER_LANE Texel<F> look_up(const WideImage &image, const F &u, const F &v) {
+template <class F> LANCER_LANE Texel<F> look_up(const ImageView &image, const F &u, const F &v) {
   const F zero(0.0f), one(1.0f);
   const auto place = is_finite(u) & is_finite(v);
   Texel<F> texel = found_at<Texel<F>>(image, select(place, u, zero), select(place, v, zero));
   // A picture of one number is solid even where it is clipped; one of three is clear there, as in Blender.
   if (image.channels == 1)
-    texel.alpha = F(image.asks_alpha ? 1.0f : 0.0f);
+    texel.alpha = F(1.0f);
   Vector3<F> &c = texel.color;
   const auto divided = uniform<F>(image.straight) & (texel.alpha != one) & (texel.alpha != zero);
   if (any(divided))
@@ -257,7 +257,7 @@ template <class F> LANCER_LANE Texel<F> look_up(const WideImage &image, const F 
 }
 
 // The alpha alone.
-template <class F> LANCER_LANE F look_up_alpha(const WideImage &image, const F &u, const F &v) {
+template <class F> LANCER_LANE F look_up_alpha(const ImageView &image, const F &u, const F &v) {
   const F zero(0.0f);
   const auto place = is_finite(u) & is_finite(v);
   if (image.channels == 1)

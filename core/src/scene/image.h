@@ -28,7 +28,10 @@ struct Image {
   glm::mat3 matrix{1.0f}; // decoded RGB to the working space
   Texels texels;          // [height][width][channels]
 
-  size_t bytes() const;
+  size_t bytes() const {
+    const size_t texel_bytes = kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4;
+    return size_t(width) * height * channels * texel_bytes;
+  }
 };
 
 } // namespace lancer

@@ -1,6 +1,6 @@
-// Pictures looked at side by side, of the environment and on surfaces: lane by lane the bits of the general code.
-#include "integrator/picture_kernel.h"
+// Pictures looked at side by side, of the environment and on surfaces: lane by lane the bits of one place.
 #include "lights/environment.h"
+#include "lights/light_kernel.h"
 #include "nodes/image.h"
 #include "nodes_lab.h"
 
@@ -42,34 +42,44 @@ Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix,
 }
 
 // Somewhere, on and beside texels' middles and borders, and at what is no place.
-void expect_looks(Random &random, const Image &image, const WideImage &wide, Extension extension, bool straight, bool alpha) {
+void expect_looks(Random &random, const std::vector<Image> &images, uint32_t flags) {
+  const Image &image = images[0];
   std::uniform_real_distribution<float> somewhere(-3.0f, 4.0f);
-  const float odd[] = {0.5f / float(image.height), 1.0f, 0.0f, -1e-9f, 1e30f, NAN, INFINITY, 1.0f - 0x1p-24f};
-  ColorBlock block{};
-  const uint32_t lanes = random() & 0xffff;
-  for (int lane = 0; lane < kBlockLanes; ++lane) {
-    block.uv[0][lane] = somewhere(random);
-    block.uv[1][lane] = random() % 2 ? somewhere(random) : odd[random() % 8];
-    block.color[0][lane] = -7.0f;
+  const float special[] = {0.5f / float(image.height), 1.0f, 0.0f, -1e-9f, 1e30f, NAN, INFINITY, 1.0f - 0x1p-24f};
+  // Places of a picture as positions of the world.
+  Program program;
+  Node place, look;
+  place.kind = LANCER_NODE_COORDINATE;
+  place.option = LANCER_COORDINATE_POSITION;
+  look.kind = LANCER_NODE_IMAGE;
+  look.option = LANCER_PROJECT_FLAT;
+  look.flags = flags;
+  look.image_count = 1;
+  look.inputs[0].node = 0;
+  program.nodes = {place, look};
+  NodeBlock block{};
+  block.scene.images = &images;
+  block.surface = false;
+  block.used = random() & 0xffff;
+  for (int lane = 0; lane < kNodeLanes; ++lane) {
+    block.p[0][lane] = double(somewhere(random));
+    block.p[1][lane] = double(random() % 2 ? somewhere(random) : special[random() % 8]);
   }
-  picture_kernel().look_up(block, wide, lanes);
-  for (int lane = 0; lane < kBlockLanes; ++lane) {
-    if (!(lanes >> lane & 1)) {
-      EXPECT_EQ(block.color[0][lane], -7.0f);
+  NodeLanes values[2];
+  node_kernel().run(program, {0, 1}, block, values);
+  const auto extension = static_cast<Extension>(flags & 0xf);
+  for (int lane = 0; lane < kNodeLanes; ++lane) {
+    if (!(block.used >> lane & 1))
       continue;
-    }
-    const glm::vec2 uv(block.uv[0][lane], block.uv[1][lane]);
-    const glm::vec4 want = lookup(image, uv, extension, Interpolation::Linear, straight);
+    const glm::vec2 uv(float(block.p[0][lane]), float(block.p[1][lane]));
+    const glm::vec4 want = lookup(image, uv, extension, Interpolation::Linear, flags & 256);
     ASSERT_EQ(lookup_alpha(image, uv, extension, Interpolation::Linear), want.w);
-    if (alpha) {
-      ASSERT_EQ(block.alpha[lane], want.w);
-    }
-    for (int axis = 0; axis < 3; ++axis)
-      ASSERT_EQ(block.color[axis][lane], want[axis]) << uv.x << " " << uv.y;
+    for (int k = 0; k < 4; ++k)
+      ASSERT_EQ(values[1].of[k][lane], want[k]) << uv.x << " " << uv.y;
   }
 }
 
-TEST(WidePictures, LookUpsAreThoseOfTheGeneralCode) {
+TEST(ImageLanes, LookUpsAreThoseOfOnePlace) {
   Random random(11);
   // Every way to store a picture, and every way to look at it.
   for (const uint32_t kind : kKinds)
@@ -79,24 +89,24 @@ TEST(WidePictures, LookUpsAreThoseOfTheGeneralCode) {
              {LANCER_ALPHA_NONE, LANCER_ALPHA_STRAIGHT, LANCER_ALPHA_ASSOCIATED, LANCER_ALPHA_CHANNEL_PACKED})
           for (int look = 0; look < 64; ++look) {
             const Form form{kind, channels, transfer, alpha_mode};
-            const bool straight = look & 1, alpha = look & 2, matrix = look & 4, unit = look & 16;
+            const bool straight = look & 1, matrix = look & 4, unit = look & 16;
             const Extension extensions[] = {Extension::Extend, Extension::Repeat, Extension::Clip, Extension::Mirror};
             const Extension extension = extensions[(look >> 3 & 1) + (look >> 4 & 2)];
             SCOPED_TRACE(testing::Message() << kind << " " << channels << " " << transfer << " " << alpha_mode << " " << look);
-            const Image image = random_image(random, 1 + random() % 37, 1 + random() % 37, matrix, form, unit);
-            const WideImage wide = wide_image(image, uint32_t(extension) | (straight ? 256u : 0u), alpha);
+            std::vector<Image> images;
+            images.push_back(random_image(random, 1 + random() % 37, 1 + random() % 37, matrix, form, unit));
             for (int i = 0; i < 30; ++i)
-              ASSERT_NO_FATAL_FAILURE(expect_looks(random, image, wide, extension, straight, alpha));
+              ASSERT_NO_FATAL_FAILURE(expect_looks(random, images, uint32_t(extension) | (straight ? 256u : 0u)));
           }
 }
 
-// A picture of all directions, turned or not, times a colour or not; or what only nodes know.
+// A picture of all directions, turned or not, times a colour or not.
 struct Sky {
   World world;
   std::vector<Image> images;
   Normalisation normalisation;
 
-  Sky(Random &random, bool mapped, bool multiplied, bool known) {
+  Sky(Random &random, bool mapped, bool multiplied, bool maximum) {
     const uint32_t kind = kKinds[random() % 3], channels = kChannels[random() % 3];
     const bool curve = kind != LANCER_TEXEL_FLOAT && random() % 2;
     images.push_back(
@@ -115,7 +125,7 @@ struct Sky {
     environment.image_count = 1;
     environment.inputs[0].node = mapped ? 1 : 0;
     product.kind = LANCER_NODE_VECTOR_MATH;
-    product.option = known ? LANCER_VECTOR_MULTIPLY : LANCER_VECTOR_MAXIMUM;
+    product.option = maximum ? LANCER_VECTOR_MAXIMUM : LANCER_VECTOR_MULTIPLY;
     product.inputs[0].node = 2;
     product.inputs[1].value = {0.5f, 2.0f, 0.25f};
     if (random() % 2)
@@ -127,25 +137,23 @@ struct Sky {
   }
 };
 
-TEST(WidePictures, TheSkyIsThatOfTheGeneralCode) {
+TEST(SkyLanes, TheSkyIsThatOfOneDirection) {
   Random random(3);
-  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   std::normal_distribution<double> normal;
   for (int round = 0; round < 60; ++round) {
-    const bool known = round % 5 != 0;
-    const Sky sky(random, random() % 2, !known || random() % 2, known);
+    const Sky sky(random, random() % 2, random() % 2, random() % 2);
     const Environment environment(sky.world, sky.images, sky.normalisation, BuildContext{.threads = 1});
-    const WideSky wide = environment.wide();
-    ASSERT_EQ(wide.image.texels != nullptr, known);
     std::vector<glm::vec4> values(4);
     for (int i = 0; i < 400; ++i) {
-      VertexBlock vertices{};
-      SkyBlock block{};
-      const uint32_t lanes = random() & 0xffff;
-      for (int lane = 0; lane < kBlockLanes; ++lane) {
-        vertices.u[2][lane] = float(random() >> 8) * 0x1p-24f;
-        vertices.u[3][lane] = random() % 8 ? float(random() >> 8) * 0x1p-24f : float(random() % 3) * 0x1p-24f;
-        vertices.light_pdf[lane] = 0.5;
+      SkyBlock samples{}, seen{};
+      NodeBlock nodes{};
+      nodes.scene.images = &sky.images;
+      nodes.scene.normalisation = &sky.normalisation;
+      nodes.surface = false;
+      nodes.used = 0xffff;
+      for (int lane = 0; lane < kWays; ++lane) {
+        samples.u[0][lane] = float(random() >> 8) * 0x1p-24f;
+        samples.u[1][lane] = random() % 8 ? float(random() >> 8) * 0x1p-24f : float(random() % 3) * 0x1p-24f;
         glm::dvec3 d(normal(random), normal(random), normal(random));
         // Poles, the horizon, the seam.
         if (random() % 4 == 0)
@@ -153,30 +161,26 @@ TEST(WidePictures, TheSkyIsThatOfTheGeneralCode) {
         if (random() % 4 == 0)
           d[int(random() % 3)] *= 1e-9;
         d = glm::normalize(d);
-        for (int axis = 0; axis < 3; ++axis)
-          block.wi[axis][lane] = d[axis];
-      }
-      picture_kernel().sample_sky(vertices, wide, lanes);
-      picture_kernel().look_at_sky(block, wide);
-      for (int lane = 0; lane < kBlockLanes; ++lane) {
-        const glm::dvec3 wi(block.wi[0][lane], block.wi[1][lane], block.wi[2][lane]);
-        ASSERT_EQ(block.pdf[lane], environment.pdf(wi)) << wi.x << " " << wi.y << " " << wi.z;
-        const glm::vec3 radiance = environment.radiance(wi, values, nullptr);
-        if (!(lanes >> lane & 1)) {
-          EXPECT_EQ(vertices.light_pdf[lane], 0.5);
-          EXPECT_EQ(vertices.light_wi[0][lane], 0.0);
-        }
-        const LightSample sample = environment.sample({vertices.u[2][lane], vertices.u[3][lane]}, values, nullptr);
-        for (int axis = 0; known && axis < 3; ++axis)
-          ASSERT_EQ(block.radiance[axis][lane], radiance[axis]);
-        if (!(lanes >> lane & 1))
-          continue;
         for (int axis = 0; axis < 3; ++axis) {
-          ASSERT_EQ(vertices.light_wi[axis][lane], sample.wi[axis]);
-          ASSERT_EQ(vertices.light_radiance[axis][lane], known ? sample.radiance[axis] : 0.0f);
+          seen.wi[axis][lane] = d[axis];
+          nodes.p[axis][lane] = double(float(d[axis]));
+          nodes.wo[axis][lane] = nodes.ns[axis][lane] = nodes.ng[axis][lane] = -float(d[axis]);
         }
-        const bool dark = known && sample.radiance == glm::vec3(0.0f);
-        ASSERT_EQ(vertices.light_pdf[lane], dark ? 0.0 : 0.5 * sample.pdf);
+      }
+      light_kernel().sample_sky(environment.map(), samples);
+      light_kernel().sky_density(environment.map(), seen);
+      NodeLanes of_nodes[4];
+      node_kernel().run(sky.world.program, sky.world.schedule, nodes, of_nodes);
+      for (int lane = 0; lane < kWays; ++lane) {
+        const glm::dvec3 wi(seen.wi[0][lane], seen.wi[1][lane], seen.wi[2][lane]);
+        ASSERT_EQ(seen.pdf[lane], environment.pdf(wi)) << wi.x << " " << wi.y << " " << wi.z;
+        const glm::vec3 radiance = environment.radiance(wi, values, nullptr);
+        const LightSample sample = environment.sample({samples.u[0][lane], samples.u[1][lane]}, values, nullptr);
+        ASSERT_EQ(samples.pdf[lane], sample.pdf);
+        for (int axis = 0; axis < 3; ++axis) {
+          ASSERT_EQ(of_nodes[sky.world.radiance.node].of[axis][lane], radiance[axis]);
+          ASSERT_EQ(samples.wi[axis][lane], sample.wi[axis]);
+        }
       }
     }
   }

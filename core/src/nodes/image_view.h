@@ -13,7 +13,7 @@ const float *srgb_lines();
 const float *srgb_bytes();
 float srgb_to_linear(float c);
 
-struct WideImage {
+struct ImageView {
   const std::byte *texels = nullptr;
   const glm::mat3 *matrix = nullptr; // null: decoded colours are in the working space
   uint32_t width = 0, height = 0, channels = 0;
@@ -24,13 +24,12 @@ struct WideImage {
   bool large = false;       // offsets in it need more than 32 bits
   bool straight = false;    // the colour is divided by alpha
   bool keeps_alpha = false; // in the fourth channel; else 1
-  bool asks_alpha = true;   // or nobody does, and it is 0
 };
 
-// As nodes with these flags look at it, and whether they ask for alpha. As long as the image is neither changed nor moved.
-LANCER_LANE WideImage wide_image(const Image &image, uint32_t flags, bool alpha = true) {
+// As nodes with these flags look at it. As long as the image is neither changed nor moved.
+LANCER_LANE ImageView image_view(const Image &image, uint32_t flags) {
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
-  WideImage r;
+  ImageView r;
   r.texels = image.texels.get();
   r.matrix = image.has_matrix ? &image.matrix : nullptr;
   r.width = image.width;
@@ -43,7 +42,6 @@ LANCER_LANE WideImage wide_image(const Image &image, uint32_t flags, bool alpha 
   r.large = static_cast<uint64_t>(image.width) * image.height * image.channels * r.texel_bytes >= uint64_t(1) << 31;
   r.keeps_alpha = image.channels == 4 && image.alpha != AlphaMode::None;
   r.straight = (flags & 256) && multiplied && image.channels > 1;
-  r.asks_alpha = alpha || r.straight;
   return r;
 }
 
