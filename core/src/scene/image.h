@@ -23,7 +23,6 @@ struct Image {
   Transfer transfer = Transfer::Linear;
   AlphaMode alpha = AlphaMode::Straight;
   uint32_t tile = 0;         // UDIM; 0 = none
-  bool exceeds_unit = false; // some number of it lies outside of 0 ... 1
   bool has_matrix = false;
   glm::mat3 matrix{1.0f}; // decoded RGB to the working space
   Texels texels;          // [height][width][channels]
