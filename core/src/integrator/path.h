@@ -24,8 +24,8 @@ class PathIntegrator final : public Integrator {
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), lanes_(vertex_kernel()), node_lanes_(node_kernel()),
-        picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
+        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), lanes_(vertex_kernel()),
+        node_lanes_(node_kernel()), clear_(scene.geometry),
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
                    std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
         late_(settings.max_bounces), queues_(scene), values_(shader_.values().size()),
@@ -36,7 +36,7 @@ public:
     nodes_.scene = world_nodes_.scene = shader_.node_scene();
     world_nodes_.surface = false;
     block_.lobes = reinterpret_cast<std::byte *>(lobes_.data());
-    block_.shares_wanted = block_.wants_shown = passes_.wanted();
+    block_.shares_wanted = block_.wants_shown = passes_.components();
     block_.wants_normal = settings.passes >> LANCER_PASS_NORMAL & 1;
     block_.wants_matt_normal = passes_.occlusion();
     block_.wants_mixture = passes_.features();
@@ -175,9 +175,9 @@ private:
   LightPasses passes_;
   const VertexKernel &lanes_;
   const NodeKernel &node_lanes_;
-  bool picture_alone_; // no other pass is asked for: records stay as they begin
-  LayersMet clear_;    // surfaces on the way of which nothing is there
-  bool any_clear_;     // they are passed together; not where passes for denoising add up the ways between them
+  bool picture_alone_ = true; // no other pass is asked for: records stay as they are
+  LayersMet clear_;           // surfaces on the way of which nothing is there
+  bool any_clear_;            // they are passed together; not where passes for denoising add up the ways between them
   VertexBlock block_{};
   WayBlock ways_{};
   Waiting waiting_[kBlockLanes];

@@ -177,8 +177,7 @@ void PathIntegrator::cut_holes(std::span<SampleResult> results) {
     const Path &path = paths_[waiting.number];
     if (path.in_view) {
       const Parameter &holdout = block_.material[lane]->holdout;
-      const float share =
-          std::clamp(value_in_lane(holdout, lane).x, 0.0f, 1.0f);
+      const float share = std::clamp(value_in_lane(holdout, lane).x, 0.0f, 1.0f);
       if (scene_.geometry.instances[hits_[waiting.number].instance].holdout) {
         // All that the object would show becomes the hole.
         results[path.slot].alpha -= mean(path.beta * waiting.opacity());
@@ -202,7 +201,7 @@ void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
     if (waiting_[lane].nothing)
       continue;
     seen |= uint32_t(path.in_view) << lane;
-    featured |= uint32_t(records_[path.slot].features.open) << lane;
+    featured |= uint32_t(passes_.features() && records_[path.slot].features.open) << lane;
   }
   if (!(seen | featured))
     return;
@@ -216,7 +215,7 @@ void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
     SampleResult &result = results[path.slot];
     if (seen >> lane & 1) {
       record(path, surface_of(lane), *block_.material[lane], get(block_.normal, lane), waiting.opacity(), hit.t, result);
-      for (uint32_t component = 0; component < 3 && passes_.wanted(); ++component)
+      for (uint32_t component = 0; component < 3 && passes_.components(); ++component)
         result.light[kLightComponents + 3 * component + 2] += path.beta * get(block_.shown[component], lane);
     }
     if (featured >> lane & 1)
@@ -343,7 +342,7 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   const Path &path = paths_[waiting.number];
   const glm::vec3 contribution = get(block_.contribution, lane);
   WaitingLight shares;
-  for (int component = 0; component < 2 && passes_.wanted(); ++component)
+  for (int component = 0; component < 2 && passes_.components(); ++component)
     shares.share[component] = path.in_view ? get(block_.light_share[component], lane) : records_[path.slot].share[component];
   if (scene_.lights.no_shadow(waiting.choice.light)) {
     shares.slot = path.slot;
@@ -352,7 +351,7 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   }
   const double infinity = std::numeric_limits<double>::infinity();
   Ray &ray = shadows_.push(path.slot, contribution, path.scatterings > 0, path.passed_through);
-  if (passes_.wanted())
+  if (passes_.components())
     shadows_.set_shares(shares.share);
   if (block_.lifted >> lane & 1) {
     LightSample sample;
@@ -381,7 +380,7 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
   const glm::vec3 emission = waiting.emission + get(block_.emission, lane);
   if (emission != glm::vec3(0.0f))
     add_emission(path, surface_of(lane), emission, result);
-  if (DenoisingFeatures &features = records_[path.slot].features; features.open)
+  if (DenoisingFeatures &features = records_[path.slot].features; passes_.features() && features.open)
     add_denoising_features(scene_, camera_, waiting.mixture, get(block_.wo, lane), waiting.transmittance,
                            hit.t * block_.length[lane], features, result);
   if (path.last)
@@ -400,7 +399,7 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
     return;
   Path &next = next_paths_.emplace_back(path.sampler, path.slot);
   next.in_view = path.in_view && stays_in_view(lane);
-  if (path.in_view && !next.in_view && passes_.wanted())
+  if (path.in_view && !next.in_view && passes_.components())
     for (int component = 0; component < 2; ++component)
       records_[path.slot].share[component] = get(block_.share[component], lane);
   next.beta = beta;

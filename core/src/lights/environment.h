@@ -3,8 +3,8 @@
 
 #include "accel/accelerator.h"
 #include "lights/light.h"
-#include "sampling/direction_map.h"
 #include "nodes/light_path.h"
+#include "sampling/direction_map.h"
 #include "scene/world.h"
 
 namespace lancer {

@@ -41,8 +41,8 @@ std::vector<ReadyLobe> make_ready_lobes(const Material &material);
 // A lobe of every lane, all of one code.
 template <class F> struct LaneLobes {
   const ReadyLobe *of[LanesOf<F>::kWidth] = {}; // only the first is read where all are the same
-  uint32_t inside = 0; // bits of lanes
-  bool same = true;    // all lanes have one
+  uint32_t inside = 0;                          // bits of lanes
+  bool same = true;                             // all lanes have one
 
   template <class Get> LANCER_LANE F number(const Get &get) const {
     if (same)
