@@ -5,7 +5,8 @@
 #include "bsdf/coating.h"
 #include "bsdf/frame.h"
 #include "bsdf/normals.h"
-#include "scene/wide_surface.h"
+#include "scene/hit_surface.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {
@@ -22,10 +23,9 @@ LANCER_LANE void find_surfaces(CourseBlock &block, int first) {
   const M plane = some(block.plane, first), exact = plane | some(block.sphere, first);
   if (!any(exact))
     return;
-  const double *const *placements = block.placement + first;
-  const WideSurface surface = round_surface(placements, all_same(placements), load3(block.o, first), load3(block.d, first),
-                                            load(block.t + first), plane);
-  block.odd |= bits(surface.odd & exact) << first;
+  const QuadricKinds<F> kinds{plane, mask_of(0), mask_of(0)};
+  const SurfaceLanes<F> surface = quadric_surface(Placements<F>(block.placement + first), kinds, load3(block.o, first),
+                                                  load3(block.d, first), load(block.t + first));
   store3(block.p, first, exact, surface.p);
   store(block.offset + first, exact, surface.offset);
   store3(block.ng, first, exact, surface.ng);

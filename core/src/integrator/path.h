@@ -14,8 +14,8 @@
 #include "integrator/shading.h"
 #include "integrator/shading_queues.h"
 #include "integrator/shadow.h"
+#include "integrator/stages/surface_stage.h"
 #include "integrator/texture_prefetch.h"
-#include "integrator/vertex_kernel.h"
 
 #include <algorithm>
 
@@ -25,21 +25,14 @@ class PathIntegrator final : public Integrator {
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), lanes_(vertex_kernel()),
+        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings),
+        surfaces_(scene, camera, settings), block_(surfaces_.block), lanes_(surfaces_.kernel),
         picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
                    std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
-        picture_lanes_(picture_kernel()), late_(settings.max_bounces), queues_(scene), values_(shader_.values().size()),
-        lobes_(lanes_.lobes_bytes / sizeof(Lobes) + 1) {
+        picture_lanes_(picture_kernel()), late_(settings.max_bounces), queues_(scene) {
     if (scene.lights.environment().varies())
       sky_ = scene.lights.environment().wide();
-    block_.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
-    block_.lobes = reinterpret_cast<std::byte *>(lobes_.data());
-    block_.shares_wanted = block_.wants_shown = passes_.wanted();
-    block_.wants_normal = settings.passes >> LANCER_PASS_NORMAL & 1;
-    block_.wants_matt_normal = passes_.occlusion();
-    block_.wants_mixture = passes_.features();
-    block_.blended = settings.blended_features;
   }
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
@@ -107,10 +100,6 @@ private:
     LightSet::Choice choice;
     bool far;               // the light has no end
     Mixture<float> mixture; // of its lobes, where passes for denoising are open
-    glm::vec3 emission, transmittance;
-
-    // The share that is there.
-    glm::vec3 opacity() const { return glm::clamp(1.0f - transmittance, 0.0f, 1.0f); }
   };
 
   // As the last scattering asked for light.
@@ -118,7 +107,6 @@ private:
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void put_in_lane(size_t number, const Material &material);
   void draw_numbers();
-  void find_surfaces();
   void ask_nodes();
   void cut_holes(std::span<SampleResult> results);
   void record_surfaces(std::span<SampleResult> results);
@@ -127,7 +115,6 @@ private:
   void choose_of_many();
   void ask_lights();
   void ask_by_hand(uint32_t lane);
-  Surface surface_of(uint32_t lane) const;
   void send_shadow_of(uint32_t lane);
   void leave_lane(uint32_t lane, SampleResult &result);
   void shade_block(std::span<SampleResult> results, std::vector<PathVertex> *trace);
@@ -164,15 +151,15 @@ private:
   TexturePrefetch textures_;
   PixelCone cone_;
   LightPasses passes_;
+  SurfaceStage surfaces_;
+  VertexBlock &block_;
   const VertexKernel &lanes_;
   bool picture_alone_; // no other pass is asked for: records stay as they begin
   LayersMet clear_;    // surfaces on the way of which nothing is there
   bool any_clear_;     // they are passed together; not where passes for denoising add up the ways between them
-  VertexBlock block_{};
   WayBlock ways_{};
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane
-  uint32_t waiting_count_ = 0;
   const PictureKernel &picture_lanes_;
   WideSky sky_;
   SkyBlock misses_{};
@@ -186,16 +173,7 @@ private:
   std::vector<Record> records_;     // per slot
   LateLight late_;
   ShadingQueues queues_; // paths by the class of the material that they have met
-  // Scratch of the block: what nodes say, and the lobes.
-  struct alignas(64) Values {
-    float of[4][kBlockLanes];
-  };
-  struct alignas(64) Lobes {
-    std::byte of[64];
-  };
-  std::vector<Values> values_;
-  std::vector<Lobes> lobes_;
-  Shaded clear_point_; // of a surface of which nothing is there
+  Shaded clear_point_;   // of a surface of which nothing is there
 };
 
 std::unique_ptr<Integrator> make_path(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);

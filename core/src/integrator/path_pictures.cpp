@@ -1,7 +1,7 @@
 // The environment, where paths end or ask for its light.
 #include "integrator/lane_access.h"
-#include "integrator/mis_weight.h"
 #include "integrator/path.h"
+#include "lights/sample_light.h"
 #include "sampling/color.h"
 
 #include <bit>
