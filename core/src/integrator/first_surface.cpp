@@ -58,6 +58,14 @@ void record_seen(const Scene &scene, const Camera &camera, const IntegratorSetti
     result.light[kLightComponents + 3 * component + 2] += weight * shaded.bsdf.shown(Component(component));
 }
 
+void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
+                 const Surface &surface, const SurfaceStage &stage, uint32_t lane, const glm::vec3 &weight,
+                 SampleResult &result) {
+  result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * stage.opacity(lane));
+  for (uint32_t component = 0; component < 3 && passes.wanted(); ++component)
+    result.light[kLightComponents + 3 * component + 2] += weight * get(stage.block.shown[component], lane);
+}
+
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface) {
   // Parallel rays count along the axis.
   const bool parallel = camera.kind == CameraKind::Orthographic;

@@ -3,6 +3,7 @@
 
 #include "accel/kernel_name.h"
 #include "bsdf/principled.h"
+#include "integrator/block_lobes.h"
 #include "integrator/lobe_means.h"
 #include "integrator/terminator.h"
 #include "lancer.h"
@@ -18,7 +19,6 @@ namespace lancer {
 namespace {
 
 template <class Enum> LANCER_LANE U number_of(Enum value) { return U(static_cast<uint32_t>(value)); }
-LANCER_LANE uint32_t placed_bits(M m, int first) { return bits(m) << first; }
 
 // The eight numbers of the vertex.
 LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
@@ -110,9 +110,6 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
 }
 
 LANCER_LANE M has_bit(const uint32_t *words, uint32_t bit) { return !equal(load(words) & U(bit), U(0u)); }
-
-// The lobes of the lanes from first on: kept from lobes() to scatter().
-Bsdf<F> &lobes_of(VertexBlock &block, int first) { return reinterpret_cast<Bsdf<F> *>(block.lobes)[first / kLanes]; }
 
 // What the nodes of the material say in every lane.
 struct NodeValues {

@@ -69,6 +69,12 @@ void SurfaceStage::give(uint32_t lane, const Surface &surface, const glm::dvec3 
   put(view, block.d, lane);
 }
 
+void SurfaceStage::move(uint32_t lane, const Hit &hit) {
+  hits_[lane] = &hit;
+  block.bary[0][lane] = hit.u;
+  block.bary[1][lane] = hit.v;
+}
+
 void SurfaceStage::find() {
   for (uint32_t lane = count_; lane < kBlockLanes; ++lane) {
     block.material[lane] = block.material[0];

@@ -22,6 +22,8 @@ public:
   uint32_t add(const Ray &ray, const Hit &hit, const Material &material);
   // Has a lane look at this surface instead, along a view of any length.
   void give(uint32_t lane, const Surface &surface, const glm::dvec3 &view);
+  // Moves a lane to another place of its triangle.
+  void move(uint32_t lane, const Hit &hit);
   // Finds what is there.
   void find();
   // Whether nodes have a say; they need to know how each lane is seen.
