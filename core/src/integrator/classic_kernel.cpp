@@ -60,7 +60,7 @@ void illuminate(VertexBlock &block, const Light *lamp, uint32_t hidden_from) {
     if (!any(there))
       continue;
     const V3 wi = narrow(sample.wi), irradiance = classic_irradiance(light, sample);
-    const V3 sum = select(there, classic_illumination(bsdf, wi, light, irradiance, hidden_from), V3(F(0.0f)));
+    const V3 sum = select(there, classic_illumination(bsdf, wi, light, irradiance, hidden_from), Vec3<F>(F(0.0f)));
     store3(block.irradiance, first, irradiance);
     store3(block.contribution, first, sum);
     block.there |= placed_bits(there, first);

@@ -2,6 +2,6 @@
 
 namespace lancer {
 
-const ClassicKernel &classic_kernel() { return LANCER_CHOSEN_KERNEL(classic_kernel); }
+const ClassicKernel &classic_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(classic_kernel); }
 
 } // namespace lancer

@@ -36,19 +36,6 @@ void record_first_surface(const Scene &scene, const IntegratorSettings &settings
     result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
 }
 
-bool cut_hole(const Scene &scene, const Surface &surface, const glm::vec3 &weight, Shaded &shaded, SampleResult &result) {
-  if (scene.geometry.instances[surface.instance].holdout) {
-    // All that the object would show becomes the hole.
-    result.alpha -= mean(weight * shaded.opacity());
-    shaded.bsdf.count = 0;
-    shaded.bsdf.complete();
-    shaded.emission = glm::vec3(0.0f);
-    return shaded.passes();
-  }
-  result.alpha -= shaded.holdout * mean(weight);
-  return shaded.holdout < 1.0f;
-}
-
 void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
                  const Surface &surface, const Shaded &shaded, const glm::vec3 &weight, SampleResult &result) {
   if (!passes.data())

@@ -2,6 +2,6 @@
 
 namespace lancer {
 
-const PictureKernel &picture_kernel() { return LANCER_CHOSEN_KERNEL(picture_kernel); }
+const PictureKernel &picture_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(picture_kernel); }
 
 } // namespace lancer

@@ -2,7 +2,6 @@
 #include "integrator/vertex_kernel.h"
 
 #include "accel/kernel_name.h"
-#include "bsdf/principled.h"
 #include "integrator/block_lobes.h"
 #include "integrator/lobe_means.h"
 #include "integrator/terminator.h"
@@ -12,7 +11,7 @@
 #include "sampling/scramble.h"
 #include "sampling/warp.h"
 #include "scene/hit_surface.h"
-#include "scene/material.h"
+#include "scene/material_lobes.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {
@@ -122,58 +121,19 @@ struct NodeValues {
   }
 };
 
-// Adds the lobes of one described; number: of the lobe among the material's.
-void add_described(const VertexBlock &block, int first, size_t number, Bsdf<F> &bsdf) {
-  const Material *const *materials = block.material + first;
-  const LobeDescription &described = materials[0]->lobes[number];
-  LaneLobes<F> ready;
-  ready.inside = bits(bsdf.inside);
-  ready.same = all_same(materials);
-  for (int i = 0; i < kLanes; ++i)
-    ready.of[i] = &materials[i]->ready[number];
-  const bool fixed = materials[0]->fixed();
-  const ParameterReader<F, NodeValues> read{{block, first}};
-  const M hole = some(block.holes, first);
-  const auto without_holes = [&](LobeInputs<F> inputs) __attribute__((always_inline)) {
-    if (block.holes)
-      inputs.weight = select(hole, V3(F(0.0f)), inputs.weight);
-    return inputs;
-  };
-  if (!described.principled) {
-    const LobeInputs<F> inputs = without_holes(fixed ? ready.inputs() : evaluate(described, read));
-    if (any(!black(inputs.weight)))
-      add_kept(bsdf, inputs, ready);
-    return;
-  }
-  const LobeInputs<F> inputs = without_holes(fixed ? ready.principled_carrier() : evaluate(described, read));
-  if (any(!black(inputs.weight)))
-    add_principled(bsdf, inputs, fixed ? ready.principled() : evaluate(*described.principled, read), ready);
-}
-
 void lobes(VertexBlock &block) {
   block.inside = block.transmits = block.scatters = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    const Material &material = *block.material[first];
-    // Look from the viewer's side.
-    const V3 wo = load3(block.wo, first), out_ns = load3(block.ns, first), out_ng = load3(block.ng, first);
-    const M inside = dot(wo, out_ng) < F(0.0f);
-    V3 ns = select(inside, -out_ns, out_ns);
-    const V3 ng = select(inside, -out_ng, out_ng);
-    // A bump of the whole surface stands in for its normal; nodes give it on the viewer's side.
-    if (material.normal.varies())
-      ns = unit_or(NodeValues{block, first}(material.normal), ns);
     Bsdf<F> &bsdf = *new (&lobes_of(block, first)) Bsdf<F>;
-    bsdf.begin(wo, ns, ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
     bsdf.shares = block.shares_wanted != 0;
-    for (size_t i = 0; i < material.lobes.size(); ++i)
-      add_described(block, first, i, bsdf);
-    bsdf.complete();
-    store3(block.viewer_ns, first, ns);
-    store3(block.viewer_ng, first, ng);
+    find_lobes<F>(block.material + first, NodeValues{block, first}, some(block.holes, first), load3(block.wo, first),
+                  load3(block.ns, first), load3(block.ng, first), bsdf);
+    store3(block.viewer_ns, first, bsdf.ns);
+    store3(block.viewer_ng, first, bsdf.ng);
     store3(block.emission, first, bsdf.emission);
-    block.inside |= placed_bits(inside, first);
+    block.inside |= placed_bits(bsdf.inside, first);
     block.transmits |= placed_bits(bsdf.transmits, first);
     block.scatters |= placed_bits(bsdf.smooth, first);
   }
@@ -230,7 +190,7 @@ LANCER_LANE void light(VertexBlock &block, int first, const Bsdf<F> &bsdf, D sca
   BsdfValue<F> value = bsdf.eval_lit(wi);
   constexpr uint32_t kinds[3] = {LANCER_RAY_DIFFUSE, LANCER_RAY_GLOSSY, LANCER_RAY_TRANSMISSION};
   for (int component = 0; component < 3; ++component)
-    value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), V3(zero), value.part[component]);
+    value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), Vec3<F>(zero), value.part[component]);
   const V3 f = value.f();
   // The BSDF finds the same light, unless it is a single direction.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
@@ -257,7 +217,7 @@ void scatter(VertexBlock &block) {
     store3(block.shadow_origin, first, origin_towards(p, offset, outwards, load3(block.light_wi, first)));
     // Go on in a direction of the BSDF.
     const BsdfSample<F> sample = bsdf.sample(load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
-    store3(block.next_origin, first, origin_towards(p, offset, outwards, widen(sample.wi)));
+    store3(block.next_origin, first, origin_towards(p, offset, outwards, D3(widen(sample.wi))));
     store3(block.wi, first, sample.wi);
     store3(block.next_beta, first, load3(block.beta, first) * (sample.weight / narrow(scatters)));
     store(block.pdf + first, select(sample.delta, D(0.0), widen(sample.pdf) * scatters));
