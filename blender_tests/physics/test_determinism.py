@@ -57,7 +57,7 @@ def test_tile_sizes(reference, tile_size):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS, ids=lambda i: i.name)
 def test_vertices_are_counted_the_same(integrator):
-    """By the code that shaded them, however the work is cut and whatever passes there are: in lanes, but for the picture of normals."""
+    """By the code that shaded them, however the work is cut and whatever passes there are: only normals one by one."""
 
     def counted(**settings):
         with Session.upload(picture(integrator=integrator, **settings)) as session:
