@@ -57,7 +57,7 @@ def test_tile_sizes(reference, tile_size):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS, ids=lambda i: i.name)
 def test_vertices_are_counted_the_same(integrator):
-    """By the code that shaded them, however the work is cut and whatever passes there are: those of paths all in lanes."""
+    """By the code that shaded them, however the work is cut and whatever passes there are: only normals one by one."""
 
     def counted(**settings):
         with Session.upload(picture(integrator=integrator, **settings)) as session:
@@ -67,10 +67,10 @@ def test_vertices_are_counted_the_same(integrator):
 
     alone = {"passes": (Pass.COMBINED,)}
     wide, narrow = counted(threads=1, **alone)
-    assert (narrow > 0) == (integrator != Integrator.PATH) and (wide > 0) == (integrator != Integrator.NORMALS)
+    assert (narrow > 0) == (integrator == Integrator.NORMALS) and (wide > 0) == (integrator != Integrator.NORMALS)
     for settings in ({"threads": 7}, {"threads": 2, "tile_size": 5}, {"threads": 2, "tile_size": 1000}):
         assert counted(**settings, **alone) == (wide, narrow)
-    if integrator == Integrator.PATH:
+    if integrator != Integrator.NORMALS:
         assert counted(threads=2) == (wide, narrow)
 
 
@@ -250,7 +250,7 @@ open(sys.argv[1], "w").write(name + " " + h.hexdigest())
 def test_instruction_sets(tmp_path):
     """LANCER_ISA forces a lower instruction set: other instructions, the same bits."""
     results, places = {}, [HERE, os.path.join(HERE, "helpers"), os.path.join(HERE, "physics")]
-    for isa in ("", "sse4", "avx2", "avx512"):
+    for isa in ("", "scalar", "sse4", "avx2", "avx512"):
         out = tmp_path / f"isa{isa}"
         environment = {**os.environ, "LANCER_ISA": isa} if isa else {k: v for k, v in os.environ.items() if k != "LANCER_ISA"}
         command = [sys.executable, "-c", ISA_SCRIPT, str(out), ROOT, *places]
@@ -260,4 +260,5 @@ def test_instruction_sets(tmp_path):
     hashes = {digest for *_, digest in results.values()}
     assert len(hashes) == 1, results
     # The lowest one runs everywhere and is named; asking for more than the processor has gives the best there is.
+    assert results["scalar"][0] == "scalar"
     assert results["sse4"][0] != results[""][0] or "SSE" in results[""][0].upper(), results

@@ -1,4 +1,5 @@
 // The C interface: checks handles and pointers, turns exceptions into statuses, and passes on to the rooms.
+#include "accel/instruction_set.h"
 #include "objects.h"
 #include "render/fill_settings.h"
 #include "scene/fill_camera.h"
@@ -309,7 +310,8 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
     copy_text(statistics->features, sizeof statistics->features,
               feature_names({scene.features, scene.shapes}) + (lens ? " lens" : ""));
     copy_text(statistics->kernel, sizeof statistics->kernel, from.kernel);
-    copy_text(statistics->instruction_set, sizeof statistics->instruction_set, scene.accelerator->instruction_set());
+    copy_text(statistics->instruction_set, sizeof statistics->instruction_set,
+              instruction_set() == InstructionSet::Scalar ? "scalar" : scene.accelerator->instruction_set());
     statistics->texture_bytes = scene.texture_bytes();
     statistics->wide_vertices = from.vertices.wide;
     statistics->narrow_vertices = from.vertices.narrow;

@@ -63,6 +63,7 @@ TEST(InstructionSets, TheWidestThatTheProcessorRunsIsTaken) {
   EXPECT_EQ(asked_for("avx512"), best);
   EXPECT_EQ(asked_for("avx2"), avx2 ? InstructionSet::Avx2 : InstructionSet::Sse4);
   EXPECT_EQ(asked_for("sse4"), InstructionSet::Sse4);
+  EXPECT_EQ(asked_for("scalar"), InstructionSet::Scalar);
 }
 
 } // namespace

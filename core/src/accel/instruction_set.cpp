@@ -57,6 +57,8 @@ InstructionSet instruction_set() {
   static const InstructionSet best = best_set();
   const char *asked = std::getenv("LANCER_ISA");
   const std::string_view limit = asked ? asked : "";
+  if (limit == "scalar")
+    return InstructionSet::Scalar;
   if (best == InstructionSet::Sse4 || limit == "sse4")
     return InstructionSet::Sse4;
   return limit == "avx2" ? InstructionSet::Avx2 : best;
@@ -64,7 +66,10 @@ InstructionSet instruction_set() {
 
 #else
 
-InstructionSet instruction_set() { return InstructionSet::Generic; }
+InstructionSet instruction_set() {
+  const char *asked = std::getenv("LANCER_ISA");
+  return asked && std::string_view(asked) == "scalar" ? InstructionSet::Scalar : InstructionSet::Generic;
+}
 
 #endif
 

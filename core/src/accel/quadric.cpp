@@ -173,37 +173,8 @@ bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, do
 }
 
 SurfacePoint quadric_point(ShapeKind kind, const glm::dvec3 &o, const glm::dvec3 &d, double t) {
-  SurfacePoint s{o + t * d, glm::dvec3(0.0, 0.0, 1.0)};
-  if (kind == ShapeKind::Plane) {
-    s.p.z = 0.0;
-    return s;
-  }
-  if (kind == ShapeKind::Sphere) {
-    const double length = glm::length(s.p);
-    s.p = length > 0.0 ? s.p / length : s.n;
-    s.n = s.p;
-    return s;
-  }
-
-  // Find the nearest part: the side, or one of the disks.
-  const bool cone = kind == ShapeKind::Cone;
-  const double r = std::sqrt(s.p.x * s.p.x + s.p.y * s.p.y);
-  const double radius = cone ? 0.5 * (1.0 - s.p.z) : 1.0;
-  const double to_side = std::abs(r - radius) * (cone ? 2.0 / std::sqrt(5.0) : 1.0);
-  const double to_disk = cone ? std::abs(s.p.z + 1.0) : std::abs(std::abs(s.p.z) - 1.0);
-  const glm::dvec2 outward = r > 0.0 ? glm::dvec2(s.p.x, s.p.y) / r : glm::dvec2(1.0, 0.0);
-  if (to_disk < to_side) {
-    s.p = glm::dvec3(outward * std::min(r, 1.0), cone ? -1.0 : std::copysign(1.0, s.p.z));
-    s.n = glm::dvec3(0.0, 0.0, s.p.z);
-  } else {
-    s.p.z = std::clamp(s.p.z, -1.0, 1.0);
-    s.p = glm::dvec3(outward * (cone ? 0.5 * (1.0 - s.p.z) : 1.0), s.p.z);
-    if (!cone)
-      s.n = glm::dvec3(outward, 0.0);
-    else if (r > 0.0)
-      s.n = glm::dvec3(2.0 * outward, 1.0) / std::sqrt(5.0);
-  }
-  return s;
+  const QuadricPoint<float> point = quadric_point(kinds_of(kind), Vector3<double>(o + t * d));
+  return {point.p, point.n};
 }
 
 glm::dvec2 quadric_uv(ShapeKind kind, const glm::dvec3 &p) {

@@ -4,12 +4,17 @@
 #include "accel/placed_shape.h"
 #include "accel/ray.h"
 #include "scene/geometry.h"
+#include "scene/quadric_point.h"
 
 namespace lancer {
 
 // The first t with tmin < t < tmax where the ray meets the surface; false where there is none.
 // leaves: the ray starts on this surface, so the root that is its own start is left out.
 bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
+
+inline QuadricKinds<float> kinds_of(ShapeKind kind) {
+  return {kind == ShapeKind::Plane, kind == ShapeKind::Cylinder, kind == ShapeKind::Cone};
+}
 
 struct SurfacePoint {
   glm::dvec3 p; // on the surface, object space

@@ -11,7 +11,7 @@ namespace lancer {
 // Each node adds to a BSDF between begin() and complete(); what finds no room any more is dropped. add_principled() is in
 // principled.h.
 template <class F>
-LANCER_LANE Lobe<F> course_lobe(LobeShape shape, Component component, uint8_t frame, const LobeInputs<F> &inputs) {
+LANCER_LANE Lobe<F> classic_lobe(LobeShape shape, Component component, uint8_t frame, const LobeInputs<F> &inputs) {
   Lobe<F> lobe;
   lobe.shape = shape;
   lobe.component = component;
@@ -48,7 +48,7 @@ template <class F> LANCER_LANE void add_matte(Bsdf<F> &bsdf, const LobeInputs<F>
     lobe = make_matte<F>(Matte::Translucent, weight);
     break;
   default:
-    lobe = course_lobe(LobeShape::Lambert, Component::Diffuse, frame, inputs);
+    lobe = classic_lobe(LobeShape::Lambert, Component::Diffuse, frame, inputs);
     break;
   }
   lobe.frame = frame;
@@ -182,8 +182,8 @@ template <class F> LANCER_LANE void add_glass(Bsdf<F> &bsdf, const LobeInputs<F>
   add_facets(bsdf, facets_of(inputs, frame, alpha, alpha, bsdf.inside), inputs, preserving);
 }
 
-// What the course describes beside Lambert.
-template <class F> LANCER_LANE void add_of_course(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
+// What CLASSIC knows beside Lambert.
+template <class F> LANCER_LANE void add_classic(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
   const Vec3<F> &wo = bsdf.wo_local[frame];
   const LobeShape shape = inputs.kind == LobeKind::Beckmann     ? LobeShape::Beckmann
@@ -191,7 +191,7 @@ template <class F> LANCER_LANE void add_of_course(Bsdf<F> &bsdf, const LobeInput
                           : inputs.kind == LobeKind::Mirror     ? LobeShape::Mirror
                           : inputs.kind == LobeKind::Phong      ? LobeShape::Phong
                                                                 : LobeShape::BlinnPhong;
-  Lobe<F> lobe = course_lobe(shape, Component::Glossy, frame, inputs);
+  Lobe<F> lobe = classic_lobe(shape, Component::Glossy, frame, inputs);
   lobe.delta = uniform<F>(shape == LobeShape::Mirror || shape == LobeShape::Dielectric);
   if (shape == LobeShape::Beckmann) {
     lobe.alpha_x = lobe.alpha_y = inputs.roughness;
@@ -223,7 +223,7 @@ template <class F> void add_lobe(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
   case LobeKind::Principled:
     return;
   default:
-    return add_of_course(bsdf, inputs);
+    return add_classic(bsdf, inputs);
   }
 }
 

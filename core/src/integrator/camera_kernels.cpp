@@ -2,6 +2,6 @@
 
 namespace lancer {
 
-const CameraKernel &camera_kernel() { return LANCER_CHOSEN_KERNEL(camera_kernel); }
+const CameraKernel &camera_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(camera_kernel); }
 
 } // namespace lancer

@@ -1,4 +1,4 @@
-// The course's usual surfaces, shaded side by side.
+// Vertices of the recursion side by side: their surfaces, what they show, and the light of every lamp.
 #include "integrator/classic.h"
 
 #include "integrator/first_surface.h"
@@ -7,250 +7,315 @@
 #include "sampling/color.h"
 #include "scene/polygon_centers.h"
 
-#include <algorithm>
-#include <cmath>
+#include <bit>
 
 namespace lancer {
 
 namespace {
 
-void copy(const float (&from)[3], CourseBlock::Floats (&lanes)[3], uint32_t lane) {
-  for (int i = 0; i < 3; ++i)
-    lanes[i][lane] = from[i];
-}
+// Every lamp at every depth has numbers of its own, behind those of a path.
+constexpr uint32_t kDimensionLamp = 1u << 24;
 
-CourseLamp make_lamp(const LightSet &lights, uint32_t number) {
-  static const CourseLight plain;
-  CourseLamp lamp;
-  const bool described = number < lights.lights().size();
-  const CourseLight &course = described ? lights.lights()[number].course : plain;
-  const uint32_t hidden = lights.hidden_from(number);
-  for (int i = 0; i < 3; ++i) {
-    lamp.diffuse[i] = hidden & LANCER_RAY_DIFFUSE ? 0.0f : course.diffuse_color[i];
-    lamp.specular[i] = hidden & LANCER_RAY_GLOSSY ? 0.0f : course.specular_color[i];
-  }
-  // Ka of a surface takes light of lamps that are hidden, too.
-  lamp.unseen = !described && !LightSet::lit_by(hidden);
-  if (!described)
-    return lamp;
-  const Light &light = lights.lights()[number];
-  lamp.point = light.kind == LightKind::Point && light.radius == 0.0 && course.falloff == Falloff::Physical;
-  for (int i = 0; i < 3; ++i) {
-    lamp.position[i] = light.position[i];
-    lamp.emission[i] = light.emission[i];
-  }
-  return lamp;
+template <class Visit> void each_lane(uint32_t lanes, const Visit &visit) {
+  for (; lanes != 0; lanes &= lanes - 1)
+    visit(uint32_t(std::countr_zero(lanes)));
 }
 
 } // namespace
 
-ClassicLanes::ClassicLanes(const Scene &scene) : kernel(course_kernel()), materials(make_course_materials(scene.materials)) {
-  for (uint32_t i = 0; i < scene.lights.size(); ++i)
-    lamps.push_back(make_lamp(scene.lights, i));
-  lit.resize(lamps.size());
+void ClassicIntegrator::shade(std::span<SampleResult> results) {
+  queues_.begin();
+  own_light_.begin(rays_.size());
+  shadow_light_.begin(rays_.size());
+  lit_.resize(rays_.size());
+  if (passes_.features())
+    features_.resize(rays_.size());
+  for (size_t i = 0; i < rays_.size(); ++i)
+    if (hits_[i].valid())
+      queues_.add(i, hits_[i]);
+  vertices_.wide += queues_.size();
+  queues_.each([&](std::span<const ShadingQueues::Met> met) {
+    for (const ShadingQueues::Met &one : met)
+      put_in_lane(one.number, *one.material, results);
+    shade_block(results);
+  });
+  own_light_.sort();
 }
 
-const WideCourse *ClassicIntegrator::for_lanes(const Hit &hit) const {
-  if (!hit.valid())
-    return nullptr;
-  const Instance &instance = scene_.geometry.instances[hit.instance];
-  const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
-  const bool corners = instance.kind == ShapeKind::Mesh && instance.shading == Shading::Gouraud;
-  // Passes tell the place that is met, not the one that is lit.
-  const bool elsewhere = is_flat(instance) && settings_.passes != 1u << LANCER_PASS_COMBINED;
-  if (material == kNone || instance.holdout || corners || elsewhere || !lanes_->materials[material].known)
-    return nullptr;
-  return &lanes_->materials[material];
-}
-
-void ClassicIntegrator::put_in_lane(size_t number, const WideCourse &material) {
-  CourseBlock &block = lanes_->block;
-  const uint32_t lane = block.count++;
+void ClassicIntegrator::put_in_lane(size_t number, const Material &material, std::span<SampleResult> results) {
+  const Hit &hit = hits_[number];
   const Ray &ray = rays_[number];
-  Hit &hit = hits_[number];
   const Instance &instance = scene_.geometry.instances[hit.instance];
-  glm::dvec3 view = ray.d;
-  block.placement[lane] = &instance.to_world.linear[0][0];
-  put(ray.o, block.o, lane);
-  block.t[lane] = hit.t;
-  block.sphere |= uint32_t(instance.kind == ShapeKind::Sphere) << lane;
-  block.plane |= uint32_t(instance.kind == ShapeKind::Plane) << lane;
-  if (!((block.sphere | block.plane) >> lane & 1)) {
-    Surface surface;
-    if (is_flat(instance)) {
-      surface = surface_at_center(scene_, hit);
-      view = view_of(branches_[number], ray, surface.p);
-      // Rays that leave the surface start on the centre's triangle.
-      hit = center_hit(scene_.geometry.meshes[instance.mesh], hit);
-    } else {
-      surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-    }
-    put(surface.p, block.p, lane);
-    block.offset[lane] = surface.offset;
-    put(surface.ng, block.ng, lane);
-    put(surface.ns, block.ns, lane);
+  const bool corners = instance.kind == ShapeKind::Mesh && instance.shading == Shading::Gouraud;
+  if (surfaces_.full() || corners != corners_)
+    shade_block(results);
+  corners_ = corners;
+  if (is_flat(instance)) {
+    // Rays that leave the surface start on the centre's triangle.
+    Hit &center = lit_at_[surfaces_.count()];
+    center = center_hit(scene_.geometry.meshes[instance.mesh], hit);
+    const uint32_t lane = surfaces_.add(ray, center, material);
+    const Surface surface = surface_at_center(scene_, hit);
+    surfaces_.give(lane, surface, view_of(branches_[number], ray, surface.p));
+    number_[lane] = uint32_t(number);
+    return;
   }
-  put(view, block.d, lane);
-  copy(material.kd, block.kd, lane);
-  copy(material.ks, block.ks, lane);
-  block.alpha[lane] = material.alpha;
-  block.ior[lane] = material.ior;
-  put(branches_[number].weight, block.weight, lane);
-  block.matte |= uint32_t(material.matte) << lane;
-  block.coated |= uint32_t(material.coated) << lane;
-  lanes_->material_of[lane] = uint32_t(&material - lanes_->materials.data());
+  number_[surfaces_.add(ray, hit, material)] = uint32_t(number);
 }
 
-void ClassicIntegrator::shade_lanes(std::span<SampleResult> results) {
-  CourseBlock &block = lanes_->block;
-  block.threshold = settings_.contribution_threshold;
-  for (size_t begin = 0, end = 0; begin < rays_.size(); begin = end) {
-    // Fill the block; what it cannot take waits with the others, so that sums keep their order.
-    block.count = block.matte = block.coated = block.sphere = block.plane = 0;
-    lanes_->known.clear();
-    for (; end < rays_.size() && block.count < uint32_t(kCourseLanes); ++end) {
-      const WideCourse *material = for_lanes(hits_[end]);
-      lanes_->known.push_back(material != nullptr);
-      if (material)
-        put_in_lane(end, *material);
-    }
-    for (uint32_t lane = block.count; lane < uint32_t(kCourseLanes); ++lane)
-      block.placement[lane] = block.placement[0];
-    lanes_->kernel.look(block);
-    light_lanes(begin, end);
-    uint32_t lane = 0;
-    for (size_t i = begin; i < end; ++i) {
-      SampleResult &result = results[branches_[i].slot];
-      const bool known = lanes_->known[i - begin];
-      if (known && !(block.odd >> lane & 1))
-        leave_lane(lane, branches_[i], hits_[i], result);
-      else
-        shade(branches_[i], rays_[i], hits_[i], result, nullptr);
-      lane += known;
-    }
-  }
+void ClassicIntegrator::shade_block(std::span<SampleResult> results) {
+  if (surfaces_.count() == 0)
+    return;
+  surfaces_.find();
+  ask_nodes();
+  cut_holes(results);
+  surfaces_.find_lobes();
+  if (!picture_alone_)
+    record(results);
+  kernel_.branch(block_);
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+    keep(lane);
+  if (corners_)
+    light_corners();
+  else
+    light_block();
+  surfaces_.clear();
 }
 
-// Asks every lamp for its light, those without extent in the kernel.
-void ClassicIntegrator::light_lanes(size_t begin, size_t end) {
-  const CourseBlock &block = lanes_->block;
-  for (uint32_t number = 0; number < lanes_->lamps.size(); ++number) {
-    const CourseLamp &lamp = lanes_->lamps[number];
-    CourseLit &lit = lanes_->lit[number];
-    if (lamp.unseen) {
-      lit.lit = 0;
+void ClassicIntegrator::ask_nodes() {
+  if (!surfaces_.has_nodes())
+    return;
+  View views[kBlockLanes];
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
+    const Branch &branch = branch_of(lane);
+    const double unit = glm::length(surfaces_.ray(lane).d);
+    double way = (branch.passed + surfaces_.hit(lane).t) * unit;
+    if (is_flat(surfaces_.instance(lane)))
+      way = block_.length[lane] + (branch.depth == 0 ? 0.0 : branch.passed * unit);
+    views[lane] = surfaces_.view(lane, way, {.kinds = branch.kinds, .depth = float(branch.depth)});
+  }
+  surfaces_.ask_nodes(views);
+}
+
+// Holes end what the camera sees.
+void ClassicIntegrator::cut_holes(std::span<SampleResult> results) {
+  block_.holes = 0;
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
+    const Branch &branch = branch_of(lane);
+    Vertex &vertex = lit_[number_[lane]];
+    vertex.nothing = false;
+    if (branch.depth > 0 || !(scene_.features & kFeatureHoldout))
       continue;
+    float &alpha = results[branch.slot].alpha;
+    if (surfaces_.instance(lane).holdout) {
+      // All that the object would show becomes the hole.
+      alpha -= mean(branch.weight * surfaces_.opacity(lane));
+      surfaces_.emission[lane] = glm::vec3(0.0f);
+      vertex.nothing = surfaces_.transmittance[lane] == glm::vec3(0.0f);
+      block_.holes |= 1u << lane;
+    } else {
+      const float share = surfaces_.holdout(lane);
+      alpha -= share * mean(branch.weight);
+      vertex.nothing = share >= 1.0f;
+      block_.holes |= uint32_t{vertex.nothing} << lane;
     }
-    if (!lamp.point) {
-      lit.lit = lit.there = lit.far = 0;
-      for (size_t i = begin, lane = 0; i < end; ++i)
-        if (lanes_->known[i - begin])
-          sample_lamp(number, branches_[i], uint32_t(lane++), lit);
-      if (!lit.there)
-        continue;
-    }
-    lanes_->kernel.light(block, lamp, lit);
   }
 }
 
-void ClassicIntegrator::sample_lamp(uint32_t number, const Branch &branch, uint32_t lane, CourseLit &lit) {
-  static const CourseLight plain;
-  const auto &lights = scene_.lights.lights();
-  if (scene_.lights.behind(number, get(lanes_->block.p, lane), get(lanes_->block.viewer_ng, lane)))
-    return;
-  const LightSample sample =
-      sample_scene_light(scene_, number, get(lanes_->block.p, lane), lamp_numbers(branch, number), shader_);
-  if (!(sample.pdf > 0.0))
-    return;
-  lit.there |= 1u << lane;
-  lit.far |= uint32_t(std::isinf(sample.distance)) << lane;
-  put(sample.wi, lit.wi, lane);
-  put(sample.target, lit.target, lane);
-  put(course_irradiance(number < lights.size() ? lights[number].course : plain, sample), lit.irradiance, lane);
+// Fills the passes that describe what the camera sees.
+void ClassicIntegrator::record(std::span<SampleResult> results) {
+  surfaces_.describe();
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
+    const uint32_t number = number_[lane];
+    if (passes_.features())
+      features_[number] = {surfaces_.mixture(lane), get(block_.wo, lane)};
+    Branch &branch = branches_[number];
+    if (branch.depth > 0 || lit_[number].nothing)
+      continue;
+    // What is met says where it is; what is lit says its colour.
+    const Surface met = surface_at(scene_.geometry, scene_.slots, rays_[number], hits_[number]);
+    SampleResult &result = results[branch.slot];
+    if (!branch.seen && mean(surfaces_.opacity(lane)) >= settings_.alpha_threshold) {
+      record_place(scene_, met, block_.material[lane], branch.passed + hits_[number].t, result);
+      record_first_surface(scene_, settings_, met, get(block_.normal, lane), result);
+      branch.seen = true;
+    }
+    if (passes_.mist() || passes_.components())
+      record_seen(scene_, camera_, settings_, passes_, met, surfaces_, lane, branch.weight, result);
+  }
 }
 
-Surface ClassicIntegrator::surface_of(uint32_t lane, const Hit &hit) const {
-  const CourseBlock &block = lanes_->block;
-  Surface surface;
-  surface.p = get(block.p, lane);
-  surface.offset = block.offset[lane];
-  surface.ng = get(block.ng, lane);
-  surface.ns = get(block.ns, lane);
-  // Exact surfaces have no weights of corners: their hits say 0.
-  surface.bary = {hit.u, hit.v};
-  surface.instance = hit.instance;
-  surface.primitive = hit.primitive;
-  surface.material = lanes_->material_of[lane];
-  return surface;
+void ClassicIntegrator::keep(uint32_t lane) {
+  Vertex &vertex = lit_[number_[lane]];
+  const Hit &hit = surfaces_.hit(lane);
+  vertex.mirrors = block_.mirrors >> lane & 1;
+  vertex.refracts = block_.refracts >> lane & 1;
+  vertex.instance = hit.instance;
+  vertex.primitive = hit.primitive;
+  vertex.p = get(block_.p, lane);
+  vertex.offset = block_.offset[lane];
+  vertex.ng = get(block_.ng, lane);
+  vertex.emission = surfaces_.emission[lane] + get(block_.emission, lane);
+  // A hole has no light of its own.
+  const bool hole = block_.holes >> lane & 1;
+  vertex.ambient = hole ? glm::vec3(0.0f) : surfaces_.value(block_.material[lane]->ambient, lane);
+  vertex.transmittance = surfaces_.transmittance[lane];
+  vertex.reflected = get(block_.reflected, lane);
+  vertex.refracted = get(block_.refracted, lane);
+  vertex.mirrored = get(block_.wi, lane);
+  vertex.through = get(block_.through_wi, lane);
 }
 
-// Light that one lamp sends to a lane, once its shadow ray is through.
-void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane, const Branch &branch, const Hit &hit) {
-  const CourseLit &lit = lanes_->lit[number];
-  if (!(lit.lit >> lane & 1))
-    return;
-  const glm::vec3 contribution = get(lit.contribution, lane);
-  if (scene_.lights.no_shadow(number))
-    return shadows_.push_lit({.slot = branch.slot}, contribution);
-  const double end = lit.far >> lane & 1 ? std::numeric_limits<double>::infinity() : 1.0;
-  const Instance &instance = scene_.geometry.instances[hit.instance];
-  if (instance.kind == ShapeKind::Mesh && instance.terminator > 0.0f) {
-    // It may have to start on the curved surface.
+// Which point of a light to take: its middle when there is one sample only.
+glm::vec2 ClassicIntegrator::light_numbers(const Branch &branch, uint32_t light) const {
+  if (generator_.middle())
+    return glm::vec2(0.5f);
+  return samplers_[branch.slot].get2(kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + light));
+}
+
+// Makes ready what the kernel needs to know of a light: numbers for a lamp, samples of another one. False where no surface
+// shows its light. met: the block where the rays have met their surfaces.
+bool ClassicIntegrator::ask(uint32_t number, const VertexBlock &met) {
+  const LightSet &lights = scene_.lights;
+  if (number < lights.lights().size()) {
+    for (uint32_t lane = 0; lane < surfaces_.count() && has_extent(lights.lights()[number]); ++lane) {
+      const glm::vec2 u = light_numbers(branch_of(lane), number);
+      block_.u[2][lane] = u.x;
+      block_.u[3][lane] = u.y;
+    }
+    return true;
+  }
+  if (!LightSet::lit_by(lights.hidden_from(number)))
+    return false;
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
+    block_.light_pdf[lane] = 0.0;
+    if (lights.behind(number, get(met.p, lane), get(met.viewer_ng, lane)))
+      continue;
+    const LightSample sample =
+        sample_scene_light(scene_, number, get(block_.p, lane), light_numbers(branch_of(lane), number), shader_);
+    put(sample.wi, block_.light_wi, lane);
+    put(sample.target, block_.light_target, lane);
+    put(sample.radiance, block_.light_radiance, lane);
+    block_.light_pdf[lane] = sample.pdf;
+  }
+  return true;
+}
+
+void ClassicIntegrator::light_block() {
+  const auto &lamps = scene_.lights.lights();
+  for (uint32_t number = 0; number < scene_.lights.size(); ++number) {
+    if (!ask(number, block_))
+      continue;
+    const Light *lamp = number < lamps.size() ? &lamps[number] : nullptr;
+    kernel_.illuminate(block_, lamp, scene_.lights.hidden_from(number));
+    each_lane(lamp ? block_.there : 0, [&](uint32_t lane) {
+      const glm::vec3 &ambient = lit_[number_[lane]].ambient;
+      if (ambient != glm::vec3(0.0f))
+        own_light_.add(number_[lane],
+                       branch_of(lane).weight * ambient * lamp->classic.ambient_color * get(block_.irradiance, lane) * kInvPi);
+    });
+    each_lane(block_.lit, [&](uint32_t lane) { send_shadow(number, lane); });
+  }
+}
+
+// Light that a lane gets once its shadow ray is through.
+void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane) {
+  const LightSet &lights = scene_.lights;
+  const uint32_t ray_number = number_[lane];
+  const glm::vec3 contribution = branch_of(lane).weight * get(block_.contribution, lane);
+  if (lights.no_shadow(number))
+    return shadows_.push_lit({.slot = ray_number}, contribution);
+  const bool far =
+      number < lights.lights().size() ? lights.lights()[number].kind == LightKind::Sun : number == lights.environment_light();
+  const double end = far ? std::numeric_limits<double>::infinity() : 1.0;
+  Ray &ray = shadows_.push(ray_number, contribution);
+  if (block_.lifted >> lane & 1) {
     LightSample sample;
-    sample.wi = get(lit.wi, lane);
-    sample.target = get(lit.target, lane);
+    sample.wi = get(block_.light_wi, lane);
+    sample.target = get(block_.light_target, lane);
     sample.distance = end;
-    const CourseBlock &block = lanes_->block;
-    const Surface surface = surface_of(lane, hit);
-    return shadows_.push(shadow_ray(scene_.geometry, surface, get(block.viewer_ns, lane), get(block.viewer_ng, lane), sample),
-                         {.slot = branch.slot}, contribution);
-  }
-  leave(hit, get(lit.origin, lane), get(lit.d, lane), end, LANCER_RAY_SHADOW, shadows_.push(branch.slot, contribution));
-}
-
-// What the material emits, and Ka of what comes from everywhere and from the lamps.
-void ClassicIntegrator::add_own_light(uint32_t lane, const Branch &branch, const Material &material, SampleResult &result) {
-  const auto &lights = scene_.lights.lights();
-  const glm::vec3 ambient = branch.weight * value_of(material.ambient, shader_.values());
-  result.radiance += branch.weight * value_of(material.emission, shader_.values());
-  result.radiance += ambient * ambient_;
-  for (uint32_t number = 0; number < lights.size(); ++number) {
-    const CourseLit &lit = lanes_->lit[number];
-    if (lit.there >> lane & 1)
-      result.radiance += ambient * lights[number].course.ambient_color * get(lit.irradiance, lane) * kInvPi;
-  }
-}
-
-// What follows from a shaded lane: its light, its shadow rays, its mirrored ray.
-void ClassicIntegrator::leave_lane(uint32_t lane, const Branch &branch, const Hit &hit, SampleResult &result) {
-  ++vertices_.wide;
-  const CourseBlock &block = lanes_->block;
-  const Material &material = scene_.materials[lanes_->material_of[lane]];
-  const bool first = branch.depth == 0 && !branch.seen && settings_.alpha_threshold <= 1.0f;
-  // The picture alone asks for nothing that it says.
-  if (first && settings_.passes != 1u << LANCER_PASS_COMBINED) {
-    // The lobes' normals, each with its weight.
-    const glm::vec3 ns = get(block.viewer_ns, lane);
-    const glm::vec3 sum = ns * mean(get(block.kd, lane)) + ns * mean(get(block.ks, lane));
-    const Surface surface = surface_of(lane, hit);
-    record_place(scene_, surface, &material, branch.passed + hit.t, result);
-    record_first_surface(scene_, settings_, surface, sum == glm::vec3(0.0f) ? ns : glm::normalize(sum), result);
-  }
-  if (lanes_->materials[lanes_->material_of[lane]].shines)
-    add_own_light(lane, branch, material, result);
-  for (uint32_t number = 0; number < lanes_->lamps.size(); ++number)
-    send_shadow(number, lane, branch, hit);
-  // Beyond the depth limit a ray is black: it need not be traced.
-  if (branch.depth >= settings_.max_bounces || !(block.goes_on >> lane & 1))
+    ray =
+        shadow_ray(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
     return;
-  Branch &next = next_branches_.emplace_back(branch);
-  next.weight = get(block.next_weight, lane);
-  next.kinds = LANCER_RAY_GLOSSY;
-  next.layers = 0;
-  next.seen = next.seen || first;
-  ++next.depth;
-  leave(hit, get(block.next_origin, lane), glm::dvec3(get(block.mirrored, lane)), std::numeric_limits<double>::infinity(),
-        next.kinds, next_rays_.emplace_back());
+  }
+  const glm::dvec3 o = get(block_.shadow_origin, lane);
+  lancer::leave(surfaces_.hit(lane), o, far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o, end,
+                LANCER_RAY_SHADOW, ray);
+}
+
+// Moves all lanes to a corner of their triangles, as if the ray had met it.
+void ClassicIntegrator::move_to_corner(uint32_t corner) {
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
+    lit_at_[lane] = hits_[number_[lane]];
+    lit_at_[lane].u = corner == 1 ? 1.0 : 0.0;
+    lit_at_[lane].v = corner == 2 ? 1.0 : 0.0;
+    surfaces_.move(lane, lit_at_[lane]);
+  }
+  surfaces_.find();
+  // Look from the eye, which needs the place.
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+    put(view_of(branch_of(lane), surfaces_.ray(lane), get(block_.p, lane)), block_.d, lane);
+  surfaces_.find();
+  if (surfaces_.has_nodes()) {
+    View views[kBlockLanes];
+    for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+      views[lane].wo = get(block_.wo, lane);
+    surfaces_.ask_nodes(views);
+  }
+  surfaces_.find_lobes();
+}
+
+// Under Gouraud shading the triangle's corners are lit, as if nothing stood between.
+void ClassicIntegrator::light_corners() {
+  const auto &lamps = scene_.lights.lights();
+  const uint32_t light_count = uint32_t(scene_.lights.size());
+  const VertexBlock met = block_;
+  corner_light_.assign(size_t(light_count) * 3 * kBlockLanes, {});
+  for (uint32_t corner = 0; corner < 3; ++corner) {
+    move_to_corner(corner);
+    for (uint32_t number = 0; number < light_count; ++number) {
+      if (!ask(number, met))
+        continue;
+      const Light *lamp = number < lamps.size() ? &lamps[number] : nullptr;
+      kernel_.illuminate(block_, lamp, scene_.lights.hidden_from(number));
+      each_lane(block_.there, [&](uint32_t lane) {
+        const Hit &hit = hits_[number_[lane]];
+        const float weight = float(corner == 0 ? 1.0 - hit.u - hit.v : corner == 1 ? hit.u : hit.v);
+        CornerLight &of = corner_light_[(number * 3 + corner) * kBlockLanes + lane];
+        of.light = weight * get(block_.contribution, lane);
+        if (lamp)
+          of.own = branch_of(lane).weight * lit_[number_[lane]].ambient * lamp->classic.ambient_color *
+                   get(block_.irradiance, lane) * (kInvPi * weight);
+      });
+    }
+  }
+  block_ = met;
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+    surfaces_.move(lane, hits_[number_[lane]]);
+  // Ask whether the lamps are seen from the hit points, on the viewer's side of the surface.
+  for (uint32_t number = 0; number < light_count; ++number)
+    for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
+      glm::vec3 light(0.0f);
+      for (uint32_t corner = 0; corner < 3; ++corner) {
+        const CornerLight &of = corner_light_[(number * 3 + corner) * kBlockLanes + lane];
+        light += of.light;
+        if (of.own != glm::vec3(0.0f))
+          own_light_.add(number_[lane], of.own);
+      }
+      if (light == glm::vec3(0.0f))
+        continue;
+      const LightSample sample =
+          sample_scene_light(scene_, number, get(block_.p, lane), light_numbers(branch_of(lane), number), shader_);
+      const glm::vec3 ng = get(block_.viewer_ng, lane), contribution = branch_of(lane).weight * light;
+      if (!(sample.pdf > 0.0) || !(glm::dot(glm::vec3(sample.wi), ng) > 0.0f))
+        continue;
+      const WaitingLight waiting{.slot = number_[lane]};
+      if (scene_.lights.no_shadow(number))
+        shadows_.push_lit(waiting, contribution);
+      else
+        shadows_.push(shadow_ray(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane), ng, sample), waiting,
+                      contribution);
+    }
 }
 
 } // namespace lancer

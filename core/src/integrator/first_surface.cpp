@@ -23,30 +23,17 @@ void forget_place(SampleResult &result) {
   result.object_index = result.material_index = 0.0f;
 }
 
-void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
-                          const glm::vec3 &normal, SampleResult &result) {
-  result.normal = normal;
-  if (settings.passes & 1u << LANCER_PASS_UV)
-    result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
-}
-
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
                           double t, SampleResult &result) {
   record_place(scene, surface, shaded.material, t, result);
   record_first_surface(scene, settings, surface, mean_normal(shaded.bsdf), result);
 }
 
-bool cut_hole(const Scene &scene, const Surface &surface, const glm::vec3 &weight, Shaded &shaded, SampleResult &result) {
-  if (scene.geometry.instances[surface.instance].holdout) {
-    // All that the object would show becomes the hole.
-    result.alpha -= mean(weight * shaded.opacity());
-    shaded.bsdf.count = 0;
-    shaded.bsdf.complete();
-    shaded.emission = glm::vec3(0.0f);
-    return shaded.passes();
-  }
-  result.alpha -= shaded.holdout * mean(weight);
-  return shaded.holdout < 1.0f;
+void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
+                          const glm::vec3 &normal, SampleResult &result) {
+  result.normal = normal;
+  if (settings.passes & 1u << LANCER_PASS_UV)
+    result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
 }
 
 void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
@@ -55,6 +42,15 @@ void record_seen(const Scene &scene, const Camera &camera, const IntegratorSetti
     result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * shaded.opacity());
   for (uint32_t component = 0; component < 3 && passes.components(); ++component)
     result.light[kLightComponents + 3 * component + 2] += weight * shaded.bsdf.shown(Component(component));
+}
+
+void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
+                 const Surface &surface, const SurfaceStage &stage, uint32_t lane, const glm::vec3 &weight,
+                 SampleResult &result) {
+  if (passes.mist())
+    result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * stage.opacity(lane));
+  for (uint32_t component = 0; component < 3 && passes.components(); ++component)
+    result.light[kLightComponents + 3 * component + 2] += weight * get(stage.block.shown[component], lane);
 }
 
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface) {

@@ -4,7 +4,7 @@
 #include "integrator/light_passes.h"
 #include "integrator/lobe_means.h"
 #include "integrator/sample.h"
-#include "integrator/shading.h"
+#include "integrator/stages/surface_stage.h"
 
 namespace lancer {
 
@@ -19,11 +19,11 @@ void record_first_surface(const Scene &scene, const IntegratorSettings &settings
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
                           const glm::vec3 &normal, SampleResult &result);
 
-// Takes what a holdout leaves out of the picture: a hole of `weight`. False where nothing of the surface is left, not even what
-// passes straight through it.
-bool cut_hole(const Scene &scene, const Surface &surface, const glm::vec3 &weight, Shaded &shaded, SampleResult &result);
-
-// Adds to the passes of mist and colours what the picture shows of a surface: `weight` of what light brings from there.
+// Adds to the passes of mist and colours what the picture shows of a surface, that of a lane: `weight` of what light brings
+// from there.
+void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
+                 const Surface &surface, const SurfaceStage &stage, uint32_t lane, const glm::vec3 &weight,
+                 SampleResult &result);
 void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
                  const Surface &surface, const Shaded &shaded, const glm::vec3 &weight, SampleResult &result);
 

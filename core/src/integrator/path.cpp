@@ -97,7 +97,7 @@ void PathIntegrator::shade(std::span<SampleResult> results, std::vector<PathVert
       if (i + 1 < met.size())
         textures_.ahead(hits_[met[i + 1].number]);
       put_in_lane(met[i].number, *met[i].material);
-      if (waiting_count_ == kBlockLanes)
+      if (surfaces_.full())
         shade_block(results, trace);
     }
     shade_block(results, trace);
@@ -142,10 +142,10 @@ void PathIntegrator::sample_occlusion(uint32_t lane) {
   const glm::vec3 n = get(block_.matt_normal, lane);
   const glm::vec3 local = warp_cosine_hemisphere({block_.u[kVertexBsdf][lane], block_.u[kVertexBsdf + 1][lane]});
   const double distance = settings_.occlusion_distance * scene_.normalisation.scale;
-  Ray ray = leave(surface_of(lane), glm::dvec3(Frame(n).to_world(local)),
+  Ray ray = leave(surfaces_.surface(lane), glm::dvec3(Frame(n).to_world(local)),
                   distance > 0.0 ? distance : std::numeric_limits<double>::infinity());
   ray.kinds = LANCER_RAY_SHADOW;
-  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, path.beta * waiting.opacity(), path.passed_through);
+  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, path.beta * surfaces_.opacity(lane), path.passed_through);
 }
 
 // Unless the path has passed all that it may.

@@ -13,8 +13,8 @@
 #include "integrator/shading.h"
 #include "integrator/shading_queues.h"
 #include "integrator/shadow.h"
+#include "integrator/stages/surface_stage.h"
 #include "integrator/texture_prefetch.h"
-#include "integrator/vertex_kernel.h"
 
 #include <algorithm>
 
@@ -24,23 +24,15 @@ class PathIntegrator final : public Integrator {
 public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), lanes_(vertex_kernel()),
-        node_lanes_(node_kernel()), clear_(scene.geometry),
+        shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), surfaces_(scene, camera, settings),
+        block_(surfaces_.block), lanes_(surfaces_.kernel), clear_(scene.geometry),
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
                    std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
-        late_(settings.max_bounces), queues_(scene), values_(shader_.values().size()),
-        lobes_(lanes_.lobes_bytes / sizeof(Lobes) + 1) {
+        late_(settings.max_bounces), queues_(scene), world_values_(scene.world.program.nodes.size()) {
     if (scene.lights.environment().varies())
       sky_ = scene.lights.environment().map();
-    block_.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
-    nodes_.scene = world_nodes_.scene = shader_.node_scene();
+    world_nodes_.scene = shader_.node_scene();
     world_nodes_.surface = false;
-    block_.lobes = reinterpret_cast<std::byte *>(lobes_.data());
-    block_.shares_wanted = block_.wants_shown = passes_.components();
-    block_.wants_normal = settings.passes >> LANCER_PASS_NORMAL & 1;
-    block_.wants_matt_normal = passes_.occlusion();
-    block_.wants_mixture = passes_.features();
-    block_.blended = settings.blended_features;
   }
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
@@ -108,10 +100,6 @@ private:
     LightSet::Choice choice;
     bool far;               // the light has no end
     Mixture<float> mixture; // of its lobes, where passes for denoising are open
-    glm::vec3 emission, transmittance;
-
-    // The share that is there.
-    glm::vec3 opacity() const { return glm::clamp(1.0f - transmittance, 0.0f, 1.0f); }
   };
 
   // As the last scattering asked for light.
@@ -119,16 +107,7 @@ private:
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   void put_in_lane(size_t number, const Material &material);
   void draw_numbers();
-  void find_surfaces();
   void ask_nodes();
-  // Of the values of nodes that were computed last.
-  glm::vec3 value_in_lane(const Parameter &parameter, uint32_t lane) const {
-    if (!parameter.varies())
-      return parameter.value;
-    const auto &value = values_[size_t(parameter.node)].of;
-    return {value[0][lane], value[1][lane], value[2][lane]};
-  }
-  void place_nodes(const Material &material);
   void cut_holes(std::span<SampleResult> results);
   void record_surfaces(std::span<SampleResult> results);
   LightQuery query(uint32_t lane) const;
@@ -136,7 +115,6 @@ private:
   void choose_of_many();
   void ask_lights();
   void ask_by_hand(uint32_t lane);
-  Surface surface_of(uint32_t lane) const;
   void send_shadow_of(uint32_t lane);
   void leave_lane(uint32_t lane, SampleResult &result);
   void shade_block(std::span<SampleResult> results, std::vector<PathVertex> *trace);
@@ -146,6 +124,7 @@ private:
   void pass_clear(size_t number, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void miss(size_t number, std::span<SampleResult> results);
   void ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lanes);
+  glm::vec3 sky_in_lane(uint32_t lane) const; // what it gave
   void add_environment(const Path &path, double pdf, const glm::vec3 &radiance, SampleResult &result);
   void add_missed(std::span<SampleResult> results);
   void ask_sky(uint32_t lanes);
@@ -173,16 +152,15 @@ private:
   TexturePrefetch textures_;
   PixelCone cone_;
   LightPasses passes_;
+  SurfaceStage surfaces_;
+  VertexBlock &block_;
   const VertexKernel &lanes_;
-  const NodeKernel &node_lanes_;
   bool picture_alone_ = true; // no other pass is asked for: records stay as they are
   LayersMet clear_;           // surfaces on the way of which nothing is there
   bool any_clear_;            // they are passed together; not where passes for denoising add up the ways between them
-  VertexBlock block_{};
   WayBlock ways_{};
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane
-  uint32_t waiting_count_ = 0;
   DirectionTable sky_;
   SkyBlock misses_{}, sky_samples_{};
   size_t missed_[kBlockLanes]; // numbers of paths
@@ -195,13 +173,8 @@ private:
   std::vector<Record> records_;     // per slot
   LateLight late_;
   ShadingQueues queues_; // paths by the class of the material that they have met
-  // Scratch of the block: what nodes say, and the lobes.
-  struct alignas(64) Lobes {
-    std::byte of[64];
-  };
-  NodeBlock nodes_, world_nodes_;
-  std::vector<NodeLanes> values_;
-  std::vector<Lobes> lobes_;
+  NodeBlock world_nodes_;
+  std::vector<NodeLanes> world_values_;
   Shaded clear_point_; // of a surface of which nothing is there
 };
 

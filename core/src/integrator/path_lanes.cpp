@@ -9,8 +9,6 @@
 
 namespace lancer {
 
-static_assert(kBlockLanes == kNodeLanes);
-
 void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const Path &path = paths_[number];
   const Hit &hit = hits_[number];
@@ -18,43 +16,15 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const bool ends = path.last || path.scatterings > settings_.max_bounces;
   if (ends && picture_alone_ && !material.emits() && !material.transmits() && !instance.holdout)
     return;
-  const uint32_t lane = waiting_count_++, bit = 1u << lane;
+  const uint32_t lane = surfaces_.add(rays_[number], hit, material);
   // Part by part: a copy of the whole would wait until they have left the processor's stores.
   Waiting &waiting = waiting_[lane];
   waiting.number = number;
   waiting.ends = ends;
   waiting.nothing = false;
   waiting.far = false;
-  waiting.emission = material.emission.value;
-  waiting.transmittance = glm::max(material.transmittance.value, 0.0f);
-  block_.through[lane] = material.transmits() ? mean(waiting.transmittance) : 0.0f;
-  block_.used |= bit;
-  if (ends)
-    block_.ends |= bit;
-  block_.placement[lane] = &instance.to_world.linear[0][0];
-  if (instance.kind == ShapeKind::Mesh) {
-    const Mesh &mesh = scene_.geometry.meshes[instance.mesh];
-    const glm::uvec3 &triangle = mesh.triangles[hit.primitive];
-    for (int corner = 0; corner < 3; ++corner)
-      put(mesh.positions[triangle[corner]], block_.corner[corner], lane);
-    glm::vec3 n[3];
-    if (corner_normals(mesh, instance.shading, hit.primitive, n)) {
-      for (int corner = 0; corner < 3; ++corner)
-        put(n[corner], block_.normals[corner], lane);
-      block_.smooth |= bit;
-    }
-    block_.on_mesh |= bit;
-    block_.bary[0][lane] = hit.u;
-    block_.bary[1][lane] = hit.v;
-  } else if (instance.kind == ShapeKind::Sphere || instance.kind == ShapeKind::Plane) {
-    (instance.kind == ShapeKind::Sphere ? block_.on_sphere : block_.on_plane) |= bit;
-    put(rays_[number].o, block_.o, lane);
-    block_.t[lane] = hit.t;
-  }
-  put(rays_[number].d, block_.d, lane);
+  block_.ends |= uint32_t{ends} << lane;
   put(path.beta, block_.beta, lane);
-  block_.terminator[lane] = instance.kind == ShapeKind::Mesh ? instance.terminator : 0.0f;
-  block_.material[lane] = &material;
   block_.pixel[lane] = path.sampler.pixel();
   // Lanes of one sample and one bounce share the digits that their numbers are made of.
   const uint32_t dimension = kDimensionVertex + path.scatterings * kVertexStride;
@@ -75,7 +45,7 @@ void PathIntegrator::draw_numbers() {
       block_.reversed_point[i] = sobol::reversed_point(sampler.sample(), block_.dimension + i);
     return;
   }
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     const Path &path = paths_[waiting_[lane].number];
     const VertexNumbers u = path.sampler.get8(kDimensionVertex + path.scatterings * kVertexStride);
     for (uint32_t i = 0; i < 8; ++i)
@@ -83,88 +53,16 @@ void PathIntegrator::draw_numbers() {
   }
 }
 
-// As find_surfaces() has found it.
-Surface PathIntegrator::surface_of(uint32_t lane) const {
-  const Hit &hit = hits_[waiting_[lane].number];
-  if (!(block_.on_mesh >> lane & 1))
-    return surface_at(scene_.geometry, scene_.slots, rays_[waiting_[lane].number], hit);
-  Surface surface;
-  surface.p = get(block_.p, lane);
-  surface.offset = block_.offset[lane];
-  surface.ng = get(block_.ng, lane);
-  surface.ns = get(block_.ns, lane);
-  surface.bary = {hit.u, hit.v};
-  surface.instance = hit.instance;
-  surface.primitive = hit.primitive;
-  surface.material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
-  return surface;
-}
-
-// Where each lane's hit is, and what the surface is like there.
-void PathIntegrator::find_surfaces() {
-  lanes_.surfaces(block_);
-  const uint32_t known = (block_.on_mesh | block_.on_sphere | block_.on_plane) & ~block_.odd;
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
-    if (!(known >> lane & 1)) {
-      const size_t number = waiting_[lane].number;
-      const Surface surface = surface_at(scene_.geometry, scene_.slots, rays_[number], hits_[number]);
-      put(surface.p, block_.p, lane);
-      put(surface.ng, block_.ng, lane);
-      put(surface.ns, block_.ns, lane);
-      block_.offset[lane] = surface.offset;
-    }
-}
-
-// What nodes say in every lane.
 void PathIntegrator::ask_nodes() {
-  const Material &material = *block_.material[0];
-  if (material.fixed())
+  if (!surfaces_.has_nodes())
     return;
-  if (!material.surface_nodes.empty()) {
-    place_nodes(material);
-    node_lanes_.run(material.program, material.surface_nodes, nodes_, values_.data());
+  View views[kBlockLanes];
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
+    const Path &path = paths_[waiting_[lane].number];
+    const double t = surfaces_.hit(lane).t, unit = block_.length[lane];
+    views[lane] = surfaces_.view(lane, path.length + t * unit, light_path(path, (t - surfaces_.ray(lane).tmin) * unit));
   }
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    const Material &of = *block_.material[lane];
-    Waiting &waiting = waiting_[lane];
-    waiting.emission = value_in_lane(of.emission, lane);
-    waiting.transmittance = of.transmits() ? glm::max(value_in_lane(of.transmittance, lane), 0.0f) : glm::vec3(0.0f);
-    block_.through[lane] = mean(waiting.transmittance);
-  }
-}
-
-// Where nodes are asked: at the surfaces of all lanes, with both normals on the viewer's side.
-void PathIntegrator::place_nodes(const Material &material) {
-  nodes_.used = (1u << waiting_count_) - 1u;
-  float side[kBlockLanes];
-  nodes_.backfacing = 0;
-  for (int lane = 0; lane < kBlockLanes; ++lane) {
-    const float facing = block_.ng[0][lane] * block_.wo[0][lane] + block_.ng[1][lane] * block_.wo[1][lane] +
-                         block_.ng[2][lane] * block_.wo[2][lane];
-    side[lane] = facing < 0.0f ? -1.0f : 1.0f;
-    nodes_.backfacing |= uint32_t(facing < 0.0f) << lane;
-  }
-  for (int axis = 0; axis < 3; ++axis)
-    for (int lane = 0; lane < kBlockLanes; ++lane) {
-      nodes_.p[axis][lane] = block_.p[axis][lane];
-      nodes_.wo[axis][lane] = block_.wo[axis][lane];
-      nodes_.ns[axis][lane] = side[lane] * block_.ns[axis][lane];
-      nodes_.ng[axis][lane] = side[lane] * block_.ng[axis][lane];
-    }
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    const size_t number = waiting_[lane].number;
-    const Path &path = paths_[number];
-    const Hit &hit = hits_[number];
-    const double unit = block_.length[lane], way = path.length + hit.t * unit;
-    const bool on_mesh = block_.on_mesh >> lane & 1;
-    nodes_.instance[lane] = hit.instance;
-    nodes_.primitive[lane] = hit.primitive;
-    nodes_.bary[0][lane] = on_mesh ? hit.u : 0.0;
-    nodes_.bary[1][lane] = on_mesh ? hit.v : 0.0;
-    nodes_.footprint[lane] = float(cone_.base + way * cone_.spread);
-    if (material.program.asks_light_path)
-      put(light_path(path, (hit.t - rays_[number].tmin) * unit), nodes_, lane);
-  }
+  surfaces_.ask_nodes(views);
 }
 
 // Holes end what the camera sees.
@@ -172,17 +70,16 @@ void PathIntegrator::cut_holes(std::span<SampleResult> results) {
   block_.holes = 0;
   if (!(scene_.features & kFeatureHoldout))
     return;
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     Waiting &waiting = waiting_[lane];
     const Path &path = paths_[waiting.number];
     if (path.in_view) {
-      const Parameter &holdout = block_.material[lane]->holdout;
-      const float share = std::clamp(value_in_lane(holdout, lane).x, 0.0f, 1.0f);
-      if (scene_.geometry.instances[hits_[waiting.number].instance].holdout) {
+      const float share = surfaces_.holdout(lane);
+      if (surfaces_.instance(lane).holdout) {
         // All that the object would show becomes the hole.
-        results[path.slot].alpha -= mean(path.beta * waiting.opacity());
-        waiting.emission = glm::vec3(0.0f);
-        waiting.nothing = waiting.transmittance == glm::vec3(0.0f);
+        results[path.slot].alpha -= mean(path.beta * surfaces_.opacity(lane));
+        surfaces_.emission[lane] = glm::vec3(0.0f);
+        waiting.nothing = surfaces_.transmittance[lane] == glm::vec3(0.0f);
         block_.holes |= 1u << lane;
       } else if (share > 0.0f) {
         results[path.slot].alpha -= share * mean(path.beta);
@@ -195,9 +92,8 @@ void PathIntegrator::cut_holes(std::span<SampleResult> results) {
 // What passes say of the surfaces that the camera sees.
 void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
   uint32_t seen = 0, featured = 0;
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     const Path &path = paths_[waiting_[lane].number];
-    put(waiting_[lane].transmittance, block_.transmittance, lane);
     if (waiting_[lane].nothing)
       continue;
     seen |= uint32_t(path.in_view) << lane;
@@ -205,8 +101,7 @@ void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
   }
   if (!(seen | featured))
     return;
-  if (block_.wants_normal | block_.wants_matt_normal | block_.wants_shown | block_.wants_mixture)
-    lanes_.describe(block_);
+  surfaces_.describe();
   for (uint32_t rest = seen | featured; rest != 0; rest &= rest - 1) {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
     const Waiting &waiting = waiting_[lane];
@@ -214,13 +109,13 @@ void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
     const Hit &hit = hits_[waiting.number];
     SampleResult &result = results[path.slot];
     if (seen >> lane & 1) {
-      record(path, surface_of(lane), *block_.material[lane], get(block_.normal, lane), waiting.opacity(), hit.t, result);
+      record(path, surfaces_.surface(lane), *block_.material[lane], get(block_.normal, lane), surfaces_.opacity(lane), hit.t,
+             result);
       for (uint32_t component = 0; component < 3 && passes_.components(); ++component)
         result.light[kLightComponents + 3 * component + 2] += path.beta * get(block_.shown[component], lane);
     }
     if (featured >> lane & 1)
-      waiting_[lane].mixture = {get(block_.mixed_normal, lane), get(block_.mixed_diffuse, lane),
-                                get(block_.mixed_specular, lane), block_.mixed_all[lane], block_.mixed_matt[lane]};
+      waiting_[lane].mixture = surfaces_.mixture(lane);
   }
 }
 
@@ -241,7 +136,7 @@ void PathIntegrator::choose_of_many() {
     return;
   LightWalk walks[kBlockLanes];
   uint32_t lanes[kBlockLanes], count = 0;
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     if (block_.chosen[lane] == scene_.lights.size() && block_.chosen_probability[lane] > 0.0 && !waiting_[lane].ends) {
       walks[count] = LightTree::walk(query(lane), block_.chosen_rest[lane]);
       lanes[count++] = lane;
@@ -269,7 +164,7 @@ void PathIntegrator::ask_lights() {
     block_.lamp[lane] = &nothing;
     block_.light_pdf[lane] = 0.0;
     block_.light_delta[lane] = block_.light_hidden[lane] = 0;
-    if (lane >= waiting_count_ || waiting_[lane].ends || few.empty() || !(block_.scatters >> lane & 1))
+    if (lane >= surfaces_.count() || waiting_[lane].ends || few.empty() || !(block_.scatters >> lane & 1))
       continue;
     const LightSet::Choice choice = choose_light(lane);
     if (!(choice.probability > 0.0))
@@ -308,33 +203,29 @@ void PathIntegrator::ask_by_hand(uint32_t lane) {
 }
 
 void PathIntegrator::shade_block(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
-  if (waiting_count_ == 0)
+  if (surfaces_.count() == 0)
     return;
-  for (uint32_t lane = waiting_count_; lane < kBlockLanes; ++lane) {
-    block_.material[lane] = block_.material[0];
-    block_.placement[lane] = block_.placement[0];
-  }
   // Ask what is there.
   draw_numbers();
-  find_surfaces();
+  surfaces_.find();
   ask_nodes();
   cut_holes(results);
-  lanes_.lobes(block_);
+  surfaces_.find_lobes();
   if (trace)
-    for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
       const Path &path = paths_[waiting_[lane].number];
-      keep_vertex(path, surface_of(lane), hits_[waiting_[lane].number].t, results[path.slot], *trace);
+      keep_vertex(path, surfaces_.surface(lane), hits_[waiting_[lane].number].t, results[path.slot], *trace);
     }
   if (!picture_alone_)
     record_surfaces(results);
   // Ask for light, and where each path goes on.
   ask_lights();
   lanes_.scatter(block_);
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane)
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     if (!waiting_[lane].nothing)
       leave_lane(lane, results[paths_[waiting_[lane].number].slot]);
-  waiting_count_ = 0;
-  block_.used = block_.on_mesh = block_.on_sphere = block_.on_plane = block_.smooth = block_.ends = 0;
+  block_.ends = 0;
+  surfaces_.clear();
 }
 
 void PathIntegrator::send_shadow_of(uint32_t lane) {
@@ -358,7 +249,8 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
     sample.wi = get(block_.light_wi, lane);
     sample.target = get(block_.light_target, lane);
     sample.distance = waiting.far ? infinity : 1.0;
-    ray = shadow_ray(scene_.geometry, surface_of(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
+    ray =
+        shadow_ray(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
   } else {
     const glm::dvec3 o = get(block_.shadow_origin, lane);
     const glm::dvec3 d = waiting.far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o;
@@ -377,11 +269,11 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
   const Waiting &waiting = waiting_[lane];
   Path &path = paths_[waiting.number];
   const Hit &hit = hits_[waiting.number];
-  const glm::vec3 emission = waiting.emission + get(block_.emission, lane);
+  const glm::vec3 emission = surfaces_.emission[lane] + get(block_.emission, lane);
   if (emission != glm::vec3(0.0f))
-    add_emission(path, surface_of(lane), emission, result);
+    add_emission(path, surfaces_.surface(lane), emission, result);
   if (DenoisingFeatures &features = records_[path.slot].features; passes_.features() && features.open)
-    add_denoising_features(scene_, camera_, waiting.mixture, get(block_.wo, lane), waiting.transmittance,
+    add_denoising_features(scene_, camera_, waiting.mixture, get(block_.wo, lane), surfaces_.transmittance[lane],
                            hit.t * block_.length[lane], features, result);
   if (path.last)
     return;
@@ -390,7 +282,7 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
   if (!waiting.ends && path.scatterings == 0 && passes_.occlusion())
     sample_occlusion(lane);
   if (const float pass = block_.pass[lane]; path.chooses_to_pass(pass))
-    return pass_straight_on(path, surface_of(lane), rays_[waiting.number], hit.t, waiting.transmittance / pass);
+    return pass_straight_on(path, surfaces_.surface(lane), rays_[waiting.number], hit.t, surfaces_.transmittance[lane] / pass);
   if (waiting.ends || !(block_.sampled >> lane & 1))
     return;
   const uint32_t scatterings = path.scatterings + 1;

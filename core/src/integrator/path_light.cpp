@@ -1,7 +1,7 @@
 // The light that paths gather: what they run into, and what they ask for.
 #include "integrator/lane_access.h"
-#include "integrator/mis_weight.h"
 #include "integrator/path.h"
+#include "lights/sample_light.h"
 #include "sampling/color.h"
 
 #include <algorithm>

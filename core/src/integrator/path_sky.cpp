@@ -1,7 +1,7 @@
 // The environment, where paths end or ask for its light.
 #include "integrator/lane_access.h"
-#include "integrator/mis_weight.h"
 #include "integrator/path.h"
+#include "lights/sample_light.h"
 #include "sampling/color.h"
 
 #include <bit>
@@ -43,7 +43,12 @@ void PathIntegrator::ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lan
       world_nodes_.p[axis][lane] = -double(back);
       world_nodes_.wo[axis][lane] = world_nodes_.ns[axis][lane] = world_nodes_.ng[axis][lane] = back;
     }
-  node_lanes_.run(scene_.world.program, scene_.world.schedule, world_nodes_, values_.data());
+  node_kernel().run(scene_.world.program, scene_.world.schedule, world_nodes_, world_values_.data());
+}
+
+glm::vec3 PathIntegrator::sky_in_lane(uint32_t lane) const {
+  const auto &value = world_values_[size_t(scene_.world.radiance.node)].of;
+  return {value[0][lane], value[1][lane], value[2][lane]};
 }
 
 // The environment is sampled as a light, too. pdf: of its sample.
@@ -71,7 +76,7 @@ void PathIntegrator::add_missed(std::span<SampleResult> results) {
   ask_world(misses_.wi, (1u << missed_count_) - 1u);
   for (uint32_t lane = 0; lane < missed_count_; ++lane) {
     const Path &path = paths_[missed_[lane]];
-    const glm::vec3 radiance = value_in_lane(scene_.world.radiance, lane);
+    const glm::vec3 radiance = sky_in_lane(lane);
     add_environment(path, misses_.pdf[lane], radiance, results[path.slot]);
   }
   missed_count_ = 0;
@@ -99,7 +104,7 @@ void PathIntegrator::ask_sky(uint32_t lanes) {
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
     waiting_[lane].far = true;
-    const glm::vec3 radiance = value_in_lane(scene_.world.radiance, lane);
+    const glm::vec3 radiance = sky_in_lane(lane);
     put(get(sky_samples_.wi, lane), block_.light_wi, lane);
     put(radiance, block_.light_radiance, lane);
     block_.light_pdf[lane] *= radiance == glm::vec3(0.0f) ? 0.0 : sky_samples_.pdf[lane];

@@ -1,8 +1,8 @@
 #include "integrator/shading.h"
 
-#include "bsdf/principled.h"
 #include "integrator/terminator.h"
 #include "scene/attribute.h"
+#include "scene/material_lobes.h"
 
 #include <algorithm>
 
@@ -30,22 +30,15 @@ void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
   result.emission = result.transmittance = glm::vec3(0.0f);
   result.holdout = 0.0f;
   result.material = surface.material == kNone ? nullptr : &scene_.materials[surface.material];
-  if (!result.material) {
-    static const Material nothing;
-    begin(nothing, surface, view.wo, result.bsdf);
-    result.bsdf.complete();
-    return;
-  }
-  const Material &material = *result.material;
+  static const Material nothing;
+  const Material *const material = result.material ? result.material : &nothing;
   // Compute what the nodes say here, then what becomes of the lobes seen from wo.
-  run_nodes(material, material.surface_nodes, surface, view);
-  begin(material, surface, view.wo, result.bsdf);
-  add_lobes(material, result.bsdf);
-  result.bsdf.complete();
-  result.emission = value_of(material.emission, values_) + result.bsdf.emission;
-  if (material.transmits())
-    result.transmittance = glm::max(value_of(material.transmittance, values_), 0.0f);
-  result.holdout = std::clamp(value_of(material.holdout, values_).x, 0.0f, 1.0f);
+  run_nodes(*material, material->surface_nodes, surface, view);
+  find_lobes<float>(&material, PlaceValues{values_}, false, view.wo, surface.ns, surface.ng, result.bsdf);
+  result.emission = value_of(material->emission, values_) + result.bsdf.emission;
+  if (material->transmits())
+    result.transmittance = glm::max(value_of(material->transmittance, values_), 0.0f);
+  result.holdout = std::clamp(value_of(material->holdout, values_).x, 0.0f, 1.0f);
 }
 
 glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
@@ -125,36 +118,6 @@ void Shader::run_nodes(const Material &material, const Schedule &schedule, const
   context_.footprint = view.footprint;
   context_.path = view.path;
   run(material.program, schedule, context_, values_);
-}
-
-void Shader::begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf<float> &bsdf) const {
-  // Turn both normals to the viewer's side.
-  const bool inside = glm::dot(wo, surface.ng) < 0.0f;
-  const glm::vec3 ng = inside ? -surface.ng : surface.ng;
-  glm::vec3 ns = inside ? -surface.ns : surface.ns;
-  // A bump of the whole surface stands in for its normal; nodes give it on the viewer's side.
-  if (material.normal.varies()) {
-    const glm::vec3 bumped = value_of(material.normal, values_);
-    const float length2 = glm::dot(bumped, bumped);
-    if (length2 > 0.0f && std::isfinite(length2))
-      ns = bumped / std::sqrt(length2);
-  }
-  bsdf.begin(wo, ns, ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
-}
-
-void Shader::add_lobes(const Material &material, Bsdf<float> &bsdf) {
-  for (size_t i = 0; i < material.lobes.size(); ++i) {
-    const LobeDescription &lobe = material.lobes[i];
-    const ReadyLobe &ready = material.ready[i];
-    const LobeInputs<float> inputs = material.fixed() ? ready.inputs : evaluate(lobe, values_);
-    if (inputs.weight == glm::vec3(0.0f))
-      continue;
-    const LaneLobes<float> kept{{&ready}, bsdf.inside};
-    if (!lobe.principled)
-      add_kept(bsdf, inputs, kept);
-    else
-      add_principled(bsdf, inputs, material.fixed() ? ready.principled : evaluate(*lobe.principled, values_), kept);
-  }
 }
 
 Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,

@@ -54,10 +54,8 @@ public:
   glm::vec4 node_value(const Surface &surface, uint32_t node, const glm::vec3 &wo);
 
 private:
-  void add_lobes(const Material &material, Bsdf<float> &bsdf);
   void run_painted(const Material &material, const Schedule &schedule, const Hit &hit);
   void run_nodes(const Material &material, const Schedule &schedule, const Surface &surface, const View &view);
-  void begin(const Material &material, const Surface &surface, const glm::vec3 &wo, Bsdf<float> &bsdf) const;
 
   const Scene &scene_;
   NodeContext context_;

@@ -50,20 +50,16 @@ double height(const SmoothTriangle &t, const glm::dvec3 &b, const glm::dvec3 &p,
 glm::dvec3 terminator_offset(const Geometry &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
                              const glm::vec3 &wi) {
   const Instance &instance = geometry.instances[surface.instance];
-  if (!(instance.terminator > 0.0f) || instance.kind != ShapeKind::Mesh)
+  if (instance.kind != ShapeKind::Mesh)
     return glm::dvec3(0.0);
-  // Fade in as the light gets close to grazing.
-  const float cos_n = std::abs(glm::dot(n, wi));
-  const glm::vec3 side = glm::dot(n, wi) < 0.0f ? -ng : ng;
-  const float cos_g = glm::dot(side, wi), limit = instance.terminator;
-  const float amount = std::clamp(cos_n < limit ? 2.0f - (cos_g + cos_n) / limit : 1.0f - cos_g / limit, 0.0f, 1.0f);
+  const float amount = terminator_amount(instance.terminator, n, ng, wi);
   SmoothTriangle triangle;
   if (!(amount > 0.0f) || !read_triangle(geometry.meshes[instance.mesh], instance, surface.primitive, triangle))
     return glm::dvec3(0.0);
   const glm::dvec3 b(1.0 - surface.bary.x - surface.bary.y, surface.bary.x, surface.bary.y);
   const glm::dvec3 p = b.x * triangle.v[0] + b.y * triangle.v[1] + b.z * triangle.v[2];
   const glm::dvec3 lift = b.x * triangle.n[0] + b.y * triangle.n[1] + b.z * triangle.n[2];
-  const bool outwards = glm::dot(instance.to_world.vector(lift), glm::dvec3(side)) > 0.0;
+  const bool outwards = glm::dot(instance.to_world.vector(lift), glm::dvec3(glm::dot(n, wi) < 0.0f ? -ng : ng)) > 0.0;
   return double(amount) * instance.to_world.vector(lift * height(triangle, b, p, outwards));
 }
 

@@ -5,8 +5,17 @@
 
 #include "scene/geometry.h"
 #include "scene/surface.h"
+#include "simd/vectors.h"
 
 namespace lancer {
+
+// How much of its way to the curved surface a ray towards wi starts: it fades in as the light gets close to grazing. limit:
+// Instance::terminator.
+template <class F> LANCER_LANE F terminator_amount(F limit, const Vec3<F> &n, const Vec3<F> &ng, const Vec3<F> &wi) {
+  const F facing = dot(n, wi), cos_n = abs(facing), cos_g = dot(select(facing < 0.0f, -ng, ng), wi);
+  const F amount = clamp01(select(cos_n < limit, 2.0f - (cos_g + cos_n) / limit, 1.0f - cos_g / limit));
+  return select(limit > 0.0f, amount, F(0.0f));
+}
 
 // How far to lift the start of a ray towards the unit direction wi, in the normalised world; n: the shading normal, ng: the
 // geometric one, both on the viewer's side. 0 where the mesh is not smooth or wi is far enough from grazing.

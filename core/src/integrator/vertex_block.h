@@ -19,8 +19,7 @@ struct alignas(64) VertexBlock {
   using Doubles = double[kBlockLanes];
   using Words = uint32_t[kBlockLanes];
 
-  // Given: triangles, spheres and planes, and how they were met. o, d: of the ray, d of any length; o and t of spheres and
-  // planes alone.
+  // Given: what was met, and how. o, d: of the ray, d of any length; o and t of exact surfaces alone.
   const double *placement[kBlockLanes]; // Instance::to_world and what follows
   Floats corner[3][3], normals[3][3];   // of a triangle's corners, object space; by corner, axis
   Doubles bary[2], d[3], o[3], t;
@@ -33,7 +32,7 @@ struct alignas(64) VertexBlock {
   Floats through;                                    // mean of what passes straight on
   Floats beta[3];
 
-  // surfaces(): both normals outwards, wo unit. Lanes of other shapes are filled in by hand.
+  // surfaces(): both normals outwards, wo unit. In lanes on no shape the place is given.
   Doubles p[3], offset, length; // of d
   Floats ng[3], ns[3], wo[3];
   Floats u[8];
@@ -75,24 +74,30 @@ struct alignas(64) VertexBlock {
   Floats shown[3][3];                  // colours of the passes, by component
   Floats mixed_matt, mixed_all, mixed_diffuse[3], mixed_specular[3], mixed_normal[3]; // Mixture of denoising_features.h
 
+  // ClassicKernel::branch(): shares of light that are mirrored, towards wi, and that go through, towards through_wi.
+  // illuminate(): irradiance at normal incidence; contribution is without what it takes to get there.
+  Floats reflected[3], refracted[3], through_wi[3], irradiance[3];
+
   // Bits of lanes.
   uint32_t used = 0;
-  uint32_t on_mesh = 0, smooth = 0;     // given: triangles; those with normals of their own
-  uint32_t on_sphere = 0, on_plane = 0; // given
-  uint32_t asked = 0;                   // given: lamp is to be sampled
-  uint32_t inside = 0;                  // surfaces(): seen from within
-  uint32_t transmits = 0;               // lobes(): light may come through
-  uint32_t scatters = 0;                // lobes(): into more than single directions
-  uint32_t shares_wanted = 0;           // given, 1: share and light_share
-  uint32_t blended = 0;                 // given, 1: Mixture by the rule of Blender 5.2
-  uint32_t holes = 0;                   // given: nothing of the lobes is seen
-  uint32_t ends = 0;                    // given: nothing is scattered any more
-  uint32_t odd = 0;                     // surfaces(): what only the general code can do
-  uint32_t lit = 0;                     // contribution is not black
-  uint32_t lifted = 0;                  // the shadow ray may have to start on the curved surface
-  uint32_t sampled = 0;                 // there is a next direction
-  uint32_t diffuse = 0;                 // drawn by a diffuse lobe
-  uint32_t transmitted = 0;             // it goes through the surface
+  uint32_t on_mesh = 0, smooth = 0; // given: triangles; those with normals of their own
+  uint32_t exact = 0;               // given: spheres and those that follow
+  uint32_t on_plane = 0, on_cylinder = 0, on_cone = 0;
+  uint32_t asked = 0;                 // given: lamp is to be sampled
+  uint32_t inside = 0;                // surfaces(): seen from within
+  uint32_t transmits = 0;             // lobes(): light may come through
+  uint32_t scatters = 0;              // lobes(): into more than single directions
+  uint32_t shares_wanted = 0;         // given, 1: share and light_share
+  uint32_t blended = 0;               // given, 1: Mixture by the rule of Blender 5.2
+  uint32_t holes = 0;                 // given: nothing of the lobes is seen
+  uint32_t ends = 0;                  // given: nothing is scattered any more
+  uint32_t lit = 0;                   // contribution is not black
+  uint32_t lifted = 0;                // the shadow ray may have to start on the curved surface
+  uint32_t sampled = 0;               // there is a next direction
+  uint32_t diffuse = 0;               // drawn by a diffuse lobe
+  uint32_t transmitted = 0;           // it goes through the surface
+  uint32_t mirrors = 0, refracts = 0; // branch(): wi, through_wi is on the side where it belongs
+  uint32_t there = 0;                 // illuminate(): there is a sample
 };
 
 } // namespace lancer

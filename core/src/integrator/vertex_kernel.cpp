@@ -2,21 +2,22 @@
 #include "integrator/vertex_kernel.h"
 
 #include "accel/kernel_name.h"
-#include "bsdf/principled.h"
+#include "integrator/block_lobes.h"
 #include "integrator/lobe_means.h"
+#include "integrator/terminator.h"
 #include "lancer.h"
 #include "lights/light_choice.h"
 #include "lights/sample_light.h"
 #include "sampling/scramble.h"
 #include "sampling/warp.h"
-#include "scene/material.h"
-#include "scene/wide_surface.h"
+#include "scene/hit_surface.h"
+#include "scene/material_lobes.h"
+#include "simd/kernel_lanes.h"
 
 namespace lancer {
 namespace {
 
 template <class Enum> LANCER_LANE U number_of(Enum value) { return U(static_cast<uint32_t>(value)); }
-LANCER_LANE uint32_t placed_bits(M m, int first) { return bits(m) << first; }
 
 // The eight numbers of the vertex.
 LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
@@ -34,16 +35,14 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
   }
 }
 
-LANCER_LANE void store_surface(VertexBlock &block, int first, const WideSurface &surface, M lanes) {
+LANCER_LANE void store_surface(VertexBlock &block, int first, const SurfaceLanes<F> &surface, M lanes) {
   store3(block.p, first, lanes, surface.p);
   store(block.offset + first, lanes, surface.offset);
   store3(block.ng, first, lanes, surface.ng);
   store3(block.ns, first, lanes, surface.ns);
-  block.odd |= placed_bits(surface.odd & lanes, first);
 }
 
 [[gnu::flatten]] void surfaces(VertexBlock &block) {
-  block.odd = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
@@ -55,24 +54,21 @@ LANCER_LANE void store_surface(VertexBlock &block, int first, const WideSurface 
     const D scale = D(1.0) / length;
     store(block.length + first, length);
     store3(block.wo, first, narrow(D3{-(d.x * scale), -(d.y * scale), -(d.z * scale)}));
-    const M on_mesh = some(block.on_mesh, first), on_plane = some(block.on_plane, first);
-    const M round = some(block.on_sphere, first) | on_plane;
-    const double *const *placements = block.placement + first;
-    const bool same = all_same(placements);
-    WideSurface surface;
+    const M on_mesh = some(block.on_mesh, first), exact = some(block.exact, first);
+    const Placements<F> placed(block.placement + first);
     if (any(on_mesh)) {
       V3 v[3], n[3];
       for (int corner = 0; corner < 3; ++corner) {
         v[corner] = load3(block.corner[corner], first);
         n[corner] = load3(block.normals[corner], first);
       }
-      surface = mesh_surface(placements, same, v, n, some(block.smooth, first), load(block.bary[0] + first),
-                             load(block.bary[1] + first));
+      const SurfaceLanes<F> surface =
+          triangle_surface(placed, v, n, some(block.smooth, first), load(block.bary[0] + first), load(block.bary[1] + first));
       store_surface(block, first, surface, on_mesh);
     }
-    if (any(round)) {
-      surface = round_surface(placements, same, load3(block.o, first), d, load(block.t + first), on_plane);
-      store_surface(block, first, surface, round);
+    if (any(exact)) {
+      const QuadricKinds<F> kinds{some(block.on_plane, first), some(block.on_cylinder, first), some(block.on_cone, first)};
+      store_surface(block, first, quadric_surface(placed, kinds, load3(block.o, first), d, load(block.t + first)), exact);
     }
   }
 }
@@ -112,29 +108,7 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
   store(block.light_pdf + first, select(asked, sample.pdf * probability, sample.pdf));
 }
 
-// The power heuristic in ratio form.
-LANCER_LANE F mis_weight(D pdf, D other) {
-  const D ratio = other / pdf;
-  return narrow(D(1.0) / (D(1.0) + ratio * ratio));
-}
-
 LANCER_LANE M has_bit(const uint32_t *words, uint32_t bit) { return !equal(load(words) & U(bit), U(0u)); }
-
-// Where a ray towards wi leaves the surface: leave().
-LANCER_LANE D3 origin(const D3 &p, D offset, const D3 &ng, const D3 &wi) {
-  const D side = select(dot(ng, wi) < D(0.0), D(-1.0), D(1.0));
-  return p + side * offset * ng;
-}
-
-// Whether the shadow ray may start on the curved surface: amount of terminator_offset().
-LANCER_LANE M lifted(F limit, const V3 &ns, const V3 &ng, const V3 &wi) {
-  const F facing = dot(ns, wi), cos_n = abs(facing), cos_g = select(facing < F(0.0f), dot(-ng, wi), dot(ng, wi));
-  const F amount = select(cos_n < limit, F(2.0f) - (cos_g + cos_n) / limit, F(1.0f) - cos_g / limit);
-  return (limit > F(0.0f)) & (amount > F(0.0f));
-}
-
-// The lobes of the lanes from first on: kept from lobes() to scatter().
-Bsdf<F> &lobes_of(VertexBlock &block, int first) { return reinterpret_cast<Bsdf<F> *>(block.lobes)[first / kLanes]; }
 
 // What the nodes of the material say in every lane.
 struct NodeValues {
@@ -147,59 +121,19 @@ struct NodeValues {
   }
 };
 
-// Adds the lobes of one described; number: of the lobe among the material's.
-void add_described(const VertexBlock &block, int first, size_t number, Bsdf<F> &bsdf) {
-  const Material *const *materials = block.material + first;
-  const LobeDescription &described = materials[0]->lobes[number];
-  LaneLobes<F> ready;
-  ready.inside = bits(bsdf.inside);
-  ready.same = all_same(materials);
-  ready.of[0] = &materials[0]->ready[number];
-  for (int i = 1; i < kLanes && !ready.same; ++i)
-    ready.of[i] = &materials[i]->ready[number];
-  const bool fixed = materials[0]->fixed();
-  const ParameterReader<F, NodeValues> read{{block, first}};
-  const M hole = some(block.holes, first);
-  const auto without_holes = [&](LobeInputs<F> inputs) __attribute__((always_inline)) {
-    if (block.holes)
-      inputs.weight = select(hole, V3(F(0.0f)), inputs.weight);
-    return inputs;
-  };
-  if (!described.principled) {
-    const LobeInputs<F> inputs = without_holes(fixed ? ready.inputs() : evaluate(described, read));
-    if (any(!black(inputs.weight)))
-      add_kept(bsdf, inputs, ready);
-    return;
-  }
-  const LobeInputs<F> inputs = without_holes(fixed ? ready.principled_carrier() : evaluate(described, read));
-  if (any(!black(inputs.weight)))
-    add_principled(bsdf, inputs, fixed ? ready.principled() : evaluate(*described.principled, read), ready);
-}
-
 void lobes(VertexBlock &block) {
   block.inside = block.transmits = block.scatters = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    const Material &material = *block.material[first];
-    // Look from the viewer's side.
-    const V3 wo = load3(block.wo, first), out_ns = load3(block.ns, first), out_ng = load3(block.ng, first);
-    const M inside = dot(wo, out_ng) < F(0.0f);
-    V3 ns = select(inside, -out_ns, out_ns);
-    const V3 ng = select(inside, -out_ng, out_ng);
-    // A bump of the whole surface stands in for its normal; nodes give it on the viewer's side.
-    if (material.normal.varies())
-      ns = unit_or(NodeValues{block, first}(material.normal), ns);
     Bsdf<F> &bsdf = *new (&lobes_of(block, first)) Bsdf<F>;
-    bsdf.begin(wo, ns, ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));
     bsdf.shares = block.shares_wanted != 0;
-    for (size_t i = 0; i < material.lobes.size(); ++i)
-      add_described(block, first, i, bsdf);
-    bsdf.complete();
-    store3(block.viewer_ns, first, ns);
-    store3(block.viewer_ng, first, ng);
+    find_lobes<F>(block.material + first, NodeValues{block, first}, some(block.holes, first), load3(block.wo, first),
+                  load3(block.ns, first), load3(block.ng, first), bsdf);
+    store3(block.viewer_ns, first, bsdf.ns);
+    store3(block.viewer_ng, first, bsdf.ng);
     store3(block.emission, first, bsdf.emission);
-    block.inside |= placed_bits(inside, first);
+    block.inside |= placed_bits(bsdf.inside, first);
     block.transmits |= placed_bits(bsdf.transmits, first);
     block.scatters |= placed_bits(bsdf.smooth, first);
   }
@@ -256,7 +190,7 @@ LANCER_LANE void light(VertexBlock &block, int first, const Bsdf<F> &bsdf, D sca
   BsdfValue<F> value = bsdf.eval_lit(wi);
   constexpr uint32_t kinds[3] = {LANCER_RAY_DIFFUSE, LANCER_RAY_GLOSSY, LANCER_RAY_TRANSMISSION};
   for (int component = 0; component < 3; ++component)
-    value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), V3(zero), value.part[component]);
+    value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), Vec3<F>(zero), value.part[component]);
   const V3 f = value.f();
   // The BSDF finds the same light, unless it is a single direction.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
@@ -266,7 +200,7 @@ LANCER_LANE void light(VertexBlock &block, int first, const Bsdf<F> &bsdf, D sca
   for (int component = 0; component < 2 && block.shares_wanted; ++component)
     store3(block.light_share[component], first, divided(value.part[component], f));
   block.lit |= placed_bits(lit & !black(f), first);
-  block.lifted |= placed_bits(lifted(load(block.terminator + first), bsdf.ns, bsdf.ng, wi), first);
+  block.lifted |= placed_bits(terminator_amount(load(block.terminator + first), bsdf.ns, bsdf.ng, wi) > zero, first);
 }
 
 void scatter(VertexBlock &block) {
@@ -280,10 +214,10 @@ void scatter(VertexBlock &block) {
     ask_lamps(block, first, p);
     const D scatters = D(1.0) - widen(share_passing(block, first, bsdf));
     light(block, first, bsdf, scatters);
-    store3(block.shadow_origin, first, origin(p, offset, outwards, load3(block.light_wi, first)));
+    store3(block.shadow_origin, first, origin_towards(p, offset, outwards, load3(block.light_wi, first)));
     // Go on in a direction of the BSDF.
     const BsdfSample<F> sample = bsdf.sample(load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
-    store3(block.next_origin, first, origin(p, offset, outwards, widen(sample.wi)));
+    store3(block.next_origin, first, origin_towards(p, offset, outwards, D3(widen(sample.wi))));
     store3(block.wi, first, sample.wi);
     store3(block.next_beta, first, load3(block.beta, first) * (sample.weight / narrow(scatters)));
     store(block.pdf + first, select(sample.delta, D(0.0), widen(sample.pdf) * scatters));

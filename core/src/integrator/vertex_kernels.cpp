@@ -2,6 +2,6 @@
 
 namespace lancer {
 
-const VertexKernel &vertex_kernel() { return LANCER_CHOSEN_KERNEL(vertex_kernel); }
+const VertexKernel &vertex_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(vertex_kernel); }
 
 } // namespace lancer

@@ -8,8 +8,8 @@
 
 namespace lancer {
 
-// The course's light, for CLASSIC.
-struct CourseLight {
+// What CLASSIC knows of a light.
+struct ClassicLight {
   Falloff falloff = Falloff::Physical;
   double radius = 0.0;     // normalised units
   double world_unit = 1.0; // one world unit, in normalised units
@@ -36,7 +36,7 @@ struct Light {
   double apart = 0.0;       // AREA: by how much a face that is meant to lie in its plane may be before it
   uint32_t hidden_from = 0; // LANCER_RAY_* bits
   bool no_shadow = false;
-  CourseLight course;
+  ClassicLight classic;
 };
 
 // A point of a light as seen from p.

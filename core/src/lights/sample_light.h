@@ -6,6 +6,13 @@
 
 namespace lancer {
 
+// How much a sample counts that another technique might have found, too. The power heuristic in ratio form: infinite densities
+// give 0 or 1, never NaN.
+template <class D> LANCER_LANE auto mis_weight(D pdf, D other) {
+  const D ratio = other / pdf;
+  return narrow(D(1.0) / (D(1.0) + ratio * ratio));
+}
+
 template <class U> LANCER_LANE auto is_kind(U kind, LightKind which) { return equal(kind, U(static_cast<uint32_t>(which))); }
 
 // Of the lanes that are asked for; the others stay. Light may be black there.

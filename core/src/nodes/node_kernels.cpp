@@ -2,6 +2,6 @@
 
 namespace lancer {
 
-const NodeKernel &node_kernel() { return LANCER_CHOSEN_KERNEL(node_kernel); }
+const NodeKernel &node_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(node_kernel); }
 
 } // namespace lancer

@@ -73,6 +73,8 @@ struct Instance {
 
   // Puts the shape there; the map has an inverse.
   void place(const Affine &map);
+  // The doubles of to_world, to_object and reach in a row, as kernels read them.
+  const double *placement() const { return &to_world.linear[0][0]; }
 };
 
 // The largest of the coordinates' absolute values.

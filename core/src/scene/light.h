@@ -28,7 +28,7 @@ struct LightDescription {
   float spread = 3.14159265f;
   uint32_t hidden_from = 0; // LANCER_RAY_* bits
   bool no_shadow = false;
-  // The course's light, CLASSIC only.
+  // CLASSIC only.
   Falloff falloff = Falloff::Physical;
   float falloff_radius = 0.0f;
   glm::vec3 ambient_color{1.0f}, diffuse_color{1.0f}, specular_color{1.0f};

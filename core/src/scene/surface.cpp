@@ -2,38 +2,14 @@
 
 #include "accel/quadric.h"
 #include "sampling/nearest_float.h"
+#include "scene/hit_surface.h"
 #include "scene/interpolate.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace lancer {
 
 namespace {
-
-// Bound of the distance between the computed point and the surface, seen through the maps there and back again.
-// Each coordinate of M p + T is three products and three sums: at most gamma(4) of the sum of absolute values, and the ray that
-// leaves is mapped back with the same kind of error, enlarged again by M. 2^-49 is eight times the unit roundoff of double.
-double position_bound(const Instance &instance, const glm::dvec3 &p_object, const glm::dvec3 &p_world) {
-  const Reach &reach = instance.reach;
-  const double there = reach.there * largest_coordinate(p_object) + reach.moved;
-  const double back = reach.there * (reach.back * largest_coordinate(p_world) + reach.moved_back);
-  return (there + back) * 0x1p-49;
-}
-
-glm::vec3 unit(const glm::dvec3 &v) {
-  const double length2 = glm::dot(v, v);
-  if (length2 > 1e-200 && length2 < 1e200)
-    return glm::vec3(v * (1.0 / std::sqrt(length2)));
-  // Squares of very small or large normals leave the range of double: scale by the largest component first.
-  const double scale = largest_coordinate(v);
-  return glm::vec3(glm::normalize(v / scale));
-}
-
-// A normal of the object's space in the world: the inverse transpose keeps the outward side, mirrored or not.
-glm::vec3 normal_to_world(const Instance &instance, const glm::dvec3 &n) {
-  return unit(glm::transpose(instance.to_object.linear) * n);
-}
 
 template <class Vector> Vector interpolate_corners(const std::vector<Vector> &corners, uint32_t triangle, const glm::dvec3 &b) {
   const size_t first = size_t(triangle) * 3;
@@ -65,31 +41,21 @@ glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triang
 
 namespace {
 
-void mesh_surface(const Geometry &geometry, const Hit &hit, Surface &surface) {
+SurfaceLanes<float> surface_of(const Geometry &geometry, const Ray &ray, const Hit &hit) {
   const Instance &instance = geometry.instances[hit.instance];
+  const double *const placement = instance.placement();
+  const Placements<float> placed(&placement);
+  if (instance.kind != ShapeKind::Mesh)
+    return quadric_surface(placed, kinds_of(instance.kind), Vector3<double>(ray.o), Vector3<double>(ray.d), hit.t);
   const Mesh &mesh = geometry.meshes[instance.mesh];
-  // Take the point from the barycentrics: it lies in the triangle's plane however far the ray came.
-  const glm::dvec3 b(1.0 - hit.u - hit.v, hit.u, hit.v);
-  const glm::dvec3 v0(mesh.vertex(hit.primitive, 0)), v1(mesh.vertex(hit.primitive, 1)), v2(mesh.vertex(hit.primitive, 2));
-  const glm::dvec3 p = b.x * v0 + b.y * v1 + b.z * v2;
-  surface.p = instance.to_world.point(p);
-  surface.bary = {hit.u, hit.v};
-  surface.offset = position_bound(instance, glm::max(glm::abs(v0), glm::max(glm::abs(v1), glm::abs(v2))), surface.p);
-  // Take both normals outwards.
-  surface.ng = normal_to_world(instance, glm::cross(v1 - v0, v2 - v0));
-  surface.ns = surface.ng;
-  const glm::vec3 n = interpolated_normal(mesh, instance.shading, hit.primitive, surface.bary);
-  if (n != glm::vec3(0.0f))
-    surface.ns = normal_to_world(instance, glm::dvec3(n));
-}
-
-void quadric_surface(const Geometry &geometry, const Ray &ray, const Hit &hit, Surface &surface) {
-  const Instance &instance = geometry.instances[hit.instance];
-  const SurfacePoint point =
-      quadric_point(instance.kind, instance.to_object.point(ray.o), instance.to_object.vector(ray.d), hit.t);
-  surface.p = instance.to_world.point(point.p);
-  surface.offset = position_bound(instance, glm::max(glm::abs(point.p), glm::dvec3(1.0)), surface.p);
-  surface.ng = surface.ns = normal_to_world(instance, point.n);
+  Vector3<float> v[3], normals[3];
+  glm::vec3 n[3] = {};
+  const bool smooth = corner_normals(mesh, instance.shading, hit.primitive, n);
+  for (int corner = 0; corner < 3; ++corner) {
+    v[corner] = mesh.vertex(hit.primitive, corner);
+    normals[corner] = n[corner];
+  }
+  return triangle_surface(placed, v, normals, smooth, hit.u, hit.v);
 }
 
 } // namespace
@@ -109,10 +75,13 @@ Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots,
   surface.instance = hit.instance;
   surface.primitive = hit.primitive;
   surface.material = material_of(geometry, slots, hit.instance, hit.primitive);
+  const SurfaceLanes<float> found = surface_of(geometry, ray, hit);
+  surface.p = found.p;
+  surface.offset = found.offset;
+  surface.ng = found.ng;
+  surface.ns = found.ns;
   if (geometry.instances[hit.instance].kind == ShapeKind::Mesh)
-    mesh_surface(geometry, hit, surface);
-  else
-    quadric_surface(geometry, ray, hit, surface);
+    surface.bary = {hit.u, hit.v};
   return surface;
 }
 
@@ -125,8 +94,8 @@ SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface
   }
   const Mesh &mesh = geometry.meshes[instance.mesh];
   const glm::dvec3 b(1.0 - surface.bary.x - surface.bary.y, surface.bary.x, surface.bary.y);
-  attributes.uv = mesh.uvs.empty() ? glm::vec2(float(surface.bary.x), float(surface.bary.y))
-                                   : interpolate_corners(mesh.uvs, surface.primitive, b);
+  attributes.uv =
+      mesh.uvs.empty() ? glm::vec2(float(surface.bary.x), float(surface.bary.y)) : interpolate_corners(mesh.uvs, surface.primitive, b);
   if (!mesh.colors.empty())
     attributes.color = interpolate_corners(mesh.colors, surface.primitive, b);
   return attributes;
@@ -134,8 +103,7 @@ SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface
 
 Ray leave(const Surface &surface, const glm::dvec3 &d, double tmax) {
   Ray ray;
-  const double side = glm::dot(glm::dvec3(surface.ng), d) < 0.0 ? -1.0 : 1.0;
-  ray.o = surface.p + side * surface.offset * glm::dvec3(surface.ng);
+  ray.o = origin_towards<double>(surface.p, surface.offset, glm::dvec3(surface.ng), d);
   ray.d = d;
   ray.tmax = tmax;
   ray.skip_instance = surface.instance;

@@ -145,6 +145,15 @@ private:
   static LANCER_LANE Vector both(Vector a, uint64_t others) { return (Vector)((Words)a & (others - Words{})); }
 };
 
+template <int W, class Function> LANCER_LANE Double<W> each(Double<W> a, const Function &f) {
+  alignas(64) double of[W];
+  __builtin_memcpy(of, &a, sizeof(of));
+  for (double &x : of)
+    x = f(x);
+  Double<W> r;
+  __builtin_memcpy(&r, of, sizeof(of));
+  return r;
+}
 template <int W> LANCER_LANE Double<W> widen(Float<W> a) {
   using Vector = VectorOf<double, W / 2>;
 #if defined(__AVX512F__)

@@ -16,7 +16,9 @@ constexpr int kLanes = 8;
 #else
 constexpr int kLanes = 4;
 #endif
+#if !defined(LANCER_SCALAR)
 constexpr int kHalf = kLanes / 2;
+#endif
 
 #if defined(LANCER_SCALAR)
 using F = float;
@@ -24,6 +26,19 @@ using D = double;
 using U = uint32_t;
 using M = bool;
 LANCER_LANE M mask_of(uint32_t bits) { return bits != 0; }
+// Operations of one lane beside those of many, which would hide them.
+using lancer::all;
+using lancer::any;
+using lancer::as_float;
+using lancer::bits;
+using lancer::each;
+using lancer::gather;
+using lancer::gather_bytes;
+using lancer::lane;
+using lancer::narrow;
+using lancer::to_float;
+using lancer::truncate;
+using lancer::widen;
 #else
 using F = Float<kLanes>;
 using D = Double<kLanes>;

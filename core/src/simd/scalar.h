@@ -109,6 +109,7 @@ template <class F, class Function> LANCER_LANE F from_lanes(const Function &f) {
 
 // A scalar function of every lane, for what is too rare to be written for lanes.
 template <class Function> LANCER_LANE float each(float a, const Function &f) { return f(a); }
+template <class Function> LANCER_LANE double each(double a, const Function &f) { return f(a); }
 template <class Function> LANCER_LANE float each(float a, float b, const Function &f) { return f(a, b); }
 
 } // namespace lancer

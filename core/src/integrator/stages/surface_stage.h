@@ -1,0 +1,76 @@
+// From hits to surfaces and their lobes, side by side: what both integrators do first with what their rays have met.
+#pragma once
+
+#include "integrator/lane_access.h"
+#include "integrator/lobe_means.h"
+#include "integrator/shading.h"
+#include "integrator/vertex_kernel.h"
+
+namespace lancer {
+
+struct IntegratorSettings;
+
+class SurfaceStage {
+public:
+  SurfaceStage(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);
+  SurfaceStage(const SurfaceStage &) = delete; // its block knows where its values stand
+  SurfaceStage &operator=(const SurfaceStage &) = delete;
+
+  uint32_t count() const { return count_; }
+  bool full() const { return count_ == kBlockLanes; }
+  // Opens the next lane for what a ray has met. All of a block are of one class; ray and hit stay where they are until clear().
+  uint32_t add(const Ray &ray, const Hit &hit, const Material &material);
+  // Has a lane look at this surface instead, along a view of any length.
+  void give(uint32_t lane, const Surface &surface, const glm::dvec3 &view);
+  // Moves a lane to another place of its triangle.
+  void move(uint32_t lane, const Hit &hit);
+  // Finds what is there.
+  void find();
+  // Whether nodes have a say; they need to know how each lane is seen.
+  bool has_nodes() const { return !block.material[0]->fixed(); }
+  void ask_nodes(std::span<const View> views);
+  // How a ray sees a lane after a way of such length behind it, in normalised units.
+  View view(uint32_t lane, double way, const LightPath<float> &path) const {
+    return {.wo = get(block.wo, lane), .footprint = float(cone_.base + way * cone_.spread), .path = path};
+  }
+  void find_lobes() { kernel.lobes(block); }
+  // What passes ask of the lobes.
+  void describe();
+  void clear();
+
+  const Ray &ray(uint32_t lane) const { return *rays_[lane]; }
+  const Hit &hit(uint32_t lane) const { return *hits_[lane]; }
+  const Instance &instance(uint32_t lane) const { return scene_.geometry.instances[hit(lane).instance]; }
+  Surface surface(uint32_t lane) const;
+  glm::vec3 value(const Parameter &parameter, uint32_t lane) const;
+  // Share of a lane that becomes a hole in the picture.
+  float holdout(uint32_t lane) const;
+  // The share that is there.
+  glm::vec3 opacity(uint32_t lane) const { return glm::clamp(1.0f - transmittance[lane], 0.0f, 1.0f); }
+  Mixture<float> mixture(uint32_t lane) const;
+
+  const VertexKernel &kernel;
+  VertexBlock block{};
+  glm::vec3 emission[kBlockLanes], transmittance[kBlockLanes]; // of the material
+
+private:
+  void place_nodes(const Material &material, std::span<const View> views);
+
+  // Scratch of the block: where nodes are asked, what they say, and the lobes.
+  struct alignas(64) Lobes {
+    std::byte of[64];
+  };
+
+  const NodeKernel &node_kernel_;
+  const Scene &scene_;
+  Shader shader_;
+  PixelCone cone_;
+  uint32_t count_ = 0;
+  const Ray *rays_[kBlockLanes];
+  const Hit *hits_[kBlockLanes];
+  NodeBlock nodes_;
+  std::vector<NodeLanes> values_;
+  std::vector<Lobes> lobes_;
+};
+
+} // namespace lancer
