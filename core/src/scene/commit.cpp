@@ -1,5 +1,5 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
-#include "accel/coplanar_accelerator.h"
+#include "accel/coplanar/coplanar_accelerator.h"
 #include "accel/parallel.h"
 #include "integrator/shading.h"
 #include "lights/make_emitters.h"
