@@ -39,10 +39,11 @@ private:
       ObjectRay object_ray;
       if (!enter_shape(shape, ray, object_ray))
         continue;
-      const Shear shear = make_shear(object_ray);
+      const RayAxes axes = axes_from(longest_axis(object_ray.d));
+      const ShearedRay<double> sheared = shear_ray(object_ray, axes);
       const Mesh &mesh = geometry.meshes[shape.mesh];
       for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
-        try_triangle(ray, object_ray, shear, mesh, instance, triangle, counting, best);
+        try_triangle(ray, axes, sheared, mesh, instance, triangle, counting, best);
     }
     return best;
   }

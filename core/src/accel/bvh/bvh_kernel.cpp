@@ -4,8 +4,8 @@
 // inlining, and no call of an inline function of another header out of line.
 #include "accel/bvh/bvh_kernel.h"
 
-#include "accel/bvh/kernel_packet.h"
-#include "accel/bvh/kernel_visit.h"
+#include "accel/bvh/packet.h"
+#include "accel/bvh/visit.h"
 #include "accel/kernel_name.h"
 
 namespace lancer {
@@ -13,7 +13,7 @@ namespace lancer {
 namespace {
 
 // Starts a ray; false where its answer is known at once.
-LANCER_SIMD bool start(const BvhScene &scene, const Ray &ray, const Entering &e, uint32_t lane, Slot &s) {
+LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e, uint32_t lane, Slot &s) {
   s.best.t = __builtin_inf();
   s.best.u = s.best.v = 0.0;
   s.best.instance = s.best.primitive = kNone;
@@ -43,7 +43,7 @@ LANCER_SIMD bool start(const BvhScene &scene, const Ray &ray, const Entering &e,
 }
 
 // Nobody wants the answers of rays whose work is counted.
-template <Question q> LANCER_SIMD void store_answer(const Hit &best, size_t number, Hit *hits, uint8_t *occluded) {
+template <Question q> LANCER_LANE void store_answer(const Hit &best, size_t number, Hit *hits, uint8_t *occluded) {
   if constexpr (q.counted)
     return;
   else if constexpr (q.any)
@@ -59,7 +59,7 @@ struct Queue {
 };
 
 template <Question q>
-LANCER_SIMD void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count,
+LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count,
                        const HitFilter *filter, TraversalCounts *counts) {
   Slot slots[kSlots];
   Queue queues[kBvhKinds];

@@ -2,19 +2,20 @@
 // This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "accel/bvh/split_kernel.h"
 
-#include "accel/bvh/simd.h"
 #include "accel/kernel_name.h"
+#include "simd/kernel_lanes.h"
+#include "simd/sorted_lanes.h"
 
 namespace lancer {
 namespace {
 
 constexpr GrowingBox kEmpty = GrowingBox::empty();
 
-LANCER_SIMD Int4 bins_of(const Binning &binning, Float4 centroid) {
+LANCER_LANE Int4 bins_of(const Binning &binning, Float4 centroid) {
   return __builtin_convertvector((centroid - binning.origin) * binning.scale, Int4);
 }
 
-LANCER_SIMD void clear(Bins &bins, uint32_t used) {
+LANCER_LANE void clear(Bins &bins, uint32_t used) {
   for (uint32_t bin = 0; bin < used; ++bin) {
     for (GrowingBox &box : bins.boxes[bin])
       box = kEmpty;
@@ -23,13 +24,26 @@ LANCER_SIMD void clear(Bins &bins, uint32_t used) {
   }
 }
 
-LANCER_SIMD void grow(GrowingBox &box, F8 by) {
-  float *at = reinterpret_cast<float *>(&box);
-  store8(at, min8(load8(at), by));
+// The eight numbers of a box, as many at a time as a register holds.
+constexpr int kWidth = kLanes < 8 ? kLanes : 8;
+struct BoxLanes {
+  Float<kWidth> of[8 / kWidth];
+};
+LANCER_LANE BoxLanes lanes_of(const float *box) {
+  BoxLanes r;
+  for (int i = 0; i < 8 / kWidth; ++i)
+    r.of[i] = load_anywhere<kWidth>(box + i * kWidth);
+  return r;
 }
 
-LANCER_SIMD void add(const BuildRef &ref, const Binning &binning, Bins &bins) {
-  const F8 box = load8_anywhere(reinterpret_cast<const float *>(&ref));
+LANCER_LANE void grow(GrowingBox &box, const BoxLanes &by) {
+  float *at = reinterpret_cast<float *>(&box);
+  for (int i = 0; i < 8 / kWidth; ++i)
+    store(at + i * kWidth, min(by.of[i], load_lanes<kWidth>(at + i * kWidth)));
+}
+
+LANCER_LANE void add(const BuildRef &ref, const Binning &binning, Bins &bins) {
+  const BoxLanes box = lanes_of(reinterpret_cast<const float *>(&ref));
   const Int4 places = bins_of(binning, ref.centroid());
   for (int axis = 0; axis < 3; ++axis) {
     const uint32_t bin = static_cast<uint32_t>(places[axis]);
@@ -48,18 +62,18 @@ LANCER_SIMD void add(const BuildRef &ref, const Binning &binning, Bins &bins) {
     return;
   }
   // Many fill two by turns, so that no box waits for the one before it to be stored.
-  Bins odd;
-  clear(odd, used);
+  Bins second;
+  clear(second, used);
   for (uint32_t i = 0; i + 1 < count; i += 2) {
     add(refs[i], binning, bins);
-    add(refs[i + 1], binning, odd);
+    add(refs[i + 1], binning, second);
   }
   if (count % 2 != 0)
     add(refs[count - 1], binning, bins);
   for (uint32_t i = 0; i < used; ++i)
     for (int axis = 0; axis < 3; ++axis) {
-      grow(bins.boxes[i][axis], load8(reinterpret_cast<const float *>(&odd.boxes[i][axis])));
-      bins.counts[i][axis] += odd.counts[i][axis];
+      grow(bins.boxes[i][axis], lanes_of(reinterpret_cast<const float *>(&second.boxes[i][axis])));
+      bins.counts[i][axis] += second.counts[i][axis];
     }
 }
 

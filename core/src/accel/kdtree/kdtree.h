@@ -3,7 +3,7 @@
 
 #include "accel/accelerator.h"
 #include "accel/bounds.h"
-#include "accel/object_ray.h"
+#include "accel/placed_shape.h"
 
 #include <vector>
 
@@ -64,7 +64,7 @@ void KdTree::traverse(const ObjectRay &ray, const PlacementFrame &frame, double 
     }
     const double a = (static_cast<double>(bounds.lo[axis]) - o[axis]) * inverse[axis];
     const double b = (static_cast<double>(bounds.hi[axis]) - o[axis]) * inverse[axis];
-    entry = larger(entry, a < b ? a : b);
+    entry = max(a < b ? a : b, entry);
     exit = exit < (a < b ? b : a) ? exit : (a < b ? b : a);
   }
   if (!(entry <= exit))

@@ -74,12 +74,13 @@ private:
     ObjectRay object_ray;
     if (!enter_shape(shape, ray, object_ray))
       return false;
-    const Shear shear = make_shear(object_ray);
+    const RayAxes axes = axes_from(longest_axis(object_ray.d));
+    const ShearedRay<double> sheared = shear_ray(object_ray, axes);
     const Mesh &mesh = geometry.meshes[shape.mesh];
     const auto limit = [&] { return box_tau_above(object_ray, shape.frame, std::min(ray.tmax, best.t)); };
     meshes[shape.mesh].traverse(object_ray, shape.frame, box_tau_below(object_ray, shape.frame, ray.tmin), limit,
                                 [&](uint32_t triangle) {
-                                  try_triangle(ray, object_ray, shear, mesh, instance, triangle, counting, best);
+                                  try_triangle(ray, axes, sheared, mesh, instance, triangle, counting, best);
                                   return any && best.valid();
                                 });
     return any && best.valid();

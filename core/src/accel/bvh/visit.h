@@ -2,34 +2,37 @@
 // Part of bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 
-#include "accel/bvh/kernel_block.h"
-#include "accel/bvh/kernel_enter.h"
-#include "accel/bvh/kernel_slot.h"
-#include "accel/bvh/kernel_sphere.h"
+#include "accel/bvh/blocks.h"
 
 namespace lancer {
 
 namespace {
 
 // Replaces a node by its children that the ray meets, the nearest on top.
-LANCER_SIMD void visit_node(Slot &s) {
+LANCER_LANE void visit_node(Slot &s) {
   const Slab &ray = s.slab;
   const BvhNode &node = *reinterpret_cast<const BvhNode *>(s.at);
-  F8 near[3], far[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const F8 inverse = splat8(ray.inverse[axis]), shift = splat8(ray.shift[axis]);
-    const uint32_t down = ray.octant >> axis & 1;
-    near[axis] = multiply_subtract(load8(node.bounds[axis][down]), inverse, shift);
-    far[axis] = multiply_subtract(load8(node.bounds[axis][down ^ 1]), inverse, shift);
+  // As many children at a time as a register holds.
+  constexpr int kWidth = kLanes < 8 ? kLanes : 8;
+  using Children = Float<kWidth>;
+  Children entry[8 / kWidth], exit[8 / kWidth];
+  for (int i = 0; i < 8 / kWidth; ++i) {
+    Children near[3], far[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const Children inverse(ray.inverse[axis]), shift(ray.shift[axis]);
+      const uint32_t down = ray.octant >> axis & 1;
+      near[axis] = multiply_subtract(load_lanes<kWidth>(node.bounds[axis][down] + i * kWidth), inverse, shift);
+      far[axis] = multiply_subtract(load_lanes<kWidth>(node.bounds[axis][down ^ 1] + i * kWidth), inverse, shift);
+    }
+    entry[i] = max(max(near[0], near[1]), max(near[2], Children(ray.tau_min)));
+    exit[i] = min(min(far[0], far[1]), min(far[2], Children(ray.tau_max)));
   }
-  const F8 entry = max8(max8(near[0], near[1]), max8(near[2], splat8(ray.tau_min)));
-  const F8 exit = min8(min8(far[0], far[1]), min8(far[2], splat8(ray.tau_max)));
-  s.size += compress_ordered8(s.entries + s.size, s.children + s.size, entry, exit, node.child, node.order[ray.octant]);
+  s.size += keep_ordered<kWidth>(s.entries + s.size, s.children + s.size, entry, exit, node.child, node.order[ray.octant]);
 }
 
-LANCER_SIMD void done(Slot &s) { s.size = 1; }
+LANCER_LANE void done(Slot &s) { s.size = 1; }
 
-LANCER_SIMD void become_mesh_ray(const BvhScene &scene, uint32_t instance, const Ray &ray, Slot &s) {
+LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const Ray &ray, Slot &s) {
   const PlacedShape &shape = scene.shapes[instance];
   s.instance = instance;
   s.skip = ray.skip_instance == instance ? ray.skip_primitive : kNone;
@@ -37,7 +40,7 @@ LANCER_SIMD void become_mesh_ray(const BvhScene &scene, uint32_t instance, const
 }
 
 // Keeps the first place of an exact surface that counts, if it is closer. find(t): the next place beyond t.
-template <Question q, class Find> LANCER_SIMD void try_places(uint32_t instance, const HitFilter *filter, Slot &s, Find find) {
+template <Question q, class Find> LANCER_LANE void try_places(uint32_t instance, const HitFilter *filter, Slot &s, Find find) {
   double t = s.tmin;
   while (find(t) && closer(t, instance, 0, s.best)) {
     const Hit hit{t, 0.0, 0.0, instance, 0};
@@ -53,16 +56,16 @@ template <Question q, class Find> LANCER_SIMD void try_places(uint32_t instance,
 }
 
 template <Question q>
-LANCER_SIMD void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, const HitFilter *filter, Slot &s) {
+LANCER_LANE void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, const HitFilter *filter, Slot &s) {
   if (visible(shape, ray))
     try_places<q>(
         instance, filter, s, [&](double &t) __attribute__((always_inline)) { return next_place(shape, instance, ray, t); });
 }
 
-template <Question q> LANCER_SIMD void visit_spheres(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   const SphereBlock &block = *reinterpret_cast<const SphereBlock *>(s.at);
-  SphereTerms terms;
-  for (uint32_t met = intersect_spheres(block, ray, terms); met != 0; met &= met - 1) {
+  BlockRoots roots;
+  for (uint32_t met = intersect_spheres(block, ray, roots); met != 0; met &= met - 1) {
     const int i = __builtin_ctz(met);
     const uint32_t instance = block.instance[i];
     if (instance == kNone)
@@ -71,7 +74,7 @@ template <Question q> LANCER_SIMD void visit_spheres(const BvhScene &scene, cons
     if (visible(shape, ray))
       try_places<q>(
           instance, filter, s, [&](double &t) __attribute__((always_inline)) {
-            return choose_root(terms, i, shape.slack, ray.skip_instance == instance, t, s.tmax, t);
+            return choose_root(roots, i, shape.slack, ray.skip_instance == instance, t, s.tmax, t);
           });
     if (q.any && s.best.instance != kNone)
       return;
@@ -79,7 +82,7 @@ template <Question q> LANCER_SIMD void visit_spheres(const BvhScene &scene, cons
 }
 
 // Enters an instance, if the ray can meet it at all.
-template <Question q> LANCER_SIMD void enter_instance(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   const PlacedShape &shape = *reinterpret_cast<const PlacedShape *>(s.at);
   const uint32_t instance = static_cast<uint32_t>(&shape - scene.shapes);
   if (shape.mesh == kNone)
@@ -99,7 +102,7 @@ template <Question q> LANCER_SIMD void enter_instance(const BvhScene &scene, con
   push(s, 0.0f, 0);
 }
 
-LANCER_SIMD void leave_instance(const BvhScene &scene, Slot &s) {
+LANCER_LANE void leave_instance(const BvhScene &scene, Slot &s) {
   s.slab = s.outer;
   s.arrays[kBvhInner] = reinterpret_cast<const char *>(scene.top);
   s.base = 1;
@@ -107,9 +110,9 @@ LANCER_SIMD void leave_instance(const BvhScene &scene, Slot &s) {
     shorten(s);
 }
 
-template <Question q> LANCER_SIMD void visit_triangles(const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_triangles(const HitFilter *filter, Slot &s) {
   const TriangleBlock &block = *reinterpret_cast<const TriangleBlock *>(s.at);
-  BlockHits hits;
+  BlockHits<4> hits;
   bool found = false;
   for (uint32_t met = intersect_block(block, s.ray, s.tmin, s.tmax, s.best.t, hits); met != 0; met &= met - 1) {
     const int i = __builtin_ctz(met);
@@ -133,7 +136,7 @@ template <Question q> LANCER_SIMD void visit_triangles(const HitFilter *filter, 
 }
 
 // A block of the world's own tree: it has its instance's space to itself.
-template <Question q> LANCER_SIMD void visit_placed(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   const uint32_t instance = scene.block_instance[reinterpret_cast<const TriangleBlock *>(s.at) - scene.blocks];
   if (instance != s.instance)
     become_mesh_ray(scene, instance, ray, s);
@@ -143,7 +146,7 @@ template <Question q> LANCER_SIMD void visit_placed(const BvhScene &scene, const
 
 // Tries what has no box, up to the next mesh.
 template <Question q>
-LANCER_SIMD void visit_unbounded(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+LANCER_LANE void visit_unbounded(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   while (s.unbounded > 0 && !(q.any && s.best.instance != kNone)) {
     const uint32_t instance = scene.unbounded[--s.unbounded];
     if (scene.shapes[instance].mesh == kNone) {

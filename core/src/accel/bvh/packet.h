@@ -3,14 +3,46 @@
 // Part of bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 
-#include "accel/bvh/kernel_enter_packet.h"
-#include "accel/bvh/kernel_leftovers.h"
-#include "accel/bvh/kernel_pair.h"
-#include "accel/bvh/kernel_sphere.h"
+#include "accel/bvh/blocks.h"
 
 namespace lancer {
 
 namespace {
+
+constexpr uint32_t kFew = 2;       // lanes that are better off alone
+constexpr uint32_t kLeftovers = 8; // of a lane
+
+// What each lane has still to visit, and its best hit so far.
+struct Leftovers {
+  Hit best[kPacket];
+  alignas(64) double best_t[kPacket];
+  uint32_t count[kPacket];
+  float entries[kPacket][kLeftovers];
+  uint32_t children[kPacket][kLeftovers];
+};
+
+// Leaves work for each of some lanes to do alone; false where one has no room.
+LANCER_LANE bool leave_over(uint32_t child, uint32_t lanes, const float *entry, Leftovers &l) {
+  for (uint32_t rest = lanes; rest != 0; rest &= rest - 1)
+    if (l.count[__builtin_ctz(rest)] == kLeftovers)
+      return false;
+  for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const int lane = __builtin_ctz(rest);
+    const uint32_t i = l.count[lane]++;
+    l.entries[lane][i] = entry ? entry[lane] : -__builtin_inff();
+    l.children[lane][i] = child;
+  }
+  return true;
+}
+
+// Goes on alone with what is left of a lane, the nearest on top.
+LANCER_LANE void resume(const Leftovers &l, uint32_t lane, Slot &s) {
+  s.best = l.best[lane];
+  s.unbounded = 0;
+  s.size = 1;
+  for (uint32_t i = l.count[lane]; i-- > 0;)
+    push(s, l.entries[lane][i], l.children[lane][i]);
+}
 
 struct Packet {
   PacketRays rays; // in the space of an instance
@@ -23,14 +55,6 @@ struct Packet {
   uint32_t children[kStackSize];
 };
 
-// Bit i: lane i goes down the axis.
-LANCER_SIMD uint32_t lanes_down(const float *inverse) {
-  uint32_t down = 0;
-  for (uint32_t i = 0; i < kPacket; ++i)
-    down |= static_cast<uint32_t>(inverse[i] < 0.0f) << i;
-  return down;
-}
-
 // Which ray each lane carries, and what is asked of it.
 struct PacketAsks {
   const Ray *const *rays;
@@ -40,7 +64,7 @@ struct PacketAsks {
 
 // Keeps a hit that is closer, if it counts.
 template <Question q>
-LANCER_SIMD bool keep_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &slabs, uint32_t lane, const Hit &hit) {
+LANCER_LANE bool keep_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &slabs, uint32_t lane, const Hit &hit) {
   if (left_out<q>(asks.filter, asks.number[lane], hit))
     return false;
   l.best[lane] = hit;
@@ -50,7 +74,7 @@ LANCER_SIMD bool keep_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &sla
 }
 
 template <Question q>
-LANCER_SIMD void try_quadric(const BvhScene &scene, uint32_t instance, const PacketAsks &asks, uint32_t active,
+LANCER_LANE void try_quadric(const BvhScene &scene, uint32_t instance, const PacketAsks &asks, uint32_t active,
                              PacketSlabs &slabs, Leftovers &l) {
   const PlacedShape &shape = scene.shapes[instance];
   for (; active != 0; active &= active - 1) {
@@ -66,13 +90,13 @@ LANCER_SIMD void try_quadric(const BvhScene &scene, uint32_t instance, const Pac
 }
 
 template <Question q>
-LANCER_SIMD void visit_spheres(const BvhScene &scene, const SphereBlock &block, const PacketAsks &asks, uint32_t active,
+LANCER_LANE void visit_spheres(const BvhScene &scene, const SphereBlock &block, const PacketAsks &asks, uint32_t active,
                                const Entering &e, PacketSlabs &slabs, Leftovers &l) {
   for (; active != 0; active &= active - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(active));
     const Ray &ray = *asks.rays[lane];
-    SphereTerms terms;
-    for (uint32_t met = intersect_spheres(block, ray, terms); met != 0; met &= met - 1) {
+    BlockRoots roots;
+    for (uint32_t met = intersect_spheres(block, ray, roots); met != 0; met &= met - 1) {
       const int i = __builtin_ctz(met);
       const uint32_t instance = block.instance[i];
       if (instance == kNone)
@@ -81,7 +105,7 @@ LANCER_SIMD void visit_spheres(const BvhScene &scene, const SphereBlock &block, 
       if (!visible(shape, ray))
         continue;
       double t = e.tmin[lane];
-      while (choose_root(terms, i, shape.slack, ray.skip_instance == instance, t, e.tmax[lane], t) &&
+      while (choose_root(roots, i, shape.slack, ray.skip_instance == instance, t, e.tmax[lane], t) &&
              closer(t, instance, 0, l.best[lane]) && !keep_hit<q>(asks, l, slabs, lane, {t, 0.0, 0.0, instance, 0})) {
       }
     }
@@ -89,25 +113,27 @@ LANCER_SIMD void visit_spheres(const BvhScene &scene, const SphereBlock &block, 
 }
 
 template <Question q>
-LANCER_SIMD void visit_triangles(const TriangleBlock &block, const PacketAsks &asks, uint32_t active, const Entering &e,
+LANCER_LANE void visit_triangles(const TriangleBlock &block, const PacketAsks &asks, uint32_t active, const Entering &e,
                                  Packet &p, PacketSlabs &slabs, Leftovers &l) {
   for (uint32_t longest = 0; longest < 3; ++longest) {
     uint32_t rest = active & p.longest[longest];
     if (rest == 0)
       continue;
-    D8 corner[3][3];
+    const RayAxes axes = axes_from(longest);
+    const uint32_t order[3] = {axes.kx, axes.ky, axes.kz};
+    Double<kPairs> corner[3][3];
     for (uint32_t k = 0; k < 3; ++k)
       for (uint32_t i = 0; i < 3; ++i)
-        corner[i][k] = twice(widen4(block.corner[i][(longest + 1 + k) % 3]));
-    // Take two lanes at a time; the last may be alone.
+        corner[i][k] = repeat<kTogether>(load_widened(block.corner[i][order[k]]));
+    // The last may go more than once.
     while (rest != 0) {
-      uint32_t lanes[2];
-      lanes[0] = static_cast<uint32_t>(__builtin_ctz(rest));
-      rest &= rest - 1;
-      lanes[1] = rest != 0 ? static_cast<uint32_t>(__builtin_ctz(rest)) : lanes[0];
-      rest &= rest - 1;
-      LaneHits hits;
-      for (uint32_t met = intersect_pair(corner, p.rays, longest, lanes, e, l.best_t, hits); met != 0; met &= met - 1) {
+      uint32_t lanes[kTogether];
+      for (int i = 0; i < kTogether; ++i) {
+        lanes[i] = rest != 0 ? static_cast<uint32_t>(__builtin_ctz(rest)) : lanes[0];
+        rest &= rest - 1;
+      }
+      BlockHits<kPairs> hits;
+      for (uint32_t met = intersect_together(corner, p.rays, longest, lanes, e, l.best_t, hits); met != 0; met &= met - 1) {
         const uint32_t i = static_cast<uint32_t>(__builtin_ctz(met)), lane = lanes[i >> 2];
         const uint32_t primitive = block.primitive[i & 3];
         const bool skipped = asks.rays[lane]->skip_instance == p.instance && asks.rays[lane]->skip_primitive == primitive;
@@ -119,7 +145,7 @@ LANCER_SIMD void visit_triangles(const TriangleBlock &block, const PacketAsks &a
   }
 }
 
-LANCER_SIMD void enter_instance(const BvhScene &scene, uint32_t instance, const Ray *const *rays, const Entering &e,
+LANCER_LANE void enter_instance(const BvhScene &scene, uint32_t instance, const Ray *const *rays, const Entering &e,
                                 Packet &p) {
   const PlacedShape &shape = scene.shapes[instance];
   p.instance = instance;
@@ -133,45 +159,59 @@ LANCER_SIMD void enter_instance(const BvhScene &scene, uint32_t instance, const 
   }
 }
 
+// The packet in registers.
+constexpr int kSteps = kPacket / kLanes;
+
 // Visits a tree's leaves with the active lanes that meet them, the nearest first. All active lanes go down the same axes.
 template <class Leaf>
-LANCER_SIMD void walk(const BvhNode *nodes, uint32_t octant, const F16 &entry, const PacketSlabs &slabs, Packet &p,
+LANCER_LANE void walk(const BvhNode *nodes, uint32_t octant, const float *entry, const PacketSlabs &slabs, Packet &p,
                       const char *const *arrays, Leaf leaf) {
   const uint32_t base = p.size;
-  store16(p.entries[base], entry);
+  for (uint32_t i = 0; i < kPacket; i += kLanes)
+    store(p.entries[base] + i, load(entry + i));
   p.children[base] = kBvhInner << kBvhKindShift;
   p.size = base + 1;
   const uint32_t down[3] = {octant & 1, octant >> 1 & 1, octant >> 2};
   while (p.size > base) {
     // Take up what some lane may still meet before its best hit.
     const uint32_t child = p.children[--p.size];
-    const F16 parent = load16(p.entries[p.size]), limit = load16(slabs.tau_max);
-    const uint32_t active = less_equal(parent, limit);
+    F parent[kSteps], limit[kSteps];
+    uint32_t active = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      parent[i] = load(p.entries[p.size] + i * kLanes);
+      limit[i] = load(slabs.tau_max + i * kLanes);
+      active |= less_equal_bits(parent[i], limit[i]) << i * kLanes;
+    }
     if (active == 0)
       continue;
     if (leaf(child, active, p.entries[p.size]))
       continue;
     const BvhNode &node =
         *reinterpret_cast<const BvhNode *>(reinterpret_cast<const char *>(nodes) + size_t{child & kBvhPlace} * kBvhStep);
-    F16 inverse[3], shift[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      inverse[axis] = load16(slabs.inverse[axis]);
-      shift[axis] = load16(slabs.shift[axis]);
-    }
-    uint32_t order = node.order[octant], size = p.size;
-    for (uint32_t i = 0; i < kBvhWidth; ++i, order >>= 3) {
-      const uint32_t at = order & 7;
-      F16 near[3], far[3];
+    F inverse[kSteps][3], shift[kSteps][3];
+    for (int i = 0; i < kSteps; ++i)
       for (int axis = 0; axis < 3; ++axis) {
-        near[axis] = multiply_subtract(splat16(node.bounds[axis][down[axis]][at]), inverse[axis], shift[axis]);
-        far[axis] = multiply_subtract(splat16(node.bounds[axis][down[axis] ^ 1][at]), inverse[axis], shift[axis]);
+        inverse[i][axis] = load(slabs.inverse[axis] + i * kLanes);
+        shift[i][axis] = load(slabs.shift[axis] + i * kLanes);
       }
-      // Lanes that are not active have no entry, and none below.
-      const F16 first = max16(max16(near[0], near[1]), max16(near[2], parent));
-      const F16 last = min16(min16(far[0], far[1]), min16(far[2], limit));
-      store16(p.entries[size], drop_greater(first, last));
+    uint32_t order = node.order[octant], size = p.size;
+    for (uint32_t child_rank = 0; child_rank < kBvhWidth; ++child_rank, order >>= 3) {
+      const uint32_t at = order & 7;
+      uint32_t met = 0;
+      for (int i = 0; i < kSteps; ++i) {
+        F near[3], far[3];
+        for (int axis = 0; axis < 3; ++axis) {
+          near[axis] = multiply_subtract(F(node.bounds[axis][down[axis]][at]), inverse[i][axis], shift[i][axis]);
+          far[axis] = multiply_subtract(F(node.bounds[axis][down[axis] ^ 1][at]), inverse[i][axis], shift[i][axis]);
+        }
+        // Lanes that are not active have no entry, and none below: of two that are not ordered the first is taken.
+        const F first = max(max(parent[i], near[2]), max(near[1], near[0]));
+        const F last = min(min(limit[i], far[2]), min(far[1], far[0]));
+        store(p.entries[size] + i * kLanes, drop_greater(first, last));
+        met |= less_equal_bits(first, last);
+      }
       p.children[size] = node.child[at];
-      size += less_equal(first, last) != 0;
+      size += met != 0;
     }
     // Start loading all that has been found.
     for (uint32_t i = p.size; i < size; ++i)
@@ -182,7 +222,7 @@ LANCER_SIMD void walk(const BvhNode *nodes, uint32_t octant, const F16 &entry, c
 }
 
 template <Question q>
-LANCER_SIMD void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t active, const Entering &e, Packet &p,
+LANCER_LANE void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t active, const Entering &e, Packet &p,
                            Leftovers &l) {
   const uint32_t x = lanes_down(p.inner.inverse[0]), y = lanes_down(p.inner.inverse[1]), z = lanes_down(p.inner.inverse[2]);
   const char *const arrays[kBvhKinds] = {reinterpret_cast<const char *>(bvh.nodes), reinterpret_cast<const char *>(bvh.blocks)};
@@ -196,7 +236,7 @@ LANCER_SIMD void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t 
     for (uint32_t i = 0; i < kPacket; ++i)
       entry[i] = same >> i & 1 ? p.inner.tau_min[i] : __builtin_nanf("");
     walk(
-        bvh.nodes, octant, load16(entry), p.inner, p,
+        bvh.nodes, octant, entry, p.inner, p,
         arrays, [&](uint32_t child, uint32_t lanes, const float *) __attribute__((always_inline)) {
           if (child >> kBvhKindShift == kBvhInner)
             return false;
@@ -211,7 +251,6 @@ LANCER_SIMD void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t 
 template <Question q>
 [[gnu::noinline, gnu::flatten]] uint32_t trace_packet(const BvhScene &scene, Entering &e, const HitFilter *filter,
                                                       Leftovers &l) {
-  constexpr uint32_t all = (1u << kPacket) - 1;
   const PacketAsks asks{e.rays, e.number, filter};
   Packet p;
   p.size = 0;
@@ -225,9 +264,9 @@ template <Question q>
   for (uint32_t i = 0; i < scene.unbounded_count; ++i) {
     const uint32_t instance = scene.unbounded[i];
     if (scene.shapes[instance].mesh == kNone)
-      try_quadric<q>(scene, instance, asks, all, e, l);
+      try_quadric<q>(scene, instance, asks, kAllOfPacket, e, l);
     else
-      leave_over(kBvhInstance << kBvhKindShift | instance * kBvhSteps<PlacedShape>, all, nullptr, l);
+      leave_over(kBvhInstance << kBvhKindShift | instance * kBvhSteps<PlacedShape>, kAllOfPacket, nullptr, l);
   }
   if (scene.top) {
     const char *arrays[kBvhKinds] = {};
@@ -239,7 +278,7 @@ template <Question q>
     for (uint32_t axis = 0; axis < 3; ++axis)
       octant |= uint32_t{e.inverse[axis][0] < 0.0f} << axis;
     walk(
-        scene.top, octant, load16(e.tau_min), e, p,
+        scene.top, octant, e.tau_min, e, p,
         arrays, [&](uint32_t child, uint32_t active, const float *entry) __attribute__((always_inline)) {
           const uint32_t kind = child >> kBvhKindShift;
           if ((kind == kBvhInner || kind == kBvhInstance) && __builtin_popcount(active) <= static_cast<int>(kFew) &&

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "accel/bvh/bvh.h"
-#include "accel/bvh/simd.h"
-#include "accel/object_ray.h"
+#include "accel/triangle.h"
+#include "simd/sorted_lanes.h"
 
 namespace lancer {
 
@@ -21,7 +21,7 @@ struct Question {
 };
 
 // Whether a hit does not count.
-template <Question q> LANCER_SIMD bool left_out(const HitFilter *filter, size_t number, const Hit &hit) {
+template <Question q> LANCER_LANE bool left_out(const HitFilter *filter, size_t number, const Hit &hit) {
   if constexpr (q.filtered)
     return filter->instances[hit.instance] != 0 && !filter->counts(filter->context, number, hit);
   else
@@ -29,7 +29,7 @@ template <Question q> LANCER_SIMD bool left_out(const HitFilter *filter, size_t 
 }
 
 // The next place of a ray on an exact surface, beyond t.
-LANCER_SIMD bool next_place(const PlacedShape &shape, uint32_t instance, const Ray &ray, double &t) {
+LANCER_LANE bool next_place(const PlacedShape &shape, uint32_t instance, const Ray &ray, double &t) {
   if (t == ray.tmin)
     return intersect_quadric(shape, ray, ray.skip_instance == instance, t);
   Ray rest = ray;
@@ -55,7 +55,7 @@ struct alignas(32) MeshRay {
   double shear[4]; // direction over its largest component; then one over that
   double d[4], q[4];
   double t0, unit, inverse_unit;
-  uint32_t kx, ky, kz;
+  RayAxes axes;
 };
 
 struct alignas(64) Slot {
@@ -79,22 +79,22 @@ struct alignas(64) Slot {
 };
 
 // Rounds outwards: a parameter beyond the float's last digit must not be cut off.
-LANCER_SIMD float round_up(double x) { return static_cast<float>(x + 0x1p-22 * magnitude(x)); }
-LANCER_SIMD float round_down(double x) { return static_cast<float>(x - 0x1p-22 * magnitude(x)); }
+LANCER_LANE float round_up(double x) { return static_cast<float>(x + 0x1p-22 * abs(x)); }
+LANCER_LANE float round_down(double x) { return static_cast<float>(x - 0x1p-22 * abs(x)); }
 
 // Directions below 2^-66 of the largest component move a ray by less than 2^-63 of the box frame: kBoxPad covers taking them
 // for 2^-66, and no infinity times zero can arise.
-LANCER_SIMD float inverse_component(double d) {
+LANCER_LANE float inverse_component(double d) {
   const float x = static_cast<float>(d);
   return __builtin_fabsf(x) < 0x1p-66f ? __builtin_copysignf(0x1p66f, x) : 1.0f / x;
 }
 
-LANCER_SIMD float slab_end(const Slab &s, double t) {
-  return round_up(((t - s.t0) + 0x1p-51 * (magnitude(t) + magnitude(s.t0))) * s.inverse_unit * s.scale);
+LANCER_LANE float slab_end(const Slab &s, double t) {
+  return round_up(((t - s.t0) + 0x1p-51 * (abs(t) + abs(s.t0))) * s.inverse_unit * s.scale);
 }
 
 template <class AnyRay>
-LANCER_SIMD void make_slab(const PlacementFrame &frame, const AnyRay &ray, double tmin, double tmax, Slab &slab) {
+LANCER_LANE void make_slab(const PlacementFrame &frame, const AnyRay &ray, double tmin, double tmax, Slab &slab) {
   slab.octant = 0;
   for (uint32_t axis = 0; axis < 3; ++axis) {
     const float inverse = inverse_component(ray.d[axis]);
@@ -105,19 +105,18 @@ LANCER_SIMD void make_slab(const PlacementFrame &frame, const AnyRay &ray, doubl
   slab.t0 = ray.t0;
   slab.inverse_unit = ray.inverse_unit;
   slab.scale = frame.scale;
-  slab.tau_min =
-      round_down(((tmin - ray.t0) - 0x1p-51 * (magnitude(tmin) + magnitude(ray.t0))) * ray.inverse_unit * frame.scale);
+  slab.tau_min = round_down(((tmin - ray.t0) - 0x1p-51 * (abs(tmin) + abs(ray.t0))) * ray.inverse_unit * frame.scale);
   slab.tau_max = slab_end(slab, tmax);
 }
 
-LANCER_SIMD void push(Slot &s, float entry, uint32_t child) {
+LANCER_LANE void push(Slot &s, float entry, uint32_t child) {
   s.entries[s.size] = entry;
   s.children[s.size] = child;
   ++s.size;
 }
 
 // Takes up what waits on top of the stack, and starts loading it.
-LANCER_SIMD void go_on(Slot &s) {
+LANCER_LANE void go_on(Slot &s) {
   const uint32_t child = s.children[--s.size];
   s.kind = child >> kBvhKindShift;
   s.at = s.arrays[s.kind] + size_t{child & kBvhPlace} * kBvhStep;
@@ -126,17 +125,11 @@ LANCER_SIMD void go_on(Slot &s) {
 }
 
 // Forgets what waits behind the best hit.
-LANCER_SIMD void shorten(Slot &s) {
+LANCER_LANE void shorten(Slot &s) {
   s.slab.tau_max = slab_end(s.slab, s.best.t);
-  const F8 limit = splat8(s.slab.tau_max);
   uint32_t kept = s.base;
-  for (uint32_t i = s.base; i < s.size; i += 8) {
-    const F8 entry = load8_anywhere(s.entries + i);
-    const uint32_t rest = s.size - i;
-    const uint32_t mask = less_equal(entry, limit) & (rest >= 8 ? 255u : (1u << rest) - 1);
-    compress8(s.entries + kept, s.children + kept, entry, s.children + i, mask);
-    kept += static_cast<uint32_t>(__builtin_popcount(mask));
-  }
+  for (uint32_t i = s.base; i < s.size; i += 8)
+    kept += keep_below(s.entries + kept, s.children + kept, s.entries + i, s.children + i, s.size - i, s.slab.tau_max);
   s.size = kept;
 }
 
