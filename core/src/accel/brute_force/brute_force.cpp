@@ -1,4 +1,4 @@
-#include "accel/brute_force/brute_force.h"
+#include "accel/kinds.h"
 
 #include "accel/hit_tests.h"
 #include "accel/placed_scene.h"

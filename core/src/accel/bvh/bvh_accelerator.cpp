@@ -1,7 +1,7 @@
-#include "accel/bvh/bvh_accelerator.h"
+#include "accel/kinds.h"
 
+#include "accel/bvh/bvh_build.h"
 #include "accel/bvh/bvh_kernel.h"
-#include "accel/bvh/mesh_bvh.h"
 #include "accel/huge_pages.h"
 #include "accel/parallel.h"
 #include "accel/placed_scene.h"

@@ -1,4 +1,4 @@
-#include "accel/bvh/bvh_split.h"
+#include "accel/bvh/bvh_build.h"
 
 #include "accel/parallel.h"
 

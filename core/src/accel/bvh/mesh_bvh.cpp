@@ -1,7 +1,5 @@
-#include "accel/bvh/mesh_bvh.h"
-
 #include "accel/bvh/bvh_build.h"
-#include "accel/bvh/bvh_split.h"
+
 #include "accel/parallel.h"
 
 #include <limits>

@@ -1,4 +1,4 @@
-#include "accel/coplanar/cover.h"
+#include "accel/coplanar/coplanar_faces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -42,8 +42,8 @@ inline bool boxes_meet(const glm::dvec3 &low, const glm::dvec3 &high, const glm:
 template <class Use> void for_each_plane_cell(const FlatFace &face, double rounding, double step, Use &&use) {
   constexpr double kNormalCells = 16.0;
   // No face that anyone models is upright on it: so a direction and its opposite always lie on different sides.
-  const glm::dvec3 awry(0.5432, 0.7531, 0.3711);
-  const glm::dvec3 n = glm::dot(face.n, awry) < 0.0 ? -face.n : face.n;
+  const glm::dvec3 reference(0.5432, 0.7531, 0.3711);
+  const glm::dvec3 n = glm::dot(face.n, reference) < 0.0 ? -face.n : face.n;
   const double turned = 0x1p-20 + rounding / face.height;
   const double reach = std::abs(face.p.x) + std::abs(face.p.y) + std::abs(face.p.z);
   const double side = kNormalCells * turned, offset = (rounding + turned * reach) / step;

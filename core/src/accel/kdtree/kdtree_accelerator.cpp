@@ -1,4 +1,4 @@
-#include "accel/kdtree/kdtree_accelerator.h"
+#include "accel/kinds.h"
 
 #include "accel/hit_tests.h"
 #include "accel/kdtree/kdtree.h"
