@@ -1,6 +1,9 @@
 // Pictures: texels, neighbours, edges, curves and alpha, against what is stored.
 #include "nodes_lab.h"
 
+#include "nodes/image.h"
+#include "nodes/image_view.h"
+
 #include <cmath>
 
 using namespace lancer_test;

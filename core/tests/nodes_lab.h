@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accel/accelerator.h"
+#include "nodes/run.h"
 #include "scene/camera.h"
 #include "scene/error.h"
 #include "scene/scene.h"

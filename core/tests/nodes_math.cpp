@@ -1,7 +1,7 @@
 // Math, Vector Math, Mapping and the colour nodes against closed forms in double, over pairs of values with all signs.
 #include "nodes_lab.h"
 
-#include "scene/node_site.h"
+#include "nodes/math_nodes.h"
 
 #include <cmath>
 #include <functional>

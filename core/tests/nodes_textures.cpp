@@ -4,8 +4,8 @@
 #include "nodes/curves.h"
 #include "nodes/gradient.h"
 #include "nodes/noise.h"
+#include "nodes/run.h"
 #include "nodes/voronoi.h"
-#include "scene/node_site.h"
 
 #include <cmath>
 #include <limits>
@@ -247,19 +247,21 @@ TEST(NodesCurves, RefusesWhatIsNoTable) {
   EXPECT_EQ(refusal(std::move(description), 0), "test: node 0: image 0 is no row of floating point texels");
 }
 
+glm::vec4 grey(float value) { return {value, value, value, 1.0f}; }
+
 TEST(NodesObjectInfo, TellsWhatWasGiven) {
   Stage stage({2, 0, 0, 5, 0, 2, 0, 6, 0, 0, 2, 7});
   stage.description.geometry.instances[0].object_index = 9;
   EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_COLOR)}), glm::vec4(1.0f));
-  EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_RANDOM)}), scalar(0.0f));
+  EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_RANDOM)}), grey(0.0f));
   stage.description.instances_given = 1;
   const float info[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f};
   set_object_infos(stage.description, 1, info);
   EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_COLOR)}), glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
-  EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_RANDOM)}), scalar(0.5f));
-  EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_INDEX)}), scalar(9.0f));
+  EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_RANDOM)}), grey(0.5f));
+  EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_INDEX)}), grey(9.0f));
   stage.normalise({1.0, 1.0, 1.0}, 0.25);
-  EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_LOCATION)}), solid({5.0f, 6.0f, 7.0f}));
+  EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_LOCATION)}), glm::vec4(5.0f, 6.0f, 7.0f, 1.0f));
   // The world is no object.
   EXPECT_EQ(stage.value_at({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_COLOR)}, nullptr), glm::vec4(0.0f));
   EXPECT_THROW(set_object_infos(stage.description, 2, info), std::exception);

@@ -4,6 +4,7 @@
 
 #include "integrator/sample.h"
 #include "integrator/texture_prefetch.h"
+#include "nodes/image.h"
 #include "scene/surface.h"
 
 #include <cmath>

@@ -28,7 +28,7 @@ inline std::shared_ptr<const KeptPlan> keep(const MicrofacetPlan<float> &plan) {
 // The plan of each lane. All are of one kind of lobe.
 template <class F> struct LanePlans {
   static constexpr int kWidth = LanesOf<F>::kWidth;
-  const KeptPlan *of[kWidth];
+  const KeptPlan *of[kWidth] = {};
   bool same = true; // all lanes have one
 
   // A number of every lane's plan.

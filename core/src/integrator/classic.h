@@ -33,7 +33,8 @@ public:
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
         shadows_(scene, camera, settings), cone_(camera), passes_(settings), ambient_(ambient_light(scene, camera)) {
     // Kernels make the picture and what the first surface says, nothing else.
-    if (!settings.all_features && !settings.environment_reflections && !passes_.data() && !passes_.features())
+    if (!settings.all_features && !settings.environment_reflections && !passes_.wanted() && !passes_.mist() &&
+        !passes_.features())
       lanes_ = std::make_unique<ClassicLanes>(scene);
   }
 

@@ -232,8 +232,9 @@ void ClassicIntegrator::leave_lane(uint32_t lane, const Branch &branch, const Hi
     // The lobes' normals, each with its weight.
     const glm::vec3 ns = get(block.viewer_ns, lane);
     const glm::vec3 sum = ns * mean(get(block.kd, lane)) + ns * mean(get(block.ks, lane));
-    record_first_surface(scene_, settings_, surface_of(lane, hit), &material, sum == glm::vec3(0.0f) ? ns : glm::normalize(sum),
-                         branch.passed + hit.t, result);
+    const Surface surface = surface_of(lane, hit);
+    record_place(scene_, surface, &material, branch.passed + hit.t, result);
+    record_first_surface(scene_, settings_, surface, sum == glm::vec3(0.0f) ? ns : glm::normalize(sum), result);
   }
   if (lanes_->materials[lanes_->material_of[lane]].shines)
     add_own_light(lane, branch, material, result);

@@ -23,17 +23,17 @@ void forget_place(SampleResult &result) {
   result.object_index = result.material_index = 0.0f;
 }
 
-void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
-                          double t, SampleResult &result) {
-  record_first_surface(scene, settings, surface, shaded.material, mean_normal(shaded.bsdf), t, result);
-}
-
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
-                          const Material *material, const glm::vec3 &normal, double t, SampleResult &result) {
-  record_place(scene, surface, material, t, result);
+                          const glm::vec3 &normal, SampleResult &result) {
   result.normal = normal;
   if (settings.passes & 1u << LANCER_PASS_UV)
     result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
+}
+
+void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
+                          double t, SampleResult &result) {
+  record_place(scene, surface, shaded.material, t, result);
+  record_first_surface(scene, settings, surface, mean_normal(shaded.bsdf), result);
 }
 
 bool cut_hole(const Scene &scene, const Surface &surface, const glm::vec3 &weight, Shaded &shaded, SampleResult &result) {
@@ -51,10 +51,9 @@ bool cut_hole(const Scene &scene, const Surface &surface, const glm::vec3 &weigh
 
 void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
                  const Surface &surface, const Shaded &shaded, const glm::vec3 &weight, SampleResult &result) {
-  if (!passes.data())
-    return;
-  result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * shaded.opacity());
-  for (uint32_t component = 0; component < 3 && passes.wanted(); ++component)
+  if (passes.mist())
+    result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * shaded.opacity());
+  for (uint32_t component = 0; component < 3 && passes.components(); ++component)
     result.light[kLightComponents + 3 * component + 2] += weight * shaded.bsdf.shown(Component(component));
 }
 
@@ -67,7 +66,9 @@ float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings
   if (!(settings.mist_depth > 0.0f))
     return 0.0f;
   const double ratio = std::clamp((distance - double(settings.mist_start)) / double(settings.mist_depth), 0.0, 1.0);
-  return pow(float(ratio), settings.mist_falloff);
+  // The falloffs that Blender offers.
+  const float x = float(ratio), falloff = settings.mist_falloff;
+  return falloff == 1.0f ? x : falloff == 2.0f ? x * x : falloff == 0.5f ? std::sqrt(x) : pow(x, falloff);
 }
 
 } // namespace lancer

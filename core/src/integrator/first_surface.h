@@ -12,12 +12,12 @@ namespace lancer {
 void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result);
 // As if it had met nothing.
 void forget_place(SampleResult &result);
-// Fills all that the first surface says about the pixel.
+// All that the first surface says about the pixel.
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
                           double t, SampleResult &result);
-// material may be null; normal: the mean of the lobes'.
+// Fills what else the first surface says about the pixel. normal: the mean of the lobes'.
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
-                          const Material *material, const glm::vec3 &normal, double t, SampleResult &result);
+                          const glm::vec3 &normal, SampleResult &result);
 
 // Takes what a holdout leaves out of the picture: a hole of `weight`. False where nothing of the surface is left, not even what
 // passes straight through it.

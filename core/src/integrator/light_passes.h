@@ -17,18 +17,25 @@ struct WaitingLight {
 class LightPasses {
 public:
   explicit LightPasses(const IntegratorSettings &settings)
-      : wanted_((settings.passes & kAnyLight) != 0), occlusion_((settings.passes & 1u << LANCER_PASS_AMBIENT_OCCLUSION) != 0),
-        data_((settings.passes & kAnyData) != 0), features_((settings.passes & kAnyFeature) != 0) {}
+      : wanted_((settings.passes & kAnyLight) != 0), components_((settings.passes & kAnyComponent) != 0),
+        occlusion_((settings.passes & 1u << LANCER_PASS_AMBIENT_OCCLUSION) != 0),
+        mist_((settings.passes & 1u << LANCER_PASS_MIST) != 0), features_((settings.passes & kAnyFeature) != 0),
+        places_((settings.passes & kPlaces) != 0), only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
 
+  // SampleResult::light is asked for, or a part of it.
   bool wanted() const { return wanted_; }
+  // Light by component, or its colour.
+  bool components() const { return components_; }
   bool occlusion() const { return occlusion_; }
-  // Passes that describe surfaces, other than the first one's place.
-  bool data() const { return data_; }
+  bool mist() const { return mist_; }
   bool features() const { return features_; }
+  // Where the first surface is, which sample 0 says; and nothing else beside the picture.
+  bool places() const { return places_; }
+  bool only_places() const { return only_places_; }
 
   // Light that came by a first scattering with these shares.
   void add(SampleResult &result, const glm::vec3 &light, const glm::vec3 (&share)[2], bool indirect) const {
-    if (!wanted_)
+    if (!components_)
       return;
     const uint32_t first = kLightComponents + (indirect ? 1u : 0u);
     const glm::vec3 diffuse = light * share[0], glossy = light * share[1];
@@ -43,16 +50,19 @@ public:
   }
   // Scales all indirect light, as clamping does.
   void scale_indirect(SampleResult &result, float factor) const {
-    for (uint32_t component = 0; component < 3 && wanted_; ++component)
+    for (uint32_t component = 0; component < 3 && components_; ++component)
       result.light[kLightComponents + 3 * component + 1] *= factor;
   }
 
 private:
   static constexpr uint32_t kAnyLight = (1u << (LANCER_PASS_TRANSMISSION_COLOR + 1)) - (1u << LANCER_PASS_EMISSION);
-  static constexpr uint32_t kAnyData = kAnyLight | 1u << LANCER_PASS_MIST;
+  static constexpr uint32_t kAnyComponent = (1u << (LANCER_PASS_TRANSMISSION_COLOR + 1)) - (1u << LANCER_PASS_DIFFUSE_DIRECT);
   static constexpr uint32_t kAnyFeature =
       1u << LANCER_PASS_ALBEDO | 1u << LANCER_PASS_DENOISING_NORMAL | 1u << LANCER_PASS_DENOISING_DEPTH;
-  bool wanted_, occlusion_, data_, features_;
+  static constexpr uint32_t kPlaces =
+      1u << LANCER_PASS_DEPTH | 1u << LANCER_PASS_POSITION | 1u << LANCER_PASS_OBJECT_INDEX | 1u << LANCER_PASS_MATERIAL_INDEX;
+  static constexpr uint32_t kAlways = 1u << LANCER_PASS_COMBINED | 1u << LANCER_PASS_ERROR;
+  bool wanted_, components_, occlusion_, mist_, features_, places_, only_places_;
 };
 
 } // namespace lancer

@@ -17,6 +17,8 @@ constexpr uint32_t kRouletteAfter = 2;
 
 void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                          std::vector<PathVertex> *trace) {
+  // Only the first samples of pixels tell of places.
+  picture_alone_ = passes_.only_places() && (!passes_.places() || addresses.front().sample > 0);
   // Start one path per sample.
   generate(addresses, results);
   energy_ = {};
@@ -122,13 +124,14 @@ void PathIntegrator::record(const Path &path, const Surface &surface, const Mate
                             const glm::vec3 &opacity, double t, SampleResult &result) {
   // A surface that is hardly there gives way to the next one, unless the path ends on it.
   Record &record = records_[path.slot];
-  if (!record.seen && mean(opacity) >= settings_.alpha_threshold) {
-    record_first_surface(scene_, settings_, surface, &material, normal, record.depth + t, result);
-    record.seen = true;
-  } else if (!record.seen) {
+  const bool here = !record.seen && mean(opacity) >= settings_.alpha_threshold;
+  // The first sample of a pixel tells the place.
+  if (!record.seen && path.sampler.sample() == 0)
     record_place(scene_, surface, &material, record.depth + t, result);
-  }
-  if (passes_.data())
+  if (here)
+    record_first_surface(scene_, settings_, surface, normal, result);
+  record.seen |= here;
+  if (passes_.mist())
     result.mist += (1.0f - mist_at(scene_, camera_, settings_, surface)) * mean(path.beta * opacity);
 }
 

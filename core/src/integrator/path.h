@@ -8,7 +8,6 @@
 #include "integrator/layers_met.h"
 #include "integrator/light_passes.h"
 #include "integrator/path_story.h"
-#include "integrator/picture_kernel.h"
 #include "integrator/sample.h"
 #include "integrator/scene_lights.h"
 #include "integrator/shading.h"
@@ -26,16 +25,18 @@ public:
   PathIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings), lanes_(vertex_kernel()),
-        picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED), clear_(scene.geometry),
+        node_lanes_(node_kernel()), clear_(scene.geometry),
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
                    std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
-        picture_lanes_(picture_kernel()), late_(settings.max_bounces), queues_(scene), values_(shader_.values().size()),
+        late_(settings.max_bounces), queues_(scene), values_(shader_.values().size()),
         lobes_(lanes_.lobes_bytes / sizeof(Lobes) + 1) {
     if (scene.lights.environment().varies())
-      sky_ = scene.lights.environment().wide();
+      sky_ = scene.lights.environment().map();
     block_.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
+    nodes_.scene = world_nodes_.scene = shader_.node_scene();
+    world_nodes_.surface = false;
     block_.lobes = reinterpret_cast<std::byte *>(lobes_.data());
-    block_.shares_wanted = block_.wants_shown = passes_.wanted();
+    block_.shares_wanted = block_.wants_shown = passes_.components();
     block_.wants_normal = settings.passes >> LANCER_PASS_NORMAL & 1;
     block_.wants_matt_normal = passes_.occlusion();
     block_.wants_mixture = passes_.features();
@@ -120,6 +121,14 @@ private:
   void draw_numbers();
   void find_surfaces();
   void ask_nodes();
+  // Of the values of nodes that were computed last.
+  glm::vec3 value_in_lane(const Parameter &parameter, uint32_t lane) const {
+    if (!parameter.varies())
+      return parameter.value;
+    const auto &value = values_[size_t(parameter.node)].of;
+    return {value[0][lane], value[1][lane], value[2][lane]};
+  }
+  void place_nodes(const Material &material);
   void cut_holes(std::span<SampleResult> results);
   void record_surfaces(std::span<SampleResult> results);
   LightQuery query(uint32_t lane) const;
@@ -136,7 +145,7 @@ private:
   bool is_there(size_t ray, const Hit &hit);
   void pass_clear(size_t number, std::span<SampleResult> results, std::vector<PathVertex> *trace);
   void miss(size_t number, std::span<SampleResult> results);
-  glm::vec3 environment_towards(const Path &path, const glm::dvec3 &wi);
+  void ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lanes);
   void add_environment(const Path &path, double pdf, const glm::vec3 &radiance, SampleResult &result);
   void add_missed(std::span<SampleResult> results);
   void ask_sky(uint32_t lanes);
@@ -165,17 +174,17 @@ private:
   PixelCone cone_;
   LightPasses passes_;
   const VertexKernel &lanes_;
-  bool picture_alone_; // no other pass is asked for: records stay as they begin
-  LayersMet clear_;    // surfaces on the way of which nothing is there
-  bool any_clear_;     // they are passed together; not where passes for denoising add up the ways between them
+  const NodeKernel &node_lanes_;
+  bool picture_alone_ = true; // no other pass is asked for: records stay as they are
+  LayersMet clear_;           // surfaces on the way of which nothing is there
+  bool any_clear_;            // they are passed together; not where passes for denoising add up the ways between them
   VertexBlock block_{};
   WayBlock ways_{};
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane
   uint32_t waiting_count_ = 0;
-  const PictureKernel &picture_lanes_;
-  WideSky sky_;
-  SkyBlock misses_{};
+  DirectionTable sky_;
+  SkyBlock misses_{}, sky_samples_{};
   size_t missed_[kBlockLanes]; // numbers of paths
   uint32_t missed_count_ = 0;
   // The queue: paths_[i] travels along rays_[i].
@@ -187,13 +196,11 @@ private:
   LateLight late_;
   ShadingQueues queues_; // paths by the class of the material that they have met
   // Scratch of the block: what nodes say, and the lobes.
-  struct alignas(64) Values {
-    float of[4][kBlockLanes];
-  };
   struct alignas(64) Lobes {
     std::byte of[64];
   };
-  std::vector<Values> values_;
+  NodeBlock nodes_, world_nodes_;
+  std::vector<NodeLanes> values_;
   std::vector<Lobes> lobes_;
   Shaded clear_point_; // of a surface of which nothing is there
 };

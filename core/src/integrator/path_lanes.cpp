@@ -9,6 +9,8 @@
 
 namespace lancer {
 
+static_assert(kBlockLanes == kNodeLanes);
+
 void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const Path &path = paths_[number];
   const Hit &hit = hits_[number];
@@ -118,32 +120,50 @@ void PathIntegrator::ask_nodes() {
   const Material &material = *block_.material[0];
   if (material.fixed())
     return;
-  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
-    Waiting &waiting = waiting_[lane];
-    const Hit &hit = hits_[waiting.number];
-    const Surface surface = surface_of(lane);
-    const double way = paths_[waiting.number].length + hit.t * block_.length[lane];
-    const double unit = block_.length[lane];
-    shader_.run_surface_nodes(material, surface,
-                              {.wo = get(block_.wo, lane),
-                               .footprint = float(cone_.base + way * cone_.spread),
-                               .path = light_path(paths_[waiting.number], (hit.t - rays_[waiting.number].tmin) * unit)});
-    for (const uint16_t node : material.surface_nodes)
-      for (int i = 0; i < 4; ++i)
-        values_[node].of[i][lane] = shader_.values()[node][i];
+  if (!material.surface_nodes.empty()) {
+    place_nodes(material);
+    node_lanes_.run(material.program, material.surface_nodes, nodes_, values_.data());
   }
   for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
     const Material &of = *block_.material[lane];
-    const auto value = [&](const Parameter &parameter) {
-      if (!parameter.varies())
-        return parameter.value;
-      const auto &node = values_[size_t(parameter.node)].of;
-      return glm::vec3(node[0][lane], node[1][lane], node[2][lane]);
-    };
     Waiting &waiting = waiting_[lane];
-    waiting.emission = value(of.emission);
-    waiting.transmittance = of.transmits() ? glm::max(value(of.transmittance), 0.0f) : glm::vec3(0.0f);
+    waiting.emission = value_in_lane(of.emission, lane);
+    waiting.transmittance = of.transmits() ? glm::max(value_in_lane(of.transmittance, lane), 0.0f) : glm::vec3(0.0f);
     block_.through[lane] = mean(waiting.transmittance);
+  }
+}
+
+// Where nodes are asked: at the surfaces of all lanes, with both normals on the viewer's side.
+void PathIntegrator::place_nodes(const Material &material) {
+  nodes_.used = (1u << waiting_count_) - 1u;
+  float side[kBlockLanes];
+  nodes_.backfacing = 0;
+  for (int lane = 0; lane < kBlockLanes; ++lane) {
+    const float facing = block_.ng[0][lane] * block_.wo[0][lane] + block_.ng[1][lane] * block_.wo[1][lane] +
+                         block_.ng[2][lane] * block_.wo[2][lane];
+    side[lane] = facing < 0.0f ? -1.0f : 1.0f;
+    nodes_.backfacing |= uint32_t(facing < 0.0f) << lane;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      nodes_.p[axis][lane] = block_.p[axis][lane];
+      nodes_.wo[axis][lane] = block_.wo[axis][lane];
+      nodes_.ns[axis][lane] = side[lane] * block_.ns[axis][lane];
+      nodes_.ng[axis][lane] = side[lane] * block_.ng[axis][lane];
+    }
+  for (uint32_t lane = 0; lane < waiting_count_; ++lane) {
+    const size_t number = waiting_[lane].number;
+    const Path &path = paths_[number];
+    const Hit &hit = hits_[number];
+    const double unit = block_.length[lane], way = path.length + hit.t * unit;
+    const bool on_mesh = block_.on_mesh >> lane & 1;
+    nodes_.instance[lane] = hit.instance;
+    nodes_.primitive[lane] = hit.primitive;
+    nodes_.bary[0][lane] = on_mesh ? hit.u : 0.0;
+    nodes_.bary[1][lane] = on_mesh ? hit.v : 0.0;
+    nodes_.footprint[lane] = float(cone_.base + way * cone_.spread);
+    if (material.program.asks_light_path)
+      put(light_path(path, (hit.t - rays_[number].tmin) * unit), nodes_, lane);
   }
 }
 
@@ -157,8 +177,7 @@ void PathIntegrator::cut_holes(std::span<SampleResult> results) {
     const Path &path = paths_[waiting.number];
     if (path.in_view) {
       const Parameter &holdout = block_.material[lane]->holdout;
-      const float share =
-          std::clamp(holdout.varies() ? values_[size_t(holdout.node)].of[0][lane] : holdout.value.x, 0.0f, 1.0f);
+      const float share = std::clamp(value_in_lane(holdout, lane).x, 0.0f, 1.0f);
       if (scene_.geometry.instances[hits_[waiting.number].instance].holdout) {
         // All that the object would show becomes the hole.
         results[path.slot].alpha -= mean(path.beta * waiting.opacity());
@@ -182,7 +201,7 @@ void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
     if (waiting_[lane].nothing)
       continue;
     seen |= uint32_t(path.in_view) << lane;
-    featured |= uint32_t(records_[path.slot].features.open) << lane;
+    featured |= uint32_t(passes_.features() && records_[path.slot].features.open) << lane;
   }
   if (!(seen | featured))
     return;
@@ -196,7 +215,7 @@ void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
     SampleResult &result = results[path.slot];
     if (seen >> lane & 1) {
       record(path, surface_of(lane), *block_.material[lane], get(block_.normal, lane), waiting.opacity(), hit.t, result);
-      for (uint32_t component = 0; component < 3 && passes_.wanted(); ++component)
+      for (uint32_t component = 0; component < 3 && passes_.components(); ++component)
         result.light[kLightComponents + 3 * component + 2] += path.beta * get(block_.shown[component], lane);
     }
     if (featured >> lane & 1)
@@ -323,7 +342,7 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   const Path &path = paths_[waiting.number];
   const glm::vec3 contribution = get(block_.contribution, lane);
   WaitingLight shares;
-  for (int component = 0; component < 2 && passes_.wanted(); ++component)
+  for (int component = 0; component < 2 && passes_.components(); ++component)
     shares.share[component] = path.in_view ? get(block_.light_share[component], lane) : records_[path.slot].share[component];
   if (scene_.lights.no_shadow(waiting.choice.light)) {
     shares.slot = path.slot;
@@ -332,7 +351,7 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   }
   const double infinity = std::numeric_limits<double>::infinity();
   Ray &ray = shadows_.push(path.slot, contribution, path.scatterings > 0, path.passed_through);
-  if (passes_.wanted())
+  if (passes_.components())
     shadows_.set_shares(shares.share);
   if (block_.lifted >> lane & 1) {
     LightSample sample;
@@ -361,7 +380,7 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
   const glm::vec3 emission = waiting.emission + get(block_.emission, lane);
   if (emission != glm::vec3(0.0f))
     add_emission(path, surface_of(lane), emission, result);
-  if (DenoisingFeatures &features = records_[path.slot].features; features.open)
+  if (DenoisingFeatures &features = records_[path.slot].features; passes_.features() && features.open)
     add_denoising_features(scene_, camera_, waiting.mixture, get(block_.wo, lane), waiting.transmittance,
                            hit.t * block_.length[lane], features, result);
   if (path.last)
@@ -380,7 +399,7 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
     return;
   Path &next = next_paths_.emplace_back(path.sampler, path.slot);
   next.in_view = path.in_view && stays_in_view(lane);
-  if (path.in_view && !next.in_view && passes_.wanted())
+  if (path.in_view && !next.in_view && passes_.components())
     for (int component = 0; component < 2; ++component)
       records_[path.slot].share[component] = get(block_.share[component], lane);
   next.beta = beta;

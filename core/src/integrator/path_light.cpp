@@ -13,7 +13,7 @@ namespace lancer {
 void PathIntegrator::add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment) {
   // Light that was scattered at most once is direct; clamping never touches it.
   const bool indirect = path.scatterings > 1;
-  if (const DenoisingFeatures &features = records_[path.slot].features; features.open)
+  if (const DenoisingFeatures &features = records_[path.slot].features; passes_.features() && features.open)
     result.albedo += features.beta * radiance;
   // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
   if (path.in_view) {

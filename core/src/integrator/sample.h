@@ -54,22 +54,22 @@ enum LightPass : uint32_t {
   kLightPasses = 12
 };
 
-// What one sample adds to the film.
+// What one sample adds to the film: nothing but floats, those that are summed in the order of their passes.
 struct SampleResult {
   glm::vec3 radiance{0.0f};
   float alpha = 0.0f;
   glm::vec3 normal{0.0f};
   glm::vec3 albedo{0.0f};
+  glm::vec3 uv{0.0f};
+  float mist = 0.0f;
+  // Parts of radiance, where settings ask for them; colours are their divisors. Elsewhere nobody reads them.
+  glm::vec3 light[kLightPasses];
+  glm::vec3 denoising_normal{0.0f}; // camera space
+  float denoising_depth = 0.0f;
   // Where the camera ray ended.
   float depth = 1e10f; // scene units along the camera's z; 1e10: nothing there
   glm::vec3 position{0.0f};
   float object_index = 0.0f, material_index = 0.0f;
-  glm::vec3 uv{0.0f};
-  float mist = 0.0f;
-  glm::vec3 denoising_normal{0.0f}; // camera space
-  float denoising_depth = 0.0f;
-  // Parts of radiance, where settings ask for them; colours are their divisors. Elsewhere nobody reads them.
-  glm::vec3 light[kLightPasses];
 
   explicit SampleResult(bool with_light = false) {
     if (with_light)

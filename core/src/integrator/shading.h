@@ -3,6 +3,7 @@
 
 #include "bsdf/principled.h"
 #include "lights/light.h"
+#include "nodes/run.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -38,10 +39,6 @@ public:
   Shader(const Scene &scene, const Camera *camera);
 
   void shade(const Surface &surface, const View &view, Shaded &result);
-  // Computes what the nodes of a material's surface say, for values().
-  void run_surface_nodes(const Material &material, const Surface &surface, const View &view) {
-    run_nodes(material, material.surface_nodes, surface, view);
-  }
   // Share of a shadow ray's light that passes straight on.
   glm::vec3 transmittance(const Ray &ray, const Hit &hit);
   // Whether there is anything of a surface of a mesh whose cutout may end; where not, light passes as if there were no surface.
@@ -50,6 +47,7 @@ public:
   glm::vec3 emission(const Surface &surface, const glm::vec3 &wo);
   std::span<glm::vec4> values() { return values_; }
   const Camera *camera() const { return context_.camera; }
+  const NodeScene &node_scene() const { return context_; }
   // Looks at surfaces of this geometry instead of the scene's; it must outlive the shader.
   void set_geometry(const Geometry &geometry) { context_.geometry = &geometry; }
   // The value of one node of a material at a surface.

@@ -1,6 +1,7 @@
 #include "integrator/texture_prefetch.h"
 
 #include "lancer.h"
+#include "nodes/image.h"
 #include "scene/attribute.h"
 #include "scene/image.h"
 #include "scene/surface.h"

@@ -154,7 +154,8 @@ void add_described(const VertexBlock &block, int first, size_t number, Bsdf<F> &
   LaneLobes<F> ready;
   ready.inside = bits(bsdf.inside);
   ready.same = all_same(materials);
-  for (int i = 0; i < kLanes; ++i)
+  ready.of[0] = &materials[0]->ready[number];
+  for (int i = 1; i < kLanes && !ready.same; ++i)
     ready.of[i] = &materials[i]->ready[number];
   const bool fixed = materials[0]->fixed();
   const ParameterReader<F, NodeValues> read{{block, first}};

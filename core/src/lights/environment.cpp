@@ -1,6 +1,7 @@
 #include "lights/environment.h"
 
 #include "accel/parallel.h"
+#include "nodes/run.h"
 #include "sampling/color.h"
 
 #include <cmath>

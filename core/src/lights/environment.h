@@ -3,10 +3,14 @@
 
 #include "accel/accelerator.h"
 #include "lights/light.h"
-#include "lights/wide_sky.h"
+#include "nodes/light_path.h"
+#include "sampling/direction_map.h"
 #include "scene/world.h"
 
 namespace lancer {
+
+struct Camera;
+struct Normalisation;
 
 // The map by which directions are sampled: its cells, and how often each is looked at along each of its sides.
 struct MapSize {
@@ -44,7 +48,7 @@ public:
   double pdf(const glm::dvec3 &wi) const { return varies() ? map_.pdf(glm::vec3(wi)) : 0.0; }
 
   // For kernels, as long as this is neither changed nor moved; only where it varies.
-  WideSky wide() const { return make_wide_sky(*world_, *images_, map_); }
+  DirectionTable map() const { return map_.table(); }
 
   size_t bytes() const { return map_.bytes(); }
 

@@ -145,10 +145,23 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
   }
 }
 
+[[gnu::flatten]] void sample_sky(const DirectionTable &map, SkyBlock &block) {
+  for (int first = 0; first < kWays; first += kLanes) {
+    const DirectionSample<F> sample = sample_direction(map, load(block.u[0] + first), load(block.u[1] + first));
+    store3(block.wi, first, sample.direction);
+    store(block.pdf + first, sample.pdf);
+  }
+}
+
+[[gnu::flatten]] void sky_density(const DirectionTable &map, SkyBlock &block) {
+  for (int first = 0; first < kWays; first += kLanes)
+    store(block.pdf + first, direction_pdf<F>(map, place_of(narrow(load3(block.wi, first)))));
+}
+
 } // namespace
 
 namespace LANCER_ISA {
-const LightKernel light_kernel = {LANCER_ISA_NAME, choose, probability, along};
+const LightKernel light_kernel = {LANCER_ISA_NAME, choose, probability, along, sample_sky, sky_density};
 }
 
 } // namespace lancer

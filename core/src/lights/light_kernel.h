@@ -5,6 +5,7 @@
 #include "accel/kernel_choice.h"
 #include "lights/light_branch.h"
 #include "lights/way_block.h"
+#include "sampling/direction_table.h"
 
 namespace lancer {
 
@@ -17,6 +18,9 @@ struct LightKernel {
   // Calls visit(context, lane, light) for all that the first count ways may meet; no other light is met.
   using Visit = void (*)(void *context, uint32_t lane, uint32_t light);
   void (*along)(const LightBranches &tree, const WayBlock &ways, uint32_t count, Visit visit, void *context);
+  // Samples directions of the environment from the numbers u; asks for the density of those given.
+  void (*sample_sky)(const DirectionTable &map, SkyBlock &block);
+  void (*sky_density)(const DirectionTable &map, SkyBlock &block);
 };
 
 // Each is the same source, light_kernel.cpp, compiled with LANCER_ISA set to the name.

@@ -20,7 +20,7 @@ LANCER_LANE void sample_light(const L<F> &light, const Double3Of<F> &p, F u, F v
   sample.pdf = select(asked, DoubleOf<F>(0.0), sample.pdf);
   sample.delta = sample.delta & !asked;
   if (any(area))
-    sample_area(light, p, u, v, disk, area, sample);
+    sample_area(AreaNumbers<F>(light, area), p, u, v, disk, area, sample);
   if (any(round))
     sample_round(light, p, u, v, disk, round, spot, sample);
   if (any(sun))
@@ -34,7 +34,7 @@ LANCER_LANE LightHitLanes<F> meet_light(const OneLight<F> &light, const Double3O
   case LightKind::Sun:
     return meet_sun(light, wi);
   case LightKind::Area:
-    return meet_area(light, o, wi);
+    return meet_area(AreaNumbers<F>(light, is_kind(light.kind(), LightKind::Area)), o, wi);
   default:
     return meet_round(light, o, wi, is_kind(light.kind(), LightKind::Spot));
   }
@@ -45,9 +45,9 @@ template <class F>
 LANCER_LANE MaskOf<F> may_meet(const OneLight<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi, DoubleOf<F> end) {
   switch (light.light.kind) {
   case LightKind::Sun:
-    return is_on_sun(light, one_minus_cos_to(light, wi));
+    return is_on_sun(light[&Light::one_minus_cos_sun], one_minus_cos_to(light, wi));
   case LightKind::Area: {
-    const AreaMeeting<F> at = find_area(light, o, wi);
+    const AreaMeeting<F> at = find_area(AreaNumbers<F>(light, is_kind(light.kind(), LightKind::Area)), o, wi);
     return at.met & (at.t < end);
   }
   default: {

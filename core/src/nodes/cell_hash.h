@@ -2,7 +2,7 @@
 // every number of lanes. U is a uint32_t, or lanes of them; F a float, or lanes of them.
 #pragma once
 
-#include "simd/scalar.h"
+#include "simd/rounding.h"
 
 namespace lancer {
 
@@ -80,8 +80,5 @@ template <class F> LANCER_LANE WordOf<F> cell_of(const F &whole) {
   const MaskOf<F> fits = abs(whole) < F(0x1p31f);
   return select(fits, truncate(select(fits, whole, F(0.0f))), WordOf<F>(0x80000000u));
 }
-
-// Whether a number is one, and not infinite.
-template <class F> LANCER_LANE MaskOf<F> is_finite(const F &x) { return x - x == F(0.0f); }
 
 } // namespace lancer

@@ -23,17 +23,6 @@ template <int N, class F> struct VoronoiFeature {
   Vector3<F> color;
 };
 
-// The power of each lane. A product of lanes' logarithms would lose a dozen bits.
-template <class F> LANCER_LANE F power_of(const F &x, const F &y) {
-  constexpr int kWidth = LanesOf<F>::kWidth;
-  alignas(64) float bases[kWidth], exponents[kWidth];
-  store(bases, x);
-  store(exponents, y);
-  for (int i = 0; i < kWidth; ++i)
-    bases[i] = pow(bases[i], exponents[i]);
-  return load_lanes<kWidth>(bases);
-}
-
 // Distances of one metric are in the same order as these measures of them.
 template <int N, class F> LANCER_LANE F measure_of(const F (&way)[N], const VoronoiShape<F> &shape) {
   if (N == 1)
@@ -51,7 +40,7 @@ template <int N, class F> LANCER_LANE F measure_of(const F (&way)[N], const Voro
       sum = max(sum, abs(way[i]));
       break;
     default:
-      sum = sum + power_of(abs(way[i]), shape.exponent);
+      sum = sum + pow(abs(way[i]), shape.exponent);
     }
   return sum;
 }
@@ -59,7 +48,7 @@ template <int N, class F> LANCER_LANE F distance_of(const F &measure, const Voro
   if (N > 1 && shape.metric == LANCER_VORONOI_EUCLIDEAN)
     return sqrt(measure);
   if (N > 1 && shape.metric == LANCER_VORONOI_MINKOWSKI)
-    return power_of(measure, F(1.0f) / shape.exponent);
+    return pow(measure, F(1.0f) / shape.exponent);
   return measure;
 }
 template <int N, class F> LANCER_LANE F furthest_measure(const VoronoiShape<F> &shape) {
@@ -68,7 +57,7 @@ template <int N, class F> LANCER_LANE F furthest_measure(const VoronoiShape<F> &
     return F(std::numeric_limits<float>::max());
   if (N > 1 && shape.metric == LANCER_VORONOI_EUCLIDEAN)
     return eight * eight;
-  return N > 1 && shape.metric == LANCER_VORONOI_MINKOWSKI ? power_of(eight, shape.exponent) : eight;
+  return N > 1 && shape.metric == LANCER_VORONOI_MINKOWSKI ? pow(eight, shape.exponent) : eight;
 }
 
 // The words that a cell is hashed by: those of its numbers as floats, or as integers.

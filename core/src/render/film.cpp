@@ -14,8 +14,7 @@ namespace lancer {
 namespace {
 
 constexpr float kNothing = 1e10f;
-// A pass has no more channels than these.
-constexpr uint32_t kMostChannels = 4;
+const float *numbers_of(const SampleResult &result) { return &result.radiance.x; }
 
 void join(const std::vector<double> &earlier, std::vector<double> &later) {
   for (size_t i = 0; i < later.size(); ++i)
@@ -36,10 +35,18 @@ Film::Layout::Layout(uint32_t passes) {
     if (!(kept & bit(pass)))
       continue;
     uint32_t &next = of_first_sample(pass) ? first_channels : summed_channels;
-    (of_first_sample(pass) ? first : summed).push_back(pass);
+    add(of_first_sample(pass) ? first : summed, pass, next);
     at[i] = next;
     next += channels(pass);
   }
+}
+
+void Film::Layout::add(std::vector<Run> &runs, Pass pass, uint32_t to) {
+  const uint32_t from = place_in_sample(pass), count = channels(pass);
+  if (!runs.empty() && runs.back().from + runs.back().count == from)
+    runs.back().count += count;
+  else
+    runs.push_back({from, to, count});
 }
 
 // Row by row; of a chessboard every two rows together have as many cells of each colour as they are wide.
@@ -174,9 +181,9 @@ std::pair<uint32_t, uint32_t> Film::sample_range() const {
 void Film::keep_first(Tile &tile, std::span<const SampleResult> results) const {
   tile.first.resize(size_t(tile.pixels()) * layout_.first_channels);
   for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel)
-    for (const Pass pass : layout_.first)
-      copy_channels(results[pixel], pass,
-                    tile.first.data() + size_t(pixel) * layout_.first_channels + layout_.at[uint32_t(pass)]);
+    for (const Layout::Run &run : layout_.first)
+      std::copy_n(numbers_of(results[pixel]) + run.from, run.count,
+                  tile.first.data() + size_t(pixel) * layout_.first_channels + run.to);
 }
 
 // One sample of all pixels, as they are summed.
@@ -189,27 +196,24 @@ void Film::gather(std::span<const SampleResult> results, uint32_t replicate, Sum
     ++brightest;
     light += kReplicates;
     // The picture comes first, and mostly alone.
-    for (int i = 0; i < 3; ++i)
-      to[i] = double(result.radiance[i]);
-    to[3] = double(result.alpha);
-    for (size_t i = 1; i < layout_.summed.size(); ++i)
-      copy_channels(result, layout_.summed[i], to + layout_.at[uint32_t(layout_.summed[i])]);
+    const float *numbers = numbers_of(result);
+    for (uint32_t i = 0; i < 4; ++i)
+      to[i] = double(numbers[i]);
+    if (layout_.summed_channels > 4)
+      for (const Layout::Run &run : layout_.summed)
+        std::copy_n(numbers + run.from, run.count, to + run.to);
     to += layout_.summed_channels;
   }
 }
 
 bool Film::finite(const SampleResult &result) const {
-  const glm::vec3 &radiance = result.radiance;
-  if (!std::isfinite(radiance.x) || !std::isfinite(radiance.y) || !std::isfinite(radiance.z) || !std::isfinite(result.alpha))
-    return false;
-  for (size_t i = 1; i < layout_.summed.size(); ++i) {
-    const Pass pass = layout_.summed[i];
-    float values[kMostChannels];
-    copy_channels(result, pass, values);
-    if (!std::all_of(values, values + channels(pass), [](float value) { return std::isfinite(value); }))
-      return false;
-  }
-  return true;
+  // What is not finite less itself is none.
+  const float *numbers = numbers_of(result);
+  bool all = true;
+  for (const Layout::Run &run : layout_.summed)
+    for (uint32_t i = run.from; i < run.from + run.count; ++i)
+      all &= numbers[i] - numbers[i] == 0.0f;
+  return all;
 }
 
 void Film::read(Pass pass, std::span<float> out) const {

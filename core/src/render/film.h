@@ -91,7 +91,13 @@ private:
   struct Layout {
     explicit Layout(uint32_t passes);
 
-    std::vector<Pass> summed, first;
+    // Channels that stand together in a sample and in the film.
+    struct Run {
+      uint32_t from, to, count;
+    };
+    static void add(std::vector<Run> &runs, Pass pass, uint32_t to);
+
+    std::vector<Run> summed, first;
     std::array<uint32_t, kPassCount> at{}; // of a pass, where its channels begin in its list
     uint32_t summed_channels = 0, first_channels = 0;
   };

@@ -1,5 +1,8 @@
 #include "render/pass.h"
 
+#include <cstddef>
+#include <type_traits>
+
 namespace lancer {
 
 static_assert(uint32_t(LANCER_PASS_EMISSION) + kLightPasses == LANCER_PASS_TRANSMISSION_COLOR + 1);
@@ -43,47 +46,37 @@ uint32_t kept_passes(uint32_t passes) {
   return kept;
 }
 
-template <class Number> void copy_channels(const SampleResult &result, Pass pass, Number *to) {
-  const auto put = [&](const glm::vec3 &v) {
-    for (int i = 0; i < 3; ++i)
-      to[i] = Number(v[i]);
-  };
+#define LANCER_PLACE(member) uint32_t(offsetof(SampleResult, member) / sizeof(float))
+uint32_t place_in_sample(Pass pass) {
+  static_assert(std::is_standard_layout_v<SampleResult> && alignof(SampleResult) == alignof(float));
   switch (pass) {
   case Pass::Combined:
-    put(result.radiance);
-    to[3] = Number(result.alpha);
-    return;
+    return LANCER_PLACE(radiance);
   case Pass::Depth:
-    to[0] = Number(result.depth);
-    return;
+    return LANCER_PLACE(depth);
   case Pass::Normal:
-    return put(result.normal);
+    return LANCER_PLACE(normal);
   case Pass::Albedo:
-    return put(result.albedo);
+    return LANCER_PLACE(albedo);
   case Pass::Position:
-    return put(result.position);
+    return LANCER_PLACE(position);
   case Pass::ObjectIndex:
-    to[0] = Number(result.object_index);
-    return;
+    return LANCER_PLACE(object_index);
   case Pass::MaterialIndex:
-    to[0] = Number(result.material_index);
-    return;
+    return LANCER_PLACE(material_index);
   case Pass::Uv:
-    return put(result.uv);
+    return LANCER_PLACE(uv);
   case Pass::Mist:
-    to[0] = Number(result.mist);
-    return;
+    return LANCER_PLACE(mist);
   case Pass::DenoisingNormal:
-    return put(result.denoising_normal);
+    return LANCER_PLACE(denoising_normal);
   case Pass::DenoisingDepth:
-    to[0] = Number(result.denoising_depth);
-    return;
+    return LANCER_PLACE(denoising_depth);
   default:
-    put(result.light[uint32_t(pass) - uint32_t(Pass::Emission)]);
+    return LANCER_PLACE(light) + 3 * (uint32_t(pass) - uint32_t(Pass::Emission));
   }
 }
-template void copy_channels(const SampleResult &result, Pass pass, float *to);
-template void copy_channels(const SampleResult &result, Pass pass, double *to);
+#undef LANCER_PLACE
 
 glm::dvec3 divide_by_color(const glm::dvec3 &light, const glm::dvec3 &color) {
   glm::dvec3 quotient(0.0);

@@ -37,8 +37,8 @@ Pass divisor(Pass pass);
 // The passes asked for with Combined and all divisors.
 uint32_t kept_passes(uint32_t passes);
 
-// Writes the channels of a sample.
-template <class Number> void copy_channels(const SampleResult &result, Pass pass, Number *to);
+// Where the channels of a pass begin among the floats of a sample.
+uint32_t place_in_sample(Pass pass);
 
 // Light over its colour. A channel without colour gets the mean of the others that have some: grey, where nothing is known.
 glm::dvec3 divide_by_color(const glm::dvec3 &light, const glm::dvec3 &color);

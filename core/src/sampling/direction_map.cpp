@@ -1,38 +1,10 @@
 #include "sampling/direction_map.h"
 
-#include "sampling/angle.h"
 #include "sampling/elementary.h"
 
 #include <glm/gtc/constants.hpp>
 
 namespace lancer {
-
-namespace {
-
-// As WeightedChoice::Choice, but in double.
-struct Entry {
-  uint32_t index;
-  double width; // of its interval
-  double u;     // where the number fell inside
-};
-
-// The entry whose interval sums[i] <= u < sums[i + 1] holds the number; halves what two entries of the guide leave.
-Entry find(const double *sums, const uint32_t *guide, size_t steps, float number) {
-  const double u = double(number);
-  const size_t step = std::min(size_t(u * double(steps)), steps - 1);
-  uint32_t low = guide[step], high = guide[step + 1];
-  while (low < high) {
-    const uint32_t middle = (low + high) / 2;
-    if (sums[middle + 1] > u)
-      high = middle;
-    else
-      low = middle + 1;
-  }
-  const double width = sums[low + 1] - sums[low];
-  return {low, width, std::min((u - sums[low]) / width, kBelowOne)};
-}
-
-} // namespace
 
 DirectionMap::DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights)
     : width_(width), height_(height) {
@@ -68,43 +40,17 @@ void DirectionMap::append(const WeightedChoice &choice, std::vector<double> &sum
 }
 
 DirectionMap::Sample DirectionMap::sample(const glm::vec2 &u) const {
-  // Choose a row, a column in it, and with what is left of both numbers a place in the cell.
-  const Entry row = find(row_sums_.data(), row_guide_.data(), WeightedChoice::guide_steps(height_), u.y);
-  if (!(row.width > 0.0))
-    return {};
-  const size_t steps = WeightedChoice::guide_steps(width_);
-  const Entry column =
-      find(column_sums_.data() + size_t(row.index) * (width_ + 1), column_guide_.data() + row.index * (steps + 1), steps, u.x);
-  return {inside_cell(column.index, row.index, {column.u, row.u}), density(column.index, row.index)};
+  const DirectionSample<float> found = sample_direction(table(), u.x, u.y);
+  return found.pdf > 0.0 ? Sample{found.direction, found.pdf} : Sample{};
 }
 
 double DirectionMap::pdf(const glm::vec3 &direction) const {
-  const glm::dvec3 d(direction);
-  const MapPlace<double> place = place_on_map(d.x, d.y, d.z, std::sqrt(d.x * d.x + d.y * d.y));
-  const auto row = uint32_t(std::min(height_ - 1.0, (0.5 - place.y) * height_));
-  const auto column = uint32_t(std::min(width_ - 1.0, (0.5 + place.x) * width_));
-  return density(column, row);
-}
-
-double DirectionMap::density(uint32_t column, uint32_t row) const {
-  const double *columns = column_sums_.data() + size_t(row) * (width_ + 1);
-  return (row_sums_[row + 1] - row_sums_[row]) * (columns[column + 1] - columns[column]) / solid_angle(row);
+  return direction_pdf<float>(table(), place_of(Vector3<float>(direction)));
 }
 
 glm::dvec3 DirectionMap::direction(double column, double row) const {
   const double theta = glm::pi<double>() * (row / height_), phi = glm::pi<double>() * (2.0 * column / width_ - 1.0);
   return {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
-}
-
-glm::dvec3 DirectionMap::inside_cell(uint32_t column, uint32_t row, const glm::dvec2 &inside) const {
-  // Even steps of the cosine are even steps of the solid angle. Count from the nearer pole.
-  const bool upper = 2 * row < height_;
-  const double from = versines_[from_pole(row)], to = versines_[from_pole(row) + 1];
-  const double y = upper ? inside.y : 1.0 - inside.y, x = from * (1.0 - y) + to * y;
-  const double across = std::sqrt(x * (2.0 - x)), up = upper ? 1.0 - x : x - 1.0;
-  // Columns begin half a turn away.
-  const SinCos turn = sin_cos_turn((column + inside.x) / width_);
-  return {-(across * turn.cos), -(across * turn.sin), up};
 }
 
 DirectionTable DirectionMap::table() const {

@@ -1,23 +1,9 @@
 // Directions with a density that is constant in each cell of a grid over latitude and longitude.
 #pragma once
 
-#include "sampling/distribution.h"
-
-#include <glm/glm.hpp>
+#include "sampling/direction_table.h"
 
 namespace lancer {
-
-// The map's numbers, which kernels read as well. Sums and guides are those of WeightedChoice, a guide with the last entry
-// behind it: the entry for a number lies between two of the guide. A line of the columns' for each row, then one of the rows'
-// own.
-struct DirectionTable {
-  uint32_t width = 0, height = 0, column_steps = 0, row_steps = 0;
-  // By row: 1 - cos of the angle to the pole of the edge towards it, which keeps its digits there, where cos has none left; and
-  // the solid angle of a cell. Rows count from the nearer pole.
-  const double *versines = nullptr, *solid_angles = nullptr;
-  const double *row_sums = nullptr, *column_sums = nullptr;
-  const uint32_t *row_guide = nullptr, *column_guide = nullptr;
-};
 
 // Row 0 holds the directions around +z; column 0 begins at -x and columns run with the angle about z. Within a cell the density
 // is constant per solid angle, so that neither the poles nor the seam are special.
@@ -46,9 +32,6 @@ public:
 
 private:
   void append(const WeightedChoice &choice, std::vector<double> &sums, std::vector<uint32_t> &guide, uint32_t size) const;
-  // The direction at (x, y) in [0, 1)^2 of a cell, even in the solid angle.
-  glm::dvec3 inside_cell(uint32_t column, uint32_t row, const glm::dvec2 &inside) const;
-  double density(uint32_t column, uint32_t row) const;
   uint32_t from_pole(uint32_t row) const { return 2 * row < height_ ? row : height_ - row - 1; }
 
   uint32_t width_ = 0, height_ = 0;

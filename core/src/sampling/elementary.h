@@ -76,6 +76,27 @@ template <ManyLanes F> LANCER_LANE F sin(F x) {
 template <ManyLanes F> LANCER_LANE F cos(F x) {
   return each(x, [](float a) { return cos(a); });
 }
+template <ManyLanes F> LANCER_LANE F tan(F x) {
+  return each(x, [](float a) { return tan(a); });
+}
+template <ManyLanes F> LANCER_LANE F asin(F x) {
+  return each(x, [](float a) { return asin(a); });
+}
+template <ManyLanes F> LANCER_LANE F acos(F x) {
+  return each(x, [](float a) { return acos(a); });
+}
+template <ManyLanes F> LANCER_LANE F atan(F x) {
+  return each(x, [](float a) { return atan(a); });
+}
+template <ManyLanes F> LANCER_LANE F sinh(F x) {
+  return each(x, [](float a) { return sinh(a); });
+}
+template <ManyLanes F> LANCER_LANE F cosh(F x) {
+  return each(x, [](float a) { return cosh(a); });
+}
+template <ManyLanes F> LANCER_LANE F tanh(F x) {
+  return each(x, [](float a) { return tanh(a); });
+}
 template <ManyLanes F> LANCER_LANE F erfc(F x) {
   return each(x, [](float a) { return erfc(a); });
 }

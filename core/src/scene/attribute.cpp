@@ -1,5 +1,7 @@
 #include "scene/attribute.h"
 
+#include "scene/interpolate.h"
+
 namespace lancer {
 
 namespace {
@@ -33,30 +35,30 @@ const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name) {
   return nullptr;
 }
 
-glm::vec4 attribute_at(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, const glm::dvec2 &bary) {
-  const glm::vec4 a = at_corner(mesh, attribute, triangle, 0);
-  if (attribute.domain == Domain::Face)
-    return a;
-  const glm::vec4 b = at_corner(mesh, attribute, triangle, 1), c = at_corner(mesh, attribute, triangle, 2);
-  return float(1.0 - bary.x - bary.y) * a + float(bary.x) * b + float(bary.y) * c;
+void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]) {
+  for (int corner = 0; corner < 3; ++corner)
+    values[corner] = at_corner(mesh, attribute, triangle, corner);
 }
 
 glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary) {
   glm::vec2 corner[3];
   if (!corner_uvs(mesh, name, triangle, corner))
     return glm::vec2(0.0f);
-  return glm::vec2((1.0 - bary.x - bary.y) * glm::dvec2(corner[0]) + bary.x * glm::dvec2(corner[1]) +
-                   bary.y * glm::dvec2(corner[2]));
+  const glm::dvec2 a(corner[0]), b(corner[1]), c(corner[2]);
+  return {interpolate_uv(a.x, b.x, c.x, bary.x, bary.y), interpolate_uv(a.y, b.y, c.y, bary.x, bary.y)};
 }
 
-bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 uvs[3]) {
-  const MeshAttribute *attribute = find_attribute(mesh, name);
+bool corner_uvs(const Mesh &mesh, const MeshAttribute *attribute, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]) {
   if (!attribute && (name != 0 || mesh.uvs.empty()))
     return false;
   for (int corner = 0; corner < 3; ++corner)
     uvs[corner] =
         attribute ? glm::vec2(at_corner(mesh, *attribute, triangle, corner)) : mesh.uvs[size_t(triangle) * 3 + size_t(corner)];
   return true;
+}
+
+bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]) {
+  return corner_uvs(mesh, find_attribute(mesh, name), name, triangle, uvs);
 }
 
 } // namespace lancer

@@ -12,11 +12,14 @@ inline constexpr uint32_t kUndisplaced = UINT32_MAX;
 // The attribute with this number of a name; null where the mesh has none.
 const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name);
 
-// bary: weights of vertex 1 and 2. One channel is in all of x, y, z; two or three leave z at 0 and w at 1.
-glm::vec4 attribute_at(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, const glm::dvec2 &bary);
+// At a triangle's corners. One channel is in all of x, y, z; two or three leave z at 0 and w at 1.
+void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]);
 
-// The texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute; false where there are none.
+// The texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute, which may have been found before;
+// false where there are none.
+bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
+bool corner_uvs(const Mesh &mesh, const MeshAttribute *attribute, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
+// Between them; 0 where there are none. bary: weights of vertex 1 and 2.
 glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
-bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 uvs[3]);
 
 } // namespace lancer

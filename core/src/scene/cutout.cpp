@@ -1,5 +1,6 @@
 #include "scene/cutout.h"
 
+#include "nodes/image.h"
 #include "scene/attribute.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #include "scene/displace.h"
 
 #include "accel/parallel.h"
+#include "nodes/run.h"
 #include "scene/attribute.h"
 #include "scene/mesh_faces.h"
 #include "scene/mesh_normals.h"

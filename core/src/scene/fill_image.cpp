@@ -44,11 +44,6 @@ size_t clear_not_finite(Image &image) {
   return cleared;
 }
 
-bool exceeds_unit(const Image &image) {
-  const auto *numbers = reinterpret_cast<const float *>(image.texels.get());
-  return !std::all_of(numbers, numbers + image.bytes() / sizeof(float), [](float x) { return x >= 0.0f && x <= 1.0f; });
-}
-
 void check_image(const std::string &object, const lancer_image &source) {
   const auto refuse = [&](const char *what, uint64_t value, const char *expected) {
     bad_argument(object + ": " + what + " " + std::to_string(value) + " is not " + expected);
@@ -101,7 +96,6 @@ void add_image(Description &description, const lancer_image &source) {
   if (image.kind == TexelKind::Float) {
     if (const size_t cleared = clear_not_finite(image))
       description.messages.add(object, std::to_string(cleared) + " texels that are not finite were set to 0");
-    image.exceeds_unit = exceeds_unit(image);
   }
   if (image.alpha == AlphaMode::Straight && image.channels == 4) {
     if (image.kind == TexelKind::U8)

@@ -251,6 +251,7 @@ Program read_program(Description &description, const std::string &owner, const l
   for (uint32_t i = 0; i < count; ++i)
     program.nodes.push_back(reader.read(nodes[i], i));
   for (uint32_t i = 0; i < count; ++i) {
+    program.asks_light_path |= program.nodes[i].kind == LANCER_NODE_LIGHT_PATH;
     if (program.nodes[i].kind != LANCER_NODE_BUMP)
       continue;
     program.nodes[i].heights = uint32_t(program.heights.size());

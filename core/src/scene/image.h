@@ -1,4 +1,4 @@
-// Pictures in memory, in their own bit depth, and how a texel becomes a colour.
+// Pictures in memory, in their own bit depth.
 #pragma once
 
 #include "scene/texels.h"
@@ -23,22 +23,14 @@ struct Image {
   Transfer transfer = Transfer::Linear;
   AlphaMode alpha = AlphaMode::Straight;
   uint32_t tile = 0;         // UDIM; 0 = none
-  bool exceeds_unit = false; // some number of it lies outside of 0 ... 1
   bool has_matrix = false;
   glm::mat3 matrix{1.0f}; // decoded RGB to the working space
   Texels texels;          // [height][width][channels]
 
-  size_t bytes() const;
+  size_t bytes() const {
+    const size_t texel_bytes = kind == TexelKind::U8 ? 1 : kind == TexelKind::U16 ? 2 : 4;
+    return size_t(width) * height * channels * texel_bytes;
+  }
 };
-
-// The colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; w is alpha. straight:
-// the colour divided by alpha where the picture's mode keeps it multiplied.
-glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight);
-
-// The alpha alone.
-float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension, Interpolation interpolation);
-
-// Asks memory for the texels that a look-up there will want.
-void prefetch(const Image &image, const glm::vec2 &uv, Extension extension);
 
 } // namespace lancer

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "lancer.h"
-#include "nodes/light_path.h"
 #include "scene/image.h"
 #include "scene/surface.h"
 
@@ -10,9 +9,6 @@
 #include <vector>
 
 namespace lancer {
-
-struct Camera;
-struct Normalisation;
 
 // One value: a constant, or the result of a node.
 struct Parameter {
@@ -41,28 +37,13 @@ using Schedule = std::vector<uint16_t>;
 struct Program {
   std::vector<Node> nodes;
   std::vector<Schedule> heights; // of each BUMP: those of its nodes [first, this) that its height needs
+  bool asks_light_path = false;  // a node of it does
 
   // The nodes that the parameters need, directly or not, in order; a BUMP's own height nodes are left to it.
   Schedule schedule(std::span<const Parameter> parameters) const;
   // The node that a value comes from; null where it is constant.
   const Node *source(const Parameter &value) const { return value.varies() ? &nodes[size_t(value.node)] : nullptr; }
 };
-
-// Where nodes are evaluated. Everything is in the normalised world but what nodes see, which is in the user's units.
-struct NodeContext {
-  const Geometry *geometry = nullptr;
-  const std::vector<Image> *images = nullptr;
-  const Normalisation *normalisation = nullptr;
-  const Camera *camera = nullptr;   // may be null: CAMERA and WINDOW then see the world's frame
-  const Surface *surface = nullptr; // null: a direction of the world
-  glm::vec3 wo{0, 0, 1};            // unit, towards the viewer; for the world minus the direction
-  float footprint = 0.0f;           // radius of what a pixel covers here, in normalised units: the step of BUMP; 0: no bumps
-  const glm::dvec3 *eye = nullptr;  // for the world: where the camera ray starts; null: any other ray
-  LightPath<float> path;            // of the ray
-};
-
-// Computes the scheduled nodes into values, which has room for all nodes of the program.
-void run(const Program &program, const Schedule &schedule, const NodeContext &context, std::span<glm::vec4> values);
 
 inline glm::vec3 value_of(const Parameter &parameter, std::span<const glm::vec4> values) {
   return parameter.node < 0 ? parameter.value : glm::vec3(values[size_t(parameter.node)]);

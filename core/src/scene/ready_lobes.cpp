@@ -69,11 +69,13 @@ void keep_facets(ReadyLobe &ready) {
 
 } // namespace
 
-PrincipledParts::PrincipledParts(const ReadyLobe &ready) {
-  const PrincipledInputs<float> &in = ready.principled;
+LobeParts::LobeParts(const LobeInputs<float> &inputs, const PrincipledInputs<float> &in) {
   const glm::vec3 none(0.0f);
-  normal = ready.inputs.normal != none;
-  tangent = in.anisotropic > 0.0f && ready.inputs.tangent != none;
+  const bool is_principled = inputs.kind == LobeKind::Principled;
+  normal = inputs.normal != none;
+  tangent = inputs.tangent != none && (!is_principled || in.anisotropic > 0.0f);
+  if (!is_principled)
+    return;
   coat_normal = in.coat_normal != none;
   coat_tint = in.coat_tint != glm::vec3(1.0f);
   diffuse_roughness = in.diffuse_roughness != 0.0f;
@@ -94,9 +96,6 @@ std::string ReadyLobe::code() const {
   add(is_principled ? principled.option : inputs.option);
   for (const auto &plan : plans[0])
     add(plan != nullptr);
-  if (!is_principled)
-    return code;
-  const PrincipledParts parts(*this);
   for (const bool part : {parts.normal, parts.tangent, parts.coat_normal, parts.coat_tint, parts.diffuse_roughness,
                           parts.emission, parts.sheen, parts.coat, parts.metal, parts.glass})
     add(part);
@@ -112,6 +111,7 @@ std::vector<ReadyLobe> make_ready_lobes(const Material &material) {
     ready.inputs = evaluate(lobe, nothing);
     if (lobe.principled)
       ready.principled = evaluate(*lobe.principled, nothing);
+    ready.parts = LobeParts(ready.inputs, ready.principled);
     if (lobe.principled && lobe.principled->rules != Rules::Blender3)
       keep_layers(lobe, ready);
     else if (!lobe.principled && material.fixed())

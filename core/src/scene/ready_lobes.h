@@ -10,10 +10,21 @@ namespace lancer {
 
 struct Material;
 
+// Which inputs of a lobe are other than nothing: the rest need not be read.
+struct LobeParts {
+  LobeParts() = default;
+  LobeParts(const LobeInputs<float> &inputs, const PrincipledInputs<float> &in);
+  bool normal = false, tangent = false;
+  // Of Principled alone.
+  bool coat_normal = false, coat_tint = false, diffuse_roughness = false, emission = false, sheen = false, coat = false,
+       metal = false, glass = false;
+};
+
 struct ReadyLobe {
   // As nodes leave them: what varies is 0 here.
   LobeInputs<float> inputs;
   PrincipledInputs<float> principled;
+  LobeParts parts;
   // By side (outside, inside) and Layer. Of facets of other nodes the only one is that of PrincipledLayer::Gloss.
   std::shared_ptr<const KeptPlan> plans[2][kLayerCount];
 
@@ -27,17 +38,11 @@ struct ReadyLobe {
 // One for each lobe.
 std::vector<ReadyLobe> make_ready_lobes(const Material &material);
 
-// Which of a Principled's inputs are other than nothing: the rest need not be read.
-struct PrincipledParts {
-  explicit PrincipledParts(const ReadyLobe &ready);
-  bool normal, tangent, coat_normal, coat_tint, diffuse_roughness, emission, sheen, coat, metal, glass;
-};
-
 // A lobe of every lane, all of one code.
 template <class F> struct LaneLobes {
-  const ReadyLobe *of[LanesOf<F>::kWidth];
-  uint32_t inside = 0; // bits of lanes
-  bool same = true;    // all lanes have one
+  const ReadyLobe *of[LanesOf<F>::kWidth] = {}; // only the first is read where all are the same
+  uint32_t inside = 0;                          // bits of lanes
+  bool same = true;                             // all lanes have one
 
   template <class Get> LANCER_LANE F number(const Get &get) const {
     if (same)
@@ -63,9 +68,11 @@ template <class F> struct LaneLobes {
     in.distribution = first.distribution;
     in.option = first.option;
     in.weight = vector(LANCER_OF(inputs.weight));
-    in.normal = vector(LANCER_OF(inputs.normal));
-    in.tangent = vector(LANCER_OF(inputs.tangent));
     in.color = vector(LANCER_OF(inputs.color));
+    if (of[0]->parts.normal)
+      in.normal = vector(LANCER_OF(inputs.normal));
+    if (of[0]->parts.tangent)
+      in.tangent = vector(LANCER_OF(inputs.tangent));
     if (first.kind == LobeKind::Lambert)
       return in;
     in.roughness = number(LANCER_OF(inputs.roughness));
@@ -79,7 +86,7 @@ template <class F> struct LaneLobes {
   // Of Principled: what all of its layers share, beside what principled() reads.
   LANCER_LANE LobeInputs<F> principled_carrier() const {
     const LobeInputs<float> &first = of[0]->inputs;
-    const PrincipledParts parts(*of[0]);
+    const LobeParts &parts = of[0]->parts;
     LobeInputs<F> in;
     in.kind = first.kind;
     in.rules = first.rules;
@@ -92,7 +99,7 @@ template <class F> struct LaneLobes {
   }
   LANCER_LANE PrincipledInputs<F> principled() const {
     const ReadyLobe &first = *of[0];
-    const PrincipledParts parts(first);
+    const LobeParts &parts = first.parts;
     PrincipledInputs<F> in;
     in.rules = first.principled.rules;
     in.distribution = first.principled.distribution;
@@ -139,11 +146,12 @@ template <class F> struct LaneLobes {
   // The layers that are planned: as of add_layers().
   LANCER_LANE bool has(PrincipledLayer layer) const { return of[0]->has(layer); }
   LANCER_LANE Lobe<F> seen(PrincipledLayer layer, F cos_o, const Vec3<F> &color) const {
+    constexpr uint32_t all_inside = (1u << LanesOf<F>::kWidth) - 1u;
     LanePlans<F> plans;
-    for (int i = 0; i < LanesOf<F>::kWidth; ++i) {
-      plans.of[i] = of[i]->plan(layer, inside >> i & 1);
-      plans.same = plans.same && plans.of[i] == plans.of[0];
-    }
+    plans.of[0] = of[0]->plan(layer, inside & 1);
+    plans.same = same && (inside == 0 || inside == all_inside);
+    for (int i = 1; i < LanesOf<F>::kWidth && !plans.same; ++i)
+      plans.of[i] = of[same ? 0 : i]->plan(layer, inside >> i & 1);
     return plans.seen(cos_o, color);
   }
 };

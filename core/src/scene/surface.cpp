@@ -2,6 +2,7 @@
 
 #include "accel/quadric.h"
 #include "sampling/nearest_float.h"
+#include "scene/interpolate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +35,7 @@ glm::vec3 normal_to_world(const Instance &instance, const glm::dvec3 &n) {
   return unit(glm::transpose(instance.to_object.linear) * n);
 }
 
-template <class Vector> Vector interpolate(const std::vector<Vector> &corners, uint32_t triangle, const glm::dvec3 &b) {
+template <class Vector> Vector interpolate_corners(const std::vector<Vector> &corners, uint32_t triangle, const glm::dvec3 &b) {
   const size_t first = size_t(triangle) * 3;
   return float(b.x) * corners[first] + float(b.y) * corners[first + 1] + float(b.z) * corners[first + 2];
 }
@@ -58,7 +59,8 @@ glm::vec3 interpolated_normal(const Mesh &mesh, Shading shading, uint32_t triang
   glm::vec3 n[3];
   if (!corner_normals(mesh, shading, triangle, n))
     return glm::vec3(0.0f);
-  return float(1.0 - bary.x - bary.y) * n[0] + float(bary.x) * n[1] + float(bary.y) * n[2];
+  const Vector3<float> weights(float(1.0 - bary.x - bary.y), float(bary.x), float(bary.y));
+  return interpolate<float>(n[0], n[1], n[2], weights);
 }
 
 namespace {
@@ -123,10 +125,10 @@ SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface
   }
   const Mesh &mesh = geometry.meshes[instance.mesh];
   const glm::dvec3 b(1.0 - surface.bary.x - surface.bary.y, surface.bary.x, surface.bary.y);
-  attributes.uv =
-      mesh.uvs.empty() ? glm::vec2(float(surface.bary.x), float(surface.bary.y)) : interpolate(mesh.uvs, surface.primitive, b);
+  attributes.uv = mesh.uvs.empty() ? glm::vec2(float(surface.bary.x), float(surface.bary.y))
+                                   : interpolate_corners(mesh.uvs, surface.primitive, b);
   if (!mesh.colors.empty())
-    attributes.color = interpolate(mesh.colors, surface.primitive, b);
+    attributes.color = interpolate_corners(mesh.colors, surface.primitive, b);
   return attributes;
 }
 

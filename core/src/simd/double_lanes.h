@@ -6,6 +6,8 @@
 namespace lancer {
 namespace {
 
+using lancer::widen;
+
 template <int W> struct Double {
   using Vector = VectorOf<double, W / 2>;
   using Words = VectorOf<uint64_t, W / 2>;

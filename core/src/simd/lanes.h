@@ -15,6 +15,13 @@
 namespace lancer {
 namespace {
 
+// What lanes have of the same names would hide those of width 1.
+using lancer::all;
+using lancer::any;
+using lancer::as_float;
+using lancer::bits;
+using lancer::to_float;
+
 template <class T, int N> struct VectorType { typedef T type __attribute__((vector_size(sizeof(T) * N))); };
 template <class T, int N> using VectorOf = typename VectorType<T, N>::type;
 

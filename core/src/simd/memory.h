@@ -6,6 +6,9 @@
 namespace lancer {
 namespace {
 
+using lancer::gather;
+using lancer::gather_bytes;
+
 // W numbers in a row.
 template <int W> LANCER_LANE auto load_lanes(const float *p) {
   if constexpr (W == 1)

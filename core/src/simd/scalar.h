@@ -41,7 +41,19 @@ LANCER_LANE uint32_t as_word(float a) { return std::bit_cast<uint32_t>(a); }
 LANCER_LANE bool equal(uint32_t a, uint32_t b) { return a == b; }
 
 LANCER_LANE double widen(float a) { return static_cast<double>(a); }
-LANCER_LANE float narrow(double a) { return static_cast<float>(a); }
+LANCER_LANE float narrow(double a) {
+  float r = static_cast<float>(a);
+#if defined(__GNUC__) && !defined(__clang__)
+  // GCC 12 makes a vector of several numbers' conversions, and takes that to floats and back for none at all: (double)(float)x
+  // would be x. It may not look through this.
+#if defined(__x86_64__)
+  asm("" : "+x"(r));
+#elif defined(__aarch64__)
+  asm("" : "+w"(r));
+#endif
+#endif
+  return r;
+}
 // Towards zero, of what an int32 holds; and back.
 LANCER_LANE uint32_t truncate(float a) { return static_cast<uint32_t>(static_cast<int32_t>(a)); }
 LANCER_LANE uint32_t truncate(double a) { return static_cast<uint32_t>(static_cast<int32_t>(a)); }

@@ -33,13 +33,17 @@ void PathIntegrator::miss(size_t number, std::span<SampleResult> results) {
     add_missed(results);
 }
 
-glm::vec3 PathIntegrator::environment_towards(const Path &path, const glm::dvec3 &wi) {
-  const glm::dvec3 *eye = path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr;
-  LightPath<float> seen_by = light_path(path, 0.0);
-  seen_by.length = std::numeric_limits<float>::max();
-  // What lies beyond everything counts as one scattering more, as in Cycles.
-  seen_by.depth += 1.0f;
-  return scene_.lights.environment().radiance(wi, shader_.values(), &camera_, eye, seen_by);
+// What the nodes of the world say in these directions, for those paths that world_nodes_ has already been told of.
+void PathIntegrator::ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lanes) {
+  world_nodes_.used = lanes;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      // The surface of the world looks back at the viewer.
+      const float back = float(-wi[axis][lane]);
+      world_nodes_.p[axis][lane] = -double(back);
+      world_nodes_.wo[axis][lane] = world_nodes_.ns[axis][lane] = world_nodes_.ng[axis][lane] = back;
+    }
+  node_lanes_.run(scene_.world.program, scene_.world.schedule, world_nodes_, values_.data());
 }
 
 // The environment is sampled as a light, too. pdf: of its sample.
@@ -54,11 +58,20 @@ void PathIntegrator::add_environment(const Path &path, double pdf, const glm::ve
 void PathIntegrator::add_missed(std::span<SampleResult> results) {
   if (missed_count_ == 0)
     return;
-  picture_lanes_.look_at_sky(misses_, sky_);
+  light_kernel().sky_density(sky_, misses_);
   for (uint32_t lane = 0; lane < missed_count_; ++lane) {
     const Path &path = paths_[missed_[lane]];
-    const glm::vec3 radiance =
-        sky_.image.texels ? get(misses_.radiance, lane) : environment_towards(path, get(misses_.wi, lane));
+    world_nodes_.eye[lane] = path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr;
+    LightPath<float> seen_by = light_path(path, 0.0);
+    seen_by.length = std::numeric_limits<float>::max();
+    // What lies beyond everything counts as one scattering more, as in Cycles.
+    seen_by.depth += 1.0f;
+    put(seen_by, world_nodes_, lane);
+  }
+  ask_world(misses_.wi, (1u << missed_count_) - 1u);
+  for (uint32_t lane = 0; lane < missed_count_; ++lane) {
+    const Path &path = paths_[missed_[lane]];
+    const glm::vec3 radiance = value_in_lane(scene_.world.radiance, lane);
     add_environment(path, misses_.pdf[lane], radiance, results[path.slot]);
   }
   missed_count_ = 0;
@@ -68,17 +81,28 @@ void PathIntegrator::add_missed(std::span<SampleResult> results) {
 void PathIntegrator::ask_sky(uint32_t lanes) {
   if (lanes == 0)
     return;
-  picture_lanes_.sample_sky(block_, sky_, lanes);
+  for (int i = 0; i < 2; ++i)
+    std::copy_n(block_.u[kVertexLight + i], kBlockLanes, sky_samples_.u[i]);
+  light_kernel().sample_sky(sky_, sky_samples_);
+  for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const uint32_t lane = uint32_t(std::countr_zero(rest));
+    const Path &path = paths_[waiting_[lane].number];
+    world_nodes_.eye[lane] = nullptr;
+    // No ray sees what is sampled; it lies one scattering beyond the surface, as in Cycles.
+    LightPath<float> asked_by = light_path(path, 0.0);
+    asked_by.kinds = 0;
+    asked_by.length = std::numeric_limits<float>::max();
+    asked_by.depth += 1.0f;
+    put(asked_by, world_nodes_, lane);
+  }
+  ask_world(sky_samples_.wi, lanes);
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
     waiting_[lane].far = true;
-    if (sky_.image.texels)
-      continue;
-    const glm::vec3 radiance =
-        scene_.lights.environment().radiance(get(block_.light_wi, lane), shader_.values(), &camera_, nullptr);
+    const glm::vec3 radiance = value_in_lane(scene_.world.radiance, lane);
+    put(get(sky_samples_.wi, lane), block_.light_wi, lane);
     put(radiance, block_.light_radiance, lane);
-    if (radiance == glm::vec3(0.0f))
-      block_.light_pdf[lane] = 0.0;
+    block_.light_pdf[lane] *= radiance == glm::vec3(0.0f) ? 0.0 : sky_samples_.pdf[lane];
   }
 }
 

@@ -1,0 +1,202 @@
+// Bumps: the height's slope, looked at a pixel's width away, tilts the normal. Like lanes.h.
+#pragma once
+
+#include "nodes/kept_values.h"
+#include "nodes/normal_nodes.h"
+
+namespace lancer {
+namespace {
+
+// Computes the scheduled nodes at a site: dispatch.h.
+template <class F>
+void run_nodes(const Program &program, const Schedule &schedule, const Site<F> &site, const Values<F> &values);
+
+// How barycentric weights grow along the triangle's plane.
+template <class F> struct Plane {
+  using D = DoubleOf<F>;
+  Vector3<D> e1, e2; // normalised world
+  D g11, g12, g22, det;
+
+  // The weights of vertex 1 and 2 that an offset adds.
+  LANCER_LANE void step(const Vector3<D> &offset, D (&weights)[2]) const {
+    const D zero(0.0), d1 = dot(e1, offset), d2 = dot(e2, offset);
+    const auto solid = det > zero;
+    weights[0] = select(solid, (g22 * d1 - g12 * d2) / det, zero);
+    weights[1] = select(solid, (g11 * d2 - g12 * d1) / det, zero);
+  }
+};
+template <class F> Plane<F> plane_of(const Site<F> &site) {
+  const Edges<F> e = edges_of(site);
+  Plane<F> r;
+  r.e1 = vector_to_world(site, e.first);
+  r.e2 = vector_to_world(site, e.second);
+  r.g11 = dot(r.e1, r.e1);
+  r.g12 = dot(r.e1, r.e2);
+  r.g22 = dot(r.e2, r.e2);
+  r.det = r.g11 * r.g22 - r.g12 * r.g12;
+  return r;
+}
+
+// Two directions along the surface, and how the surface moves along them: lengths of a pixel, in the user's units.
+template <class F> struct Steps {
+  using D = DoubleOf<F>;
+  Vector3<D> x, y; // unit, in the normalised world
+  Vector3<D> px, py;
+  Plane<F> plane;                // of lanes on meshes
+  AttributeLanes<F> undisplaced; // where found px, py and the normal are the object's
+};
+
+// The same surface, moved by an offset in its tangent plane (normalised world); its attributes as bump finds them there.
+template <class F> void move(const Plane<F> &plane, const Vector3<DoubleOf<F>> &offset, Site<F> &site) {
+  using D = DoubleOf<F>;
+  site.p += offset;
+  if (!any(site.on_mesh))
+    return;
+  // What is painted on a mesh goes the other way on a face that is seen from behind, as in Cycles: there the derivatives of
+  // the parametrisation are turned together with the normal.
+  D weights[2];
+  plane.step(select(site.backfacing, -offset, offset), weights);
+  for (int k = 0; k < 2; ++k)
+    site.bary[k] = select(site.on_mesh, site.bary[k] + weights[k], site.bary[k]);
+}
+
+// An attribute at a triangle's three corners.
+template <class F> struct Triangle { Vector3<F> v0, v1, v2; };
+template <class F> Triangle<F> triangle_of(const Site<F> &site, const AttributeLanes<F> &attribute) {
+  const CornerValues<F> of = corner_values(site, attribute);
+  const F zero(0.0f), one(1.0f);
+  return {between(of, {one, zero, zero}).v, between(of, {zero, one, zero}).v, between(of, {zero, zero, one}).v};
+}
+
+template <class F> Steps<F> steps_at(const Node &node, const Site<F> &site) {
+  using D = DoubleOf<F>;
+  using V3 = Vector3<F>;
+  const F one(1.0f);
+  Steps<F> r;
+  const V3 &ng = site.ng;
+  const auto diagonal = (ng.x == ng.y) & (ng.x == ng.z);
+  const V3 along = select(diagonal, cross(V3(-one, one, one), ng), cross(V3(one), ng));
+  r.x = normalize(widen(along));
+  r.y = cross(widen(ng), r.x);
+  const D footprint = widen(site.footprint), size = footprint / D(site.user_scale());
+  r.px = r.x * size;
+  r.py = r.y * size;
+  if (any(site.on_mesh))
+    r.plane = plane_of(site);
+  if (!(node.flags & 2)) {
+    r.undisplaced.found = uniform<F>(false);
+    return r;
+  }
+  // Where nothing was displaced: the same surface, in its object's space.
+  const Vector3<D> x = r.x * footprint, y = r.y * footprint;
+  r.px = vector_to_object(site, x);
+  r.py = vector_to_object(site, y);
+  r.undisplaced = find_attributes(site, node.name);
+  if (!any(r.undisplaced.found))
+    return r;
+  // The same steps in weights of the vertices, taken on the surface as it was.
+  const Triangle<F> was = triangle_of(site, r.undisplaced);
+  const Vector3<D> e1 = widen(was.v1) - widen(was.v0), e2 = widen(was.v2) - widen(was.v0);
+  const auto moved_by = [&](const Vector3<D> &offset) {
+    Site<F> there = site;
+    move(r.plane, offset, there);
+    return D(there.bary[0] - site.bary[0]) * e1 + D(there.bary[1] - site.bary[1]) * e2;
+  };
+  r.px = select(r.undisplaced.found, moved_by(x), r.px);
+  r.py = select(r.undisplaced.found, moved_by(y), r.py);
+  return r;
+}
+
+// Where the height is looked at: moved, and on the surface as it was where that is asked for.
+template <class F> Site<F> height_site(const Site<F> &site, const Steps<F> &steps, const Vector3<DoubleOf<F>> &offset) {
+  Site<F> place = site;
+  move(steps.plane, offset, place);
+  place.in_height = true;
+  if (any(steps.undisplaced.found)) {
+    const auto was = widen(attribute_at(place, steps.undisplaced).v);
+    const auto p = vector_to_world(site, was) + translation_of(site, &Instance::to_world);
+    place.p = select(steps.undisplaced.found, p, place.p);
+  }
+  return place;
+}
+
+// The normal input; on a flat face that was displaced its normal before that.
+template <class F> Vector3<F> flat_normal_before(const Inputs<F> &in, const Site<F> &site) {
+  const Vector3<F> normal = in.normal(3, site);
+  if (!any(site.on_mesh))
+    return normal;
+  const AttributeLanes<F> before = find_attributes(site, kUndisplaced);
+  const auto flat = before.found & same(normal, site.ng);
+  if (!any(flat))
+    return normal;
+  const Triangle<F> was = triangle_of(site, before);
+  const Vector3<F> n = normal_to_world(site, cross(was.v1 - was.v0, was.v2 - was.v0));
+  return select(flat, select(dot(n, site.ng) < F(0.0f), -n, n), normal);
+}
+
+// Values of some nodes, kept while others take their place. Nothing between keep() and bring_back() throws: a destructor would
+// need tables of exceptions, which are shared symbols, in kernels.
+template <class F> class Kept {
+public:
+  void keep(const Schedule &schedule, const Values<F> &values) {
+    if (schedule.size() > kFew)
+      kept_ = static_cast<Value<F> *>(allocate_kept(schedule.size() * sizeof(Value<F>)));
+    for (size_t i = 0; i < schedule.size(); ++i)
+      kept_[i] = {values.get(schedule[i]), values.get(schedule[i], 3)};
+  }
+  void bring_back(const Schedule &schedule, const Values<F> &values) {
+    for (size_t i = 0; i < schedule.size(); ++i)
+      values.set(schedule[i], kept_[i]);
+    if (kept_ != few_)
+      free_kept(kept_);
+  }
+
+private:
+  static constexpr size_t kFew = 32;
+  Value<F> few_[kFew];
+  Value<F> *kept_ = few_;
+};
+
+// Runs the nodes of the height at three places; values end as they were.
+template <class F> Value<F> bump_node(const Program &program, const Inputs<F> &in, const Site<F> &site) {
+  using D = DoubleOf<F>;
+  using D3 = Vector3<D>;
+  const F zero(0.0f), one(1.0f);
+  const Vector3<F> normal = in.node.flags & 4 ? flat_normal_before(in, site) : in.normal(3, site);
+  // The height of a bump does not see other bumps: each would look at its own three times as often.
+  if (site.in_height || !site.surface)
+    return solid(normal);
+  const F filter = in.scalar(4);
+  const auto seen = (site.footprint > zero) & (filter > zero);
+  if (!any(seen))
+    return solid(normal);
+  const bool in_object = in.node.flags & 2;
+  const Steps<F> steps = steps_at(in.node, site);
+
+  // Compute the height here and beside, and leave the values as they were.
+  const Schedule &schedule = program.heights[in.node.heights];
+  Kept<F> kept;
+  kept.keep(schedule, in.values);
+  const auto height = [&](const D3 &offset) {
+    run_nodes(program, schedule, height_site(site, steps, offset), in.values);
+    return D(widen(in.scalar(2)));
+  };
+  const D step = widen(site.footprint) * widen(filter);
+  const D here = height(D3(D(0.0))), dx = height(step * steps.x) - here, dy = height(step * steps.y) - here;
+  kept.bring_back(schedule, in.values);
+
+  // Tilt the normal against the slope.
+  const Vector3<F> straight = in_object ? normal_to_object(site, normal) : normal;
+  const D3 n = widen(straight), rx = cross(steps.py, n), ry = cross(n, steps.px);
+  const D det = dot(steps.px, rx), distance = widen(in.scalar(1)) * D(in.node.flags & 1 ? -1.0 : 1.0);
+  const D3 slope = (dx * rx + dy * ry) * select(det < D(0.0), -distance, distance);
+  const D3 sum = D(widen(filter) * abs(det)) * n - slope;
+  const D size = length(sum);
+  const auto usable = seen & (size > D(0.0)) & (size <= D(1.7976931348623157e308));
+  const F strength = max(in.scalar(0), zero);
+  const Vector3<F> tilted = unit_or_zero(strength * narrow(sum / size) + F(one - strength) * straight);
+  return solid(select(usable, in_object ? normal_to_world(site, tilted) : tilted, normal));
+}
+
+} // namespace
+} // namespace lancer

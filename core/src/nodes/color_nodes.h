@@ -1,0 +1,141 @@
+// Mixing and changing colours, as Blender's Mix, Gamma, Invert and RGB to BW nodes have it. Like lanes.h.
+#pragma once
+
+#include "nodes/vector_nodes.h"
+
+namespace lancer {
+namespace {
+
+template <class F> LANCER_LANE Vector3<F> blend(const Vector3<F> &a, const Vector3<F> &b, const Vector3<F> &t) {
+  return a * (Vector3<F>(F(1.0f)) - t) + b * t;
+}
+template <class F> LANCER_LANE Vector3<F> blend(const Vector3<F> &a, const Vector3<F> &b, const F &t) {
+  return blend(a, b, Vector3<F>(t));
+}
+
+// Hue in 0 ... 1, saturation, value: the hexcone model.
+template <class F> Vector3<F> to_hsv(const Vector3<F> &c) {
+  const F zero(0.0f), high = max(max(c.x, c.y), c.z), span = high - min(min(c.x, c.y), c.z);
+  const F saturation = select(high != zero, span / high, zero);
+  const F sector =
+      select(c.x == high, (c.y - c.z) / span, select(c.y == high, F(2.0f) + (c.z - c.x) / span, F(4.0f) + (c.x - c.y) / span));
+  const F hue = sector / F(6.0f), turned = select(hue < zero, hue + F(1.0f), hue);
+  return {select(saturation == zero, zero, turned), saturation, high};
+}
+
+template <class F> Vector3<F> to_rgb(const Vector3<F> &hsv) {
+  // Each channel is a trapezoid over the circle of hues, a third of it apart from the others.
+  const F one(1.0f), hue = select(hsv.x == one, F(0.0f), hsv.x);
+  const auto channel = [&](float turn) {
+    const F at = hue + F(turn), place = (at - floor(at)) * F(6.0f);
+    const F share = clamp01(F(abs(place - F(3.0f)) - one));
+    return hsv.z * (one - hsv.y * (one - share));
+  };
+  return {channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f)};
+}
+
+// Those modes that take hue, saturation or value of the second colour.
+template <class F> Vector3<F> mix_hsv(uint32_t mode, const F &t, const Vector3<F> &a, const Vector3<F> &b) {
+  const F zero(0.0f), rest = F(1.0f) - t;
+  Vector3<F> hsv = to_hsv(a);
+  const Vector3<F> other = to_hsv(b);
+  switch (mode) {
+  case LANCER_MIX_HUE:
+  case LANCER_MIX_COLOR:
+    hsv.x = other.x;
+    if (mode == LANCER_MIX_COLOR)
+      hsv.y = other.y;
+    // A grey has no hue to give.
+    return select(other.y == zero, a, blend(a, to_rgb(hsv), t));
+  case LANCER_MIX_SATURATION: {
+    const auto grey = hsv.y == zero;
+    hsv.y = rest * hsv.y + t * other.y;
+    return select(grey, a, to_rgb(hsv));
+  }
+  default:
+    hsv.z = rest * hsv.z + t * other.z;
+    return to_rgb(hsv);
+  }
+}
+
+template <class F> Vector3<F> mix_mode(uint32_t mode, const Vector3<F> &factor, const Vector3<F> &a, const Vector3<F> &b) {
+  using V3 = Vector3<F>;
+  const F t = factor.x, zero(0.0f), one(1.0f), two(2.0f), rest = one - t;
+  const V3 white(one);
+  switch (mode) {
+  case LANCER_MIX_MIX:
+    return blend(a, b, factor);
+  case LANCER_MIX_DARKEN:
+    return blend(a, min(a, b), t);
+  case LANCER_MIX_LIGHTEN:
+    return blend(a, max(a, b), t);
+  case LANCER_MIX_MULTIPLY:
+    return blend(a, a * b, t);
+  case LANCER_MIX_ADD:
+    return a + t * b;
+  case LANCER_MIX_SUBTRACT:
+    return a - t * b;
+  case LANCER_MIX_SCREEN:
+    return white - (V3(rest) + t * (white - b)) * (white - a);
+  case LANCER_MIX_OVERLAY:
+    return componentwise(a, b, [&](const F &x, const F &y) {
+      return select(x < F(0.5f), x * (rest + two * t * y), one - (rest + two * t * (one - y)) * (one - x));
+    });
+  case LANCER_MIX_DIVIDE:
+    return componentwise(a, b, [&](const F &x, const F &y) { return select(y != zero, rest * x + t * x / y, x); });
+  case LANCER_MIX_DIFFERENCE:
+    return blend(a, abs(a - b), t);
+  case LANCER_MIX_EXCLUSION:
+    return max(blend(a, a + b - two * a * b, t), V3(zero));
+  case LANCER_MIX_DODGE:
+    return componentwise(a, b, [&](const F &x, const F &y) {
+      const F light = one - t * y;
+      return select(x == zero, x, select(light <= zero, one, min(x / light, one)));
+    });
+  case LANCER_MIX_BURN:
+    return componentwise(a, b, [&](const F &x, const F &y) {
+      const F light = rest + t * y;
+      return select(light <= zero, zero, clamp01(F(one - (one - x) / light)));
+    });
+  case LANCER_MIX_SOFT_LIGHT:
+    return rest * a + t * ((white - a) * b * a + a * (white - (white - b) * (white - a)));
+  case LANCER_MIX_LINEAR_LIGHT:
+    return a + t * (two * b - white);
+  default:
+    return mix_hsv(mode, t, a, b);
+  }
+}
+
+template <class F> Value<F> mix_node(const Inputs<F> &in) {
+  const Vector3<F> factor = in.node.flags & 1 ? clamp01(in[0]) : in[0];
+  const Vector3<F> result = mix_mode(in.node.option, factor, in[1], in[2]);
+  return solid(in.node.flags & 2 ? clamp01(result) : result);
+}
+
+template <class F> Value<F> gamma_node(const Inputs<F> &in) {
+  const F zero(0.0f), exponent = in.scalar(1);
+  const Vector3<F> raised = componentwise(in[0], [&](const F &x) { return select(x > zero, pow(x, exponent), x); });
+  return solid(select(exponent == zero, Vector3<F>(F(1.0f)), raised));
+}
+
+template <class F> Value<F> invert_node(const Inputs<F> &in) {
+  const F factor = in.scalar(0), one(1.0f);
+  const Vector3<F> color = in[1];
+  return solid(factor * (Vector3<F>(one) - color) + F(one - factor) * color);
+}
+
+template <class F> Value<F> grey_node(const Inputs<F> &in) {
+  const float *weights = in.node.matrix;
+  return scalar(F(dot(in[0], Vector3<F>(F(weights[0]), F(weights[1]), F(weights[2])))));
+}
+
+template <class F> Value<F> separate_node(const Inputs<F> &in) {
+  const Vector3<F> v = in[0];
+  return scalar(in.node.option == 0 ? v.x : in.node.option == 1 ? v.y : v.z);
+}
+template <class F> Value<F> combine_node(const Inputs<F> &in) {
+  return solid(Vector3<F>(in.scalar(0), in.scalar(1), in.scalar(2)));
+}
+
+} // namespace
+} // namespace lancer

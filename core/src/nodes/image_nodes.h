@@ -1,0 +1,176 @@
+// From vectors to pictures: flat, box, sphere and tube projection, tiles, and the environment's maps. Like lanes.h.
+#pragma once
+
+#include "nodes/look_up.h"
+#include "nodes/vector_nodes.h"
+#include "sampling/angle.h"
+
+namespace lancer {
+namespace {
+
+template <class F> struct Place { F u, v; };
+template <class F> LANCER_LANE Place<F> select(const MaskOf<F> &m, const Place<F> &a, const Place<F> &b) {
+  return {select(m, a.u, b.u), select(m, a.v, b.v)};
+}
+
+// What stands where a picture is missing.
+template <class F> LANCER_LANE Value<F> missing() { return solid(Vector3<F>(F(1.0f), F(0.0f), F(1.0f))); }
+
+template <class F> LANCER_LANE const Image &picture(const Inputs<F> &in, const Site<F> &site, uint32_t number) {
+  return (*site.scene.images)[in.node.image + number];
+}
+
+template <class F> Value<F> look_up(const Inputs<F> &in, const Image &image, const Place<F> &place) {
+  const Texel<F> found = look_up(image_view(image, in.node.flags), place.u, place.v);
+  return {found.color, found.alpha};
+}
+
+// Each lane in a picture of its own: its number among the node's, or none of them.
+template <class F>
+Value<F> look_up_each(const Inputs<F> &in, const Site<F> &site, const WordOf<F> &number, const Place<F> &place) {
+  Value<F> r = missing<F>();
+  for (uint32_t i = 0; i < in.node.image_count; ++i) {
+    const auto here = equal(number, WordOf<F>(i));
+    if (any(here))
+      r = select(here, look_up(in, picture(in, site, i), place), r);
+  }
+  return r;
+}
+
+// In the tile that holds the place. Like Blender, cuts off the fraction: just below 0 still is the first tile.
+template <class F> Value<F> look_up_tile(const Inputs<F> &in, const Site<F> &site, const Place<F> &place) {
+  using U = WordOf<F>;
+  const F zero(0.0f), far(1e6f);
+  const auto near = (abs(place.u) < far) & (abs(place.v) < far);
+  const U across = truncate(select(near, place.u, zero)), up = truncate(select(near, place.v, zero));
+  const F column = to_float(across), row = to_float(up);
+  const auto known = near & (column >= zero) & (column <= F(9.0f)) & (row >= zero);
+  const U tile = U(1001u) + across + U(10u) * up;
+  const U number = by_lane<U>([&](int i) {
+    uint32_t k = 0;
+    while (k < in.node.image_count && picture(in, site, k).tile != lane(tile, i))
+      ++k;
+    return k;
+  });
+  return look_up_each(in, site, select(known, number, U(in.node.image_count)), {place.u - column, place.v - row});
+}
+
+// Longitude and latitude of a box that is -1 ... 1.
+template <class F> Place<F> on_sphere(const Vector3<F> &p) {
+  constexpr float pi = 3.14159265358979323846f;
+  const F zero(0.0f), half(0.5f), radius = hypot(p.x, p.y);
+  const F u = select(radius > zero, half - atan2(p.x, p.y) / F(2.0f * pi), zero);
+  return select(black(p), Place<F>{zero, zero}, Place<F>{u, half + atan2(p.z, radius) / F(pi)});
+}
+
+template <class F> Place<F> on_tube(const Vector3<F> &p) {
+  constexpr float pi = 3.14159265358979323846f;
+  const F zero(0.0f), half(0.5f);
+  return select((p.x == zero) & (p.y == zero), Place<F>{zero, zero},
+                Place<F>{half - atan2(p.x, p.y) / F(2.0f * pi), half * (p.z + F(1.0f))});
+}
+
+// Shares of the three sides of a box for a normal with n.x + n.y + n.z = 1, all positive. Think of a triangle whose corners are
+// the sides: near a corner one picture stands alone, near an edge two are mixed, in the middle three.
+template <class F> Vector3<F> box_shares(const Vector3<F> &n, const F &blend) {
+  using V3 = Vector3<F>;
+  const F zero(0.0f), one(1.0f), half(0.5f), two(2.0f), limit = half * (one + blend);
+  V3 shares = (F(two - limit) * n + V3(limit - one)) / F(two * limit - one);
+  // The side is left out where the other two stand far above it: of i its share, of j the rest.
+  const auto edge = [&](const F &out, const F &i, const F &j, F &of_i) {
+    of_i = clamp01(F((i / (i + j) - half * (one - blend)) / blend));
+    return out < (one - limit) * (i + j);
+  };
+  F share;
+  // The first that holds counts: z, x, y left out.
+  auto only = edge(n.y, n.x, n.z, share);
+  shares = select(only, V3(share, zero, one - share), shares);
+  only = edge(n.x, n.y, n.z, share);
+  shares = select(only, V3(zero, share, one - share), shares);
+  only = edge(n.z, n.x, n.y, share);
+  shares = select(only, V3(share, one - share, zero), shares);
+  shares = select(blend > zero, shares, V3(one, zero, zero));
+  const auto alone = [&](const F &i, const F &j, const F &k) { return (i > limit * (i + j)) & (i > limit * (i + k)); };
+  shares = select(alone(n.z, n.x, n.y), V3(zero, zero, one), shares);
+  shares = select(alone(n.y, n.z, n.x), V3(zero, one, zero), shares);
+  return select(alone(n.x, n.y, n.z), V3(one, zero, zero), shares);
+}
+
+template <class F> Value<F> box(const Inputs<F> &in, const Site<F> &site, const Image &image) {
+  const F zero(0.0f), one(1.0f);
+  const Vector3<F> p = in[0], n = normal_to_object(site, site.ns), size = abs(n);
+  const F sum = size.x + size.y + size.z;
+  const Vector3<F> unit = select(sum > zero, size / sum, Vector3<F>(one, zero, zero));
+  const Vector3<F> shares = box_shares(unit, in.scalar(1));
+  // Turn each side so that no picture is mirrored.
+  const Place<F> places[3] = {{select(n.x < zero, one - p.y, p.y), p.z},
+                              {select(n.y > zero, one - p.x, p.x), p.z},
+                              {select(n.z > zero, one - p.y, p.y), p.x}};
+  const F share[3] = {shares.x, shares.y, shares.z};
+  Value<F> result = nothing<F>();
+  for (int i = 0; i < 3; ++i) {
+    const auto shown = share[i] > zero;
+    if (!any(shown))
+      continue;
+    const Value<F> side = look_up(in, image, places[i]);
+    const Value<F> more{result.v + share[i] * side.v, result.alpha + share[i] * side.alpha};
+    result = select(shown, more, result);
+  }
+  return result;
+}
+
+// The side that a direction leaves a cube through, and where; upright for one who stands inside with +z up, and for +z and -z
+// for one who looks towards +y first and then raises or lowers his head.
+template <class F> Value<F> cube(const Inputs<F> &in, const Site<F> &site, const Vector3<F> &d) {
+  using U = WordOf<F>;
+  const F zero(0.0f), half(0.5f);
+  const Vector3<F> size = abs(d);
+  const auto x = (size.x >= size.y) & (size.x >= size.z), y = (!x) & (size.y >= size.z);
+  const F along = select(x, d.x, select(y, d.y, d.z)), length = abs(along);
+  const auto negative = along < zero;
+  const U side = select(x, U(0u), select(y, U(2u), U(4u))) + select(negative, U(1u), U(0u));
+  const F sign = select(negative, F(-1.0f), F(1.0f));
+  const F right = select(x, F(-sign * d.y), select(y, F(sign * d.x), d.x));
+  const F up = select(x | y, d.z, F(-sign * d.y));
+  const Place<F> place{half + half * right / length, half + half * up / length};
+  const auto nowhere = (length == zero) & by_lane<MaskOf<F>>([&](int i) { return lane(side, i) < in.node.image_count; });
+  return select(nowhere, nothing<F>(), look_up_each(in, site, side, place));
+}
+
+template <class F> Value<F> image_node(const Inputs<F> &in, const Site<F> &site) {
+  if (in.node.image_count == 0)
+    return missing<F>();
+  const Image &first = picture(in, site, 0);
+  const Vector3<F> p = in[0], around = F(2.0f) * p - Vector3<F>(F(1.0f));
+  if (in.node.option == LANCER_PROJECT_BOX)
+    return box(in, site, first);
+  const Place<F> place = in.node.option == LANCER_PROJECT_SPHERE ? on_sphere(around)
+                         : in.node.option == LANCER_PROJECT_TUBE ? on_tube(around)
+                                                                 : Place<F>{p.x, p.y};
+  return first.tile != 0 ? look_up_tile(in, site, place) : look_up(in, first, place);
+}
+
+template <class F> Value<F> environment_node(const Inputs<F> &in, const Site<F> &site) {
+  using D = DoubleOf<F>;
+  const Vector3<F> given = in[0];
+  if (in.node.option == LANCER_ENVIRONMENT_CUBE)
+    return cube(in, site, unit_or_zero(given));
+  if (in.node.image_count == 0)
+    return missing<F>();
+  const F zero(0.0f), one(1.0f), half(0.5f);
+  Place<F> place;
+  if (in.node.option == LANCER_ENVIRONMENT_MIRROR_BALL) {
+    // The ball, seen along +y, is bent half way between the viewer and d.
+    const Vector3<F> d = unit_or_zero(given);
+    const F size = F(2.0f) * sqrt(max(F(-0.5f) * (d.y - one), zero)), length = select(size > zero, size, one);
+    place = {half * (d.x / length + one), half * (d.z / length + one)};
+  } else {
+    const Vector3<D> d = widen(given);
+    const MapPlace<D> seen = place_on_map(d.x, d.y, d.z, D(sqrt(d.x * d.x + d.y * d.y)));
+    place = select(black(given), Place<F>{zero, zero}, Place<F>{narrow(D(0.5) - seen.x), narrow(D(0.5) + seen.y)});
+  }
+  return look_up(in, picture(in, site, 0), place);
+}
+
+} // namespace
+} // namespace lancer

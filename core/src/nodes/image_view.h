@@ -1,0 +1,48 @@
+// A picture as look-ups read it: its texels and plain numbers, and how it is looked at.
+#pragma once
+
+#include "scene/image.h"
+#include "simd/scalar.h"
+
+namespace lancer {
+
+// Steps of the lines that stand for the curve of sRGB between 0 and 1, and those lines' ends; the curve at the 256 values that
+// a byte can have; and anywhere.
+inline constexpr uint32_t kSrgbSteps = 4096;
+const float *srgb_lines();
+const float *srgb_bytes();
+float srgb_to_linear(float c);
+
+struct ImageView {
+  const std::byte *texels = nullptr;
+  const glm::mat3 *matrix = nullptr; // null: decoded colours are in the working space
+  uint32_t width = 0, height = 0, channels = 0;
+  uint32_t texel_bytes = 0; // of a channel: 1, 2, or 4 for floats
+  Extension extension = Extension::Repeat;
+  Interpolation interpolation = Interpolation::Linear;
+  bool curve = false;       // texels are of sRGB's, or linear
+  bool large = false;       // offsets in it need more than 32 bits
+  bool straight = false;    // the colour is divided by alpha
+  bool keeps_alpha = false; // in the fourth channel; else 1
+};
+
+// As nodes with these flags look at it. As long as the image is neither changed nor moved.
+LANCER_LANE ImageView image_view(const Image &image, uint32_t flags) {
+  const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
+  ImageView r;
+  r.texels = image.texels.get();
+  r.matrix = image.has_matrix ? &image.matrix : nullptr;
+  r.width = image.width;
+  r.height = image.height;
+  r.channels = image.channels;
+  r.texel_bytes = image.kind == TexelKind::U8 ? 1 : image.kind == TexelKind::U16 ? 2 : 4;
+  r.extension = static_cast<Extension>(flags & 0xf);
+  r.interpolation = static_cast<Interpolation>(flags >> 4 & 0xf);
+  r.curve = image.transfer == Transfer::Srgb;
+  r.large = static_cast<uint64_t>(image.width) * image.height * image.channels * r.texel_bytes >= uint64_t(1) << 31;
+  r.keeps_alpha = image.channels == 4 && image.alpha != AlphaMode::None;
+  r.straight = (flags & 256) && multiplied && image.channels > 1;
+  return r;
+}
+
+} // namespace lancer

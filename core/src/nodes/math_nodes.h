@@ -1,0 +1,152 @@
+// Arithmetic of numbers, as Blender's Math node has it: what is undefined gives 0. Like lanes.h.
+#pragma once
+
+#include "lancer.h"
+#include "nodes/site.h"
+#include "sampling/elementary.h"
+#include "simd/rounding.h"
+
+#include <cmath>
+
+namespace lancer {
+namespace {
+
+// Of a number and what is none the number, as C99's fmin() and fmax(); of zeros of both signs the first, which those leave
+// open.
+template <class F> LANCER_LANE F least(const F &a, const F &b) { return select((b < a) | (a != a), b, a); }
+template <class F> LANCER_LANE F largest(const F &a, const F &b) { return select((b > a) | (a != a), b, a); }
+
+template <class F> LANCER_LANE F divide(const F &a, const F &b) { return select(b != F(0.0f), a / b, F(0.0f)); }
+template <class F> LANCER_LANE F modulo(const F &a, const F &b) {
+  return each(a, b, [](float x, float y) { return y != 0.0f ? __builtin_fmodf(x, y) : 0.0f; });
+}
+template <class F> LANCER_LANE F fraction(const F &a) { return a - floor(a); }
+
+template <class F> LANCER_LANE F power(const F &a, const F &b) {
+  const F zero(0.0f), raised = select(a == zero, zero, pow(a, b));
+  return select((a < zero) & (b != trunc(b)), zero, select(b == zero, F(1.0f), raised));
+}
+
+template <class F> LANCER_LANE F logarithm(const F &a, const F &base) {
+  const F zero(0.0f);
+  return select((a > zero) & (base > zero), divide(log(a), log(base)), zero);
+}
+
+// The smaller, rounded off over the distance k.
+template <class F> LANCER_LANE F smooth_minimum(const F &a, const F &b, const F &k) {
+  const F smaller = least(a, b), h = largest(k - abs(a - b), F(0.0f)) / k;
+  return select(k == F(0.0f), smaller, smaller - h * h * h * k / F(6.0f));
+}
+
+template <class F> LANCER_LANE F wrap(const F &a, const F &high, const F &low) {
+  const F range = high - low;
+  return select(range != F(0.0f), a - range * floor((a - low) / range), low);
+}
+
+template <class F> LANCER_LANE F pingpong(const F &a, const F &b) {
+  const F two(2.0f);
+  return select(b != F(0.0f), abs(fraction((a - b) / (two * b)) * two * b - b), F(0.0f));
+}
+
+template <class F> F math(uint32_t operation, const F &a, const F &b, const F &c) {
+  constexpr float pi = 3.14159265358979323846f;
+  const F zero(0.0f), one(1.0f);
+  switch (operation) {
+  case LANCER_MATH_ADD:
+    return a + b;
+  case LANCER_MATH_SUBTRACT:
+    return a - b;
+  case LANCER_MATH_MULTIPLY:
+    return a * b;
+  case LANCER_MATH_DIVIDE:
+    return divide(a, b);
+  case LANCER_MATH_MULTIPLY_ADD:
+    return a * b + c;
+  case LANCER_MATH_POWER:
+    return power(a, b);
+  case LANCER_MATH_LOGARITHM:
+    return logarithm(a, b);
+  case LANCER_MATH_SQRT:
+    return select(a > zero, sqrt(a), zero);
+  case LANCER_MATH_INVERSE_SQRT:
+    return select(a > zero, one / sqrt(a), zero);
+  case LANCER_MATH_ABSOLUTE:
+    return abs(a);
+  case LANCER_MATH_EXPONENT:
+    return exp(a);
+  case LANCER_MATH_MINIMUM:
+    return least(a, b);
+  case LANCER_MATH_MAXIMUM:
+    return largest(a, b);
+  case LANCER_MATH_LESS_THAN:
+    return select(a < b, one, zero);
+  case LANCER_MATH_GREATER_THAN:
+    return select(a > b, one, zero);
+  case LANCER_MATH_SIGN:
+    return select(a == zero, zero, select(a < zero, F(-1.0f), one));
+  case LANCER_MATH_COMPARE:
+    // Blender's smallest tolerance: one unit in the last place of 1.
+    return select((a == b) | (abs(a - b) <= largest(c, F(0x1p-23f))), one, zero);
+  case LANCER_MATH_SMOOTH_MIN:
+    return smooth_minimum(a, b, c);
+  case LANCER_MATH_SMOOTH_MAX:
+    return -smooth_minimum(F(-a), F(-b), c);
+  case LANCER_MATH_ROUND:
+    return floor(a + F(0.5f));
+  case LANCER_MATH_FLOOR:
+    return floor(a);
+  case LANCER_MATH_CEIL:
+    return ceil(a);
+  case LANCER_MATH_TRUNC:
+    return trunc(a);
+  case LANCER_MATH_FRACT:
+    return fraction(a);
+  case LANCER_MATH_MODULO:
+    return modulo(a, b);
+  case LANCER_MATH_FLOORED_MODULO:
+    return select(b != zero, a - floor(a / b) * b, zero);
+  case LANCER_MATH_WRAP:
+    return wrap(a, b, c);
+  case LANCER_MATH_SNAP:
+    return floor(divide(a, b)) * b;
+  case LANCER_MATH_PINGPONG:
+    return pingpong(a, b);
+  case LANCER_MATH_SINE:
+    return sin(a);
+  case LANCER_MATH_COSINE:
+    return cos(a);
+  case LANCER_MATH_TANGENT:
+    return tan(a);
+  case LANCER_MATH_ARCSINE:
+    return asin(min(max(a, F(-1.0f)), one));
+  case LANCER_MATH_ARCCOSINE:
+    return acos(min(max(a, F(-1.0f)), one));
+  case LANCER_MATH_ARCTANGENT:
+    return atan(a);
+  case LANCER_MATH_ARCTAN2:
+    return select((a == zero) & (b == zero), zero, atan2(a, b));
+  case LANCER_MATH_SINH:
+    return sinh(a);
+  case LANCER_MATH_COSH:
+    return cosh(a);
+  case LANCER_MATH_TANH:
+    return tanh(a);
+  case LANCER_MATH_RADIANS:
+    return a * F(pi / 180.0f);
+  case LANCER_MATH_DEGREES:
+    return a * F(180.0f / pi);
+  default:
+    return zero;
+  }
+}
+
+template <class F> Value<F> math_node(const Inputs<F> &in) {
+  const F value = math(in.node.option, in.scalar(0), in.scalar(1), in.scalar(2));
+  return scalar(in.node.flags & 1 ? clamp01(value) : value);
+}
+template <class F> Value<F> clamp_node(const Inputs<F> &in) {
+  return scalar(F(min(max(in.scalar(0), in.scalar(1)), in.scalar(2))));
+}
+
+} // namespace
+} // namespace lancer

@@ -1,0 +1,12 @@
+// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+#include "accel/kernel_name.h"
+#include "nodes/block_site.h"
+#include "simd/kernel_lanes.h"
+
+namespace lancer {
+
+namespace LANCER_ISA {
+const NodeKernel node_kernel = {LANCER_ISA_NAME, run_block<F>};
+}
+
+} // namespace lancer

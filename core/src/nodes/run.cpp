@@ -1,0 +1,51 @@
+// The node machine at one place.
+#include "nodes/run.h"
+
+#include "nodes/dispatch.h"
+
+#include <glm/gtc/type_ptr.hpp>
+
+namespace lancer {
+
+namespace {
+
+Site<float> site_of(const NodeContext &context) {
+  Site<float> site;
+  site.scene = context;
+  site.surface = context.surface != nullptr;
+  site.wo = context.wo;
+  site.footprint = context.footprint;
+  site.eye[0] = context.eye;
+  site.path = context.path;
+  if (!context.surface) {
+    // All that the world knows is the direction; its surface would look back at the viewer.
+    site.instance[0] = nullptr;
+    site.place();
+    site.primitive[0] = 0;
+    site.p = glm::dvec3(-glm::dvec3(context.wo));
+    site.bary[0] = site.bary[1] = 0.0;
+    site.ns = site.ng = context.wo;
+    site.backfacing = false;
+    return site;
+  }
+  const Surface &surface = *context.surface;
+  site.instance[0] = context.geometry ? &context.geometry->instances[surface.instance] : nullptr;
+  site.place();
+  site.primitive[0] = surface.primitive;
+  site.p = surface.p;
+  site.bary[0] = surface.bary.x;
+  site.bary[1] = surface.bary.y;
+  site.backfacing = glm::dot(surface.ng, context.wo) < 0.0f;
+  site.ns = site.backfacing ? -surface.ns : surface.ns;
+  site.ng = site.backfacing ? -surface.ng : surface.ng;
+  return site;
+}
+
+} // namespace
+
+void run(const Program &program, const Schedule &schedule, const NodeContext &context, std::span<glm::vec4> values) {
+  if (!schedule.empty())
+    run_nodes(program, schedule, site_of(context), Values<float>{glm::value_ptr(values.front()), 1});
+}
+
+} // namespace lancer

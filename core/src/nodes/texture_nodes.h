@@ -1,0 +1,70 @@
+// Textures, tables and what is known of objects and rays, as the machine asks for them. Like lanes.h.
+#pragma once
+
+#include "nodes/curves.h"
+#include "nodes/gradient.h"
+#include "nodes/noise.h"
+#include "nodes/site.h"
+#include "nodes/voronoi.h"
+
+namespace lancer {
+namespace {
+
+template <class F> Value<F> noise_node(const Inputs<F> &in) {
+  return solid(noise_texture<F>(in.node.option, in.node.flags, in[0], in[1], in[2], in[3]));
+}
+
+template <class F> Value<F> voronoi_node(const Inputs<F> &in) {
+  const VoronoiValue<F> value = voronoi_texture<F>(in.node.option, in.node.flags, in[0], in[1], in[2], in[3]);
+  return {value.vector, value.number};
+}
+
+template <class F> Value<F> gradient_node(const Inputs<F> &in) { return scalar(gradient_texture<F>(in.node.option, in[0])); }
+
+template <class F> Value<F> curves_node(const Inputs<F> &in, const Site<F> &site) {
+  const Image &image = (*site.scene.images)[in.node.image];
+  const CurveTable table{reinterpret_cast<const float *>(image.texels.get()),
+                         image.width,
+                         image.channels,
+                         in.node.matrix[0],
+                         in.node.matrix[1],
+                         (in.node.flags & 1) != 0,
+                         (in.node.flags & 2) == 0};
+  if (in.node.option == 0)
+    return solid(on_curves<F>(table, in.scalar(0), in[1]));
+  const F x = in.scalar(1);
+  const uint32_t step = image.channels < 3 ? 0 : 1;
+  const Vector3<F> color{on_curve(table, 0, x), on_curve(table, step, x), on_curve(table, 2 * step, x)};
+  return {color, image.channels == 4 ? on_curve(table, 3, x) : F(1.0f)};
+}
+
+// Where an object is, and what tells it from others of its kind.
+template <class F> Value<F> object_info_node(const Node &node, const Site<F> &site) {
+  using D = DoubleOf<F>;
+  if (!site.placed)
+    return nothing<F>();
+  if (node.option == LANCER_OBJECT_LOCATION) {
+    const Vector3<D> origin = translation_of(site, &Instance::to_world);
+    return solid(narrow(in_user_world(site, origin)));
+  }
+  if (node.option == LANCER_OBJECT_INDEX)
+    return scalar(by_lane<F>([&](int i) { return static_cast<float>(site.instance[i]->object_index); }));
+  const std::vector<ObjectInfo> &all = site.scene.geometry->object_infos;
+  const auto number = [&](auto which) __attribute__((always_inline)) {
+    return by_lane<F>([&](int i) {
+      const uint32_t at = site.instance[i]->number;
+      return at < all.size() ? which(all.data()[at]) : which(ObjectInfo());
+    });
+  };
+  if (node.option != LANCER_OBJECT_COLOR)
+    return scalar(number([](const ObjectInfo &info) { return info.random; }));
+  const auto channel = [&](int k) { return number([k](const ObjectInfo &info) { return (&info.color.x)[k]; }); };
+  return {{channel(0), channel(1), channel(2)}, channel(3)};
+}
+
+template <class F> Value<F> light_path_node(const Node &node, const Site<F> &site) {
+  return scalar(light_path_value(node.option, site.path));
+}
+
+} // namespace
+} // namespace lancer

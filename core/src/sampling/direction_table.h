@@ -1,0 +1,105 @@
+// Directions by the numbers of a DirectionMap. F is a float, or lanes of them.
+#pragma once
+
+#include "sampling/angle.h"
+#include "sampling/distribution.h"
+#include "simd/vectors.h"
+
+namespace lancer {
+
+// Sums and guides are those of WeightedChoice, a guide with the last entry
+// behind it: the entry for a number lies between two of the guide. A line of the columns' for each row, then one of the rows'
+// own.
+struct DirectionTable {
+  uint32_t width = 0, height = 0, column_steps = 0, row_steps = 0;
+  // By row: 1 - cos of the angle to the pole of the edge towards it, which keeps its digits there, where cos has none left; and
+  // the solid angle of a cell. Rows count from the nearer pole.
+  const double *versines = nullptr, *solid_angles = nullptr;
+  const double *row_sums = nullptr, *column_sums = nullptr;
+  const uint32_t *row_guide = nullptr, *column_guide = nullptr;
+};
+
+// An entry of a table that a number falls on, as WeightedChoice::Choice.
+template <class F> struct TableEntry {
+  WordOf<F> index;
+  DoubleOf<F> width, u; // of its interval; where the number fell inside
+};
+
+// The entry whose interval sums[i] <= number < sums[i + 1] holds the number; halves what two entries of the guide leave. Sums
+// and guide begin at these places of theirs.
+template <class F>
+LANCER_LANE TableEntry<F> find_entry(const double *sums, WordOf<F> sums_at, const uint32_t *guide, WordOf<F> guide_at,
+                                     uint32_t steps, F number) {
+  using D = DoubleOf<F>;
+  using U = WordOf<F>;
+  using M = MaskOf<F>;
+  const D u = widen(number);
+  const U step = guide_at + truncate(min(D(static_cast<double>(steps - 1u)), u * D(static_cast<double>(steps))));
+  U low = gather(guide, step), high = gather(guide, step + U(1u));
+  for (M open = !equal(low, high); any(open); open = !equal(low, high)) {
+    const U middle = (low + high) >> 1;
+    const M left = gather(sums, sums_at + middle + U(1u)) > u, right = open & !left;
+    high = select(open & left, middle, high);
+    low = select(right, middle + U(1u), low);
+  }
+  const D from = gather(sums, sums_at + low), width = gather(sums, sums_at + low + U(1u)) - from;
+  return {low, width, min((u - from) / width, D(kBelowOne))};
+}
+
+// Whether a row is nearer to the upper pole; its number from the nearer one.
+template <class F> LANCER_LANE MaskOf<F> is_upper_row(const DirectionTable &map, WordOf<F> row) {
+  return F(2.0f) * to_float(row) < F(static_cast<float>(map.height));
+}
+template <class F> LANCER_LANE WordOf<F> row_from_pole(const DirectionTable &map, WordOf<F> row) {
+  return select(is_upper_row<F>(map, row), row, WordOf<F>(map.height - 1u) - row);
+}
+
+// Of a cell, per solid angle.
+template <class F> LANCER_LANE DoubleOf<F> cell_density(const DirectionTable &map, WordOf<F> row, WordOf<F> column) {
+  using D = DoubleOf<F>;
+  using U = WordOf<F>;
+  const U at = row * U(map.width + 1u) + column, next(1u);
+  const D of_row = gather(map.row_sums, row + next) - gather(map.row_sums, row);
+  const D of_column = gather(map.column_sums, at + next) - gather(map.column_sums, at);
+  return of_row * of_column / gather(map.solid_angles, row_from_pole<F>(map, row));
+}
+
+template <class F> struct DirectionSample {
+  Double3Of<F> direction; // unit
+  DoubleOf<F> pdf;        // per solid angle; not above 0: no sample
+};
+
+template <class F> LANCER_LANE DirectionSample<F> sample_direction(const DirectionTable &map, F u, F v) {
+  using D = DoubleOf<F>;
+  using U = WordOf<F>;
+  // Choose a row, a column in it, and with what is left of both numbers a place in the cell.
+  const TableEntry<F> row = find_entry(map.row_sums, U(0u), map.row_guide, U(0u), map.row_steps, v);
+  const TableEntry<F> column = find_entry(map.column_sums, row.index * U(map.width + 1u), map.column_guide,
+                                          row.index * U(map.column_steps + 1u), map.column_steps, u);
+  // Even steps of the cosine are even steps of the solid angle. Count from the nearer pole.
+  const D one(1.0);
+  const MaskOf<F> upper = is_upper_row<F>(map, row.index);
+  const U pole = row_from_pole<F>(map, row.index);
+  const D from = gather(map.versines, pole), to = gather(map.versines, pole + U(1u));
+  const D y = select(upper, row.u, one - row.u), x = from * (one - y) + to * y;
+  const D across = sqrt(x * (D(2.0) - x)), up = select(upper, one - x, x - one);
+  // Columns begin half a turn away.
+  const SinCos turn = sin_cos_turn((widen(to_float(column.index)) + column.u) / D(static_cast<double>(map.width)));
+  return {{-(across * turn.cos), -(across * turn.sin), up}, cell_density<F>(map, row.index, column.index)};
+}
+
+// Where a direction in floats, as the nodes of a world see it, lies on the map.
+template <class F> LANCER_LANE MapPlace<DoubleOf<F>> place_of(const Vector3<F> &direction) {
+  const Double3Of<F> d = widen(direction);
+  return place_on_map(d.x, d.y, d.z, sqrt(d.x * d.x + d.y * d.y));
+}
+
+template <class F> LANCER_LANE DoubleOf<F> direction_pdf(const DirectionTable &map, const MapPlace<DoubleOf<F>> &place) {
+  using D = DoubleOf<F>;
+  const double width = static_cast<double>(map.width), height = static_cast<double>(map.height);
+  const WordOf<F> row = truncate(min(D(height - 1.0), (D(0.5) - place.y) * D(height)));
+  const WordOf<F> column = truncate(min(D(width - 1.0), (D(0.5) + place.x) * D(width)));
+  return cell_density<F>(map, row, column);
+}
+
+} // namespace lancer
