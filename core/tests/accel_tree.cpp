@@ -1,5 +1,5 @@
 // The wide tree itself: what its leaves hold, and that its bits do not depend on the threads that built it.
-#include "accel/bvh_build.h"
+#include "accel/bvh/bvh_build.h"
 
 #include <gtest/gtest.h>
 

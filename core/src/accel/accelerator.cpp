@@ -1,8 +1,6 @@
 #include "accel/accelerator.h"
 
-#include "accel/brute_force.h"
-#include "accel/bvh_accelerator.h"
-#include "accel/kdtree_accelerator.h"
+#include "accel/kinds.h"
 
 namespace lancer {
 

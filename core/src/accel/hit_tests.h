@@ -3,6 +3,7 @@
 
 #include "accel/quadric.h"
 #include "accel/triangle.h"
+#include "scene/geometry.h"
 
 namespace lancer {
 
@@ -16,16 +17,22 @@ struct Counting {
   }
 };
 
-inline void try_triangle(const Ray &ray, const ObjectRay &object_ray, const Shear &shear, const Mesh &mesh, uint32_t instance,
-                         uint32_t triangle, const Counting &counting, Hit &best) {
+inline void try_triangle(const Ray &ray, const RayAxes &axes, const ShearedRay<double> &sheared, const Mesh &mesh,
+                         uint32_t instance, uint32_t triangle, const Counting &counting, Hit &best) {
   if (ray.skip_instance == instance && ray.skip_primitive == triangle)
     return;
-  const glm::vec3 a = mesh.vertex(triangle, 0), b = mesh.vertex(triangle, 1), c = mesh.vertex(triangle, 2);
-  double t, u, v;
-  if (!intersect_triangle(object_ray, shear, &a.x, &b.x, &c.x, t, u, v) || !(ray.tmin < t && t < ray.tmax) ||
-      !closer(t, instance, triangle, best))
+  double corner[3][3];
+  for (int i = 0; i < 3; ++i) {
+    const glm::vec3 p = mesh.vertex(triangle, i);
+    corner[i][0] = p[static_cast<int>(axes.kx)];
+    corner[i][1] = p[static_cast<int>(axes.ky)];
+    corner[i][2] = p[static_cast<int>(axes.kz)];
+  }
+  TriangleHit<double> met;
+  if (!intersect_triangle(corner, sheared, met) || !(ray.tmin < met.t && met.t < ray.tmax) ||
+      !closer(met.t, instance, triangle, best))
     return;
-  if (const Hit hit{t, u, v, instance, triangle}; counting(hit))
+  if (const Hit hit{met.t, met.wb / met.det, met.wc / met.det, instance, triangle}; counting(hit))
     best = hit;
 }
 

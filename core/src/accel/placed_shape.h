@@ -1,5 +1,10 @@
-// An instance as the traversals read it: plain numbers, no containers.
+// An instance as the traversals read it, and a ray carried into its space: started afresh near its middle, the same numbers for
+// every accelerator. Plain numbers and forced inlining: the kernels are compiled once per instruction set and may leave no
+// shared symbol.
 #pragma once
+
+#include "accel/ray.h"
+#include "simd/power_of_two.h"
 
 #include <cstdint>
 
@@ -22,5 +27,84 @@ struct alignas(32) PlacedShape {
   uint32_t mesh;        // kNone for exact surfaces
   uint32_t hidden_from; // bits of Ray::kinds
 };
+
+// Points o + tau d; t = t0 + tau * unit is the parameter of the world ray.
+// d is the object-space direction over a power of two, its largest component in [1, 2): no scale overflows or underflows.
+// o is the closest approach to the frame's centre, so that coordinates are of the mesh's own size however far the eye is.
+struct ObjectRay {
+  double o[3];
+  double q[3]; // o relative to the frame's centre
+  double d[3];
+  double t0;
+  double unit, inverse_unit; // powers of two
+};
+
+// Divides d by the power of two of its largest component: d times unit. False where it is zero, not finite, or beyond 2^+-1000.
+template <class D> LANCER_LANE auto scale_direction(D (&d)[3], D &unit, D &inverse_unit) {
+  const D x = abs(d[0]), y = abs(d[1]), z = abs(d[2]);
+  const D largest = max(z, max(y, x));
+  inverse_unit = power_of_two_within(largest);
+  unit = inverse_of_power(inverse_unit);
+  for (D &component : d)
+    component = component * unit;
+  return (largest >= D(0x1p-1000)) & (x + y + z <= D(0x1p1000));
+}
+
+// Origin and direction of a ray in an object's space; t is unchanged. m(column, row): of the matrix, 3 x 4.
+template <class D, class Matrix> LANCER_LANE void to_object_space(const Matrix &m, const Ray &ray, D (&o)[3], D (&d)[3]) {
+  for (int i = 0; i < 3; ++i) {
+    const D x = m(0, i), y = m(1, i), z = m(2, i);
+    o[i] = x * D(ray.o.x) + y * D(ray.o.y) + z * D(ray.o.z) + m(3, i);
+    d[i] = x * D(ray.d.x) + y * D(ray.d.y) + z * D(ray.d.z);
+  }
+}
+LANCER_LANE void to_object_space(const PlacedShape &shape, const Ray &ray, double (&o)[3], double (&d)[3]) {
+  to_object_space(
+      [&](int column, int row) __attribute__((always_inline)) { return shape.to_object[column][row]; }, ray, o, d);
+}
+
+// Starts the ray o + t d afresh at its closest approach to the frame's centre. False where it is not usable.
+LANCER_LANE bool enter_frame(const PlacementFrame &frame, const double o[3], const double d[3], ObjectRay &ray) {
+  for (int i = 0; i < 3; ++i)
+    ray.d[i] = d[i];
+  if (!scale_direction(ray.d, ray.unit, ray.inverse_unit))
+    return false;
+  const double f[3] = {o[0] - frame.centre[0], o[1] - frame.centre[1], o[2] - frame.centre[2]};
+  const double along = f[0] * ray.d[0] + f[1] * ray.d[1] + f[2] * ray.d[2];
+  const double length2 = ray.d[0] * ray.d[0] + ray.d[1] * ray.d[1] + ray.d[2] * ray.d[2];
+  const double tau0 = -along / length2;
+  for (int i = 0; i < 3; ++i) {
+    ray.q[i] = f[i] + tau0 * ray.d[i];
+    ray.o[i] = ray.q[i] + frame.centre[i];
+  }
+  ray.t0 = tau0 * ray.unit;
+  return abs(ray.t0) + abs(ray.q[0]) + abs(ray.q[1]) + abs(ray.q[2]) < __builtin_inf();
+}
+
+// Whether the ray can see the shape at all.
+LANCER_LANE bool visible(const PlacedShape &shape, const Ray &ray) { return (ray.kinds & ~shape.hidden_from) != 0; }
+
+LANCER_LANE bool enter_shape(const PlacedShape &shape, const Ray &ray, ObjectRay &object_ray) {
+  double o[3], d[3];
+  to_object_space(shape, ray, o, d);
+  return enter_frame(shape.frame, o, d, object_ray);
+}
+
+// The ray in the scene's frame. False where it meets nothing by decree: not finite, no direction, an empty or undefined range.
+LANCER_LANE bool enter_world(const PlacementFrame &world, const Ray &ray, ObjectRay &world_ray) {
+  const double o[3] = {ray.o.x, ray.o.y, ray.o.z}, d[3] = {ray.d.x, ray.d.y, ray.d.z};
+  return ray.tmin < ray.tmax && enter_frame(world, o, d, world_ray);
+}
+
+LANCER_LANE double world_t(const ObjectRay &ray, double tau) { return ray.t0 + tau * ray.unit; }
+
+// Box-frame parameters that no hit with parameter <= t (>= t) exceeds. t = t0 + tau unit was rounded once and t - t0 is rounded
+// once here: together at most 2^-53 (|t| + |t - t0|) <= 2^-51 (|t| + |t0|).
+LANCER_LANE double box_tau_above(const ObjectRay &ray, const PlacementFrame &frame, double t) {
+  return ((t - ray.t0) + 0x1p-51 * (abs(t) + abs(ray.t0))) * ray.inverse_unit * frame.scale;
+}
+LANCER_LANE double box_tau_below(const ObjectRay &ray, const PlacementFrame &frame, double t) {
+  return ((t - ray.t0) - 0x1p-51 * (abs(t) + abs(ray.t0))) * ray.inverse_unit * frame.scale;
+}
 
 } // namespace lancer

@@ -1,6 +1,7 @@
 #include "accel/quadric.h"
 
-#include "accel/edge_sides.h"
+#include "accel/roots.h"
+#include "accel/triangle.h"
 #include "sampling/elementary.h"
 
 #include <algorithm>
@@ -11,35 +12,6 @@ namespace lancer {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// A sum of squares as if computed in twice the precision: next to a surface nearly all of its digits cancel.
-struct PreciseSum {
-  double value = 0.0, rest = 0.0;
-
-  // Knuth's sum: value + x = s + error, exactly.
-  void add(double x) {
-    const double s = value + x, shadow = s - value;
-    rest += (value - (s - shadow)) + (x - shadow);
-    value = s;
-  }
-  // Veltkamp's splitting: x * x = square + error, exactly. sign is 1 or -1.
-  void add_square(double x, double sign) {
-    const double scaled = 134217729.0 * x;
-    const double high = scaled - (scaled - x), low = x - high;
-    const double square = x * x;
-    add(sign * square);
-    rest += sign * (((high * high - square) + 2.0 * high * low) + low * low);
-  }
-  double total() const { return value + rest; }
-};
-
-// Where a line enters and leaves a convex solid, and whether that place is on the surface that it started from.
-// All closed shapes are intersections of convex solids, so a line that enters always leaves: no gap at the rims.
-struct Interval {
-  double entry = -kInfinity, exit = kInfinity;
-  bool entry_is_start = false, exit_is_start = false;
-};
-
 constexpr Interval kEmpty{kInfinity, -kInfinity, false, false};
 
 Interval intersection(const Interval &a, const Interval &b) {
@@ -51,49 +23,33 @@ Interval intersection(const Interval &a, const Interval &b) {
   return i;
 }
 
-// Roots of a t^2 - 2 b t + c = 0 with discriminant = b^2 - a c known better than that difference gives it.
-// first is the root of smaller magnitude: c / q loses no digit where c is small.
-bool solve(double a, double b, double c, double discriminant, double &first, double &second) {
-  if (!(discriminant >= 0.0))
-    return false;
-  const double q = b + std::copysign(std::sqrt(discriminant), b);
-  first = c / q;
-  second = q / a;
-  return q != 0.0;
+// With the discriminant where it may be negative.
+bool solve_squared(double a, double b, double c, double discriminant, double &first, double &second) {
+  return discriminant >= 0.0 && solve(a, b, c, std::sqrt(discriminant), first, second);
 }
 
-Interval between(double first, double second, bool first_is_start) {
-  if (first < second)
-    return {first, second, first_is_start, false};
-  return {second, first, false, first_is_start};
-}
-
-// b^2 - a c is a - |o x d|^2 (Lagrange): the squared distance of the line from the centre, without the cancellation of o.o.
-Interval unit_sphere(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
-  PreciseSum c;
-  c.add(-1.0);
-  for (int i = 0; i < 3; ++i)
-    c.add_square(o[i], 1.0);
-  const glm::dvec3 m = glm::cross(o, d);
-  const double a = glm::dot(d, d);
-  double first, second;
-  if (!solve(a, -glm::dot(o, d), c.total(), a - glm::dot(m, m), first, second))
-    return kEmpty;
-  return between(first, second, std::abs(c.total()) <= slack);
+Interval unit_sphere(const double (&o)[3], const double (&d)[3], double slack) {
+  SphereTerms<double> terms;
+  terms.find_discriminant(o, d);
+  terms.find_rest(o, d);
+  Interval i;
+  return terms.discriminant >= 0.0 && sphere_interval(terms.a, terms.b, terms.c, std::sqrt(terms.discriminant), slack, i)
+             ? i
+             : kEmpty;
 }
 
 // x^2 + y^2 <= 1: the sphere's form with the axis projected out.
 Interval unit_tube(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
-  PreciseSum c;
+  PreciseSum<double> c;
   c.add(-1.0);
-  c.add_square(o.x, 1.0);
-  c.add_square(o.y, 1.0);
+  c.add_square(o.x);
+  c.add_square(o.y);
   const double a = d.x * d.x + d.y * d.y;
   if (a == 0.0)
     return c.total() <= 0.0 ? Interval{} : kEmpty;
   const double m = o.x * d.y - o.y * d.x;
   double first, second;
-  if (!solve(a, -(o.x * d.x + o.y * d.y), c.total(), a - m * m, first, second))
+  if (!solve_squared(a, -(o.x * d.x + o.y * d.y), c.total(), a - m * m, first, second))
     return kEmpty;
   return between(first, second, std::abs(c.total()) <= slack);
 }
@@ -101,10 +57,10 @@ Interval unit_tube(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
 // x^2 + y^2 <= (w / 2)^2 with w = 1 - z >= 0. With m = (o - apex) x d, the same identity gives (m.x^2 + m.y^2) / 4 - m.z^2.
 Interval unit_nappe(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
   const double w = 1.0 - o.z;
-  PreciseSum c;
-  c.add_square(o.x, 1.0);
-  c.add_square(o.y, 1.0);
-  c.add_square(0.5 * w, -1.0);
+  PreciseSum<double> c;
+  c.add_square(o.x);
+  c.add_square(o.y);
+  c.subtract_square(0.5 * w);
   // Along the cone's own lines this is next to nothing: it needs all of its digits.
   const glm::dvec3 m(difference_of_products(o.y, d.z, -w, d.y), difference_of_products(-w, d.x, o.x, d.z),
                      difference_of_products(o.x, d.y, o.y, d.x));
@@ -117,12 +73,12 @@ Interval unit_nappe(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
 
   // Flatter than the cone: both roots lie on one nappe; keep them if it is this one.
   if (a > 0.0) {
-    if (!solve(a, b, c.total(), discriminant, first, second) || w - (b / a) * d.z < 0.0)
+    if (!solve_squared(a, b, c.total(), discriminant, first, second) || w - (b / a) * d.z < 0.0)
       return kEmpty;
     return between(first, second, starts_here);
   }
   // Steeper: one root on each nappe, and the line stays inside from there on.
-  if (!solve(a, b, c.total(), std::max(discriminant, 0.0), first, second))
+  if (!solve_squared(a, b, c.total(), std::max(discriminant, 0.0), first, second))
     return kEmpty;
   if (a == 0.0)
     second = first;
@@ -142,34 +98,25 @@ Interval unit_slab(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
 } // namespace
 
 bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t) {
-  double origin[3], direction[3];
+  double origin[3], direction[3], unit, inverse_unit;
   to_object_space(shape, ray, origin, direction);
-  ObjectRay scaled;
-  if (!normalise_direction(direction, scaled))
+  if (!scale_direction(direction, unit, inverse_unit))
     return false;
-  const glm::dvec3 o(origin[0], origin[1], origin[2]), d(scaled.d[0], scaled.d[1], scaled.d[2]);
+  const glm::dvec3 o(origin[0], origin[1], origin[2]), d(direction[0], direction[1], direction[2]);
 
   // Flat and without end: a ray that starts on it never comes back.
   if (shape.kind == ShapeKind::Plane) {
-    t = (-o.z / d.z) * scaled.unit;
+    t = (-o.z / d.z) * unit;
     return !leaves && ray.tmin < t && t < ray.tmax;
   }
 
   // The implicit functions grow by at most 4 per unit of every coordinate on the surface (2 sqrt(3), 2 sqrt(2), 2 sqrt(2) + 1).
   const double residual = 4.0 * shape.slack;
-  const Interval i = shape.kind == ShapeKind::Sphere ? unit_sphere(o, d, residual)
+  const Interval i = shape.kind == ShapeKind::Sphere ? unit_sphere(origin, direction, residual)
                      : shape.kind == ShapeKind::Cylinder
                          ? intersection(unit_tube(o, d, residual), unit_slab(o, d, shape.slack))
                          : intersection(unit_nappe(o, d, residual), unit_slab(o, d, shape.slack));
-  if (!(i.entry <= i.exit))
-    return false;
-
-  // Take the first of both places that is on the ray and not its start.
-  t = i.entry * scaled.unit;
-  if (!(leaves && i.entry_is_start) && ray.tmin < t && t < ray.tmax)
-    return true;
-  t = i.exit * scaled.unit;
-  return !(leaves && i.exit_is_start) && ray.tmin < t && t < ray.tmax;
+  return first_place(i, unit, leaves, ray.tmin, ray.tmax, t);
 }
 
 SurfacePoint quadric_point(ShapeKind kind, const glm::dvec3 &o, const glm::dvec3 &d, double t) {

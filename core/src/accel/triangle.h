@@ -1,56 +1,130 @@
-// Watertight ray-triangle test (Woop, Benthin, Wald 2013) in double.
-// The kernels of bvh_kernel.cpp do these operations in this order, four triangles at a time: the same bits.
+// Watertight ray-triangle test (Woop, Benthin, Wald 2013) in double, of one triangle or of as many as there are lanes: the same
+// bits.
 #pragma once
 
-#include "accel/edge_sides.h"
+#include "accel/placed_shape.h"
 
 namespace lancer {
 
-// The shear that turns the ray into the axis z = 1 through the origin.
-struct Shear {
-  int kx, ky, kz;
-  double sx, sy, sz;
-};
-
-LANCER_INLINE Shear make_shear(const ObjectRay &ray) {
-  const double ax = magnitude(ray.d[0]), ay = magnitude(ray.d[1]), az = magnitude(ray.d[2]);
-  Shear s;
-  s.kz = az >= ax && az >= ay ? 2 : (ay >= ax ? 1 : 0);
-  s.kx = s.kz == 2 ? 0 : s.kz + 1;
-  s.ky = s.kx == 2 ? 0 : s.kx + 1;
-  s.sx = ray.d[s.kx] / ray.d[s.kz];
-  s.sy = ray.d[s.ky] / ray.d[s.kz];
-  s.sz = 1.0 / ray.d[s.kz];
-  return s;
+// a b = product + rest, exactly, by Veltkamp's splitting.
+LANCER_LANE double rest_of_product(double a, double b, double product) {
+  const double sa = 134217729.0 * a, sb = 134217729.0 * b;
+  const double high_a = sa - (sa - a), high_b = sb - (sb - b), low_a = a - high_a, low_b = b - high_b;
+  return ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b;
 }
 
-// t, u, v of the point where the ray meets the triangle; false where it does not. t is the same bits for any order of the
-// corners. Edge functions change sign exactly when their corners are swapped, so of triangles that share an edge one is met.
-LANCER_INLINE bool intersect_triangle(const ObjectRay &ray, const Shear &s, const float a[3], const float b[3],
-                                      const float c[3], double &t, double &u, double &v) {
-  // Shear the corners into the ray's frame.
-  const double az = a[s.kz] - ray.o[s.kz], bz = b[s.kz] - ray.o[s.kz], cz = c[s.kz] - ray.o[s.kz];
-  const double ax = (a[s.kx] - ray.o[s.kx]) - s.sx * az, ay = (a[s.ky] - ray.o[s.ky]) - s.sy * az;
-  const double bx = (b[s.kx] - ray.o[s.kx]) - s.sx * bz, by = (b[s.ky] - ray.o[s.ky]) - s.sy * bz;
-  const double cx = (c[s.kx] - ray.o[s.kx]) - s.sx * cz, cy = (c[s.ky] - ray.o[s.ky]) - s.sy * cz;
+// a b - c d, to its last digit.
+LANCER_LANE double difference_of_products(double a, double b, double c, double d) {
+  const double p = a * b, q = c * d;
+  return (p - q) + (rest_of_product(a, b, p) - rest_of_product(c, d, q));
+}
 
-  // Keep the triangle if the origin lies on one side of all three edges.
-  double w[3] = {cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
-  if (!((w[0] >= 0.0 && w[1] >= 0.0 && w[2] >= 0.0) || (w[0] <= 0.0 && w[1] <= 0.0 && w[2] <= 0.0)))
-    return false;
-  if (w[0] * w[1] * w[2] == 0.0) {
-    const double x[3] = {ax, bx, cx}, y[3] = {ay, by, cy};
-    if (!within_edges(x, y, w))
-      return false;
+// On which side of a triangle's edges a ray passes that meets one exactly. It passes by one of them, whichever triangle asks:
+// of all triangles around an edge or a corner one is met for each time that their surface is crossed.
+// Whether the origin lies within a triangle with the corners (x, y), where a few of its edge functions w have rounded to zero;
+// w[i] = x[k] y[j] - y[k] x[j] with the corners j and k after i. What is not zero exactly gets its digits. Where the origin is
+// on an edge the ray is taken to pass beside it: by a next to nothing towards +x, and by next to nothing of that towards +y.
+LANCER_LANE bool within_edges(const double x[3], const double y[3], double w[3]) {
+  int sides = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
+    // Both products have rounded to the same number: their rests differ, or nothing does.
+    if (w[i] == 0.0)
+      w[i] = difference_of_products(x[k], y[j], y[k], x[j]);
+    const double side = w[i] != 0.0 ? w[i] : y[k] != y[j] ? y[k] - y[j] : x[j] - x[k];
+    sides += (side > 0.0) - (side < 0.0);
   }
+  return sides == 3 || sides == -3;
+}
 
+// a + b + c whatever their order: the same bits.
+template <class D> LANCER_LANE D sum_in_any_order(const D &a, const D &b, const D &c) {
+  const D low = min(b, a), high = max(b, a);
+  return (min(c, low) + max(c, high)) + max(min(c, high), low);
+}
+
+// The axes of a ray: kz is the one that its direction is longest along.
+struct RayAxes {
+  uint32_t kx, ky, kz;
+};
+LANCER_LANE RayAxes axes_from(uint32_t kz) {
+  const uint32_t kx = kz == 2 ? 0 : kz + 1;
+  return {kx, kx == 2 ? 0 : kx + 1, kz};
+}
+LANCER_LANE uint32_t longest_axis(const double d[3]) {
+  const double x = abs(d[0]), y = abs(d[1]), z = abs(d[2]);
+  return z >= x && z >= y ? 2 : (y >= x ? 1 : 0);
+}
+
+// A ray as the test reads it, its axes in the order kx, ky, kz: the shear turns it into the axis z = 1 through the origin.
+template <class D> struct ShearedRay {
+  D o[3];
+  D shear[2], upright; // direction over its component along kz; one over that
+  D t0, unit;          // of ObjectRay
+};
+LANCER_LANE ShearedRay<double> shear_ray(const ObjectRay &ray, const RayAxes &k) {
+  const double up = ray.d[k.kz];
+  return {{ray.o[k.kx], ray.o[k.ky], ray.o[k.kz]}, {ray.d[k.kx] / up, ray.d[k.ky] / up}, 1.0 / up, ray.t0, ray.unit};
+}
+
+// Where a ray meets a triangle: its parameter, the same bits for any order of the corners; the weights of the corners 1 and 2
+// are wb / det and wc / det.
+template <class D> struct TriangleHit { D t, wb, wc, det; };
+
+namespace {
+
+// Asks within_edges() about the lanes of ties: rays that meet an edge exactly, which are few. Returns the lanes of met without
+// those that pass beside.
+template <class D>
+[[gnu::noinline, gnu::cold]] uint32_t settle_ties(const D (&x)[3], const D (&y)[3], uint32_t ties, uint32_t met, D (&w)[3]) {
+  constexpr size_t count = sizeof(D) / sizeof(double);
+  alignas(64) double corner_x[3][count], corner_y[3][count], edge[3][count];
+  for (int i = 0; i < 3; ++i) {
+    store(corner_x[i], x[i]);
+    store(corner_y[i], y[i]);
+    store(edge[i], w[i]);
+  }
+  for (; ties != 0; ties &= ties - 1) {
+    const int lane = __builtin_ctz(ties);
+    const double lane_x[3] = {corner_x[0][lane], corner_x[1][lane], corner_x[2][lane]};
+    const double lane_y[3] = {corner_y[0][lane], corner_y[1][lane], corner_y[2][lane]};
+    double lane_w[3] = {edge[0][lane], edge[1][lane], edge[2][lane]};
+    if (!within_edges(lane_x, lane_y, lane_w))
+      met &= ~(1u << lane);
+    for (int i = 0; i < 3; ++i)
+      edge[i][lane] = lane_w[i];
+  }
+  for (int i = 0; i < 3; ++i)
+    w[i] = load_doubles<count>(edge[i]);
+  return met;
+}
+
+} // namespace
+
+// Bit i: lane i meets its triangle, somewhere on its line. corner: by number, and by axis in the ray's order. Edge functions
+// change sign exactly when their corners are swapped, so of triangles that share an edge one is met.
+template <class D>
+LANCER_LANE uint32_t intersect_triangle(const D (&corner)[3][3], const ShearedRay<D> &ray, TriangleHit<D> &hit) {
+  // Shear the corners into the ray's frame.
+  D x[3], y[3], z[3];
+  for (int i = 0; i < 3; ++i) {
+    z[i] = corner[i][2] - ray.o[2];
+    x[i] = (corner[i][0] - ray.o[0]) - ray.shear[0] * z[i];
+    y[i] = (corner[i][1] - ray.o[1]) - ray.shear[1] * z[i];
+  }
+  // Keep the triangle if the origin lies on one side of all three edges.
+  const D zero(0.0);
+  D w[3] = {x[2] * y[1] - y[2] * x[1], x[0] * y[2] - y[0] * x[2], x[1] * y[0] - y[1] * x[0]};
+  uint32_t met = bits(((w[0] >= zero) & (w[1] >= zero) & (w[2] >= zero)) | ((w[0] <= zero) & (w[1] <= zero) & (w[2] <= zero)));
+  if (met == 0)
+    return 0;
+  if (const uint32_t ties = met & bits(w[0] * w[1] * w[2] == zero); ties != 0)
+    met = settle_ties(x, y, ties, met, w);
   // Interpolate the depth and return to the world's parameter.
-  const double det = sum_in_any_order(w[0], w[1], w[2]);
-  const double depth = sum_in_any_order(w[0] * (s.sz * az), w[1] * (s.sz * bz), w[2] * (s.sz * cz));
-  t = world_t(ray, depth / det);
-  u = w[1] / det;
-  v = w[2] / det;
-  return true;
+  const D det = sum_in_any_order(w[0], w[1], w[2]);
+  const D depth = sum_in_any_order(w[0] * (ray.upright * z[0]), w[1] * (ray.upright * z[1]), w[2] * (ray.upright * z[2]));
+  hit = {ray.t0 + (depth / det) * ray.unit, w[1], w[2], det};
+  return met;
 }
 
 } // namespace lancer

@@ -1,5 +1,5 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
-#include "accel/coplanar_accelerator.h"
+#include "accel/coplanar/coplanar_accelerator.h"
 #include "accel/parallel.h"
 #include "integrator/shading.h"
 #include "lights/make_emitters.h"
@@ -86,7 +86,7 @@ PlaneRules plane_rules(const Scene &scene) {
   PlaneRules rules;
   rules.origin = scene.normalisation.to_normalised(glm::dvec3(0.0));
   for (const uint32_t material : scene.slots) {
-    rules.passing_slots.push_back(lets_light_through(scene.materials[material]));
+    rules.transparent_slots.push_back(lets_light_through(scene.materials[material]));
     rules.emitting_slots.push_back(scene.materials[material].emits());
   }
   return rules;

@@ -61,6 +61,9 @@ template <int W> struct Double {
 #if defined(__AVX__)
     if constexpr (W == 8)
       return {(Vector)_mm256_max_pd((__m256d)b.lo, (__m256d)a.lo), (Vector)_mm256_max_pd((__m256d)b.hi, (__m256d)a.hi)};
+#elif defined(__SSE2__)
+    if constexpr (W == 4)
+      return {(Vector)_mm_max_pd((__m128d)b.lo, (__m128d)a.lo), (Vector)_mm_max_pd((__m128d)b.hi, (__m128d)a.hi)};
 #endif
     return select(a < b, b, a);
   }
@@ -68,6 +71,9 @@ template <int W> struct Double {
 #if defined(__AVX__)
     if constexpr (W == 8)
       return {(Vector)_mm256_min_pd((__m256d)b.lo, (__m256d)a.lo), (Vector)_mm256_min_pd((__m256d)b.hi, (__m256d)a.hi)};
+#elif defined(__SSE2__)
+    if constexpr (W == 4)
+      return {(Vector)_mm_min_pd((__m128d)b.lo, (__m128d)a.lo), (Vector)_mm_min_pd((__m128d)b.hi, (__m128d)a.hi)};
 #endif
     return select(b < a, b, a);
   }
@@ -79,6 +85,9 @@ template <int W> struct Double {
 #if defined(__AVX__)
     if constexpr (W == 8)
       return {(Vector)_mm256_sqrt_pd((__m256d)a.lo), (Vector)_mm256_sqrt_pd((__m256d)a.hi)};
+#elif defined(__SSE2__)
+    if constexpr (W == 4)
+      return {(Vector)_mm_sqrt_pd((__m128d)a.lo), (Vector)_mm_sqrt_pd((__m128d)a.hi)};
 #endif
     for (int i = 0; i < W / 2; ++i) {
       a.lo[i] = __builtin_sqrt(a.lo[i]);

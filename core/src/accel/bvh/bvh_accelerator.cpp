@@ -1,0 +1,137 @@
+#include "accel/kinds.h"
+
+#include "accel/bvh/bvh_build.h"
+#include "accel/bvh/bvh_kernel.h"
+#include "accel/huge_pages.h"
+#include "accel/parallel.h"
+#include "accel/placed_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+
+const BvhKernel &bvh_kernel() { return LANCER_CHOSEN_KERNEL(bvh_kernel); }
+
+namespace {
+
+class BvhAccelerator final : public Accelerator {
+public:
+  BvhAccelerator(const Geometry &geometry, const BuildContext &context)
+      : kernel(bvh_kernel()), placed(place_scene(geometry)), meshes(geometry.meshes.size()) {
+    const std::vector<uint8_t> unfolded = choose_unfolded(geometry);
+    build_meshes(geometry, unfolded, context);
+    world = build_world_bvh(geometry, placed, unfolded, context);
+    release(placed.boxes);
+
+    for (const MeshBvh &mesh : meshes)
+      views.push_back(mesh.view());
+    scene = {.world = placed.world,
+             .shapes = placed.shapes.data(),
+             .meshes = views.data(),
+             .top = world.view().nodes,
+             .blocks = world.blocks.data(),
+             .block_instance = world.owners.data(),
+             .spheres = world.spheres.data(),
+             .unbounded = placed.unbounded.data(),
+             .unbounded_count = static_cast<uint32_t>(placed.unbounded.size())};
+  }
+  BvhAccelerator(const BvhAccelerator &) = delete;
+  BvhAccelerator &operator=(const BvhAccelerator &) = delete;
+
+  TraversalCounts count(std::span<const Ray> rays, bool any) const override {
+    TraversalCounts counts;
+    kernel.count(scene, rays.data(), rays.size(), any, counts);
+    return counts;
+  }
+  size_t bytes() const override {
+    size_t sum = placed.bytes() + views.capacity() * sizeof(BvhView) + world.bytes();
+    for (const MeshBvh &mesh : meshes)
+      sum += mesh.bytes();
+    return sum;
+  }
+  const char *instruction_set() const override { return kernel.name; }
+
+private:
+  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
+    if (filter)
+      kernel.closest_filtered(scene, rays.data(), hits.data(), rays.size(), *filter);
+    else
+      kernel.closest(scene, rays.data(), hits.data(), rays.size());
+  }
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
+    if (filter)
+      kernel.any_filtered(scene, rays.data(), occluded.data(), rays.size(), *filter);
+    else
+      kernel.any(scene, rays.data(), occluded.data(), rays.size());
+  }
+
+  // Instances whose triangles stand in the world's own tree: those of meshes that are placed once, and copies of small ones.
+  std::vector<uint8_t> choose_unfolded(const Geometry &geometry) const {
+    std::vector<uint32_t> uses(geometry.meshes.size(), 0);
+    size_t triangles = 0;
+    for (const uint32_t number : placed.bounded)
+      if (geometry.instances[number].kind == ShapeKind::Mesh && uses[geometry.instances[number].mesh]++ == 0)
+        triangles += geometry.meshes[geometry.instances[number].mesh].triangles.size();
+    std::vector<uint8_t> unfolded(geometry.instances.size(), 0);
+    size_t copies = 0;
+    for (size_t i = 0; i < placed.bounded.size(); ++i) {
+      const uint32_t number = placed.bounded[i];
+      const Instance &instance = geometry.instances[number];
+      if (instance.kind != ShapeKind::Mesh)
+        continue;
+      // Boxes in the world's frame are widened by kBoxPad: triangles should be larger than that.
+      const size_t count = geometry.meshes[instance.mesh].triangles.size();
+      const Float4 size = placed.boxes[i].hi - placed.boxes[i].lo;
+      const float largest = std::max({size[0], size[1], size[2]});
+      if (largest < 16.0f * kBoxPad * std::sqrt(static_cast<float>(count)))
+        continue;
+      // Copies may take an eighth of the memory.
+      if (uses[instance.mesh] > 1) {
+        if ((copies + count) * 8 > triangles + 8192)
+          continue;
+        copies += count;
+      }
+      unfolded[number] = 1;
+    }
+    return unfolded;
+  }
+
+  // Large meshes one after the other, each on all threads; then the small ones side by side.
+  void build_meshes(const Geometry &geometry, const std::vector<uint8_t> &unfolded, const BuildContext &context) {
+    std::vector<uint8_t> wanted(meshes.size(), 0);
+    for (uint32_t i = 0; i < geometry.instances.size(); ++i)
+      if (geometry.instances[i].kind == ShapeKind::Mesh && !unfolded[i])
+        wanted[geometry.instances[i].mesh] = 1;
+    constexpr size_t kLarge = 65536;
+    std::vector<uint32_t> small;
+    for (uint32_t i = 0; i < meshes.size(); ++i) {
+      if (!wanted[i])
+        continue;
+      if (geometry.meshes[i].triangles.size() < kLarge)
+        small.push_back(i);
+      else
+        meshes[i] = build_mesh_bvh(geometry.meshes[i], placed.mesh_frames[i], context);
+    }
+    const BuildContext alone{1, context.cancel};
+    parallel_for(context, small.size(), [&](size_t i) {
+      const uint32_t mesh = small[i];
+      meshes[mesh] = build_mesh_bvh(geometry.meshes[mesh], placed.mesh_frames[mesh], alone);
+    });
+  }
+
+  const BvhKernel &kernel;
+  PlacedScene placed;
+  std::vector<MeshBvh> meshes;
+  std::vector<BvhView> views;
+  MeshBvh world;
+  BvhScene scene;
+};
+
+} // namespace
+
+std::unique_ptr<Accelerator> build_bvh(const Geometry &geometry, const BuildContext &context) {
+  return std::make_unique<BvhAccelerator>(geometry, context);
+}
+
+} // namespace lancer

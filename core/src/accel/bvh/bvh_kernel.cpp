@@ -1,0 +1,239 @@
+// Traversal of the wide BVH. Compiled once per instruction set, with LANCER_ISA naming it; all give the same bits, because no
+// operation is contracted and boxes only ever decide what is not worth testing.
+// This file may emit no shared (weak) symbol: the linker would keep one unit's copy for all. Hence plain structs, forced
+// inlining, and no call of an inline function of another header out of line.
+#include "accel/bvh/bvh_kernel.h"
+
+#include "accel/bvh/packet.h"
+#include "accel/bvh/visit.h"
+#include "accel/kernel_name.h"
+
+namespace lancer {
+
+namespace {
+
+// Starts a ray; false where its answer is known at once.
+LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e, uint32_t lane, Slot &s) {
+  s.best.t = __builtin_inf();
+  s.best.u = s.best.v = 0.0;
+  s.best.instance = s.best.primitive = kNone;
+  s.instance = kNone;
+  s.tmin = ray.tmin;
+  s.tmax = ray.tmax;
+  s.arrays[kBvhInner] = reinterpret_cast<const char *>(scene.top);
+  s.slab.octant = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    s.slab.inverse[axis] = e.inverse[axis][lane];
+    s.slab.shift[axis] = e.shift[axis][lane];
+    s.slab.octant |= uint32_t{e.inverse[axis][lane] < 0.0f} << axis;
+  }
+  s.slab.tau_min = e.tau_min[lane];
+  s.slab.tau_max = e.tau_max[lane];
+  s.slab.t0 = e.t0[lane];
+  s.slab.inverse_unit = e.inverse_unit[lane];
+  s.slab.scale = scene.world.scale;
+  s.unbounded = scene.unbounded_count;
+  s.children[0] = kBvhDone << kBvhKindShift;
+  s.base = s.size = 1;
+  if (scene.top)
+    push(s, -__builtin_inff(), kBvhInner << kBvhKindShift);
+  if (s.unbounded > 0)
+    push(s, -__builtin_inff(), kBvhUnbounded << kBvhKindShift);
+  return e.usable[lane] != 0 && s.size > 1;
+}
+
+// Nobody wants the answers of rays whose work is counted.
+template <Question q> LANCER_LANE void store_answer(const Hit &best, size_t number, Hit *hits, uint8_t *occluded) {
+  if constexpr (q.counted)
+    return;
+  else if constexpr (q.any)
+    occluded[number] = best.instance != kNone;
+  else
+    hits[number] = best;
+}
+
+// The slots that wait for the same kind of work.
+struct Queue {
+  uint32_t count = 0;
+  Slot *slots[kSlots];
+};
+
+template <Question q>
+LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_t *occluded, size_t count,
+                       const HitFilter *filter, TraversalCounts *counts) {
+  Slot slots[kSlots];
+  Queue queues[kBvhKinds];
+  Slot *others[kSlots];
+  uint32_t other_count = 0;
+  size_t next = 0, row = q.any || q.counted ? 4 : find_row(rays, count);
+  Entering entering;
+  Leftovers leftovers;
+  uint32_t waiting = 0; // the lanes of what is entering that no slot has taken up yet
+  bool together = false;
+  // Fills a slot with the next ray that has a way to go alone.
+  const auto refill = [&](Slot & s) __attribute__((always_inline)) {
+    for (;;) {
+      while (waiting != 0) {
+        const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(waiting));
+        waiting &= waiting - 1;
+        s.number = entering.number[lane];
+        const bool usable = start(scene, rays[s.number], entering, lane, s);
+        if (together)
+          resume(leftovers, lane, s);
+        if (usable) {
+          go_on(s);
+          others[other_count++] = &s;
+          return;
+        }
+        store_answer<q>(s.best, s.number, hits, occluded);
+      }
+      if (next == count)
+        return;
+      // Take the next rays: a square of the image where the batch comes row by row.
+      const size_t left = count - next, taken = left < kPacket ? left : kPacket;
+      if (next % (4 * row) == 0 && left < 4 * row)
+        row = 4;
+      const size_t corner = next - next % (4 * row) + next % (4 * row) / 4;
+      for (uint32_t i = 0; i < kPacket; ++i) {
+        entering.number[i] = static_cast<uint32_t>(i < taken ? corner + i % 4 + row * (i / 4) : next);
+        entering.rays[i] = rays + entering.number[i];
+      }
+      next += taken;
+      waiting = (1u << taken) - 1;
+      enter_world_packet(scene.world, entering);
+      together = !q.any && !q.counted && taken == kPacket && scene.unbounded_count < kLeftovers &&
+                 stay_together(scene.world, entering);
+      if (together) {
+        waiting = trace_packet<q>(scene, entering, filter, leftovers);
+        for (uint32_t i = 0; i < kPacket; ++i)
+          store_answer<q>(leftovers.best[i], entering.number[i], hits, occluded);
+      }
+    }
+  };
+  // Does the work of one kind for all that wait for it.
+  const auto each = [&](uint32_t kind, auto work) __attribute__((always_inline)) {
+    Queue &queue = queues[kind];
+    other_count = queue.count;
+    queue.count = 0;
+    if (q.counted) {
+      counts->triangle_blocks += kind == kBvhTriangles || kind == kBvhPlaced ? other_count : 0;
+      counts->sphere_blocks += kind == kBvhSpheres ? other_count : 0;
+      counts->instances += kind == kBvhInstance ? other_count : 0;
+    }
+    for (uint32_t i = 0; i < other_count; ++i)
+      work(*queue.slots[i]);
+    for (uint32_t i = 0; i < other_count; ++i)
+      go_on(*(others[i] = queue.slots[i]));
+  };
+
+  for (Slot &s : slots) {
+    s.arrays[kBvhTriangles] = s.arrays[kBvhPlaced] = reinterpret_cast<const char *>(scene.blocks);
+    s.arrays[kBvhSpheres] = reinterpret_cast<const char *>(scene.spheres);
+    s.arrays[kBvhInstance] = reinterpret_cast<const char *>(scene.shapes);
+    s.arrays[kBvhLeave] = s.arrays[kBvhUnbounded] = s.arrays[kBvhDone] = reinterpret_cast<const char *>(&s);
+    refill(s);
+  }
+  for (;;) {
+    // Sort the slots by what they wait for; take up what most wait for.
+    for (uint32_t i = 0; i < other_count; ++i) {
+      Queue &queue = queues[others[i]->kind];
+      queue.slots[queue.count++] = others[i];
+    }
+    other_count = 0;
+    uint32_t most = 0;
+    for (uint32_t kind = 1; kind < kBvhKinds; ++kind)
+      most = queues[kind].count > queues[most].count ? kind : most;
+    switch (most) {
+    case kBvhInner: {
+      Queue &queue = queues[kBvhInner];
+      const uint32_t present = queue.count;
+      if (present == 0)
+        return;
+      if (q.counted)
+        counts->nodes += present;
+      for (uint32_t i = 0; i < present; ++i)
+        visit_node(*queue.slots[i]);
+      // Those that come to another node stay.
+      uint32_t inner = 0, other = 0;
+      for (uint32_t i = 0; i < present; ++i) {
+        Slot *s = queue.slots[i];
+        go_on(*s);
+        queue.slots[inner] = others[other] = s;
+        inner += s->kind == kBvhInner;
+        other += s->kind != kBvhInner;
+      }
+      queue.count = inner;
+      other_count = other;
+      break;
+    }
+    case kBvhTriangles:
+      each(
+          kBvhTriangles, [&](Slot & s) __attribute__((always_inline)) { visit_triangles<q>(filter, s); });
+      break;
+    case kBvhPlaced:
+      each(
+          kBvhPlaced, [&](Slot & s) __attribute__((always_inline)) { visit_placed<q>(scene, rays[s.number], filter, s); });
+      break;
+    case kBvhSpheres:
+      each(
+          kBvhSpheres, [&](Slot & s) __attribute__((always_inline)) { visit_spheres<q>(scene, rays[s.number], filter, s); });
+      break;
+    case kBvhInstance:
+      each(
+          kBvhInstance, [&](Slot & s) __attribute__((always_inline)) { enter_instance<q>(scene, rays[s.number], filter, s); });
+      break;
+    case kBvhUnbounded:
+      each(
+          kBvhUnbounded, [&](Slot & s)
+                             __attribute__((always_inline)) { visit_unbounded<q>(scene, rays[s.number], filter, s); });
+      break;
+    case kBvhLeave:
+      each(
+          kBvhLeave, [&](Slot & s) __attribute__((always_inline)) { leave_instance(scene, s); });
+      break;
+    case kBvhDone: {
+      Queue &queue = queues[kBvhDone];
+      const uint32_t present = queue.count;
+      queue.count = 0;
+      for (uint32_t i = 0; i < present; ++i) {
+        store_answer<q>(queue.slots[i]->best, queue.slots[i]->number, hits, occluded);
+        refill(*queue.slots[i]);
+      }
+      break;
+    }
+    }
+  }
+}
+
+[[gnu::flatten]] void closest(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count) {
+  trace<Question{}>(scene, rays, hits, nullptr, count, nullptr, nullptr);
+}
+
+[[gnu::flatten]] void any_hit(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count) {
+  trace<Question{.any = true}>(scene, rays, nullptr, occluded, count, nullptr, nullptr);
+}
+
+[[gnu::flatten]] void closest_filtered(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count,
+                                       const HitFilter &filter) {
+  trace<Question{.filtered = true}>(scene, rays, hits, nullptr, count, &filter, nullptr);
+}
+
+[[gnu::flatten]] void any_filtered(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count,
+                                   const HitFilter &filter) {
+  trace<Question{.any = true, .filtered = true}>(scene, rays, nullptr, occluded, count, &filter, nullptr);
+}
+
+[[gnu::flatten]] void count_work(const BvhScene &scene, const Ray *rays, size_t count, bool any, TraversalCounts &counts) {
+  if (any)
+    trace<Question{.any = true, .counted = true}>(scene, rays, nullptr, nullptr, count, nullptr, &counts);
+  else
+    trace<Question{.counted = true}>(scene, rays, nullptr, nullptr, count, nullptr, &counts);
+}
+
+} // namespace
+
+namespace LANCER_ISA {
+const BvhKernel bvh_kernel = {LANCER_ISA_NAME, closest, any_hit, closest_filtered, any_filtered, count_work};
+}
+
+} // namespace lancer

@@ -1,0 +1,163 @@
+// What a ray that is alone under way does at each thing that it comes to.
+// Part of bvh_kernel.cpp: everything has internal linkage.
+#pragma once
+
+#include "accel/bvh/blocks.h"
+
+namespace lancer {
+
+namespace {
+
+// Replaces a node by its children that the ray meets, the nearest on top.
+LANCER_LANE void visit_node(Slot &s) {
+  const Slab &ray = s.slab;
+  const BvhNode &node = *reinterpret_cast<const BvhNode *>(s.at);
+  // As many children at a time as a register holds.
+  constexpr int kWidth = kLanes < 8 ? kLanes : 8;
+  using Children = Float<kWidth>;
+  Children entry[8 / kWidth], exit[8 / kWidth];
+  for (int i = 0; i < 8 / kWidth; ++i) {
+    Children near[3], far[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const Children inverse(ray.inverse[axis]), shift(ray.shift[axis]);
+      const uint32_t down = ray.octant >> axis & 1;
+      near[axis] = multiply_subtract(load_lanes<kWidth>(node.bounds[axis][down] + i * kWidth), inverse, shift);
+      far[axis] = multiply_subtract(load_lanes<kWidth>(node.bounds[axis][down ^ 1] + i * kWidth), inverse, shift);
+    }
+    entry[i] = max(max(near[0], near[1]), max(near[2], Children(ray.tau_min)));
+    exit[i] = min(min(far[0], far[1]), min(far[2], Children(ray.tau_max)));
+  }
+  s.size += keep_ordered<kWidth>(s.entries + s.size, s.children + s.size, entry, exit, node.child, node.order[ray.octant]);
+}
+
+LANCER_LANE void done(Slot &s) { s.size = 1; }
+
+LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const Ray &ray, Slot &s) {
+  const PlacedShape &shape = scene.shapes[instance];
+  s.instance = instance;
+  s.skip = ray.skip_instance == instance ? ray.skip_primitive : kNone;
+  s.usable = visible(shape, ray) && enter_mesh(shape, ray, s.ray);
+}
+
+// Keeps the first place of an exact surface that counts, if it is closer. find(t): the next place beyond t.
+template <Question q, class Find> LANCER_LANE void try_places(uint32_t instance, const HitFilter *filter, Slot &s, Find find) {
+  double t = s.tmin;
+  while (find(t) && closer(t, instance, 0, s.best)) {
+    const Hit hit{t, 0.0, 0.0, instance, 0};
+    if (left_out<q>(filter, s.number, hit))
+      continue;
+    s.best = hit;
+    if (q.any)
+      done(s);
+    else
+      shorten(s);
+    return;
+  }
+}
+
+template <Question q>
+LANCER_LANE void try_quadric(const PlacedShape &shape, uint32_t instance, const Ray &ray, const HitFilter *filter, Slot &s) {
+  if (visible(shape, ray))
+    try_places<q>(
+        instance, filter, s, [&](double &t) __attribute__((always_inline)) { return next_place(shape, instance, ray, t); });
+}
+
+template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+  const SphereBlock &block = *reinterpret_cast<const SphereBlock *>(s.at);
+  BlockRoots roots;
+  for (uint32_t met = intersect_spheres(block, ray, roots); met != 0; met &= met - 1) {
+    const int i = __builtin_ctz(met);
+    const uint32_t instance = block.instance[i];
+    if (instance == kNone)
+      return;
+    const PlacedShape &shape = scene.shapes[instance];
+    if (visible(shape, ray))
+      try_places<q>(
+          instance, filter, s, [&](double &t) __attribute__((always_inline)) {
+            return choose_root(roots, i, shape.slack, ray.skip_instance == instance, t, s.tmax, t);
+          });
+    if (q.any && s.best.instance != kNone)
+      return;
+  }
+}
+
+// Enters an instance, if the ray can meet it at all.
+template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+  const PlacedShape &shape = *reinterpret_cast<const PlacedShape *>(s.at);
+  const uint32_t instance = static_cast<uint32_t>(&shape - scene.shapes);
+  if (shape.mesh == kNone)
+    return try_quadric<q>(shape, instance, ray, filter, s);
+  const BvhView &bvh = scene.meshes[shape.mesh];
+  if (!bvh.nodes)
+    return;
+  become_mesh_ray(scene, instance, ray, s);
+  if (!s.usable)
+    return;
+  s.outer = s.slab;
+  make_slab(shape.frame, s.ray, s.tmin, s.tmax < s.best.t ? s.tmax : s.best.t, s.slab);
+  s.arrays[kBvhInner] = reinterpret_cast<const char *>(bvh.nodes);
+  s.arrays[kBvhTriangles] = reinterpret_cast<const char *>(bvh.blocks);
+  push(s, 0.0f, kBvhLeave << kBvhKindShift);
+  s.base = s.size;
+  push(s, 0.0f, 0);
+}
+
+LANCER_LANE void leave_instance(const BvhScene &scene, Slot &s) {
+  s.slab = s.outer;
+  s.arrays[kBvhInner] = reinterpret_cast<const char *>(scene.top);
+  s.base = 1;
+  if (s.best.instance == s.instance)
+    shorten(s);
+}
+
+template <Question q> LANCER_LANE void visit_triangles(const HitFilter *filter, Slot &s) {
+  const TriangleBlock &block = *reinterpret_cast<const TriangleBlock *>(s.at);
+  BlockHits<4> hits;
+  bool found = false;
+  for (uint32_t met = intersect_block(block, s.ray, s.tmin, s.tmax, s.best.t, hits); met != 0; met &= met - 1) {
+    const int i = __builtin_ctz(met);
+    const uint32_t primitive = block.primitive[i];
+    if (primitive == s.skip || !closer(hits.t[i], s.instance, primitive, s.best))
+      continue;
+    const Hit hit{hits.t[i], hits.wb[i] / hits.det[i], hits.wc[i] / hits.det[i], s.instance, primitive};
+    if (left_out<q>(filter, s.number, hit))
+      continue;
+    s.best = hit;
+    found = true;
+    if (q.any)
+      break;
+  }
+  if (found) {
+    if (q.any)
+      done(s);
+    else
+      shorten(s);
+  }
+}
+
+// A block of the world's own tree: it has its instance's space to itself.
+template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+  const uint32_t instance = scene.block_instance[reinterpret_cast<const TriangleBlock *>(s.at) - scene.blocks];
+  if (instance != s.instance)
+    become_mesh_ray(scene, instance, ray, s);
+  if (s.usable)
+    visit_triangles<q>(filter, s);
+}
+
+// Tries what has no box, up to the next mesh.
+template <Question q>
+LANCER_LANE void visit_unbounded(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
+  while (s.unbounded > 0 && !(q.any && s.best.instance != kNone)) {
+    const uint32_t instance = scene.unbounded[--s.unbounded];
+    if (scene.shapes[instance].mesh == kNone) {
+      try_quadric<q>(scene.shapes[instance], instance, ray, filter, s);
+      continue;
+    }
+    push(s, -__builtin_inff(), kBvhUnbounded << kBvhKindShift);
+    push(s, -__builtin_inff(), kBvhInstance << kBvhKindShift | instance * kBvhSteps<PlacedShape>);
+    return;
+  }
+}
+
+} // namespace
+} // namespace lancer

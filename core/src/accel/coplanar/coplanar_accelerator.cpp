@@ -1,0 +1,254 @@
+#include "accel/coplanar/coplanar_accelerator.h"
+
+#include "accel/coplanar/plane_rule.h"
+
+namespace lancer {
+
+namespace {
+
+class CoplanarAccelerator final : public Accelerator {
+public:
+  CoplanarAccelerator(std::unique_ptr<Accelerator> a, PlaneRule r, size_t instances)
+      : inner(std::move(a)), rule(std::move(r)), everything(instances, 1) {}
+
+  TraversalCounts count(std::span<const Ray> rays, bool any) const override { return inner->count(rays, any); }
+  size_t bytes() const override { return inner->bytes() + rule.bytes() + everything.capacity(); }
+  const char *instruction_set() const override { return inner->instruction_set(); }
+
+private:
+  // What is asked, and what of it counts beforehand.
+  struct Asked {
+    const CoplanarAccelerator &self;
+    std::span<const Ray> rays;
+    const HitFilter *filter;
+
+    bool counts(size_t ray, const Hit &hit) const {
+      return !filter || !filter->instances[hit.instance] || filter->counts(filter->context, ray, hit);
+    }
+  };
+
+  // A hit, and the search across its plane for what is there in its stead.
+  struct Search {
+    size_t ray;
+    Hit *hit;
+    PlaneRule::Across across;
+    PlaneOrder best;
+    Hit found;
+  };
+  struct Searches {
+    const Asked &asked; // without a filter where what lets light through is there, too
+    std::vector<Ray> rays;
+    std::vector<Search> all;
+  };
+
+  // A light that a ray ends on unless something stops it, and what else lies there.
+  struct End {
+    size_t ray = 0;
+    bool known = false, shines = false, stops = false; // something there, anything that shines, something on the way
+    PlaneOrder best{};
+    bool best_shines = false;
+  };
+  struct Ends {
+    const Asked &asked;
+    std::vector<Ray> rays;
+    std::vector<End> all;
+  };
+
+  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
+    const Asked asked{*this, rays, filter};
+    Searches searches{asked, {}, {}};
+    if (filter) {
+      trace(asked, hits);
+      for (size_t i = 0; i < rays.size(); ++i)
+        search_flagged(i, hits[i], searches);
+    } else {
+      // Few rays come back to the plane that they have left: those are asked about anew.
+      inner->closest_hit(rays, hits);
+      std::vector<size_t> back;
+      for (size_t i = 0; i < rays.size(); ++i) {
+        if (!hits[i].valid() || !rule.flagged(hits[i]))
+          continue;
+        if (rule.starts_in_plane(rays[i], hits[i]))
+          back.push_back(i);
+        else
+          search(i, hits[i], searches);
+      }
+      again(rays, back, hits);
+      for (const size_t i : back)
+        search_flagged(i, hits[i], searches);
+    }
+    settle(searches);
+  }
+
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
+    const Asked asked{*this, rays, filter};
+    if (filter) {
+      trace(asked, occluded);
+    } else {
+      // What stops a ray is not told: those that begin or end where another face of their plane may are asked about anew.
+      inner->any_hit(rays, occluded);
+      std::vector<size_t> back;
+      for (size_t i = 0; i < rays.size(); ++i)
+        if (occluded[i] && (rule.starts_covered(rays[i]) || rule.may_end_on_light(rays[i])))
+          back.push_back(i);
+      again(rays, back, occluded);
+    }
+    if (rule.any_hidden_light())
+      look_at_ends(asked, occluded);
+  }
+
+  // Some of the rays, by the rule.
+  template <class Answer>
+  void again(std::span<const Ray> rays, const std::vector<size_t> &which, std::span<Answer> answers) const {
+    if (which.empty())
+      return;
+    std::vector<Ray> some;
+    for (const size_t i : which)
+      some.push_back(rays[i]);
+    std::vector<Answer> found(some.size());
+    trace({*this, some, nullptr}, std::span<Answer>(found));
+    for (size_t i = 0; i < which.size(); ++i)
+      answers[which[i]] = found[i];
+  }
+
+  void trace(Asked asked, std::span<Hit> hits) const {
+    const std::vector<uint8_t> instances = instances_asked(asked.filter);
+    inner->closest_hit(asked.rays, hits,
+                       {instances.data(),
+                        [](void *context, size_t ray, const Hit &hit) {
+                          const Asked &a = *static_cast<const Asked *>(context);
+                          return !(a.self.rule.flagged(hit) && a.self.rule.starts_in_plane(a.rays[ray], hit)) &&
+                                 a.counts(ray, hit);
+                        },
+                        &asked});
+  }
+
+  void trace(Asked asked, std::span<uint8_t> occluded) const {
+    const std::vector<uint8_t> instances = instances_asked(asked.filter);
+    inner->any_hit(asked.rays, occluded,
+                   {instances.data(),
+                    [](void *context, size_t ray, const Hit &hit) {
+                      const Asked &a = *static_cast<const Asked *>(context);
+                      return a.self.stops(a, ray, hit);
+                    },
+                    &asked});
+  }
+
+  std::vector<uint8_t> instances_asked(const HitFilter *filter) const {
+    std::vector<uint8_t> instances = rule.instances();
+    for (size_t i = 0; filter && i < instances.size(); ++i)
+      instances[i] |= filter->instances[i];
+    return instances;
+  }
+
+  bool stops(const Asked &asked, size_t ray, const Hit &hit) const {
+    if (!rule.flagged(hit))
+      return asked.counts(ray, hit);
+    const Ray &asked_ray = asked.rays[ray];
+    if (rule.starts_in_plane(asked_ray, hit) || (rule.may_end_on_light(asked_ray) && rule.ends_in_plane(asked_ray, hit)))
+      return false;
+    // What lets light through takes none of it where something else is there.
+    if (asked.filter && asked.filter->instances[hit.instance]) {
+      Hit there = hit;
+      const Asked all{*this, asked.rays, nullptr};
+      Searches searches{all, {}, {}};
+      search(ray, there, searches);
+      settle(searches);
+      if (there.instance != hit.instance || there.primitive != hit.primitive)
+        return false;
+    }
+    return asked.counts(ray, hit);
+  }
+
+  void search_flagged(size_t ray, Hit &hit, Searches &searches) const {
+    if (hit.valid() && rule.flagged(hit))
+      search(ray, hit, searches);
+  }
+
+  void search(size_t ray, Hit &hit, Searches &searches) const {
+    const std::optional<PlaneRule::Across> across = rule.across(searches.asked.rays[ray], hit);
+    if (!across)
+      return;
+    searches.rays.push_back(across->ray);
+    searches.all.push_back({ray, &hit, *across, rule.order_of(hit), hit});
+  }
+
+  // Looks at all that rays meet, without an end.
+  template <class Looks> void look(Looks &looks) const {
+    if (looks.all.empty())
+      return;
+    std::vector<uint8_t> nothing(looks.all.size());
+    inner->any_hit(looks.rays, nothing,
+                   {everything.data(),
+                    [](void *context, size_t i, const Hit &hit) {
+                      Looks &l = *static_cast<Looks *>(context);
+                      l.asked.self.look_at(l.asked, hit, l.all[i]);
+                      return false;
+                    },
+                    &looks});
+  }
+
+  void settle(Searches &searches) const {
+    look(searches);
+    for (const Search &s : searches.all)
+      *s.hit = s.found;
+  }
+
+  void look_at(const Asked &asked, const Hit &hit, Search &s) const {
+    const Ray &ray = asked.rays[s.ray];
+    if (ray.skip_instance == hit.instance && ray.skip_primitive == hit.primitive)
+      return;
+    const PlaneOrder order = rule.order_of(hit);
+    const Hit there{s.hit->t, hit.u, hit.v, hit.instance, hit.primitive};
+    if (!(order < s.best) || !rule.in_plane(s.across, *s.hit, hit) || !asked.counts(s.ray, there))
+      return;
+    s.best = order;
+    s.found = there;
+  }
+
+  // Where a light lies in one plane with other things, it is seen if the one that is there shines.
+  void look_at_ends(const Asked &asked, std::span<uint8_t> occluded) const {
+    Ends ends{asked, {}, {}};
+    for (size_t i = 0; i < occluded.size(); ++i)
+      if (!occluded[i] && asked.rays[i].tmax < std::numeric_limits<double>::infinity()) {
+        ends.rays.push_back(PlaneRule::around_end(asked.rays[i]));
+        ends.all.emplace_back().ray = i;
+      }
+    look(ends);
+    for (const End &end : ends.all)
+      occluded[end.ray] = end.known && (end.shines ? !end.best_shines : end.stops);
+  }
+
+  void look_at(const Asked &asked, const Hit &hit, End &end) const {
+    const Ray &ray = asked.rays[end.ray];
+    if (!rule.flagged(hit) || !rule.ends_in_plane(ray, hit) || rule.starts_in_plane(ray, hit))
+      return;
+    const bool light = rule.emits(hit);
+    end.stops = end.stops || (ray.tmin < hit.t && hit.t < ray.tmax && asked.counts(end.ray, hit));
+    end.shines = end.shines || light;
+    if (const PlaneOrder order = rule.order_of(hit); !end.known || order < end.best) {
+      end.best = order;
+      end.best_shines = light;
+    }
+    end.known = true;
+  }
+
+  const std::unique_ptr<Accelerator> inner;
+  const PlaneRule rule;
+  const std::vector<uint8_t> everything; // by instance: ask about its hits
+};
+
+} // namespace
+
+std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, PlaneRules rules,
+                                               const BuildContext &context) {
+  std::unique_ptr<Accelerator> plain = build_accelerator(kind, geometry, context);
+  const FaceRounding rounding(geometry, rules.origin);
+  CoplanarFaces faces = find_coplanar_faces(geometry, rounding, rules, context);
+  if (!faces.any())
+    return plain;
+  return std::make_unique<CoplanarAccelerator>(
+      std::move(plain), PlaneRule(geometry, rounding, std::move(faces), std::move(rules)), geometry.instances.size());
+}
+
+} // namespace lancer

@@ -1,0 +1,262 @@
+#include "accel/coplanar/coplanar_faces.h"
+
+#include "accel/coplanar/face_candidates.h"
+#include "accel/parallel.h"
+
+namespace lancer {
+
+namespace {
+
+// Boxes, and faces in boxes that meet, that each is compared with: bounds for heaps of things in one place.
+constexpr size_t kBoxes = 256, kPairs = 32;
+// Others of a face in a heap: two that both have so many are not compared with each other any more.
+constexpr uint32_t kOthers = 64;
+// Where others cover faces, for all of them together; beyond, they are covered anywhere.
+constexpr size_t kPatches = 1 << 17;
+
+// Whether two triangles in one plane share more than a border that is this wide.
+bool overlap(const FaceCandidate &one, const FaceCandidate &other, double border) {
+  const glm::dvec3 &n = one.face.n;
+  for (const FaceCandidate *c : {&one, &other})
+    for (int i = 0; i < 3; ++i) {
+      const glm::dvec3 edge = c->corner[i == 2 ? 0 : i + 1] - c->corner[i];
+      const glm::dvec3 across = glm::cross(n, edge);
+      double low[2], high[2];
+      const FaceCandidate *both[2] = {&one, &other};
+      for (int k = 0; k < 2; ++k) {
+        const double a = glm::dot(across, both[k]->corner[0] - c->corner[i]),
+                     b = glm::dot(across, both[k]->corner[1] - c->corner[i]),
+                     d = glm::dot(across, both[k]->corner[2] - c->corner[i]);
+        low[k] = std::min({a, b, d});
+        high[k] = std::max({a, b, d});
+      }
+      if (std::min(high[0], high[1]) - std::max(low[0], low[1]) <= border * glm::length(across))
+        return false;
+    }
+  return true;
+}
+
+bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const FaceCandidate &other) {
+  const FaceCandidate &large = one.face.height >= other.face.height ? one : other, &small = &large == &one ? other : one;
+  const glm::dvec3 middle = (small.corner[0] + small.corner[1] + small.corner[2]) / 3.0;
+  // Mostly much less will do.
+  const double most = large.rounding + small.rounding;
+  if (!parallel(large.face, small.face, most))
+    return false;
+  const double apart = rounding.apart(large.instance, small.instance, large.face.n, middle);
+  if (!parallel(large.face, small.face, apart))
+    return false;
+  // Beyond the larger one its plane is known the less.
+  const glm::dvec3 centre = (large.corner[0] + large.corner[1] + large.corner[2]) / 3.0;
+  for (const glm::dvec3 &corner : small.corner)
+    if (!(std::abs(glm::dot(corner - large.face.p, large.face.n)) <=
+          apart * (1.0 + glm::length(corner - centre) / large.face.height)))
+      return false;
+  return overlap(one, other, 8.0 * apart);
+}
+
+// Where another covers a face.
+struct Patch {
+  uint64_t face; // instance and primitive
+  CoverPatch where;
+};
+
+uint64_t number_of(const FaceCandidate &c) { return uint64_t{c.instance} << 32 | c.primitive; }
+
+class Finder {
+public:
+  Finder(const Geometry &g, const FaceRounding &r, const PlaneRules &known, const BuildContext &c)
+      : geometry(g), rounding(r), rules(known), context(c), chosen(choose_faces(g, r, c)), candidates(chosen.faces) {}
+
+  CoplanarFaces find() {
+    const bool all = compare();
+    if (!all)
+      spread();
+    CoplanarFaces faces;
+    if (mark(faces) && all)
+      cover(faces);
+    return faces;
+  }
+
+private:
+  struct Entry {
+    uint64_t cell;
+    double low;
+    uint32_t candidate;
+  };
+
+  // False where there are too many to compare them all.
+  bool compare() {
+    std::vector<Entry> entries;
+    for (uint32_t i = 0; i < candidates.size(); ++i)
+      for_each_plane_cell(candidates[i].face, candidates[i].rounding, chosen.step, [&](uint64_t cell) {
+        entries.push_back({cell, candidates[i].low.x, i});
+      });
+    std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
+      return a.cell != b.cell ? a.cell < b.cell : a.low != b.low ? a.low < b.low : a.candidate < b.candidate;
+    });
+    size_t boxes = kBoxes * entries.size(), pairs = kPairs * entries.size();
+    for (size_t i = 0; i < entries.size(); ++i) {
+      FaceCandidate &one = candidates[entries[i].candidate];
+      for (size_t k = i + 1; k < entries.size() && entries[k].cell == entries[i].cell && entries[k].low <= one.high.x; ++k) {
+        FaceCandidate &other = candidates[entries[k].candidate];
+        if (boxes-- == 0 || pairs == 0)
+          return false;
+        if (!boxes_meet(one.low, one.high, other.low, other.high) || same_border(one, other))
+          continue;
+        if (one.found >= kOthers && other.found >= kOthers) {
+          one.anywhere = other.anywhere = true;
+          continue;
+        }
+        --pairs;
+        if (!in_one_plane(rounding, one, other))
+          continue;
+        add_patch(one, other);
+        add_patch(other, one);
+      }
+    }
+    return true;
+  }
+
+  // Where not all were compared: a thing that lies on another anywhere may do so everywhere.
+  void spread() {
+    std::vector<uint8_t> found(geometry.instances.size(), 0);
+    for (const FaceCandidate &c : candidates)
+      found[c.instance] |= c.found > 0;
+    for (FaceCandidate &c : candidates)
+      c.found |= found[c.instance];
+  }
+
+  void add_patch(FaceCandidate &c, const FaceCandidate &by) {
+    ++c.found;
+    c.anywhere = c.anywhere || patches.size() >= kPatches;
+    if (c.anywhere)
+      return;
+    // What rounding holds apart is the least that counts as covered.
+    CoverPatch patch =
+        make_patch(coordinates_on_face(geometry, c.instance, c.primitive), c.corner, by.corner, c.rounding + by.rounding);
+    patch.loses =
+        plane_order(geometry, rules, by.instance, by.primitive) < plane_order(geometry, rules, c.instance, c.primitive);
+    patches.push_back({number_of(c), patch});
+  }
+
+  // Neighbours in a mesh, which are most of what lies in one plane.
+  bool same_border(const FaceCandidate &one, const FaceCandidate &other) const {
+    if (one.instance != other.instance)
+      return false;
+    const Instance &instance = geometry.instances[one.instance];
+    if (instance.kind != ShapeKind::Mesh || one.primitive == other.primitive)
+      return true;
+    const Mesh &mesh = geometry.meshes[instance.mesh];
+    const glm::uvec3 &a = mesh.triangles[one.primitive], &b = mesh.triangles[other.primitive];
+    int shared = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k)
+        shared += a[i] == b[k];
+    return shared == 1 || shared == 2;
+  }
+
+  // False where others than those compared may be in one plane, too.
+  bool mark(CoplanarFaces &faces) const {
+    bool all = true;
+    for (size_t begin = 0, end; begin < candidates.size(); begin = end) {
+      const uint32_t instance = candidates[begin].instance;
+      size_t found = 0;
+      for (end = begin; end < candidates.size() && candidates[end].instance == instance; ++end)
+        found += candidates[end].found > 0;
+      if (found == 0)
+        continue;
+      if (!faces.any()) {
+        faces.instances.assign(geometry.instances.size(), 0);
+        faces.first.assign(geometry.instances.size(), 0);
+      }
+      faces.instances[instance] = 1;
+      faces.first[instance] = static_cast<uint32_t>(faces.bits.size());
+      const size_t count = faces_of(geometry, instance);
+      faces.bits.resize(faces.bits.size() + (count + 63) / 64, 0);
+      uint64_t *bits = &faces.bits[faces.first[instance]];
+      if (count <= end - begin)
+        for (size_t i = begin; i < end; ++i)
+          bits[candidates[i].primitive >> 6] |= uint64_t{candidates[i].found > 0} << (candidates[i].primitive & 63);
+      else
+        mark_planes(instance, begin, end, found, bits);
+      all = all && count <= end - begin;
+    }
+    return all;
+  }
+
+  // What was not compared itself: all of the planes in which something was found.
+  void mark_planes(uint32_t instance, size_t begin, size_t end, size_t found, uint64_t *bits) const {
+    // A thing that lies on another nearly everywhere does so everywhere.
+    const bool all = found * 8 > end - begin;
+    std::vector<uint64_t> cells;
+    for (size_t i = begin; i < end; ++i)
+      if (candidates[i].found > 0)
+        for_each_plane_cell(candidates[i].face, candidates[i].rounding, chosen.step,
+                            [&](uint64_t cell) { cells.push_back(cell); });
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    const size_t count = faces_of(geometry, instance);
+    constexpr size_t kPiece = 16384;
+    parallel_for(context, (count + kPiece - 1) / kPiece, [&](size_t piece) {
+      for (size_t i = piece * kPiece; i < std::min((piece + 1) * kPiece, count); ++i) {
+        bool in = all;
+        if (!in) {
+          glm::dvec3 corner[3];
+          world_corners(geometry, instance, static_cast<uint32_t>(i), corner);
+          for_each_plane_cell(triangle_face(corner), rounding.share(instance, corner[0]), chosen.step,
+                              [&](uint64_t cell) { in = in || std::binary_search(cells.begin(), cells.end(), cell); });
+        }
+        bits[i >> 6] |= uint64_t{in} << (i & 63);
+      }
+    });
+  }
+
+  // Tells where on the faces others are: nowhere else need anyone look for them.
+  void cover(CoplanarFaces &faces) {
+    uint32_t marked = 0;
+    for (const uint64_t word : faces.bits) {
+      faces.ranks.push_back(marked);
+      marked += static_cast<uint32_t>(std::popcount(word));
+    }
+    std::stable_sort(patches.begin(), patches.end(), [](const Patch &a, const Patch &b) { return a.face < b.face; });
+    std::vector<CoverPatch> own;
+    // Words of bits are in the order of candidates. The halves of one face come together.
+    for (size_t begin = 0, end; begin < candidates.size(); begin = end) {
+      const uint64_t face = number_of(candidates[begin]);
+      bool found = false, anywhere = false;
+      for (end = begin; end < candidates.size() && number_of(candidates[end]) == face; ++end) {
+        found = found || candidates[end].found > 0;
+        anywhere = anywhere || candidates[end].anywhere;
+      }
+      if (!found)
+        continue;
+      own.clear();
+      for (auto at = std::lower_bound(patches.begin(), patches.end(), face,
+                                      [](const Patch &patch, uint64_t number) { return patch.face < number; });
+           at != patches.end() && at->face == face; ++at)
+        own.push_back(at->where);
+      if (anywhere)
+        faces.cover.add_face_covered_anywhere();
+      else
+        faces.cover.add_face(own, coordinates_on_face(geometry, candidates[begin].instance, candidates[begin].primitive));
+    }
+  }
+
+  const Geometry &geometry;
+  const FaceRounding &rounding;
+  const PlaneRules &rules;
+  const BuildContext &context;
+  FaceCandidates chosen;
+  std::vector<FaceCandidate> &candidates;
+  std::vector<Patch> patches;
+};
+
+} // namespace
+
+CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const PlaneRules &rules,
+                                  const BuildContext &context) {
+  return Finder(geometry, rounding, rules, context).find();
+}
+
+} // namespace lancer

@@ -1,0 +1,101 @@
+#include "accel/kinds.h"
+
+#include "accel/hit_tests.h"
+#include "accel/kdtree/kdtree.h"
+#include "accel/placed_scene.h"
+
+#include <algorithm>
+
+namespace lancer {
+namespace {
+
+// Prices over a step through the tree: a triangle is a few operations more, an instance a change of space and a tree of its
+// own.
+constexpr float kTriangleCost = 1.5f;
+constexpr float kInstanceCost = 8.0f;
+
+class KdTreeAccelerator final : public Accelerator {
+public:
+  KdTreeAccelerator(const Geometry &g, const BuildContext &context) : geometry(g), placed(place_scene(g)) {
+    for (size_t m = 0; m < geometry.meshes.size(); ++m) {
+      const Mesh &mesh = geometry.meshes[m];
+      std::vector<Box> boxes;
+      boxes.reserve(mesh.triangles.size());
+      for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
+        boxes.push_back(triangle_box(mesh, placed.mesh_frames[m], i));
+      meshes.push_back(build_kdtree(boxes, kTriangleCost, context));
+    }
+    top = build_kdtree(placed.boxes, kInstanceCost, context);
+  }
+
+  size_t bytes() const override {
+    size_t sum = placed.bytes() + top.bytes();
+    for (const KdTree &mesh : meshes)
+      sum += mesh.bytes();
+    return sum;
+  }
+  const char *instruction_set() const override { return "baseline"; }
+
+private:
+  void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const override {
+    for (size_t i = 0; i < rays.size(); ++i)
+      hits[i] = intersect<false>(rays[i], {filter, i});
+  }
+  void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const override {
+    for (size_t i = 0; i < rays.size(); ++i)
+      occluded[i] = intersect<true>(rays[i], {filter, i}).valid();
+  }
+
+  template <bool any> Hit intersect(const Ray &ray, const Counting &counting) const {
+    Hit best;
+    ObjectRay world_ray;
+    if (!enter_world(placed.world, ray, world_ray))
+      return best;
+
+    // Try what has no box, then the instances on the way.
+    for (const uint32_t instance : placed.unbounded)
+      if (intersect_instance<any>(ray, instance, counting, best))
+        return best;
+    const auto limit = [&] { return box_tau_above(world_ray, placed.world, std::min(ray.tmax, best.t)); };
+    top.traverse(world_ray, placed.world, box_tau_below(world_ray, placed.world, ray.tmin), limit,
+                 [&](uint32_t item) { return intersect_instance<any>(ray, placed.bounded[item], counting, best); });
+    return best;
+  }
+
+  // True where the search may end.
+  template <bool any> bool intersect_instance(const Ray &ray, uint32_t instance, const Counting &counting, Hit &best) const {
+    const PlacedShape &shape = placed.shapes[instance];
+    if (!visible(shape, ray))
+      return false;
+    if (shape.mesh == kNone) {
+      try_quadric(ray, shape, instance, counting, best);
+      return any && best.valid();
+    }
+    ObjectRay object_ray;
+    if (!enter_shape(shape, ray, object_ray))
+      return false;
+    const RayAxes axes = axes_from(longest_axis(object_ray.d));
+    const ShearedRay<double> sheared = shear_ray(object_ray, axes);
+    const Mesh &mesh = geometry.meshes[shape.mesh];
+    const auto limit = [&] { return box_tau_above(object_ray, shape.frame, std::min(ray.tmax, best.t)); };
+    meshes[shape.mesh].traverse(object_ray, shape.frame, box_tau_below(object_ray, shape.frame, ray.tmin), limit,
+                                [&](uint32_t triangle) {
+                                  try_triangle(ray, axes, sheared, mesh, instance, triangle, counting, best);
+                                  return any && best.valid();
+                                });
+    return any && best.valid();
+  }
+
+  const Geometry &geometry;
+  PlacedScene placed;
+  std::vector<KdTree> meshes;
+  KdTree top;
+};
+
+} // namespace
+
+std::unique_ptr<Accelerator> build_kdtree_accelerator(const Geometry &geometry, const BuildContext &context) {
+  return std::make_unique<KdTreeAccelerator>(geometry, context);
+}
+
+} // namespace lancer
