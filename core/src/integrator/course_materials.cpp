@@ -2,6 +2,7 @@
 
 #include "bsdf/build.h"
 #include "sampling/plain_vectors.h"
+#include "scene/ready_lobes.h"
 
 #include <algorithm>
 #include <memory>
@@ -12,9 +13,9 @@ namespace {
 
 // Neither nodes nor normals of its own have a say; nothing passes straight on.
 bool is_plain(const Material &material) {
+  const std::span<const ReadyLobe> lobes(material.ready.get(), material.lobes.size());
   return material.fixed() && !material.layered_emission && !material.transmits() && !material.normal.varies() &&
-         material.holdout.value.x <= 0.0f &&
-         std::all_of(material.ready.begin(), material.ready.end(), [](const ReadyLobe &ready) {
+         material.holdout.value.x <= 0.0f && std::all_of(lobes.begin(), lobes.end(), [](const ReadyLobe &ready) {
            const bool course = ready.inputs.kind == LobeKind::Lambert || ready.inputs.kind == LobeKind::Beckmann;
            return course && ready.inputs.normal == glm::vec3(0.0f) && ready.inputs.tangent == glm::vec3(0.0f);
          });
@@ -26,8 +27,8 @@ void fill(const Material &material, Bsdf<float> &bsdf, WideCourse &wide) {
   // Colour, roughness and index are the same from everywhere: look from above.
   const glm::vec3 up(0.0f, 0.0f, 1.0f);
   bsdf.begin(up, up, up, false, true);
-  for (const ReadyLobe &ready : material.ready)
-    add_lobe(bsdf, ready.inputs);
+  for (size_t i = 0; i < material.lobes.size(); ++i)
+    add_lobe(bsdf, material.ready[i].inputs);
   for (int i = 0; i < bsdf.count; ++i) {
     const Lobe<float> &lobe = bsdf.lobes[i];
     const bool matte = lobe.shape == LobeShape::Lambert;

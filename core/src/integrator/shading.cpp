@@ -3,6 +3,7 @@
 #include "bsdf/principled.h"
 #include "integrator/terminator.h"
 #include "scene/attribute.h"
+#include "scene/ready_lobes.h"
 
 #include <algorithm>
 

@@ -10,6 +10,7 @@
 #include "sampling/scramble.h"
 #include "sampling/warp.h"
 #include "scene/material.h"
+#include "scene/ready_lobes.h"
 #include "scene/wide_surface.h"
 
 namespace lancer {

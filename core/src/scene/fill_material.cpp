@@ -1,9 +1,7 @@
 // Checks and copies materials; values outside the model are replaced and said, structure that cannot be read is refused.
-#include "bsdf/lobe.h"
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
-#include "scene/material_room.h"
 
 #include <algorithm>
 #include <cmath>
@@ -235,8 +233,6 @@ void add_material(Description &description, const lancer_material &source) {
   material.displacement = reader.read_vector("displacement", source.displacement);
   material.normal = reader.read_vector("normal", source.normal);
   make_schedules(material);
-  material.ready = make_ready_lobes(material);
-  tell_room(object, material, messages);
   description.messages.add(messages);
   description.materials.push_back(std::move(material));
 }

@@ -1,4 +1,4 @@
-// What of a material's lobes is the same wherever the material is met, made once when the material is added.
+// What of a material's lobes is the same wherever the material is met, made once when the scene is committed.
 #pragma once
 
 #include "bsdf/kept_plans.h"
@@ -25,7 +25,7 @@ struct ReadyLobe {
 };
 
 // One for each lobe.
-std::vector<ReadyLobe> make_ready_lobes(const Material &material);
+std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material);
 
 // Which of a Principled's inputs are other than nothing: the rest need not be read.
 struct PrincipledParts {
