@@ -112,7 +112,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   const Features features = find_features(description);
   scene->features = features.bits;
   scene->shapes = features.shapes;
-  // Move vertices before anything asks where they are.
+  // Move vertices before bounds and lights are made of them.
   if (features.bits & kFeatureDisplacement)
     displace(description, context);
   scene->normalisation = normalise(world_bounds(description, context));

@@ -36,7 +36,7 @@ public:
     return read(what, given, 0.0f, high, 0.0f);
   }
 
-  // A scalar in value[0]; nobody is told of the other two.
+  // A scalar in value[0]; the other two are ignored without a message.
   Parameter read_scalar(const char *what, lancer_parameter given, float low, float high, float fallback) const {
     given.value[1] = given.value[2] = low;
     Parameter parameter = read(what, given, low, high, fallback);
@@ -106,7 +106,7 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
   lobe.option = given.option;
   lobe.weight = reader.read_color("weight", given.weight);
   lobe.normal = reader.read_vector("normal", given.normal);
-  // Only what the lobe uses is looked at: nobody is told of a value without effect.
+  // Only what the lobe uses is checked: a value without effect gives no message.
   const bool coating = lobe.kind == LobeKind::Beckmann, blinn = lobe.kind == LobeKind::BlinnPhong,
              glass = lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction,
              metal = lobe.kind == LobeKind::Glossy || lobe.kind == LobeKind::Conductor;

@@ -51,7 +51,7 @@ struct Material {
   Schedule displacement_nodes;
 
   bool layered_emission = false;                       // some Principled lobe emits
-  bool fixed() const { return program.nodes.empty(); } // no node has a say
+  bool fixed() const { return program.nodes.empty(); } // nodes decide nothing
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
   bool transmits() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }

@@ -104,7 +104,7 @@ std::string ReadyLobe::code() const {
 }
 
 std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material) {
-  // Stands for what the nodes say in parts that no node has a say in.
+  // Placeholders for the results of nodes: what is made here of an input that nodes feed is not used.
   const std::vector<glm::vec4> nothing(material.program.nodes.size(), glm::vec4(0.0f));
   const std::shared_ptr<ReadyLobe[]> all(new ReadyLobe[material.lobes.size()]);
   for (size_t i = 0; i < material.lobes.size(); ++i) {
