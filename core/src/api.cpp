@@ -1,5 +1,6 @@
 // The C interface: checks handles and pointers, turns exceptions into statuses, and passes on to the rooms.
 #include "accel/instruction_set.h"
+#include "integrator/scene_lights.h"
 #include "objects.h"
 #include "render/fill_settings.h"
 #include "scene/fill_camera.h"
@@ -117,7 +118,8 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
     // The object owns the thread, so a plain pointer outlives the work.
     SceneObject *const target = object.get();
     object->builder->start([target, accelerator, context](uint32_t) {
-      target->scene = commit(std::move(target->description), static_cast<AcceleratorKind>(accelerator), context);
+      target->scene =
+          commit(std::move(target->description), static_cast<AcceleratorKind>(accelerator), surface_emission, context);
     });
     // Only now: where there was no memory to start, nothing is on its way.
     object->state = SceneObject::State::Committing;

@@ -78,7 +78,7 @@ TEST(FillRefusals, ProbesWantFiniteDirections) {
   lancer_scene_destroy(scene);
 }
 
-// A material of lobes of one kind, each with a normal of its own.
+// A material of lobes of one kind, each with a normal of its own, and the messages that commit() has about it.
 Material many(uint32_t count, const lancer_lobe &lobe, Description &description) {
   std::vector<lancer_lobe> lobes(count, lobe);
   for (uint32_t i = 0; i < count; ++i)
@@ -88,6 +88,7 @@ Material many(uint32_t count, const lancer_lobe &lobe, Description &description)
   material.lobes = lobes.data();
   material.lobe_count = count;
   lancer::add_material(description, material);
+  tell_room(label("material", material.name, 0), description.materials.back(), description.messages);
   return description.materials.back();
 }
 

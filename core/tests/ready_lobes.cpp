@@ -1,4 +1,5 @@
 // What is made once of a material's lobes is what would be made at every surface.
+#include "scene/ready_lobes.h"
 #include "scene/material.h"
 
 #include "bsdf/build.h"
@@ -162,7 +163,7 @@ TEST(ReadyLobes, PlannedFacetsAreThoseMadeInPlace) {
 }
 
 // A Principled with these shares of its layers.
-std::vector<ReadyLobe> of_layers(float coat, float metallic, float transmission, float ior = 1.25f) {
+std::shared_ptr<const ReadyLobe[]> of_layers(float coat, float metallic, float transmission, float ior = 1.25f) {
   auto p = std::make_shared<PrincipledDescription>();
   p->coat = Parameter{glm::vec3(coat)};
   p->metallic = Parameter{glm::vec3(metallic)};

@@ -2,6 +2,7 @@
 #include "scene/shading_classes.h"
 
 #include "lancer.h"
+#include "scene/ready_lobes.h"
 
 #include <gtest/gtest.h>
 #include <memory>

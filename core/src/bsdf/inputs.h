@@ -26,6 +26,8 @@ enum class LobeKind : uint32_t {
   Minnaert = 14
 };
 inline constexpr uint32_t kLobeKinds = 15;
+// Of one material, and of one place once Principled has become its lobes.
+inline constexpr int kMaxLobes = 64;
 
 // How the facets of a rough surface are distributed.
 enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, MultiGgx = 3 };

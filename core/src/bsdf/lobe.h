@@ -41,7 +41,6 @@ enum class FresnelKind : uint8_t {
 };
 
 inline constexpr int kMaxFrames = 16;
-inline constexpr int kMaxLobes = 64;
 
 // What it is, is the same in all lanes; its numbers differ.
 template <class F> struct Lobe {

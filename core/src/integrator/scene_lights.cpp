@@ -33,4 +33,9 @@ LightSample sample_scene_light(const Scene &scene, uint32_t light, const glm::dv
   return sample_any(scene, light, nullptr, p, u, shader);
 }
 
+EmissionAt surface_emission(const Scene &scene) {
+  const auto shader = std::make_shared<Shader>(scene, nullptr);
+  return [shader](const Surface &surface, const glm::vec3 &wo) { return shader->emission(surface, wo); };
+}
+
 } // namespace lancer

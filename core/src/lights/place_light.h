@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lights/light.h"
-#include "scene/scene.h"
+#include "scene/normalisation.h"
 
 namespace lancer {
 

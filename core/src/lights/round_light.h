@@ -41,7 +41,7 @@ template <class D> LANCER_LANE FrameAxes<D> complete_frame(const Vector3<D> &n) 
   return {{one + side * n.x * n.x * a, side * b, -side * n.x}, {b, side + n.y * n.y * a, -n.y}};
 }
 
-// 1 - cos of the half angle of a ball, without cancellation (numerics A.9).
+// 1 - cos of the half angle of a ball, without cancellation (core/README.md, "Numerics").
 template <class D> LANCER_LANE D one_minus_cos_ball(D radius, D distance) {
   const D ratio = radius / distance, sin2 = ratio * ratio;
   const D cos2 = (distance - radius) * (distance + radius) / (distance * distance);

@@ -3,7 +3,7 @@
 
 #include "nodes/run.h"
 #include "scene/attribute.h"
-#include "scene/scene.h"
+#include "scene/normalisation.h"
 #include "simd/by_lane.h"
 #include "simd/vectors.h"
 

@@ -1,4 +1,4 @@
-// Which pixels near a pixel may show the same light as it.
+// The neighbours of a pixel whose luminance does not differ from its own by more than noise explains.
 #pragma once
 
 #include "render/luminance_map.h"

@@ -10,7 +10,7 @@ namespace lancer {
 
 namespace {
 
-// An edge has so few pixels in a window that edges ask one more.
+// Edges use a window one size larger, as few of its pixels are edges.
 constexpr std::array<int, 7> kRadii = {1, 2, 3, 5, 8, 12, 20};
 constexpr size_t kPlainRadii = 6;
 // (sum v)^2 / sum v^2 is how many pixels bear the variance; of n equal ones it is n / 3, since the square of one difference

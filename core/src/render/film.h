@@ -37,7 +37,7 @@ public:
     uint32_t x, y, width, height;
     Cells cells = Cells::All;
     uint32_t count = 0; // samples of each of its pixels
-    // By bit of count. Where the bit is not set there is nothing, or what nobody may read.
+    // By bit of count. Where the bit is not set there is nothing, or memory without meaning.
     std::vector<Sums> levels;
     std::vector<float> first;      // [pixel][channel of sample 0]
     std::vector<float> brightest;  // [pixel] largest luminance of a sample

@@ -1,4 +1,4 @@
-// What this process may use of the machine's processors.
+// The number of processors that this process may use.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Where more samples do most.
+// The choice of tiles to sample next: those where further samples lower the error of the picture most.
 #pragma once
 
 #include "render/picture_error.h"

@@ -1,4 +1,4 @@
-// Numbers of double in the range of float.
+// Rounding of doubles to finite floats.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Where a table is read.
+// Places on the axis of a table.
 #pragma once
 
 #include "simd/scalar.h"

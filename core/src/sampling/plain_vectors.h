@@ -1,4 +1,4 @@
-// Vectors into the plain arrays of records that kernels read.
+// Copies of vectors in the plain arrays of records that kernels read.
 #pragma once
 
 #include <glm/glm.hpp>

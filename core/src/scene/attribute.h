@@ -5,8 +5,8 @@
 
 namespace lancer {
 
-// The number under which a mesh keeps its vertices as they were before displacement: it stands for no name, so that nobody can
-// give it or ask for it by mistake.
+// The number under which a mesh keeps its vertices as they were before displacement: it stands for no name, so that no
+// attribute or node can use it by mistake.
 inline constexpr uint32_t kUndisplaced = UINT32_MAX;
 
 // The attribute with this number of a name; null where the mesh has none.

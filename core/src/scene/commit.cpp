@@ -1,13 +1,14 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
 #include "accel/coplanar/coplanar_accelerator.h"
 #include "accel/parallel.h"
-#include "integrator/shading.h"
 #include "lights/make_emitters.h"
 #include "lights/place_light.h"
 #include "scene/displace.h"
+#include "scene/material_room.h"
 #include "scene/mesh_normals.h"
 #include "scene/passing.h"
 #include "scene/polygon_centers.h"
+#include "scene/ready_lobes.h"
 #include "scene/scene.h"
 
 #include <chrono>
@@ -92,12 +93,11 @@ PlaneRules plane_rules(const Scene &scene) {
   return rules;
 }
 
-LightSet make_lights(const Scene &scene, const Description &description, const BuildContext &context) {
+LightSet make_lights(const Scene &scene, const Description &description, const EmissionAt &emission,
+                     const BuildContext &context) {
   std::vector<Light> lights;
   for (const LightDescription &light : description.lights)
     lights.push_back(place_light(light, scene.normalisation));
-  Shader shader(scene, nullptr);
-  const EmissionAt emission = [&](const Surface &surface, const glm::vec3 &wo) { return shader.emission(surface, wo); };
   return LightSet(std::move(lights), make_emitters(scene.geometry, scene.slots, scene.materials, emission, context),
                   scene.geometry.instances.size(), Environment(scene.world, scene.images, scene.normalisation, context),
                   context);
@@ -105,13 +105,14 @@ LightSet make_lights(const Scene &scene, const Description &description, const B
 
 } // namespace
 
-std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, const BuildContext &context) {
+std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, EmissionOf emission_of,
+                                    const BuildContext &context) {
   const auto start = std::chrono::steady_clock::now();
   auto scene = std::make_shared<Scene>();
   const Features features = find_features(description);
   scene->features = features.bits;
   scene->shapes = features.shapes;
-  // Move vertices before anything asks where they are.
+  // Move vertices before bounds and lights are made of them.
   if (features.bits & kFeatureDisplacement)
     displace(description, context);
   scene->normalisation = normalise(world_bounds(description, context));
@@ -119,6 +120,10 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   scene->geometry = std::move(description.geometry);
   scene->slots = std::move(description.slots);
   scene->materials = std::move(description.materials);
+  for (Material &material : scene->materials)
+    material.ready = make_ready_lobes(material);
+  for (size_t i = 0; i < scene->materials.size(); ++i)
+    tell_room(label("material", scene->materials[i].name.c_str(), i), scene->materials[i], description.messages);
   scene->classes = shading_classes(scene->materials);
   scene->images = std::move(description.images);
   scene->cutouts = make_cutouts(scene->materials, scene->images);
@@ -141,7 +146,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
     if (instance.shading == Shading::Flat && mesh.centers.empty())
       mesh.centers = polygon_centers(mesh);
   }
-  scene->lights = make_lights(*scene, description, context);
+  scene->lights = make_lights(*scene, description, emission_of(*scene), context);
   scene->accelerator = build_accelerator(kind, scene->geometry, plane_rules(*scene), context);
   scene->messages = description.messages.text();
   scene->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

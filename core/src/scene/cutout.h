@@ -1,4 +1,5 @@
-// Surfaces that pictures cut out, as leaves and fences are made: what passes is known without all that shading needs.
+// Surfaces that pictures cut out, as leaves and fences are made: their transmittance is known without
+// shading them.
 #pragma once
 
 #include "scene/flat_picture.h"

@@ -1,4 +1,4 @@
-// What a scene uses: found at commit, named in the statistics, and the reason for which stage runs.
+// Features that a scene uses: found at commit, named in the statistics; they decide which stages run.
 #pragma once
 
 #include <cstdint>

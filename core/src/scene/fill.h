@@ -1,4 +1,4 @@
-// What the readers of the user's records share: how a number is told, and which bits there are.
+// Checks that all readers of the user's records share, and numbers as text for their messages.
 #pragma once
 
 #include "lancer.h"

@@ -1,9 +1,7 @@
 // Checks and copies materials; values outside the model are replaced and said, structure that cannot be read is refused.
-#include "bsdf/lobe.h"
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
-#include "scene/material_room.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +36,7 @@ public:
     return read(what, given, 0.0f, high, 0.0f);
   }
 
-  // A scalar in value[0]; nobody is told of the other two.
+  // A scalar in value[0]; the other two are ignored without a message.
   Parameter read_scalar(const char *what, lancer_parameter given, float low, float high, float fallback) const {
     given.value[1] = given.value[2] = low;
     Parameter parameter = read(what, given, low, high, fallback);
@@ -108,7 +106,7 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
   lobe.option = given.option;
   lobe.weight = reader.read_color("weight", given.weight);
   lobe.normal = reader.read_vector("normal", given.normal);
-  // Only what the lobe uses is looked at: nobody is told of a value without effect.
+  // Only what the lobe uses is checked: a value without effect gives no message.
   const bool coating = lobe.kind == LobeKind::Beckmann, blinn = lobe.kind == LobeKind::BlinnPhong,
              glass = lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction,
              metal = lobe.kind == LobeKind::Glossy || lobe.kind == LobeKind::Conductor;
@@ -235,8 +233,6 @@ void add_material(Description &description, const lancer_material &source) {
   material.displacement = reader.read_vector("displacement", source.displacement);
   material.normal = reader.read_vector("normal", source.normal);
   make_schedules(material);
-  material.ready = make_ready_lobes(material);
-  tell_room(object, material, messages);
   description.messages.add(messages);
   description.materials.push_back(std::move(material));
 }

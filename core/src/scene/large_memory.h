@@ -21,7 +21,7 @@ inline void *allocate_aligned(size_t alignment, size_t bytes) {
 #else
   void *const memory = std::aligned_alloc(alignment, bytes);
 #if defined(__linux__)
-  // A wish: without it, everything works as well on small pages, slower.
+  // A hint: without large pages everything works, slower.
   if (memory && alignment >= kLargePage)
     (void)madvise(memory, bytes, MADV_HUGEPAGE);
 #endif

@@ -3,7 +3,6 @@
 
 #include "bsdf/inputs.h"
 #include "scene/node.h"
-#include "scene/ready_lobes.h"
 
 #include <memory>
 #include <string>
@@ -33,6 +32,8 @@ struct LobeDescription {
   std::shared_ptr<const PrincipledDescription> principled;
 };
 
+struct ReadyLobe;
+
 struct Material {
   std::string name;
   std::vector<LobeDescription> lobes;
@@ -41,7 +42,7 @@ struct Material {
   uint32_t index = 0;
   uint32_t flags = 0; // LANCER_MATERIAL_*
 
-  std::vector<ReadyLobe> ready; // by number of lobe
+  std::shared_ptr<const ReadyLobe[]> ready; // by number of lobe; set by commit()
 
   // Which nodes each question needs.
   Schedule surface_nodes;       // lobes, emission, transmittance, holdout, ambient, normal
@@ -50,7 +51,7 @@ struct Material {
   Schedule displacement_nodes;
 
   bool layered_emission = false;                       // some Principled lobe emits
-  bool fixed() const { return program.nodes.empty(); } // no node has a say
+  bool fixed() const { return program.nodes.empty(); } // nodes decide nothing
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
   bool transmits() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }

@@ -4,6 +4,7 @@
 
 #include "bsdf/principled.h"
 #include "scene/material.h"
+#include "scene/ready_lobes.h"
 
 namespace lancer {
 

@@ -102,12 +102,13 @@ std::string ReadyLobe::code() const {
   return code;
 }
 
-std::vector<ReadyLobe> make_ready_lobes(const Material &material) {
-  // Stands for what the nodes say in parts that no node has a say in.
+std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material) {
+  // Placeholders for the results of nodes: what is made here of an input that nodes feed is not used.
   const std::vector<glm::vec4> nothing(material.program.nodes.size(), glm::vec4(0.0f));
-  std::vector<ReadyLobe> all;
-  for (const LobeDescription &lobe : material.lobes) {
-    ReadyLobe &ready = all.emplace_back();
+  const std::shared_ptr<ReadyLobe[]> all(new ReadyLobe[material.lobes.size()]);
+  for (size_t i = 0; i < material.lobes.size(); ++i) {
+    const LobeDescription &lobe = material.lobes[i];
+    ReadyLobe &ready = all[i];
     ready.inputs = evaluate(lobe, nothing);
     if (lobe.principled)
       ready.principled = evaluate(*lobe.principled, nothing);

@@ -1,4 +1,4 @@
-// What of a material's lobes is the same wherever the material is met, made once when the material is added.
+// What of a material's lobes is the same wherever the material is met, made once when the scene is committed.
 #pragma once
 
 #include "bsdf/kept_plans.h"
@@ -28,7 +28,7 @@ struct ReadyLobe {
   // By side (outside, inside) and Layer. Of facets of other nodes the only one is that of PrincipledLayer::Gloss.
   std::shared_ptr<const KeptPlan> plans[2][kLayerCount];
 
-  // What code it needs, where no node has a say: lobes of one code differ in numbers alone.
+  // What code it needs, as far as nodes do not decide it: lobes of one code differ in numbers alone.
   std::string code() const;
 
   bool has(PrincipledLayer layer) const { return plans[0][static_cast<int>(layer)] != nullptr; }
@@ -36,7 +36,7 @@ struct ReadyLobe {
 };
 
 // One for each lobe.
-std::vector<ReadyLobe> make_ready_lobes(const Material &material);
+std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material);
 
 // A lobe of every lane, all of one code.
 template <class F> struct LaneLobes {
@@ -57,7 +57,7 @@ template <class F> struct LaneLobes {
             from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).z; })};
   }
 
-  // The inputs of lobes that no node has a say in.
+  // The inputs of lobes without nodes.
 #define LANCER_OF(member)                                                                                                      \
   [](const ReadyLobe &r) __attribute__((always_inline)) { return r.member; }
   LANCER_LANE LobeInputs<F> inputs() const {

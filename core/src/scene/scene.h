@@ -6,20 +6,10 @@
 #include "scene/cutout.h"
 #include "scene/description.h"
 #include "scene/features.h"
+#include "scene/normalisation.h"
 #include "scene/shading_classes.h"
 
 namespace lancer {
-
-// p_normalised = (p_world - centre) * scale, scale a power of two: the same scene at any size and place becomes the same
-// numbers.
-struct Normalisation {
-  glm::dvec3 centre{0.0};
-  double scale = 1.0;
-
-  glm::dvec3 to_normalised(const glm::dvec3 &p) const { return (p - centre) * scale; }
-  glm::dvec3 to_world(const glm::dvec3 &p) const { return p / scale + centre; }
-  Affine to_normalised(const Affine &map) const { return {map.linear * scale, to_normalised(map.translation)}; }
-};
 
 struct Scene {
   Geometry geometry; // normalised
@@ -46,7 +36,11 @@ struct Scene {
   size_t texture_bytes() const;
 };
 
+// How integrators say what the surfaces of a scene emit; the scene must outlive the answer.
+using EmissionOf = EmissionAt (*)(const Scene &scene);
+
 // Turns a description into a scene. Throws Error, or BuildCancelled when context.cancel is raised.
-std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, const BuildContext &context);
+std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, EmissionOf emission_of,
+                                    const BuildContext &context);
 
 } // namespace lancer

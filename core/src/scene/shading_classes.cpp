@@ -1,6 +1,7 @@
 #include "scene/shading_classes.h"
 
 #include "lancer.h"
+#include "scene/ready_lobes.h"
 
 #include <map>
 
@@ -12,8 +13,8 @@ std::string code_of(const Material &material, size_t number) {
   std::string code = material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION ? "u" : "c";
   if (!material.fixed())
     return code + std::to_string(number);
-  for (const ReadyLobe &ready : material.ready)
-    code += ready.code() + ' ';
+  for (size_t i = 0; i < material.lobes.size(); ++i)
+    code += material.ready[i].code() + ' ';
   return code;
 }
 
