@@ -1,9 +1,9 @@
 // The C interface: checks handles and pointers, turns exceptions into statuses, and passes on to the rooms.
-#include "accel/instruction_set.h"
-#include "integrator/scene_lights.h"
+#include "integrator/stages/shading.h"
 #include "objects.h"
 #include "render/fill_settings.h"
 #include "scene/fill_camera.h"
+#include "simd/kernel_choice.h"
 
 #include <cmath>
 

@@ -2,7 +2,6 @@
 #include "objects.h"
 #include "render/fill_settings.h"
 #include "render/probe.h"
-#include "render/probe_material.h"
 #include "sampling/sobol.h"
 
 namespace {

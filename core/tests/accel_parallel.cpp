@@ -1,7 +1,7 @@
 // The loop over threads, also where the system has no memory for one.
 #include "allocations.h"
 
-#include "accel/parallel.h"
+#include "simd/parallel.h"
 
 #include <gtest/gtest.h>
 #include <stdexcept>

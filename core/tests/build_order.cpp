@@ -1,7 +1,7 @@
 // What is cut in two by a key keeps its order on both sides, whatever way a library has to find the middle: sums over it, and
 // the trees that follow, are the same everywhere.
 #include "accel/bvh/bvh_build.h"
-#include "lights/light_cut.h"
+#include "compile/light_cut.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Panoramas against closed forms and their own inverses, and what a lens of blades looks like.
-#include "scene/panorama.h"
+#include "scene/camera.h"
 
 #include "camera_lab.h"
 

@@ -1,5 +1,5 @@
 // Camera rays that kernels make side by side are those of the general code: Sampler, PixelFilter, Camera.
-#include "integrator/camera_rays.h"
+#include "integrator/stages/camera_rays.h"
 
 #include "camera_lab.h"
 

@@ -2,8 +2,8 @@
 #include "allocations.h"
 #include "nodes_lab.h"
 
+#include "compile/displace.h"
 #include "scene/attribute.h"
-#include "scene/displace.h"
 
 #include <cmath>
 

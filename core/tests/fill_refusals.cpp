@@ -2,8 +2,8 @@
 #include "nodes_lab.h"
 
 #include "bsdf/lobe.h"
-#include "scene/features.h"
-#include "scene/material_room.h"
+#include "compile/features.h"
+#include "compile/material_room.h"
 #include "tiny_scene.h"
 
 #include <cmath>

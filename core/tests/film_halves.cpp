@@ -1,6 +1,6 @@
 // Tiles that are the colours of a chessboard, what replicates tell, and the way back to a power of two.
 #include "render/film.h"
-#include "render/luminance_map.h"
+#include "render/picture_error.h"
 
 #include <bit>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "squares.h"
 #include "tiny_scene.h"
 
-#include "integrator/scene_lights.h"
+#include "integrator/stages/shading.h"
 #include "scene/fill.h"
 
 #include <random>

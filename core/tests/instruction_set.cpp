@@ -1,5 +1,5 @@
 // Which copy of the kernels is taken: the widest that the processor runs, whatever library the compiler brings.
-#include "accel/instruction_set.h"
+#include "simd/kernel_choice.h"
 
 #include <cstdlib>
 #include <fstream>

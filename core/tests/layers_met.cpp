@@ -1,5 +1,5 @@
 // Layers that rays pass: each place once, in order of distance.
-#include "integrator/layers_met.h"
+#include "integrator/stages/layers_met.h"
 
 #include <algorithm>
 #include <cmath>

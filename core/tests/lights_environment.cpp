@@ -1,6 +1,6 @@
 // Directions by brightness: the density integrates to one, samples follow it, and no pole, seam or bright speck is lost.
+#include "compile/scene.h"
 #include "lights/environment.h"
-#include "scene/scene.h"
 
 #include <cstring>
 #include <gtest/gtest.h>

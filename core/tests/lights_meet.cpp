@@ -1,7 +1,7 @@
 // Lights on a ray's way: met where sampling would have put them, and only by those that sampling can choose.
 #include "tiny_scene.h"
 
-#include "integrator/vertex_kernel.h"
+#include "integrator/stages/vertex_kernel.h"
 #include "lights/light_set.h"
 #include "lights/round_light.h"
 

@@ -1,7 +1,7 @@
 // A world that asks where the picture shows a direction: by the camera that looks, for its own rays and for all others.
+#include "compile/scene.h"
 #include "lights/environment.h"
 #include "scene/camera.h"
-#include "scene/scene.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,5 +1,5 @@
 // Normals of a skin by the area of its faces.
-#include "scene/mesh_normals.h"
+#include "compile/mesh_normals.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

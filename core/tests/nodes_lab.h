@@ -2,10 +2,10 @@
 #pragma once
 
 #include "accel/accelerator.h"
+#include "compile/scene.h"
 #include "nodes/run.h"
 #include "scene/camera.h"
 #include "scene/error.h"
-#include "scene/scene.h"
 
 #include <gtest/gtest.h>
 

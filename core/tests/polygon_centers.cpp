@@ -1,9 +1,9 @@
 // Where flat shading computes a polygon's colour.
-#include "scene/polygon_centers.h"
+#include "compile/mesh_normals.h"
 
 #include <gtest/gtest.h>
 
-#include "scene/mesh_faces.h"
+#include "scene/geometry.h"
 
 namespace lancer {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "bsdf/fresnel.h"
+#include "compile/ready_lobes.h"
 #include "principled_lab.h"
-#include "scene/ready_lobes.h"
 #include "statistics.h"
 
 namespace lancer {

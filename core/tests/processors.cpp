@@ -1,5 +1,5 @@
 // How many threads a process may run: its processors and the quotas of its control groups.
-#include "render/processors.h"
+#include "render/thread_pool.h"
 
 #include <algorithm>
 #include <filesystem>

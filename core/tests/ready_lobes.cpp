@@ -1,5 +1,5 @@
 // What is made once of a material's lobes is what would be made at every surface.
-#include "scene/ready_lobes.h"
+#include "compile/ready_lobes.h"
 #include "scene/material.h"
 
 #include "bsdf/build.h"

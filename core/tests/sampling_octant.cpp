@@ -1,4 +1,4 @@
-#include "sampling/octant.h"
+#include "sampling/angle.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Which materials may be shaded side by side.
-#include "scene/shading_classes.h"
+#include "compile/features.h"
 
+#include "compile/ready_lobes.h"
 #include "lancer.h"
-#include "scene/ready_lobes.h"
 
 #include <gtest/gtest.h>
 #include <memory>

@@ -2,7 +2,7 @@
 #include "asked_set.h"
 #include "foliage.h"
 
-#include "integrator/shadow.h"
+#include "integrator/stages/shadow.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // One mesh may be placed flat and smooth at once: what is shaded flat has no curved surface to start shadow rays from.
-#include "integrator/terminator.h"
+#include "integrator/stages/terminator.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

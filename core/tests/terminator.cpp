@@ -2,7 +2,7 @@
 #include "picture_lab.h"
 #include "roundings.h"
 
-#include "integrator/terminator.h"
+#include "integrator/stages/terminator.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 #include "tiny_scene.h"
 
 #include "integrator/sample.h"
-#include "integrator/scene_lights.h"
-#include "integrator/texture_prefetch.h"
+#include "integrator/stages/shading.h"
+#include "integrator/stages/texture_prefetch.h"
 #include "nodes/image.h"
 #include "scene/surface.h"
 

@@ -1,10 +1,10 @@
 // Does a ray meet the scene? One interface, three answers: brute force, kd-tree, wide BVH.
 #pragma once
 
-#include "accel/ray.h"
 #include "scene/geometry.h"
+#include "scene/ray.h"
+#include "simd/parallel.h"
 
-#include <atomic>
 #include <memory>
 #include <span>
 
@@ -37,12 +37,6 @@ private:
   virtual void find(std::span<const Ray> rays, std::span<Hit> hits, const HitFilter *filter) const = 0;
   virtual void find(std::span<const Ray> rays, std::span<uint8_t> occluded, const HitFilter *filter) const = 0;
 };
-
-struct BuildContext {
-  uint32_t threads = 1;
-  const std::atomic<bool> *cancel = nullptr; // polled; a cancelled build throws BuildCancelled
-};
-struct BuildCancelled {};
 
 // geometry must outlive the accelerator.
 std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, const BuildContext &context);

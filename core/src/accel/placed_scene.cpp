@@ -1,7 +1,7 @@
 #include "accel/placed_scene.h"
 
-#include "accel/ray.h"
 #include "sampling/elementary.h"
+#include "scene/ray.h"
 
 #include <algorithm>
 #include <cmath>

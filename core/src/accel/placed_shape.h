@@ -3,7 +3,7 @@
 // shared symbol.
 #pragma once
 
-#include "accel/ray.h"
+#include "scene/ray.h"
 #include "simd/power_of_two.h"
 
 #include <cstdint>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
-#include "bsdf/inputs.h"
 #include "bsdf/microfacet.h"
 #include "bsdf/normals.h"
+#include "scene/lobe_inputs.h"
 
 namespace lancer {
 

@@ -1,7 +1,7 @@
 // A lobe of one place in every lane, ready to be evaluated and sampled: what is left of a material after nodes, layers and wo.
 #pragma once
 
-#include "bsdf/inputs.h"
+#include "scene/lobe_inputs.h"
 #include "simd/vectors.h"
 
 namespace lancer {

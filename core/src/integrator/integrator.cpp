@@ -1,6 +1,6 @@
-#include "integrator/classic.h"
-#include "integrator/normals.h"
-#include "integrator/path.h"
+#include "integrator/aov/normals.h"
+#include "integrator/classic/classic.h"
+#include "integrator/path/path.h"
 
 namespace lancer {
 

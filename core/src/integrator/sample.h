@@ -1,9 +1,9 @@
 // What an integrator is asked, and what it answers: batches of pixel samples.
 #pragma once
 
+#include "compile/scene.h"
 #include "sampling/pixel_filter.h"
 #include "scene/camera.h"
-#include "scene/scene.h"
 
 #include <algorithm>
 #include <atomic>

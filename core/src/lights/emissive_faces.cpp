@@ -1,7 +1,7 @@
 #include "lights/emissive_faces.h"
 
-#include "accel/parallel.h"
 #include "sampling/color.h"
+#include "simd/parallel.h"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 #include "lights/emitter.h"
 
-#include "accel/quadric.h"
 #include "lights/seen_face.h"
 #include "sampling/angle.h"
 #include "sampling/warp.h"
+#include "scene/exact_shape.h"
 
 #include <cmath>
 

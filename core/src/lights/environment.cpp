@@ -1,8 +1,8 @@
 #include "lights/environment.h"
 
-#include "accel/parallel.h"
 #include "nodes/run.h"
 #include "sampling/color.h"
+#include "simd/parallel.h"
 
 #include <cmath>
 #include <numeric>

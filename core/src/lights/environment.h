@@ -1,11 +1,11 @@
 // What shines from beyond everything: its radiance in a direction, and directions by how bright it is there.
 #pragma once
 
-#include "accel/accelerator.h"
 #include "lights/light.h"
 #include "nodes/light_path.h"
 #include "sampling/direction_map.h"
 #include "scene/world.h"
+#include "simd/parallel.h"
 
 namespace lancer {
 

@@ -1,8 +1,8 @@
 // A light as the integrators see it: normalised world, ready to sample.
 #pragma once
 
-#include "accel/ray.h"
 #include "scene/light.h"
+#include "scene/ray.h"
 
 #include <glm/gtc/constants.hpp>
 

@@ -1,10 +1,11 @@
 #include "lights/light_bounds.h"
 
+#include "sampling/color.h"
+#include "sampling/elementary.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
-
-#include "sampling/elementary.h"
 
 namespace lancer {
 
@@ -84,6 +85,133 @@ double LightBounds::cost() const {
   const double area = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
   // What lies on a line counts by its length.
   return energy * (area > 0.0 ? area : glm::length(size)) * cone.measure();
+}
+
+namespace {
+
+// Float moves a coordinate of a tree about 1024 wide by less than this, and one beyond by that share of itself.
+constexpr double kPad = 0x1p-22;
+// Float has no number for what lies much further; a lamp there is as far as this.
+constexpr double kFarthest = 1e30;
+
+// The mean of the channels' sizes, as in Cycles; 0 where nothing shines.
+double level(const glm::dvec3 &emission) {
+  return brightest(emission) > 0.0 ? (std::abs(emission.x) + std::abs(emission.y) + std::abs(emission.z)) / 3.0 : 0.0;
+}
+
+// Half the widest opening of a spot.
+double spot_reach(const Light &light) {
+  const double half = acos(std::clamp(light.cos_half_angle, 0.0, 1.0));
+  return half < 0.5 * kPi - 1e-6 ? atan(tan(half) * std::max(light.stretch_x, light.stretch_y)) : 0.5 * kPi;
+}
+
+} // namespace
+
+ShineCone shine_cone(const LightCone &cone) {
+  ShineCone result;
+  result.axis = glm::vec3(cone.axis);
+  result.cos_o = float(cos(cone.theta_o));
+  result.sin_o = float(sin(cone.theta_o));
+  const double all = cone.theta_o + cone.theta_e, full = cone.theta_e - cone.theta_o;
+  result.cos_all = all >= kPi ? -2.0f : float(cos(all));
+  result.cos_full = full < 0.0 ? 2.0f : float(cos(full));
+  return result;
+}
+
+ClusterShape cluster_shape(const LightBounds &bounds) {
+  ClusterShape shape;
+  const glm::dvec3 low = glm::clamp(bounds.low, -kFarthest, kFarthest), high = glm::clamp(bounds.high, -kFarthest, kFarthest);
+  const glm::dvec3 centre = 0.5 * (low + high);
+  const double pad = kPad * (1024.0 + std::abs(centre.x) + std::abs(centre.y) + std::abs(centre.z));
+  shape.centre = glm::vec3(centre);
+  shape.half = glm::vec3(0.5 * (high - low) + pad);
+  shape.cone = shine_cone(bounds.cone);
+  shape.energy = float(bounds.energy);
+  return shape;
+}
+
+DescribedLight describe(const Light &light, uint32_t number) {
+  DescribedLight result;
+  TreeLight &known = result.light;
+  LightBounds &bounds = result.bounds;
+  result.met = has_extent(light);
+  known.number = number;
+  known.centre = glm::clamp(light.position, -kFarthest, kFarthest);
+  known.axis = glm::vec3(-light.z);
+  bounds.cone = {-light.z, 0.0, 0.5 * kPi};
+  bounds.energy = level(light.emission);
+  switch (light.kind) {
+  case LightKind::Point:
+  case LightKind::Spot:
+    known.kind = light.soft_falloff ? TreeLight::Kind::Disk : TreeLight::Kind::Ball;
+    known.radius = float(light.radius);
+    bounds.grow(light.position - light.radius);
+    bounds.grow(light.position + light.radius);
+    if (light.kind == LightKind::Point) {
+      bounds.cone.theta_o = kPi;
+      break;
+    }
+    known.spot = true;
+    bounds.cone.theta_e = spot_reach(light);
+    known.cos_e = float(cos(bounds.cone.theta_e));
+    known.blend = float(light.blend_width);
+    if (!(light.cos_half_angle < 1.0))
+      bounds.energy = 0.0;
+    break;
+  case LightKind::Area:
+    known.kind = TreeLight::Kind::Area;
+    known.u = glm::vec3(light.half_x * light.x);
+    known.v = glm::vec3(light.half_y * light.y);
+    for (int corner = 0; corner < 4; ++corner)
+      bounds.grow(light.position + (corner & 1 ? light.half_x : -light.half_x) * light.x +
+                  (corner & 2 ? light.half_y : -light.half_y) * light.y);
+    if (light.spread_scale != 0.0)
+      bounds.cone.theta_e = atan(light.tan_half_spread);
+    known.cos_e = float(cos(bounds.cone.theta_e));
+    bounds.energy *= light.area;
+    break;
+  case LightKind::Sun:
+    known.kind = TreeLight::Kind::Sun;
+    known.axis = glm::vec3(light.z);
+    bounds.cone.theta_e = acos(1.0 - std::min(light.one_minus_cos_sun, 1.0));
+    known.cos_e = float(1.0 - std::min(light.one_minus_cos_sun, 1.0));
+    bounds.grow(glm::dvec3(0.0));
+    break;
+  }
+  return result;
+}
+
+DescribedLight describe_sky(double mean, uint32_t number) {
+  DescribedLight result;
+  result.light.kind = TreeLight::Kind::Sky;
+  result.light.number = number;
+  result.bounds.cone = {{0.0, 0.0, -1.0}, kPi, 0.0};
+  result.bounds.energy = kPi * mean;
+  result.bounds.grow(glm::dvec3(0.0));
+  return result;
+}
+
+DescribedLight describe_triangle(const glm::dvec3 (&corners)[3], double energy, uint32_t number) {
+  LightBounds bounds;
+  for (const glm::dvec3 &corner : corners)
+    bounds.grow(corner);
+  // Both sides shine: as in Cycles, any direction of the plane stands for that.
+  const glm::dvec3 side = corners[0] - corners[1];
+  bounds.cone = {glm::length(side) > 0.0 ? glm::normalize(side) : glm::dvec3(0.0, 0.0, 1.0), 0.5 * kPi, 0.5 * kPi};
+  bounds.energy = energy;
+  return describe_cluster(bounds, number);
+}
+
+DescribedLight describe_cluster(const LightBounds &bounds, uint32_t number) {
+  DescribedLight result;
+  const ClusterShape shape = cluster_shape(bounds);
+  result.light.kind = TreeLight::Kind::Cluster;
+  result.light.number = number;
+  result.light.centre = bounds.centre();
+  result.light.u = shape.half;
+  result.light.cone = shape.cone;
+  result.bounds = bounds;
+  return result;
 }
 
 } // namespace lancer

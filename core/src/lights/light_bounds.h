@@ -1,11 +1,15 @@
-// What encloses lights: where they are, where they shine, how much. Clusters of the light tree are made of it (Conty and Kulla,
-// Importance Sampling of Many Lights with Adaptive Tree Splitting, 2018).
+// Bounds of lights: where they are, and where they shine.
 #pragma once
+
+#include "lights/light.h"
 
 #include <glm/glm.hpp>
 #include <limits>
 
 namespace lancer {
+
+// What encloses lights: where they are, where they shine, how much. Clusters of the light tree are made of it (Conty and Kulla,
+// Importance Sampling of Many Lights with Adaptive Tree Splitting, 2018).
 
 // Normals within theta_o of the axis; light leaves within theta_e of each of them.
 struct LightCone {
@@ -37,5 +41,75 @@ struct LightBounds {
   // The cost of asking this cluster: the surface area orientation heuristic.
   double cost() const;
 };
+
+// A light as the light tree knows it: what its importance at a point needs, and nothing else.
+
+// A point of a surface and its shading normal that ask for light, and whether it may also come through from behind.
+struct LightQuery {
+  glm::dvec3 p{0.0};
+  glm::vec3 n{0, 0, 1};
+  bool transmits = false;
+
+  LightQuery(const glm::dvec3 &point, const glm::vec3 &normal, bool through) : p(point), n(normal), transmits(through) {}
+};
+
+// A light, or a face of one, that was chosen.
+struct LightChoice {
+  uint32_t number = 0;      // as the tree's user counts
+  double probability = 0.0; // 0: no light can contribute
+  double u = 0.0;           // what is left of the random number, uniform in [0, 1)
+};
+
+// Where a light leaves: LightCone, in cosines.
+struct ShineCone {
+  glm::vec3 axis{0, 0, 1};
+  float cos_o = 1.0f, sin_o = 0.0f;
+  float cos_all = 0.0f;  // of theta_o + theta_e; -2 where that is beyond pi
+  float cos_full = 0.0f; // of theta_e - theta_o; 2 where that is negative
+};
+
+// A box of lights. A distant one lies beyond everything, towards -axis.
+struct ClusterShape {
+  glm::vec3 centre{0.0f}, half{0.0f};
+  ShineCone cone;
+  float energy = 0.0f;
+};
+
+struct TreeLight {
+  enum class Kind : uint32_t { Disk, Ball, Area, Sun, Sky, Cluster };
+
+  Kind kind = Kind::Disk;
+  bool spot = false;
+  uint32_t number = 0; // as the tree's user counts
+  float energy = 0.0f; // relative to the brightest of the tree
+  glm::dvec3 centre{0.0};
+  // Disk, Ball of a spot; Area: direction of light. Sun: the other way.
+  glm::vec3 axis{0, 0, 1};
+  glm::vec3 u{0.0f}, v{0.0f};       // Area: half its sides; Cluster: u is half of it
+  float radius = 0.0f;              // Disk, Ball
+  float cos_e = 0.0f, blend = 0.0f; // Disk, Ball of a spot: end and width of its rim; Area, Sun: cos_e
+  ShineCone cone;                   // Cluster
+};
+
+// One that is no light's own: energy 0.
+struct DescribedLight {
+  TreeLight light;
+  LightBounds bounds; // energy in the user's units
+  bool met = false;   // a ray may run into it
+
+  // Beyond everything, without a place.
+  bool distant() const { return light.kind == TreeLight::Kind::Sun || light.kind == TreeLight::Kind::Sky; }
+};
+
+DescribedLight describe(const Light &light, uint32_t number);
+// mean: of the radiance over all directions.
+DescribedLight describe_sky(double mean, uint32_t number);
+// Corners in the tree's space; energy: radiance times area.
+DescribedLight describe_triangle(const glm::dvec3 (&corners)[3], double energy, uint32_t number);
+DescribedLight describe_cluster(const LightBounds &bounds, uint32_t number);
+
+ShineCone shine_cone(const LightCone &cone);
+// Padded by what float may lose.
+ClusterShape cluster_shape(const LightBounds &bounds);
 
 } // namespace lancer

@@ -4,7 +4,7 @@
 // F is a float, or lanes of them: points that ask about the same light.
 #pragma once
 
-#include "lights/tree_light.h"
+#include "lights/light_bounds.h"
 #include "simd/vectors.h"
 
 namespace lancer {

@@ -1,9 +1,9 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "lights/light_kernel.h"
 
-#include "accel/kernel_name.h"
 #include "lights/few_lights.h"
 #include "lights/wide_weights.h"
+#include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {

@@ -1,9 +1,13 @@
+// Choices from the tree of many lights.
 #include "lights/light_tree.h"
 
 #include "lights/light_importance.h"
+#include "lights/light_kernel.h"
 #include "sampling/plain_vectors.h"
 
 namespace lancer {
+
+const LightKernel &light_kernel() { return LANCER_CHOSEN_KERNEL(light_kernel); }
 
 LightWalk LightTree::walk(const LightQuery &query, double u) {
   const LightQueryLanes<float> asked(Vector3<double>(query.p), Vector3<float>(query.n), query.transmits);

@@ -2,9 +2,9 @@
 // are chosen by the most that may arrive from each.
 #pragma once
 
-#include "accel/accelerator.h"
+#include "lights/light_bounds.h"
 #include "lights/light_kernel.h"
-#include "lights/tree_light.h"
+#include "simd/parallel.h"
 
 #include <span>
 #include <vector>

@@ -2,8 +2,8 @@
 // point within a cluster's ball counts as on its edge. For kernels only, like simd/lanes.h.
 #pragma once
 
-#include "lights/light_branch.h"
 #include "lights/light_importance.h"
+#include "lights/light_kernel.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {

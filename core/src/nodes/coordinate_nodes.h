@@ -1,10 +1,10 @@
 // Where the ray has met the surface, in every frame that nodes know, and what meshes have painted there. Like lanes.h.
 #pragma once
 
-#include "accel/quadric.h"
 #include "nodes/mesh_lanes.h"
 #include "nodes/vector_nodes.h"
 #include "scene/camera.h"
+#include "scene/exact_shape.h"
 
 namespace lancer {
 namespace {

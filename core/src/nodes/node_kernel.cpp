@@ -1,6 +1,6 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
-#include "accel/kernel_name.h"
 #include "nodes/block_site.h"
+#include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 
 namespace lancer {

@@ -1,12 +1,25 @@
-// The node machine at one place.
+// Runs nodes: the kernel of this processor, and memory for values.
 #include "nodes/run.h"
 
 #include "nodes/dispatch.h"
 
 #include <glm/gtc/type_ptr.hpp>
+#include <new>
 
 namespace lancer {
 
+const NodeKernel &node_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(node_kernel); }
+
+namespace {
+
+constexpr std::align_val_t kAlignment{64};
+
+} // namespace
+
+void *allocate_kept(size_t bytes) { return ::operator new(bytes, kAlignment); }
+void free_kept(void *values) { ::operator delete(values, kAlignment); }
+
+// The node machine at one place.
 namespace {
 
 Site<float> site_of(const NodeContext &context) {

@@ -13,11 +13,11 @@
 // are not used give no value that means anything.
 #pragma once
 
-#include "accel/kernel_choice.h"
 #include "nodes/block.h"
 #include "nodes/light_path.h"
 #include "scene/node.h"
 #include "scene/surface.h"
+#include "simd/kernel_choice.h"
 
 #include <span>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "nodes/run.h"
+#include "scene/affine.h"
 #include "scene/attribute.h"
-#include "scene/normalisation.h"
 #include "simd/by_lane.h"
 #include "simd/vectors.h"
 

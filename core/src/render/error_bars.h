@@ -1,7 +1,7 @@
 // How far each pixel may be from the converged picture.
 #pragma once
 
-#include "render/luminance_map.h"
+#include "render/picture_error.h"
 
 #include <vector>
 

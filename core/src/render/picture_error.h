@@ -1,11 +1,47 @@
-// How far the whole picture may be from the converged one.
+// The error of a picture, estimated from the differences of its halves.
 #pragma once
 
-#include "render/luminance_map.h"
+#include "render/film.h"
 
 #include <limits>
+#include <vector>
 
 namespace lancer {
+
+// What the film knows of the light of its pixels, laid out as a picture.
+
+// Luminances are in units of the picture's mean, and bounded, so that no square of them leaves the range of floats.
+struct LuminanceMap {
+  uint32_t width = 0, height = 0;
+  bool known = true; // false: some pixel has too few samples to tell an error from
+  double unit = 1.0; // mean luminance of the picture, what is negative counted as dark; 1 where all is dark
+  // [height][width]; variance: of one sample, such that that of the mean is variance / count.
+  std::vector<float> mean, variance, brightest, count;
+
+  explicit LuminanceMap(const Film &film);
+
+  size_t size() const { return mean.size(); }
+  // What is added wherever something is divided by luminance, so that black pixels do not decide alone: 1 % of the mean.
+  float floor() const { return dark ? 0.0f : 0.01f; }
+  bool dark = false;
+};
+
+// The neighbours of a pixel whose luminance does not differ from its own by more than noise explains.
+
+// Over each pixel and those of the 7 x 7 around it that are like it, [height][width]: their number, the sum of their
+// luminances, and that of the variances of one sample of theirs.
+//
+// Two pixels are alike where their luminances and those of the 3 x 3 around them differ by no more than noise explains, all
+// nine together. Pixel by pixel the question fails where it matters: two replicates say so little about one pixel's variance
+// that every tenth looks noisy enough to be like anything, the edge of a lit thing like the black beside it (Buades, Coll,
+// Morel, "A non-local algorithm for image denoising", 2005, compare surroundings so).
+struct AlikeNeighbours {
+  std::vector<float> count, mean, variance;
+
+  explicit AlikeNeighbours(const LuminanceMap &map);
+};
+
+// How far the whole picture may be from the converged one.
 
 // The error of a picture is the root mean square over its pixels of the standard error of their luminance, each relative to
 // the pixel's luminance plus 1 % of the picture's mean.

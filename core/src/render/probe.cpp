@@ -1,8 +1,8 @@
 #include "render/probe.h"
 
 #include "bsdf/coating.h"
-#include "integrator/scene_lights.h"
-#include "sampling/checks.h"
+#include "integrator/stages/shading.h"
+#include "render/checks.h"
 #include "scene/error.h"
 
 #include <cmath>

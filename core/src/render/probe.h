@@ -1,10 +1,13 @@
-// The stages by themselves, for tests: arrays in, arrays out, through the code that renders.
+// Questions to formulas and materials, without a picture.
 #pragma once
 
+#include "compile/scene.h"
 #include "lancer.h"
 #include "render/session.h"
 
 namespace lancer {
+
+// The stages by themselves, for tests: arrays in, arrays out, through the code that renders.
 
 // Shapes, units and frames as in lancer.h.
 void probe_intersect(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
@@ -21,5 +24,16 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
 void probe_filter(const PixelFilter &filter, uint32_t count, const float *u, float *offset);
 void probe_camera(const Session &session, uint32_t count, const double *raster, const double *lens, double *origins,
                   double *directions);
+
+// Materials and the world by themselves, for tests and panels: arrays in, arrays out, through the code that renders.
+
+// Shapes, units and frames as in lancer.h.
+void probe_bsdf(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *wi, float *f, float *pdf);
+void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *u,
+                       lancer_bsdf_sample *samples);
+void probe_lobes(const Scene &scene, uint32_t material, const float *wo, lancer_lobe_info *lobes, uint32_t capacity,
+                 uint32_t *count, float *emission, float *transmittance);
+void probe_node(const Scene &scene, uint32_t material, uint32_t node, uint32_t count, const float *uv, float *values);
+void probe_world(const Scene &scene, uint32_t count, const double *directions, float *radiance, float *pdf);
 
 } // namespace lancer

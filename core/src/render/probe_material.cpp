@@ -1,8 +1,7 @@
-#include "render/probe_material.h"
+#include "render/probe.h"
 
-#include "integrator/scene_lights.h"
-#include "integrator/shading.h"
-#include "sampling/checks.h"
+#include "integrator/stages/shading.h"
+#include "render/checks.h"
 #include "scene/error.h"
 
 #include <cmath>

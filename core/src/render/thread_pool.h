@@ -1,17 +1,24 @@
-// Threads that wait for work and can be watched from outside.
+// The processors that this process may use, and threads on them.
 #pragma once
-
-#include "render/processors.h"
 
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
 namespace lancer {
+
+// The number of processors that this process may use.
+
+// Threads that can run at a time: the processors that the process may run on, fewer where its control group (1 or 2) has a
+// quota of processor time. At least 1. root: where the file system begins.
+uint32_t usable_processors(const std::string &root = "");
+
+// Threads that wait for work and can be watched from outside.
 
 // Runs one job at a time on all of its threads. The first exception of a job is kept for the one who waits.
 class ThreadPool {

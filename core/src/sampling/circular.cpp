@@ -1,14 +1,115 @@
-// Sine, cosine and tangent of angles of any size.
-#include <bit>
-#include <cmath>
-#include <cstdint>
-
+// Sine, cosine and their inverses with the same bits on every machine.
 #include "sampling/angle.h"
 #include "sampling/elementary.h"
 #include "sampling/quarter_turns.h"
 
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
 namespace lancer {
 
+namespace {
+
+// pi / 2: parts of 33 bits, whose products with numbers of 20 bits are exact, and the rest.
+constexpr double kPart1 = 0x1.921fb544p+0, kPart2 = 0x1.0b4611a6p-34, kPart3 = 0x1.3198a2e037073p-69;
+// As a double and the rest.
+constexpr double kHalfPi = 0x1.921fb54442d18p+0, kHalfPiRest = 0x1.1a62633145c07p-54;
+constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
+
+// The digits of 2 / pi from the point on.
+constexpr uint32_t kDigits[] = {
+    0xa2f9836e, 0x4e441529, 0xfc2757d1, 0xf534ddc0, 0xdb629599, 0x3c439041, 0xfe5163ab, 0xdebbc561, 0xb7246e3a, 0x424dd2e0,
+    0x06492eea, 0x09d1921c, 0xfe1deb1c, 0xb129a73e, 0xe88235f5, 0x2ebb4484, 0xe99c7026, 0xb45f7e41, 0x3991d639, 0x835339f4,
+    0x9c845f8b, 0xbdf9283b, 0x1ff897ff, 0xde05980f, 0xef2f118b, 0x5a0a6d1f, 0x6d367ecf, 0x27cb09b7, 0x4f463f66, 0x9e5fea2d,
+    0x7527bac7, 0xebe5f17b, 0x3d0739f7, 0x8a5292ea, 0x6bfb5fb1, 0x1f8d5d08, 0x56033046, 0xfc7b6bab,
+};
+
+// 64 digits of a number of words, the lowest first, from this digit on.
+uint64_t window(const uint32_t *words, uint32_t digit) {
+  const uint32_t *w = words + digit / 32;
+  const uint64_t low = w[0] | static_cast<uint64_t>(w[1]) << 32;
+  const uint32_t shift = digit % 32;
+  return shift == 0 ? low : low >> shift | static_cast<uint64_t>(w[2]) << (64 - shift);
+}
+
+// A double that is exactly a * b beside the one that is nearest to it. Dekker, "A floating-point technique for extending the
+// available precision", 1971.
+double product_rest(double a, double b, double product) {
+  const double split = 0x1p27 + 1.0;
+  const double a1 = split * a - (split * a - a), a2 = a - a1;
+  const double b1 = split * b - (split * b - b), b2 = b - b1;
+  return ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2;
+}
+
+// Of |x| >= 2^-2: by as many digits of 2 / pi as count. Payne, Hanek, "Radian reduction for trigonometric functions", 1983.
+QuarterTurns by_digits(double x) {
+  const uint64_t bits = std::bit_cast<uint64_t>(x);
+  const int exponent = static_cast<int>(bits >> 52 & 0x7ff) - 1075;
+  const uint64_t whole = (bits & 0xfffffffffffffull) | 1ull << 52;
+  // Words of 2 / pi whose products with x are whole turns do not matter; after seven more what is left is below 2^-137.
+  const int first = exponent > 2 ? (exponent - 2) / 32 : 0;
+  uint32_t product[11] = {};
+  for (int half = 0; half < 2; ++half) {
+    const uint64_t factor = whole >> 32 * half & 0xffffffffu;
+    uint64_t carry = 0;
+    for (int i = 0; i < 7; ++i) {
+      const uint64_t sum = factor * kDigits[first + 6 - i] + product[i + half] + carry;
+      product[i + half] = static_cast<uint32_t>(sum);
+      carry = sum >> 32;
+    }
+    product[7 + half] = static_cast<uint32_t>(carry);
+  }
+  const uint32_t point = static_cast<uint32_t>(32 * (first + 7) - exponent);
+  QuarterTurns result;
+  result.quarters = static_cast<uint32_t>(window(product, point)) & 3u;
+  uint64_t high = window(product, point - 64), low = window(product, point - 128);
+  // To the nearest quarter.
+  const bool below = high >> 63 != 0;
+  if (below) {
+    ++result.quarters;
+    low = ~low + 1;
+    high = ~high + (low == 0 ? 1 : 0);
+  }
+  const int zeros = high == 0 ? 63 : std::countl_zero(high);
+  if (zeros > 0) {
+    high = high << zeros | low >> (64 - zeros);
+    low <<= zeros;
+  }
+  const double part = std::ldexp(static_cast<double>(high >> 11), -53 - zeros);
+  const double rest = std::ldexp(static_cast<double>((high & 0x7ff) << 42 | low >> 22), -106 - zeros);
+  result.high = part * kHalfPi;
+  result.low = product_rest(part, kHalfPi, result.high) + (part * kHalfPiRest + rest * kHalfPi);
+  if (below != (x < 0.0)) {
+    result.high = -result.high;
+    result.low = -result.low;
+  }
+  if (x < 0.0)
+    result.quarters = 0u - result.quarters;
+  result.quarters &= 3u;
+  return result;
+}
+
+} // namespace
+
+QuarterTurns quarter_turns(double x) {
+  if (std::abs(x) <= 0.5 * kHalfPi)
+    return {0, x, 0.0};
+  if (std::abs(x) < 0x1p20) {
+    // A sum of this size has no fraction.
+    constexpr double size = 0x1.8p52;
+    const double n = (x * kTwoOverPi + size) - size;
+    const double first = x - n * kPart1, step = n * kPart2, second = first - step;
+    const double below = n * kPart3 - ((first - second) - step);
+    const double high = second - below;
+    // Of the third part's product 2^-100 was rounded away.
+    if (std::abs(high) > 0x1p-30)
+      return {static_cast<uint32_t>(static_cast<int32_t>(n)) & 3u, high, (second - high) - below};
+  }
+  return by_digits(x);
+}
+
+// Sine, cosine and tangent of angles of any size.
 namespace {
 
 // |high| <= pi / 4. The low part turns the rest by so little that the first order tells.

@@ -1,12 +1,73 @@
-// Owen's nested scrambling, and the numbers that it makes of the digits of a Sobol sequence. Digits are reversed: bit 0 is the
-// first after the binary point. U is a uint32_t, or lanes of them.
+// Numbers of the sampler: hashes, Sobol's sequence, Owen's scrambling.
 #pragma once
 
-#include "sampling/hash.h"
-#include "sampling/sobol_table.h"
+#include "simd/scalar.h"
 #include "simd/vectors.h"
 
+#include <array>
+#include <type_traits>
+
 namespace lancer {
+
+// Integer hashes: an address in, bits without visible structure out. U is a uint32_t, or lanes of them.
+
+// A bijection of 32 bits in which every input bit flips every output bit with a probability near one half.
+template <class U> LANCER_LANE constexpr U hash(U x) {
+  static_assert(!std::is_signed_v<U>);
+  x = x ^ (x >> 16);
+  x = x * U(0x85ebca6bu);
+  x = x ^ (x >> 13);
+  x = x * U(0xc2b2ae35u);
+  return x ^ (x >> 16);
+}
+
+// Extends the hash h of an address by one more coordinate. The order of coordinates matters; for one h no two values collide.
+template <class U> LANCER_LANE constexpr U hash_combine(U h, std::type_identity_t<U> value) {
+  return hash((h ^ value * U(0x9e3779b1u)) + U(0x7f4a7c15u));
+}
+
+// The Sobol sequence of Joe and Kuo in 16 dimensions.
+inline constexpr uint32_t kJointDimensions = 16;
+
+namespace sobol {
+
+// U is a uint32_t, or lanes of them.
+template <class U> LANCER_LANE constexpr U reverse_bits(U x) {
+  x = x >> 16 | x << 16;
+  x = (x & U(0xff00ff00u)) >> 8 | (x & U(0x00ff00ffu)) << 8;
+  x = (x & U(0xf0f0f0f0u)) >> 4 | (x & U(0x0f0f0f0fu)) << 4;
+  x = (x & U(0xccccccccu)) >> 2 | (x & U(0x33333333u)) << 2;
+  return (x & U(0xaaaaaaaau)) >> 1 | (x & U(0x55555555u)) << 1;
+}
+
+using NibbleTable = std::array<std::array<std::array<uint32_t, 16>, 8>, kJointDimensions>;
+
+// For each dimension and each group of four index bits the sum of the generator matrix's columns, digits reversed. 8 KB stay in
+// the first-level cache, where a table over whole bytes (64 KB) would not; an index below 4096 takes three look-ups.
+extern const NibbleTable kNibbles;
+
+// Coordinate of point index in a joint dimension; bit 0 is the first digit after the binary point.
+inline uint32_t reversed_point(uint32_t index, uint32_t dimension) {
+  const auto &table = kNibbles[dimension];
+  uint32_t x = 0;
+  for (uint32_t group = 0; index != 0; ++group, index >>= 4)
+    x ^= table[group][index & 15];
+  return x;
+}
+
+// The second Sobol dimension is Pascal's triangle modulo 2, which factors into five shifts; the first is the index itself.
+template <class U> LANCER_LANE constexpr U reversed_second_dimension(U index) {
+  index = index ^ (index & U(0xaaaaaaaau)) >> 1;
+  index = index ^ (index & U(0xccccccccu)) >> 2;
+  index = index ^ (index & U(0xf0f0f0f0u)) >> 4;
+  index = index ^ (index & U(0xff00ff00u)) >> 8;
+  return index ^ index >> 16;
+}
+
+} // namespace sobol
+
+// Owen's nested scrambling, and the numbers that it makes of the digits of a Sobol sequence. Digits are reversed: bit 0 is the
+// first after the binary point. U is a uint32_t, or lanes of them.
 
 // Each digit is flipped by a hash of the digits before it. Sums, and products with even numbers, carry upwards only, which is
 // exactly that dependence.

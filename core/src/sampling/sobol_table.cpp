@@ -1,5 +1,5 @@
 // The generator matrices behind the table, from the published direction numbers; all of it is computed by the compiler.
-#include "sampling/sobol_table.h"
+#include "sampling/scramble.h"
 
 namespace lancer::sobol {
 namespace {

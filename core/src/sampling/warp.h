@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
-#include "sampling/octant.h"
+#include "sampling/angle.h"
 #include "simd/vectors.h"
 
 namespace lancer {

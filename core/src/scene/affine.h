@@ -1,12 +1,14 @@
-// An affine map of the world: the placement of an object.
+// Maps between the frames of objects and world, and the frame in which scenes are traced.
 #pragma once
+
+#include "sampling/elementary.h"
 
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "sampling/elementary.h"
-
 namespace lancer {
+
+// An affine map of the world: the placement of an object.
 
 // p' = linear * p + translation, in double: the composition of placements is where far-away scenes lose their digits.
 struct Affine {
@@ -59,5 +61,18 @@ template <class T> glm::vec<3, T> unit_or_zero(const glm::vec<3, T> &v) {
 inline glm::vec3 carried_normal(const Affine &back, const glm::dvec3 &n) {
   return glm::vec3(unit_or_zero(glm::transpose(back.linear) * n));
 }
+
+// The frame in which scenes are traced, whatever their size and place.
+
+// p_normalised = (p_world - centre) * scale, scale a power of two: the same scene at any size and place becomes the same
+// numbers.
+struct Normalisation {
+  glm::dvec3 centre{0.0};
+  double scale = 1.0;
+
+  glm::dvec3 to_normalised(const glm::dvec3 &p) const { return (p - centre) * scale; }
+  glm::dvec3 to_world(const glm::dvec3 &p) const { return p / scale + centre; }
+  Affine to_normalised(const Affine &map) const { return {map.linear * scale, to_normalised(map.translation)}; }
+};
 
 } // namespace lancer

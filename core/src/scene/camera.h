@@ -1,8 +1,8 @@
 // From a place on the film to a ray: flat pictures, panoramas, the lens.
 #pragma once
 
-#include "accel/ray.h"
 #include "scene/affine.h"
+#include "scene/ray.h"
 
 #include <array>
 
@@ -53,5 +53,12 @@ struct Camera {
   // Where the picture shows a point: (0, 0) the lower left corner, (1, 1) the upper right; z is 0.
   glm::vec3 to_window(const glm::dvec3 &p) const;
 };
+
+// Panoramic projections: a place of the whole picture, 0 ... 1, to a direction and back. Local frame: -z forwards, y up.
+
+// Unit; zero where the panorama shows nothing.
+glm::dvec3 panorama_direction(const Camera &camera, const glm::dvec2 &place);
+// d: unit. The place that shows it, also beyond the picture's edge.
+glm::dvec2 panorama_place(const Camera &camera, const glm::dvec3 &d);
 
 } // namespace lancer

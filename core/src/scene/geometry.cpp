@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace lancer {
 
@@ -24,6 +25,48 @@ void Instance::place(const Affine &map) {
   to_object = inverse(map);
   reach = {row_norm(to_world.linear), largest_coordinate(to_world.translation), row_norm(to_object.linear),
            largest_coordinate(to_object.translation)};
+}
+
+namespace {
+
+// Moves what stays to the front: width entries for each face.
+template <class Entry> void keep(std::vector<Entry> &entries, size_t width, const std::vector<uint32_t> &kept) {
+  if (entries.empty())
+    return;
+  for (size_t i = 0; i < kept.size(); ++i)
+    std::copy_n(entries.begin() + ptrdiff_t(kept[i] * width), width, entries.begin() + ptrdiff_t(i * width));
+  entries.resize(kept.size() * width);
+}
+
+} // namespace
+
+bool is_usable(const glm::vec3 &vertex) {
+  // Turned so that NaN is none.
+  constexpr float limit = 0x1p60f;
+  return std::abs(vertex.x) <= limit && std::abs(vertex.y) <= limit && std::abs(vertex.z) <= limit;
+}
+
+bool has_area(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c) {
+  return glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) != glm::dvec3(0.0);
+}
+
+void keep_faces(Mesh &mesh, const std::vector<uint32_t> &kept) {
+  // What the user numbered them.
+  if (mesh.face_of.empty()) {
+    mesh.face_of.resize(mesh.triangles.size());
+    std::iota(mesh.face_of.begin(), mesh.face_of.end(), 0u);
+  }
+  keep(mesh.face_of, 1, kept);
+  keep(mesh.triangles, 1, kept);
+  if (mesh.normal_domain == NormalDomain::Corner)
+    keep(mesh.normals, 3, kept);
+  keep(mesh.uvs, 3, kept);
+  keep(mesh.colors, 3, kept);
+  keep(mesh.material_slots, 1, kept);
+  keep(mesh.polygons, 1, kept);
+  for (MeshAttribute &attribute : mesh.attributes)
+    if (attribute.domain != Domain::Vertex)
+      keep(attribute.values, attribute.channels * (attribute.domain == Domain::Corner ? 3u : 1u), kept);
 }
 
 } // namespace lancer

@@ -1,15 +1,35 @@
-// Pictures in memory, in their own bit depth.
+// A picture as described: its texels, and how they are to be read.
 #pragma once
 
-#include "scene/texels.h"
+#include "simd/huge_pages.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
+#include <new>
 #include <string>
 
 namespace lancer {
 
+// The memory of pictures. Large ones ask the system for large pages: somewhere in 256 MB a look-up would otherwise wait for the
+// page table before it waits for the texel.
+struct FreeTexels {
+  void operator()(std::byte *texels) const { free_aligned(texels); }
+};
+using Texels = std::unique_ptr<std::byte[], FreeTexels>;
+
+inline Texels allocate_texels(size_t bytes) {
+  const size_t alignment = bytes >= 2 * kLargePage ? kLargePage : alignof(std::max_align_t);
+  // Kernels read whole words: the last texel's may reach beyond it.
+  const size_t rounded = (bytes + 3 + alignment - 1) / alignment * alignment;
+  Texels texels(static_cast<std::byte *>(allocate_aligned(alignment, rounded)));
+  if (!texels)
+    throw std::bad_alloc();
+  return texels;
+}
+
+// Pictures in memory, in their own bit depth.
 enum class TexelKind : uint32_t { U8 = 0, U16 = 1, Float = 2 };
 enum class Transfer : uint32_t { Linear = 0, Srgb = 1 };
 enum class AlphaMode : uint32_t { Associated = 0, Straight = 1, ChannelPacked = 2, None = 3 };
@@ -22,7 +42,7 @@ struct Image {
   TexelKind kind = TexelKind::U8;
   Transfer transfer = Transfer::Linear;
   AlphaMode alpha = AlphaMode::Straight;
-  uint32_t tile = 0;         // UDIM; 0 = none
+  uint32_t tile = 0; // UDIM; 0 = none
   bool has_matrix = false;
   glm::mat3 matrix{1.0f}; // decoded RGB to the working space
   Texels texels;          // [height][width][channels]

@@ -1,7 +1,7 @@
 // A material as described: lobes whose parameters are constants or the results of nodes.
 #pragma once
 
-#include "bsdf/inputs.h"
+#include "scene/lobe_inputs.h"
 #include "scene/node.h"
 
 #include <memory>

@@ -1,7 +1,7 @@
 #include "scene/surface.h"
 
-#include "accel/quadric.h"
 #include "sampling/nearest_float.h"
+#include "scene/exact_shape.h"
 #include "scene/hit_surface.h"
 #include "scene/interpolate.h"
 
@@ -94,8 +94,8 @@ SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface
   }
   const Mesh &mesh = geometry.meshes[instance.mesh];
   const glm::dvec3 b(1.0 - surface.bary.x - surface.bary.y, surface.bary.x, surface.bary.y);
-  attributes.uv =
-      mesh.uvs.empty() ? glm::vec2(float(surface.bary.x), float(surface.bary.y)) : interpolate_corners(mesh.uvs, surface.primitive, b);
+  attributes.uv = mesh.uvs.empty() ? glm::vec2(float(surface.bary.x), float(surface.bary.y))
+                                   : interpolate_corners(mesh.uvs, surface.primitive, b);
   if (!mesh.colors.empty())
     attributes.color = interpolate_corners(mesh.colors, surface.primitive, b);
   return attributes;

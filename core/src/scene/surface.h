@@ -1,8 +1,8 @@
 // What the scene is like where a ray has met it.
 #pragma once
 
-#include "accel/ray.h"
 #include "scene/geometry.h"
+#include "scene/ray.h"
 
 namespace lancer {
 

@@ -1,10 +1,10 @@
 // Compiled once per instruction set, with LANCER_ISA naming it.
 #include "widths/width_kernel.h"
 
-#include "accel/kernel_name.h"
 #include "lights/sample_light.h"
-#include "sampling/exponential.h"
+#include "sampling/elementary.h"
 #include "sampling/scramble.h"
+#include "simd/kernel_choice.h"
 
 #include <type_traits>
 

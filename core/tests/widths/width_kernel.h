@@ -1,10 +1,10 @@
 // Formulas at widths 1, 4, 8 and 16, one copy per instruction set.
 #pragma once
 
-#include "accel/kernel_choice.h"
 #include "lights/light_choice.h"
 #include "sampling/direction_table.h"
 #include "sampling/pixel_filter.h"
+#include "simd/kernel_choice.h"
 
 namespace lancer {
 

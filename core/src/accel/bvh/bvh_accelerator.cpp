@@ -2,9 +2,9 @@
 
 #include "accel/bvh/bvh_build.h"
 #include "accel/bvh/bvh_kernel.h"
-#include "accel/huge_pages.h"
-#include "accel/parallel.h"
 #include "accel/placed_scene.h"
+#include "simd/huge_pages.h"
+#include "simd/parallel.h"
 
 #include <algorithm>
 #include <cmath>

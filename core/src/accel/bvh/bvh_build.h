@@ -6,8 +6,8 @@
 #include "accel/bounds.h"
 #include "accel/bvh/bvh.h"
 #include "accel/bvh/split_kernel.h"
-#include "accel/huge_pages.h"
 #include "accel/placed_scene.h"
+#include "simd/huge_pages.h"
 
 #include <vector>
 

@@ -6,7 +6,7 @@
 
 #include "accel/bvh/packet.h"
 #include "accel/bvh/visit.h"
-#include "accel/kernel_name.h"
+#include "simd/kernel_choice.h"
 
 namespace lancer {
 

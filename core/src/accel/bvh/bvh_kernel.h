@@ -2,8 +2,8 @@
 #pragma once
 
 #include "accel/bvh/bvh.h"
-#include "accel/kernel_choice.h"
-#include "accel/ray.h"
+#include "scene/ray.h"
+#include "simd/kernel_choice.h"
 
 #include <cstddef>
 

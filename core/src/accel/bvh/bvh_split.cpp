@@ -1,6 +1,6 @@
 #include "accel/bvh/bvh_build.h"
 
-#include "accel/parallel.h"
+#include "simd/parallel.h"
 
 #include <array>
 #include <utility>

@@ -2,7 +2,7 @@
 // This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "accel/bvh/split_kernel.h"
 
-#include "accel/kernel_name.h"
+#include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 #include "simd/sorted_lanes.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/bounds.h"
-#include "accel/kernel_choice.h"
+#include "simd/kernel_choice.h"
 
 namespace lancer {
 

@@ -1,7 +1,7 @@
 #include "accel/coplanar/coplanar_faces.h"
 
 #include "accel/coplanar/face_candidates.h"
-#include "accel/parallel.h"
+#include "simd/parallel.h"
 
 namespace lancer {
 

@@ -1,7 +1,7 @@
 #include "accel/coplanar/face_candidates.h"
 
 #include "accel/bounds.h"
-#include "accel/parallel.h"
+#include "simd/parallel.h"
 
 #include <cstring>
 #include <map>

@@ -1,8 +1,8 @@
 // Flat faces where they stand in the world, and how far rounding may hold two apart that are meant to lie in one plane.
 #pragma once
 
-#include "accel/ray.h"
 #include "scene/geometry.h"
+#include "scene/ray.h"
 
 #include <optional>
 

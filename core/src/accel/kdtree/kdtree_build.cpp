@@ -1,6 +1,6 @@
 #include "accel/kdtree/kdtree.h"
-#include "accel/parallel.h"
 #include "sampling/elementary.h"
+#include "simd/parallel.h"
 
 #include <cmath>
 #include <new>

@@ -1,6 +1,6 @@
 #include "integrator/stages/surface_stage.h"
 
-#include "integrator/light_passes.h"
+#include "integrator/stages/light_passes.h"
 #include "sampling/color.h"
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 namespace lancer {
 
 SurfaceStage::SurfaceStage(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
-    : kernel(vertex_kernel()), node_kernel_(node_kernel()), scene_(scene), shader_(scene, &camera), cone_(camera), values_(shader_.values().size()),
-      lobes_(kernel.lobes_bytes / sizeof(Lobes) + 1) {
+    : kernel(vertex_kernel()), node_kernel_(node_kernel()), scene_(scene), shader_(scene, &camera), cone_(camera),
+      values_(shader_.values().size()), lobes_(kernel.lobes_bytes / sizeof(Lobes) + 1) {
   const LightPasses passes(settings);
   block.values = reinterpret_cast<const float(*)[4][kBlockLanes]>(values_.data());
   block.lobes = reinterpret_cast<std::byte *>(lobes_.data());
@@ -104,8 +104,8 @@ void SurfaceStage::place_nodes(const Material &material, std::span<const View> v
   nodes_.backfacing = 0;
   float side[kBlockLanes];
   for (int lane = 0; lane < kBlockLanes; ++lane) {
-    const float facing = block.ng[0][lane] * block.wo[0][lane] + block.ng[1][lane] * block.wo[1][lane] +
-                         block.ng[2][lane] * block.wo[2][lane];
+    const float facing =
+        block.ng[0][lane] * block.wo[0][lane] + block.ng[1][lane] * block.wo[1][lane] + block.ng[2][lane] * block.wo[2][lane];
     side[lane] = facing < 0.0f ? -1.0f : 1.0f;
     nodes_.backfacing |= uint32_t(facing < 0.0f) << lane;
   }

@@ -1,10 +1,10 @@
 // From hits to surfaces and their lobes, side by side: what both integrators do first with what their rays have met.
 #pragma once
 
-#include "integrator/lane_access.h"
-#include "integrator/lobe_means.h"
-#include "integrator/shading.h"
-#include "integrator/vertex_kernel.h"
+#include "integrator/stages/lane_access.h"
+#include "integrator/stages/lobe_means.h"
+#include "integrator/stages/shading.h"
+#include "integrator/stages/vertex_kernel.h"
 
 namespace lancer {
 

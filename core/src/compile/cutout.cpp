@@ -1,0 +1,138 @@
+#include "compile/cutout.h"
+
+#include "nodes/image.h"
+#include "scene/attribute.h"
+
+#include <algorithm>
+
+namespace lancer {
+
+namespace {
+
+// The node that a value comes from, if it is of this kind.
+const Node *source(const Program &program, const Parameter &parameter, uint32_t kind) {
+  const Node *node = program.source(parameter);
+  return node && node->kind == kind ? node : nullptr;
+}
+
+const Node *math_source(const Program &program, const Parameter &parameter, uint32_t operation, uint32_t flags) {
+  const Node *node = source(program, parameter, LANCER_NODE_MATH);
+  return node && node->option == operation && node->flags == flags ? node : nullptr;
+}
+
+} // namespace
+
+FlatPicture flat_picture(const Program &program, const Parameter &color, const std::vector<Image> &images) {
+  const Node *picture = source(program, color, LANCER_NODE_IMAGE);
+  if (!picture || picture->option != LANCER_PROJECT_FLAT || picture->image_count != 1 || images[picture->image].tile != 0)
+    return {};
+  const Node *place = source(program, picture->inputs[0], LANCER_NODE_COORDINATE);
+  if (!place || place->option != LANCER_COORDINATE_UV)
+    return {};
+  return {picture->image, place->name, static_cast<Extension>(picture->flags & 0xf),
+          static_cast<Interpolation>(picture->flags >> 4 & 0xf)};
+}
+
+std::optional<PictureAlpha> picture_alpha(const Program &program, const Parameter &value) {
+  // A sum with nothing, for the sake of its clamp.
+  const Node *clamp = math_source(program, value, LANCER_MATH_ADD, 1);
+  if (clamp && (clamp->inputs[1].varies() || clamp->inputs[1].value.x != 0.0f))
+    return {};
+  const Node *alpha = source(program, clamp ? clamp->inputs[0] : value, LANCER_NODE_ALPHA);
+  if (!alpha)
+    return {};
+  return PictureAlpha{alpha->inputs[0], clamp != nullptr};
+}
+
+std::optional<Remainder> remainder_of(const Program &program, const Parameter &value) {
+  const Node *difference = math_source(program, value, LANCER_MATH_SUBTRACT, 0);
+  if (!difference || difference->inputs[0].varies())
+    return {};
+  return Remainder{difference->inputs[0].value.x, difference->inputs[1]};
+}
+
+namespace {
+
+// Follows 1 - alpha back to the picture and its UV map. share: what stands for alpha.
+AlphaPicture find_alpha(const Material &material, const std::vector<Image> &images, Parameter &share) {
+  const std::optional<Remainder> rest = remainder_of(material.program, material.transmittance);
+  if (!rest || rest->whole != 1.0f)
+    return {};
+  share = rest->share;
+  const std::optional<PictureAlpha> alpha = picture_alpha(material.program, share);
+  if (!alpha)
+    return {};
+  return {flat_picture(material.program, alpha->picture, images), alpha->clamped};
+}
+
+// Whether a node looks at nothing but its inputs, the triangle and the place within it.
+bool is_painted(const Node &node) {
+  switch (node.kind) {
+  case LANCER_NODE_COORDINATE:
+    return node.option == LANCER_COORDINATE_UV || node.option == LANCER_COORDINATE_PARAMETRIC;
+  case LANCER_NODE_IMAGE:
+    return node.option != LANCER_PROJECT_BOX;
+  case LANCER_NODE_ATTRIBUTE:
+  case LANCER_NODE_ALPHA:
+  case LANCER_NODE_MAPPING:
+  case LANCER_NODE_MATH:
+  case LANCER_NODE_VECTOR_MATH:
+  case LANCER_NODE_MIX:
+  case LANCER_NODE_SEPARATE:
+  case LANCER_NODE_COMBINE:
+  case LANCER_NODE_GREY:
+  case LANCER_NODE_CLAMP:
+  case LANCER_NODE_GAMMA:
+  case LANCER_NODE_INVERT:
+  case LANCER_NODE_NOISE:
+  case LANCER_NODE_VORONOI:
+  case LANCER_NODE_GRADIENT:
+  case LANCER_NODE_CURVES:
+    return true;
+  default:
+    return false;
+  }
+}
+
+bool all_painted(const Program &program, const Schedule &schedule) {
+  return std::ranges::all_of(schedule, [&](uint16_t node) { return is_painted(program.nodes[node]); });
+}
+
+Cutout recognise(const Material &material, const std::vector<Image> &images) {
+  Cutout cutout;
+  if (!material.transmittance.varies())
+    return cutout;
+  Parameter share;
+  cutout.alpha = find_alpha(material, images, share);
+  cutout.painted = all_painted(material.program, material.transmittance_nodes);
+  cutout.ends_with_alpha = cutout.alpha.known();
+  // Nothing shines or cuts a hole there, and every lobe has a weight that can end.
+  std::vector<Parameter> deciding{material.transmittance};
+  cutout.may_end = !material.emits() && !material.holdout.varies() && material.holdout.value == glm::vec3(0.0f);
+  for (const LobeDescription &lobe : material.lobes) {
+    cutout.may_end &= lobe.weight.varies();
+    deciding.push_back(lobe.weight);
+    cutout.ends_with_alpha &= lobe.weight.node == share.node;
+  }
+  cutout.nodes = material.program.schedule(deciding);
+  cutout.may_end &= all_painted(material.program, cutout.nodes);
+  return cutout;
+}
+
+} // namespace
+
+std::vector<Cutout> make_cutouts(const std::vector<Material> &materials, const std::vector<Image> &images) {
+  std::vector<Cutout> cutouts;
+  for (const Material &material : materials)
+    cutouts.push_back(recognise(material, images));
+  return cutouts;
+}
+
+float alpha_at(const AlphaPicture &picture, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
+               const glm::dvec2 &bary) {
+  const glm::vec2 uv = uv_at(mesh, picture.uv_map, triangle, bary);
+  const float alpha = lookup_alpha(images[picture.image], uv, picture.extension, picture.interpolation);
+  return clamped_alpha(alpha, picture.clamped);
+}
+
+} // namespace lancer

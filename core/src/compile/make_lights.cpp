@@ -1,0 +1,129 @@
+#include "compile/make_lights.h"
+
+#include "sampling/elementary.h"
+#include "simd/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace lancer {
+
+namespace {
+
+// The light's axes: its z kept, the others made orthogonal to it; what vanishes is replaced by any direction that fits.
+void set_axes(Light &light, const Affine &map) {
+  const auto unit = [](const glm::dvec3 &v) { return glm::length(v) > 0.0 ? v / glm::length(v) : glm::dvec3(0.0); };
+  const glm::dvec3 z = unit(map.linear[2]), x = unit(map.linear[0]), y = unit(map.linear[1]);
+  light.z = z == glm::dvec3(0.0) ? glm::dvec3(0.0, 0.0, 1.0) : z;
+  light.x = unit(x - glm::dot(x, light.z) * light.z);
+  if (light.x == glm::dvec3(0.0))
+    light.x = unit(std::abs(light.z.x) < 0.5 ? glm::cross(light.z, {1, 0, 0}) : glm::cross(light.z, {0, 1, 0}));
+  light.y = glm::cross(light.z, light.x);
+  if (glm::dot(light.y, y) < 0.0)
+    light.y = -light.y;
+}
+
+// No wider than this, in normalised units, of which the scene is at least 512 wide: a scene far from the origin keeps the
+// shadows of what stands before a lamp.
+constexpr double kMostApart = 0x1p-7;
+
+// By how much a lamp and a face that are meant to lie in one plane may be apart, in normalised units. Blender computes
+// placements in float and keeps corners as floats: locations, axes and corners of both are some ten halves of a last place off
+// together.
+double apart_by_rounding(const LightDescription &from, double scale) {
+  const glm::dvec3 &p = from.to_world.translation;
+  const double reach = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + 0.5 * double(from.size.x + from.size.y);
+  return std::min(0x1p-20 * reach * scale, kMostApart);
+}
+
+} // namespace
+
+Light place_light(const LightDescription &from, const Normalisation &normalisation) {
+  Light light;
+  const double scale = normalisation.scale;
+  light.kind = from.kind;
+  light.position = normalisation.to_normalised(from.to_world.translation);
+  set_axes(light, from.to_world);
+  light.emission = glm::dvec3(from.emission);
+  // Irradiance is intensity over distance squared: lengths scale, so intensity scales with their square.
+  if (from.kind == LightKind::Point || from.kind == LightKind::Spot)
+    light.emission *= scale * scale;
+  light.radius = double(from.radius) * scale;
+  light.soft_falloff = from.soft_falloff;
+  if (from.kind == LightKind::Spot) {
+    light.cos_half_angle = cos(0.5 * double(from.spot_angle));
+    light.blend_width = (1.0 - light.cos_half_angle) * double(from.spot_blend);
+    light.spot_cosine = from.spot_cosine;
+    light.stretch_x = double(from.size.x);
+    light.stretch_y = double(from.size.y);
+  }
+  // A flat disk cannot fill half of the sky.
+  const double sun_angle = from.sun_flat ? std::min(double(from.sun_angle), glm::radians(179.9)) : double(from.sun_angle);
+  // 1 - cos(a) = 2 sin^2(a / 2), exact for the smallest suns.
+  const double s = sin(0.25 * sun_angle);
+  light.one_minus_cos_sun = 2.0 * s * s;
+  light.flat_radius = from.sun_flat ? tan(0.5 * sun_angle) : 0.0;
+  // A disk that is smaller than a float direction can tell is a direction.
+  if (0.5 * double(from.sun_angle) < 0x1p-24)
+    light.one_minus_cos_sun = 0.0;
+  light.half_x = 0.5 * double(from.size.x) * scale;
+  light.half_y = 0.5 * double(from.size.y) * scale;
+  light.ellipse = from.shape == AreaShape::Ellipse;
+  if (from.kind == LightKind::Area)
+    light.apart = apart_by_rounding(from, scale);
+  light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
+  if (from.spread < glm::pi<float>()) {
+    const double half = 0.5 * std::max(double(from.spread), 1e-3);
+    light.tan_half_spread = tan(half);
+    light.spread_scale = 1.0 / (light.tan_half_spread - half);
+  }
+  light.hidden_from = from.hidden_from;
+  light.no_shadow = from.no_shadow;
+  light.classic = {from.falloff,       double(from.falloff_radius) * scale, scale, from.ambient_color, from.diffuse_color,
+                   from.specular_color};
+  return light;
+}
+
+std::vector<Emitter> make_emitters(const Geometry &geometry, const std::vector<uint32_t> &slots,
+                                   const std::vector<Material> &materials, const EmissionAt &emission,
+                                   const BuildContext &context) {
+  // Collect what emits: exact surfaces by themselves, meshes by what they may share.
+  using Key = std::pair<uint32_t, std::vector<uint32_t>>;
+  struct Shared {
+    uint32_t users = 0;
+    std::shared_ptr<const EmissiveFaces> faces;
+  };
+  std::map<Key, Shared> shared;
+  std::vector<std::pair<uint32_t, Shared *>> emitting;
+  for (uint32_t i = 0; i < geometry.instances.size(); ++i) {
+    const Instance &instance = geometry.instances[i];
+    const auto begin = slots.begin() + instance.first_slot, end = begin + instance.slot_count;
+    if (std::none_of(begin, end, [&](uint32_t slot) { return is_light(materials[slot]); }))
+      continue;
+    Shared *user = nullptr;
+    if (instance.kind == ShapeKind::Mesh) {
+      user = &shared[{instance.mesh, std::vector<uint32_t>(begin, end)}];
+      ++user->users;
+    }
+    emitting.push_back({i, user});
+  }
+  // Make the lights in the order of the instances.
+  std::vector<Emitter> emitters;
+  for (const auto &[instance, user] : emitting) {
+    poll_cancel(context);
+    if (!user) {
+      Emitter emitter(geometry, slots, materials, instance, emission);
+      if (!emitter.empty())
+        emitters.push_back(std::move(emitter));
+      continue;
+    }
+    if (!user->faces)
+      user->faces = std::make_shared<EmissiveFaces>(geometry, slots, materials, instance, user->users > 1, emission, context);
+    if (!user->faces->empty())
+      emitters.emplace_back(geometry, instance, user->faces);
+  }
+  return emitters;
+}
+
+} // namespace lancer

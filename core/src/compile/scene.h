@@ -1,0 +1,45 @@
+// The committed scene: normalised, with its lights and its accelerator; nothing in it changes any more.
+#pragma once
+
+#include "accel/accelerator.h"
+#include "compile/cutout.h"
+#include "compile/features.h"
+#include "lights/light_set.h"
+#include "scene/affine.h"
+#include "scene/description.h"
+
+namespace lancer {
+
+struct Scene {
+  Geometry geometry; // normalised
+  std::vector<uint32_t> slots;
+  std::vector<Material> materials;
+  std::vector<uint32_t> classes; // by material, as shading_classes() has them
+  std::vector<Cutout> cutouts;   // by material
+  std::vector<uint8_t> passing;  // by instance: some of its materials may let light pass straight on
+  std::vector<uint8_t> clearing; // by instance: there may be nothing of it at some places, as cutouts say
+  std::vector<Image> images;
+  World world;
+  LightSet lights;
+  Normalisation normalisation;
+  uint32_t features = 0; // bits of features.h
+  uint32_t shapes = 0;   // of lobes, as Features has them
+  std::unique_ptr<Accelerator> accelerator;
+  std::string messages;
+  uint64_t triangles = 0; // over all instances
+  double build_seconds = 0.0;
+
+  // A primitive as the user numbered it.
+  uint32_t face_number(uint32_t instance, uint32_t primitive) const;
+  size_t geometry_bytes() const; // with lights, without pictures
+  size_t texture_bytes() const;
+};
+
+// How integrators say what the surfaces of a scene emit; the scene must outlive the answer.
+using EmissionOf = EmissionAt (*)(const Scene &scene);
+
+// Turns a description into a scene. Throws Error, or BuildCancelled when context.cancel is raised.
+std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kind, EmissionOf emission_of,
+                                    const BuildContext &context);
+
+} // namespace lancer

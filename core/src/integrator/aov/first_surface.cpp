@@ -1,0 +1,124 @@
+#include "integrator/aov/first_surface.h"
+
+#include "sampling/color.h"
+#include "sampling/elementary.h"
+#include "sampling/nearest_float.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lancer {
+
+void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result) {
+  result.depth = nearest_float(t / scene.normalisation.scale);
+  result.position = nearest_float(scene.normalisation.to_world(surface.p));
+  result.object_index = float(scene.geometry.instances[surface.instance].object_index);
+  result.material_index = material ? float(material->index) : 0.0f;
+}
+
+void forget_place(SampleResult &result) {
+  const SampleResult nothing;
+  result.depth = nothing.depth;
+  result.position = nothing.position;
+  result.object_index = result.material_index = 0.0f;
+}
+
+void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
+                          double t, SampleResult &result) {
+  record_place(scene, surface, shaded.material, t, result);
+  record_first_surface(scene, settings, surface, mean_normal(shaded.bsdf), result);
+}
+
+void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
+                          const glm::vec3 &normal, SampleResult &result) {
+  result.normal = normal;
+  if (settings.passes & 1u << LANCER_PASS_UV)
+    result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
+}
+
+void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
+                 const Surface &surface, const Shaded &shaded, const glm::vec3 &weight, SampleResult &result) {
+  if (passes.mist())
+    result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * shaded.opacity());
+  for (uint32_t component = 0; component < 3 && passes.components(); ++component)
+    result.light[kLightComponents + 3 * component + 2] += weight * shaded.bsdf.shown(Component(component));
+}
+
+void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
+                 const Surface &surface, const SurfaceStage &stage, uint32_t lane, const glm::vec3 &weight,
+                 SampleResult &result) {
+  if (passes.mist())
+    result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * stage.opacity(lane));
+  for (uint32_t component = 0; component < 3 && passes.components(); ++component)
+    result.light[kLightComponents + 3 * component + 2] += weight * get(stage.block.shown[component], lane);
+}
+
+float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface) {
+  // Parallel rays count along the axis.
+  const bool parallel = camera.kind == CameraKind::Orthographic;
+  const double way = parallel ? std::abs(camera.depth(surface.p)) : glm::length(surface.p - camera.to_world.translation);
+  const double distance = way / scene.normalisation.scale;
+  // Without a depth there is none, as in Cycles.
+  if (!(settings.mist_depth > 0.0f))
+    return 0.0f;
+  const double ratio = std::clamp((distance - double(settings.mist_start)) / double(settings.mist_depth), 0.0, 1.0);
+  // The falloffs that Blender offers.
+  const float x = float(ratio), falloff = settings.mist_falloff;
+  return falloff == 1.0f ? x : falloff == 2.0f ? x * x : falloff == 0.5f ? std::sqrt(x) : pow(x, falloff);
+}
+
+namespace {
+
+// How far away the picture begins in the unit direction d: on a plane, or of a panorama on a sphere.
+double near_distance(const Camera &camera, const glm::dvec3 &d) {
+  if (camera.is_panorama())
+    return camera.clip_start;
+  return camera.clip_start / -glm::dot(d, camera.to_world.linear[2]);
+}
+
+} // namespace
+
+DenoisingFeatures begin_features(const IntegratorSettings &settings, bool wanted) {
+  DenoisingFeatures features;
+  features.open = wanted;
+  features.blended = settings.blended_features;
+  return features;
+}
+
+void add_denoising_features(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
+                            const glm::vec3 &transmittance, double distance, DenoisingFeatures &features,
+                            SampleResult &result) {
+  // Count from where the camera begins to see.
+  if (features.first)
+    distance -= near_distance(camera, glm::dvec3(-wo));
+  features.first = false;
+  result.denoising_depth += features.share * mean(features.beta) * nearest_float(distance / scene.normalisation.scale);
+  const glm::vec3 normal = camera.direction_to_camera(glm::dvec3(mixture.normal));
+  if (features.blended) {
+    // Give what is matt, and all where that is half of it; the rest and what passes straight on wait for the next surface.
+    const float here = mixture.all > 0.0f ? smooth_step(mixture.matt / (0.5f * mixture.all)) : 0.0f;
+    const float passing = mean(transmittance);
+    const float solid = mixture.all > 0.0f ? mixture.all / (mixture.all + passing) : 0.0f;
+    result.albedo += features.share * here * features.beta * mixture.diffuse;
+    result.denoising_normal += features.share * here * solid * mean(features.beta) * normal;
+    features.beta *= mixture.specular * (1.0f - here) + transmittance;
+    features.open = largest(features.beta) > 0.0f;
+    return;
+  }
+  // Three quarters of mirror: look at what it shows.
+  if (mixture.all > 0.0f && mixture.matt * 4.0f <= mixture.all) {
+    features.beta *= mixture.specular;
+    return;
+  }
+  features.open = false;
+  result.albedo += features.share * features.beta * mixture.diffuse;
+  result.denoising_normal += features.share * normal;
+}
+
+void add_sky_features(const DenoisingFeatures &features, SampleResult &result) {
+  if (features.open && features.blended)
+    result.denoising_depth = std::numeric_limits<float>::max();
+}
+
+} // namespace lancer

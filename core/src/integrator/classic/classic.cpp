@@ -1,0 +1,224 @@
+#include "integrator/classic/classic.h"
+
+#include "integrator/classic/flat_shading.h"
+#include "sampling/color.h"
+#include "scene/hit_surface.h"
+
+#include <algorithm>
+
+namespace lancer {
+
+namespace {
+
+// Glass doubles the rays of every depth. Where more than so many are under way, the batch begins anew in parts that are small
+// enough for the deepest recursion.
+constexpr size_t kCrowd = 8192, kSmallPart = 64;
+
+// The light from everywhere that Ka reflects: the world's own, else the environment where it is the same in all directions,
+// else its mean.
+glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
+  if (scene.world.ambient)
+    return *scene.world.ambient;
+  const Environment &environment = scene.lights.environment();
+  if (!environment.varies())
+    return environment.constant();
+  // The mean of the six directions of the axes: Ka is no more than a guess of light from everywhere.
+  std::vector<glm::vec4> values(scene.world.program.nodes.size());
+  glm::vec3 sum(0.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 wi(0.0);
+    for (double sign : {-1.0, 1.0}) {
+      wi[axis] = sign;
+      sum += environment.radiance(wi, values, &camera);
+    }
+  }
+  return sum / 6.0f;
+}
+
+} // namespace
+
+ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
+    : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
+      shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
+      block_(surfaces_.block), kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)),
+      picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED) {
+  block_.numbers_given = 1;
+}
+
+void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+                            std::vector<PathVertex> *trace) {
+  for (size_t begin = 0; begin < addresses.size() && !settings_.cancelled();) {
+    const size_t size = std::min(crowded_ ? kSmallPart : addresses.size(), addresses.size() - begin);
+    if (run_part(addresses.subspan(begin, size), results.subspan(begin, size), trace))
+      begin += size;
+    else
+      // It is likely so for the batches that follow, too.
+      crowded_ = true;
+  }
+}
+
+// False where the rays became too many: nothing is done then.
+bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+                                 std::vector<PathVertex> *trace) {
+  const RayCounts before = counts_;
+  const VertexCounts vertices_before = vertices_;
+  generate(addresses, results);
+  // Trace the recursion depth by depth: a pixel's sum has the same order in any batch.
+  while (!rays_.empty() && !settings_.cancelled()) {
+    hits_.resize(rays_.size());
+    scene_.accelerator->closest_hit(rays_, hits_);
+    next_branches_.clear();
+    next_rays_.clear();
+    shade(results);
+    for (size_t i = 0; i < rays_.size(); ++i)
+      leave(i, results[branches_[i].slot], trace);
+    counts_.shadow +=
+        shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { shadow_light_.add(waiting.slot, light); });
+    shadow_light_.sort();
+    for (size_t i = 0; i < rays_.size(); ++i)
+      for (const glm::vec3 &light : shadow_light_.of(i))
+        results[branches_[i].slot].radiance += light;
+    counts_.bounce += next_rays_.size();
+    branches_.swap(next_branches_);
+    rays_.swap(next_rays_);
+    if (rays_.size() > kCrowd && addresses.size() > kSmallPart) {
+      counts_ = before;
+      vertices_ = vertices_before;
+      return false;
+    }
+  }
+  return true;
+}
+
+void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
+  branches_.clear();
+  rays_.clear();
+  samplers_.assign(addresses.size(), Sampler(0, 0));
+  generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
+    samplers_[slot] = sampler;
+    Branch &branch = branches_.emplace_back();
+    branch.slot = slot;
+    branch.features = begin_features(settings_, passes_.features());
+    return rays_.emplace_back();
+  });
+  counts_.camera += rays_.size();
+}
+
+void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result) {
+  if (branch.depth == 0)
+    add_sky_features(branch.features, result);
+  // A transparent film does not show the environment itself.
+  if (branch.depth == 0 && settings_.film_transparent) {
+    result.alpha -= mean(branch.weight);
+    return;
+  }
+  if (!(branch.kinds & ~scene_.world.hidden_from))
+    return;
+  const glm::vec3 sky = scene_.lights.environment().radiance(glm::dvec3(direction), shader_.values(), &camera_,
+                                                             branch.depth == 0 ? &eye : nullptr, {.kinds = branch.kinds});
+  add(branch, branch.weight * sky, true, result);
+}
+
+// What follows from a ray: its own light and the rays that go on.
+void ClassicIntegrator::leave(size_t number, SampleResult &result, std::vector<PathVertex> *trace) {
+  Branch &branch = branches_[number];
+  const Ray &ray = rays_[number];
+  if (!hits_[number].valid())
+    return miss(branch, ray.o, glm::vec3(glm::normalize(ray.d)), result);
+  if (trace)
+    keep_vertex(number, result, *trace);
+  const Vertex &vertex = lit_[number];
+  if (vertex.nothing)
+    return;
+  add(branch, branch.weight * vertex.emission, false, result);
+  if (branch.features.open)
+    add_denoising_features(scene_, camera_, features_[number].mixture, features_[number].wo, vertex.transmittance,
+                           hits_[number].t * glm::length(ray.d), branch.features, result);
+  result.radiance += branch.weight * vertex.ambient * ambient_;
+  for (const glm::vec3 &light : own_light_.of(number))
+    result.radiance += light;
+  branch_out(number, result);
+}
+
+// What is met says where it is; what is lit says its colour.
+void ClassicIntegrator::keep_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const {
+  const Hit &hit = hits_[number];
+  const Surface met = surface_at(scene_.geometry, scene_.slots, rays_[number], hit);
+  const glm::vec3 ns = is_flat(scene_.geometry.instances[hit.instance]) ? surface_at_center(scene_, hit).ns : met.ns;
+  trace.push_back({scene_.normalisation.to_world(met.p), hit.t / scene_.normalisation.scale, ns, branches_[number].weight,
+                   result.radiance, met.instance, met.primitive, met.material, branches_[number].depth});
+}
+
+void ClassicIntegrator::add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result) {
+  result.radiance += light;
+  if (branch.features.open)
+    result.albedo += branch.features.beta * light;
+  if (branch.depth == 0)
+    passes_.add_seen(result, light, environment);
+}
+
+// The way from the eye to another place than the ray goes to, of any length. Layers that it has passed are no eye.
+glm::dvec3 ClassicIntegrator::view_of(const Branch &branch, const Ray &ray, const glm::dvec3 &p) const {
+  if (branch.depth > 0)
+    return p - ray.o;
+  return camera_.kind == CameraKind::Orthographic ? ray.d : p - (ray.o - branch.passed * ray.d);
+}
+
+void ClassicIntegrator::branch_out(size_t number, SampleResult &result) {
+  const Branch &branch = branches_[number];
+  const Vertex &vertex = lit_[number];
+  // Features follow every branch by its share of the light.
+  const float all = branch.features.open ? mean(vertex.transmittance + vertex.reflected + vertex.refracted) : 0.0f;
+  const auto child = [&](const glm::vec3 &part) {
+    Branch next = branch;
+    next.features.share *= all > 0.0f ? mean(part) / all : 0.0f;
+    return next;
+  };
+  if (vertex.transmittance != glm::vec3(0.0f) && branch.layers < settings_.transparent_bounces) {
+    const Ray &ray = rays_[number];
+    const Hit &hit = hits_[number];
+    Branch behind = child(vertex.transmittance);
+    behind.passed += hit.t;
+    behind.weight *= vertex.transmittance;
+    ++behind.layers;
+    push(behind, lancer::leave(surface_at(scene_.geometry, scene_.slots, ray, hit), ray.d, ray.tmax - hit.t));
+  }
+  // Beyond the depth limit a ray is black: it need not be traced.
+  if (branch.depth >= settings_.max_bounces)
+    return;
+  if (vertex.mirrors)
+    spawn(child(vertex.reflected), vertex, vertex.mirrored, vertex.reflected, LANCER_RAY_GLOSSY, result);
+  if (vertex.refracts)
+    spawn(child(vertex.refracted), vertex, vertex.through, vertex.refracted, LANCER_RAY_TRANSMISSION, result);
+}
+
+void ClassicIntegrator::spawn(Branch child, const Vertex &vertex, const glm::vec3 &direction, const glm::vec3 &weight,
+                              uint32_t kind, SampleResult &result) {
+  child.weight *= weight;
+  child.kinds = kind;
+  child.layers = 0;
+  ++child.depth;
+  // Stop what can no longer matter.
+  const float share = largest(child.weight);
+  if (!(share > 0.0f) || share <= settings_.contribution_threshold)
+    return;
+  // The cheap way: the colour that the environment has there, whatever stands between.
+  if (settings_.environment_reflections)
+    return miss(child, vertex.p, direction, result);
+  next_branches_.push_back(child);
+  Ray &ray = next_rays_.emplace_back();
+  ray.d = glm::dvec3(direction);
+  ray.o = origin_towards<double>(vertex.p, vertex.offset, glm::dvec3(vertex.ng), ray.d);
+  ray.tmax = std::numeric_limits<double>::infinity();
+  ray.skip_instance = vertex.instance;
+  ray.skip_primitive = vertex.primitive;
+  ray.kinds = kind;
+}
+
+void ClassicIntegrator::push(const Branch &branch, Ray ray) {
+  ray.kinds = branch.kinds;
+  next_branches_.push_back(branch);
+  next_rays_.push_back(ray);
+}
+
+} // namespace lancer

@@ -1,0 +1,111 @@
+// The recursive ray tracer: direct light of every lamp, mirror reflection and refraction, nothing left to chance.
+#pragma once
+
+#include "integrator/aov/first_surface.h"
+#include "integrator/classic/classic_kernel.h"
+#include "integrator/stages/camera_rays.h"
+#include "integrator/stages/light_by_ray.h"
+#include "integrator/stages/light_passes.h"
+#include "integrator/stages/shading.h"
+#include "integrator/stages/shading_queues.h"
+#include "integrator/stages/shadow.h"
+#include "integrator/stages/surface_stage.h"
+
+namespace lancer {
+
+class ClassicIntegrator final : public Integrator {
+public:
+  ClassicIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);
+
+  void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
+  const char *kernel() const override { return "classic"; }
+
+private:
+  // A ray of the recursion; all of one depth are traced together.
+  struct Branch {
+    glm::vec3 weight{1.0f}; // of what it brings back
+    uint32_t slot = 0;
+    uint32_t depth = 0;
+    uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
+    uint32_t layers = 0;                // passed straight through
+    bool seen = false;                  // the first surface has been recorded
+    double passed = 0.0;                // t of the camera ray up to its last layer
+    DenoisingFeatures features{};
+  };
+  // What shading leaves of a ray's vertex until its turn comes: vertices are shaded by the code that they need, but a pixel's
+  // sum has the order of the rays.
+  struct Vertex {
+    bool nothing = false; // a hole, behind which nothing is seen
+    bool mirrors = false, refracts = false;
+    uint32_t instance = kNone, primitive = kNone;
+    glm::dvec3 p{0.0}; // where it is lit; as of Surface
+    double offset = 0.0;
+    glm::vec3 ng{0.0f};
+    glm::vec3 emission{0.0f}, ambient{0.0f}, transmittance{0.0f}; // ambient: Ka
+    glm::vec3 reflected{0.0f}, refracted{0.0f}, mirrored{0.0f}, through{0.0f};
+  };
+  // And for denoisers.
+  struct FeaturesOf {
+    Mixture<float> mixture;
+    glm::vec3 wo{0.0f};
+  };
+
+  bool run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace);
+  void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
+  void shade(std::span<SampleResult> results);
+  void put_in_lane(size_t number, const Material &material, std::span<SampleResult> results);
+  void shade_block(std::span<SampleResult> results);
+  void ask_nodes();
+  void cut_holes(std::span<SampleResult> results);
+  void record(std::span<SampleResult> results);
+  void keep(uint32_t lane);
+  bool ask(uint32_t number, const VertexBlock &met);
+  void light_block();
+  void light_corners();
+  void move_to_corner(uint32_t corner);
+  void send_shadow(uint32_t number, uint32_t lane);
+  void leave(size_t number, SampleResult &result, std::vector<PathVertex> *trace);
+  void keep_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const;
+  void miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result);
+  void add(const Branch &branch, const glm::vec3 &light, bool environment, SampleResult &result);
+  void branch_out(size_t number, SampleResult &result);
+  void spawn(Branch child, const Vertex &vertex, const glm::vec3 &direction, const glm::vec3 &weight, uint32_t kind,
+             SampleResult &result);
+  void push(const Branch &branch, Ray ray);
+  glm::dvec3 view_of(const Branch &branch, const Ray &ray, const glm::dvec3 &p) const;
+  glm::vec2 light_numbers(const Branch &branch, uint32_t light) const;
+  const Branch &branch_of(uint32_t lane) const { return branches_[number_[lane]]; }
+
+  const Scene &scene_;
+  const Camera &camera_;
+  IntegratorSettings settings_;
+  RayGenerator generator_;
+  Shader shader_;
+  ShadowQueue shadows_;
+  LightPasses passes_;
+  ShadingQueues queues_;
+  SurfaceStage surfaces_;
+  VertexBlock &block_;
+  const ClassicKernel &kernel_;
+  glm::vec3 ambient_;    // light from everywhere, for Ka
+  bool picture_alone_;   // no other pass is asked for
+  bool corners_ = false; // the block's vertices are lit at the corners of their triangles
+  bool crowded_ = false; // batches are done in small parts
+  // Of the block's lanes.
+  uint32_t number_[kBlockLanes]; // of the ray
+  Hit lit_at_[kBlockLanes];      // where that is not the hit
+  // By light, corner and lane.
+  struct CornerLight {
+    glm::vec3 light{0.0f}, own{0.0f};
+  };
+  std::vector<CornerLight> corner_light_;
+  LightByRay own_light_, shadow_light_; // of lamps by Ka; through shadow rays
+  std::vector<Sampler> samplers_;       // per slot
+  std::vector<Branch> branches_, next_branches_;
+  std::vector<Ray> rays_, next_rays_;
+  std::vector<Hit> hits_;
+  std::vector<Vertex> lit_; // per ray
+  std::vector<FeaturesOf> features_;
+};
+
+} // namespace lancer

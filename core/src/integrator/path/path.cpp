@@ -1,0 +1,183 @@
+#include "integrator/path/path.h"
+
+#include "integrator/stages/lane_access.h"
+#include "sampling/color.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+
+namespace {
+
+// Roulette starts where most of the light has been gathered.
+constexpr uint32_t kRouletteAfter = 2;
+
+} // namespace
+
+void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
+                         std::vector<PathVertex> *trace) {
+  // Only the first samples of pixels tell of places.
+  picture_alone_ = passes_.only_places() && (!passes_.places() || addresses.front().sample > 0);
+  // Start one path per sample.
+  generate(addresses, results);
+  energy_ = {};
+  late_.begin();
+  const auto gathered = [&](uint32_t slot) { return results[slot].radiance + indirect_[slot]; };
+  for (uint32_t turn = 0; !paths_.empty() && !settings_.cancelled(); ++turn) {
+    // Find where every path goes next.
+    find_hits(results, trace);
+    // Gather emission, ask a light, choose how each path goes on.
+    shade(results, trace);
+    if (late_.due(turn))
+      late_.note(
+          turn, paths_.size(), [&](size_t i) { return paths_[i].slot; }, gathered);
+    // Add the light that was not in shadow.
+    counts_.shadow += shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) {
+      SampleResult &result = results[waiting.slot];
+      if (waiting.occlusion) {
+        result.light[kLightOcclusion] += light;
+        return;
+      }
+      if (waiting.indirect)
+        indirect_[waiting.slot] += light;
+      else
+        result.radiance += light;
+      passes_.add(result, light, waiting.share, waiting.indirect);
+    });
+    counts_.bounce += next_rays_.size();
+    paths_.swap(next_paths_);
+    rays_.swap(next_rays_);
+  }
+  late_.end(gathered, energy_);
+  // Join the indirect light, clamped if that was asked for.
+  for (size_t slot = 0; slot < results.size(); ++slot) {
+    glm::vec3 indirect = indirect_[slot];
+    const float top = largest(indirect);
+    if (settings_.clamp_indirect > 0.0f && top > settings_.clamp_indirect) {
+      energy_.clip(double(luminance(indirect)) * (1.0 - double(settings_.clamp_indirect / top)));
+      indirect *= settings_.clamp_indirect / top;
+      passes_.scale_indirect(results[slot], settings_.clamp_indirect / top);
+    }
+    results[slot].radiance += indirect;
+  }
+}
+
+void PathIntegrator::generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
+  paths_.clear();
+  rays_.clear();
+  indirect_.assign(addresses.size(), glm::vec3(0.0f));
+  Record record;
+  record.features = begin_features(settings_, passes_.features());
+  if (!picture_alone_ || records_.size() != addresses.size())
+    records_.assign(addresses.size(), record);
+  generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
+    paths_.emplace_back(sampler, slot);
+    return rays_.emplace_back();
+  });
+  for (size_t i = 0; i < paths_.size(); ++i)
+    paths_[i].from = rays_[i].o;
+  counts_.camera += paths_.size();
+}
+
+void PathIntegrator::shade(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+  next_paths_.clear();
+  next_rays_.clear();
+  add_lights_met(results);
+  queues_.begin();
+  for (size_t i = 0; i < paths_.size(); ++i)
+    if (hits_[i].valid())
+      queues_.add(i, hits_[i]);
+    else
+      miss(i, results);
+  add_missed(results);
+  vertices_.wide += queues_.size();
+  queues_.each([&](std::span<const ShadingQueues::Met> met) {
+    for (size_t i = 0; i < met.size(); ++i) {
+      if (i + 1 < met.size())
+        textures_.ahead(hits_[met[i + 1].number]);
+      put_in_lane(met[i].number, *met[i].material);
+      if (surfaces_.full())
+        shade_block(results, trace);
+    }
+    shade_block(results, trace);
+  });
+}
+
+// How a path looks at what it meets at t.
+View PathIntegrator::view_of(const Path &path, const Ray &ray, double t) const {
+  const double unit = glm::length(ray.d), way = path.length + t * unit;
+  return {.wo = glm::vec3(-glm::normalize(ray.d)),
+          .footprint = float(cone_.base + way * cone_.spread),
+          .path = light_path(path, (t - ray.tmin) * unit)};
+}
+
+void PathIntegrator::keep_vertex(const Path &path, const Surface &surface, double t, const SampleResult &result,
+                                 std::vector<PathVertex> &trace) const {
+  const glm::vec3 so_far = result.radiance + indirect_[path.slot];
+  trace.push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta, so_far,
+                   surface.instance, surface.primitive, surface.material, path.scatterings});
+}
+
+// Fills the passes that describe what the camera sees.
+void PathIntegrator::record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
+                            const glm::vec3 &opacity, double t, SampleResult &result) {
+  // A surface that is hardly there gives way to the next one, unless the path ends on it.
+  Record &record = records_[path.slot];
+  const bool here = !record.seen && mean(opacity) >= settings_.alpha_threshold;
+  // The first sample of a pixel tells the place.
+  if (!record.seen && path.sampler.sample() == 0)
+    record_place(scene_, surface, &material, record.depth + t, result);
+  if (here)
+    record_first_surface(scene_, settings_, surface, normal, result);
+  record.seen |= here;
+  if (passes_.mist())
+    result.mist += (1.0f - mist_at(scene_, camera_, settings_, surface)) * mean(path.beta * opacity);
+}
+
+void PathIntegrator::sample_occlusion(uint32_t lane) {
+  const Waiting &waiting = waiting_[lane];
+  const Path &path = paths_[waiting.number];
+  // Look around the normal of what is diffuse, with the weight of a cosine.
+  const glm::vec3 n = get(block_.matt_normal, lane);
+  const glm::vec3 local = warp_cosine_hemisphere({block_.u[kVertexBsdf][lane], block_.u[kVertexBsdf + 1][lane]});
+  const double distance = settings_.occlusion_distance * scene_.normalisation.scale;
+  Ray ray = leave(surfaces_.surface(lane), glm::dvec3(Frame(n).to_world(local)),
+                  distance > 0.0 ? distance : std::numeric_limits<double>::infinity());
+  ray.kinds = LANCER_RAY_SHADOW;
+  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, path.beta * surfaces_.opacity(lane), path.passed_through);
+}
+
+// Unless the path has passed all that it may.
+void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight) {
+  if (path.layers_left(settings_.transparent_bounces) == 0)
+    return;
+  const double length = t * glm::length(ray.d);
+  path.beta *= weight;
+  path.passed += length;
+  path.length += length;
+  if (!picture_alone_)
+    records_[path.slot].depth += t;
+  path.pass_layers(1, settings_.transparent_bounces);
+  next_rays_.push_back(leave(surface, ray.d, ray.tmax - t));
+  next_rays_.back().kinds = path.kinds;
+  next_paths_.push_back(path);
+}
+
+bool PathIntegrator::survives(uint32_t scatterings, float u, glm::vec3 &beta) {
+  if (scatterings <= kRouletteAfter)
+    return true;
+  // End dark paths early; what survives is brightened by exactly that. By the root, instead of beta itself, they go on longer:
+  // variance times rays falls by a twentieth in the mean of five scenes.
+  const float q = std::min(1.0f, std::sqrt(largest(beta)));
+  if (u >= q)
+    return false;
+  beta /= q;
+  return true;
+}
+
+std::unique_ptr<Integrator> make_path(const Scene &scene, const Camera &camera, const IntegratorSettings &settings) {
+  return std::make_unique<PathIntegrator>(scene, camera, settings);
+}
+
+} // namespace lancer

@@ -1,0 +1,76 @@
+// Where paths go next: past surfaces that a picture has cut away, all within one traversal.
+#include "integrator/path/path.h"
+
+namespace lancer {
+
+void PathIntegrator::find_hits(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+  hits_.resize(rays_.size());
+  if (!any_clear_)
+    return scene_.accelerator->closest_hit(rays_, hits_);
+  clear_.begin(rays_.size());
+  const auto ask = [](void *paths, size_t ray, const Hit &hit) {
+    return static_cast<PathIntegrator *>(paths)->is_there(ray, hit);
+  };
+  scene_.accelerator->closest_hit(rays_, hits_, {scene_.clearing.data(), ask, this});
+  for (size_t i = 0; i < rays_.size(); ++i)
+    if (clear_.count(i) > 0)
+      pass_clear(i, results, trace);
+}
+
+// Whether there is anything of a surface that a ray meets. Where not, its vertex would choose to pass straight on with weight
+// 1, and ask no light for anything.
+bool PathIntegrator::is_there(size_t ray, const Hit &hit) {
+  const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+  if (!scene_.cutouts[material].may_end)
+    return true;
+  Layer *known = clear_.find(ray, hit);
+  if (known && known->hit.primitive == hit.primitive)
+    return false;
+  // What lies behind as many layers as the path may still pass is out of its reach.
+  const Path &path = paths_[ray];
+  if (!known && clear_.count_before(ray, hit) >= path.layers_left(settings_.transparent_bounces))
+    return true;
+  if (shader_.is_there(material, hit))
+    return true;
+  clear_.put(known, ray, hit, glm::vec3(1.0f));
+  return false;
+}
+
+// Counts the layers before a path's hit, as if it had gone from one to the next.
+void PathIntegrator::pass_clear(size_t number, std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+  Path &path = paths_[number];
+  const Ray &ray = rays_[number];
+  const Hit end = hits_[number];
+  // Mostly they are few, and nobody wants to know more than how many.
+  const uint32_t count = clear_.count_before(number, end);
+  if (count == 0)
+    return;
+  const uint32_t limit = settings_.transparent_bounces;
+  if (picture_alone_ && !trace && count <= path.layers_left(limit))
+    return path.pass_layers(count, limit);
+  for (const Layer &layer : clear_.in_order(number)) {
+    const Hit &hit = layer.hit;
+    if (!closer(hit.t, hit.instance, hit.primitive, end))
+      return;
+    // The path may pass no more: it ends here.
+    if (path.layers_left(limit) == 0) {
+      hits_[number] = hit;
+      return;
+    }
+    // Passes tell of places where little is seen, too.
+    SampleResult &result = results[path.slot];
+    const bool recorded = path.in_view && !picture_alone_ && !records_[path.slot].seen;
+    if (recorded || trace) {
+      const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+      if (trace)
+        keep_vertex(path, surface, hit.t, result, *trace);
+      if (recorded) {
+        shader_.shade(surface, view_of(path, ray, hit.t), clear_point_);
+        record(path, surface, queues_.material(hit), clear_point_.bsdf.ns, clear_point_.opacity(), hit.t, result);
+      }
+    }
+    path.pass_layers(1, limit);
+  }
+}
+
+} // namespace lancer

@@ -1,0 +1,40 @@
+// Camera rays in lanes: the block of samples and the kernel that fills it.
+#pragma once
+
+#include "simd/kernel_choice.h"
+
+#include <cstdint>
+
+namespace lancer {
+
+// Camera rays side by side, from the address to the ray. Plain numbers: kernels read and write it.
+struct Camera;
+struct FilterTable;
+
+inline constexpr int kCameraLanes = 16;
+
+struct alignas(64) CameraBlock {
+  // Given: pixels of the full image, Sampler::replicate_key(), and the reversed points of the samples in the dimensions of
+  // pixel and lens.
+  uint32_t x[kCameraLanes], y[kCameraLanes], key[kCameraLanes], reversed_point[4][kCameraLanes];
+  // Sampler::pixel(), and the ray.
+  uint32_t pixel[kCameraLanes];
+  double o[3][kCameraLanes], d[3][kCameraLanes];
+
+  // Given: what all lanes share.
+  const Camera *camera = nullptr;
+  const FilterTable *filter = nullptr;
+};
+
+// Camera rays in vector registers, one copy per instruction set; all give the same bits, and those of the general code:
+// Sampler, PixelFilter, Camera::ray().
+struct CameraKernel {
+  const char *name;
+  // Flat pictures through a pinhole or a round lens.
+  void (*rays)(CameraBlock &block);
+};
+
+// Each is the same source, camera_kernel.cpp, compiled with LANCER_ISA set to the name.
+LANCER_DECLARE_KERNEL(CameraKernel, camera_kernel)
+
+} // namespace lancer

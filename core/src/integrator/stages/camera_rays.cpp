@@ -1,0 +1,65 @@
+// Camera rays of a batch of samples.
+#include "integrator/stages/camera_rays.h"
+
+#include "integrator/stages/camera_kernel.h"
+#include "integrator/stages/lane_access.h"
+
+namespace lancer {
+
+const CameraKernel &camera_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(camera_kernel); }
+
+RayGenerator::RayGenerator(const Camera &camera, const IntegratorSettings &settings)
+    : camera_(camera), filter_(settings.filter, settings.filter_width), seed_(settings.seed),
+      middle_(settings.kind != IntegratorKind::Path && settings.samples == 1),
+      plain_(!middle_ && !camera.is_panorama() && (!(camera.lens_radius > 0.0) || camera.aperture_blades < 3)),
+      kernel_(camera_kernel()), block_(std::make_unique<CameraBlock>()) {
+  *block_ = {};
+  block_->camera = &camera_;
+  block_->filter = &filter_.table();
+}
+
+uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
+  uint32_t looking = 0;
+  if (!plain_) {
+    for (uint32_t lane = 0; lane < addresses.size(); ++lane)
+      looking |= uint32_t{aim_alone(addresses[lane], lane)} << lane;
+    return looking;
+  }
+  // Most lanes are of one sample: look up its digits once.
+  uint32_t sample = ~addresses[0].sample, key = 0, digits[4] = {};
+  for (uint32_t lane = 0; lane < addresses.size(); ++lane) {
+    // The region's place in the image is part of the address: a border render repeats the full image's numbers.
+    block_->x[lane] = camera_.x + addresses[lane].x;
+    block_->y[lane] = camera_.y + addresses[lane].y;
+    if (addresses[lane].sample != sample) {
+      sample = addresses[lane].sample;
+      for (uint32_t i = 0; i < 4; ++i)
+        digits[i] = sobol::reversed_point(sample / kReplicates, kDimensionPixel + i);
+      key = Sampler::replicate_key(seed_, sample);
+    }
+    block_->key[lane] = key;
+    for (uint32_t i = 0; i < 4; ++i)
+      block_->reversed_point[i][lane] = digits[i];
+  }
+  kernel_.rays(*block_);
+  return (1u << addresses.size()) - 1u;
+}
+
+bool RayGenerator::aim_alone(const SampleAddress &address, uint32_t lane) {
+  const uint32_t x = camera_.x + address.x, y = camera_.y + address.y;
+  const Sampler sampler(seed_, x, y, address.sample);
+  glm::dvec2 raster(double(x) + 0.5, double(y) + 0.5), lens(0.0);
+  if (!middle_) {
+    const glm::vec2 u = sampler.get2(kDimensionPixel);
+    raster += glm::dvec2(filter_.sample(u.x), filter_.sample(u.y));
+    if (camera_.lens_radius > 0.0)
+      lens = camera_.aperture(sampler.get2(kDimensionLens));
+  }
+  const Ray ray = camera_.ray(raster, lens);
+  block_->pixel[lane] = sampler.pixel();
+  put(ray.o, block_->o, lane);
+  put(ray.d, block_->d, lane);
+  return !(ray.tmax < 0.0);
+}
+
+} // namespace lancer

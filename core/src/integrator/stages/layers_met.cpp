@@ -1,0 +1,86 @@
+#include "integrator/stages/layers_met.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lancer {
+
+namespace {
+
+// What the edge functions leave of a weight that is 0: corners 1 and 2 exactly that; corner 0 what rounding leaves of 1 less
+// both quotients, each of which, as the determinant that they share, is off by 2^-53 of a sum of 1: under 2^-52 and a half.
+constexpr double kNoWeight = 0x1p-52;
+
+bool on_border(const Hit &hit) { return hit.u == 0.0 || hit.v == 0.0 || 1.0 - hit.u - hit.v <= kNoWeight; }
+
+// The vertices that a place on a triangle's border lies between: two of an edge, one of a corner.
+std::array<uint32_t, 2> border_vertices(const Mesh &mesh, const Hit &hit) {
+  const glm::uvec3 triangle = mesh.triangles[hit.primitive];
+  const bool has[3] = {1.0 - hit.u - hit.v > kNoWeight, hit.u != 0.0, hit.v != 0.0};
+  std::array<uint32_t, 2> vertices{kNone, kNone};
+  size_t count = 0;
+  for (int corner = 0; corner < 3; ++corner)
+    if (has[corner] && count < 2)
+      vertices[count++] = triangle[corner];
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+} // namespace
+
+Layer *LayersMet::find(size_t ray, const Hit &hit) {
+  for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next) {
+    const Hit &other = layers_[number].hit;
+    if (other.instance != hit.instance)
+      continue;
+    const Instance &instance = geometry_.instances[hit.instance];
+    if (instance.kind != ShapeKind::Mesh) {
+      if (other.t == hit.t)
+        return &layers_[number];
+      continue;
+    }
+    if (other.primitive == hit.primitive)
+      return &layers_[number];
+    if (!on_border(hit) || !on_border(other))
+      continue;
+    const Mesh &mesh = geometry_.meshes[instance.mesh];
+    if (border_vertices(mesh, hit) == border_vertices(mesh, other))
+      return &layers_[number];
+  }
+  return nullptr;
+}
+
+void LayersMet::put(Layer *known, size_t ray, const Hit &hit, const glm::vec3 &transmittance) {
+  if (known) {
+    if (closer(hit.t, hit.instance, hit.primitive, known->hit)) {
+      known->hit = hit;
+      known->transmittance = transmittance;
+    }
+    return;
+  }
+  layers_.push_back({hit, transmittance, rays_[ray].first});
+  rays_[ray].first = uint32_t(layers_.size() - 1);
+  ++rays_[ray].count;
+}
+
+uint32_t LayersMet::count_before(size_t ray, const Hit &hit) const {
+  uint32_t count = 0;
+  for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next) {
+    const Hit &layer = layers_[number].hit;
+    count += closer(layer.t, layer.instance, layer.primitive, hit);
+  }
+  return count;
+}
+
+std::span<const Layer> LayersMet::sort(size_t ray, bool clear) {
+  sorted_.clear();
+  for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next)
+    if (clear || layers_[number].transmittance != glm::vec3(1.0f))
+      sorted_.push_back(layers_[number]);
+  if (sorted_.size() > 1)
+    std::sort(sorted_.begin(), sorted_.end(),
+              [](const Layer &a, const Layer &b) { return closer(a.hit.t, a.hit.instance, a.hit.primitive, b.hit); });
+  return sorted_;
+}
+
+} // namespace lancer

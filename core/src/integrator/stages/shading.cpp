@@ -1,0 +1,192 @@
+// Materials at surfaces, and samples of the lights that shine there.
+#include "integrator/stages/shading.h"
+
+#include "integrator/stages/terminator.h"
+#include "integrator/stages/vertex_kernel.h"
+#include "scene/attribute.h"
+#include "compile/material_lobes.h"
+
+#include <algorithm>
+
+namespace lancer {
+
+namespace {
+
+size_t most_nodes(const Scene &scene) {
+  size_t most = scene.world.program.nodes.size();
+  for (const Material &material : scene.materials)
+    most = std::max(most, material.program.nodes.size());
+  return most;
+}
+
+} // namespace
+
+Shader::Shader(const Scene &scene, const Camera *camera) : scene_(scene), values_(most_nodes(scene)) {
+  context_.geometry = &scene.geometry;
+  context_.images = &scene.images;
+  context_.normalisation = &scene.normalisation;
+  context_.camera = camera;
+}
+
+void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
+  result.emission = result.transmittance = glm::vec3(0.0f);
+  result.holdout = 0.0f;
+  result.material = surface.material == kNone ? nullptr : &scene_.materials[surface.material];
+  static const Material nothing;
+  const Material *const material = result.material ? result.material : &nothing;
+  // Compute what the nodes say here, then what becomes of the lobes seen from wo.
+  run_nodes(*material, material->surface_nodes, surface, view);
+  find_lobes<float>(&material, PlaceValues{values_}, false, view.wo, surface.ns, surface.ng, result.bsdf);
+  result.emission = value_of(material->emission, values_) + result.bsdf.emission;
+  if (material->transmits())
+    result.transmittance = glm::max(value_of(material->transmittance, values_), 0.0f);
+  result.holdout = std::clamp(value_of(material->holdout, values_).x, 0.0f, 1.0f);
+}
+
+glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
+  const uint32_t number = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+  if (number == kNone)
+    return glm::vec3(0.0f);
+  const Material &material = scene_.materials[number];
+  if (!material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
+    return glm::vec3(0.0f);
+  // Look no further than the answer needs.
+  if (!material.transmittance.varies())
+    return glm::max(material.transmittance.value, 0.0f);
+  const Instance &instance = scene_.geometry.instances[hit.instance];
+  const Cutout &cutout = scene_.cutouts[number];
+  const bool on_mesh = instance.kind == ShapeKind::Mesh;
+  if (on_mesh && cutout.alpha.known())
+    return glm::vec3(glm::max(
+        1.0f - alpha_at(cutout.alpha, scene_.images, scene_.geometry.meshes[instance.mesh], hit.primitive, {hit.u, hit.v}),
+        0.0f));
+  if (on_mesh && cutout.painted) {
+    run_painted(material, material.transmittance_nodes, hit);
+  } else {
+    const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
+    run_nodes(material, material.transmittance_nodes, surface,
+              {.wo = glm::vec3(-glm::normalize(ray.d)), .path = {.kinds = LANCER_RAY_SHADOW}});
+  }
+  return glm::max(value_of(material.transmittance, values_), 0.0f);
+}
+
+bool Shader::is_there(uint32_t number, const Hit &hit) {
+  const Material &material = scene_.materials[number];
+  const Cutout &cutout = scene_.cutouts[number];
+  if (cutout.ends_with_alpha) {
+    const Mesh &mesh = scene_.geometry.meshes[scene_.geometry.instances[hit.instance].mesh];
+    return alpha_at(cutout.alpha, scene_.images, mesh, hit.primitive, {hit.u, hit.v}) != 0.0f;
+  }
+  run_painted(material, cutout.nodes, hit);
+  const auto none = [&](const LobeDescription &lobe) { return evaluate(lobe.weight, values_) == glm::vec3(0.0f); };
+  return value_of(material.transmittance, values_) != glm::vec3(1.0f) || !std::ranges::all_of(material.lobes, none);
+}
+
+glm::vec3 Shader::emission(const Surface &surface, const glm::vec3 &wo) {
+  if (surface.material == kNone)
+    return glm::vec3(0.0f);
+  const Material &material = scene_.materials[surface.material];
+  if (material.layered_emission) {
+    // What lies above the emitting layer depends on the direction: ask the whole material.
+    shade(surface, {.wo = wo}, layered_);
+    return layered_.emission;
+  }
+  run_nodes(material, material.emission_nodes, surface, {.wo = wo});
+  return value_of(material.emission, values_);
+}
+
+glm::vec4 Shader::node_value(const Surface &surface, uint32_t node, const glm::vec3 &wo) {
+  const Material &material = scene_.materials[surface.material];
+  Parameter parameter;
+  parameter.node = int32_t(node);
+  run_nodes(material, material.program.schedule(std::span(&parameter, 1)), surface, {.wo = wo});
+  return values_[node];
+}
+
+// Nodes that ask a mesh for nothing but the triangle and the place within it.
+void Shader::run_painted(const Material &material, const Schedule &schedule, const Hit &hit) {
+  Surface surface;
+  surface.instance = hit.instance;
+  surface.primitive = hit.primitive;
+  surface.bary = {hit.u, hit.v};
+  run_nodes(material, schedule, surface, {});
+}
+
+void Shader::run_nodes(const Material &material, const Schedule &schedule, const Surface &surface, const View &view) {
+  if (schedule.empty())
+    return;
+  context_.surface = &surface;
+  context_.wo = view.wo;
+  context_.footprint = view.footprint;
+  context_.path = view.path;
+  run(material.program, schedule, context_, values_);
+}
+
+Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3 &ns, const glm::vec3 &ng,
+               const LightSample &sample) {
+  const bool far = std::isinf(sample.distance);
+  const glm::vec3 wi(sample.wi);
+  Ray ray = leave(surface, sample.wi, far ? std::numeric_limits<double>::infinity() : 1.0);
+  const glm::dvec3 lift = terminator_offset(geometry, surface, ns, ng, wi);
+  if (lift != glm::dvec3(0.0)) {
+    // From below the triangle's own plane it may be met; from above it cannot.
+    ray.o = surface.p + lift;
+    if (!((glm::dot(wi, ng) > 0.0f) == (glm::dot(wi, ns) > 0.0f)))
+      ray.skip_instance = ray.skip_primitive = kNone;
+  }
+  if (!far)
+    ray.d = sample.target - ray.o;
+  ray.kinds = LANCER_RAY_SHADOW;
+  return ray;
+}
+
+PixelCone::PixelCone(const Camera &camera) {
+  // Compare the rays through the middle of the picture and one pixel beside it.
+  const glm::dvec2 middle(0.5 * camera.width, 0.5 * camera.height);
+  const Ray here = camera.ray(middle, glm::dvec2(0.0));
+  const Ray right = camera.ray(middle + glm::dvec2(1.0, 0.0), glm::dvec2(0.0));
+  const Ray above = camera.ray(middle + glm::dvec2(0.0, 1.0), glm::dvec2(0.0));
+  const glm::dvec3 d = glm::normalize(here.d);
+  base = 0.5 * (glm::length(right.o - here.o) + glm::length(above.o - here.o));
+  spread = 0.5 * (glm::length(glm::normalize(right.d) - d) + glm::length(glm::normalize(above.d) - d));
+}
+
+namespace {
+
+// face: null, by power.
+LightSample sample_any(const Scene &scene, uint32_t light, const uint32_t *face, const glm::dvec3 &p, const glm::vec2 &u,
+                       Shader &shader) {
+  const size_t described = scene.lights.lights().size();
+  if (light < described)
+    return sample(scene.lights.lights()[light], p, u);
+  if (light - described >= scene.lights.emitters().size())
+    return scene.lights.environment().sample(u, shader.values(), shader.camera());
+  // Ask the material of the emitter's surface what it sends towards p.
+  const Emitter &emitter = scene.lights.emitters()[light - described];
+  Surface surface;
+  LightSample result = face ? emitter.sample_face(scene.geometry, scene.slots, *face, p, u, surface)
+                            : emitter.sample(scene.geometry, scene.slots, p, u, surface);
+  if (result.pdf > 0.0)
+    result.radiance = shader.emission(surface, glm::vec3(-result.wi));
+  return result;
+}
+
+} // namespace
+
+LightSample sample_scene_light(const Scene &scene, const LightSet::Choice &choice, const glm::dvec3 &p, const glm::vec2 &u,
+                               Shader &shader) {
+  return sample_any(scene, choice.light, &choice.face, p, u, shader);
+}
+
+LightSample sample_scene_light(const Scene &scene, uint32_t light, const glm::dvec3 &p, const glm::vec2 &u, Shader &shader) {
+  return sample_any(scene, light, nullptr, p, u, shader);
+}
+
+EmissionAt surface_emission(const Scene &scene) {
+  const auto shader = std::make_shared<Shader>(scene, nullptr);
+  return [shader](const Surface &surface, const glm::vec3 &wo) { return shader->emission(surface, wo); };
+}
+
+const VertexKernel &vertex_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(vertex_kernel); }
+
+} // namespace lancer

@@ -1,0 +1,83 @@
+// Paths in queues by the code that shades what they have met.
+#pragma once
+
+#include "compile/scene.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lancer {
+
+class ShadingQueues {
+public:
+  explicit ShadingQueues(const Scene &scene) : scene_(scene), places_(scene.classes.size()), order_(scene.classes.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::ranges::stable_sort(order_, {}, [&](uint32_t material) { return scene.classes[material]; });
+    for (uint32_t place = 0; place < order_.size(); ++place)
+      places_[order_[place]] = place;
+    starts_.resize(order_.size() + 2);
+  }
+
+  // What an instance without slots shows: black.
+  static const Material &nothing() {
+    static const Material material;
+    return material;
+  }
+  // A path that has met a surface.
+  struct Met {
+    uint32_t number;
+    const Material *material;
+  };
+  const Material &material(const Hit &hit) const {
+    const uint32_t number = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+    return number == kNone ? nothing() : scene_.materials[number];
+  }
+
+  void begin() { met_.clear(); }
+  size_t size() const { return met_.size(); }
+  // number: of the path that has met it.
+  void add(size_t number, const Hit &hit) {
+    const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+    if (material == kNone)
+      met_.push_back({{uint32_t(number), &nothing()}, uint32_t(order_.size())});
+    else
+      met_.push_back({{uint32_t(number), &scene_.materials[material]}, places_[material]});
+  }
+  // Calls shade(paths) with those of each class, one material after the other.
+  template <class Shade> void each(const Shade &shade) {
+    // Count, then place.
+    std::fill(starts_.begin(), starts_.end(), 0u);
+    for (const Queued &met : met_)
+      ++starts_[met.place + 1];
+    for (size_t i = 1; i < starts_.size(); ++i)
+      starts_[i] += starts_[i - 1];
+    sorted_.resize(met_.size());
+    for (const Queued &met : met_)
+      sorted_[starts_[met.place]++] = met.met;
+    // Each start has become the end of its material.
+    uint32_t begin = 0;
+    for (size_t place = 0; place <= order_.size(); ++place) {
+      const bool more = place + 1 < order_.size() && scene_.classes[order_[place + 1]] == scene_.classes[order_[place]];
+      const uint32_t end = starts_[place];
+      if (more || end == begin)
+        continue;
+      shade(std::span<const Met>(sorted_).subspan(begin, end - begin));
+      begin = end;
+    }
+  }
+
+private:
+  struct Queued {
+    Met met;
+    uint32_t place;
+  };
+
+  const Scene &scene_;
+  std::vector<uint32_t> places_; // of each material among all, by classes
+  std::vector<uint32_t> order_;  // the materials at these places
+  std::vector<Queued> met_;
+  std::vector<uint32_t> starts_;
+  std::vector<Met> sorted_;
+};
+
+} // namespace lancer

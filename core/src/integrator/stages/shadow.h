@@ -1,0 +1,82 @@
+// Shadow rays, kept in a queue and traced as a batch: how much of a light's contribution arrives.
+#pragma once
+
+#include "integrator/sample.h"
+#include "integrator/stages/layers_met.h"
+#include "integrator/stages/light_passes.h"
+#include "integrator/stages/shading.h"
+
+namespace lancer {
+
+class ShadowQueue {
+public:
+  ShadowQueue(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
+      : scene_(scene), shader_(scene, &camera), deepest_(settings.transparent_shadows),
+        any_layers_(settings.all_features || (scene.features & kFeatureTransparency)), layers_(scene.geometry) {}
+
+  // contribution reaches the waiting sum where nothing stands between. passed: surfaces that the path already passed straight
+  // through; they count against the same limit.
+  void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
+    rays_.push_back(ray);
+    waiting_.push_back({waiting, contribution, passed});
+  }
+  // The same for a sum that keeps no account of the way. The ray is the caller's to write where it stands: it would not be
+  // copied before it has left the processor's stores.
+  Ray &push(uint32_t slot, const glm::vec3 &contribution, bool indirect = false, uint32_t passed = 0) {
+    Waiting &waiting = waiting_.emplace_back();
+    waiting.light.slot = slot;
+    waiting.light.indirect = indirect;
+    waiting.contribution = contribution;
+    waiting.passed = passed;
+    return rays_.emplace_back();
+  }
+  // Of the light that was pushed last, by component.
+  void set_shares(const glm::vec3 (&share)[2]) {
+    waiting_.back().light.share[0] = share[0];
+    waiting_.back().light.share[1] = share[1];
+  }
+
+  // Light that nothing can stop.
+  void push_lit(const WaitingLight &waiting, const glm::vec3 &contribution) {
+    Ray ray;
+    ray.tmax = ray.tmin;
+    push(ray, waiting, contribution);
+  }
+
+  // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing, and empties the queue.
+  // Returns how many rays it took.
+  template <class Arrive> uint64_t trace(Arrive &&arrive) {
+    const uint64_t count = any_layers_ ? trace_layers() : trace_solid();
+    for (const Waiting &waiting : waiting_)
+      if (waiting.contribution != glm::vec3(0.0f))
+        arrive(waiting.light, waiting.contribution);
+    rays_.clear();
+    waiting_.clear();
+    return count;
+  }
+
+private:
+  struct Waiting {
+    WaitingLight light;
+    glm::vec3 contribution{0.0f}; // what arrives of it
+    uint32_t passed = 0;          // surfaces on the way so far
+  };
+
+  // Everything blocks: any hit answers.
+  uint64_t trace_solid();
+  // Some surfaces let a share pass.
+  uint64_t trace_layers();
+  // Whether a surface that a ray meets ends it; keeps what passes, if not.
+  bool stops(size_t ray, const Hit &hit);
+
+  const Scene &scene_;
+  Shader shader_;
+  uint32_t deepest_; // surfaces that a ray may pass
+  bool any_layers_;
+  LayersMet layers_; // that the rays have passed
+  std::vector<Ray> rays_;
+  std::vector<Waiting> waiting_;
+  std::vector<uint8_t> occluded_;
+};
+
+} // namespace lancer

@@ -1,0 +1,60 @@
+#include "integrator/stages/texture_prefetch.h"
+
+#include "lancer.h"
+#include "nodes/image.h"
+#include "scene/attribute.h"
+#include "scene/image.h"
+#include "scene/surface.h"
+
+namespace lancer {
+
+namespace {
+
+// Smaller pictures stay in the caches by themselves.
+constexpr size_t kLarge = size_t(4) << 20;
+
+} // namespace
+
+TexturePrefetch::TexturePrefetch(const Scene &scene) : scene_(scene) {
+  for (const Material &material : scene.materials) {
+    pictures_.push_back(find(scene, material));
+    any_ = any_ || pictures_.back().image;
+  }
+}
+
+TexturePrefetch::Picture TexturePrefetch::find(const Scene &scene, const Material &material) {
+  const std::vector<Node> &nodes = material.program.nodes;
+  for (const Node &node : nodes) {
+    if (node.kind != LANCER_NODE_IMAGE || node.option != LANCER_PROJECT_FLAT || node.image_count != 1 ||
+        !node.inputs[0].varies())
+      continue;
+    const Node &source = nodes[size_t(node.inputs[0].node)];
+    const Image &image = scene.images[node.image];
+    if (source.kind == LANCER_NODE_COORDINATE && source.option == LANCER_COORDINATE_UV && image.bytes() >= kLarge)
+      return {&image, source.name, static_cast<Extension>(node.flags & 0xf)};
+  }
+  return {};
+}
+
+ComingLookup TexturePrefetch::coming(const Hit &hit) const {
+  const Instance &instance = scene_.geometry.instances[hit.instance];
+  if (instance.kind != ShapeKind::Mesh)
+    return {};
+  const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
+  if (material == kNone || !pictures_[material].image)
+    return {};
+  const Picture &picture = pictures_[material];
+  glm::vec2 uv[3];
+  if (!corner_uvs(scene_.geometry.meshes[instance.mesh], picture.uv_map, hit.primitive, uv))
+    return {};
+  const float u = float(hit.u), v = float(hit.v);
+  return {picture.image, (1.0f - u - v) * uv[0] + u * uv[1] + v * uv[2], picture.extension};
+}
+
+void TexturePrefetch::ask(const Hit &hit) const {
+  const ComingLookup next = coming(hit);
+  if (next.image)
+    prefetch(*next.image, next.uv, next.extension);
+}
+
+} // namespace lancer

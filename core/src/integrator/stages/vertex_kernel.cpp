@@ -1,0 +1,249 @@
+// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+#include "integrator/stages/vertex_kernel.h"
+
+#include "integrator/stages/block_lobes.h"
+#include "integrator/stages/lobe_means.h"
+#include "integrator/stages/terminator.h"
+#include "lancer.h"
+#include "lights/light_choice.h"
+#include "lights/sample_light.h"
+#include "sampling/scramble.h"
+#include "sampling/warp.h"
+#include "scene/hit_surface.h"
+#include "compile/material_lobes.h"
+#include "simd/kernel_choice.h"
+#include "simd/kernel_lanes.h"
+
+namespace lancer {
+namespace {
+
+template <class Enum> LANCER_LANE U number_of(Enum value) { return U(static_cast<uint32_t>(value)); }
+
+// The eight numbers of the vertex.
+LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
+  const U pixel = load(block.pixel + first);
+  for (uint32_t i = 0; i < 8; i += 2) {
+    const uint32_t dimension = block.dimension + i;
+    Vector2<F> u;
+    if (dimension < kJointDimensions)
+      u = {scrambled(U(block.reversed_point[i]), pixel, dimension),
+           scrambled(U(block.reversed_point[i + 1]), pixel, dimension + 1)};
+    else
+      u = pair_numbers(U(block.reversed_sample), pixel, dimension);
+    store(block.u[i] + first, u.x);
+    store(block.u[i + 1] + first, u.y);
+  }
+}
+
+LANCER_LANE void store_surface(VertexBlock &block, int first, const SurfaceLanes<F> &surface, M lanes) {
+  store3(block.p, first, lanes, surface.p);
+  store(block.offset + first, lanes, surface.offset);
+  store3(block.ng, first, lanes, surface.ng);
+  store3(block.ns, first, lanes, surface.ns);
+}
+
+[[gnu::flatten]] void surfaces(VertexBlock &block) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    if (!block.numbers_given)
+      draw_numbers(block, first);
+    // Back along the ray.
+    const D3 d = load3(block.d, first);
+    const D length = sqrt(dot(d, d));
+    const D scale = D(1.0) / length;
+    store(block.length + first, length);
+    store3(block.wo, first, narrow(D3{-(d.x * scale), -(d.y * scale), -(d.z * scale)}));
+    const M on_mesh = some(block.on_mesh, first), exact = some(block.exact, first);
+    const Placements<F> placed(block.placement + first);
+    if (any(on_mesh)) {
+      V3 v[3], n[3];
+      for (int corner = 0; corner < 3; ++corner) {
+        v[corner] = load3(block.corner[corner], first);
+        n[corner] = load3(block.normals[corner], first);
+      }
+      const SurfaceLanes<F> surface =
+          triangle_surface(placed, v, n, some(block.smooth, first), load(block.bary[0] + first), load(block.bary[1] + first));
+      store_surface(block, first, surface, on_mesh);
+    }
+    if (any(exact)) {
+      const QuadricKinds<F> kinds{some(block.on_plane, first), some(block.on_cylinder, first), some(block.on_cone, first)};
+      store_surface(block, first, quadric_surface(placed, kinds, load3(block.o, first), d, load(block.t + first)), exact);
+    }
+  }
+}
+
+[[gnu::flatten]] void choose(VertexBlock &block) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const LightQueryLanes<F> query(load3(block.p, first), load3(block.viewer_ns, first), some(block.transmits, first));
+    const D u = widen(load(block.u[4] + first)) + D(0x1p-24) * widen(load(block.u[7] + first));
+    const LightChoiceLanes<F> choice = choose_light(query, block.light_nodes, u, mask_of((1u << kLanes) - 1u));
+    store(block.chosen + first, choice.number);
+    store(block.chosen_probability + first, choice.probability);
+    store(block.chosen_rest + first, choice.u);
+  }
+}
+
+// Samples of lamps, beside those that are given.
+LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
+  const M asked = some(block.asked, first);
+  if (!any(asked))
+    return;
+  LightSampleLanes<F> sample;
+  sample.target = load3(block.light_target, first);
+  sample.wi = load3(block.light_wi, first);
+  sample.radiance = load3(block.light_radiance, first);
+  sample.delta = !equal(load(block.light_delta + first), U(0u));
+  const D probability = load(block.light_pdf + first);
+  sample.pdf = probability;
+  sample_light(EachLight<F>{block.lamp + first}, p, load(block.u[2] + first), load(block.u[3] + first), asked, sample);
+  // Dark ones are none.
+  sample.pdf = select(asked & black(sample.radiance), D(0.0), sample.pdf);
+  store3(block.light_target, first, sample.target);
+  store3(block.light_wi, first, sample.wi);
+  store3(block.light_radiance, first, sample.radiance);
+  store(block.light_delta + first, select(sample.delta, U(1u), U(0u)));
+  store(block.light_pdf + first, select(asked, sample.pdf * probability, sample.pdf));
+}
+
+LANCER_LANE M has_bit(const uint32_t *words, uint32_t bit) { return !equal(load(words) & U(bit), U(0u)); }
+
+// What the nodes of the material say in every lane.
+struct NodeValues {
+  const VertexBlock &block;
+  int first;
+  LANCER_LANE V3 operator()(const Parameter &parameter) const {
+    if (!parameter.varies())
+      return V3(parameter.value);
+    return load3(block.values[parameter.node], first);
+  }
+};
+
+void lobes(VertexBlock &block) {
+  block.inside = block.transmits = block.scatters = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    Bsdf<F> &bsdf = *new (&lobes_of(block, first)) Bsdf<F>;
+    bsdf.shares = block.shares_wanted != 0;
+    find_lobes<F>(block.material + first, NodeValues{block, first}, some(block.holes, first), load3(block.wo, first),
+                  load3(block.ns, first), load3(block.ng, first), bsdf);
+    store3(block.viewer_ns, first, bsdf.ns);
+    store3(block.viewer_ng, first, bsdf.ng);
+    store3(block.emission, first, bsdf.emission);
+    block.inside |= placed_bits(bsdf.inside, first);
+    block.transmits |= placed_bits(bsdf.transmits, first);
+    block.scatters |= placed_bits(bsdf.smooth, first);
+  }
+}
+
+void describe(VertexBlock &block) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const Bsdf<F> &bsdf = lobes_of(block, first);
+    if (block.wants_normal)
+      store3(block.normal, first, mean_normal(bsdf));
+    if (block.wants_matt_normal)
+      store3(block.matt_normal, first, mean_normal(bsdf, true));
+    for (int component = 0; component < 3 && block.wants_shown; ++component)
+      store3(block.shown[component], first, bsdf.shown(static_cast<Component>(component)));
+    if (!block.wants_mixture)
+      continue;
+    const Mixture<F> mixture = mix(bsdf, load3(block.transmittance, first), block.blended != 0);
+    store3(block.mixed_normal, first, mixture.normal);
+    store3(block.mixed_diffuse, first, mixture.diffuse);
+    store3(block.mixed_specular, first, mixture.specular);
+    store(block.mixed_all + first, mixture.all);
+    store(block.mixed_matt + first, mixture.matt);
+  }
+}
+
+// Shares paths between what passes straight on and what the surface scatters.
+LANCER_LANE F share_passing(VertexBlock &block, int first, const Bsdf<F> &bsdf) {
+  const F zero(0.0f), through = load(block.through + first);
+  F pass = zero;
+  const M passes = through > zero;
+  if (any(passes))
+    pass = select(passes, through / (through + select(some(block.ends, first), zero, mean(bsdf.albedo()))), zero);
+  store(block.pass + first, pass);
+  return pass;
+}
+
+// a / b, 0 where b is.
+LANCER_LANE V3 divided(const V3 &a, const V3 &b) {
+  const F zero(0.0f);
+  return {select(b.x != zero, a.x / b.x, zero), select(b.y != zero, a.y / b.y, zero), select(b.z != zero, a.z / b.z, zero)};
+}
+
+// What the light's sample brings to the viewer where nothing is in its way. scatters: share of paths that do not pass straight
+// on: they find the same light.
+LANCER_LANE void light(VertexBlock &block, int first, const Bsdf<F> &bsdf, D scatters) {
+  const F zero(0.0f);
+  const D pdf = load(block.light_pdf + first);
+  const M lit = (pdf > D(0.0)) & some(block.scatters, first);
+  if (!any(lit))
+    return;
+  const V3 wi = narrow(load3(block.light_wi, first));
+  BsdfValue<F> value = bsdf.eval_lit(wi);
+  constexpr uint32_t kinds[3] = {LANCER_RAY_DIFFUSE, LANCER_RAY_GLOSSY, LANCER_RAY_TRANSMISSION};
+  for (int component = 0; component < 3; ++component)
+    value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), Vec3<F>(zero), value.part[component]);
+  const V3 f = value.f();
+  // The BSDF finds the same light, unless it is a single direction.
+  const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
+  // What is scattered of a density is of the order of 1, however narrow the lobe and however bright the light.
+  const V3 contribution = load3(block.beta, first) * (f * narrow(widen(weight) / pdf)) * load3(block.light_radiance, first);
+  store3(block.contribution, first, contribution);
+  for (int component = 0; component < 2 && block.shares_wanted; ++component)
+    store3(block.light_share[component], first, divided(value.part[component], f));
+  block.lit |= placed_bits(lit & !black(f), first);
+  block.lifted |= placed_bits(terminator_amount(load(block.terminator + first), bsdf.ns, bsdf.ng, wi) > zero, first);
+}
+
+void scatter(VertexBlock &block) {
+  block.lit = block.lifted = block.sampled = block.diffuse = block.transmitted = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const Bsdf<F> &bsdf = lobes_of(block, first);
+    const D3 p = load3(block.p, first), outwards = widen(load3(block.ng, first));
+    const D offset = load(block.offset + first);
+    ask_lamps(block, first, p);
+    const D scatters = D(1.0) - widen(share_passing(block, first, bsdf));
+    light(block, first, bsdf, scatters);
+    store3(block.shadow_origin, first, origin_towards(p, offset, outwards, load3(block.light_wi, first)));
+    // Go on in a direction of the BSDF.
+    const BsdfSample<F> sample = bsdf.sample(load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
+    store3(block.next_origin, first, origin_towards(p, offset, outwards, D3(widen(sample.wi))));
+    store3(block.wi, first, sample.wi);
+    store3(block.next_beta, first, load3(block.beta, first) * (sample.weight / narrow(scatters)));
+    store(block.pdf + first, select(sample.delta, D(0.0), widen(sample.pdf) * scatters));
+    store(block.alpha2 + first, sample.alpha2);
+    for (int component = 0; component < 2 && block.shares_wanted; ++component)
+      store3(block.share[component], first, sample.share[component]);
+    block.sampled |= placed_bits((!black(sample.weight)) & (sample.pdf > F(0.0f)), first);
+    block.diffuse |= placed_bits(equal(sample.component, U(static_cast<uint32_t>(Component::Diffuse))), first);
+    block.transmitted |= placed_bits(sample.transmitted, first);
+  }
+}
+
+[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const Light &light) {
+  uint32_t met = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    const D3 d = load3(ways.d, first);
+    const D3 wi = d / sqrt(dot(d, d));
+    met |= placed_bits(may_meet(OneLight<F>{light}, load3(ways.from, first), wi, load(ways.end + first)), first);
+  }
+  return met;
+}
+
+} // namespace
+
+namespace LANCER_ISA {
+const VertexKernel vertex_kernel = {surfaces, lobes, describe, choose, scatter, meets, kBlockLanes / kLanes * sizeof(Bsdf<F>)};
+}
+
+} // namespace lancer

@@ -1,7 +1,0 @@
-#include "nodes/run.h"
-
-namespace lancer {
-
-const NodeKernel &node_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(node_kernel); }
-
-} // namespace lancer

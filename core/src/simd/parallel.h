@@ -1,0 +1,67 @@
+// A loop over independent pieces on the threads that a build was given.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <thread>
+#include <vector>
+
+namespace lancer {
+
+struct BuildContext {
+  uint32_t threads = 1;
+  const std::atomic<bool> *cancel = nullptr; // polled; a cancelled build throws BuildCancelled
+};
+struct BuildCancelled {};
+
+inline void poll_cancel(const BuildContext &context) {
+  if (context.cancel && context.cancel->load(std::memory_order_relaxed))
+    throw BuildCancelled{};
+}
+
+// Makes what a thread needs to throw anything. It is made when first needed, and a process without the memory for it ends: so a
+// thread has it made before its work may take all memory. The compiler would leave out a question whose answer nobody reads.
+inline void prepare_to_fail() { [[maybe_unused]] const volatile int exceptions = std::uncaught_exceptions(); }
+
+// Calls piece(0) ... piece(count - 1), in any order; the first exception ends the loop and is thrown here.
+template <class Piece> void parallel_for(const BuildContext &context, size_t count, Piece &&piece) {
+  std::atomic<size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto work = [&] {
+    prepare_to_fail();
+    try {
+      for (size_t i; (i = next.fetch_add(1)) < count;) {
+        poll_cancel(context);
+        piece(i);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure)
+        failure = std::current_exception();
+      next = count;
+    }
+  };
+  const size_t threads = std::min<size_t>(std::max(context.threads, 1u), count);
+  std::vector<std::thread> helpers;
+  helpers.reserve(threads);
+  try {
+    for (size_t i = 1; i < threads; ++i)
+      helpers.emplace_back(work);
+  } catch (const std::system_error &) {
+    // The system gives no more threads: those that there are do the work.
+  } catch (const std::bad_alloc &) {
+    // There is no memory for one.
+  }
+  work();
+  for (std::thread &helper : helpers)
+    helper.join();
+  if (failure)
+    std::rethrow_exception(failure);
+}
+
+} // namespace lancer
