@@ -90,7 +90,8 @@ LANCER_LANE bool enter_shape(const PlacedShape &shape, const Ray &ray, ObjectRay
   return enter_frame(shape.frame, o, d, object_ray);
 }
 
-// The ray in the scene's frame. False where it meets nothing by decree: not finite, no direction, an empty or undefined range.
+// The ray in the scene's frame. False for rays that are defined to meet nothing: not finite, no direction, an empty range or
+// one that is no number.
 LANCER_LANE bool enter_world(const PlacementFrame &world, const Ray &ray, ObjectRay &world_ray) {
   const double o[3] = {ray.o.x, ray.o.y, ray.o.z}, d[3] = {ray.d.x, ray.d.y, ray.d.z};
   return ray.tmin < ray.tmax && enter_frame(world, o, d, world_ray);

@@ -61,7 +61,7 @@ Interval unit_nappe(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
   c.add_square(o.x);
   c.add_square(o.y);
   c.subtract_square(0.5 * w);
-  // Along the cone's own lines this is next to nothing: it needs all of its digits.
+  // Along the cone's own lines this is nearly zero: it needs all of its digits.
   const glm::dvec3 m(difference_of_products(o.y, d.z, -w, d.y), difference_of_products(-w, d.x, o.x, d.z),
                      difference_of_products(o.x, d.y, o.y, d.x));
   const double across = 0.5 * hypot(m.x, m.y), around = std::abs(m.z);

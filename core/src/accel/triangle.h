@@ -19,11 +19,10 @@ LANCER_LANE double difference_of_products(double a, double b, double c, double d
   return (p - q) + (rest_of_product(a, b, p) - rest_of_product(c, d, q));
 }
 
-// On which side of a triangle's edges a ray passes that meets one exactly. It passes by one of them, whichever triangle asks:
-// of all triangles around an edge or a corner one is met for each time that their surface is crossed.
-// Whether the origin lies within a triangle with the corners (x, y), where a few of its edge functions w have rounded to zero;
-// w[i] = x[k] y[j] - y[k] x[j] with the corners j and k after i. What is not zero exactly gets its digits. Where the origin is
-// on an edge the ray is taken to pass beside it: by a next to nothing towards +x, and by next to nothing of that towards +y.
+// Whether the origin lies within a triangle with the corners (x, y) where some of its edge functions w have rounded to zero;
+// w[i] = x[k] y[j] - y[k] x[j] with the corners j and k after i. Computes those again, to their last digit. An origin exactly
+// on an edge is moved by an infinitesimal towards +x, and by one of second order towards +y, the same for every triangle: so
+// that of the triangles around an edge or a corner one is met for each crossing of their surface.
 LANCER_LANE bool within_edges(const double x[3], const double y[3], double w[3]) {
   int sides = 0;
   for (int i = 0; i < 3; ++i) {

@@ -11,7 +11,7 @@
 namespace lancer {
 namespace {
 
-// enter_shape() of object_ray.h and make_shear() of triangle.h, an axis a lane. False where the ray is not usable.
+// enter_shape() of placed_shape.h and shear_ray() of triangle.h, an axis a lane. False where the ray is not usable.
 LANCER_LANE bool enter_mesh(const PlacedShape &shape, const Ray &ray, MeshRay &r) {
   const auto &m = shape.to_object;
   using D4 = Double<4>;
@@ -94,7 +94,7 @@ LANCER_LANE void turn_into_lanes(Entering &e) {
 }
 static_assert(offsetof(Ray, o) == 0 && offsetof(Ray, tmin) == 24 && offsetof(Ray, d) == 32 && offsetof(Ray, tmax) == 56);
 
-// enter_world() of object_ray.h for each lane.
+// enter_world() of placed_shape.h for each lane.
 LANCER_LANE void enter_world_packet(const PlacementFrame &frame, Entering &e) {
   constexpr uint32_t n = kPacket;
   const PlacementFrame world = frame; // a copy, which no store to a lane can change

@@ -1,4 +1,4 @@
-// What a ray that is alone under way does at each thing that it comes to.
+// Visits of a single ray: to nodes, instances, and blocks of triangles and spheres.
 // Part of bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 

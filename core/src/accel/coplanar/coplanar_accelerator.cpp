@@ -27,7 +27,7 @@ private:
     }
   };
 
-  // A hit, and the search across its plane for what is there in its stead.
+  // A hit, and the search across its plane for a face of higher priority.
   struct Search {
     size_t ray;
     Hit *hit;
@@ -36,15 +36,15 @@ private:
     Hit found;
   };
   struct Searches {
-    const Asked &asked; // without a filter where what lets light through is there, too
+    const Asked &asked; // without a filter, faces that let light through are found as well
     std::vector<Ray> rays;
     std::vector<Search> all;
   };
 
-  // A light that a ray ends on unless something stops it, and what else lies there.
+  // A light that a ray ends on unless something stops it, and the faces in its plane.
   struct End {
     size_t ray = 0;
-    bool known = false, shines = false, stops = false; // something there, anything that shines, something on the way
+    bool known = false, shines = false, stops = false; // any face found, one that emits, one on the way
     PlaneOrder best{};
     bool best_shines = false;
   };
@@ -62,7 +62,7 @@ private:
       for (size_t i = 0; i < rays.size(); ++i)
         search_flagged(i, hits[i], searches);
     } else {
-      // Few rays come back to the plane that they have left: those are asked about anew.
+      // Ask again about the few rays that meet the plane that they have left.
       inner->closest_hit(rays, hits);
       std::vector<size_t> back;
       for (size_t i = 0; i < rays.size(); ++i) {
@@ -85,7 +85,7 @@ private:
     if (filter) {
       trace(asked, occluded);
     } else {
-      // What stops a ray is not told: those that begin or end where another face of their plane may are asked about anew.
+      // Ask again about rays that start or end where coplanar faces may: the answer does not tell which face stopped them.
       inner->any_hit(rays, occluded);
       std::vector<size_t> back;
       for (size_t i = 0; i < rays.size(); ++i)
@@ -147,7 +147,7 @@ private:
     const Ray &asked_ray = asked.rays[ray];
     if (rule.starts_in_plane(asked_ray, hit) || (rule.may_end_on_light(asked_ray) && rule.ends_in_plane(asked_ray, hit)))
       return false;
-    // What lets light through takes none of it where something else is there.
+    // A face that lets light through takes none of it where one of higher priority covers it.
     if (asked.filter && asked.filter->instances[hit.instance]) {
       Hit there = hit;
       const Asked all{*this, asked.rays, nullptr};
@@ -206,7 +206,7 @@ private:
     s.found = there;
   }
 
-  // Where a light lies in one plane with other things, it is seen if the one that is there shines.
+  // Where a light is coplanar with other faces, it is seen if the one of highest priority emits.
   void look_at_ends(const Asked &asked, std::span<uint8_t> occluded) const {
     Ends ends{asked, {}, {}};
     for (size_t i = 0; i < occluded.size(); ++i)

@@ -7,7 +7,7 @@ namespace lancer {
 
 namespace {
 
-// Boxes, and faces in boxes that meet, that each is compared with: bounds for heaps of things in one place.
+// Boxes, and faces in boxes that meet, that each is compared with: bounds for many instances in one place.
 constexpr size_t kBoxes = 256, kPairs = 32;
 // Others of a face in a heap: two that both have so many are not compared with each other any more.
 constexpr uint32_t kOthers = 64;
@@ -46,7 +46,7 @@ bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const 
   const double apart = rounding.apart(large.instance, small.instance, large.face.n, middle);
   if (!parallel(large.face, small.face, apart))
     return false;
-  // Beyond the larger one its plane is known the less.
+  // Allow more beyond the larger one, where its plane is known less well.
   const glm::dvec3 centre = (large.corner[0] + large.corner[1] + large.corner[2]) / 3.0;
   for (const glm::dvec3 &corner : small.corner)
     if (!(std::abs(glm::dot(corner - large.face.p, large.face.n)) <=
@@ -118,7 +118,7 @@ private:
     return true;
   }
 
-  // Where not all were compared: a thing that lies on another anywhere may do so everywhere.
+  // Where not all were compared: an instance that lies on another at one face may do so at each.
   void spread() {
     std::vector<uint8_t> found(geometry.instances.size(), 0);
     for (const FaceCandidate &c : candidates)
@@ -187,7 +187,7 @@ private:
 
   // What was not compared itself: all of the planes in which something was found.
   void mark_planes(uint32_t instance, size_t begin, size_t end, size_t found, uint64_t *bits) const {
-    // A thing that lies on another nearly everywhere does so everywhere.
+    // Take an instance that lies on another at many of its faces to do so at each.
     const bool all = found * 8 > end - begin;
     std::vector<uint64_t> cells;
     for (size_t i = begin; i < end; ++i)

@@ -1,5 +1,5 @@
-// Which faces lie in one plane with others and cover a part of them, found once for a scene; and where on a
-// face others cover it: asked at every hit of such a face, and so found without looking at most of them.
+// The faces of a scene that others in the same plane overlap, found once; and a grid on each of them, which tells at a hit
+// whether another covers the place.
 #pragma once
 
 #include "accel/accelerator.h"
@@ -17,7 +17,7 @@ struct CoverPatch {
   glm::dvec2 slope[3];
   double offset[3];
   glm::dvec2 low, high; // the box around what of it lies on the face
-  bool loses = false;   // the face gives way to it
+  bool loses = false;   // the face has the lower priority
 
   bool has(const glm::dvec2 &at) const {
     return glm::dot(slope[0], at) + offset[0] >= 0.0 && glm::dot(slope[1], at) + offset[1] >= 0.0 &&
@@ -42,7 +42,7 @@ public:
   void add_face_covered_anywhere() { faces_.emplace_back(); }
 
   bool empty() const { return faces_.empty(); }
-  // Whether there may be a patch at a place of a face; and one that the face gives way to.
+  // Whether there may be a patch at a place of a face; and one of higher priority than the face.
   bool may_be_covered(size_t face, const glm::dvec3 &p) const {
     return faces_[face].side == 0 || may_be(faces_[face], faces_[face].coordinates(p), false);
   }
@@ -71,9 +71,9 @@ private:
   std::vector<CoverPatch> patches_;
 };
 
-// Faces that may do so: a few others of the same planes may be among them.
+// Faces that others may overlap; among them may be a few of the same planes that none does.
 struct CoplanarFaces {
-  std::vector<uint8_t> instances; // 1: some of its faces do; empty where nothing does
+  std::vector<uint8_t> instances; // 1: it has such faces; empty where nothing has
   std::vector<uint32_t> first;    // by instance: its first word of bits
   std::vector<uint64_t> bits;     // by face
   std::vector<uint32_t> ranks;    // by word of bits: how many faces are marked before it
@@ -87,7 +87,7 @@ struct CoplanarFaces {
   bool may_be_covered(uint32_t instance, uint32_t primitive, const glm::dvec3 &p) const {
     return cover.empty() || cover.may_be_covered(rank(instance, primitive), p);
   }
-  // And whether such another would be there instead of it. at: p, or as a hit tells it: weights of a triangle's corners.
+  // And whether such another may have the higher priority. at: p, or the weights of a triangle's corners that a hit gives.
   template <class Place> bool may_lose(uint32_t instance, uint32_t primitive, const Place &at) const {
     return cover.empty() || cover.may_lose(rank(instance, primitive), at);
   }

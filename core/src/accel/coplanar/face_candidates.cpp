@@ -10,9 +10,9 @@ namespace lancer {
 
 namespace {
 
-// How many: a number for small scenes, a share of large meshes, some of each thing; and not more.
+// Faces to compare: all of small scenes, a share of large meshes, some of each instance; and the most of all.
 constexpr size_t kCompared = 4096, kOfMeshes = 256, kOfEach = 16, kMost = 16384;
-// Pairs of boxes that are compared for each thing: a bound for heaps of them in one place.
+// Pairs of boxes that are compared for each instance: a bound for many of them in one place.
 constexpr size_t kPairs = 128;
 // Steps of planes in the scene's extent.
 constexpr double kOffsetCells = 256.0;
@@ -131,7 +131,7 @@ private:
     const size_t budget = std::min(kCompared + faces / kOfMeshes + kOfEach * touching, kMost),
                  share = std::max(kOfEach, budget / touching);
     std::map<uint32_t, std::vector<uint32_t>> chosen;
-    // First what touches other things.
+    // Begin with instances that touch others.
     for (const bool neighbours : {true, false})
       for (uint32_t i = 0; i < count && found.faces.size() < budget; ++i) {
         const Instance &instance = geometry.instances[i];

@@ -26,7 +26,7 @@ struct FaceCandidates {
 };
 
 // The same for every accelerator. Their number is bounded: of large meshes come some triangles, and those that are large for
-// their mesh; first those of things that touch others.
+// their mesh; first those of instances that touch others.
 FaceCandidates choose_faces(const Geometry &geometry, const FaceRounding &rounding, const BuildContext &context);
 
 // How many faces an instance has; 0 where it has no flat ones.

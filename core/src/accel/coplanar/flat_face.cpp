@@ -13,9 +13,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Half a unit in the last place of each corner is 2^-24; modelling tools come to it through two or three operations in float.
 constexpr double kCornerRounding = 0x1p-22;
-// A placement is a product of a few matrices; more would take things that stand a unit apart for one.
+// A placement is a product of a few matrices; a larger bound would take instances that stand a unit apart for coplanar.
 constexpr double kPlaceRounding = 0x1p-23;
-// What is larger than this share of a thing's size is a shape that was meant, however far out the thing stands.
+// A distance above this share of an instance's size is taken for modelled, however far out the instance stands.
 constexpr double kMeant = 0x1p-10;
 
 glm::dmat3 magnitudes(const glm::dmat3 &m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }

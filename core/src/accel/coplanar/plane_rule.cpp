@@ -65,7 +65,7 @@ void PlaneRule::find_light_planes() {
       const Hit hit{0.0, 0.0f, 0.0f, i, primitive};
       if (!flagged(hit) || !emits(hit))
         continue;
-      // Each by itself: beyond a triangle its plane is known the less.
+      // Take each by itself: the plane of a triangle is known less well beyond it.
       shines_anywhere = !mesh || light_planes.size() == kLightPlanes;
       if (shines_anywhere)
         return;

@@ -1,4 +1,4 @@
-// Which of the faces in one plane is there, and which of them a ray may meet.
+// The priority order as rays ask for it: which of the coplanar faces at a place a ray meets, and which it leaves out.
 #pragma once
 
 #include "accel/coplanar/coplanar_faces.h"
@@ -14,7 +14,7 @@ public:
   bool flagged(const Ray &ray) const { return ray.skip_instance != kNone && faces.has(ray.skip_instance, ray.skip_primitive); }
   // By instance: 1 where some faces are.
   const std::vector<uint8_t> &instances() const { return faces.instances; }
-  // Whether there may be faces that shine where something else is there.
+  // Whether faces of higher priority may cover some that emit.
   bool any_hidden_light() const { return hides_light; }
   size_t bytes() const { return faces.bytes(); }
 
@@ -23,17 +23,17 @@ public:
 
   // Whether a ray starts at a place of a flagged face where there may be others.
   bool starts_covered(const Ray &ray) const;
-  // Whether a ray may end on a flagged face that shines.
+  // Whether a ray may end on a flagged face that emits.
   bool may_end_on_light(const Ray &ray) const;
 
   // All of the following are about hits that are flagged.
-  // Whether what a ray meets lies in the plane that it starts in, or ends in: rounding alone holds it before the ray.
+  // Whether a hit lies in the plane that the ray starts in, or ends in, so that rounding alone puts it on the ray's way.
   bool starts_in_plane(const Ray &ray, const Hit &hit) const;
   bool ends_in_plane(const Ray &ray, const Hit &hit) const;
   // The last part of a ray, and beyond: what it meets here may lie where it ends.
   static Ray around_end(const Ray &ray);
 
-  // A ray across the plane of a hit that meets whatever may be there in its stead; none where nothing goes before it.
+  // A ray across the plane of a hit, which finds the faces that may have the higher priority; none where there are none.
   struct Across {
     Ray ray;
     FlatFace face;
@@ -54,9 +54,9 @@ private:
   std::vector<uint32_t> planes; // instances without end that have such faces
   double widest = 0.0;          // of the others, how much each may be off
   // Of the instances that have such faces:
-  bool shines = false;          // some does
-  bool hides_light = false;     // some does that lets light through, and so gives way to others
-  bool shines_anywhere = false; // an exact surface does, or there are more planes of light than are worth a look at each
+  bool shines = false;          // one emits
+  bool hides_light = false;     // one emits and lets light through, and so has the lower priority
+  bool shines_anywhere = false; // an exact surface emits, or more planes do than are worth a test each
   struct LightPlane {
     glm::dvec3 p, n;
     double reach;
