@@ -1,0 +1,62 @@
+"""The core's rooms: an include goes to the file's own room or to one above it in this order."""
+
+import re
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+CORE = Path(ROOT, "core", "src")
+ROOMS = "simd sampling scene bsdf nodes lights accel compile integrator render".split()
+# Within the integrators: what several of them share comes first, and none knows another.
+INTEGRATOR = (("",), ("stages",), ("aov",), ("path", "classic"))
+FILES = sorted(path.relative_to(CORE) for end in ("*.h", "*.cpp") for path in CORE.rglob(end))
+
+
+def includes(file):
+    """The project's own files that a file includes, each with its line."""
+    for number, line in enumerate((CORE / file).read_text(encoding="utf-8").splitlines(), 1):
+        found = re.match(r'\s*#\s*include\s*"([^"]+)"', line)
+        if found and found.group(1) != "lancer.h":
+            yield number, Path(found.group(1))
+
+
+def room_of(file):
+    """Files that lie in no room are the C interface, which may include all."""
+    return file.parts[0] if len(file.parts) > 1 else None
+
+
+def test_every_folder_is_a_room():
+    assert {room_of(file) for file in FILES} == {None, *ROOMS}
+
+
+def test_every_include_is_a_file():
+    lost = [f"{file}:{number}: {to}" for file in FILES for number, to in includes(file) if not (CORE / to).is_file()]
+    assert not lost, "\n".join(lost)
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_includes_go_up(room):
+    allowed = set(ROOMS[: ROOMS.index(room) + 1])
+    wrong = [
+        f"core/src/{file}:{number} includes {to}"
+        for file in FILES
+        if room_of(file) == room
+        for number, to in includes(file)
+        if room_of(to) not in allowed
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_integrators_do_not_know_each_other():
+    rank = {folder: number for number, folders in enumerate(INTEGRATOR) for folder in folders}
+
+    def folder(path):
+        return path.parts[1] if len(path.parts) > 2 else ""
+
+    wrong = []
+    for file in (file for file in FILES if room_of(file) == "integrator" and folder(file)):
+        for number, to in includes(file):
+            if room_of(to) == "integrator" and folder(to) != folder(file) and rank[folder(to)] >= rank[folder(file)]:
+                wrong.append(f"core/src/{file}:{number} includes {to}")
+    assert not wrong, "\n".join(wrong)
