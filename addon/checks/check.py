@@ -4,6 +4,7 @@ import numpy as np
 
 from .closures import check_closures
 from .coincident import check_coincident, flat_parts
+from .duplicates import check_double_faces, check_duplicates, duplicate_rows
 from .finding import by_severity
 from .glass import check_glass
 from .laid_over import check_laid_over
@@ -13,7 +14,6 @@ from .normals import check_normals
 from .precision import check_precision
 from .round_faces import check_round_faces
 from .subject import Subject
-from .twins import check_double_faces, check_twins, twin_rows
 
 
 def check_snapshot(snapshot, thorough=True, poll=None):
@@ -29,7 +29,7 @@ def check_snapshot(snapshot, thorough=True, poll=None):
 
 
 def _all_findings(subject):
-    twins = twin_rows(subject)
+    duplicates = duplicate_rows(subject)
     steps = (
         check_closures(subject),
         check_lights(subject),
@@ -37,10 +37,10 @@ def _all_findings(subject):
         check_glass(subject),
         check_normals(subject),
         check_round_faces(subject),
-        check_twins(subject, twins),
+        check_duplicates(subject, duplicates),
         check_double_faces(subject),
         check_laid_over(subject),
-        _check_planes(subject, frozenset(row for row, _ in twins)),
+        _check_planes(subject, frozenset(row for row, _ in duplicates)),
     )
     found = []
     for number, findings in enumerate(steps):
@@ -49,7 +49,7 @@ def _all_findings(subject):
     return found
 
 
-def _check_planes(subject, twins):
-    facets, world = flat_parts(subject, twins)
+def _check_planes(subject, duplicates):
+    facets, world = flat_parts(subject, duplicates)
     yield from check_coincident(subject, facets, world)
     yield from check_lamps_in_faces(subject, facets, world)

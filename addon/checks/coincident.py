@@ -19,9 +19,9 @@ _MOST_ALIKE = 65536, 128  # pairs that look alike, which are most, of which the 
 _MOST_TRIANGLES = 8_000_000
 
 
-def flat_parts(subject, twins=frozenset()):
-    """What planes.gather gives. twins: rows of copies of others in their very place, which are told elsewhere."""
-    return gather(subject, twins, _MOST_FACETS[not subject.thorough])
+def flat_parts(subject, duplicates=frozenset()):
+    """What planes.gather gives. duplicates: rows of copies of others in their very place, which are told elsewhere."""
+    return gather(subject, duplicates, _MOST_FACETS[not subject.thorough])
 
 
 def check_coincident(subject, facets, world):

@@ -37,14 +37,14 @@ class World:
         return len(self.rows)
 
 
-def gather(subject, twins, most):
+def gather(subject, duplicates, most):
     """Facets by what has them, and all of them in the world; None where there are none, or too many."""
     table = subject.instances
     facets, rows_of = {}, {}
     # Where a dimension is lost nothing is shown; NaN is not above 0 either.
     visible = np.abs(subject.volumes) > 0.0
-    if twins:
-        visible[list(twins)] = False
+    if duplicates:
+        visible[list(duplicates)] = False
     for number, mesh, _ in subject.shown_meshes():
         found = facets_of(subject, number, mesh)
         if len(found):

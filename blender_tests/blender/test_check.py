@@ -23,7 +23,7 @@ from tiny_scenes import move
 
 from addon.bindings.enums import Integrator, LobeKind, MathOperation, NodeKind, Pass
 from addon.bindings.snapshot import Image, Lobe, Material, Node, NodeRef, Principled, Settings
-from addon.checks import twins
+from addon.checks import duplicates
 from addon.checks.check import check_snapshot
 from addon.checks.finding import Finding, Severity, by_severity, lines
 from addon.checks.subject import Subject
@@ -179,12 +179,12 @@ def test_many_meshes_in_one_place_are_quick_to_tell_apart():
     meshes = [sheet(1.0, f"sheet {number}", (number, 0, 0)) for number in range(300)]
     subject = Subject(scene([placed(number, GREY_, name=str(number)) for number in range(300)], meshes))
     asked = []
-    original = twins._same_thing
-    twins._same_thing = lambda *arguments: asked.append(arguments) or original(*arguments)
+    original = duplicates._same_thing
+    duplicates._same_thing = lambda *arguments: asked.append(arguments) or original(*arguments)
     try:
-        assert twins.twin_rows(subject) == [] and asked == []
+        assert duplicates.duplicate_rows(subject) == [] and asked == []
     finally:
-        twins._same_thing = original
+        duplicates._same_thing = original
 
 
 def test_empty_scenes():

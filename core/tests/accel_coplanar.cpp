@@ -53,7 +53,7 @@ Affine lifted(double height) { return {glm::dmat3(1.0), {0.0, 0.0, height}}; }
 struct Scene {
   Geometry geometry;
   Affine place;                                // of the plane z = 0
-  std::vector<uint8_t> passing;                // by slot
+  std::vector<uint8_t> transparent_instances;  // by slot
   uint32_t first_instance = 0;                 // which surface is there: an instance,
   uint32_t first_triangle = 0, end = 1u << 31; // and some of its triangles
   bool closed = false;                         // from below, other parts come first
@@ -156,7 +156,7 @@ std::vector<Scene> scenes(Random &random, double scale) {
       add(s.geometry, {}, grid(s.place, -one, one, 3 + 4 * i, 5));
       s.geometry.instances.back().first_slot = 2 * i;
     }
-    s.passing = {1, 1, 1, 1, 0, 0};
+    s.transparent_instances = {1, 1, 1, 1, 0, 0};
     s.first_instance = 2;
   }
   return all;
@@ -168,13 +168,13 @@ struct Rule {
 };
 
 std::vector<Rule> all_with_rule(const Scene &scene) {
-  const PlaneRules rules{glm::dvec3(0.0), scene.passing};
+  const PlaneRules rules{glm::dvec3(0.0), scene.transparent_instances};
   std::vector<Rule> all;
   const auto build = [&](AcceleratorKind kind) { return build_accelerator(kind, scene.geometry, rules, {2, nullptr}); };
   all.push_back({"brute force", build(AcceleratorKind::BruteForce)});
   all.push_back({"kd-tree", build(AcceleratorKind::KdTree)});
   for (const char *instruction_set : {"sse4", "avx2", "avx512"}) {
-    const AskedSet asked(instruction_set);
+    const ForcedInstructionSet asked(instruction_set);
     all.push_back({std::string("bvh ") + instruction_set, build(AcceleratorKind::Bvh)});
   }
   return all;

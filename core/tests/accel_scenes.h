@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/accelerator.h"
-#include "asked_set.h"
+#include "forced_instruction_set.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -119,7 +119,7 @@ struct Contestant {
 };
 
 inline std::unique_ptr<Accelerator> build_bvh_for(const char *instruction_set, const Geometry &geometry, uint32_t threads) {
-  const AskedSet asked(instruction_set);
+  const ForcedInstructionSet asked(instruction_set);
   return build_accelerator(AcceleratorKind::Bvh, geometry, {threads, nullptr});
 }
 

@@ -3,7 +3,7 @@
 
 #include "bsdf/lobe.h"
 #include "compile/features.h"
-#include "compile/material_room.h"
+#include "compile/material_limits.h"
 #include "tiny_scene.h"
 
 #include <cmath>
@@ -88,19 +88,19 @@ Material many(uint32_t count, const lancer_lobe &lobe, Description &description)
   material.lobes = lobes.data();
   material.lobe_count = count;
   lancer::add_material(description, material);
-  tell_room(label("material", material.name, 0), description.materials.back(), description.messages);
+  report_limits(label("material", material.name, 0), description.materials.back(), description.messages);
   return description.materials.back();
 }
 
 TEST(MaterialRoom, MoreNormalsThanABsdfHoldsAreSaid) {
   // The shading normal is there in any case.
   Description few;
-  EXPECT_EQ(room_of(many(kMaxFrames - 1, lobe(LANCER_DIFFUSE, 0.5f), few)).frames, size_t(kMaxFrames));
+  EXPECT_EQ(demand_of(many(kMaxFrames - 1, lobe(LANCER_DIFFUSE, 0.5f), few)).frames, size_t(kMaxFrames));
   EXPECT_EQ(few.messages.text(), "");
   Description description;
-  const Room room = room_of(many(kMaxFrames, lobe(LANCER_GLOSSY, 0.5f), description));
-  EXPECT_EQ(room.frames, size_t(kMaxFrames) + 1);
-  EXPECT_EQ(room.lobes, size_t(kMaxFrames));
+  const MaterialDemand demand = demand_of(many(kMaxFrames, lobe(LANCER_GLOSSY, 0.5f), description));
+  EXPECT_EQ(demand.frames, size_t(kMaxFrames) + 1);
+  EXPECT_EQ(demand.lobes, size_t(kMaxFrames));
   const std::string most = std::to_string(kMaxFrames), more = std::to_string(kMaxFrames + 1);
   EXPECT_EQ(description.messages.text(), "material 'Wood': " + more +
                                              " normals may meet in one place, lobes of those beyond the first " + most +
@@ -126,13 +126,13 @@ TEST(MaterialRoom, PrincipledCountsItsLayers) {
     layered.principled = &principled;
     Description description;
     // Sheen, coat, metal, glass, plastic and matte; 3: matte, sheen, gloss, two of glass, coat.
-    EXPECT_EQ(room_of(many(1, layered, description)).lobes, 6u);
+    EXPECT_EQ(demand_of(many(1, layered, description)).lobes, 6u);
     EXPECT_EQ(description.messages.text(), "");
     // Frames: the shading normal; 4: the cloth's, the coat's, the stretched, the matte; 3: the coat's, the stretched, the
     // glass's.
-    EXPECT_EQ(room_of(description.materials[0]).frames, rules == LANCER_RULES_BLENDER_3 ? 4u : 5u);
+    EXPECT_EQ(demand_of(description.materials[0]).frames, rules == LANCER_RULES_BLENDER_3 ? 4u : 5u);
     const Material twelve = many(12, layered, description);
-    EXPECT_EQ(room_of(twelve).lobes, 72u);
+    EXPECT_EQ(demand_of(twelve).lobes, 72u);
     EXPECT_NE(description.messages.text().find("material 'Wood': 72 lobes may meet in one place, the first 64 are kept\n"),
               std::string::npos);
   }

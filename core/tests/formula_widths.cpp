@@ -2,7 +2,7 @@
 // is the same: which of two an operation hands on is the processor's and the compiler's choice.
 #include "widths/width_kernel.h"
 
-#include "lights/few_lights.h"
+#include "lights/binary_light_tree.h"
 #include "lights/light.h"
 #include "sampling/direction_map.h"
 
@@ -85,7 +85,7 @@ Light any_light(Random &random, LightKind kind, double size) {
   light.half_y = size * share(random);
   light.ellipse = random() % 2;
   light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
-  light.apart = random() % 2 ? 1e-3 : 0.0;
+  light.plane_tolerance = random() % 2 ? 1e-3 : 0.0;
   if (random() % 2) {
     light.tan_half_spread = 0.1 + share(random);
     light.spread_scale = 1.0 / (light.tan_half_spread - std::atan(light.tan_half_spread));
@@ -247,7 +247,7 @@ TEST(Widths, ChoicesAreThoseOfOneLane) {
     for (uint32_t i = 0; i < count; ++i)
       described.push_back(describe(any_light(random, LightKind(i % 4), 20.0), i));
     described.push_back(describe(any_light(random, LightKind::Sun, 20.0), count));
-    const FewLights tree(std::move(described), count + 1);
+    const BinaryLightTree tree(std::move(described), count + 1);
     in.tree = tree.nodes();
     for (int i = 0; i < 4; ++i) {
       fill(random, 200.0, glm::dvec3(0.0), in);

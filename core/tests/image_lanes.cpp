@@ -151,7 +151,7 @@ TEST(SkyLanes, TheSkyIsThatOfOneDirection) {
       nodes.scene.normalisation = &sky.normalisation;
       nodes.surface = false;
       nodes.used = 0xffff;
-      for (int lane = 0; lane < kWays; ++lane) {
+      for (int lane = 0; lane < kLightLanes; ++lane) {
         samples.u[0][lane] = float(random() >> 8) * 0x1p-24f;
         samples.u[1][lane] = random() % 8 ? float(random() >> 8) * 0x1p-24f : float(random() % 3) * 0x1p-24f;
         glm::dvec3 d(normal(random), normal(random), normal(random));
@@ -171,7 +171,7 @@ TEST(SkyLanes, TheSkyIsThatOfOneDirection) {
       light_kernel().sky_density(environment.map(), seen);
       NodeLanes of_nodes[4];
       node_kernel().run(sky.world.program, sky.world.schedule, nodes, of_nodes);
-      for (int lane = 0; lane < kWays; ++lane) {
+      for (int lane = 0; lane < kLightLanes; ++lane) {
         const glm::dvec3 wi(seen.wi[0][lane], seen.wi[1][lane], seen.wi[2][lane]);
         ASSERT_EQ(seen.pdf[lane], environment.pdf(wi)) << wi.x << " " << wi.y << " " << wi.z;
         const glm::vec3 radiance = environment.radiance(wi, values, nullptr);

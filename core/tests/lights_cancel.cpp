@@ -17,7 +17,7 @@ TEST(Lights, ManyLampsCanBeCancelled) {
   std::vector<Light> lights(5, lamp); // more than are asked one by one
   for (size_t i = 0; i < lights.size(); ++i)
     lights[i].position.x = double(i);
-  EXPECT_FALSE(LightSet(lights, {}, 0, Environment()).many().empty());
+  EXPECT_FALSE(LightSet(lights, {}, 0, Environment()).wide_tree().empty());
   EXPECT_THROW(LightSet(lights, {}, 0, Environment(), kCancelled), BuildCancelled);
 }
 

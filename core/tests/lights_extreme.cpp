@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "bsdf_domain.h"
-#include "lights/few_lights.h"
+#include "lights/binary_light_tree.h"
 #include "lights/light_tree.h"
 #include "lights/round_light.h"
 #include "statistics.h"
@@ -182,7 +182,7 @@ template <class Choose> void expect_fair(const Choose &lights, int count, const 
 
 TEST(LightsExtreme, LampsOfAnyPowersShareTheChoices) {
   for (const int count : {2, 4})
-    expect_fair(FewLights(lamps(count), uint32_t(count)), count, lamps(count));
+    expect_fair(BinaryLightTree(lamps(count), uint32_t(count)), count, lamps(count));
   for (const int count : {5, 17, 300})
     expect_fair(LightTree(lamps(count), uint32_t(count)), count, lamps(count));
 }
@@ -211,7 +211,7 @@ TEST(LightsExtreme, DimLampsBesideABlindingOneAreFound) {
     if (count > kLeafLights)
       continue;
     // The other half of the choices goes by the lower bounds, which are not raised.
-    const FewLights few(described, count);
+    const BinaryLightTree few(described, count);
     expect(few.probability(query, 0), 2.0 * few.probability(query, 1), 1.0 / count);
   }
 }

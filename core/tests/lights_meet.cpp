@@ -81,10 +81,10 @@ TEST(Lights, ManyAreMetAsOneByOne) {
   ASSERT_TRUE(set.finds());
   int met = 0;
   for (int round = 0; round < 1500; ++round) {
-    WayBlock ways{};
-    glm::dvec3 o[kWays], wi[kWays];
-    for (int lane = 0; lane < kWays; ++lane) {
-      const int i = round * kWays + lane;
+    SegmentBlock ways{};
+    glm::dvec3 o[kLightLanes], wi[kLightLanes];
+    for (int lane = 0; lane < kLightLanes; ++lane) {
+      const int i = round * kLightLanes + lane;
       // From where float no longer tells small lamps from their neighbourhood, too.
       o[lane] = (i % 7 ? 500.0 : 1e7) * glm::dvec3(uniform(random), uniform(random), uniform(random));
       // Aim at lights, and along the axes, where a slab of the boxes is parallel.
@@ -98,9 +98,9 @@ TEST(Lights, ManyAreMetAsOneByOne) {
         ways.d[axis][lane] = 3.0 * wi[lane][axis];
       }
     }
-    const int count = round % 2 ? kWays : 5;
-    std::vector<bool> candidates(size_t(kWays) * 300);
-    set.many().along(ways, uint32_t(count), [&](uint32_t lane, uint32_t number) {
+    const int count = round % 2 ? kLightLanes : 5;
+    std::vector<bool> candidates(size_t(kLightLanes) * 300);
+    set.wide_tree().along(ways, uint32_t(count), [&](uint32_t lane, uint32_t number) {
       EXPECT_FALSE(candidates[lane * 300 + number]);
       candidates[lane * 300 + number] = true;
       // What is told is near the way: a box around a lamp reaches sqrt(3) radii at its corners. It is padded by 2^-22 of
@@ -134,9 +134,9 @@ TEST(Lights, TheDeepestTreeIsSearchedToItsEnd) {
   const LightSet set(lights, {}, 0, Environment());
   const glm::dvec3 o(-1.0, -1.0, 5.0);
   // Look at every one.
-  for (uint32_t first = 0; first < lights.size(); first += kWays) {
-    const uint32_t count = std::min(uint32_t(kWays), uint32_t(lights.size()) - first);
-    WayBlock ways{};
+  for (uint32_t first = 0; first < lights.size(); first += kLightLanes) {
+    const uint32_t count = std::min(uint32_t(kLightLanes), uint32_t(lights.size()) - first);
+    SegmentBlock ways{};
     for (uint32_t lane = 0; lane < count; ++lane) {
       for (int axis = 0; axis < 3; ++axis) {
         ways.from[axis][lane] = o[axis];
@@ -145,7 +145,8 @@ TEST(Lights, TheDeepestTreeIsSearchedToItsEnd) {
       ways.end[lane] = 1e3;
     }
     uint32_t told = 0;
-    set.many().along(ways, count, [&](uint32_t lane, uint32_t number) { told |= uint32_t(number == first + lane) << lane; });
+    set.wide_tree().along(ways, count,
+                          [&](uint32_t lane, uint32_t number) { told |= uint32_t(number == first + lane) << lane; });
     EXPECT_EQ(told, (1u << count) - 1u);
   }
 }
@@ -172,7 +173,7 @@ TEST(Lights, KernelsMeetWhatTheGeneralCodeMeets) {
   const LightSet set(lights, {}, 0, Environment());
   int met = 0;
   for (int round = 0; round < 400; ++round) {
-    WayBlock ways{};
+    SegmentBlock ways{};
     glm::dvec3 o[kBlockLanes], d[kBlockLanes];
     for (int lane = 0; lane < kBlockLanes; ++lane) {
       o[lane] = 6.0 * vector();

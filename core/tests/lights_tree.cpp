@@ -1,6 +1,6 @@
 // Choosing lights, few and many: probabilities are those of its choices, they add up to one, and no light that contributes is
 // left out.
-#include "lights/few_lights.h"
+#include "lights/binary_light_tree.h"
 #include "lights/light_tree.h"
 #include "statistics.h"
 
@@ -58,7 +58,7 @@ std::vector<Light> any_lights(Random &random, uint32_t count, double size = 400.
 
 // What has no place is for the few only.
 template <class Tree> Tree tree_of(const std::vector<Light> &lights, bool sky = false) {
-  constexpr bool few = std::is_same_v<Tree, FewLights>;
+  constexpr bool few = std::is_same_v<Tree, BinaryLightTree>;
   std::vector<DescribedLight> described;
   for (uint32_t i = 0; i < lights.size(); ++i)
     if (few || lights[i].kind != LightKind::Sun)
@@ -103,7 +103,7 @@ template <class Tree> void expect_sum_of_one(const Tree &tree, uint32_t count, c
 }
 
 template <class Tree> class LightTrees : public ::testing::Test {};
-using BothTrees = ::testing::Types<FewLights, LightTree>;
+using BothTrees = ::testing::Types<BinaryLightTree, LightTree>;
 TYPED_TEST_SUITE(LightTrees, BothTrees);
 
 TYPED_TEST(LightTrees, ProbabilitiesAddUpToOne) {

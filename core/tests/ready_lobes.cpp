@@ -150,7 +150,8 @@ TEST(ReadyLobes, PlannedFacetsAreThoseMadeInPlace) {
         Bsdf<float> planned, in_place;
         for (Bsdf<float> *bsdf : {&planned, &in_place}) {
           bsdf->begin(wo, n, n, inside, true);
-          bsdf == &planned ? add_kept(*bsdf, ready.inputs, LaneLobes<float>{{&ready}, inside}) : add_lobe(*bsdf, ready.inputs);
+          bsdf == &planned ? add_cached(*bsdf, ready.inputs, LaneLobes<float>{{&ready}, inside})
+                           : add_lobe(*bsdf, ready.inputs);
           bsdf->complete();
         }
         // One factor alone, read along the cosine first or last.

@@ -1,6 +1,6 @@
 // Shadow rays through layers: within one traversal as from hit to hit, and the same bits whoever traverses.
-#include "asked_set.h"
 #include "foliage.h"
+#include "forced_instruction_set.h"
 
 #include "integrator/stages/shadow.h"
 
@@ -139,7 +139,7 @@ TEST(ShadowLayers, EveryAcceleratorGivesTheSameBits) {
       one_traversal(*foliage(Writing::Plain, {.accelerator = AcceleratorKind::BruteForce}), 8);
   EXPECT_EQ(one_traversal(*foliage(Writing::Plain, {.accelerator = AcceleratorKind::KdTree}), 8), expected);
   for (const char *instruction_set : {"sse4", "avx2", "avx512"}) {
-    const lancer::test::AskedSet asked(instruction_set);
+    const lancer::test::ForcedInstructionSet asked(instruction_set);
     EXPECT_EQ(one_traversal(*foliage(Writing::Plain), 8), expected) << instruction_set;
   }
 }

@@ -228,7 +228,7 @@ template <class F> void add_principled(Bsdf<F> &bsdf, const LobeInputs<F> &lobe,
 }
 
 // Any other node; its facets may be planned, too.
-template <class F, class Plans> void add_kept(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Plans &plans) {
+template <class F, class Plans> void add_cached(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Plans &plans) {
   if (!plans.has(PrincipledLayer::Gloss))
     return add_lobe(bsdf, inputs);
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));

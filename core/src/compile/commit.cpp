@@ -3,7 +3,7 @@
 #include "compile/displace.h"
 #include "compile/features.h"
 #include "compile/make_lights.h"
-#include "compile/material_room.h"
+#include "compile/material_limits.h"
 #include "compile/mesh_normals.h"
 #include "compile/ready_lobes.h"
 #include "compile/scene.h"
@@ -121,13 +121,13 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   for (Material &material : scene->materials)
     material.ready = make_ready_lobes(material);
   for (size_t i = 0; i < scene->materials.size(); ++i)
-    tell_room(label("material", scene->materials[i].name.c_str(), i), scene->materials[i], description.messages);
+    report_limits(label("material", scene->materials[i].name.c_str(), i), scene->materials[i], description.messages);
   scene->classes = shading_classes(scene->materials);
   scene->images = std::move(description.images);
   scene->cutouts = make_cutouts(scene->materials, scene->images);
-  scene->passing =
+  scene->transparent_instances =
       find_instances(*scene, [&](const Instance &, uint32_t material) { return scene->materials[material].transmits(); });
-  scene->clearing = find_instances(*scene, [&](const Instance &instance, uint32_t material) {
+  scene->perforated_instances = find_instances(*scene, [&](const Instance &instance, uint32_t material) {
     return instance.kind == ShapeKind::Mesh && !instance.holdout && scene->cutouts[material].may_end;
   });
   scene->world = std::move(description.world);
@@ -159,7 +159,7 @@ uint32_t Scene::face_number(uint32_t instance, uint32_t primitive) const {
 
 size_t Scene::geometry_bytes() const {
   size_t bytes = geometry.instances.size() * sizeof(Instance) + geometry.object_infos.size() * sizeof(ObjectInfo) +
-                 slots.size() * sizeof(uint32_t) + passing.size() + clearing.size() + lights.bytes();
+                 slots.size() * sizeof(uint32_t) + transparent_instances.size() + perforated_instances.size() + lights.bytes();
   for (const Mesh &mesh : geometry.meshes) {
     bytes += mesh.positions.size() * sizeof(glm::vec3) + mesh.triangles.size() * sizeof(glm::uvec3) +
              (mesh.normals.size() + mesh.smooth_normals.size() + mesh.colors.size()) * sizeof(glm::vec3) +

@@ -22,7 +22,7 @@ const Node *math_source(const Program &program, const Parameter &parameter, uint
 
 } // namespace
 
-FlatPicture flat_picture(const Program &program, const Parameter &color, const std::vector<Image> &images) {
+FlatImage flat_image(const Program &program, const Parameter &color, const std::vector<Image> &images) {
   const Node *picture = source(program, color, LANCER_NODE_IMAGE);
   if (!picture || picture->option != LANCER_PROJECT_FLAT || picture->image_count != 1 || images[picture->image].tile != 0)
     return {};
@@ -33,7 +33,7 @@ FlatPicture flat_picture(const Program &program, const Parameter &color, const s
           static_cast<Interpolation>(picture->flags >> 4 & 0xf)};
 }
 
-std::optional<PictureAlpha> picture_alpha(const Program &program, const Parameter &value) {
+std::optional<ImageAlpha> image_alpha(const Program &program, const Parameter &value) {
   // A sum with nothing, for the sake of its clamp.
   const Node *clamp = math_source(program, value, LANCER_MATH_ADD, 1);
   if (clamp && (clamp->inputs[1].varies() || clamp->inputs[1].value.x != 0.0f))
@@ -41,7 +41,7 @@ std::optional<PictureAlpha> picture_alpha(const Program &program, const Paramete
   const Node *alpha = source(program, clamp ? clamp->inputs[0] : value, LANCER_NODE_ALPHA);
   if (!alpha)
     return {};
-  return PictureAlpha{alpha->inputs[0], clamp != nullptr};
+  return ImageAlpha{alpha->inputs[0], clamp != nullptr};
 }
 
 std::optional<Remainder> remainder_of(const Program &program, const Parameter &value) {
@@ -54,15 +54,15 @@ std::optional<Remainder> remainder_of(const Program &program, const Parameter &v
 namespace {
 
 // Follows 1 - alpha back to the picture and its UV map. share: what stands for alpha.
-AlphaPicture find_alpha(const Material &material, const std::vector<Image> &images, Parameter &share) {
+AlphaImage find_alpha(const Material &material, const std::vector<Image> &images, Parameter &share) {
   const std::optional<Remainder> rest = remainder_of(material.program, material.transmittance);
   if (!rest || rest->whole != 1.0f)
     return {};
   share = rest->share;
-  const std::optional<PictureAlpha> alpha = picture_alpha(material.program, share);
+  const std::optional<ImageAlpha> alpha = image_alpha(material.program, share);
   if (!alpha)
     return {};
-  return {flat_picture(material.program, alpha->picture, images), alpha->clamped};
+  return {flat_image(material.program, alpha->picture, images), alpha->clamped};
 }
 
 // Whether a node looks at nothing but its inputs, the triangle and the place within it.
@@ -128,7 +128,7 @@ std::vector<Cutout> make_cutouts(const std::vector<Material> &materials, const s
   return cutouts;
 }
 
-float alpha_at(const AlphaPicture &picture, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
+float alpha_at(const AlphaImage &picture, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
                const glm::dvec2 &bary) {
   const glm::vec2 uv = uv_at(mesh, picture.uv_map, triangle, bary);
   const float alpha = lookup_alpha(images[picture.image], uv, picture.extension, picture.interpolation);

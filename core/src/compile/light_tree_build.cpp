@@ -1,6 +1,6 @@
 // Builds the tree of many lights and the table of few.
 #include "compile/light_cut.h"
-#include "lights/few_lights.h"
+#include "lights/binary_light_tree.h"
 #include "lights/light_bounds.h"
 #include "lights/light_importance.h"
 #include "lights/light_tree.h"
@@ -204,11 +204,11 @@ void LightTree::set(const Child &child, uint32_t i, const std::vector<DescribedL
     branch.child[i] |= LightBranch::kAimed;
   for (uint32_t k = child.begin; k < child.end; ++k)
     if (lights[k].met)
-      branch.child[i] |= LightBranch::kMet;
+      branch.child[i] |= LightBranch::kMayBeHit;
 }
 
 // Building the tree of few lights.
-FewLights::FewLights(std::vector<DescribedLight> lights, uint32_t count) : place_of_(count, kNone) {
+BinaryLightTree::BinaryLightTree(std::vector<DescribedLight> lights, uint32_t count) : place_of_(count, kNone) {
   prepare(lights);
   if (lights.empty())
     return;
@@ -238,7 +238,7 @@ FewLights::FewLights(std::vector<DescribedLight> lights, uint32_t count) : place
   }
 }
 
-void FewLights::split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting) {
+void BinaryLightTree::split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting) {
   const uint32_t count = part.end - part.begin;
   const LightBounds whole = bounds_of(lights, part.begin, part.end);
   nodes_[part.node].shape = cluster_shape(whole);

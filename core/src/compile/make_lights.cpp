@@ -71,7 +71,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   light.half_y = 0.5 * double(from.size.y) * scale;
   light.ellipse = from.shape == AreaShape::Ellipse;
   if (from.kind == LightKind::Area)
-    light.apart = apart_by_rounding(from, scale);
+    light.plane_tolerance = apart_by_rounding(from, scale);
   light.area = (light.ellipse ? glm::pi<double>() : 4.0) * light.half_x * light.half_y;
   if (from.spread < glm::pi<float>()) {
     const double half = 0.5 * std::max(double(from.spread), 1e-3);

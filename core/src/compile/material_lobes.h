@@ -30,7 +30,7 @@ void add_described(const Material *const *materials, size_t number, const Values
   if (!described.principled) {
     const LobeInputs<F> inputs = without_holes(fixed ? ready.inputs() : evaluate(described, read));
     if (any(!black(inputs.weight)))
-      add_kept(bsdf, inputs, ready);
+      add_cached(bsdf, inputs, ready);
     return;
   }
   const LobeInputs<F> inputs = without_holes(fixed ? ready.principled_carrier() : evaluate(described, read));

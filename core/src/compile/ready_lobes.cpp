@@ -41,7 +41,7 @@ const Parameter *share_parameter(PrincipledLayer layer, const PrincipledDescript
   }
 }
 
-void keep_layers(const LobeDescription &lobe, ReadyLobe &ready) {
+void cache_layers(const LobeDescription &lobe, ReadyLobe &ready) {
   for (const LayerRow &row : kLayers) {
     const Parameter *share = share_parameter(row.layer, *lobe.principled);
     const bool may_be_there = share_of(row.layer, ready.principled) > kLeastLayer || (share && share->varies());
@@ -57,7 +57,7 @@ void keep_layers(const LobeDescription &lobe, ReadyLobe &ready) {
 }
 
 // Facets of a node that nothing changes, where they have no direction along the surface.
-void keep_facets(ReadyLobe &ready) {
+void cache_facets(ReadyLobe &ready) {
   const LobeInputs<float> &inputs = ready.inputs;
   const bool glass = inputs.kind == LobeKind::Glass, conductor = inputs.kind == LobeKind::Conductor;
   const bool glossy = inputs.kind == LobeKind::Glossy && inputs.distribution != Facets::AshikhminShirley;
@@ -114,9 +114,9 @@ std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material) {
       ready.principled = evaluate(*lobe.principled, nothing);
     ready.parts = LobeParts(ready.inputs, ready.principled);
     if (lobe.principled && lobe.principled->rules != Rules::Blender3)
-      keep_layers(lobe, ready);
+      cache_layers(lobe, ready);
     else if (!lobe.principled && material.fixed())
-      keep_facets(ready);
+      cache_facets(ready);
   }
   return all;
 }

@@ -1,7 +1,7 @@
 // What of a material's lobes is the same wherever the material is met, made once when the scene is committed.
 #pragma once
 
-#include "bsdf/kept_plans.h"
+#include "bsdf/cached_plans.h"
 
 #include <string>
 #include <vector>
@@ -26,13 +26,13 @@ struct ReadyLobe {
   PrincipledInputs<float> principled;
   LobeParts parts;
   // By side (outside, inside) and Layer. Of facets of other nodes the only one is that of PrincipledLayer::Gloss.
-  std::shared_ptr<const KeptPlan> plans[2][kLayerCount];
+  std::shared_ptr<const CachedPlan> plans[2][kLayerCount];
 
   // What code it needs, as far as nodes do not decide it: lobes of one code differ in numbers alone.
   std::string code() const;
 
   bool has(PrincipledLayer layer) const { return plans[0][static_cast<int>(layer)] != nullptr; }
-  const KeptPlan *plan(PrincipledLayer layer, bool inside) const { return plans[inside][static_cast<int>(layer)].get(); }
+  const CachedPlan *plan(PrincipledLayer layer, bool inside) const { return plans[inside][static_cast<int>(layer)].get(); }
 };
 
 // One for each lobe.

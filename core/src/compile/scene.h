@@ -14,10 +14,10 @@ struct Scene {
   Geometry geometry; // normalised
   std::vector<uint32_t> slots;
   std::vector<Material> materials;
-  std::vector<uint32_t> classes; // by material, as shading_classes() has them
-  std::vector<Cutout> cutouts;   // by material
-  std::vector<uint8_t> passing;  // by instance: some of its materials may let light pass straight on
-  std::vector<uint8_t> clearing; // by instance: there may be nothing of it at some places, as cutouts say
+  std::vector<uint32_t> classes;              // by material, as shading_classes() has them
+  std::vector<Cutout> cutouts;                // by material
+  std::vector<uint8_t> transparent_instances; // by instance: some of its materials may let light pass straight on
+  std::vector<uint8_t> perforated_instances;  // by instance: there may be nothing of it at some places, as cutouts say
   std::vector<Image> images;
   World world;
   LightSet lights;

@@ -152,6 +152,6 @@ enum VertexDimension : uint32_t {
 };
 // Layers of opacity at one vertex have numbers of their own, far behind the others.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
-inline constexpr uint32_t kMaxLayers = 1025;
+inline constexpr uint32_t kMaxCrossings = 1025;
 
 } // namespace lancer

@@ -5,20 +5,21 @@
 
 namespace lancer {
 
-// At grazing directions a way ends at most this many times Light::apart before the lamp: nothing visible stands in between.
-inline constexpr double kMostAparts = 64.0;
+// At grazing directions a way ends at most this many times Light::plane_tolerance before the lamp: nothing visible stands in
+// between.
+inline constexpr double kMostTolerances = 64.0;
 
 // How long the way is that ends before the lamp, of one that is t long and meets its axis under this cosine: rounding then puts
 // no face of the lamp's own plane, such as the ceiling that it is set into, before the lamp.
-template <class D> LANCER_LANE D area_end(D t, D cosine, D apart) {
-  return max(t - min(apart / cosine, D(kMostAparts) * apart), D(0.5) * t);
+template <class D> LANCER_LANE D area_end(D t, D cosine, D plane_tolerance) {
+  return max(t - min(plane_tolerance / cosine, D(kMostTolerances) * plane_tolerance), D(0.5) * t);
 }
 
 // The numbers of area lights, each read once.
 template <class F> struct AreaNumbers {
   using D = DoubleOf<F>;
   Double3Of<F> position, x, y, z, emission;
-  D half_x, half_y, area, tan_half_spread, spread_scale, apart;
+  D half_x, half_y, area, tan_half_spread, spread_scale, plane_tolerance;
   MaskOf<F> ellipse, narrowed;
 
   // which: lanes of area lights.
@@ -27,7 +28,8 @@ template <class F> struct AreaNumbers {
       : position(light[&Light::position]), x(light[&Light::x]), y(light[&Light::y]), z(light[&Light::z]),
         emission(light[&Light::emission]), half_x(light[&Light::half_x]), half_y(light[&Light::half_y]),
         area(light[&Light::area]), tan_half_spread(light[&Light::tan_half_spread]), spread_scale(light[&Light::spread_scale]),
-        apart(light[&Light::apart]), ellipse(light[&Light::ellipse]), narrowed(which & (spread_scale != D(0.0))) {}
+        plane_tolerance(light[&Light::plane_tolerance]), ellipse(light[&Light::ellipse]),
+        narrowed(which & (spread_scale != D(0.0))) {}
 };
 
 // Radiance towards a direction whose cosine with the light's axis is given; narrowed by spread like a honeycomb in front.
@@ -87,7 +89,7 @@ LANCER_LANE void sample_area(const AreaNumbers<F> &light, const Double3Of<F> &p,
   // A rectangle around what is lit of an ellipse may reach beyond it.
   const MaskOf<F> beside = light.ellipse & !part.ellipse & !(x * x + y * y <= one);
   const MaskOf<F> valid = which & (part.area > zero) & (distance > zero) & (cosine > zero) & !beside;
-  sample.target = select(which, p + area_end(distance, cosine, light.apart) * wi, sample.target);
+  sample.target = select(which, p + area_end(distance, cosine, light.plane_tolerance) * wi, sample.target);
   sample.wi = select(which, wi, sample.wi);
   sample.distance = select(which, distance, sample.distance);
   sample.radiance = select(which, area_radiance(light, cosine), sample.radiance);
@@ -119,7 +121,7 @@ template <class F>
 LANCER_LANE LightHitLanes<F> meet_area(const AreaNumbers<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi) {
   const AreaMeeting<F> at = find_area(light, o, wi);
   return {area_radiance(light, at.cosine), select(at.met, at.t * at.t / (at.cosine * at.area), DoubleOf<F>(0.0)),
-          area_end(at.t, at.cosine, light.apart)};
+          area_end(at.t, at.cosine, light.plane_tolerance)};
 }
 
 } // namespace lancer

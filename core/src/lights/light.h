@@ -33,8 +33,8 @@ struct Light {
   double half_x = 0.0, half_y = 0.0, area = 0.0; // AREA
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
-  double apart = 0.0;       // AREA: by how much a face that is meant to lie in its plane may be before it
-  uint32_t hidden_from = 0; // LANCER_RAY_* bits
+  double plane_tolerance = 0.0; // AREA: by how much a face that is meant to lie in its plane may be before it
+  uint32_t hidden_from = 0;     // LANCER_RAY_* bits
   bool no_shadow = false;
   ClassicLight classic;
 };

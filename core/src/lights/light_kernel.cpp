@@ -1,8 +1,8 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "lights/light_kernel.h"
 
-#include "lights/few_lights.h"
-#include "lights/wide_weights.h"
+#include "lights/binary_light_tree.h"
+#include "lights/light_weights.h"
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 // One step down. Returns the child's word; 0 where nothing can arrive.
 LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWalk &walk) {
-  WideWeights weights;
+  LightWeights weights;
   weigh_all(tree, number, walk, weights);
   if (weights.able == 0) {
     walk.probability = 0.0;
@@ -37,7 +37,7 @@ LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWa
 
 [[gnu::flatten]] void choose(const LightBranches &tree, LightWalk *walks, uint32_t count) {
   // Go down level by level: the next walk starts before the last one's step has ended.
-  constexpr uint32_t kMost = kWays;
+  constexpr uint32_t kMost = kLightLanes;
   for (uint32_t begin = 0; begin < count; begin += kMost) {
     uint32_t at[kMost], open[kMost], open_count = count - begin < kMost ? count - begin : kMost;
     for (uint32_t i = 0; i < open_count; ++i) {
@@ -62,7 +62,7 @@ LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWa
   // Go up from the light.
   double result = 1.0;
   for (; slot != LightBranches::kRoot; slot = tree.slot_of[slot / kBranchWidth]) {
-    WideWeights weights;
+    LightWeights weights;
     weigh_all(tree, slot / kBranchWidth, walk, weights);
     if (!(weights.able >> slot % kBranchWidth & 1))
       return 0.0;
@@ -96,23 +96,23 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
       begin = max(begin, middle - reach);
       end = min(end, middle + reach);
     }
-    const M may = !equal(load(branch.child + first) & U(LightBranch::kMet), U(0u));
+    const M may = !equal(load(branch.child + first) & U(LightBranch::kMayBeHit), U(0u));
     passed |= bits((begin <= end) & may) << first;
   }
   return passed;
 }
 
-[[gnu::flatten]] void along(const LightBranches &tree, const WayBlock &ways, uint32_t count, LightKernel::Visit visit,
+[[gnu::flatten]] void along(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, LightKernel::Visit visit,
                             void *context) {
   // Round the ways to float.
-  alignas(64) float o[3][kWays], inverse[3][kWays], slack[kWays], end[kWays];
-  for (int first = 0; first < kWays; first += kLanes) {
-    const D3 d = load3(ways.d, first);
-    const V3 from = narrow(load3(ways.from, first)), wi = narrow(d / sqrt(dot(d, d)));
+  alignas(64) float o[3][kLightLanes], inverse[3][kLightLanes], slack[kLightLanes], end[kLightLanes];
+  for (int first = 0; first < kLightLanes; first += kLanes) {
+    const D3 d = load3(segments.d, first);
+    const V3 from = narrow(load3(segments.from, first)), wi = narrow(d / sqrt(dot(d, d)));
     store3(o, first, from);
     store3(inverse, first, V3{inverse_of(wi.x), inverse_of(wi.y), inverse_of(wi.z)});
     store(slack + first, F(kLost) * (abs(from.x) + abs(from.y) + abs(from.z)));
-    store(end + first, narrow(load(ways.end + first)) * F(1.0f + kLost));
+    store(end + first, narrow(load(segments.end + first)) * F(1.0f + kLost));
   }
   struct Waiting {
     uint32_t number, children;
@@ -146,7 +146,7 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
 }
 
 [[gnu::flatten]] void sample_sky(const DirectionTable &map, SkyBlock &block) {
-  for (int first = 0; first < kWays; first += kLanes) {
+  for (int first = 0; first < kLightLanes; first += kLanes) {
     const DirectionSample<F> sample = sample_direction(map, load(block.u[0] + first), load(block.u[1] + first));
     store3(block.wi, first, sample.direction);
     store(block.pdf + first, sample.pdf);
@@ -154,7 +154,7 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
 }
 
 [[gnu::flatten]] void sky_density(const DirectionTable &map, SkyBlock &block) {
-  for (int first = 0; first < kWays; first += kLanes)
+  for (int first = 0; first < kLightLanes; first += kLanes)
     store(block.pdf + first, direction_pdf<F>(map, place_of(narrow(load3(block.wi, first)))));
 }
 

@@ -14,9 +14,9 @@ inline constexpr uint32_t kBranchWidth = 16;
 // Children side by side: boxes of lights, as ClusterShape. Nothing else is read where all of them shine to all sides.
 struct alignas(64) LightBranch {
   // What child says besides a number.
-  static constexpr uint32_t kLight = 1u << 31; // the number is that of a light, not of a branch
-  static constexpr uint32_t kMet = 1u << 30;   // a ray may run into one of its lights
-  static constexpr uint32_t kAimed = 1u << 29; // it does not shine to all sides alike
+  static constexpr uint32_t kLight = 1u << 31;    // the number is that of a light, not of a branch
+  static constexpr uint32_t kMayBeHit = 1u << 30; // a ray may run into one of its lights
+  static constexpr uint32_t kAimed = 1u << 29;    // it does not shine to all sides alike
   static constexpr uint32_t kNumber = kAimed - 1;
 
   float centre[3][kBranchWidth] = {}, half[3][kBranchWidth] = {};
@@ -53,17 +53,17 @@ struct LightWalk {
 };
 
 // What lights are asked for, side by side. Plain numbers: kernels read and write it.
-inline constexpr int kWays = 16;
+inline constexpr int kLightLanes = 16;
 
 // Stretches of rays: from the last scattering along d, up to the distance end.
-struct alignas(64) WayBlock {
-  double from[3][kWays], d[3][kWays], end[kWays]; // d: of any length
+struct alignas(64) SegmentBlock {
+  double from[3][kLightLanes], d[3][kLightLanes], end[kLightLanes]; // d: of any length
 };
 
 // Directions to the environment, and the density with which its map gives them.
 struct alignas(64) SkyBlock {
-  float u[2][kWays];
-  double wi[3][kWays], pdf[kWays]; // wi: unit
+  float u[2][kLightLanes];
+  double wi[3][kLightLanes], pdf[kLightLanes]; // wi: unit
 };
 
 // Choosing of many lights and finding those on a ray's way in vector registers, one copy per instruction set; all give the same
@@ -76,7 +76,7 @@ struct LightKernel {
   double (*probability)(const LightBranches &tree, const LightWalk &walk, uint32_t slot);
   // Calls visit(context, lane, light) for all that the first count ways may meet; no other light is met.
   using Visit = void (*)(void *context, uint32_t lane, uint32_t light);
-  void (*along)(const LightBranches &tree, const WayBlock &ways, uint32_t count, Visit visit, void *context);
+  void (*along)(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, Visit visit, void *context);
   // Samples directions of the environment from the numbers u; asks for the density of those given.
   void (*sample_sky)(const DirectionTable &map, SkyBlock &block);
   void (*sky_density)(const DirectionTable &map, SkyBlock &block);

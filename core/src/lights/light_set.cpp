@@ -18,7 +18,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
                    const BuildContext &context)
     : lights_(std::move(lights)), emitters_(std::move(emitters)), environment_(std::move(environment)) {
   for (const Light &light : lights_) {
-    most_before_ = std::max(most_before_, kMostAparts * light.apart);
+    most_before_ = std::max(most_before_, kMostTolerances * light.plane_tolerance);
     switches_.push_back(light.hidden_from | (light.no_shadow ? kNoShadow : 0));
   }
   for (const Emitter &emitter : emitters_)
@@ -49,10 +49,10 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
                [](const DescribedLight &light) { return !light.distant() && light.bounds.energy > 0.0; });
   if (near.size() > kFew) {
     std::erase_if(described, [](const DescribedLight &light) { return !light.distant(); });
-    many_ = LightTree(std::move(near), count, context);
-    described.push_back(describe_cluster(many_.bounds(), count));
+    wide_tree_ = LightTree(std::move(near), count, context);
+    described.push_back(describe_cluster(wide_tree_.bounds(), count));
   }
-  few_ = FewLights(std::move(described), count + 1);
+  binary_tree_ = BinaryLightTree(std::move(described), count + 1);
   if (!emitters_.empty()) {
     emitter_of_.assign(instance_count, kNone);
     for (uint32_t i = 0; i < emitters_.size(); ++i)
@@ -61,13 +61,13 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
 }
 
 LightSet::Choice LightSet::choose(const Geometry &geometry, const LightQuery &query, double u) const {
-  return choose_within(geometry, query, few_.choose(query, u));
+  return choose_within(geometry, query, binary_tree_.choose(query, u));
 }
 
 LightSet::Choice LightSet::choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const {
   if (light.number == size() && light.probability > 0.0) {
     const double of_many = light.probability;
-    light = many_.choose(query, light.u);
+    light = wide_tree_.choose(query, light.u);
     light.probability *= of_many;
   }
   if (!(light.probability > 0.0) || light.number < lights_.size() || light.number - lights_.size() >= emitters_.size())
@@ -77,8 +77,8 @@ LightSet::Choice LightSet::choose_within(const Geometry &geometry, const LightQu
 }
 
 double LightSet::probability(const LightQuery &query, uint32_t light) const {
-  const double of_many = many_.empty() ? 0.0 : many_.probability(query, light);
-  return of_many > 0.0 ? of_many * few_.probability(query, uint32_t(size())) : few_.probability(query, light);
+  const double of_many = wide_tree_.empty() ? 0.0 : wide_tree_.probability(query, light);
+  return of_many > 0.0 ? of_many * binary_tree_.probability(query, uint32_t(size())) : binary_tree_.probability(query, light);
 }
 
 double LightSet::probability(const Geometry &geometry, const LightQuery &query, const Emitter &emitter, uint32_t face) const {
@@ -88,7 +88,7 @@ double LightSet::probability(const Geometry &geometry, const LightQuery &query, 
 
 size_t LightSet::bytes() const {
   size_t bytes = environment_.bytes() + lights_.size() * sizeof(Light) +
-                 (emitter_of_.size() + switches_.size()) * sizeof(uint32_t) + few_.bytes() + many_.bytes();
+                 (emitter_of_.size() + switches_.size()) * sizeof(uint32_t) + binary_tree_.bytes() + wide_tree_.bytes();
   std::set<const EmissiveFaces *> counted;
   for (const Emitter &emitter : emitters_) {
     bytes += sizeof(Emitter);

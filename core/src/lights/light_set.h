@@ -1,9 +1,9 @@
 // All lights of a scene: which one to ask, and which ones a ray runs into.
 #pragma once
 
+#include "lights/binary_light_tree.h"
 #include "lights/emitter.h"
 #include "lights/environment.h"
-#include "lights/few_lights.h"
 #include "lights/light_tree.h"
 
 namespace lancer {
@@ -43,9 +43,9 @@ public:
   // Chooses a light, and a face of it, by what the point may get from each. u in [0, 1); the set is not empty.
   Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
   // The same in two steps, for kernels that do the first: among the few, then, with what is left of u, within the one chosen.
-  const FewLights &few() const { return few_; }
-  // The one that stands for all of many() has the number size().
-  const LightTree &many() const { return many_; }
+  const BinaryLightTree &binary_tree() const { return binary_tree_; }
+  // The one that stands for all of wide_tree() has the number size().
+  const LightTree &wide_tree() const { return wide_tree_; }
   Choice choose_within(const Geometry &geometry, const LightQuery &query, LightChoice light) const;
   // Whether the second step changes nothing.
   bool decided(uint32_t few_number) const {
@@ -78,8 +78,8 @@ private:
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> always_, emitter_of_;
   // Few lights are chosen from as in Cycles; of many, those with a place are one of the few.
-  FewLights few_;
-  LightTree many_;
+  BinaryLightTree binary_tree_;
+  LightTree wide_tree_;
   bool find_ = false;
   double most_before_ = 0.0;
   Environment environment_;

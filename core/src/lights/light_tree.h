@@ -31,9 +31,9 @@ public:
   double probability(const LightQuery &query, uint32_t number) const;
 
   // Calls visit(way, light) for all lights that the first ways may meet before they end. The tree is not empty.
-  template <class Visit> void along(const WayBlock &ways, uint32_t count, Visit &&visit) const {
+  template <class Visit> void along(const SegmentBlock &segments, uint32_t count, Visit &&visit) const {
     kernel_->along(
-        tree(), ways, count,
+        tree(), segments, count,
         [](void *context, uint32_t way, uint32_t light) {
           (*static_cast<std::remove_reference_t<Visit> *>(context))(way, light);
         },

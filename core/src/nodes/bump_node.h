@@ -1,8 +1,8 @@
 // Bumps: the height's slope, looked at a pixel's width away, tilts the normal. Like lanes.h.
 #pragma once
 
-#include "nodes/kept_values.h"
 #include "nodes/normal_nodes.h"
+#include "nodes/value_memory.h"
 
 namespace lancer {
 namespace {
@@ -140,7 +140,7 @@ template <class F> class Kept {
 public:
   void keep(const Schedule &schedule, const Values<F> &values) {
     if (schedule.size() > kFew)
-      kept_ = static_cast<Value<F> *>(allocate_kept(schedule.size() * sizeof(Value<F>)));
+      kept_ = static_cast<Value<F> *>(allocate_values(schedule.size() * sizeof(Value<F>)));
     for (size_t i = 0; i < schedule.size(); ++i)
       kept_[i] = {values.get(schedule[i]), values.get(schedule[i], 3)};
   }
@@ -148,7 +148,7 @@ public:
     for (size_t i = 0; i < schedule.size(); ++i)
       values.set(schedule[i], kept_[i]);
     if (kept_ != few_)
-      free_kept(kept_);
+      free_values(kept_);
   }
 
 private:

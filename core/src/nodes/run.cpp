@@ -16,8 +16,8 @@ constexpr std::align_val_t kAlignment{64};
 
 } // namespace
 
-void *allocate_kept(size_t bytes) { return ::operator new(bytes, kAlignment); }
-void free_kept(void *values) { ::operator delete(values, kAlignment); }
+void *allocate_values(size_t bytes) { return ::operator new(bytes, kAlignment); }
+void free_values(void *values) { ::operator delete(values, kAlignment); }
 
 // The node machine at one place.
 namespace {

@@ -61,7 +61,7 @@ constexpr float kNoise = 4.0f;
 // Goes through the pairs of pixels that are one offset apart: p, and q = p + (dx, dy).
 class Pairs {
 public:
-  Pairs(const LuminanceMap &map, const std::vector<float> &of_mean, AlikeNeighbours &sums)
+  Pairs(const LuminanceMap &map, const std::vector<float> &of_mean, SimilarNeighbours &sums)
       : map_(map), of_mean_(of_mean), sums_(sums), excess_(map.width + 2) {
     for (std::vector<float> &row : rows_)
       row.resize(map.width);
@@ -105,16 +105,16 @@ private:
 
   void join(int y, int dx, int dy) {
     const size_t p = size_t(y) * map_.width, q = size_t(y + dy) * map_.width;
-    float *alike = excess_.data();
+    float *similar = excess_.data();
     for (int x = begin(dx); x < end(dx); ++x)
-      alike[x] = rows_[0][size_t(x)] + rows_[1][size_t(x)] + rows_[2][size_t(x)] <= 0.0f ? 1.0f : 0.0f;
+      similar[x] = rows_[0][size_t(x)] + rows_[1][size_t(x)] + rows_[2][size_t(x)] <= 0.0f ? 1.0f : 0.0f;
     const auto add = [&](std::vector<float> &sums, const float *values) {
       float *to_p = sums.data() + p, *to_q = sums.data() + q;
       // One after the other: in one row the two overlap.
       for (int x = begin(dx); x < end(dx); ++x)
-        to_p[x] += alike[x] * (values ? values[q + size_t(x + dx)] : 1.0f);
+        to_p[x] += similar[x] * (values ? values[q + size_t(x + dx)] : 1.0f);
       for (int x = begin(dx); x < end(dx); ++x)
-        to_q[x + dx] += alike[x] * (values ? values[p + size_t(x)] : 1.0f);
+        to_q[x + dx] += similar[x] * (values ? values[p + size_t(x)] : 1.0f);
     };
     add(sums_.count, nullptr);
     add(sums_.mean, map_.mean.data());
@@ -123,14 +123,15 @@ private:
 
   const LuminanceMap &map_;
   const std::vector<float> &of_mean_;
-  AlikeNeighbours &sums_;
+  SimilarNeighbours &sums_;
   std::array<std::vector<float>, 3> rows_;
   std::vector<float> excess_; // of a row, with a pair beyond each end
 };
 
 } // namespace
 
-AlikeNeighbours::AlikeNeighbours(const LuminanceMap &map) : count(map.size(), 1.0f), mean(map.mean), variance(map.variance) {
+SimilarNeighbours::SimilarNeighbours(const LuminanceMap &map)
+    : count(map.size(), 1.0f), mean(map.mean), variance(map.variance) {
   std::vector<float> of_mean(map.size());
   for (size_t i = 0; i < map.size(); ++i)
     of_mean[i] = map.count[i] > 0.0f ? map.variance[i] / map.count[i] : 0.0f;
@@ -192,13 +193,13 @@ double unmet(const LuminanceMap &map) {
 } // namespace
 
 RelativeVariance::RelativeVariance(const LuminanceMap &map) : own(map.size()), shared(map.size()) {
-  const AlikeNeighbours alike(map);
+  const SimilarNeighbours similar(map);
   const float floor = map.floor();
   for (size_t pixel = 0; pixel < map.size(); ++pixel) {
-    const float level = std::max(alike.mean[pixel] / alike.count[pixel], 0.0f) + floor;
+    const float level = std::max(similar.mean[pixel] / similar.count[pixel], 0.0f) + floor;
     const float scale = level > 0.0f ? 1.0f / (level * level) : 0.0f;
     own[pixel] = map.variance[pixel] * scale;
-    shared[pixel] = alike.variance[pixel] / alike.count[pixel] * scale;
+    shared[pixel] = similar.variance[pixel] / similar.count[pixel] * scale;
   }
 }
 

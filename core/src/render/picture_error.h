@@ -35,10 +35,10 @@ struct LuminanceMap {
 // nine together. Pixel by pixel the question fails where it matters: two replicates say so little about one pixel's variance
 // that every tenth looks noisy enough to be like anything, the edge of a lit thing like the black beside it (Buades, Coll,
 // Morel, "A non-local algorithm for image denoising", 2005, compare surroundings so).
-struct AlikeNeighbours {
+struct SimilarNeighbours {
   std::vector<float> count, mean, variance;
 
-  explicit AlikeNeighbours(const LuminanceMap &map);
+  explicit SimilarNeighbours(const LuminanceMap &map);
 };
 
 // How far the whole picture may be from the converged one.
@@ -57,7 +57,7 @@ struct PictureError {
 // What an error is made of, pixel by pixel.
 struct RelativeVariance {
   // [height][width]: of one sample, over the square of luminance and floor. own: as the pixel's replicates have it; shared: as
-  // those of the neighbours have it that are like it (alike.h).
+  // those of the neighbours have it that are like it (similar.h).
   std::vector<float> own, shared;
 
   explicit RelativeVariance(const LuminanceMap &map);

@@ -18,7 +18,7 @@ template <class Target, class Vector> void store(Target *target, const Vector &v
     target[i] = Target(v[i]);
 }
 
-// t keeps its meaning: origin and direction are scaled alike.
+// t keeps its meaning: origin and direction are scaled similar.
 std::vector<Ray> rays_of(const Scene &scene, uint32_t count, const double *origins, const double *directions,
                          const double *tmin, const double *tmax) {
   std::vector<Ray> rays(count);
@@ -140,7 +140,7 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
     ray.o = p;
     ray.d = w;
     Hit hit;
-    for (uint32_t layer = 0; layer < kMaxLayers; ++layer) {
+    for (uint32_t layer = 0; layer < kMaxCrossings; ++layer) {
       scene.accelerator->closest_hit(std::span(&ray, 1), std::span(&hit, 1));
       if (!hit.valid())
         break;

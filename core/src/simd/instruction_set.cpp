@@ -26,7 +26,7 @@ Registers ask(uint32_t leaf) {
 bool has(uint32_t present, uint32_t bits) { return (present & bits) == bits; }
 
 // Which registers the operating system keeps for each thread: XCR0.
-uint32_t kept_registers() {
+uint32_t saved_registers() {
   uint32_t low, high;
   asm volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
   return low;
@@ -37,17 +37,17 @@ InstructionSet best_set() {
   const uint32_t basic = ask(1).c, more = ask(7).b, extended = ask(0x80000001).c;
   // All that x86-64-v3 has: the compiler uses any of it.
   if (!has(basic, bit_OSXSAVE | bit_AVX | bit_F16C | bit_FMA | bit_MOVBE) || !has(more, bit_AVX2 | bit_BMI | bit_BMI2) ||
-      !has(extended, bit_LZCNT) || !has(kept_registers(), 0x06))
+      !has(extended, bit_LZCNT) || !has(saved_registers(), 0x06))
     return InstructionSet::Sse4;
 #if defined(__APPLE__)
   // Darwin keeps the wide registers from a thread's first use of them on, and says so only then.
-  const bool wide_kept = true;
+  const bool wide_saved = true;
 #else
-  const bool wide_kept = has(kept_registers(), 0xe6);
+  const bool wide_saved = has(saved_registers(), 0xe6);
 #endif
   // What x86-64-v4 adds.
   const uint32_t wide = bit_AVX512F | bit_AVX512BW | bit_AVX512CD | bit_AVX512DQ | bit_AVX512VL;
-  return wide_kept && has(more, wide) ? InstructionSet::Avx512 : InstructionSet::Avx2;
+  return wide_saved && has(more, wide) ? InstructionSet::Avx512 : InstructionSet::Avx2;
 }
 
 } // namespace

@@ -79,16 +79,15 @@ double near_distance(const Camera &camera, const glm::dvec3 &d) {
 
 } // namespace
 
-DenoisingFeatures begin_features(const IntegratorSettings &settings, bool wanted) {
-  DenoisingFeatures features;
+DenoisingGuides begin_guides(const IntegratorSettings &settings, bool wanted) {
+  DenoisingGuides features;
   features.open = wanted;
   features.blended = settings.blended_features;
   return features;
 }
 
-void add_denoising_features(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
-                            const glm::vec3 &transmittance, double distance, DenoisingFeatures &features,
-                            SampleResult &result) {
+void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
+                          const glm::vec3 &transmittance, double distance, DenoisingGuides &features, SampleResult &result) {
   // Count from where the camera begins to see.
   if (features.first)
     distance -= near_distance(camera, glm::dvec3(-wo));
@@ -116,7 +115,7 @@ void add_denoising_features(const Scene &scene, const Camera &camera, const Mixt
   result.denoising_normal += features.share * normal;
 }
 
-void add_sky_features(const DenoisingFeatures &features, SampleResult &result) {
+void add_sky_guides(const DenoisingGuides &features, SampleResult &result) {
   if (features.open && features.blended)
     result.denoising_depth = std::numeric_limits<float>::max();
 }

@@ -37,7 +37,7 @@ float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings
 // as Blender 5.2 has it, of all surfaces, each by how much of it is matt.
 
 // What is left of a camera path's features after the mirrors so far.
-struct DenoisingFeatures {
+struct DenoisingGuides {
   bool open = false; // the surface that counts is still to come
   bool first = true; // nothing has been met yet
   bool blended = false;
@@ -46,12 +46,12 @@ struct DenoisingFeatures {
 };
 
 // Of a camera path that begins.
-DenoisingFeatures begin_features(const IntegratorSettings &settings, bool wanted);
+DenoisingGuides begin_guides(const IntegratorSettings &settings, bool wanted);
 
 // Takes in the surface at hand, which lies `distance` (normalised units) behind the last one.
-void add_denoising_features(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
-                            const glm::vec3 &transmittance, double distance, DenoisingFeatures &features, SampleResult &result);
+void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
+                          const glm::vec3 &transmittance, double distance, DenoisingGuides &features, SampleResult &result);
 // The camera sees the sky behind what let it pass.
-void add_sky_features(const DenoisingFeatures &features, SampleResult &result);
+void add_sky_guides(const DenoisingGuides &features, SampleResult &result);
 
 } // namespace lancer

@@ -32,7 +32,7 @@ public:
       SampleResult &result = results[slots_[i]];
       if (!hits_[i].valid()) {
         miss(ray, result);
-        add_sky_features(begin_features(settings_, passes_.features()), result);
+        add_sky_guides(begin_guides(settings_, passes_.features()), result);
         continue;
       }
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
@@ -41,10 +41,10 @@ public:
       point_.transmittance = glm::vec3(0.0f);
       record_first_surface(scene_, settings_, surface, point_, hits_[i].t, result);
       record_seen(scene_, camera_, settings_, passes_, surface, point_, glm::vec3(1.0f), result);
-      DenoisingFeatures features = begin_features(settings_, passes_.features());
+      DenoisingGuides features = begin_guides(settings_, passes_.features());
       if (features.open)
-        add_denoising_features(scene_, camera_, mix(point_.bsdf, point_.transmittance, features.blended), point_.bsdf.wo,
-                               point_.transmittance, hits_[i].t * glm::length(ray.d), features, result);
+        add_denoising_guides(scene_, camera_, mix(point_.bsdf, point_.transmittance, features.blended), point_.bsdf.wo,
+                             point_.transmittance, hits_[i].t * glm::length(ray.d), features, result);
       result.radiance = 0.5f * surface.ns + 0.5f;
       if (trace)
         trace->push_back({scene_.normalisation.to_world(surface.p), hits_[i].t / scene_.normalisation.scale, surface.ns,

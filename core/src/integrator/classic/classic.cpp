@@ -41,7 +41,7 @@ ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, c
     : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
       shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
       block_(surfaces_.block), kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)),
-      picture_alone_(settings.passes == 1u << LANCER_PASS_COMBINED) {
+      only_combined_(settings.passes == 1u << LANCER_PASS_COMBINED) {
   block_.numbers_given = 1;
 }
 
@@ -98,7 +98,7 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
     samplers_[slot] = sampler;
     Branch &branch = branches_.emplace_back();
     branch.slot = slot;
-    branch.features = begin_features(settings_, passes_.features());
+    branch.features = begin_guides(settings_, passes_.features());
     return rays_.emplace_back();
   });
   counts_.camera += rays_.size();
@@ -106,7 +106,7 @@ void ClassicIntegrator::generate(std::span<const SampleAddress> addresses, std::
 
 void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const glm::vec3 &direction, SampleResult &result) {
   if (branch.depth == 0)
-    add_sky_features(branch.features, result);
+    add_sky_guides(branch.features, result);
   // A transparent film does not show the environment itself.
   if (branch.depth == 0 && settings_.film_transparent) {
     result.alpha -= mean(branch.weight);
@@ -132,8 +132,8 @@ void ClassicIntegrator::leave(size_t number, SampleResult &result, std::vector<P
     return;
   add(branch, branch.weight * vertex.emission, false, result);
   if (branch.features.open)
-    add_denoising_features(scene_, camera_, features_[number].mixture, features_[number].wo, vertex.transmittance,
-                           hits_[number].t * glm::length(ray.d), branch.features, result);
+    add_denoising_guides(scene_, camera_, features_[number].mixture, features_[number].wo, vertex.transmittance,
+                         hits_[number].t * glm::length(ray.d), branch.features, result);
   result.radiance += branch.weight * vertex.ambient * ambient_;
   for (const glm::vec3 &light : own_light_.of(number))
     result.radiance += light;

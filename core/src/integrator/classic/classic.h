@@ -30,7 +30,7 @@ private:
     uint32_t layers = 0;                // passed straight through
     bool seen = false;                  // the first surface has been recorded
     double passed = 0.0;                // t of the camera ray up to its last layer
-    DenoisingFeatures features{};
+    DenoisingGuides features{};
   };
   // What shading leaves of a ray's vertex until its turn comes: vertices are shaded by the code that they need, but a pixel's
   // sum has the order of the rays.
@@ -88,7 +88,7 @@ private:
   VertexBlock &block_;
   const ClassicKernel &kernel_;
   glm::vec3 ambient_;    // light from everywhere, for Ka
-  bool picture_alone_;   // no other pass is asked for
+  bool only_combined_;   // no other pass is asked for
   bool corners_ = false; // the block's vertices are lit at the corners of their triangles
   bool crowded_ = false; // batches are done in small parts
   // Of the block's lanes.

@@ -70,7 +70,7 @@ void ClassicIntegrator::shade_block(std::span<SampleResult> results) {
   ask_nodes();
   cut_holes(results);
   surfaces_.find_lobes();
-  if (!picture_alone_)
+  if (!only_combined_)
     record(results);
   kernel_.branch(block_);
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)

@@ -18,19 +18,19 @@ constexpr uint32_t kRouletteAfter = 2;
 void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                          std::vector<PathVertex> *trace) {
   // Only the first samples of pixels tell of places.
-  picture_alone_ = passes_.only_places() && (!passes_.places() || addresses.front().sample > 0);
+  only_combined_ = passes_.only_places() && (!passes_.places() || addresses.front().sample > 0);
   // Start one path per sample.
   generate(addresses, results);
   energy_ = {};
-  late_.begin();
+  last_bounces_.begin();
   const auto gathered = [&](uint32_t slot) { return results[slot].radiance + indirect_[slot]; };
   for (uint32_t turn = 0; !paths_.empty() && !settings_.cancelled(); ++turn) {
     // Find where every path goes next.
     find_hits(results, trace);
     // Gather emission, ask a light, choose how each path goes on.
     shade(results, trace);
-    if (late_.due(turn))
-      late_.note(
+    if (last_bounces_.due(turn))
+      last_bounces_.note(
           turn, paths_.size(), [&](size_t i) { return paths_[i].slot; }, gathered);
     // Add the light that was not in shadow.
     counts_.shadow += shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) {
@@ -49,7 +49,7 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
     paths_.swap(next_paths_);
     rays_.swap(next_rays_);
   }
-  late_.end(gathered, energy_);
+  last_bounces_.end(gathered, energy_);
   // Join the indirect light, clamped if that was asked for.
   for (size_t slot = 0; slot < results.size(); ++slot) {
     glm::vec3 indirect = indirect_[slot];
@@ -68,8 +68,8 @@ void PathIntegrator::generate(std::span<const SampleAddress> addresses, std::spa
   rays_.clear();
   indirect_.assign(addresses.size(), glm::vec3(0.0f));
   Record record;
-  record.features = begin_features(settings_, passes_.features());
-  if (!picture_alone_ || records_.size() != addresses.size())
+  record.features = begin_guides(settings_, passes_.features());
+  if (!only_combined_ || records_.size() != addresses.size())
     records_.assign(addresses.size(), record);
   generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
     paths_.emplace_back(sampler, slot);
@@ -150,15 +150,15 @@ void PathIntegrator::sample_occlusion(uint32_t lane) {
 
 // Unless the path has passed all that it may.
 void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight) {
-  if (path.layers_left(settings_.transparent_bounces) == 0)
+  if (path.crossings_left(settings_.transparent_bounces) == 0)
     return;
   const double length = t * glm::length(ray.d);
   path.beta *= weight;
   path.passed += length;
   path.length += length;
-  if (!picture_alone_)
+  if (!only_combined_)
     records_[path.slot].depth += t;
-  path.pass_layers(1, settings_.transparent_bounces);
+  path.count_crossings(1, settings_.transparent_bounces);
   next_rays_.push_back(leave(surface, ray.d, ray.tmax - t));
   next_rays_.back().kinds = path.kinds;
   next_paths_.push_back(path);

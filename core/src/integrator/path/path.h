@@ -2,10 +2,10 @@
 #pragma once
 
 #include "integrator/aov/first_surface.h"
-#include "integrator/path/late_light.h"
+#include "integrator/path/last_bounces.h"
 #include "integrator/sample.h"
 #include "integrator/stages/camera_rays.h"
-#include "integrator/stages/layers_met.h"
+#include "integrator/stages/crossings.h"
 #include "integrator/stages/light_passes.h"
 #include "integrator/stages/path_story.h"
 #include "integrator/stages/shading.h"
@@ -25,8 +25,8 @@ public:
         shadows_(scene, camera, settings), textures_(scene), cone_(camera), passes_(settings),
         surfaces_(scene, camera, settings), block_(surfaces_.block), lanes_(surfaces_.kernel), clear_(scene.geometry),
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
-                   std::ranges::find(scene.clearing, 1) != scene.clearing.end()),
-        late_(settings.max_bounces), queues_(scene), world_values_(scene.world.program.nodes.size()) {
+                   std::ranges::find(scene.perforated_instances, 1) != scene.perforated_instances.end()),
+        last_bounces_(settings.max_bounces), queues_(scene), world_values_(scene.world.program.nodes.size()) {
     if (scene.lights.environment().varies())
       sky_ = scene.lights.environment().map();
     world_nodes_.scene = shader_.node_scene();
@@ -62,17 +62,17 @@ private:
 
     // How many layers it may still pass straight through: limit in all, but one at least. Beyond them the next surface shows
     // its own light only.
-    uint32_t layers_left(uint32_t limit) const {
-      return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxLayers - 1 - layers);
+    uint32_t crossings_left(uint32_t limit) const {
+      return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxCrossings - 1 - layers);
     }
-    void pass_layers(uint32_t count, uint32_t limit) {
+    void count_crossings(uint32_t count, uint32_t limit) {
       layers += count;
       passed_through += count;
       last = passed_through >= limit;
     }
     // pass: share of the paths here that pass straight on.
     bool chooses_to_pass(float pass) const {
-      const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxLayers + layers);
+      const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxCrossings + layers);
       return pass > 0.0f && (pass >= 1.0f || sampler.get1(dimension) < pass);
     }
   };
@@ -86,7 +86,7 @@ private:
   struct Record {
     bool seen = false;  // the first surface has been recorded
     double depth = 0.0; // t of the camera ray up to its last layer
-    DenoisingFeatures features{};
+    DenoisingGuides features{};
     glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // of the light that came by a diffuse, glossy first scattering
   };
 
@@ -153,10 +153,10 @@ private:
   SurfaceStage surfaces_;
   VertexBlock &block_;
   const VertexKernel &lanes_;
-  bool picture_alone_ = true; // no other pass is asked for: records stay as they are
-  LayersMet clear_;           // surfaces on the way of which nothing is there
+  bool only_combined_ = true; // no other pass is asked for: records stay as they are
+  Crossings clear_;           // surfaces on the way of which nothing is there
   bool any_clear_;            // they are passed together; not where passes for denoising add up the ways between them
-  WayBlock ways_{};
+  SegmentBlock segments_{};
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane
   DirectionTable sky_;
@@ -169,7 +169,7 @@ private:
   std::vector<Hit> hits_;
   std::vector<glm::vec3> indirect_; // per slot, kept back until the path ends
   std::vector<Record> records_;     // per slot
-  LateLight late_;
+  LastBounces last_bounces_;
   ShadingQueues queues_; // paths by the class of the material that they have met
   NodeBlock world_nodes_;
   std::vector<NodeLanes> world_values_;

@@ -11,7 +11,7 @@ void PathIntegrator::find_hits(std::span<SampleResult> results, std::vector<Path
   const auto ask = [](void *paths, size_t ray, const Hit &hit) {
     return static_cast<PathIntegrator *>(paths)->is_there(ray, hit);
   };
-  scene_.accelerator->closest_hit(rays_, hits_, {scene_.clearing.data(), ask, this});
+  scene_.accelerator->closest_hit(rays_, hits_, {scene_.perforated_instances.data(), ask, this});
   for (size_t i = 0; i < rays_.size(); ++i)
     if (clear_.count(i) > 0)
       pass_clear(i, results, trace);
@@ -23,12 +23,12 @@ bool PathIntegrator::is_there(size_t ray, const Hit &hit) {
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   if (!scene_.cutouts[material].may_end)
     return true;
-  Layer *known = clear_.find(ray, hit);
+  Crossing *known = clear_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
   // What lies behind as many layers as the path may still pass is out of its reach.
   const Path &path = paths_[ray];
-  if (!known && clear_.count_before(ray, hit) >= path.layers_left(settings_.transparent_bounces))
+  if (!known && clear_.count_before(ray, hit) >= path.crossings_left(settings_.transparent_bounces))
     return true;
   if (shader_.is_there(material, hit))
     return true;
@@ -46,20 +46,20 @@ void PathIntegrator::pass_clear(size_t number, std::span<SampleResult> results, 
   if (count == 0)
     return;
   const uint32_t limit = settings_.transparent_bounces;
-  if (picture_alone_ && !trace && count <= path.layers_left(limit))
-    return path.pass_layers(count, limit);
-  for (const Layer &layer : clear_.in_order(number)) {
+  if (only_combined_ && !trace && count <= path.crossings_left(limit))
+    return path.count_crossings(count, limit);
+  for (const Crossing &layer : clear_.in_order(number)) {
     const Hit &hit = layer.hit;
     if (!closer(hit.t, hit.instance, hit.primitive, end))
       return;
     // The path may pass no more: it ends here.
-    if (path.layers_left(limit) == 0) {
+    if (path.crossings_left(limit) == 0) {
       hits_[number] = hit;
       return;
     }
     // Passes tell of places where little is seen, too.
     SampleResult &result = results[path.slot];
-    const bool recorded = path.in_view && !picture_alone_ && !records_[path.slot].seen;
+    const bool recorded = path.in_view && !only_combined_ && !records_[path.slot].seen;
     if (recorded || trace) {
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
       if (trace)
@@ -69,7 +69,7 @@ void PathIntegrator::pass_clear(size_t number, std::span<SampleResult> results, 
         record(path, surface, queues_.material(hit), clear_point_.bsdf.ns, clear_point_.opacity(), hit.t, result);
       }
     }
-    path.pass_layers(1, limit);
+    path.count_crossings(1, limit);
   }
 }
 

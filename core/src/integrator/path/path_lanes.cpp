@@ -14,7 +14,7 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const Hit &hit = hits_[number];
   const Instance &instance = scene_.geometry.instances[hit.instance];
   const bool ends = path.last || path.scatterings > settings_.max_bounces;
-  if (ends && picture_alone_ && !material.emits() && !material.transmits() && !instance.holdout)
+  if (ends && only_combined_ && !material.emits() && !material.transmits() && !instance.holdout)
     return;
   const uint32_t lane = surfaces_.add(rays_[number], hit, material);
   // Part by part: a copy of the whole would wait until they have left the processor's stores.
@@ -132,7 +132,7 @@ LightSet::Choice PathIntegrator::choose_light(uint32_t lane) const {
 
 // Goes on with the lanes that have chosen the cluster of all lights with a place.
 void PathIntegrator::choose_of_many() {
-  if (scene_.lights.many().empty())
+  if (scene_.lights.wide_tree().empty())
     return;
   LightWalk walks[kBlockLanes];
   uint32_t lanes[kBlockLanes], count = 0;
@@ -141,7 +141,7 @@ void PathIntegrator::choose_of_many() {
       walks[count] = LightTree::walk(query(lane), block_.chosen_rest[lane]);
       lanes[count++] = lane;
     }
-  scene_.lights.many().choose({walks, count});
+  scene_.lights.wide_tree().choose({walks, count});
   for (uint32_t i = 0; i < count; ++i) {
     block_.chosen[lanes[i]] = walks[i].number;
     block_.chosen_probability[lanes[i]] *= walks[i].probability;
@@ -154,7 +154,7 @@ void PathIntegrator::ask_lights() {
   static const Light nothing;
   block_.asked = 0;
   uint32_t skies = 0;
-  const FewLights &few = scene_.lights.few();
+  const BinaryLightTree &few = scene_.lights.binary_tree();
   if (!few.empty()) {
     block_.light_nodes = few.nodes();
     lanes_.choose(block_);
@@ -216,7 +216,7 @@ void PathIntegrator::shade_block(std::span<SampleResult> results, std::vector<Pa
       const Path &path = paths_[waiting_[lane].number];
       keep_vertex(path, surfaces_.surface(lane), hits_[waiting_[lane].number].t, results[path.slot], *trace);
     }
-  if (!picture_alone_)
+  if (!only_combined_)
     record_surfaces(results);
   // Ask for light, and where each path goes on.
   ask_lights();
@@ -272,9 +272,9 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
   const glm::vec3 emission = surfaces_.emission[lane] + get(block_.emission, lane);
   if (emission != glm::vec3(0.0f))
     add_emission(path, surfaces_.surface(lane), emission, result);
-  if (DenoisingFeatures &features = records_[path.slot].features; passes_.features() && features.open)
-    add_denoising_features(scene_, camera_, waiting.mixture, get(block_.wo, lane), surfaces_.transmittance[lane],
-                           hit.t * block_.length[lane], features, result);
+  if (DenoisingGuides &features = records_[path.slot].features; passes_.features() && features.open)
+    add_denoising_guides(scene_, camera_, waiting.mixture, get(block_.wo, lane), surfaces_.transmittance[lane],
+                         hit.t * block_.length[lane], features, result);
   if (path.last)
     return;
   if (!waiting.ends && (block_.lit >> lane & 1))

@@ -13,7 +13,7 @@ namespace lancer {
 void PathIntegrator::add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment) {
   // Light that was scattered at most once is direct; clamping never touches it.
   const bool indirect = path.scatterings > 1;
-  if (const DenoisingFeatures &features = records_[path.slot].features; passes_.features() && features.open)
+  if (const DenoisingGuides &features = records_[path.slot].features; passes_.features() && features.open)
     result.albedo += features.beta * radiance;
   // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
   if (path.in_view) {
@@ -36,22 +36,23 @@ void PathIntegrator::add_lights_met(std::span<SampleResult> results) {
   const LightSet &lights = scene_.lights;
   if (!lights.any_on_the_way())
     return;
-  for (size_t first = 0; first < paths_.size(); first += kWays) {
+  for (size_t first = 0; first < paths_.size(); first += kLightLanes) {
     // Look from the last scattering, as sampling does.
-    const uint32_t count = uint32_t(std::min<size_t>(kWays, paths_.size() - first));
+    const uint32_t count = uint32_t(std::min<size_t>(kLightLanes, paths_.size() - first));
     for (uint32_t lane = 0; lane < count; ++lane) {
       const Ray &ray = rays_[first + lane];
-      put(paths_[first + lane].from, ways_.from, lane);
-      put(ray.d, ways_.d, lane);
-      ways_.end[lane] = way_end(first + lane) + lights.most_before();
+      put(paths_[first + lane].from, segments_.from, lane);
+      put(ray.d, segments_.d, lane);
+      segments_.end[lane] = way_end(first + lane) + lights.most_before();
     }
     for (const uint32_t number : lights.always_on_the_way()) {
-      const uint32_t met = lanes_.meets(ways_, lights.lights()[number]) & ((1u << count) - 1u);
+      const uint32_t met = lanes_.meets(segments_, lights.lights()[number]) & ((1u << count) - 1u);
       for (uint32_t rest = met; rest != 0; rest &= rest - 1)
         add_light_met(first + size_t(std::countr_zero(rest)), number, results);
     }
     if (lights.finds())
-      lights.many().along(ways_, count, [&](uint32_t lane, uint32_t number) { add_light_met(first + lane, number, results); });
+      lights.wide_tree().along(segments_, count,
+                               [&](uint32_t lane, uint32_t number) { add_light_met(first + lane, number, results); });
   }
 }
 

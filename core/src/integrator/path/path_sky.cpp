@@ -11,10 +11,10 @@ namespace lancer {
 void PathIntegrator::miss(size_t number, std::span<SampleResult> results) {
   Path &path = paths_[number];
   SampleResult &result = results[path.slot];
-  if (path.in_view && !picture_alone_ && !records_[path.slot].seen)
+  if (path.in_view && !only_combined_ && !records_[path.slot].seen)
     forget_place(result);
   if (path.scatterings == 0)
-    add_sky_features(records_[path.slot].features, result);
+    add_sky_guides(records_[path.slot].features, result);
   // A transparent film does not show the environment itself, only what it lights.
   if (path.in_view && settings_.film_transparent) {
     result.alpha -= mean(path.beta);

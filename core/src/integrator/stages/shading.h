@@ -20,7 +20,7 @@ struct Shaded {
   glm::vec3 transmittance{0.0f}; // share of light that passes straight on
   float holdout = 0.0f;          // share that becomes a hole in the picture
 
-  bool passes() const { return transmittance != glm::vec3(0.0f); }
+  bool is_transparent() const { return transmittance != glm::vec3(0.0f); }
   // The share that is there.
   glm::vec3 opacity() const { return glm::clamp(1.0f - transmittance, 0.0f, 1.0f); }
 };

@@ -11,36 +11,36 @@ uint64_t ShadowQueue::trace_solid() {
   return rays_.size();
 }
 
-uint64_t ShadowQueue::trace_layers() {
-  layers_.begin(rays_.size());
+uint64_t ShadowQueue::trace_clear() {
+  crossings_.begin(rays_.size());
   occluded_.assign(rays_.size(), 0);
   const HitFilter filter{
-      scene_.passing.data(),
+      scene_.transparent_instances.data(),
       [](void *queue, size_t ray, const Hit &hit) { return static_cast<ShadowQueue *>(queue)->stops(ray, hit); }, this};
   scene_.accelerator->any_hit(rays_, occluded_, filter);
   for (size_t i = 0; i < rays_.size(); ++i) {
     glm::vec3 &contribution = waiting_[i].contribution;
     if (occluded_[i])
       contribution = glm::vec3(0.0f);
-    else if (layers_.count(i) > 0)
+    else if (crossings_.count(i) > 0)
       // Lose light on the way, in the same order whatever the order of finding.
-      for (const Layer &layer : layers_.dimming_in_order(i))
+      for (const Crossing &layer : crossings_.dimming_in_order(i))
         contribution *= layer.transmittance;
   }
   return rays_.size();
 }
 
 bool ShadowQueue::stops(size_t ray, const Hit &hit) {
-  Layer *known = layers_.find(ray, hit);
+  Crossing *known = crossings_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
   // Beyond the last layer nothing passes.
-  if (!known && waiting_[ray].passed + layers_.count(ray) >= deepest_)
+  if (!known && waiting_[ray].passed + crossings_.count(ray) >= deepest_)
     return true;
   const glm::vec3 transmittance = shader_.transmittance(rays_[ray], hit);
   if (transmittance == glm::vec3(0.0f))
     return true;
-  layers_.put(known, ray, hit, transmittance);
+  crossings_.put(known, ray, hit, transmittance);
   return false;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "integrator/sample.h"
-#include "integrator/stages/layers_met.h"
+#include "integrator/stages/crossings.h"
 #include "integrator/stages/light_passes.h"
 #include "integrator/stages/shading.h"
 
@@ -12,7 +12,7 @@ class ShadowQueue {
 public:
   ShadowQueue(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), shader_(scene, &camera), deepest_(settings.transparent_shadows),
-        any_layers_(settings.all_features || (scene.features & kFeatureTransparency)), layers_(scene.geometry) {}
+        any_clear_(settings.all_features || (scene.features & kFeatureTransparency)), crossings_(scene.geometry) {}
 
   // contribution reaches the waiting sum where nothing stands between. passed: surfaces that the path already passed straight
   // through; they count against the same limit.
@@ -46,7 +46,7 @@ public:
   // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing, and empties the queue.
   // Returns how many rays it took.
   template <class Arrive> uint64_t trace(Arrive &&arrive) {
-    const uint64_t count = any_layers_ ? trace_layers() : trace_solid();
+    const uint64_t count = any_clear_ ? trace_clear() : trace_solid();
     for (const Waiting &waiting : waiting_)
       if (waiting.contribution != glm::vec3(0.0f))
         arrive(waiting.light, waiting.contribution);
@@ -65,15 +65,15 @@ private:
   // Everything blocks: any hit answers.
   uint64_t trace_solid();
   // Some surfaces let a share pass.
-  uint64_t trace_layers();
+  uint64_t trace_clear();
   // Whether a surface that a ray meets ends it; keeps what passes, if not.
   bool stops(size_t ray, const Hit &hit);
 
   const Scene &scene_;
   Shader shader_;
   uint32_t deepest_; // surfaces that a ray may pass
-  bool any_layers_;
-  LayersMet layers_; // that the rays have passed
+  bool any_clear_;
+  Crossings crossings_; // that the rays have passed
   std::vector<Ray> rays_;
   std::vector<Waiting> waiting_;
   std::vector<uint8_t> occluded_;

@@ -1,6 +1,7 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "integrator/stages/vertex_kernel.h"
 
+#include "compile/material_lobes.h"
 #include "integrator/stages/block_lobes.h"
 #include "integrator/stages/lobe_means.h"
 #include "integrator/stages/terminator.h"
@@ -10,7 +11,6 @@
 #include "sampling/scramble.h"
 #include "sampling/warp.h"
 #include "scene/hit_surface.h"
-#include "compile/material_lobes.h"
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 
@@ -230,12 +230,12 @@ void scatter(VertexBlock &block) {
   }
 }
 
-[[gnu::flatten]] uint32_t meets(const WayBlock &ways, const Light &light) {
+[[gnu::flatten]] uint32_t meets(const SegmentBlock &segments, const Light &light) {
   uint32_t met = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
-    const D3 d = load3(ways.d, first);
+    const D3 d = load3(segments.d, first);
     const D3 wi = d / sqrt(dot(d, d));
-    met |= placed_bits(may_meet(OneLight<F>{light}, load3(ways.from, first), wi, load(ways.end + first)), first);
+    met |= placed_bits(may_meet(OneLight<F>{light}, load3(segments.from, first), wi, load(segments.end + first)), first);
   }
   return met;
 }

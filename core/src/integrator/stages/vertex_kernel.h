@@ -14,7 +14,7 @@ namespace lancer {
 struct Light;
 struct Material;
 
-inline constexpr int kBlockLanes = kWays;
+inline constexpr int kBlockLanes = kLightLanes;
 
 struct alignas(64) VertexBlock {
   using Floats = float[kBlockLanes];
@@ -47,7 +47,7 @@ struct alignas(64) VertexBlock {
   alignas(64) Floats viewer_ns[3], viewer_ng[3];
   Floats emission[3]; // of layers
 
-  // Given: the tree of LightSet::few(). choose(): one of its lights for each lane, as LightChoice.
+  // Given: the tree of LightSet::binary_tree(). choose(): one of its lights for each lane, as LightChoice.
   LightNodes light_nodes{};
   alignas(64) Words chosen;
   Doubles chosen_probability, chosen_rest;
@@ -74,7 +74,7 @@ struct alignas(64) VertexBlock {
   alignas(64) Floats transmittance[3]; // given
   Floats normal[3], matt_normal[3];    // means of the lobes' normals, of all and of the diffuse ones
   Floats shown[3][3];                  // colours of the passes, by component
-  Floats mixed_matt, mixed_all, mixed_diffuse[3], mixed_specular[3], mixed_normal[3]; // Mixture of denoising_features.h
+  Floats mixed_matt, mixed_all, mixed_diffuse[3], mixed_specular[3], mixed_normal[3]; // Mixture of denoising_guides.h
 
   // ClassicKernel::branch(): shares of light that are mirrored, towards wi, and that go through, towards through_wi.
   // illuminate(): irradiance at normal incidence; contribution is without what it takes to get there.
@@ -111,7 +111,7 @@ struct VertexKernel {
   void (*choose)(VertexBlock &block);
   void (*scatter)(VertexBlock &block);
   // Bits of the lanes that may meet the light; no other does.
-  uint32_t (*meets)(const WayBlock &ways, const Light &light);
+  uint32_t (*meets)(const SegmentBlock &segments, const Light &light);
   size_t lobes_bytes;
 };
 LANCER_DECLARE_KERNEL(VertexKernel, vertex_kernel)

@@ -6,12 +6,12 @@
 namespace lancer {
 
 // The most lobes, and frames (normals with a tangent or without, the shading normal's among them), that can meet at one place.
-struct Room {
+struct MaterialDemand {
   size_t lobes = 0, frames = 1;
 };
-Room room_of(const Material &material);
+MaterialDemand demand_of(const Material &material);
 
 // Says what is left out where that is more than a BSDF holds.
-void tell_room(const std::string &object, const Material &material, Messages &messages);
+void report_limits(const std::string &object, const Material &material, Messages &messages);
 
 } // namespace lancer

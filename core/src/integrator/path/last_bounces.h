@@ -8,9 +8,9 @@
 
 namespace lancer {
 
-class LateLight {
+class LastBounces {
 public:
-  explicit LateLight(uint32_t max_bounces) : max_bounces_(max_bounces) {}
+  explicit LastBounces(uint32_t max_bounces) : max_bounces_(max_bounces) {}
 
   void begin() {
     slots_.clear();

@@ -1,5 +1,5 @@
 // Layers that rays pass: each place once, in order of distance.
-#include "integrator/stages/layers_met.h"
+#include "integrator/stages/crossings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ Geometry fan() {
 // Puts them as a filter does; how many there are.
 uint32_t count(const std::vector<Hit> &hits) {
   const Geometry geometry = fan();
-  LayersMet layers(geometry);
+  Crossings layers(geometry);
   layers.begin(1);
   for (const Hit &hit : hits)
     layers.put(layers.find(0, hit), 0, hit, glm::vec3(1.0f));
@@ -32,17 +32,17 @@ uint32_t count(const std::vector<Hit> &hits) {
   return layers.count(0);
 }
 
-TEST(LayersMet, ATriangleIsPassedOnce) {
+TEST(Crossings, ATriangleIsPassedOnce) {
   EXPECT_EQ(count({{1.0, 0.25, 0.25, 0, 0}, {1.0, 0.25, 0.25, 0, 0}}), 1u);
   EXPECT_EQ(count({{1.0, 0.25, 0.25, 0, 0}, {1.0, 0.25, 0.25, 1, 0}}), 2u);
   EXPECT_EQ(count({{1.0, 0.25, 0.25, 0, 0}, {1.0, 0.25, 0.25, 0, 4}}), 2u);
 }
 
-TEST(LayersMet, AnExactSurfaceIsPassedWhereItIsMet) {
+TEST(Crossings, AnExactSurfaceIsPassedWhereItIsMet) {
   EXPECT_EQ(count({{1.0, 0.0, 0.0, 2, 0}, {3.0, 0.0, 0.0, 2, 0}, {1.0, 0.0, 0.0, 2, 0}}), 2u);
 }
 
-TEST(LayersMet, ACommonEdgeIsPassedOnce) {
+TEST(Crossings, ACommonEdgeIsPassedOnce) {
   // Half way between vertices 0 and 2: corner 2 of the first triangle, corner 1 of the second.
   EXPECT_EQ(count({{1.0, 0.0, 0.5, 0, 0}, {1.0, 0.5, 0.0, 0, 1}}), 1u);
   // The outer edge between vertices 1 and 2, where the weight of corner 0 is what rounding leaves of 0.
@@ -55,13 +55,13 @@ TEST(LayersMet, ACommonEdgeIsPassedOnce) {
   EXPECT_EQ(count({{1.0, 0.0, 0.5, 0, 0}, {1.0, 0.0, 0.5, 0, 4}}), 2u);
 }
 
-TEST(LayersMet, ACommonCornerIsPassedOnce) {
+TEST(Crossings, ACommonCornerIsPassedOnce) {
   EXPECT_EQ(count({{1.0, 0.0, 0.0, 0, 0}, {1.0, 0.0, 0.0, 0, 1}, {1.0, 0.0, 0.0, 0, 2}, {1.0, 0.0, 0.0, 0, 3}}), 1u);
   EXPECT_EQ(count({{1.0, 0.0, 1.0, 0, 0}, {1.0, 1.0, 0.0, 0, 1}}), 1u);
   EXPECT_EQ(count({{1.0, 0.0, 0.0, 0, 0}, {1.0, 0.0, 0.0, 0, 4}}), 2u);
 }
 
-TEST(LayersMet, TheClosestStandsForAllAndOrderIsThatOfDistance) {
+TEST(Crossings, TheClosestStandsForAllAndOrderIsThatOfDistance) {
   const Geometry geometry = fan();
   const Hit near{1.0, 0.0, 0.5, 0, 0}, same{std::nextafter(1.0, 2.0), 0.5, 0.0, 0, 1}, far{2.0, 0.25, 0.25, 0, 2},
       tie{2.0, 0.25, 0.25, 1, 0};
@@ -69,7 +69,7 @@ TEST(LayersMet, TheClosestStandsForAllAndOrderIsThatOfDistance) {
   const auto before = [](const Hit &a, const Hit &b) { return closer(a.t, a.instance, a.primitive, b); };
   std::sort(hits.begin(), hits.end(), before);
   do {
-    LayersMet layers(geometry);
+    Crossings layers(geometry);
     layers.begin(3);
     for (const Hit &hit : hits)
       layers.put(layers.find(1, hit), 1, hit, glm::vec3(float(hit.primitive)));

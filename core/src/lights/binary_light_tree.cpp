@@ -1,4 +1,4 @@
-#include "lights/few_lights.h"
+#include "lights/binary_light_tree.h"
 
 namespace lancer {
 
@@ -10,14 +10,14 @@ LightQueryLanes<float> width_one(const LightQuery &query) {
 
 } // namespace
 
-LightChoice FewLights::choose(const LightQuery &query, double u) const {
+LightChoice BinaryLightTree::choose(const LightQuery &query, double u) const {
   if (empty())
     return {};
   const LightChoiceLanes<float> choice = choose_light(width_one(query), nodes(), u, true);
   return {choice.number, choice.probability, choice.u};
 }
 
-double FewLights::share_of_leaf(const LightQueryLanes<float> &query, const LightNode &node, uint32_t place) const {
+double BinaryLightTree::share_of_leaf(const LightQueryLanes<float> &query, const LightNode &node, uint32_t place) const {
   if (node.count == 1)
     return 1.0;
   double shares[kLeafLights];
@@ -25,7 +25,7 @@ double FewLights::share_of_leaf(const LightQueryLanes<float> &query, const Light
   return shares[place - node.first];
 }
 
-double FewLights::probability(const LightQuery &query, uint32_t number) const {
+double BinaryLightTree::probability(const LightQuery &query, uint32_t number) const {
   if (number >= place_of_.size() || place_of_[number] == kNone)
     return 0.0;
   // Go up from the light's leaf.

@@ -1,4 +1,4 @@
-#include "compile/material_room.h"
+#include "compile/material_limits.h"
 
 #include "bsdf/lobe.h"
 
@@ -88,23 +88,23 @@ size_t add_lobe(const LobeDescription &lobe, Frames &frames) {
 
 } // namespace
 
-Room room_of(const Material &material) {
+MaterialDemand demand_of(const Material &material) {
   Frames frames;
-  Room room;
+  MaterialDemand demand;
   for (const LobeDescription &lobe : material.lobes)
     if (lobe.weight.varies() || lobe.weight.value != glm::vec3(0.0f))
-      room.lobes += add_lobe(lobe, frames);
-  room.frames = frames.count();
-  return room;
+      demand.lobes += add_lobe(lobe, frames);
+  demand.frames = frames.count();
+  return demand;
 }
 
-void tell_room(const std::string &object, const Material &material, Messages &messages) {
-  const Room room = room_of(material);
-  if (room.lobes > size_t(kMaxLobes))
-    messages.add(object, std::to_string(room.lobes) + " lobes may meet in one place, the first " + std::to_string(kMaxLobes) +
+void report_limits(const std::string &object, const Material &material, Messages &messages) {
+  const MaterialDemand demand = demand_of(material);
+  if (demand.lobes > size_t(kMaxLobes))
+    messages.add(object, std::to_string(demand.lobes) + " lobes may meet in one place, the first " + std::to_string(kMaxLobes) +
                              " are kept");
-  if (room.frames > size_t(kMaxFrames))
-    messages.add(object, std::to_string(room.frames) + " normals may meet in one place, lobes of those beyond the first " +
+  if (demand.frames > size_t(kMaxFrames))
+    messages.add(object, std::to_string(demand.frames) + " normals may meet in one place, lobes of those beyond the first " +
                              std::to_string(kMaxFrames) + " get the shading normal");
 }
 

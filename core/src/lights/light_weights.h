@@ -83,7 +83,7 @@ LANCER_LANE float largest(const float (&of)[kChildren]) {
   return most[0] > most[1] ? most[0] : most[1];
 }
 
-struct WideWeights {
+struct LightWeights {
   alignas(64) float most[kChildren];
   // Of the children up to each: the same sums in every instruction set.
   DoubleVector up_to[kParts];
@@ -91,7 +91,7 @@ struct WideWeights {
   double sum = 0.0;
 };
 
-LANCER_LANE void weigh_all(const LightBranches &tree, uint32_t number, const LightWalk &walk, WideWeights &weights) {
+LANCER_LANE void weigh_all(const LightBranches &tree, uint32_t number, const LightWalk &walk, LightWeights &weights) {
   const LightBranch &branch = tree.branches[number];
   const LightAim *aim = tree.aims + (tree.aims ? number : 0);
   for (int first = 0; first < kChildren; first += kLanes)

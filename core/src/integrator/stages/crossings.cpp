@@ -1,4 +1,4 @@
-#include "integrator/stages/layers_met.h"
+#include "integrator/stages/crossings.h"
 
 #include <algorithm>
 #include <array>
@@ -28,29 +28,29 @@ std::array<uint32_t, 2> border_vertices(const Mesh &mesh, const Hit &hit) {
 
 } // namespace
 
-Layer *LayersMet::find(size_t ray, const Hit &hit) {
-  for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next) {
-    const Hit &other = layers_[number].hit;
+Crossing *Crossings::find(size_t ray, const Hit &hit) {
+  for (uint32_t number = rays_[ray].first; number != kNone; number = crossings_[number].next) {
+    const Hit &other = crossings_[number].hit;
     if (other.instance != hit.instance)
       continue;
     const Instance &instance = geometry_.instances[hit.instance];
     if (instance.kind != ShapeKind::Mesh) {
       if (other.t == hit.t)
-        return &layers_[number];
+        return &crossings_[number];
       continue;
     }
     if (other.primitive == hit.primitive)
-      return &layers_[number];
+      return &crossings_[number];
     if (!on_border(hit) || !on_border(other))
       continue;
     const Mesh &mesh = geometry_.meshes[instance.mesh];
     if (border_vertices(mesh, hit) == border_vertices(mesh, other))
-      return &layers_[number];
+      return &crossings_[number];
   }
   return nullptr;
 }
 
-void LayersMet::put(Layer *known, size_t ray, const Hit &hit, const glm::vec3 &transmittance) {
+void Crossings::put(Crossing *known, size_t ray, const Hit &hit, const glm::vec3 &transmittance) {
   if (known) {
     if (closer(hit.t, hit.instance, hit.primitive, known->hit)) {
       known->hit = hit;
@@ -58,28 +58,28 @@ void LayersMet::put(Layer *known, size_t ray, const Hit &hit, const glm::vec3 &t
     }
     return;
   }
-  layers_.push_back({hit, transmittance, rays_[ray].first});
-  rays_[ray].first = uint32_t(layers_.size() - 1);
+  crossings_.push_back({hit, transmittance, rays_[ray].first});
+  rays_[ray].first = uint32_t(crossings_.size() - 1);
   ++rays_[ray].count;
 }
 
-uint32_t LayersMet::count_before(size_t ray, const Hit &hit) const {
+uint32_t Crossings::count_before(size_t ray, const Hit &hit) const {
   uint32_t count = 0;
-  for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next) {
-    const Hit &layer = layers_[number].hit;
+  for (uint32_t number = rays_[ray].first; number != kNone; number = crossings_[number].next) {
+    const Hit &layer = crossings_[number].hit;
     count += closer(layer.t, layer.instance, layer.primitive, hit);
   }
   return count;
 }
 
-std::span<const Layer> LayersMet::sort(size_t ray, bool clear) {
+std::span<const Crossing> Crossings::sort(size_t ray, bool clear) {
   sorted_.clear();
-  for (uint32_t number = rays_[ray].first; number != kNone; number = layers_[number].next)
-    if (clear || layers_[number].transmittance != glm::vec3(1.0f))
-      sorted_.push_back(layers_[number]);
+  for (uint32_t number = rays_[ray].first; number != kNone; number = crossings_[number].next)
+    if (clear || crossings_[number].transmittance != glm::vec3(1.0f))
+      sorted_.push_back(crossings_[number]);
   if (sorted_.size() > 1)
     std::sort(sorted_.begin(), sorted_.end(),
-              [](const Layer &a, const Layer &b) { return closer(a.hit.t, a.hit.instance, a.hit.primitive, b.hit); });
+              [](const Crossing &a, const Crossing &b) { return closer(a.hit.t, a.hit.instance, a.hit.primitive, b.hit); });
   return sorted_;
 }
 

@@ -8,7 +8,7 @@ from .finding import IN_ONE_PLANE, SHADOWED, Finding, Severity, told_number
 from .framing import LEAST_SHARE, share_of_triangles
 
 
-def twin_rows(subject):
+def duplicate_rows(subject):
     """(row, the earlier row that is its equal) of instances that show the same thing in the same place to the same rays."""
     table = subject.instances
     if len(table) < 2:
@@ -50,8 +50,8 @@ def _same_thing(subject, row, other):
     return np.array_equal(first.positions, second.positions) and np.array_equal(first.triangles, second.triangles)
 
 
-def check_twins(subject, rows):
-    """rows: what twin_rows gives."""
+def check_duplicates(subject, rows):
+    """rows: what duplicate_rows gives."""
     told = set()
     for row, first in rows:
         if first in told:

@@ -29,7 +29,7 @@ void look_down(Studio &studio) {
   studio.look({0, 0, 4}, {0, 0, 0});
 }
 
-TEST(DenoisingFeatures, OfADiffusePlane) {
+TEST(DenoisingGuides, OfADiffusePlane) {
   for (const bool behind : {false, true}) {
     Studio studio;
     look_down(studio);
@@ -53,7 +53,7 @@ std::unique_ptr<Studio> mirror_and_wall(const lancer_lobe &mirror, bool blended 
   return studio;
 }
 
-TEST(DenoisingFeatures, OfWhatAMirrorShows) {
+TEST(DenoisingGuides, OfWhatAMirrorShows) {
   for (const lancer_lobe &mirror : {colored(LANCER_MIRROR, kMetal), colored(LANCER_GLOSSY, kMetal, 0.0f)}) {
     const auto studio = mirror_and_wall(mirror);
     expect_near(albedo(*studio), kMetal * kWall, kTurned);
@@ -66,7 +66,7 @@ TEST(DenoisingFeatures, OfWhatAMirrorShows) {
 
 float smooth_step(float x) { return x * x * (3.0f - 2.0f * x); }
 
-TEST(DenoisingFeatures, BlendedOverAMirrorAndWhatItShows) {
+TEST(DenoisingGuides, BlendedOverAMirrorAndWhatItShows) {
   const auto mirror = mirror_and_wall(colored(LANCER_MIRROR, kMetal), true);
   expect_near(albedo(*mirror), kMetal * kWall, kTurned);
   // By the share of light that comes back from the mirror, 0.6 in the mean.
@@ -79,7 +79,7 @@ TEST(DenoisingFeatures, BlendedOverAMirrorAndWhatItShows) {
   expect_near(albedo(*metal), here * matt * kMetal + (1.0f - here) * (1.0f - matt) * kMetal * kWall, 1e-3f);
 }
 
-TEST(DenoisingFeatures, BlendedSkyIsFarthest) {
+TEST(DenoisingGuides, BlendedSkyIsFarthest) {
   Studio studio;
   look_down(studio);
   studio.settings.blended_features = 1;
@@ -88,7 +88,7 @@ TEST(DenoisingFeatures, BlendedSkyIsFarthest) {
   expect_near(albedo(studio), kSky);
 }
 
-TEST(DenoisingFeatures, OfMetalByItsRoughness) {
+TEST(DenoisingGuides, OfMetalByItsRoughness) {
   // alpha is the square of the socket: 0.075 is the last that counts as a mirror.
   for (const float roughness : {std::sqrt(0.0745f), std::sqrt(0.0755f)}) {
     const bool mirror = roughness < std::sqrt(0.075f);
@@ -104,7 +104,7 @@ TEST(DenoisingFeatures, OfMetalByItsRoughness) {
   }
 }
 
-TEST(DenoisingFeatures, OfAMirrorAndPaint) {
+TEST(DenoisingGuides, OfAMirrorAndPaint) {
   // Three quarters of mirror are the limit.
   for (const float share : {0.76f, 0.74f}) {
     Studio studio;
@@ -122,7 +122,7 @@ TEST(DenoisingFeatures, OfAMirrorAndPaint) {
   }
 }
 
-TEST(DenoisingFeatures, OfTheSky) {
+TEST(DenoisingGuides, OfTheSky) {
   Studio empty;
   look_down(empty);
   empty.render();
@@ -139,7 +139,7 @@ TEST(DenoisingFeatures, OfTheSky) {
   EXPECT_FLOAT_EQ(depth(studio), 4.0f);
 }
 
-TEST(DenoisingFeatures, OfALamp) {
+TEST(DenoisingGuides, OfALamp) {
   Studio studio;
   look_down(studio);
   lancer_material lamp = black();
@@ -151,7 +151,7 @@ TEST(DenoisingFeatures, OfALamp) {
   EXPECT_FLOAT_EQ(depth(studio), 4.0f);
 }
 
-TEST(DenoisingFeatures, OfWhatAPaneLetsPass) {
+TEST(DenoisingGuides, OfWhatAPaneLetsPass) {
   Studio studio;
   look_down(studio);
   lancer_material pane = black();
@@ -164,7 +164,7 @@ TEST(DenoisingFeatures, OfWhatAPaneLetsPass) {
   EXPECT_FLOAT_EQ(depth(studio), 3.0f + 0.5f * 1.0f);
 }
 
-TEST(DenoisingFeatures, DepthBeginsWhereTheCameraDoes) {
+TEST(DenoisingGuides, DepthBeginsWhereTheCameraDoes) {
   Studio studio;
   look_down(studio);
   studio.camera.clip_start = 0.5;

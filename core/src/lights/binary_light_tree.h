@@ -9,11 +9,11 @@
 
 namespace lancer {
 
-class FewLights {
+class BinaryLightTree {
 public:
-  FewLights() = default;
+  BinaryLightTree() = default;
   // count: numbers are below it. Lights without energy are never chosen.
-  FewLights(std::vector<DescribedLight> lights, uint32_t count);
+  BinaryLightTree(std::vector<DescribedLight> lights, uint32_t count);
 
   bool empty() const { return lights_.empty(); }
   size_t size() const { return lights_.size(); }

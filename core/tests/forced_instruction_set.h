@@ -6,16 +6,16 @@
 
 namespace lancer::test {
 
-class AskedSet {
+class ForcedInstructionSet {
 public:
-  explicit AskedSet(const char *name) {
+  explicit ForcedInstructionSet(const char *name) {
     const char *before = std::getenv(kName);
     before_ = before ? before : "";
     set(name);
   }
-  ~AskedSet() { set(before_.c_str()); }
-  AskedSet(const AskedSet &) = delete;
-  AskedSet &operator=(const AskedSet &) = delete;
+  ~ForcedInstructionSet() { set(before_.c_str()); }
+  ForcedInstructionSet(const ForcedInstructionSet &) = delete;
+  ForcedInstructionSet &operator=(const ForcedInstructionSet &) = delete;
 
 private:
   static constexpr const char *kName = "LANCER_ISA";

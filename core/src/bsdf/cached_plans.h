@@ -7,15 +7,15 @@
 
 namespace lancer {
 
-struct KeptPlan {
+struct CachedPlan {
   MicrofacetPlan<float> plan;
   // In a row: what single scattering sends out, kFine values, or kCoarse of a lobe that refracts; and the mix between the
   // ends of the curve.
   float single[tables::kFine] = {}, mix[tables::kCoarse] = {};
 };
-inline std::shared_ptr<const KeptPlan> keep(const MicrofacetPlan<float> &plan) {
+inline std::shared_ptr<const CachedPlan> keep(const MicrofacetPlan<float> &plan) {
   const AlbedoLookup<float> tables;
-  const auto kept = std::make_shared<KeptPlan>();
+  const auto kept = std::make_shared<CachedPlan>();
   kept->plan = plan;
   const int singles = refracts(plan.lobe) ? tables::kCoarse : tables::kFine;
   for (int i = 0; i < singles; ++i)
@@ -28,7 +28,7 @@ inline std::shared_ptr<const KeptPlan> keep(const MicrofacetPlan<float> &plan) {
 // The plan of each lane. All are of one kind of lobe.
 template <class F> struct LanePlans {
   static constexpr int kWidth = LanesOf<F>::kWidth;
-  const KeptPlan *of[kWidth] = {};
+  const CachedPlan *of[kWidth] = {};
   bool same = true; // all lanes have one
 
   // A number of every lane's plan.
@@ -45,7 +45,7 @@ template <class F> struct LanePlans {
             from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).z; })};
   }
   template <class Get> LANCER_LANE MaskOf<F> condition(const Get &get) const {
-    return number([&](const KeptPlan &k) __attribute__((always_inline)) { return get(k) ? 1.0f : 0.0f; }) != F(0.0f);
+    return number([&](const CachedPlan &k) __attribute__((always_inline)) { return get(k) ? 1.0f : 0.0f; }) != F(0.0f);
   }
 
   // A row at its place: read_row() of each lane.
@@ -60,18 +60,18 @@ template <class F> struct LanePlans {
   }
   LANCER_LANE F single(const MicrofacetPlan<F> &plan, F cos_o) const {
     return read(
-        [](const KeptPlan &k) __attribute__((always_inline)) { return k.single; },
+        [](const CachedPlan &k) __attribute__((always_inline)) { return k.single; },
         refracts(plan.lobe) ? tables::kCoarse : tables::kFine, cos_o);
   }
   LANCER_LANE F mix(const MicrofacetPlan<F> &, F cos_o) const {
     return read(
-        [](const KeptPlan &k) __attribute__((always_inline)) { return k.mix; }, tables::kCoarse, cos_o);
+        [](const CachedPlan &k) __attribute__((always_inline)) { return k.mix; }, tables::kCoarse, cos_o);
   }
 
   // The plans as one, with what their kind of lobe reads.
   LANCER_LANE MicrofacetPlan<F> plan() const {
 #define LANCER_OF(member)                                                                                                      \
-  [](const KeptPlan &k) __attribute__((always_inline)) { return k.plan.member; }
+  [](const CachedPlan &k) __attribute__((always_inline)) { return k.plan.member; }
     const Lobe<float> &first = of[0]->plan.lobe;
     MicrofacetPlan<F> plan;
     Lobe<F> &lobe = plan.lobe;

@@ -6,7 +6,7 @@
 namespace lancer {
 
 // Aligned for lanes. Throws std::bad_alloc.
-void *allocate_kept(size_t bytes);
-void free_kept(void *values);
+void *allocate_values(size_t bytes);
+void free_values(void *values);
 
 } // namespace lancer
