@@ -1,10 +1,10 @@
 // Materials at surfaces, and samples of the lights that shine there.
 #include "integrator/stages/shading.h"
 
+#include "compile/material_lobes.h"
 #include "integrator/stages/terminator.h"
 #include "integrator/stages/vertex_kernel.h"
 #include "scene/attribute.h"
-#include "compile/material_lobes.h"
 
 #include <algorithm>
 
