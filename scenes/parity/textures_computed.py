@@ -197,7 +197,7 @@ def light_path(scene, output):
     camera(scene, (0, -4.5, 1.8), (0, 0, 0.6))
 
 
-@variants(values={"camera": "Is Camera Ray", "glossy": "Is Glossy Ray"})
+@variants(values={"camera": "Is Camera Ray", "glossy": "Is Glossy Ray", "depth": "Ray Depth"})
 def light_path_of_world(scene, output):
     """A background that some rays see otherwise."""
     floor(scene)

@@ -1,6 +1,5 @@
 #include "accel/accelerator.h"
 
-#include "accel/kinds.h"
 
 namespace lancer {
 

@@ -1,6 +1,7 @@
 // Plans of facets that are the same wherever their material is met, made once, with their tables read ahead along the cosine.
 #pragma once
 
+#include "bsdf/lane_records.h"
 #include "bsdf/principled.h"
 
 #include <memory>
@@ -26,27 +27,9 @@ inline std::shared_ptr<const CachedPlan> keep(const MicrofacetPlan<float> &plan)
 }
 
 // The plan of each lane. All are of one kind of lobe.
-template <class F> struct LanePlans {
-  static constexpr int kWidth = LanesOf<F>::kWidth;
-  const CachedPlan *of[kWidth] = {};
-  bool same = true; // all lanes have one
-
-  // A number of every lane's plan.
-  template <class Get> LANCER_LANE F number(const Get &get) const {
-    if (same)
-      return F(get(*of[0]));
-    return from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]); });
-  }
-  template <class Get> LANCER_LANE Vec3<F> vector(const Get &get) const {
-    if (same)
-      return Vec3<F>(get(*of[0]));
-    return {from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).x; }),
-            from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).y; }),
-            from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).z; })};
-  }
-  template <class Get> LANCER_LANE MaskOf<F> condition(const Get &get) const {
-    return number([&](const CachedPlan &k) __attribute__((always_inline)) { return get(k) ? 1.0f : 0.0f; }) != F(0.0f);
-  }
+template <class F> struct LanePlans : LaneRecords<F, CachedPlan> {
+  using LaneRecords<F, CachedPlan>::of, LaneRecords<F, CachedPlan>::same;
+  using LaneRecords<F, CachedPlan>::number, LaneRecords<F, CachedPlan>::vector, LaneRecords<F, CachedPlan>::condition;
 
   // A row at its place: read_row() of each lane.
   template <class Row> LANCER_LANE F read(const Row &row, int n, F x) const {

@@ -39,23 +39,11 @@ struct ReadyLobe {
 std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material);
 
 // A lobe of every lane, all of one code.
-template <class F> struct LaneLobes {
-  const ReadyLobe *of[LanesOf<F>::kWidth] = {}; // only the first is read where all are the same
-  uint32_t inside = 0;                          // bits of lanes
-  bool same = true;                             // all lanes have one
+template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
+  using LaneRecords<F, ReadyLobe>::of, LaneRecords<F, ReadyLobe>::same;
+  using LaneRecords<F, ReadyLobe>::number, LaneRecords<F, ReadyLobe>::vector;
 
-  template <class Get> LANCER_LANE F number(const Get &get) const {
-    if (same)
-      return F(get(*of[0]));
-    return from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]); });
-  }
-  template <class Get> LANCER_LANE Vec3<F> vector(const Get &get) const {
-    if (same)
-      return Vec3<F>(get(*of[0]));
-    return {from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).x; }),
-            from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).y; }),
-            from_lanes<F>([&](int i) __attribute__((always_inline)) { return get(*of[i]).z; })};
-  }
+  uint32_t inside = 0; // bits of lanes
 
   // The inputs of lobes without nodes.
 #define LANCER_OF(member)                                                                                                      \

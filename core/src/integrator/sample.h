@@ -81,7 +81,7 @@ struct RayCounts {
   uint64_t camera = 0, bounce = 0, shadow = 0;
 };
 
-// Vertices on surfaces, by the code that shaded them: kernels of many lanes, or the general code one by one.
+// Vertices on surfaces: shaded side by side in lanes, or one by one.
 struct VertexCounts {
   uint64_t wide = 0, narrow = 0;
 };

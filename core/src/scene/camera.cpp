@@ -2,7 +2,7 @@
 #include "scene/camera.h"
 
 #include "sampling/elementary.h"
-#include "sampling/warp.h"
+#include "scene/flat_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -137,23 +137,23 @@ void Camera::scale_lengths(double scale) {
 }
 
 Ray Camera::ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const {
-  const glm::dvec2 place(left + (right - left) * raster.x / width, bottom + (top - bottom) * raster.y / height);
   Ray ray;
   ray.tmin = clip_start;
   ray.tmax = clip_end;
-  glm::dvec3 o(0.0), d(place, -1.0);
-  if (kind == CameraKind::Orthographic) {
-    o = glm::dvec3(place, 0.0);
-    d = glm::dvec3(0.0, 0.0, -1.0);
-  } else if (is_panorama()) {
-    d = panorama_direction(*this, place);
-    if (d == glm::dvec3(0.0)) {
-      ray.o = to_world.translation;
-      ray.tmax = -1.0;
-      return ray;
-    }
+  if (!is_panorama()) {
+    const RayLanes<float> flat = flat_ray<float>(*this, {raster.x, raster.y}, {lens.x, lens.y});
+    ray.o = flat.o;
+    ray.d = flat.d;
+    return ray;
   }
-  if (lens_radius > 0.0 && is_panorama()) {
+  const glm::dvec2 place(left + (right - left) * raster.x / width, bottom + (top - bottom) * raster.y / height);
+  glm::dvec3 o(0.0), d = panorama_direction(*this, place);
+  if (d == glm::dvec3(0.0)) {
+    ray.o = to_world.translation;
+    ray.tmax = -1.0;
+    return ray;
+  }
+  if (lens_radius > 0.0) {
     // The lens stands across this very direction, its first axis as near as that allows to forwards; a mirror ball's to the
     // right, and the second the other way around.
     const bool ball = kind == CameraKind::MirrorBall;
@@ -162,11 +162,6 @@ Ray Camera::ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const {
     const glm::dvec3 u = glm::dot(across, across) > 0.0 ? glm::normalize(across) : glm::dvec3(0.0, 1.0, 0.0);
     o = lens_radius * (lens.x * u + lens.y * (ball ? glm::cross(u, d) : glm::cross(d, u)));
     d = glm::normalize(focal_distance * d - o);
-  } else if (lens_radius > 0.0) {
-    // Aim every point of the lens at the same point of the plane in focus.
-    const glm::dvec3 shift(lens_radius * lens.x, lens_radius * lens.y, 0.0);
-    o += shift;
-    d -= shift / focal_distance;
   }
   ray.o = to_world.point(o);
   ray.d = to_world.vector(d);
@@ -174,10 +169,8 @@ Ray Camera::ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const {
 }
 
 glm::dvec2 Camera::aperture(const glm::vec2 &u) const {
-  if (aperture_blades < 3) {
-    const glm::dvec2 d(warp_disk(u));
-    return {d.x / aperture_ratio, d.y};
-  }
+  if (aperture_blades < 3)
+    return round_aperture(*this, u.x, u.y);
   // Choose one of the triangles around the middle, and a point of it.
   const double scaled = double(u.x) * aperture_blades, blade = std::floor(scaled);
   const double across = std::sqrt(scaled - blade), along = double(u.y) * across;

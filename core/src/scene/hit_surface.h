@@ -1,6 +1,7 @@
 // What a shape is like where a ray has met it: a template over the number type, of which surface_at() is width 1.
 #pragma once
 
+#include "scene/affine.h"
 #include "scene/quadric_point.h"
 #include "simd/memory.h"
 
@@ -36,6 +37,9 @@ template <class F> struct MapLanes {
   using D3 = Double3Of<F>;
   D3 x, y, z, translation;
 
+  LANCER_LANE explicit MapLanes(const Affine &map)
+      : x(broadcast(map.linear[0])), y(broadcast(map.linear[1])), z(broadcast(map.linear[2])),
+        translation(broadcast(map.translation)) {}
   LANCER_LANE MapLanes(const Placements<F> &placements, int at)
       : x(placements.vector(at)), y(placements.vector(at + 3)), z(placements.vector(at + 6)),
         translation(placements.vector(at + 9)) {}
@@ -44,6 +48,9 @@ template <class F> struct MapLanes {
   }
   LANCER_LANE D3 point(const D3 &p) const { return vector(p) + translation; }
   LANCER_LANE D3 transposed(const D3 &v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
+
+private:
+  static LANCER_LANE D3 broadcast(const glm::dvec3 &v) { return {DoubleOf<F>(v.x), DoubleOf<F>(v.y), DoubleOf<F>(v.z)}; }
 };
 
 template <class D> LANCER_LANE D largest_of(const Vector3<D> &v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }

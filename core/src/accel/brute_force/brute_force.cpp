@@ -1,4 +1,4 @@
-#include "accel/kinds.h"
+#include "accel/accelerator.h"
 
 #include "accel/hit_tests.h"
 #include "accel/placed_scene.h"

@@ -1,4 +1,4 @@
-#include "accel/kinds.h"
+#include "accel/accelerator.h"
 
 #include "accel/bvh/bvh_build.h"
 #include "accel/bvh/bvh_kernel.h"

@@ -23,6 +23,8 @@ template <class Visit> void each_lane(uint32_t lanes, const Visit &visit) {
 
 } // namespace
 
+const ClassicKernel &classic_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(classic_kernel); }
+
 void ClassicIntegrator::shade(std::span<SampleResult> results) {
   queues_.begin();
   own_light_.begin(rays_.size());

@@ -26,8 +26,8 @@ struct alignas(64) CameraBlock {
   const FilterTable *filter = nullptr;
 };
 
-// Camera rays in vector registers, one copy per instruction set; all give the same bits, and those of the general code:
-// Sampler, PixelFilter, Camera::ray().
+// Camera rays in lanes, one copy per instruction set; all give the same bits, and those of Sampler, PixelFilter and
+// Camera::ray().
 struct CameraKernel {
   const char *name;
   // Flat pictures through a pinhole or a round lens.
