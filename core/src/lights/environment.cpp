@@ -43,6 +43,24 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
   return width;
 }
 
+// Whether nodes give another radiance in another direction: of those without inputs all do but Light Path and Object Info.
+bool has_directions(const World &world) {
+  return std::ranges::any_of(world.schedule, [&](uint16_t number) {
+    switch (world.program.nodes[number].kind) {
+    case LANCER_NODE_COORDINATE:
+    case LANCER_NODE_ATTRIBUTE:
+    case LANCER_NODE_FRESNEL:
+    case LANCER_NODE_LAYER_WEIGHT:
+    case LANCER_NODE_NORMAL_MAP:
+    case LANCER_NODE_TANGENT:
+    case LANCER_NODE_BUMP:
+      return true;
+    default:
+      return false;
+    }
+  });
+}
+
 } // namespace
 
 MapSize map_size(uint32_t resolution, uint32_t widest) {
@@ -61,8 +79,14 @@ Environment::Environment(const World &world, const std::vector<Image> &images, c
                          const BuildContext &context)
     : world_(&world), images_(&images), normalisation_(&normalisation), constant_(world.radiance.value),
       mean_(double(weight_of(world.radiance.value))), hidden_from_(world.hidden_from) {
-  if (world.varies())
+  if (!world.varies())
+    return;
+  if (has_directions(world)) {
     make_map(context);
+    return;
+  }
+  std::vector<glm::vec4> values(world.program.nodes.size());
+  mean_ = double(weight_of(evaluate(glm::dvec3(0.0, 0.0, 1.0), values, nullptr, nullptr)));
 }
 
 glm::vec3 Environment::evaluate(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye,
@@ -108,7 +132,7 @@ void Environment::make_map(const BuildContext &context) {
 LightSample Environment::sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera) const {
   LightSample sample;
   sample.distance = std::numeric_limits<double>::infinity();
-  if (!varies())
+  if (!is_light())
     return sample;
   const DirectionMap::Sample found = map_.sample(u);
   sample.wi = found.direction;

@@ -30,7 +30,9 @@ public:
               const BuildContext &context);
 
   // One radiance in all directions: found best by the BSDF's own samples, so it is no light to sample.
-  bool varies() const { return !map_.empty(); }
+  bool varies() const { return world_ && world_->varies(); }
+  // Whether it is sampled: where directions differ. What only the path decides is found by the BSDF, as in Cycles.
+  bool is_light() const { return !map_.empty(); }
   const glm::vec3 &constant() const { return constant_; }
   uint32_t hidden_from() const { return hidden_from_; }
   // Mean over all directions, of the brightest channel.
@@ -42,12 +44,12 @@ public:
                      const LightPath<float> &path = {}) const {
     return varies() ? evaluate(wi, values, camera, eye, path) : constant_;
   }
-  // No sample where it does not vary.
+  // No sample where it is no light.
   LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera) const;
   // Density per solid angle with which sample() gives wi; of the direction that nodes see, in floats.
-  double pdf(const glm::dvec3 &wi) const { return varies() ? map_.pdf(glm::vec3(wi)) : 0.0; }
+  double pdf(const glm::dvec3 &wi) const { return is_light() ? map_.pdf(glm::vec3(wi)) : 0.0; }
 
-  // For kernels, as long as this is neither changed nor moved; only where it varies.
+  // For kernels, as long as this is neither changed nor moved; only of a light.
   DirectionTable map() const { return map_.table(); }
 
   size_t bytes() const { return map_.bytes(); }

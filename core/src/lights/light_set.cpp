@@ -23,7 +23,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   }
   for (const Emitter &emitter : emitters_)
     switches_.push_back(emitter.hidden_from());
-  if (environment_.varies())
+  if (environment_.is_light())
     switches_.push_back(environment_.hidden_from());
   std::vector<DescribedLight> described;
   described.reserve(size());
@@ -32,7 +32,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   for (const Emitter &emitter : emitters_)
     described.push_back(describe_cluster(emitter.bounds(), uint32_t(described.size())));
   // What only the camera sees lights nothing.
-  if (environment_.varies() && lit_by(environment_.hidden_from()))
+  if (environment_.is_light() && lit_by(environment_.hidden_from()))
     described.push_back(describe_sky(environment_.mean(), environment_light()));
   // One that is never chosen is never met either: both techniques know the same lights.
   std::vector<uint32_t> met;

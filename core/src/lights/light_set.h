@@ -16,7 +16,7 @@ public:
   LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, size_t instance_count, Environment environment,
            const BuildContext &context = {});
 
-  size_t size() const { return lights_.size() + emitters_.size() + (environment_.varies() ? 1 : 0); }
+  size_t size() const { return lights_.size() + emitters_.size() + (environment_.is_light() ? 1 : 0); }
   bool empty() const { return size() == 0; }
   const std::vector<Light> &lights() const { return lights_; }
   const std::vector<Emitter> &emitters() const { return emitters_; }

@@ -27,7 +27,7 @@ public:
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
                    std::ranges::find(scene.perforated_instances, 1) != scene.perforated_instances.end()),
         last_bounces_(settings.max_bounces), queues_(scene), world_values_(scene.world.program.nodes.size()) {
-    if (scene.lights.environment().varies())
+    if (scene.lights.environment().is_light())
       sky_ = scene.lights.environment().map();
     world_nodes_.scene = shader_.node_scene();
     world_nodes_.surface = false;

@@ -63,7 +63,9 @@ void PathIntegrator::add_environment(const Path &path, double pdf, const glm::ve
 void PathIntegrator::add_missed(std::span<SampleResult> results) {
   if (missed_count_ == 0)
     return;
-  light_kernel().sky_density(sky_, misses_);
+  const bool is_light = scene_.lights.environment().is_light();
+  if (is_light)
+    light_kernel().sky_density(sky_, misses_);
   for (uint32_t lane = 0; lane < missed_count_; ++lane) {
     const Path &path = paths_[missed_[lane]];
     world_nodes_.eye[lane] = path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr;
@@ -77,7 +79,10 @@ void PathIntegrator::add_missed(std::span<SampleResult> results) {
   for (uint32_t lane = 0; lane < missed_count_; ++lane) {
     const Path &path = paths_[missed_[lane]];
     const glm::vec3 radiance = sky_in_lane(lane);
-    add_environment(path, misses_.pdf[lane], radiance, results[path.slot]);
+    if (is_light)
+      add_environment(path, misses_.pdf[lane], radiance, results[path.slot]);
+    else
+      add(path, results[path.slot], path.beta * radiance, true);
   }
   missed_count_ = 0;
 }
