@@ -153,6 +153,10 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
     if (!any(there))
       continue;
     const auto weighted = [&](const V &color) __attribute__((always_inline)) { return select(there, color, none); };
+    // Where a layer is not there it makes no frame that later lobes would find.
+    const auto framed = [&](const V &normal) __attribute__((always_inline)) {
+      return add_frame(bsdf, select(there, normal, none));
+    };
     uint8_t frame = 0;
     Lobe<F> lobe;
     switch (row.layer) {
@@ -161,7 +165,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
       continue;
     case PrincipledLayer::Sheen: {
       // Cloth on top of all, its normal between the base's and the coat's.
-      frame = add_frame(bsdf, select(same(n_coat, n), n, mix(n, n_coat, clamp01(in.coat))));
+      frame = framed(select(same(n_coat, n), n, mix(n, n_coat, clamp01(in.coat))));
       lobe = make_sheen(weighted(share * positive(in.sheen_tint) * weight), clamp01(in.sheen_roughness), cos_in(bsdf, frame));
       lobe.rules = in.rules;
       break;
@@ -176,7 +180,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
     }
     default: {
       if (row.layer == PrincipledLayer::Coat) {
-        frame = add_frame(bsdf, reflecting_normal(bsdf, n_coat));
+        frame = framed(reflecting_normal(bsdf, n_coat));
       } else {
         if (base_frame < 0)
           base_frame = add_frame(bsdf, n_reflect, tangent);

@@ -108,7 +108,7 @@ template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const
 
   const MaskOf<F> is_coated = in.coat > kLeastLayer;
   if (any(is_coated)) {
-    const uint8_t coat_frame = add_frame(bsdf, reflecting_normal(bsdf, in.coat_normal));
+    const uint8_t coat_frame = add_frame(bsdf, select(is_coated, reflecting_normal(bsdf, in.coat_normal), none));
     Lobe<F> coat = make_clear_coat(select(is_coated, in.coat * lobe.weight, none), in.coat_roughness * in.coat_roughness,
                                    cos_in(bsdf, coat_frame));
     coat.frame = coat_frame;
