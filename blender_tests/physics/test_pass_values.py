@@ -10,7 +10,7 @@ from tiny_scenes import lambert, move, pencil, plane, rotate_y, scale, scene, sp
 
 from addon.bindings.enums import CameraKind, Integrator, LobeKind, Pass
 from addon.bindings.session import Session
-from addon.bindings.snapshot import Camera, Instance, Lobe, Material
+from addon.bindings.snapshot import Camera, Instance, Lobe, Material, Principled
 
 # A few float roundings of numbers that are at most 1.
 EXACT = 1e-6
@@ -202,16 +202,34 @@ def test_occlusion_is_that_of_the_first_surface():
         assert np.allclose(got, 1.0, rtol=0, atol=EXACT), clear
 
 
+def plastic(**fields):
+    return Material("plastic", lobes=(Lobe(LobeKind.PRINCIPLED, principled=Principled(base_color=(0.6, 0.5, 0.4), **fields)),))
+
+
+# Whether the next rays of the surface tell of occlusion, wholly or weighed, or it sends rays for it.
+SURFACES = {
+    "lambert": lambert(),
+    "black": lambert(0.0),
+    "plastic": plastic(roughness=0.3),
+    "half metal": plastic(roughness=0.1, metallic=0.4),
+    "metal": plastic(roughness=0.4, metallic=1.0),
+    "mirror": Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(1, 1, 1)),)),
+}
+
+
+@pytest.mark.parametrize("surface", SURFACES)
 @pytest.mark.parametrize("reach, want", [(0.0, 0.5), (4.0, None), (1.0, 1.0)])
-def test_half_of_the_sky_is_behind_a_wall(reach, want):
+def test_half_of_the_sky_is_behind_a_wall(reach, want, surface):
     """At the foot of a wall without end, 2 away: half of the cosines; or those that meet it within the reach, which are the
     segment of the unit disk beyond 2 / reach."""
     floor, wall = plane(0), plane(0, move(x=-2.0) @ rotate_y(math.pi / 2))
     samples = 16384
-    snapshot = scene([floor, wall], [lambert()], world=1.0, camera=pencil((0, 0, 4)), occlusion_distance=reach, samples=samples)
+    camera = pencil((0, 0, 4))
+    snapshot = scene([floor, wall], [SURFACES[surface]], world=1.0, camera=camera, occlusion_distance=reach, samples=samples)
     if want is None:
         c = 2.0 / reach
         want = 1.0 - (math.acos(c) - c * math.sqrt(1 - c * c)) / math.pi
     got = passes_of(snapshot, Pass.AMBIENT_OCCLUSION)[0]
-    # Stratified samples are not worse than independent ones: 5 standard errors of a share.
-    assert np.allclose(got, want, rtol=0, atol=5 * math.sqrt(want * (1 - want) / samples) + EXACT)
+    # What is blocked is counted with weights of at most 2, their mean 1: no sample's variance is above 2 (1 - want).
+    # Stratified samples are not worse than independent ones: 5 standard errors.
+    assert np.allclose(got, want, rtol=0, atol=5 * math.sqrt(2 * (1 - want) / samples) + EXACT)

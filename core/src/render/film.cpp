@@ -2,10 +2,12 @@
 
 #include "sampling/color.h"
 #include "sampling/nearest_float.h"
+#include "simd/memory.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -207,13 +209,21 @@ void Film::gather(std::span<const SampleResult> results, uint32_t replicate, Sum
 }
 
 bool Film::finite(const SampleResult &result) const {
-  // What is not finite less itself is none.
+  // What is not finite less itself is none: four at a time, the last ones of a run maybe twice.
   const float *numbers = numbers_of(result);
-  bool all = true;
-  for (const Layout::Run &run : layout_.summed)
-    for (uint32_t i = run.from; i < run.from + run.count; ++i)
-      all &= numbers[i] - numbers[i] == 0.0f;
-  return all;
+  Float<4> sum(0.0f);
+  float rest = 0.0f;
+  for (const Layout::Run &run : layout_.summed) {
+    const float *from = numbers + run.from;
+    for (uint32_t i = 0; run.count >= 4 && i < run.count; i += 4) {
+      alignas(16) float four[4];
+      std::copy_n(from + std::min(i, run.count - 4), 4, four);
+      sum += load_lanes<4>(four) - load_lanes<4>(four);
+    }
+    for (uint32_t i = 0; run.count < 4 && i < run.count; ++i)
+      rest += from[i] - from[i];
+  }
+  return all(sum == Float<4>(0.0f)) && rest == 0.0f;
 }
 
 void Film::read(Pass pass, std::span<float> out) const {
@@ -253,8 +263,10 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
     // Samples count what is clear; the sky is all mist.
     target[0] = float(std::clamp(1.0 - mean(pass, 0), 0.0, 1.0));
   } else {
+    // Occlusion is counted from the open downwards, sometimes further than 0.
+    const float least = uint32_t(pass) == LANCER_PASS_AMBIENT_OCCLUSION ? 0.0f : -std::numeric_limits<float>::infinity();
     for (uint32_t c = 0; c < channels(pass); ++c)
-      target[c] = float(mean(pass, c));
+      target[c] = std::max(float(mean(pass, c)), least);
   }
 }
 

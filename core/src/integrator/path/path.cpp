@@ -67,10 +67,11 @@ void PathIntegrator::generate(std::span<const SampleAddress> addresses, std::spa
   paths_.clear();
   rays_.clear();
   indirect_.assign(addresses.size(), glm::vec3(0.0f));
-  Record record;
-  record.features = begin_guides(settings_, passes_.features());
+  shares_.resize(addresses.size());
   if (!only_combined_ || records_.size() != addresses.size())
-    records_.assign(addresses.size(), record);
+    records_.assign(addresses.size(), Record());
+  if (passes_.features())
+    guides_.assign(addresses.size(), begin_guides(settings_, true));
   generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
     paths_.emplace_back(sampler, slot);
     return rays_.emplace_back();
@@ -84,6 +85,8 @@ void PathIntegrator::shade(std::span<SampleResult> results, std::vector<PathVert
   next_paths_.clear();
   next_rays_.clear();
   add_lights_met(results);
+  if (passes_.occlusion())
+    count_occluded(results);
   queues_.begin();
   for (size_t i = 0; i < paths_.size(); ++i)
     if (hits_[i].valid())
@@ -135,17 +138,41 @@ void PathIntegrator::record(const Path &path, const Surface &surface, const Mate
     result.mist += (1.0f - mist_at(scene_, camera_, settings_, surface)) * mean(path.beta * opacity);
 }
 
-void PathIntegrator::sample_occlusion(uint32_t lane) {
-  const Waiting &waiting = waiting_[lane];
-  const Path &path = paths_[waiting.number];
-  // Look around the normal of what is diffuse, with the weight of a cosine.
-  const glm::vec3 n = get(block_.matt_normal, lane);
-  const glm::vec3 local = warp_cosine_hemisphere({block_.u[kVertexBsdf][lane], block_.u[kVertexBsdf + 1][lane]});
-  const double distance = settings_.occlusion_distance * scene_.normalisation.scale;
-  Ray ray = leave(surfaces_.surface(lane), glm::dvec3(Frame(n).to_world(local)),
-                  distance > 0.0 ? distance : std::numeric_limits<double>::infinity());
+// Looks for what is in the way around the normal of what is diffuse, with the weight of a cosine.
+void PathIntegrator::look_around(uint32_t lane, SampleResult &result) {
+  const Path &path = paths_[waiting_[lane].number];
+  const glm::vec3 weight = path.beta * surfaces_.opacity(lane);
+  if (block_.looks_itself >> lane & 1)
+    send_occlusion_ray(lane, get(block_.occlusion_wi, lane), weight);
+  else
+    result.light[kLightOcclusion] += weight;
+  if (!(block_.looks_by_next >> lane & 1))
+    return;
+  const float occlusion = block_.occlusion_weight[lane];
+  if (block_.sampled >> lane & 1) {
+    records_[path.slot].occlusion = occlusion;
+  } else {
+    // A direction that brings no light gets a ray all the same.
+    result.light[kLightOcclusion] -= occlusion;
+    send_occlusion_ray(lane, get(block_.wi, lane), glm::vec3(occlusion));
+  }
+}
+
+void PathIntegrator::send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, const glm::vec3 &weight) {
+  const Path &path = paths_[waiting_[lane].number];
+  Ray ray = leave(surfaces_.surface(lane), glm::dvec3(wi), occlusion_reach_);
   ray.kinds = LANCER_RAY_SHADOW;
-  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, path.beta * surfaces_.opacity(lane), path.passed_through);
+  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, weight, path.passed_through);
+}
+
+// What the next rays of the first surfaces have met.
+void PathIntegrator::count_occluded(std::span<SampleResult> results) {
+  for (size_t i = 0; i < paths_.size(); ++i) {
+    float &occlusion = records_[paths_[i].slot].occlusion;
+    if (occlusion > 0.0f && hits_[i].valid() && hits_[i].t * glm::length(rays_[i].d) < occlusion_reach_)
+      results[paths_[i].slot].light[kLightOcclusion] -= occlusion;
+    occlusion = 0.0f;
+  }
 }
 
 // Unless the path has passed all that it may.

@@ -26,11 +26,15 @@ public:
         surfaces_(scene, camera, settings), block_(surfaces_.block), lanes_(surfaces_.kernel), clear_(scene.geometry),
         any_clear_((scene.features & kFeatureTransparency) && !passes_.features() &&
                    std::ranges::find(scene.perforated_instances, 1) != scene.perforated_instances.end()),
+        occlusion_reach_(settings.occlusion_distance > 0.0 ? settings.occlusion_distance * scene.normalisation.scale
+                                                           : std::numeric_limits<double>::infinity()),
         last_bounces_(settings.max_bounces), queues_(scene), world_values_(scene.world.program.nodes.size()) {
     if (scene.lights.environment().is_light())
       sky_ = scene.lights.environment().map();
     world_nodes_.scene = shader_.node_scene();
     world_nodes_.surface = false;
+    // What shadow rays pass, or do not see, other rays meet.
+    block_.next_rays_look = !(scene.features & (kFeatureTransparency | kFeatureVisibility));
   }
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
@@ -84,10 +88,14 @@ private:
 
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
   struct Record {
-    bool seen = false;  // the first surface has been recorded
-    double depth = 0.0; // t of the camera ray up to its last layer
-    DenoisingGuides features{};
-    glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // of the light that came by a diffuse, glossy first scattering
+    double depth = 0.0;     // t of the camera ray up to its last layer
+    bool seen = false;      // the first surface has been recorded
+    float occlusion = 0.0f; // what the next ray takes from the pass of ambient occlusion if it is blocked
+  };
+
+  // Of the light that came by the first scattering: what is diffuse, glossy.
+  struct Shares {
+    glm::vec3 of[2];
   };
 
   // A vertex that waits for the others of its block.
@@ -135,7 +143,9 @@ private:
                    std::vector<PathVertex> &trace) const;
   void record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
               const glm::vec3 &opacity, double t, SampleResult &result);
-  void sample_occlusion(uint32_t lane);
+  void look_around(uint32_t lane, SampleResult &result);
+  void send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, const glm::vec3 &weight);
+  void count_occluded(std::span<SampleResult> results);
   bool stays_in_view(uint32_t lane) const;
   void pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
   static bool survives(uint32_t scatterings, float u, glm::vec3 &beta);
@@ -156,6 +166,7 @@ private:
   bool only_combined_ = true; // no other pass is asked for: records stay as they are
   Crossings clear_;           // surfaces on the way of which nothing is there
   bool any_clear_;            // they are passed together; not where passes for denoising add up the ways between them
+  double occlusion_reach_;    // normalised units
   SegmentBlock segments_{};
   Waiting waiting_[kBlockLanes];
   uint32_t first_sample_ = 0; // of the block's first lane
@@ -167,8 +178,10 @@ private:
   std::vector<Path> paths_, next_paths_;
   std::vector<Ray> rays_, next_rays_;
   std::vector<Hit> hits_;
-  std::vector<glm::vec3> indirect_; // per slot, kept back until the path ends
-  std::vector<Record> records_;     // per slot
+  std::vector<glm::vec3> indirect_;     // per slot, kept back until the path ends
+  std::vector<Record> records_;         // per slot, like what follows
+  std::vector<Shares> shares_;          // where passes are by component, once the path has left what the camera sees
+  std::vector<DenoisingGuides> guides_; // where passes for denoising are asked for
   LastBounces last_bounces_;
   ShadingQueues queues_; // paths by the class of the material that they have met
   NodeBlock world_nodes_;

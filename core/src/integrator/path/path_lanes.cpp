@@ -97,7 +97,7 @@ void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
     if (waiting_[lane].nothing)
       continue;
     seen |= uint32_t(path.in_view) << lane;
-    featured |= uint32_t(passes_.features() && records_[path.slot].features.open) << lane;
+    featured |= uint32_t(passes_.features() && guides_[path.slot].open) << lane;
   }
   if (!(seen | featured))
     return;
@@ -109,8 +109,14 @@ void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
     const Hit &hit = hits_[waiting.number];
     SampleResult &result = results[path.slot];
     if (seen >> lane & 1) {
-      record(path, surfaces_.surface(lane), *block_.material[lane], get(block_.normal, lane), surfaces_.opacity(lane), hit.t,
-             result);
+      block_.occlusion_asked |= uint32_t(passes_.occlusion() && !waiting.ends && path.scatterings == 0) << lane;
+      // Mostly its place is enough.
+      Surface surface;
+      if (path.sampler.sample() == 0 || passes_.uv())
+        surface = surfaces_.surface(lane);
+      else
+        surface.p = get(block_.p, lane);
+      record(path, surface, *block_.material[lane], get(block_.normal, lane), surfaces_.opacity(lane), hit.t, result);
       for (uint32_t component = 0; component < 3 && passes_.components(); ++component)
         result.light[kLightComponents + 3 * component + 2] += path.beta * get(block_.shown[component], lane);
     }
@@ -224,7 +230,7 @@ void PathIntegrator::shade_block(std::span<SampleResult> results, std::vector<Pa
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     if (!waiting_[lane].nothing)
       leave_lane(lane, results[paths_[waiting_[lane].number].slot]);
-  block_.ends = 0;
+  block_.ends = block_.occlusion_asked = 0;
   surfaces_.clear();
 }
 
@@ -234,7 +240,7 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   const glm::vec3 contribution = get(block_.contribution, lane);
   WaitingLight shares;
   for (int component = 0; component < 2 && passes_.components(); ++component)
-    shares.share[component] = path.in_view ? get(block_.light_share[component], lane) : records_[path.slot].share[component];
+    shares.share[component] = path.in_view ? get(block_.light_share[component], lane) : shares_[path.slot].of[component];
   if (scene_.lights.no_shadow(waiting.choice.light)) {
     shares.slot = path.slot;
     shares.indirect = path.scatterings > 0;
@@ -272,15 +278,15 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
   const glm::vec3 emission = surfaces_.emission[lane] + get(block_.emission, lane);
   if (emission != glm::vec3(0.0f))
     add_emission(path, surfaces_.surface(lane), emission, result);
-  if (DenoisingGuides &features = records_[path.slot].features; passes_.features() && features.open)
+  if (passes_.features() && guides_[path.slot].open)
     add_denoising_guides(scene_, camera_, waiting.mixture, get(block_.wo, lane), surfaces_.transmittance[lane],
-                         hit.t * block_.length[lane], features, result);
+                         hit.t * block_.length[lane], guides_[path.slot], result);
   if (path.last)
     return;
   if (!waiting.ends && (block_.lit >> lane & 1))
     send_shadow_of(lane);
-  if (!waiting.ends && path.scatterings == 0 && passes_.occlusion())
-    sample_occlusion(lane);
+  if (block_.occlusion_asked >> lane & 1)
+    look_around(lane, result);
   if (const float pass = block_.pass[lane]; path.chooses_to_pass(pass))
     return pass_straight_on(path, surfaces_.surface(lane), rays_[waiting.number], hit.t, surfaces_.transmittance[lane] / pass);
   if (waiting.ends || !(block_.sampled >> lane & 1))
@@ -293,7 +299,7 @@ void PathIntegrator::leave_lane(uint32_t lane, SampleResult &result) {
   next.in_view = path.in_view && stays_in_view(lane);
   if (path.in_view && !next.in_view && passes_.components())
     for (int component = 0; component < 2; ++component)
-      records_[path.slot].share[component] = get(block_.share[component], lane);
+      shares_[path.slot].of[component] = get(block_.share[component], lane);
   next.beta = beta;
   next.from = get(block_.p, lane);
   next.normal = get(block_.viewer_ns, lane);

@@ -13,8 +13,8 @@ namespace lancer {
 void PathIntegrator::add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment) {
   // Light that was scattered at most once is direct; clamping never touches it.
   const bool indirect = path.scatterings > 1;
-  if (const DenoisingGuides &features = records_[path.slot].features; passes_.features() && features.open)
-    result.albedo += features.beta * radiance;
+  if (passes_.features() && guides_[path.slot].open)
+    result.albedo += guides_[path.slot].beta * radiance;
   // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
   if (path.in_view) {
     const float top = largest(radiance), limit = settings_.clamp_indirect;
@@ -28,7 +28,7 @@ void PathIntegrator::add(const Path &path, SampleResult &result, const glm::vec3
     indirect_[path.slot] += radiance;
   else
     result.radiance += radiance;
-  passes_.add(result, radiance, records_[path.slot].share, indirect);
+  passes_.add(result, radiance, shares_[path.slot].of, indirect);
 }
 
 // Lights stand in no one's way: adds all that the rays pass before they end.

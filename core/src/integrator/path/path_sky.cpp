@@ -13,8 +13,8 @@ void PathIntegrator::miss(size_t number, std::span<SampleResult> results) {
   SampleResult &result = results[path.slot];
   if (path.in_view && !only_combined_ && !records_[path.slot].seen)
     forget_place(result);
-  if (path.scatterings == 0)
-    add_sky_guides(records_[path.slot].features, result);
+  if (path.scatterings == 0 && passes_.features())
+    add_sky_guides(guides_[path.slot], result);
   // A transparent film does not show the environment itself, only what it lights.
   if (path.in_view && settings_.film_transparent) {
     result.alpha -= mean(path.beta);

@@ -19,8 +19,9 @@ public:
   explicit LightPasses(const IntegratorSettings &settings)
       : wanted_((settings.passes & kAnyLight) != 0), components_((settings.passes & kAnyComponent) != 0),
         occlusion_((settings.passes & 1u << LANCER_PASS_AMBIENT_OCCLUSION) != 0),
-        mist_((settings.passes & 1u << LANCER_PASS_MIST) != 0), features_((settings.passes & kAnyFeature) != 0),
-        places_((settings.passes & kPlaces) != 0), only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
+        mist_((settings.passes & 1u << LANCER_PASS_MIST) != 0), uv_((settings.passes & 1u << LANCER_PASS_UV) != 0),
+        features_((settings.passes & kAnyFeature) != 0), places_((settings.passes & kPlaces) != 0),
+        only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
 
   // SampleResult::light is asked for, or a part of it.
   bool wanted() const { return wanted_; }
@@ -28,6 +29,7 @@ public:
   bool components() const { return components_; }
   bool occlusion() const { return occlusion_; }
   bool mist() const { return mist_; }
+  bool uv() const { return uv_; }
   bool features() const { return features_; }
   // Where the first surface is, which sample 0 says; and nothing else beside the picture.
   bool places() const { return places_; }
@@ -62,7 +64,7 @@ private:
   static constexpr uint32_t kPlaces =
       1u << LANCER_PASS_DEPTH | 1u << LANCER_PASS_POSITION | 1u << LANCER_PASS_OBJECT_INDEX | 1u << LANCER_PASS_MATERIAL_INDEX;
   static constexpr uint32_t kAlways = 1u << LANCER_PASS_COMBINED | 1u << LANCER_PASS_ERROR;
-  bool wanted_, components_, occlusion_, mist_, features_, places_, only_places_;
+  bool wanted_, components_, occlusion_, mist_, uv_, features_, places_, only_places_;
 };
 
 } // namespace lancer

@@ -203,8 +203,39 @@ LANCER_LANE void light(VertexBlock &block, int first, const Bsdf<F> &bsdf, D sca
   block.lifted |= placed_bits(terminator_amount(load(block.terminator + first), bsdf.ns, bsdf.ng, wi) > zero, first);
 }
 
+// Rays of ambient occlusion: the next rays of matt surfaces are drawn by the same cosine and tell as much. What is open counts
+// 1, less the next ray's weight where that is blocked, which is exact in the open. Only directions above both normals:
+// elsewhere a BSDF may lose what it draws, and a direction that occlusion draws there has a ray of its own.
+LANCER_LANE void look_around(VertexBlock &block, int first, const Bsdf<F> &bsdf, const BsdfSample<F> &sample) {
+  // The least share of the cosine in what the surface draws: weights are at most 1 over it.
+  constexpr float kLeastCosine = 0.5f;
+  const M asked = some(block.occlusion_asked, first);
+  if (!any(asked))
+    return;
+  const F zero(0.0f);
+  const V3 n = load3(block.matt_normal, first);
+  const V3 wi = Frame<F>(n).to_world(warp_cosine_hemisphere(load(block.u[0] + first), load(block.u[1] + first)));
+  store3(block.occlusion_wi, first, wi);
+  F cosine = zero;
+  for (int i = 0; i < bsdf.count && block.next_rays_look; ++i) {
+    const Lobe<F> &lobe = bsdf.lobes[i];
+    if (draws_cosines(lobe) && !(lobe.shape == LobeShape::Matte && matte_transmits(lobe)))
+      cosine += select(equal(bsdf.first_same[lobe.frame], U(0u)), lobe.probability, zero);
+  }
+  const M by_next = asked & (cosine >= F(kLeastCosine)) & (dot(n, bsdf.ns) > F(1.0f - 1e-6f)) & (bsdf.wo_local[0].z > zero);
+  const auto above = [&](const V3 &d) __attribute__((always_inline)) {
+    return (dot(d, bsdf.ns) > zero) & (dot(d, bsdf.ng) > zero);
+  };
+  const M told = by_next & above(sample.wi) & !sample.delta & (sample.pdf > zero);
+  const F weight = max(dot(n, sample.wi), zero) / (F(glm::pi<float>()) * sample.pdf);
+  store(block.occlusion_weight + first, select(told, weight, zero));
+  block.looks_by_next |= placed_bits(told, first);
+  block.looks_itself |= placed_bits(asked & !(by_next & above(wi)), first);
+}
+
 void scatter(VertexBlock &block) {
   block.lit = block.lifted = block.sampled = block.diffuse = block.transmitted = 0;
+  block.looks_by_next = block.looks_itself = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
@@ -224,6 +255,7 @@ void scatter(VertexBlock &block) {
     store(block.alpha2 + first, sample.alpha2);
     for (int component = 0; component < 2 && block.shares_wanted; ++component)
       store3(block.share[component], first, sample.share[component]);
+    look_around(block, first, bsdf, sample);
     block.sampled |= placed_bits((!black(sample.weight)) & (sample.pdf > F(0.0f)), first);
     block.diffuse |= placed_bits(equal(sample.component, U(static_cast<uint32_t>(Component::Diffuse))), first);
     block.transmitted |= placed_bits(sample.transmitted, first);

@@ -68,6 +68,8 @@ struct alignas(64) VertexBlock {
   Floats alpha2;            // of the lobe that drew it, 0 of a single direction
   Floats share[2][3];       // of the sample's weight that is diffuse, glossy, where shares are wanted
   Floats light_share[2][3]; // the same of the contribution
+  // Where occlusion is asked for: a direction around matt_normal by the cosine, and the cosine's density at wi over that of wi.
+  Floats occlusion_wi[3], occlusion_weight;
 
   // Given: what passes ask of the lobes. describe(): what these say.
   uint32_t wants_normal = 0, wants_matt_normal = 0, wants_shown = 0, wants_mixture = 0;
@@ -98,6 +100,10 @@ struct alignas(64) VertexBlock {
   uint32_t sampled = 0;               // there is a next direction
   uint32_t diffuse = 0;               // drawn by a diffuse lobe
   uint32_t transmitted = 0;           // it goes through the surface
+  uint32_t occlusion_asked = 0;       // given: ambient occlusion is to be looked for
+  uint32_t next_rays_look = 0;        // given, 1: next rays may look for it
+  uint32_t looks_by_next = 0;         // the next ray does, with occlusion_weight
+  uint32_t looks_itself = 0;          // a ray towards occlusion_wi is needed
   uint32_t mirrors = 0, refracts = 0; // branch(): wi, through_wi is on the side where it belongs
   uint32_t there = 0;                 // illuminate(): there is a sample
 };
