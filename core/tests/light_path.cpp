@@ -1,7 +1,8 @@
-// What a world's Light Path knows of the ray that sees it, and of the vertex that asks for its light.
+// What a Light Path node knows of the ray that sees a world, lamp or surface, and of the vertex that asks for its light.
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 namespace lancer_test {
 namespace {
@@ -55,6 +56,56 @@ TEST(LightPaths, ASampledSkyLiesOneScatteringBeyond) {
 
 // Where no direction differs the sky is no light, and only rays meet it. A few roundings of floats.
 TEST(LightPaths, ASkyWithoutDirectionsIsMetByRaysAlone) { EXPECT_NEAR(floor_under_sky(false).mean, 3.0, 3.0 * 8 * 0x1p-24); }
+
+// A shining ball over a floor, whose light is sampled and met by rays: both ask one scattering beyond the camera's.
+TEST(LightPaths, ASampledEmitterLiesOneScatteringBeyond) {
+  const auto level = [](bool asks) {
+    Studio studio;
+    studio.settings.samples = 64;
+    studio.settings.max_bounces = 1;
+    lancer_material ball = glow(1.0f);
+    if (asks)
+      ball.emission = result_of(0);
+    studio.place(LANCER_PLANE, studio.add({lobe(LANCER_LAMBERT, 1.0f)}));
+    studio.place(LANCER_SPHERE, studio.add({}, ball, {node(LANCER_NODE_LIGHT_PATH, LANCER_PATH_DEPTH)}), moved(0, 0, 3));
+    studio.look({4, 0, 1}, {0, 0, 0});
+    studio.render();
+    return studio.color().x;
+  };
+  // The counts are whole numbers: the same light by the same operations.
+  EXPECT_GT(level(false), 0.05f);
+  EXPECT_EQ(level(true), level(false));
+}
+
+// What a shadow ray passes asks for the ray's own path: its kind, one scattering, the way so far.
+TEST(LightPaths, APaneAsksWhichShadowRayPasses) {
+  // A lamp at height 4 of irradiance 1 on a white floor, a pane at height 2 that lets `value` of it through.
+  const auto level = [](uint32_t which, float factor) {
+    Studio studio;
+    lancer_material pane = black();
+    pane.transmittance = result_of(1);
+    studio.place(LANCER_PLANE, studio.add({lobe(LANCER_LAMBERT, 1.0f)}));
+    studio.place(LANCER_PLANE,
+                 studio.add({}, pane,
+                            {node(LANCER_NODE_LIGHT_PATH, which),
+                             node(LANCER_NODE_MATH, LANCER_MATH_MULTIPLY, {result_of(0), constant(factor)})}),
+                 moved(0, 0, 2));
+    lancer_light lamp = point_light();
+    to_rows(moved(0, 0, 4), lamp.matrix);
+    lamp.radius = 0.0f;
+    std::fill(lamp.emission, lamp.emission + 3, 16.0f * std::numbers::pi_v<float>);
+    studio.add(lamp);
+    // From below the pane, straight down but for a little.
+    studio.look({0.01, 0, 1}, {0, 0, 0});
+    studio.render();
+    return studio.color().x;
+  };
+  // The floor's share of light is 1 but for a hundredth's square, and what floats round.
+  EXPECT_NEAR(level(LANCER_PATH_IS_SHADOW, 0.5f), 0.5f, 1e-4f);
+  EXPECT_NEAR(level(LANCER_PATH_DEPTH, 0.25f), 0.25f, 1e-4f);
+  EXPECT_NEAR(level(LANCER_PATH_LENGTH, 0.125f), 0.25f, 1e-4f);
+  EXPECT_EQ(level(LANCER_PATH_IS_CAMERA, 1.0f), 0.0f);
+}
 
 } // namespace
 } // namespace lancer_test

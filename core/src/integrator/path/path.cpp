@@ -163,6 +163,8 @@ void PathIntegrator::send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, cons
   Ray ray = leave(surfaces_.surface(lane), glm::dvec3(wi), occlusion_reach_);
   ray.kinds = LANCER_RAY_SHADOW;
   shadows_.push(ray, {.slot = path.slot, .occlusion = true}, weight, path.passed_through);
+  if (shadows_.asks_light_path())
+    shadows_.set_light_path(asking_path(path));
 }
 
 // What the next rays of the first surfaces have met.

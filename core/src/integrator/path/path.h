@@ -86,6 +86,13 @@ private:
     return path.story.told(float(length / scene_.normalisation.scale), path.scatterings, path.passed_through);
   }
 
+  // The same where a vertex asks for light: it counts as a scattering, as in Cycles.
+  LightPath<float> asking_path(const Path &path) const {
+    LightPath<float> asking = path.story.told(0.0f, path.scatterings + 1, path.passed_through);
+    asking.kinds = 0;
+    return asking;
+  }
+
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
   struct Record {
     double depth = 0.0;     // t of the camera ray up to its last layer

@@ -196,8 +196,9 @@ void PathIntegrator::ask_lights() {
 void PathIntegrator::ask_by_hand(uint32_t lane) {
   const LightSet::Choice &choice = waiting_[lane].choice;
   block_.light_pdf[lane] = 0.0;
-  const LightSample light = sample_scene_light(scene_, choice, get(block_.p, lane),
-                                               {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]}, shader_);
+  const LightSample light =
+      sample_scene_light(scene_, choice, get(block_.p, lane), {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]},
+                         shader_, asking_path(paths_[waiting_[lane].number]));
   if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
     return;
   waiting_[lane].far = std::isinf(light.distance);
@@ -250,6 +251,8 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   Ray &ray = shadows_.push(path.slot, contribution, path.scatterings > 0, path.passed_through);
   if (passes_.components())
     shadows_.set_shares(shares.share);
+  if (shadows_.asks_light_path())
+    shadows_.set_light_path(asking_path(path));
   if (block_.lifted >> lane & 1) {
     LightSample sample;
     sample.wi = get(block_.light_wi, lane);

@@ -98,11 +98,8 @@ void PathIntegrator::ask_sky(uint32_t lanes) {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
     const Path &path = paths_[waiting_[lane].number];
     world_nodes_.eye[lane] = nullptr;
-    // No ray sees what is sampled; it lies one scattering beyond the surface, as in Cycles.
-    LightPath<float> asked_by = light_path(path, 0.0);
-    asked_by.kinds = 0;
+    LightPath<float> asked_by = asking_path(path);
     asked_by.length = std::numeric_limits<float>::max();
-    asked_by.depth += 1.0f;
     put(asked_by, world_nodes_, lane);
   }
   ask_world(sky_samples_.wi, lanes);

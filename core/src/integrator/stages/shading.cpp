@@ -43,7 +43,7 @@ void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
   result.holdout = std::clamp(value_of(material->holdout, values_).x, 0.0f, 1.0f);
 }
 
-glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
+glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<float> &path) {
   const uint32_t number = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   if (number == kNone)
     return glm::vec3(0.0f);
@@ -64,8 +64,7 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit) {
     run_painted(material, material.transmittance_nodes, hit);
   } else {
     const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-    run_nodes(material, material.transmittance_nodes, surface,
-              {.wo = glm::vec3(-glm::normalize(ray.d)), .path = {.kinds = LANCER_RAY_SHADOW}});
+    run_nodes(material, material.transmittance_nodes, surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .path = path});
   }
   return glm::max(value_of(material.transmittance, values_), 0.0f);
 }
@@ -82,16 +81,16 @@ bool Shader::is_there(uint32_t number, const Hit &hit) {
   return value_of(material.transmittance, values_) != glm::vec3(1.0f) || !std::ranges::all_of(material.lobes, none);
 }
 
-glm::vec3 Shader::emission(const Surface &surface, const glm::vec3 &wo) {
+glm::vec3 Shader::emission(const Surface &surface, const glm::vec3 &wo, const LightPath<float> &path) {
   if (surface.material == kNone)
     return glm::vec3(0.0f);
   const Material &material = scene_.materials[surface.material];
   if (material.layered_emission) {
     // What lies above the emitting layer depends on the direction: ask the whole material.
-    shade(surface, {.wo = wo}, layered_);
+    shade(surface, {.wo = wo, .path = path}, layered_);
     return layered_.emission;
   }
-  run_nodes(material, material.emission_nodes, surface, {.wo = wo});
+  run_nodes(material, material.emission_nodes, surface, {.wo = wo, .path = path});
   return value_of(material.emission, values_);
 }
 
@@ -155,7 +154,7 @@ namespace {
 
 // face: null, by power.
 LightSample sample_any(const Scene &scene, uint32_t light, const uint32_t *face, const glm::dvec3 &p, const glm::vec2 &u,
-                       Shader &shader) {
+                       Shader &shader, LightPath<float> path) {
   const size_t described = scene.lights.lights().size();
   if (light < described)
     return sample(scene.lights.lights()[light], p, u);
@@ -166,25 +165,28 @@ LightSample sample_any(const Scene &scene, uint32_t light, const uint32_t *face,
   Surface surface;
   LightSample result = face ? emitter.sample_face(scene.geometry, scene.slots, *face, p, u, surface)
                             : emitter.sample(scene.geometry, scene.slots, p, u, surface);
-  if (result.pdf > 0.0)
-    result.radiance = shader.emission(surface, glm::vec3(-result.wi));
+  if (result.pdf > 0.0) {
+    path.length = float(glm::length(surface.p - p) / scene.normalisation.scale);
+    result.radiance = shader.emission(surface, glm::vec3(-result.wi), path);
+  }
   return result;
 }
 
 } // namespace
 
 LightSample sample_scene_light(const Scene &scene, const LightSet::Choice &choice, const glm::dvec3 &p, const glm::vec2 &u,
-                               Shader &shader) {
-  return sample_any(scene, choice.light, &choice.face, p, u, shader);
+                               Shader &shader, const LightPath<float> &path) {
+  return sample_any(scene, choice.light, &choice.face, p, u, shader, path);
 }
 
 LightSample sample_scene_light(const Scene &scene, uint32_t light, const glm::dvec3 &p, const glm::vec2 &u, Shader &shader) {
-  return sample_any(scene, light, nullptr, p, u, shader);
+  return sample_any(scene, light, nullptr, p, u, shader, {});
 }
 
 EmissionAt surface_emission(const Scene &scene) {
   const auto shader = std::make_shared<Shader>(scene, nullptr);
-  return [shader](const Surface &surface, const glm::vec3 &wo) { return shader->emission(surface, wo); };
+  // As the first surface that the camera sees would ask for it.
+  return [shader](const Surface &surface, const glm::vec3 &wo) { return shader->emission(surface, wo, {.depth = 1.0f}); };
 }
 
 const VertexKernel &vertex_kernel() { return LANCER_CHOSEN_SHADING_KERNEL(vertex_kernel); }

@@ -39,12 +39,12 @@ public:
   Shader(const Scene &scene, const Camera *camera);
 
   void shade(const Surface &surface, const View &view, Shaded &result);
-  // Share of a shadow ray's light that passes straight on.
-  glm::vec3 transmittance(const Ray &ray, const Hit &hit);
+  // Share of a shadow ray's light that passes straight on. path: of the ray up to there.
+  glm::vec3 transmittance(const Ray &ray, const Hit &hit, const LightPath<float> &path);
   // Whether there is anything of a surface of a mesh whose cutout may end; where not, light passes as if there were no surface.
   bool is_there(uint32_t material, const Hit &hit);
-  // By itself, for light samples.
-  glm::vec3 emission(const Surface &surface, const glm::vec3 &wo);
+  // By itself, for light samples. path: of what asks.
+  glm::vec3 emission(const Surface &surface, const glm::vec3 &wo, const LightPath<float> &path = {});
   std::span<glm::vec4> values() { return values_; }
   const Camera *camera() const { return context_.camera; }
   const NodeScene &node_scene() const { return context_; }
@@ -75,9 +75,10 @@ Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3
 
 // One question for every kind of light: what arrives at a point from a sample of it.
 
-// choice: of scene.lights; see LightSample. pdf is that of the point once light and face are chosen.
+// choice: of scene.lights; see LightSample. pdf is that of the point once light and face are chosen. path: of what asks, its
+// length not yet known.
 LightSample sample_scene_light(const Scene &scene, const LightSet::Choice &choice, const glm::dvec3 &p, const glm::vec2 &u,
-                               Shader &shader);
+                               Shader &shader, const LightPath<float> &path = {});
 // All of a light by itself, number light of scene.lights: of an emitter, a face by its power.
 LightSample sample_scene_light(const Scene &scene, uint32_t light, const glm::dvec3 &p, const glm::vec2 &u, Shader &shader);
 

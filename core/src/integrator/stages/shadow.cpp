@@ -37,7 +37,9 @@ bool ShadowQueue::stops(size_t ray, const Hit &hit) {
   // Beyond the last layer nothing passes.
   if (!known && waiting_[ray].passed + crossings_.count(ray) >= deepest_)
     return true;
-  const glm::vec3 transmittance = shader_.transmittance(rays_[ray], hit);
+  LightPath<float> path = ray < light_paths_.size() ? light_paths_[ray] : shadow_path();
+  path.length = float(hit.t * glm::length(rays_[ray].d) / scene_.normalisation.scale);
+  const glm::vec3 transmittance = shader_.transmittance(rays_[ray], hit, path);
   if (transmittance == glm::vec3(0.0f))
     return true;
   crossings_.put(known, ray, hit, transmittance);

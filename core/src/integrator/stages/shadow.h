@@ -6,13 +6,18 @@
 #include "integrator/stages/light_passes.h"
 #include "integrator/stages/shading.h"
 
+#include <algorithm>
+
 namespace lancer {
 
 class ShadowQueue {
 public:
   ShadowQueue(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), shader_(scene, &camera), deepest_(settings.transparent_shadows),
-        any_clear_(settings.all_features || (scene.features & kFeatureTransparency)), crossings_(scene.geometry) {}
+        any_clear_(settings.all_features || (scene.features & kFeatureTransparency)),
+        asks_light_path_(std::ranges::any_of(
+            scene.materials, [](const Material &m) { return m.transmittance.varies() && m.program.asks_light_path; })),
+        crossings_(scene.geometry) {}
 
   // contribution reaches the waiting sum where nothing stands between. passed: surfaces that the path already passed straight
   // through; they count against the same limit.
@@ -36,6 +41,14 @@ public:
     waiting_.back().light.share[1] = share[1];
   }
 
+  // Whether a surface may ask for the Light Path of a shadow ray: that of the ray that was pushed last.
+  bool asks_light_path() const { return asks_light_path_; }
+  void set_light_path(const LightPath<float> &path) {
+    light_paths_.resize(rays_.size(), shadow_path());
+    light_paths_.back() = path;
+    light_paths_.back().kinds = LANCER_RAY_SHADOW;
+  }
+
   // Light that nothing can stop.
   void push_lit(const WaitingLight &waiting, const glm::vec3 &contribution) {
     Ray ray;
@@ -52,6 +65,7 @@ public:
         arrive(waiting.light, waiting.contribution);
     rays_.clear();
     waiting_.clear();
+    light_paths_.clear();
     return count;
   }
 
@@ -62,6 +76,7 @@ private:
     uint32_t passed = 0;          // surfaces on the way so far
   };
 
+  static LightPath<float> shadow_path() { return {.kinds = LANCER_RAY_SHADOW}; }
   // Everything blocks: any hit answers.
   uint64_t trace_solid();
   // Some surfaces let a share pass.
@@ -72,10 +87,11 @@ private:
   const Scene &scene_;
   Shader shader_;
   uint32_t deepest_; // surfaces that a ray may pass
-  bool any_clear_;
+  bool any_clear_, asks_light_path_;
   Crossings crossings_; // that the rays have passed
   std::vector<Ray> rays_;
   std::vector<Waiting> waiting_;
+  std::vector<LightPath<float>> light_paths_; // by ray, as far as they were set
   std::vector<uint8_t> occluded_;
 };
 
