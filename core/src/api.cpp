@@ -1,8 +1,8 @@
 // The C interface: checks handles and pointers, turns exceptions into statuses, and passes on to the rooms.
 #include "integrator/stages/shading.h"
 #include "objects.h"
-#include "render/fill_settings.h"
-#include "scene/fill_camera.h"
+#include "render/session.h"
+#include "scene/fill.h"
 #include "simd/kernel_choice.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // The part of the C interface that asks single questions of scenes and sessions: the probes.
 #include "objects.h"
-#include "render/fill_settings.h"
 #include "render/probe.h"
+#include "render/session.h"
 #include "sampling/sobol.h"
 
 namespace {

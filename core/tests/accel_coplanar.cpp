@@ -1,5 +1,5 @@
 // Surfaces of different make in one plane: one of them is there, from all sides, and the others stop no ray that leaves it.
-#include "accel/coplanar/coplanar_accelerator.h"
+#include "accel/coplanar/coplanar_faces.h"
 #include "accel_scenes.h"
 #include "scene/surface.h"
 

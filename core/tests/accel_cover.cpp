@@ -1,5 +1,4 @@
 // Things that lie on parts of a face: found wherever they are, and looked for nowhere else.
-#include "accel/coplanar/coplanar_accelerator.h"
 #include "accel/coplanar/coplanar_faces.h"
 #include "accel_scenes.h"
 

@@ -1,5 +1,5 @@
 // The course's first check: three rays against two spheres and two planes.
-#include "accel/quadric.h"
+#include "accel/hit_tests.h"
 #include "accel_scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Exact surfaces: the accuracy of t, starts on the surface, closed rims, and points put back onto the surface.
-#include "accel/quadric.h"
+#include "accel/hit_tests.h"
 #include "accel_scenes.h"
 #include "quad.h"
 

@@ -2,7 +2,7 @@
 #include "allocations.h"
 #include "nodes_lab.h"
 
-#include "compile/displace.h"
+#include "compile/steps.h"
 #include "scene/attribute.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "bsdf/lobe.h"
 #include "compile/features.h"
-#include "compile/material_limits.h"
+#include "compile/steps.h"
 #include "tiny_scene.h"
 
 #include <cmath>

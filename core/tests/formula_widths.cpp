@@ -2,8 +2,8 @@
 // is the same: which of two an operation hands on is the processor's and the compiler's choice.
 #include "widths/width_kernel.h"
 
-#include "lights/binary_light_tree.h"
 #include "lights/light.h"
+#include "lights/light_tree.h"
 #include "sampling/direction_map.h"
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "bsdf_domain.h"
-#include "lights/binary_light_tree.h"
 #include "lights/light_tree.h"
 #include "lights/round_light.h"
 #include "statistics.h"

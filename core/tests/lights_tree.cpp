@@ -1,6 +1,5 @@
 // Choosing lights, few and many: probabilities are those of its choices, they add up to one, and no light that contributes is
 // left out.
-#include "lights/binary_light_tree.h"
 #include "lights/light_tree.h"
 #include "statistics.h"
 

@@ -1,5 +1,5 @@
 // Minnaert's lobe: its formula, its closed forms, and the bound of its energy.
-#include "bsdf/minnaert.h"
+#include "bsdf/matte.h"
 
 #include <gtest/gtest.h>
 #include <numbers>

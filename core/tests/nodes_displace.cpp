@@ -1,7 +1,7 @@
 // True displacement: vertices go where the nodes say, and normals follow.
 #include "nodes_lab.h"
 
-#include "compile/displace.h"
+#include "compile/steps.h"
 
 #include <cmath>
 

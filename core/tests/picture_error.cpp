@@ -1,6 +1,5 @@
 // The error of films whose samples are random numbers of known variance; and what is refined because of it.
-#include "render/error_bars.h"
-#include "render/refinement.h"
+#include "render/picture_error.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sampling/distribution.h"
-#include "sampling/erf_inverse.h"
+#include "sampling/elementary.h"
 #include "sampling/pixel_filter.h"
 #include "statistics.h"
 

@@ -1,6 +1,5 @@
 #include "accel/accelerator.h"
 
-
 namespace lancer {
 
 std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, const BuildContext &context) {

@@ -1,11 +1,17 @@
 // One ray against one primitive, kept where it is closer: for the traversals that take primitives one by one.
 #pragma once
 
-#include "accel/quadric.h"
+#include "accel/placed_shape.h"
 #include "accel/triangle.h"
 #include "scene/geometry.h"
+#include "scene/quadric_point.h"
+#include "scene/ray.h"
 
 namespace lancer {
+
+// The first t with tmin < t < tmax where the ray meets the surface; false where there is none.
+// leaves: the ray starts on this surface, so the root that is its own start is left out.
+bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
 
 // Whether a hit of a ray counts; without a filter all do.
 struct Counting {

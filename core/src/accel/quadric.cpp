@@ -1,4 +1,4 @@
-#include "accel/quadric.h"
+#include "accel/hit_tests.h"
 
 #include "accel/roots.h"
 #include "accel/triangle.h"

@@ -3,12 +3,16 @@
 // of our own (core/tables).
 #pragma once
 
-#include "sampling/on_axis.h"
 #include "simd/scalar.h"
 
 #include <cstdint>
 
 namespace lancer {
+
+// Places on the axis of a table.
+
+// low ... 1. What is no number is low: it must not become a place beyond a table.
+template <class F> LANCER_LANE F on_axis(F x, float low = 0.0f) { return min(max(F(low), x), F(1.0f)); }
 
 namespace tables {
 

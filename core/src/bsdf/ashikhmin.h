@@ -4,7 +4,6 @@
 
 #include "bsdf/fresnel.h"
 #include "bsdf/lobe.h"
-#include "bsdf/lobe_value.h"
 #include "sampling/warp.h"
 
 namespace lancer {

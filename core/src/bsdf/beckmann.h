@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "sampling/elementary.h"
-#include "sampling/erf_inverse.h"
 #include "sampling/warp.h"
 #include "simd/vectors.h"
 

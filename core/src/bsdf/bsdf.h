@@ -3,7 +3,6 @@
 
 #include "bsdf/frame.h"
 #include "bsdf/lobe.h"
-#include "bsdf/lobe_value.h"
 
 namespace lancer {
 

@@ -3,12 +3,10 @@
 
 #include "bsdf/ashikhmin.h"
 #include "bsdf/bsdf.h"
-#include "bsdf/bump.h"
-#include "bsdf/coating.h"
+#include "bsdf/classic_lobes.h"
 #include "bsdf/matte.h"
 #include "bsdf/microfacet_terms.h"
-#include "bsdf/mirror.h"
-#include "bsdf/phong.h"
+#include "bsdf/normals.h"
 #include "bsdf/sheen.h"
 
 namespace lancer {

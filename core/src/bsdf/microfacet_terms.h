@@ -5,7 +5,6 @@
 #include "bsdf/frame.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
-#include "bsdf/lobe_value.h"
 #include "bsdf/microfacet_fresnel.h"
 
 namespace lancer {

@@ -1,12 +1,10 @@
 // From a description to a scene: normalise, find features, make lights, build the accelerator.
-#include "accel/coplanar/coplanar_accelerator.h"
-#include "compile/displace.h"
+#include "accel/coplanar/coplanar_faces.h"
 #include "compile/features.h"
-#include "compile/make_lights.h"
-#include "compile/material_limits.h"
 #include "compile/mesh_normals.h"
 #include "compile/ready_lobes.h"
 #include "compile/scene.h"
+#include "compile/steps.h"
 #include "simd/parallel.h"
 
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "compile/displace.h"
+#include "compile/steps.h"
 
 #include "compile/mesh_normals.h"
 #include "compile/scene.h"

@@ -1,6 +1,5 @@
 // Builds the tree of many lights and the table of few.
 #include "compile/light_cut.h"
-#include "lights/binary_light_tree.h"
 #include "lights/light_bounds.h"
 #include "lights/light_importance.h"
 #include "lights/light_tree.h"

@@ -1,4 +1,4 @@
-#include "compile/make_lights.h"
+#include "compile/steps.h"
 
 #include "sampling/elementary.h"
 #include "simd/parallel.h"

@@ -1,4 +1,4 @@
-#include "compile/material_limits.h"
+#include "compile/steps.h"
 
 #include "bsdf/lobe.h"
 

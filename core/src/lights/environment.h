@@ -4,7 +4,7 @@
 #include "lights/light.h"
 #include "nodes/light_path.h"
 #include "sampling/direction_map.h"
-#include "scene/world.h"
+#include "scene/light.h"
 #include "simd/parallel.h"
 
 namespace lancer {

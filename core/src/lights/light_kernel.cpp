@@ -1,7 +1,7 @@
 // Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "lights/light_kernel.h"
 
-#include "lights/binary_light_tree.h"
+#include "lights/light_tree.h"
 #include "lights/light_weights.h"
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"

@@ -1,7 +1,6 @@
 // All lights of a scene: which one to ask, and which ones a ray runs into.
 #pragma once
 
-#include "lights/binary_light_tree.h"
 #include "lights/emitter.h"
 #include "lights/environment.h"
 #include "lights/light_tree.h"

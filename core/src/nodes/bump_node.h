@@ -2,9 +2,17 @@
 #pragma once
 
 #include "nodes/normal_nodes.h"
-#include "nodes/value_memory.h"
+
+#include <cstddef>
 
 namespace lancer {
+
+// Memory for values of nodes that are too many for the stack.
+
+// Aligned for lanes. Throws std::bad_alloc.
+void *allocate_values(size_t bytes);
+void free_values(void *values);
+
 namespace {
 
 // Computes the scheduled nodes at a site: dispatch.h.
@@ -199,4 +207,5 @@ template <class F> Value<F> bump_node(const Program &program, const Inputs<F> &i
 }
 
 } // namespace
+
 } // namespace lancer

@@ -4,7 +4,7 @@
 #include "nodes/mesh_lanes.h"
 #include "nodes/vector_nodes.h"
 #include "scene/camera.h"
-#include "scene/exact_shape.h"
+#include "scene/quadric_point.h"
 
 namespace lancer {
 namespace {

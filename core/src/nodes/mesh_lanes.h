@@ -3,7 +3,7 @@
 #pragma once
 
 #include "nodes/site.h"
-#include "scene/interpolate.h"
+#include "scene/attribute.h"
 
 namespace lancer {
 namespace {

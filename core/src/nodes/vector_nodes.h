@@ -3,9 +3,18 @@
 #pragma once
 
 #include "nodes/math_nodes.h"
-#include "nodes/rotation.h"
+
+#include <glm/glm.hpp>
 
 namespace lancer {
+
+// Matrices of nodes that are the same for all places.
+
+// By Euler angles, x first.
+glm::mat3 rotation(const glm::vec3 &angles);
+// 3 x 3, both row-major; false where there is none.
+bool inverse_transpose(const float (&rows)[9], double (&result)[9]);
+
 namespace {
 
 // One function of every component.
@@ -146,4 +155,5 @@ template <class F> Value<F> transform_node(const Inputs<F> &in) {
 }
 
 } // namespace
+
 } // namespace lancer

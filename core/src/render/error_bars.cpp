@@ -1,4 +1,4 @@
-#include "render/error_bars.h"
+#include "render/picture_error.h"
 
 #include <algorithm>
 #include <array>

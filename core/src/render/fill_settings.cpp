@@ -1,4 +1,4 @@
-#include "render/fill_settings.h"
+#include "render/session.h"
 
 #include "scene/error.h"
 

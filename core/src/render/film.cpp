@@ -1,8 +1,8 @@
 #include "render/film.h"
 
 #include "sampling/color.h"
-#include "sampling/nearest_float.h"
 #include "simd/memory.h"
+#include "simd/rounding.h"
 
 #include <algorithm>
 #include <bit>

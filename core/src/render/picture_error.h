@@ -1,4 +1,5 @@
-// The error of a picture, estimated from the differences of its halves.
+// The error of a picture, estimated from the differences of its halves; the interval that is told of it, and what more samples
+// would bring.
 #pragma once
 
 #include "render/film.h"
@@ -67,5 +68,34 @@ struct RelativeVariance {
 // it look both dark and sure. Neighbours' overstate, along edges. The interval reaches from what the first says to what the
 // second says, widened at both ends by what chance may do to such sums.
 PictureError picture_error(const LuminanceMap &map, const RelativeVariance &relative, double confidence);
+
+// How far each pixel may be from the converged picture.
+
+// Standard error of each pixel's mean luminance: [height][width]; infinity where it is not known yet. Two replicates say little
+// about one pixel, so their variance is shared over the smallest square window in which enough pixels bear it: where light is
+// rare, and most pixels have seen none of it, the window grows until it holds the ones that have. Over pixels of all kinds 95 %
+// of the true values then lie within 1.96 standard errors (Rousselle, Manzi, Zwicker, "Robust Denoising using Feature and Color
+// Information", 2013, share variances so).
+// The edge of a clean surface has noise that its flanks have not: pixels share with those of their kind alone. A pixel between
+// a darker and a brighter neighbour is an edge where what a mixture of these two would vary by, at most (Bhatia, Davis, "A
+// better bound on the variance", 2000), is more than all the noise around it; edges share with edges that would vary about as
+// much.
+std::vector<float> error_bars(const LuminanceMap &map);
+
+// The choice of tiles to sample next: those where further samples lower the error of the picture most.
+
+// The tiles of a film in halves whose samples should be doubled next, those first whose doubling brings the error down most for
+// its cost: as many as the target needs, or all where target is 0. The film must have been sampled in powers of two.
+//
+// What a half needs is judged by its other half alone. A decision that looked at its own samples would keep those that happen
+// to be dark and add to those that happen to be bright, and the picture would come out too dark (Kirk, Arvo, "Unbiased sampling
+// techniques for image synthesis", 1991); the other half's samples know nothing of them.
+//   target: of the error of the picture; most: samples that no pixel may exceed.
+struct Refinement {
+  std::vector<uint32_t> tiles; // of this round, in order
+  double samples = 0.0;        // pixel samples that the target needs in all from here on, as far as this can be foretold
+};
+Refinement plan_refinement(const Film &film, const LuminanceMap &map, const RelativeVariance &relative, double target,
+                           uint32_t most);
 
 } // namespace lancer

@@ -1,8 +1,7 @@
 #include "render/probe.h"
 
-#include "bsdf/coating.h"
+#include "bsdf/classic_lobes.h"
 #include "integrator/stages/shading.h"
-#include "render/checks.h"
 #include "scene/error.h"
 
 #include <cmath>

@@ -1,7 +1,6 @@
 #include "render/probe.h"
 
 #include "integrator/stages/shading.h"
-#include "render/checks.h"
 #include "scene/error.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "render/refinement.h"
+#include "render/picture_error.h"
 
 #include <algorithm>
 #include <queue>

@@ -1,10 +1,9 @@
 #include "render/session.h"
 
-#include "render/error_bars.h"
-#include "render/refinement.h"
+#include "render/picture_error.h"
 #include "sampling/color.h"
 #include "scene/error.h"
-#include "scene/fill_camera.h"
+#include "scene/fill.h"
 #include "scene/memory.h"
 
 #include <tuple>

@@ -1,6 +1,7 @@
 // One render: a scene seen through a camera, samples in ranges, the film they fall on.
 #pragma once
 
+#include "lancer.h"
 #include "render/film.h"
 #include "render/picture_error.h"
 #include "render/thread_pool.h"
@@ -17,6 +18,10 @@ struct SessionSettings {
   uint32_t tile_size = 0;
   bool refines = false; // the film is laid out for refine()
 };
+
+// Checks and copies settings; an Error names the setting and its value.
+SessionSettings read_settings(const lancer_settings &source);
+FilterKind read_filter(uint32_t filter, float width);
 
 struct Progress {
   double fraction = 0.0, seconds = 0.0;

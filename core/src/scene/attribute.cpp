@@ -1,7 +1,5 @@
 #include "scene/attribute.h"
 
-#include "scene/interpolate.h"
-
 namespace lancer {
 
 namespace {

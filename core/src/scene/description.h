@@ -6,7 +6,6 @@
 #include "scene/image.h"
 #include "scene/light.h"
 #include "scene/material.h"
-#include "scene/world.h"
 
 #include <string>
 #include <unordered_map>

@@ -1,7 +1,8 @@
-// Checks that all readers of the user's records share, and numbers as text for their messages.
+// Checks that all readers of the user's records share, numbers as text for their messages, and the camera's reader.
 #pragma once
 
 #include "lancer.h"
+#include "scene/camera.h"
 #include "scene/error.h"
 
 #include <cstdio>
@@ -24,5 +25,11 @@ inline void check_flags(const std::string &where, uint32_t flags, uint32_t known
   if (flags & ~known)
     bad_argument(where + "flags " + std::to_string(flags) + " has bits beyond the last flag");
 }
+
+// Checks and copies a camera; an Error says what no camera can have.
+
+Camera read_camera(const lancer_camera &source);
+// An Error where the camera, in the normalised world, is too far from everything.
+void check_reach(const Camera &camera);
 
 } // namespace lancer

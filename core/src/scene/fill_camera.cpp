@@ -1,4 +1,4 @@
-#include "scene/fill_camera.h"
+#include "scene/fill.h"
 
 #include "scene/error.h"
 #include "scene/geometry.h"

@@ -1,6 +1,7 @@
-// The nearest place exactly on a shape, in its unit frame.
+// Exact surfaces in their unit frames: the nearest place on a shape, its parametrisation and parts.
 #pragma once
 
+#include "scene/geometry.h"
 #include "simd/vectors.h"
 
 namespace lancer {
@@ -47,5 +48,23 @@ template <class F> LANCER_LANE QuadricPoint<F> quadric_point(const QuadricKinds<
   }
   return point;
 }
+
+// Points of exact surfaces in their unit frames (lancer.h says which): where they lie, and how they are numbered.
+
+inline QuadricKinds<float> kinds_of(ShapeKind kind) {
+  return {kind == ShapeKind::Plane, kind == ShapeKind::Cylinder, kind == ShapeKind::Cone};
+}
+
+struct SurfacePoint {
+  glm::dvec3 p; // on the surface, object space
+  glm::dvec3 n; // outward geometric normal, unit, object space
+};
+
+// The point o + t d of an object-space ray, moved to the nearest place exactly on the surface.
+SurfacePoint quadric_point(ShapeKind kind, const glm::dvec3 &o, const glm::dvec3 &d, double t);
+
+// The parametrisation at an object-space surface point. Sphere: longitude, latitude; cylinder and cone: angle, height; all in
+// [0, 1]. Plane: x, y.
+glm::dvec2 quadric_uv(ShapeKind kind, const glm::dvec3 &p);
 
 } // namespace lancer

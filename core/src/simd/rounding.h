@@ -1,7 +1,11 @@
-// Whole numbers beside a number of any width, with the bits of ceil() and trunc(); and whether it is one.
+// Whole numbers beside a number of any width, with the bits of ceil() and trunc(); whether it is a number; the nearest float.
 #pragma once
 
 #include "simd/scalar.h"
+
+#include <algorithm>
+#include <glm/glm.hpp>
+#include <limits>
 
 namespace lancer {
 
@@ -10,5 +14,13 @@ template <class F> LANCER_LANE F trunc(const F &a) { return copysign(floor(abs(a
 
 // Neither infinite nor none.
 template <class F> LANCER_LANE MaskOf<F> is_finite(const F &x) { return x - x == F(0.0f); }
+
+// The nearest float that is finite: what a scene tells of places beyond float's range is at its edge.
+inline float nearest_float(double value) {
+  constexpr double largest = double(std::numeric_limits<float>::max());
+  return float(std::clamp(value, -largest, largest));
+}
+inline glm::vec2 nearest_float(const glm::dvec2 &v) { return {nearest_float(v.x), nearest_float(v.y)}; }
+inline glm::vec3 nearest_float(const glm::dvec3 &v) { return {nearest_float(v.x), nearest_float(v.y), nearest_float(v.z)}; }
 
 } // namespace lancer

@@ -1,6 +1,6 @@
 // Bins and moves boxes. Compiled once per instruction set, with LANCER_ISA naming it; all give the same trees.
 // This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
-#include "accel/bvh/split_kernel.h"
+#include "accel/bvh/bvh_kernel.h"
 
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"

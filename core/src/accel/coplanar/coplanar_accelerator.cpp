@@ -1,4 +1,4 @@
-#include "accel/coplanar/coplanar_accelerator.h"
+#include "accel/coplanar/coplanar_faces.h"
 
 #include "accel/coplanar/plane_rule.h"
 

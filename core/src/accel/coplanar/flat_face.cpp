@@ -1,6 +1,6 @@
 #include "accel/coplanar/flat_face.h"
 
-#include "accel/quadric.h"
+#include "accel/hit_tests.h"
 
 #include <algorithm>
 #include <cmath>

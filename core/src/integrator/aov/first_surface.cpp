@@ -2,7 +2,7 @@
 
 #include "sampling/color.h"
 #include "sampling/elementary.h"
-#include "sampling/nearest_float.h"
+#include "simd/rounding.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,69 @@
 // The recursive ray tracer: direct light of every lamp, mirror reflection and refraction, nothing left to chance.
 #pragma once
 
+#include "compile/scene.h"
 #include "integrator/aov/first_surface.h"
 #include "integrator/classic/classic_kernel.h"
 #include "integrator/stages/camera_rays.h"
-#include "integrator/stages/light_by_ray.h"
 #include "integrator/stages/light_passes.h"
 #include "integrator/stages/shading.h"
 #include "integrator/stages/shading_queues.h"
 #include "integrator/stages/shadow.h"
 #include "integrator/stages/surface_stage.h"
+#include "scene/surface.h"
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
 
 namespace lancer {
+
+// Light of the rays of a batch that is found in any order of rays and added up in theirs.
+
+class LightByRay {
+public:
+  void begin(size_t rays) {
+    found_.clear();
+    ends_.assign(rays + 1, 0u);
+  }
+  void add(uint32_t ray, const glm::vec3 &light) {
+    found_.push_back({ray, light});
+    ++ends_[ray + 1];
+  }
+  // After the last.
+  void sort() {
+    for (size_t i = 1; i < ends_.size(); ++i)
+      ends_[i] += ends_[i - 1];
+    sorted_.resize(found_.size());
+    // The start of each becomes its end.
+    for (const Found &found : found_)
+      sorted_[ends_[found.ray]++] = found.light;
+  }
+  // What was added for a ray, in that order.
+  std::span<const glm::vec3> of(size_t ray) const {
+    const uint32_t begin = ray == 0 ? 0 : ends_[ray - 1];
+    return std::span(sorted_).subspan(begin, ends_[ray] - begin);
+  }
+  bool empty() const { return found_.empty(); }
+
+private:
+  struct Found {
+    uint32_t ray;
+    glm::vec3 light;
+  };
+
+  std::vector<Found> found_;
+  std::vector<uint32_t> ends_;
+  std::vector<glm::vec3> sorted_;
+};
+
+// Flat shading as in the course's texts: one colour for each polygon, computed at its centre.
+
+inline bool is_flat(const Instance &instance) { return instance.kind == ShapeKind::Mesh && instance.shading == Shading::Flat; }
+
+// The surface at the centre of the polygon that hit is of, about the polygon's normal. The instance is_flat.
+Surface surface_at_center(const Scene &scene, const Hit &hit);
 
 class ClassicIntegrator final : public Integrator {
 public:

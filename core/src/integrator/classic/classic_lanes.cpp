@@ -3,7 +3,6 @@
 
 #include "compile/mesh_normals.h"
 #include "integrator/aov/first_surface.h"
-#include "integrator/classic/flat_shading.h"
 #include "integrator/stages/lane_access.h"
 #include "sampling/color.h"
 

@@ -7,12 +7,12 @@
 #include "integrator/stages/camera_rays.h"
 #include "integrator/stages/crossings.h"
 #include "integrator/stages/light_passes.h"
-#include "integrator/stages/path_story.h"
 #include "integrator/stages/shading.h"
 #include "integrator/stages/shading_queues.h"
 #include "integrator/stages/shadow.h"
 #include "integrator/stages/surface_stage.h"
 #include "integrator/stages/texture_prefetch.h"
+#include "nodes/light_path.h"
 
 #include <algorithm>
 
