@@ -12,7 +12,7 @@ from . import elf
 from .enums import *  # noqa: F403 - abi is the one name under which others find the whole interface
 from .enums import ABI_VERSION, Status
 from .structs import *  # noqa: F403
-from .structs import STRUCTS, Camera, Error, Image, Light, Material, Mesh, Progress, Settings, Statistics, World
+from .structs import STRUCTS, Camera, Error, Image, Light, Material, Mesh, Node, Progress, Settings, Statistics, World
 from .structs import Array as _Array
 
 _FILES = {"win32": ("lancer", ".dll"), "darwin": ("liblancer", ".dylib")}
@@ -52,6 +52,7 @@ _CALLS = {
     "lancer_probe_bsdf_sample": (_u64, _u32, _u32, _Array, _Array, _Array),
     "lancer_probe_lobes": (_u64, _u32, _Array, _Array, _u32, POINTER(_u32), _Array, _Array),
     "lancer_probe_node": (_u64, _u32, _u32, _u32, _Array, _Array),
+    "lancer_evaluate_node": (POINTER(Node), _Array),
     "lancer_probe_world": (_u64, _u32, _Array, _Array, _Array),
     "lancer_probe_microfacet": (_u32, _Array, _Array, _Array, _Array, _Array, _Array, _Array, _Array),
     "lancer_probe_light": (_u64, _u32, _u32, _Array, _Array, _Array),

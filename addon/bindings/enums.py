@@ -144,6 +144,16 @@ class NodeKind(IntEnum):
     CURVES = 25
     OBJECT_INFO = 26
     LIGHT_PATH = 27
+    COLOR_MODEL = 28
+
+
+class ColorModel(IntEnum):
+    """Hue, saturation and value or lightness, each 0 ..."""
+
+    TO_HSV = 0
+    FROM_HSV = 1
+    TO_HSL = 2
+    FROM_HSL = 3
 
 
 class ObjectFact(IntEnum):

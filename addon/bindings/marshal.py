@@ -118,14 +118,14 @@ def image(i):
     return _struct(abi.Image, i, width=width, height=height, channels=channels, kind=_TEXELS[i.texels.dtype])
 
 
-def _node(n):
+def node(n):
     # What a node leaves unsaid is 0, and no reference.
     inputs = (abi.Parameter * 5)(*map(_parameter, n.inputs + (0.0,) * (5 - len(n.inputs))))
     return _struct(abi.Node, n, inputs=inputs)
 
 
 def _nodes(owner):
-    return {"nodes": _many(abi.Node, map(_node, owner.nodes)), "node_count": len(owner.nodes)}
+    return {"nodes": _many(abi.Node, map(node, owner.nodes)), "node_count": len(owner.nodes)}
 
 
 def _lobe(lobe):

@@ -8,11 +8,6 @@ THIRDS = (1.0 / 3.0,) * 3  # the mean of three numbers is their dot product with
 _LARGEST = (2.0 - 2.0**-23) * 2.0**127
 
 
-def scalar(value):
-    """The first of three, or the number itself: what a scalar input of the core sees."""
-    return value[0] if isinstance(value, tuple) else value
-
-
 def triple(value):
     return value if isinstance(value, tuple) else (value,) * 3
 
@@ -32,10 +27,6 @@ def single(value):
 
 def divide(a, b):
     return a / b if b != 0.0 else 0.0
-
-
-def fraction(value):
-    return value - math.floor(value)
 
 
 def clamp(value, low=0.0, high=1.0):

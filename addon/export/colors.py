@@ -4,15 +4,13 @@ import math
 
 from mathutils import Color
 
-from ..bindings.enums import MathOperation, MixMode, NodeKind, VectorOperation
+from ..bindings.enums import ColorModel, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
-from . import fold_colors
 from .arithmetic import clamp, triple
 from .curves import ramp_by_table
 from .maths import smooth_step
 
-_NEUTRAL_HUE = 0.5  # of Hue Saturation Value: the socket that turns nothing
-_CONVERSIONS = {"HSV": (fold_colors.to_hsv, fold_colors.from_hsv), "HSL": (fold_colors.to_hsl, fold_colors.from_hsl)}
+_MODELS = {"HSV": (ColorModel.TO_HSV, ColorModel.FROM_HSV), "HSL": (ColorModel.TO_HSL, ColorModel.FROM_HSL)}
 _COLDEST, _HOTTEST = 800.0, 12000.0  # kelvin; beyond them the colour stays
 # Rec. 709 colours of glowing bodies as polynomials, constants first, over the logarithm of the temperature, -1 at the coldest
 # and 1 at the hottest. They were fitted to what Blender shows, and are off by 8e-4 of the larger of 1 and the channel.
@@ -84,33 +82,20 @@ def _spread(value):
     return value if isinstance(value, NodeRef) else triple(value)
 
 
-def _extremes(graph, color):
-    """The largest and the smallest channel."""
-    r, g, b = (graph.component(color, i) for i in range(3))
-    m = MathOperation
-    return (graph.op(m.MAXIMUM, r, graph.op(m.MAXIMUM, g, b)), graph.op(m.MINIMUM, r, graph.op(m.MINIMUM, g, b)))
-
-
 def _hue_saturation(graph, site, output):
-    node = site.node
-    hue, saturation, value, factor, color = (graph.input(site, socket) for socket in node.inputs[:5])
-    if not any(isinstance(x, NodeRef) for x in (hue, saturation, value, color)):
-        h, s, v = fold_colors.to_hsv(color)
-        turned = fold_colors.from_hsv(((h + hue + 0.5) % 1.0, clamp(s * saturation), v * value))
-        result = graph.mix(factor, color, turned)
-    else:
-        if hue != _NEUTRAL_HUE:
-            graph.tell(site, "input 'Hue' is not supported where the colour varies, the hue is kept")
-        # Move the channels towards the largest, as far as the smallest may go, and scale them.
-        high, low = _extremes(graph, color)
-        m, v = MathOperation, VectorOperation
-        furthest = graph.op(m.DIVIDE, high, graph.op(m.SUBTRACT, high, low))
-        share = graph.op(m.MAXIMUM, graph.op(m.MINIMUM, saturation, furthest), 0.0)
-        top = graph.combine(high, high, high)
-        moved = graph.vector_op(v.SCALE, graph.vector_op(v.SUBTRACT, color, top), scale=share)
-        turned = graph.vector_op(v.SCALE, graph.vector_op(v.ADD, moved, top), scale=value)
-        result = graph.emit(NodeKind.MIX, factor, color, turned, option=MixMode.MIX)
+    hue, saturation, value, factor, color = (graph.input(site, socket) for socket in site.node.inputs[:5])
+    m = MathOperation
+    h, s, v = _separated(graph, ColorModel.TO_HSV, color)
+    h = graph.op(m.FRACT, graph.op(m.ADD, graph.op(m.ADD, h, hue), 0.5))
+    s = graph.op(m.MULTIPLY, s, saturation, clamped=True)
+    turned = graph.emit(NodeKind.COLOR_MODEL, graph.combine(h, s, graph.op(m.MULTIPLY, v, value)), option=ColorModel.FROM_HSV)
+    result = graph.emit(NodeKind.MIX, factor, color, turned, option=MixMode.MIX)
     return graph.vector_op(VectorOperation.MAXIMUM, result, (0.0,) * 3)
+
+
+def _separated(graph, model, color):
+    converted = graph.emit(NodeKind.COLOR_MODEL, color, option=model)
+    return [graph.component(converted, i) for i in range(3)]
 
 
 def _combine_color(graph, site, output):
@@ -118,7 +103,7 @@ def _combine_color(graph, site, output):
     value = graph.combine(*(graph.input(site, socket) for socket in site.node.inputs[:3]))
     if mode == "RGB":
         return value
-    return None if isinstance(value, NodeRef) else _CONVERSIONS[mode][1](value)
+    return graph.emit(NodeKind.COLOR_MODEL, value, option=_MODELS[mode][1])
 
 
 def _separate_color(graph, site, output):
@@ -127,13 +112,7 @@ def _separate_color(graph, site, output):
     color = graph.input(site, site.node.inputs[0])
     if mode == "RGB":
         return graph.component(color, index)
-    if not isinstance(color, NodeRef):
-        return _CONVERSIONS[mode][0](color)[index]
-    if index == 0 or mode == "HSL":
-        return None
-    high, low = _extremes(graph, color)
-    m = MathOperation
-    return high if index == 2 else graph.op(m.DIVIDE, graph.op(m.SUBTRACT, high, low), high)
+    return _separated(graph, _MODELS[mode][0], color)[index]
 
 
 def _ramp(graph, site, output):

@@ -1,13 +1,13 @@
 """Nodes that say where a ray meets a surface: coordinates, attributes, geometry."""
 
 import numpy as np
+from mathutils import Euler
 
 from ..bindings.enums import Coordinate, MappingType, NodeKind, ObjectFact, PathFact, VectorOperation
 from ..bindings.shading import NodeRef
 from ..by_scene import identity
 from .arithmetic import THIRDS, divide
 from .attributes import attribute_name, tangents_name
-from .fold import rotation
 from .maths import transformed
 
 _RADIAL = {"X": 0, "Y": 1, "Z": 2}
@@ -155,7 +155,7 @@ def _mapping(graph, site, output):
 
 def mapping_matrix(kind, location, angles, scale):
     """Rows of the 3 x 4 matrix of a Mapping node; a scale of 0 divides to 0, as there."""
-    rows = rotation(angles)
+    rows = Euler(angles).to_matrix()
     if kind != MappingType.TEXTURE:
         return [(*(row[k] * scale[k] for k in range(3)), location[i]) for i, row in enumerate(rows)]
     linear = [[divide(rows[k][i], scale[i]) for k in range(3)] for i in range(3)]

@@ -20,7 +20,7 @@ from ..severity import Severity
 from . import colors, coordinates, curves, maths, normals, procedural, textures
 from .arithmetic import THIRDS, is_constant, single, triple
 from .colorspace import luminance_weights
-from .fold import FOLD, gives_number
+from .fold import FOLDED, fold, gives_number
 from .sockets import find
 from .walk import Site, Walker
 
@@ -78,7 +78,7 @@ class NodeGraph:
             kind=kind, option=option, flags=flags, name=name, image=image, image_count=image_count, first=first,
             inputs=inputs, **fields,
         )  # fmt: skip
-        if kind in FOLD and not any(isinstance(value, NodeRef) for value in node.inputs):
+        if kind in FOLDED and not any(isinstance(value, NodeRef) for value in node.inputs):
             return self._fold(node)
         numbers = self._scopes[-1].numbers
         key = (kind, option, flags, name, image, image_count, first, node.inputs, node.matrix)
@@ -92,12 +92,9 @@ class NodeGraph:
         return NodeRef(numbers[key])
 
     def _fold(self, node):
-        try:
-            value = FOLD[node.kind](node, node.inputs)
-        except (OverflowError, ValueError, ZeroDivisionError):
-            value = math.nan
+        value = fold(node)
         if all(map(math.isfinite, triple(value))):
-            return single(value)
+            return value
         self.messages.add(f"{self.owner}: a node's result is not finite, 0 is used")
         return 0.0 if gives_number(node) else (0.0, 0.0, 0.0)
 

@@ -1,10 +1,9 @@
 """Value and vector nodes: each reader takes (graph, site, output) and gives a value, None where it cannot."""
 
-from mathutils import Matrix
+from mathutils import Euler, Matrix, Vector
 
 from ..bindings.enums import MathOperation, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
-from .fold import normalized, rotation
 
 # Operations on vectors that are those on numbers, for each channel by itself.
 _PER_CHANNEL = {name: MathOperation[name] for name in ("POWER", "ROUND", "SIGN", "WRAP")}
@@ -111,7 +110,7 @@ def _separate(graph, site, output):
 
 
 def _normal(graph, site, output):
-    direction = normalized(tuple(site.node.outputs[0].default_value))
+    direction = tuple(Vector(site.node.outputs[0].default_value).normalized())
     if output.identifier == "Normal":
         return direction
     towards = graph.vector_op(VectorOperation.NORMALIZE, graph.input(site, site.node.inputs[0]))
@@ -124,7 +123,7 @@ def _rotate(graph, site, output):
     vector, center = graph.value(site, "Vector"), graph.value(site, "Center")
     if node.rotation_type == "EULER_XYZ":
         turn = graph.value(site, "Rotation")
-        rows = None if isinstance(turn, NodeRef) else Matrix(rotation(turn))
+        rows = None if isinstance(turn, NodeRef) else Euler(turn).to_matrix()
     else:
         angle = graph.value(site, "Angle")
         axis = graph.value(site, "Axis") if node.rotation_type == "AXIS_ANGLE" else node.rotation_type[0]

@@ -22,7 +22,9 @@ def _judged(which, folder, name, least):
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
-@pytest.mark.parametrize("name, least", [("noise", 19), ("voronoi", 100), ("gradient", 7), ("curves", 30)])
+@pytest.mark.parametrize(
+    "name, least", [("noise", 19), ("voronoi", 100), ("gradient", 7), ("curves", 30), ("color_models", 11)]
+)
 def test_procedural_nodes(which, name, least, tmp_path):
     _judged(which, tmp_path, name, least)
 

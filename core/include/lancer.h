@@ -256,7 +256,16 @@ enum lancer_node_kind {
   LANCER_NODE_CURVES = 25,
   LANCER_NODE_OBJECT_INFO = 26, /* of the object that is met; option LANCER_OBJECT_* */
   LANCER_NODE_LIGHT_PATH = 27,  /* of the ray that has met it, or the world; option LANCER_PATH_* */
-  LANCER_NODE_COUNT = 28
+  LANCER_NODE_COLOR_MODEL = 28, /* inputs: colour; option LANCER_COLOR_* */
+  LANCER_NODE_COUNT = 29
+};
+/* Hue, saturation and value or lightness, each 0 ... 1 of what is displayed. */
+enum lancer_color_model {
+  LANCER_COLOR_TO_HSV = 0,
+  LANCER_COLOR_FROM_HSV,
+  LANCER_COLOR_TO_HSL,
+  LANCER_COLOR_FROM_HSL,
+  LANCER_COLOR_COUNT
 };
 enum lancer_object_fact {
   LANCER_OBJECT_LOCATION = 0, /* of its frame's origin */
@@ -912,6 +921,9 @@ LANCER_API lancer_status lancer_probe_lobes(lancer_scene scene, uint32_t materia
  * seen along its normal. */
 LANCER_API lancer_status lancer_probe_node(lancer_scene scene, uint32_t material, uint32_t node, uint32_t count,
                                            const float *uv, float *values);
+/* The value (float[4]) of a node whose inputs are constants and which asks nothing of a place, as programs compute it. Other
+ * nodes are a wrong argument. */
+LANCER_API lancer_status lancer_evaluate_node(const lancer_node *node, float *value);
 /* Radiance [count][3] of the world in unit directions [count][3], and the density per solid angle with which it is sampled. */
 LANCER_API lancer_status lancer_probe_world(lancer_scene scene, uint32_t count, const double *directions, float *radiance,
                                             float *pdf);

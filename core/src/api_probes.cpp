@@ -82,6 +82,15 @@ lancer_status lancer_probe_node(lancer_scene scene, uint32_t material, uint32_t 
   return probe_scene(scene, count, {uv, values}, [&](const Scene &s) { probe_node(s, material, node, count, uv, values); });
 }
 
+lancer_status lancer_evaluate_node(const lancer_node *node, float *value) {
+  return guard([&] {
+    require(node, "node");
+    require(value, "value");
+    evaluate_node(*node, value);
+    return LANCER_OK;
+  });
+}
+
 lancer_status lancer_probe_world(lancer_scene scene, uint32_t count, const double *directions, float *radiance, float *pdf) {
   return probe_scene(scene, count, {directions, radiance, pdf},
                      [&](const Scene &s) { probe_world(s, count, directions, radiance, pdf); });

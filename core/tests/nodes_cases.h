@@ -248,6 +248,7 @@ inline std::vector<NodeCase> all_cases(Random &random) {
   options(LANCER_NODE_DISPLACEMENT, 2);
   options(LANCER_NODE_GAMMA, 1);
   options(LANCER_NODE_INVERT, 1);
+  options(LANCER_NODE_COLOR_MODEL, LANCER_COLOR_COUNT);
   options(LANCER_NODE_NOISE, LANCER_NOISE_COUNT, 64);
   for (uint32_t option = 0; option < LANCER_VORONOI_COUNT; ++option)
     for (uint32_t flags = random() % 7; flags < 512; flags += 7)

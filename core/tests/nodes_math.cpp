@@ -283,6 +283,26 @@ TEST(NodesMath, MixFlagsAndFactorByComponent) {
   EXPECT_EQ(mixed(constant(0.0f, 0.25f, 1.0f), 0), glm::vec3(0.0f, 0.5f, 2.0f));
 }
 
+TEST(NodesMath, ColorModelsAreEachOthersInverse) {
+  Stage stage;
+  // An orange: a hue of 1/12, saturation 2/3 and value 3/4; lightness 1/2, of which chroma is a half.
+  const glm::vec3 orange(0.75f, 0.5f, 0.25f);
+  const auto converted = [&](uint32_t option, const glm::vec3 &c) {
+    return glm::vec3(stage.value({node(LANCER_NODE_COLOR_MODEL, option, {constant(c.x, c.y, c.z)})}));
+  };
+  const glm::vec3 hsv = converted(LANCER_COLOR_TO_HSV, orange), hsl = converted(LANCER_COLOR_TO_HSL, orange);
+  // Quotients by 3 and 12: a few roundings.
+  EXPECT_LT(glm::distance(hsv, glm::vec3(1.0f / 12.0f, 2.0f / 3.0f, 0.75f)), 1e-6f);
+  EXPECT_LT(glm::distance(hsl, glm::vec3(1.0f / 12.0f, 0.5f, 0.5f)), 1e-6f);
+  EXPECT_LT(glm::distance(converted(LANCER_COLOR_FROM_HSV, hsv), orange), 1e-6f);
+  EXPECT_LT(glm::distance(converted(LANCER_COLOR_FROM_HSL, hsl), orange), 1e-6f);
+  // Greys and black have no hue and no saturation; hues beyond the circle are of its last sixth.
+  for (const uint32_t option : {LANCER_COLOR_TO_HSV, LANCER_COLOR_TO_HSL})
+    for (const float grey : {0.0f, 0.25f, 1.0f})
+      EXPECT_EQ(converted(option, glm::vec3(grey)), glm::vec3(0.0f, 0.0f, grey));
+  EXPECT_EQ(converted(LANCER_COLOR_FROM_HSV, {1.5f, 0.5f, 1.0f}), glm::vec3(1.0f, 0.5f, 1.0f));
+}
+
 TEST(NodesMath, SmallOnes) {
   Stage stage;
   const lancer_parameter color = constant(0.25f, 0.5f, -0.5f);

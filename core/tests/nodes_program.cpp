@@ -68,7 +68,7 @@ std::string refusal(const lancer_node &bad) {
 
 TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   EXPECT_EQ(refusal(add(result_of(0))), "");
-  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind 28 is none");
+  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind 29 is none");
   EXPECT_EQ(refusal(node(LANCER_NODE_MATH, LANCER_MATH_COUNT)), "material 'Wood': node 1: option 41 >= 41 options");
   EXPECT_EQ(refusal(add(result_of(1))), "material 'Wood': node 1: input 0 names node 1, which does not come before it");
   EXPECT_EQ(refusal(add(result_of(-2))), "material 'Wood': node 1: input 0 names node -2, which does not come before it");

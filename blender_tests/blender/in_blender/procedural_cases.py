@@ -260,6 +260,40 @@ def curves(side):
     return board.answer()
 
 
+def color_models(side):
+    """Hues, saturations and values of colours that vary: told apart, put together, and turned."""
+    board = Board(int(side))
+    for mode in ("HSV", "HSL"):
+        for i in range(3):
+            board.square(f"separate {mode} {i}", _converted("ShaderNodeSeparateColor", i, mode=mode))
+        board.square(f"combine {mode}", _converted("ShaderNodeCombineColor", 0, mode=mode))
+    for hue, saturation, value in ((0.2, 1.0, 1.0), (0.5, 0.4, 1.5), (0.9, 2.5, 0.7)):
+        numbers = {"Hue": hue, "Saturation": saturation, "Value": value}
+        board.square(f"turned by {hue}", _converted("ShaderNodeHueSaturation", 0, numbers))
+    return board.answer()
+
+
+def _converted(kind, output, numbers=None, **properties):
+    def build(tree, vector):
+        positive, node = tree.nodes.new("ShaderNodeVectorMath"), tree.nodes.new(kind)
+        positive.operation = "ABSOLUTE"
+        tree.links.new(vector, positive.inputs[0])
+        for name, value in properties.items():
+            setattr(node, name, value)
+        for name, value in (numbers or {}).items():
+            node.inputs[name].default_value = value
+        if kind != "ShaderNodeCombineColor":
+            tree.links.new(positive.outputs[0], node.inputs["Color"])
+            return node.outputs[output]
+        parts = tree.nodes.new("ShaderNodeSeparateXYZ")
+        tree.links.new(positive.outputs[0], parts.inputs[0])
+        for part, socket in zip(parts.outputs, node.inputs, strict=True):
+            tree.links.new(part, socket)
+        return node.outputs[output]
+
+    return build
+
+
 def _curve(kind, extend, wide, rng):
     def build(tree, vector):
         node = tree.nodes.new(

@@ -84,6 +84,7 @@ bool is_painted(const Node &node) {
   case LANCER_NODE_CLAMP:
   case LANCER_NODE_GAMMA:
   case LANCER_NODE_INVERT:
+  case LANCER_NODE_COLOR_MODEL:
   case LANCER_NODE_NOISE:
   case LANCER_NODE_VORONOI:
   case LANCER_NODE_GRADIENT:

@@ -1,4 +1,5 @@
-// Mixing and changing colours, as Blender's Mix, Gamma, Invert and RGB to BW nodes have it. Like lanes.h.
+// Mixing and changing colours, as Blender's Mix, Gamma, Invert, RGB to BW, Separate and Combine Color nodes have
+// it. Like lanes.h.
 #pragma once
 
 #include "nodes/vector_nodes.h"
@@ -23,7 +24,7 @@ template <class F> Vector3<F> to_hsv(const Vector3<F> &c) {
   return {select(saturation == zero, zero, turned), saturation, high};
 }
 
-template <class F> Vector3<F> to_rgb(const Vector3<F> &hsv) {
+template <class F> Vector3<F> from_hsv(const Vector3<F> &hsv) {
   // Each channel is a trapezoid over the circle of hues, a third of it apart from the others.
   const F one(1.0f), hue = select(hsv.x == one, F(0.0f), hsv.x);
   const auto channel = [&](float turn) {
@@ -31,7 +32,27 @@ template <class F> Vector3<F> to_rgb(const Vector3<F> &hsv) {
     const F share = clamp01(F(abs(place - F(3.0f)) - one));
     return hsv.z * (one - hsv.y * (one - share));
   };
-  return {channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f)};
+  const Vector3<F> inside{channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f)};
+  // Hues that are none are of the last sixth, as in Cycles.
+  const F sixths = hue * F(6.0f), least = hsv.z * (one - hsv.y);
+  const F falling = hsv.z * (one - hsv.y * (sixths - floor(sixths)));
+  return select((hue < F(0.0f)) | (hue >= one), Vector3<F>{hsv.z, least, falling}, inside);
+}
+
+// Hue in 0 ... 1, saturation, lightness.
+template <class F> Vector3<F> to_hsl(const Vector3<F> &c) {
+  const F zero(0.0f), high = max(max(c.x, c.y), c.z), low = min(min(c.x, c.y), c.z), both = high + low;
+  const F light = min(F(0.5f) * both, F(1.0f));
+  const F saturation = (high - low) / select(light > F(0.5f), F(2.0f) - both, both);
+  const auto grey = high == low;
+  return {select(grey, zero, to_hsv(c).x), select(grey, zero, saturation), light};
+}
+
+template <class F> Vector3<F> from_hsl(const Vector3<F> &hsl) {
+  const F one(1.0f), two(2.0f), six = F(6.0f) * hsl.x;
+  const F chroma = (one - abs(two * hsl.z - one)) * hsl.y;
+  const auto channel = [&](F full) { return (clamp01(full) - F(0.5f)) * chroma + hsl.z; };
+  return {channel(abs(six - F(3.0f)) - one), channel(two - abs(six - two)), channel(two - abs(six - F(4.0f)))};
 }
 
 // Those modes that take hue, saturation or value of the second colour.
@@ -46,15 +67,15 @@ template <class F> Vector3<F> mix_hsv(uint32_t mode, const F &t, const Vector3<F
     if (mode == LANCER_MIX_COLOR)
       hsv.y = other.y;
     // A grey has no hue to give.
-    return select(other.y == zero, a, blend(a, to_rgb(hsv), t));
+    return select(other.y == zero, a, blend(a, from_hsv(hsv), t));
   case LANCER_MIX_SATURATION: {
     const auto grey = hsv.y == zero;
     hsv.y = rest * hsv.y + t * other.y;
-    return select(grey, a, to_rgb(hsv));
+    return select(grey, a, from_hsv(hsv));
   }
   default:
     hsv.z = rest * hsv.z + t * other.z;
-    return to_rgb(hsv);
+    return from_hsv(hsv);
   }
 }
 
@@ -122,6 +143,20 @@ template <class F> Value<F> invert_node(const Inputs<F> &in) {
   const F factor = in.scalar(0), one(1.0f);
   const Vector3<F> color = in[1];
   return solid(factor * (Vector3<F>(one) - color) + F(one - factor) * color);
+}
+
+template <class F> Value<F> color_model_node(const Inputs<F> &in) {
+  const Vector3<F> c = in[0];
+  switch (in.node.option) {
+  case LANCER_COLOR_TO_HSV:
+    return solid(to_hsv(c));
+  case LANCER_COLOR_FROM_HSV:
+    return solid(from_hsv(c));
+  case LANCER_COLOR_TO_HSL:
+    return solid(to_hsl(c));
+  default:
+    return solid(from_hsl(c));
+  }
 }
 
 template <class F> Value<F> grey_node(const Inputs<F> &in) {

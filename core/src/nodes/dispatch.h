@@ -57,6 +57,8 @@ template <class F> Value<F> node_value(const Program &program, const Inputs<F> &
     return gamma_node(in);
   case LANCER_NODE_INVERT:
     return invert_node(in);
+  case LANCER_NODE_COLOR_MODEL:
+    return color_model_node(in);
   case LANCER_NODE_NOISE:
     return noise_node(in);
   case LANCER_NODE_VORONOI:

@@ -52,6 +52,8 @@ void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, co
                        lancer_bsdf_sample *samples);
 void probe_lobes(const Scene &scene, uint32_t material, const float *wo, lancer_lobe_info *lobes, uint32_t capacity,
                  uint32_t *count, float *emission, float *transmittance);
+// The value (float[4]) of a node of constants alone.
+void evaluate_node(const lancer_node &node, float *value);
 void probe_node(const Scene &scene, uint32_t material, uint32_t node, uint32_t count, const float *uv, float *values);
 void probe_world(const Scene &scene, uint32_t count, const double *directions, float *radiance, float *pdf);
 

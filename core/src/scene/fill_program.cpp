@@ -62,6 +62,8 @@ Shape shape_of(const lancer_node &node) {
     return {3, 0, false};
   case LANCER_NODE_DISPLACEMENT:
     return {4, 2, false};
+  case LANCER_NODE_COLOR_MODEL:
+    return {1, LANCER_COLOR_COUNT, false};
   case LANCER_NODE_NOISE:
     return {4, LANCER_NOISE_COUNT, false};
   case LANCER_NODE_VORONOI:
