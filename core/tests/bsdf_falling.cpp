@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "bsdf/ggx.h"
+#include "bsdf/microfacet_terms.h"
 #include "bsdf_catalogue.h"
 #include "statistics.h"
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "bsdf/albedo_tables.h"
-#include "bsdf/microfacet_fresnel.h"
+#include "bsdf/fresnel.h"
 #include "bsdf/microfacet_terms.h"
 
 namespace lancer {

@@ -73,25 +73,13 @@ bool is_painted(const Node &node) {
   case LANCER_NODE_IMAGE:
     return node.option != LANCER_PROJECT_BOX;
   case LANCER_NODE_ATTRIBUTE:
-  case LANCER_NODE_ALPHA:
-  case LANCER_NODE_MAPPING:
-  case LANCER_NODE_MATH:
-  case LANCER_NODE_VECTOR_MATH:
-  case LANCER_NODE_MIX:
-  case LANCER_NODE_SEPARATE:
-  case LANCER_NODE_COMBINE:
-  case LANCER_NODE_GREY:
-  case LANCER_NODE_CLAMP:
-  case LANCER_NODE_GAMMA:
-  case LANCER_NODE_INVERT:
-  case LANCER_NODE_COLOR_MODEL:
   case LANCER_NODE_NOISE:
   case LANCER_NODE_VORONOI:
   case LANCER_NODE_GRADIENT:
   case LANCER_NODE_CURVES:
     return true;
   default:
-    return false;
+    return asks_no_place(node.kind);
   }
 }
 

@@ -146,31 +146,6 @@ void probe_lobes(const Scene &scene, uint32_t material, const float *wo, lancer_
     store(transmittance, seen.transmittance);
 }
 
-namespace {
-
-// Whether a node of constants has a value by itself: it asks nothing of a surface, a ray or a picture.
-bool asks_no_place(uint32_t kind) {
-  switch (kind) {
-  case LANCER_NODE_ALPHA:
-  case LANCER_NODE_MAPPING:
-  case LANCER_NODE_MATH:
-  case LANCER_NODE_VECTOR_MATH:
-  case LANCER_NODE_MIX:
-  case LANCER_NODE_SEPARATE:
-  case LANCER_NODE_COMBINE:
-  case LANCER_NODE_GREY:
-  case LANCER_NODE_CLAMP:
-  case LANCER_NODE_GAMMA:
-  case LANCER_NODE_INVERT:
-  case LANCER_NODE_COLOR_MODEL:
-    return true;
-  default:
-    return false;
-  }
-}
-
-} // namespace
-
 void evaluate_node(const lancer_node &node, float *value) {
   if (!asks_no_place(node.kind))
     bad_argument("node: kind " + std::to_string(node.kind) + " has no value by itself");

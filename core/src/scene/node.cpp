@@ -43,4 +43,24 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
   return result;
 }
 
+bool asks_no_place(uint32_t kind) {
+  switch (kind) {
+  case LANCER_NODE_ALPHA:
+  case LANCER_NODE_MAPPING:
+  case LANCER_NODE_MATH:
+  case LANCER_NODE_VECTOR_MATH:
+  case LANCER_NODE_MIX:
+  case LANCER_NODE_SEPARATE:
+  case LANCER_NODE_COMBINE:
+  case LANCER_NODE_GREY:
+  case LANCER_NODE_CLAMP:
+  case LANCER_NODE_GAMMA:
+  case LANCER_NODE_INVERT:
+  case LANCER_NODE_COLOR_MODEL:
+    return true;
+  default:
+    return false;
+  }
+}
+
 } // namespace lancer

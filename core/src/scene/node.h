@@ -49,4 +49,7 @@ inline glm::vec3 value_of(const Parameter &parameter, std::span<const glm::vec4>
   return parameter.node < 0 ? parameter.value : glm::vec3(values[size_t(parameter.node)]);
 }
 
+// Whether a node asks nothing of a surface, a ray or a picture: with constants for inputs it has a value by itself.
+bool asks_no_place(uint32_t kind);
+
 } // namespace lancer

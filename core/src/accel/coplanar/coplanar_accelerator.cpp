@@ -1,5 +1,5 @@
+#include "accel/accelerator.h"
 #include "accel/coplanar/coplanar_faces.h"
-
 #include "accel/coplanar/plane_rule.h"
 
 namespace lancer {
@@ -249,6 +249,18 @@ std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geome
     return plain;
   return std::make_unique<CoplanarAccelerator>(
       std::move(plain), PlaneRule(geometry, rounding, std::move(faces), std::move(rules)), geometry.instances.size());
+}
+
+std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, const BuildContext &context) {
+  switch (kind) {
+  case AcceleratorKind::KdTree:
+    return build_kdtree_accelerator(geometry, context);
+  case AcceleratorKind::BruteForce:
+    return build_brute_force(geometry);
+  case AcceleratorKind::Bvh:
+    break;
+  }
+  return build_bvh(geometry, context);
 }
 
 } // namespace lancer
