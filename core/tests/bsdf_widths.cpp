@@ -131,14 +131,19 @@ template <class F> LobeInputs<F> lobe_of(const Described *of) {
   in.rules = of->lobe.rules;
   in.distribution = of->lobe.distribution;
   in.option = of->lobe.option;
-#define LANCER_PUT(member) put_lanes<F>(in.member, [&](int i) { return of[i].lobe.member; });
-  LANCER_PUT(weight)
-  LANCER_PUT(color)
-  LANCER_PUT(roughness)
-  LANCER_PUT(ior) LANCER_PUT(shininess) LANCER_PUT(edge) LANCER_PUT(anisotropy) LANCER_PUT(rotation) LANCER_PUT(normal)
-      LANCER_PUT(tangent)
+#define LANCER_PUT(member) put_lanes<F>(in.member, [&](int i) { return of[i].lobe.member; })
+  LANCER_PUT(weight);
+  LANCER_PUT(color);
+  LANCER_PUT(roughness);
+  LANCER_PUT(ior);
+  LANCER_PUT(shininess);
+  LANCER_PUT(edge);
+  LANCER_PUT(anisotropy);
+  LANCER_PUT(rotation);
+  LANCER_PUT(normal);
+  LANCER_PUT(tangent);
 #undef LANCER_PUT
-          return in;
+  return in;
 }
 
 template <class F> PrincipledInputs<F> layers_of(const Described *of) {
@@ -146,16 +151,29 @@ template <class F> PrincipledInputs<F> layers_of(const Described *of) {
   in.rules = of->layers.rules;
   in.distribution = of->layers.distribution;
   in.option = of->layers.option;
-#define LANCER_PUT(member) put_lanes<F>(in.member, [&](int i) { return of[i].layers.member; });
-  LANCER_PUT(base_color)
-  LANCER_PUT(metallic)
-  LANCER_PUT(roughness)
-  LANCER_PUT(ior) LANCER_PUT(diffuse_roughness) LANCER_PUT(specular) LANCER_PUT(specular_tint) LANCER_PUT(anisotropic)
-      LANCER_PUT(anisotropic_rotation) LANCER_PUT(transmission) LANCER_PUT(transmission_roughness) LANCER_PUT(coat)
-          LANCER_PUT(coat_roughness) LANCER_PUT(coat_ior) LANCER_PUT(coat_tint) LANCER_PUT(coat_normal) LANCER_PUT(sheen)
-              LANCER_PUT(sheen_roughness) LANCER_PUT(sheen_tint) LANCER_PUT(emission)
+#define LANCER_PUT(member) put_lanes<F>(in.member, [&](int i) { return of[i].layers.member; })
+  LANCER_PUT(base_color);
+  LANCER_PUT(metallic);
+  LANCER_PUT(roughness);
+  LANCER_PUT(ior);
+  LANCER_PUT(diffuse_roughness);
+  LANCER_PUT(specular);
+  LANCER_PUT(specular_tint);
+  LANCER_PUT(anisotropic);
+  LANCER_PUT(anisotropic_rotation);
+  LANCER_PUT(transmission);
+  LANCER_PUT(transmission_roughness);
+  LANCER_PUT(coat);
+  LANCER_PUT(coat_roughness);
+  LANCER_PUT(coat_ior);
+  LANCER_PUT(coat_tint);
+  LANCER_PUT(coat_normal);
+  LANCER_PUT(sheen);
+  LANCER_PUT(sheen_roughness);
+  LANCER_PUT(sheen_tint);
+  LANCER_PUT(emission);
 #undef LANCER_PUT
-                  return in;
+  return in;
 }
 
 // Where a lane looks from, what it asks for and which numbers it draws with.
