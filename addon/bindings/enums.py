@@ -148,7 +148,7 @@ class NodeKind(IntEnum):
 
 
 class ColorModel(IntEnum):
-    """Hue, saturation and value or lightness, each 0 ..."""
+    """Between linear RGB and hue, saturation and value (HSV) or lightness (HSL)."""
 
     TO_HSV = 0
     FROM_HSV = 1

@@ -259,7 +259,7 @@ enum lancer_node_kind {
   LANCER_NODE_COLOR_MODEL = 28, /* inputs: colour; option LANCER_COLOR_* */
   LANCER_NODE_COUNT = 29
 };
-/* Hue, saturation and value or lightness, each 0 ... 1 of what is displayed. */
+/* Between linear RGB and hue, saturation and value (HSV) or lightness (HSL). */
 enum lancer_color_model {
   LANCER_COLOR_TO_HSV = 0,
   LANCER_COLOR_FROM_HSV,

@@ -2,179 +2,27 @@
 #include "compile/ready_lobes.h"
 #include "integrator/stages/lobe_means.h"
 #include "lane_numbers.h"
-#include "principled_lab.h"
+#include "random_lobes.h"
 #include "scene/material.h"
-#include "statistics.h"
 
 #include <gtest/gtest.h>
-#include <limits>
 
 namespace lancer {
 namespace {
 
+using testing::all_codes;
+using testing::Code;
+using testing::Described;
+using testing::described;
 using testing::kMostLanes;
 using testing::Lanes;
+using testing::layers_of;
+using testing::lobe_of;
+using testing::near;
 using testing::put_lanes;
 using testing::Random;
 using testing::Report;
-
-float one_of(Random &random, std::initializer_list<float> numbers) { return numbers.begin()[random.next() % numbers.size()]; }
-glm::vec3 unit(Random &random) {
-  const float z = 2.0f * random.uniform() - 1.0f, phi = 6.28f * random.uniform(), s = std::sqrt(1.0f - z * z);
-  return {s * std::cos(phi), s * std::sin(phi), z};
-}
-glm::vec3 near(Random &random, const glm::vec3 &n, float apart) { return glm::normalize(n + apart * unit(random)); }
-// Black in one of three.
-glm::vec3 color(Random &random) {
-  const uint64_t kind = random.next() % 6;
-  const glm::vec3 any(random.uniform(), random.uniform(), 1.2f * random.uniform());
-  return kind < 2 ? glm::vec3(0.0f) : kind < 3 ? glm::vec3(1.0f) : any;
-}
-float share(Random &random) { return random.next() % 3 ? random.uniform() : one_of(random, {0.0f, 1.0f, 0.5f}); }
-float roughness(Random &random) {
-  return random.next() % 2 ? random.uniform() : one_of(random, {0.0f, 1e-5f, 3e-3f, 0.06f, 0.3f, 1.0f});
-}
-float index(Random &random) {
-  return random.next() % 2 ? 0.5f + 1.5f * random.uniform()
-                           : one_of(random, {1.0f, 1.5f, 1.00001f, 0.7f, std::numeric_limits<float>::infinity()});
-}
-
-// What is the same in all lanes: one code.
-struct Code {
-  LobeKind kind;
-  Rules rules;
-  Facets distribution;
-  uint32_t option;
-
-  std::string name() const {
-    return "kind " + std::to_string(int(kind)) + ", rules " + std::to_string(int(rules)) + ", facets " +
-           std::to_string(int(distribution)) + ", option " + std::to_string(option);
-  }
-};
-
-std::vector<Code> all_codes() {
-  std::vector<Code> all;
-  for (uint32_t number = 0; number < kLobeKinds; ++number)
-    for (const Rules rules : testing::kAllRules)
-      for (const Facets facets : {Facets::Ggx, Facets::Beckmann, Facets::AshikhminShirley, Facets::MultiGgx})
-        for (const uint32_t option : {0u, 1u}) {
-          const LobeKind kind = static_cast<LobeKind>(number);
-          const bool of_facets = kind == LobeKind::Glossy || kind == LobeKind::Glass || kind == LobeKind::Refraction ||
-                                 kind == LobeKind::Conductor;
-          const bool layered = kind == LobeKind::Principled, cloth = kind == LobeKind::Sheen;
-          const bool there = facets == Facets::Ggx || (facets == Facets::Beckmann && (of_facets || cloth)) ||
-                             (facets == Facets::AshikhminShirley && kind == LobeKind::Glossy) ||
-                             (facets == Facets::MultiGgx && (of_facets || layered));
-          const bool optional = layered || kind == LobeKind::Diffuse || kind == LobeKind::Conductor;
-          if (there && (optional || option == 0))
-            all.push_back({kind, rules, facets, option});
-        }
-  return all;
-}
-
-// One lane's lobe.
-struct Described {
-  LobeInputs<float> lobe;
-  PrincipledInputs<float> layers;
-};
-
-Described described(Random &random, const Code &code, const glm::vec3 &ns) {
-  Described d;
-  LobeInputs<float> &lobe = d.lobe;
-  lobe.kind = code.kind;
-  lobe.rules = code.rules;
-  lobe.distribution = code.distribution;
-  lobe.option = code.option;
-  lobe.weight = random.next() % 8 ? glm::max(color(random), random.uniform()) : glm::vec3(0.0f);
-  lobe.color = color(random);
-  lobe.roughness = roughness(random);
-  lobe.ior = index(random);
-  lobe.shininess = random.uniform() * one_of(random, {0.0f, 1.0f, 4.0f, 200.0f, 1e5f});
-  lobe.edge = color(random);
-  lobe.anisotropy = one_of(random, {0.0f, 1.0f}) * (1.8f * random.uniform() - 0.9f);
-  lobe.rotation = one_of(random, {0.0f, 1.0f}) * random.uniform();
-  if (random.next() % 2)
-    lobe.normal = near(random, ns, 0.8f);
-  if (random.next() % 2)
-    lobe.tangent = unit(random);
-  PrincipledInputs<float> &in = d.layers;
-  in.rules = code.rules;
-  in.distribution = code.distribution;
-  in.option = code.option;
-  in.base_color = color(random);
-  in.metallic = share(random);
-  in.roughness = roughness(random);
-  in.ior = 0.6f + random.uniform();
-  in.diffuse_roughness = roughness(random);
-  in.specular = random.next() % 2 ? 0.5f : random.uniform();
-  in.specular_tint = random.next() % 2 ? glm::vec3(1.0f) : color(random);
-  in.anisotropic = one_of(random, {0.0f, 1.0f}) * random.uniform();
-  in.anisotropic_rotation = one_of(random, {0.0f, 1.0f}) * random.uniform();
-  in.transmission = share(random);
-  in.transmission_roughness = roughness(random);
-  in.coat = share(random);
-  in.coat_roughness = roughness(random);
-  in.coat_ior = 1.0f + random.uniform();
-  in.coat_tint = random.next() % 2 ? glm::vec3(1.0f) : color(random);
-  if (random.next() % 2)
-    in.coat_normal = near(random, ns, 0.8f);
-  in.sheen = share(random);
-  in.sheen_roughness = roughness(random);
-  in.sheen_tint = color(random);
-  in.emission = color(random);
-  return d;
-}
-
-template <class F> LobeInputs<F> lobe_of(const Described *of) {
-  LobeInputs<F> in;
-  in.kind = of->lobe.kind;
-  in.rules = of->lobe.rules;
-  in.distribution = of->lobe.distribution;
-  in.option = of->lobe.option;
-#define LANCER_PUT(member) put_lanes<F>(in.member, [&](int i) { return of[i].lobe.member; })
-  LANCER_PUT(weight);
-  LANCER_PUT(color);
-  LANCER_PUT(roughness);
-  LANCER_PUT(ior);
-  LANCER_PUT(shininess);
-  LANCER_PUT(edge);
-  LANCER_PUT(anisotropy);
-  LANCER_PUT(rotation);
-  LANCER_PUT(normal);
-  LANCER_PUT(tangent);
-#undef LANCER_PUT
-  return in;
-}
-
-template <class F> PrincipledInputs<F> layers_of(const Described *of) {
-  PrincipledInputs<F> in;
-  in.rules = of->layers.rules;
-  in.distribution = of->layers.distribution;
-  in.option = of->layers.option;
-#define LANCER_PUT(member) put_lanes<F>(in.member, [&](int i) { return of[i].layers.member; })
-  LANCER_PUT(base_color);
-  LANCER_PUT(metallic);
-  LANCER_PUT(roughness);
-  LANCER_PUT(ior);
-  LANCER_PUT(diffuse_roughness);
-  LANCER_PUT(specular);
-  LANCER_PUT(specular_tint);
-  LANCER_PUT(anisotropic);
-  LANCER_PUT(anisotropic_rotation);
-  LANCER_PUT(transmission);
-  LANCER_PUT(transmission_roughness);
-  LANCER_PUT(coat);
-  LANCER_PUT(coat_roughness);
-  LANCER_PUT(coat_ior);
-  LANCER_PUT(coat_tint);
-  LANCER_PUT(coat_normal);
-  LANCER_PUT(sheen);
-  LANCER_PUT(sheen_roughness);
-  LANCER_PUT(sheen_tint);
-  LANCER_PUT(emission);
-#undef LANCER_PUT
-  return in;
-}
+using testing::unit;
 
 // Where a lane looks from, what it asks for and which numbers it draws with.
 constexpr int kAsked = 3, kDrawn = 4;

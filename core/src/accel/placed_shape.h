@@ -11,7 +11,6 @@
 namespace lancer {
 
 // The power of two in a double, and its inverse, both exact: of any width.
-
 LANCER_LANE double with_words(double x, const auto &f) { return std::bit_cast<double>(f(std::bit_cast<uint64_t>(x))); }
 namespace {
 template <int W> LANCER_LANE Double<W> with_words(const Double<W> &x, const auto &f) {

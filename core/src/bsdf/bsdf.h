@@ -122,4 +122,4 @@ private:
 
 } // namespace lancer
 
-#include "bsdf/bsdf_terms.h" // the templates
+#include "bsdf/bsdf_sample.h" // the templates

@@ -9,7 +9,6 @@
 namespace lancer {
 
 // One record for every lane: its numbers side by side, read once where all lanes have the same one.
-
 template <class F, class Record> struct LaneRecords {
   static constexpr int kWidth = LanesOf<F>::kWidth;
   const Record *of[kWidth] = {}; // only the first is read where all are the same

@@ -73,7 +73,6 @@ template <class F> struct Lobe {
 };
 
 // What every smooth lobe answers. Directions are in the local frame, turned so that wo.z > 0 and wi.z > 0.
-
 template <class F> struct LobeValue {
   F f{0.0f};   // without the lobe's colour and without the cosine, 1/sr
   F pdf{0.0f}; // per solid angle of wi

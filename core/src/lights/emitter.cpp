@@ -11,9 +11,10 @@
 
 namespace lancer {
 
-// A face of a glowing mesh as a point sees it: near ones are sampled by the solid angle that they fill, far ones by area.
+namespace {
 
-// A face of a mesh as a point sees it, relative to the point.
+// A face of a glowing mesh relative to the point that sees it: near ones are sampled by the solid angle that they fill, far
+// ones by area.
 struct SeenFace {
   // Below this share of the squared distance of its middle a face is taken as a light far away, which its area describes as
   // well; beyond these solid angles it is seen edge on, or the point lies on it.
@@ -62,8 +63,6 @@ inline glm::dvec2 sample_seen(const SeenFace &seen, const glm::vec2 &u) {
   }
   return glm::dvec2(warp_triangle(u));
 }
-
-namespace {
 
 // Exact surfaces by their unit parts: 0 the curved side, 1 and 2 the disks at z = -1 and z = 1.
 double part_area(ShapeKind kind, int part) {

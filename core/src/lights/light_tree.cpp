@@ -8,14 +8,13 @@
 
 namespace lancer {
 
-// Copies of vectors in the plain arrays of records that kernels read.
+namespace {
 
+// Copies of vectors in the plain arrays of records that kernels read.
 template <class T> void copy(const glm::vec<3, T> &from, T (&to)[3]) {
   for (int i = 0; i < 3; ++i)
     to[i] = from[i];
 }
-
-namespace {
 
 LightQueryLanes<float> width_one(const LightQuery &query) {
   return {Vector3<double>(query.p), Vector3<float>(query.n), query.transmits};

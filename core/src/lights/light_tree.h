@@ -15,7 +15,6 @@ namespace lancer {
 // Which of a few lights to ask at a point: a binary tree, each choice weighted by what may arrive.
 // Between lights, and between what is near and what is distant, shares of the upper and of the lower bounds are averaged, as in
 // Cycles; between clusters the upper bounds decide.
-
 class BinaryLightTree {
 public:
   BinaryLightTree() = default;

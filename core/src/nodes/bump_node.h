@@ -8,7 +8,6 @@
 namespace lancer {
 
 // Memory for values of nodes that are too many for the stack.
-
 // Aligned for lanes. Throws std::bad_alloc.
 void *allocate_values(size_t bytes);
 void free_values(void *values);

@@ -33,7 +33,7 @@ template <class F> Vector3<F> from_hsv(const Vector3<F> &hsv) {
     return hsv.z * (one - hsv.y * (one - share));
   };
   const Vector3<F> inside{channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f)};
-  // Hues that are none are of the last sixth, as in Cycles.
+  // Hues outside 0 ... 1 are taken for the last sixth, as in Cycles.
   const F sixths = hue * F(6.0f), least = hsv.z * (one - hsv.y);
   const F falling = hsv.z * (one - hsv.y * (sixths - floor(sixths)));
   return select((hue < F(0.0f)) | (hue >= one), Vector3<F>{hsv.z, least, falling}, inside);

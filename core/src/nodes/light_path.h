@@ -43,7 +43,6 @@ template <class F> LANCER_LANE F light_path_value(uint32_t which, const LightPat
 }
 
 // What a Light Path node is told of a path: by what its last ray was sent, and how often it was scattered in which way.
-
 struct PathStory {
   uint8_t kinds = LANCER_RAY_CAMERA; // as LightPath::kinds
   uint8_t diffuse = 0, glossy = 0, transmission = 0;

@@ -10,17 +10,15 @@
 
 namespace lancer {
 
-// An angle of any size by quarters of a turn.
+namespace {
 
+// An angle of any size by quarters of a turn:
 // x = (quarters + 4 n) pi / 2 + high + low, |high| <= pi / 4 but for rounding, and low the part of it that high has no room
 // for: together within 2^-60 of them, relatively. x is finite.
 struct QuarterTurns {
   uint32_t quarters = 0; // 0 ... 3
   double high = 0.0, low = 0.0;
 };
-QuarterTurns quarter_turns(double x);
-
-namespace {
 
 // pi / 2: parts of 33 bits, whose products with numbers of 20 bits are exact, and the rest.
 constexpr double kPart1 = 0x1.921fb544p+0, kPart2 = 0x1.0b4611a6p-34, kPart3 = 0x1.3198a2e037073p-69;
@@ -101,8 +99,6 @@ QuarterTurns by_digits(double x) {
   return result;
 }
 
-} // namespace
-
 QuarterTurns quarter_turns(double x) {
   if (std::abs(x) <= 0.5 * kHalfPi)
     return {0, x, 0.0};
@@ -119,9 +115,6 @@ QuarterTurns quarter_turns(double x) {
   }
   return by_digits(x);
 }
-
-// Sine, cosine and tangent of angles of any size.
-namespace {
 
 // |high| <= pi / 4. The low part turns the rest by so little that the first order tells.
 double sine_near(double high, double low) {
@@ -169,7 +162,6 @@ double tan(double x) {
 }
 
 // Angles by their tangent, sine or cosine; and the length of two sides.
-
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -27,7 +27,6 @@ inline void check_flags(const std::string &where, uint32_t flags, uint32_t known
 }
 
 // Checks and copies a camera; an Error says what no camera can have.
-
 Camera read_camera(const lancer_camera &source);
 // An Error where the camera, in the normalised world, is too far from everything.
 void check_reach(const Camera &camera);

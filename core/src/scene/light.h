@@ -37,7 +37,6 @@ struct LightDescription {
 };
 
 // What lies beyond everything, as described: one radiance, or nodes over the direction.
-
 struct World {
   Program program;
   Parameter radiance;

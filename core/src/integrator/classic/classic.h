@@ -20,7 +20,6 @@
 namespace lancer {
 
 // Light of the rays of a batch that is found in any order of rays and added up in theirs.
-
 class LightByRay {
 public:
   void begin(size_t rays) {

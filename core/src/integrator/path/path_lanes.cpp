@@ -89,42 +89,6 @@ void PathIntegrator::cut_holes(std::span<SampleResult> results) {
   }
 }
 
-// What passes say of the surfaces that the camera sees.
-void PathIntegrator::record_surfaces(std::span<SampleResult> results) {
-  uint32_t seen = 0, featured = 0;
-  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
-    const Path &path = paths_[waiting_[lane].number];
-    if (waiting_[lane].nothing)
-      continue;
-    seen |= uint32_t(path.in_view) << lane;
-    featured |= uint32_t(passes_.features() && guides_[path.slot].open) << lane;
-  }
-  if (!(seen | featured))
-    return;
-  surfaces_.describe();
-  for (uint32_t rest = seen | featured; rest != 0; rest &= rest - 1) {
-    const uint32_t lane = uint32_t(std::countr_zero(rest));
-    const Waiting &waiting = waiting_[lane];
-    const Path &path = paths_[waiting.number];
-    const Hit &hit = hits_[waiting.number];
-    SampleResult &result = results[path.slot];
-    if (seen >> lane & 1) {
-      block_.occlusion_asked |= uint32_t(passes_.occlusion() && !waiting.ends && path.scatterings == 0) << lane;
-      // Mostly its place is enough.
-      Surface surface;
-      if (path.sampler.sample() == 0 || passes_.uv())
-        surface = surfaces_.surface(lane);
-      else
-        surface.p = get(block_.p, lane);
-      record(path, surface, *block_.material[lane], get(block_.normal, lane), surfaces_.opacity(lane), hit.t, result);
-      for (uint32_t component = 0; component < 3 && passes_.components(); ++component)
-        result.light[kLightComponents + 3 * component + 2] += path.beta * get(block_.shown[component], lane);
-    }
-    if (featured >> lane & 1)
-      waiting_[lane].mixture = surfaces_.mixture(lane);
-  }
-}
-
 LightQuery PathIntegrator::query(uint32_t lane) const {
   return LightQuery(get(block_.p, lane), get(block_.viewer_ns, lane), block_.transmits >> lane & 1);
 }

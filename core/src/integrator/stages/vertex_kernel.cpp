@@ -226,10 +226,10 @@ LANCER_LANE void look_around(VertexBlock &block, int first, const Bsdf<F> &bsdf,
   const auto above = [&](const V3 &d) __attribute__((always_inline)) {
     return (dot(d, bsdf.ns) > zero) & (dot(d, bsdf.ng) > zero);
   };
-  const M told = by_next & above(sample.wi) & !sample.delta & (sample.pdf > zero);
+  const M drawn = by_next & above(sample.wi) & !sample.delta & (sample.pdf > zero);
   const F weight = max(dot(n, sample.wi), zero) / (F(glm::pi<float>()) * sample.pdf);
-  store(block.occlusion_weight + first, select(told, weight, zero));
-  block.looks_by_next |= placed_bits(told, first);
+  store(block.occlusion_weight + first, select(drawn, weight, zero));
+  block.looks_by_next |= placed_bits(drawn, first);
   block.looks_itself |= placed_bits(asked & !(by_next & above(wi)), first);
 }
 
