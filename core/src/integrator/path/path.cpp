@@ -17,61 +17,35 @@ constexpr uint32_t kRouletteAfter = 2;
 
 void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                          std::vector<PathVertex> *trace) {
-  // Only the first samples of pixels tell of places.
-  only_combined_ = passes_.only_places() && (!passes_.places() || addresses.front().sample > 0);
+  trace_ = trace;
   // Start one path per sample.
   generate(addresses, results);
-  energy_ = {};
-  last_bounces_.begin();
-  const auto gathered = [&](uint32_t slot) { return results[slot].radiance + indirect_[slot]; };
+  const auto gathered = [&](uint32_t slot) { return film_.gathered(slot); };
   for (uint32_t turn = 0; !paths_.empty() && !settings_.cancelled(); ++turn) {
     // Find where every path goes next.
-    find_hits(results, trace);
+    find_hits();
     // Gather emission, ask a light, choose how each path goes on.
-    shade(results, trace);
+    shade();
     if (last_bounces_.due(turn))
       last_bounces_.note(
           turn, paths_.size(), [&](size_t i) { return paths_[i].slot; }, gathered);
     // Add the light that was not in shadow.
-    counts_.shadow += shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) {
-      SampleResult &result = results[waiting.slot];
-      if (waiting.occlusion) {
-        result.light[kLightOcclusion] += light;
-        return;
-      }
-      if (waiting.indirect)
-        indirect_[waiting.slot] += light;
-      else
-        result.radiance += light;
-      passes_.add(result, light, waiting.share, waiting.indirect);
-    });
+    counts_.shadow +=
+        shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { film_.add_lit(waiting, light); });
     counts_.bounce += next_rays_.size();
     paths_.swap(next_paths_);
     rays_.swap(next_rays_);
   }
-  last_bounces_.end(gathered, energy_);
-  // Join the indirect light, clamped if that was asked for.
-  for (size_t slot = 0; slot < results.size(); ++slot) {
-    glm::vec3 indirect = indirect_[slot];
-    const float top = largest(indirect);
-    if (settings_.clamp_indirect > 0.0f && top > settings_.clamp_indirect) {
-      energy_.clip(double(luminance(indirect)) * (1.0 - double(settings_.clamp_indirect / top)));
-      indirect *= settings_.clamp_indirect / top;
-      passes_.scale_indirect(results[slot], settings_.clamp_indirect / top);
-    }
-    results[slot].radiance += indirect;
-  }
+  last_bounces_.end(gathered, film_.energy);
+  film_.end();
+  energy_ = film_.energy;
 }
 
 void PathIntegrator::generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
   paths_.clear();
   rays_.clear();
-  indirect_.assign(addresses.size(), glm::vec3(0.0f));
-  shares_.resize(addresses.size());
-  if (!only_combined_ || records_.size() != addresses.size())
-    records_.assign(addresses.size(), Record());
-  if (passes_.features())
-    guides_.assign(addresses.size(), begin_guides(settings_, true));
+  film_.begin(addresses, results);
+  last_bounces_.begin();
   generator_.start(addresses, passes_.wanted(), results, [&](uint32_t slot, const Sampler &sampler) -> Ray & {
     paths_.emplace_back(sampler, slot);
     return rays_.emplace_back();
@@ -81,19 +55,19 @@ void PathIntegrator::generate(std::span<const SampleAddress> addresses, std::spa
   counts_.camera += paths_.size();
 }
 
-void PathIntegrator::shade(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+void PathIntegrator::shade() {
   next_paths_.clear();
   next_rays_.clear();
-  add_lights_met(results);
+  add_lights_met();
   if (passes_.occlusion())
-    count_occluded(results);
+    count_occluded();
   queues_.begin();
   for (size_t i = 0; i < paths_.size(); ++i)
     if (hits_[i].valid())
       queues_.add(i, hits_[i]);
     else
-      miss(i, results);
-  add_missed(results);
+      miss(i);
+  add_missed();
   vertices_.wide += queues_.size();
   queues_.each([&](std::span<const ShadingQueues::Met> met) {
     for (size_t i = 0; i < met.size(); ++i) {
@@ -101,9 +75,9 @@ void PathIntegrator::shade(std::span<SampleResult> results, std::vector<PathVert
         textures_.ahead(hits_[met[i + 1].number]);
       put_in_lane(met[i].number, *met[i].material);
       if (surfaces_.full())
-        shade_block(results, trace);
+        shade_block();
     }
-    shade_block(results, trace);
+    shade_block();
   });
 }
 
@@ -112,14 +86,12 @@ View PathIntegrator::view_of(const Path &path, const Ray &ray, double t) const {
   const double unit = glm::length(ray.d), way = path.length + t * unit;
   return {.wo = glm::vec3(-glm::normalize(ray.d)),
           .footprint = float(cone_.base + way * cone_.spread),
-          .path = light_path(path, (t - ray.tmin) * unit)};
+          .path = path.light_path((t - ray.tmin) * unit / scene_.normalisation.scale)};
 }
 
-void PathIntegrator::keep_vertex(const Path &path, const Surface &surface, double t, const SampleResult &result,
-                                 std::vector<PathVertex> &trace) const {
-  const glm::vec3 so_far = result.radiance + indirect_[path.slot];
-  trace.push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta, so_far,
-                   surface.instance, surface.primitive, surface.material, path.scatterings});
+void PathIntegrator::keep_vertex(const Path &path, const Surface &surface, double t) {
+  trace_->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta,
+                     film_.gathered(path.slot), surface.instance, surface.primitive, surface.material, path.scatterings});
 }
 
 // Unless the path has passed all that it may.
@@ -130,8 +102,7 @@ void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const 
   path.beta *= weight;
   path.passed += length;
   path.length += length;
-  if (!only_combined_)
-    records_[path.slot].depth += t;
+  film_.pass_on(path, t);
   path.count_crossings(1, settings_.transparent_bounces);
   next_rays_.push_back(leave(surface, ray.d, ray.tmax - t));
   next_rays_.back().kinds = path.kinds;

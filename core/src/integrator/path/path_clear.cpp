@@ -3,7 +3,7 @@
 
 namespace lancer {
 
-void PathIntegrator::find_hits(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+void PathIntegrator::find_hits() {
   hits_.resize(rays_.size());
   if (!any_clear_)
     return scene_.accelerator->closest_hit(rays_, hits_);
@@ -14,7 +14,7 @@ void PathIntegrator::find_hits(std::span<SampleResult> results, std::vector<Path
   scene_.accelerator->closest_hit(rays_, hits_, {scene_.perforated_instances.data(), ask, this});
   for (size_t i = 0; i < rays_.size(); ++i)
     if (clear_.count(i) > 0)
-      pass_clear(i, results, trace);
+      pass_clear(i);
 }
 
 // Whether there is anything of a surface that a ray meets. Where not, its vertex would choose to pass straight on with weight
@@ -37,7 +37,7 @@ bool PathIntegrator::is_there(size_t ray, const Hit &hit) {
 }
 
 // Counts the layers before a path's hit, as if it had gone from one to the next.
-void PathIntegrator::pass_clear(size_t number, std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+void PathIntegrator::pass_clear(size_t number) {
   Path &path = paths_[number];
   const Ray &ray = rays_[number];
   const Hit end = hits_[number];
@@ -46,7 +46,7 @@ void PathIntegrator::pass_clear(size_t number, std::span<SampleResult> results, 
   if (count == 0)
     return;
   const uint32_t limit = settings_.transparent_bounces;
-  if (only_combined_ && !trace && count <= path.crossings_left(limit))
+  if (film_.only_combined() && !trace_ && count <= path.crossings_left(limit))
     return path.count_crossings(count, limit);
   for (const Crossing &layer : clear_.in_order(number)) {
     const Hit &hit = layer.hit;
@@ -58,15 +58,14 @@ void PathIntegrator::pass_clear(size_t number, std::span<SampleResult> results, 
       return;
     }
     // Passes tell of places where little is seen, too.
-    SampleResult &result = results[path.slot];
-    const bool recorded = path.in_view && !only_combined_ && !records_[path.slot].seen;
-    if (recorded || trace) {
+    const bool recorded = film_.awaits_surface(path);
+    if (recorded || trace_) {
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);
-      if (trace)
-        keep_vertex(path, surface, hit.t, result, *trace);
+      if (trace_)
+        keep_vertex(path, surface, hit.t);
       if (recorded) {
         shader_.shade(surface, view_of(path, ray, hit.t), clear_point_);
-        record(path, surface, queues_.material(hit), clear_point_.bsdf.ns, clear_point_.opacity(), hit.t, result);
+        film_.record(path, surface, queues_.material(hit), clear_point_.bsdf.ns, clear_point_.opacity(), hit.t);
       }
     }
     path.count_crossings(1, limit);

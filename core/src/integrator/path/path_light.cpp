@@ -1,7 +1,6 @@
-// The light that paths gather: what they run into, and what they ask for.
+// The light that paths find: what they run into, and what they ask for.
 #include "integrator/path/path.h"
 #include "integrator/stages/lane_access.h"
-#include "lights/sample_light.h"
 #include "sampling/color.h"
 
 #include <algorithm>
@@ -10,29 +9,8 @@
 
 namespace lancer {
 
-void PathIntegrator::add(const Path &path, SampleResult &result, const glm::vec3 &radiance, bool environment) {
-  // Light that was scattered at most once is direct; clamping never touches it.
-  const bool indirect = path.scatterings > 1;
-  if (passes_.features() && guides_[path.slot].open)
-    result.albedo += guides_[path.slot].beta * radiance;
-  // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
-  if (path.in_view) {
-    const float top = largest(radiance), limit = settings_.clamp_indirect;
-    const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
-    energy_.clip(double(luminance(radiance - seen)));
-    result.radiance += seen;
-    passes_.add_seen(result, seen, environment);
-    return;
-  }
-  if (indirect)
-    indirect_[path.slot] += radiance;
-  else
-    result.radiance += radiance;
-  passes_.add(result, radiance, shares_[path.slot].of, indirect);
-}
-
 // Lights stand in no one's way: adds all that the rays pass before they end.
-void PathIntegrator::add_lights_met(std::span<SampleResult> results) {
+void PathIntegrator::add_lights_met() {
   const LightSet &lights = scene_.lights;
   if (!lights.any_on_the_way())
     return;
@@ -48,11 +26,10 @@ void PathIntegrator::add_lights_met(std::span<SampleResult> results) {
     for (const uint32_t number : lights.always_on_the_way()) {
       const uint32_t met = lanes_.meets(segments_, lights.lights()[number]) & ((1u << count) - 1u);
       for (uint32_t rest = met; rest != 0; rest &= rest - 1)
-        add_light_met(first + size_t(std::countr_zero(rest)), number, results);
+        add_light_met(first + size_t(std::countr_zero(rest)), number);
     }
     if (lights.finds())
-      lights.wide_tree().along(segments_, count,
-                               [&](uint32_t lane, uint32_t number) { add_light_met(first + lane, number, results); });
+      lights.wide_tree().along(segments_, count, [&](uint32_t lane, uint32_t number) { add_light_met(first + lane, number); });
   }
 }
 
@@ -61,7 +38,7 @@ double PathIntegrator::way_end(size_t i) const {
 }
 
 // One light, if the ray meets it on this stretch of the way.
-void PathIntegrator::add_light_met(size_t i, uint32_t number, std::span<SampleResult> results) {
+void PathIntegrator::add_light_met(size_t i, uint32_t number) {
   const Path &path = paths_[i];
   const Ray &ray = rays_[i];
   if (!(path.kinds & ~scene_.lights.hidden_from(number)))
@@ -75,20 +52,119 @@ void PathIntegrator::add_light_met(size_t i, uint32_t number, std::span<SampleRe
   const bool here = far ? std::isinf(hits_[i].t) : met.distance >= begin && met.distance < way_end(i);
   if (!(met.pdf > 0.0) || !here)
     return;
-  const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(query(path), number)) : 1.0f;
-  add(path, results[path.slot], path.beta * met.radiance * weight, false);
+  const float weight =
+      path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(path.light_query(), number)) : 1.0f;
+  film_.add(path, path.beta * met.radiance * weight, false);
 }
 
-void PathIntegrator::add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission, SampleResult &result) {
+void PathIntegrator::add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission) {
   if (emission == glm::vec3(0.0f))
     return;
   float weight = 1.0f;
   const Emitter *emitter = path.pdf > 0.0 ? scene_.lights.emitter_of(surface.instance) : nullptr;
   if (emitter) {
     const double pdf = emitter->face_pdf(scene_.geometry, path.from, surface);
-    weight = mis_weight(path.pdf, pdf * scene_.lights.probability(scene_.geometry, query(path), *emitter, surface.primitive));
+    weight =
+        mis_weight(path.pdf, pdf * scene_.lights.probability(scene_.geometry, path.light_query(), *emitter, surface.primitive));
   }
-  add(path, result, path.beta * emission * weight, false);
+  film_.add(path, path.beta * emission * weight, false);
+}
+
+void PathIntegrator::miss(size_t number) {
+  Path &path = paths_[number];
+  film_.miss(path);
+  // A transparent film does not show the environment itself, only what it lights.
+  if (path.in_view && settings_.film_transparent)
+    return film_.cut(path, mean(path.beta));
+  if (!(path.kinds & ~scene_.world.hidden_from))
+    return;
+  const Environment &environment = scene_.lights.environment();
+  if (!environment.varies())
+    return film_.add(path, path.beta * environment.constant(), true);
+  lights_.add_miss(missed_count_, rays_[number].d, path.light_path(0.0),
+                   path.kinds == LANCER_RAY_CAMERA ? &path.from : nullptr);
+  missed_[missed_count_++] = number;
+  if (missed_count_ == kBlockLanes)
+    add_missed();
+}
+
+// What waits beside others that have met nothing.
+void PathIntegrator::add_missed() {
+  if (missed_count_ == 0)
+    return;
+  const LightSet &lights = scene_.lights;
+  lights_.look_at_sky(missed_count_);
+  for (uint32_t lane = 0; lane < missed_count_; ++lane) {
+    const Path &path = paths_[missed_[lane]];
+    // The environment is sampled as a light, too.
+    float weight = 1.0f;
+    if (lights.environment().is_light() && path.pdf > 0.0) {
+      const double chosen = lights.probability(path.light_query(), lights.environment_light());
+      weight = mis_weight(path.pdf, lights_.sky_pdf(lane) * chosen);
+    }
+    film_.add(path, path.beta * lights_.sky_radiance(lane) * weight, true);
+  }
+  missed_count_ = 0;
+}
+
+// A lane's sample of a light, if nothing is in its way.
+void PathIntegrator::send_shadow_of(uint32_t lane) {
+  const Path &path = paths_[waiting_[lane].number];
+  const glm::vec3 contribution = get(block_.contribution, lane);
+  WaitingLight shares;
+  for (int component = 0; component < 2 && passes_.components(); ++component)
+    shares.share[component] = path.in_view ? get(block_.light_share[component], lane) : film_.shares(path)[component];
+  if (scene_.lights.no_shadow(lights_.light(lane))) {
+    shares.slot = path.slot;
+    shares.indirect = path.scatterings > 0;
+    return shadows_.push_lit(shares, contribution);
+  }
+  Ray &ray = shadows_.push(path.slot, contribution, path.scatterings > 0, path.passed_through);
+  if (passes_.components())
+    shadows_.set_shares(shares.share);
+  if (shadows_.asks_light_path())
+    shadows_.set_light_path(path.asking_path());
+  lights_.write_shadow_ray(lane, ray);
+}
+
+// Looks for what is in the way around the normal of what is diffuse, with the weight of a cosine.
+void PathIntegrator::look_around(uint32_t lane) {
+  const Path &path = paths_[waiting_[lane].number];
+  const glm::vec3 weight = path.beta * surfaces_.opacity(lane);
+  if (block_.looks_itself >> lane & 1)
+    send_occlusion_ray(lane, get(block_.occlusion_wi, lane), weight);
+  else
+    film_.add_open(path, weight);
+  if (!(block_.looks_by_next >> lane & 1))
+    return;
+  const float occlusion = block_.occlusion_weight[lane];
+  if (block_.sampled >> lane & 1) {
+    film_.keep_occlusion(path, occlusion);
+  } else {
+    // A direction that brings no light gets a ray all the same.
+    film_.add_open(path, -glm::vec3(occlusion));
+    send_occlusion_ray(lane, get(block_.wi, lane), glm::vec3(occlusion));
+  }
+}
+
+void PathIntegrator::send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, const glm::vec3 &weight) {
+  const Path &path = paths_[waiting_[lane].number];
+  Ray ray = leave(surfaces_.surface(lane), glm::dvec3(wi), occlusion_reach_);
+  ray.kinds = LANCER_RAY_SHADOW;
+  shadows_.push(ray, {.slot = path.slot, .occlusion = true}, weight, path.passed_through);
+  if (shadows_.asks_light_path())
+    shadows_.set_light_path(path.asking_path());
+}
+
+// What the next rays of the first surfaces have met.
+void PathIntegrator::count_occluded() {
+  for (size_t i = 0; i < paths_.size(); ++i) {
+    if (paths_[i].scatterings != 1)
+      continue;
+    const float occlusion = film_.take_occlusion(paths_[i]);
+    if (occlusion > 0.0f && hits_[i].valid() && hits_[i].t * glm::length(rays_[i].d) < occlusion_reach_)
+      film_.add_open(paths_[i], -glm::vec3(occlusion));
+  }
 }
 
 } // namespace lancer

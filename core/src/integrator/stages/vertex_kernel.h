@@ -10,12 +10,12 @@
 
 namespace lancer {
 
-// Vertices of paths side by side, from the hit to the rays that leave. Plain numbers: kernels read and write it.
 struct Light;
 struct Material;
 
 inline constexpr int kBlockLanes = kLightLanes;
 
+// Vertices of paths side by side, from the hit to the rays that leave. Plain numbers: kernels read and write it.
 struct alignas(64) VertexBlock {
   using Floats = float[kBlockLanes];
   using Doubles = double[kBlockLanes];
@@ -76,7 +76,7 @@ struct alignas(64) VertexBlock {
   alignas(64) Floats transmittance[3]; // given
   Floats normal[3], matt_normal[3];    // means of the lobes' normals, of all and of the diffuse ones
   Floats shown[3][3];                  // colours of the passes, by component
-  Floats mixed_matt, mixed_all, mixed_diffuse[3], mixed_specular[3], mixed_normal[3]; // Mixture of denoising_guides.h
+  Floats mixed_matt, mixed_all, mixed_diffuse[3], mixed_specular[3], mixed_normal[3]; // Mixture of lobe_means.h
 
   // ClassicKernel::branch(): shares of light that are mirrored, towards wi, and that go through, towards through_wi.
   // illuminate(): irradiance at normal incidence; contribution is without what it takes to get there.

@@ -1,0 +1,168 @@
+#include "integrator/stages/light_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lancer {
+
+LightStage::LightStage(const Scene &scene, const Camera &camera, SurfaceStage &surfaces)
+    : scene_(scene), shader_(scene, &camera), surfaces_(surfaces), block_(surfaces.block),
+      values_(scene.world.program.nodes.size()) {
+  if (scene.lights.environment().is_light())
+    sky_ = scene.lights.environment().map();
+  nodes_.scene = shader_.node_scene();
+  nodes_.surface = false;
+}
+
+LightQuery LightStage::query(uint32_t lane) const {
+  return LightQuery(get(block_.p, lane), get(block_.viewer_ns, lane), block_.transmits >> lane & 1);
+}
+
+LightSet::Choice LightStage::choose_light(uint32_t lane) const {
+  const LightChoice few{block_.chosen[lane], block_.chosen_probability[lane], block_.chosen_rest[lane]};
+  if (!(few.probability > 0.0) || scene_.lights.decided(few.number))
+    return {few.number, 0, few.probability};
+  return scene_.lights.choose_within(scene_.geometry, query(lane), few);
+}
+
+// Goes on with the lanes that have chosen the cluster of all lights with a place.
+void LightStage::choose_of_many(uint32_t asking) {
+  if (scene_.lights.wide_tree().empty())
+    return;
+  LightWalk walks[kBlockLanes];
+  uint32_t lanes[kBlockLanes], count = 0;
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+    if (block_.chosen[lane] == scene_.lights.size() && block_.chosen_probability[lane] > 0.0 && asking >> lane & 1) {
+      walks[count] = LightTree::walk(query(lane), block_.chosen_rest[lane]);
+      lanes[count++] = lane;
+    }
+  scene_.lights.wide_tree().choose({walks, count});
+  for (uint32_t i = 0; i < count; ++i) {
+    block_.chosen[lanes[i]] = walks[i].number;
+    block_.chosen_probability[lanes[i]] *= walks[i].probability;
+    block_.chosen_rest[lanes[i]] = walks[i].u;
+  }
+}
+
+LightStage::Chosen LightStage::choose(uint32_t asking) {
+  static const Light nothing;
+  Chosen chosen;
+  block_.asked = 0;
+  const BinaryLightTree &few = scene_.lights.binary_tree();
+  if (!few.empty()) {
+    block_.light_nodes = few.nodes();
+    surfaces_.kernel.choose(block_);
+    choose_of_many(asking);
+  }
+  for (uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+    block_.lamp[lane] = &nothing;
+    block_.light_pdf[lane] = 0.0;
+    block_.light_delta[lane] = block_.light_hidden[lane] = 0;
+    far_[lane] = false;
+    if (few.empty() || !(asking & block_.scatters & block_.used & 1u << lane))
+      continue;
+    const LightSet::Choice choice = choose_light(lane);
+    if (!(choice.probability > 0.0))
+      continue;
+    choices_[lane] = choice;
+    block_.light_hidden[lane] = scene_.lights.hidden_from(choice.light);
+    block_.light_pdf[lane] = choice.probability;
+    if (choice.light < scene_.lights.lights().size()) {
+      const Light &lamp = scene_.lights.lights()[choice.light];
+      block_.lamp[lane] = &lamp;
+      far_[lane] = lamp.kind == LightKind::Sun;
+      block_.asked |= 1u << lane;
+    } else if (choice.light == scene_.lights.environment_light()) {
+      chosen.skies |= 1u << lane;
+    } else {
+      chosen.emitters |= 1u << lane;
+    }
+  }
+  return chosen;
+}
+
+void LightStage::sample_emitter(uint32_t lane, const LightPath<float> &path) {
+  const LightSet::Choice &choice = choices_[lane];
+  block_.light_pdf[lane] = 0.0;
+  const LightSample light = sample_scene_light(scene_, choice, get(block_.p, lane),
+                                               {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]}, shader_, path);
+  if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))
+    return;
+  far_[lane] = std::isinf(light.distance);
+  put(light.wi, block_.light_wi, lane);
+  put(light.target, block_.light_target, lane);
+  put(light.radiance, block_.light_radiance, lane);
+  block_.light_pdf[lane] = light.pdf * choice.probability;
+  block_.light_delta[lane] = light.delta;
+}
+
+void LightStage::write_shadow_ray(uint32_t lane, Ray &ray) const {
+  const double infinity = std::numeric_limits<double>::infinity();
+  if (block_.lifted >> lane & 1) {
+    LightSample sample;
+    sample.wi = get(block_.light_wi, lane);
+    sample.target = get(block_.light_target, lane);
+    sample.distance = far_[lane] ? infinity : 1.0;
+    ray =
+        shadow_ray(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
+    return;
+  }
+  const glm::dvec3 o = get(block_.shadow_origin, lane);
+  const glm::dvec3 d = far_[lane] ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o;
+  leave(surfaces_.hit(lane), o, d, far_[lane] ? infinity : 1.0, LANCER_RAY_SHADOW, ray);
+}
+
+// What nodes of the world are told of a lane. eye: where a camera ray begins, null for any other.
+void LightStage::see_sky(uint32_t lane, LightPath<float> path, const glm::dvec3 *eye) {
+  nodes_.eye[lane] = eye;
+  path.length = std::numeric_limits<float>::max();
+  put(path, nodes_, lane);
+}
+
+// What the nodes of the world say in these directions.
+void LightStage::ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lanes) {
+  nodes_.used = lanes;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      // The surface of the world looks back at the viewer.
+      const float back = float(-wi[axis][lane]);
+      nodes_.p[axis][lane] = -double(back);
+      nodes_.wo[axis][lane] = nodes_.ns[axis][lane] = nodes_.ng[axis][lane] = back;
+    }
+  node_kernel().run(scene_.world.program, scene_.world.schedule, nodes_, values_.data());
+}
+
+glm::vec3 LightStage::sky_radiance(uint32_t lane) const {
+  const auto &value = values_[size_t(scene_.world.radiance.node)].of;
+  return {value[0][lane], value[1][lane], value[2][lane]};
+}
+
+void LightStage::sample_sky(uint32_t lanes) {
+  for (int i = 0; i < 2; ++i)
+    std::copy_n(block_.u[kVertexLight + i], kBlockLanes, samples_.u[i]);
+  light_kernel().sample_sky(sky_, samples_);
+  ask_world(samples_.wi, lanes);
+  for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const uint32_t lane = uint32_t(std::countr_zero(rest));
+    far_[lane] = true;
+    const glm::vec3 radiance = sky_radiance(lane);
+    put(get(samples_.wi, lane), block_.light_wi, lane);
+    put(radiance, block_.light_radiance, lane);
+    block_.light_pdf[lane] *= radiance == glm::vec3(0.0f) ? 0.0 : samples_.pdf[lane];
+  }
+}
+
+void LightStage::add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye) {
+  put(glm::normalize(d), misses_.wi, lane);
+  // What lies beyond everything counts as one scattering more, as in Cycles.
+  path.depth += 1.0f;
+  see_sky(lane, path, eye);
+}
+
+void LightStage::look_at_sky(uint32_t count) {
+  if (scene_.lights.environment().is_light())
+    light_kernel().sky_density(sky_, misses_);
+  ask_world(misses_.wi, (1u << count) - 1u);
+}
+
+} // namespace lancer

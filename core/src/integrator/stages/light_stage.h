@@ -1,0 +1,74 @@
+// Light for the lanes of a block: which light each asks, a sample of it, and what the sky shows in given directions.
+#pragma once
+
+#include "integrator/sample.h"
+#include "integrator/stages/lane_access.h"
+#include "integrator/stages/shading.h"
+#include "integrator/stages/surface_stage.h"
+#include "lights/sample_light.h"
+#include "nodes/light_path.h"
+
+#include <bit>
+
+namespace lancer {
+
+// One object per thread: it looks at the block of its surfaces.
+class LightStage {
+public:
+  LightStage(const Scene &scene, const Camera &camera, SurfaceStage &surfaces);
+
+  // Chooses a light for each of these lanes and samples it into the block. path(lane): of what asks.
+  template <class PathOf> void ask(uint32_t lanes, PathOf &&path) {
+    const Chosen chosen = choose(lanes);
+    for (uint32_t rest = chosen.emitters; rest != 0; rest &= rest - 1) {
+      const uint32_t lane = uint32_t(std::countr_zero(rest));
+      sample_emitter(lane, path(lane));
+    }
+    if (chosen.skies == 0)
+      return;
+    for (uint32_t rest = chosen.skies; rest != 0; rest &= rest - 1) {
+      const uint32_t lane = uint32_t(std::countr_zero(rest));
+      see_sky(lane, path(lane), nullptr);
+    }
+    sample_sky(chosen.skies);
+  }
+  // The light that a lane has asked.
+  uint32_t light(uint32_t lane) const { return choices_[lane].light; }
+  // The ray from a lane to the sample of its light, written where it stands.
+  void write_shadow_ray(uint32_t lane, Ray &ray) const;
+
+  // Directions in which rays meet nothing, side by side: add them lane by lane, look, and read.
+  void add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye);
+  void look_at_sky(uint32_t count);
+  glm::vec3 sky_radiance(uint32_t lane) const;
+  // Of the sky's sample in the direction of a miss, where it is sampled as a light.
+  double sky_pdf(uint32_t lane) const { return misses_.pdf[lane]; }
+
+private:
+  // Lanes by what has to be sampled apart from the kernels.
+  struct Chosen {
+    uint32_t emitters = 0, skies = 0;
+  };
+
+  LightQuery query(uint32_t lane) const;
+  LightSet::Choice choose_light(uint32_t lane) const;
+  void choose_of_many(uint32_t lanes);
+  Chosen choose(uint32_t lanes);
+  void sample_emitter(uint32_t lane, const LightPath<float> &path);
+  void sample_sky(uint32_t lanes);
+  void see_sky(uint32_t lane, LightPath<float> path, const glm::dvec3 *eye);
+  void ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lanes);
+
+  const Scene &scene_;
+  Shader shader_;
+  SurfaceStage &surfaces_;
+  VertexBlock &block_;
+  LightSet::Choice choices_[kBlockLanes];
+  bool far_[kBlockLanes] = {}; // the light has no end
+  DirectionTable sky_;
+  SkyBlock misses_{}, samples_{};
+  NodeBlock nodes_; // of the world
+  std::vector<NodeLanes> values_;
+};
+
+} // namespace lancer
