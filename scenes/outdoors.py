@@ -74,6 +74,27 @@ def _model_mesh(name):
 
 def build_models(scene):
     """The Stanford bunny and spot, textured, on a floor under a pictured sky."""
+    _show_models(scene)
+
+
+def build_textured(scene):
+    """The same where images give roughness and normals, too."""
+    _show_models(scene)
+    wear, weave = pictures.wear(), pictures.weave()
+    for name in ("Cloth", "Hide", "Tiles"):
+        tree = bpy.data.materials[name].node_tree
+        principled = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+        places = next(node for node in tree.nodes if node.type == "TEX_COORD").outputs["UV"]
+        normals = tree.nodes.new("ShaderNodeNormalMap")
+        tree.links.new(normals.outputs["Normal"], principled.inputs["Normal"])
+        for image, target in ((wear, principled.inputs["Roughness"]), (weave, normals.inputs["Color"])):
+            texture = tree.nodes.new("ShaderNodeTexImage")
+            texture.image = image
+            tree.links.new(places, texture.inputs["Vector"])
+            tree.links.new(texture.outputs["Color"], target)
+
+
+def _show_models(scene):
     parts.set_size(scene, 640, 480, 64)
     bunny, spot = _model_mesh("stanford-bunny"), _model_mesh("spot")
     cloth = textured("Cloth", pictures.cloth(), 0.5)

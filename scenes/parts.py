@@ -12,6 +12,8 @@ OLD_SOCKETS = {
     "Specular IOR Level": "Specular",
     "Transmission Weight": "Transmission",
     "Coat Weight": "Clearcoat",
+    "Coat Roughness": "Clearcoat Roughness",
+    "Sheen Weight": "Sheen",
     "Emission Color": "Emission",
 }
 

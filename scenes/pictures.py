@@ -1,4 +1,4 @@
-"""Pictures computed here and packed: an evening sky, a painted cloth, a leaf with a cut-out outline."""
+"""Pictures computed here and packed: an evening sky, a painted cloth, wear, a weave, a leaf with a cut-out outline."""
 
 import bpy
 import numpy as np
@@ -45,6 +45,32 @@ def cloth(name="Cloth", size=256, cells=12):
     pixels = np.ones((size, size, 4))
     pixels[..., :3] = check * warm + (1 - check) * cool
     return make_image(name, pixels)
+
+
+def _data(name, pixels):
+    """An image of numbers instead of colours."""
+    image = make_image(name, pixels)
+    image.colorspace_settings.name = "Non-Color"
+    image.pack()
+    return image
+
+
+def wear(name="Wear", size=256, cells=12):
+    """Roughness between 0.15 and 0.75, a soft blotch in each cell."""
+    x, y = _grid(size, size)
+    pixels = np.ones((size, size, 4))
+    blotch = 0.5 + 0.5 * np.sin(2 * np.pi * cells * x) * np.sin(2 * np.pi * cells * y)
+    pixels[..., :3] = (0.15 + 0.6 * blotch)[..., None]
+    return _data(name, pixels)
+
+
+def weave(name="Weave", size=256, cells=24):
+    """A tangent-space normal map of round bumps."""
+    x, y = _grid(size, size)
+    slope = np.stack([np.cos(2 * np.pi * cells * x), np.cos(2 * np.pi * cells * y), np.full_like(x, 2.5)], axis=-1)
+    pixels = np.ones((size, size, 4))
+    pixels[..., :3] = 0.5 + 0.5 * slope / np.linalg.norm(slope, axis=-1, keepdims=True)
+    return _data(name, pixels)
 
 
 def leaf(size=128):

@@ -1,8 +1,10 @@
-"""Many spheres on a plane: `balls`, the scene of the comparison with Cycles, and `spheres600`, the course's own yardstick."""
+"""Many spheres on a plane: `balls` and `coated` of the comparison with Cycles, and `spheres600`, the course's own yardstick."""
 
 import colorsys
 import math
 import random
+
+import bpy
 
 from . import parts
 
@@ -25,13 +27,27 @@ def build_balls_exact(scene):
 
 def build_balls(scene, shape="MESH"):
     """60 smooth UV spheres, 64 x 32, of mixed Principled materials on a plane, an area light, a point light, a dim sky."""
+    _place_balls(scene, shape, lambda index: {})
+
+
+def build_coated(scene):
+    """The same balls by threes: brushed metal, cloth with sheen, varnish with a tint."""
+    tint = {"coat_tint": (0.9, 0.6, 0.4)} if bpy.app.version >= (4, 0) else {}
+    looks = (
+        {"metallic": 1.0, "anisotropic": 0.7, "anisotropic_rotation": 0.1},
+        {"metallic": 0.0, "sheen_weight": 0.8},
+        {"metallic": 0.0, "coat_weight": 0.9, "coat_roughness": 0.1, "sheen_weight": 0.3} | tint,
+    )
+    _place_balls(scene, "MESH", lambda index: looks[index % 3])
+
+
+def _place_balls(scene, shape, look):
     source = random.Random(60)
     parts.set_size(scene, 640, 480, 16)
     for index, (x, y, radius) in enumerate(scatter(source, 60, 6.0, (0.4, 0.7))):
         color = colorsys.hsv_to_rgb(source.random(), source.uniform(0.2, 0.8), source.uniform(0.5, 0.9))
-        material = parts.principled(
-            f"Ball {index}", base_color=color, metallic=float(index % 2), roughness=source.uniform(0.1, 0.8), ior=1.5
-        )
+        inputs = {"base_color": color, "metallic": float(index % 2), "roughness": source.uniform(0.1, 0.8), "ior": 1.5}
+        material = parts.principled(f"Ball {index}", **(inputs | look(index)))
         mesh = parts.sphere_mesh(f"Ball {index}")
         parts.place(scene, f"Ball {index}", mesh, material, (x, y, radius), radius, shape=shape)
     ground = parts.principled("Ground", base_color=(0.5, 0.5, 0.5), roughness=0.6, ior=1.5)

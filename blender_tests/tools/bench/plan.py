@@ -56,6 +56,8 @@ SCENES = (
     Scene("lights200", "200 lamps of unequal power"),
     Scene("instances", "20 000 instances of 15 744 triangles", samples=32),
     Scene("models", "bunny and spot, textured, under a pictured sky"),
+    Scene("textured", "the same with roughness and normals by images", renderers=("lancer", "cycles")),
+    Scene("coated", "60 balls: brushed, with sheen, with tinted coat", renderers=("lancer", "cycles")),
     Scene("leaves", "a tree of cut-out leaves"),
     Scene("triangle", "one triangle", samples=256, reference=2048),
     # What lamps cost, measured against each other: no part of the comparison, whose mean the many would carry alone.
