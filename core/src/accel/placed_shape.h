@@ -57,13 +57,14 @@ struct alignas(32) PlacedShape {
 // Points o + tau d; t = t0 + tau * unit is the parameter of the world ray.
 // d is the object-space direction over a power of two, its largest component in [1, 2): no scale overflows or underflows.
 // o is the closest approach to the frame's centre, so that coordinates are of the mesh's own size however far the eye is.
-struct ObjectRay {
-  double o[3];
-  double q[3]; // o relative to the frame's centre
-  double d[3];
-  double t0;
-  double unit, inverse_unit; // powers of two
+template <class D> struct ObjectRayOf {
+  D o[3];
+  D q[3]; // o relative to the frame's centre
+  D d[3];
+  D t0;
+  D unit, inverse_unit; // powers of two
 };
+using ObjectRay = ObjectRayOf<double>;
 
 // Divides d by the power of two of its largest component: d times unit. False where it is zero, not finite, or beyond 2^+-1000.
 template <class D> LANCER_LANE auto scale_direction(D (&d)[3], D &unit, D &inverse_unit) {
@@ -77,12 +78,17 @@ template <class D> LANCER_LANE auto scale_direction(D (&d)[3], D &unit, D &inver
 }
 
 // Origin and direction of a ray in an object's space; t is unchanged. m(column, row): of the matrix, 3 x 4.
-template <class D, class Matrix> LANCER_LANE void to_object_space(const Matrix &m, const Ray &ray, D (&o)[3], D (&d)[3]) {
+template <class D, class Matrix>
+LANCER_LANE void to_object_space(const Matrix &m, const D (&from_o)[3], const D (&from_d)[3], D (&o)[3], D (&d)[3]) {
   for (int i = 0; i < 3; ++i) {
     const D x = m(0, i), y = m(1, i), z = m(2, i);
-    o[i] = x * D(ray.o.x) + y * D(ray.o.y) + z * D(ray.o.z) + m(3, i);
-    d[i] = x * D(ray.d.x) + y * D(ray.d.y) + z * D(ray.d.z);
+    o[i] = x * from_o[0] + y * from_o[1] + z * from_o[2] + m(3, i);
+    d[i] = x * from_d[0] + y * from_d[1] + z * from_d[2];
   }
+}
+template <class D, class Matrix> LANCER_LANE void to_object_space(const Matrix &m, const Ray &ray, D (&o)[3], D (&d)[3]) {
+  const D from_o[3] = {D(ray.o.x), D(ray.o.y), D(ray.o.z)}, from_d[3] = {D(ray.d.x), D(ray.d.y), D(ray.d.z)};
+  to_object_space(m, from_o, from_d, o, d);
 }
 LANCER_LANE void to_object_space(const PlacedShape &shape, const Ray &ray, double (&o)[3], double (&d)[3]) {
   to_object_space(
@@ -90,21 +96,23 @@ LANCER_LANE void to_object_space(const PlacedShape &shape, const Ray &ray, doubl
 }
 
 // Starts the ray o + t d afresh at its closest approach to the frame's centre. False where it is not usable.
-LANCER_LANE bool enter_frame(const PlacementFrame &frame, const double o[3], const double d[3], ObjectRay &ray) {
-  for (int i = 0; i < 3; ++i)
+template <class D>
+LANCER_LANE auto enter_frame(const PlacementFrame &frame, const D (&o)[3], const D (&d)[3], ObjectRayOf<D> &ray) {
+  D f[3];
+  for (int i = 0; i < 3; ++i) {
     ray.d[i] = d[i];
-  if (!scale_direction(ray.d, ray.unit, ray.inverse_unit))
-    return false;
-  const double f[3] = {o[0] - frame.centre[0], o[1] - frame.centre[1], o[2] - frame.centre[2]};
-  const double along = f[0] * ray.d[0] + f[1] * ray.d[1] + f[2] * ray.d[2];
-  const double length2 = ray.d[0] * ray.d[0] + ray.d[1] * ray.d[1] + ray.d[2] * ray.d[2];
-  const double tau0 = -along / length2;
+    f[i] = o[i] - D(frame.centre[i]);
+  }
+  const auto scaled = scale_direction(ray.d, ray.unit, ray.inverse_unit);
+  const D along = f[0] * ray.d[0] + f[1] * ray.d[1] + f[2] * ray.d[2];
+  const D length2 = ray.d[0] * ray.d[0] + ray.d[1] * ray.d[1] + ray.d[2] * ray.d[2];
+  const D tau0 = -along / length2;
   for (int i = 0; i < 3; ++i) {
     ray.q[i] = f[i] + tau0 * ray.d[i];
-    ray.o[i] = ray.q[i] + frame.centre[i];
+    ray.o[i] = ray.q[i] + D(frame.centre[i]);
   }
   ray.t0 = tau0 * ray.unit;
-  return abs(ray.t0) + abs(ray.q[0]) + abs(ray.q[1]) + abs(ray.q[2]) < __builtin_inf();
+  return scaled & (abs(ray.t0) + abs(ray.q[0]) + abs(ray.q[1]) + abs(ray.q[2]) < D(__builtin_inf()));
 }
 
 // Whether the ray can see the shape at all.
@@ -126,12 +134,13 @@ LANCER_LANE bool enter_world(const PlacementFrame &world, const Ray &ray, Object
 LANCER_LANE double world_t(const ObjectRay &ray, double tau) { return ray.t0 + tau * ray.unit; }
 
 // Box-frame parameters that no hit with parameter <= t (>= t) exceeds. t = t0 + tau unit was rounded once and t - t0 is rounded
-// once here: together at most 2^-53 (|t| + |t - t0|) <= 2^-51 (|t| + |t0|).
-LANCER_LANE double box_tau_above(const ObjectRay &ray, const PlacementFrame &frame, double t) {
-  return ((t - ray.t0) + 0x1p-51 * (abs(t) + abs(ray.t0))) * ray.inverse_unit * frame.scale;
+// once here: together at most 2^-53 (|t| + |t - t0|) <= 2^-51 (|t| + |t0|). ray: with the t0 and inverse_unit of ObjectRay;
+// scale: of its frame.
+template <class D> LANCER_LANE D box_tau_above(const auto &ray, double scale, const D &t) {
+  return ((t - ray.t0) + D(0x1p-51) * (abs(t) + abs(ray.t0))) * ray.inverse_unit * D(scale);
 }
-LANCER_LANE double box_tau_below(const ObjectRay &ray, const PlacementFrame &frame, double t) {
-  return ((t - ray.t0) - 0x1p-51 * (abs(t) + abs(ray.t0))) * ray.inverse_unit * frame.scale;
+template <class D> LANCER_LANE D box_tau_below(const auto &ray, double scale, const D &t) {
+  return ((t - ray.t0) - D(0x1p-51) * (abs(t) + abs(ray.t0))) * ray.inverse_unit * D(scale);
 }
 
 } // namespace lancer

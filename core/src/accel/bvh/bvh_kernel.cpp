@@ -39,7 +39,7 @@ LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e,
     push(s, -__builtin_inff(), kBvhInner << kBvhKindShift);
   if (s.unbounded > 0)
     push(s, -__builtin_inff(), kBvhUnbounded << kBvhKindShift);
-  return e.usable[lane] != 0 && s.size > 1;
+  return (e.usable >> lane & 1) && s.size > 1;
 }
 
 // Nobody wants the answers of rays whose work is counted.

@@ -47,8 +47,7 @@ LANCER_LANE void resume(const Leftovers &l, uint32_t lane, Slot &s) {
 struct Packet {
   PacketRays rays; // in the space of an instance
   uint32_t instance;
-  uint32_t seeing;     // lanes that can meet it
-  uint32_t longest[3]; // lanes whose directions are longest along the axis
+  uint32_t seeing; // lanes that can meet it
   PacketSlabs inner;
   uint32_t size; // of the stack
   alignas(64) float entries[kStackSize][kPacket];
@@ -69,7 +68,7 @@ LANCER_LANE bool keep_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &sla
     return false;
   l.best[lane] = hit;
   l.best_t[lane] = hit.t;
-  slabs.tau_max[lane] = slab_end(slabs, lane, hit.t);
+  end_slab(slabs, lane, hit.t);
   return true;
 }
 
@@ -116,7 +115,7 @@ template <Question q>
 LANCER_LANE void visit_triangles(const TriangleBlock &block, const PacketAsks &asks, uint32_t active, const Entering &e,
                                  Packet &p, PacketSlabs &slabs, Leftovers &l) {
   for (uint32_t longest = 0; longest < 3; ++longest) {
-    uint32_t rest = active & p.longest[longest];
+    uint32_t rest = active & p.rays.longest[longest];
     if (rest == 0)
       continue;
     const RayAxes axes = axes_from(longest);
@@ -145,18 +144,12 @@ LANCER_LANE void visit_triangles(const TriangleBlock &block, const PacketAsks &a
   }
 }
 
-LANCER_LANE void enter_instance(const BvhScene &scene, uint32_t instance, const Ray *const *rays, const Entering &e,
-                                Packet &p) {
-  const PlacedShape &shape = scene.shapes[instance];
-  p.instance = instance;
-  enter_mesh_packet(shape, e, p.rays);
-  p.seeing = 0;
-  for (uint32_t &lanes : p.longest)
-    lanes = 0;
-  for (uint32_t i = 0; i < kPacket; ++i) {
-    p.seeing |= static_cast<uint32_t>(p.rays.usable[i] != 0 && visible(shape, *rays[i])) << i;
-    p.longest[p.rays.longest[i]] |= 1u << i;
-  }
+// The lanes that can see an instance.
+LANCER_LANE uint32_t seeing(const PlacedShape &shape, const Ray *const *rays) {
+  uint32_t lanes = 0;
+  for (uint32_t i = 0; i < kPacket; ++i)
+    lanes |= static_cast<uint32_t>(visible(shape, *rays[i])) << i;
+  return lanes;
 }
 
 // The packet in registers.
@@ -291,8 +284,11 @@ template <Question q>
             const TriangleBlock &block =
                 *reinterpret_cast<const TriangleBlock *>(reinterpret_cast<const char *>(scene.blocks) + place);
             const uint32_t instance = scene.block_instance[&block - scene.blocks];
-            if (instance != p.instance)
-              enter_instance(scene, instance, e.rays, e, p);
+            if (instance != p.instance) {
+              p.instance = instance;
+              enter_mesh_packet(scene.shapes[instance], e, p.rays);
+              p.seeing = p.rays.usable & seeing(scene.shapes[instance], e.rays);
+            }
             visit_triangles<q>(block, asks, active & p.seeing, e, p, e, l);
           } else if (kind == kBvhSpheres) {
             visit_spheres<q>(scene,
@@ -304,15 +300,16 @@ template <Question q>
             if (shape.mesh == kNone) {
               try_quadric<q>(scene, instance, asks, active, e, l);
             } else if (const BvhView &bvh = scene.meshes[shape.mesh]; bvh.nodes) {
-              enter_instance(scene, instance, e.rays, e, p);
               alignas(64) double limit[kPacket];
               for (uint32_t i = 0; i < kPacket; ++i)
                 limit[i] = e.tmax[i] < l.best[i].t ? e.tmax[i] : l.best[i].t;
-              make_slabs(shape.frame, p.rays, e.tmin, limit, p.inner);
+              p.instance = instance;
+              enter_mesh_packet(shape, e, p.rays, &p.inner, limit);
+              p.seeing = p.rays.usable & seeing(shape, e.rays);
               walk_mesh<q>(bvh, asks, active & p.seeing, e, p, l);
               for (uint32_t i = 0; i < kPacket; ++i)
                 if (l.best[i].instance == instance)
-                  e.tau_max[i] = slab_end(e, i, l.best[i].t);
+                  end_slab(e, i, l.best[i].t);
             }
           }
           return true;

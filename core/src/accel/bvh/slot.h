@@ -50,11 +50,8 @@ struct Slab {
 };
 
 // The ray in the space of an instance, as the triangle test reads it.
-struct alignas(32) MeshRay {
-  double o[4];
-  double shear[4]; // direction over its largest component; then one over that
-  double d[4], q[4];
-  double t0, unit, inverse_unit;
+struct MeshRay : ObjectRay {
+  double shear[3], upright; // direction over its largest component; one over that
   RayAxes axes;
 };
 
@@ -79,34 +76,36 @@ struct alignas(64) Slot {
 };
 
 // Rounds outwards: a parameter beyond the float's last digit must not be cut off.
-LANCER_LANE float round_up(double x) { return static_cast<float>(x + 0x1p-22 * abs(x)); }
-LANCER_LANE float round_down(double x) { return static_cast<float>(x - 0x1p-22 * abs(x)); }
+template <class D> LANCER_LANE auto round_up(const D &x) { return narrow(x + D(0x1p-22) * abs(x)); }
+template <class D> LANCER_LANE auto round_down(const D &x) { return narrow(x - D(0x1p-22) * abs(x)); }
 
 // Directions below 2^-66 of the largest component move a ray by less than 2^-63 of the box frame: kBoxPad covers taking them
 // for 2^-66, and no infinity times zero can arise.
-LANCER_LANE float inverse_component(double d) {
-  const float x = static_cast<float>(d);
-  return __builtin_fabsf(x) < 0x1p-66f ? __builtin_copysignf(0x1p66f, x) : 1.0f / x;
+template <class D> LANCER_LANE auto inverse_component(const D &d) {
+  const auto x = narrow(d);
+  using F = std::remove_const_t<decltype(x)>;
+  return select(abs(x) < F(0x1p-66f), copysign(F(0x1p66f), x), F(1.0f) / x);
+}
+// Of an axis, with its inverse.
+template <class D, class F> LANCER_LANE F slab_shift(const PlacementFrame &frame, const D &q, const F &inverse) {
+  return narrow(q * D(frame.scale)) * inverse;
 }
 
-LANCER_LANE float slab_end(const Slab &s, double t) {
-  return round_up(((t - s.t0) + 0x1p-51 * (abs(t) + abs(s.t0))) * s.inverse_unit * s.scale);
-}
+// From where on nothing counts any more.
+LANCER_LANE void end_slab(Slab &s, double t) { s.tau_max = round_up(box_tau_above(s, s.scale, t)); }
 
-template <class AnyRay>
-LANCER_LANE void make_slab(const PlacementFrame &frame, const AnyRay &ray, double tmin, double tmax, Slab &slab) {
+LANCER_LANE void make_slab(const PlacementFrame &frame, const MeshRay &ray, double tmin, double tmax, Slab &slab) {
   slab.octant = 0;
   for (uint32_t axis = 0; axis < 3; ++axis) {
-    const float inverse = inverse_component(ray.d[axis]);
-    slab.inverse[axis] = inverse;
-    slab.shift[axis] = static_cast<float>(ray.q[axis] * frame.scale) * inverse;
-    slab.octant |= uint32_t{inverse < 0.0f} << axis;
+    slab.inverse[axis] = inverse_component(ray.d[axis]);
+    slab.shift[axis] = slab_shift(frame, ray.q[axis], slab.inverse[axis]);
+    slab.octant |= uint32_t{slab.inverse[axis] < 0.0f} << axis;
   }
   slab.t0 = ray.t0;
   slab.inverse_unit = ray.inverse_unit;
   slab.scale = frame.scale;
-  slab.tau_min = round_down(((tmin - ray.t0) - 0x1p-51 * (abs(tmin) + abs(ray.t0))) * ray.inverse_unit * frame.scale);
-  slab.tau_max = slab_end(slab, tmax);
+  slab.tau_min = round_down(box_tau_below(slab, frame.scale, tmin));
+  end_slab(slab, tmax);
 }
 
 LANCER_LANE void push(Slot &s, float entry, uint32_t child) {
@@ -126,7 +125,7 @@ LANCER_LANE void go_on(Slot &s) {
 
 // Forgets what waits behind the best hit.
 LANCER_LANE void shorten(Slot &s) {
-  s.slab.tau_max = slab_end(s.slab, s.best.t);
+  end_slab(s.slab, s.best.t);
   uint32_t kept = s.base;
   for (uint32_t i = s.base; i < s.size; i += 8)
     kept += keep_below(s.entries + kept, s.children + kept, s.entries + i, s.children + i, s.size - i, s.slab.tau_max);

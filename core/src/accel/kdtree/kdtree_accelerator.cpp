@@ -56,8 +56,8 @@ private:
     for (const uint32_t instance : placed.unbounded)
       if (intersect_instance<any>(ray, instance, counting, best))
         return best;
-    const auto limit = [&] { return box_tau_above(world_ray, placed.world, std::min(ray.tmax, best.t)); };
-    top.traverse(world_ray, placed.world, box_tau_below(world_ray, placed.world, ray.tmin), limit,
+    const auto limit = [&] { return box_tau_above(world_ray, placed.world.scale, std::min(ray.tmax, best.t)); };
+    top.traverse(world_ray, placed.world, box_tau_below(world_ray, placed.world.scale, ray.tmin), limit,
                  [&](uint32_t item) { return intersect_instance<any>(ray, placed.bounded[item], counting, best); });
     return best;
   }
@@ -77,8 +77,8 @@ private:
     const RayAxes axes = axes_from(longest_axis(object_ray.d));
     const ShearedRay<double> sheared = shear_ray(object_ray, axes);
     const Mesh &mesh = geometry.meshes[shape.mesh];
-    const auto limit = [&] { return box_tau_above(object_ray, shape.frame, std::min(ray.tmax, best.t)); };
-    meshes[shape.mesh].traverse(object_ray, shape.frame, box_tau_below(object_ray, shape.frame, ray.tmin), limit,
+    const auto limit = [&] { return box_tau_above(object_ray, shape.frame.scale, std::min(ray.tmax, best.t)); };
+    meshes[shape.mesh].traverse(object_ray, shape.frame, box_tau_below(object_ray, shape.frame.scale, ray.tmin), limit,
                                 [&](uint32_t triangle) {
                                   try_triangle(ray, axes, sheared, mesh, instance, triangle, counting, best);
                                   return any && best.valid();
