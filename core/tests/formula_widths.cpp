@@ -236,6 +236,17 @@ TEST(Widths, ImportancesAreThoseOfOneLane) {
   }
 }
 
+TEST(Widths, GlowingFacesAreThoseOfOneLane) {
+  Random random(6);
+  WidthInputs in{};
+  size_t compared = 0;
+  for (int round = 0; round < 2000; ++round) {
+    fill(random, round % 2 ? 2.0 : 1e5, glm::dvec3(0.0), in);
+    ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "SeenFace", compared));
+  }
+  EXPECT_GT(compared, 100000u);
+}
+
 TEST(Widths, ChoicesAreThoseOfOneLane) {
   Random random(5);
   WidthInputs in{};

@@ -13,7 +13,7 @@ using testing::Random;
 
 struct Corners {
   glm::dvec3 a, b, c;
-  SphericalTriangle seen() const { return {a, b, c}; }
+  SphericalTriangle<double> seen() const { return {a, b, c}; }
 };
 
 // A triangle is cut into parts by steps along two of its sides: some stand as it does, between them some are turned.
@@ -49,12 +49,12 @@ const std::vector<Corners> kTriangles = {
 const double kLevel = testing::sidak_level(testing::kSignificance, 2 * static_cast<int>(kTriangles.size()));
 
 std::vector<double> counts_of(const Corners &whole, int draws, uint64_t seed) {
-  const SphericalTriangle seen = whole.seen();
+  const SphericalTriangle<double> seen = whole.seen();
   std::vector<double> counts(2 * kParts, 0.0);
   Random random(seed);
   for (int k = 0; k < draws; ++k) {
     const double x = random.uniform(), y = random.uniform();
-    const glm::dvec3 wi = seen.sample({x, y});
+    const glm::dvec3 wi = seen.sample(x, y);
     EXPECT_NEAR(glm::length(wi), 1.0, 1e-9);
     const glm::dvec2 at = glm::clamp(steps_of(whole, wi), 0.0, kSteps - 1e-9);
     const int i = static_cast<int>(at.x), j = std::min(static_cast<int>(at.y), kSteps - 1 - i);
@@ -82,8 +82,8 @@ TEST(SphericalTriangle, KnowsItsSolidAngle) {
     EXPECT_NEAR(sum, whole.seen().solid_angle, 1e-9 * sum);
   }
   // Edge on, and from one of its corners, nothing is seen.
-  EXPECT_EQ(SphericalTriangle({1, 0, 0}, {2, 1, 0}, {1, 1, 0}).solid_angle, 0.0);
-  EXPECT_EQ(SphericalTriangle({0, 0, 0}, {2, 1, 0}, {1, 1, 0}).solid_angle, 0.0);
+  EXPECT_EQ(SphericalTriangle<double>({1, 0, 0}, {2, 1, 0}, {1, 1, 0}).solid_angle, 0.0);
+  EXPECT_EQ(SphericalTriangle<double>({0, 0, 0}, {2, 1, 0}, {1, 1, 0}).solid_angle, 0.0);
 }
 
 TEST(SphericalTriangle, DirectionsAreEven) {

@@ -34,6 +34,11 @@ public:
   LightChoice choose(const Instance &placed, const LightQuery &query, double u) const {
     return tree_.choose(to_tree(placed, query), u);
   }
+  // The same for several points at once: walks that begin at them, of instances of their own.
+  LightWalk walk(const Instance &placed, const LightQuery &query, double u) const {
+    return LightTree::walk(to_tree(placed, query), u);
+  }
+  void choose(std::span<LightWalk> walks) const { tree_.choose(walks); }
   double probability(const Instance &placed, const LightQuery &query, uint32_t face) const {
     return tree_.probability(to_tree(placed, query), face);
   }

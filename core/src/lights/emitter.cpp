@@ -1,8 +1,8 @@
 
 #include "lights/emitter.h"
 
+#include "lights/seen_face.h"
 #include "sampling/angle.h"
-#include "sampling/spherical_triangle.h"
 #include "sampling/warp.h"
 #include "scene/geometry.h"
 #include "scene/quadric_point.h"
@@ -13,55 +13,10 @@ namespace lancer {
 
 namespace {
 
-// A face of a glowing mesh relative to the point that sees it: near ones are sampled by the solid angle that they fill, far
-// ones by area.
-struct SeenFace {
-  // Below this share of the squared distance of its middle a face is taken as a light far away, which its area describes as
-  // well; beyond these solid angles it is seen edge on, or the point lies on it.
-  static constexpr double kFar = 0.01, kLeastAngle = 1e-6, kMostAngle = 6.28;
-
-  glm::dvec3 v0, e1, e2;
-  double area = 0.0;
-
-  SeenFace(const Geometry &geometry, const Instance &instance, uint32_t face, const glm::dvec3 &p) {
-    const Mesh &mesh = geometry.meshes[instance.mesh];
-    const glm::dvec3 a(mesh.vertex(face, 0)), b(mesh.vertex(face, 1)), c(mesh.vertex(face, 2));
-    v0 = instance.to_world.point(a) - p;
-    e1 = instance.to_world.vector(b - a);
-    e2 = instance.to_world.vector(c - a);
-    area = 0.5 * glm::length(glm::cross(e1, e2));
-  }
-
-  bool is_near() const {
-    const glm::dvec3 middle = v0 + (e1 + e2) / 3.0;
-    return area > kFar * glm::dot(middle, middle);
-  }
-
-  // Whether directions to it are sampled evenly, of which there are so many.
-  static bool is_even(double solid_angle) { return solid_angle > kLeastAngle && solid_angle < kMostAngle; }
-
-  SphericalTriangle directions() const { return {v0, v0 + e1, v0 + e2}; }
-
-  // The weights of corners 1 and 2 where a direction meets its plane; of its middle where rounding has it run along the plane.
-  glm::dvec2 weights(const glm::dvec3 &wi) const {
-    const glm::dvec3 across = glm::cross(wi, e2);
-    const double cosine = glm::dot(across, e1);
-    if (cosine == 0.0)
-      return glm::dvec2(1.0 / 3.0);
-    const double scale = 1.0 / cosine;
-    const double u = std::clamp(-glm::dot(v0, across) * scale, 0.0, 1.0);
-    return {u, std::clamp(-glm::dot(wi, glm::cross(v0, e1)) * scale, 0.0, 1.0 - u)};
-  }
-};
-
-// The weights of corners 1 and 2 of the point of a face that u stands for.
-inline glm::dvec2 sample_seen(const SeenFace &seen, const glm::vec2 &u) {
-  if (seen.is_near()) {
-    const SphericalTriangle directions = seen.directions();
-    if (SeenFace::is_even(directions.solid_angle))
-      return seen.weights(directions.sample(glm::dvec2(u)));
-  }
-  return glm::dvec2(warp_triangle(u));
+SeenFace<float> see_face(const Geometry &geometry, const Instance &instance, uint32_t face, const glm::dvec3 &p) {
+  const Mesh &mesh = geometry.meshes[instance.mesh];
+  const Vector3<float> corner[3] = {mesh.vertex(face, 0), mesh.vertex(face, 1), mesh.vertex(face, 2)};
+  return {MapLanes<float>(instance.to_world), corner, Vector3<double>(p)};
 }
 
 // Exact surfaces by their unit parts: 0 the curved side, 1 and 2 the disks at z = -1 and z = 1.
@@ -106,7 +61,7 @@ double area_scale(const Instance &instance, const glm::dvec3 &n) {
 
 // A point of a mesh's face by the weights of its corners 1 and 2.
 Surface face_point(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t face,
-                   const glm::dvec2 &weights) {
+                   const Vector2<double> &weights) {
   Hit hit;
   hit.instance = instance;
   hit.primitive = face;
@@ -183,8 +138,8 @@ double Emitter::pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface
 LightSample Emitter::sample_face(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t face,
                                  const glm::dvec3 &p, const glm::vec2 &u, Surface &surface) const {
   if (faces_) {
-    const SeenFace seen(geometry, geometry.instances[instance_], face, p);
-    surface = face_point(geometry, slots, instance_, face, sample_seen(seen, u));
+    const Vector2<double> weights = see_face(geometry, geometry.instances[instance_], face, p).sample(u.x, u.y);
+    surface = face_point(geometry, slots, instance_, face, weights);
   } else {
     const auto part = parts_.sample(u.x);
     surface = part_point(geometry, slots, instance_, int(part.index), {part.u, u.y});
@@ -206,23 +161,17 @@ LightSample Emitter::sample_face(const Geometry &geometry, const std::vector<uin
 double Emitter::face_pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const {
   const Instance &placed = geometry.instances[instance_];
   const glm::dvec3 v = surface.p - p;
+  if (empty())
+    return 0.0;
+  if (faces_)
+    return see_face(geometry, placed, surface.primitive, p).pdf(Vector3<double>(v), Vector3<float>(surface.ng));
   const double d2 = glm::dot(v, v), cosine = std::abs(glm::dot(glm::dvec3(surface.ng), v)) / std::sqrt(d2);
-  if (!(cosine > 0.0) || !(d2 > 0.0) || empty())
+  if (!(cosine > 0.0) || !(d2 > 0.0))
     return 0.0;
   double area = 0.0;
-  if (faces_) {
-    const SeenFace seen(geometry, placed, surface.primitive, p);
-    if (seen.is_near()) {
-      const double solid_angle = seen.directions().solid_angle;
-      if (SeenFace::is_even(solid_angle))
-        return 1.0 / solid_angle;
-    }
-    area = seen.area;
-  } else {
-    for (int part = 0; part < 3; ++part)
-      area += part_area(placed.kind, part);
-    area *= area_scale(placed, glm::normalize(glm::transpose(placed.to_world.linear) * glm::dvec3(surface.ng)));
-  }
+  for (int part = 0; part < 3; ++part)
+    area += part_area(placed.kind, part);
+  area *= area_scale(placed, glm::normalize(glm::transpose(placed.to_world.linear) * glm::dvec3(surface.ng)));
   return d2 / (cosine * area);
 }
 

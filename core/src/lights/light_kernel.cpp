@@ -3,6 +3,7 @@
 
 #include "lights/light_tree.h"
 #include "lights/light_weights.h"
+#include "lights/seen_face.h"
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"
 
@@ -158,10 +159,36 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
     store(block.pdf + first, direction_pdf<F>(map, place_of(narrow(load3(block.wi, first)))));
 }
 
+[[gnu::flatten]] void sample_faces(FaceBlock &block) {
+  for (int first = 0; first < kLightLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const Placements<F> placed(block.placement + first);
+    V3 corner[3];
+    for (int i = 0; i < 3; ++i)
+      corner[i] = load3(block.corner[i], first);
+    const D3 p = load3(block.p, first);
+    const SeenFace<F> seen(MapLanes<F>(placed, Placements<F>::kToWorld), corner, p);
+    const Vector2<D> weights = seen.sample(load(block.u[0] + first), load(block.u[1] + first));
+    const SurfaceLanes<F> surface = triangle_surface(placed, corner, corner, mask_of(0), weights.x, weights.y);
+    const D3 v = surface.p - p, ng = widen(surface.ng);
+    const D distance = sqrt(dot(v, v));
+    const D3 wi = v / distance;
+    // End on the side that p sees, off the surface by its own bound.
+    const D side = select(dot(ng, wi) < D(0.0), D(1.0), D(-1.0));
+    store3(block.wi, first, wi);
+    store3(block.target, first, D3(surface.p + (side * surface.offset) * ng));
+    store(block.pdf + first, select(distance > D(0.0), seen.pdf(v, surface.ng), D(0.0)));
+    store(block.weights[0] + first, weights.x);
+    store(block.weights[1] + first, weights.y);
+    store3(block.ng, first, surface.ng);
+  }
+}
+
 } // namespace
 
 namespace LANCER_ISA {
-const LightKernel light_kernel = {LANCER_ISA_NAME, choose, probability, along, sample_sky, sky_density};
+const LightKernel light_kernel = {LANCER_ISA_NAME, choose, probability, along, sample_sky, sky_density, sample_faces};
 }
 
 } // namespace lancer

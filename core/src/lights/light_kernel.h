@@ -66,6 +66,20 @@ struct alignas(64) SkyBlock {
   double wi[3][kLightLanes], pdf[kLightLanes]; // wi: unit
 };
 
+// Faces of glowing meshes, one for each lane, and what a point gets of them.
+struct alignas(64) FaceBlock {
+  // Given: where the mesh is placed, Instance::placement(); the face's corners in object space; who sees it; two numbers.
+  const double *placement[kLightLanes];
+  float corner[3][3][kLightLanes]; // by corner, axis
+  double p[3][kLightLanes];
+  float u[2][kLightLanes];
+  uint32_t used = 0; // bits of lanes
+  // The sample: as LightSample; and its weights of corners 1 and 2.
+  alignas(64) double wi[3][kLightLanes], target[3][kLightLanes], pdf[kLightLanes], weights[2][kLightLanes];
+  // The face's normal, outwards.
+  float ng[3][kLightLanes];
+};
+
 // Choosing of many lights and finding those on a ray's way in vector registers, one copy per instruction set; all give the same
 // bits.
 struct LightKernel {
@@ -80,6 +94,8 @@ struct LightKernel {
   // Samples directions of the environment from the numbers u; asks for the density of those given.
   void (*sample_sky)(const DirectionTable &map, SkyBlock &block);
   void (*sky_density)(const DirectionTable &map, SkyBlock &block);
+  // Samples a point of each face, as Emitter::sample_face().
+  void (*sample_faces)(FaceBlock &block);
 };
 
 // Each is the same source, light_kernel.cpp, compiled with LANCER_ISA set to the name.

@@ -2,6 +2,7 @@
 #include "widths/width_kernel.h"
 
 #include "lights/sample_light.h"
+#include "lights/seen_face.h"
 #include "sampling/elementary.h"
 #include "sampling/scramble.h"
 #include "simd/kernel_choice.h"
@@ -293,6 +294,19 @@ constexpr WidthFormula kLights[] = {
               const auto bounds = importance(lane.query(), *lane.in.tree_light);
               lane.put(bounds.most);
               lane.put(bounds.least);
+            }),
+    formula("SeenFace",
+            [](auto &lane) {
+              LANCER_OF(lane)
+              const Vector3<F> corner[3] = {
+                  lane.normal(), {lane.unit(0), lane.unit(1), lane.unit(2)}, {lane.unit(3), -lane.unit(0), lane.unit(1)}};
+              // Mostly from near, where angles count, and from far.
+              for (const Vector3<D> &p : {lane.of(lane.in.wi), lane.of(lane.in.p)}) {
+                const SeenFace<F> seen(MapLanes<F>(Affine{}), corner, p);
+                lane.put(seen.sample(lane.unit(2), lane.unit(3)));
+                lane.put(seen.pdf(widen(corner[1]) - p, lane.normal()));
+                lane.put(seen.by_angle);
+              }
             }),
     formula("pair_shares", [](auto &lane) { lane.put(pair_shares(lane.query(), lane.in.tree, 0)); }),
     formula("choose_light",

@@ -18,13 +18,6 @@ LightQuery LightStage::query(uint32_t lane) const {
   return LightQuery(get(block_.p, lane), get(block_.viewer_ns, lane), block_.transmits >> lane & 1);
 }
 
-LightSet::Choice LightStage::choose_light(uint32_t lane) const {
-  const LightChoice few{block_.chosen[lane], block_.chosen_probability[lane], block_.chosen_rest[lane]};
-  if (!(few.probability > 0.0) || scene_.lights.decided(few.number))
-    return {few.number, 0, few.probability};
-  return scene_.lights.choose_within(scene_.geometry, query(lane), few);
-}
-
 // Goes on with the lanes that have chosen the cluster of all lights with a place.
 void LightStage::choose_of_many(uint32_t asking) {
   if (scene_.lights.wide_tree().empty())
@@ -61,7 +54,7 @@ LightStage::Chosen LightStage::choose(uint32_t asking) {
     far_[lane] = false;
     if (few.empty() || !(asking & block_.scatters & block_.used & 1u << lane))
       continue;
-    const LightSet::Choice choice = choose_light(lane);
+    const LightSet::Choice choice{block_.chosen[lane], 0, block_.chosen_probability[lane]};
     if (!(choice.probability > 0.0))
       continue;
     choices_[lane] = choice;
@@ -78,12 +71,90 @@ LightStage::Chosen LightStage::choose(uint32_t asking) {
       chosen.emitters |= 1u << lane;
     }
   }
+  chosen.emitters = choose_faces(chosen.emitters);
   return chosen;
+}
+
+// Goes on with the lanes that have chosen an emitter, those of one together. Returns those that have found something to ask.
+uint32_t LightStage::choose_faces(uint32_t lanes) {
+  uint32_t found = 0;
+  while (lanes != 0) {
+    const uint32_t light = choices_[std::countr_zero(lanes)].light;
+    LightWalk walks[kBlockLanes];
+    uint32_t of[kBlockLanes], count = 0;
+    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1)
+      if (const uint32_t lane = uint32_t(std::countr_zero(rest)); choices_[lane].light == light)
+        of[count++] = lane;
+    const Emitter &emitter = emitter_of(of[0]);
+    if (emitter.faces()) {
+      const Instance &placed = scene_.geometry.instances[emitter.instance()];
+      for (uint32_t i = 0; i < count; ++i)
+        walks[i] = emitter.faces()->walk(placed, query(of[i]), block_.chosen_rest[of[i]]);
+      emitter.faces()->choose({walks, count});
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      LightSet::Choice &choice = choices_[of[i]];
+      if (emitter.faces()) {
+        choice.face = walks[i].number;
+        choice.probability *= walks[i].probability;
+      }
+      lanes &= ~(1u << of[i]);
+      found |= uint32_t(choice.probability > 0.0) << of[i];
+      block_.light_pdf[of[i]] = 0.0;
+    }
+  }
+  return found;
+}
+
+// Samples the faces that lanes have chosen. Returns the lanes; those of exact surfaces are not among them.
+uint32_t LightStage::sample_faces(uint32_t lanes) {
+  faces_.used = 0;
+  for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const uint32_t lane = uint32_t(std::countr_zero(rest));
+    const Emitter &emitter = emitter_of(lane);
+    if (!emitter.faces())
+      continue;
+    const Instance &placed = scene_.geometry.instances[emitter.instance()];
+    const Mesh &mesh = scene_.geometry.meshes[placed.mesh];
+    if (faces_.used == 0)
+      std::fill_n(faces_.placement, kBlockLanes, placed.placement());
+    faces_.used |= 1u << lane;
+    faces_.placement[lane] = placed.placement();
+    for (int corner = 0; corner < 3; ++corner)
+      put(mesh.vertex(choices_[lane].face, corner), faces_.corner[corner], lane);
+  }
+  if (faces_.used == 0)
+    return 0;
+  for (int axis = 0; axis < 3; ++axis)
+    std::copy_n(block_.p[axis], kBlockLanes, faces_.p[axis]);
+  for (int i = 0; i < 2; ++i)
+    std::copy_n(block_.u[kVertexLight + i], kBlockLanes, faces_.u[i]);
+  light_kernel().sample_faces(faces_);
+  return faces_.used;
+}
+
+glm::vec3 LightStage::face_emission(uint32_t lane, LightPath<float> path) {
+  Hit hit;
+  hit.instance = emitter_of(lane).instance();
+  hit.primitive = choices_[lane].face;
+  hit.u = faces_.weights[0][lane];
+  hit.v = faces_.weights[1][lane];
+  const Surface surface = surface_at(scene_.geometry, scene_.slots, Ray{}, hit);
+  path.length = float(glm::length(surface.p - get(block_.p, lane)) / scene_.normalisation.scale);
+  return shader_.emission(surface, glm::vec3(-get(faces_.wi, lane)), path);
+}
+
+void LightStage::keep_face(uint32_t lane, const glm::vec3 &radiance) {
+  if (!(faces_.pdf[lane] > 0.0) || radiance == glm::vec3(0.0f))
+    return;
+  put(get(faces_.wi, lane), block_.light_wi, lane);
+  put(get(faces_.target, lane), block_.light_target, lane);
+  put(radiance, block_.light_radiance, lane);
+  block_.light_pdf[lane] = faces_.pdf[lane] * choices_[lane].probability;
 }
 
 void LightStage::sample_emitter(uint32_t lane, const LightPath<float> &path) {
   const LightSet::Choice &choice = choices_[lane];
-  block_.light_pdf[lane] = 0.0;
   const LightSample light = sample_scene_light(scene_, choice, get(block_.p, lane),
                                                {block_.u[kVertexLight][lane], block_.u[kVertexLight + 1][lane]}, shader_, path);
   if (!(light.pdf > 0.0) || light.radiance == glm::vec3(0.0f))

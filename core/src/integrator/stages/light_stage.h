@@ -20,9 +20,13 @@ public:
   // Chooses a light for each of these lanes and samples it into the block. path(lane): of what asks.
   template <class PathOf> void ask(uint32_t lanes, PathOf &&path) {
     const Chosen chosen = choose(lanes);
+    const uint32_t sampled = sample_faces(chosen.emitters);
     for (uint32_t rest = chosen.emitters; rest != 0; rest &= rest - 1) {
       const uint32_t lane = uint32_t(std::countr_zero(rest));
-      sample_emitter(lane, path(lane));
+      if (sampled >> lane & 1)
+        look_at_face(lane, path);
+      else
+        sample_emitter(lane, path(lane));
     }
     if (chosen.skies == 0)
       return;
@@ -51,10 +55,25 @@ private:
   };
 
   LightQuery query(uint32_t lane) const;
-  LightSet::Choice choose_light(uint32_t lane) const;
   void choose_of_many(uint32_t lanes);
+  uint32_t choose_faces(uint32_t lanes);
   Chosen choose(uint32_t lanes);
+  uint32_t sample_faces(uint32_t lanes);
+  // What a lane gets of the point of a face that was sampled for it.
+  template <class PathOf> void look_at_face(uint32_t lane, PathOf &&path) {
+    const Emitter &emitter = emitter_of(lane);
+    const uint32_t number = material_of(scene_.geometry, scene_.slots, emitter.instance(), choices_[lane].face);
+    if (number == kNone)
+      return;
+    const Material &material = scene_.materials[number];
+    keep_face(lane, emission_varies(material) ? face_emission(lane, path(lane)) : material.emission.value);
+  }
+  glm::vec3 face_emission(uint32_t lane, LightPath<float> path);
+  void keep_face(uint32_t lane, const glm::vec3 &radiance);
   void sample_emitter(uint32_t lane, const LightPath<float> &path);
+  const Emitter &emitter_of(uint32_t lane) const {
+    return scene_.lights.emitters()[choices_[lane].light - scene_.lights.lights().size()];
+  }
   void sample_sky(uint32_t lanes);
   void see_sky(uint32_t lane, LightPath<float> path, const glm::dvec3 *eye);
   void ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lanes);
@@ -67,6 +86,7 @@ private:
   bool far_[kBlockLanes] = {}; // the light has no end
   DirectionTable sky_;
   SkyBlock misses_{}, samples_{};
+  FaceBlock faces_;
   NodeBlock nodes_; // of the world
   std::vector<NodeLanes> values_;
 };
