@@ -1,7 +1,8 @@
-"""The interface's numbers and structs in Python, made of the C header.
+"""The interface's numbers and structs in Python, and the core's table of parameters, made of the C header.
 
-    bindings.py              writes addon/bindings/enums.py and structs.py, from core/include/lancer.h
-    bindings.py HEADER FOLDER     of another header, into another folder
+    bindings.py              writes addon/bindings/enums.py and structs.py and core/src/scene/principled_table.h, from
+                             core/include/lancer.h
+    bindings.py HEADER FOLDER     of another header, all into another folder
 
 The header is read in the plain style in which it is written: an enum is named lancer_something, or by the typedef on the line
 above it; a struct has one kind of member on a line. Names follow by rule:
@@ -9,6 +10,7 @@ above it; a struct has one kind of member on a line. Names follow by rule:
   - A member of an enum loses the words with which all members of that enum begin; ..._COUNT is none.
   - An enum without 0 has bits, and is an IntFlag.
   - Where comments of members begin with [n], as those of passes do, n is its number of channels.
+  - Where they begin with [kind number], as those of parameters do, that is what a parameter is and its default.
 """
 
 import re
@@ -19,6 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 HEADER = ROOT / "core" / "include" / "lancer.h"
 FOLDER = ROOT / "addon" / "bindings"
+TABLE = ROOT / "core" / "src" / "scene"
 WIDTH = 128
 
 HEAD = '''"""{what}
@@ -36,6 +39,8 @@ ENUM = re.compile(
 )
 STRUCT = re.compile(COMMENT + r"typedef struct lancer_(?P<name>\w+) \{\n(?P<body>.*?)\n\} lancer_(?P=name);", re.DOTALL)
 VALUE = re.compile(r"(LANCER_\w+)(?: = (\d+))?,?(?:\s*\[(\d)\])?")
+PARAMETER = re.compile(r"lancer_parameter (?P<name>\w+); +/\* \[(?P<kind>\w+) (?P<default>[\d.]+)\]")
+VECTORS = ("color", "direction")
 MEMBER = re.compile(r"(?P<const>const )?(?P<type>\w+) (?P<names>[^;]+);")
 
 
@@ -125,6 +130,37 @@ def enums_text(header):
     return "\n\n\n".join([f"{head}\nfrom enum import IntEnum, IntFlag\n\nABI_VERSION = {version}", *classes]) + "\n"
 
 
+def parameters(body):
+    """(name, kind, default) of a struct's parameters that say what they are."""
+    return [(match["name"], match["kind"], float(match["default"])) for match in PARAMETER.finditer(body)]
+
+
+def parameter_lines(name, body):
+    """What parameters are, for Python."""
+    lines = [f"    {class_name(name)}: {{"]
+    for parameter, kind, default in parameters(body):
+        value = f"({', '.join([str(default)] * 3)})" if kind in VECTORS else default
+        lines.append(f'        "{parameter}": ("{kind}", {value}),')
+    return [*lines, "    },"]
+
+
+def table_text(header):
+    """The parameters of the Principled BSDF for the core: kind, member, what an artist calls it, default."""
+    body = next(match["body"] for match in STRUCT.finditer(header) if match["name"] == "principled")
+    rows = ["#define LANCER_PRINCIPLED_PARAMETERS(X)"]
+    for name, kind, default in parameters(body):
+        spoken = name.replace("_", " ").replace("color", "colour").replace("ior", "IOR")
+        rows.append(f'  X({kind.capitalize()}, {name}, "{spoken}", {default}f)')
+    # As clang-format lays it out.
+    table = "".join(f"{row:<{WIDTH - 1}}\\\n" for row in rows[:-1]) + rows[-1]
+    return f"""// The parameters of lancer_principled: X(kind, member, what an artist calls it, default).
+// Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+#pragma once
+
+{table}
+"""
+
+
 def structs_text(header):
     found = {match["name"]: match for match in STRUCT.finditer(header)}
     listed = next(match for match in ENUM.finditer(header) if match["name"] == "struct")
@@ -132,6 +168,13 @@ def structs_text(header):
     if {name.upper() for name in found} != set(numbered):
         sys.exit(f"lancer_struct and the structs of {HEADER.name} differ: {sorted({n.upper() for n in found} ^ set(numbered))}")
     classes = [struct_class(match) for match in found.values()]
+    described = [name for name, match in found.items() if parameters(match["body"])]
+    for name in described:
+        named = [member for member, kind in fields(found[name]["body"]) if kind == "Parameter"]
+        if named != [parameter for parameter, *_ in parameters(found[name]["body"])]:
+            sys.exit(f"A parameter of lancer_{name} does not say what it is: [kind default].")
+    kinds = ["# Of their parameters: kind and default, as lancer.h says.", "PARAMETERS = {"]
+    kinds += [line for name in described for line in parameter_lines(name, found[name]["body"])] + ["}"]
     used = sorted(set(re.findall(r"\bc_\w+", "\n".join(classes))) | {"c_void_p"})
     head = [
         HEAD.format(what="The structs of the interface in ctypes, field by field."),
@@ -141,15 +184,16 @@ def structs_text(header):
         "Array = c_void_p",
     ]
     table = ["STRUCTS = {", *(f"    Struct.{name}: {class_name(name)}," for name in numbered), "}"]
-    return "\n\n\n".join(["\n".join(head), *classes, "\n".join(table)]) + "\n"
+    return "\n\n\n".join(["\n".join(head), *classes, "\n".join(table)]) + "\n\n" + "\n".join(kinds) + "\n"
 
 
-def main(header=HEADER, folder=FOLDER):
+def main(header=HEADER, folder=FOLDER, table=None):
     # Directions to the formatter stand between a comment and what it is about.
     text = re.sub(r"/\* clang-format \w+ \*/\n", "", Path(header).read_text(encoding="utf-8"))
-    for name, made in (("enums.py", enums_text(text)), ("structs.py", structs_text(text))):
-        (Path(folder) / name).write_text(made, encoding="utf-8")
+    (Path(folder) / "enums.py").write_text(enums_text(text), encoding="utf-8")
+    (Path(folder) / "structs.py").write_text(structs_text(text), encoding="utf-8")
+    (Path(table or folder) / "principled_table.h").write_text(table_text(text), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(*sys.argv[1:]) if sys.argv[1:] else main(table=TABLE)

@@ -14,8 +14,6 @@ from .enums import AlphaMode, Distribution, LobeKind, NodeKind, Rules, Transfer
 from .npz import register
 from .record import Record, array
 
-_BLACK = (0.0, 0.0, 0.0)
-_WHITE = (1.0, 1.0, 1.0)
 _TEXELS = (np.uint8, np.uint16, np.float32)
 
 
@@ -34,16 +32,15 @@ def _parameter(value):
 
 
 class _Parameters(Record):
-    """Has the parameters of a struct of lancer.h, also those that the class does not name, which are 0 where not given."""
+    """Has the parameters of a struct of lancer.h, with the defaults that stand there."""
 
     PARAMETERS = ()
 
     def __init_subclass__(cls, struct):
-        cls.PARAMETERS = tuple(name for name, kind in struct._fields_ if kind is structs.Parameter)
-        for name in cls.PARAMETERS:
-            if name not in cls.__annotations__:
-                cls.__annotations__[name] = object
-                setattr(cls, name, 0.0)
+        cls.PARAMETERS = tuple(structs.PARAMETERS[struct])
+        for name, (_, default) in structs.PARAMETERS[struct].items():
+            cls.__annotations__.setdefault(name, object)
+            setattr(cls, name, default)
 
     def __post_init__(self):
         for name in self.PARAMETERS:
@@ -98,32 +95,13 @@ class Principled(_Parameters, struct=structs.Principled):
     rules: int = Rules.BLENDER_45
     distribution: int = Distribution.MULTI_GGX
     option: int = 1
-    base_color: object = (0.8, 0.8, 0.8)
-    roughness: object = 0.5
-    ior: object = 1.5
-    specular: object = 0.5
-    specular_tint: object = _WHITE
-    coat_roughness: object = 0.03
-    coat_ior: object = 1.5
-    coat_tint: object = _WHITE
-    coat_normal: object = _BLACK
-    sheen_roughness: object = 0.5
-    sheen_tint: object = _WHITE
-    emission: object = _BLACK
 
 
 @register
 @dataclass(frozen=True, eq=False)
 class Lobe(_Parameters, struct=structs.Lobe):
     kind: int = LobeKind.LAMBERT
-    color: object = (0.8, 0.8, 0.8)
-    roughness: object = 0.5  # alpha itself for BECKMANN, else the socket's value
-    ior: object = 1.5
-    shininess: object = 50.0  # the exponent of PHONG and BLINN_PHONG; k of MINNAERT, 1 is Lambert
-    weight: object = _WHITE
-    edge: object = _WHITE
-    normal: object = _BLACK
-    tangent: object = _BLACK
+    color: object
     distribution: int = Distribution.GGX
     option: int = 0
     rules: int = Rules.BLENDER_45
@@ -135,11 +113,6 @@ class Lobe(_Parameters, struct=structs.Lobe):
 class Material(_Parameters, struct=structs.Material):
     name: str = ""
     lobes: tuple[Lobe, ...] = (Lobe(),)
-    emission: object = _BLACK
-    transmittance: object = _BLACK
-    ambient: object = _BLACK
-    displacement: object = _BLACK
-    normal: object = _BLACK
     nodes: tuple[Node, ...] = ()
     flags: int = 0  # MaterialFlag
     material_index: int = 0
@@ -153,7 +126,7 @@ class Material(_Parameters, struct=structs.Material):
 @register
 @dataclass(frozen=True, eq=False)
 class World(_Parameters, struct=structs.World):
-    radiance: object = _BLACK
+    radiance: object
     nodes: tuple[Node, ...] = ()
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0

@@ -408,3 +408,52 @@ STRUCTS = {
     Struct.LOBE_INFO: LobeInfo,
     Struct.ERROR: Error,
 }
+
+# Of their parameters: kind and default, as lancer.h says.
+PARAMETERS = {
+    Principled: {
+        "base_color": ("color", (0.8, 0.8, 0.8)),
+        "metallic": ("share", 0.0),
+        "roughness": ("share", 0.5),
+        "ior": ("index", 1.5),
+        "diffuse_roughness": ("share", 0.0),
+        "specular": ("amount", 0.5),
+        "specular_tint": ("color", (1.0, 1.0, 1.0)),
+        "anisotropic": ("share", 0.0),
+        "anisotropic_rotation": ("turns", 0.0),
+        "transmission": ("share", 0.0),
+        "transmission_roughness": ("share", 0.0),
+        "coat": ("amount", 0.0),
+        "coat_roughness": ("share", 0.03),
+        "coat_ior": ("denser", 1.5),
+        "coat_tint": ("color", (1.0, 1.0, 1.0)),
+        "coat_normal": ("direction", (0.0, 0.0, 0.0)),
+        "sheen": ("amount", 0.0),
+        "sheen_roughness": ("share", 0.5),
+        "sheen_tint": ("color", (1.0, 1.0, 1.0)),
+        "emission": ("color", (0.0, 0.0, 0.0)),
+    },
+    Lobe: {
+        "weight": ("color", (1.0, 1.0, 1.0)),
+        "color": ("color", (0.8, 0.8, 0.8)),
+        "roughness": ("share", 0.5),
+        "ior": ("index", 1.5),
+        "shininess": ("amount", 50.0),
+        "edge": ("color", (1.0, 1.0, 1.0)),
+        "anisotropy": ("signed", 0.0),
+        "rotation": ("turns", 0.0),
+        "normal": ("direction", (0.0, 0.0, 0.0)),
+        "tangent": ("direction", (0.0, 0.0, 0.0)),
+    },
+    Material: {
+        "emission": ("color", (0.0, 0.0, 0.0)),
+        "transmittance": ("color", (0.0, 0.0, 0.0)),
+        "holdout": ("share", 0.0),
+        "ambient": ("color", (0.0, 0.0, 0.0)),
+        "displacement": ("direction", (0.0, 0.0, 0.0)),
+        "normal": ("direction", (0.0, 0.0, 0.0)),
+    },
+    World: {
+        "radiance": ("color", (0.0, 0.0, 0.0)),
+    },
+}

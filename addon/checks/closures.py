@@ -6,11 +6,12 @@ import numpy as np
 
 from ..bindings.enums import Integrator, LobeKind
 from ..bindings.shading import NodeRef
+from ..bindings.structs import PARAMETERS, Principled
 from .finding import Finding, Severity
 from .ranges import Ranges
 from .traits import clear_lobes
 
-_SHARES = ("roughness", "transmission_roughness", "coat_roughness", "sheen_roughness", "diffuse_roughness", "metallic")
+_SHARES = [name for name, (kind, _) in PARAMETERS[Principled].items() if kind == "share"]
 # What surely comes back of the light is its colour; of the others Fresnel decides, or a refractive index is no colour.
 _COLORED = {
     LobeKind.LAMBERT, LobeKind.DIFFUSE, LobeKind.MIRROR, LobeKind.GLOSSY, LobeKind.PHONG, LobeKind.BLINN_PHONG,
@@ -63,7 +64,7 @@ def _parameters(material):
     for lobe in material.lobes:
         record = lobe.principled
         if record is not None:
-            shares += [(name, getattr(record, name)) for name in _SHARES] + [("transmission", record.transmission)]
+            shares += [(name, getattr(record, name)) for name in _SHARES]
             indices += [("IOR", record.ior), ("coat IOR", record.coat_ior)]
         else:
             if lobe.kind not in _WITHOUT_ROUGHNESS:

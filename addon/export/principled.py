@@ -3,22 +3,16 @@
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, Rules
 from ..bindings.shading import NodeRef
+from ..bindings.structs import PARAMETERS, Principled
 from .arithmetic import is_constant
 from .distributions import read_distribution
 from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, SMALLEST_IOR, find
 
 _WHITE = (1.0, 1.0, 1.0)
-# Inputs between 0 and 1, with what they are where a version lacks them.
-_SHARES = (
-    ("metallic", 0.0),
-    ("roughness", 0.5),
-    ("diffuse_roughness", 0.0),
-    ("anisotropic", 0.0),
-    ("transmission", 0.0),
-    ("transmission_roughness", 0.0),
-    ("coat", 0.0),
-    ("sheen", 0.0),
-)
+# What belongs to these is read where they are not 0 alone.
+_LAYERS = ("coat", "sheen", "anisotropic")
+# Weights of layers are amounts to the core, and shares to Blender.
+_SHARES = ("coat", "sheen")
 _FILM = ("thin_film", "the surface has no film")
 _WALL = ("thin_wall", "the surface bounds a solid")
 
@@ -38,24 +32,29 @@ def read_principled(surface, site, weight):
     for name, meaning in (_FILM, _WALL):
         if not is_constant(number(name, 0.0), 0.0):
             graph.tell(site, f"input '{PRINCIPLED[name][0]}' is not supported, {meaning}", f"feature:Principled {name}")
-    values = {name: number(name, default, 0.0, 1.0) for name, default in _SHARES}
+    values = {}
+    for name, (kind, default) in PARAMETERS[Principled].items():
+        layer, _, part = name.partition("_")
+        if name in ("base_color", "emission") or (part and layer in _LAYERS and is_constant(values[layer], 0.0)):
+            continue
+        if name in ("specular_tint", "sheen_tint"):
+            values[name] = _tint(surface, site, name)
+        elif kind == "color":
+            values[name] = surface.color(site, PRINCIPLED[name], default)
+        elif kind == "direction":
+            values[name] = surface.normal(site, PRINCIPLED[name])
+        elif kind == "share" or name in _SHARES:
+            values[name] = number(name, default, 0.0, 1.0)
+        elif kind == "amount":
+            values[name] = number(name, default, 0.0)
+        elif kind == "turns":
+            values[name] = number(name, default)
+        else:
+            values[name] = number(name, default, SMALLEST_IOR)
     values["base_color"] = _base_color(surface, site, values)
-    values["ior"] = number("ior", 1.5, SMALLEST_IOR)
-    values["specular"] = number("specular", 0.5, 0.0)
-    values["specular_tint"] = _tint(surface, site, "specular_tint")
-    if not is_constant(values["anisotropic"], 0.0):
-        values["anisotropic_rotation"] = number("anisotropic_rotation", 0.0)
-    if not is_constant(values["coat"], 0.0):
-        values["coat_roughness"] = number("coat_roughness", 0.03, 0.0, 1.0)
-        values["coat_ior"] = number("coat_ior", 1.5, SMALLEST_IOR)
-        values["coat_tint"] = surface.color(site, PRINCIPLED["coat_tint"], _WHITE)
-        values["coat_normal"] = surface.normal(site, PRINCIPLED["coat_normal"])
-        if RULES == Rules.BLENDER_3:
-            # Cycles 3 weighs the base by a chance of the coat that its sampler does not have.
-            graph.tell(site, "Clearcoat leaves the base its light, which is brighter under a sky than in Cycles 3")
-    if not is_constant(values["sheen"], 0.0):
-        values["sheen_roughness"] = number("sheen_roughness", 0.5, 0.0, 1.0)
-        values["sheen_tint"] = _tint(surface, site, "sheen_tint")
+    if RULES == Rules.BLENDER_3 and not is_constant(values["coat"], 0.0):
+        # Cycles 3 weighs the base by a chance of the coat that its sampler does not have.
+        graph.tell(site, "Clearcoat leaves the base its light, which is brighter under a sky than in Cycles 3")
     emission = _emission(surface, site)
     if _is_bare(values):
         surface.emit(graph.multiply(emission, weight))

@@ -1,6 +1,8 @@
 // What materials and worlds are made of.
 #include "records.h"
 
+#include "scene/lobe_inputs.h"
+
 #include <cmath>
 
 namespace lancer_fuzz {
@@ -100,26 +102,15 @@ lancer_principled Records::principled() {
   p.rules = bytes_.choice(3);
   p.distribution = bytes_.rarely(100) ? uint32_t(LANCER_DISTRIBUTION_MULTI_GGX) : bytes_.choice(4);
   p.option = bytes_.choice(2);
-  p.base_color = parameter(0.8f);
-  p.metallic = parameter(0.0f);
-  p.roughness = parameter(0.5f);
-  p.ior = parameter(1.45f, 0.5f, 3.0f);
-  p.diffuse_roughness = parameter(0.0f);
-  p.specular = parameter(0.5f);
-  p.specular_tint = parameter(1.0f);
-  p.anisotropic = parameter(0.0f);
-  p.anisotropic_rotation = parameter(0.0f);
-  p.transmission = parameter(0.0f);
-  p.transmission_roughness = parameter(0.0f);
-  p.coat = parameter(0.0f);
-  p.coat_roughness = parameter(0.03f);
-  p.coat_ior = parameter(1.5f, 0.5f, 3.0f);
-  p.coat_tint = parameter(1.0f);
-  p.coat_normal = vector();
-  p.sheen = parameter(0.0f);
-  p.sheen_roughness = parameter(0.5f);
-  p.sheen_tint = parameter(1.0f);
-  p.emission = parameter(0.0f, 0.0f, 4.0f);
+  using lancer::ParameterKind;
+  const auto value = [&](ParameterKind kind, float given) {
+    return kind == ParameterKind::Direction                                ? vector()
+           : kind == ParameterKind::Index || kind == ParameterKind::Denser ? parameter(given, 0.5f, 3.0f)
+                                                                           : parameter(given);
+  };
+#define LANCER_FILL(kind, name, spoken, given) p.name = value(ParameterKind::kind, given);
+  LANCER_PRINCIPLED_PARAMETERS(LANCER_FILL)
+#undef LANCER_FILL
   return p;
 }
 

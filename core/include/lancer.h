@@ -198,7 +198,10 @@ typedef struct lancer_image {
 
 /* ---- nodes ------------------------------------------------------------------------------------------------------ */
 
-/* A value of a material, light or world: a constant, or the result of a node. */
+/* A value of a material, light or world: a constant, or the result of a node.
+ * A comment [kind number] tells what a parameter is, and its value where nobody gives one. Kinds: color, RGB of 0 or more;
+ * share, 0 to 1; amount, 0 or more; signed, -1 to 1; index, of refraction, above 0; denser, the same of at least 1; turns, 1
+ * is once around; direction, in the world, 0, 0, 0 for none. */
 typedef struct lancer_parameter {
   float value[3]; /* scalars use value[0] */
   int32_t node;   /* -1: the value; else the number of a node of the same owner, whose result replaces it */
@@ -533,31 +536,44 @@ typedef struct lancer_principled {
   uint32_t distribution; /* LANCER_DISTRIBUTION_GGX or LANCER_DISTRIBUTION_MULTI_GGX */
   uint32_t option;       /* as of DIFFUSE, for diffuse_roughness */
   uint32_t reserved;
-  lancer_parameter base_color, metallic, roughness, ior;
-  lancer_parameter diffuse_roughness;
-  lancer_parameter specular, specular_tint;
-  lancer_parameter anisotropic, anisotropic_rotation;
-  lancer_parameter transmission, transmission_roughness;
-  lancer_parameter coat, coat_roughness, coat_ior, coat_tint, coat_normal;
-  lancer_parameter sheen, sheen_roughness, sheen_tint;
-  lancer_parameter emission; /* radiance, below sheen and coat */
+  lancer_parameter base_color;             /* [color 0.8] */
+  lancer_parameter metallic;               /* [share 0] */
+  lancer_parameter roughness;              /* [share 0.5] */
+  lancer_parameter ior;                    /* [index 1.5] */
+  lancer_parameter diffuse_roughness;      /* [share 0] */
+  lancer_parameter specular;               /* [amount 0.5] */
+  lancer_parameter specular_tint;          /* [color 1] */
+  lancer_parameter anisotropic;            /* [share 0] */
+  lancer_parameter anisotropic_rotation;   /* [turns 0] */
+  lancer_parameter transmission;           /* [share 0] */
+  lancer_parameter transmission_roughness; /* [share 0] */
+  lancer_parameter coat;                   /* [amount 0] */
+  lancer_parameter coat_roughness;         /* [share 0.03] */
+  lancer_parameter coat_ior;               /* [denser 1.5] */
+  lancer_parameter coat_tint;              /* [color 1] */
+  lancer_parameter coat_normal;            /* [direction 0] */
+  lancer_parameter sheen;                  /* [amount 0] */
+  lancer_parameter sheen_roughness;        /* [share 0.5] */
+  lancer_parameter sheen_tint;             /* [color 1] */
+  lancer_parameter emission;               /* [color 0] radiance, below sheen and coat */
 } lancer_principled;
 
 typedef struct lancer_lobe {
-  uint32_t kind;                         /* LANCER_LAMBERT ... */
-  uint32_t distribution;                 /* LANCER_DISTRIBUTION_GGX ...; GLOSSY, GLASS, REFRACTION, CONDUCTOR, SHEEN */
-  uint32_t option;                       /* as the kind says */
-  uint32_t rules;                        /* LANCER_RULES_* */
-  lancer_parameter weight;               /* RGB, times everything: the shares of Mix Shaders above it */
-  lancer_parameter color;                /* Kd or Ks */
-  lancer_parameter roughness;            /* alpha itself, BECKMANN; else the socket's value */
-  lancer_parameter ior;                  /* relative to the outside, > 0, may be infinite */
-  lancer_parameter shininess;            /* the exponent n of PHONG, BLINN_PHONG; k of MINNAERT */
-  lancer_parameter edge;                 /* CONDUCTOR */
-  lancer_parameter anisotropy, rotation; /* -1 ... 1 and turns, GLOSSY, CONDUCTOR */
-  lancer_parameter normal;               /* world; the constant 0, 0, 0: the shading normal */
-  lancer_parameter tangent;              /* world; the constant 0, 0, 0: any */
-  const lancer_principled *principled;   /* PRINCIPLED */
+  uint32_t kind;                       /* LANCER_LAMBERT ... */
+  uint32_t distribution;               /* LANCER_DISTRIBUTION_GGX ...; GLOSSY, GLASS, REFRACTION, CONDUCTOR, SHEEN */
+  uint32_t option;                     /* as the kind says */
+  uint32_t rules;                      /* LANCER_RULES_* */
+  lancer_parameter weight;             /* [color 1] times everything: the shares of Mix Shaders above it */
+  lancer_parameter color;              /* [color 0.8] Kd or Ks */
+  lancer_parameter roughness;          /* [share 0.5] alpha itself, BECKMANN; else the socket's value */
+  lancer_parameter ior;                /* [index 1.5] relative to the outside, > 0, may be infinite */
+  lancer_parameter shininess;          /* [amount 50] the exponent n of PHONG, BLINN_PHONG; k of MINNAERT */
+  lancer_parameter edge;               /* [color 1] CONDUCTOR */
+  lancer_parameter anisotropy;         /* [signed 0] GLOSSY, CONDUCTOR */
+  lancer_parameter rotation;           /* [turns 0] the same */
+  lancer_parameter normal;             /* [direction 0] none: the shading normal */
+  lancer_parameter tangent;            /* [direction 0] none: any */
+  const lancer_principled *principled; /* PRINCIPLED */
 } lancer_lobe;
 
 enum lancer_material_flag {
@@ -571,18 +587,19 @@ typedef struct lancer_material {
   const char *name;
   const lancer_lobe *lobes;
   const lancer_node *nodes;
-  uint32_t lobe_count;            /* 0 is a black surface; at most 64 */
-  uint32_t node_count;            /* at most 4096 */
-  uint32_t material_index;        /* value of the material index pass */
-  uint32_t flags;                 /* LANCER_MATERIAL_* bits */
-  lancer_parameter emission;      /* radiance, both sides, RGB */
-  lancer_parameter transmittance; /* share of light that passes straight on, RGB; lobes and emission are not scaled by it */
-  lancer_parameter holdout;       /* share of the picture that becomes a hole, a scalar */
-  lancer_parameter ambient;       /* Ka, CLASSIC only */
-  lancer_parameter displacement;  /* offset of vertices in object space, applied when the scene is committed; 0, 0, 0: none.
-                                     A mesh is moved once for each list of displacing materials that its instances have, at
-                                     the first of those instances */
-  lancer_parameter normal;        /* world; takes the place of the shading normal for all lobes; 0, 0, 0: none */
+  uint32_t lobe_count;       /* 0 is a black surface; at most 64 */
+  uint32_t node_count;       /* at most 4096 */
+  uint32_t material_index;   /* value of the material index pass */
+  uint32_t flags;            /* LANCER_MATERIAL_* bits */
+  lancer_parameter emission; /* [color 0] radiance, both sides */
+  lancer_parameter
+      transmittance;             /* [color 0] share of light that passes straight on; lobes and emission are not scaled by it */
+  lancer_parameter holdout;      /* [share 0] of the picture that becomes a hole */
+  lancer_parameter ambient;      /* [color 0] Ka, CLASSIC only */
+  lancer_parameter displacement; /* [direction 0] offset of vertices in object space, applied when the scene is committed; 0, 0,
+                                    0: none. A mesh is moved once for each list of displacing materials that its instances have,
+                                    at the first of those instances */
+  lancer_parameter normal;       /* [direction 0] takes the place of the shading normal for all lobes; 0, 0, 0: none */
 } lancer_material;
 
 /* ---- lights ----------------------------------------------------------------------------------------------------- */
@@ -657,7 +674,7 @@ typedef struct lancer_world {
   const lancer_node *nodes;
   uint32_t node_count;
   uint32_t hidden_from;      /* LANCER_RAY_* bits */
-  lancer_parameter radiance; /* RGB */
+  lancer_parameter radiance; /* [color 0] */
   float ambient[3];        /* CLASSIC: the light from everywhere that Ka reflects, once, whatever the lamps; see use_ambient */
   uint32_t use_ambient;    /* 0: the mean of the radiance in place of ambient */
   uint32_t map_resolution; /* width of the map by which directions are sampled where the radiance varies; 0 = by its images,

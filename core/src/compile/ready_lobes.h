@@ -35,6 +35,48 @@ struct ReadyLobe {
   const CachedPlan *plan(PrincipledLayer layer, bool inside) const { return plans[inside][static_cast<int>(layer)].get(); }
 };
 
+#define LANCER_NAME(kind, name, spoken, given) name,
+enum class PrincipledParameter { LANCER_PRINCIPLED_PARAMETERS(LANCER_NAME) };
+#undef LANCER_NAME
+
+// Whether a parameter has to be read for a lobe of these parts: a layer that is not there asks for none of its own, and facets
+// that are planned are made of theirs already.
+LANCER_LANE constexpr bool needed(PrincipledParameter parameter, const LobeParts &parts, bool planned) {
+  using P = PrincipledParameter;
+  switch (parameter) {
+  case P::metallic:
+    return parts.metal;
+  case P::transmission:
+    return parts.glass;
+  case P::coat:
+    return parts.coat;
+  case P::coat_tint:
+    return parts.coat_tint;
+  case P::coat_normal:
+    return parts.coat_normal;
+  case P::diffuse_roughness:
+    return parts.diffuse_roughness;
+  case P::emission:
+    return parts.emission;
+  case P::sheen:
+  case P::sheen_roughness:
+  case P::sheen_tint:
+    return parts.sheen;
+  case P::roughness:
+  case P::ior:
+  case P::specular:
+  case P::specular_tint:
+  case P::anisotropic:
+  case P::anisotropic_rotation:
+  case P::transmission_roughness:
+  case P::coat_roughness:
+  case P::coat_ior:
+    return !planned;
+  default:
+    return true;
+  }
+}
+
 // One for each lobe.
 std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material);
 
@@ -92,44 +134,24 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
     in.rules = first.principled.rules;
     in.distribution = first.principled.distribution;
     in.option = first.principled.option;
-    in.base_color = vector(LANCER_OF(principled.base_color));
-    const bool old = in.rules == Rules::Blender3;
-    if (parts.metal)
-      in.metallic = number(LANCER_OF(principled.metallic));
-    if (parts.glass)
-      in.transmission = number(LANCER_OF(principled.transmission));
-    if (parts.coat)
-      in.coat = number(LANCER_OF(principled.coat));
-    if (parts.coat_tint)
-      in.coat_tint = vector(LANCER_OF(principled.coat_tint));
-    if (parts.coat_normal)
-      in.coat_normal = vector(LANCER_OF(principled.coat_normal));
-    if (parts.diffuse_roughness)
-      in.diffuse_roughness = number(LANCER_OF(principled.diffuse_roughness));
-    if (parts.emission)
-      in.emission = vector(LANCER_OF(principled.emission));
-    if (parts.sheen) {
-      in.sheen = number(LANCER_OF(principled.sheen));
-      in.sheen_roughness = number(LANCER_OF(principled.sheen_roughness));
-      in.sheen_tint = vector(LANCER_OF(principled.sheen_tint));
-    }
-    // The rest is in plans, where those are kept.
-    const bool planned =
-        !old && first.has(PrincipledLayer::Gloss) && (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent;
-    if (planned)
-      return in;
-    in.roughness = number(LANCER_OF(principled.roughness));
-    in.ior = number(LANCER_OF(principled.ior));
-    in.specular = number(LANCER_OF(principled.specular));
-    in.specular_tint = vector(LANCER_OF(principled.specular_tint));
-    in.anisotropic = number(LANCER_OF(principled.anisotropic));
-    in.anisotropic_rotation = number(LANCER_OF(principled.anisotropic_rotation));
-    in.transmission_roughness = number(LANCER_OF(principled.transmission_roughness));
-    in.coat_roughness = number(LANCER_OF(principled.coat_roughness));
-    in.coat_ior = number(LANCER_OF(principled.coat_ior));
+    // What facets are made of is in plans, where those are kept.
+    const bool planned = in.rules != Rules::Blender3 && first.has(PrincipledLayer::Gloss) &&
+                         (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent;
+#define LANCER_READ(kind, name, spoken, given)                                                                                 \
+  if (needed(PrincipledParameter::name, parts, planned))                                                                       \
+    in.name = value<ParameterKind::kind>(LANCER_OF(principled.name));
+    LANCER_PRINCIPLED_PARAMETERS(LANCER_READ)
+#undef LANCER_READ
     return in;
   }
 #undef LANCER_OF
+  // get: a parameter of that kind.
+  template <ParameterKind kind, class Get> LANCER_LANE ValueOf<F, kind> value(const Get &get) const {
+    if constexpr (std::is_same_v<ValueOf<F, kind>, F>)
+      return number(get);
+    else
+      return vector(get);
+  }
 
   // The layers that are planned: as of add_layers().
   LANCER_LANE bool has(PrincipledLayer layer) const { return of[0]->has(layer); }

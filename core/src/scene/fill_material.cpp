@@ -63,6 +63,22 @@ public:
     return read(what, given, -kBrightest, kBrightest, 0.0f);
   }
 
+  // fallback: of a number that is none; a colour is black then, and an index that of glass.
+  template <ParameterKind kind> Parameter read(const char *what, const lancer_parameter &given, float fallback) const {
+    if constexpr (kind == ParameterKind::Color)
+      return read_color(what, given);
+    else if constexpr (kind == ParameterKind::Share)
+      return read_share(what, given, fallback);
+    else if constexpr (kind == ParameterKind::Amount)
+      return read_scalar(what, given, 0.0f, kBrightest, fallback);
+    else if constexpr (kind == ParameterKind::Index || kind == ParameterKind::Denser)
+      return read_ior(what, given);
+    else if constexpr (kind == ParameterKind::Turns)
+      return read_scalar(what, given, -kBrightest, kBrightest, fallback);
+    else
+      return read_vector(what, given);
+  }
+
 private:
   std::string object_;
   const Program &program_;
@@ -74,27 +90,9 @@ std::shared_ptr<const PrincipledDescription> read_principled(const MaterialReade
   principled->rules = static_cast<Rules>(given.rules);
   principled->distribution = static_cast<Facets>(given.distribution);
   principled->option = given.option;
-  principled->base_color = reader.read_color("base colour", given.base_color);
-  principled->metallic = reader.read_share("metallic", given.metallic);
-  principled->roughness = reader.read_share("roughness", given.roughness, 0.5f);
-  principled->ior = reader.read_ior("IOR", given.ior);
-  principled->diffuse_roughness = reader.read_share("diffuse roughness", given.diffuse_roughness);
-  principled->specular = reader.read_scalar("specular", given.specular, 0.0f, kBrightest, 0.5f);
-  principled->specular_tint = reader.read_color("specular tint", given.specular_tint);
-  principled->anisotropic = reader.read_share("anisotropic", given.anisotropic);
-  principled->anisotropic_rotation =
-      reader.read_scalar("anisotropic rotation", given.anisotropic_rotation, -kBrightest, kBrightest, 0.0f);
-  principled->transmission = reader.read_share("transmission", given.transmission);
-  principled->transmission_roughness = reader.read_share("transmission roughness", given.transmission_roughness);
-  principled->coat = reader.read_scalar("coat", given.coat, 0.0f, kBrightest, 0.0f);
-  principled->coat_roughness = reader.read_share("coat roughness", given.coat_roughness, 0.03f);
-  principled->coat_ior = reader.read_ior("coat IOR", given.coat_ior);
-  principled->coat_tint = reader.read_color("coat tint", given.coat_tint);
-  principled->coat_normal = reader.read_vector("coat normal", given.coat_normal);
-  principled->sheen = reader.read_scalar("sheen", given.sheen, 0.0f, kBrightest, 0.0f);
-  principled->sheen_roughness = reader.read_share("sheen roughness", given.sheen_roughness, 0.5f);
-  principled->sheen_tint = reader.read_color("sheen tint", given.sheen_tint);
-  principled->emission = reader.read_color("emission", given.emission);
+#define LANCER_READ(kind, name, spoken, used) principled->name = reader.read<ParameterKind::kind>(spoken, given.name, used);
+  LANCER_PRINCIPLED_PARAMETERS(LANCER_READ)
+#undef LANCER_READ
   return principled;
 }
 
@@ -162,26 +160,9 @@ void collect(const LobeDescription &lobe, std::vector<Parameter> &parameters) {
   if (!lobe.principled)
     return;
   const PrincipledDescription &p = *lobe.principled;
-  parameters.insert(parameters.end(), {p.base_color,
-                                       p.metallic,
-                                       p.roughness,
-                                       p.ior,
-                                       p.diffuse_roughness,
-                                       p.specular,
-                                       p.specular_tint,
-                                       p.anisotropic,
-                                       p.anisotropic_rotation,
-                                       p.transmission,
-                                       p.transmission_roughness,
-                                       p.coat,
-                                       p.coat_roughness,
-                                       p.coat_ior,
-                                       p.coat_tint,
-                                       p.coat_normal,
-                                       p.sheen,
-                                       p.sheen_roughness,
-                                       p.sheen_tint,
-                                       p.emission});
+#define LANCER_COLLECT(kind, name, spoken, given) parameters.push_back(p.name);
+  LANCER_PRINCIPLED_PARAMETERS(LANCER_COLLECT)
+#undef LANCER_COLLECT
 }
 
 void make_schedules(Material &material) {

@@ -1,9 +1,11 @@
 // Lobes as a material describes them, with every parameter a value: what the BSDF of one place is built from.
 #pragma once
 
+#include "scene/principled_table.h"
 #include "simd/vectors.h"
 
 #include <cstdint>
+#include <type_traits>
 
 namespace lancer {
 
@@ -34,6 +36,11 @@ enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, Mult
 // Whose definitions hold: Blender 3.x, 4.0 ... 4.4, 4.5 and newer.
 enum class Rules : uint32_t { Blender3 = 0, Blender4 = 1, Blender45 = 2 };
 
+// What a parameter is: as lancer_parameter says.
+enum class ParameterKind { Color, Share, Amount, Index, Denser, Turns, Direction };
+template <class F, ParameterKind kind>
+using ValueOf = std::conditional_t<kind == ParameterKind::Color || kind == ParameterKind::Direction, Vec3<F>, F>;
+
 // Their numbers are those of every lane; what they are is the same in all lanes.
 template <class F> struct LobeInputs {
   using V = Vec3<F>;
@@ -56,21 +63,12 @@ template <class F> LANCER_LANE Vec3<F> colored_weight(const LobeInputs<F> &input
 
 // weight, normal and tangent are those of the lobe that carries the record.
 template <class F> struct PrincipledInputs {
-  using V = Vec3<F>;
   Rules rules = Rules::Blender45;
   Facets distribution = Facets::MultiGgx;
   uint32_t option = 1; // of the diffuse lobe
-  V base_color{F(0.8f)};
-  F metallic{0.0f}, roughness{0.5f}, ior{1.5f}, diffuse_roughness{0.0f};
-  F specular{0.5f};
-  V specular_tint{F(1.0f)};
-  F anisotropic{0.0f}, anisotropic_rotation{0.0f};
-  F transmission{0.0f}, transmission_roughness{0.0f};
-  F coat{0.0f}, coat_roughness{0.03f}, coat_ior{1.5f};
-  V coat_tint{F(1.0f)}, coat_normal{F(0.0f)};
-  F sheen{0.0f}, sheen_roughness{0.5f};
-  V sheen_tint{F(1.0f)};
-  V emission{F(0.0f)};
+#define LANCER_MEMBER(kind, name, spoken, given) ValueOf<F, ParameterKind::kind> name{F(given)};
+  LANCER_PRINCIPLED_PARAMETERS(LANCER_MEMBER)
+#undef LANCER_MEMBER
 };
 
 } // namespace lancer

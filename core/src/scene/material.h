@@ -17,9 +17,9 @@ struct PrincipledDescription {
   Rules rules = Rules::Blender45;
   Facets distribution = Facets::MultiGgx;
   uint32_t option = 1; // of the diffuse lobe
-  Parameter base_color, metallic, roughness, ior, diffuse_roughness, specular, specular_tint, anisotropic, anisotropic_rotation,
-      transmission, transmission_roughness, coat, coat_roughness, coat_ior, coat_tint, coat_normal, sheen, sheen_roughness,
-      sheen_tint, emission;
+#define LANCER_MEMBER(kind, name, spoken, given) Parameter name;
+  LANCER_PRINCIPLED_PARAMETERS(LANCER_MEMBER)
+#undef LANCER_MEMBER
 };
 
 struct LobeDescription {
@@ -71,6 +71,9 @@ struct PlaceValues {
   glm::vec3 operator()(const Parameter &parameter) const { return value_of(parameter, values); }
 };
 
+// Blender's smallest index; the course's lobes take what they are given.
+inline constexpr float kSmallestIor = 1e-5f;
+
 // Reads parameters, brought into the ranges that the models know; what is no number becomes 0. Values: gives a parameter's
 // value in every lane.
 template <class F, class Values> struct ParameterReader {
@@ -96,10 +99,23 @@ template <class F, class Values> struct ParameterReader {
     const F length = sqrt(dot(v, v));
     return select((length > 0.0f) & (length < __builtin_inff()), v / length, V(F(0.0f)));
   }
+  template <ParameterKind kind> LANCER_LANE ValueOf<F, kind> value(const Parameter &parameter) const {
+    if constexpr (kind == ParameterKind::Color)
+      return color(parameter);
+    else if constexpr (kind == ParameterKind::Share)
+      return share(parameter);
+    else if constexpr (kind == ParameterKind::Amount)
+      return scalar(parameter, 0.0f, kBrightest);
+    else if constexpr (kind == ParameterKind::Index)
+      return ior(parameter, kSmallestIor);
+    else if constexpr (kind == ParameterKind::Denser)
+      return ior(parameter, 1.0f);
+    else if constexpr (kind == ParameterKind::Turns)
+      return turns(parameter);
+    else
+      return direction(parameter);
+  }
 };
-
-// Blender's smallest index; the course's lobes take what they are given.
-inline constexpr float kSmallestIor = 1e-5f;
 
 // A described lobe with its values of one place.
 template <class F, class Values>
@@ -131,26 +147,9 @@ LANCER_LANE PrincipledInputs<F> evaluate(const PrincipledDescription &principled
   inputs.rules = principled.rules;
   inputs.distribution = principled.distribution;
   inputs.option = principled.option;
-  inputs.base_color = read.color(principled.base_color);
-  inputs.metallic = read.share(principled.metallic);
-  inputs.roughness = read.share(principled.roughness);
-  inputs.ior = read.ior(principled.ior, kSmallestIor);
-  inputs.diffuse_roughness = read.share(principled.diffuse_roughness);
-  inputs.specular = read.scalar(principled.specular, 0.0f, kBrightest);
-  inputs.specular_tint = read.color(principled.specular_tint);
-  inputs.anisotropic = read.share(principled.anisotropic);
-  inputs.anisotropic_rotation = read.turns(principled.anisotropic_rotation);
-  inputs.transmission = read.share(principled.transmission);
-  inputs.transmission_roughness = read.share(principled.transmission_roughness);
-  inputs.coat = read.scalar(principled.coat, 0.0f, kBrightest);
-  inputs.coat_roughness = read.share(principled.coat_roughness);
-  inputs.coat_ior = read.ior(principled.coat_ior, 1.0f);
-  inputs.coat_tint = read.color(principled.coat_tint);
-  inputs.coat_normal = read.direction(principled.coat_normal);
-  inputs.sheen = read.scalar(principled.sheen, 0.0f, kBrightest);
-  inputs.sheen_roughness = read.share(principled.sheen_roughness);
-  inputs.sheen_tint = read.color(principled.sheen_tint);
-  inputs.emission = read.color(principled.emission);
+#define LANCER_READ(kind, name, spoken, given) inputs.name = read.template value<ParameterKind::kind>(principled.name);
+  LANCER_PRINCIPLED_PARAMETERS(LANCER_READ)
+#undef LANCER_READ
   return inputs;
 }
 inline LobeInputs<float> evaluate(const LobeDescription &lobe, std::span<const glm::vec4> values) {
