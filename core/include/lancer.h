@@ -587,15 +587,14 @@ typedef struct lancer_material {
   const char *name;
   const lancer_lobe *lobes;
   const lancer_node *nodes;
-  uint32_t lobe_count;       /* 0 is a black surface; at most 64 */
-  uint32_t node_count;       /* at most 4096 */
-  uint32_t material_index;   /* value of the material index pass */
-  uint32_t flags;            /* LANCER_MATERIAL_* bits */
-  lancer_parameter emission; /* [color 0] radiance, both sides */
-  lancer_parameter
-      transmittance;             /* [color 0] share of light that passes straight on; lobes and emission are not scaled by it */
-  lancer_parameter holdout;      /* [share 0] of the picture that becomes a hole */
-  lancer_parameter ambient;      /* [color 0] Ka, CLASSIC only */
+  uint32_t lobe_count;            /* 0 is a black surface; at most 64 */
+  uint32_t node_count;            /* at most 4096 */
+  uint32_t material_index;        /* value of the material index pass */
+  uint32_t flags;                 /* LANCER_MATERIAL_* bits */
+  lancer_parameter emission;      /* [color 0] radiance, both sides */
+  lancer_parameter transmittance; /* [color 0] of light that passes straight on; lobes and emission are not scaled by it */
+  lancer_parameter holdout;       /* [share 0] of the picture that becomes a hole */
+  lancer_parameter ambient;       /* [color 0] Ka, CLASSIC only */
   lancer_parameter displacement; /* [direction 0] offset of vertices in object space, applied when the scene is committed; 0, 0,
                                     0: none. A mesh is moved once for each list of displacing materials that its instances have,
                                     at the first of those instances */
