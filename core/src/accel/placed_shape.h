@@ -5,6 +5,7 @@
 
 #include "scene/ray.h"
 #include "simd/double_register.h"
+#include "simd/vectors.h"
 
 #include <cstdint>
 
@@ -57,24 +58,35 @@ struct alignas(32) PlacedShape {
 // Points o + tau d; t = t0 + tau * unit is the parameter of the world ray.
 // d is the object-space direction over a power of two, its largest component in [1, 2): no scale overflows or underflows.
 // o is the closest approach to the frame's centre, so that coordinates are of the mesh's own size however far the eye is.
-template <class D> struct ObjectRayOf {
-  D o[3];
-  D q[3]; // o relative to the frame's centre
-  D d[3];
-  D t0;
-  D unit, inverse_unit; // powers of two
+struct ObjectRay {
+  double o[3];
+  double q[3]; // o relative to the frame's centre
+  double d[3];
+  double t0;
+  double unit, inverse_unit; // powers of two
 };
-using ObjectRay = ObjectRayOf<double>;
+// The same as vectors: of one ray, or of as many as D has lanes.
+template <class V, class D> struct EnteredRay {
+  V o, q, d;
+  D t0, unit, inverse_unit;
+};
 
-// Divides d by the power of two of its largest component: d times unit. False where it is zero, not finite, or beyond 2^+-1000.
-template <class D> LANCER_LANE auto scale_direction(D (&d)[3], D &unit, D &inverse_unit) {
-  const D x = abs(d[0]), y = abs(d[1]), z = abs(d[2]);
-  const D largest = max(z, max(y, x));
+template <class D> LANCER_LANE D largest_component(const Vector3<D> &v) { return max(v.z, max(v.y, v.x)); }
+template <class D> LANCER_LANE D sum_of_components(const Vector3<D> &v) { return v.x + v.y + v.z; }
+
+// What divides a direction by the power of two of its largest component. False where it is zero, not finite, or beyond
+// 2^+-1000.
+template <class D> LANCER_LANE auto scale_of(const D &largest, const D &sum, D &unit, D &inverse_unit) {
   inverse_unit = power_of_two_within(largest);
   unit = inverse_of_power(inverse_unit);
+  return (largest >= D(0x1p-1000)) & (sum <= D(0x1p1000));
+}
+template <class D> LANCER_LANE auto scale_direction(D (&d)[3], D &unit, D &inverse_unit) {
+  const Vector3<D> size(abs(d[0]), abs(d[1]), abs(d[2]));
+  const auto usable = scale_of(largest_component(size), sum_of_components(size), unit, inverse_unit);
   for (D &component : d)
     component = component * unit;
-  return (largest >= D(0x1p-1000)) & (x + y + z <= D(0x1p1000));
+  return usable;
 }
 
 // Origin and direction of a ray in an object's space; t is unchanged. m(column, row): of the matrix, 3 x 4.
@@ -96,23 +108,33 @@ LANCER_LANE void to_object_space(const PlacedShape &shape, const Ray &ray, doubl
 }
 
 // Starts the ray o + t d afresh at its closest approach to the frame's centre. False where it is not usable.
-template <class D>
-LANCER_LANE auto enter_frame(const PlacementFrame &frame, const D (&o)[3], const D (&d)[3], ObjectRayOf<D> &ray) {
-  D f[3];
-  for (int i = 0; i < 3; ++i) {
-    ray.d[i] = d[i];
-    f[i] = o[i] - D(frame.centre[i]);
-  }
-  const auto scaled = scale_direction(ray.d, ray.unit, ray.inverse_unit);
-  const D along = f[0] * ray.d[0] + f[1] * ray.d[1] + f[2] * ray.d[2];
-  const D length2 = ray.d[0] * ray.d[0] + ray.d[1] * ray.d[1] + ray.d[2] * ray.d[2];
-  const D tau0 = -along / length2;
-  for (int i = 0; i < 3; ++i) {
-    ray.q[i] = f[i] + tau0 * ray.d[i];
-    ray.o[i] = ray.q[i] + D(frame.centre[i]);
-  }
+template <class V, class D> LANCER_LANE auto enter_frame(const V &centre, const V &o, const V &d, EnteredRay<V, D> &ray) {
+  const V size = abs(d);
+  const auto scaled = scale_of<D>(largest_component(size), sum_of_components(size), ray.unit, ray.inverse_unit);
+  ray.d = d * ray.unit;
+  const V f = o - centre;
+  const D tau0 = -dot(f, ray.d) / dot(ray.d, ray.d);
+  ray.q = f + tau0 * ray.d;
+  ray.o = ray.q + centre;
   ray.t0 = tau0 * ray.unit;
-  return scaled & (abs(ray.t0) + abs(ray.q[0]) + abs(ray.q[1]) + abs(ray.q[2]) < D(__builtin_inf()));
+  return scaled & (abs(ray.t0) + sum_of_components(abs(ray.q)) < D(__builtin_inf()));
+}
+LANCER_LANE bool enter_frame(const PlacementFrame &frame, const double (&o)[3], const double (&d)[3], ObjectRay &ray) {
+  const auto vector = [](const double(&v)[3]) __attribute__((always_inline)) { return Vector3<double>(v[0], v[1], v[2]); };
+  EnteredRay<Vector3<double>, double> entered;
+  const bool usable = enter_frame(vector(frame.centre), vector(o), vector(d), entered);
+  const auto put = [](const Vector3<double> &v, double(&to)[3]) __attribute__((always_inline)) {
+    to[0] = v.x;
+    to[1] = v.y;
+    to[2] = v.z;
+  };
+  put(entered.o, ray.o);
+  put(entered.q, ray.q);
+  put(entered.d, ray.d);
+  ray.t0 = entered.t0;
+  ray.unit = entered.unit;
+  ray.inverse_unit = entered.inverse_unit;
+  return usable;
 }
 
 // Whether the ray can see the shape at all.

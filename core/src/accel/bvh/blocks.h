@@ -36,7 +36,7 @@ LANCER_LANE uint32_t intersect_block(const TriangleBlock &block, const MeshRay &
     corner[i][1] = load_widened(block.corner[i][k.ky]);
     corner[i][2] = load_widened(block.corner[i][k.kz]);
   }
-  const ShearedRay<Four> ray{{s.o[k.kx], s.o[k.ky], s.o[k.kz]}, {s.shear[k.kx], s.shear[k.ky]}, s.upright, s.t0, s.unit};
+  const ShearedRay<Four> ray{{s.o[k.kx], s.o[k.ky], s.o[k.kz]}, {s.shear[k.kx], s.shear[k.ky]}, s.shear[3], s.t0, s.unit};
   TriangleHit<Four> hit;
   uint32_t met = intersect_triangle(corner, ray, hit);
   if (met == 0)

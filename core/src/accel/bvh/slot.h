@@ -50,8 +50,11 @@ struct Slab {
 };
 
 // The ray in the space of an instance, as the triangle test reads it.
-struct MeshRay : ObjectRay {
-  double shear[3], upright; // direction over its largest component; one over that
+struct alignas(32) MeshRay {
+  double o[4];
+  double shear[4]; // direction over its largest component; then one over that
+  double d[4], q[4];
+  double t0, unit, inverse_unit;
   RayAxes axes;
 };
 

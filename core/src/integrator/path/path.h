@@ -98,7 +98,6 @@ private:
   double occlusion_reach_; // normalised units
   SegmentBlock segments_{};
   Waiting waiting_[kBlockLanes];
-  uint32_t first_sample_ = 0;  // of the block's first lane
   size_t missed_[kBlockLanes]; // numbers of paths
   uint32_t missed_count_ = 0;
   // The queue: paths_[i] travels along rays_[i].

@@ -4,6 +4,7 @@
 #include "lancer.h"
 #include "sampling/color.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -25,30 +26,36 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   block_.ends |= uint32_t{ends} << lane;
   put(path.beta, block_.beta, lane);
   block_.pixel[lane] = path.sampler.pixel();
-  // Lanes of one sample and one bounce share the digits that their numbers are made of.
+  // Lanes of one bounce draw their numbers side by side.
   const uint32_t dimension = path.vertex_dimension();
   if (lane == 0) {
     block_.dimension = dimension;
-    first_sample_ = path.sampler.sample();
     block_.numbers_given = 0;
-  } else if (dimension != block_.dimension || path.sampler.sample() != first_sample_) {
+  } else if (dimension != block_.dimension) {
     block_.numbers_given = 1;
   }
 }
 
 void PathIntegrator::draw_numbers() {
-  const Sampler &sampler = paths_[waiting_[0].number].sampler;
-  if (!block_.numbers_given) {
-    block_.reversed_sample = sampler.reversed_sample();
-    for (uint32_t i = 0; i < 8 && block_.dimension + i < kJointDimensions; ++i)
-      block_.reversed_point[i] = sobol::reversed_point(sampler.sample(), block_.dimension + i);
-    return;
-  }
+  const uint32_t joint = std::min(8u, kJointDimensions - std::min(block_.dimension, kJointDimensions));
+  const Sampler *last = nullptr;
+  uint32_t points[8] = {};
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     const Path &path = paths_[waiting_[lane].number];
-    const auto u = path.sampler.get8(path.vertex_dimension());
-    for (uint32_t i = 0; i < 8; ++i)
-      block_.u[i][lane] = u[i];
+    if (block_.numbers_given) {
+      const auto u = path.sampler.get8(path.vertex_dimension());
+      for (uint32_t i = 0; i < 8; ++i)
+        block_.u[i][lane] = u[i];
+      continue;
+    }
+    // Neighbours mostly share the sample, and the digits that its numbers are made of.
+    if (!last || path.sampler.sample() != last->sample())
+      for (uint32_t i = 0; i < joint; ++i)
+        points[i] = sobol::reversed_point(path.sampler.sample(), block_.dimension + i);
+    last = &path.sampler;
+    block_.reversed_sample[lane] = path.sampler.reversed_sample();
+    for (uint32_t i = 0; i < joint; ++i)
+      block_.reversed_point[i][lane] = points[i];
   }
 }
 

@@ -26,10 +26,10 @@ LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
     const uint32_t dimension = block.dimension + i;
     Vector2<F> u;
     if (dimension < kJointDimensions)
-      u = {scrambled(U(block.reversed_point[i]), pixel, dimension),
-           scrambled(U(block.reversed_point[i + 1]), pixel, dimension + 1)};
+      u = {scrambled(load(block.reversed_point[i] + first), pixel, dimension),
+           scrambled(load(block.reversed_point[i + 1] + first), pixel, dimension + 1)};
     else
-      u = pair_numbers(U(block.reversed_sample), pixel, dimension);
+      u = pair_numbers(load(block.reversed_sample + first), pixel, dimension);
     store(block.u[i] + first, u.x);
     store(block.u[i + 1] + first, u.y);
   }

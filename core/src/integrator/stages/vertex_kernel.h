@@ -26,9 +26,9 @@ struct alignas(64) VertexBlock {
   Floats corner[3][3], normals[3][3];   // of a triangle's corners, object space; by corner, axis
   Doubles bary[2], d[3], o[3], t;
   Floats terminator; // Instance::terminator
-  // Given: what the sampler makes its numbers of. All lanes share the sample and its dimension.
-  Words pixel;
-  uint32_t dimension = 0, reversed_sample = 0, reversed_point[8] = {};
+  // Given: what the sampler makes its numbers of. All lanes share the dimension.
+  Words pixel, reversed_sample, reversed_point[8];
+  uint32_t dimension = 0;
   uint32_t numbers_given = 0;                        // 1: u is given instead
   alignas(64) const Material *material[kBlockLanes]; // all of one class
   Floats through;                                    // mean of what passes straight on
