@@ -228,20 +228,7 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane) {
     return shadows_.push_lit({.slot = ray_number}, contribution);
   const bool far =
       number < lights.lights().size() ? lights.lights()[number].kind == LightKind::Sun : number == lights.environment_light();
-  const double end = far ? std::numeric_limits<double>::infinity() : 1.0;
-  Ray &ray = shadows_.push(ray_number, contribution);
-  if (block_.lifted >> lane & 1) {
-    LightSample sample;
-    sample.wi = get(block_.light_wi, lane);
-    sample.target = get(block_.light_target, lane);
-    sample.distance = end;
-    ray =
-        shadow_ray(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
-    return;
-  }
-  const glm::dvec3 o = get(block_.shadow_origin, lane);
-  lancer::leave(surfaces_.hit(lane), o, far ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o, end,
-                LANCER_RAY_SHADOW, ray);
+  surfaces_.write_shadow_ray(lane, far, shadows_.push(ray_number, contribution));
 }
 
 // Moves all lanes to a corner of their triangles, as if the ray had met it.

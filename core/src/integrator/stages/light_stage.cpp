@@ -167,22 +167,6 @@ void LightStage::sample_emitter(uint32_t lane, const LightPath<float> &path) {
   block_.light_delta[lane] = light.delta;
 }
 
-void LightStage::write_shadow_ray(uint32_t lane, Ray &ray) const {
-  const double infinity = std::numeric_limits<double>::infinity();
-  if (block_.lifted >> lane & 1) {
-    LightSample sample;
-    sample.wi = get(block_.light_wi, lane);
-    sample.target = get(block_.light_target, lane);
-    sample.distance = far_[lane] ? infinity : 1.0;
-    ray =
-        shadow_ray(scene_.geometry, surfaces_.surface(lane), get(block_.viewer_ns, lane), get(block_.viewer_ng, lane), sample);
-    return;
-  }
-  const glm::dvec3 o = get(block_.shadow_origin, lane);
-  const glm::dvec3 d = far_[lane] ? get(block_.light_wi, lane) : get(block_.light_target, lane) - o;
-  leave(surfaces_.hit(lane), o, d, far_[lane] ? infinity : 1.0, LANCER_RAY_SHADOW, ray);
-}
-
 // What nodes of the world are told of a lane. eye: where a camera ray begins, null for any other.
 void LightStage::see_sky(uint32_t lane, LightPath<float> path, const glm::dvec3 *eye) {
   nodes_.eye[lane] = eye;

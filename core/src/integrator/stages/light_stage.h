@@ -39,7 +39,7 @@ public:
   // The light that a lane has asked.
   uint32_t light(uint32_t lane) const { return choices_[lane].light; }
   // The ray from a lane to the sample of its light, written where it stands.
-  void write_shadow_ray(uint32_t lane, Ray &ray) const;
+  void write_shadow_ray(uint32_t lane, Ray &ray) const { surfaces_.write_shadow_ray(lane, far_[lane], ray); }
 
   // Directions in which rays meet nothing, side by side: add them lane by lane, look, and read.
   void add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye);

@@ -171,4 +171,18 @@ Mixture<float> SurfaceStage::mixture(uint32_t lane) const {
           block.mixed_matt[lane]};
 }
 
+void SurfaceStage::write_shadow_ray(uint32_t lane, bool far, Ray &ray) const {
+  const double end = far ? std::numeric_limits<double>::infinity() : 1.0;
+  if (block.lifted >> lane & 1) {
+    LightSample sample;
+    sample.wi = get(block.light_wi, lane);
+    sample.target = get(block.light_target, lane);
+    sample.distance = end;
+    ray = shadow_ray(scene_.geometry, surface(lane), get(block.viewer_ns, lane), get(block.viewer_ng, lane), sample);
+    return;
+  }
+  const glm::dvec3 o = get(block.shadow_origin, lane);
+  leave(hit(lane), o, far ? get(block.light_wi, lane) : get(block.light_target, lane) - o, end, LANCER_RAY_SHADOW, ray);
+}
+
 } // namespace lancer

@@ -48,6 +48,8 @@ public:
   // The share that is there.
   glm::vec3 opacity(uint32_t lane) const { return glm::clamp(1.0f - transmittance[lane], 0.0f, 1.0f); }
   Mixture<float> mixture(uint32_t lane) const;
+  // The ray from a lane to its block's sample of a light, written where it stands. far: the light has no end.
+  void write_shadow_ray(uint32_t lane, bool far, Ray &ray) const;
 
   const VertexKernel &kernel;
   VertexBlock block{};
