@@ -42,16 +42,12 @@ TEST(VertexCounts, LanesShadeWhateverElseIsAsked) {
   }
 }
 
-TEST(VertexCounts, ThePictureOfNormalsIsShadedOneByOne) {
-  const lancer_statistics statistics = seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kPicture, 2, LANCER_NORMALS);
-  EXPECT_EQ(statistics.wide_vertices, 0u);
-  EXPECT_EQ(statistics.narrow_vertices, kRays);
-}
-
-TEST(VertexCounts, ClassicCountsItsVerticesToo) {
-  const lancer_statistics known = seen(lobe(LANCER_LAMBERT, 0.5f), kPicture, 2, LANCER_CLASSIC);
-  EXPECT_EQ(known.wide_vertices, kRays);
-  EXPECT_EQ(known.narrow_vertices, 0u);
+TEST(VertexCounts, LanesShadeWhateverIntegratorAsks) {
+  for (const uint32_t integrator : {LANCER_NORMALS, LANCER_CLASSIC}) {
+    const lancer_statistics statistics = seen(lobe(LANCER_LAMBERT, 0.5f), kPicture, 2, integrator);
+    EXPECT_EQ(statistics.wide_vertices, kRays);
+    EXPECT_EQ(statistics.narrow_vertices, 0u);
+  }
 }
 
 TEST(VertexCounts, EmptySpaceHasNone) {

@@ -24,25 +24,11 @@ void forget_place(SampleResult &result) {
   result.object_index = result.material_index = 0.0f;
 }
 
-void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
-                          double t, SampleResult &result) {
-  record_place(scene, surface, shaded.material, t, result);
-  record_first_surface(scene, settings, surface, mean_normal(shaded.bsdf), result);
-}
-
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
                           const glm::vec3 &normal, SampleResult &result) {
   result.normal = normal;
   if (settings.passes & 1u << LANCER_PASS_UV)
     result.uv = glm::vec3(attributes_at(scene.geometry, surface).uv, 1.0f);
-}
-
-void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
-                 const Surface &surface, const Shaded &shaded, const glm::vec3 &weight, SampleResult &result) {
-  if (passes.mist())
-    result.mist += (1.0f - mist_at(scene, camera, settings, surface)) * mean(weight * shaded.opacity());
-  for (uint32_t component = 0; component < 3 && passes.components(); ++component)
-    result.light[kLightComponents + 3 * component + 2] += weight * shaded.bsdf.shown(Component(component));
 }
 
 void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,

@@ -15,9 +15,6 @@ namespace lancer {
 void record_place(const Scene &scene, const Surface &surface, const Material *material, double t, SampleResult &result);
 // As if it had met nothing.
 void forget_place(SampleResult &result);
-// All that the first surface says about the pixel.
-void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface, const Shaded &shaded,
-                          double t, SampleResult &result);
 // Fills what else the first surface says about the pixel. normal: the mean of the lobes'.
 void record_first_surface(const Scene &scene, const IntegratorSettings &settings, const Surface &surface,
                           const glm::vec3 &normal, SampleResult &result);
@@ -27,8 +24,6 @@ void record_first_surface(const Scene &scene, const IntegratorSettings &settings
 void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
                  const Surface &surface, const SurfaceStage &stage, uint32_t lane, const glm::vec3 &weight,
                  SampleResult &result);
-void record_seen(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const LightPasses &passes,
-                 const Surface &surface, const Shaded &shaded, const glm::vec3 &weight, SampleResult &result);
 
 // How much mist covers a point: 0 near, 1 far.
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface);

@@ -5,6 +5,8 @@
 #include "integrator/sample.h"
 #include "integrator/stages/camera_rays.h"
 #include "integrator/stages/light_passes.h"
+#include "integrator/stages/shading_queues.h"
+#include "integrator/stages/surface_stage.h"
 
 #include <algorithm>
 
@@ -14,7 +16,7 @@ class NormalsIntegrator final : public Integrator {
 public:
   NormalsIntegrator(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
-        passes_(settings) {}
+        surfaces_(scene, camera, settings), queues_(scene), passes_(settings) {}
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override {
     rays_.clear();
@@ -26,30 +28,21 @@ public:
     hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
     counts_.camera += rays_.size();
-    vertices_.narrow += size_t(std::ranges::count_if(hits_, [](const Hit &hit) { return hit.valid(); }));
-    for (size_t i = 0; i < rays_.size(); ++i) {
-      const Ray &ray = rays_[i];
-      SampleResult &result = results[slots_[i]];
-      if (!hits_[i].valid()) {
-        miss(ray, result);
-        add_sky_guides(begin_guides(settings_, passes_.features()), result);
-        continue;
+    queues_.begin();
+    for (size_t i = 0; i < rays_.size(); ++i)
+      if (hits_[i].valid())
+        queues_.add(i, hits_[i]);
+      else
+        miss(rays_[i], results[slots_[i]]);
+    vertices_.wide += queues_.size();
+    queues_.each([&](std::span<const ShadingQueues::Met> met) {
+      for (const ShadingQueues::Met &one : met) {
+        number_[surfaces_.add(rays_[one.number], hits_[one.number], *one.material)] = one.number;
+        if (surfaces_.full())
+          show_block(results, trace);
       }
-      const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hits_[i]);
-      shader_.shade(surface, {.wo = glm::vec3(-glm::normalize(ray.d)), .path = {.kinds = LANCER_RAY_CAMERA}}, point_);
-      // This picture shows every surface whole.
-      point_.transmittance = glm::vec3(0.0f);
-      record_first_surface(scene_, settings_, surface, point_, hits_[i].t, result);
-      record_seen(scene_, camera_, settings_, passes_, surface, point_, glm::vec3(1.0f), result);
-      DenoisingGuides features = begin_guides(settings_, passes_.features());
-      if (features.open)
-        add_denoising_guides(scene_, camera_, mix(point_.bsdf, point_.transmittance, features.blended), point_.bsdf.wo,
-                             point_.transmittance, hits_[i].t * glm::length(ray.d), features, result);
-      result.radiance = 0.5f * surface.ns + 0.5f;
-      if (trace)
-        trace->push_back({scene_.normalisation.to_world(surface.p), hits_[i].t / scene_.normalisation.scale, surface.ns,
-                          glm::vec3(1.0f), result.radiance, surface.instance, surface.primitive, surface.material, 0});
-    }
+      show_block(results, trace);
+    });
   }
   const char *kernel() const override { return "normals"; }
 
@@ -60,6 +53,42 @@ private:
     else if (!(scene_.world.hidden_from & LANCER_RAY_CAMERA))
       result.radiance = scene_.lights.environment().radiance(glm::normalize(ray.d), shader_.values(), &camera_, &ray.o,
                                                              {.kinds = LANCER_RAY_CAMERA});
+    add_sky_guides(begin_guides(settings_, passes_.features()), result);
+  }
+
+  void show_block(std::span<SampleResult> results, std::vector<PathVertex> *trace) {
+    if (surfaces_.count() == 0)
+      return;
+    surfaces_.find();
+    if (surfaces_.has_nodes()) {
+      View views[kBlockLanes];
+      for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+        views[lane] = {.wo = get(surfaces_.block.wo, lane), .path = {.kinds = LANCER_RAY_CAMERA}};
+      surfaces_.ask_nodes(views);
+    }
+    surfaces_.find_lobes();
+    // This picture shows every surface whole.
+    std::fill_n(surfaces_.transmittance, surfaces_.count(), glm::vec3(0.0f));
+    surfaces_.describe();
+    for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+      show(lane, results[slots_[number_[lane]]], trace);
+    surfaces_.clear();
+  }
+
+  void show(uint32_t lane, SampleResult &result, std::vector<PathVertex> *trace) {
+    const Surface surface = surfaces_.surface(lane);
+    const double t = surfaces_.hit(lane).t;
+    record_place(scene_, surface, surfaces_.block.material[lane], t, result);
+    record_first_surface(scene_, settings_, surface, get(surfaces_.block.normal, lane), result);
+    record_seen(scene_, camera_, settings_, passes_, surface, surfaces_, lane, glm::vec3(1.0f), result);
+    DenoisingGuides guides = begin_guides(settings_, passes_.features());
+    if (guides.open)
+      add_denoising_guides(scene_, camera_, surfaces_.mixture(lane), get(surfaces_.block.wo, lane), glm::vec3(0.0f),
+                           t * surfaces_.block.length[lane], guides, result);
+    result.radiance = 0.5f * surface.ns + 0.5f;
+    if (trace)
+      trace->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, glm::vec3(1.0f),
+                        result.radiance, surface.instance, surface.primitive, surface.material, 0});
   }
 
   const Scene &scene_;
@@ -67,9 +96,11 @@ private:
   IntegratorSettings settings_;
   RayGenerator generator_;
   Shader shader_;
+  SurfaceStage surfaces_;
+  ShadingQueues queues_;
   LightPasses passes_;
-  Shaded point_;
-  std::vector<uint32_t> slots_; // rays_[i] is of results[slots_[i]]
+  uint32_t number_[kBlockLanes]; // of the ray that each lane of the block has
+  std::vector<uint32_t> slots_;  // rays_[i] is of results[slots_[i]]
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
 };
