@@ -32,7 +32,8 @@ template <class F> LANCER_LANE F sample_filter(const FilterTable &table, F u) {
   const D target = widen(u) * D(table.cdf[cells]);
   U cell = gather(table.guide, truncate(u * F(static_cast<float>(cells))));
   for (;;) {
-    const MaskOf<F> further = !((gather(table.cdf, cell + U(1u)) > target) | equal(cell, U(cells - 1u)));
+    const MaskOf<F> here = gather(table.cdf, cell + U(1u)) > target, last = equal(cell, U(cells - 1u)),
+                    further = !(here | last);
     if (!any(further))
       break;
     cell = cell + select(further, U(1u), U(0u));
