@@ -30,8 +30,8 @@ template <class F> LANCER_LANE Fresnel<F> fresnel(F cos_i, F eta) {
   const D rp = (c - e * g) / (c + e * g);
   const D f = D(0.5) * (rs * rs + rp * rp);
   // Grazing, totally reflecting, and what bends nothing at all or everything.
-  const auto total = !(cos2_t > D(0.0)), mirror = eta == F(__builtin_inff());
-  const auto all = (c == D(0.0)) | total | mirror, straight = eta == F(1.0f);
+  const MaskOf<F> total = !(cos2_t > D(0.0)), mirror = eta == F(__builtin_inff()), straight = eta == F(1.0f);
+  const MaskOf<F> all = MaskOf<F>(c == D(0.0)) | total | mirror;
   return {select(straight, F(0.0f), select(all, F(1.0f), narrow(f))),
           select(straight, narrow(c), select(mirror, F(1.0f), select(total, F(0.0f), narrow(g)))),
           select(straight, F(1.0f), select(all, F(0.0f), narrow(D(1.0) - f)))};

@@ -203,7 +203,7 @@ template <class V> LANCER_LANE ColorValue<NumberOf<V>> dust_sheen_eval(const V &
 // the normal; the others go on as at the horizon, as where a coarse mesh's interpolated normal looks away from the viewer.
 template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
   const F zero(0.0f);
-  const auto above = wi.z > zero, seen = above & (wo.z > zero);
+  const MaskOf<F> above = wi.z > zero, seen = above & (wo.z > zero);
   switch (static_cast<Matte>(lobe.variant)) {
   case Matte::OrenNayar:
     return where<F>(above, oren_nayar_eval(lobe, wo, wi));
