@@ -125,7 +125,7 @@ template <class F> Value<F> cube(const Inputs<F> &in, const Site<F> &site, const
   using U = WordOf<F>;
   const F zero(0.0f), half(0.5f);
   const Vector3<F> size = abs(d);
-  const MaskOf<F> x = (size.x >= size.y) & (size.x >= size.z), y = !x & (size.y >= size.z);
+  const MaskOf<F> x = (size.x >= size.y) & (size.x >= size.z), y = (!x) & (size.y >= size.z);
   const F along = select(x, d.x, select(y, d.y, d.z)), length = abs(along);
   const auto negative = along < zero;
   const U side = select(x, U(0u), select(y, U(2u), U(4u))) + select(negative, U(1u), U(0u));
