@@ -40,7 +40,7 @@ ENUM = re.compile(
 STRUCT = re.compile(COMMENT + r"typedef struct lancer_(?P<name>\w+) \{\n(?P<body>.*?)\n\} lancer_(?P=name);", re.DOTALL)
 VALUE = re.compile(r"(LANCER_\w+)(?: = (\d+))?,?(?:\s*\[(\d)\])?")
 PARAMETER = re.compile(r"lancer_parameter (?P<name>\w+); +/\* \[(?P<kind>\w+) (?P<default>[\d.]+)\]")
-VECTORS = ("color", "direction")
+VECTORS = ("color", "direction", "vector")
 MEMBER = re.compile(r"(?P<const>const )?(?P<type>\w+) (?P<names>[^;]+);")
 
 

@@ -450,7 +450,7 @@ PARAMETERS = {
         "transmittance": ("color", (0.0, 0.0, 0.0)),
         "holdout": ("share", 0.0),
         "ambient": ("color", (0.0, 0.0, 0.0)),
-        "displacement": ("direction", (0.0, 0.0, 0.0)),
+        "displacement": ("vector", (0.0, 0.0, 0.0)),
         "normal": ("direction", (0.0, 0.0, 0.0)),
     },
     World: {

@@ -104,9 +104,17 @@ lancer_principled Records::principled() {
   p.option = bytes_.choice(2);
   using lancer::ParameterKind;
   const auto value = [&](ParameterKind kind, float given) {
-    return kind == ParameterKind::Direction                                ? vector()
-           : kind == ParameterKind::Index || kind == ParameterKind::Denser ? parameter(given, 0.5f, 3.0f)
-                                                                           : parameter(given);
+    switch (kind) {
+    case ParameterKind::Direction:
+      return vector();
+    case ParameterKind::Index:
+    case ParameterKind::Denser:
+      return parameter(given, 0.5f, 3.0f);
+    case ParameterKind::Color:
+      return parameter(given, 0.0f, 4.0f);
+    default:
+      return parameter(given);
+    }
   };
 #define LANCER_FILL(kind, name, spoken, given) p.name = value(ParameterKind::kind, given);
   LANCER_PRINCIPLED_PARAMETERS(LANCER_FILL)

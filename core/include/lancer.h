@@ -201,7 +201,7 @@ typedef struct lancer_image {
 /* A value of a material, light or world: a constant, or the result of a node.
  * A comment [kind number] tells what a parameter is, and its value where nobody gives one. Kinds: color, RGB of 0 or more;
  * share, 0 to 1; amount, 0 or more; signed, -1 to 1; index, of refraction, above 0; denser, the same of at least 1; turns, 1
- * is once around; direction, in the world, 0, 0, 0 for none. */
+ * is once around; direction, in the world, 0, 0, 0 for none; vector, any three numbers. */
 typedef struct lancer_parameter {
   float value[3]; /* scalars use value[0] */
   int32_t node;   /* -1: the value; else the number of a node of the same owner, whose result replaces it */
@@ -595,10 +595,10 @@ typedef struct lancer_material {
   lancer_parameter transmittance; /* [color 0] of light that passes straight on; lobes and emission are not scaled by it */
   lancer_parameter holdout;       /* [share 0] of the picture that becomes a hole */
   lancer_parameter ambient;       /* [color 0] Ka, CLASSIC only */
-  lancer_parameter displacement; /* [direction 0] offset of vertices in object space, applied when the scene is committed; 0, 0,
-                                    0: none. A mesh is moved once for each list of displacing materials that its instances have,
-                                    at the first of those instances */
-  lancer_parameter normal;       /* [direction 0] takes the place of the shading normal for all lobes; 0, 0, 0: none */
+  lancer_parameter displacement;  /* [vector 0] offset of vertices in object space, applied when the scene is committed; 0, 0,
+                                     0: none. A mesh is moved once for each list of displacing materials that its instances have,
+                                     at the first of those instances */
+  lancer_parameter normal;        /* [direction 0] takes the place of the shading normal for all lobes; 0, 0, 0: none */
 } lancer_material;
 
 /* ---- lights ----------------------------------------------------------------------------------------------------- */
