@@ -270,15 +270,12 @@ def test_filter_reaches_the_pixel_it_should(library):
 
 
 def test_sampler(library):
-    """Numbers in [0, 1), each address its own, the same address the same; over 2^8 samples of a replicate each pair stratified.
-
-    Samples take turns between two replicates."""
-    first = np.array([sampler(3, 5, 7, s, 32, library=library) for s in range(0, 512, 2)])
+    """Numbers in [0, 1), each address its own, the same address the same; over 2^8 samples each pair stratified."""
+    first = np.array([sampler(3, 5, 7, s, 32, library=library) for s in range(256)])
     assert first.min() >= 0.0 and first.max() < 1.0
-    assert np.array_equal(first[17], sampler(3, 5, 7, 34, 32, library=library))
+    assert np.array_equal(first[17], sampler(3, 5, 7, 17, 32, library=library))
     for other in ((4, 5, 7), (3, 6, 7), (3, 5, 8)):
-        assert not np.any(np.array([sampler(*other, s, 32, library=library) for s in range(0, 8, 2)]) == first[:4])
-    assert not np.any(np.array([sampler(3, 5, 7, s, 32, library=library) for s in range(1, 9, 2)]) == first[:4])
+        assert not np.any(np.array([sampler(*other, s, 32, library=library) for s in range(4)]) == first[:4])
     for d in range(32):
         assert len(np.unique(np.floor(first[:, d] * 256))) == 256, f"dimension {d} is not stratified"
     for d in range(0, 32, 2):

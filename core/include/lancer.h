@@ -758,8 +758,8 @@ enum lancer_pass {
   LANCER_PASS_TRANSMISSION_COLOR = 20,    /* [3] */
   LANCER_PASS_DENOISING_NORMAL = 21,      /* [3] camera space, mean */
   LANCER_PASS_DENOISING_DEPTH = 22,       /* [1] mean */
-  LANCER_PASS_ERROR = 23, /* [1] standard error of the mean luminance; infinity before every replicate has a sample. Always
-                             kept */
+  LANCER_PASS_ERROR =
+      23, /* [1] standard error of the mean luminance; infinity before every pixel has two samples. Always kept */
   LANCER_PASS_COUNT = 24
 };
 
@@ -845,7 +845,7 @@ LANCER_API lancer_status lancer_session_statistics(lancer_session session, lance
 /* How far the picture is from the converged one: the root mean square over pixels of the standard error of their luminance,
  * each relative to the pixel's luminance plus 1 % of the picture's mean. Luminance is that of ITU-R BT.709. */
 typedef struct lancer_error {
-  double error;           /* infinity before every replicate has a sample, and so are low, high and cannot_exclude */
+  double error;           /* infinity before every pixel has two samples, and so are low, high and cannot_exclude */
   double low, high;       /* the truth lies between them with the confidence asked for */
   double cannot_exclude;  /* what light in flashes that no sample has met may add to the error, at 95 %: the rule of three */
   double clipped;         /* share of the picture's light that clamp_indirect has taken away */

@@ -103,13 +103,12 @@ TEST(CameraRays, MiddlesOfPixels) {
 
 // The last number of the filter's table is as good as the others.
 TEST(CameraRays, WholeFilterInLanes) {
-  // The first 2^14 samples of each of a pixel's replicates take every 2^-14 of the filter in both directions, its ends among
-  // them.
+  // The first 2^14 samples of a pixel take every 2^-14 of the filter in both directions, its ends among them.
   Camera camera = lancer_test::camera(CameraKind::Perspective, {});
   const IntegratorSettings settings{.filter_width = 4.0f};
   const PixelFilter filter(settings.filter, settings.filter_width);
   std::vector<SampleAddress> addresses;
-  for (uint32_t sample = 0; sample < kReplicates << 14; ++sample)
+  for (uint32_t sample = 0; sample < 1u << 14; ++sample)
     addresses.push_back({3, 4, sample});
   std::vector<SampleResult> results(addresses.size());
   for (const Started &found : start(camera, settings, addresses, results)) {

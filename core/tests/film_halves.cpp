@@ -1,4 +1,4 @@
-// Tiles that are the colours of a chessboard, what replicates tell, and the way back to a power of two.
+// Tiles that are the colours of a chessboard, what halves of the samples tell, and the way back to a power of two.
 #include "render/film.h"
 #include "render/picture_error.h"
 
@@ -39,19 +39,30 @@ TEST(FilmHalves, EveryPixelBelongsToOneTile) {
     }
 }
 
-TEST(FilmLuminances, AreTheMeanAndTheVarianceOfReplicates) {
-  // Samples 1, 2, 5, 8, 9: the replicates (1, 5) and (2, 8) have means 3 and 5; the mean of both has the variance (5 - 3)^2 / 4
-  // = 1, that of all five samples 4/5 of it.
-  Film film(1, 1, 1, 1);
-  film.add(film.tile(0), 5, grey({1.0f, 2.0f, 5.0f, 8.0f, 9.0f}));
-  Film::Luminance luminance[1];
-  EXPECT_EQ(film.luminances(film.tile(0), luminance), 5u);
-  EXPECT_NEAR(luminance[0].mean, 5.0, 1e-6);
-  EXPECT_NEAR(luminance[0].variance, 0.8, 1e-6);
-  EXPECT_NEAR(luminance[0].brightest, 9.0, 1e-6);
+TEST(FilmLuminances, AreTheMeanAndTheVarianceOfHalves) {
+  // Samples 1, 2, 5, 8 | 9, 7 | 3: the halves (1, 2) and (5, 8) have means 1.5 and 6.5, so the variance of their mean is
+  // (6.5 - 1.5)^2 / 4 = 6.25; that of the next two is (9 - 7)^2 / 4 = 1; and the last one is off the mean 16/3 of all before it
+  // by 7/3. Their shares are 4/7, 2/7 and 1/7.
+  const std::vector<SampleResult> results = grey({1.0f, 2.0f, 5.0f, 8.0f, 9.0f, 7.0f, 3.0f});
+  const double parts[] = {16.0 * 6.25, 4.0 * 1.0, 49.0 / 9.0};
+  const struct {
+    uint32_t count;
+    double mean, variance;
+  } expected[] = {{4, 4.0, parts[0] / 16.0},
+                  {6, 16.0 / 3.0, (parts[0] + parts[1]) / 36.0},
+                  {7, 5.0, (parts[0] + parts[1] + parts[2]) / 49.0}};
+  for (const auto &[count, mean, variance] : expected) {
+    Film film(1, 1, 1, 1);
+    film.add(film.tile(0), count, std::span(results).first(count));
+    Film::Luminance luminance[1];
+    EXPECT_EQ(film.luminances(film.tile(0), luminance), count);
+    EXPECT_NEAR(luminance[0].mean, mean, 1e-6);
+    EXPECT_NEAR(luminance[0].variance, variance, 1e-6);
+    EXPECT_NEAR(luminance[0].brightest, count < 6 ? 8.0 : 9.0, 1e-6);
+  }
 }
 
-TEST(FilmLuminances, AreUnknownUntilEachReplicateHasASample) {
+TEST(FilmLuminances, AreUnknownBelowTwoSamples) {
   Film film(1, 1, 1, 1);
   Film::Luminance luminance[1];
   film.add(film.tile(0), 1, grey({1.0f}));
@@ -77,14 +88,14 @@ TEST(FilmLuminances, AreThoseOfSamplesWhoseSumIsNoFloat) {
   Film film(1, 1, 1, 1);
   std::vector<float> values;
   for (int i = 0; i < 64; ++i)
-    values.push_back(i % 2 ? 3e38f : 1e38f);
+    values.push_back(i < 32 ? 3e38f : 1e38f);
   film.add(film.tile(0), 64, grey(values));
   Film::Luminance luminance[1];
   EXPECT_EQ(film.luminances(film.tile(0), luminance), 64u);
-  // Replicates of 1e38 and of 3e38. Three products and two sums of luminance round by 6e-8 each, of 3e38 as of 1e38: of their
-  // difference that is twice as much, of its square four times.
-  EXPECT_NEAR(luminance[0].mean, 2e38, 2e38 * 5 * 6e-8);
-  EXPECT_NEAR(luminance[0].variance, 1e76, 1e76 * 20 * 6e-8);
+  // Halves of 1e38 and of 3e38. The three weights of luminance, as floats, each round by 6e-8, as do the values and their
+  // difference: of its square that is twice as much.
+  EXPECT_NEAR(luminance[0].mean, 2e38, 2e38 * 2 * 6e-8);
+  EXPECT_NEAR(luminance[0].variance, 1e76, 1e76 * 2 * 3 * 6e-8);
   const LuminanceMap map(film);
   EXPECT_TRUE(std::isfinite(map.unit) && std::isfinite(map.mean[0]) && std::isfinite(map.variance[0]));
 }

@@ -12,8 +12,8 @@ namespace {
 
 // The error is of the film as a whole, not of its samples.
 constexpr uint32_t kAll = ((1u << kPassCount) - 1) & ~bit(Pass::Error);
-// What every film keeps of a pixel: the sums of the picture and of each replicate's luminance, and the brightest sample.
-constexpr double kPlain = 4 * sizeof(double) + (kReplicates + 1) * sizeof(float);
+// What every film keeps of a pixel: the sums of the picture, the difference of its halves, and the brightest sample.
+constexpr double kPlain = 4 * sizeof(double) + 2 * sizeof(float);
 
 Pass pass(uint32_t number) { return static_cast<Pass>(number); }
 

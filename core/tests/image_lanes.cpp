@@ -142,9 +142,10 @@ TEST(SkyLanes, TheSkyIsThatOfOneDirection) {
   std::normal_distribution<double> normal;
   for (int round = 0; round < 60; ++round) {
     const Sky sky(random, random() % 2, random() % 2, random() % 2);
-    const Environment environment(sky.world, sky.images, sky.normalisation, BuildContext{.threads = 1});
+    const Environment environment(sky.world, sky.images, sky.normalisation, BuildContext{.threads = 1}, true);
     std::vector<glm::vec4> values(4);
     for (int i = 0; i < 400; ++i) {
+      const bool transmits = i % 2;
       SkyBlock samples{}, seen{};
       NodeBlock nodes{};
       nodes.scene.images = &sky.images;
@@ -167,15 +168,15 @@ TEST(SkyLanes, TheSkyIsThatOfOneDirection) {
           nodes.wo[axis][lane] = nodes.ns[axis][lane] = nodes.ng[axis][lane] = -float(d[axis]);
         }
       }
-      light_kernel().sample_sky(environment.map(), samples);
-      light_kernel().sky_density(environment.map(), seen);
+      light_kernel().sample_sky(environment.table(transmits), samples);
+      light_kernel().sky_density(environment.table(transmits), seen);
       NodeLanes of_nodes[4];
       node_kernel().run(sky.world.program, sky.world.schedule, nodes, of_nodes);
       for (int lane = 0; lane < kLightLanes; ++lane) {
         const glm::dvec3 wi(seen.wi[0][lane], seen.wi[1][lane], seen.wi[2][lane]);
-        ASSERT_EQ(seen.pdf[lane], environment.pdf(wi)) << wi.x << " " << wi.y << " " << wi.z;
+        ASSERT_EQ(seen.pdf[lane], environment.pdf(wi, transmits)) << wi.x << " " << wi.y << " " << wi.z;
         const glm::vec3 radiance = environment.radiance(wi, values, nullptr);
-        const LightSample sample = environment.sample({samples.u[0][lane], samples.u[1][lane]}, values, nullptr);
+        const LightSample sample = environment.sample({samples.u[0][lane], samples.u[1][lane]}, values, nullptr, transmits);
         ASSERT_EQ(samples.pdf[lane], sample.pdf);
         for (int axis = 0; axis < 3; ++axis) {
           ASSERT_EQ(of_nodes[sky.world.radiance.node].of[axis][lane], radiance[axis]);

@@ -130,17 +130,17 @@ struct Sky {
     world.radiance.node = 2;
     world.schedule = world.program.schedule(std::span(&world.radiance, 1));
   }
-  Environment environment() const { return Environment(world, images, normalisation, BuildContext{.threads = 2}); }
+  Environment environment() const { return Environment(world, images, normalisation, BuildContext{.threads = 2}, true); }
 };
 
 // The integral of radiance over all directions, by so many of the environment's own samples.
-double integral(const Environment &environment, size_t nodes, int count) {
+double integral(const Environment &environment, size_t nodes, int count, bool transmits) {
   std::vector<glm::vec4> values(nodes);
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(0.0f, 0x1.fffffep-1f);
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {
-    const LightSample sample = environment.sample({uniform(random), uniform(random)}, values, nullptr);
+    const LightSample sample = environment.sample({uniform(random), uniform(random)}, values, nullptr, transmits);
     EXPECT_GT(sample.pdf, 0.0);
     sum += double(sample.radiance.x) / sample.pdf;
   }
@@ -168,7 +168,8 @@ TEST(Environment, FindsOneBrightTexelUnderAnyMapping) {
           want +=
               double(environment.radiance(even.direction(column + 0.5, row + 0.5), values, nullptr).x) * even.solid_angle(row);
       // 8 x 8 midpoints a texel of a bilinear tent know it to 1 %; the samples, whose spread is below the mean, to 0.2 %.
-      EXPECT_NEAR(integral(environment, 3, 200000) / want, 1.0, 0.01) << where;
+      for (const bool transmits : {false, true})
+        EXPECT_NEAR(integral(environment, 3, 200000, transmits) / want, 1.0, 0.01) << where;
       // The map's looks count alike in their cell: at a pole, where the lower ones stand for more, that is 8 % off. Turned, a
       // look every half cell is one every 0.75 texels where the picture's rows are short; a tent looked at so is off by
       // 2 sinc^2(1 / 0.75) = 8.5 % at worst, and by little along its other side, where the looks divide a texel.
@@ -186,8 +187,35 @@ TEST(Environment, ShinesNowhereWithoutAChance) {
   std::normal_distribution<double> normal;
   for (int i = 0; i < 10000; ++i) {
     const glm::dvec3 w = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    EXPECT_GT(environment.pdf(w), 0.04 * 0.25 / glm::pi<double>());
+    for (const bool transmits : {false, true})
+      EXPECT_GT(environment.pdf(w, transmits), 0.04 * 0.25 / glm::pi<double>());
   }
+}
+
+TEST(Environment, SurfacesSampleWhatIsBrighterThanTheMean) {
+  // Half of the sky 1, a quarter each 2 and 4: the mean is 2 in texels and nearly so in directions, as columns share them.
+  std::vector<float> texels(64 * 32);
+  for (size_t i = 0; i < texels.size(); ++i)
+    texels[i] = i % 64 < 32 ? 1.0f : i % 64 < 48 ? 2.0f : 4.0f;
+  const Sky sky(64, 32, texels, glm::vec3(0.0f));
+  const Environment environment = sky.environment();
+  const auto pdf = [&](int column, bool transmits) {
+    const double phi = glm::pi<double>() * (1.0 - (column + 0.5) / 32.0);
+    double sum = 0.0;
+    for (const double side : {-1.0, 1.0})
+      sum += 0.5 * environment.pdf({std::cos(side * phi), std::sin(side * phi), 0.0}, transmits);
+    return sum;
+  };
+  std::vector<double> above, in_proportion;
+  for (int column = 0; column < 32; ++column) {
+    above.push_back(pdf(column, false));
+    in_proportion.push_back(pdf(column, true));
+  }
+  std::sort(above.begin(), above.end());
+  std::sort(in_proportion.begin(), in_proportion.end());
+  EXPECT_GT(in_proportion.front(), 0.1 * in_proportion.back());
+  // Nothing but the even share is left of what is darker than the mean.
+  EXPECT_LT(above.front(), 0.05 * above.back());
 }
 
 TEST(Environment, LooksAtEachTexelUpToABound) {
@@ -213,7 +241,7 @@ TEST(Environment, LooksAtEachTexelUpToABound) {
 TEST(Environment, CanBeCancelled) {
   const Sky sky(4, 2, std::vector<float>(8, 1.0f), glm::vec3(0.0f));
   std::atomic<bool> cancel{true};
-  EXPECT_THROW(Environment(sky.world, sky.images, sky.normalisation, BuildContext{.cancel = &cancel}), BuildCancelled);
+  EXPECT_THROW(Environment(sky.world, sky.images, sky.normalisation, BuildContext{.cancel = &cancel}, true), BuildCancelled);
 }
 
 TEST(Environment, AConstantOneIsNoLight) {
@@ -221,11 +249,11 @@ TEST(Environment, AConstantOneIsNoLight) {
   world.radiance.value = glm::vec3(0.25f, 0.5f, 0.75f);
   const std::vector<Image> images;
   const Normalisation normalisation;
-  const Environment environment(world, images, normalisation, BuildContext{});
+  const Environment environment(world, images, normalisation, BuildContext{}, true);
   EXPECT_FALSE(environment.varies());
   EXPECT_EQ(environment.radiance({0.0, 1.0, 0.0}, {}, nullptr), world.radiance.value);
-  EXPECT_EQ(environment.sample({0.5f, 0.5f}, {}, nullptr).pdf, 0.0);
-  EXPECT_EQ(environment.pdf({0.0, 1.0, 0.0}), 0.0);
+  EXPECT_EQ(environment.sample({0.5f, 0.5f}, {}, nullptr, false).pdf, 0.0);
+  EXPECT_EQ(environment.pdf({0.0, 1.0, 0.0}, false), 0.0);
 }
 
 } // namespace

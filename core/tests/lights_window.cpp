@@ -24,7 +24,7 @@ struct Framed {
     world.radiance.node = 0;
     world.map_resolution = 8;
     world.schedule = world.program.schedule(std::span(&world.radiance, 1));
-    environment = Environment(world, images, normalisation, BuildContext{.threads = 1});
+    environment = Environment(world, images, normalisation, BuildContext{.threads = 1}, false);
     // At the user's (1, 2, 3), looking along +y: the camera's x, y, z are the world's x, z, -y.
     camera.to_world.linear = glm::dmat3(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
     camera.to_world.translation = normalisation.to_normalised(glm::dvec3(1.0, 2.0, 3.0));
@@ -79,7 +79,7 @@ TEST(EnvironmentWindow, SamplesShineAsTheirDirectionsDo) {
     std::uniform_real_distribution<float> uniform(0.0f, 0x1.fffffep-1f);
     std::vector<glm::vec4> values(1);
     for (int i = 0; i < 100; ++i) {
-      const LightSample sample = framed.environment.sample({uniform(random), uniform(random)}, values, &framed.camera);
+      const LightSample sample = framed.environment.sample({uniform(random), uniform(random)}, values, &framed.camera, false);
       ASSERT_GT(sample.pdf, 0.0);
       EXPECT_EQ(sample.radiance, framed.radiance(sample.wi));
     }

@@ -95,7 +95,8 @@ LightSet make_lights(const Scene &scene, const Description &description, const E
   for (const LightDescription &light : description.lights)
     lights.push_back(place_light(light, scene.normalisation));
   return LightSet(std::move(lights), make_emitters(scene.geometry, scene.slots, scene.materials, emission, context),
-                  scene.geometry.instances.size(), Environment(scene.world, scene.images, scene.normalisation, context),
+                  scene.geometry.instances.size(),
+                  Environment(scene.world, scene.images, scene.normalisation, context, scene.features & kFeatureGlass),
                   context);
 }
 

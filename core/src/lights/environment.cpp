@@ -20,8 +20,7 @@ constexpr uint32_t kMostLooks = 1u << 25;
 // Share of the samples that go evenly to all directions: a bright speck that the map has missed is found by these.
 constexpr float kEvenShare = 0.05f;
 
-// What a direction counts for: the mean of its channels, as in Cycles. What rough boundaries pass on where no facet connects
-// (Bsdf::eval_lit) depends on this density. Nodes may give any number.
+// What a direction counts for: the mean of its channels, as in Cycles. Nodes may give any number.
 float weight_of(const glm::vec3 &radiance) {
   const float level = mean(glm::abs(radiance));
   return std::isfinite(level) ? level : 0.0f;
@@ -76,13 +75,13 @@ MapSize map_size(uint32_t resolution, uint32_t widest) {
 }
 
 Environment::Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,
-                         const BuildContext &context)
+                         const BuildContext &context, bool glass)
     : world_(&world), images_(&images), normalisation_(&normalisation), constant_(world.radiance.value),
       mean_(double(weight_of(world.radiance.value))), hidden_from_(world.hidden_from) {
   if (!world.varies())
     return;
   if (has_directions(world)) {
-    make_map(context);
+    make_maps(context, glass);
     return;
   }
   std::vector<glm::vec4> values(world.program.nodes.size());
@@ -102,7 +101,7 @@ glm::vec3 Environment::evaluate(const glm::dvec3 &wi, std::span<glm::vec4> value
   return value_of(world_->radiance, values);
 }
 
-void Environment::make_map(const BuildContext &context) {
+void Environment::make_maps(const BuildContext &context, bool glass) {
   const MapSize size = map_size(world_->map_resolution, image_width(*world_, *images_));
   const uint32_t width = size.width, height = size.height, looks = size.looks;
   const DirectionMap grid(width, height, std::vector<float>(size_t(width) * height, 1.0f));
@@ -122,19 +121,31 @@ void Environment::make_map(const BuildContext &context) {
     }
   });
   mean_ = std::accumulate(totals.begin(), totals.end(), 0.0) / (4.0 * glm::pi<double>());
-  // Nothing was seen: what there is must be small, and every direction is as good.
-  const float even = mean_ > 0.0 ? kEvenShare * float(mean_) : 1.0f;
-  for (float &weight : weights)
-    weight += even;
-  map_ = DirectionMap(width, height, weights);
+  // Where nothing was seen, what there is must be small, and every direction is as good.
+  const auto map_of = [&](float least) {
+    std::vector<float> above(weights);
+    double sum = 0.0;
+    for (uint32_t row = 0; row < height; ++row)
+      for (float *weight = above.data() + size_t(row) * width, *end = weight + width; weight != end; ++weight) {
+        *weight = std::max(*weight - least, 0.0f);
+        sum += double(*weight) * grid.solid_angle(row);
+      }
+    const float even = sum > 0.0 ? kEvenShare * float(sum / (4.0 * glm::pi<double>())) : 1.0f;
+    for (float &weight : above)
+      weight += even;
+    return DirectionMap(width, height, above);
+  };
+  above_mean_ = map_of(float(mean_));
+  if (glass)
+    in_proportion_ = map_of(0.0f);
 }
 
-LightSample Environment::sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera) const {
+LightSample Environment::sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera, bool transmits) const {
   LightSample sample;
   sample.distance = std::numeric_limits<double>::infinity();
   if (!is_light())
     return sample;
-  const DirectionMap::Sample found = map_.sample(u);
+  const DirectionMap::Sample found = map(transmits).sample(u);
   sample.wi = found.direction;
   sample.pdf = found.pdf;
   if (sample.pdf > 0.0)

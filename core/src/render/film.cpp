@@ -23,11 +23,6 @@ void join(const std::vector<double> &earlier, std::vector<double> &later) {
     later[i] = earlier[i] + later[i];
 }
 
-void join_means(const std::vector<float> &earlier, std::vector<float> &later) {
-  for (size_t i = 0; i < later.size(); ++i)
-    later[i] = 0.5f * earlier[i] + 0.5f * later[i];
-}
-
 } // namespace
 
 Film::Layout::Layout(uint32_t passes) {
@@ -93,7 +88,7 @@ double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t
   // The worst count on the way has nothing but ones.
   const int levels = std::bit_width(uint64_t(samples) + 1) - 1;
   return width * height *
-         ((double(layout.summed_channels) * sizeof(double) + kReplicates * sizeof(float)) * levels +
+         ((double(layout.summed_channels) * sizeof(double) + sizeof(float)) * levels +
           double(layout.first_channels + 1) * sizeof(float));
 }
 
@@ -111,12 +106,13 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
     if (tile.levels.size() <= level)
       tile.levels.resize(level + 1);
     carry.channels.resize(size_t(pixels) * layout_.summed_channels);
-    carry.luminances.assign(size_t(pixels) * kReplicates, 0.0f);
-    gather(results.subspan(size_t(s) * pixels, pixels), tile.count % kReplicates, carry, tile.brightest.data());
+    carry.differences.assign(pixels, 0.0f);
+    gather(results.subspan(size_t(s) * pixels, pixels), carry, tile.brightest.data());
     // A new leaf joins every complete neighbour, the smaller numbers first. All pixels stand at the same leaf.
     for (uint32_t joined = 0; joined < level; ++joined) {
+      if (joined + 1 == level)
+        keep_differences(tile.levels[joined], joined, carry);
       join(tile.levels[joined].channels, carry.channels);
-      join_means(tile.levels[joined].luminances, carry.luminances);
     }
     std::swap(tile.levels[level], carry);
     ++tile.count;
@@ -188,15 +184,23 @@ void Film::keep_first(Tile &tile, std::span<const SampleResult> results) const {
                   tile.first.data() + size_t(pixel) * layout_.first_channels + run.to);
 }
 
+double Film::mean_luminance(const Sums &sums, uint32_t level, uint32_t pixel) const {
+  const double *color = sums.channels.data() + size_t(pixel) * layout_.summed_channels;
+  return luminance(glm::dvec3(color[0], color[1], color[2])) / double(1u << level);
+}
+
+// Of two halves that are about to be joined, of so many levels each.
+void Film::keep_differences(const Sums &earlier, uint32_t level, Sums &later) const {
+  for (uint32_t pixel = 0; pixel < later.differences.size(); ++pixel)
+    later.differences[pixel] = float(mean_luminance(earlier, level, pixel) - mean_luminance(later, level, pixel));
+}
+
 // One sample of all pixels, as they are summed.
-void Film::gather(std::span<const SampleResult> results, uint32_t replicate, Sums &sums, float *brightest) const {
+void Film::gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const {
   double *to = sums.channels.data();
-  float *light = sums.luminances.data() + replicate;
   for (const SampleResult &result : results) {
-    *light = luminance(result.radiance);
-    *brightest = std::max(*brightest, *light);
+    *brightest = std::max(*brightest, luminance(result.radiance));
     ++brightest;
-    light += kReplicates;
     // The picture comes first, and mostly alone.
     const float *numbers = numbers_of(result);
     for (uint32_t i = 0; i < 4; ++i)
@@ -272,29 +276,21 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
 
 uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
   const std::lock_guard lock(tile.mutex);
-  if (tile.count < kReplicates)
+  if (tile.count < kLeastSamples)
     return 0;
-  // Replicates are compared by whole rounds of turns: what is left over makes the mean better, by as much as it is more.
-  const uint32_t turns = tile.count / kReplicates;
-  const double scale = double(turns) / (double(tile.count) * (kReplicates - 1));
   for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-    double sums[kReplicates] = {}, rest = 0.0;
-    for (uint32_t level = 0; level < tile.levels.size(); ++level) {
+    double mean = 0.0, variance = 0.0;
+    // Each waiting sum counts by its share of the samples; a single one is compared with all before it.
+    for (uint32_t level = uint32_t(tile.levels.size()); level-- > 0;) {
       if (!tile.waits(level))
         continue;
-      const float *from = tile.levels[level].luminances.data() + size_t(pixel) * kReplicates;
-      for (uint32_t r = 0; r < kReplicates; ++r)
-        ((1u << level) < kReplicates ? rest : sums[r]) += double(1u << level) * double(from[r]);
+      const Sums &sums = tile.levels[level];
+      const double share = double(1u << level) / double(tile.count), of_sums = mean_luminance(sums, level, pixel);
+      const double apart = level > 0 ? 0.5 * double(sums.differences[pixel]) : of_sums - mean / (1.0 - share);
+      mean += share * of_sums;
+      variance += share * share * apart * apart;
     }
-    double sum = 0.0, squares = 0.0;
-    for (const double of_replicate : sums)
-      sum += of_replicate;
-    const double mean = sum / double(kReplicates * turns);
-    for (const double of_replicate : sums) {
-      const double difference = of_replicate / double(turns) - mean;
-      squares += difference * difference;
-    }
-    out[pixel] = {(sum + rest) / double(tile.count), squares * scale, double(tile.brightest[pixel])};
+    out[pixel] = {mean, variance, double(tile.brightest[pixel])};
   }
   return tile.count;
 }
@@ -306,7 +302,7 @@ size_t Film::bytes() const {
     bytes += sizeof(Tile) + (tile->first.capacity() + tile->brightest.capacity()) * sizeof(float);
     bytes += tile->dropped.capacity() * sizeof(uint64_t);
     for (const Sums &level : tile->levels)
-      bytes += sizeof(level) + level.channels.capacity() * sizeof(double) + level.luminances.capacity() * sizeof(float);
+      bytes += sizeof(level) + level.channels.capacity() * sizeof(double) + level.differences.capacity() * sizeof(float);
   }
   return bytes;
 }

@@ -13,7 +13,11 @@ namespace lancer {
 // complete subtrees of equal size are always joined. While samples arrive in order only the sums that wait for their neighbour
 // are kept, one per bit of the count, as in a binary counter. So neither threads nor tiles nor the split of the range show in
 // the bits, and any complete subtree can be computed elsewhere.
-// Beside the sum stand the luminances of each replicate: what they differ by is the error of the picture.
+// Beside the sum of a subtree stands what the luminances of its two halves differ by: from that the error of the picture is
+// told. All samples of a pixel are one sequence. Of its first N = 2^k points, let V(N) be the variance of the mean and A and B
+// the means of both halves: U(N) = E (A - B)^2 / 4 = V(N / 2) - V(N), as halves are scrambled like the whole. U is V where the
+// variance falls as 1 / N, and more than V where it falls faster: on twenty scenes its root was 1.00 to 1.10 of the real
+// error's in the most, and up to 1.8 where 64 samples are the first to be even.
 class Film {
 public:
   // Which pixels of its rectangle a tile has: all, or those of one colour of a chessboard.
@@ -26,11 +30,10 @@ public:
   // The most that a film of this size takes on its way to so many samples.
   static double bytes_needed(double width, double height, uint32_t passes, uint32_t samples);
 
-  // A complete subtree: [pixel][summed channel], and [pixel][replicate] luminances, each divided by the number of samples of
-  // the subtree, so that floats hold them however bright the samples are.
+  // A complete subtree: [pixel][summed channel], and [pixel] the difference of its halves' mean luminances, 0 of a leaf.
   struct Sums {
     std::vector<double> channels;
-    std::vector<float> luminances;
+    std::vector<float> differences;
   };
 
   struct Tile {
@@ -71,11 +74,13 @@ public:
   void round_down(Tile &tile);
   // Least and most samples of a pixel.
   std::pair<uint32_t, uint32_t> sample_range() const;
-  // What a tile knows of its pixels' luminances. variance: of the mean, by kReplicates - 1 degrees of freedom.
+  // What a tile knows of its pixels' luminances. variance: of the mean; of a power of two by one degree of freedom.
   struct Luminance {
     double mean, variance, brightest;
   };
-  // out: one for each pixel of the tile. Returns its samples; 0 where some replicate has none yet, and nothing is known.
+  // The fewest samples of a pixel that tell how far they are off.
+  static constexpr uint32_t kLeastSamples = 2;
+  // out: one for each pixel of the tile. Returns its samples; 0 below kLeastSamples, where nothing is known.
   uint32_t luminances(const Tile &tile, std::span<Luminance> out) const;
   // Whether all that would be summed is finite.
   bool finite(const SampleResult &result) const;
@@ -104,7 +109,9 @@ private:
 
   static void forget_joined(Tile &tile);
   void keep_first(Tile &tile, std::span<const SampleResult> results) const;
-  void gather(std::span<const SampleResult> results, uint32_t replicate, Sums &sums, float *brightest) const;
+  void gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const;
+  void keep_differences(const Sums &earlier, uint32_t level, Sums &later) const;
+  double mean_luminance(const Sums &sums, uint32_t level, uint32_t pixel) const;
   void read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const;
 
   uint32_t width_, height_, passes_;

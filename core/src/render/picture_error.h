@@ -33,7 +33,7 @@ struct LuminanceMap {
 // luminances, and that of the variances of one sample of theirs.
 //
 // Two pixels are alike where their luminances and those of the 3 x 3 around them differ by no more than noise explains, all
-// nine together. Pixel by pixel the question fails where it matters: two replicates say so little about one pixel's variance
+// nine together. Pixel by pixel the question fails where it matters: two halves say so little about one pixel's variance
 // that every tenth looks noisy enough to be like anything, the edge of a lit thing like the black beside it (Buades, Coll,
 // Morel, "A non-local algorithm for image denoising", 2005, compare surroundings so).
 struct SimilarNeighbours {
@@ -57,21 +57,21 @@ struct PictureError {
 
 // What an error is made of, pixel by pixel.
 struct RelativeVariance {
-  // [height][width]: of one sample, over the square of luminance and floor. own: as the pixel's replicates have it; shared: as
+  // [height][width]: of one sample, over the square of luminance and floor. own: as the pixel's halves have it; shared: as
   // those of the neighbours have it that are like it (similar.h).
   std::vector<float> own, shared;
 
   explicit RelativeVariance(const LuminanceMap &map);
 };
 
-// confidence: of the interval, in (0, 1). A pixel's own replicates understate where light is rare: the pixels that have missed
+// confidence: of the interval, in (0, 1). A pixel's own halves understate where light is rare: the pixels that have missed
 // it look both dark and sure. Neighbours' overstate, along edges. The interval reaches from what the first says to what the
 // second says, widened at both ends by what chance may do to such sums.
 PictureError picture_error(const LuminanceMap &map, const RelativeVariance &relative, double confidence);
 
 // How far each pixel may be from the converged picture.
 
-// Standard error of each pixel's mean luminance: [height][width]; infinity where it is not known yet. Two replicates say little
+// Standard error of each pixel's mean luminance: [height][width]; infinity where it is not known yet. Two halves say little
 // about one pixel, so their variance is shared over the smallest square window in which enough pixels bear it: where light is
 // rare, and most pixels have seen none of it, the window grows until it holds the ones that have. Over pixels of all kinds 95 %
 // of the true values then lie within 1.96 standard errors (Rousselle, Manzi, Zwicker, "Robust Denoising using Feature and Color

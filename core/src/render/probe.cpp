@@ -129,7 +129,7 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
       continue;
     }
     if (light - described >= scene.lights.emitters().size()) {
-      pdf[i] = float(scene.lights.environment().pdf(w));
+      pdf[i] = float(scene.lights.environment().pdf(w, false));
       continue;
     }
     // Sum over all places where the direction meets the emitter: the sampler may have chosen any of them.

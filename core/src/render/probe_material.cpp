@@ -175,7 +175,7 @@ void probe_world(const Scene &scene, uint32_t count, const double *directions, f
   for (uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 wi(directions[3 * i], directions[3 * i + 1], directions[3 * i + 2]);
     store(radiance + size_t(3) * i, environment.radiance(wi, values, nullptr));
-    pdf[i] = environment.is_light() ? float(environment.pdf(wi)) : 0.0f;
+    pdf[i] = environment.is_light() ? float(environment.pdf(wi, false)) : 0.0f;
   }
 }
 

@@ -107,7 +107,8 @@ bool Session::refine(double target, double confidence) {
     throw Error(Fault::State, "session: it was not created to be refined; set refines in its settings");
   const LuminanceMap map(film_);
   if (!map.known)
-    throw Error(Fault::State, "session: every pixel needs " + std::to_string(kReplicates) + " samples before it is refined");
+    throw Error(Fault::State,
+                "session: every pixel needs " + std::to_string(Film::kLeastSamples) + " samples before it is refined");
   for (size_t i = 0; i < film_.tile_count(); ++i)
     if (!std::has_single_bit(film_.tile(i).count))
       throw Error(Fault::State, "session: " + std::to_string(film_.tile(i).count) +

@@ -10,7 +10,7 @@ namespace lancer {
 template <class V> LANCER_LANE NumberOf<V> mean(const V &v) { return (v.x + v.y + v.z) / 3.0f; }
 
 // Of linear light with the primaries of ITU-R BT.709.
-inline float luminance(const glm::vec3 &v) { return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z; }
+template <class T> T luminance(const glm::vec<3, T> &v) { return T(0.2126f) * v.x + T(0.7152f) * v.y + T(0.0722f) * v.z; }
 
 template <class V> LANCER_LANE NumberOf<V> largest(const V &v) { return max(max(v.x, v.y), v.z); }
 

@@ -8,26 +8,18 @@
 
 namespace lancer {
 
-// Samples take turns between so many replicates, each a sequence of its own: what their means differ by tells the error of the
-// picture, which the points of one sequence cannot, as they know of each other. Each half of the points is less even than the
-// whole: beside one sequence the variance is 10 to 29 % larger at 64 samples, twice as large under a pictured sky.
-inline constexpr uint32_t kReplicates = 2;
-
 // Uniform numbers in [0, 1) at the address (seed, pixel, sample, dimension). No state: any order, any thread, any split.
 //   Dimensions 0 ... 15 are one Owen-scrambled Sobol sequence: every power-of-two prefix of a pixel's samples is stratified in
 //   all of them together. They belong to the choices that matter most: pixel, lens, first light, first BSDF.
 //   Dimensions from 16 on come in pairs (16, 17), (18, 19) ...: each pair is a (0, 2)-sequence, taken in an order of its own.
-// Pixels, seeds, replicates and dimensions are scrambled independently of each other.
+// Pixels, seeds and dimensions are scrambled independently of each other.
 class Sampler {
 public:
   Sampler(uint32_t seed, uint32_t x, uint32_t y, uint32_t sample)
-      : Sampler(hash_combine(hash_combine(replicate_key(seed, sample), x), y), sample / kReplicates) {}
+      : Sampler(hash_combine(hash_combine(hash(seed), x), y), sample) {}
 
   // Of a pixel() and a sample() that are known already.
   Sampler(uint32_t pixel, uint32_t sample) : pixel_(pixel), sample_(sample), reversed_(sobol::reverse_bits(sample)) {}
-
-  // What the numbers of all pixels in a sample's replicate depend on.
-  static uint32_t replicate_key(uint32_t seed, uint32_t sample) { return hash_combine(hash(seed), sample % kReplicates); }
 
   float get1(uint32_t dimension) const { return scrambled(unscrambled(dimension), pixel_, dimension); }
 
@@ -60,8 +52,7 @@ public:
     return numbers;
   }
 
-  // What the numbers come from, for kernels that draw those of many pixels: the key of pixel and replicate, the number within
-  // it.
+  // What the numbers come from, for kernels that draw those of many pixels: the key of seed and pixel, and the sample's number.
   uint32_t pixel() const { return pixel_; }
   uint32_t sample() const { return sample_; }
   uint32_t reversed_sample() const { return reversed_; }

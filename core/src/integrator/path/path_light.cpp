@@ -100,7 +100,7 @@ void PathIntegrator::add_missed() {
     float weight = 1.0f;
     if (lights.environment().is_light() && path.pdf > 0.0) {
       const double chosen = lights.probability(path.light_query(), lights.environment_light());
-      weight = mis_weight(path.pdf, lights_.sky_pdf(lane) * chosen);
+      weight = mis_weight(path.pdf, lights_.sky_pdf(lane, path.transmits) * chosen);
     }
     film_.add(path, path.beta * lights_.sky_radiance(lane) * weight, true);
   }

@@ -17,7 +17,7 @@ LANCER_LANE D to_double(U a) { return widen(to_float(a >> 16)) * D(65536.0) + wi
   for (int first = 0; first < kCameraLanes; first += kLanes) {
     // Draw a place of the film by the pixel's filter.
     const U x = load(block.x + first), y = load(block.y + first);
-    const U pixel = hash_combine(hash_combine(load(block.key + first), x), y);
+    const U pixel = hash_combine(hash_combine(U(block.key), x), y);
     store(block.pixel + first, pixel);
     F u[4];
     const uint32_t dimensions = camera.lens_radius > 0.0 ? 4 : 2;

@@ -14,14 +14,14 @@ struct FilterTable;
 inline constexpr int kCameraLanes = 16;
 
 struct alignas(64) CameraBlock {
-  // Given: pixels of the full image, Sampler::replicate_key(), and the reversed points of the samples in the dimensions of
-  // pixel and lens.
-  uint32_t x[kCameraLanes], y[kCameraLanes], key[kCameraLanes], reversed_point[4][kCameraLanes];
+  // Given: pixels of the full image, and the reversed points of the samples in the dimensions of pixel and lens.
+  uint32_t x[kCameraLanes], y[kCameraLanes], reversed_point[4][kCameraLanes];
   // Sampler::pixel(), and the ray.
   uint32_t pixel[kCameraLanes];
   double o[3][kCameraLanes], d[3][kCameraLanes];
 
-  // Given: what all lanes share.
+  // Given: what all lanes share. key: hash of the seed.
+  uint32_t key = 0;
   const Camera *camera = nullptr;
   const FilterTable *filter = nullptr;
 };

@@ -16,6 +16,7 @@ RayGenerator::RayGenerator(const Camera &camera, const IntegratorSettings &setti
   *block_ = {};
   block_->camera = &camera_;
   block_->filter = &filter_.table();
+  block_->key = hash(settings.seed);
 }
 
 uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
@@ -26,7 +27,7 @@ uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
     return looking;
   }
   // Most lanes are of one sample: look up its digits once.
-  uint32_t sample = ~addresses[0].sample, key = 0, digits[4] = {};
+  uint32_t sample = ~addresses[0].sample, digits[4] = {};
   for (uint32_t lane = 0; lane < addresses.size(); ++lane) {
     // The region's place in the image is part of the address: a border render repeats the full image's numbers.
     block_->x[lane] = camera_.x + addresses[lane].x;
@@ -34,10 +35,8 @@ uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
     if (addresses[lane].sample != sample) {
       sample = addresses[lane].sample;
       for (uint32_t i = 0; i < 4; ++i)
-        digits[i] = sobol::reversed_point(sample / kReplicates, kDimensionPixel + i);
-      key = Sampler::replicate_key(seed_, sample);
+        digits[i] = sobol::reversed_point(sample, kDimensionPixel + i);
     }
-    block_->key[lane] = key;
     for (uint32_t i = 0; i < 4; ++i)
       block_->reversed_point[i][lane] = digits[i];
   }

@@ -31,7 +31,7 @@ public:
       for (uint32_t rest = looking; rest != 0; rest &= rest - 1) {
         const uint32_t lane = uint32_t(std::countr_zero(rest));
         // Written where it stands: a copy would wait until its parts have left the processor's stores.
-        Ray &ray = begin(first + lane, Sampler(block_->pixel[lane], now[lane].sample / kReplicates));
+        Ray &ray = begin(first + lane, Sampler(block_->pixel[lane], now[lane].sample));
         ray.o = {block_->o[0][lane], block_->o[1][lane], block_->o[2][lane]};
         ray.tmin = camera_.clip_start;
         ray.d = {block_->d[0][lane], block_->d[1][lane], block_->d[2][lane]};

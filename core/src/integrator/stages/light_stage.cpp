@@ -9,7 +9,8 @@ LightStage::LightStage(const Scene &scene, const Camera &camera, SurfaceStage &s
     : scene_(scene), shader_(scene, &camera), surfaces_(surfaces), block_(surfaces.block),
       values_(scene.world.program.nodes.size()) {
   if (scene.lights.environment().is_light())
-    sky_ = scene.lights.environment().map();
+    for (const bool transmits : {false, true})
+      sky_[transmits] = scene.lights.environment().table(transmits);
   nodes_.scene = shader_.node_scene();
   nodes_.surface = false;
 }
@@ -193,17 +194,27 @@ glm::vec3 LightStage::sky_radiance(uint32_t lane) const {
 }
 
 void LightStage::sample_sky(uint32_t lanes) {
-  for (int i = 0; i < 2; ++i)
-    std::copy_n(block_.u[kVertexLight + i], kBlockLanes, samples_.u[i]);
-  light_kernel().sample_sky(sky_, samples_);
-  ask_world(samples_.wi, lanes);
+  for (const bool transmits : {false, true}) {
+    uint32_t rest = lanes & (transmits ? block_.transmits : ~block_.transmits);
+    if (rest == 0)
+      continue;
+    for (int i = 0; i < 2; ++i)
+      std::copy_n(block_.u[kVertexLight + i], kBlockLanes, samples_.u[i]);
+    light_kernel().sample_sky(sky_[transmits], samples_);
+    for (; rest != 0; rest &= rest - 1) {
+      const uint32_t lane = uint32_t(std::countr_zero(rest));
+      far_[lane] = true;
+      put(get(samples_.wi, lane), block_.light_wi, lane);
+      block_.light_pdf[lane] *= samples_.pdf[lane];
+    }
+  }
+  ask_world(block_.light_wi, lanes);
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const uint32_t lane = uint32_t(std::countr_zero(rest));
-    far_[lane] = true;
     const glm::vec3 radiance = sky_radiance(lane);
-    put(get(samples_.wi, lane), block_.light_wi, lane);
     put(radiance, block_.light_radiance, lane);
-    block_.light_pdf[lane] *= radiance == glm::vec3(0.0f) ? 0.0 : samples_.pdf[lane];
+    if (radiance == glm::vec3(0.0f))
+      block_.light_pdf[lane] = 0.0;
   }
 }
 
@@ -215,8 +226,13 @@ void LightStage::add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> p
 }
 
 void LightStage::look_at_sky(uint32_t count) {
-  if (scene_.lights.environment().is_light())
-    light_kernel().sky_density(sky_, misses_);
+  const Environment &environment = scene_.lights.environment();
+  for (const bool transmits : {false, true}) {
+    // Most scenes have one map.
+    if (environment.is_light() && (!transmits || environment.has_map_of_glass()))
+      light_kernel().sky_density(sky_[transmits], misses_);
+    std::copy_n(misses_.pdf, kBlockLanes, miss_pdf_[transmits]);
+  }
   ask_world(misses_.wi, (1u << count) - 1u);
 }
 

@@ -45,8 +45,8 @@ public:
   void add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye);
   void look_at_sky(uint32_t count);
   glm::vec3 sky_radiance(uint32_t lane) const;
-  // Of the sky's sample in the direction of a miss, where it is sampled as a light.
-  double sky_pdf(uint32_t lane) const { return misses_.pdf[lane]; }
+  // Of the sky's sample in the direction of a miss, where it is sampled as a light; transmits: as what asked.
+  double sky_pdf(uint32_t lane, bool transmits) const { return miss_pdf_[transmits][lane]; }
 
 private:
   // Lanes by what has to be sampled apart from the kernels.
@@ -84,8 +84,10 @@ private:
   VertexBlock &block_;
   LightSet::Choice choices_[kBlockLanes];
   bool far_[kBlockLanes] = {}; // the light has no end
-  DirectionTable sky_;
+  // By whether light may come through what asks.
+  DirectionTable sky_[2];
   SkyBlock misses_{}, samples_{};
+  double miss_pdf_[2][kBlockLanes] = {};
   FaceBlock faces_;
   NodeBlock nodes_; // of the world
   std::vector<NodeLanes> values_;

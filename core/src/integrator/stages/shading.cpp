@@ -160,7 +160,7 @@ LightSample sample_any(const Scene &scene, uint32_t light, const uint32_t *face,
   if (light < described)
     return sample(scene.lights.lights()[light], p, u);
   if (light - described >= scene.lights.emitters().size())
-    return scene.lights.environment().sample(u, shader.values(), shader.camera());
+    return scene.lights.environment().sample(u, shader.values(), shader.camera(), false);
   // Ask the material of the emitter's surface what it sends towards p.
   const Emitter &emitter = scene.lights.emitters()[light - described];
   Surface surface;
