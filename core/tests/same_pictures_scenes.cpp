@@ -48,7 +48,7 @@ TEST(SamePictures, LampsOfAllKinds) {
   stand.commit();
   stand.render();
   EXPECT_GT(stand.wide_vertices, 0u);
-  EXPECT_EQ(stand.hash.value(), 0x4bc484d11de66084u);
+  EXPECT_EQ(stand.hash.value(), 0x009f69b026d4468eu);
 }
 
 TEST(SamePictures, LensesAndPanoramas) {
@@ -88,7 +88,7 @@ TEST(SamePictures, LensesAndPanoramas) {
     stand.render();
   }
   EXPECT_GT(stand.wide_vertices, 0u);
-  EXPECT_EQ(stand.hash.value(), 0x78d0308cfb6b1de3u);
+  EXPECT_EQ(stand.hash.value(), 0xf262a61444b23f2fu);
 }
 
 // kind: the accelerator. All find the same; each is built by sorting.
@@ -124,7 +124,7 @@ uint64_t crowd(uint32_t kind) {
 
 TEST(SamePictures, Crowd) {
   for (const uint32_t kind : {LANCER_BVH, LANCER_KDTREE, LANCER_BRUTE_FORCE})
-    EXPECT_EQ(crowd(kind), 0x9ba2737d94f6d6a5u) << kind;
+    EXPECT_EQ(crowd(kind), 0x92d41caf936d7204u) << kind;
 }
 
 TEST(SamePictures, Classic) {
@@ -159,7 +159,7 @@ TEST(SamePictures, Classic) {
   stand.settings.integrator = LANCER_NORMALS;
   stand.render();
   EXPECT_GT(stand.wide_vertices, 0u);
-  EXPECT_EQ(stand.hash.value(), 0xe45072feeaeee11au);
+  EXPECT_EQ(stand.hash.value(), 0x5d73277151735cbbu);
 }
 
 } // namespace

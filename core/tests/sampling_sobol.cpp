@@ -50,7 +50,7 @@ TEST(Sobol, EachJointDimensionIsStratified) {
 TEST(Sobol, JointPairsAreNets) {
   // Sobol's theorem: two dimensions with polynomials of degrees e and e' are a (t, 2)-sequence with t = e - 1 + e' - 1. The
   // first dimension counts 0. Every aligned block of 2^m points is then a (t, m, 2)-net.
-  const int degree[kJointDimensions] = {1, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5, 6, 6, 6};
+  const int degree[kJointDimensions] = {4, 4, 2, 6, 1, 3, 6, 3, 5, 1, 5, 6, 5, 5, 5, 6, 6, 5, 7, 6};
   for (uint32_t d = 0; d < kJointDimensions; d += 2) {
     const int t = degree[d] - 1 + degree[d + 1] - 1;
     for (int m = t; m <= 13; ++m)
@@ -59,21 +59,62 @@ TEST(Sobol, JointPairsAreNets) {
   }
 }
 
-TEST(Sobol, JointDimensionsAreLinearlyIndependentOverAll16) {
-  // Property A of Sobol: the first digits of all 16 dimensions over 2^16 points take every combination exactly once.
-  std::vector<int> count(std::size_t{1} << 16, 0);
-  for (uint32_t s = 0; s < 1u << 16; ++s) {
-    uint32_t corner = 0;
-    for (uint32_t d = 0; d < kJointDimensions; ++d)
-      corner = corner << 1 | (Sampler(1, 0, 0, s).get1(d) >= 0.5f ? 1u : 0u);
-    ++count[corner];
+// The least t for which the first 2^m points of some dimensions are a (t, m, s)-net: every box of the volume 2^(t - m) whose
+// sides are powers of two holds 2^t of them.
+int strength(const std::vector<uint32_t> &dimensions, int m) {
+  const auto holds = [&](int t) {
+    std::vector<int> digits(dimensions.size(), 0);
+    const std::function<bool(std::size_t, int)> each = [&](std::size_t i, int rest) {
+      if (i + 1 < dimensions.size()) {
+        for (digits[i] = 0; digits[i] <= rest; ++digits[i])
+          if (!each(i + 1, rest - digits[i]))
+            return false;
+        return true;
+      }
+      digits[i] = rest;
+      std::vector<int> count(std::size_t{1} << (m - t), 0);
+      for (uint32_t s = 0; s < 1u << m; ++s) {
+        uint32_t box = 0;
+        for (std::size_t j = 0; j < dimensions.size(); ++j) {
+          const float sides = static_cast<float>(1u << digits[j]);
+          box = box << digits[j] | static_cast<uint32_t>(Sampler(5, 1, 2, s).get1(dimensions[j]) * sides);
+        }
+        ++count[box];
+      }
+      return std::ranges::all_of(count, [&](int c) { return c == 1 << t; });
+    };
+    return each(0, m - t);
+  };
+  int t = 0;
+  while (!holds(t))
+    ++t;
+  return t;
+}
+
+TEST(Sobol, ProjectionsThatPathsDependOnAreEven) {
+  // Of 64 and of 256 points. Any m points are an (m, m, s)-net, so these are far from nothing; the numbers are those that the
+  // search has found.
+  const uint32_t bsdf = 4, light = 6, choice = 8, lobe = 9, next = 12;
+  const struct {
+    std::vector<uint32_t> dimensions;
+    int of_64, of_256;
+  } projections[] = {
+      {{0, 1}, 1, 1},
+      {{bsdf, bsdf + 1}, 1, 1},
+      {{light, light + 1}, 1, 1},
+      {{bsdf, bsdf + 1, lobe}, 1, 2},
+      {{light, light + 1, choice}, 1, 2},
+      {{next, next + 1}, 1, 1},
+      {{next + 2, next + 3}, 1, 1},
+  };
+  for (const auto &[dimensions, of_64, of_256] : projections) {
+    EXPECT_LE(strength(dimensions, 6), of_64) << dimensions[0];
+    EXPECT_LE(strength(dimensions, 8), of_256) << dimensions[0];
   }
-  for (int c : count)
-    ASSERT_EQ(c, 1);
 }
 
 TEST(Sobol, PaddedPairsAreNets) {
-  for (uint32_t d : {16u, 18u, 40u, 1000u})
+  for (uint32_t d : {20u, 22u, 40u, 1000u})
     for (int m = 0; m <= 12; ++m)
       for (uint32_t block = 0; block < 3; ++block)
         ASSERT_TRUE(is_net(points(11, 2, 9, block << m, m, d), m, 0)) << "dimension " << d << ", 2^" << m << " points";
@@ -169,9 +210,10 @@ TEST(Sobol, ScramblingIsUnbiased) {
 }
 
 TEST(Sobol, ConvergesFasterThanRandom) {
-  // Owen: for smooth integrands the scrambled net's variance falls like N^-3, random numbers' like 1/N. At 256 points in 2-D a
-  // factor of 100 is far on the safe side of the thousands that this gives.
-  for (uint32_t d : {0u, 16u}) {
+  // Owen: for smooth integrands the scrambled net's variance falls like N^-3, random numbers' like 1/N: at 256 points in 2-D
+  // that is a factor of thousands where t is 0. Where t is 1 the net is as even as one of half the points, and more by a gain
+  // of 2: less by up to 16.
+  for (uint32_t d : {0u, 4u, 20u}) {
     constexpr int runs = 200, count = 256;
     double net = 0.0, plain = 0.0;
     Random random(3);
@@ -186,7 +228,7 @@ TEST(Sobol, ConvergesFasterThanRandom) {
       net += (a - 1.0) * (a - 1.0);
       plain += (b - 1.0) * (b - 1.0);
     }
-    EXPECT_LT(net * 100.0, plain);
+    EXPECT_LT(net * (d < kJointDimensions ? 50.0 : 1000.0), plain) << d;
   }
 }
 

@@ -26,8 +26,8 @@ template <class U> LANCER_LANE constexpr U hash_combine(U h, std::type_identity_
   return hash((h ^ value * U(0x9e3779b1u)) + U(0x7f4a7c15u));
 }
 
-// The Sobol sequence of Joe and Kuo in 16 dimensions.
-inline constexpr uint32_t kJointDimensions = 16;
+// Dimensions of one Sobol sequence: the camera's, and those of two vertices.
+inline constexpr uint32_t kJointDimensions = 20;
 
 namespace sobol {
 

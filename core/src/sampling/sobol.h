@@ -9,9 +9,10 @@
 namespace lancer {
 
 // Uniform numbers in [0, 1) at the address (seed, pixel, sample, dimension). No state: any order, any thread, any split.
-//   Dimensions 0 ... 15 are one Owen-scrambled Sobol sequence: every power-of-two prefix of a pixel's samples is stratified in
-//   all of them together. They belong to the choices that matter most: pixel, lens, first light, first BSDF.
-//   Dimensions from 16 on come in pairs (16, 17), (18, 19) ...: each pair is a (0, 2)-sequence, taken in an order of its own.
+//   Dimensions 0 ... 19 are one Owen-scrambled Sobol sequence: every power-of-two prefix of a pixel's samples is stratified in
+//   all of them together. They belong to the choices that matter most: pixel, lens, BSDF
+//   and light of the first two vertices.
+//   Dimensions from 20 on come in pairs (20, 21), (22, 23) ...: each pair is a (0, 2)-sequence, taken in an order of its own.
 // Pixels, seeds and dimensions are scrambled independently of each other.
 class Sampler {
 public:
@@ -23,7 +24,7 @@ public:
 
   float get1(uint32_t dimension) const { return scrambled(unscrambled(dimension), pixel_, dimension); }
 
-  // Dimensions d and d + 1; from 16 on d is even.
+  // Dimensions d and d + 1, d even.
   glm::vec2 get2(uint32_t dimension) const {
     if (dimension < kJointDimensions)
       return {get1(dimension), get1(dimension + 1)};

@@ -1,43 +1,53 @@
-// The generator matrices behind the table, from the published direction numbers; all of it is computed by the compiler.
+// The generator matrices behind the table, from polynomials and direction numbers; all of it is computed by the compiler.
 #include "sampling/scramble.h"
 
 namespace lancer::sobol {
 namespace {
 
-// A primitive polynomial over GF(2) of the given degree (inner coefficients as bits) and the first direction numbers m.
+// A primitive polynomial over GF(2) of the given degree (inner coefficients as bits) and the first direction numbers m. Degree
+// 0 is the van der Corput sequence.
 struct Polynomial {
   uint32_t degree, coefficients;
-  uint32_t m[6];
+  uint32_t m[7];
 };
 
-// Joe and Kuo 2008, criterion D(6), dimensions 2 to 16; the first dimension is the van der Corput sequence.
-constexpr Polynomial kPolynomials[kJointDimensions - 1] = {
+// Which polynomial and numbers a dimension has was searched for (simulated annealing): the mean gain coefficients (Owen,
+// "Scrambled net variance for integrals of smooth functions", 1997) of 8 to 4096 points are least in the projections that a
+// path depends on. Those are place in the pixel, direction and lobe, place on the light and its choice, each by itself, with
+// the pixel's, and of the first vertex with the second's. Against the numbers of Joe and Kuo (2008), taken in turn, seven
+// scenes have 0.65 to 0.98 of the variance at 64 samples.
+constexpr Polynomial kPolynomials[kJointDimensions] = {
+    {4, 4, {1, 3, 5, 9}},
+    {4, 1, {1, 1, 1, 13}},
+    {2, 1, {1, 1}},
+    {6, 25, {1, 3, 1, 15, 11, 1}},
     {1, 0, {1}},
-    {2, 1, {1, 3}},
-    {3, 1, {1, 3, 1}},
-    {3, 2, {1, 1, 1}},
-    {4, 1, {1, 1, 3, 3}},
-    {4, 4, {1, 3, 5, 13}},
-    {5, 2, {1, 1, 5, 5, 17}},
-    {5, 4, {1, 1, 5, 5, 5}},
-    {5, 7, {1, 1, 7, 11, 19}},
-    {5, 11, {1, 1, 5, 1, 1}},
-    {5, 13, {1, 1, 1, 3, 11}},
-    {5, 14, {1, 3, 5, 5, 31}},
-    {6, 1, {1, 3, 3, 9, 7, 49}},
-    {6, 13, {1, 1, 1, 15, 21, 21}},
-    {6, 16, {1, 3, 1, 13, 27, 49}},
+    {3, 2, {1, 1, 5}},
+    {6, 19, {1, 1, 5, 5, 17, 49}},
+    {3, 1, {1, 3, 7}},
+    {5, 13, {1, 3, 3, 1, 31}},
+    {0, 0, {1}},
+    {5, 14, {1, 3, 3, 3, 11}},
+    {6, 22, {1, 1, 1, 13, 23, 41}},
+    {5, 7, {1, 3, 3, 9, 31}},
+    {5, 4, {1, 3, 7, 7, 5}},
+    {5, 11, {1, 3, 3, 13, 19}},
+    {6, 1, {1, 1, 7, 13, 29, 23}},
+    {6, 13, {1, 3, 5, 5, 3, 43}},
+    {5, 2, {1, 1, 7, 13, 31}},
+    {7, 1, {1, 1, 5, 11, 29, 43, 91}},
+    {6, 16, {1, 1, 5, 11, 3, 59}},
 };
 
 // Columns of the generator matrix of one dimension, bit 0 being the first digit after the binary point.
 constexpr std::array<uint32_t, 32> reversed_columns(uint32_t dimension) {
   std::array<uint32_t, 32> column{};
-  if (dimension == 0) {
+  if (kPolynomials[dimension].degree == 0) {
     for (uint32_t k = 0; k < 32; ++k)
       column[k] = 1u << k;
     return column;
   }
-  const Polynomial &p = kPolynomials[dimension - 1];
+  const Polynomial &p = kPolynomials[dimension];
   std::array<uint32_t, 32> v{};
   for (uint32_t k = 0; k < 32; ++k) {
     if (k < p.degree) {
