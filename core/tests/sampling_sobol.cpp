@@ -50,7 +50,7 @@ TEST(Sobol, EachJointDimensionIsStratified) {
 TEST(Sobol, JointPairsAreNets) {
   // Sobol's theorem: two dimensions with polynomials of degrees e and e' are a (t, 2)-sequence with t = e - 1 + e' - 1. The
   // first dimension counts 0. Every aligned block of 2^m points is then a (t, m, 2)-net.
-  const int degree[kJointDimensions] = {4, 4, 2, 6, 1, 3, 6, 3, 5, 1, 5, 6, 5, 5, 5, 6, 6, 5, 7, 6};
+  const int degree[kJointDimensions] = {4, 5, 4, 5, 1, 1, 3, 2, 6, 3, 6, 6, 5, 6, 7, 6, 6, 5, 5, 5};
   for (uint32_t d = 0; d < kJointDimensions; d += 2) {
     const int t = degree[d] - 1 + degree[d + 1] - 1;
     for (int m = t; m <= 13; ++m)
@@ -99,13 +99,13 @@ TEST(Sobol, ProjectionsThatPathsDependOnAreEven) {
     std::vector<uint32_t> dimensions;
     int of_64, of_256;
   } projections[] = {
-      {{0, 1}, 1, 1},
-      {{bsdf, bsdf + 1}, 1, 1},
-      {{light, light + 1}, 1, 1},
+      {{0, 1}, 2, 1},
+      {{bsdf, bsdf + 1}, 0, 0},
+      {{light, light + 1}, 1, 2},
       {{bsdf, bsdf + 1, lobe}, 1, 2},
-      {{light, light + 1, choice}, 1, 2},
-      {{next, next + 1}, 1, 1},
-      {{next + 2, next + 3}, 1, 1},
+      {{light, light + 1, choice}, 2, 2},
+      {{next, next + 1}, 2, 1},
+      {{next + 2, next + 3}, 1, 2},
   };
   for (const auto &[dimensions, of_64, of_256] : projections) {
     EXPECT_LE(strength(dimensions, 6), of_64) << dimensions[0];
