@@ -758,8 +758,7 @@ enum lancer_pass {
   LANCER_PASS_TRANSMISSION_COLOR = 20,    /* [3] */
   LANCER_PASS_DENOISING_NORMAL = 21,      /* [3] camera space, mean */
   LANCER_PASS_DENOISING_DEPTH = 22,       /* [1] mean */
-  LANCER_PASS_ERROR =
-      23, /* [1] standard error of the mean luminance; infinity before every pixel has two samples. Always kept */
+  LANCER_PASS_ERROR = 23, /* [1] standard error of the mean luminance; infinity below two samples a pixel. Always kept */
   LANCER_PASS_COUNT = 24
 };
 

@@ -219,7 +219,9 @@ PictureError picture_error(const LuminanceMap &map, const RelativeVariance &rela
   constexpr double kSpread = 2.0;
   const double spread = sum > 0.0 ? 0.5 * std::sqrt(kSpread * squares) / sum : 0.0;
   const double reach = exp(gaussian_reach(confidence) * spread);
-  result.low = std::min(low, high) / reach;
+  // The difference of halves tells V(N / 2) - V(N): 2^p - 1 times V(N) where variance falls as N^-p. Allow for p = 2.
+  constexpr double kMostOvertold = 3.0;
+  result.low = std::min(low, high) / (reach * std::sqrt(kMostOvertold));
   result.high = std::max(low, high) * reach;
   result.error = std::sqrt(low * high);
   result.cannot_exclude = unmet(map);

@@ -66,7 +66,8 @@ struct RelativeVariance {
 
 // confidence: of the interval, in (0, 1). A pixel's own halves understate where light is rare: the pixels that have missed
 // it look both dark and sure. Neighbours' overstate, along edges. The interval reaches from what the first says to what the
-// second says, widened at both ends by what chance may do to such sums.
+// second says, widened at both ends by what chance may do to such sums. Its lower end also allows for variance that falls as
+// N^-2, where halves tell three times what there is: edges alone fall as N^-1.5, light mostly as N^-1 (film.h).
 PictureError picture_error(const LuminanceMap &map, const RelativeVariance &relative, double confidence);
 
 // How far each pixel may be from the converged picture.

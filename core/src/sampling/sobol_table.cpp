@@ -15,7 +15,7 @@ struct Polynomial {
 // "Scrambled net variance for integrals of smooth functions", 1997) of 8 to 4096 points are least in the projections that a
 // path depends on. Those are place in the pixel, direction and lobe, place on the light and its choice, each by itself, with
 // the pixel's, and of the first vertex with the second's. Against the numbers of Joe and Kuo (2008), taken in turn, seven
-// scenes have 0.65 to 0.98 of the variance at 64 samples.
+// scenes have 0.69 to 1.02 of the variance at 64 samples.
 constexpr Polynomial kPolynomials[kJointDimensions] = {
     {4, 1, {1, 1, 5, 13}},
     {5, 13, {1, 3, 7, 1, 29}},
