@@ -27,8 +27,8 @@ public:
   // looks at all directions for the maps that they are sampled by. No camera is known then: where nodes ask for it a map is
   // only a guess, and the even share of the samples carries the rest.
   // Surfaces sample by what is brighter than the mean: the rest their BSDF finds as well (Karlik et al., "MIS Compensation:
-  // Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). Under two pictures that
-  // leaves 0.48 and 0.83 of the variance.
+  // Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). Under two pictures of the sky that leaves 0.48 and
+  // 0.83 of the variance.
   // What a rough boundary passes on where no facet connects depends on the density of the light's samples (Bsdf::eval_lit):
   // for glass, a second map is in proportion to the radiance, as in Cycles.
   Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,

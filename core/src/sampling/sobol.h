@@ -10,8 +10,8 @@ namespace lancer {
 
 // Uniform numbers in [0, 1) at the address (seed, pixel, sample, dimension). No state: any order, any thread, any split.
 //   Dimensions 0 ... 19 are one Owen-scrambled Sobol sequence: every power-of-two prefix of a pixel's samples is stratified in
-//   all of them together. They belong to the choices that matter most: pixel, lens, BSDF
-//   and light of the first two vertices.
+//   all of them together. They belong to the choices that matter most: pixel, lens, BSDF and light of the first two
+//   vertices.
 //   Dimensions from 20 on come in pairs (20, 21), (22, 23) ...: each pair is a (0, 2)-sequence, taken in an order of its own.
 // Pixels, seeds and dimensions are scrambled independently of each other.
 class Sampler {
