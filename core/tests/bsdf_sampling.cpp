@@ -196,6 +196,21 @@ TEST(BsdfSampling, WeightPdfAndValueAgree) {
     }
 }
 
+TEST(BsdfSampling, LobesArePickedByTheLightOfAllColours) {
+  // A red surface under a grey mirror: a third of 0.9 to 0.1.
+  const Bsdf<float> bsdf =
+      seen({described(LobeKind::Lambert, 0, 1, 0, {0.9f, 0.0f, 0.0f}), described(LobeKind::Mirror, 0, 1, 0, glm::vec3(0.1f))},
+           {0, 0, 1});
+  Random random(10);
+  double mirrored = 0.0;
+  for (int k = 0; k < kDraws; ++k) {
+    const float u = random.uniform(), x = random.uniform(), y = random.uniform();
+    mirrored += bsdf.sample(u, x, y).delta ? 1.0 : 0.0;
+  }
+  const double p = 0.1 / 0.4, z = (mirrored - kDraws * p) / std::sqrt(kDraws * p * (1.0 - p));
+  EXPECT_GT(testing::normal_p_value(z), testing::kSignificance);
+}
+
 TEST(BsdfSampling, PhongKeepsItsShapeHoweverNarrow) {
   // Around the mirrored direction cos^(n + 1) and the azimuth are uniform; 1 - cos comes from the distance of both, in double.
   for (float n : {10.0f, 1e3f, 1e5f})

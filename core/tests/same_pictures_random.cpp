@@ -137,14 +137,14 @@ uint64_t random_scene(uint32_t seed) {
 
 TEST(SamePictures, FortyRandomScenes) {
   constexpr uint64_t kPictures[40] = {
-      0xab86e46171c8b766u, 0x3a2012e294b3cdb8u, 0x6bcd6c03a1a230deu, 0x0e80dc2e56f25ec0u, 0xceee0b0740e67600u,
-      0x39e3a17b854e1934u, 0x0eebe2094178d38eu, 0x47a1d035434d0998u, 0xdf60eccf41098e3au, 0x4e1187e311bf5ae6u,
-      0x92c8386c07ef050du, 0x8672afdb3012d10bu, 0xfabf894b62d2bed5u, 0x6d492b7ecaed1f8du, 0xdbce27983f02c62fu,
-      0x887b1f4b2374f3e0u, 0x9db59df378cb41d3u, 0x9e6a7ef7a6d0d410u, 0x6dec84b93093fc7au, 0x632abc8c8b0d27b1u,
-      0x04b67ec412424f21u, 0x4ac0d48e41061433u, 0xff94968d8b63ae86u, 0xab165b4af184f51au, 0xa7d7ad8eab74ab5cu,
-      0x58404517406ce012u, 0x63766984c4693f28u, 0x6b15243ccf7ab9b9u, 0x609eb511ee56bb95u, 0x33bba8efbc22bf2bu,
-      0xc0836770d24766c9u, 0xaf45fbfd87afa979u, 0xedcdff1f4b7684adu, 0x30fffb78786f8184u, 0x6a5b07cf266f2828u,
-      0x8bb2f239acca818cu, 0x424c8dd060b4f94au, 0xd909415de2349fb5u, 0xabb66f2adf59e53fu, 0x9bd32519d16f9857u};
+      0x2bcdbd9c74a60db3u, 0x8c1c117585af70dcu, 0xad760b9f0a77ae6fu, 0x9ef6596f4fbf36fcu, 0x06a7bf073592e5e8u,
+      0x4e35895a9e1f1743u, 0x3862db1eb5da6c0bu, 0x0072c63d0c7a2f5du, 0x2bfd7785755d69f8u, 0xc74073059ca832dbu,
+      0x0fe10654268dd302u, 0xd016b7a9b83d7b81u, 0xed77258e38b15809u, 0x62c48f0f980ee732u, 0x5a7ebcd9ed5498c2u,
+      0x6dc0800fc8a0e38au, 0xc6788f15840e859cu, 0xeefb12c0640d2450u, 0x104ccb165f5ca5efu, 0x0f3a217ce25e4404u,
+      0x3957b1e987021a96u, 0x9eda9f6717f369c3u, 0x70e7aa2c32c53203u, 0xe7461879a6194841u, 0x1e9921595dd24671u,
+      0x16362268669c2c37u, 0x3ca99c53399af14bu, 0x6ae709c3f6c369e3u, 0x213de3bae035cf7bu, 0xc611375fe437edf1u,
+      0x39bb4b4d646bcdbeu, 0x65a0a0afe1143f89u, 0x90f66bd6f9933140u, 0x296406a55e5822deu, 0xfcc6e69a56cdce70u,
+      0xd044715c807133b8u, 0x028e799955d0bcbau, 0x338f66e8ed193527u, 0x5bfe2fd2fbb4960cu, 0xb4517d6329ca5783u};
   for (uint32_t seed = 0; seed < 40; ++seed)
     EXPECT_EQ(random_scene(seed), kPictures[seed]) << "scene " << seed;
 }

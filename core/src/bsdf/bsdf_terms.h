@@ -8,6 +8,7 @@
 #include "bsdf/microfacet_terms.h"
 #include "bsdf/normals.h"
 #include "bsdf/sheen.h"
+#include "sampling/color.h"
 
 namespace lancer {
 
@@ -77,8 +78,7 @@ template <class F> void Bsdf<F>::complete() {
     V expected = lobe.albedo;
     if (is_facets(lobe) && !reflects(lobe))
       expected = select(lobe.delta | lobe.delta_through, expected, lobe.color);
-    const F most = max(max(max(expected.x, expected.y), expected.z), zero);
-    lobe.probability = select(there, most, zero);
+    lobe.probability = select(there, max(mean(expected), zero), zero);
     total += lobe.probability;
     smooth = smooth | (there & !lobe.delta);
     if (lets_through(lobe))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lights/light_lanes.h"
+#include "sampling/spherical_rectangle.h"
 
 namespace lancer {
 
@@ -73,6 +74,32 @@ template <class F> LANCER_LANE AreaPart<F> area_part(const AreaNumbers<F> &light
   return part;
 }
 
+// Below this solid angle a point gets the same from everywhere on a lamp, to a hundredth: places are even in area.
+inline constexpr double kLeastSolidAngle = 1e-4;
+
+// A rectangle, or the part of it that counts, as a point sees it.
+template <class F> struct SeenArea {
+  using D = DoubleOf<F>;
+  D x, y; // the lamp's middle along its axes
+  SphericalRectangle<D> rectangle;
+  MaskOf<F> by_angle; // lanes that sample directions, not places
+
+  LANCER_LANE SeenArea(const AreaNumbers<F> &light, const AreaPart<F> &part, const Double3Of<F> &p)
+      : SeenArea(light, part, light.position - p, 0) {}
+
+  // distance, cosine: to the place that is met, and there with the lamp's axis.
+  LANCER_LANE D pdf(const D &distance, const D &cosine, const D &area) const {
+    return select(by_angle, D(1.0) / rectangle.solid_angle, distance * distance / (cosine * area));
+  }
+
+private:
+  LANCER_LANE SeenArea(const AreaNumbers<F> &light, const AreaPart<F> &part, const Double3Of<F> &v, int)
+      : x(dot(v, light.x)), y(dot(v, light.y)),
+        rectangle({x + part.low.x * light.half_x, y + part.low.y * light.half_y},
+                  {x + part.high.x * light.half_x, y + part.high.y * light.half_y}, dot(v, light.z)),
+        by_angle((!part.ellipse) & (rectangle.z > D(0.0)) & (rectangle.solid_angle > D(kLeastSolidAngle))) {}
+};
+
 // disk: warp_disk(u, v).
 template <class F>
 LANCER_LANE void sample_area(const AreaNumbers<F> &light, const Double3Of<F> &p, F u, F v, const Vector2<F> &disk,
@@ -80,8 +107,14 @@ LANCER_LANE void sample_area(const AreaNumbers<F> &light, const Double3Of<F> &p,
   using D = DoubleOf<F>;
   const D one(1.0), zero(0.0), du = widen(u), dv = widen(v);
   const AreaPart<F> part = area_part(light, p);
-  const D x = select(part.ellipse, widen(disk.x), part.low.x * (one - du) + part.high.x * du);
-  const D y = select(part.ellipse, widen(disk.y), part.low.y * (one - dv) + part.high.y * dv);
+  D x = select(part.ellipse, widen(disk.x), part.low.x * (one - du) + part.high.x * du);
+  D y = select(part.ellipse, widen(disk.y), part.low.y * (one - dv) + part.high.y * dv);
+  const SeenArea<F> seen(light, part, p);
+  if (any(seen.by_angle)) {
+    const Vector2<D> at = seen.rectangle.sample(du, dv);
+    x = select(seen.by_angle, (at.x - seen.x) / light.half_x, x);
+    y = select(seen.by_angle, (at.y - seen.y) / light.half_y, y);
+  }
   const Double3Of<F> to_light = light.position + x * light.half_x * light.x + y * light.half_y * light.y - p;
   const D distance = sqrt(dot(to_light, to_light));
   const Double3Of<F> wi = to_light / distance;
@@ -93,13 +126,14 @@ LANCER_LANE void sample_area(const AreaNumbers<F> &light, const Double3Of<F> &p,
   sample.wi = select(which, wi, sample.wi);
   sample.distance = select(which, distance, sample.distance);
   sample.radiance = select(which, area_radiance(light, cosine), sample.radiance);
-  sample.pdf = select(valid, distance * distance / (cosine * part.area), sample.pdf);
+  sample.pdf = select(valid, seen.pdf(distance, cosine, part.area), sample.pdf);
 }
 
 // Where ways from o along unit wi meet what sampling would choose of the light.
 template <class F> struct AreaMeeting {
   MaskOf<F> met;
-  DoubleOf<F> t, cosine, area;
+  DoubleOf<F> t, cosine;
+  AreaPart<F> part;
 };
 template <class F>
 LANCER_LANE AreaMeeting<F> find_area(const AreaNumbers<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi) {
@@ -114,13 +148,14 @@ LANCER_LANE AreaMeeting<F> find_area(const AreaNumbers<F> &light, const Double3O
   const AreaPart<F> part = area_part(light, o);
   const MaskOf<F> within = (part.low.x <= x) & (part.low.y <= y) & (x <= part.high.x) & (y <= part.high.y);
   const MaskOf<F> met = front & on & within;
-  return {met, t, cosine, part.area};
+  return {met, t, cosine, part};
 }
 
 template <class F>
 LANCER_LANE LightHitLanes<F> meet_area(const AreaNumbers<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi) {
   const AreaMeeting<F> at = find_area(light, o, wi);
-  return {area_radiance(light, at.cosine), select(at.met, at.t * at.t / (at.cosine * at.area), DoubleOf<F>(0.0)),
+  const DoubleOf<F> pdf = SeenArea<F>(light, at.part, o).pdf(at.t, at.cosine, at.part.area);
+  return {area_radiance(light, at.cosine), select(at.met, pdf, DoubleOf<F>(0.0)),
           area_end(at.t, at.cosine, light.plane_tolerance)};
 }
 
