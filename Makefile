@@ -4,6 +4,13 @@ SHELL := /bin/sh
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
 
+# Comparisons are with the Cycles of the newest Blender, whose module needs Python 3.13; without it they are with that of .venv.
+ifneq ($(filter bench tradeoff corpus,$(MAKECMDGOALS)),)
+ifneq ($(filter found,$(shell python3.13 -c pass 2>/dev/null && echo found)),)
+PYTHON ?= python3.13
+VENV ?= .venv-newest
+endif
+endif
 PYTHON ?= python3
 VENV ?= .venv
 WERROR ?=

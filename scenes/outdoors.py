@@ -80,18 +80,22 @@ def build_models(scene):
 def build_textured(scene):
     """The same where images give roughness and normals, too."""
     _show_models(scene)
-    wear, weave = pictures.wear(), pictures.weave()
     for name in ("Cloth", "Hide", "Tiles"):
-        tree = bpy.data.materials[name].node_tree
-        principled = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-        places = next(node for node in tree.nodes if node.type == "TEX_COORD").outputs["UV"]
-        normals = tree.nodes.new("ShaderNodeNormalMap")
-        tree.links.new(normals.outputs["Normal"], principled.inputs["Normal"])
-        for image, target in ((wear, principled.inputs["Roughness"]), (weave, normals.inputs["Color"])):
-            texture = tree.nodes.new("ShaderNodeTexImage")
-            texture.image = image
-            tree.links.new(places, texture.inputs["Vector"])
-            tree.links.new(texture.outputs["Color"], target)
+        wear_out(bpy.data.materials[name])
+
+
+def wear_out(material):
+    """Roughness and normals by images, where the colour already has one."""
+    tree = material.node_tree
+    principled = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    places = next(node for node in tree.nodes if node.type == "TEX_COORD").outputs["UV"]
+    normals = tree.nodes.new("ShaderNodeNormalMap")
+    tree.links.new(normals.outputs["Normal"], principled.inputs["Normal"])
+    for image, target in (("Wear", principled.inputs["Roughness"]), ("Weave", normals.inputs["Color"])):
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image = bpy.data.images.get(image) or {"Wear": pictures.wear, "Weave": pictures.weave}[image]()
+        tree.links.new(places, texture.inputs["Vector"])
+        tree.links.new(texture.outputs["Color"], target)
 
 
 def _show_models(scene):
@@ -103,13 +107,13 @@ def _show_models(scene):
     parts.place(scene, "Bunny", bunny, cloth, (-1.15, 0.2, 0), rotation=(0, 0, 0.4))
     parts.place(scene, "Spot", spot, hide, (1.2, 0.0, 0), rotation=(0, 0, -0.7))
     floor = parts.plane_mesh("Floor", 24.0)
-    _flat_uvs(floor)
+    flat_uvs(floor)
     parts.place(scene, "Floor", floor, tiles)
     set_sky(scene, pictures.sky())
     parts.add_camera(scene, (0.4, -5.6, 2.4), (0, 0, 0.9), lens=45.0)
 
 
-def _flat_uvs(mesh):
+def flat_uvs(mesh):
     """The unit square over a grid of one face, corner by corner."""
     layer = mesh.uv_layers.new(name="UVMap") if not mesh.uv_layers else mesh.uv_layers[0]
     size = max(abs(vertex.co.x) for vertex in mesh.vertices)
@@ -120,22 +124,9 @@ def _flat_uvs(mesh):
 
 def build_leaves(scene, count=6000):
     """A tree of one mesh of count cards, each a leaf cut out by its picture's alpha, under sky and sun."""
-    source = random.Random(count)
     parts.set_size(scene, 640, 480, 64)
-    corners, faces = [], []
-    for index in range(count):
-        # Crowded towards the outside of a ball, as a tree's leaves are.
-        direction = Vector([source.gauss(0, 1) for _ in range(3)]).normalized()
-        place = Vector((0, 0, 3.2)) + direction * (2.0 * source.random() ** 0.3)
-        turn = Euler([source.uniform(0, 2 * math.pi) for _ in range(3)]).to_matrix()
-        half = source.uniform(0.12, 0.2)
-        for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-            corners.append(place + turn @ Vector((half * x, half * y, 0)))
-        faces.append([4 * index + k for k in range(4)])
-    mesh = parts.mesh_from_points("Leaves", corners, faces)
-    layer = mesh.uv_layers.new(name="UVMap")
-    layer.data.foreach_set("uv", np.tile([0, 0, 1, 0, 1, 1, 0, 1], count).astype(np.float32))
-    parts.place(scene, "Leaves", mesh, textured("Leaf", pictures.leaf(), 0.6, alpha=True))
+    leaf = textured("Leaf", pictures.leaf(), 0.6, alpha=True)
+    parts.place(scene, "Leaves", crown_mesh("Leaves", count), leaf)
     bark = parts.principled("Bark", base_color=(0.3, 0.2, 0.12), roughness=0.9, ior=1.5)
     parts.place(scene, "Trunk", parts.cone_mesh("Trunk", 0.28, 0.15, 3.0), bark, (0, 0, 1.5))
     ground = parts.principled("Ground", base_color=(0.35, 0.4, 0.2), roughness=1.0, specular_ior_level=0.0)
@@ -143,3 +134,58 @@ def build_leaves(scene, count=6000):
     parts.add_light(scene, "Sun", "SUN", 3.0, (5, -6, 9), (0, 0, 2), angle=math.radians(1.0))
     parts.set_world(scene, (0.45, 0.6, 0.9), 0.6)
     parts.add_camera(scene, (0.5, -8.5, 2.2), (0, 0, 2.4), lens=40.0)
+
+
+def crown_mesh(name, count):
+    """count cards with UVs, crowded towards the outside of a ball, as a tree's leaves are."""
+    source = random.Random(count)
+    corners, faces = [], []
+    for index in range(count):
+        direction = Vector([source.gauss(0, 1) for _ in range(3)]).normalized()
+        place = Vector((0, 0, 3.2)) + direction * (2.0 * source.random() ** 0.3)
+        turn = Euler([source.uniform(0, 2 * math.pi) for _ in range(3)]).to_matrix()
+        half = source.uniform(0.12, 0.2)
+        for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+            corners.append(place + turn @ Vector((half * x, half * y, 0)))
+        faces.append([4 * index + k for k in range(4)])
+    mesh = parts.mesh_from_points(name, corners, faces)
+    layer = mesh.uv_layers.new(name="UVMap")
+    layer.data.foreach_set("uv", np.tile([0, 0, 1, 0, 1, 1, 0, 1], count).astype(np.float32))
+    return mesh
+
+
+def build_foliage(scene, trees=60, tufts=3000):
+    """A wood under a pictured sky: trees with cut-out leaves and worn bark, tufts of grass on soil; Normal and Z passes."""
+    source = random.Random(trees)
+    parts.set_size(scene, 512, 384, 32)
+    parts.add_passes(scene)
+    leaf = textured("Leaf", pictures.leaf(), 0.5, alpha=True)
+    bark, soil = (
+        textured("Bark", pictures.grain("Bark", (0.5, 0.4, 0.3)), 0.9),
+        textured("Soil", pictures.grain("Soil", (0.45, 0.4, 0.3), waves=60, size=1024), 0.9),
+    )
+    wear_out(bark)
+    wear_out(soil)
+    crowns = [crown_mesh(f"Crown {count}", count) for count in (3000, 4000, 5000)]
+    trunk = parts.lathe_mesh("Trunk", [(0.3, 0.0), (0.22, 0.4), (0.18, 1.5), (0.1, 3.2), (0.0, 4.0)])
+    for index in range(trees):
+        place = (source.uniform(-22, 22), source.uniform(-2, 40), 0.0)
+        size, turn = source.uniform(0.7, 1.3), (0, 0, source.uniform(0, 2 * math.pi))
+        parts.place(scene, "Crown", crowns[index % len(crowns)], leaf, place, size, turn)
+        parts.place(scene, "Trunk", trunk, bark, place, size, turn)
+    blades = [(0.3 * source.random(), source.uniform(0, 2 * math.pi), source.uniform(0.15, 0.4)) for _ in range(40)]
+    corners = [
+        (r * math.cos(a) + s * dx, r * math.sin(a) + 0.3 * s * dx, s * up)
+        for r, a, s in blades
+        for dx, up in ((-0.06, 0.0), (0.06, 0.0), (0.1, 1.0))
+    ]
+    tuft = parts.mesh_from_points("Tuft", corners, [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(len(blades))])
+    grass = parts.principled("Grass", base_color=(0.15, 0.4, 0.08), roughness=0.5, ior=1.5)
+    for _ in range(tufts):
+        place = (source.uniform(-16, 16), source.uniform(-7, 20), 0.0)
+        parts.place(scene, "Tuft", tuft, grass, place, source.uniform(0.6, 1.4), (0, 0, source.uniform(0, 2 * math.pi)))
+    floor = parts.plane_mesh("Soil", 120.0)
+    flat_uvs(floor)
+    parts.place(scene, "Soil", floor, soil)
+    set_sky(scene, pictures.sky(), 2.5)
+    parts.add_camera(scene, (0.5, -9.5, 1.8), (0, 4, 2.2), lens=32.0)

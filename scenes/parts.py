@@ -97,6 +97,27 @@ def torus_mesh(name, major=1.0, minor=0.3, major_segments=128, minor_segments=64
     return mesh
 
 
+def lathe_mesh(name, profile, segments=96):
+    """The points (radius, height) of profile turned around the z axis, smooth; UVs go around and along."""
+    turns = np.arange(segments + 1) * (2 * math.pi / segments)
+    radii, heights = np.array(profile, float).T
+    ring = np.stack([np.cos(turns[:-1]), np.sin(turns[:-1])], axis=-1)
+    points = np.concatenate(
+        [radii[:, None, None] * ring, np.broadcast_to(heights[:, None, None], (len(radii), segments, 1))], -1
+    )
+    i, j = np.meshgrid(np.arange(len(radii) - 1), np.arange(segments), indexing="ij")
+    after = (j + 1) % segments
+    faces = np.stack([i * segments + j, i * segments + after, (i + 1) * segments + after, (i + 1) * segments + j], axis=-1)
+    mesh = mesh_from_points(name, points.reshape(-1, 3).tolist(), faces.reshape(-1, 4).tolist())
+    mesh.polygons.foreach_set("use_smooth", np.full(len(mesh.polygons), True))
+    u, v = turns / (2 * math.pi), np.arange(len(radii)) / (len(radii) - 1)
+    uvs = [
+        [(u[b], v[a]), (u[b + 1], v[a]), (u[b + 1], v[a + 1]), (u[b], v[a + 1])] for a, b in zip(i.flat, j.flat, strict=True)
+    ]
+    mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", np.array(uvs, np.float32).ravel())
+    return mesh
+
+
 # ---- objects ---------------------------------------------------------------------------------------------------------
 
 
@@ -213,6 +234,11 @@ def set_size(scene, width, height, samples):
     scene.render.image_settings.file_format = "PNG"
     if hasattr(scene, "lancer"):
         scene.lancer.samples = samples
+
+
+def add_passes(scene):
+    """Normal and Z, which compositors ask for most."""
+    scene.view_layers[0].use_pass_normal = scene.view_layers[0].use_pass_z = True
 
 
 def set_look(scene, *names):

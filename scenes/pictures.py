@@ -1,4 +1,4 @@
-"""Pictures computed here and packed: an evening sky, a painted cloth, wear, a weave, a leaf with a cut-out outline."""
+"""Pictures computed here and packed: an evening sky, a painted cloth, a grain, wear, a weave, a leaf with a cut-out outline."""
 
 import bpy
 import numpy as np
@@ -44,6 +44,15 @@ def cloth(name="Cloth", size=256, cells=12):
     cool = np.stack([0.2 + 0.2 * x, 0.35 + 0.2 * y, 0.6 + 0 * x], axis=-1)
     pixels = np.ones((size, size, 4))
     pixels[..., :3] = check * warm + (1 - check) * cool
+    return make_image(name, pixels)
+
+
+def grain(name, color, size=256, waves=9):
+    """One hue, lighter and darker by crossed waves."""
+    x, y = _grid(size, size)
+    shade = np.sin(2 * np.pi * waves * (x + 0.3 * np.sin(4 * np.pi * y))) * np.cos(2 * np.pi * (waves + 2) * y)
+    pixels = np.ones((size, size, 4))
+    pixels[..., :3] = np.array(color) * (1.0 + 0.25 * shade[..., None])
     return make_image(name, pixels)
 
 

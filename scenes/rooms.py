@@ -1,8 +1,8 @@
-"""Small scenes: Blender's default cube, one triangle, and a closed room where most of the light arrives indirectly."""
+"""Blender's default cube, one triangle, a closed room of indirect light, and one of a million triangles lit by its windows."""
 
 import math
 
-from . import parts
+from . import outdoors, parts, pictures
 
 
 def build_default_cube(scene):
@@ -46,6 +46,46 @@ def build_room(scene):
     build_cornell(scene)
     shade = parts.principled("Shade", base_color=(0.2, 0.2, 0.2), roughness=1.0, specular_ior_level=0.0)
     parts.place(scene, "Shade", parts.plane_mesh("Shade", 0.54), shade, (0, 0, 1.49))
+
+
+def build_daylight(scene):
+    """A room of a million triangles, lit by large panels before its two windows; worn floor, Normal and Z passes."""
+    parts.set_size(scene, 512, 384, 32)
+    parts.add_passes(scene)
+    wall = parts.principled("Wall", base_color=(0.75, 0.73, 0.7), roughness=0.9, specular_ior_level=0.2)
+    floor = outdoors.textured("Floor", pictures.grain("Floor", (0.6, 0.45, 0.3), waves=16), 0.5)
+    cloth = outdoors.textured("Cloth", pictures.cloth("Cushion", cells=6), 0.8)
+    outdoors.wear_out(floor)
+    outdoors.wear_out(cloth)
+    clay = parts.principled("Clay", base_color=(0.55, 0.35, 0.25), roughness=0.6, ior=1.5)
+    frame = parts.principled("Frame", base_color=(0.8, 0.8, 0.8), metallic=1.0, roughness=0.35)
+    cube, ground = parts.cube_mesh("Cube", 1.0), parts.plane_mesh("Ground", 2.0)
+    outdoors.flat_uvs(ground)
+    parts.place(scene, "Floor", ground, floor, scale=(3, 4, 1))
+    boxes = [
+        ("Ceiling", (0, 0, 2.85), (6, 8, 0.1)),
+        ("Back", (0, 4.05, 1.4), (6.2, 0.1, 2.8)),
+        ("Right", (3.05, 0, 1.4), (0.1, 8, 2.8)),
+    ]
+    boxes += [("Front", (0, -4.05, 1.4), (6.2, 0.1, 2.8)), ("Sill", (-3.05, 0, 0.4), (0.1, 8, 0.8))]
+    boxes += [("Lintel", (-3.05, 0, 2.55), (0.1, 8, 0.5))]
+    boxes += [
+        (f"Pier {k}", (-3.05, y, 1.55), (0.1, width, 1.5)) for k, (y, width) in enumerate(((-3.25, 1.5), (0, 1.4), (3.25, 1.5)))
+    ]
+    for name, location, size in boxes:
+        parts.place(scene, name, cube, wall, location, size)
+    for k, y in enumerate((-1.6, 1.6)):
+        parts.place(scene, f"Bar {k}", cube, frame, (-3.05, y, 1.55), (0.06, 0.06, 1.5))
+        parts.add_light(
+            scene, f"Panel {k}", "AREA", 250.0, (-3.6, y, 1.6), (0, y, 1.2), shape="RECTANGLE", size=1.8, size_y=1.5
+        )
+    parts.place(scene, "Monkey", parts.monkey_mesh("Monkey", 5), clay, (0.8, 2.0, 0.95), 0.8, (0.0, 0.0, 0.4))
+    parts.place(scene, "Plinth", cube, wall, (0.8, 2.0, 0.15), (1.2, 1.2, 0.3))
+    for k, (x, y) in enumerate(((-1.2, 2.6), (-1.6, 1.4), (2.2, 0.6))):
+        pillow = parts.lathe_mesh(f"Cushion {k}", [(0.0, 0.0), (0.4, 0.02), (0.5, 0.15), (0.4, 0.28), (0.0, 0.3)])
+        parts.place(scene, f"Cushion {k}", pillow, cloth, (x, y, 0.002), rotation=(0, 0, k))
+    parts.set_world(scene, (0.5, 0.65, 0.9), 0.5)
+    parts.add_camera(scene, (0.6, -3.7, 1.5), (-0.2, 2, 1.0), lens=24.0)
 
 
 def build_triangle(scene):

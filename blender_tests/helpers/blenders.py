@@ -6,9 +6,10 @@ import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
-from conftest import HERE, ROOT
-
+# Tools ask for Blenders, too, where there is no pytest.
+HERE, ROOT = (str(folder) for folder in Path(__file__).resolve().parents[1:3])
 RUN = os.path.join(HERE, "blender", "in_blender", "run.py")
 MODULE, PROGRAM = "bpy module", "Blender program"
 

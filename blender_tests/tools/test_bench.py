@@ -18,18 +18,21 @@ def _figures():
         "two": {"lancer": _record(2e6), "cycles": _record(2e6), "mitsuba_llvm": {"cannot": "leaves"}},
         "other": {"lancer": _record(9e6), "cycles": _record(1e6, same=False)},
     }
-    return {"scenes": {name: {"renderers": records} for name, records in scenes.items()}}
+    lifelike = {"lancer": _record(3e6, [1.0, 1.0]), "cycles": _record(1e6, [2.0, 2.0])}
+    figures = {name: {"renderers": records} for name, records in scenes.items()}
+    return {"scenes": {**figures, "wood": {"renderers": lifelike, "lifelike": True}}}
 
 
 def test_goals_take_means_over_scenes_of_the_same_picture():
     assert goals.rate_ratios(_figures(), "cycles") == {"one": pytest.approx(4.0), "two": pytest.approx(1.0)}
     assert goals.efficiency_ratios(_figures(), "cycles") == {"one": pytest.approx(6.0)}
+    assert goals.rate_ratios(_figures(), "cycles", lifelike=True) == {"wood": pytest.approx(3.0)}
     assert goals.rate_ratios(_figures(), "mitsuba_llvm") == {}
 
 
 def test_goals_name_every_row_and_what_is_not_measured():
     verdicts = {verdict.what: verdict for verdict in goals.judge(_figures())}
-    assert len(verdicts) == 17
+    assert len(verdicts) == 18
     rate = verdicts["samples/s against Cycles"]
     assert (rate.measured, rate.reached) == ("2.00x, least 1.00x (two), 2 scenes", False)
     assert verdicts["efficiency against Cycles"].reached is True

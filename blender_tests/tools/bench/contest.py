@@ -35,7 +35,7 @@ class Contest:
     def measure(self, scene):
         """All figures of one scene, as they go into the JSON."""
         result = {"title": scene.title, "size": [scene.width, scene.height], "samples": scene.samples, "renderers": {}}
-        result["reference_samples"] = scene.reference
+        result["reference_samples"], result["lifelike"] = scene.reference, scene.lifelike
         snapshot = str(jobs.OUTPUT / "scenes" / f"{scene.name}-{scene.width}.npz")
         self.snapshots[scene.name] = snapshot
         try:

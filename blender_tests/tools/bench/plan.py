@@ -46,6 +46,12 @@ class Scene:
     reference: int = 1024
     renderers: tuple = tuple(renderer.key for renderer in RENDERERS)
     exact: bool = False  # Cycles would trace the meshes that stand in for exact shapes
+    lifelike: bool = False  # as files of artists are; judged by itself
+
+
+def _lifelike(name, title):
+    size = {"width": 512, "height": 384, "samples": 32, "reference": 512}
+    return Scene(name, title, **size, renderers=("lancer", "cycles"), lifelike=True)
 
 
 SCENES = (
@@ -60,6 +66,10 @@ SCENES = (
     Scene("coated", "60 balls: brushed, with sheen, with tinted coat", renderers=("lancer", "cycles")),
     Scene("leaves", "a tree of cut-out leaves"),
     Scene("triangle", "one triangle", samples=256, reference=2048),
+    # As files of artists are: images in every slot, passes ticked, large lamps, much geometry.
+    _lifelike("daylight", "a million triangles lit through windows, with passes"),
+    _lifelike("product", "a product between softboxes, with passes"),
+    _lifelike("foliage", "a wood of cut-out leaves, with passes"),
     # What lamps cost, measured against each other: no part of the comparison, whose mean the many would carry alone.
     Scene("lights2", "two lamps", rounds=3, reference=0, renderers=("lancer",)),
     Scene("lights10k", "10 000 lamps", samples=4, rounds=3, reference=0, renderers=("lancer",)),

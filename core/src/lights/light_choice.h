@@ -21,6 +21,8 @@ struct LightNodes {
   const LightNode *nodes;
   const TreeLight *lights;
   uint32_t root; // a node, or kNone for the pair of 0 and 1
+  // The node that holds a light, and the one above a pair of nodes, which is unused for the first.
+  const uint32_t *node_of, *parent;
 };
 
 // LightChoice of each lane.
@@ -161,6 +163,27 @@ LANCER_LANE LightChoiceLanes<F> choose_light(const LightQueryLanes<F> &query, co
       waiting[size++] = {pair, left};
   }
   return choice;
+}
+
+// With which choose_light() comes to the light at this place in the tree.
+template <class F>
+LANCER_LANE DoubleOf<F> choice_probability(const LightQueryLanes<F> &query, const LightNodes &tree, uint32_t place) {
+  using D = DoubleOf<F>;
+  // Go up from the light's leaf.
+  uint32_t at = tree.node_of[place];
+  D probability(1.0);
+  if (const LightNode &leaf = tree.nodes[at]; leaf.count > 1) {
+    D shares[kLeafLights];
+    leaf_shares(query, tree, leaf, shares);
+    probability = shares[place - leaf.first];
+  }
+  while (at != tree.root && any(probability > D(0.0))) {
+    const uint32_t pair = at & ~1u;
+    const Vector2<D> shares = pair_shares(query, tree, pair);
+    probability = probability * (at & 1 ? shares.y : shares.x);
+    at = pair == 0 ? tree.root : tree.parent[pair / 2];
+  }
+  return probability;
 }
 
 } // namespace lancer

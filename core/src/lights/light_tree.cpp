@@ -29,29 +29,9 @@ LightChoice BinaryLightTree::choose(const LightQuery &query, double u) const {
   return {choice.number, choice.probability, choice.u};
 }
 
-double BinaryLightTree::share_of_leaf(const LightQueryLanes<float> &query, const LightNode &node, uint32_t place) const {
-  if (node.count == 1)
-    return 1.0;
-  double shares[kLeafLights];
-  leaf_shares(query, nodes(), node, shares);
-  return shares[place - node.first];
-}
-
 double BinaryLightTree::probability(const LightQuery &query, uint32_t number) const {
-  if (number >= place_of_.size() || place_of_[number] == kNone)
-    return 0.0;
-  // Go up from the light's leaf.
-  const LightQueryLanes<float> asked = width_one(query);
-  const uint32_t place = place_of_[number];
-  uint32_t at = node_of_[place];
-  double probability = share_of_leaf(asked, nodes_[at], place);
-  while (at != root_ && probability > 0.0) {
-    const uint32_t pair = at & ~1u;
-    const Vector2<double> shares = pair_shares(asked, nodes(), pair);
-    probability *= at & 1 ? shares.y : shares.x;
-    at = pair == 0 ? kNone : parent_[pair / 2];
-  }
-  return probability;
+  const uint32_t place = place_of(number);
+  return place == kNone ? 0.0 : choice_probability(width_one(query), nodes(), place);
 }
 
 const LightKernel &light_kernel() { return LANCER_CHOSEN_KERNEL(light_kernel); }

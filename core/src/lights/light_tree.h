@@ -27,7 +27,9 @@ public:
   // u in [0, 1): one number for the whole way down.
   LightChoice choose(const LightQuery &query, double u) const;
   // The tree itself, for kernels.
-  LightNodes nodes() const { return {nodes_.data(), lights_.data(), root_}; }
+  LightNodes nodes() const { return {nodes_.data(), lights_.data(), root_, node_of_.data(), parent_.data()}; }
+  // kNone: never chosen.
+  uint32_t place_of(uint32_t number) const { return number < place_of_.size() ? place_of_[number] : kNone; }
   // With which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
@@ -41,15 +43,13 @@ private:
     bool distant;
   };
 
-  double share_of_leaf(const LightQueryLanes<float> &query, const LightNode &node, uint32_t place) const;
   void split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
 
   std::vector<LightNode> nodes_; // 0 and 1 are what is near and what is distant
   std::vector<TreeLight> lights_;
-  std::vector<uint32_t> node_of_;  // of each light
-  std::vector<uint32_t> parent_;   // of each pair of nodes; unused for the first
-  std::vector<uint32_t> place_of_; // by number; kNone: never chosen
-  uint32_t root_ = 0;              // the pair of 0 and 1 where both have lights: kNone
+  std::vector<uint32_t> node_of_, parent_; // LightNodes
+  std::vector<uint32_t> place_of_;         // by number; kNone: never chosen
+  uint32_t root_ = 0;                      // the pair of 0 and 1 where both have lights: kNone
 };
 
 class LightTree {

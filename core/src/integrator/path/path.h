@@ -66,6 +66,7 @@ private:
   void miss(size_t number);
   void add_missed();
   void add_lights_met();
+  bool is_met(size_t i, uint32_t number, double pdf, double distance) const;
   void add_light_met(size_t i, uint32_t number);
   double way_end(size_t i) const; // distance from the last scattering to where the ray ends
   void send_shadow_of(uint32_t lane);
@@ -97,6 +98,7 @@ private:
   bool any_clear_;         // they are passed together; not where passes for denoising add up the ways between them
   double occlusion_reach_; // normalised units
   SegmentBlock segments_{};
+  MetLight met_light_{};
   Waiting waiting_[kBlockLanes];
   size_t missed_[kBlockLanes]; // numbers of paths
   uint32_t missed_count_ = 0;

@@ -272,10 +272,26 @@ void scatter(VertexBlock &block) {
   return met;
 }
 
+[[gnu::flatten]] void meet(const SegmentBlock &segments, const Light &light, const LightNodes &tree, uint32_t place,
+                           MetLight &met) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    const D3 from = load3(segments.from, first), d = load3(segments.d, first);
+    const LightHitLanes<F> hit = meet_light(OneLight<F>{light}, from, D3(d / sqrt(dot(d, d))));
+    store(met.pdf + first, hit.pdf);
+    store(met.distance + first, hit.distance);
+    store3(met.radiance, first, hit.radiance);
+    // Sampling would have found it, too.
+    const LightQueryLanes<F> query(from, load3(segments.normal, first), some(segments.transmits, first));
+    const D drawn = load(segments.pdf + first), chosen = choice_probability(query, tree, place);
+    store(met.weight + first, select(drawn > D(0.0), mis_weight(drawn, hit.pdf * chosen), F(1.0f)));
+  }
+}
+
 } // namespace
 
 namespace LANCER_ISA {
-const VertexKernel vertex_kernel = {surfaces, lobes, describe, choose, scatter, meets, kBlockLanes / kLanes * sizeof(Bsdf<F>)};
+const VertexKernel vertex_kernel = {surfaces, lobes, describe, choose,
+                                    scatter,  meets, meet,     kBlockLanes / kLanes * sizeof(Bsdf<F>)};
 }
 
 } // namespace lancer

@@ -118,6 +118,8 @@ struct VertexKernel {
   void (*scatter)(VertexBlock &block);
   // Bits of the lanes that may meet the light; no other does.
   uint32_t (*meets)(const SegmentBlock &segments, const Light &light);
+  // What they get of it; place: where it stands in the tree.
+  void (*meet)(const SegmentBlock &segments, const Light &light, const LightNodes &tree, uint32_t place, MetLight &met);
   size_t lobes_bytes;
 };
 LANCER_DECLARE_KERNEL(VertexKernel, vertex_kernel)
