@@ -91,9 +91,10 @@ def wear_out(material):
     places = next(node for node in tree.nodes if node.type == "TEX_COORD").outputs["UV"]
     normals = tree.nodes.new("ShaderNodeNormalMap")
     tree.links.new(normals.outputs["Normal"], principled.inputs["Normal"])
-    for image, target in (("Wear", principled.inputs["Roughness"]), ("Weave", normals.inputs["Color"])):
+    targets = (("Wear", pictures.wear, principled.inputs["Roughness"]), ("Weave", pictures.weave, normals.inputs["Color"]))
+    for name, make, target in targets:
         texture = tree.nodes.new("ShaderNodeTexImage")
-        texture.image = bpy.data.images.get(image) or {"Wear": pictures.wear, "Weave": pictures.weave}[image]()
+        texture.image = bpy.data.images.get(name) or make()
         tree.links.new(places, texture.inputs["Vector"])
         tree.links.new(texture.outputs["Color"], target)
 
@@ -160,10 +161,8 @@ def build_foliage(scene, trees=60, tufts=3000):
     parts.set_size(scene, 512, 384, 32)
     parts.add_passes(scene)
     leaf = textured("Leaf", pictures.leaf(), 0.5, alpha=True)
-    bark, soil = (
-        textured("Bark", pictures.grain("Bark", (0.5, 0.4, 0.3)), 0.9),
-        textured("Soil", pictures.grain("Soil", (0.45, 0.4, 0.3), waves=60, size=1024), 0.9),
-    )
+    bark = textured("Bark", pictures.grain("Bark", (0.5, 0.4, 0.3)), 0.9)
+    soil = textured("Soil", pictures.grain("Soil", (0.45, 0.4, 0.3), waves=60, size=1024), 0.9)
     wear_out(bark)
     wear_out(soil)
     crowns = [crown_mesh(f"Crown {count}", count) for count in (3000, 4000, 5000)]

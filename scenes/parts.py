@@ -115,6 +115,16 @@ def lathe_mesh(name, profile, segments=96):
         [(u[b], v[a]), (u[b + 1], v[a]), (u[b + 1], v[a + 1]), (u[b], v[a + 1])] for a, b in zip(i.flat, j.flat, strict=True)
     ]
     mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", np.array(uvs, np.float32).ravel())
+    return _joined_at_poles(mesh)
+
+
+def _joined_at_poles(mesh):
+    """Without the faces of no area that rings of no radius make."""
+    bm = bmesh.new()
+    bm.from_mesh(mesh)
+    bmesh.ops.remove_doubles(bm, verts=bm.verts, dist=1e-6)
+    bm.to_mesh(mesh)
+    bm.free()
     return mesh
 
 

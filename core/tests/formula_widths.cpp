@@ -266,6 +266,7 @@ TEST(Widths, ChoicesAreThoseOfOneLane) {
         ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "pair_shares", compared));
       }
       ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "choose_light", compared));
+      ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "choice_probability", compared));
       // As the tree itself chooses.
       for (int lane = 0; lane < WidthInputs::kCount; ++lane) {
         const LightQuery query({in.p[0][lane], in.p[1][lane], in.p[2][lane]}, {in.n[0][lane], in.n[1][lane], in.n[2][lane]},

@@ -1,5 +1,4 @@
 // Directions to rectangles: as many as the solid angle says, spread evenly over it.
-#include "lights/light.h"
 #include "sampling/spherical_rectangle.h"
 
 #include <gtest/gtest.h>
@@ -92,30 +91,6 @@ TEST(SphericalRectangle, DirectionsAreEven) {
       EXPECT_LT(testing::chi_square_test(counts_of(whole, kDraws, seed), by_area), kLevel) << seed;
     }
     ++seed;
-  }
-}
-
-// Lamps of all sizes, the smallest by area; from all sides, aside of the lamp, and close to its plane.
-TEST(AreaLight, IsMetWithTheDensityThatItIsSampledWith) {
-  Random random(5);
-  for (int k = 0; k < 20000; ++k) {
-    Light light;
-    light.kind = LightKind::Area;
-    light.emission = glm::dvec3(1.0);
-    light.position = {0.3, -0.2, 0.1};
-    light.half_x = std::exp2(-12.0 * random.uniform());
-    light.half_y = std::exp2(-12.0 * random.uniform());
-    light.area = 4.0 * light.half_x * light.half_y;
-    const glm::dvec3 p = light.position + glm::dvec3(random.uniform() - 0.5, random.uniform() - 0.5, -random.uniform()) * 2.0;
-    const LightSample s = sample(light, p, {float(random.uniform()), float(random.uniform())});
-    if (!(s.pdf > 0.0))
-      continue;
-    // At the rim one rounding decides whether the way there meets it; within, pdf is one formula of one place or of none.
-    const LightHit hit = meet(light, p, s.wi);
-    if (hit.pdf > 0.0) {
-      EXPECT_NEAR(hit.pdf, s.pdf, 1e-9 * s.pdf);
-      EXPECT_NEAR(hit.distance, s.distance, 1e-9 * s.distance);
-    }
   }
 }
 

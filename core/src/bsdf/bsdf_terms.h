@@ -67,7 +67,8 @@ template <class F> LANCER_LANE void Bsdf<F>::add(const Lobe<F> &lobe) {
 }
 
 template <class F> void Bsdf<F>::complete() {
-  // Lobes are picked by the light that they are expected to scatter.
+  // Lobes are picked by the light that they are expected to scatter, the mean of its colours: by the largest one, a saturated
+  // base takes samples that its gloss needs.
   const F zero(0.0f);
   F total = zero;
   smooth = transmits = uniform<F>(false);

@@ -74,31 +74,34 @@ template <class F> LANCER_LANE AreaPart<F> area_part(const AreaNumbers<F> &light
   return part;
 }
 
-// Below this solid angle a point gets the same from everywhere on a lamp, to a hundredth: places are even in area.
-inline constexpr double kLeastSolidAngle = 1e-4;
+// A lamp whose diagonal is below this share of its distance sends a point about the same from everywhere: places are even in
+// area. So they are where the solid angle is all rounding.
+inline constexpr double kLeastDiagonal = 1e-2, kLeastSolidAngle = 1e-9;
 
 // A rectangle, or the part of it that counts, as a point sees it.
 template <class F> struct SeenArea {
-  using D = DoubleOf<F>;
-  D x, y; // the lamp's middle along its axes
-  SphericalRectangle<D> rectangle;
+  DoubleOf<F> x, y; // the lamp's middle along its axes
+  SphericalRectangle<DoubleOf<F>> rectangle;
   MaskOf<F> by_angle; // lanes that sample directions, not places
 
-  LANCER_LANE SeenArea(const AreaNumbers<F> &light, const AreaPart<F> &part, const Double3Of<F> &p)
-      : SeenArea(light, part, light.position - p, 0) {}
-
   // distance, cosine: to the place that is met, and there with the lamp's axis.
-  LANCER_LANE D pdf(const D &distance, const D &cosine, const D &area) const {
-    return select(by_angle, D(1.0) / rectangle.solid_angle, distance * distance / (cosine * area));
+  LANCER_LANE DoubleOf<F> pdf(const DoubleOf<F> &distance, const DoubleOf<F> &cosine, const DoubleOf<F> &area) const {
+    return select(by_angle, DoubleOf<F>(1.0) / rectangle.solid_angle, distance * distance / (cosine * area));
   }
-
-private:
-  LANCER_LANE SeenArea(const AreaNumbers<F> &light, const AreaPart<F> &part, const Double3Of<F> &v, int)
-      : x(dot(v, light.x)), y(dot(v, light.y)),
-        rectangle({x + part.low.x * light.half_x, y + part.low.y * light.half_y},
-                  {x + part.high.x * light.half_x, y + part.high.y * light.half_y}, dot(v, light.z)),
-        by_angle((!part.ellipse) & (rectangle.z > D(0.0)) & (rectangle.solid_angle > D(kLeastSolidAngle))) {}
 };
+
+template <class F>
+LANCER_LANE SeenArea<F> see_area(const AreaNumbers<F> &light, const AreaPart<F> &part, const Double3Of<F> &p) {
+  using D = DoubleOf<F>;
+  const Double3Of<F> v = light.position - p;
+  const D x = dot(v, light.x), y = dot(v, light.y), z = dot(v, light.z);
+  const SphericalRectangle<D> rectangle({x + part.low.x * light.half_x, y + part.low.y * light.half_y},
+                                        {x + part.high.x * light.half_x, y + part.high.y * light.half_y}, z);
+  const D diagonal2 = D(4.0) * (light.half_x * light.half_x + light.half_y * light.half_y);
+  const MaskOf<F> near = diagonal2 > D(kLeastDiagonal * kLeastDiagonal) * dot(v, v);
+  const MaskOf<F> seen = (z > D(0.0)) & (rectangle.solid_angle > D(kLeastSolidAngle));
+  return {x, y, rectangle, MaskOf<F>(near & seen & !part.ellipse)};
+}
 
 // disk: warp_disk(u, v).
 template <class F>
@@ -109,7 +112,7 @@ LANCER_LANE void sample_area(const AreaNumbers<F> &light, const Double3Of<F> &p,
   const AreaPart<F> part = area_part(light, p);
   D x = select(part.ellipse, widen(disk.x), part.low.x * (one - du) + part.high.x * du);
   D y = select(part.ellipse, widen(disk.y), part.low.y * (one - dv) + part.high.y * dv);
-  const SeenArea<F> seen(light, part, p);
+  const SeenArea<F> seen = see_area(light, part, p);
   if (any(seen.by_angle)) {
     const Vector2<D> at = seen.rectangle.sample(du, dv);
     x = select(seen.by_angle, (at.x - seen.x) / light.half_x, x);
@@ -154,7 +157,7 @@ LANCER_LANE AreaMeeting<F> find_area(const AreaNumbers<F> &light, const Double3O
 template <class F>
 LANCER_LANE LightHitLanes<F> meet_area(const AreaNumbers<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi) {
   const AreaMeeting<F> at = find_area(light, o, wi);
-  const DoubleOf<F> pdf = SeenArea<F>(light, at.part, o).pdf(at.t, at.cosine, at.part.area);
+  const DoubleOf<F> pdf = see_area(light, at.part, o).pdf(at.t, at.cosine, at.part.area);
   return {area_radiance(light, at.cosine), select(at.met, pdf, DoubleOf<F>(0.0)),
           area_end(at.t, at.cosine, light.plane_tolerance)};
 }

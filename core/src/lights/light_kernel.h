@@ -55,19 +55,17 @@ struct LightWalk {
 // What lights are asked for, side by side. Plain numbers: kernels read and write it.
 inline constexpr int kLightLanes = 16;
 
-// Stretches of rays: from the last scattering along d, up to the distance end. And how that asked for light, as LightQuery, and
-// the density of its BSDF, 0 of a single direction.
+// Stretches of rays: from the last scattering along d, up to the distance end. And how that asked for light, as LightQuery.
 struct alignas(64) SegmentBlock {
   double from[3][kLightLanes], d[3][kLightLanes], end[kLightLanes]; // d: of any length
-  double pdf[kLightLanes];
   float normal[3][kLightLanes];
   uint32_t transmits; // bits of lanes
 };
 
-// What the rays that run into a light get of it, and what that counts beside sampling. pdf: 0 where it is not met.
+// LightHit of each lane, and the probability with which the last scattering chose the light.
 struct alignas(64) MetLight {
-  double pdf[kLightLanes], distance[kLightLanes];
-  float radiance[3][kLightLanes], weight[kLightLanes];
+  double pdf[kLightLanes], distance[kLightLanes], chosen[kLightLanes];
+  float radiance[3][kLightLanes];
 };
 
 // Directions to the environment, and the density with which its map gives them.

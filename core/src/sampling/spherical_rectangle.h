@@ -14,7 +14,7 @@ template <class D> struct SphericalRectangle {
   D z, solid_angle;
 
   LANCER_LANE SphericalRectangle(const Vector2<D> &low_, const Vector2<D> &high_, const D &z_) : low(low_), high(high_), z(z_) {
-    // Take what lies before x from what lies before the other.
+    // Subtract the solid angle up to low.x from that up to high.x.
     left_ = between(low.x);
     solid_angle = between(high.x) - left_;
   }
@@ -43,10 +43,10 @@ template <class D> struct SphericalRectangle {
   }
 
 private:
-  D left_; // the angle of the cut at low.x, less half a turn
+  D left_; // solid angle up to low.x, which is also the angle of the cut there
 
-  // Solid angle from the foot of the origin to x between low.y and high.y, with the sign of x. That from the foot to (x, y) is
-  // the angle of a complex number; the difference of two is that of their quotient, within half a turn.
+  // Solid angle of the part from the foot of the origin up to x, with the sign of x. The rectangle from the foot to (x, y)
+  // fills the angle of a complex number (z sqrt(x^2 + y^2 + z^2), x y); the part is the angle of a quotient of two.
   LANCER_LANE D between(const D &x) const {
     const D low_sin = x * low.y, low_cos = z * sqrt(x * x + low.y * low.y + z * z);
     const D high_sin = x * high.y, high_cos = z * sqrt(x * x + high.y * high.y + z * z);

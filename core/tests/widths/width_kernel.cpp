@@ -319,6 +319,7 @@ constexpr WidthFormula kLights[] = {
               // What is left of a choice of nothing is nothing.
               lane.put(select(M(choice.probability > D(0.0)), choice.u, D(0.0)));
             }),
+    formula("choice_probability", [](auto &lane) { lane.put(choice_probability(lane.query(), lane.in.tree, 0)); }),
     {},
 };
 

@@ -66,8 +66,9 @@ private:
   void miss(size_t number);
   void add_missed();
   void add_lights_met();
-  bool is_met(size_t i, uint32_t number, double pdf, double distance) const;
+  void add_met(size_t first, uint32_t met, uint32_t number);
   void add_light_met(size_t i, uint32_t number);
+  template <class Chosen> void add_light_met(size_t i, uint32_t number, const LightHit &met, const Chosen &chosen);
   double way_end(size_t i) const; // distance from the last scattering to where the ray ends
   void send_shadow_of(uint32_t lane);
   void look_around(uint32_t lane);

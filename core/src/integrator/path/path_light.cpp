@@ -14,7 +14,6 @@ void PathIntegrator::add_lights_met() {
   const LightSet &lights = scene_.lights;
   if (!lights.any_on_the_way())
     return;
-  const BinaryLightTree &few = lights.binary_tree();
   for (size_t first = 0; first < paths_.size(); first += kLightLanes) {
     // Look from the last scattering, as sampling does.
     const uint32_t count = uint32_t(std::min<size_t>(kLightLanes, paths_.size() - first));
@@ -23,28 +22,13 @@ void PathIntegrator::add_lights_met() {
       put(paths_[first + lane].from, segments_.from, lane);
       put(ray.d, segments_.d, lane);
       segments_.end[lane] = way_end(first + lane) + lights.most_before();
-      segments_.pdf[lane] = paths_[first + lane].pdf;
       put(paths_[first + lane].normal, segments_.normal, lane);
       segments_.transmits = (segments_.transmits & ~(1u << lane)) | uint32_t{paths_[first + lane].transmits} << lane;
     }
     for (const uint32_t number : lights.always_on_the_way()) {
       const uint32_t met = lanes_.meets(segments_, lights.lights()[number]) & ((1u << count) - 1u);
-      if (met == 0)
-        continue;
-      // Those that stand in the tree of many are asked one by one.
-      const uint32_t place = few.place_of(number);
-      if (place == kNone) {
-        for (uint32_t rest = met; rest != 0; rest &= rest - 1)
-          add_light_met(first + size_t(std::countr_zero(rest)), number);
-        continue;
-      }
-      lanes_.meet(segments_, lights.lights()[number], few.nodes(), place, met_light_);
-      for (uint32_t rest = met; rest != 0; rest &= rest - 1) {
-        const auto lane = uint32_t(std::countr_zero(rest));
-        const Path &path = paths_[first + lane];
-        if (is_met(first + lane, number, met_light_.pdf[lane], met_light_.distance[lane]))
-          film_.add(path, path.beta * get(met_light_.radiance, lane) * met_light_.weight[lane], false);
-      }
+      if (met != 0)
+        add_met(first, met, number);
     }
     if (lights.finds())
       lights.wide_tree().along(segments_, count, [&](uint32_t lane, uint32_t number) { add_light_met(first + lane, number); });
@@ -55,26 +39,43 @@ double PathIntegrator::way_end(size_t i) const {
   return paths_[i].passed + std::min(hits_[i].t, rays_[i].tmax) * glm::length(rays_[i].d);
 }
 
-// Whether the ray meets a light on this stretch of the way, at this distance.
-bool PathIntegrator::is_met(size_t i, uint32_t number, double pdf, double distance) const {
-  const Path &path = paths_[i];
-  if (!(pdf > 0.0) || !(path.kinds & ~scene_.lights.hidden_from(number)))
-    return false;
-  // A sun lies behind all surfaces, wherever the view ends.
-  if (std::isinf(distance))
-    return std::isinf(hits_[i].t);
-  return distance >= path.passed + rays_[i].tmin * glm::length(rays_[i].d) && distance < way_end(i);
+// One light, for the lanes that meet it.
+void PathIntegrator::add_met(size_t first, uint32_t met, uint32_t number) {
+  const BinaryLightTree &few = scene_.lights.binary_tree();
+  const uint32_t place = few.place_of(number);
+  if (place != kNone)
+    lanes_.meet(segments_, scene_.lights.lights()[number], few.nodes(), place, met_light_);
+  for (uint32_t rest = met; rest != 0; rest &= rest - 1) {
+    const auto lane = uint32_t(std::countr_zero(rest));
+    if (place == kNone)
+      // One of the tree of many.
+      add_light_met(first + lane, number);
+    else
+      add_light_met(first + lane, number, {get(met_light_.radiance, lane), met_light_.pdf[lane], met_light_.distance[lane]},
+                    [&] { return met_light_.chosen[lane]; });
+  }
 }
 
-// One of many lights, if the ray meets it on this stretch of the way.
 void PathIntegrator::add_light_met(size_t i, uint32_t number) {
   const Path &path = paths_[i];
-  const Light &light = scene_.lights.lights()[number];
-  const LightHit met = meet(light, path.from, rays_[i].d / glm::length(rays_[i].d));
-  if (!is_met(i, number, met.pdf, met.distance))
+  const Ray &ray = rays_[i];
+  add_light_met(i, number, meet(scene_.lights.lights()[number], path.from, ray.d / glm::length(ray.d)),
+                [&] { return scene_.lights.probability(path.light_query(), number); });
+}
+
+// One light, if the ray meets it on this stretch of the way. chosen(): the probability with which sampling asks it.
+template <class Chosen>
+void PathIntegrator::add_light_met(size_t i, uint32_t number, const LightHit &met, const Chosen &chosen) {
+  const Path &path = paths_[i];
+  const Ray &ray = rays_[i];
+  if (!(met.pdf > 0.0) || !(path.kinds & ~scene_.lights.hidden_from(number)))
     return;
-  const float weight =
-      path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * scene_.lights.probability(path.light_query(), number)) : 1.0f;
+  // A sun lies behind all surfaces, wherever the view ends.
+  const double begin = path.passed + ray.tmin * glm::length(ray.d);
+  const bool far = std::isinf(met.distance);
+  if (far ? !std::isinf(hits_[i].t) : !(met.distance >= begin && met.distance < way_end(i)))
+    return;
+  const float weight = path.pdf > 0.0 ? mis_weight(path.pdf, met.pdf * chosen()) : 1.0f;
   film_.add(path, path.beta * met.radiance * weight, false);
 }
 

@@ -280,10 +280,8 @@ void scatter(VertexBlock &block) {
     store(met.pdf + first, hit.pdf);
     store(met.distance + first, hit.distance);
     store3(met.radiance, first, hit.radiance);
-    // Sampling would have found it, too.
     const LightQueryLanes<F> query(from, load3(segments.normal, first), some(segments.transmits, first));
-    const D drawn = load(segments.pdf + first), chosen = choice_probability(query, tree, place);
-    store(met.weight + first, select(drawn > D(0.0), mis_weight(drawn, hit.pdf * chosen), F(1.0f)));
+    store(met.chosen + first, choice_probability(query, tree, place));
   }
 }
 
