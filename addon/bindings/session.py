@@ -75,6 +75,8 @@ class Statistics:
     texture_bytes: int
     wide_vertices: int
     narrow_vertices: int
+    split_lights: int
+    split_paths: int
 
     @property
     def rays(self):

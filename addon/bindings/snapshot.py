@@ -255,6 +255,8 @@ class Settings(Record):
     max_bounces: int = 10
     contribution_threshold: float = 0.0
     clamp_indirect: float = 0.0
+    split_lights: int = 1  # 0, both of them: found out by a few pixels
+    split_paths: int = 1
     pixel_filter: int = PixelFilter.BOX
     filter_width: float = 1.0
     film_transparent: bool = False

@@ -244,6 +244,8 @@ class Settings(Structure):
         ("max_bounces", c_uint32),
         ("contribution_threshold", c_float),
         ("clamp_indirect", c_float),
+        ("split_lights", c_uint32),
+        ("split_paths", c_uint32),
         ("pixel_filter", c_uint32),
         ("filter_width", c_float),
         ("film_transparent", c_uint32),
@@ -300,6 +302,8 @@ class Statistics(Structure):
         ("texture_bytes", c_uint64),
         ("wide_vertices", c_uint64),
         ("narrow_vertices", c_uint64),
+        ("split_lights", c_uint32),
+        ("split_paths", c_uint32),
     ]
 
 

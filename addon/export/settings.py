@@ -34,6 +34,8 @@ def export_settings(depsgraph, passes, world, messages):
         max_bounces=bounces,
         contribution_threshold=own.contribution_threshold,
         clamp_indirect=own.clamp_indirect,
+        split_lights=0,
+        split_paths=0,
         pixel_filter=PixelFilter[own.pixel_filter],
         # The width is that of Cycles' setting, whose window reaches as far to each side.
         filter_width=2.0 * own.filter_width if own.pixel_filter == "BLACKMAN_HARRIS" else 1.0,

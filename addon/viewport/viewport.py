@@ -132,7 +132,9 @@ class Viewport:
         # Of add-ons' settings Blender tells no update.
         settings = export_settings(depsgraph, (Pass.COMBINED,), None, Messages())
         self._set_contents(self._contents, settings)
-        settings = settings.replaced(samples=own.preview_samples or _MANY, target_error=0.0, time_limit=0.0)
+        settings = settings.replaced(
+            samples=own.preview_samples or _MANY, target_error=0.0, time_limit=0.0, split_lights=1, split_paths=1
+        )
         finest = max(1, engine.get_preview_pixel_size(depsgraph.scene))
         denoising = own.use_preview_denoising and own.integrator != "NORMALS"
         if denoising and denoise.missing():

@@ -770,6 +770,9 @@ typedef struct lancer_settings {
   float contribution_threshold; /* CLASSIC: a ray that brings no more than this share of what it meets is not traced;
                                    0 = never */
   float clamp_indirect;         /* PATH: largest channel of a sample's indirect light; 0 = off */
+  uint32_t split_lights, split_paths; /* PATH: how many lights a sample asks, and along how many paths it goes on, at the first
+                                         surface that scatters into more than single directions; at most 16. 0 = as many as
+                                         pay, where 16 samples are planned: a few pixels tell before the first */
   uint32_t pixel_filter;        /* LANCER_FILTER_* */
   float filter_width;           /* full width in pixels */
   uint32_t film_transparent;    /* 1: the environment leaves alpha 0 */
@@ -814,6 +817,7 @@ typedef struct lancer_statistics {
   /* Vertices of rays on surfaces: shaded by kernels of many lanes, and one by one by the general code. Layers that a cut-out
    * takes away are none. */
   uint64_t wide_vertices, narrow_vertices;
+  uint32_t split_lights, split_paths; /* as samples were taken; 0 before the first */
 } lancer_statistics;
 
 /* The scene must be committed. Checks camera and settings; allocates the film. */

@@ -315,6 +315,8 @@ lancer_status lancer_session_statistics(lancer_session session, lancer_statistic
     copy_text(statistics->instruction_set, sizeof statistics->instruction_set,
               instruction_set() == InstructionSet::Scalar ? "scalar" : scene.accelerator->instruction_set());
     statistics->texture_bytes = scene.texture_bytes();
+    statistics->split_lights = from.splits.lights;
+    statistics->split_paths = from.splits.paths;
     statistics->wide_vertices = from.vertices.wide;
     statistics->narrow_vertices = from.vertices.narrow;
     return LANCER_OK;

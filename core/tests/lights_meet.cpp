@@ -1,4 +1,5 @@
 // Lights on a ray's way: met where sampling would have put them, and only by those that sampling can choose.
+#include "round_lamp.h"
 #include "tiny_scene.h"
 
 #include "lights/light_set.h"
@@ -10,14 +11,7 @@
 namespace lancer {
 namespace {
 
-Light ball(double radius, bool soft) {
-  Light light;
-  light.kind = LightKind::Point;
-  light.emission = glm::dvec3(1.0);
-  light.radius = radius;
-  light.soft_falloff = soft;
-  return light;
-}
+using testing::ball;
 
 TEST(Lights, AreMetWhereTheyAreSampled) {
   std::mt19937 random(3);

@@ -6,17 +6,12 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "round_lamp.h"
+
 namespace lancer {
 namespace {
 
-Light ball(double radius, bool soft) {
-  Light light;
-  light.kind = LightKind::Point;
-  light.emission = glm::dvec3(1.0);
-  light.radius = radius;
-  light.soft_falloff = soft;
-  return light;
-}
+using testing::ball;
 
 TEST(Lights, KernelsMeetWhatTheGeneralCodeMeets) {
   std::mt19937 random(5);

@@ -15,6 +15,16 @@ namespace lancer {
 
 enum class IntegratorKind : uint32_t { Path = 0, Classic = 1, Normals = 2 };
 
+// Splitting (Arvo, Kirk, "Particle transport and image synthesis", 1990): what a sample does at the first surface on its way
+// that scatters into more than single directions. What comes before, and the pixel's own place, is shared.
+struct Splits {
+  uint32_t lights = 1; // it asks so many lights there,
+  uint32_t paths = 1;  // and goes on along so many paths
+
+  bool any() const { return lights > 1 || paths > 1; }
+  bool operator==(const Splits &) const = default;
+};
+
 struct IntegratorSettings {
   IntegratorKind kind = IntegratorKind::Path;
   uint32_t samples = 1; // planned per pixel
@@ -22,6 +32,7 @@ struct IntegratorSettings {
   uint32_t max_bounces = 10;
   float contribution_threshold = 0.0f;
   float clamp_indirect = 0.0f;
+  Splits splits;
   FilterKind filter = FilterKind::BlackmanHarris;
   float filter_width = 1.5f;
   bool film_transparent = false;
@@ -123,6 +134,8 @@ public:
   // results[i] answers addresses[i]; trace (may be null) collects the vertices of a batch of one.
   virtual void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                    std::vector<PathVertex> *trace) = 0;
+  // Between batches: how samples split from here on, where they do.
+  virtual void set_splits(const Splits &) {}
   // The specialisation in use, for the statistics.
   virtual const char *kernel() const = 0;
   const RayCounts &counts() const { return counts_; }

@@ -1,5 +1,6 @@
 #include "render/session.h"
 
+#include "render/pilot.h"
 #include "scene/error.h"
 
 #include <cmath>
@@ -10,6 +11,7 @@ namespace {
 
 constexpr uint32_t kMostThreads = 1024;
 constexpr uint32_t kMostBounces = 1024;
+constexpr uint32_t kMostSplits = 16;
 // Glass doubles the rays of CLASSIC with every depth.
 constexpr uint32_t kDeepestRecursion = 16;
 
@@ -22,6 +24,11 @@ void check_choice(const char *what, uint32_t value, uint32_t last) {
 void check_bounces(const char *what, uint32_t value) {
   if (value > kMostBounces)
     bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " > " + std::to_string(kMostBounces));
+}
+
+void check_splits(const char *what, uint32_t value) {
+  if (value > kMostSplits)
+    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " > " + std::to_string(kMostSplits));
 }
 
 void check_amount(const char *what, float value) {
@@ -53,6 +60,8 @@ SessionSettings read_settings(const lancer_settings &source) {
   if (source.integrator == LANCER_CLASSIC && source.max_bounces > kDeepestRecursion)
     bad_argument("settings: max_bounces " + std::to_string(source.max_bounces) + " > " + std::to_string(kDeepestRecursion) +
                  ", the deepest recursion of CLASSIC");
+  check_splits("split_lights", source.split_lights);
+  check_splits("split_paths", source.split_paths);
   check_bounces("transparent_bounces", source.transparent_bounces);
   check_bounces("transparent_shadows", source.transparent_shadows);
   if (source.threads > kMostThreads)
@@ -66,6 +75,9 @@ SessionSettings read_settings(const lancer_settings &source) {
   settings.integrator.max_bounces = source.max_bounces;
   settings.integrator.contribution_threshold = source.contribution_threshold;
   settings.integrator.clamp_indirect = source.clamp_indirect;
+  settings.integrator.splits = {std::max(source.split_lights, 1u), std::max(source.split_paths, 1u)};
+  settings.finds_splits = settings.integrator.kind == IntegratorKind::Path && source.samples >= Pilot::kLeastPlanned &&
+                          source.split_lights == 0 && source.split_paths == 0;
   settings.integrator.filter = read_filter(source.pixel_filter, source.filter_width);
   settings.integrator.filter_width = source.filter_width;
   settings.integrator.film_transparent = source.film_transparent != 0;

@@ -67,6 +67,7 @@ Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const
             settings.passes, settings.refines),
       pool_(settings.threads) {
   settings_.integrator.cancel = &cancel_;
+  splits_ = settings_.integrator.splits;
   for (uint32_t i = 0; i < pool_.size(); ++i) {
     workers_.push_back(std::make_unique<Worker>());
     workers_.back()->integrator = make_integrator(*scene_, camera_, settings_.integrator);
@@ -140,6 +141,10 @@ void Session::start() {
   next_task_ = 0;
   started_ = true;
   active_ = pool_.size();
+  // What ended before the first sample is found anew.
+  pilot_.reset();
+  if (settings_.finds_splits && film_.sample_range().second == 0)
+    pilot_ = std::make_unique<Pilot>(*scene_, camera_, settings_.integrator, pool_.size());
   start_ = std::chrono::steady_clock::now();
   pool_.start([this](uint32_t thread) { work(thread); });
 }
@@ -157,12 +162,23 @@ void Session::work(uint32_t thread) {
     }
   } const leave{*this};
   Worker &worker = *workers_[thread];
+  if (pilot_)
+    find_splits(thread);
   while (!cancel_) {
     const size_t task = next_task_.fetch_add(1);
     if (task >= tasks_.size())
       break;
     render_tile(worker, film_.tile(tasks_[task].tile), tasks_[task].end);
   }
+}
+
+void Session::find_splits(uint32_t thread) {
+  pilot_->work(thread);
+  workers_[thread]->integrator->set_splits(pilot_->splits());
+  if (thread != 0)
+    return;
+  const std::lock_guard lock(mutex_);
+  splits_ = pilot_->splits();
 }
 
 void Session::render_tile(Worker &worker, Film::Tile &tile, uint32_t end) {
@@ -299,6 +315,7 @@ void Session::read(Pass pass, std::span<float> out) const {
 SampleResult Session::replay(const SampleAddress &address, std::vector<PathVertex> &vertices) {
   IntegratorSettings settings = settings_.integrator;
   settings.cancel = nullptr;
+  settings.splits = splits_;
   const auto integrator = make_integrator(*scene_, camera_, settings);
   SampleResult result;
   integrator->run(std::span(&address, 1), std::span(&result, 1), &vertices);
@@ -342,6 +359,10 @@ SessionStatistics Session::statistics() const {
   statistics.first_invalid = dropped.first;
   statistics.threads = pool_.size();
   statistics.film_bytes = film_.bytes();
+  if (samples_ > 0) {
+    const std::lock_guard lock(mutex_);
+    statistics.splits = splits_;
+  }
   statistics.kernel = workers_.front()->integrator->kernel();
   return statistics;
 }

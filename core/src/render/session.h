@@ -4,6 +4,7 @@
 #include "lancer.h"
 #include "render/film.h"
 #include "render/picture_error.h"
+#include "render/pilot.h"
 #include "render/thread_pool.h"
 
 #include <atomic>
@@ -16,7 +17,8 @@ struct SessionSettings {
   uint32_t passes = 1;
   uint32_t threads = 0;
   uint32_t tile_size = 0;
-  bool refines = false; // the film is laid out for refine()
+  bool refines = false;      // the film is laid out for refine()
+  bool finds_splits = false; // integrator.splits are to be found
 };
 
 // Checks and copies settings; an Error names the setting and its value.
@@ -38,6 +40,7 @@ struct SessionStatistics {
   uint32_t threads = 0;
   size_t film_bytes = 0;
   const char *kernel = "";
+  Splits splits{0, 0}; // 0 before the first sample
 };
 
 // What a picture may still be wrong by, and what its settings have taken from it.
@@ -93,6 +96,7 @@ private:
   void require_ready() const;
   void start();
   void work(uint32_t thread);
+  void find_splits(uint32_t thread);
   void render_tile(Worker &worker, Film::Tile &tile, uint32_t end);
   void settle();
   void drop_invalid(Worker &worker, Film::Tile &tile);
@@ -114,12 +118,14 @@ private:
     uint32_t tile, end;
   };
   std::vector<Task> tasks_;
+  std::unique_ptr<Pilot> pilot_; // of a range that begins with finding how samples split
   double planned_samples_ = 0.0;
   bool cancelled_ = false, failed_ = false;
   double seconds_before_ = 0.0;
   std::chrono::steady_clock::time_point start_;
   bool started_ = false;
   mutable std::mutex mutex_; // of what follows
+  Splits splits_;
   std::chrono::steady_clock::time_point end_time_;
   std::atomic<uint32_t> active_{0};
   ThreadPool pool_; // last: its threads end before anything else does

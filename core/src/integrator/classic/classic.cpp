@@ -42,9 +42,7 @@ ClassicIntegrator::ClassicIntegrator(const Scene &scene, const Camera &camera, c
     : scene_(scene), camera_(camera), settings_(settings), generator_(camera, settings), shader_(scene, &camera),
       shadows_(scene, camera, settings), passes_(settings), queues_(scene), surfaces_(scene, camera, settings),
       block_(surfaces_.block), kernel_(classic_kernel()), ambient_(ambient_light(scene, camera)),
-      only_combined_(settings.passes == 1u << LANCER_PASS_COMBINED) {
-  block_.numbers_given = 1;
-}
+      only_combined_(settings.passes == 1u << LANCER_PASS_COMBINED) {}
 
 void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                             std::vector<PathVertex> *trace) {

@@ -228,7 +228,7 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane) {
     return shadows_.push_lit({.slot = ray_number}, contribution);
   const bool far =
       number < lights.lights().size() ? lights.lights()[number].kind == LightKind::Sun : number == lights.environment_light();
-  surfaces_.write_shadow_ray(lane, far, shadows_.push(ray_number, contribution));
+  surfaces_.write_shadow_ray(lane, far, shadows_.push(ray_number, 0, contribution));
 }
 
 // Moves all lanes to a corner of their triangles, as if the ray had met it.

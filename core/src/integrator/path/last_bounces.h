@@ -4,7 +4,9 @@
 #include "integrator/sample.h"
 #include "sampling/color.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace lancer {
 
@@ -20,12 +22,16 @@ public:
   // Whether the light of this turn of the queues is to be noted. Light of paths that pass clear surfaces comes a turn later
   // each: it counts as late, which makes too much of it rather than too little.
   bool due(uint32_t turn) const { return turn + 1 >= max_bounces_ && stage_ < 2; }
-  // After what the rays of this turn have met was added. slot(i): where the i-th of count paths gathers; light(slot): how much
-  // there is.
-  template <class Slot, class Light> void note(uint32_t turn, size_t count, Slot &&slot, Light &&light) {
+  // After what the rays of this turn have met was added. slot(i): of the sample of the i-th of count paths, which several may
+  // share; light(slot): how much it has gathered.
+  template <class Slot, class Light> void note(uint32_t turn, size_t count, bool shared, Slot &&slot, Light &&light) {
     if (stage_ == 0)
       for (size_t i = 0; i < count; ++i)
         slots_.push_back(slot(i));
+    if (stage_ == 0 && shared) {
+      std::sort(slots_.begin(), slots_.end());
+      slots_.erase(std::unique(slots_.begin(), slots_.end()), slots_.end());
+    }
     // Without any bounce the light before the last is all that there is at first.
     stage_ = turn + 1 == max_bounces_ ? 1 : 2;
     before_[stage_ - 1] = sum(light);

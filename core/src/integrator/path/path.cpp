@@ -28,7 +28,7 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
     shade();
     if (last_bounces_.due(turn))
       last_bounces_.note(
-          turn, paths_.size(), [&](size_t i) { return paths_[i].slot; }, gathered);
+          turn, paths_.size(), settings_.splits.paths > 1, [&](size_t i) { return paths_[i].slot; }, gathered);
     // Add the light that was not in shadow.
     counts_.shadow +=
         shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { film_.add_lit(waiting, light); });
@@ -91,7 +91,7 @@ View PathIntegrator::view_of(const Path &path, const Ray &ray, double t) const {
 
 void PathIntegrator::keep_vertex(const Path &path, const Surface &surface, double t) {
   trace_->push_back({scene_.normalisation.to_world(surface.p), t / scene_.normalisation.scale, surface.ns, path.beta,
-                     film_.gathered(path.slot), surface.instance, surface.primitive, surface.material, path.scatterings});
+                     film_.gathered(path), surface.instance, surface.primitive, surface.material, path.scatterings});
 }
 
 // Unless the path has passed all that it may.
@@ -109,12 +109,12 @@ void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const 
   next_paths_.push_back(path);
 }
 
-bool PathIntegrator::survives(uint32_t scatterings, float u, glm::vec3 &beta) {
+bool PathIntegrator::survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta) {
   if (scatterings <= kRouletteAfter)
     return true;
   // End dark paths early; what survives is brightened by exactly that. By the root, instead of beta itself, they go on longer:
   // variance times rays falls by a twentieth in the mean of five scenes.
-  const float q = std::min(1.0f, std::sqrt(largest(beta)));
+  const float q = std::min(1.0f, std::sqrt(sharers * largest(beta)));
   if (u >= q)
     return false;
   beta /= q;

@@ -30,16 +30,27 @@ public:
                                                            : std::numeric_limits<double>::infinity()),
         last_bounces_(settings.max_bounces), queues_(scene) {
     // What shadow rays pass, or do not see, other rays meet.
+    std::fill_n(block_.lights, kBlockLanes, 1.0);
+    std::fill_n(block_.paths, kBlockLanes, 1.0);
     block_.next_rays_look = !(scene.features & (kFeatureTransparency | kFeatureVisibility));
   }
 
   void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results, std::vector<PathVertex> *trace) override;
+  void set_splits(const Splits &splits) override {
+    settings_.splits = splits;
+    film_.set_splits(splits);
+  }
   const char *kernel() const override { return "path"; }
 
 private:
+  // Numbers of a vertex, as bits.
+  static constexpr uint32_t kLightNumbers = 3u << kVertexLight | 1u << kVertexLightChoice | 1u << kVertexLightDigits;
+  static constexpr uint32_t kPathNumbers = 3u << kVertexBsdf | 1u << kVertexLobe | 1u << kVertexRoulette;
+
   // A vertex that waits for the others of its block.
   struct Waiting {
     size_t number;          // of its path
+    uint32_t leader;        // of the paths that it splits into
     bool ends;              // nothing is scattered there any more
     bool nothing;           // a hole, behind which nothing is seen
     Mixture<float> mixture; // of its lobes, where passes for denoising are open
@@ -54,13 +65,17 @@ private:
   void shade();
   void put_in_lane(size_t number, const Material &material);
   void shade_block();
-  void draw_numbers();
+  void split();
+  void draw_numbers(uint32_t wanted, uint32_t count, uint32_t number);
   void ask_nodes();
   void cut_holes();
   void keep_vertices();
   void record_surfaces();
+  void take_emission(uint32_t lane);
   void ask_lights();
-  void leave_lane(uint32_t lane);
+  void go_on();
+  bool passes_straight(uint32_t lane);
+  void scatter_lane(uint32_t lane, uint32_t number);
   // The light that they find.
   void add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission);
   void miss(size_t number);
@@ -77,7 +92,7 @@ private:
   // How they go on.
   bool stays_in_view(uint32_t lane) const;
   void pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
-  static bool survives(uint32_t scatterings, float u, glm::vec3 &beta);
+  static bool survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta);
   View view_of(const Path &path, const Ray &ray, double t) const;
   void keep_vertex(const Path &path, const Surface &surface, double t);
 
@@ -101,6 +116,8 @@ private:
   SegmentBlock segments_{};
   MetLight met_light_{};
   Waiting waiting_[kBlockLanes];
+  bool one_bounce_ = true;     // all lanes of the block are of one
+  uint32_t splitting_ = 0;     // those whose samples split
   size_t missed_[kBlockLanes]; // numbers of paths
   uint32_t missed_count_ = 0;
   // The queue: paths_[i] travels along rays_[i].

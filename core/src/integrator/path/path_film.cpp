@@ -9,8 +9,8 @@ void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleR
   only_combined_ = passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
   energy = {};
-  indirect_.assign(results.size(), glm::vec3(0.0f));
-  shares_.resize(results.size());
+  indirect_.assign(results.size() * settings_.splits.paths, glm::vec3(0.0f));
+  shares_.resize(indirect_.size());
   if (!only_combined_ || records_.size() != results.size())
     records_.assign(results.size(), Record());
   if (passes.features())
@@ -18,16 +18,37 @@ void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleR
 }
 
 void PathFilm::end() {
-  for (size_t slot = 0; slot < results_.size(); ++slot) {
-    glm::vec3 indirect = indirect_[slot];
-    const float top = largest(indirect);
-    if (settings_.clamp_indirect > 0.0f && top > settings_.clamp_indirect) {
-      energy.clip(double(luminance(indirect)) * (1.0 - double(settings_.clamp_indirect / top)));
-      indirect *= settings_.clamp_indirect / top;
-      passes.scale_indirect(results_[slot], settings_.clamp_indirect / top);
-    }
-    results_[slot].radiance += indirect;
+  const uint32_t paths = settings_.splits.paths;
+  for (uint32_t slot = 0; slot < results_.size(); ++slot) {
+    if (settings_.clamp_indirect > 0.0f)
+      clamp(slot);
+    for (uint32_t branch = 0; branch < paths; ++branch)
+      results_[slot].radiance += indirect_[place(slot, branch)];
   }
+}
+
+// Clamps what each path of a sample has found, as if it were the only one.
+void PathFilm::clamp(uint32_t slot) {
+  glm::vec3 before(0.0f), after(0.0f);
+  const float limit = most_indirect();
+  float factor = 1.0f;
+  for (uint32_t branch = 0; branch < settings_.splits.paths; ++branch) {
+    glm::vec3 &indirect = indirect_[place(slot, branch)];
+    before += indirect;
+    if (const float top = largest(indirect); top > limit) {
+      factor = limit / top;
+      energy.clip(double(luminance(indirect)) * (1.0 - double(factor)));
+      indirect *= factor;
+    }
+    after += indirect;
+  }
+  if (factor == 1.0f)
+    return;
+  // Passes do not tell the paths apart.
+  glm::vec3 kept(factor);
+  for (int channel = 0; channel < 3 && settings_.splits.paths > 1; ++channel)
+    kept[channel] = before[channel] != 0.0f ? after[channel] / before[channel] : 1.0f;
+  passes.scale_indirect(results_[slot], kept);
 }
 
 void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment) {
@@ -38,7 +59,7 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
     result.albedo += guides_[path.slot].beta * radiance;
   // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
   if (path.in_view) {
-    const float top = largest(radiance), limit = settings_.clamp_indirect;
+    const float top = largest(radiance), limit = most_indirect();
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
     energy.clip(double(luminance(radiance - seen)));
     result.radiance += seen;
@@ -46,10 +67,10 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
     return;
   }
   if (indirect)
-    indirect_[path.slot] += radiance;
+    indirect_[place(path)] += radiance;
   else
     result.radiance += radiance;
-  passes.add(result, radiance, shares_[path.slot].of, indirect);
+  passes.add(result, radiance, shares_[place(path)].of, indirect);
 }
 
 void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
@@ -59,7 +80,7 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
     return;
   }
   if (waiting.indirect)
-    indirect_[waiting.slot] += light;
+    indirect_[place(waiting.slot, waiting.branch)] += light;
   else
     result.radiance += light;
   passes.add(result, light, waiting.share, waiting.indirect);
@@ -70,9 +91,9 @@ void PathFilm::record(const Path &path, const Surface &surface, const Material &
   SampleResult &result = results_[path.slot];
   // A surface that is hardly there gives way to the next one, unless the path ends on it.
   Record &record = records_[path.slot];
-  const bool here = !record.seen && mean(opacity) >= settings_.alpha_threshold;
+  const bool here = path.leads && !record.seen && mean(opacity) >= settings_.alpha_threshold;
   // The first sample of a pixel tells the place.
-  if (!record.seen && path.sampler.sample() == 0)
+  if (path.leads && !record.seen && path.is_first(settings_.splits.paths))
     record_place(scene_, surface, &material, record.depth + t, result);
   if (here)
     record_first_surface(scene_, settings_, surface, normal, result);

@@ -13,13 +13,20 @@ class PathFilm {
 public:
   PathFilm(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
       : passes(settings), scene_(scene), camera_(camera), settings_(settings) {}
+  void set_splits(const Splits &splits) { settings_.splits = splits; }
 
   // Takes the results of the next batch.
   void begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   // Joins the indirect light, clamped if that was asked for.
   void end();
-  // Found so far.
-  glm::vec3 gathered(uint32_t slot) const { return results_[slot].radiance + indirect_[slot]; }
+  // Found so far: by a path, and by its sample before that split; by all paths of a sample.
+  glm::vec3 gathered(const Path &path) const { return results_[path.slot].radiance + indirect_[place(path)]; }
+  glm::vec3 gathered(uint32_t slot) const {
+    glm::vec3 sum = results_[slot].radiance;
+    for (uint32_t branch = 0; branch < settings_.splits.paths; ++branch)
+      sum += indirect_[place(slot, branch)];
+    return sum;
+  }
 
   // Light that a path brings to the camera.
   void add(const Path &path, const glm::vec3 &radiance, bool environment);
@@ -34,24 +41,26 @@ public:
   void record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
               const glm::vec3 &opacity, double t);
   // Whether the first surface is still to come.
-  bool awaits_surface(const Path &path) const { return path.in_view && !only_combined_ && !records_[path.slot].seen; }
+  bool awaits_surface(const Path &path) const {
+    return path.in_view && path.leads && !only_combined_ && !records_[path.slot].seen;
+  }
   // Adds the colour that a surface shows by a component.
   void add_color(const Path &path, uint32_t component, const glm::vec3 &color) {
     results_[path.slot].light[kLightComponents + 3 * component + 2] += path.beta * color;
   }
   // A path goes straight on behind a surface at t.
   void pass_on(const Path &path, double t) {
-    if (!only_combined_)
+    if (!only_combined_ && path.leads)
       records_[path.slot].depth += t;
   }
   // A path meets nothing.
   void miss(const Path &path);
 
   // Shares of light by component, of the first scattering: given where a path leaves what the camera sees.
-  glm::vec3 (&shares(const Path &path))[2] { return shares_[path.slot].of; }
+  glm::vec3 (&shares(const Path &path))[2] { return shares_[place(path)].of; }
 
   // Whether a path still looks for the surface that denoisers are told of.
-  bool wants_guides(const Path &path) const { return passes.features() && guides_[path.slot].open; }
+  bool wants_guides(const Path &path) const { return passes.features() && path.leads && guides_[path.slot].open; }
   // distance: from the last surface, normalised units.
   void add_guides(const Path &path, const Mixture<float> &mixture, const glm::vec3 &wo, const glm::vec3 &transmittance,
                   double distance) {
@@ -67,6 +76,13 @@ public:
   Energy energy; // of the batch
 
 private:
+  // Where a path gathers what it finds.
+  uint32_t place(const Path &path) const { return place(path.slot, path.branch); }
+  uint32_t place(uint32_t slot, uint32_t branch) const { return slot * settings_.splits.paths + branch; }
+  // Of a path, where that is clamped: its share of its sample.
+  float most_indirect() const { return settings_.clamp_indirect / float(settings_.splits.paths); }
+  void clamp(uint32_t slot);
+
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.
   struct Record {
     double depth = 0.0;     // t of the camera ray up to its last layer
@@ -83,10 +99,11 @@ private:
   IntegratorSettings settings_;
   bool only_combined_ = true;
   std::span<SampleResult> results_;
-  // By slot, like results.
+  // By place.
   std::vector<glm::vec3> indirect_;
-  std::vector<Record> records_;
   std::vector<Shares> shares_;
+  // By slot, like results.
+  std::vector<Record> records_;
   std::vector<DenoisingGuides> guides_; // where passes for denoising are asked for
 };
 

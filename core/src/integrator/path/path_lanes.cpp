@@ -23,6 +23,7 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   waiting.number = number;
   waiting.ends = ends;
   waiting.nothing = false;
+  waiting.leader = 0;
   block_.ends |= uint32_t{ends} << lane;
   put(path.beta, block_.beta, lane);
   block_.pixel[lane] = path.sampler.pixel();
@@ -30,33 +31,55 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   const uint32_t dimension = path.vertex_dimension();
   if (lane == 0) {
     block_.dimension = dimension;
-    block_.numbers_given = 0;
+    one_bounce_ = true;
   } else if (dimension != block_.dimension) {
-    block_.numbers_given = 1;
+    one_bounce_ = false;
   }
 }
 
-void PathIntegrator::draw_numbers() {
+// Finds the lanes whose samples split here.
+void PathIntegrator::split() {
+  splitting_ = 0;
+  if (!settings_.splits.any())
+    return;
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
+    const Waiting &waiting = waiting_[lane];
+    const bool splits = !waiting.ends && !paths_[waiting.number].split && (block_.scatters >> lane & 1);
+    splitting_ |= uint32_t{splits} << lane;
+    block_.lights[lane] = splits ? settings_.splits.lights : 1u;
+    block_.paths[lane] = splits ? settings_.splits.paths : 1u;
+    if (splits)
+      waiting_[lane].leader = paths_[waiting.number].leader_of(settings_.splits.paths);
+  }
+}
+
+// The numbers of the lanes; where they split into count, those of this one of them. Light n of sample s takes the numbers of
+// sample count s + n: together they are as even as those of so many samples, and so are the paths', which stay with theirs.
+void PathIntegrator::draw_numbers(uint32_t wanted, uint32_t count, uint32_t number) {
   const uint32_t joint = std::min(8u, kJointDimensions - std::min(block_.dimension, kJointDimensions));
-  const Sampler *last = nullptr;
-  uint32_t points[8] = {};
+  uint32_t last = 0, points[8] = {};
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     const Path &path = paths_[waiting_[lane].number];
-    if (block_.numbers_given) {
-      const auto u = path.sampler.get8(path.vertex_dimension());
+    const uint32_t sample =
+        path.sampler.sample() * (splitting_ >> lane & 1 ? count : 1u) + (splitting_ >> lane & 1 ? number : 0u);
+    if (!one_bounce_) {
+      const auto u = Sampler(path.sampler.pixel(), sample).get8(path.vertex_dimension());
       for (uint32_t i = 0; i < 8; ++i)
-        block_.u[i][lane] = u[i];
+        if (wanted >> i & 1)
+          block_.u[i][lane] = u[i];
       continue;
     }
     // Neighbours mostly share the sample, and the digits that its numbers are made of.
-    if (!last || path.sampler.sample() != last->sample())
+    if (lane == 0 || sample != last)
       for (uint32_t i = 0; i < joint; ++i)
-        points[i] = sobol::reversed_point(path.sampler.sample(), block_.dimension + i);
-    last = &path.sampler;
-    block_.reversed_sample[lane] = path.sampler.reversed_sample();
+        points[i] = sobol::reversed_point(sample, block_.dimension + i);
+    last = sample;
+    block_.reversed_sample[lane] = sobol::reverse_bits(sample);
     for (uint32_t i = 0; i < joint; ++i)
       block_.reversed_point[i][lane] = points[i];
   }
+  if (one_bounce_)
+    lanes_.draw(block_, wanted);
 }
 
 void PathIntegrator::ask_nodes() {
@@ -96,19 +119,51 @@ void PathIntegrator::cut_holes() {
   }
 }
 
-// Of every lane that goes on.
+// Asks lights, of every lane that goes on; more than one of those that split.
 void PathIntegrator::ask_lights() {
   uint32_t asking = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     asking |= uint32_t(!waiting_[lane].ends) << lane;
-  lights_.ask(asking, [&](uint32_t lane) { return paths_[waiting_[lane].number].asking_path(); });
+  const uint32_t count = splitting_ ? settings_.splits.lights : 1;
+  for (uint32_t number = 0; number < count; ++number) {
+    if (splitting_)
+      draw_numbers(kLightNumbers, count, number);
+    lights_.ask(asking, [&](uint32_t lane) { return paths_[waiting_[lane].number].asking_path(); });
+    lanes_.light(block_);
+    for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+      if ((asking & block_.lit) >> lane & 1 && !waiting_[lane].nothing)
+        send_shadow_of(lane);
+    asking &= splitting_;
+  }
+}
+
+// Chooses where each path goes on, or the several of a lane that splits.
+void PathIntegrator::go_on() {
+  uint32_t going = 0;
+  for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
+    going |= uint32_t(!waiting_[lane].nothing && !paths_[waiting_[lane].number].last) << lane;
+  const uint32_t count = splitting_ ? settings_.splits.paths : 1;
+  for (uint32_t number = 0; number < count; ++number) {
+    if (splitting_)
+      draw_numbers(kPathNumbers, count, number);
+    lanes_.scatter(block_);
+    for (uint32_t rest = going; rest != 0; rest &= rest - 1) {
+      const uint32_t lane = uint32_t(std::countr_zero(rest));
+      if (block_.occlusion_asked >> lane & 1 && number == waiting_[lane].leader)
+        look_around(lane);
+      if (number == 0 && passes_straight(lane))
+        going &= ~(1u << lane);
+      else
+        scatter_lane(lane, number);
+    }
+    going &= splitting_;
+  }
 }
 
 void PathIntegrator::shade_block() {
   if (surfaces_.count() == 0)
     return;
   // Ask what is there.
-  draw_numbers();
   surfaces_.find();
   ask_nodes();
   cut_holes();
@@ -117,12 +172,15 @@ void PathIntegrator::shade_block() {
     keep_vertices();
   if (!film_.only_combined())
     record_surfaces();
-  // Ask for light, and where each path goes on.
-  ask_lights();
-  lanes_.scatter(block_);
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     if (!waiting_[lane].nothing)
-      leave_lane(lane);
+      take_emission(lane);
+  // Ask for light, and where each path goes on.
+  split();
+  if (!splitting_)
+    draw_numbers(kLightNumbers | kPathNumbers, 1, 0);
+  ask_lights();
+  go_on();
   block_.ends = block_.occlusion_asked = 0;
   surfaces_.clear();
 }
@@ -152,7 +210,7 @@ void PathIntegrator::record_surfaces() {
     block_.occlusion_asked |= uint32_t(passes_.occlusion() && !waiting.ends && path.scatterings == 0) << lane;
     // Mostly its place is enough.
     Surface surface;
-    if (path.sampler.sample() == 0 || passes_.uv())
+    if (path.is_first(settings_.splits.paths) || passes_.uv())
       surface = surfaces_.surface(lane);
     else
       surface.p = get(block_.p, lane);
@@ -173,35 +231,51 @@ bool PathIntegrator::stays_in_view(uint32_t lane) const {
          block_.alpha2[lane] <= settings_.glass_alpha2;
 }
 
-// What follows from a shaded lane: its light, its shadow ray, its next ray.
-void PathIntegrator::leave_lane(uint32_t lane) {
+// The light of the surface itself, and what it tells denoisers.
+void PathIntegrator::take_emission(uint32_t lane) {
   const Waiting &waiting = waiting_[lane];
-  Path &path = paths_[waiting.number];
-  const Hit &hit = hits_[waiting.number];
+  const Path &path = paths_[waiting.number];
   const glm::vec3 emission = surfaces_.emission[lane] + get(block_.emission, lane);
   if (emission != glm::vec3(0.0f))
     add_emission(path, surfaces_.surface(lane), emission);
   if (film_.wants_guides(path))
-    film_.add_guides(path, waiting.mixture, get(block_.wo, lane), surfaces_.transmittance[lane], hit.t * block_.length[lane]);
-  if (path.last)
-    return;
-  if (!waiting.ends && (block_.lit >> lane & 1))
-    send_shadow_of(lane);
-  if (block_.occlusion_asked >> lane & 1)
-    look_around(lane);
-  if (const float pass = block_.pass[lane]; path.chooses_to_pass(pass))
-    return pass_straight_on(path, surfaces_.surface(lane), rays_[waiting.number], hit.t, surfaces_.transmittance[lane] / pass);
+    film_.add_guides(path, waiting.mixture, get(block_.wo, lane), surfaces_.transmittance[lane],
+                     hits_[waiting.number].t * block_.length[lane]);
+}
+
+// Whether a lane's path goes straight on, which it then does.
+bool PathIntegrator::passes_straight(uint32_t lane) {
+  Path &path = paths_[waiting_[lane].number];
+  const float pass = block_.pass[lane];
+  if (!path.chooses_to_pass(pass))
+    return false;
+  pass_straight_on(path, surfaces_.surface(lane), rays_[waiting_[lane].number], hits_[waiting_[lane].number].t,
+                   surfaces_.transmittance[lane] / pass);
+  return true;
+}
+
+// The next ray of a lane; number: which of those that it splits into.
+void PathIntegrator::scatter_lane(uint32_t lane, uint32_t number) {
+  const Waiting &waiting = waiting_[lane];
+  const Path &path = paths_[waiting.number];
+  const Hit &hit = hits_[waiting.number];
   if (waiting.ends || !(block_.sampled >> lane & 1))
     return;
-  const uint32_t scatterings = path.scatterings + 1;
+  const bool splits = splitting_ >> lane & 1;
+  const uint32_t scatterings = path.scatterings + 1, sharers = splits ? settings_.splits.paths : path.sharers;
   glm::vec3 beta = get(block_.next_beta, lane);
-  if (!survives(scatterings, block_.u[kVertexRoulette][lane], beta))
+  if (!survives(scatterings, block_.u[kVertexRoulette][lane], float(sharers), beta))
     return;
-  Path &next = next_paths_.emplace_back(path.sampler, path.slot);
+  Path &next = next_paths_.emplace_back(
+      splits ? Sampler(path.sampler.pixel(), path.sampler.sample() * sharers + number) : path.sampler, path.slot);
+  next.branch = splits ? number : path.branch;
+  next.sharers = sharers;
+  next.split = path.split || splits;
+  next.leads = path.leads && number == waiting.leader;
   next.in_view = path.in_view && stays_in_view(lane);
-  if (path.in_view && !next.in_view && passes_.components())
+  if (!next.in_view && passes_.components())
     for (int component = 0; component < 2; ++component)
-      film_.shares(path)[component] = get(block_.share[component], lane);
+      film_.shares(next)[component] = path.in_view ? get(block_.share[component], lane) : film_.shares(path)[component];
   next.beta = beta;
   next.from = get(block_.p, lane);
   next.normal = get(block_.viewer_ns, lane);

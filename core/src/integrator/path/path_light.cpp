@@ -138,10 +138,11 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
     shares.share[component] = path.in_view ? get(block_.light_share[component], lane) : film_.shares(path)[component];
   if (scene_.lights.no_shadow(lights_.light(lane))) {
     shares.slot = path.slot;
+    shares.branch = path.branch;
     shares.indirect = path.scatterings > 0;
     return shadows_.push_lit(shares, contribution);
   }
-  Ray &ray = shadows_.push(path.slot, contribution, path.scatterings > 0, path.passed_through);
+  Ray &ray = shadows_.push(path.slot, path.branch, contribution, path.scatterings > 0, path.passed_through);
   if (passes_.components())
     shadows_.set_shares(shares.share);
   if (shadows_.asks_light_path())
@@ -181,7 +182,7 @@ void PathIntegrator::send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, cons
 // What the next rays of the first surfaces have met.
 void PathIntegrator::count_occluded() {
   for (size_t i = 0; i < paths_.size(); ++i) {
-    if (paths_[i].scatterings != 1)
+    if (paths_[i].scatterings != 1 || !paths_[i].leads)
       continue;
     const float occlusion = film_.take_occlusion(paths_[i]);
     if (occlusion > 0.0f && hits_[i].valid() && hits_[i].t * glm::length(rays_[i].d) < occlusion_reach_)

@@ -19,8 +19,12 @@ struct Path {
   glm::dvec3 from{0.0};   // last scattering point
   glm::vec3 normal{0.0f}; // there, and whether light may come through: what light samples are chosen by
   bool transmits = false;
-  double pdf = 0.0; // of the BSDF sample that made the ray; 0 after the camera or a single direction
-  uint32_t slot;    // of its result
+  double pdf = 0.0;     // of the BSDF sample that made the ray; 0 after the camera or a single direction
+  uint32_t slot;        // of its sample's result
+  uint32_t branch = 0;  // its number among the paths that its sample has split into
+  uint32_t sharers = 1; // how many those are
+  bool split = false;   // that was there, or earlier
+  bool leads = true;    // drawn evenly from those: it tells what the camera sees for all of them
   uint32_t scatterings = 0;
   uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
   uint32_t layers = 0;                // passed straight through since the last scattering
@@ -48,6 +52,12 @@ struct Path {
   }
   // First of the numbers of the vertex that it is at.
   uint32_t vertex_dimension() const { return kDimensionVertex + scatterings * kVertexStride; }
+  // Whether it is of the first sample of its pixel. paths: that samples split into.
+  bool is_first(uint32_t paths) const { return sampler.sample() < (split ? paths : 1u); }
+  // Which of so many paths that it splits into leads them.
+  uint32_t leader_of(uint32_t count) const {
+    return std::min(uint32_t(sampler.get1(vertex_dimension() + kVertexRoulette) * float(count)), count - 1);
+  }
   // As the last scattering asked for light.
   LightQuery light_query() const { return LightQuery(from, normal, transmits); }
   // What nodes see of it. length: of its ray, in scene units, from where it may meet something.

@@ -8,7 +8,7 @@ namespace lancer {
 
 // Light that waits for its shadow ray.
 struct WaitingLight {
-  uint32_t slot = 0;
+  uint32_t slot = 0, branch = 0;                           // of the sample and its path
   bool indirect = false;                                   // scattered more than once
   bool occlusion = false;                                  // no light: the pass of ambient occlusion
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission
@@ -51,7 +51,7 @@ public:
       result.light[environment ? kLightEnvironment : kLightEmission] += light;
   }
   // Scales all indirect light, as clamping does.
-  void scale_indirect(SampleResult &result, float factor) const {
+  void scale_indirect(SampleResult &result, const glm::vec3 &factor) const {
     for (uint32_t component = 0; component < 3 && components_; ++component)
       result.light[kLightComponents + 3 * component + 1] *= factor;
   }

@@ -19,19 +19,27 @@ namespace {
 
 template <class Enum> LANCER_LANE U number_of(Enum value) { return U(static_cast<uint32_t>(value)); }
 
-// The eight numbers of the vertex.
-LANCER_LANE void draw_numbers(VertexBlock &block, int first) {
-  const U pixel = load(block.pixel + first);
-  for (uint32_t i = 0; i < 8; i += 2) {
-    const uint32_t dimension = block.dimension + i;
-    Vector2<F> u;
-    if (dimension < kJointDimensions)
-      u = {scrambled(load(block.reversed_point[i] + first), pixel, dimension),
-           scrambled(load(block.reversed_point[i + 1] + first), pixel, dimension + 1)};
-    else
-      u = pair_numbers(load(block.reversed_sample + first), pixel, dimension);
-    store(block.u[i] + first, u.x);
-    store(block.u[i + 1] + first, u.y);
+// The numbers of the vertex, in pairs.
+[[gnu::flatten]] void draw(VertexBlock &block, uint32_t wanted) {
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const U pixel = load(block.pixel + first);
+    for (uint32_t i = 0; i < 8; i += 2) {
+      if (!(wanted >> i & 3))
+        continue;
+      const uint32_t dimension = block.dimension + i;
+      Vector2<F> u;
+      if (dimension < kJointDimensions)
+        u = {scrambled(load(block.reversed_point[i] + first), pixel, dimension),
+             scrambled(load(block.reversed_point[i + 1] + first), pixel, dimension + 1)};
+      else
+        u = pair_numbers(load(block.reversed_sample + first), pixel, dimension);
+      if (wanted >> i & 1)
+        store(block.u[i] + first, u.x);
+      if (wanted >> i & 2)
+        store(block.u[i + 1] + first, u.y);
+    }
   }
 }
 
@@ -46,8 +54,6 @@ LANCER_LANE void store_surface(VertexBlock &block, int first, const SurfaceLanes
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    if (!block.numbers_given)
-      draw_numbers(block, first);
     // Back along the ray.
     const D3 d = load3(block.d, first);
     const D length = sqrt(dot(d, d));
@@ -180,7 +186,7 @@ LANCER_LANE V3 divided(const V3 &a, const V3 &b) {
 
 // What the light's sample brings to the viewer where nothing is in its way. scatters: share of paths that do not pass straight
 // on: they find the same light.
-LANCER_LANE void light(VertexBlock &block, int first, const Bsdf<F> &bsdf, D scatters) {
+LANCER_LANE void light_of(VertexBlock &block, int first, const Bsdf<F> &bsdf, D scatters) {
   const F zero(0.0f);
   const D pdf = load(block.light_pdf + first);
   const M lit = (pdf > D(0.0)) & some(block.scatters, first);
@@ -192,10 +198,12 @@ LANCER_LANE void light(VertexBlock &block, int first, const Bsdf<F> &bsdf, D sca
   for (int component = 0; component < 3; ++component)
     value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), Vec3<F>(zero), value.part[component]);
   const V3 f = value.f();
-  // The BSDF finds the same light, unless it is a single direction.
+  // The BSDF finds the same light, unless it is a single direction. Where samples split, both count as if each were one: what
+  // is shaded as if it were round gets other light of one than of the other, and Cycles weighs them so.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
   // What is scattered of a density is of the order of 1, however narrow the lobe and however bright the light.
-  const V3 contribution = load3(block.beta, first) * (f * narrow(widen(weight) / pdf)) * load3(block.light_radiance, first);
+  const V3 contribution = load3(block.beta, first) * (f * narrow(widen(weight) / (pdf * load(block.lights + first)))) *
+                          load3(block.light_radiance, first);
   store3(block.contribution, first, contribution);
   for (int component = 0; component < 2 && block.shares_wanted; ++component)
     store3(block.light_share[component], first, divided(value.part[component], f));
@@ -233,8 +241,21 @@ LANCER_LANE void look_around(VertexBlock &block, int first, const Bsdf<F> &bsdf,
   block.looks_itself |= placed_bits(asked & !(by_next & above(wi)), first);
 }
 
+void light(VertexBlock &block) {
+  block.lit = block.lifted = 0;
+  for (int first = 0; first < kBlockLanes; first += kLanes) {
+    if (!(block.used >> first))
+      return;
+    const Bsdf<F> &bsdf = lobes_of(block, first);
+    const D3 p = load3(block.p, first), outwards = widen(load3(block.ng, first));
+    ask_lamps(block, first, p);
+    light_of(block, first, bsdf, D(1.0) - widen(share_passing(block, first, bsdf)));
+    store3(block.shadow_origin, first, origin_towards(p, load(block.offset + first), outwards, load3(block.light_wi, first)));
+  }
+}
+
 void scatter(VertexBlock &block) {
-  block.lit = block.lifted = block.sampled = block.diffuse = block.transmitted = 0;
+  block.sampled = block.diffuse = block.transmitted = 0;
   block.looks_by_next = block.looks_itself = 0;
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
@@ -242,15 +263,12 @@ void scatter(VertexBlock &block) {
     const Bsdf<F> &bsdf = lobes_of(block, first);
     const D3 p = load3(block.p, first), outwards = widen(load3(block.ng, first));
     const D offset = load(block.offset + first);
-    ask_lamps(block, first, p);
-    const D scatters = D(1.0) - widen(share_passing(block, first, bsdf));
-    light(block, first, bsdf, scatters);
-    store3(block.shadow_origin, first, origin_towards(p, offset, outwards, load3(block.light_wi, first)));
+    const D scatters = D(1.0) - widen(load(block.pass + first));
     // Go on in a direction of the BSDF.
     const BsdfSample<F> sample = bsdf.sample(load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
     store3(block.next_origin, first, origin_towards(p, offset, outwards, D3(widen(sample.wi))));
     store3(block.wi, first, sample.wi);
-    store3(block.next_beta, first, load3(block.beta, first) * (sample.weight / narrow(scatters)));
+    store3(block.next_beta, first, load3(block.beta, first) * (sample.weight / narrow(scatters * load(block.paths + first))));
     store(block.pdf + first, select(sample.delta, D(0.0), widen(sample.pdf) * scatters));
     store(block.alpha2 + first, sample.alpha2);
     for (int component = 0; component < 2 && block.shares_wanted; ++component)
@@ -288,8 +306,8 @@ void scatter(VertexBlock &block) {
 } // namespace
 
 namespace LANCER_ISA {
-const VertexKernel vertex_kernel = {surfaces, lobes, describe, choose,
-                                    scatter,  meets, meet,     kBlockLanes / kLanes * sizeof(Bsdf<F>)};
+const VertexKernel vertex_kernel = {surfaces, lobes,   describe, draw, choose,
+                                    light,    scatter, meets,    meet, kBlockLanes / kLanes * sizeof(Bsdf<F>)};
 }
 
 } // namespace lancer

@@ -26,10 +26,9 @@ struct alignas(64) VertexBlock {
   Floats corner[3][3], normals[3][3];   // of a triangle's corners, object space; by corner, axis
   Doubles bary[2], d[3], o[3], t;
   Floats terminator; // Instance::terminator
-  // Given: what the sampler makes its numbers of. All lanes share the dimension.
+  // Given: what draw() makes the numbers of. All lanes share the dimension.
   Words pixel, reversed_sample, reversed_point[8];
   uint32_t dimension = 0;
-  uint32_t numbers_given = 0;                        // 1: u is given instead
   alignas(64) const Material *material[kBlockLanes]; // all of one class
   Floats through;                                    // mean of what passes straight on
   Floats beta[3];
@@ -38,6 +37,9 @@ struct alignas(64) VertexBlock {
   Doubles p[3], offset, length; // of d
   Floats ng[3], ns[3], wo[3];
   Floats u[8];
+  // Given: how many lights the vertex asks, and how many paths go on from it, of which each pass of light() and scatter() is
+  // one.
+  Doubles lights, paths;
 
   // Given: what the nodes of the material say, four floats of every lane each; kernels keep the lobes of all lanes in `lobes`,
   // which has room for what VertexKernel::lobes_bytes says.
@@ -58,8 +60,9 @@ struct alignas(64) VertexBlock {
   Floats light_radiance[3];
   Words light_delta, light_hidden; // bits LANCER_RAY_*
 
-  // scatter(): the share of paths that pass straight on; what follows is of the others. Rays start at origin, on the side of
+  // light(): the share of paths that pass straight on; what follows is of the others. Rays start at origin, on the side of
   // their direction. Shadow rays end at light_target, or nowhere.
+  // scatter(): where they go.
   Floats pass;
   Floats contribution[3];
   Doubles shadow_origin[3], next_origin[3];
@@ -110,11 +113,14 @@ struct alignas(64) VertexBlock {
 
 // Shading of path vertices in lanes: the surface, its lobes, the choice of a light, scattering.
 struct VertexKernel {
-  // In this order; nodes are asked after the first, other lights than lamps before the last.
+  // In this order; nodes are asked after the first, other lights than lamps before light(). From draw() on again for each
+  // further light or path. wanted: bits of u.
   void (*surfaces)(VertexBlock &block);
   void (*lobes)(VertexBlock &block);
   void (*describe)(VertexBlock &block);
+  void (*draw)(VertexBlock &block, uint32_t wanted);
   void (*choose)(VertexBlock &block);
+  void (*light)(VertexBlock &block);
   void (*scatter)(VertexBlock &block);
   // Bits of the lanes that may meet the light; no other does.
   uint32_t (*meets)(const SegmentBlock &segments, const Light &light);

@@ -1,0 +1,61 @@
+// How samples split: found out by a few pixels, before the first sample of a picture.
+#pragma once
+
+#include "integrator/sample.h"
+
+#include <barrier>
+#include <memory>
+#include <vector>
+
+namespace lancer {
+
+// Renders some pixels of the whole image with one way of splitting after the other, and takes the one whose variance times cost
+// is least. Its own samples are thrown away: a picture whose samples had been looked at before would be biased. Variance is
+// told by halves, as that of the picture is; cost is counted in rays and vertices. So nothing depends on threads, clocks or the
+// region that is rendered.
+class Pilot {
+public:
+  // Fewer planned samples are not worth it.
+  static constexpr uint32_t kLeastPlanned = 16;
+
+  // What is given must outlive it. threads: how many will work.
+  Pilot(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, uint32_t threads);
+
+  // Every thread calls it once, all at the same time; each returns when the way is found.
+  void work(uint32_t thread);
+  // Then.
+  const Splits &splits() const { return best_; }
+
+private:
+  // A pixel that has noise.
+  struct Pixel {
+    uint32_t x, y;
+    double level; // what its noise is compared with
+  };
+
+  void search();
+  void find_pixels();
+  void look_at(const std::vector<Pixel> &pixels, const Splits &splits);
+  double product_of(const Splits &splits);
+  double noise_of(size_t pixel) const;
+  void measure(uint32_t thread);
+
+  const Scene &scene_;
+  const Camera &camera_;
+  IntegratorSettings settings_;
+  std::vector<Pixel> pixels_;
+  double cost_of_others_ = 0.0; // of pixels without noise, whichever way
+  // Of what is looked at now.
+  Splits tried_;
+  std::vector<SampleAddress> addresses_; // [pixel][sample]
+  std::vector<float> luminances_;        // of each
+  double cost_ = 0.0;
+  std::vector<std::unique_ptr<Integrator>> integrators_; // by thread
+  std::vector<double> costs_;                            // of each
+  std::atomic<size_t> next_batch_{0};
+  Splits best_;
+  std::atomic<bool> done_{false};
+  std::barrier<> barrier_;
+};
+
+} // namespace lancer
