@@ -11,6 +11,7 @@ import math
 import time
 from dataclasses import dataclass
 
+from ..bindings.enums import Integrator
 from ..bindings.session import Cancelled, Scene, Session
 from .scene_features import used_features, without
 
@@ -84,6 +85,19 @@ def small_picture(camera, pixels=_PIXELS):
     return dataclasses.replace(camera, **size, x=x, y=y, region_width=width, region_height=height)
 
 
+def with_splits(scene, snapshot, poll=None):
+    """The snapshot, its samples split as those of the whole picture are: a small one might find another way."""
+    settings = snapshot.settings
+    if settings.integrator != Integrator.PATH or settings.split_lights or settings.split_paths:
+        return snapshot
+    with Session(scene, dataclasses.replace(snapshot.camera, region_width=1, region_height=1), settings) as session:
+        if not session.render_all(1, poll):
+            raise Cancelled
+        found = session.statistics()
+    splits = {"split_lights": found.split_lights, "split_paths": found.split_paths}
+    return dataclasses.replace(snapshot, settings=dataclasses.replace(settings, **splits))
+
+
 class _Runs:
     """A session that renders the same number of samples again and again, timed."""
 
@@ -119,6 +133,7 @@ def measure_costs(snapshot, seconds=10.0, poll=None, tell=None, library=None):
     start = time.monotonic()
     features = [feature for feature in used_features(snapshot) if feature.without]
     with Scene.upload(snapshot, library, poll) as scene:
+        snapshot = with_splits(scene, snapshot, poll)
         camera, base, samples, per_sample = _calibrated(scene, snapshot, poll)
         measured, skipped = [], []
         with base.session:

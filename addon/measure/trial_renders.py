@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from ..bindings.abi import LancerError
 from ..bindings.enums import Integrator
 from ..bindings.session import Cancelled, Scene, Session
-from .costs import small_picture
+from .costs import small_picture, with_splits
 from .schedule import FIRST_LOOK
 
 # Pixels of the larger of the small pictures.
@@ -68,7 +68,7 @@ def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None):
         def show(text):
             tell(min(1.0, (time.monotonic() - begun) / max(seconds, 1e-9)), text)
 
-        run = _Run(scene, snapshot, begun + seconds, poll, show)
+        run = _Run(scene, with_splits(scene, snapshot, poll), begun + seconds, poll, show)
         classic = run.classic() if snapshot.settings.integrator == Integrator.PATH else 0.0
         large, small = run.cameras(seconds)
         even = run.even(small, begun + 2.0 * _EVEN_SHARE * seconds)
