@@ -187,6 +187,16 @@ TEST_F(Splitting, IsFoundAlikeByAnyThreadsAndAnyRegion) {
       ASSERT_EQ(part[y * 4 * camera.region_width + i], whole[(y + camera.y) * 4 * 48 + 4 * camera.x + i]);
 }
 
+TEST_F(Splitting, IsFoundAlikeByAnySeed) {
+  settings.samples = 16;
+  const Way way = found();
+  for (settings.seed = 1; settings.seed < 20; ++settings.seed) {
+    const Way other = found();
+    EXPECT_EQ(other.lights, way.lights);
+    EXPECT_EQ(other.paths, way.paths);
+  }
+}
+
 TEST_F(Splitting, IsNotLookedForWhereFewSamplesArePlanned) {
   settings.samples = 15;
   const Way way = found(8);

@@ -11,8 +11,8 @@ namespace lancer {
 
 // Renders some pixels of the whole image with one way of splitting after the other, and takes the one whose variance times cost
 // is least. Its own samples are thrown away: a picture whose samples had been looked at before would be biased. Variance is
-// told by halves, as that of the picture is; cost is counted in rays and vertices. So nothing depends on threads, clocks or the
-// region that is rendered.
+// told by halves, as that of the picture is; cost is counted in rays and vertices. So nothing depends on threads, clocks, the
+// seed or the region that is rendered.
 class Pilot {
 public:
   // Fewer planned samples are not worth it.
