@@ -766,21 +766,21 @@ typedef struct lancer_settings {
   uint32_t integrator; /* LANCER_PATH ... */
   uint32_t samples;    /* planned per pixel; CLASSIC with 1 takes the middle of pixel, lens and light */
   uint32_t seed;
-  uint32_t max_bounces;         /* PATH: scatterings after the first; CLASSIC: depth of the recursion */
-  float contribution_threshold; /* CLASSIC: a ray that brings no more than this share of what it meets is not traced;
-                                   0 = never */
-  float clamp_indirect;         /* PATH: largest channel of a sample's indirect light; 0 = off */
+  uint32_t max_bounces;               /* PATH: scatterings after the first; CLASSIC: depth of the recursion */
+  float contribution_threshold;       /* CLASSIC: a ray that brings no more than this share of what it meets is not traced;
+                                         0 = never */
+  float clamp_indirect;               /* PATH: largest channel of a sample's indirect light; 0 = off */
   uint32_t split_lights, split_paths; /* PATH: how many lights a sample asks, and along how many paths it goes on, at the first
                                          surface that scatters into more than single directions; at most 16. 0 = as many as
                                          pay, where 16 samples are planned: a few pixels tell before the first */
-  uint32_t pixel_filter;        /* LANCER_FILTER_* */
-  float filter_width;           /* full width in pixels */
-  uint32_t film_transparent;    /* 1: the environment leaves alpha 0 */
-  uint32_t transparent_glass;   /* 1: so it does where it is seen through glass of at most glass_roughness */
-  float glass_roughness;        /* alpha */
-  uint32_t transparent_bounces; /* surfaces that a ray may pass straight through; the next one shows its own light only */
-  uint32_t transparent_shadows; /* surfaces that a shadow ray may pass, with those that the path before it has passed */
-  float alpha_threshold;        /* NORMAL, UV, DEPTH, POSITION and the indices are of the first surface at least this opaque */
+  uint32_t pixel_filter;              /* LANCER_FILTER_* */
+  float filter_width;                 /* full width in pixels */
+  uint32_t film_transparent;          /* 1: the environment leaves alpha 0 */
+  uint32_t transparent_glass;         /* 1: so it does where it is seen through glass of at most glass_roughness */
+  float glass_roughness;              /* alpha */
+  uint32_t transparent_bounces;       /* surfaces that a ray may pass straight through; the next one shows its own light only */
+  uint32_t transparent_shadows;       /* surfaces that a shadow ray may pass, with those that the path before it has passed */
+  float alpha_threshold; /* NORMAL, UV, DEPTH, POSITION and the indices are of the first surface at least this opaque */
   uint32_t environment_reflections; /* CLASSIC: 1 = a reflected or refracted ray takes its colour from the environment,
                                        untraced */
   float occlusion_distance;         /* AMBIENT_OCCLUSION: how far a thing may be to darken; 0 = any distance */
