@@ -32,7 +32,7 @@ struct IntegratorSettings {
   uint32_t max_bounces = 10;
   float contribution_threshold = 0.0f;
   float clamp_indirect = 0.0f;
-  Splits splits;
+  Splits splits{};
   FilterKind filter = FilterKind::BlackmanHarris;
   float filter_width = 1.5f;
   bool film_transparent = false;
