@@ -5,7 +5,7 @@ Generated from core/include/lancer.h by `make bindings`; what is changed here is
 
 from enum import IntEnum, IntFlag
 
-ABI_VERSION = 4
+ABI_VERSION = 5
 
 
 class Status(IntEnum):

@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 /* Changes whenever a struct or a call of this header does. */
-#define LANCER_ABI_VERSION 4u
+#define LANCER_ABI_VERSION 5u
 
 typedef uint64_t lancer_scene;
 typedef uint64_t lancer_session;

@@ -6,9 +6,12 @@
 namespace lancer_test {
 namespace {
 
-// A wall that shines with 10 behind so many panes of clear glass, or of glass that is none of the film's.
-float seen_through(int panes, float clamp, bool clear) {
+// A wall that shines with 10 behind so many panes of clear glass, or of glass that is none of the film's. paths: that a sample
+// may split into, where there is something to split at.
+float seen_through(int panes, float clamp, bool clear, uint32_t paths) {
   Studio studio;
+  studio.settings.split_lights = 1;
+  studio.settings.split_paths = paths;
   studio.settings.max_bounces = 4;
   studio.settings.clamp_indirect = clamp;
   studio.settings.film_transparent = studio.settings.transparent_glass = clear;
@@ -24,13 +27,14 @@ float seen_through(int panes, float clamp, bool clear) {
 }
 
 TEST(Clamping, TakesWhatCameByMoreThanOneScattering) {
-  for (const bool clear : {false, true}) {
-    EXPECT_FLOAT_EQ(seen_through(0, 1.0f, clear), 10.0f);
-    EXPECT_FLOAT_EQ(seen_through(1, 1.0f, clear), 10.0f);
-    EXPECT_FLOAT_EQ(seen_through(2, 1.0f, clear), 1.0f);
-    EXPECT_FLOAT_EQ(seen_through(2, 0.0f, clear), 10.0f);
-    EXPECT_FLOAT_EQ(seen_through(2, 20.0f, clear), 10.0f);
-  }
+  for (const bool clear : {false, true})
+    for (const uint32_t paths : {1u, 8u}) {
+      EXPECT_FLOAT_EQ(seen_through(0, 1.0f, clear, paths), 10.0f);
+      EXPECT_FLOAT_EQ(seen_through(1, 1.0f, clear, paths), 10.0f);
+      EXPECT_FLOAT_EQ(seen_through(2, 1.0f, clear, paths), 1.0f);
+      EXPECT_FLOAT_EQ(seen_through(2, 0.0f, clear, paths), 10.0f);
+      EXPECT_FLOAT_EQ(seen_through(2, 20.0f, clear, paths), 10.0f);
+    }
 }
 
 } // namespace

@@ -2,6 +2,8 @@
 
 #include "sampling/color.h"
 
+#include <algorithm>
+
 namespace lancer {
 
 void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
@@ -9,7 +11,7 @@ void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleR
   only_combined_ = passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
   energy = {};
-  indirect_.assign(results.size() * settings_.splits.paths, glm::vec3(0.0f));
+  indirect_.assign(results.size() * places(), glm::vec3(0.0f));
   shares_.resize(indirect_.size());
   if (!only_combined_ || records_.size() != results.size())
     records_.assign(results.size(), Record());
@@ -18,37 +20,39 @@ void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleR
 }
 
 void PathFilm::end() {
-  const uint32_t paths = settings_.splits.paths;
   for (uint32_t slot = 0; slot < results_.size(); ++slot) {
     if (settings_.clamp_indirect > 0.0f)
       clamp(slot);
-    for (uint32_t branch = 0; branch < paths; ++branch)
-      results_[slot].radiance += indirect_[place(slot, branch)];
+    for (uint32_t i = 0; i < places(); ++i)
+      results_[slot].radiance += indirect_[slot * places() + i];
   }
 }
 
-// Clamps what each path of a sample has found, as if it were the only one.
+// Clamps what each path of a sample has found, as if it were the only one: its own with the weight of all, and what all share.
 void PathFilm::clamp(uint32_t slot) {
-  glm::vec3 before(0.0f), after(0.0f);
-  const float limit = most_indirect();
+  const auto paths = float(settings_.splits.paths);
+  const glm::vec3 shared = before_splitting(slot);
+  glm::vec3 all(0.0f), kept(0.0f);
   float factor = 1.0f;
   for (uint32_t branch = 0; branch < settings_.splits.paths; ++branch) {
-    glm::vec3 &indirect = indirect_[place(slot, branch)];
-    before += indirect;
-    if (const float top = largest(indirect); top > limit) {
-      factor = limit / top;
-      energy.clip(double(luminance(indirect)) * (1.0 - double(factor)));
-      indirect *= factor;
+    const glm::vec3 found = shared + paths * indirect_[slot * places() + branch];
+    float share = 1.0f;
+    if (const float top = largest(found); top > settings_.clamp_indirect) {
+      factor = share = settings_.clamp_indirect / top;
+      energy.clip(double(luminance(found)) * (1.0 - double(share)) / double(paths));
     }
-    after += indirect;
+    all += found;
+    kept += found * share;
   }
   if (factor == 1.0f)
     return;
+  std::fill_n(indirect_.begin() + ptrdiff_t(slot * places()), places(), glm::vec3(0.0f));
+  indirect_[slot * places()] = kept / paths;
   // Passes do not tell the paths apart.
-  glm::vec3 kept(factor);
-  for (int channel = 0; channel < 3 && settings_.splits.paths > 1; ++channel)
-    kept[channel] = before[channel] != 0.0f ? after[channel] / before[channel] : 1.0f;
-  passes.scale_indirect(results_[slot], kept);
+  glm::vec3 of_passes(factor);
+  for (int channel = 0; channel < 3 && places() > 1; ++channel)
+    of_passes[channel] = all[channel] != 0.0f ? kept[channel] / all[channel] : 1.0f;
+  passes.scale_indirect(results_[slot], of_passes);
 }
 
 void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment) {
@@ -59,7 +63,7 @@ void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment
     result.albedo += guides_[path.slot].beta * radiance;
   // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
   if (path.in_view) {
-    const float top = largest(radiance), limit = most_indirect();
+    const float top = largest(radiance), limit = settings_.clamp_indirect / float(path.sharers);
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
     energy.clip(double(luminance(radiance - seen)));
     result.radiance += seen;
@@ -80,7 +84,7 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
     return;
   }
   if (waiting.indirect)
-    indirect_[place(waiting.slot, waiting.branch)] += light;
+    indirect_[waiting.slot * places() + waiting.place] += light;
   else
     result.radiance += light;
   passes.add(result, light, waiting.share, waiting.indirect);

@@ -19,14 +19,19 @@ public:
   void begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   // Joins the indirect light, clamped if that was asked for.
   void end();
-  // Found so far: by a path, and by its sample before that split; by all paths of a sample.
-  glm::vec3 gathered(const Path &path) const { return results_[path.slot].radiance + indirect_[place(path)]; }
+  // Found so far: by a path, and by all paths of a sample.
+  glm::vec3 gathered(const Path &path) const {
+    const glm::vec3 before = path.split ? before_splitting(path.slot) : glm::vec3(0.0f);
+    return results_[path.slot].radiance + before + indirect_[place(path)];
+  }
   glm::vec3 gathered(uint32_t slot) const {
     glm::vec3 sum = results_[slot].radiance;
-    for (uint32_t branch = 0; branch < settings_.splits.paths; ++branch)
-      sum += indirect_[place(slot, branch)];
+    for (uint32_t i = 0; i < places(); ++i)
+      sum += indirect_[slot * places() + i];
     return sum;
   }
+  // Where a path gathers what it finds, counted from its sample's first place.
+  uint32_t place_of(const Path &path) const { return path.split ? path.branch : places() - 1; }
 
   // Light that a path brings to the camera.
   void add(const Path &path, const glm::vec3 &radiance, bool environment);
@@ -76,11 +81,12 @@ public:
   Energy energy; // of the batch
 
 private:
-  // Where a path gathers what it finds.
-  uint32_t place(const Path &path) const { return place(path.slot, path.branch); }
-  uint32_t place(uint32_t slot, uint32_t branch) const { return slot * settings_.splits.paths + branch; }
-  // Of a path, where that is clamped: its share of its sample.
-  float most_indirect() const { return settings_.clamp_indirect / float(settings_.splits.paths); }
+  // Places of a sample: of each of its paths, and behind them, where there are several, of what was found before they split.
+  uint32_t places() const { return settings_.splits.paths > 1 ? settings_.splits.paths + 1 : 1; }
+  uint32_t place(const Path &path) const { return path.slot * places() + place_of(path); }
+  glm::vec3 before_splitting(uint32_t slot) const {
+    return places() > 1 ? indirect_[(slot + 1) * places() - 1] : glm::vec3(0.0f);
+  }
   void clamp(uint32_t slot);
 
   // What only passes beside the picture ask of a sample: it stays in its place while the path moves on.

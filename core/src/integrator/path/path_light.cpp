@@ -138,11 +138,11 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
     shares.share[component] = path.in_view ? get(block_.light_share[component], lane) : film_.shares(path)[component];
   if (scene_.lights.no_shadow(lights_.light(lane))) {
     shares.slot = path.slot;
-    shares.branch = path.branch;
+    shares.place = film_.place_of(path);
     shares.indirect = path.scatterings > 0;
     return shadows_.push_lit(shares, contribution);
   }
-  Ray &ray = shadows_.push(path.slot, path.branch, contribution, path.scatterings > 0, path.passed_through);
+  Ray &ray = shadows_.push(path.slot, film_.place_of(path), contribution, path.scatterings > 0, path.passed_through);
   if (passes_.components())
     shadows_.set_shares(shares.share);
   if (shadows_.asks_light_path())

@@ -8,7 +8,7 @@ namespace lancer {
 
 // Light that waits for its shadow ray.
 struct WaitingLight {
-  uint32_t slot = 0, branch = 0;                           // of the sample and its path
+  uint32_t slot = 0, place = 0;                            // of the sample, and where its path gathers
   bool indirect = false;                                   // scattered more than once
   bool occlusion = false;                                  // no light: the pass of ambient occlusion
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission

@@ -27,10 +27,10 @@ public:
   }
   // The same for a sum that keeps no account of the way. The ray is the caller's to write where it stands: it would not be
   // copied before it has left the processor's stores.
-  Ray &push(uint32_t slot, uint32_t branch, const glm::vec3 &contribution, bool indirect = false, uint32_t passed = 0) {
+  Ray &push(uint32_t slot, uint32_t place, const glm::vec3 &contribution, bool indirect = false, uint32_t passed = 0) {
     Waiting &waiting = waiting_.emplace_back();
     waiting.light.slot = slot;
-    waiting.light.branch = branch;
+    waiting.light.place = place;
     waiting.light.indirect = indirect;
     waiting.contribution = contribution;
     waiting.passed = passed;
