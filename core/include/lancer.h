@@ -771,8 +771,8 @@ typedef struct lancer_settings {
                                          0 = never */
   float clamp_indirect;               /* PATH: largest channel of a sample's indirect light; 0 = off */
   uint32_t split_lights, split_paths; /* PATH: how many lights a sample asks, and along how many paths it goes on, at the first
-                                         surface that scatters into more than single directions; at most 16. 0 = as many as
-                                         pay, where 16 samples are planned: a few pixels tell before the first */
+                                         surface that scatters into more than single directions; at most 16. 0 in both: as
+                                         many as pay, which some pixels tell before the first sample, where 16 are planned */
   uint32_t pixel_filter;              /* LANCER_FILTER_* */
   float filter_width;                 /* full width in pixels */
   uint32_t film_transparent;          /* 1: the environment leaves alpha 0 */

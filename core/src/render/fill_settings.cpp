@@ -21,14 +21,9 @@ void check_choice(const char *what, uint32_t value, uint32_t last) {
                  std::to_string(last));
 }
 
-void check_bounces(const char *what, uint32_t value) {
-  if (value > kMostBounces)
-    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " > " + std::to_string(kMostBounces));
-}
-
-void check_splits(const char *what, uint32_t value) {
-  if (value > kMostSplits)
-    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " > " + std::to_string(kMostSplits));
+void check_most(const char *what, uint32_t value, uint32_t most) {
+  if (value > most)
+    bad_argument(std::string("settings: ") + what + " " + std::to_string(value) + " > " + std::to_string(most));
 }
 
 void check_amount(const char *what, float value) {
@@ -56,16 +51,15 @@ SessionSettings read_settings(const lancer_settings &source) {
   check_amount("mist_start", source.mist_start);
   check_amount("mist_depth", source.mist_depth);
   check_amount("mist_falloff", source.mist_falloff);
-  check_bounces("max_bounces", source.max_bounces);
+  check_most("max_bounces", source.max_bounces, kMostBounces);
   if (source.integrator == LANCER_CLASSIC && source.max_bounces > kDeepestRecursion)
     bad_argument("settings: max_bounces " + std::to_string(source.max_bounces) + " > " + std::to_string(kDeepestRecursion) +
                  ", the deepest recursion of CLASSIC");
-  check_splits("split_lights", source.split_lights);
-  check_splits("split_paths", source.split_paths);
-  check_bounces("transparent_bounces", source.transparent_bounces);
-  check_bounces("transparent_shadows", source.transparent_shadows);
-  if (source.threads > kMostThreads)
-    bad_argument("settings: threads " + std::to_string(source.threads) + " > " + std::to_string(kMostThreads));
+  check_most("split_lights", source.split_lights, kMostSplits);
+  check_most("split_paths", source.split_paths, kMostSplits);
+  check_most("transparent_bounces", source.transparent_bounces, kMostBounces);
+  check_most("transparent_shadows", source.transparent_shadows, kMostBounces);
+  check_most("threads", source.threads, kMostThreads);
   if (source.passes >> LANCER_PASS_COUNT)
     bad_argument("settings: passes " + std::to_string(source.passes) + " has bits beyond the last pass");
   SessionSettings settings;

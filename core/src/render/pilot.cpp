@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kSamples = 16;
 constexpr uint32_t kBatch = 1024;
-// Pixels that are looked at: one for so many samples of the picture, which then takes some 2 % longer.
+// Pixels that are looked at: one for so many samples of the picture, which then takes up to 6 % longer (8 public files).
 constexpr double kSamplesEach = 4096.0;
 constexpr uint32_t kFewest = 128, kMostPixels = 4096;
 // The fewest that should have noise, and how many times as many are looked at for their sake.
@@ -23,7 +23,7 @@ constexpr uint32_t kLooks = 8;
 constexpr uint32_t kMost = 8;
 // What another way has to bring: the pilot's figures are off by about as much.
 constexpr double kWorth = 0.93;
-// Share of the pixels, those of most noise, whose noise counts no more than that of the least of them: flashes of light are too
+// Share of the pixels, those of most noise without splitting, beyond whose least noise none counts: flashes of light are too
 // rare in so few samples to tell anything.
 constexpr double kNoisiest = 0.02;
 // Costs of a camera ray and a vertex, of a ray that goes on or to a light: 1. Fitted to the times of 26 public files split in
@@ -84,8 +84,7 @@ void Pilot::search() {
     (lights ? splits.lights : splits.paths) *= 2;
     return splits;
   };
-  find_pixels();
-  double least = product_of(best_);
+  double least = find_pixels();
   if (!(least > 0.0))
     return;
   const double by_paths = product_of(doubled(best_, false));
@@ -105,39 +104,51 @@ void Pilot::search() {
   }
 }
 
-// Takes pixels that have noise from the whole image.
-void Pilot::find_pixels() {
+// Takes pixels that have noise from the whole image. Returns the product of not splitting; 0 where there is no noise.
+double Pilot::find_pixels() {
   const double planned = double(camera_.width) * camera_.height * settings_.samples;
   const auto wanted = std::bit_floor(uint32_t(std::clamp(planned / kSamplesEach, double(kFewest), double(kMostPixels))));
-  double sum = 0.0;
+  double sum = 0.0, cost = 0.0;
   uint32_t looked_at = 0;
   while (looked_at == 0 || (pixels_.size() < kFewestNoisy && looked_at < kLooks * wanted && !settings_.cancelled())) {
     std::vector<Pixel> some;
     for (uint32_t i = 0; i < wanted; ++i) {
       const glm::dvec2 at = place_of(looked_at++) * glm::dvec2(camera_.width, camera_.height);
       // Addresses begin at the region, which may lie beyond: they come around.
-      some.push_back({std::min(uint32_t(at.x), camera_.width - 1) - camera_.x,
-                      std::min(uint32_t(at.y), camera_.height - 1) - camera_.y, 1.0});
+      some.push_back({.x = std::min(uint32_t(at.x), camera_.width - 1) - camera_.x,
+                      .y = std::min(uint32_t(at.y), camera_.height - 1) - camera_.y});
     }
-    look_at(some, Splits());
+    cost += look_at(some, Splits());
     for (size_t i = 0; i < some.size(); ++i) {
-      double level = 0.0;
       for (uint32_t sample = 0; sample < kSamples; ++sample)
-        level += std::abs(double(luminances_[i * kSamples + sample])) / kSamples;
-      sum += level;
-      some[i].level = level;
-      if (noise_of(i) > 0.0)
+        some[i].level += std::abs(double(luminances_[i * kSamples + sample])) / kSamples;
+      sum += some[i].level;
+      some[i].noise = noise_of(i);
+      if (some[i].noise > 0.0)
         pixels_.push_back(some[i]);
     }
   }
-  // Mostly they show the sky, for a camera ray.
+  if (pixels_.empty())
+    return 0.0;
+  // Others mostly show the sky, for a camera ray.
   cost_of_others_ = kCameraRay * kSamples * double(looked_at - pixels_.size());
-  // Noise counts relative to what a pixel shows, that of dark ones to a share of the whole picture, as errors are told.
-  for (Pixel &pixel : pixels_)
+  // Compare noise with what a pixel shows, that of dark ones with a share of the whole picture, as errors are told.
+  std::vector<double> noise;
+  for (Pixel &pixel : pixels_) {
     pixel.level += std::max(0.01 * sum / looked_at, 1e-30);
+    noise.push_back(pixel.noise / (pixel.level * pixel.level));
+  }
+  const auto limit = noise.begin() + ptrdiff_t((1.0 - kNoisiest) * double(noise.size()));
+  std::nth_element(noise.begin(), limit, noise.end());
+  most_noise_ = *limit;
+  double variance = 0.0;
+  for (const double of_pixel : noise)
+    variance += std::min(of_pixel, most_noise_);
+  return variance * cost;
 }
 
-void Pilot::look_at(const std::vector<Pixel> &pixels, const Splits &splits) {
+// Returns what it cost.
+double Pilot::look_at(const std::vector<Pixel> &pixels, const Splits &splits) {
   addresses_.clear();
   for (const Pixel &pixel : pixels)
     for (uint32_t sample = 0; sample < kSamples; ++sample)
@@ -148,7 +159,7 @@ void Pilot::look_at(const std::vector<Pixel> &pixels, const Splits &splits) {
   barrier_.arrive_and_wait();
   measure(0);
   barrier_.arrive_and_wait();
-  cost_ = std::accumulate(costs_.begin(), costs_.end(), 0.0);
+  return std::accumulate(costs_.begin(), costs_.end(), 0.0);
 }
 
 // Squares of what halves of a pixel's samples differ by: those of all, and of each half, which are as many measurements more.
@@ -163,18 +174,11 @@ double Pilot::noise_of(size_t pixel) const {
 
 // Variance times cost.
 double Pilot::product_of(const Splits &splits) {
-  look_at(pixels_, splits);
-  std::vector<double> noise(pixels_.size());
-  for (size_t i = 0; i < pixels_.size(); ++i)
-    noise[i] = noise_of(i) / (pixels_[i].level * pixels_[i].level);
-  if (noise.empty())
-    return 0.0;
-  const auto limit = noise.begin() + ptrdiff_t((1.0 - kNoisiest) * double(noise.size()));
-  std::nth_element(noise.begin(), limit, noise.end());
+  const double cost = look_at(pixels_, splits);
   double variance = 0.0;
-  for (const double of_pixel : noise)
-    variance += std::min(of_pixel, *limit);
-  return variance * (cost_ + cost_of_others_);
+  for (size_t i = 0; i < pixels_.size(); ++i)
+    variance += std::min(noise_of(i) / (pixels_[i].level * pixels_[i].level), most_noise_);
+  return variance * (cost + cost_of_others_);
 }
 
 void Pilot::measure(uint32_t thread) {

@@ -30,12 +30,13 @@ private:
   // A pixel that has noise.
   struct Pixel {
     uint32_t x, y;
-    double level; // what its noise is compared with
+    double level = 0.0; // what its noise is compared with
+    double noise = 0.0; // without splitting
   };
 
   void search();
-  void find_pixels();
-  void look_at(const std::vector<Pixel> &pixels, const Splits &splits);
+  double find_pixels();
+  double look_at(const std::vector<Pixel> &pixels, const Splits &splits);
   double product_of(const Splits &splits);
   double noise_of(size_t pixel) const;
   void measure(uint32_t thread);
@@ -44,12 +45,12 @@ private:
   const Camera &camera_;
   IntegratorSettings settings_;
   std::vector<Pixel> pixels_;
+  double most_noise_ = 0.0;     // that counts of a pixel, relative to its level
   double cost_of_others_ = 0.0; // of pixels without noise, whichever way
   // Of what is looked at now.
   Splits tried_;
-  std::vector<SampleAddress> addresses_; // [pixel][sample]
-  std::vector<float> luminances_;        // of each
-  double cost_ = 0.0;
+  std::vector<SampleAddress> addresses_;                 // [pixel][sample]
+  std::vector<float> luminances_;                        // of each
   std::vector<std::unique_ptr<Integrator>> integrators_; // by thread
   std::vector<double> costs_;                            // of each
   std::atomic<size_t> next_batch_{0};

@@ -53,15 +53,15 @@ void PathIntegrator::split() {
   }
 }
 
-// The numbers of the lanes; where they split into count, those of this one of them. Light n of sample s takes the numbers of
-// sample count s + n: together they are as even as those of so many samples, and so are the paths', which stay with theirs.
+// Draws these numbers of all lanes, bits of u. In lanes that split they are those of one of count lights or paths: number n of
+// sample s takes the numbers of sample count s + n, so that all together are as even as those of so many samples. Paths keep
+// that number for all that follows.
 void PathIntegrator::draw_numbers(uint32_t wanted, uint32_t count, uint32_t number) {
   const uint32_t joint = std::min(8u, kJointDimensions - std::min(block_.dimension, kJointDimensions));
   uint32_t last = 0, points[8] = {};
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     const Path &path = paths_[waiting_[lane].number];
-    const uint32_t sample =
-        path.sampler.sample() * (splitting_ >> lane & 1 ? count : 1u) + (splitting_ >> lane & 1 ? number : 0u);
+    const uint32_t own = path.sampler.sample(), sample = splitting_ >> lane & 1 ? own * count + number : own;
     if (!one_bounce_) {
       const auto u = Sampler(path.sampler.pixel(), sample).get8(path.vertex_dimension());
       for (uint32_t i = 0; i < 8; ++i)

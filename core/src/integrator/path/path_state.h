@@ -21,10 +21,10 @@ struct Path {
   bool transmits = false;
   double pdf = 0.0;     // of the BSDF sample that made the ray; 0 after the camera or a single direction
   uint32_t slot;        // of its sample's result
-  uint32_t branch = 0;  // its number among the paths that its sample has split into
-  uint32_t sharers = 1; // how many those are
-  bool split = false;   // that was there, or earlier
-  bool leads = true;    // drawn evenly from those: it tells what the camera sees for all of them
+  bool split = false;   // the sample has split
+  uint32_t branch = 0;  // number among its paths
+  uint32_t sharers = 1; // how many paths share its weight
+  bool leads = true;    // drawn evenly from them: what the camera sees is told by this one alone
   uint32_t scatterings = 0;
   uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
   uint32_t layers = 0;                // passed straight through since the last scattering

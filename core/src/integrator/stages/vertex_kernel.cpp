@@ -3,12 +3,12 @@
 
 #include "compile/material_lobes.h"
 #include "integrator/stages/block_lobes.h"
+#include "integrator/stages/draw_numbers.h"
 #include "integrator/stages/lobe_means.h"
 #include "integrator/stages/terminator.h"
 #include "lancer.h"
 #include "lights/light_choice.h"
 #include "lights/sample_light.h"
-#include "sampling/scramble.h"
 #include "sampling/warp.h"
 #include "scene/hit_surface.h"
 #include "simd/kernel_choice.h"
@@ -19,27 +19,11 @@ namespace {
 
 template <class Enum> LANCER_LANE U number_of(Enum value) { return U(static_cast<uint32_t>(value)); }
 
-// The numbers of the vertex, in pairs.
 [[gnu::flatten]] void draw(VertexBlock &block, uint32_t wanted) {
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    const U pixel = load(block.pixel + first);
-    for (uint32_t i = 0; i < 8; i += 2) {
-      if (!(wanted >> i & 3))
-        continue;
-      const uint32_t dimension = block.dimension + i;
-      Vector2<F> u;
-      if (dimension < kJointDimensions)
-        u = {scrambled(load(block.reversed_point[i] + first), pixel, dimension),
-             scrambled(load(block.reversed_point[i + 1] + first), pixel, dimension + 1)};
-      else
-        u = pair_numbers(load(block.reversed_sample + first), pixel, dimension);
-      if (wanted >> i & 1)
-        store(block.u[i] + first, u.x);
-      if (wanted >> i & 2)
-        store(block.u[i + 1] + first, u.y);
-    }
+    draw_numbers(block, first, wanted);
   }
 }
 

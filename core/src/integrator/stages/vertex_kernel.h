@@ -37,8 +37,7 @@ struct alignas(64) VertexBlock {
   Doubles p[3], offset, length; // of d
   Floats ng[3], ns[3], wo[3];
   Floats u[8];
-  // Given: how many lights the vertex asks, and how many paths go on from it, of which each pass of light() and scatter() is
-  // one.
+  // Given: how many lights the vertex asks, and how many paths go on from it; light() and scatter() are for one of them each.
   Doubles lights, paths;
 
   // Given: what the nodes of the material say, four floats of every lane each; kernels keep the lobes of all lanes in `lobes`,
@@ -60,9 +59,9 @@ struct alignas(64) VertexBlock {
   Floats light_radiance[3];
   Words light_delta, light_hidden; // bits LANCER_RAY_*
 
-  // light(): the share of paths that pass straight on; what follows is of the others. Rays start at origin, on the side of
-  // their direction. Shadow rays end at light_target, or nowhere.
-  // scatter(): where they go.
+  // light(): the share of paths that pass straight on; what follows is of the others; and what the sample of a light brings.
+  // scatter(): where paths go on. Rays start at origin, on the side of their direction. Shadow rays end at light_target, or
+  // nowhere.
   Floats pass;
   Floats contribution[3];
   Doubles shadow_origin[3], next_origin[3];
