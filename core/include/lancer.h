@@ -803,10 +803,10 @@ typedef struct lancer_progress {
 
 typedef struct lancer_statistics {
   double build_seconds, render_seconds;
-  uint64_t samples; /* pixel samples */
-  uint64_t camera_rays, bounce_rays, shadow_rays;
-  uint64_t invalid_samples;                      /* non-finite, dropped, among those that the film has */
-  uint32_t invalid_x, invalid_y, invalid_sample; /* the first of them by sample, then row, for lancer_debug_sample */
+  uint64_t samples;                               /* pixel samples */
+  uint64_t camera_rays, bounce_rays, shadow_rays; /* traced; pixels of nothing but an even background need none */
+  uint64_t invalid_samples;                       /* non-finite, dropped, among those that the film has */
+  uint32_t invalid_x, invalid_y, invalid_sample;  /* the first of them by sample, then row, for lancer_debug_sample */
   uint32_t threads;
   uint64_t triangles, instances, lights;
   uint64_t geometry_bytes, accelerator_bytes, film_bytes;

@@ -90,11 +90,24 @@ struct SampleResult {
 
 struct RayCounts {
   uint64_t camera = 0, bounce = 0, shadow = 0;
+
+  RayCounts &operator+=(const RayCounts &other) {
+    camera += other.camera;
+    bounce += other.bounce;
+    shadow += other.shadow;
+    return *this;
+  }
 };
 
 // Vertices on surfaces: shaded side by side in lanes, or one by one.
 struct VertexCounts {
   uint64_t wide = 0, narrow = 0;
+
+  VertexCounts &operator+=(const VertexCounts &other) {
+    wide += other.wide;
+    narrow += other.narrow;
+    return *this;
+  }
 };
 
 // Luminance that settings take from the picture, summed over samples.

@@ -120,6 +120,32 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
   forget_joined(tile);
 }
 
+// Sums of equal numbers are those numbers times a power of two, to the bit.
+void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
+  const uint32_t pixels = tile.pixels();
+  const std::lock_guard lock(tile.mutex);
+  const std::vector<SampleResult> results(pixels, result);
+  Sums leaf;
+  leaf.channels.resize(size_t(pixels) * layout_.summed_channels);
+  leaf.differences.assign(pixels, 0.0f);
+  if (tile.count == 0) {
+    keep_first(tile, results);
+    tile.brightest.resize(pixels);
+  }
+  gather(results, leaf, tile.brightest.data());
+  const uint32_t count = tile.count + samples;
+  tile.levels.resize(std::max(tile.levels.size(), size_t(std::bit_width(count))));
+  for (uint32_t level = 0; level < tile.levels.size(); ++level) {
+    if (!(count >> level & 1) || tile.waits(level))
+      continue;
+    tile.levels[level] = leaf;
+    for (double &channel : tile.levels[level].channels)
+      channel *= double(1u << level);
+  }
+  tile.count = count;
+  forget_joined(tile);
+}
+
 // Sums that have been joined are not needed any more.
 void Film::forget_joined(Tile &tile) {
   for (uint32_t level = 0; level < tile.levels.size(); ++level)

@@ -62,6 +62,8 @@ public:
   // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel. Where memory ends the tile
   // keeps those that it has counted.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
+  // Adds samples that all show the same in all pixels, to a tile that has no others.
+  void add_even(Tile &tile, uint32_t samples, const SampleResult &result);
   // Counts a sample of those that are added next, which is not finite. In order of sample and of place.
   void drop(Tile &tile, const SampleAddress &address);
   struct Dropped {

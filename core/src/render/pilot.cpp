@@ -1,6 +1,7 @@
 #include "render/pilot.h"
 
 #include "lancer.h"
+#include "render/background.h"
 #include "sampling/color.h"
 
 #include <algorithm>
@@ -130,8 +131,12 @@ double Pilot::find_pixels() {
   }
   if (pixels_.empty())
     return 0.0;
-  // Others mostly show the sky, for a camera ray.
-  cost_of_others_ = kCameraRay * kSamples * double(looked_at - pixels_.size());
+  // Others mostly show the background, for a camera ray; where that is even, they mostly are not traced.
+  const double cost_of_rays = kCameraRay * kSamples * double(looked_at - pixels_.size());
+  if (has_even_background(scene_, camera_))
+    cost -= cost_of_rays;
+  else
+    cost_of_others_ = cost_of_rays;
   // Compare noise with what a pixel shows, that of dark ones with a share of the whole picture, as errors are told.
   std::vector<double> noise;
   for (Pixel &pixel : pixels_) {

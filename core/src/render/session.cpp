@@ -12,8 +12,6 @@ namespace lancer {
 
 namespace {
 
-// A batch of paths that fills the queues without leaving the second-level cache.
-constexpr uint32_t kBatch = 1024;
 constexpr uint32_t kTileSize = 32, kSmallestTile = 8, kLargestTile = 256;
 // At the end threads wait for the last tile: so many for each keep that near a hundredth of the time.
 constexpr uint64_t kTilesEach = 64;
@@ -48,16 +46,6 @@ uint32_t tile_size(const Camera &camera, const SessionSettings &settings, uint32
   return size;
 }
 
-// Nothing but where the camera ray ended.
-SampleResult place_of(const SampleResult &result) {
-  SampleResult place(true);
-  place.depth = result.depth;
-  place.position = result.position;
-  place.object_index = result.object_index;
-  place.material_index = result.material_index;
-  return place;
-}
-
 } // namespace
 
 Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings)
@@ -68,10 +56,8 @@ Session::Session(std::shared_ptr<const Scene> scene, const Camera &camera, const
       pool_(settings.threads) {
   settings_.integrator.cancel = &cancel_;
   splits_ = settings_.integrator.splits;
-  for (uint32_t i = 0; i < pool_.size(); ++i) {
-    workers_.push_back(std::make_unique<Worker>());
-    workers_.back()->integrator = make_integrator(*scene_, camera_, settings_.integrator);
-  }
+  for (uint32_t i = 0; i < pool_.size(); ++i)
+    workers_.push_back(std::make_unique<TileWorker>(*scene_, camera_, settings_.integrator));
 }
 
 Session::~Session() { cancel_ = true; }
@@ -141,11 +127,14 @@ void Session::start() {
   next_task_ = 0;
   started_ = true;
   active_ = pool_.size();
+  start_ = std::chrono::steady_clock::now();
   // What ended before the first sample is found anew.
   pilot_.reset();
-  if (settings_.finds_splits && film_.sample_range().second == 0)
-    pilot_ = std::make_unique<Pilot>(*scene_, camera_, settings_.integrator, pool_.size());
-  start_ = std::chrono::steady_clock::now();
+  if (film_.sample_range().second == 0) {
+    background_ = find_background(*scene_, camera_, settings_.integrator, film_);
+    if (settings_.finds_splits)
+      pilot_ = std::make_unique<Pilot>(*scene_, camera_, settings_.integrator, pool_.size());
+  }
   pool_.start([this](uint32_t thread) { work(thread); });
 }
 
@@ -161,67 +150,26 @@ void Session::work(uint32_t thread) {
       --session.active_;
     }
   } const leave{*this};
-  Worker &worker = *workers_[thread];
   if (pilot_)
     find_splits(thread);
   while (!cancel_) {
     const size_t task = next_task_.fetch_add(1);
     if (task >= tasks_.size())
       break;
-    render_tile(worker, film_.tile(tasks_[task].tile), tasks_[task].end);
+    workers_[thread]->render(film_, film_.tile(tasks_[task].tile), tasks_[task].end, background_, [this](uint64_t samples) {
+      samples_ += samples;
+      counted_samples_ += samples;
+    });
   }
 }
 
 void Session::find_splits(uint32_t thread) {
   pilot_->work(thread);
-  workers_[thread]->integrator->set_splits(pilot_->splits());
+  workers_[thread]->set_splits(pilot_->splits());
   if (thread != 0)
     return;
   const std::lock_guard lock(mutex_);
   splits_ = pilot_->splits();
-}
-
-void Session::render_tile(Worker &worker, Film::Tile &tile, uint32_t end) {
-  const uint32_t pixels = tile.pixels();
-  if (pixels == 0)
-    return;
-  const uint32_t per_batch = std::max(1u, kBatch / pixels);
-  while (tile.count < end && !cancel_) {
-    // Take the next whole samples of all pixels of the tile.
-    const uint32_t samples = std::min(per_batch, end - tile.count);
-    worker.addresses.clear();
-    for (uint32_t s = 0; s < samples; ++s)
-      for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
-        const glm::uvec2 place = tile.place(pixel);
-        worker.addresses.push_back({place.x, place.y, tile.count + s});
-      }
-    worker.results.resize(worker.addresses.size());
-    Energy energy;
-    // Large tiles go through the integrator in several batches.
-    for (size_t begin = 0; begin < worker.addresses.size(); begin += kBatch) {
-      const size_t size = std::min<size_t>(kBatch, worker.addresses.size() - begin);
-      worker.integrator->run(std::span(worker.addresses).subspan(begin, size), std::span(worker.results).subspan(begin, size),
-                             nullptr);
-      energy += worker.integrator->energy();
-    }
-    // A batch that was broken off is worth nothing.
-    if (cancel_)
-      return;
-    drop_invalid(worker, tile);
-    film_.add(tile, samples, worker.results);
-    samples_ += worker.addresses.size();
-    counted_samples_ += worker.addresses.size();
-    {
-      const std::lock_guard lock(worker.mutex);
-      worker.energy += energy;
-    }
-    const RayCounts &counts = worker.integrator->counts();
-    worker.camera_rays = counts.camera;
-    worker.bounce_rays = counts.bounce;
-    worker.shadow_rays = counts.shadow;
-    worker.wide_vertices = worker.integrator->vertices().wide;
-    worker.narrow_vertices = worker.integrator->vertices().narrow;
-  }
 }
 
 // Takes back what a stopped range has added beyond powers of two.
@@ -239,31 +187,17 @@ void Session::settle() {
   range_samples_ = 0;
 }
 
-void Session::drop_invalid(Worker &worker, Film::Tile &tile) {
-  for (size_t i = 0; i < worker.results.size(); ++i) {
-    if (film_.finite(worker.results[i]))
-      continue;
-    worker.results[i] = place_of(worker.results[i]);
-    film_.drop(tile, worker.addresses[i]);
-  }
-}
-
 RayCounts Session::rays() const {
   RayCounts sum;
-  for (const auto &worker : workers_) {
-    sum.camera += worker->camera_rays;
-    sum.bounce += worker->bounce_rays;
-    sum.shadow += worker->shadow_rays;
-  }
+  for (const auto &worker : workers_)
+    sum += worker->rays();
   return sum;
 }
 
 VertexCounts Session::vertices() const {
   VertexCounts sum;
-  for (const auto &worker : workers_) {
-    sum.wide += worker->wide_vertices;
-    sum.narrow += worker->narrow_vertices;
-  }
+  for (const auto &worker : workers_)
+    sum += worker->vertices();
   return sum;
 }
 
@@ -334,10 +268,8 @@ SessionError Session::error(double confidence) const {
   }
   std::tie(result.least_samples, result.most_samples) = film_.sample_range();
   Energy energy;
-  for (const auto &worker : workers_) {
-    const std::lock_guard lock(worker->mutex);
-    energy += worker->energy;
-  }
+  for (const auto &worker : workers_)
+    energy += worker->energy();
   // Energy is also that of samples which a stopped range has taken back.
   light *= double(counted_samples_) / std::max(samples, 1.0);
   if (light > 0.0) {
@@ -363,7 +295,7 @@ SessionStatistics Session::statistics() const {
     const std::lock_guard lock(mutex_);
     statistics.splits = splits_;
   }
-  statistics.kernel = workers_.front()->integrator->kernel();
+  statistics.kernel = workers_.front()->kernel();
   return statistics;
 }
 

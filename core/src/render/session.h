@@ -6,6 +6,7 @@
 #include "render/picture_error.h"
 #include "render/pilot.h"
 #include "render/thread_pool.h"
+#include "render/tile_worker.h"
 
 #include <atomic>
 #include <chrono>
@@ -82,24 +83,11 @@ public:
   SampleResult replay(const SampleAddress &address, std::vector<PathVertex> &vertices);
 
 private:
-  struct Worker {
-    std::unique_ptr<Integrator> integrator;
-    std::vector<SampleAddress> addresses;
-    std::vector<SampleResult> results;
-    Energy energy;    // of what has been added to the film
-    std::mutex mutex; // of energy
-    // What the integrator has counted after its last batch, for other threads to read.
-    std::atomic<uint64_t> camera_rays{0}, bounce_rays{0}, shadow_rays{0};
-    std::atomic<uint64_t> wide_vertices{0}, narrow_vertices{0};
-  };
-
   void require_ready() const;
   void start();
   void work(uint32_t thread);
   void find_splits(uint32_t thread);
-  void render_tile(Worker &worker, Film::Tile &tile, uint32_t end);
   void settle();
-  void drop_invalid(Worker &worker, Film::Tile &tile);
   double seconds() const;
   RayCounts rays() const;
   VertexCounts vertices() const;
@@ -108,7 +96,7 @@ private:
   Camera camera_; // normalised
   SessionSettings settings_;
   Film film_;
-  std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<std::unique_ptr<TileWorker>> workers_;
   std::atomic<bool> cancel_{false}, stop_{false};
   std::atomic<size_t> next_task_{0};
   std::atomic<uint64_t> samples_{0}, counted_samples_{0}; // that the film has; that it has ever had
@@ -119,6 +107,7 @@ private:
   };
   std::vector<Task> tasks_;
   std::unique_ptr<Pilot> pilot_; // of a range that begins with finding how samples split
+  Background background_;
   double planned_samples_ = 0.0;
   bool cancelled_ = false, failed_ = false;
   double seconds_before_ = 0.0;

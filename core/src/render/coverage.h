@@ -1,0 +1,57 @@
+// Which parts of a picture may show anything but its background: found before the first sample, so that the rest is not traced.
+#pragma once
+
+#include "compile/scene.h"
+#include "render/projection.h"
+
+#include <span>
+#include <vector>
+
+namespace lancer {
+
+// Blocks of pixels of the region in which some surface or lamp may be seen. Triangles are projected, with all around them that
+// may show them: a block that nothing touches is empty for certain.
+class Coverage {
+public:
+  // Everything may be covered.
+  Coverage() = default;
+  // camera: normalised, no panorama. filter_width: in pixels. effort: how many triangles may be projected; where they are more,
+  // or some have no bounds, everything may be covered.
+  Coverage(const Scene &scene, const Camera &camera, double filter_width, uint64_t effort);
+
+  // Whether a sample of this pixel of the region may meet anything.
+  bool covers(uint32_t x, uint32_t y) const {
+    return blocks_.empty() || blocks_[size_t(y / kBlock) * across_ + x / kBlock] != 0;
+  }
+  bool covers_all() const { return blocks_.empty(); }
+  // A pixel that is not covered; only where there is one.
+  glm::uvec2 empty_pixel() const {
+    const auto block = uint32_t(std::ranges::find(blocks_, 0) - blocks_.begin());
+    return {block % across_ * kBlock, block / across_ * kBlock};
+  }
+
+private:
+  static constexpr uint32_t kBlock = 8;
+  // A rectangle of blocks, without its ends.
+  struct Blocks {
+    glm::uvec2 begin{0}, end{0};
+    uint32_t count() const { return (end.x - begin.x) * (end.y - begin.y); }
+  };
+
+  void add_lamps(const LightSet &lights, const Projection &projection);
+  bool add_surfaces(const Geometry &geometry, const Projection &projection, uint64_t effort);
+  void add_triangles(const Projection &projection, const Affine &to_camera, const Mesh &mesh);
+  void add_polygon(std::span<const glm::dvec2> corners, double margin);
+  // Those that a box may be seen in.
+  Blocks around(const Projection &projection, const Affine &to_camera, const glm::dvec3 &low, const glm::dvec3 &high) const;
+  Blocks within(const glm::dvec2 &low, const glm::dvec2 &high) const;
+  bool marked(const Blocks &blocks) const;
+  void mark(const Blocks &blocks);
+
+  std::vector<uint8_t> blocks_; // 1: may be covered; none: all may be
+  uint32_t across_ = 0, up_ = 0;
+  std::vector<CameraPoint> points_; // of the mesh that is added
+  std::vector<glm::dvec2> pixels_;  // of those beyond the near plane
+};
+
+} // namespace lancer

@@ -1,0 +1,118 @@
+#include "render/tile_worker.h"
+
+namespace lancer {
+
+namespace {
+
+// A batch of paths that fills the queues without leaving the second-level cache.
+constexpr uint32_t kBatch = 1024;
+// Where pixels are not covered a batch has more samples of the others, and results of so many batches at most.
+constexpr uint32_t kMostBatches = 2;
+
+// Nothing but where the camera ray ended.
+SampleResult place_of(const SampleResult &result) {
+  SampleResult place(true);
+  place.depth = result.depth;
+  place.position = result.position;
+  place.object_index = result.object_index;
+  place.material_index = result.material_index;
+  return place;
+}
+
+} // namespace
+
+TileWorker::TileWorker(const Scene &scene, const Camera &camera, const IntegratorSettings &settings)
+    : settings_(settings), integrator_(make_integrator(scene, camera, settings)) {}
+
+void TileWorker::render(Film &film, Film::Tile &tile, uint32_t end, const Background &background,
+                        const std::function<void(uint64_t samples)> &count) {
+  const uint32_t pixels = tile.pixels();
+  if (pixels == 0)
+    return;
+  // Find the pixels that may show anything.
+  covered_.clear();
+  for (uint32_t pixel = 0; pixel < pixels; ++pixel)
+    if (const glm::uvec2 place = tile.place(pixel); background.coverage.covers(place.x, place.y))
+      covered_.push_back(pixel);
+  const auto covered = uint32_t(covered_.size());
+  if (covered == 0) {
+    const uint32_t samples = end - tile.count;
+    film.add_even(tile, samples, background.sample);
+    return count(uint64_t(samples) * pixels);
+  }
+  const uint32_t per_batch = std::max(1u, std::min(kBatch / covered, kMostBatches * kBatch / pixels));
+  while (tile.count < end && !settings_.cancelled()) {
+    // Take their next whole samples.
+    const uint32_t samples = std::min(per_batch, end - tile.count);
+    render_batch(tile, samples);
+    if (settings_.cancelled())
+      return;
+    drop_invalid(film, tile);
+    film.add(tile, samples, all_pixels(tile, samples, background.sample));
+    count(uint64_t(samples) * pixels);
+    publish();
+  }
+}
+
+void TileWorker::render_batch(const Film::Tile &tile, uint32_t samples) {
+  addresses_.clear();
+  for (uint32_t s = 0; s < samples; ++s)
+    for (const uint32_t pixel : covered_) {
+      const glm::uvec2 place = tile.place(pixel);
+      addresses_.push_back({place.x, place.y, tile.count + s});
+    }
+  results_.resize(addresses_.size());
+  batch_energy_ = {};
+  // Large tiles go through the integrator in several batches.
+  for (size_t begin = 0; begin < addresses_.size(); begin += kBatch) {
+    const size_t size = std::min<size_t>(kBatch, addresses_.size() - begin);
+    integrator_->run(std::span(addresses_).subspan(begin, size), std::span(results_).subspan(begin, size), nullptr);
+    batch_energy_ += integrator_->energy();
+  }
+}
+
+void TileWorker::drop_invalid(Film &film, Film::Tile &tile) {
+  for (size_t i = 0; i < results_.size(); ++i) {
+    if (film.finite(results_[i]))
+      continue;
+    results_[i] = place_of(results_[i]);
+    film.drop(tile, addresses_[i]);
+  }
+}
+
+// The results of whole samples: those of covered pixels, and the background between them.
+std::span<const SampleResult> TileWorker::all_pixels(const Film::Tile &tile, uint32_t samples, const SampleResult &background) {
+  const uint32_t pixels = tile.pixels();
+  if (covered_.size() == pixels)
+    return results_;
+  spread_.assign(size_t(samples) * pixels, background);
+  auto result = results_.begin();
+  for (uint32_t s = 0; s < samples; ++s)
+    for (const uint32_t pixel : covered_)
+      spread_[size_t(s) * pixels + pixel] = *result++;
+  return spread_;
+}
+
+void TileWorker::publish() {
+  const std::lock_guard lock(mutex_);
+  rays_ = integrator_->counts();
+  vertices_ = integrator_->vertices();
+  energy_ += batch_energy_;
+}
+
+RayCounts TileWorker::rays() const {
+  const std::lock_guard lock(mutex_);
+  return rays_;
+}
+
+VertexCounts TileWorker::vertices() const {
+  const std::lock_guard lock(mutex_);
+  return vertices_;
+}
+
+Energy TileWorker::energy() const {
+  const std::lock_guard lock(mutex_);
+  return energy_;
+}
+
+} // namespace lancer
