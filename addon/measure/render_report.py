@@ -98,6 +98,9 @@ def _accuracy(numbers, settings):
     if numbers["samples_most"] > numbers["samples"]:
         samples = f"{numbers['samples']} to {numbers['samples_most']} samples a pixel, {numbers['samples_mean']:.0f} on average"
     how = CANCELLED if numbers["ended_by"] == CANCELLED else f"ended by {numbers['ended_by']}"
+    lights, paths = numbers["split_lights"], numbers["split_paths"]
+    if lights > 1 or paths > 1:
+        samples += f", each of {lights} light{'s' * (lights > 1)} and {paths} path{'s' * (paths > 1)},"
     ended = f"{samples} in {numbers['seconds']:.1f} s, {how}"
     if math.isfinite(numbers["error"]):
         low, high = percent(numbers["error_low"]), percent(numbers["error_high"])
@@ -130,6 +133,8 @@ def fields(numbers, settings):
     yield "samples", str(numbers["samples"])
     yield "samples_most", str(numbers["samples_most"])
     yield "samples_mean", f"{numbers['samples_mean']:.6g}"
+    yield "split_lights", str(numbers["split_lights"])
+    yield "split_paths", str(numbers["split_paths"])
     yield "seconds", f"{numbers['seconds']:.3f}"
     yield "ended_by", numbers["ended_by"]
     yield "invalid_samples", str(numbers["invalid_samples"])

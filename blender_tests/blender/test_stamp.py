@@ -12,6 +12,7 @@ from addon.measure.schedule import CANCELLED, SAMPLES, TARGET, TIME
 def numbers(error, bound, ended_by=SAMPLES, samples=100, seconds=20.0, **more):
     values = {"error": error, "error_low": 0.8 * error, "error_high": 0.9 * bound, "error_cannot_exclude": 0.1 * bound}
     values |= {"error_clipped": 0.0, "error_missing": 0.0, "ended_by": ended_by, "seconds": seconds, "denoised": ""}
+    values |= {"split_lights": 1, "split_paths": 1}
     return values | {"samples": samples, "samples_most": samples, "samples_mean": float(samples)} | more
 
 
@@ -52,6 +53,18 @@ def test_nothing_is_missed(values, settings):
 def test_an_unknown_error_has_missed_its_target():
     first, second = told(numbers(math.inf, math.inf, samples=1), samples=1)
     assert first.startswith("10 % was not reached: the error is not known") and second.startswith("error unknown")
+
+
+@pytest.mark.parametrize(
+    "lights, paths, words",
+    [
+        (1, 1, "100 samples in 20.0 s"),
+        (1, 4, "100 samples, each of 1 light and 4 paths, in 20.0 s"),
+        (2, 1, "100 samples, each of 2 lights and 1 path, in 20.0 s"),
+    ],
+)
+def test_how_samples_split(lights, paths, words):
+    assert words in told(numbers(0.05, 0.09, split_lights=lights, split_paths=paths))[0]
 
 
 def test_view_layers_are_named():

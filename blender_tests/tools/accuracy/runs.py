@@ -55,7 +55,8 @@ class Measured:
         return result
 
     def _session(self, seed, **settings):
-        settings = dataclasses.replace(self.snapshot.settings, threads=1, seed=seed, **settings)
+        # Samples split as those of a render do.
+        settings = dataclasses.replace(self.snapshot.settings, threads=1, seed=seed, split_lights=0, split_paths=0, **settings)
         return Session(self.uploaded, self.snapshot.camera, settings)
 
     def _each(self, function, seeds, what):
