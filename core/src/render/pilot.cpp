@@ -1,7 +1,6 @@
 #include "render/pilot.h"
 
 #include "lancer.h"
-#include "render/background.h"
 #include "sampling/color.h"
 
 #include <algorithm>
@@ -13,20 +12,23 @@ namespace lancer {
 
 namespace {
 
-constexpr uint32_t kSamples = 16;
+// Of each pixel. Sixteen understate what splitting brings (variance of two paths 0.52 to 1.06 of that of one, six public files;
+// 0.47 to 0.54 in pictures of 64 samples, 0.42 to 0.77 told by 32).
+constexpr uint32_t kSamples = 32;
 constexpr uint32_t kBatch = 1024;
-// Pixels that are looked at: one for so many samples of the picture, which then takes up to 6 % longer (8 public files).
+// Pixels that are looked at: one for so many samples of the picture, which then takes 1 to 7 % longer (64 samples
+// of five public files).
 constexpr double kSamplesEach = 4096.0;
-constexpr uint32_t kFewest = 128, kMostPixels = 4096;
+constexpr uint32_t kFewest = 128, kMostPixels = 1024;
 // The fewest that should have noise, and how many times as many are looked at for their sake.
-constexpr size_t kFewestNoisy = 96;
-constexpr uint32_t kLooks = 8;
+constexpr size_t kFewestNoisy = 160;
+constexpr uint32_t kLooks = 16;
 constexpr uint32_t kMost = 8;
-// What another way has to bring: the pilot's figures are off by about as much.
-constexpr double kWorth = 0.93;
-// Share of the pixels, those of most noise without splitting, beyond whose least noise none counts: flashes of light are too
-// rare in so few samples to tell anything.
-constexpr double kNoisiest = 0.02;
+// What another way has to bring: samples that are dearer for nothing only make the first pictures late.
+constexpr double kWorth = 0.95;
+// Share of the pixels, those of most noise, beyond whose least noise none counts: flashes of light are too rare in so few
+// samples to tell anything.
+constexpr double kNoisiest = 0.005;
 // Costs of a camera ray and a vertex, of a ray that goes on or to a light: 1. Fitted to the times of 26 public files split in
 // four ways each, which it foretells within 10 % (one standard deviation).
 constexpr double kCameraRay = 0.2, kVertex = 0.75;
@@ -35,6 +37,12 @@ constexpr double kCameraRay = 0.2, kVertex = 0.75;
 // unreasonable effectiveness of quasirandom sequences", 2018).
 glm::dvec2 place_of(uint32_t number) {
   return glm::fract(glm::dvec2(0.5) + double(number) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+}
+
+// What is not finite is dropped.
+float level_of(const SampleResult &result) {
+  const float level = luminance(result.radiance);
+  return std::isfinite(level) ? level : 0.0f;
 }
 
 double cost_of(const Integrator &integrator) {
@@ -46,8 +54,9 @@ double cost_of(const Integrator &integrator) {
 
 } // namespace
 
-Pilot::Pilot(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, uint32_t threads)
-    : scene_(scene), camera_(camera), settings_(settings), costs_(threads), barrier_(threads) {
+Pilot::Pilot(const Scene &scene, const Camera &camera, const Background &background, const IntegratorSettings &settings,
+             uint32_t threads)
+    : scene_(scene), camera_(camera), background_(background), settings_(settings), costs_(threads), barrier_(threads) {
   // Passes cost, and tell nothing of noise.
   settings_.passes = 1u << LANCER_PASS_COMBINED;
   settings_.splits = {};
@@ -79,81 +88,115 @@ void Pilot::work(uint32_t thread) {
   }
 }
 
-// Doubles each of the two numbers as long as that pays, first the one that pays more.
+// Doubles each of the two numbers by turns as long as that pays, first the one that pays more.
 void Pilot::search() {
-  const auto doubled = [](Splits splits, bool lights) {
+  const auto doubled = [&](bool lights) {
+    Splits splits = best_;
     (lights ? splits.lights : splits.paths) *= 2;
     return splits;
   };
-  double least = find_pixels();
-  if (!(least > 0.0))
+  Look best = find_pixels();
+  if (best.noise.empty())
     return;
-  const double by_paths = product_of(doubled(best_, false));
-  const double by_lights = scene_.lights.empty() ? least : product_of(doubled(best_, true));
-  const bool lights_first = by_lights < by_paths;
-  for (const bool lights : {lights_first, !lights_first}) {
-    Splits next = doubled(best_, lights);
-    while ((lights ? next.lights : next.paths) <= kMost && !settings_.cancelled()) {
-      const bool known = best_ == Splits();
-      const double product = !known ? product_of(next) : lights ? by_lights : by_paths;
-      if (!(product < kWorth * least))
-        break;
-      least = product;
-      best_ = next;
-      next = doubled(best_, lights);
+  Look by_paths = look(doubled(false)), by_lights = scene_.lights.empty() ? best : look(doubled(true));
+  bool lights = is_better(by_lights, by_paths, 1.0);
+  for (uint32_t failed = 0; failed < 2 && !settings_.cancelled();) {
+    const Splits next = doubled(lights);
+    bool pays = std::max(next.lights, next.paths) <= kMost && !(lights && scene_.lights.empty());
+    if (pays) {
+      Look found = best_ == Splits() ? (lights ? by_lights : by_paths) : look(next);
+      pays = is_better(found, best, kWorth);
+      if (pays) {
+        best = std::move(found);
+        best_ = next;
+      }
     }
+    failed = pays ? 0 : failed + 1;
+    lights = lights == pays;
   }
 }
 
-// Takes pixels that have noise from the whole image. Returns the product of not splitting; 0 where there is no noise.
-double Pilot::find_pixels() {
+// Takes pixels that have noise from the whole image. Returns what they tell of not splitting.
+Pilot::Look Pilot::find_pixels() {
   const double planned = double(camera_.width) * camera_.height * settings_.samples;
   const auto wanted = std::bit_floor(uint32_t(std::clamp(planned / kSamplesEach, double(kFewest), double(kMostPixels))));
-  double sum = 0.0, cost = 0.0;
-  uint32_t looked_at = 0;
+  Look plain;
+  double sum = 0.0;
+  uint32_t looked_at = 0, traced = 0;
   while (looked_at == 0 || (pixels_.size() < kFewestNoisy && looked_at < kLooks * wanted && !settings_.cancelled())) {
     std::vector<Pixel> some;
     for (uint32_t i = 0; i < wanted; ++i) {
       const glm::dvec2 at = place_of(looked_at++) * glm::dvec2(camera_.width, camera_.height);
       // Addresses begin at the region, which may lie beyond: they come around.
-      some.push_back({.x = std::min(uint32_t(at.x), camera_.width - 1) - camera_.x,
-                      .y = std::min(uint32_t(at.y), camera_.height - 1) - camera_.y});
+      const Pixel pixel{.x = std::min(uint32_t(at.x), camera_.width - 1) - camera_.x,
+                        .y = std::min(uint32_t(at.y), camera_.height - 1) - camera_.y};
+      if (is_empty(pixel))
+        sum += level_of(background_.sample);
+      else
+        some.push_back(pixel);
     }
-    cost += look_at(some, Splits());
+    plain.cost += run(some, plain.splits);
+    traced += uint32_t(some.size());
     for (size_t i = 0; i < some.size(); ++i) {
-      for (uint32_t sample = 0; sample < kSamples; ++sample)
-        some[i].level += std::abs(double(luminances_[i * kSamples + sample])) / kSamples;
+      some[i].level = mean_of(i);
       sum += some[i].level;
-      some[i].noise = noise_of(i);
-      if (some[i].noise > 0.0)
-        pixels_.push_back(some[i]);
+      if (!(noise_of(i) > 0.0))
+        continue;
+      pixels_.push_back(some[i]);
+      plain.noise.push_back(noise_of(i));
     }
   }
-  if (pixels_.empty())
-    return 0.0;
-  // Others mostly show the background, for a camera ray; where that is even, they mostly are not traced.
-  const double cost_of_rays = kCameraRay * kSamples * double(looked_at - pixels_.size());
+  looks_ = 1;
+  darkest_ = std::max(0.01 * sum / looked_at, 1e-30);
+  // Others mostly show the background, for a camera ray; where that is even, the picture does not trace them.
+  const double cost_of_rays = kCameraRay * kSamples * double(traced - pixels_.size());
   if (has_even_background(scene_, camera_))
-    cost -= cost_of_rays;
+    plain.cost -= cost_of_rays;
   else
     cost_of_others_ = cost_of_rays;
-  // Compare noise with what a pixel shows, that of dark ones with a share of the whole picture, as errors are told.
-  std::vector<double> noise;
-  for (Pixel &pixel : pixels_) {
-    pixel.level += std::max(0.01 * sum / looked_at, 1e-30);
-    noise.push_back(pixel.noise / (pixel.level * pixel.level));
+  return plain;
+}
+
+// Whether it shows the background for certain.
+bool Pilot::is_empty(const Pixel &pixel) const {
+  return pixel.x < camera_.region_width && pixel.y < camera_.region_height && !background_.coverage.covers(pixel.x, pixel.y);
+}
+
+Pilot::Look Pilot::look(const Splits &splits) {
+  Look look{splits, {}, run(pixels_, splits) + cost_of_others_};
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    look.noise.push_back(noise_of(i));
+    pixels_[i].level += mean_of(i);
   }
-  const auto limit = noise.begin() + ptrdiff_t((1.0 - kNoisiest) * double(noise.size()));
-  std::nth_element(noise.begin(), limit, noise.end());
-  most_noise_ = *limit;
-  double variance = 0.0;
-  for (const double of_pixel : noise)
-    variance += std::min(of_pixel, most_noise_);
-  return variance * cost;
+  ++looks_;
+  return look;
+}
+
+// Whether variance times cost is less than that of another, times a factor. Noise counts relative to what a pixel shows, that
+// of dark ones to a share of the whole picture, as errors are told. All looks together say what it shows: a pixel that one of
+// them alone finds bright by chance would have less noise in that look than in others.
+bool Pilot::is_better(const Look &look, const Look &than, double by) const {
+  const auto relative = [&](const Look &of, size_t i) {
+    const double level = pixels_[i].level / looks_ + darkest_;
+    return of.noise[i] / (level * level);
+  };
+  std::vector<double> both;
+  for (size_t i = 0; i < pixels_.size(); ++i)
+    for (const Look *of : {&look, &than})
+      both.push_back(relative(*of, i));
+  const auto limit = both.begin() + ptrdiff_t((1.0 - kNoisiest) * double(both.size()));
+  std::nth_element(both.begin(), limit, both.end());
+  const auto product = [&](const Look &of) {
+    double variance = 0.0;
+    for (size_t i = 0; i < pixels_.size(); ++i)
+      variance += std::min(relative(of, i), *limit);
+    return variance * of.cost;
+  };
+  return product(look) < by * product(than);
 }
 
 // Returns what it cost.
-double Pilot::look_at(const std::vector<Pixel> &pixels, const Splits &splits) {
+double Pilot::run(const std::vector<Pixel> &pixels, const Splits &splits) {
   addresses_.clear();
   for (const Pixel &pixel : pixels)
     for (uint32_t sample = 0; sample < kSamples; ++sample)
@@ -167,23 +210,27 @@ double Pilot::look_at(const std::vector<Pixel> &pixels, const Splits &splits) {
   return std::accumulate(costs_.begin(), costs_.end(), 0.0);
 }
 
-// Squares of what halves of a pixel's samples differ by: those of all, and of each half, which are as many measurements more.
-// Where variance falls as N^-1.5, as it mostly does, each counts for about the same.
-double Pilot::noise_of(size_t pixel) const {
-  double sums[4] = {};
+double Pilot::mean_of(size_t pixel) const {
+  double sum = 0.0;
   for (uint32_t sample = 0; sample < kSamples; ++sample)
-    sums[4 * sample / kSamples] += double(luminances_[pixel * kSamples + sample]);
-  const double all = sums[0] + sums[1] - sums[2] - sums[3], early = sums[0] - sums[1], late = sums[2] - sums[3];
-  return all * all + early * early + late * late;
+    sum += std::abs(double(luminances_[pixel * kSamples + sample]));
+  return sum / kSamples;
 }
 
-// Variance times cost.
-double Pilot::product_of(const Splits &splits) {
-  const double cost = look_at(pixels_, splits);
-  double variance = 0.0;
-  for (size_t i = 0; i < pixels_.size(); ++i)
-    variance += std::min(noise_of(i) / (pixels_[i].level * pixels_[i].level), most_noise_);
-  return variance * (cost + cost_of_others_);
+// Squares of what neighbouring stretches of a pixel's samples differ by: its halves, their halves, and theirs. Where variance
+// falls as N^-1.5, as it mostly does, each counts for about the same; shorter ones would tell of other samples than a picture
+// has.
+double Pilot::noise_of(size_t pixel) const {
+  constexpr uint32_t kStretches = 8;
+  double sums[kStretches] = {}, noise = 0.0;
+  for (uint32_t sample = 0; sample < kSamples; ++sample)
+    sums[kStretches * sample / kSamples] += double(luminances_[pixel * kSamples + sample]);
+  for (uint32_t count = kStretches; count > 1; count /= 2)
+    for (uint32_t i = 0; i < count; i += 2) {
+      noise += (sums[i] - sums[i + 1]) * (sums[i] - sums[i + 1]);
+      sums[i / 2] = sums[i] + sums[i + 1];
+    }
+  return noise;
 }
 
 void Pilot::measure(uint32_t thread) {
@@ -194,10 +241,8 @@ void Pilot::measure(uint32_t thread) {
   for (size_t begin; (begin = kBatch * next_batch_.fetch_add(1)) < addresses_.size() && !settings_.cancelled();) {
     const size_t size = std::min<size_t>(kBatch, addresses_.size() - begin);
     integrator.run(std::span(addresses_).subspan(begin, size), std::span(results).first(size), nullptr);
-    for (size_t i = 0; i < size; ++i) {
-      const float level = luminance(results[i].radiance);
-      luminances_[begin + i] = std::isfinite(level) ? level : 0.0f;
-    }
+    for (size_t i = 0; i < size; ++i)
+      luminances_[begin + i] = level_of(results[i]);
   }
   costs_[thread] = cost_of(integrator) - before;
 }

@@ -1,7 +1,7 @@
 // How samples split: found out by a few pixels, before the first sample of a picture.
 #pragma once
 
-#include "integrator/sample.h"
+#include "render/background.h"
 
 #include <barrier>
 #include <memory>
@@ -18,8 +18,10 @@ public:
   // Fewer planned samples are not worth it.
   static constexpr uint32_t kLeastPlanned = 16;
 
-  // What is given must outlive it. threads: how many will work.
-  Pilot(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, uint32_t threads);
+  // What is given must outlive it. background: what need not be looked at; it changes nothing but the time. threads: how many
+  // will work.
+  Pilot(const Scene &scene, const Camera &camera, const Background &background, const IntegratorSettings &settings,
+        uint32_t threads);
 
   // Every thread calls it once, all at the same time; each returns when the way is found.
   void work(uint32_t thread);
@@ -30,22 +32,32 @@ private:
   // A pixel that has noise.
   struct Pixel {
     uint32_t x, y;
-    double level = 0.0; // what its noise is compared with
-    double noise = 0.0; // without splitting
+    double level = 0.0; // mean luminances of all looks, summed
+  };
+  // What the pixels tell of a way.
+  struct Look {
+    Splits splits;
+    std::vector<double> noise; // [pixel]
+    double cost = 0.0;
   };
 
   void search();
-  double find_pixels();
-  double look_at(const std::vector<Pixel> &pixels, const Splits &splits);
-  double product_of(const Splits &splits);
+  Look find_pixels();
+  bool is_empty(const Pixel &pixel) const;
+  Look look(const Splits &splits);
+  bool is_better(const Look &look, const Look &than, double by) const;
+  double run(const std::vector<Pixel> &pixels, const Splits &splits);
+  double mean_of(size_t pixel) const;
   double noise_of(size_t pixel) const;
   void measure(uint32_t thread);
 
   const Scene &scene_;
   const Camera &camera_;
+  const Background &background_;
   IntegratorSettings settings_;
   std::vector<Pixel> pixels_;
-  double most_noise_ = 0.0;     // that counts of a pixel, relative to its level
+  uint32_t looks_ = 0;          // that levels are sums of
+  double darkest_ = 0.0;        // added to every level
   double cost_of_others_ = 0.0; // of pixels without noise, whichever way
   // Of what is looked at now.
   Splits tried_;

@@ -133,7 +133,7 @@ void Session::start() {
   if (film_.sample_range().second == 0) {
     background_ = find_background(*scene_, camera_, settings_.integrator, film_);
     if (settings_.finds_splits)
-      pilot_ = std::make_unique<Pilot>(*scene_, camera_, settings_.integrator, pool_.size());
+      pilot_ = std::make_unique<Pilot>(*scene_, camera_, background_, settings_.integrator, pool_.size());
   }
   pool_.start([this](uint32_t thread) { work(thread); });
 }
