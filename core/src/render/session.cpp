@@ -130,8 +130,9 @@ void Session::start() {
   start_ = std::chrono::steady_clock::now();
   // What ended before the first sample is found anew.
   pilot_.reset();
+  background_found_.reset();
   if (film_.sample_range().second == 0) {
-    background_ = find_background(*scene_, camera_, settings_.integrator, film_);
+    background_found_ = std::make_unique<std::latch>(1);
     if (settings_.finds_splits)
       pilot_ = std::make_unique<Pilot>(*scene_, camera_, background_, settings_.integrator, pool_.size());
   }
@@ -150,6 +151,8 @@ void Session::work(uint32_t thread) {
       --session.active_;
     }
   } const leave{*this};
+  if (background_found_)
+    look_for_background(thread);
   if (pilot_)
     find_splits(thread);
   while (!cancel_) {
@@ -161,6 +164,17 @@ void Session::work(uint32_t thread) {
       counted_samples_ += samples;
     });
   }
+}
+
+// The first thread looks, the others wait for it, however it leaves.
+void Session::look_for_background(uint32_t thread) {
+  if (thread != 0)
+    return background_found_->wait();
+  struct Leave {
+    std::latch &found;
+    ~Leave() { found.count_down(); }
+  } const leave{*background_found_};
+  background_ = find_background(*scene_, camera_, settings_.integrator, film_);
 }
 
 void Session::find_splits(uint32_t thread) {

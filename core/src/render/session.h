@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <latch>
 
 namespace lancer {
 
@@ -86,6 +87,7 @@ private:
   void require_ready() const;
   void start();
   void work(uint32_t thread);
+  void look_for_background(uint32_t thread);
   void find_splits(uint32_t thread);
   void settle();
   double seconds() const;
@@ -108,6 +110,7 @@ private:
   std::vector<Task> tasks_;
   std::unique_ptr<Pilot> pilot_; // of a range that begins with finding how samples split
   Background background_;
+  std::unique_ptr<std::latch> background_found_; // of a range that begins with looking for it
   double planned_samples_ = 0.0;
   bool cancelled_ = false, failed_ = false;
   double seconds_before_ = 0.0;
