@@ -38,7 +38,7 @@ private:
   struct Look {
     Splits splits;
     std::vector<double> noise; // [pixel]
-    double cost = 0.0;
+    uint64_t cost = 0;
   };
 
   void search();
@@ -46,7 +46,7 @@ private:
   bool is_empty(const Pixel &pixel) const;
   Look look(const Splits &splits);
   bool is_better(const Look &look, const Look &than, double by) const;
-  double run(const std::vector<Pixel> &pixels, const Splits &splits);
+  uint64_t run(const std::vector<Pixel> &pixels, const Splits &splits);
   double mean_of(size_t pixel) const;
   double noise_of(size_t pixel) const;
   void measure(uint32_t thread);
@@ -58,13 +58,13 @@ private:
   std::vector<Pixel> pixels_;
   uint32_t looks_ = 0;          // that levels are sums of
   double darkest_ = 0.0;        // added to every level
-  double cost_of_others_ = 0.0; // of pixels without noise, whichever way
+  uint64_t cost_of_others_ = 0; // of pixels without noise, whichever way
   // Of what is looked at now.
   Splits tried_;
   std::vector<SampleAddress> addresses_;                 // [pixel][sample]
   std::vector<float> luminances_;                        // of each
   std::vector<std::unique_ptr<Integrator>> integrators_; // by thread
-  std::vector<double> costs_;                            // of each
+  std::vector<uint64_t> costs_;                          // of each
   std::atomic<size_t> next_batch_{0};
   Splits best_;
   std::atomic<bool> done_{false};

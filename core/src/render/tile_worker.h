@@ -3,7 +3,6 @@
 
 #include "render/background.h"
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>

@@ -1,0 +1,83 @@
+// What a film tells: passes, and how far luminances are off.
+#include "render/film.h"
+
+#include "simd/rounding.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lancer {
+
+namespace {
+
+// Depth where there is no sample.
+constexpr float kNothing = 1e10f;
+
+} // namespace
+
+void Film::read(Pass pass, std::span<float> out) const {
+  const uint32_t width = channels(pass);
+  for (const auto &tile : tiles_) {
+    const std::lock_guard lock(tile->mutex);
+    for (uint32_t pixel = 0; pixel < tile->pixels(); ++pixel) {
+      const glm::uvec2 at = tile->place(pixel);
+      float *target = out.data() + (size_t(at.y) * width_ + at.x) * width;
+      if (tile->count == 0)
+        std::fill_n(target, width, pass == Pass::Depth ? kNothing : 0.0f);
+      else if (of_first_sample(pass))
+        std::copy_n(tile->first.data() + size_t(pixel) * layout_.first_channels + layout_.at[uint32_t(pass)], width, target);
+      else
+        read_means(pass, *tile, pixel, target);
+    }
+  }
+}
+
+void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target) const {
+  const size_t place = size_t(pixel) * layout_.summed_channels;
+  const auto mean = [&](Pass of, uint32_t channel) {
+    // Join the waiting sums, later and smaller ones first, as the tree would.
+    double sum = 0.0;
+    for (uint32_t level = 0; level < tile.levels.size(); ++level)
+      if (tile.waits(level))
+        sum = tile.levels[level].channels[place + layout_.at[uint32_t(of)] + channel] + sum;
+    return sum / double(tile.count);
+  };
+  const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };
+  if (divisor(pass) != pass) {
+    // A colour may be darker than what float holds of light over it.
+    const glm::vec3 light = nearest_float(divide_by_color(color(pass), color(divisor(pass))));
+    for (int i = 0; i < 3; ++i)
+      target[i] = light[i];
+  } else if (pass == Pass::Mist) {
+    // Samples count what is clear; the sky is all mist.
+    target[0] = float(std::clamp(1.0 - mean(pass, 0), 0.0, 1.0));
+  } else {
+    // Occlusion is counted from the open downwards, sometimes further than 0.
+    const float least = uint32_t(pass) == LANCER_PASS_AMBIENT_OCCLUSION ? 0.0f : -std::numeric_limits<float>::infinity();
+    for (uint32_t c = 0; c < channels(pass); ++c)
+      target[c] = std::max(float(mean(pass, c)), least);
+  }
+}
+
+uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
+  const std::lock_guard lock(tile.mutex);
+  if (tile.count < kLeastSamples)
+    return 0;
+  for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+    double mean = 0.0, variance = 0.0;
+    // Each waiting sum counts by its share of the samples; a single one is compared with all before it.
+    for (uint32_t level = uint32_t(tile.levels.size()); level-- > 0;) {
+      if (!tile.waits(level))
+        continue;
+      const Sums &sums = tile.levels[level];
+      const double share = double(1u << level) / double(tile.count), of_sums = mean_luminance(sums, level, pixel);
+      const double apart = level > 0 ? 0.5 * double(sums.differences[pixel]) : of_sums - mean / (1.0 - share);
+      mean += share * of_sums;
+      variance += share * share * apart * apart;
+    }
+    out[pixel] = {mean, variance, double(tile.brightest[pixel])};
+  }
+  return tile.count;
+}
+
+} // namespace lancer
