@@ -251,9 +251,10 @@ def plays(folder):
 
 
 def resized(folder):
-    """Mebibytes that Blender has grown by over twenty changes of the view's size; and of one copy of the scene.
+    """Mebibytes that malloc has given out over twenty changes of the view's size; and of one copy of the scene.
 
     The old and the new scene stand side by side for a while after a change: the least of ten changes is what stays.
+    Resident memory would count freed pieces, too, which the system lays into its large pages when it likes.
     """
     build(samples=0)
     data = bpy.data.meshes.new("Heavy")
@@ -273,7 +274,7 @@ def resized(folder):
         assert View().region.width != before
         View().render()
         yield from until(lambda: shown() is not None and shown().painter.picture is not None)
-        held.append(memory_now.held()["resident"])
+        held.append(memory_now.held()["given"])
     copy = sum(array.nbytes for mesh in shown()._contents.meshes for array in vars(mesh).values() if hasattr(array, "nbytes"))
     return {"growth": (min(held[-10:]) - min(held[10:20])) / 2**20, "copy": copy / 2**20}
 
