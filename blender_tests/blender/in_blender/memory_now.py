@@ -1,7 +1,10 @@
-"""What this process holds: of the system, and of what the C library has given out."""
+"""What this process holds: of the system, and of what its allocator has given out."""
 
 import ctypes
 import os
+
+# Stands for all arenas of jemalloc.
+_ALL_ARENAS = 4096
 
 
 class _Mallinfo2(ctypes.Structure):
@@ -10,11 +13,28 @@ class _Mallinfo2(ctypes.Structure):
 
 
 def held():
-    """Bytes: resident, and given out by malloc. Free memory goes back to the system first, so that it does not count."""
+    """Bytes: resident, and given out. Free memory goes back to the system first, so that it does not count."""
     library = ctypes.CDLL(None)
+    # Debian's Blender brings jemalloc, of which the C library knows nothing.
+    given = _given_by_jemalloc(library) if hasattr(library, "mallctl") else _given_by_c(library)
+    with open("/proc/self/statm", encoding="ascii") as file:
+        pages = int(file.read().split()[1])
+    return {"resident": pages * os.sysconf("SC_PAGE_SIZE"), "given": given}
+
+
+def _given_by_jemalloc(library):
+    library.mallctl(f"arena.{_ALL_ARENAS}.purge".encode(), None, None, None, ctypes.c_size_t(0))
+    # Its figures are those of the last epoch.
+    epoch, given = ctypes.c_uint64(1), ctypes.c_size_t()
+    library.mallctl(b"epoch", None, None, ctypes.byref(epoch), ctypes.c_size_t(ctypes.sizeof(epoch)))
+    size = ctypes.c_size_t(ctypes.sizeof(given))
+    failed = library.mallctl(b"stats.allocated", ctypes.byref(given), ctypes.byref(size), None, ctypes.c_size_t(0))
+    assert failed == 0, "jemalloc tells nothing"
+    return given.value
+
+
+def _given_by_c(library):
     library.malloc_trim(0)
     library.mallinfo2.restype = _Mallinfo2
     info = library.mallinfo2()
-    with open("/proc/self/statm", encoding="ascii") as file:
-        pages = int(file.read().split()[1])
-    return {"resident": pages * os.sysconf("SC_PAGE_SIZE"), "given": info.uordblks + info.hblkhd}
+    return info.uordblks + info.hblkhd

@@ -251,10 +251,10 @@ def plays(folder):
 
 
 def resized(folder):
-    """Mebibytes that malloc has given out over twenty changes of the view's size; and of one copy of the scene.
+    """Mebibytes that were given out over twenty changes of the view's size and are still held; and of one copy of the scene.
 
-    The old and the new scene stand side by side for a while after a change: the least of ten changes is what stays.
-    Resident memory would count freed pieces, too, which the system lays into its large pages when it likes.
+    The old and the new picture stand side by side for a while after a change: the least of ten changes is what stays. Resident
+    memory would count freed pieces, too, of which the system makes large pages as it likes.
     """
     build(samples=0)
     data = bpy.data.meshes.new("Heavy")
