@@ -11,6 +11,8 @@ TOOLS = ROOT / "blender_tests" / "tools"
 BUILD = ROOT / "build"
 # The page with the tables of all programs, and the one for users.
 TABLES, README = ROOT / "blender_tests" / "README.md", ROOT / "README.md"
+# The widest vectors that renderers have kernels for, by the processor's flag.
+_VECTORS = {"avx512vl": "AVX-512", "avx2": "AVX2"}
 
 
 def machine():
@@ -22,6 +24,10 @@ def machine():
     for line in Path("/proc/cpuinfo").read_text().splitlines():
         if line.startswith("model name"):
             facts["processor"] = line.split(":", 1)[1].strip()
+        elif line.startswith("flags"):
+            flags = line.split()
+            widest = next((name for flag, name in _VECTORS.items() if flag in flags), None)
+            facts["processor"] += f" with {widest}" if widest else ""
             break
     facts["memory_gib"] = round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30, 1)
     # What others have the machine do at the start falls on all figures.
