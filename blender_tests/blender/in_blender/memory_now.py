@@ -23,13 +23,15 @@ def held():
 
 
 def _given_by_jemalloc(library):
-    library.mallctl(f"arena.{_ALL_ARENAS}.purge".encode(), None, None, None, ctypes.c_size_t(0))
+    def control(name, old=None, old_size=None, new=None, new_size=0):
+        failed = library.mallctl(name.encode(), old, old_size, new, ctypes.c_size_t(new_size))
+        assert failed == 0, f"jemalloc refuses {name}: error {failed}"
+
+    control(f"arena.{_ALL_ARENAS}.purge")
     # Its figures are those of the last epoch.
     epoch, given = ctypes.c_uint64(1), ctypes.c_size_t()
-    library.mallctl(b"epoch", None, None, ctypes.byref(epoch), ctypes.c_size_t(ctypes.sizeof(epoch)))
-    size = ctypes.c_size_t(ctypes.sizeof(given))
-    failed = library.mallctl(b"stats.allocated", ctypes.byref(given), ctypes.byref(size), None, ctypes.c_size_t(0))
-    assert failed == 0, "jemalloc tells nothing"
+    control("epoch", new=ctypes.byref(epoch), new_size=ctypes.sizeof(epoch))
+    control("stats.allocated", ctypes.byref(given), ctypes.byref(ctypes.c_size_t(ctypes.sizeof(given))))
     return given.value
 
 

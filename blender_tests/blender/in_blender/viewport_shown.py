@@ -254,7 +254,7 @@ def resized(folder):
     """Mebibytes that were given out over twenty changes of the view's size and are still held; and of one copy of the scene.
 
     The old and the new picture stand side by side for a while after a change: the least of ten changes is what stays. Resident
-    memory would count freed pieces, too, of which the system makes large pages as it likes.
+    memory would count what is free, too, for as long as the allocator keeps it.
     """
     build(samples=0)
     data = bpy.data.meshes.new("Heavy")
