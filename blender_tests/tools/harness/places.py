@@ -11,7 +11,7 @@ TOOLS = ROOT / "blender_tests" / "tools"
 BUILD = ROOT / "build"
 # The page with the tables of all programs, and the one for users.
 TABLES, README = ROOT / "blender_tests" / "README.md", ROOT / "README.md"
-# The widest vectors that renderers have kernels for, by the processor's flag.
+# Vectors that renderers have kernels for, by the processor's flag, the widest first.
 _VECTORS = {"avx512vl": "AVX-512", "avx2": "AVX2"}
 
 
