@@ -1,8 +1,9 @@
 """The benchmark's goals, plans, bounds, page and tables."""
 
+import numpy as np
 import pytest
 
-from tools.bench import goals, page, plan, rays
+from tools.bench import contest, goals, page, plan, rays
 from tools.harness.page import marks
 from tools.harness.verdicts import NOT_MEASURED
 
@@ -68,6 +69,25 @@ def test_plans():
     assert all(scene.rounds >= 5 for scene in plan.scenes() if scene.reference)
     quick = {scene.name: scene for scene in plan.scenes(quick=True)}
     assert quick["balls"].rounds == 5 and quick["models"].rounds == 1
+
+
+def test_a_scene_is_the_same_whatever_order_blender_builds_its_meshes_in(tmp_path):
+    random = np.random.default_rng(1)
+    positions = random.random((500, 3), np.float32)
+    normals = positions / np.linalg.norm(positions, axis=1, keepdims=True)
+    corners = random.integers(0, 500, (900, 3), np.uint32)
+
+    def digest(*arrays):
+        np.savez(tmp_path / "scene.npz", *arrays)
+        return contest.digest_of_scene(tmp_path / "scene.npz")
+
+    first = digest(positions, normals, corners, np.float32([1, 2]))
+    assert digest(positions, normals * np.float32(1 + 1e-7), corners[::-1], np.float32([1, 2])) == first
+    moved = positions.copy()
+    moved[7, 1] += 0.1
+    assert digest(moved, normals, corners, np.float32([1, 2])) != first
+    assert digest(positions, normals, corners[1:], np.float32([1, 2])) != first
+    assert digest(positions, normals, corners, np.float32([2, 1])) != first
 
 
 def test_page_shows_what_was_measured_and_what_was_not(tmp_path):
