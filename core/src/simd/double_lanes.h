@@ -48,6 +48,11 @@ template <int W> struct Double {
 #undef LANCER_COMPARE
 
   friend LANCER_LANE Double select(Mask<W> m, Double a, Double b) {
+#if defined(__AVX2__)
+    if constexpr (W == 8)
+      return {(Vector)_mm256_blendv_pd((__m256d)b.lo, (__m256d)a.lo, (__m256d)low_half(m)),
+              (Vector)_mm256_blendv_pd((__m256d)b.hi, (__m256d)a.hi, (__m256d)high_half(m))};
+#endif
 #if defined(__AVX512F__)
     if constexpr (W == 16)
       return {(Vector)_mm512_mask_blend_pd(static_cast<__mmask8>(m.v), (__m512d)b.lo, (__m512d)a.lo),
@@ -138,6 +143,11 @@ template <int W> struct Double {
       const __m256i high = _mm512_maskz_cvttpd_epi32(kHalfLanes, (__m512d)a.hi);
       return Word<W>((VectorOf<uint32_t, W>)_mm512_maskz_inserti32x8(kAllLanes, _mm512_castsi256_si512(low), high, 1));
     }
+#endif
+#if defined(__AVX__)
+    if constexpr (W == 8)
+      return Word<W>((VectorOf<uint32_t, W>)_mm256_insertf128_si256(_mm256_castsi128_si256(_mm256_cvttpd_epi32((__m256d)a.lo)),
+                                                                    _mm256_cvttpd_epi32((__m256d)a.hi), 1));
 #endif
     Word<W> r;
     for (int i = 0; i < W / 2; ++i) {

@@ -125,6 +125,11 @@ template <int W> struct Word {
       return {a.v == b.v};
   }
   friend LANCER_LANE Word select(Mask<W> m, Word a, Word b) {
+#if defined(__AVX2__)
+    // GCC 12 compares a mask with 0 before it blends by it.
+    if constexpr (W == 8)
+      return Word((Vector)_mm256_blendv_epi8((__m256i)b.v, (__m256i)a.v, (__m256i)m.v));
+#endif
 #if defined(__AVX512F__)
     if constexpr (W == 16)
       return Word((Vector)_mm512_mask_blend_epi32(static_cast<__mmask16>(m.v), (__m512i)b.v, (__m512i)a.v));
@@ -172,6 +177,10 @@ template <int W> struct Float {
 #undef LANCER_COMPARE
 
   friend LANCER_LANE Float select(Mask<W> m, Float a, Float b) {
+#if defined(__AVX2__)
+    if constexpr (W == 8)
+      return Float((Vector)_mm256_blendv_ps((__m256)b.v, (__m256)a.v, (__m256)m.v));
+#endif
 #if defined(__AVX512F__)
     if constexpr (W == 16)
       return Float((Vector)_mm512_mask_blend_ps(static_cast<__mmask16>(m.v), (__m512)b.v, (__m512)a.v));

@@ -46,29 +46,51 @@ template <int W> LANCER_LANE Float<W> drop_greater(Float<W> a, Float<W> b) {
     return as_float(as_word(a) | Word<W>((VectorOf<uint32_t, W>)(!(a <= b)).v));
 }
 
+#if defined(__AVX2__)
+LANCER_LANE __m256i load_eight(const uint32_t *p) { return _mm256_loadu_si256(reinterpret_cast<const __m256i *>(p)); }
+LANCER_LANE void store_eight(uint32_t *p, __m256i a) { _mm256_storeu_si256(reinterpret_cast<__m256i *>(p), a); }
+
+#if !defined(__AVX512VL__)
+// By mask of eight lanes: the numbers of those that are set, a byte each. Lane by lane, public files
+// rendered 7 to 14 % longer.
+struct SetLanes {
+  uint64_t of[256] = {};
+
+  constexpr SetLanes() {
+    for (uint32_t mask = 0; mask < 256; ++mask)
+      for (uint32_t lane = 0, count = 0; lane < 8; ++lane)
+        if (mask >> lane & 1)
+          of[mask] |= uint64_t{lane} << 8 * count++;
+  }
+};
+constexpr SetLanes kSetLanes;
+#endif
+
+// Writes the lanes of the mask close together, each with its number. Returns how many there are.
+LANCER_LANE uint32_t store_close(float *keys, uint32_t *numbers, __m256 k, __m256i n, uint32_t mask) {
 #if defined(__AVX512VL__)
-using Eight = __m256i;
-LANCER_LANE Eight load_eight(const uint32_t *p) { return _mm256_loadu_si256(reinterpret_cast<const Eight *>(p)); }
-LANCER_LANE void store_eight(uint32_t *p, Eight a) { _mm256_storeu_si256(reinterpret_cast<Eight *>(p), a); }
+  const __mmask8 m = static_cast<__mmask8>(mask);
+  _mm256_storeu_ps(keys, _mm256_maskz_compress_ps(m, k));
+  store_eight(numbers, _mm256_maskz_compress_epi32(m, n));
+#else
+  const __m256i lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(kSetLanes.of[mask])));
+  _mm256_storeu_ps(keys, _mm256_permutevar8x32_ps(k, lanes));
+  store_eight(numbers, _mm256_permutevar8x32_epi32(n, lanes));
+#endif
+  return static_cast<uint32_t>(__builtin_popcount(mask));
+}
 #endif
 
 // Writes the keys that are not above the limit, and their numbers, close together; only the first count of eight are looked at.
 // Up to eight places behind them may be overwritten. Returns how many there are.
 LANCER_LANE uint32_t keep_below(float *keys, uint32_t *numbers, const float *key, const uint32_t *number, uint32_t count,
                                 float limit) {
-#if defined(__AVX512VL__)
+#if defined(__AVX2__)
   const Float<8> k = load_anywhere<8>(key);
   const uint32_t mask = less_equal_bits(k, Float<8>(limit)) & (count >= 8 ? 255u : (1u << count) - 1);
-  const __mmask8 m = static_cast<__mmask8>(mask);
-  _mm256_storeu_ps(keys, _mm256_maskz_compress_ps(m, (__m256)k.v));
-  store_eight(numbers, _mm256_maskz_compress_epi32(m, load_eight(number)));
-  return static_cast<uint32_t>(__builtin_popcount(mask));
-#else
-#if defined(__AVX__)
-  constexpr int kWidth = 8;
+  return store_close(keys, numbers, (__m256)k.v, load_eight(number), mask);
 #else
   constexpr int kWidth = 4;
-#endif
   alignas(32) float k[8];
   uint32_t n[8], mask = 0;
   for (int i = 0; i < 8; i += kWidth) {
@@ -94,15 +116,17 @@ LANCER_LANE uint32_t keep_below(float *keys, uint32_t *numbers, const float *key
 template <int W>
 LANCER_LANE uint32_t keep_ordered(float *keys, uint32_t *numbers, const Float<W> (&key)[8 / W], const Float<W> (&end)[8 / W],
                                   const uint32_t *number, uint32_t order) {
-#if defined(__AVX512VL__)
+#if defined(__AVX2__)
   const __m256i lanes =
       _mm256_srlv_epi32(_mm256_set1_epi32(static_cast<int>(order)), _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
   const __m256 k = _mm256_permutevar8x32_ps((__m256)key[0].v, lanes), e = _mm256_permutevar8x32_ps((__m256)end[0].v, lanes);
   const __m256i n = _mm256_permutevar8x32_epi32(load_eight(number), lanes);
-  const __mmask8 m = _mm256_cmp_ps_mask(k, e, _CMP_LE_OQ);
-  _mm256_storeu_ps(keys, _mm256_maskz_compress_ps(m, k));
-  store_eight(numbers, _mm256_maskz_compress_epi32(m, n));
-  return static_cast<uint32_t>(__builtin_popcount(m));
+#if defined(__AVX512VL__)
+  const uint32_t mask = _mm256_cmp_ps_mask(k, e, _CMP_LE_OQ);
+#else
+  const uint32_t mask = static_cast<uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(k, e, _CMP_LE_OQ)));
+#endif
+  return store_close(keys, numbers, k, n, mask);
 #else
   alignas(32) float k[8];
   uint32_t mask = 0;
