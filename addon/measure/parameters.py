@@ -78,6 +78,8 @@ def parameters(material):
 
 def without_idle_nodes(material):
     """The material without the nodes that no parameter depends on."""
+    if not material.nodes:
+        return material
     used = set()
     for _, _, value in parameters(material):
         used |= sources(material.nodes, value)

@@ -37,7 +37,7 @@ class _Kind:
     name: str
     one: str  # with {n}, for one owner
     many: str
-    owners: Callable  # snapshot -> (how many, names of the first of them)
+    owners: Callable  # (snapshot, the materials that it shows) -> (how many, names of the first of them)
     take: Callable | None = None  # (snapshot, library) -> the snapshot without it
     without: str = ""
     pronoun: str = "it"
@@ -52,7 +52,7 @@ def _named(names):
 
 def _number(of):
     """For what the scene has by itself."""
-    return lambda snapshot: (int(of(snapshot)), ())
+    return lambda snapshot, shown: (int(of(snapshot)), ())
 
 
 def shown_materials(snapshot):
@@ -69,9 +69,8 @@ def shown_materials(snapshot):
 
 
 def _materials_that(uses):
-    def owners(snapshot):
-        materials = (snapshot.materials[number] for number in shown_materials(snapshot))
-        return _named([material.name for material in materials if uses(material)])
+    def owners(snapshot, shown):
+        return _named([material.name for material in shown if uses(material)])
 
     return owners
 
@@ -81,7 +80,7 @@ def _changed_by(plain):
 
 
 def _objects_where(mask):
-    def owners(snapshot):
+    def owners(snapshot, shown):
         table = snapshot.instances
         found = table.name_indices[mask(snapshot)]
         return len(found), tuple(table.names[number] for number in found[:_MOST_OWNERS])
@@ -90,7 +89,7 @@ def _objects_where(mask):
 
 
 def _lamps_that(uses):
-    return lambda snapshot: _named([light.name for light in snapshot.lights if uses(light)])
+    return lambda snapshot, shown: _named([light.name for light in snapshot.lights if uses(light)])
 
 
 def _lamps_of(kind):
@@ -254,8 +253,9 @@ _KINDS = (
 def used_features(snapshot):
     """The features of a snapshot, those that can be taken away first."""
     found = []
+    shown = [snapshot.materials[number] for number in shown_materials(snapshot)]
     for kind in _KINDS:
-        count, names = kind.owners(snapshot)
+        count, names = kind.owners(snapshot, shown)
         # A single lamp is no choice among lamps, and few bounces are no depth.
         least = {"lamps": 2, "bounces": simpler_scene.FEW_BOUNCES + 1}.get(kind.name, 1)
         if count >= least:

@@ -51,8 +51,8 @@ LANCER_LANE __m256i load_eight(const uint32_t *p) { return _mm256_loadu_si256(re
 LANCER_LANE void store_eight(uint32_t *p, __m256i a) { _mm256_storeu_si256(reinterpret_cast<__m256i *>(p), a); }
 
 #if !defined(__AVX512VL__)
-// By mask of eight lanes: the numbers of those that are set, a byte each. Lane by lane, public files
-// rendered 7 to 14 % longer.
+// By mask of eight lanes: the numbers of those that are set, a byte each. With a loop over the lanes in its place, 22 public
+// files rendered 4 % longer.
 struct SetLanes {
   uint64_t of[256] = {};
 

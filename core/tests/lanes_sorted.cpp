@@ -1,0 +1,69 @@
+// What a traversal puts on its stack: the lanes that are kept, in the order that is asked for, in every instruction set.
+#include "widths/sorted_kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <random>
+
+namespace lancer {
+
+const SortedKernel &sorted_kernel() { return LANCER_CHOSEN_KERNEL(sorted_kernel); }
+
+namespace {
+
+constexpr uint32_t kNumbers[8] = {900, 901, 902, 903, 904, 905, 906, 907};
+
+TEST(Lanes, AreKeptInTheOrderAskedFor) {
+  std::mt19937 random(11);
+  uint32_t lanes[8];
+  std::iota(std::begin(lanes), std::end(lanes), 0u);
+  for (uint32_t mask = 0; mask < 256; ++mask)
+    for (int round = 0; round < 20; ++round) {
+      std::shuffle(std::begin(lanes), std::end(lanes), random);
+      uint32_t order = 0;
+      alignas(64) float key[8], end[8];
+      for (uint32_t i = 0; i < 8; ++i) {
+        order |= lanes[i] << 3 * i;
+        key[i] = static_cast<float>(i);
+        // A box that is left out ends before it begins, or is no number; one that is met in a single place is kept.
+        end[i] = mask >> i & 1 ? key[i] : (i % 2 ? key[i] - 1.0f : std::numeric_limits<float>::quiet_NaN());
+      }
+      float keys[16];
+      uint32_t numbers[16], count = 0;
+      const uint32_t kept = sorted_kernel().ordered(keys, numbers, key, end, kNumbers, order);
+      for (const uint32_t lane : lanes)
+        if (mask >> lane & 1) {
+          ASSERT_LT(count, kept) << sorted_kernel().name << ", mask " << mask;
+          ASSERT_EQ(keys[count], key[lane]) << sorted_kernel().name << ", mask " << mask;
+          ASSERT_EQ(numbers[count++], kNumbers[lane]) << sorted_kernel().name << ", mask " << mask;
+        }
+      ASSERT_EQ(kept, count) << sorted_kernel().name << ", mask " << mask;
+    }
+}
+
+TEST(Lanes, AreKeptBelowALimit) {
+  constexpr float kLimit = 2.0f;
+  for (uint32_t mask = 0; mask < 256; ++mask)
+    for (uint32_t looked_at = 0; looked_at <= 9; ++looked_at) {
+      float key[16] = {}, keys[16];
+      uint32_t number[16] = {}, numbers[16], count = 0;
+      for (uint32_t i = 0; i < 8; ++i) {
+        key[i] = mask >> i & 1 ? kLimit - static_cast<float>(i) : kLimit + 1.0f;
+        number[i] = kNumbers[i];
+      }
+      const uint32_t kept = sorted_kernel().below(keys, numbers, key, number, looked_at, kLimit);
+      for (uint32_t i = 0; i < std::min(looked_at, 8u); ++i)
+        if (mask >> i & 1) {
+          ASSERT_LT(count, kept) << sorted_kernel().name << ", mask " << mask;
+          ASSERT_EQ(keys[count], key[i]) << sorted_kernel().name << ", mask " << mask;
+          ASSERT_EQ(numbers[count++], kNumbers[i]) << sorted_kernel().name << ", mask " << mask;
+        }
+      ASSERT_EQ(kept, count) << sorted_kernel().name << ", mask " << mask;
+    }
+}
+
+} // namespace
+} // namespace lancer
