@@ -140,6 +140,8 @@ class NodeGraph:
 
     def subtract(self, a, b):
         """Of scalars."""
+        if isinstance(a, float) and a == b:
+            return 0.0
         return a if is_constant(b, 0.0) else self.op(MathOperation.SUBTRACT, a, b)
 
     def mix(self, factor, a, b):

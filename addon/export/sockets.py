@@ -45,7 +45,7 @@ def find(node, identifiers):
     """The first enabled input with one of the identifiers; None where this Blender has none."""
     for identifier in identifiers:
         for socket in node.inputs:
-            if socket.enabled and socket.identifier == identifier:
+            if socket.identifier == identifier and socket.enabled:
                 return socket
     return None
 

@@ -34,7 +34,7 @@ def _with_lobes(material, change):
     lobes = [change(lobe) for lobe in material.lobes]
     if all(new is old for new, old in zip(lobes, material.lobes, strict=True)):
         return material
-    return without_idle_nodes(dataclasses.replace(material, lobes=tuple(lobe for lobe in lobes if lobe is not None)))
+    return without_idle_nodes(material.replaced(lobes=tuple(lobe for lobe in lobes if lobe is not None)))
 
 
 def _matt(lobe, color):
@@ -46,7 +46,7 @@ def _principled(lobe, **values):
     """The lobe with these inputs of its Principled; itself where it has them already."""
     old = lobe.principled
     values = {name: value for name, value in values.items() if getattr(old, name) != value}
-    return dataclasses.replace(lobe, principled=dataclasses.replace(old, **values)) if values else lobe
+    return lobe.replaced(principled=old.replaced(**values)) if values else lobe
 
 
 def opaque_glass(material):
@@ -190,6 +190,9 @@ def undisplaced(material):
 
 
 def even_normals(material):
+    if not material.nodes:
+        return material
+
     def change(owner, name, value):
         return _BLACK if name in ("normal", "coat_normal") and isinstance(value, NodeRef) else value
 
@@ -205,9 +208,10 @@ def _varied(material, pictured):
 
     Where a picture cuts holes, what is left of the surface and what is not belong together and stay.
     """
-    nodes = material.nodes
+    nodes, found = material.nodes, set()
+    if not nodes:
+        return found
     cut = isinstance(material.transmittance, NodeRef)
-    found = set()
     for owner, name, value in parameters(material):
         if not isinstance(value, NodeRef) or not _is_of_the_surface(owner, name):
             continue
