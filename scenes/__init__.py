@@ -30,6 +30,8 @@ BUILDERS = {
     "lab": "lab.build",
     "million": "heavy.build_million",
     "instances": "heavy.build_instances",
+    "terrain": "heavy.build_terrain",
+    "crowd": "heavy.build_crowd",
 }
 
 

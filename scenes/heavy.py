@@ -1,9 +1,10 @@
-"""Scenes that weigh: one mesh of a million triangles, and 20 000 instances of a smaller one."""
+"""Scenes that weigh: one mesh of a million triangles, or of ten million, and 20 000 or 100 000 instances of a smaller one."""
 
 import math
 import random
 
 import bpy
+import numpy as np
 from mathutils import Euler, Matrix
 
 from . import parts
@@ -39,3 +40,30 @@ def build_instances(scene, count=20_000):
     parts.add_light(scene, "Sun", "SUN", 3.0, (60, -80, 100), angle=0.05)
     parts.set_world(scene, (0.5, 0.6, 0.8), 0.5)
     parts.add_camera(scene, (0, -190, 40), (0, -120, 0), lens=35.0)
+
+
+def build_crowd(scene):
+    build_instances(scene, 100_000)
+
+
+def build_terrain(scene, side=2240):
+    """One smooth mesh of 2 * side * side triangles, 10 035 200 by default: hills under a sun."""
+    parts.set_size(scene, 320, 180, 16)
+    x, y = np.meshgrid(*[np.linspace(-10.0, 10.0, side + 1, dtype=np.float32)] * 2)
+    height = sum(0.6 / f * np.sin(f * x + f) * np.cos(1.3 * f * y) for f in (1.0, 2.7, 7.1, 19.0))
+    number = np.arange((side + 1) ** 2, dtype=np.int32).reshape(side + 1, side + 1)
+    corners = np.stack([number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]], axis=-1)
+    # A list of ten million faces would need gigabytes.
+    mesh = bpy.data.meshes.new("Hills")
+    mesh.vertices.add(number.size)
+    mesh.vertices.foreach_set("co", np.stack([x, y, height], axis=-1).astype(np.float32).ravel())
+    mesh.loops.add(corners.size)
+    mesh.loops.foreach_set("vertex_index", corners.ravel())
+    mesh.polygons.add(side * side)
+    mesh.polygons.foreach_set("loop_start", np.arange(0, corners.size, 4, dtype=np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.ones(side * side, bool))
+    mesh.update(calc_edges=True)
+    parts.place(scene, "Hills", mesh, parts.principled("Earth", base_color=(0.3, 0.25, 0.2), roughness=0.8, ior=1.5))
+    parts.add_light(scene, "Sun", "SUN", 3.0, (60, -80, 100), angle=0.05)
+    parts.set_world(scene, (0.5, 0.6, 0.8), 0.5)
+    parts.add_camera(scene, (0, -12, 5), (0, -3, 0), lens=35.0)

@@ -55,7 +55,8 @@ def attempt(figures, key, say, measure, *arguments, **settings):
 def measure_rest(figures, arguments, say):
     rounds, threads = (1 if arguments.quick else arguments.rounds), arguments.threads
     figures["first_look"] = {}
-    for name in ("balls", "million"):
+    heavy = () if arguments.quick else ("terrain", "crowd")
+    for name in ("balls", "million", *heavy):
         attempt(figures["first_look"], name, say, extras.first_look, rounds, name, threads=threads)
     attempt(figures, "first_shown", say, extras.first_shown, rounds, threads)
     attempt(figures, "million", say, extras.prepare, rounds, "million", threads)
