@@ -22,6 +22,8 @@ _LIGHTS_ARE_OBJECTS = bpy.app.version >= (4, 5)
 # Before 5.0 reading a column of all entries leaks the temporary object that the mesh comes in of a text which is the first.
 _LEAKS_FIRST = bpy.app.version < (5, 0)
 _POLL_EVERY = 256
+# Objects that come once each may bring a material each.
+_POLL_EVERY_OBJECT = 16
 
 
 class Places(NamedTuple):
@@ -108,6 +110,8 @@ class Instances:
                     row = rows[key] = self._new_row(thing, entry.instance_object, *key, poll)
             else:
                 # What nobody brings in comes once: there is nothing to remember.
+                if number % _POLL_EVERY_OBJECT == 0:
+                    poll()
                 row = self._new_row(thing, thing, thing.original.as_pointer(), thing.data.as_pointer(), None, poll)
             if row >= 0:
                 row_of.append(row)

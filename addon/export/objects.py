@@ -86,7 +86,6 @@ class Objects:
         owner: the evaluated object that thing is, or is an instance of. Instances exist for a moment only: settings of add-ons
         that are read from one stay allocated for ever.
         """
-        poll()
         if self._parts is not None:
             self._parts.count("objects")
         name = thing.name
