@@ -88,9 +88,11 @@ std::vector<float> error_bars(const LuminanceMap &map);
 // The tiles of a film in halves whose samples should be doubled next, those first whose doubling brings the error down most for
 // its cost: as many as the target needs, or all where target is 0. The film must have been sampled in powers of two.
 //
-// What a half needs is judged by its other half alone. A decision that looked at its own samples would keep those that happen
-// to be dark and add to those that happen to be bright, and the picture would come out too dark (Kirk, Arvo, "Unbiased sampling
-// techniques for image synthesis", 1991); the other half's samples know nothing of them.
+// What a half needs is judged by its other half. A decision that looked at its own samples would keep those that happen to be
+// dark and add to those that happen to be bright, and the picture would come out too dark (Kirk, Arvo, "Unbiased sampling
+// techniques for image synthesis", 1991). Some of that is left: the variance that the other half shares also has neighbours in
+// this one, and the end of all rounds is judged by the whole picture. Blocks of 16 x 16 with almost no light were measured up to
+// 1.3 % too dark.
 //   target: of the error of the picture; most: samples that no pixel may exceed.
 struct Refinement {
   std::vector<uint32_t> tiles; // of this round, in order
