@@ -1,7 +1,7 @@
 """Whatever ends a 3D view that renders: again and again, and what is left of it."""
 
 import bpy
-from viewport_stage import View, build, left, shown, until
+from viewport_stage import View, build, by_hand, left, shown, until
 
 import addon
 from addon.viewport import viewport
@@ -77,10 +77,9 @@ def _window(view):
 
 def _f12(view):
     """A render beside the view."""
-    with view.override():
-        bpy.ops.render.render("INVOKE_DEFAULT")
-    yield 0.1
-    yield from until(lambda: not bpy.app.is_job_running("RENDER"))
+    begun = []
+    by_hand(lambda: begun.append(bpy.ops.render.render("INVOKE_DEFAULT")))
+    yield from until(lambda: begun and not bpy.app.is_job_running("RENDER"))
 
 
 KINDS = {

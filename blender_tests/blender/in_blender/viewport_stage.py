@@ -34,6 +34,38 @@ class View:
         self.space.show_gizmo = False
 
 
+class _Hands(bpy.types.Operator):
+    """Does what is asked of it when an event comes, as a key's operator would."""
+
+    bl_idname = "wm.lancer_hands"
+    bl_label = "Hands"
+    wanted = []
+
+    def invoke(self, context, event):
+        context.window_manager.event_timer_add(_LOOK, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        while self.wanted:
+            self.wanted.pop(0)()
+        return {"PASS_THROUGH"}
+
+
+def by_hand(action):
+    """Calls action in the window's own context, at its next event.
+
+    A render that a script begins under an overridden context kills Blender 3.4: the rest of the operator looks into that
+    context without Python's lock while the render's thread runs handlers. And once a render's thread and a drawing have been
+    in Python together, Blender may refuse a timer all operators from then on; not one operator another.
+    """
+    if not hasattr(bpy.types, "WM_OT_lancer_hands"):
+        bpy.utils.register_class(_Hands)
+        with View().override():
+            bpy.ops.wm.lancer_hands("INVOKE_DEFAULT")
+    _Hands.wanted.append(action)
+
+
 def build(samples=8):
     """Three things of three colours on a floor, under a lamp and a sky."""
     scene = stage.empty(160, 120)

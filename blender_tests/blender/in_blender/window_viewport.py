@@ -19,6 +19,7 @@ sys.path[:0] = [os.path.dirname(os.path.dirname(os.path.dirname(HERE))), HERE]
 import viewport_endings  # noqa: E402
 import viewport_places  # noqa: E402
 import viewport_shown  # noqa: E402
+import viewport_stage  # noqa: E402
 
 import addon  # noqa: E402
 
@@ -29,9 +30,13 @@ _STARTING = 1.0  # seconds until the window is there
 def end(result):
     with open(os.path.join(FOLDER, "result.json"), "w", encoding="utf-8") as file:
         json.dump(result, file)
-    if result.get("quits", True):
-        addon.unregister()
-    bpy.ops.wm.quit_blender()
+
+    def leave():
+        if result.get("quits", True):
+            addon.unregister()
+        bpy.ops.wm.quit_blender()
+
+    viewport_stage.by_hand(leave)
 
 
 def step():
