@@ -5,7 +5,7 @@ A reference's own noise is added to bars.
 
 import numpy as np
 
-from tools.harness.errors import ROUNDING
+from tools.harness.errors import ROUNDING, level_of
 
 BAR = 1.96
 BLOCK = 16
@@ -42,9 +42,14 @@ def blocks(pictures):
 
 
 def bias(pictures, reference):
-    """z of the whole picture and of its blocks; and how much the mean of all pictures is off, with its standard error."""
+    """z of the whole picture and of its blocks; and how much the mean of all pictures is off, with its standard error.
+
+    off: of a block, as errors are told: over its luminance and 1 % of the picture's mean.
+    """
     whole = scores(pictures.mean(axis=(1, 2)), reference.parts.mean(axis=(1, 2)))
-    parts = scores(blocks(pictures), blocks(reference.parts))
+    of_blocks, true_blocks = blocks(pictures), blocks(reference.parts)
+    parts = scores(of_blocks, true_blocks)
+    off = (of_blocks.mean(axis=0) - true_blocks.mean(axis=0)) / level_of(true_blocks.mean(axis=0))
     truth = reference.mean.mean()
     of_pictures, of_parts = (a.mean(axis=(1, 2)) for a in (pictures, reference.parts))
     spread = np.sqrt(of_pictures.var(ddof=1) / len(pictures) + of_parts.var(ddof=1) / len(of_parts))
@@ -53,4 +58,5 @@ def bias(pictures, reference):
         "relative": float(of_pictures.mean() / truth - 1.0),
         "relative_error": float(spread / truth),
         "blocks": [float(z) for z in parts.ravel()],
+        "off": [float(share) for share in off.ravel()],
     }

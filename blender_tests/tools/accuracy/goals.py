@@ -66,4 +66,12 @@ def _blocks(runs, of=""):
     z = np.abs([z for run in runs for z in run["bias"]["blocks"]])
     most, beyond = allowed(len(z)), int((z > 4).sum())
     text = f"{beyond} of {len(z)} beyond 4, largest {z.max():.2f}, root mean square {np.sqrt(np.mean(z**2)):.2f}"
+    off = [abs(share) / run["target"] for run in runs if "target" in run for share in _beyond(run["bias"])]
+    if off:
+        text += f"; these are off by up to {100 * max(off):.1f} % of their target"
     return Verdict(f"{of}bias of blocks of 16 x 16", f"at most {most} beyond |z| 4, by chance", text, beyond <= most)
+
+
+def _beyond(bias):
+    """How far the blocks are off that chance does not explain."""
+    return [share for z, share in zip(bias["blocks"], bias["off"], strict=True) if abs(z) > 4]
