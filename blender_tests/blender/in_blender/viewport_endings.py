@@ -1,9 +1,12 @@
 """Whatever ends a 3D view that renders: again and again, and what is left of it."""
 
+import threading
+
 import bpy
 from viewport_stage import View, build, by_hand, left, shown, until
 
 import addon
+from addon import engine
 from addon.viewport import viewport
 
 
@@ -77,9 +80,22 @@ def _window(view):
 
 def _f12(view):
     """A render beside the view."""
-    begun = []
-    by_hand(lambda: begun.append(bpy.ops.render.render("INVOKE_DEFAULT")))
+    begun, entered, plain = [], threading.Event(), engine.LancerRenderEngine.render
+
+    def render(self, depsgraph):
+        entered.set()
+        plain(self, depsgraph)
+
+    def press():
+        begun.append(bpy.ops.render.render("INVOKE_DEFAULT"))
+        # No drawing may be in Python when the render's thread comes there: see by_hand().
+        while bpy.app.is_job_running("RENDER") and not entered.wait(0.01):
+            pass
+
+    engine.LancerRenderEngine.render = render
+    by_hand(press)
     yield from until(lambda: begun and not bpy.app.is_job_running("RENDER"))
+    engine.LancerRenderEngine.render = plain
 
 
 KINDS = {

@@ -56,8 +56,8 @@ def by_hand(action):
     """Calls action in the window's own context, at its next event.
 
     A render that a script begins under an overridden context kills Blender 3.4: the rest of the operator looks into that
-    context without Python's lock while the render's thread runs handlers. And once a render's thread and a drawing have been
-    in Python together, Blender may refuse a timer all operators from then on; not one operator another.
+    context without Python's lock while the render's thread runs handlers. And where the render's thread comes to Python while a
+    drawing is there, Blender holds scripts for drawings ever after: timers may call no operator, add-ons fail to leave.
     """
     if not hasattr(bpy.types, "WM_OT_lancer_hands"):
         bpy.utils.register_class(_Hands)
