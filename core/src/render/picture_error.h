@@ -92,8 +92,8 @@ std::vector<float> error_bars(const LuminanceMap &map);
 // dark and add to those that happen to be bright, and the picture would come out too dark (Kirk, Arvo, "Unbiased sampling
 // techniques for image synthesis", 1991). Some of that is left where light comes in rare flashes: the variance that the other
 // half shares also has neighbours in this one, and rounds go on until the told error of the whole is small, which drowns the
-// flashes that have been met. Judged by the other half's pixels alone, one flash in the half that it does not see costs up to ten
-// times the samples. Blocks of 16 x 16 were measured too dark by up to 2.6 % of the target.
+// flashes that have been met. Judged by the other half's pixels alone, one flash in the half that it does not see costs up to
+// ten times the samples. Blocks of 16 x 16 were measured too dark by up to 2.6 % of the target.
 //   target: of the error of the picture; most: samples that no pixel may exceed.
 struct Refinement {
   std::vector<uint32_t> tiles; // of this round, in order
