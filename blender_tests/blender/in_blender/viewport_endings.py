@@ -3,7 +3,7 @@
 import threading
 
 import bpy
-from viewport_stage import View, build, by_hand, left, shown, until
+from viewport_stage import PATIENCE, View, build, by_hand, left, shown, until
 
 import addon
 from addon import engine
@@ -89,8 +89,7 @@ def _f12(view):
     def press():
         begun.append(bpy.ops.render.render("INVOKE_DEFAULT"))
         # No drawing may be in Python when the render's thread comes there: see by_hand().
-        while bpy.app.is_job_running("RENDER") and not entered.wait(0.01):
-            pass
+        assert entered.wait(PATIENCE), "the render's thread does not come"
 
     engine.LancerRenderEngine.render = render
     by_hand(press)
