@@ -29,39 +29,17 @@ def register():
         raise RuntimeError(
             "Lancer needs numpy in Blender's Python: install the package python3-numpy (Debian, Ubuntu) or numpy (pip)"
         ) from None
-    from . import (
-        bug_report,
-        check_scene,
-        course_groups,
-        engine,
-        manual,
-        measure_features,
-        measure_quality,
-        measuring,
-        preferences,
-        presets,
-        preview,
-        properties,
-        render_job,
-        ui,
-    )
-    from .export import main_thread
-    from .registering import add_all
+    from . import ui
+    from .engine import preview, render_engine, render_job, results
+    from .host import main_thread
+    from .host.registering import add_all
+    from .operators import bug_report, check_scene, course_groups, measure_features, measure_quality, measuring
+    from .settings import manual, preferences, presets, properties
     from .viewport import viewport
 
-    modules = (
-        properties,
-        preferences,
-        main_thread,
-        engine,
-        measuring,
-        measure_features,
-        measure_quality,
-        check_scene,
-        course_groups,
-        presets,
-    )
-    # What renders is ended first, while all is there.
+    modules = (properties, preferences, main_thread, results, render_engine, measuring)
+    modules += (measure_features, measure_quality, check_scene, course_groups, presets)
+    # A running render is ended first, while all of the add-on is there.
     modules += (ui, bug_report, manual, viewport, preview, render_job)
     add_all(modules, lambda module: module.register(), lambda module: module.unregister())
     _registered.extend(modules)

@@ -12,10 +12,10 @@ from addon.bindings import bug_report
 from addon.bindings.abi import LancerError
 from addon.bindings.npz import SnapshotError
 from addon.bindings.session import Session
-from addon.export.messages import Messages
 from addon.measure import render_report
 from addon.measure.scene_features import kernel_in_words, used_features
 from addon.measure.schedule import Schedule
+from addon.messages.messages import Messages
 
 
 def load(path, samples=None):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..severity import Severity
+from ..messages.severity import Severity
 
 _LINES_OF_A_KIND = 3
 

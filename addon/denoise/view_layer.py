@@ -10,7 +10,7 @@ import time
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
 from ..bindings.session import Cancelled, Session
-from ..priority import lowered
+from ..host.priority import lowered
 from . import denoiser, oidn
 
 DECLARATION = "denoised: the error given is that of the picture before denoising"

@@ -3,7 +3,7 @@
 import bpy
 
 from ..bindings.enums import Pass
-from ..severity import Severity
+from ..messages.severity import Severity
 from .cycles_settings import check_cycles
 
 # As passes.py renders them, by the names of a view layer's switches.

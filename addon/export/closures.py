@@ -1,7 +1,7 @@
 """What each shader node adds to a surface: lobes, light, passage and holes."""
 
 from ..bindings.enums import Distribution, LobeKind
-from ..severity import Severity
+from ..messages.severity import Severity
 from .arithmetic import is_constant
 from .course_models import read_group
 from .distributions import read_distribution

@@ -12,7 +12,7 @@ import numpy as np
 from mathutils import Color
 
 from ..bindings.enums import Transfer
-from . import main_thread
+from ..host import main_thread
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 # OpenColorIO works in single precision, with curves that are off by 2.4e-5: a matrix or curve this near is that one. An eighth

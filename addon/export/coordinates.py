@@ -5,7 +5,7 @@ from mathutils import Euler
 
 from ..bindings.enums import Coordinate, MappingType, NodeKind, ObjectFact, PathFact, VectorOperation
 from ..bindings.shading import NodeRef
-from ..by_scene import identity
+from ..host.by_scene import identity
 from .arithmetic import THIRDS, divide
 from .attributes import attribute_name, tangents_name
 from .maths import transformed

@@ -6,7 +6,7 @@ Lancer's settings stand for (samples, filter, seed, transparent bounces) are not
 need not be.
 """
 
-from ..severity import Severity
+from ..messages.severity import Severity
 
 _KINDS = ("diffuse", "glossy", "transmission")
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 from ..bindings.enums import LobeKind
 from ..bindings.shading import NodeRef
+from ..messages.messages import Messages
 from .arithmetic import is_constant
 from .images import NoPictures
 from .materials import Materials
-from .messages import Messages
 from .probe import probe
 
 _NAMES = {

@@ -16,7 +16,7 @@ import bpy
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, MathOperation, MixMode, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
-from ..severity import Severity
+from ..messages.severity import Severity
 from . import colors, coordinates, curves, maths, normals, procedural, textures
 from .arithmetic import THIRDS, is_constant, single, triple
 from .colorspace import luminance_weights

@@ -7,9 +7,9 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Transfer
-from ..by_scene import identity
-from ..severity import Severity
-from . import main_thread
+from ..host import main_thread
+from ..host.by_scene import identity
+from ..messages.severity import Severity
 from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one piece, which stays in the cache

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ..bindings.snapshot import InstanceTable
-from ..severity import Severity
+from ..messages.severity import Severity
 from .apart import read_infos
 from .checks import check_hair
 from .lights import export_light

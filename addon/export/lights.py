@@ -8,7 +8,7 @@ import numpy as np
 from ..bindings import snapshot
 from ..bindings.enums import AreaShape, Falloff, LightKind, Ray
 from ..bindings.shading import NodeRef
-from ..severity import Severity
+from ..messages.severity import Severity
 from .checks import check_linking
 from .graph import NodeGraph
 from .images import NoPictures

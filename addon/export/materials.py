@@ -6,7 +6,7 @@ import bpy
 
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MaterialFlag, NodeKind, ObjectFact
-from ..severity import Severity
+from ..messages.severity import Severity
 from .arithmetic import is_constant, triple
 from .course_models import PARAMETERS, lobes_of
 from .graph import NodeGraph

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ..bindings.enums import InstanceFlag, InstanceKind, Ray, Shading
-from ..severity import Severity
+from ..messages.severity import Severity
 from .arithmetic import is_constant
 from .attributes import POLYGONS, named_attributes
 from .checks import check_object

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import bpy
 
-from ..by_scene import identity
+from ..host.by_scene import identity
+from ..messages.messages import Messages
 from .images import Images
-from .messages import Messages
 
 _CHANGES_WITH_TIME = ("MOVIE", "SEQUENCE")
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from ..bindings.enums import Pass
 from ..bindings.session import Cancelled
 from ..bindings.snapshot import SceneSnapshot
+from ..messages.messages import Messages
 from .camera import export_camera
 from .checks import check_passes, check_scene, check_view_layer
 from .images import Images
 from .instances import Instances
 from .materials import Materials
-from .messages import Messages
 from .settings import export_settings
 from .world import export_world
 

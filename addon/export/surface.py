@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, MathOperation, Rules
 from ..bindings.shading import NodeRef
-from ..severity import Severity
+from ..messages.severity import Severity
 from .arithmetic import is_constant, triple
 from .closures import CLOSURES, read_unknown
 from .coordinates import default_tangent

@@ -10,7 +10,7 @@ from ..bindings.enums import (
     Projection,
     VectorOperation,
 )
-from ..severity import Severity
+from ..messages.severity import Severity
 from .arithmetic import divide, each
 from .coordinates import coordinate, mapping_matrix
 from .maths import transformed

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..bindings import snapshot
 from ..bindings.enums import AlphaMode, Coordinate, Environment, Extension, NodeKind
-from ..severity import Severity
+from ..messages.severity import Severity
 from .graph import NodeGraph
 from .sockets import output_node
 from .surface import emission_of

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..registering import add_all
+from ..host.registering import add_all
 from . import adopted, camera, check, described, light, material, messages, objects, render, uses, view_layer, world
 
 CLASSES = (

@@ -2,8 +2,8 @@
 
 import bpy
 
-from .. import check_scene
 from ..checks.finding import Severity, shortened, told
+from ..operators import check_scene
 from .render import LancerRenderPanel, draw_measuring
 from .sentences import sentence
 

@@ -4,7 +4,7 @@ import bpy
 
 from .. import engine
 from ..measure import render_report
-from ..severity import Severity
+from ..messages.severity import Severity
 from ..viewport import viewport
 from .render import LancerRenderPanel
 from .sentences import sentence

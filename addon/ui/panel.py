@@ -1,8 +1,8 @@
 """What all of Lancer's panels share."""
 
-from .. import engine
+from ..engine.render_engine import LancerRenderEngine
 
-ID = engine.LancerRenderEngine.bl_idname
+ID = LancerRenderEngine.bl_idname
 
 
 class LancerPanel:

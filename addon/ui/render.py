@@ -3,8 +3,9 @@
 import bpy
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
-from .. import measure_quality, measuring, presets
 from ..denoise import view_layer as denoise
+from ..operators import measure_quality, measuring
+from ..settings import presets
 from .panel import LancerPanel, setting, uses_classic
 from .sentences import sentence
 

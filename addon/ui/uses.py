@@ -2,8 +2,9 @@
 
 import bpy
 
-from .. import engine, measure_features
+from .. import engine
 from ..measure.scene_features import kernel_in_words
+from ..operators import measure_features
 from .render import LancerRenderPanel, draw_measuring
 from .sentences import sentence
 

@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import priority
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
 from ..bindings.session import PictureError, Scene, Session
 from ..bindings.snapshot import SceneSnapshot, Settings
 from ..denoise import view_layer as denoise
 from ..export.view import View
+from ..host import priority
 from ..measure.schedule import Schedule, TimeShare
 from .cleaner import GUIDES, Cleaner
 from .sizes import PixelSizes

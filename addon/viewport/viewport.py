@@ -6,18 +6,18 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from .. import redraw
 from ..bindings import snapshot
 from ..bindings.abi import LancerError
 from ..bindings.enums import Pass
-from ..by_scene import ByScene
 from ..denoise import view_layer as denoise
-from ..export.messages import Messages
 from ..export.parts import Parts
 from ..export.scene import ExportOptions, export_scene
 from ..export.settings import export_settings
 from ..export.view import export_view
-from ..severity import Severity
+from ..host import redraw
+from ..host.by_scene import ByScene
+from ..messages.messages import Messages
+from ..messages.severity import Severity
 from .canvas import Canvas
 from .painter import Painter, Wanted
 from .sizes import coarsest

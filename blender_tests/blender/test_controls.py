@@ -48,7 +48,7 @@ OF_OTHERS = {
 }
 # The export, and what beside it reads which passes are wanted.
 ADDON = pathlib.Path(ROOT, "addon")
-READERS = (*ADDON.glob("export/*.py"), ADDON / "passes.py", ADDON / "denoise" / "view_layer.py")
+READERS = (*ADDON.glob("export/*.py"), ADDON / "engine" / "passes.py", ADDON / "denoise" / "view_layer.py")
 
 
 @pytest.fixture(scope="module", params=[MODULE, PROGRAM])

@@ -6,8 +6,8 @@ import numpy as np
 from check_scenes import placed, scene, sheet
 
 from addon.bindings.session import Session
-from addon.export.messages import Messages
-from addon.severity import Severity
+from addon.messages.messages import Messages
+from addon.messages.severity import Severity
 
 
 def test_what_hurts_most_comes_first():

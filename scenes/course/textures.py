@@ -11,8 +11,8 @@ from addon.bindings.abi import Integrator, LobeKind
 from addon.bindings.enums import Coordinate, Environment, Extension, Interpolation, NodeKind
 from addon.bindings.session import Scene
 from addon.bindings.snapshot import Image, Instance, Lobe, Material, MeshAttribute, MeshData, Node, NodeRef, World
-from addon.course_groups import group_of
 from addon.export.course_models import MODELS, PARAMETERS, parameters_of
+from addon.operators.course_groups import group_of
 from scenes import parts, pictures
 
 from . import studio

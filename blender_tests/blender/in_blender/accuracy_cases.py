@@ -9,7 +9,7 @@ import exr
 import numpy as np
 import stage
 
-from addon import engine
+from addon.engine import render_engine as engine
 
 
 def _noisy(**settings):

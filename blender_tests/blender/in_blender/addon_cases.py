@@ -83,7 +83,7 @@ def other_library(folder):
 
 
 def _statistics(scene):
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     return engine.last_statistics[scene.name]
 

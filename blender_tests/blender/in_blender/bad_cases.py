@@ -8,7 +8,7 @@ NAN, INF = float("nan"), float("inf")
 
 
 def _messages():
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     lines = []
     for texts in engine.last_messages.values():

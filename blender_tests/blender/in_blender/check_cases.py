@@ -96,7 +96,7 @@ def _room():
 
 
 def _findings():
-    from addon import check_scene
+    from addon.operators import check_scene
 
     scene = bpy.context.scene
     before = bpy.context.view_layer.objects.active
@@ -106,7 +106,7 @@ def _findings():
 
 
 def _told():
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     bpy.ops.render.render()
     return list(engine.last_messages[bpy.context.scene.name])
@@ -126,7 +126,7 @@ def flaws():
 
 def switches():
     """Whether F12 obeys its switch, and Check Scene what is hidden from renders; what the buttons do."""
-    from addon import check_scene
+    from addon.operators import check_scene
 
     scene = _room()
     thing = _FLAWS["open glass"][0]()
@@ -160,7 +160,8 @@ def switches():
 
 def failing():
     """A fault of the check itself: what F12 tells, and the mean of its picture."""
-    from addon import check_scene, engine
+    from addon.engine import render_engine as engine
+    from addon.operators import check_scene
 
     scene = _room()
 

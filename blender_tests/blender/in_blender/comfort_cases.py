@@ -53,7 +53,7 @@ def manual():
     from bl_operators.wm import WM_OT_doc_view_manual
 
     import addon
-    from addon import properties
+    from addon.settings import properties
 
     def page(name):
         return WM_OT_doc_view_manual._lookup_rna_url(name.lower(), verbose=False)
@@ -82,7 +82,7 @@ def without_preferences():
     """Imported by a script it is no add-on, and has no preferences: threads and quality are as they come."""
     from export_cases import export_told
 
-    from addon import preferences
+    from addon.settings import preferences
 
     scene = stage.room()
     scene.render.threads_mode = "AUTO"

@@ -10,8 +10,8 @@ import stage
 
 from addon.bindings.abi import LancerError
 from addon.denoise import view_layer as denoise
+from addon.engine.passes import render_passes
 from addon.export.scene import ExportOptions, export_scene
-from addon.passes import render_passes
 
 # What changes which data is looked at, and not how; what is no setting but the data itself.
 _LEFT_OUT = {"rna_type", "engine", "name", "type", "mode", "use_fake_user", "animation_data", "preview", "preview_pause"}

@@ -71,7 +71,7 @@ def _without_camera():
 
 def missing():
     """{key: count} and the lines of a render that lacks a feature and, twice, a node; and of the next, without the feature."""
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     scene = _lit_cube("LANCER")
     stage.camera()

@@ -7,8 +7,8 @@ import numpy as np
 import stage
 from material_cases import Tree, answer
 
-from addon import course_groups
 from addon.export.course_models import MODELS, PARAMETERS, TAG, parameters_of
+from addon.operators import course_groups
 from scenes.pictures import make_image
 
 VALUES = {

@@ -11,8 +11,8 @@ import exr
 import numpy as np
 import stage
 
-from addon import engine
 from addon.denoise import view_layer as denoise
+from addon.engine import render_engine as engine
 
 
 def _scene(width=64, height=48, samples=4):

@@ -188,7 +188,7 @@ def view_layers():
 
 
 def engine_statistics():
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     scene = stage.room()
     bpy.ops.render.render()
@@ -212,8 +212,8 @@ def progress():
 
 def first_picture():
     """The alpha of what is shown first, and how often the picture is handed to Blender."""
-    from addon import passes
     from addon.bindings.enums import Pass
+    from addon.engine import passes
 
     stage.room(width=640, height=360, samples=2)
     pictures = []

@@ -15,7 +15,7 @@ _FREE = 10**6  # samples that no time limit of these cases leaves room for
 def as_rendered():
     """What is measured beside what F12 exports, and what is left of the look at it."""
     import addon
-    from addon import render_export
+    from addon.engine import render_export
 
     scene = stage.room(width=16, height=12, samples=1)
     layered = bpy.data.objects["Cube"].modifiers.new("Subdivision", "SUBSURF")
@@ -29,7 +29,7 @@ def as_rendered():
     calls, exported = [], []
     for name in ("render_init", "render_pre", "render_complete"):
         getattr(bpy.app.handlers, name).append(lambda *_, name=name: calls.append(name))
-    export_scene = addon.engine.export_scene
+    export_scene = addon.engine.render_engine.export_scene
 
     def kept(*arguments):
         snapshot, messages = export_scene(*arguments)
@@ -37,9 +37,9 @@ def as_rendered():
         exported.append((_meshes(snapshot), snapshot, messages))
         return snapshot, messages
 
-    addon.engine.export_scene = kept
+    addon.engine.render_engine.export_scene = kept
     picture = bpy.data.images.load(stage.write_exr(scene))
-    addon.engine.export_scene = export_scene
+    addon.engine.render_engine.export_scene = export_scene
     before, done = _picture_of("before"), list(calls)
     users = {thing.name: thing.users for thing in (*bpy.data.objects, *bpy.data.collections, *bpy.data.materials)}
     statistics = dict(addon.engine.last_statistics)
@@ -80,8 +80,8 @@ def _picture_of(name):
 
 def without_camera():
     """What measuring says where there is no camera, and what is left."""
-    from addon import render_export
     from addon.bindings.abi import LancerError
+    from addon.engine import render_export
 
     scene = stage.room()
     scene.camera = None
@@ -95,7 +95,7 @@ def without_camera():
 
 def layers():
     """Statistics of two view layers by both names, and of the scene after it is renamed, and after another takes its name."""
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     scene = stage.room(width=16, height=12, samples=2)
     first = bpy.context.view_layer.name
@@ -124,8 +124,8 @@ def layers():
 
 def time_limit():
     """(shares of the limit, samples) of three view layers, the first of which takes a third of the time by itself."""
-    from addon import engine
-    from addon.picture import Picture
+    from addon.engine import render_engine as engine
+    from addon.engine.picture import Picture
 
     scene = stage.room(width=16, height=12, samples=_FREE)
     for name in ("B", "C"):
@@ -147,7 +147,7 @@ def time_limit():
 
 def handlers():
     """Whether changes of scenes are counted: at the start, with figures and without, after another file is loaded."""
-    from addon import measuring
+    from addon.operators import measuring
 
     def counts():
         return measuring._changed in bpy.app.handlers.depsgraph_update_post
@@ -208,7 +208,7 @@ def stereo():
     scene.lancer.use_denoising = True
     scene.render.use_multiview = True
     seen = []
-    from addon import passes
+    from addon.engine import passes
 
     replace = passes.replace_combined
 
@@ -228,9 +228,9 @@ def stereo():
 
 def priority():
     """Priorities of the threads that a session has, where it is made as in a window, beside that of this thread."""
-    from addon import priority
     from addon.bindings.session import Session
     from addon.export.scene import export_scene
+    from addon.host import priority
 
     stage.room(width=16, height=12, samples=1)
     snapshot, _ = export_scene(bpy.context.evaluated_depsgraph_get())

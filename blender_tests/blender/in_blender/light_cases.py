@@ -4,7 +4,7 @@ import bpy
 import stage
 
 from addon.export.lights import export_light
-from addon.export.messages import Messages
+from addon.messages.messages import Messages
 
 
 def _export(thing, messages):

@@ -12,7 +12,7 @@ from addon.bindings.enums import Domain, LobeKind, NodeKind
 from addon.bindings.shading import NodeRef
 from addon.export.describe import describe_material
 from addon.export.materials import Materials
-from addon.export.messages import Messages
+from addon.messages.messages import Messages
 
 
 def told(value):

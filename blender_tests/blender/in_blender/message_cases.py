@@ -10,7 +10,7 @@ import stage
 
 def _told():
     """Renders; what the panel says then."""
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     bpy.ops.render.render()
     return list(engine.last_messages[bpy.context.scene.name])
@@ -35,7 +35,7 @@ def _faulty(count):
 
 def persistent():
     """The same render three times with Persistent Data, one cube fewer in the last; then two frames."""
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     scene = _faulty(2)
     scene.render.use_persistent_data = True
@@ -68,8 +68,8 @@ def layers():
 
 def failed_layer(path):
     """Two view layers, of which the first fails. Writes what the panel says then, for the program ends with the render."""
-    from addon import engine
     from addon.bindings.abi import LancerError
+    from addon.engine import render_engine as engine
 
     scene = _faulty(1)
     scene.view_layers[0].name = "First"

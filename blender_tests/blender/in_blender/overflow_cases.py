@@ -3,7 +3,7 @@
 import numpy as np
 import stage
 
-from addon import engine
+from addon.engine import render_engine as engine
 
 
 def not_told():

@@ -9,8 +9,9 @@ import stage
 
 def _variants(context):
     """The context again and again, with other choices made."""
-    from addon import engine, measuring
+    from addon.engine import render_engine as engine
     from addon.measure.costs import Cost, Costs
+    from addon.operators import measuring
     from addon.viewport import viewport
 
     yield "plain"

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 from tools.parity import contest, engines, page, run
 
-from addon import engine
+from addon.engine import render_engine as engine
 from scenes.parity import catalogue
 
 

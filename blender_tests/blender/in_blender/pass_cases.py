@@ -16,7 +16,7 @@ _SWITCHES = [f"{component}_{part}" for component in _COMPONENTS for part in ("di
 
 def _read(scene):
     """{pass: (height, width, channels)}, row 0 at the top, and what the engine said."""
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     path = os.path.join(tempfile.mkdtemp(), "passes.exr")
     exr.write_settings(scene, path)

@@ -11,7 +11,8 @@ def _values(told):
 
 def measured():
     """The operator without a window: what it keeps and tells, whether the file is as it was, and a render that was foretold."""
-    from addon import engine, measure_quality
+    from addon.engine import render_engine as engine
+    from addon.operators import measure_quality
 
     scene = stage.room(width=64, height=36, samples=64)
     # Matrices of new objects are made by the first look at them.
@@ -55,8 +56,8 @@ def measured():
 
 def words():
     """How intervals of seconds are told."""
-    from addon import measure_quality
     from addon.measure.forecast import Range
+    from addon.operators import measure_quality
 
     spans = {"sure": (60, 60, 60), "wide": (60, 20, 300), "untold": (900, 6, 133200), "short": (2, 0.2, 9)}
     return {name: measure_quality.seconds(Range(*values)) for name, values in spans.items()}
@@ -64,7 +65,7 @@ def words():
 
 def missed():
     """The lines of a target that the samples do not suffice for."""
-    from addon import measure_quality
+    from addon.operators import measure_quality
 
     scene = stage.room(width=32, height=18, samples=16)
     scene.lancer.target_error = 1e-4

@@ -31,7 +31,7 @@ def _move(offset):
 
 
 def _compare(build):
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     def picture(change=None):
         scene = build()

@@ -25,7 +25,7 @@ _NEUTRAL = {
 
 def _told_of_scene():
     from addon.export.checks import check_scene
-    from addon.export.messages import Messages
+    from addon.messages.messages import Messages
 
     messages = Messages()
     check_scene(bpy.context.scene, messages)
@@ -103,7 +103,7 @@ def settings():
 def objects():
     """Messages of single objects: plain, then with each setting that is not supported."""
     from addon.export.checks import check_object
-    from addon.export.messages import Messages
+    from addon.messages.messages import Messages
 
     def told(thing):
         messages = Messages()

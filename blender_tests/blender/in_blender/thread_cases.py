@@ -9,8 +9,9 @@ import bpy
 from image_cases import ramp, write
 
 from addon.bindings.session import Cancelled
-from addon.export import colorspace, main_thread
+from addon.export import colorspace
 from addon.export.images import Images
+from addon.host import main_thread
 
 
 class _Asker(threading.Thread):

@@ -21,7 +21,7 @@ def _glassy(samples=4):
 
 
 def statistics():
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     scene = _glassy()
     image = bpy.data.images.new("Checks", 16, 16)
@@ -57,7 +57,8 @@ def plain_data():
 
 def measured():
     """The operator without a window: what it gives and keeps, and whether the file is as it was."""
-    from addon import engine, measure_features
+    from addon.engine import render_engine as engine
+    from addon.operators import measure_features
 
     scene = _glassy()
     bpy.ops.render.render()

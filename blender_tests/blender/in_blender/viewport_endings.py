@@ -6,7 +6,7 @@ import bpy
 from viewport_stage import PATIENCE, View, build, by_hand, left, shown, until
 
 import addon
-from addon import engine
+from addon.engine import render_engine as engine
 from addon.viewport import viewport
 
 

@@ -9,9 +9,9 @@ from mathutils import Quaternion, Vector
 from viewport_stage import View, build, finished, shown, until
 
 from addon.bindings.session import Session
-from addon.export.messages import Messages
 from addon.export.scene import export_scene
 from addon.export.view import export_view
+from addon.messages.messages import Messages
 
 POINTS = [Vector(point) for point in ((0.3, 0.2, 0.1), (-0.8, 0.5, 0.4), (0.9, -0.7, 0.6), (0.1, 0.9, -0.3))]
 

@@ -12,7 +12,7 @@ import stage
 from mathutils import Matrix, Quaternion
 from viewport_stage import Record, View, build, finished, left, shown, until
 
-from addon import preview
+from addon.engine import preview
 from addon.export.view import Rectangle
 from addon.viewport import viewport
 from addon.viewport.canvas import Canvas

@@ -20,7 +20,7 @@ import window_panels  # noqa: E402
 import window_pictures  # noqa: E402
 
 import addon  # noqa: E402
-from addon.export import main_thread  # noqa: E402
+from addon.host import main_thread  # noqa: E402
 
 serves = False
 FOLDER, *KIND = sys.argv[sys.argv.index("--") + 1 :]
@@ -62,13 +62,14 @@ def tick():
         measure()
     if told("measuring?"):
         scene = bpy.context.scene.name
-        say("measuring" if scene in addon.measuring.running else "measured" if scene in addon.engine.last_costs else "nothing")
+        measured = "measured" if scene in addon.engine.last_costs else "nothing"
+        say("measuring" if scene in addon.operators.measuring.running else measured)
     if told("measure quality"):
         say(window_panels.measure())
     if told("check"):
         say(window_panels.check(say))
     if told("listed?"):
-        say("listed" if bpy.context.scene in addon.check_scene.last_findings else "unlisted")
+        say("listed" if bpy.context.scene in addon.operators.check_scene.last_findings else "unlisted")
     for engine in ("CYCLES", "LANCER"):
         if told(engine):
             bpy.context.scene.render.engine = engine

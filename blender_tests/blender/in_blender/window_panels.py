@@ -51,7 +51,7 @@ def check(say):
         finally:
             say("check-cancelled")
 
-    addon.check_scene.check_snapshot = endless
+    addon.operators.check_scene.check_snapshot = endless
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         return next(iter(bpy.ops.lancer.check_scene("INVOKE_DEFAULT"))).lower()
 
@@ -71,8 +71,8 @@ def load(folder):
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         bpy.ops.wm.open_mainfile(filepath=path)
     known = [
-        *addon.measuring.running,
-        *addon.measure_quality.measured,
+        *addon.operators.measuring.running,
+        *addon.operators.measure_quality.measured,
         *addon.engine.last_statistics,
         *addon.engine.last_messages,
     ]

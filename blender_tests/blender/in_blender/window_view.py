@@ -129,7 +129,7 @@ addon.register()
 bpy.ops.wm.read_factory_settings(use_empty=True)
 addon.unregister()
 addon.register()
-watch(addon.engine.LancerRenderEngine if ENGINE == "LANCER" else cycles.CyclesRender)
+watch(addon.engine.render_engine.LancerRenderEngine if ENGINE == "LANCER" else cycles.CyclesRender)
 scene = bpy.context.scene
 spheres.build_balls(scene)
 scene.render.threads_mode, scene.render.threads = "FIXED", int(THREADS)

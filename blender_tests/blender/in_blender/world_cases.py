@@ -9,8 +9,8 @@ import stage
 
 from addon.bindings.enums import NodeKind
 from addon.export.images import Images
-from addon.export.messages import Messages
 from addon.export.world import CUBE_SIDES, export_world
+from addon.messages.messages import Messages
 
 
 def _picture(name, color=(1.0, 1.0, 1.0, 1.0), width=8, height=4):

@@ -67,7 +67,7 @@ class _timed_export:
     """As a context: the list of seconds that the exports of renders took meanwhile."""
 
     def __enter__(self):
-        self.export, seconds = addon.engine.export_scene, []
+        self.export, seconds = addon.engine.render_engine.export_scene, []
 
         def timed(*arguments):
             start = time.perf_counter()
@@ -76,11 +76,11 @@ class _timed_export:
             finally:
                 seconds.append(time.perf_counter() - start)
 
-        addon.engine.export_scene = timed
+        addon.engine.render_engine.export_scene = timed
         return seconds
 
     def __exit__(self, *_):
-        addon.engine.export_scene = self.export
+        addon.engine.render_engine.export_scene = self.export
 
 
 TASKS = {"open": open_file, "render": render}

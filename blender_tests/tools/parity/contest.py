@@ -186,6 +186,6 @@ def _distances(scene, pair):
 
 
 def _messages(scene):
-    from addon import engine
+    from addon.engine import render_engine as engine
 
     return list(engine.last_messages.get(scene.name, ()))

@@ -5,7 +5,7 @@ import os
 import bpy
 import exr
 
-from addon import engine as lancer_engine
+from addon.engine import render_engine as lancer_engine
 
 # Pass by its name since 5.0: (switch of the view layer, name before 5.0).
 PASSES = {

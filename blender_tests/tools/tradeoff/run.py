@@ -12,7 +12,7 @@ import bpy
 
 import scenes
 from addon.bindings.enums import Integrator
-from addon.scene_settings import QUALITIES
+from addon.settings.scene_settings import QUALITIES
 from scenes.render import captured_output
 from tools.bench import worker
 from tools.harness import pictures

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from ..severity import Severity
+from .severity import Severity
 
 
 class Message(NamedTuple):

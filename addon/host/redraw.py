@@ -2,7 +2,7 @@
 
 import bpy
 
-from .export import main_thread
+from . import main_thread
 
 _LOOK_AGAIN = 0.1  # seconds
 

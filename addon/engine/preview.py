@@ -9,14 +9,14 @@ import logging
 import threading
 import time
 
+from ..bindings.abi import LancerError
+from ..bindings.enums import Pass
+from ..bindings.session import Cancelled, Session
+from ..export.scene import ExportOptions, export_scene
+from ..host import main_thread
+from ..host.priority import lowered
+from ..measure.schedule import Schedule
 from . import passes
-from .bindings.abi import LancerError
-from .bindings.enums import Pass
-from .bindings.session import Cancelled, Session
-from .export import main_thread
-from .export.scene import ExportOptions, export_scene
-from .measure.schedule import Schedule
-from .priority import lowered
 
 _SAMPLES = 64
 _STEP = 0.02

@@ -2,7 +2,7 @@
 
 import time
 
-from .export.messages import Messages
+from ..messages.messages import Messages
 
 # Seconds of a layer for which nothing is left: 0 would be no limit.
 _LEAST = 1e-3

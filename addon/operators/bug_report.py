@@ -6,12 +6,14 @@ import platform
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from . import engine, render_export
-from .bindings import bug_report
-from .bindings.abi import LancerError, load_library
-from .export.messages import Messages
-from .registering import add_all
-from .severity import Severity
+from .. import engine
+from ..bindings import bug_report
+from ..bindings.abi import LancerError, load_library
+from ..engine import render_export
+from ..engine.render_engine import LancerRenderEngine
+from ..host.registering import add_all
+from ..messages.messages import Messages
+from ..messages.severity import Severity
 
 _HOLDS = "It holds the geometry and the pictures of the scene"
 
@@ -36,7 +38,7 @@ def versions():
     """Of all that takes part in a render."""
     import numpy
 
-    from . import VERSION
+    from .. import VERSION
 
     try:
         library = load_library().lancer_version().decode()
@@ -161,7 +163,7 @@ class LANCER_RENDER_PT_bug_report(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return context.engine == engine.LancerRenderEngine.bl_idname
+        return context.engine == LancerRenderEngine.bl_idname
 
     def draw(self, _context):
         self.layout.operator(LANCER_OT_save_bug_report.bl_idname, icon="URL")

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from .bindings.enums import Pass
-from .denoise import view_layer as denoise
+from ..bindings.enums import Pass
+from ..denoise import view_layer as denoise
 
 
 class RenderPass(NamedTuple):

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import bpy
 
+from ..host.by_scene import ByScene
+from ..measure import render_report
+from ..measure.forecast import classic_seconds, forecast
+from ..measure.trial_renders import measure
+from ..settings.scene_settings import QUALITIES
 from . import measuring
-from .by_scene import ByScene
-from .measure import render_report
-from .measure.forecast import classic_seconds, forecast
-from .measure.trial_renders import measure
-from .scene_settings import QUALITIES
 
 # An interval whose ends differ by more than this factor says nothing to plan by, unless even its upper end is short (seconds).
 _TELLING = 20.0

@@ -11,7 +11,7 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from .export import main_thread
+from ..host import main_thread
 
 _PATIENCE = 0.05  # seconds between two looks
 # Seconds that Blender has for its own work after the engine's. Its end is not told where another add-on removes our handlers.

@@ -6,7 +6,7 @@ Items of enums carry numbers that files store: never renumber, never reuse.
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty
 
-from .registering import add_all
+from ..host.registering import add_all
 from .scene_settings import LancerSceneSettings, add_watched, remove_watched
 
 

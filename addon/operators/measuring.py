@@ -9,9 +9,10 @@ import threading
 import bpy
 from bpy.app.handlers import persistent
 
-from . import by_scene, priority, redraw, render_export
-from .bindings.abi import LancerError
-from .bindings.session import Cancelled
+from ..bindings.abi import LancerError
+from ..bindings.session import Cancelled
+from ..engine import render_export
+from ..host import by_scene, priority, redraw
 
 # (operator's bl_idname, fraction, text) of the work that runs, by its scene.
 running = by_scene.ByScene()

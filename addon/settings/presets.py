@@ -4,7 +4,7 @@ import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
-from .registering import add_all
+from ..host.registering import add_all
 
 _SAMPLING = ("target_error", "samples", "quality", "time_limit", "use_denoising")
 _LIGHT_PATHS = (

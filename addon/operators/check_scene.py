@@ -1,43 +1,18 @@
-"""Looks for what will hurt before time is spent on it: by itself at F12 what costs next to nothing, all of it when asked."""
-
-import logging
+"""Check Scene: looks for faults that will hurt the picture, and selects the object of a finding."""
 
 import bpy
 from bpy.app.handlers import persistent
 
+from ..bindings.session import Cancelled
+from ..checks.check import check_snapshot
+from ..checks.finding import lines
+from ..host.by_scene import ByScene
+from ..host.registering import add_all
 from . import measuring
-from .bindings.session import Cancelled
-from .by_scene import ByScene
-from .checks.check import check_snapshot
-from .checks.finding import lines, shortened, told
-from .export.messages import Messages
-from .registering import add_all
 
 # Of the last Check Scene of each scene: findings, and what the export could not take as it is.
 last_findings = ByScene()
 last_messages = ByScene()
-
-
-def quick_check(scene, snapshot, poll):
-    """What F12 tells by itself, as Messages."""
-    if not scene.lancer.use_check:
-        return Messages()
-
-    def obey(_share):
-        if poll():
-            raise Cancelled
-
-    try:
-        messages = Messages()
-        for finding, left in shortened(check_snapshot(snapshot, thorough=False, poll=obey)):
-            messages.add(told(finding, left), finding.key, finding.severity)
-        return messages
-    except Cancelled:
-        raise
-    except Exception as error:
-        # A fault of the check must not cost the picture.
-        logging.getLogger(__name__).exception("check failed")
-        return Messages([f"scene '{scene.name}': the check before the render failed ({type(error).__name__}: {error})"])
 
 
 class LANCER_OT_check_scene(measuring.Measuring, bpy.types.Operator):

@@ -5,10 +5,10 @@ Inside, ordinary nodes show Cycles and EEVEE something like it; Lancer renders t
 
 import bpy
 
-from .engine import LancerRenderEngine
-from .export.course_models import MODELS, NORMAL, PARAMETERS, is_as_made, mark, model_of, parameters_of
-from .properties import LancerMaterialSettings
-from .registering import add_all
+from ..engine.render_engine import LancerRenderEngine
+from ..export.course_models import MODELS, NORMAL, PARAMETERS, is_as_made, mark, model_of, parameters_of
+from ..host.registering import add_all
+from ..settings.properties import LancerMaterialSettings
 
 _SETTINGS = LancerMaterialSettings.__annotations__
 # Models by their names, descriptions and numbers in the material's own settings.

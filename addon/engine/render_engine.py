@@ -1,4 +1,4 @@
-"""The engine that Blender calls: export, render in waves, show, account."""
+"""The engine that Blender calls: exports, renders in waves, shows the picture, and reports its error."""
 
 import contextlib
 import dataclasses
@@ -9,33 +9,26 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import passes, preview, redraw, render_export, render_job
-from .bindings.abi import LancerError
-from .bindings.session import Cancelled, Session
-from .by_scene import ByScene
-from .check_scene import quick_check
-from .denoise import view_layer as denoise
-from .export import main_thread
-from .export.kept import Kept
-from .export.messages import Messages
-from .export.scene import ExportOptions, export_scene
-from .measure import render_report
-from .measure.scene_features import used_features
-from .measure.schedule import SAMPLES, TARGET, TIME, Schedule, TimeShare
+from ..bindings.abi import LancerError
+from ..bindings.session import Cancelled, Session
+from ..denoise import view_layer as denoise
+from ..export.kept import Kept
+from ..export.scene import ExportOptions, export_scene
+from ..host import main_thread, redraw
+from ..host.by_scene import ByScene
+from ..host.priority import lowered
+from ..measure import render_report
+from ..measure.scene_features import used_features
+from ..measure.schedule import SAMPLES, TARGET, TIME, Schedule, TimeShare
+from ..messages.messages import Messages
+from ..messages.severity import Severity
+from ..viewport.viewport import Viewport
+from . import passes, preview, render_export, render_job
 from .picture import Picture
-from .priority import lowered
-from .severity import Severity
-from .viewport.viewport import Viewport
+from .quick_check import quick_check
+from .results import keep_costs, last_costs, last_messages, last_missing, last_statistics
 
-# Of the last render of each scene, for the panel and for scripts: numbers, and Messages. The numbers are those of the last view
-# layer; "layers" has those of all, by their names.
-last_statistics = ByScene()
-last_messages = ByScene()
-# What that render could not show as Cycles does: {key of Messages.add: how often}.
-last_missing = ByScene()
-# Of the last measurement of each scene: a costs.Costs.
-last_costs = ByScene()
-# Of the scenes that are being animated or have Persistent Data: what is not read again.
+# What is not read again of scenes that are animated or have Persistent Data.
 _kept = ByScene()
 # What the library holds, by kind: names of last_statistics.
 MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
@@ -309,13 +302,6 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 self.report({"INFO"}, f"Lancer: {line}")
 
 
-def keep_costs(scene, costs):
-    """Keeps what the features of a scene were measured to cost, among its statistics, too."""
-    last_costs[scene] = costs
-    if scene in last_statistics:
-        last_statistics[scene]["feature_costs"] = {cost.name: dataclasses.asdict(cost) for cost in costs.measured}
-
-
 def _clock(seconds):
     if not math.isfinite(seconds):
         return "unknown"
@@ -327,10 +313,6 @@ def _clock(seconds):
 @persistent
 def _forget(*_):
     """Another file's scenes may have the same names."""
-    last_statistics.clear()
-    last_messages.clear()
-    last_missing.clear()
-    last_costs.clear()
     _kept.clear()
 
 

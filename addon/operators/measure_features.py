@@ -4,9 +4,10 @@ import functools
 
 import bpy
 
-from . import engine, measuring
-from .by_scene import ByScene
-from .measure.costs import measure_costs
+from ..engine.results import keep_costs
+from ..host.by_scene import ByScene
+from ..measure.costs import measure_costs
+from . import measuring
 
 # Of what the figures in engine.last_costs were measured, by the scene.
 _states = ByScene()
@@ -43,7 +44,7 @@ class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
 
     def keep(self, scene, measurement):
         _states[scene] = self._state
-        engine.keep_costs(scene, measurement.found)
+        keep_costs(scene, measurement.found)
         for cost in measurement.found.hints:
             self.report({"INFO"}, f"Lancer: {cost.text}. Without: {cost.without}")
 

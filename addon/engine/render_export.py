@@ -10,13 +10,13 @@ import time
 
 import bpy
 
-from .bindings.abi import LancerError
-from .export.camera import NO_CAMERA
-from .export.checks import check_view_layer
-from .export.messages import Messages
-from .export.scene import ExportOptions, export_scene
+from ..bindings.abi import LancerError
+from ..export.camera import NO_CAMERA
+from ..export.checks import check_view_layer
+from ..export.scene import ExportOptions, export_scene
+from ..host.scene_copy import copied
+from ..messages.messages import Messages
 from .passes import render_passes
-from .scene_copy import copied
 
 _NAME = "Lancer looks at a scene"
 _RENDER = ("init", "pre", "post", "write", "stats", "complete", "cancel")

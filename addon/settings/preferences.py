@@ -4,7 +4,7 @@ import bpy
 from bpy.app.handlers import persistent
 from bpy.props import EnumProperty, IntProperty
 
-from .export import settings
+from ..export import settings
 from .scene_settings import QUALITIES
 
 

@@ -1,0 +1,1 @@
+"""Operators: measure, check, save a bug report, course groups."""

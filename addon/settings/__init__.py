@@ -1,0 +1,1 @@
+"""Settings: properties, presets, preferences, links to the manual."""
