@@ -1,4 +1,4 @@
-// Area lights: a rectangle or an ellipse that shines to its front.
+// Area lights: a rectangle or an ellipse that emits to its front side.
 #pragma once
 
 #include "lights/light_lanes.h"
@@ -6,24 +6,25 @@
 
 namespace lancer {
 
-// At grazing directions a way ends at most this many times Light::plane_tolerance before the lamp: nothing visible stands in
-// between.
+// Largest distance before the lamp at which a shadow ray may end, in units of Light::plane_tolerance. At grazing angles this
+// bound keeps the gap small enough that it hides no visible occluder.
 inline constexpr double kMostTolerances = 64.0;
 
-// How long the way is that ends before the lamp, of one that is t long and meets its axis under this cosine: rounding then puts
-// no face of the lamp's own plane, such as the ceiling that it is set into, before the lamp.
+// Returns the length of a shadow ray towards a lamp at distance t, where cosine is between the ray and the lamp's axis. The ray
+// ends before the lamp by so much that rounding cannot turn a face in the lamp's own plane, such as the ceiling that the lamp
+// is set into, into an occluder.
 template <class D> LANCER_LANE D area_end(D t, D cosine, D plane_tolerance) {
   return max(t - min(plane_tolerance / cosine, D(kMostTolerances) * plane_tolerance), D(0.5) * t);
 }
 
-// The numbers of area lights, each read once.
+// The members of area lights that the formulas read, each loaded once.
 template <class F> struct AreaNumbers {
   using D = DoubleOf<F>;
   Double3Of<F> position, x, y, z, emission;
   D half_x, half_y, area, tan_half_spread, spread_scale, plane_tolerance;
   MaskOf<F> ellipse, narrowed;
 
-  // which: lanes of area lights.
+  // which: the lanes whose light is an area light.
   template <class Lights>
   LANCER_LANE AreaNumbers(const Lights &light, MaskOf<F> which)
       : position(light[&Light::position]), x(light[&Light::x]), y(light[&Light::y]), z(light[&Light::z]),
@@ -33,7 +34,8 @@ template <class F> struct AreaNumbers {
         narrowed(which & (spread_scale != D(0.0))) {}
 };
 
-// Radiance towards a direction whose cosine with the light's axis is given; narrowed by spread like a honeycomb in front.
+// Returns the radiance towards a direction whose cosine with the light's axis is given. The spread narrows the light like a
+// honeycomb grid in front of it.
 template <class F> LANCER_LANE Vector3<F> area_radiance(const AreaNumbers<F> &light, DoubleOf<F> cosine) {
   using D = DoubleOf<F>;
   const D one(1.0), zero(0.0);
@@ -45,12 +47,12 @@ template <class F> LANCER_LANE Vector3<F> area_radiance(const AreaNumbers<F> &li
   return select(light.narrowed, narrow(light.emission * share), whole);
 }
 
-// The part of an area light that is worth sampling from a point: where its spread lets light reach the point. A rectangle in
-// units of the half lengths, or all of the ellipse.
+// The part of an area light whose spread lets light reach a point; only this part is sampled. low and high bound a rectangle in
+// units of the half lengths; an ellipse is sampled whole.
 template <class F> struct AreaPart {
   Vector2<DoubleOf<F>> low, high;
   MaskOf<F> ellipse;
-  DoubleOf<F> area; // of it, normalised units; 0: nothing arrives
+  DoubleOf<F> area; // of the part, in normalised units; 0: no light arrives
 };
 
 template <class F> LANCER_LANE AreaPart<F> area_part(const AreaNumbers<F> &light, const Double3Of<F> &p) {
@@ -59,7 +61,7 @@ template <class F> LANCER_LANE AreaPart<F> area_part(const AreaNumbers<F> &light
   AreaPart<F> part{{least, least}, {one, one}, light.ellipse, light.area};
   if (!any(light.narrowed))
     return part;
-  // Light arrives from within a circle around the foot of p.
+  // Light arrives from within a circle around the foot of the perpendicular from p.
   const Double3Of<F> v = p - light.position;
   const D radius = -dot(v, light.z) * light.tan_half_spread, half_x = light.half_x, half_y = light.half_y;
   const D foot_x = dot(v, light.x) / half_x, foot_y = dot(v, light.y) / half_y;
@@ -74,17 +76,17 @@ template <class F> LANCER_LANE AreaPart<F> area_part(const AreaNumbers<F> &light
   return part;
 }
 
-// A lamp whose diagonal is below this share of its distance sends a point about the same from everywhere: places are even in
-// area. So they are where the solid angle is all rounding.
+// A lamp whose diagonal is below kLeastDiagonal times its distance is sampled uniformly in area: its distance and cosine vary
+// little over it. So is a lamp whose solid angle is below kLeastSolidAngle, where the solid angle is all rounding error.
 inline constexpr double kLeastDiagonal = 1e-2, kLeastSolidAngle = 1e-9;
 
-// A rectangle, or the part of it that counts, as a point sees it.
+// A rectangle, or the part of it that is sampled, seen from a point.
 template <class F> struct SeenArea {
-  DoubleOf<F> x, y; // the lamp's middle along its axes
+  DoubleOf<F> x, y; // the lamp's middle along its axes, relative to the point
   SphericalRectangle<DoubleOf<F>> rectangle;
-  MaskOf<F> by_angle; // lanes that sample directions, not places
+  MaskOf<F> by_angle; // lanes that sample by solid angle instead of area
 
-  // distance, cosine: to the place that is met, and there with the lamp's axis.
+  // Returns the density per solid angle. distance, cosine: to the sampled place, and there with the lamp's axis.
   LANCER_LANE DoubleOf<F> pdf(const DoubleOf<F> &distance, const DoubleOf<F> &cosine, const DoubleOf<F> &area) const {
     return select(by_angle, DoubleOf<F>(1.0) / rectangle.solid_angle, distance * distance / (cosine * area));
   }
@@ -122,7 +124,7 @@ LANCER_LANE void sample_area(const AreaNumbers<F> &light, const Double3Of<F> &p,
   const D distance = sqrt(dot(to_light, to_light));
   const Double3Of<F> wi = to_light / distance;
   const D cosine = dot(wi, light.z);
-  // A rectangle around what is lit of an ellipse may reach beyond it.
+  // The rectangle around the lit part of an ellipse may extend beyond the ellipse.
   const MaskOf<F> beside = light.ellipse & !part.ellipse & !(x * x + y * y <= one);
   const MaskOf<F> valid = which & (part.area > zero) & (distance > zero) & (cosine > zero) & !beside;
   sample.target = select(which, p + area_end(distance, cosine, light.plane_tolerance) * wi, sample.target);
@@ -132,7 +134,7 @@ LANCER_LANE void sample_area(const AreaNumbers<F> &light, const Double3Of<F> &p,
   sample.pdf = select(valid, seen.pdf(distance, cosine, part.area), sample.pdf);
 }
 
-// Where ways from o along unit wi meet what sampling would choose of the light.
+// Where rays from o along unit wi hit the part of the light that sampling would choose from.
 template <class F> struct AreaMeeting {
   MaskOf<F> met;
   DoubleOf<F> t, cosine;

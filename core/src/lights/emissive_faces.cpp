@@ -9,11 +9,11 @@ namespace lancer {
 
 namespace {
 
-// Where a face is looked at: middle, and halfway from there to each corner.
+// The barycentric places at which a face is evaluated: its middle, and halfway from there to each corner.
 constexpr double kLooks[4][2] = {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}};
-// What a face counts for at least, as a share of the mean over all: a texture may shine between the looks.
+// The least weight of a face, as a share of the mean over all: a texture may be bright between the evaluated places.
 constexpr double kLeastShare = 0.05;
-// Lengths of the axes that differ by less than this share are one scale.
+// Lengths of the axes that differ by less than this share are treated as one uniform scale.
 constexpr double kOneScale = 1e-4;
 
 struct Corners {
@@ -73,7 +73,7 @@ std::vector<double> EmissiveFaces::powers(const Geometry &geometry, const std::v
     const double area = corners_of(mesh, of_mesh_ ? nullptr : &placed.to_world, face).area();
     double level = emission_level(material.emission.value);
     if (emission_varies(material)) {
-      // Look at a few points; at one where nothing but the direction matters.
+      // Average over a few points; one suffices where the emission depends on the direction alone.
       const bool by_nodes = !material.emission_nodes.empty();
       level = 0.0;
       const int looks = by_nodes ? 4 : 1;
@@ -101,7 +101,7 @@ EmissiveFaces::EmissiveFaces(const Geometry &geometry, const std::vector<uint32_
   const Mesh &mesh = geometry.meshes[placed.mesh];
   const std::vector<double> power = powers(geometry, slots, materials, instance, emission, context);
   by_power_ = WeightedChoice(power);
-  // Bring the faces that shine to about 1024 around 0: float is fine enough there.
+  // Scale the emitting faces to coordinates of at most about 1024 around 0, where float is precise enough.
   LightBounds box;
   uint32_t shining = 0;
   for (uint32_t face = 0; face < power.size(); ++face) {
@@ -149,7 +149,7 @@ LightBounds EmissiveFaces::bounds(const Instance &placed) const {
   result.energy = own.energy;
   if (!of_mesh_)
     return result;
-  // Angles survive one scale for all axes; else light may go anywhere.
+  // A uniform scale preserves angles; otherwise the cone covers all directions.
   const glm::dmat3 &m = placed.to_world.linear;
   const double x = glm::length(m[0]), y = glm::length(m[1]), z = glm::length(m[2]), widest = std::max({x, y, z});
   const double skew =

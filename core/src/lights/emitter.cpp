@@ -19,7 +19,7 @@ SeenFace<float> see_face(const Geometry &geometry, const Instance &instance, uin
   return {MapLanes<float>(instance.to_world), corner, Vector3<double>(p)};
 }
 
-// Exact surfaces by their unit parts: 0 the curved side, 1 and 2 the disks at z = -1 and z = 1.
+// Returns the unit area of a part of an exact surface: 0 the curved side, 1 and 2 the disks at z = -1 and z = 1.
 double part_area(ShapeKind kind, int part) {
   constexpr double pi = glm::pi<double>();
   if (kind == ShapeKind::Sphere)
@@ -35,7 +35,7 @@ struct UnitPoint {
   glm::dvec3 p{0.0}, n{0, 0, 1};
 };
 
-// A uniform point of one unit part.
+// Returns a uniform point of one unit part.
 UnitPoint unit_point(ShapeKind kind, int part, const glm::vec2 &u) {
   if (part > 0) {
     const glm::dvec2 d(warp_disk(u));
@@ -54,12 +54,12 @@ UnitPoint unit_point(ShapeKind kind, int part, const glm::vec2 &u) {
   return {{r * turn.cos, r * turn.sin, 1.0 - 2.0 * r}, glm::normalize(glm::dvec3(2.0 * turn.cos, 2.0 * turn.sin, 1.0))};
 }
 
-// How much a map enlarges an area with unit object normal n.
+// Returns the factor by which a map enlarges an area with unit object normal n.
 double area_scale(const Instance &instance, const glm::dvec3 &n) {
   return std::abs(glm::determinant(instance.to_world.linear)) * glm::length(glm::transpose(instance.to_object.linear) * n);
 }
 
-// A point of a mesh's face by the weights of its corners 1 and 2.
+// Returns a point of a mesh's face by the weights of its corners 1 and 2.
 Surface face_point(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, uint32_t face,
                    const Vector2<double> &weights) {
   Hit hit;
@@ -70,7 +70,7 @@ Surface face_point(const Geometry &geometry, const std::vector<uint32_t> &slots,
   return surface_at(geometry, slots, Ray{}, hit);
 }
 
-// A point of an exact surface: looked straight at, so that the surface stage finds it at t = 1.
+// Returns a point of an exact surface, hit at t = 1 by a ray along the normal, as the surface stage expects.
 Surface part_point(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t instance, int part,
                    const glm::vec2 &u) {
   const Instance &placed = geometry.instances[instance];
@@ -100,19 +100,19 @@ Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, c
     return;
   double level = emission_level(materials[number].emission.value);
   if (emission_varies(materials[number])) {
-    // Look at 8 x 8 points of the curved side; the parts are covered evenly whatever is seen.
+    // Average over 8 x 8 points of the curved side; the sampling of the parts does not depend on the result.
     level = 0.0;
     for (int i = 0; i < 64; ++i) {
       const glm::vec2 u((float(i % 8) + 0.5f) / 8.0f, (float(i / 8) + 0.5f) / 8.0f);
       level += emission_level(emission, part_point(geometry, slots, instance_, 0, u)) / 64.0;
     }
   }
-  // Parts are weighted by their unit areas; the density accounts for what the map does to them.
+  // Parts are weighted by their unit areas; the density accounts for the scale of the map.
   std::vector<double> weights;
   for (int part = 0; part < 3; ++part)
     weights.push_back(part_area(placed.kind, part));
   parts_ = WeightedChoice(weights);
-  // Light goes anywhere from the box of the shape.
+  // The box of the shape bounds the light, and the cone covers all directions.
   for (int corner = 0; corner < 8; ++corner)
     bounds_.grow(placed.to_world.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
   bounds_.cone = {{0.0, 0.0, 1.0}, glm::pi<double>(), glm::half_pi<double>()};
@@ -123,7 +123,7 @@ LightSample Emitter::sample(const Geometry &geometry, const std::vector<uint32_t
                             const glm::vec2 &u, Surface &surface) const {
   if (!faces_)
     return sample_face(geometry, slots, 0, p, u, surface);
-  // What is left of the number places the point on the face.
+  // The rest of the random number places the point on the face.
   const auto choice = faces_->by_power().sample(u.x);
   LightSample sample = sample_face(geometry, slots, choice.index, p, {choice.u, u.y}, surface);
   sample.pdf *= double(choice.pmf);
@@ -151,7 +151,7 @@ LightSample Emitter::sample_face(const Geometry &geometry, const std::vector<uin
   if (!(sample.distance > 0.0))
     return sample;
   sample.wi = v / sample.distance;
-  // End on the side that p sees, off the surface by its own bound.
+  // End on the side that p sees, off the surface by the surface's own error bound.
   const double side = glm::dot(glm::dvec3(surface.ng), sample.wi) < 0.0 ? 1.0 : -1.0;
   sample.target = surface.p + (side * surface.offset) * glm::dvec3(surface.ng);
   sample.pdf = face_pdf(geometry, p, surface);

@@ -1,5 +1,5 @@
-// An object whose material emits, as a light: a face by how much it matters, points of it by the angle that they fill where it
-// is near, by area where it is far.
+// An object whose material emits, as a light. A face is chosen by its importance; a point on it is sampled by solid angle where
+// the face is near, by area where it is far.
 #pragma once
 
 #include "lights/emissive_faces.h"
@@ -8,12 +8,13 @@
 
 namespace lancer {
 
-// One instance of the normalised world. What is never sampled is still found by chance, and pdf() is 0 there.
+// An emitter is one instance in the normalised world. Rays still hit surfaces that are never sampled by chance; pdf() returns 0
+// there.
 class Emitter {
 public:
-  // Of a mesh; faces are not empty.
+  // Makes the emitter of a mesh; faces must not be empty.
   Emitter(const Geometry &geometry, uint32_t instance, std::shared_ptr<const EmissiveFaces> faces);
-  // Of an exact surface. Where none of it emits: empty().
+  // Makes the emitter of an exact surface; empty() holds where the surface emits nothing.
   Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, const std::vector<Material> &materials,
           uint32_t instance, const EmissionAt &emission);
 
@@ -23,20 +24,22 @@ public:
   const LightBounds &bounds() const { return bounds_; }
   const std::shared_ptr<const EmissiveFaces> &faces() const { return faces_; }
 
-  // A face for a point to ask, and with which probability; of an exact surface there is one only, number 0.
+  // Chooses a face for the point of the query and returns its probability. An exact surface has a single face, number 0.
   LightChoice choose_face(const Geometry &geometry, const LightQuery &query, double u) const {
     return faces_ ? faces_->choose(geometry.instances[instance_], query, u) : LightChoice{0, 1.0, u};
   }
   double face_probability(const Geometry &geometry, const LightQuery &query, uint32_t face) const {
     return faces_ ? faces_->probability(geometry.instances[instance_], query, face) : double(!empty());
   }
-  // A point of a face as seen from p. The caller asks the material what it emits there: radiance is left 0, surface says where.
+  // Samples a point of a face as seen from p and writes it to surface. radiance stays 0: the caller evaluates the material at
+  // that point.
   LightSample sample_face(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t face, const glm::dvec3 &p,
                           const glm::vec2 &u, Surface &surface) const;
-  // Density per solid angle of having sampled this surface point from p, once its face is chosen.
+  // Returns the density per solid angle with which sample_face() gives this surface point from p, its face being chosen
+  // already.
   double face_pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const;
 
-  // The same with a face chosen by power alone.
+  // sample() and pdf() choose the face by power alone.
   LightSample sample(const Geometry &geometry, const std::vector<uint32_t> &slots, const glm::dvec3 &p, const glm::vec2 &u,
                      Surface &surface) const;
   double pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const;

@@ -11,22 +11,23 @@ namespace lancer {
 
 namespace {
 
-// Width of the map where neither the user nor an image says, and the most that is stored: a finer image is looked at texel by
-// texel and its cells joined.
+// Width of the map where neither the user nor an image decides, and the largest width that is stored. A finer image is
+// evaluated texel by texel and averaged over the cells.
 constexpr uint32_t kPlainWidth = 1024, kLargestWidth = 2048;
-// The most looks at all directions together: some seconds of one processor. It is a look for each texel of an image 8192 wide;
-// of one of 16384 the looks fall on the corners between texels, where interpolation still sees each of them.
+// Most evaluations over all directions: some seconds of one processor. They reach each texel of an image 8192 wide; for an
+// image 16384 wide they fall on the corners between texels, where interpolation still reaches each texel.
 constexpr uint32_t kMostLooks = 1u << 25;
-// Share of the samples that go evenly to all directions: a bright speck that the map has missed is found by these.
+// Share of the samples that is uniform over all directions: it finds a bright speck that the map has missed.
 constexpr float kEvenShare = 0.05f;
 
-// What a direction counts for: the mean of its channels, as in Cycles. Nodes may give any number.
+// Returns the weight of a direction: the mean of the channels' absolute values, as in Cycles; 0 where nodes give no finite
+// number.
 float weight_of(const glm::vec3 &radiance) {
   const float level = mean(glm::abs(radiance));
   return std::isfinite(level) ? level : 0.0f;
 }
 
-// The width of the largest image that the radiance needs; a cube's six sides go once around in four.
+// Returns the width of the largest image that the radiance reads; a cube map counts as four of its sides.
 uint32_t image_width(const World &world, const std::vector<Image> &images) {
   uint32_t width = 0;
   for (const uint16_t number : world.schedule) {
@@ -42,7 +43,8 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
   return width;
 }
 
-// Whether nodes give another radiance in another direction: of those without inputs all do but Light Path and Object Info.
+// Whether nodes give another radiance in another direction: of the nodes without inputs, all depend on the direction except
+// Light Path and Object Info.
 bool has_directions(const World &world) {
   return std::ranges::any_of(world.schedule, [&](uint16_t number) {
     switch (world.program.nodes[number].kind) {
@@ -67,7 +69,7 @@ MapSize map_size(uint32_t resolution, uint32_t widest) {
   MapSize size;
   size.width = std::clamp(wanted + (wanted & 1), 4u, kLargestWidth);
   size.height = size.width / 2;
-  // A look for each texel, and two along each side at least: interpolation spreads a single bright texel over two.
+  // Take a lookup for each texel, and at least two along each side: interpolation spreads a single bright texel over two cells.
   const uint32_t needed = (std::max(wanted, widest) + size.width - 1) / size.width;
   const auto most = uint32_t(std::sqrt(double(kMostLooks) / (double(size.width) * size.height)));
   size.looks = std::clamp(needed, 2u, most);
@@ -121,7 +123,7 @@ void Environment::make_maps(const BuildContext &context, bool glass) {
     }
   });
   mean_ = std::accumulate(totals.begin(), totals.end(), 0.0) / (4.0 * glm::pi<double>());
-  // Where nothing was seen, what there is must be small, and every direction is as good.
+  // Where all lookups are black, the remaining light must be small, and the map becomes uniform.
   const auto map_of = [&](float least) {
     std::vector<float> above(weights);
     double sum = 0.0;

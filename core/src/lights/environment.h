@@ -1,4 +1,4 @@
-// What shines from beyond everything: its radiance in a direction, and directions by how bright it is there.
+// The environment: its radiance in a direction, and sampling of directions by their brightness.
 #pragma once
 
 #include "lights/light.h"
@@ -12,49 +12,52 @@ namespace lancer {
 struct Camera;
 struct Normalisation;
 
-// The map by which directions are sampled: its cells, and how often each is looked at along each of its sides.
+// The map that directions are sampled from: its cells, and the number of lookups along each side of a cell.
 struct MapSize {
   uint32_t width = 0, height = 0, looks = 0;
 };
-// resolution: the user's, 0 = by the images; widest: the width of the widest of them, 0 = none.
+// Returns the size of the map. resolution: the user's, 0 = by the images; widest: the width of the widest image, 0 = none.
 MapSize map_size(uint32_t resolution, uint32_t widest);
 
 class Environment {
 public:
-  // Black.
+  // Makes a black environment.
   Environment() = default;
-  // The world, images and normalisation must outlive it; they may still be filled while it is made. Where the radiance varies,
-  // looks at all directions for the maps that they are sampled by. No camera is known then: where nodes ask for it a map is
-  // only a guess, and the even share of the samples carries the rest.
-  // Surfaces sample by what is brighter than the mean: the rest their BSDF finds as well (Karlik et al., "MIS Compensation:
-  // Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). Under two pictures of the sky that leaves 0.48 and
-  // 0.83 of the variance.
-  // What a rough boundary passes on where no facet connects depends on the density of the light's samples (Bsdf::eval_lit):
-  // for glass, a second map is in proportion to the radiance, as in Cycles.
+  // The world, images and normalisation must outlive the environment; the images may still be loading while it is constructed.
+  // Where the radiance varies, the constructor evaluates it in all directions and makes the sampling maps. No camera is known
+  // at that time: where nodes read the camera, the map is a guess, and the uniform share of the samples covers the rest.
+  // Surfaces sample in proportion to the radiance above the mean, because BSDF samples find the rest as well (Karlik et al.,
+  // "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). Under two pictures of the sky,
+  // this leaves 0.48 and 0.83 of the variance. The light that a rough boundary transmits where no facet connects the two
+  // directions depends on the density of light samples (Bsdf::eval_lit): for glass, a second map is proportional to the
+  // radiance, as in Cycles.
   Environment(const World &world, const std::vector<Image> &images, const Normalisation &normalisation,
               const BuildContext &context, bool glass);
 
-  // One radiance in all directions: found best by the BSDF's own samples, so it is no light to sample.
+  // Whether the radiance depends on the direction or the path. A constant environment is no light to sample: BSDF samples find
+  // it best.
   bool varies() const { return world_ && world_->varies(); }
-  // Whether it is sampled: where directions differ. What only the path decides is found by the BSDF, as in Cycles.
+  // Whether the environment is sampled: its radiance differs between directions. BSDF samples find radiance that depends on the
+  // path alone, as in Cycles.
   bool is_light() const { return !above_mean_.empty(); }
   const glm::vec3 &constant() const { return constant_; }
   uint32_t hidden_from() const { return hidden_from_; }
-  // Mean over all directions, of the brightest channel.
+  // Mean over all directions of the mean of the channels.
   double mean() const { return mean_; }
 
-  // wi: unit, world. values: room for all nodes of the world. camera: for the nodes, may be null. eye: where a camera ray
-  // starts; null for other rays. path: of the ray that sees it; none where it is sampled as a light.
+  // Returns the radiance. wi: unit, world. values: room for all nodes of the world. camera: for the nodes, may be null. eye:
+  // where a camera ray starts; null for other rays. path: of the ray that sees the environment; default where it is sampled as
+  // a light.
   glm::vec3 radiance(const glm::dvec3 &wi, std::span<glm::vec4> values, const Camera *camera, const glm::dvec3 *eye = nullptr,
                      const LightPath<float> &path = {}) const {
     return varies() ? evaluate(wi, values, camera, eye, path) : constant_;
   }
-  // No sample where it is no light. transmits: whether light may come through the surface that asks.
+  // Returns pdf 0 where the environment is not a light. transmits: whether the surface may transmit light.
   LightSample sample(const glm::vec2 &u, std::span<glm::vec4> values, const Camera *camera, bool transmits) const;
-  // Density per solid angle with which sample() gives wi; of the direction that nodes see, in floats.
+  // Returns the density per solid angle with which sample() gives wi, evaluated for wi rounded to float, as nodes read it.
   double pdf(const glm::dvec3 &wi, bool transmits) const { return is_light() ? map(transmits).pdf(glm::vec3(wi)) : 0.0; }
 
-  // For kernels, as long as this is neither changed nor moved; only of a light.
+  // The map for kernels. The environment must be a light; the table is valid until the environment is changed or moved.
   DirectionTable table(bool transmits) const { return map(transmits).table(); }
   bool has_map_of_glass() const { return !in_proportion_.empty(); }
 

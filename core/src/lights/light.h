@@ -1,4 +1,4 @@
-// A light as the integrators see it: normalised world, ready to sample.
+// A light as the integrators read it: in the normalised world, ready to sample.
 #pragma once
 
 #include "scene/light.h"
@@ -8,11 +8,11 @@
 
 namespace lancer {
 
-// What CLASSIC knows of a light.
+// The properties of a light that only CLASSIC uses.
 struct ClassicLight {
   Falloff falloff = Falloff::Physical;
   double radius = 0.0;     // normalised units
-  double world_unit = 1.0; // one world unit, in normalised units
+  double world_unit = 1.0; // length of one world unit, in normalised units
   glm::vec3 ambient_color{1.0f}, diffuse_color{1.0f}, specular_color{1.0f};
 };
 
@@ -20,30 +20,30 @@ struct Light {
   LightKind kind = LightKind::Point;
   glm::dvec3 position{0.0};
   glm::dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}; // unit axes; the light shines along -z
-  // POINT, SPOT: intensity in normalised units; SUN: irradiance; AREA: radiance.
-  // Double: the scale of intensities is that of squared lengths.
+  // POINT, SPOT: intensity in normalised units; SUN: irradiance; AREA: radiance. In double, because intensities scale with
+  // squared lengths.
   glm::dvec3 emission{0.0};
   double radius = 0.0;
   bool soft_falloff = true;
   double cos_half_angle = -1.0, blend_width = 0.0; // SPOT
   bool spot_cosine = false;
-  double stretch_x = 1.0, stretch_y = 1.0;       // SPOT: of the cone's section
+  double stretch_x = 1.0, stretch_y = 1.0;       // SPOT: of the cone's cross-section
   double one_minus_cos_sun = 0.0;                // SUN: 1 - cos of half its angle
-  double flat_radius = 0.0;                      // SUN: of the flat disk at distance 1; 0 = even radiance
+  double flat_radius = 0.0;                      // SUN: radius of the flat disk at distance 1; 0 = uniform radiance
   double half_x = 0.0, half_y = 0.0, area = 0.0; // AREA
   bool ellipse = false;
   double tan_half_spread = 0.0, spread_scale = 0.0; // AREA; scale 0 = no limit
-  double plane_tolerance = 0.0; // AREA: by how much a face that is meant to lie in its plane may be before it
+  double plane_tolerance = 0.0; // AREA: largest distance before the lamp's plane of a face that is meant to lie in it
   uint32_t hidden_from = 0;     // LANCER_RAY_* bits
   bool no_shadow = false;
   ClassicLight classic;
 };
 
-// A point of a light as seen from p.
-// The estimate of what arrives at normal incidence is radiance / pdf; for delta lights (one direction only) radiance already is
-// that irradiance and pdf is 1. pdf is per solid angle, without the choice of the light; 0 = no sample.
+// A point of a light as seen from p. The estimate of the irradiance at normal incidence is radiance / pdf; for delta lights (a
+// single direction), radiance is that irradiance and pdf is 1. pdf is per solid angle, without the probability of choosing the
+// light; 0 = no sample.
 struct LightSample {
-  glm::dvec3 target{0.0}; // where a way that nothing blocks ends: the point, or just before it; where finite
+  glm::dvec3 target{0.0}; // where the shadow ray ends: the point, or just before it; only where finite
   glm::dvec3 wi{0.0};     // unit, towards the light
   double distance = 0.0;  // infinite for a sun
   glm::vec3 radiance{0.0f};
@@ -51,15 +51,15 @@ struct LightSample {
   bool delta = false;
 };
 
-// A light on the way from o along the unit wi.
+// A light hit by the ray from o along the unit wi.
 struct LightHit {
   glm::vec3 radiance{0.0f};
-  double pdf = 0.0;      // as sample() from o would have it; 0 = not on the way
-  double distance = 0.0; // of the target that sample() would have given; infinite for a sun
+  double pdf = 0.0;      // as sample() from o would return it; 0 = not hit
+  double distance = 0.0; // of the target that sample() would return; infinite for a sun
 };
 
 LightSample sample(const Light &light, const glm::dvec3 &p, const glm::vec2 &u);
-// A light without extent is never met.
+// Returns pdf 0 where the ray misses; a light without extent is never hit.
 LightHit meet(const Light &light, const glm::dvec3 &o, const glm::dvec3 &wi);
 bool has_extent(const Light &light);
 

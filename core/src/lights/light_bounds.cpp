@@ -12,9 +12,10 @@ namespace lancer {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
-// Cones that stand out by less than this, in radians, are taken as contained: as in Cycles, whose trees this one resembles.
+// A cone that extends beyond another by less than this, in radians, is treated as contained, as in Cycles, whose light trees
+// have the same shape.
 constexpr double kContained = 5e-4;
-// Axes whose cosine is below this have no plane in common.
+// Two axes whose cosine is below this are treated as opposite and define no plane.
 constexpr double kOpposite = -0.9995;
 
 glm::dvec3 any_normal(const glm::dvec3 &v) {
@@ -30,7 +31,7 @@ void LightCone::add(const LightCone &other) {
     *this = other;
     return;
   }
-  // Start from the wider one; it may hold the other.
+  // Start from the wider cone, which may contain the other one.
   const LightCone wide = other.theta_o > theta_o ? other : *this, narrow = other.theta_o > theta_o ? *this : other;
   axis = wide.axis;
   theta_o = wide.theta_o;
@@ -40,7 +41,7 @@ void LightCone::add(const LightCone &other) {
   const double cosine = glm::dot(wide.axis, narrow.axis), apart = acos(std::clamp(cosine, -1.0, 1.0));
   if (theta_o + kContained >= std::min(kPi, apart + narrow.theta_o))
     return;
-  // Else turn its axis towards the other until both fit.
+  // Otherwise turn the wider cone's axis towards the narrower cone until a cone contains both.
   theta_o = 0.5 * (apart + wide.theta_o + narrow.theta_o);
   if (theta_o >= kPi) {
     theta_o = kPi;
@@ -64,8 +65,8 @@ double LightCone::measure() const {
 bool LightBounds::behind(const glm::dvec3 &p, const glm::dvec3 &n) const {
   const glm::dvec3 to = centre() - p, half = 0.5 * (high - low);
   const glm::dvec3 farthest = glm::abs(to) + half;
-  // Of a float direction and a float normal each component is off by 2^-24, and so are products and sums: a cosine by less
-  // than 1e-6.
+  // Each component of a float direction and of a float normal has an error of 2^-24, and so have products and sums: the error
+  // of a cosine is below 1e-6.
   return glm::dot(to, n) + glm::dot(half, glm::abs(n)) < -1e-6 * (farthest.x + farthest.y + farthest.z);
 }
 
@@ -83,23 +84,24 @@ double LightBounds::cost() const {
     return 0.0;
   const glm::dvec3 size = high - low;
   const double area = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
-  // What lies on a line counts by its length.
+  // The bounds of a line are weighted by their length.
   return energy * (area > 0.0 ? area : glm::length(size)) * cone.measure();
 }
 
 namespace {
 
-// Float moves a coordinate of a tree about 1024 wide by less than this, and one beyond by that share of itself.
+// Rounding to float moves a coordinate of a tree about 1024 wide by less than this, and a coordinate beyond by this share of
+// itself.
 constexpr double kPad = 0x1p-22;
-// Float has no number for what lies much further; a lamp there is as far as this.
+// Lamps further away than this are placed at this distance, because float cannot represent much larger coordinates.
 constexpr double kFarthest = 1e30;
 
-// The mean of the channels' sizes, as in Cycles; 0 where nothing shines.
+// Returns the mean of the channels' absolute values, as in Cycles; 0 where no channel is positive.
 double level(const glm::dvec3 &emission) {
   return brightest(emission) > 0.0 ? (std::abs(emission.x) + std::abs(emission.y) + std::abs(emission.z)) / 3.0 : 0.0;
 }
 
-// Half the widest opening of a spot.
+// Returns half of the widest opening angle of a spot.
 double spot_reach(const Light &light) {
   const double half = acos(std::clamp(light.cos_half_angle, 0.0, 1.0));
   return half < 0.5 * kPi - 1e-6 ? atan(tan(half) * std::max(light.stretch_x, light.stretch_y)) : 0.5 * kPi;
@@ -195,7 +197,7 @@ DescribedLight describe_triangle(const glm::dvec3 (&corners)[3], double energy, 
   LightBounds bounds;
   for (const glm::dvec3 &corner : corners)
     bounds.grow(corner);
-  // Both sides shine: as in Cycles, any direction of the plane stands for that.
+  // Both sides emit: as in Cycles, an arbitrary direction in the plane with theta_o = pi / 2 stands for both.
   const glm::dvec3 side = corners[0] - corners[1];
   bounds.cone = {glm::length(side) > 0.0 ? glm::normalize(side) : glm::dvec3(0.0, 0.0, 1.0), 0.5 * kPi, 0.5 * kPi};
   bounds.energy = energy;

@@ -1,4 +1,5 @@
-// Choices in a binary tree of lights, for lanes that go down it together as far as they agree. F is a float, or lanes of them.
+// Choices in a binary tree of lights for lanes, which descend it together as long as their choices agree. F is a float, or
+// lanes of floats.
 #pragma once
 
 #include "lights/light_importance.h"
@@ -9,11 +10,11 @@ namespace lancer {
 // The most lights of a leaf.
 inline constexpr uint32_t kLeafLights = 8;
 
-// Children stand side by side from an even number on; a leaf holds a stretch of lights.
+// The children of a node are a pair that starts at an even number; a leaf holds consecutive lights.
 struct LightNode {
   ClusterShape shape;
-  uint32_t first = 0;      // child, or light of a leaf
-  uint32_t count : 31 = 0; // lights of a leaf; 0: it has children
+  uint32_t first = 0;      // first child, or first light of a leaf
+  uint32_t count : 31 = 0; // lights of a leaf; 0: the node has children
   uint32_t distant : 1 = 0;
 };
 
@@ -21,7 +22,7 @@ struct LightNodes {
   const LightNode *nodes;
   const TreeLight *lights;
   uint32_t root; // a node, or kNone for the pair of 0 and 1
-  // The node that holds a light, and the one above a pair of nodes, which is unused for the first.
+  // node_of: the leaf that holds a light; parent: the node above a pair of nodes, unused for the first pair.
   const uint32_t *node_of, *parent;
 };
 
@@ -39,7 +40,7 @@ LANCER_LANE Importance<F> node_importance(const LightQueryLanes<F> &query, const
   return node.distant ? importance_far(query, node.shape) : importance(query, node.shape);
 }
 
-// Of what may contribute, none counts for less than its part of the strongest.
+// Raises each positive upper bound to at least kRaised / count of the largest one.
 template <class F> LANCER_LANE void raise(Importance<F> *parts, uint32_t count) {
   const F zero(0.0f);
   F strongest = zero;
@@ -50,8 +51,8 @@ template <class F> LANCER_LANE void raise(Importance<F> *parts, uint32_t count) 
     parts[i].most = select(parts[i].most > zero, max(parts[i].most, least), zero);
 }
 
-// What each of several has of the sum of upper and of lower bounds, averaged; where no lower bound is positive, what can
-// contribute shares that half evenly.
+// The shares of several nodes or lights: the average of each one's share of the sum of upper bounds and of the sum of lower
+// bounds. Where all lower bounds are 0, all that can contribute get equal shares of that half.
 template <class F> struct ImportanceSums {
   using D = DoubleOf<F>;
   D most = D(0.0), least = D(0.0), able = D(0.0);
@@ -69,13 +70,13 @@ template <class F> struct ImportanceSums {
   }
 };
 
-// Of the two nodes of a pair; both 0 where neither can contribute.
+// Returns the shares of the two nodes of a pair; both are 0 where neither can contribute.
 template <class F>
 LANCER_LANE Vector2<DoubleOf<F>> pair_shares(const LightQueryLanes<F> &query, const LightNodes &tree, uint32_t pair) {
   using D = DoubleOf<F>;
   Importance<F> parts[2] = {node_importance(query, tree, pair), node_importance(query, tree, pair + 1)};
   raise(parts, 2);
-  // A cluster's lower bound is mostly 0 and would share the choices evenly: five times the variance under 200 lamps.
+  // A cluster's lower bound is mostly 0 and would make the shares equal: five times the variance under 200 lamps.
   if (pair != 0 && (tree.nodes[pair].count != 1 || tree.nodes[pair + 1].count != 1)) {
     const D zero(0.0), left = widen(parts[0].most), right = widen(parts[1].most), sum = left + right;
     return {select(sum > zero, left / sum, zero), select(sum > zero, right / sum, zero)};
@@ -84,7 +85,7 @@ LANCER_LANE Vector2<DoubleOf<F>> pair_shares(const LightQueryLanes<F> &query, co
   return {sums.share(parts[0]), sums.share(parts[1])};
 }
 
-// Fills in the shares of a leaf's lights; there are two at least.
+// Computes the shares of a leaf's lights, of which there must be at least two.
 template <class F>
 LANCER_LANE void leaf_shares(const LightQueryLanes<F> &query, const LightNodes &tree, const LightNode &node,
                              DoubleOf<F> *shares) {
@@ -97,7 +98,7 @@ LANCER_LANE void leaf_shares(const LightQueryLanes<F> &query, const LightNodes &
     shares[i] = sums.share(parts[i]);
 }
 
-// Of the lanes that have come to this leaf.
+// Chooses a light of a leaf in the lanes that have reached it.
 template <class F>
 LANCER_LANE void choose_of_leaf(const LightQueryLanes<F> &query, const LightNodes &tree, const LightNode &node, MaskOf<F> here,
                                 LightChoiceLanes<F> &choice) {
@@ -110,7 +111,7 @@ LANCER_LANE void choose_of_leaf(const LightQueryLanes<F> &query, const LightNode
   }
   D shares[kLeafLights];
   leaf_shares(query, tree, node, shares);
-  // Go along the shares; rounding at the end stays with the last that has one.
+  // Walk along the cumulative shares; if rounding leaves a rest at the end, the last light with a positive share is chosen.
   D probability(0.0), left = choice.u, rest = left;
   M open = here;
   for (uint32_t i = 0; i < node.count; ++i) {
@@ -126,7 +127,8 @@ LANCER_LANE void choose_of_leaf(const LightQueryLanes<F> &query, const LightNode
   choice.u = select(here, rest, choice.u);
 }
 
-// u in [0, 1): one number for the whole way down. lanes: those that choose; there is one at least, and a light.
+// u in [0, 1): one random number serves all levels of the tree. lanes: the lanes that choose, at least one; the tree must not
+// be empty.
 template <class F>
 LANCER_LANE LightChoiceLanes<F> choose_light(const LightQueryLanes<F> &query, const LightNodes &tree, DoubleOf<F> u,
                                              MaskOf<F> lanes) {
@@ -139,7 +141,7 @@ LANCER_LANE LightChoiceLanes<F> choose_light(const LightQueryLanes<F> &query, co
   };
   LightChoiceLanes<F> choice{WordOf<F>(0u), D(1.0), u};
   const D zero(0.0);
-  // Each node at most once, with the lanes that go there.
+  // Visit each node at most once, with the lanes that descend to it.
   Waiting waiting[64];
   uint32_t size = 0;
   waiting[size++] = {tree.root, lanes};
@@ -165,11 +167,11 @@ LANCER_LANE LightChoiceLanes<F> choose_light(const LightQueryLanes<F> &query, co
   return choice;
 }
 
-// With which choose_light() comes to the light at this place in the tree.
+// Returns the probability with which choose_light() returns the light at this place of the tree.
 template <class F>
 LANCER_LANE DoubleOf<F> choice_probability(const LightQueryLanes<F> &query, const LightNodes &tree, uint32_t place) {
   using D = DoubleOf<F>;
-  // Go up from the light's leaf.
+  // Climb from the light's leaf to the root.
   uint32_t at = tree.node_of[place];
   D probability(1.0);
   if (const LightNode &leaf = tree.nodes[at]; leaf.count > 1) {

@@ -1,7 +1,7 @@
-// How much a light or a cluster of them may matter at a point: the weights by which the light tree chooses.
-// Bounds of what arrives, from above and from below, as in Cycles: where only one technique can meet a light, the picture
-// depends on these densities. Where Cycles' rounding would lose a light that contributes, its chance stays positive here.
-// F is a float, or lanes of them: points that ask about the same light.
+// The importance of a light or cluster at a point: the weights by which the light tree chooses. They are upper and lower bounds
+// of the arriving light, as in Cycles: where only one technique can find a light, the picture depends on these densities. Where
+// rounding in Cycles would drop a light that contributes, its probability stays positive here. F is a float, or lanes of
+// floats: points that evaluate the same light.
 #pragma once
 
 #include "lights/light_bounds.h"
@@ -9,68 +9,69 @@
 
 namespace lancer {
 
-// Who asks for light: a point of a surface and its shading normal, and whether light may also come through from behind.
+// The points that choose a light: position, shading normal, and whether the surface transmits light.
 template <class F> struct LightQueryLanes {
   Double3Of<F> p;
   Vector3<F> n;
   MaskOf<F> transmits;
   Vector3<F> p_float;
-  F slack; // what float may have moved p by
+  F slack; // bound of the rounding error of p_float
 
   LANCER_LANE LightQueryLanes(const Double3Of<F> &point, const Vector3<F> &normal, MaskOf<F> through)
       : p(point), n(normal), transmits(through), p_float(narrow(point)),
         slack(F(0x1p-22f) * (abs(p_float.x) + abs(p_float.y) + abs(p_float.z))) {}
 };
 
-// Bounds of what arrives; most > 0 wherever anything may arrive.
+// Bounds of the arriving light; most > 0 wherever light may arrive.
 template <class F> struct Importance { F most, least; };
 
-// What stands between is not known: beside a blinding light that is hidden, a dim one may be all there is. Of n to choose from,
-// none that may contribute counts for less than 1 / n of this part of the strongest: so much of the choices is the most that
-// raised ones take from the others.
+// Occluders are unknown: beside a blinding light that is hidden, a dim one may give all the light. So each of n lights or
+// clusters that may contribute gets at least 1 / n of this share of the largest weight; raised weights take at most this share
+// of the choices from the others.
 inline constexpr float kRaised = 0x1p-8f;
 
-// A light as the point sees it.
+// A light as seen from the point.
 template <class F> struct LightView {
   Vector3<F> to;  // unit, towards its centre
-  F cos_u, sin_u; // the half angle that it fills
+  F cos_u, sin_u; // of the half angle that it subtends
   F near2, far2;  // its squared distance, at least and at most
 };
 
-// Where the light leaves: ShineCone without its axis.
+// The directions into which a light shines: ShineCone without its axis.
 template <class F> struct ConeCosines {
   F cos_o, sin_o, cos_all, cos_full;
 
   LANCER_LANE explicit ConeCosines(const ShineCone &cone)
       : cos_o(cone.cos_o), sin_o(cone.sin_o), cos_all(cone.cos_all), cos_full(cone.cos_full) {}
-  // Around one axis, up to this angle.
+  // A cone of directions around a single axis, up to this angle.
   LANCER_LANE explicit ConeCosines(float cos_e) : cos_o(1.0f), sin_o(0.0f), cos_all(cos_e), cos_full(cos_e) {}
 };
 
-// Cosines that rounding may have pushed below zero, and what they count for then.
+// Rounding may push a cosine of 0 below zero by this much; the weight then uses this value.
 inline constexpr float kCosineSlack = 0x1p-20f;
-// Scenes and trees are about 1024 wide: nothing is nearer than the rounding of a float position, or less important than this.
+// Scenes and trees are about 1024 wide: no squared distance is below the rounding of a float position, and no positive
+// importance is below kLeastImportance.
 inline constexpr float kNearest2 = 0x1p-40f, kLeastImportance = 0x1p-60f;
 
 template <class F> LANCER_LANE F sine_of(F cosine) { return sqrt(max(F(0.0f), (F(1.0f) - cosine) * (F(1.0f) + cosine))); }
 
-// Where a condition holds; nothing elsewhere.
+// Returns the importance where a condition holds, 0 elsewhere.
 template <class F> LANCER_LANE Importance<F> where(MaskOf<F> holds, const Importance<F> &importance) {
   const F zero(0.0f);
   return {select(holds, importance.most, zero), select(holds, importance.least, zero)};
 }
 
-// cos_theta: between the cone's axis and the way from the light to the point.
+// cos_theta: between the cone's axis and the direction from the light to the point.
 template <class F>
 LANCER_LANE Importance<F> importance(const LightQueryLanes<F> &query, const LightView<F> &view, const ConeCosines<F> &cone,
                                      F cos_theta, F energy) {
   using M = MaskOf<F>;
   const F zero(0.0f), one(1.0f), slack(kCosineSlack);
-  // The smallest and the largest angle at which it may arrive.
+  // Cosines of the smallest and the largest angle at which light may arrive.
   const F along = dot(view.to, query.n), cos_i = select(query.transmits, abs(along), along), sin_i = sine_of(cos_i);
   const F cos_i_least = select(cos_i >= view.cos_u, one, cos_i * view.cos_u + sin_i * view.sin_u);
   const F cos_i_most = max(cos_i * view.cos_u - sin_i * view.sin_u, zero);
-  // The same where it leaves.
+  // Cosines of the angles at which light may leave.
   const F sin_theta = sine_of(cos_theta);
   const F inner = cos_theta * view.cos_u + sin_theta * view.sin_u, outer = cos_theta * view.cos_u - sin_theta * view.sin_u;
   const M within = (cos_theta >= view.cos_u) | (inner >= cone.cos_o);
@@ -84,14 +85,14 @@ LANCER_LANE Importance<F> importance(const LightQueryLanes<F> &query, const Ligh
   return where<F>(able, {max(most, F(kLeastImportance)), select(sure, least, zero)});
 }
 
-// Of a box of lights, which is what a choice asks most.
+// The importance of a box of lights: the most frequent case.
 template <class F>
 LANCER_LANE Importance<F> cluster_importance(const LightQueryLanes<F> &query, const Vector3<F> &centre, const Vector3<F> &half,
                                              const ShineCone &cone, float energy) {
   const F zero(0.0f), one(1.0f);
   const Vector3<F> v = centre - query.p_float;
   const F d2 = dot(v, v), r2 = dot(half, half), d = sqrt(d2);
-  // Nothing of the box is above the surface.
+  // Skip a box that lies entirely below the surface.
   const F reach = dot(Vector3<F>(abs(query.n.x), abs(query.n.y), abs(query.n.z)), half) + query.slack;
   const MaskOf<F> able = query.transmits | (dot(query.n, v) + reach > zero), outside = d2 > r2;
   const F sin2 = select(outside, r2 / d2, zero), near2 = max(d2, F(0.25f) * r2);
@@ -104,7 +105,7 @@ template <class F> LANCER_LANE Importance<F> importance(const LightQueryLanes<F>
   return cluster_importance(query, Vector3<F>(cluster.centre), Vector3<F>(cluster.half), cluster.cone, cluster.energy);
 }
 
-// Of distant ones: a disk of the sky at distance 1.
+// The importance of distant lights: a disk of the sky at distance 1.
 template <class F> LANCER_LANE Importance<F> importance_far(const LightQueryLanes<F> &query, const ClusterShape &cluster) {
   const F one(1.0f), cos_u = max(F(cluster.cone.cos_all), F(-1.0f));
   const LightView<F> view{-Vector3<F>(cluster.cone.axis), cos_u, sine_of(cos_u), one, one};
@@ -117,14 +118,14 @@ template <class F> LANCER_LANE Importance<F> sun_importance(const LightQueryLane
   return importance(query, view, ConeCosines<F>(light.cos_e), one, F(light.energy));
 }
 
-// What a round light fills, and how far its parts are.
+// Returns the half angle that a round light subtends, and its distances.
 template <class F> LANCER_LANE LightView<F> view_round(const TreeLight &light, const Vector3<F> &to, F d) {
   const F zero(0.0f), one(1.0f), r2(light.radius * light.radius), d2 = d * d;
   if (light.kind == TreeLight::Kind::Disk) {
     const F far2 = max(d2 + r2, F(kNearest2));
     return {to, sqrt(d2 / far2), sqrt(r2 / far2), d2, far2};
   }
-  // Within the ball: light from everywhere, as strong as at 0.7 of its radius.
+  // Inside the ball, light arrives from everywhere, as strong as at 0.7 of the radius.
   const MaskOf<F> outside = d2 > r2;
   const F sin2 = r2 / d2, within2 = F(0.5f) * r2;
   return {to, select(outside, sqrt(one - sin2), F(-1.0f)), select(outside, sqrt(sin2), zero), select(outside, d2, within2),
@@ -137,7 +138,7 @@ LANCER_LANE Importance<F> round_importance(const LightQueryLanes<F> &query, cons
   const LightView<F> view = view_round(light, to, d);
   if (!light.spot)
     return importance(query, view, ConeCosines<F>(0.0f), one, energy);
-  // The best that its rim lets through.
+  // The largest transmission of the spot's rim towards the angle that the light subtends.
   const F cos_theta = -dot(Vector3<F>(light.axis), to);
   const F best = select(cos_theta >= view.cos_u, one, cos_theta * view.cos_u + sine_of(cos_theta) * view.sin_u);
   const F inside = best - F(light.cos_e) + F(kCosineSlack);
@@ -150,7 +151,7 @@ template <class F>
 LANCER_LANE Importance<F> area_importance(const LightQueryLanes<F> &query, const TreeLight &light, const Vector3<F> &to, F d,
                                           const Vector3<F> &v) {
   const F zero(0.0f), one(1.0f), u_x(light.u.x), u_y(light.u.y), u_z(light.u.z), v_x(light.v.x), v_y(light.v.y), v_z(light.v.z);
-  // Look at the four corners.
+  // Take the largest distance and angle over the four corners.
   F apart[4], d2[4], above[4];
   for (int corner = 0; corner < 4; ++corner) {
     const F along_u(corner & 1 ? -1.0f : 1.0f), along_v(corner & 2 ? -1.0f : 1.0f);
@@ -163,7 +164,7 @@ LANCER_LANE Importance<F> area_importance(const LightQueryLanes<F> &query, const
     above[corner] = query.n.x * x + query.n.y * y + query.n.z * z;
   }
   const auto largest = [](const F(&x)[4]) __attribute__((always_inline)) { return max(max(x[0], x[1]), max(x[2], x[3])); };
-  // |a - b|^2 = 2 (1 - cos): no cancellation however small the light.
+  // |a - b|^2 = 2 (1 - cos): no cancellation, however small the light.
   const F one_minus_cos = F(0.5f) * largest(apart), near2 = d * d;
   const LightView<F> view{to, one - one_minus_cos, sqrt(max(zero, one_minus_cos * (F(2.0f) - one_minus_cos))), near2,
                           max(near2, largest(d2))};
@@ -182,7 +183,7 @@ template <class F> LANCER_LANE Importance<F> importance(const LightQueryLanes<F>
                             F(static_cast<float>(light.centre.z))};
     return cluster_importance(query, centre, Vector3<F>(light.u), light.cone, light.energy);
   }
-  // In double: a lamp may stand closer than float can tell.
+  // Subtract in double: a lamp may be closer than float resolves.
   const Vector3<F> v = narrow(Double3Of<F>(light.centre) - query.p);
   const F d = sqrt(dot(v, v)), zero(0.0f);
   const Vector3<F> to = select(d > zero, v / d, Vector3<F>(zero));

@@ -1,4 +1,5 @@
-// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+// Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
+// bvh_kernel.cpp.
 #include "lights/light_kernel.h"
 
 #include "lights/light_tree.h"
@@ -10,7 +11,7 @@
 namespace lancer {
 namespace {
 
-// One step down. Returns the child's word; 0 where nothing can arrive.
+// Descends one level. Returns the child's word; 0 where no light can arrive.
 LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWalk &walk) {
   LightWeights weights;
   weigh_all(tree, number, walk, weights);
@@ -18,7 +19,7 @@ LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWa
     walk.probability = 0.0;
     return 0;
   }
-  // Go along the weights; rounding at the end stays with the last that has one.
+  // Walk along the cumulative weights; if rounding leaves a rest at the end, the last child with a positive weight is chosen.
   const double target = walk.u * weights.sum;
   alignas(64) double up_to[kChildren];
   uint32_t beyond = 0;
@@ -37,7 +38,7 @@ LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWa
 }
 
 [[gnu::flatten]] void choose(const LightBranches &tree, LightWalk *walks, uint32_t count) {
-  // Go down level by level: the next walk starts before the last one's step has ended.
+  // Descend level by level: the step of the next walk starts before the previous walk's step has ended.
   constexpr uint32_t kMost = kLightLanes;
   for (uint32_t begin = 0; begin < count; begin += kMost) {
     uint32_t at[kMost], open[kMost], open_count = count - begin < kMost ? count - begin : kMost;
@@ -60,7 +61,7 @@ LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWa
 }
 
 [[gnu::flatten]] double probability(const LightBranches &tree, const LightWalk &walk, uint32_t slot) {
-  // Go up from the light.
+  // Climb from the light to the root.
   double result = 1.0;
   for (; slot != LightBranches::kRoot; slot = tree.slot_of[slot / kBranchWidth]) {
     LightWeights weights;
@@ -72,20 +73,20 @@ LANCER_LANE uint32_t go_down(const LightBranches &tree, uint32_t number, LightWa
   return result;
 }
 
-// A way in float, and how far its place may be wrong by that.
+// A segment in float, and a bound of the rounding error of its origin.
 struct FloatWay {
   F o[3], inverse[3], slack, end;
 };
 
-// What a coordinate of a box may lose in the seven roundings of its two distances, as a share of itself.
+// Bound of the relative error of a box coordinate from the seven roundings of its two distances.
 constexpr float kLost = 0x1p-21f;
 
-// A direction of 0 stands for this one: what it adds to a place is lost in the padding of the boxes.
+// A direction component of 0 is replaced by this one: the change that it makes to a position is below the padding of the boxes.
 constexpr float kLeastDirection = 0x1p-64f;
 
 LANCER_LANE F inverse_of(F wi) { return F(1.0f) / copysign(max(abs(wi), F(kLeastDirection)), wi); }
 
-// Bits of the children that the way may meet.
+// Returns the bits of the children that the segment may hit.
 LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
   uint32_t passed = 0;
   for (int first = 0; first < kChildren; first += kLanes) {
@@ -105,7 +106,7 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
 
 [[gnu::flatten]] void along(const LightBranches &tree, const SegmentBlock &segments, uint32_t count, LightKernel::Visit visit,
                             void *context) {
-  // Round the ways to float.
+  // Round the segments to float.
   alignas(64) float o[3][kLightLanes], inverse[3][kLightLanes], slack[kLightLanes], end[kLightLanes];
   for (int first = 0; first < kLightLanes; first += kLanes) {
     const D3 d = load3(segments.d, first);
@@ -174,7 +175,7 @@ LANCER_LANE uint32_t pass(const LightBranch &branch, const FloatWay &way) {
     const D3 v = surface.p - p, ng = widen(surface.ng);
     const D distance = sqrt(dot(v, v));
     const D3 wi = v / distance;
-    // End on the side that p sees, off the surface by its own bound.
+    // End on the side that p sees, off the surface by the surface's own error bound.
     const D side = select(dot(ng, wi) < D(0.0), D(1.0), D(-1.0));
     store3(block.wi, first, wi);
     store3(block.target, first, D3(surface.p + (side * surface.offset) * ng));

@@ -1,5 +1,5 @@
-// The numbers of lights for lanes, and what lanes get from lights. Formulas read a light by its members, light[&Light::radius],
-// whether it is one for all lanes or each has its own; F is a float, or lanes of them.
+// The members of lights for lanes, and the records that lanes get from lights. Formulas read a light by its members, as
+// light[&Light::radius], for one light in all lanes as for one light in each lane. F is a float, or lanes of floats.
 #pragma once
 
 #include "lights/light.h"
@@ -18,7 +18,7 @@ template <class F> struct OneLight {
   LANCER_LANE Double3Of<F> operator[](glm::dvec3 Light::*vector) const { return light.*vector; }
 };
 
-// A light for each lane.
+// One light for each lane.
 template <class F> struct EachLight {
   static constexpr int kWidth = LanesOf<F>::kWidth;
 

@@ -9,7 +9,8 @@ namespace lancer {
 
 namespace {
 
-// As many lights with a place are chosen from as in Cycles, which costs more for each and leaves more noise.
+// Up to this number of lights with a position, lights are chosen from as in Cycles; among more, that choice costs more per
+// light and leaves more noise.
 constexpr size_t kFew = 4;
 
 } // namespace
@@ -31,15 +32,15 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
     described.push_back(describe(lights_[i], i));
   for (const Emitter &emitter : emitters_)
     described.push_back(describe_cluster(emitter.bounds(), uint32_t(described.size())));
-  // What only the camera sees lights nothing.
+  // An environment that only the camera sees lights nothing.
   if (environment_.is_light() && lit_by(environment_.hidden_from()))
     described.push_back(describe_sky(environment_.mean(), environment_light()));
-  // One that is never chosen is never met either: both techniques know the same lights.
+  // A light that is never chosen is never hit either: both techniques of multiple importance sampling cover the same lights.
   std::vector<uint32_t> met;
   for (uint32_t i = 0; i < lights_.size(); ++i)
     if (described[i].met && described[i].bounds.energy > 0.0)
       (described[i].distant() ? always_ : met).push_back(i);
-  // A few are asked one by one.
+  // Few lights are tested one by one.
   find_ = met.size() > kFew;
   if (!find_)
     always_.insert(always_.end(), met.begin(), met.end());

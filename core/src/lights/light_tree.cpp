@@ -1,4 +1,4 @@
-// Choices from the tree of many lights.
+// Choices from the light trees.
 #include "lights/light_tree.h"
 
 #include "lights/light_importance.h"
@@ -10,7 +10,7 @@ namespace lancer {
 
 namespace {
 
-// Copies of vectors in the plain arrays of records that kernels read.
+// Copies a vector to a plain array of a record that kernels read.
 template <class T> void copy(const glm::vec<3, T> &from, T (&to)[3]) {
   for (int i = 0; i < 3; ++i)
     to[i] = from[i];

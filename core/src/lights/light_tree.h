@@ -1,5 +1,5 @@
-// Which of many lights to ask at a point, and which ones a ray may run into: a tree of clusters, sixteen to a branch. Clusters
-// are chosen by the most that may arrive from each.
+// Light trees: the choice among many lights at a point, and the search for the lights that a ray may hit. The tree of many
+// lights has clusters with sixteen children to a branch; clusters are chosen by the upper bound of their contribution.
 #pragma once
 
 #include "lights/light_bounds.h"
@@ -12,25 +12,25 @@
 
 namespace lancer {
 
-// Which of a few lights to ask at a point: a binary tree, each choice weighted by what may arrive.
-// Between lights, and between what is near and what is distant, shares of the upper and of the lower bounds are averaged, as in
-// Cycles; between clusters the upper bounds decide.
+// The choice among a few lights at a point: a binary tree whose choices are weighted by the possible contribution. Between
+// lights, and between near and distant clusters, the shares of upper and of lower bounds are averaged, as in Cycles; between
+// clusters, the upper bounds decide.
 class BinaryLightTree {
 public:
   BinaryLightTree() = default;
-  // count: numbers are below it. Lights without energy are never chosen.
+  // count: light numbers are below it. Lights without energy are never chosen.
   BinaryLightTree(std::vector<DescribedLight> lights, uint32_t count);
 
   bool empty() const { return lights_.empty(); }
   size_t size() const { return lights_.size(); }
 
-  // u in [0, 1): one number for the whole way down.
+  // u in [0, 1): one random number serves all levels of the tree.
   LightChoice choose(const LightQuery &query, double u) const;
-  // The tree itself, for kernels.
+  // The nodes, for kernels.
   LightNodes nodes() const { return {nodes_.data(), lights_.data(), root_, node_of_.data(), parent_.data()}; }
-  // kNone: never chosen.
+  // Returns kNone for a light that is never chosen.
   uint32_t place_of(uint32_t number) const { return number < place_of_.size() ? place_of_[number] : kNone; }
-  // With which choose() returns a light.
+  // Returns the probability with which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
   size_t bytes() const {
@@ -45,33 +45,33 @@ private:
 
   void split(const Part &part, std::vector<DescribedLight> &lights, std::vector<Part> &waiting);
 
-  std::vector<LightNode> nodes_; // 0 and 1 are what is near and what is distant
+  std::vector<LightNode> nodes_; // 0 and 1 are the near and the distant cluster
   std::vector<TreeLight> lights_;
   std::vector<uint32_t> node_of_, parent_; // LightNodes
   std::vector<uint32_t> place_of_;         // by number; kNone: never chosen
-  uint32_t root_ = 0;                      // the pair of 0 and 1 where both have lights: kNone
+  uint32_t root_ = 0;                      // kNone where both 0 and 1 have lights: the pair of them
 };
 
 class LightTree {
 public:
   LightTree() = default;
-  // count: numbers are below it. Lights without energy are never chosen, and none is distant. Coordinates should be about 1024
-  // at most. Throws BuildCancelled.
+  // count: light numbers are below it. Lights without energy are never chosen, and no light may be distant. Coordinates should
+  // be at most about 1024. Throws BuildCancelled.
   LightTree(std::vector<DescribedLight> lights, uint32_t count, const BuildContext &context = {});
 
   bool empty() const { return branches_.empty(); }
-  // Of all of it; energy in the user's units.
+  // Bounds of the whole tree; energy in the user's units.
   const LightBounds &bounds() const { return bounds_; }
 
-  // u in [0, 1): one number for the whole way down.
+  // u in [0, 1): one random number serves all levels of the tree.
   LightChoice choose(const LightQuery &query, double u) const;
-  // The same for several at once.
+  // Choices for several points at once.
   static LightWalk walk(const LightQuery &query, double u);
   void choose(std::span<LightWalk> walks) const { kernel_->choose(tree(), walks.data(), uint32_t(walks.size())); }
-  // With which choose() returns a light.
+  // Returns the probability with which choose() returns a light.
   double probability(const LightQuery &query, uint32_t number) const;
 
-  // Calls visit(way, light) for all lights that the first ways may meet before they end. The tree is not empty.
+  // Calls visit(segment, light) for each light that one of the first count segments may hit. The tree must not be empty.
   template <class Visit> void along(const SegmentBlock &segments, uint32_t count, Visit &&visit) const {
     kernel_->along(
         tree(), segments, count,
@@ -103,7 +103,7 @@ private:
 
   const LightKernel *kernel_ = nullptr;
   std::vector<LightBranch> branches_;
-  std::vector<LightAim> aims_; // of each branch; empty where nothing is aimed
+  std::vector<LightAim> aims_; // of each branch; empty where no light is aimed
   std::vector<uint32_t> slot_of_;
   std::vector<uint32_t> place_of_; // slot by number of light; kNone: never chosen
   LightBounds bounds_;

@@ -1,5 +1,5 @@
-// What the children of a branch are worth at a point, side by side: the upper bound of importance(), of clusters, but that a
-// point within a cluster's ball counts as on its edge. For kernels only, like simd/lanes.h.
+// The weights of all children of a branch at a point, in lanes: the upper bound of importance() of clusters, except that a
+// point within a cluster's ball is treated as on its surface. For kernels only, like simd/lanes.h.
 #pragma once
 
 #include "lights/light_importance.h"
@@ -10,25 +10,25 @@ namespace lancer {
 namespace {
 
 constexpr int kChildren = static_cast<int>(kBranchWidth);
-// Registers of doubles that hold one number of each child.
+// Registers of doubles that hold one number for each child.
 using DoubleVector = VectorOf<double, kHalf>;
 constexpr int kParts = kChildren / kHalf;
 
-// Of kLanes children from the first on; 0 where nothing can arrive.
+// Returns the weights of kLanes children from the given one on; 0 where no light can arrive.
 LANCER_LANE F weigh(const LightBranch &branch, const LightAim *aim, const LightWalk &walk, int first) {
   const F zero(0.0f), one(1.0f), little(kCosineSlack);
   const F n[3] = {F(walk.n[0]), F(walk.n[1]), F(walk.n[2])};
   const F x = load(branch.centre[0] + first) - F(walk.p[0]), y = load(branch.centre[1] + first) - F(walk.p[1]),
           z = load(branch.centre[2] + first) - F(walk.p[2]);
   const F d2 = x * x + y * y + z * z, per_d = one / sqrt(max(d2, F(kNearest2)));
-  // Nothing of the box is above the surface.
+  // Skip boxes that lie entirely below the surface.
   const F reach = abs(n[0]) * load(branch.half[0] + first) + abs(n[1]) * load(branch.half[1] + first) +
                   abs(n[2]) * load(branch.half[2] + first) + F(walk.slack);
   const F along = n[0] * x + n[1] * y + n[2] * z, energy = load(branch.energy + first);
   M kept = energy > zero;
   if (!walk.transmits)
     kept = kept & (along + reach > zero);
-  // The half angle that it fills.
+  // The half angle that the cluster subtends.
   const F radius = load(branch.radius + first);
   const M outside = d2 > radius * radius;
   const F sin_u = select(outside, radius * per_d, zero), cos_u = select(outside, sine_of(sin_u), F(-1.0f));
@@ -37,7 +37,7 @@ LANCER_LANE F weigh(const LightBranch &branch, const LightAim *aim, const LightW
   const F arrives = select(cos_i >= cos_u, one, cos_i * cos_u + sine_of(cos_i) * sin_u);
   F most = energy * max(arrives, little) * min(per_d * per_d, load(branch.per_near2 + first));
   if (any(!equal(load(branch.child + first) & U(LightBranch::kAimed), U(0u)))) {
-    // The smallest angle at which it may leave.
+    // The smallest angle at which light may leave.
     const F cos_theta =
         -(load(aim->axis[0] + first) * x + load(aim->axis[1] + first) * y + load(aim->axis[2] + first) * z) * per_d;
     const F inner = cos_theta * cos_u + sine_of(cos_theta) * sin_u, cos_o = load(aim->cos_o + first);
@@ -49,7 +49,7 @@ LANCER_LANE F weigh(const LightBranch &branch, const LightAim *aim, const LightW
   return select(kept, max(most, F(kLeastImportance)), zero);
 }
 
-// The lanes of b, a number of places to the right, and before them the last of a.
+// Returns b shifted right by a number of lanes, the last lanes of a moved in before it.
 template <int By> LANCER_LANE DoubleVector shifted(DoubleVector a, DoubleVector b) {
 #if defined(__AVX512F__)
   return __builtin_shufflevector(a, b, 8 - By, 9 - By, 10 - By, 11 - By, 12 - By, 13 - By, 14 - By, 15 - By);
@@ -60,7 +60,7 @@ template <int By> LANCER_LANE DoubleVector shifted(DoubleVector a, DoubleVector 
 #endif
 }
 
-// Adds to each child's number that of the child so many places before it.
+// Adds to each child's number the number of the child that stands By places before it.
 template <int By> LANCER_LANE void add_before(DoubleVector (&of)[kParts]) {
   const DoubleVector none{};
   for (int i = kParts - 1; i >= 0; --i) {
@@ -71,7 +71,7 @@ template <int By> LANCER_LANE void add_before(DoubleVector (&of)[kParts]) {
   }
 }
 
-// The largest of the children's numbers, none of which is negative.
+// Returns the largest of the children's numbers; none may be negative.
 LANCER_LANE float largest(const float (&of)[kChildren]) {
   using Four [[gnu::vector_size(16), gnu::may_alias]] = float;
   const Four *const parts = reinterpret_cast<const Four *>(of);
@@ -85,9 +85,9 @@ LANCER_LANE float largest(const float (&of)[kChildren]) {
 
 struct LightWeights {
   alignas(64) float most[kChildren];
-  // Of the children up to each: the same sums in every instruction set.
+  // Prefix sums of the weights: the same in every instruction set.
   DoubleVector up_to[kParts];
-  uint32_t able = 0; // bits of those that have a weight
+  uint32_t able = 0; // bits of the children with a positive weight
   double sum = 0.0;
 };
 

@@ -8,8 +8,8 @@
 
 namespace lancer {
 
-// Share of the intensity that a spot sends towards -wi: 0 outside the cone, a smooth step over its blended rim; where asked
-// for, it falls with the cosine to the axis too.
+// Returns the share of the intensity that a spot sends towards -wi: 0 outside the cone, a smooth step over its blended rim.
+// With spot_cosine it is multiplied by the cosine to the axis.
 template <template <class> class L, class F>
 LANCER_LANE DoubleOf<F> spot_attenuation(const L<F> &light, const Double3Of<F> &wi, MaskOf<F> spot) {
   using D = DoubleOf<F>;
@@ -20,7 +20,7 @@ LANCER_LANE DoubleOf<F> spot_attenuation(const L<F> &light, const Double3Of<F> &
   D cosine = dot(wi, light[&Light::z]);
   const MaskOf<F> stretched = (stretch_x != one) | (stretch_y != one);
   if (any(stretched & spot)) {
-    // Look at the direction where the cone is round.
+    // Map the direction to a space in which the cone is round.
     const D x = dot(wi, light[&Light::x]) / stretch_x, y = dot(wi, light[&Light::y]) / stretch_y;
     cosine = select(stretched, cosine / sqrt(x * x + y * y + cosine * cosine), cosine);
   }
@@ -31,7 +31,8 @@ LANCER_LANE DoubleOf<F> spot_attenuation(const L<F> &light, const Double3Of<F> &
   return select(spot, select(inside > zero, value, zero), one);
 }
 
-// A disk that is smaller than a float direction can tell is a point: its radiance would leave float's range before that.
+// Whether a disk is smaller than the rounding of a float direction. Such a disk is sampled as a point: the radiance of a
+// smaller disk would exceed the range of float.
 template <class D> LANCER_LANE auto is_true_point(D radius, D distance) { return radius <= distance * D(0x1p-24); }
 
 // Unit vectors that complete unit n to a right-handed frame (Duff et al. 2017).
@@ -41,30 +42,29 @@ template <class D> LANCER_LANE FrameAxes<D> complete_frame(const Vector3<D> &n) 
   return {{one + side * n.x * n.x * a, side * b, -side * n.x}, {b, side + n.y * n.y * a, -n.y}};
 }
 
-// 1 - cos of the half angle of a ball, without cancellation (core/README.md, "Numerics").
+// Returns 1 - cos of the half angle of a ball, without cancellation (core/README.md, "Numerics").
 template <class D> LANCER_LANE D one_minus_cos_ball(D radius, D distance) {
   const D ratio = radius / distance, sin2 = ratio * ratio;
   const D cos2 = (distance - radius) * (distance + radius) / (distance * distance);
   return sin2 / (D(1.0) + sqrt(max(D(0.0), cos2)));
 }
 
-// A uniform direction around unit axis with 1 - cos <= cone, by a point of the unit disk: neighbours stay neighbours.
+// Maps a point of the unit disk to a uniform direction around the unit axis with 1 - cos <= cone; the map is continuous.
 template <class D>
 LANCER_LANE Vector3<D> cone_direction(const Vector3<D> &axis, const FrameAxes<D> &frame, D cone, const Vector2<D> &disk) {
   const D one(1.0), r2 = min(one, disk.x * disk.x + disk.y * disk.y), x = r2 * cone;
-  // sin^2 = x (2 - x), spread over the disk's own direction.
+  // sin^2 = x (2 - x), along the direction of the disk point.
   const D spread = sqrt(cone * (D(2.0) - x));
   return normalize((one - x) * axis + disk.x * spread * frame.s + disk.y * spread * frame.t);
 }
 
-// Half of the way within a ball that passes its middle at this distance.
+// Returns half the length of a chord whose distance from the ball's centre is closest.
 template <class D> LANCER_LANE D half_chord(D radius, D closest) {
   return sqrt(max(D(0.0), (radius - closest) * (radius + closest)));
 }
-// How far a way misses a point.
 template <class D> LANCER_LANE D length_of(const Vector3<D> &v) { return sqrt(dot(v, v)); }
 
-// Density of directions to a ball: to all sides from inside it.
+// Returns the density of directions to a ball; inside the ball it is uniform over the sphere.
 template <class D, class M> LANCER_LANE D ball_pdf(D cone, M inside) {
   return select(inside, D(0.25 * std::numbers::inv_pi), D(1.0) / (D(2.0 * std::numbers::pi) * cone));
 }
@@ -96,17 +96,17 @@ LANCER_LANE void sample_round(const L<F> &light, const Double3Of<F> &p, F u, F v
     target = select(disk, at, target);
     wi = select(disk, direction, wi);
     length = select(disk, t, length);
-    // Turn area into solid angle.
+    // Convert the density from area to solid angle.
     pdf = select(disk, disk_pdf(t, dot(direction, axis), radius), pdf);
   }
   if (any(ball)) {
-    // Take a uniform direction of the cone that the ball fills; the middle of the square is its axis. Inside the ball, light
-    // comes from everywhere.
+    // Take a uniform direction of the cone that the ball subtends; the middle of the unit square maps to the cone's axis.
+    // Inside the ball, directions are uniform over the sphere.
     const D cone = one_minus_cos_ball(radius, distance);
     D3 direction = cone_direction(axis, frame, cone, place);
     if (any(inside))
       direction = select(inside, widen(warp_sphere(u, v)), direction);
-    // Go to the ball's surface: its near side from outside, its far side from inside.
+    // End on the ball's surface: on its near side from outside, on its far side from inside.
     const D along = dot(to_light, direction), half = half_chord(radius, length_of(along * direction - to_light));
     const D reach = select(inside, along + half, max(along - half, D(0.5) * along));
     target = select(ball, p + reach * direction, target);
@@ -115,7 +115,8 @@ LANCER_LANE void sample_round(const L<F> &light, const Double3Of<F> &p, F u, F v
     pdf = select(ball, ball_pdf(cone, inside), pdf);
   }
   const D attenuation = select(inside, one, spot_attenuation(light, wi, spot & which));
-  // Intensity over the squared distance of a point, or over the projected area; within the ball there is no cone.
+  // Divide the intensity by the squared distance for a point, by the projected area otherwise; inside the ball, a spot's cone
+  // is ignored.
   const D per_area = attenuation / select(point, distance * distance, D(std::numbers::pi) * radius * radius);
   sample.target = select(which, target, sample.target);
   sample.wi = select(which, wi, sample.wi);
@@ -125,11 +126,11 @@ LANCER_LANE void sample_round(const L<F> &light, const Double3Of<F> &p, F u, F v
   sample.delta = sample.delta | point;
 }
 
-// Where ways from o along unit wi meet the disk that faces o, or the ball: on its near side from outside, on its far side from
+// Where rays from o along unit wi hit the disk that faces o, or the ball: on its near side from outside, on its far side from
 // inside.
 template <class F> struct RoundMeeting {
   MaskOf<F> met, inside;
-  DoubleOf<F> distance; // of the middle
+  DoubleOf<F> distance; // of the centre
   DoubleOf<F> cosine;   // of disks
   DoubleOf<F> t;
 };

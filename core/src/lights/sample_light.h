@@ -1,4 +1,4 @@
-// sample() and meet() of lights for lanes: F is a float, or lanes of them.
+// sample() and meet() of lights for lanes. F is a float, or lanes of floats.
 #pragma once
 
 #include "lights/area_light.h"
@@ -6,8 +6,8 @@
 
 namespace lancer {
 
-// How much a sample counts that another technique might have found, too. The power heuristic in ratio form: infinite densities
-// give 0 or 1, never NaN.
+// Returns the weight of a sample that another technique could also have found: the power heuristic in ratio form, where
+// infinite densities give 0 or 1, never NaN.
 template <class D> LANCER_LANE auto mis_weight(D pdf, D other) {
   const D ratio = other / pdf;
   return narrow(D(1.0) / (D(1.0) + ratio * ratio));
@@ -15,7 +15,7 @@ template <class D> LANCER_LANE auto mis_weight(D pdf, D other) {
 
 template <class U> LANCER_LANE auto is_kind(U kind, LightKind which) { return equal(kind, U(static_cast<uint32_t>(which))); }
 
-// Of the lanes that are asked for; the others stay. Light may be black there.
+// Samples the lights of the requested lanes; the other lanes stay as they are. The radiance of a sample may be black.
 template <template <class> class L, class F>
 LANCER_LANE void sample_light(const L<F> &light, const Double3Of<F> &p, F u, F v, MaskOf<F> asked,
                               LightSampleLanes<F> &sample) {
@@ -34,7 +34,7 @@ LANCER_LANE void sample_light(const L<F> &light, const Double3Of<F> &p, F u, F v
     sample_sun(light, disk, sun, sample);
 }
 
-// A light on ways from o along unit wi. One without extent is never met.
+// The light hit by rays from o along unit wi. A light without extent is never hit.
 template <class F>
 LANCER_LANE LightHitLanes<F> meet_light(const OneLight<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi) {
   switch (light.light.kind) {
@@ -47,7 +47,8 @@ LANCER_LANE LightHitLanes<F> meet_light(const OneLight<F> &light, const Double3O
   }
 }
 
-// Lanes whose way meets the light, before end or, of disks and rectangles, not much further; suns have no distance.
+// Returns the lanes whose ray hits the light, before end or, for disks and rectangles, not much beyond it; suns have no
+// distance.
 template <class F>
 LANCER_LANE MaskOf<F> may_meet(const OneLight<F> &light, const Double3Of<F> &o, const Double3Of<F> &wi, DoubleOf<F> end) {
   switch (light.light.kind) {

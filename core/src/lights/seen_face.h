@@ -1,5 +1,5 @@
-// A face of a glowing mesh relative to the point that sees it: near ones are sampled by the solid angle that they fill, far
-// ones by area. F is a float, or lanes of them.
+// A face of an emitting mesh relative to the shaded point: a near face is sampled by solid angle, a far one by area. F is a
+// float, or lanes of floats.
 #pragma once
 
 #include "sampling/spherical_triangle.h"
@@ -11,14 +11,14 @@ namespace lancer {
 template <class F> struct SeenFace {
   using D = DoubleOf<F>;
   using D3 = Double3Of<F>;
-  // Below this share of the squared distance of its middle a face is taken as a light far away, which its area describes as
-  // well; beyond these solid angles it is seen edge on, or the point lies on it.
+  // A face whose area is below kFar times the squared distance of its middle is sampled by area, which serves as well at that
+  // distance. Outside the two bounds of the solid angle, the face is seen edge on, or the point lies on it.
   static constexpr double kFar = 0.01, kLeastAngle = 1e-6, kMostAngle = 6.28;
 
   D3 v0, e1, e2;
   D area;
-  SphericalTriangle<D> directions; // of near ones
-  MaskOf<F> by_angle;              // directions to it are sampled evenly
+  SphericalTriangle<D> directions; // of near faces
+  MaskOf<F> by_angle;              // lanes that sample by solid angle
 
   // corner: in the object's space.
   LANCER_LANE SeenFace(const MapLanes<F> &to_world, const Vector3<F> (&corner)[3], const D3 &p)
@@ -30,7 +30,7 @@ template <class F> struct SeenFace {
                (directions.solid_angle < D(kMostAngle));
   }
 
-  // The weights of corners 1 and 2 of the point that the numbers stand for.
+  // Returns the weights of corners 1 and 2 of the sampled point.
   LANCER_LANE Vector2<D> sample(F u, F v) const {
     const Vector2<F> by_area = warp_triangle(u, v);
     const Vector2<D> weights{widen(by_area.x), widen(by_area.y)};
@@ -40,7 +40,7 @@ template <class F> struct SeenFace {
     return {select(by_angle, met.x, weights.x), select(by_angle, met.y, weights.y)};
   }
 
-  // Density per solid angle of a point of it. v: towards the point, of any length; ng: unit, of the face.
+  // Returns the density per solid angle of a point of the face. v: towards the point, of any length; ng: unit, of the face.
   LANCER_LANE D pdf(const D3 &v, const Vector3<F> &ng) const {
     const D zero(0.0), d2 = dot(v, v), cosine = abs(dot(widen(ng), v)) / sqrt(d2);
     const D density = select(by_angle, D(1.0) / directions.solid_angle, d2 / (cosine * area));
@@ -48,7 +48,8 @@ template <class F> struct SeenFace {
   }
 
 private:
-  // The weights of corners 1 and 2 where a direction meets its plane; of its middle where rounding has it run along the plane.
+  // Returns the weights of corners 1 and 2 where a direction hits the face's plane; those of the face's middle where rounding
+  // makes the direction parallel to the plane.
   LANCER_LANE Vector2<D> weights_towards(const D3 &wi) const {
     const D zero(0.0), one(1.0), third(1.0 / 3.0);
     const D3 across = cross(wi, e2);

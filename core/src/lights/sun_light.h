@@ -1,4 +1,4 @@
-// A sun: parallel light, or a disk of the sky, even or flat.
+// Sun lights: a single direction, or a disk of the sky, either uniform in solid angle or a flat disk.
 #pragma once
 
 #include "lights/round_light.h"
@@ -7,7 +7,7 @@
 
 namespace lancer {
 
-// The disk towards the direction whose cosine to the middle is given. The sun's irradiance is that at normal incidence.
+// The disk in the direction whose cosine to the middle is given. The sun's irradiance is that at normal incidence.
 template <class F> struct SunDisk {
   Vector3<F> radiance;
   DoubleOf<F> pdf;
@@ -22,8 +22,8 @@ LANCER_LANE SunDisk<F> sun_disk(const Double3Of<F> &emission, DoubleOf<F> size, 
   // E = pi L sin^2(half angle).
   SunDisk<F> disk{narrow(emission / (pi * (size * (two - size)))), one / (D(2.0 * std::numbers::pi) * size)};
   if (any(flat)) {
-    // At distance 1 every part of the flat disk gives as much light as it is large: per solid angle 1 / cos^3. Its mean cosine
-    // is 2 / (sqrt(1 + r^2) + 1).
+    // At distance 1, each part of the flat disk emits in proportion to its area: the density per solid angle has the factor 1 /
+    // cos^3. The mean cosine of the disk is 2 / (sqrt(1 + r^2) + 1).
     const D r2 = radius * radius, pdf = one / (pi * r2 * cosine * cosine * cosine);
     disk.radiance = select(flat, narrow(emission * (D(0.5) * (sqrt(one + r2) + one) * pdf)), disk.radiance);
     disk.pdf = select(flat, pdf, disk.pdf);
@@ -31,7 +31,7 @@ LANCER_LANE SunDisk<F> sun_disk(const Double3Of<F> &emission, DoubleOf<F> size, 
   return disk;
 }
 
-// disk: warp_disk() of the sample's numbers.
+// disk: warp_disk() of the sample's random numbers.
 template <template <class> class L, class F>
 LANCER_LANE void sample_sun(const L<F> &light, const Vector2<F> &disk, MaskOf<F> which, LightSampleLanes<F> &sample) {
   using D = DoubleOf<F>;
@@ -59,7 +59,7 @@ LANCER_LANE void sample_sun(const L<F> &light, const Vector2<F> &disk, MaskOf<F>
   sample.delta = sample.delta | single;
 }
 
-// |wi - z|^2 = 2 (1 - cos): no cancellation however small the sun.
+// |wi - z|^2 = 2 (1 - cos): no cancellation, however small the sun.
 template <template <class> class L, class F>
 LANCER_LANE DoubleOf<F> one_minus_cos_to(const L<F> &light, const Double3Of<F> &wi) {
   const Double3Of<F> apart = wi - light[&Light::z];
