@@ -50,7 +50,7 @@ class NormalDomain(IntEnum):
 
 
 class Domain(IntEnum):
-    """What an attribute has one value for."""
+    """The elements of a mesh that carry one value each."""
 
     VERTEX = 0
     FACE = 1
@@ -58,7 +58,7 @@ class Domain(IntEnum):
 
 
 class InstanceKind(IntEnum):
-    """Exact surfaces stand in their own unit frame; the instance's matrix places, scales and shears them."""
+    """Exact surfaces are defined in a unit frame; the instance's matrix translates, scales and shears them."""
 
     MESH = 0
     SPHERE = 1
@@ -68,7 +68,7 @@ class InstanceKind(IntEnum):
 
 
 class Shading(IntEnum):
-    """How normals are used, and in CLASSIC where light is computed."""
+    """How normals are used, and where CLASSIC computes light."""
 
     AS_MESH = 0
     FLAT = 1
@@ -77,7 +77,7 @@ class Shading(IntEnum):
 
 
 class Ray(IntFlag):
-    """Rays by what sent them."""
+    """Rays by their origin."""
 
     CAMERA = 1
     DIFFUSE = 2
@@ -98,14 +98,14 @@ class TexelKind(IntEnum):
 
 
 class Transfer(IntEnum):
-    """How a texel becomes scene-linear, after interpolation."""
+    """Conversion of an interpolated texel to scene-linear colour."""
 
     LINEAR = 0
     SRGB = 1
 
 
 class AlphaMode(IntEnum):
-    """What the fourth channel does."""
+    """Meaning of the fourth channel."""
 
     ASSOCIATED = 0
     STRAIGHT = 1
@@ -114,7 +114,7 @@ class AlphaMode(IntEnum):
 
 
 class NodeKind(IntEnum):
-    """Nodes compute values where a ray meets a surface."""
+    """Nodes compute values at the hit of a ray."""
 
     COORDINATE = 0
     ATTRIBUTE = 1
@@ -148,7 +148,7 @@ class NodeKind(IntEnum):
 
 
 class ColorModel(IntEnum):
-    """Between linear RGB and hue, saturation and value (HSV) or lightness (HSL)."""
+    """Conversion between linear RGB and hue, saturation and value (HSV) or lightness (HSL)."""
 
     TO_HSV = 0
     FROM_HSV = 1
@@ -164,8 +164,7 @@ class ObjectFact(IntEnum):
 
 
 class PathFact(IntEnum):
-    """1 or 0; a length in scene units; or how many scatterings, of that kind, or surfaces passed straight through came
-    before."""
+    """Facts about the ray of a hit."""
 
     IS_CAMERA = 0
     IS_SHADOW = 1
@@ -282,7 +281,7 @@ class MappingType(IntEnum):
 
 
 class MathOperation(IntEnum):
-    """As Blender's nodes of these names."""
+    """As in Blender's nodes of these names."""
 
     ADD = 0
     SUBTRACT = 1
@@ -404,7 +403,7 @@ class Distribution(IntEnum):
 
 
 class Rules(IntEnum):
-    """Whose definitions hold for lobes of nodes."""
+    """The Blender versions whose definitions hold for lobes of nodes."""
 
     BLENDER_3 = 0
     BLENDER_4 = 1
@@ -475,7 +474,7 @@ class Features(IntEnum):
 
 
 class Pass(IntEnum):
-    """Passes; the film keeps those whose bit (1u << pass) is in lancer_settings.passes."""
+    """Passes of the film, which keeps those whose bit (1u << pass) is set in lancer_settings.passes."""
 
     COMBINED = 0
     DEPTH = 1

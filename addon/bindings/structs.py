@@ -12,7 +12,7 @@ Array = c_void_p
 
 
 class Attribute(Structure):
-    """A named attribute of a mesh, for nodes."""
+    """A named mesh attribute that nodes read."""
 
     _fields_ = [
         ("name", c_char_p),
@@ -170,7 +170,7 @@ class Material(Structure):
 
 
 class Light(Structure):
-    """A light shines along its local -z."""
+    """A light emits along its local -z."""
 
     _fields_ = [
         ("name", c_char_p),
@@ -198,7 +198,7 @@ class Light(Structure):
 
 
 class World(Structure):
-    """What lies beyond everything."""
+    """The environment's radiance, as a value or as nodes."""
 
     _fields_ = [
         ("nodes", POINTER(Node)),
@@ -308,7 +308,7 @@ class Statistics(Structure):
 
 
 class Error(Structure):
-    """How far the picture is from the converged one."""
+    """The distance of the picture from the converged one."""
 
     _fields_ = [
         ("error", c_double),
@@ -365,7 +365,7 @@ class BsdfSample(Structure):
 
 
 class LobeInfo(Structure):
-    """A lobe as it stands for one wo, after nodes and layers."""
+    """A lobe for one wo, after nodes and layers."""
 
     _fields_ = [
         ("kind", c_uint32),
