@@ -1,4 +1,4 @@
-// The C interface: checks handles and pointers, turns exceptions into statuses, and passes on to the rooms.
+// The C interface: checks handles and pointers, turns exceptions into statuses, and calls the rooms.
 #include "integrator/stages/shading.h"
 #include "objects.h"
 #include "render/session.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace lancer;
 
-// Runs fill on a scene that is still open.
+// Runs fill on a scene that is not committed yet.
 template <class Fill> lancer_status fill_scene(lancer_scene handle, const void *record, const char *name, Fill &&fill) {
   return guard([&] {
     const auto object = scene_of(handle);
@@ -121,7 +121,7 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
       target->scene =
           commit(std::move(target->description), static_cast<AcceleratorKind>(accelerator), surface_emission, context);
     });
-    // Only now: where there was no memory to start, nothing is on its way.
+    // Change the state only after the thread has started: if memory is missing, no commit is running.
     object->state = SceneObject::State::Committing;
     return LANCER_OK;
   });
@@ -145,7 +145,7 @@ lancer_status lancer_scene_wait(lancer_scene scene, uint32_t milliseconds) {
       object->state = SceneObject::State::Failed;
       throw;
     }
-    // The copy takes memory: without it the scene can be waited for again.
+    // The copy takes memory: if it fails, the caller can wait for the scene again.
     object->messages = object->scene->messages;
     object->builder.reset();
     object->state = SceneObject::State::Committed;
@@ -165,7 +165,7 @@ lancer_status lancer_scene_messages(lancer_scene scene, char *text, size_t size,
     const auto object = scene_of(scene);
     const std::lock_guard lock(object->mutex);
     if (object->state == SceneObject::State::Committing)
-      throw Error(Fault::State, "scene: its commit has not been waited for");
+      throw Error(Fault::State, "scene: its commit is still running; wait for it first");
     const std::string messages =
         object->state == SceneObject::State::Filling ? object->description.messages.text() : object->messages;
     if (needed)
@@ -229,7 +229,7 @@ lancer_status lancer_session_wait(lancer_session session, uint32_t milliseconds,
 
 lancer_status lancer_session_cancel(lancer_session session) {
   return guard([&] {
-    // Without the lock: one who waits holds it.
+    // Do not take the lock: a thread inside lancer_session_wait() holds it.
     session_of(session)->session.cancel();
     return LANCER_OK;
   });
@@ -277,7 +277,7 @@ lancer_status lancer_session_read(lancer_session session, uint32_t pass, float *
     const Film &film = object->session.film();
     const size_t expected = size_t(film.width()) * film.height() * channels(static_cast<Pass>(pass));
     if (float_count != expected)
-      bad_argument("read: " + std::to_string(float_count) + " floats for a pass of " + std::to_string(expected));
+      bad_argument("read: out has " + std::to_string(float_count) + " floats, but the pass has " + std::to_string(expected));
     object->session.read(static_cast<Pass>(pass), std::span(out, float_count));
     return LANCER_OK;
   });

@@ -1,4 +1,4 @@
-// The part of the C interface that asks single questions of scenes and sessions: the probes.
+// The probes of the C interface: single queries of scenes and sessions.
 #include "objects.h"
 #include "render/probe.h"
 #include "render/session.h"
@@ -8,14 +8,14 @@ namespace {
 
 using namespace lancer;
 
-// Arrays may be NULL only when there is nothing to ask.
+// Arrays may be NULL only where count is 0.
 void require_arrays(uint32_t count, std::initializer_list<const void *> arrays) {
   for (const void *array : arrays)
     if (count)
       require(array, "probe: an array");
 }
 
-// Runs ask on a committed scene; arrays may be NULL only when there is nothing to ask.
+// Runs ask on a committed scene; arrays may be NULL only where count is 0.
 template <class Ask>
 lancer_status probe_scene(lancer_scene handle, uint32_t count, std::initializer_list<const void *> arrays, Ask &&ask) {
   return guard([&] {

@@ -1,4 +1,4 @@
-// The edge of the library: exceptions become statuses, and the text of a failure is kept for its thread.
+// The boundary of the library: turns exceptions into statuses and keeps the message of a failure for its thread.
 #pragma once
 
 #include "lancer.h"
@@ -11,7 +11,7 @@
 
 namespace lancer {
 
-// A fixed place, so that telling of missing memory needs none.
+// A fixed buffer, so that reporting missing memory needs no memory.
 inline thread_local char last_error[1024] = "";
 
 inline lancer_status fail(lancer_status status, const char *text) {
@@ -37,7 +37,7 @@ struct BadHandle {
   const char *text;
 };
 
-// Nothing thrown inside leaves the library.
+// Runs body and returns its status; no exception leaves the library.
 template <class Body> lancer_status guard(Body &&body) noexcept {
   last_error[0] = '\0';
   const FloatEnvironment environment;
@@ -52,7 +52,7 @@ template <class Body> lancer_status guard(Body &&body) noexcept {
   } catch (const std::length_error &) {
     return fail(LANCER_ERROR_MEMORY, "out of memory: an array is larger than any memory");
   } catch (const std::system_error &) {
-    // Only threads are asked of the system here.
+    // The library requests only threads from the system.
     return fail(LANCER_ERROR_MEMORY, "not enough memory, or too many threads: the system gives no more threads");
   } catch (const std::exception &error) {
     return fail(LANCER_ERROR_INTERNAL, error.what());

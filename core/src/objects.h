@@ -1,5 +1,4 @@
-// Handles: numbers for objects on the other side of the C interface, and what they stand for: a scene on its way from filling
-// to committed, and a session.
+// Handles of the C interface and the objects that they stand for: a scene from its creation to its commit, and a session.
 #pragma once
 
 #include "guard.h"
@@ -12,8 +11,8 @@
 
 namespace lancer {
 
-// Handles of one kind. A number is never used twice, and kinds differ in their highest byte: a freed or foreign handle finds
-// nothing.
+// Handles of one kind. A number is never used twice, and kinds differ in their highest byte: a freed or foreign handle finds no
+// object.
 template <class T> class Handles {
 public:
   explicit Handles(uint64_t kind) : next_((kind << 56) + 1) {}
@@ -23,13 +22,13 @@ public:
     objects_.emplace(next_, std::move(object));
     return next_++;
   }
-  // The object, kept alive by the caller's copy; null where there is none.
+  // Returns the object, kept alive by the caller's copy; null if the handle is unknown.
   std::shared_ptr<T> find(uint64_t handle) const {
     const std::lock_guard lock(mutex_);
     const auto found = objects_.find(handle);
     return found == objects_.end() ? nullptr : found->second;
   }
-  // Takes the object out, so that the handle is free from now on.
+  // Removes and returns the object; the handle is invalid afterwards. Returns null if the handle is unknown.
   std::shared_ptr<T> remove(uint64_t handle) {
     const std::lock_guard lock(mutex_);
     const auto found = objects_.find(handle);
@@ -56,16 +55,16 @@ public:
   std::string messages;
   std::atomic<bool> cancel{false};
   enum class State { Filling, Committing, Committed, Failed } state = State::Filling;
-  std::unique_ptr<ThreadPool> builder; // last: ends before what it works on
+  std::unique_ptr<ThreadPool> builder; // last: its thread ends before the members that it works on are destroyed
 
   void require_filling() const {
     if (state != State::Filling)
-      throw Error(Fault::State, "scene: it has been committed; nothing can be added any more");
+      throw Error(Fault::State, "scene: it has been committed; nothing can be added");
   }
   const std::shared_ptr<const Scene> &committed() const {
     if (state != State::Committed)
       throw Error(Fault::State, state == State::Filling      ? "scene: it has not been committed yet"
-                                : state == State::Committing ? "scene: its commit has not been waited for"
+                                : state == State::Committing ? "scene: its commit is still running; wait for it first"
                                                              : "scene: its commit failed");
     return scene;
   }

@@ -99,8 +99,8 @@ TEST(DisplaceMeshes, WhatNoVertexCanHaveIsSaid) {
   for (size_t i = 0; i < 4; ++i)
     EXPECT_EQ(mesh_of(description, 0).positions[i], glm::vec3(kCorners[3 * i], kCorners[3 * i + 1], 0.0f));
   EXPECT_EQ(description.messages.text(),
-            "mesh 'square': 3 vertices of material 'wild' whose displacement is not finite or too far were not moved\n"
-            "mesh 'square': 3 vertices of material 'far' whose displacement is not finite or too far were not moved\n");
+            "mesh 'square': 3 vertices of material 'wild' were not moved: their displacement is not finite or too large\n"
+            "mesh 'square': 3 vertices of material 'far' were not moved: their displacement is not finite or too large\n");
 }
 
 TEST(DisplaceMeshes, MessagesNameTheMeshAsGiven) {
@@ -119,7 +119,7 @@ TEST(DisplaceMeshes, MessagesNameTheMeshAsGiven) {
   displace(description, BuildContext{});
   EXPECT_EQ(description.geometry.meshes.size(), 3u);
   EXPECT_EQ(description.messages.text(),
-            "mesh #0: 4 vertices of material 'far' whose displacement is not finite or too far were not moved\n");
+            "mesh #0: 4 vertices of material 'far' were not moved: their displacement is not finite or too large\n");
 }
 
 TEST(DisplaceMeshes, AMeshThatDoesNotMoveCostsNoAllocationForEachFace) {

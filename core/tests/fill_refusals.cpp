@@ -103,8 +103,8 @@ TEST(MaterialRoom, MoreNormalsThanABsdfHoldsAreSaid) {
   EXPECT_EQ(demand.lobes, size_t(kMaxFrames));
   const std::string most = std::to_string(kMaxFrames), more = std::to_string(kMaxFrames + 1);
   EXPECT_EQ(description.messages.text(), "material 'Wood': " + more +
-                                             " normals may meet in one place, lobes of those beyond the first " + most +
-                                             " get the shading normal\n");
+                                             " normals may overlap in one place; lobes beyond the first " + most +
+                                             " normals use the shading normal\n");
 }
 
 lancer_principled all_layers(uint32_t rules) {
@@ -133,8 +133,9 @@ TEST(MaterialRoom, PrincipledCountsItsLayers) {
     EXPECT_EQ(demand_of(description.materials[0]).frames, rules == LANCER_RULES_BLENDER_3 ? 4u : 5u);
     const Material twelve = many(12, layered, description);
     EXPECT_EQ(demand_of(twelve).lobes, 72u);
-    EXPECT_NE(description.messages.text().find("material 'Wood': 72 lobes may meet in one place, the first 64 are kept\n"),
-              std::string::npos);
+    EXPECT_NE(
+        description.messages.text().find("material 'Wood': 72 lobes may overlap in one place; only the first 64 are used\n"),
+        std::string::npos);
   }
 }
 

@@ -47,14 +47,14 @@ Box world_bounds(const Description &description, const BuildContext &context) {
     else if (!meshes[instance.mesh].empty())
       add_box(world, instance.to_world, meshes[instance.mesh].low, meshes[instance.mesh].high);
   }
-  // Without anything to meet, the lights give the scene its size.
+  // Without geometry, the positions of the lights give the scene its size.
   if (world.empty())
     for (const LightDescription &light : description.lights)
       world.add(light.to_world.translation);
   return world;
 }
 
-// Centre of the bounds, and the power of two that brings the largest extent to between 512 and 1024.
+// Returns the centre of the bounds, and the power of two that scales the largest extent to between 512 and 1024.
 Normalisation normalise(const Box &bounds) {
   Normalisation result;
   if (bounds.empty())
@@ -67,7 +67,7 @@ Normalisation normalise(const Box &bounds) {
   return result;
 }
 
-// Instances that any of their materials makes so.
+// Marks each instance for which the predicate holds with any of its materials.
 template <class Predicate> std::vector<uint8_t> find_instances(const Scene &scene, Predicate &&predicate) {
   std::vector<uint8_t> found;
   for (const Instance &instance : scene.geometry.instances) {
@@ -109,7 +109,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   const Features features = find_features(description);
   scene->features = features.bits;
   scene->shapes = features.shapes;
-  // Move vertices before bounds and lights are made of them.
+  // Displace vertices before computing bounds and lights from them.
   if (features.bits & kFeatureDisplacement)
     displace(description, context);
   scene->normalisation = normalise(world_bounds(description, context));

@@ -9,7 +9,7 @@ namespace lancer {
 
 namespace {
 
-// The node that a value comes from, if it is of this kind.
+// Returns the node that a parameter comes from if the node is of this kind, else null.
 const Node *source(const Program &program, const Parameter &parameter, uint32_t kind) {
   const Node *node = program.source(parameter);
   return node && node->kind == kind ? node : nullptr;
@@ -34,7 +34,7 @@ FlatImage flat_image(const Program &program, const Parameter &color, const std::
 }
 
 std::optional<ImageAlpha> image_alpha(const Program &program, const Parameter &value) {
-  // A sum with nothing, for the sake of its clamp.
+  // An addition of 0 is there for its clamp.
   const Node *clamp = math_source(program, value, LANCER_MATH_ADD, 1);
   if (clamp && (clamp->inputs[1].varies() || clamp->inputs[1].value.x != 0.0f))
     return {};
@@ -53,7 +53,7 @@ std::optional<Remainder> remainder_of(const Program &program, const Parameter &v
 
 namespace {
 
-// Follows 1 - alpha back to the picture and its UV map. share: what stands for alpha.
+// Follows the transmittance 1 - alpha back to the image and its UV map. share: receives the parameter of alpha.
 AlphaImage find_alpha(const Material &material, const std::vector<Image> &images, Parameter &share) {
   const std::optional<Remainder> rest = remainder_of(material.program, material.transmittance);
   if (!rest || rest->whole != 1.0f)
@@ -65,7 +65,7 @@ AlphaImage find_alpha(const Material &material, const std::vector<Image> &images
   return {flat_image(material.program, alpha->picture, images), alpha->clamped};
 }
 
-// Whether a node looks at nothing but its inputs, the triangle and the place within it.
+// Whether a node reads nothing but its inputs, the triangle and the place within it.
 bool is_painted(const Node &node) {
   switch (node.kind) {
   case LANCER_NODE_COORDINATE:
@@ -95,7 +95,7 @@ Cutout recognise(const Material &material, const std::vector<Image> &images) {
   cutout.alpha = find_alpha(material, images, share);
   cutout.painted = all_painted(material.program, material.transmittance_nodes);
   cutout.ends_with_alpha = cutout.alpha.known();
-  // Nothing shines or cuts a hole there, and every lobe has a weight that can end.
+  // The surface may vanish where it neither emits nor is a holdout, and where each lobe's weight varies.
   std::vector<Parameter> deciding{material.transmittance};
   cutout.may_end = !material.emits() && !material.holdout.varies() && material.holdout.value == glm::vec3(0.0f);
   for (const LobeDescription &lobe : material.lobes) {

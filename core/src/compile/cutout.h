@@ -1,4 +1,4 @@
-// Surfaces that pictures cut out, as leaves and fences are made.
+// Surfaces that images cut out, such as leaves and fences.
 #pragma once
 
 #include "scene/material.h"
@@ -8,57 +8,57 @@
 
 namespace lancer {
 
-// Pictures that lie flat on a mesh by its UV map, and the nodes that let their alpha decide how much of a surface is there.
+// An image that a mesh's UV map lays flat on the mesh.
 struct FlatImage {
   uint32_t image = kNone;
-  uint32_t uv_map = 0; // number of the name
+  uint32_t uv_map = 0; // number of its name
   Extension extension = Extension::Repeat;
   Interpolation interpolation = Interpolation::Linear;
 
   bool known() const { return image != kNone; }
 };
 
-// The picture that a colour is; not known where it is anything else.
+// Returns the image that a colour comes from; known() is false where the colour is anything else.
 FlatImage flat_image(const Program &program, const Parameter &color, const std::vector<Image> &images);
 
-// The alpha of a picture, as it is or as a mix of shaders takes it for its factor: clamped to 0 ... 1.
+// The alpha of an image: unchanged, or clamped to 0 ... 1 as the factor of a shader mix.
 struct ImageAlpha {
-  Parameter picture; // its colour
+  Parameter picture; // colour of the image
   bool clamped = false;
 };
-// Nothing where the value is anything else.
+// Returns nothing where the value is anything else.
 std::optional<ImageAlpha> image_alpha(const Program &program, const Parameter &value);
 
 inline float clamped_alpha(float alpha, bool clamped) { return clamped ? glm::clamp(alpha, 0.0f, 1.0f) : alpha; }
 
-// A constant less what nodes say, as surfaces that are there in part let light pass.
+// A constant minus the result of nodes: the transmittance of a surface with partial coverage.
 struct Remainder {
   float whole = 1.0f;
   Parameter share;
 };
-// Nothing where the value is anything else.
+// Returns nothing where the value is anything else.
 std::optional<Remainder> remainder_of(const Program &program, const Parameter &value);
 
-// Surfaces that pictures cut out, as leaves and fences are made: their transmittance is known without
-// shading them.
+// A surface cut out by an image: its transmittance is known without shading.
+//
 
-// The alpha of one picture.
+// The alpha of one image.
 struct AlphaImage : FlatImage {
   bool clamped = false; // to 0 ... 1
 };
 
 struct Cutout {
   AlphaImage alpha;             // known: the transmittance is 1 - alpha
-  bool painted = false;         // what passes depends on the place within a triangle alone
-  bool may_end = false;         // there may be nothing of the surface at some places: see Shader::is_there()
-  bool ends_with_alpha = false; // and that is where alpha is 0
-  Schedule nodes;               // of transmittance and the lobes' weights
+  bool painted = false;         // the transmittance depends on the place within a triangle alone
+  bool may_end = false;         // the surface may vanish at some places: see Shader::is_there()
+  bool ends_with_alpha = false; // the surface vanishes where alpha is 0
+  Schedule nodes;               // of the transmittance and the lobes' weights
 };
 
-// By number of material.
+// Returns one record per material, in the order of the materials.
 std::vector<Cutout> make_cutouts(const std::vector<Material> &materials, const std::vector<Image> &images);
 
-// The alpha at a triangle's point, as nodes compute it. bary: as Surface::bary.
+// Returns the alpha at a point of a triangle, as nodes compute it. bary: as Surface::bary.
 float alpha_at(const AlphaImage &picture, const std::vector<Image> &images, const Mesh &mesh, uint32_t triangle,
                const glm::dvec2 &bary);
 

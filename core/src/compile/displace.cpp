@@ -13,18 +13,18 @@ namespace lancer {
 
 namespace {
 
-// An instance whose mesh is to be moved, and that mesh's number as it was given.
+// An instance whose mesh is displaced, and the number of that mesh in the description.
 struct Move {
   uint32_t instance, given_mesh;
 };
 
-// A corner at which a material is asked for its displacement.
+// A corner at which the displacement of a material is evaluated.
 struct Place {
   uint32_t vertex, triangle, material;
   int corner;
 };
 
-// One mesh, moved as the materials of an instance say.
+// Displaces one mesh by the materials of an instance.
 class Displacement {
 public:
   Displacement(Description &description, const BuildContext &context, const Move &move)
@@ -42,7 +42,7 @@ public:
   }
 
 private:
-  // Ask each material once for each of its vertices, at the first face that has it.
+  // Collects each vertex of each material once, at the first face that has the vertex.
   void find_places() {
     renews_.assign(mesh_.triangles.size(), false);
     std::map<uint32_t, std::vector<bool>> done;
@@ -64,7 +64,7 @@ private:
     }
   }
 
-  // For bumps that look at the surface as it was.
+  // Keeps the undisplaced positions for materials that keep their normals: their bumps read them.
   void keep_positions() {
     if (!keeps_)
       return;
@@ -87,7 +87,7 @@ private:
     surface.bary = {place.corner == 1 ? 1.0 : 0.0, place.corner == 2 ? 1.0 : 0.0};
     surface.ng = carried_normal(instance_.to_object, face_normal(mesh_, place.triangle));
     surface.ns = carried_normal(instance_.to_object, glm::dvec3(normals[place.vertex]));
-    // Faces that look opposite ways leave a vertex without a normal.
+    // Faces with opposite normals leave a vertex without a normal.
     if (surface.ns == glm::vec3(0.0f))
       surface.ns = surface.ng;
     static const Normalisation unchanged;
@@ -113,7 +113,7 @@ private:
       for (size_t i = piece * at_once; i < std::min(places_.size(), (piece + 1) * at_once); ++i)
         offsets[i] = offset(places_[i], normals, values);
     });
-    // A vertex of several materials goes to the mean.
+    // A vertex of several materials moves by the mean of their displacements.
     std::vector<glm::dvec3> sums(mesh_.positions.size(), glm::dvec3(0.0));
     std::vector<uint32_t> counts(mesh_.positions.size());
     std::map<uint32_t, size_t> refused; // by material
@@ -125,13 +125,13 @@ private:
       else
         ++refused[place.material];
     }
-    tell(refused, "vertices", "whose displacement is not finite or too far were not moved");
+    tell(refused, "vertices", "were not moved: their displacement is not finite or too large");
     for (size_t i = 0; i < sums.size(); ++i)
       if (counts[i])
         mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) + sums[i] / double(counts[i]));
   }
 
-  // The faces that displacement has folded up: nothing can hit them.
+  // Drops the faces that displacement has collapsed: no ray can hit them.
   void drop_flat_faces() {
     std::vector<uint32_t> kept;
     std::map<uint32_t, size_t> flat; // by material
@@ -163,12 +163,12 @@ private:
   uint32_t number_, given_mesh_;
   const Instance &instance_;
   Mesh &mesh_;
-  std::vector<bool> renews_; // per triangle: it moves, and its normals follow
-  bool keeps_ = false;       // some triangle's normals do not
+  std::vector<bool> renews_; // per triangle: its material displaces, and its normals are computed anew
+  bool keeps_ = false;       // some displaced triangle keeps its normals
   std::vector<Place> places_;
 };
 
-// A triangle for each slot that occurs.
+// Returns one triangle for each material slot that occurs.
 std::vector<uint32_t> parts_of(const Mesh &mesh, const BuildContext &context) {
   constexpr uint32_t between_polls = 1u << 16;
   const std::vector<uint16_t> &slots = mesh.material_slots;
@@ -188,8 +188,8 @@ std::vector<uint32_t> parts_of(const Mesh &mesh, const BuildContext &context) {
   return parts;
 }
 
-// Copies a mesh for each further list of materials by which instances move it; those that move nothing are one list, too. The
-// first instance of each.
+// Copies a mesh for each further list of displacing materials among its instances; instances without displacement have one list
+// in common. Returns the first instance of each list.
 std::vector<Move> separate(Description &description, const BuildContext &context) {
   Geometry &geometry = description.geometry;
   std::vector<std::vector<uint32_t>> parts;
@@ -197,7 +197,8 @@ std::vector<Move> separate(Description &description, const BuildContext &context
     poll_cancel(context);
     parts.push_back(parts_of(mesh, context));
   }
-  std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> meshes; // by the mesh as given and the materials that move it
+  std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> meshes; // by the mesh of the description and the materials
+                                                                         // that displace it
   std::vector<bool> taken(geometry.meshes.size());
   std::vector<Move> firsts;
   for (uint32_t i = 0; i < geometry.instances.size(); ++i) {

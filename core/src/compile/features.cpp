@@ -43,7 +43,7 @@ std::vector<uint32_t> shading_classes(const std::vector<Material> &materials) {
 
 namespace {
 
-// The shapes that a kind can become.
+// Returns the lobe shapes that a kind can become.
 uint32_t shapes_of(LobeKind kind) {
   switch (kind) {
   case LobeKind::Lambert:
@@ -101,14 +101,14 @@ bool uses_images(const Program &program) {
   return false;
 }
 
-// Whether some layer of it may have facets.
+// Whether some layer of the Principled BSDF may have facets.
 bool may_reflect(const PrincipledDescription &principled) {
   const bool plastic = may_be_positive(principled.specular) && (principled.ior.varies() || principled.ior.value.x != 1.0f);
   return plastic || may_be_positive(principled.metallic) || may_be_positive(principled.transmission) ||
          may_be_positive(principled.coat);
 }
 
-// What a Principled lobe can become, without the layers that it has not.
+// Returns the shapes that a Principled lobe can become, without those of its absent layers.
 uint32_t principled_shapes(const PrincipledDescription &principled) {
   uint32_t shapes = shapes_of(LobeKind::Principled);
   if (principled.rules == Rules::Blender3)
@@ -147,7 +147,7 @@ void add_material(const Material &material, Features &features) {
 
 Features find_features(const Description &description) {
   Features features;
-  // Look at what is placed: a mesh or material that nothing shows costs nothing.
+  // Count only what is placed: a mesh or material that no instance uses costs nothing.
   std::vector<uint32_t> uses(description.geometry.meshes.size());
   std::vector<bool> shown(description.materials.size());
   for (const Instance &instance : description.geometry.instances) {

@@ -1,4 +1,4 @@
-// What a scene needs: features and classes of materials, found at commit.
+// The features that a scene needs and the classes of its materials, found at commit.
 #pragma once
 
 #include "scene/material.h"
@@ -10,7 +10,7 @@ namespace lancer {
 
 // Features that a scene uses: found at commit, named in the statistics; they decide which stages run.
 enum Feature : uint32_t {
-  kFeatureTransparency = 1u << 0, // some material lets light pass straight on
+  kFeatureTransparency = 1u << 0, // some material lets light pass straight through
   kFeatureTriangles = 1u << 1,
   kFeatureInstances = 1u << 2, // some mesh is placed more than once
   kFeatureSpheres = 1u << 3,
@@ -23,13 +23,13 @@ enum Feature : uint32_t {
   kFeatureAreaLights = 1u << 10,
   kFeatureEmitters = 1u << 11,
   kFeatureEnvironment = 1u << 12,
-  kFeatureEnvironmentMap = 1u << 13, // its radiance varies
+  kFeatureEnvironmentMap = 1u << 13, // the radiance of the environment varies
   kFeatureVertexColors = 1u << 14,
-  kFeatureNodes = 1u << 15, // some material computes its parameters
+  kFeatureNodes = 1u << 15, // some material computes its parameters by nodes
   kFeatureTextures = 1u << 16,
   kFeatureDisplacement = 1u << 17,
   kFeatureHoldout = 1u << 18,
-  kFeatureVisibility = 1u << 19, // something is hidden from some rays
+  kFeatureVisibility = 1u << 19, // some object is hidden from some rays
   kFeatureGlass = 1u << 20,      // some material reflects and refracts
 };
 
@@ -41,20 +41,22 @@ struct Features {
 struct Description;
 
 Features find_features(const Description &description);
-// Names of all that is there, separated by blanks.
+// Returns the names of all features and shapes, separated by blanks.
 std::string feature_names(const Features &features);
 
-// Which materials let light through a surface.
+// Whether materials let light through a surface.
+//
 
-// A lobe that may refract.
+// Whether a lobe may refract.
 bool is_glass(const LobeDescription &lobe);
-// Straight on, or refracted.
+// Whether light may pass, straight through or refracted.
 bool lets_light_through(const Material &material);
 
-// Materials by the code that shades them: vertices of one class may stand side by side in lanes.
+// Classes of materials by their shading code: vertices of one class may share the lanes of a block.
+//
 
-// The number of each material's class. Materials without nodes share one where their lobes differ in numbers alone; one with
-// nodes has a class of its own, as its program belongs to it.
+// Returns the class of each material. Materials without nodes share a class if their lobes differ in numbers alone; a material
+// with nodes has its own class, because its program differs.
 std::vector<uint32_t> shading_classes(const std::vector<Material> &materials);
 
 } // namespace lancer

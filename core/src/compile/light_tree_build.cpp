@@ -1,4 +1,4 @@
-// Builds the tree of many lights and the table of few.
+// Builds the tree of many lights and the tree of few lights.
 #include "compile/light_cut.h"
 #include "lights/light_bounds.h"
 #include "lights/light_importance.h"
@@ -16,13 +16,13 @@ namespace lancer {
 namespace {
 
 constexpr int kBuckets = 12;
-// The least energy of a light relative to the brightest: below lies what no float sum would notice.
+// The least energy of a light relative to the brightest: a float sum would round smaller ones away.
 constexpr double kLeastEnergy = 0x1p-60;
 
-// What lights are sorted by.
+// Returns the position by which a light is sorted.
 glm::dvec3 place(const DescribedLight &light) { return light.light.centre; }
 
-// The cheapest cut along one axis between twelve equal slices of the lights' centres.
+// Finds the cheapest cut along one axis between twelve equal slices of the lights' centres.
 void try_axis(const std::vector<DescribedLight> &lights, uint32_t begin, uint32_t end, int axis, double low, double extent,
               double regularization, LightCut &best) {
   LightBounds slices[kBuckets];
@@ -32,7 +32,7 @@ void try_axis(const std::vector<DescribedLight> &lights, uint32_t begin, uint32_
     slices[slice].add(lights[i].bounds);
     ++counts[slice];
   }
-  // Collect from the right, then go along from the left.
+  // Sum up the costs from the right, then evaluate the cuts from the left.
   double right[kBuckets];
   LightBounds sum;
   for (int slice = kBuckets - 1; slice > 0; --slice) {
@@ -77,7 +77,8 @@ LightCut find_cut(const std::vector<DescribedLight> &lights, uint32_t begin, uin
 void make_cut(std::vector<DescribedLight> &lights, uint32_t begin, uint32_t end, const LightCut &cut) {
   if (cut.axis < 0)
     return;
-  // Ties go by number, and each side keeps its order, in which its lights are added up: so every machine builds the same tree.
+  // Ties are broken by number, and each side keeps its order, in which its lights are summed: so every machine builds the same
+  // tree.
   const auto key = [&](const DescribedLight &light) { return std::pair(place(light)[cut.axis], light.light.number); };
   std::vector<std::pair<double, uint32_t>> keys;
   for (uint32_t i = begin; i < end; ++i)
@@ -106,10 +107,11 @@ LightBounds prepare(std::vector<DescribedLight> &lights) {
 
 namespace {
 
-// Lights so many that branches which are nearly empty would leave the cache for the others too small.
+// Above this number of lights, up to sixteen lights stay together in a branch: nearly empty branches would evict the others
+// from the cache.
 constexpr uint32_t kCrowd = 2048;
 
-// Light does not leave to all sides alike.
+// Whether light does not leave equally in all directions.
 bool aimed(const ShineCone &cone) { return cone.cos_o > -1.0f || cone.cos_all > -1.0f; }
 
 bool any_aimed(const LightBranch &branch) {
@@ -140,12 +142,12 @@ void LightTree::add_branch(const Part &part, std::vector<DescribedLight> &lights
   const uint32_t number = uint32_t(branches_.size()), slot = number * kBranchWidth;
   if (part.slot != LightBranches::kRoot)
     branches_[part.slot / kBranchWidth].child[part.slot % kBranchWidth] |= number;
-  // Cut the costliest child in two until there are sixteen, or only such as need no cut.
+  // Cut the costliest child in two until there are sixteen children, or none needs a cut.
   const bool deep = part.depth >= LightBranches::kEvenFrom;
   const uint32_t whole = crowded_ && part.end - part.begin > kBranchWidth ? kBranchWidth : 1;
   const auto child_of = [&](uint32_t begin, uint32_t end) {
     Child child{begin, end, bounds_of(lights, begin, end), 0.0};
-    // What has no size still has to be cut.
+    // A child of several lights without extent still has to be cut.
     if (end - begin > whole)
       child.cost = deep ? double(end - begin) : std::max(child.bounds.cost(), std::numeric_limits<double>::min());
     return child;
@@ -164,7 +166,7 @@ void LightTree::add_branch(const Part &part, std::vector<DescribedLight> &lights
     *costliest = child_of(child.begin, cut.middle);
     children.push_back(child_of(cut.middle, child.end));
   }
-  // Set them side by side.
+  // Write the children into the branch.
   LightBranch branch;
   LightAim aim;
   for (uint32_t i = 0; i < children.size(); ++i) {
@@ -193,7 +195,8 @@ void LightTree::set(const Child &child, uint32_t i, const std::vector<DescribedL
   }
   const float r2 = glm::dot(shape.half, shape.half);
   branch.radius[i] = std::sqrt(r2);
-  // Within that ball it counts as on its edge: nearer, under emitting blocks, adds a tenth to the variance.
+  // A point within the ball is treated as on its surface: smaller distances, under emitting blocks, add a tenth to the
+  // variance.
   branch.per_near2[i] = 1.0f / std::max(r2, kNearest2);
   branch.energy[i] = shape.energy;
   aim.cos_o[i] = shape.cone.cos_o;
@@ -206,12 +209,12 @@ void LightTree::set(const Child &child, uint32_t i, const std::vector<DescribedL
       branch.child[i] |= LightBranch::kMayBeHit;
 }
 
-// Building the tree of few lights.
+// Builds the tree of few lights.
 BinaryLightTree::BinaryLightTree(std::vector<DescribedLight> lights, uint32_t count) : place_of_(count, kNone) {
   prepare(lights);
   if (lights.empty())
     return;
-  // What is near goes to the left of the root, what is distant to the right.
+  // Lights with a position go to the left of the root, distant ones to the right.
   const auto split_at =
       std::stable_partition(lights.begin(), lights.end(), [&](const auto &light) { return !light.distant(); });
   const uint32_t near_count = uint32_t(split_at - lights.begin()), all = uint32_t(lights.size());
@@ -242,7 +245,7 @@ void BinaryLightTree::split(const Part &part, std::vector<DescribedLight> &light
   const LightBounds whole = bounds_of(lights, part.begin, part.end);
   nodes_[part.node].shape = cluster_shape(whole);
   nodes_[part.node].distant = part.distant;
-  // Look for a cut that costs less than a leaf.
+  // Search for a cut that costs less than a leaf.
   LightCut cut{-1, part.begin + count / 2};
   if (count > 1 && !part.distant)
     cut = find_cut(lights, part.begin, part.end, whole.cost());

@@ -11,7 +11,7 @@ namespace lancer {
 
 namespace {
 
-// The light's axes: its z kept, the others made orthogonal to it; what vanishes is replaced by any direction that fits.
+// Sets the light's axes: z is kept, x and y are made orthogonal to it; a vanishing axis is replaced by any direction that fits.
 void set_axes(Light &light, const Affine &map) {
   const auto unit = [](const glm::dvec3 &v) { return glm::length(v) > 0.0 ? v / glm::length(v) : glm::dvec3(0.0); };
   const glm::dvec3 z = unit(map.linear[2]), x = unit(map.linear[0]), y = unit(map.linear[1]);
@@ -24,13 +24,13 @@ void set_axes(Light &light, const Affine &map) {
     light.y = -light.y;
 }
 
-// No wider than this, in normalised units, of which the scene is at least 512 wide: a scene far from the origin keeps the
-// shadows of what stands before a lamp.
+// Upper bound of the tolerance, in normalised units; the scene is at least 512 wide. With it, a scene far from the origin keeps
+// the shadows of objects right before a lamp.
 constexpr double kMostApart = 0x1p-7;
 
-// By how much a lamp and a face that are meant to lie in one plane may be apart, in normalised units. Blender computes
-// placements in float and keeps corners as floats: locations, axes and corners of both are some ten halves of a last place off
-// together.
+// Returns the largest distance between a lamp and a face that are meant to lie in one plane, in normalised units. Blender
+// computes transforms in float and stores corners as floats: locations, axes and corners of both together have an error of
+// about ten half units in the last place.
 double apart_by_rounding(const LightDescription &from, double scale) {
   const glm::dvec3 &p = from.to_world.translation;
   const double reach = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + 0.5 * double(from.size.x + from.size.y);
@@ -64,7 +64,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
   const double s = sin(0.25 * sun_angle);
   light.one_minus_cos_sun = 2.0 * s * s;
   light.flat_radius = from.sun_flat ? tan(0.5 * sun_angle) : 0.0;
-  // A disk that is smaller than a float direction can tell is a direction.
+  // A disk below the rounding of a float direction becomes a single direction.
   if (0.5 * double(from.sun_angle) < 0x1p-24)
     light.one_minus_cos_sun = 0.0;
   light.half_x = 0.5 * double(from.size.x) * scale;
@@ -88,7 +88,7 @@ Light place_light(const LightDescription &from, const Normalisation &normalisati
 std::vector<Emitter> make_emitters(const Geometry &geometry, const std::vector<uint32_t> &slots,
                                    const std::vector<Material> &materials, const EmissionAt &emission,
                                    const BuildContext &context) {
-  // Collect what emits: exact surfaces by themselves, meshes by what they may share.
+  // Collect the emitting instances: exact surfaces alone, meshes grouped by mesh and materials.
   using Key = std::pair<uint32_t, std::vector<uint32_t>>;
   struct Shared {
     uint32_t users = 0;

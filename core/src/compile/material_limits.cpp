@@ -11,21 +11,22 @@ namespace {
 
 using Key = std::tuple<int32_t, float, float, float>;
 
-// Parameters of one key always have one value.
+// Parameters with equal keys always have equal values.
 Key key_of(const Parameter &parameter) {
   if (parameter.varies())
     return {parameter.node, 0.0f, 0.0f, 0.0f};
   return {-1, parameter.value.x, parameter.value.y, parameter.value.z};
 }
 
-// Collects the frames that lobes stand in. A normal that reflects may be bent towards the surface, and is then another one.
+// Collects the distinct frames of a material's lobes. A reflecting lobe may bend its normal towards the surface, which makes
+// another frame.
 class Frames {
 public:
   Frames() { wide(Parameter()); }
 
   void wide(const Parameter &normal) { add(normal, Parameter(), 0); }
   void reflecting(const Parameter &normal) { add(normal, Parameter(), 1); }
-  // A normal between two.
+  // A normal between two others.
   void between(const Parameter &a, const Parameter &b) { add(a, b, 2); }
   // rotation turns the tangent about the normal.
   void stretched(const Parameter &normal, const Parameter &tangent, const Parameter &rotation) {
@@ -40,7 +41,7 @@ private:
   std::set<std::tuple<Key, Key, Key>> turned_;
 };
 
-// The Principled BSDF: its layers, top to bottom.
+// Adds the frames of the Principled BSDF's layers, top to bottom, and returns the number of its lobes.
 size_t add_principled(const LobeDescription &lobe, const PrincipledDescription &in, Frames &frames) {
   const bool old = in.rules == Rules::Blender3;
   const bool metal = may_be_positive(in.metallic), glass = may_be_positive(in.transmission);
@@ -55,7 +56,7 @@ size_t add_principled(const LobeDescription &lobe, const PrincipledDescription &
     frames.reflecting(lobe.normal);
   if (!old)
     frames.wide(lobe.normal);
-  // Before Blender 4 plastic and metal are one lobe, and glass can be two.
+  // Before Blender 4, plastic and metal are one lobe, and glass can be two.
   return size_t(sheen) + size_t(coat) + size_t(metal && !old) + (glass ? (old ? 2 : 1) : 0) + 2;
 }
 
@@ -101,11 +102,11 @@ MaterialDemand demand_of(const Material &material) {
 void report_limits(const std::string &object, const Material &material, Messages &messages) {
   const MaterialDemand demand = demand_of(material);
   if (demand.lobes > size_t(kMaxLobes))
-    messages.add(object, std::to_string(demand.lobes) + " lobes may meet in one place, the first " + std::to_string(kMaxLobes) +
-                             " are kept");
+    messages.add(object, std::to_string(demand.lobes) + " lobes may overlap in one place; only the first " +
+                             std::to_string(kMaxLobes) + " are used");
   if (demand.frames > size_t(kMaxFrames))
-    messages.add(object, std::to_string(demand.frames) + " normals may meet in one place, lobes of those beyond the first " +
-                             std::to_string(kMaxFrames) + " get the shading normal");
+    messages.add(object, std::to_string(demand.frames) + " normals may overlap in one place; lobes beyond the first " +
+                             std::to_string(kMaxFrames) + " normals use the shading normal");
 }
 
 } // namespace lancer

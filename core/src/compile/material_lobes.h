@@ -1,5 +1,5 @@
-// From a material and what its nodes say to the lobes of a place: F is a float, or lanes of them, whose materials are of one
-// class.
+// Builds the lobes of a shading point from a material and the values of its nodes. F is a float, or lanes of floats whose
+// materials are of one class.
 #pragma once
 
 #include "bsdf/principled.h"
@@ -8,8 +8,8 @@
 
 namespace lancer {
 
-// Adds the lobes of one described; number: of the lobe among the material's. values: gives a parameter's value in every lane.
-// hole: nothing is seen there.
+// Adds the lobes of one described lobe. number: of the described lobe among the material's. values: returns a parameter's value
+// in every lane. hole: lanes where the surface is absent.
 template <class F, class Values>
 void add_described(const Material *const *materials, size_t number, const Values &values, MaskOf<F> hole, Bsdf<F> &bsdf) {
   const LobeDescription &described = materials[0]->lobes[number];
@@ -38,7 +38,7 @@ void add_described(const Material *const *materials, size_t number, const Values
     add_principled(bsdf, inputs, fixed ? ready.principled() : evaluate(*described.principled, read), ready);
 }
 
-// All of them as wo sees them; ns, ng: of the surface, outwards.
+// Adds all lobes of the material as seen from wo. out_ns, out_ng: of the surface, outwards.
 template <class F, class Values>
 LANCER_LANE void find_lobes(const Material *const *materials, const Values &values, MaskOf<F> hole, const Vec3<F> &wo,
                             const Vec3<F> &out_ns, const Vec3<F> &out_ng, Bsdf<F> &bsdf) {
@@ -47,7 +47,7 @@ LANCER_LANE void find_lobes(const Material *const *materials, const Values &valu
   const MaskOf<F> inside = dot(wo, out_ng) < F(0.0f);
   Vec3<F> ns = select(inside, -out_ns, out_ns);
   const Vec3<F> ng = select(inside, -out_ng, out_ng);
-  // A bump of the whole surface stands in for its normal; nodes give it on the viewer's side.
+  // A bump of the whole surface replaces its normal; nodes return it on the viewer's side.
   if (material.normal.varies())
     ns = unit_or(Vec3<F>(values(material.normal)), ns);
   bsdf.begin(wo, ns, ng, inside, !(material.flags & LANCER_MATERIAL_NO_BUMP_CORRECTION));

@@ -22,7 +22,7 @@ std::vector<glm::vec3> units(const std::vector<glm::dvec3> &sums) {
   return normals;
 }
 
-// The faces' normals by their angles.
+// Returns the mean of the faces' normals at each vertex, weighted by the faces' angles there.
 std::vector<glm::vec3> normals_by_angle(const Mesh &mesh) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -37,7 +37,7 @@ std::vector<glm::vec3> normals_by_angle(const Mesh &mesh) {
   return units(sums);
 }
 
-// The mean of the faces' normals.
+// Sets the normals of vertices to the mean of the faces' normals.
 void renew_at_vertices(Mesh &mesh, const std::vector<bool> &triangles) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
@@ -49,7 +49,7 @@ void renew_at_vertices(Mesh &mesh, const std::vector<bool> &triangles) {
       mesh.normals[i] = glm::vec3(unit_or_zero(sums[i]));
 }
 
-// Corners that had one normal at a vertex get one again; where the skin was creased it stays so.
+// Corners of a vertex that shared a normal share one again; creases stay.
 void renew_at_corners(Mesh &mesh, const std::vector<bool> &triangles) {
   using Key = std::tuple<uint32_t, float, float, float>;
   std::map<Key, glm::dvec3> sums;
@@ -112,8 +112,9 @@ void renew_normals(Mesh &mesh, const std::vector<bool> &triangles) {
 
 namespace {
 
-// Weights of vertex 1 and 2 of the place of a triangle that is nearest to the origin (Ericson, Real-Time Collision Detection,
-// 5.1.5): a corner, a place on an edge, or the origin's foot within. No number where the triangle has no extent.
+// Returns the weights of vertices 1 and 2 at the place of a triangle nearest to the origin (Ericson, Real-Time Collision
+// Detection, 5.1.5): a corner, a place on an edge, or the foot of the perpendicular within. Returns NaN where the triangle has
+// no extent.
 glm::dvec2 nearest_place(const glm::dvec3 (&v)[3]) {
   const glm::dvec3 ab = v[1] - v[0], ac = v[2] - v[0];
   const double d1 = -glm::dot(ab, v[0]), d2 = -glm::dot(ac, v[0]);
@@ -139,7 +140,7 @@ glm::dvec2 nearest_place(const glm::dvec3 (&v)[3]) {
   return glm::dvec2(vb, vc) / (va + vb + vc);
 }
 
-// The mean of the vertices of some triangles, each vertex once.
+// Returns the mean of the vertices of some triangles, each vertex counted once.
 glm::dvec3 mean_vertex(const Mesh &mesh, std::span<const uint32_t> triangles) {
   std::vector<uint32_t> vertices;
   for (const uint32_t triangle : triangles)
@@ -160,8 +161,8 @@ PolygonCenter center_of(const Mesh &mesh, std::span<const uint32_t> triangles) {
   for (const uint32_t triangle : triangles)
     area += twice_area(mesh, triangle);
   const glm::dvec3 normal = unit_or_zero(area);
-  // Seen along the normal, so that a warped polygon's centre is straight above or below the mean. Where the areas do not add up
-  // to 0 some triangle keeps an area there.
+  // Project along the normal, so that a warped polygon's centre lies straight above or below the mean. Where the area vectors
+  // do not sum to 0, some triangle keeps an area in the projection.
   const auto seen = [&](uint32_t triangle, int corner) {
     const glm::dvec3 way = glm::dvec3(mesh.vertex(triangle, corner)) - mean;
     return way - glm::dot(way, normal) * normal;

@@ -47,7 +47,7 @@ void cache_layers(const LobeDescription &lobe, ReadyLobe &ready) {
     const bool may_be_there = share_of(row.layer, ready.principled) > kLeastLayer || (share && share->varies());
     if (!row.facets || !may_be_there || varies(row.layer, lobe))
       continue;
-    // A plastic that bends no light is not there.
+    // A plastic layer with an index of refraction of 1 is absent.
     float f0;
     if (row.layer == PrincipledLayer::Gloss && plastic_ior(ready.principled, f0) == 1.0f)
       continue;
@@ -56,7 +56,7 @@ void cache_layers(const LobeDescription &lobe, ReadyLobe &ready) {
   }
 }
 
-// Facets of a node that nothing changes, where they have no direction along the surface.
+// Plans the facets of a lobe whose inputs are constant and which has no direction along the surface.
 void cache_facets(ReadyLobe &ready) {
   const LobeInputs<float> &inputs = ready.inputs;
   const bool glass = inputs.kind == LobeKind::Glass, conductor = inputs.kind == LobeKind::Conductor;
@@ -103,7 +103,7 @@ std::string ReadyLobe::code() const {
 }
 
 std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material) {
-  // Placeholders for the results of nodes: what is made here of an input that nodes feed is not used.
+  // Placeholders for the results of nodes: values derived here from an input that nodes feed are not used.
   const std::vector<glm::vec4> nothing(material.program.nodes.size(), glm::vec4(0.0f));
   const std::shared_ptr<ReadyLobe[]> all(new ReadyLobe[material.lobes.size()]);
   for (size_t i = 0; i < material.lobes.size(); ++i) {

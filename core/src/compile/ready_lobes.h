@@ -1,4 +1,4 @@
-// What of a material's lobes is the same wherever the material is met, made once when the scene is committed.
+// The parts of a material's lobes that are the same at every hit, computed once at commit.
 #pragma once
 
 #include "bsdf/cached_plans.h"
@@ -10,25 +10,25 @@ namespace lancer {
 
 struct Material;
 
-// Which inputs of a lobe are other than nothing: the rest need not be read.
+// Flags of the lobe inputs that differ from their neutral value; the others need not be read.
 struct LobeParts {
   LobeParts() = default;
   LobeParts(const LobeInputs<float> &inputs, const PrincipledInputs<float> &in);
   bool normal = false, tangent = false;
-  // Of Principled alone.
+  // Only of Principled.
   bool coat_normal = false, coat_tint = false, diffuse_roughness = false, emission = false, sheen = false, coat = false,
        metal = false, glass = false;
 };
 
 struct ReadyLobe {
-  // As nodes leave them: what varies is 0 here.
+  // Inputs as constants give them: an input that varies is 0 here.
   LobeInputs<float> inputs;
   PrincipledInputs<float> principled;
   LobeParts parts;
-  // By side (outside, inside) and Layer. Of facets of other nodes the only one is that of PrincipledLayer::Gloss.
+  // By side (outside, inside) and Layer. The facets of other lobes are stored at PrincipledLayer::Gloss.
   std::shared_ptr<const CachedPlan> plans[2][kLayerCount];
 
-  // What code it needs, as far as nodes do not decide it: lobes of one code differ in numbers alone.
+  // Returns a key of the code that the lobe needs, as far as nodes do not decide it: lobes of one key differ in numbers alone.
   std::string code() const;
 
   bool has(PrincipledLayer layer) const { return plans[0][static_cast<int>(layer)] != nullptr; }
@@ -39,8 +39,8 @@ struct ReadyLobe {
 enum class PrincipledParameter { LANCER_PRINCIPLED_PARAMETERS(LANCER_NAME) };
 #undef LANCER_NAME
 
-// Whether a parameter has to be read for a lobe of these parts: a layer that is not there asks for none of its own, and facets
-// that are planned are made of theirs already.
+// Whether a parameter has to be read for a lobe of these parts: an absent layer needs none of its parameters, and the
+// parameters of planned facets are in the plan.
 LANCER_LANE constexpr bool needed(PrincipledParameter parameter, const LobeParts &parts, bool planned) {
   using P = PrincipledParameter;
   switch (parameter) {
@@ -77,17 +77,17 @@ LANCER_LANE constexpr bool needed(PrincipledParameter parameter, const LobeParts
   }
 }
 
-// One for each lobe.
+// Returns one record per lobe.
 std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material);
 
-// A lobe of every lane, all of one code.
+// A lobe for each lane, all with the same code.
 template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
   using LaneRecords<F, ReadyLobe>::of, LaneRecords<F, ReadyLobe>::same;
   using LaneRecords<F, ReadyLobe>::number, LaneRecords<F, ReadyLobe>::vector;
 
   uint32_t inside = 0; // bits of lanes
 
-  // The inputs of lobes without nodes.
+  // Returns the inputs of lobes without nodes.
 #define LANCER_OF(member)                                                                                                      \
   [](const ReadyLobe &r) __attribute__((always_inline)) { return r.member; }
   LANCER_LANE LobeInputs<F> inputs() const {
@@ -113,7 +113,7 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
     in.rotation = number(LANCER_OF(inputs.rotation));
     return in;
   }
-  // Of Principled: what all of its layers share, beside what principled() reads.
+  // Returns the inputs that all layers of Principled share, without those that principled() reads.
   LANCER_LANE LobeInputs<F> principled_carrier() const {
     const LobeInputs<float> &first = of[0]->inputs;
     const LobeParts &parts = of[0]->parts;
@@ -134,7 +134,7 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
     in.rules = first.principled.rules;
     in.distribution = first.principled.distribution;
     in.option = first.principled.option;
-    // What facets are made of is in plans, where those are kept.
+    // The inputs of facets are contained in their plans, where plans are kept.
     const bool planned = in.rules != Rules::Blender3 && first.has(PrincipledLayer::Gloss) &&
                          (!parts.coat || first.has(PrincipledLayer::Coat)) && !parts.tangent;
 #define LANCER_READ(kind, name, spoken, given)                                                                                 \
@@ -145,7 +145,7 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
     return in;
   }
 #undef LANCER_OF
-  // get: a parameter of that kind.
+  // get: returns a parameter of that kind.
   template <ParameterKind kind, class Get> LANCER_LANE ValueOf<F, kind> value(const Get &get) const {
     if constexpr (std::is_same_v<ValueOf<F, kind>, F>)
       return number(get);
@@ -153,7 +153,7 @@ template <class F> struct LaneLobes : LaneRecords<F, ReadyLobe> {
       return vector(get);
   }
 
-  // The layers that are planned: as of add_layers().
+  // The layers with a plan, as add_layers() reads them.
   LANCER_LANE bool has(PrincipledLayer layer) const { return of[0]->has(layer); }
   LANCER_LANE Lobe<F> seen(PrincipledLayer layer, F cos_o, const Vec3<F> &color) const {
     constexpr uint32_t all_inside = (1u << LanesOf<F>::kWidth) - 1u;

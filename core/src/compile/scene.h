@@ -1,4 +1,4 @@
-// The committed scene: normalised, with its lights and its accelerator; nothing in it changes any more.
+// The committed scene: normalised, immutable, with its lights and its accelerator.
 #pragma once
 
 #include "accel/accelerator.h"
@@ -14,28 +14,28 @@ struct Scene {
   Geometry geometry; // normalised
   std::vector<uint32_t> slots;
   std::vector<Material> materials;
-  std::vector<uint32_t> classes;              // by material, as shading_classes() has them
+  std::vector<uint32_t> classes;              // by material, from shading_classes()
   std::vector<Cutout> cutouts;                // by material
-  std::vector<uint8_t> transparent_instances; // by instance: some of its materials may let light pass straight on
-  std::vector<uint8_t> perforated_instances;  // by instance: there may be nothing of it at some places, as cutouts say
+  std::vector<uint8_t> transparent_instances; // by instance: some of its materials may let light pass straight through
+  std::vector<uint8_t> perforated_instances;  // by instance: it may be absent at some places, as cutouts say
   std::vector<Image> images;
   World world;
   LightSet lights;
   Normalisation normalisation;
   uint32_t features = 0; // bits of features.h
-  uint32_t shapes = 0;   // of lobes, as Features has them
+  uint32_t shapes = 0;   // of lobes, as in Features
   std::unique_ptr<Accelerator> accelerator;
   std::string messages;
   uint64_t triangles = 0; // over all instances
   double build_seconds = 0.0;
 
-  // A primitive as the user numbered it.
+  // Returns the number that the user gave a primitive.
   uint32_t face_number(uint32_t instance, uint32_t primitive) const;
-  size_t geometry_bytes() const; // with lights, without pictures
+  size_t geometry_bytes() const; // with lights, without images
   size_t texture_bytes() const;
 };
 
-// How integrators say what the surfaces of a scene emit; the scene must outlive the answer.
+// Returns the function that evaluates the emission of a scene's surfaces; the scene must outlive the function.
 using EmissionOf = EmissionAt (*)(const Scene &scene);
 
 // Turns a description into a scene. Throws Error, or BuildCancelled when context.cancel is raised.
