@@ -1,4 +1,4 @@
-// Float boxes for building trees: four lanes at a time.
+// Float boxes for building trees, in four lanes.
 #pragma once
 
 #include <bit>
@@ -22,13 +22,13 @@ inline Float4 min4(Float4 a, Float4 b) { return a < b ? a : b; }
 inline Float4 max4(Float4 a, Float4 b) { return a > b ? a : b; }
 #endif
 
-// How far boxes are widened in their frame, where coordinates are at most 1. The slab test of bvh_kernel.cpp works in float,
-// u = 2^-24, as b / d - q / d; a ray that meets the contents starts within sqrt(3) of the centre (placed_shape.h), so b - q is
-// at most 2.74. Its errors, as displacements of the box's planes: rounding of q 1.74u; of b 0.5u; of both products 1.74u and
-// 1u; of the difference 2.74u; of the direction and its inverse 2 * 2.74u; in all 13.2u < 16u = 2^-20.
+// Padding of boxes in their frame, where coordinates are at most 1. The slab test of bvh_kernel.cpp works in float, u = 2^-24,
+// as b / d - q / d; a ray that hits the contents starts within sqrt(3) of the centre (placed_shape.h), so b - q is at most
+// 2.74. Its errors, as displacements of the box's planes: rounding of q 1.74u; of b 0.5u; of both products 1.74u and 1u; of the
+// difference 2.74u; of the direction and its inverse 2 * 2.74u; in all 13.2u < 16u = 2^-20.
 inline constexpr float kBoxPad = 0x1p-20f;
 
-// Lane 3 is free for the builder; min and max of it mean nothing.
+// Lane 3 is free for the builder; it takes part in min and max, but its result has no meaning.
 struct Box {
   Float4 lo{kInf, kInf, kInf, kInf};
   Float4 hi{-kInf, -kInf, -kInf, -kInf};
@@ -41,18 +41,18 @@ struct Box {
     lo = min4(lo, p);
     hi = max4(hi, p);
   }
-  // Half the surface; 0 for an empty box.
+  // Returns half the surface area; 0 for an empty box.
   float half_area() const {
     const Float4 d = hi - lo;
     return d[0] >= 0.0f ? d[0] * d[1] + d[1] * d[2] + d[2] * d[0] : 0.0f;
   }
-  // Twice the middle.
+  // Returns twice the centroid.
   Float4 centroid() const { return lo + hi; }
 
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 };
 
-// A box that grows by minima alone: its high corner has its signs turned.
+// A box that grows by minima alone: its high corner is stored negated.
 struct GrowingBox {
   Float4 lo, minus_hi;
 
@@ -67,7 +67,7 @@ struct GrowingBox {
   Box box() const { return {lo, -minus_hi}; }
 };
 
-// A box, the number of what it holds and whose that is, kept in the free lanes: 32 bytes.
+// A box with an id and an owner in its free lanes: 32 bytes.
 struct BuildRef {
   Float4 lo, minus_hi;
 
@@ -79,7 +79,8 @@ struct BuildRef {
   uint32_t id() const { return static_cast<uint32_t>(std::bit_cast<Int4>(lo)[3]); }
   uint32_t owner() const { return static_cast<uint32_t>(std::bit_cast<Int4>(minus_hi)[3]); }
   Box box() const { return {lo, -minus_hi}; }
-  // Twice the middle: what splits are judged by. The free lane is 0, for numbers read as floats are denormal and slow.
+  // Returns twice the centroid, which decides splits. The free lane is cleared, because ids read as floats are denormal and
+  // slow.
   [[gnu::always_inline]] Float4 centroid() const {
     constexpr Int4 kAxes{-1, -1, -1, 0};
     return std::bit_cast<Float4>(std::bit_cast<Int4>(lo - minus_hi) & kAxes);

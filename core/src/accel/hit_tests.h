@@ -1,4 +1,4 @@
-// One ray against one primitive, kept where it is closer: for the traversals that take primitives one by one.
+// Tests of one ray against one primitive that keep the closer hit, for traversals that test primitives one by one.
 #pragma once
 
 #include "accel/placed_shape.h"
@@ -9,11 +9,11 @@
 
 namespace lancer {
 
-// The first t with tmin < t < tmax where the ray meets the surface; false where there is none.
-// leaves: the ray starts on this surface, so the root that is its own start is left out.
+// Finds the first t with tmin < t < tmax where the ray hits the surface; returns false if there is none. leaves: the ray starts
+// on this surface, so the root at its origin is skipped.
 bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
 
-// Whether a hit of a ray counts; without a filter all do.
+// Returns whether a hit of a ray counts; without a filter every hit does.
 struct Counting {
   const HitFilter *filter = nullptr;
   size_t ray = 0; // number in its batch
@@ -43,7 +43,7 @@ inline void try_triangle(const Ray &ray, const RayAxes &axes, const ShearedRay<d
 }
 
 inline void try_quadric(const Ray &ray, const PlacedShape &shape, uint32_t instance, const Counting &counting, Hit &best) {
-  // Look beyond each place that does not count.
+  // Search beyond each hit that the filter rejects.
   Ray rest = ray;
   double t;
   while (intersect_quadric(shape, rest, ray.skip_instance == instance, t) && closer(t, instance, 0, best)) {

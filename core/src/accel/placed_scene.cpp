@@ -35,7 +35,7 @@ PlacementFrame make_frame(const Extent &e) {
   return frame;
 }
 
-// To float, nearest: kBoxPad holds that rounding too.
+// Rounds to the nearest float; kBoxPad includes this error.
 Box make_box(const PlacementFrame &frame, const Extent &e) {
   Box box;
   for (int i = 0; i < 3; ++i) {
@@ -54,8 +54,8 @@ Extent mesh_extent(const Mesh &mesh) {
   return e;
 }
 
-// What a mesh lies in: the boxes of its corners in the cells of a grid. Turned, they stay nearly as narrow as the mesh, where a
-// single box grows by up to a factor of 1.7: in a field of turned copies a sample costs an eighth less.
+// Bounds a mesh by the boxes of its vertices in the cells of a grid. Rotated, these boxes stay nearly as tight as the mesh,
+// whereas a single box grows by up to a factor of 1.7: a sample of a field of rotated copies costs an eighth less.
 std::vector<Extent> mesh_cells(const Mesh &mesh, const Extent &whole) {
   constexpr uint32_t kSide = 4;
   Extent cells[kSide][kSide][kSide];
@@ -79,15 +79,15 @@ std::vector<Extent> mesh_cells(const Mesh &mesh, const Extent &whole) {
 
 glm::dmat3 magnitudes(const glm::dmat3 &m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
 
-// How far a point with coordinates up to reach may move in object space by going to the world and back. Each map rounds to
-// within gamma(4) of the sum of its terms' magnitudes, and the stored inverse is known to about gamma(20) of
-// |to_object| |to_world|; 32 units of 2^-53 hold all of it.
+// Bounds the displacement in object space of a point with coordinates up to reach by a round trip to the world. Each map rounds
+// to within gamma(4) of the sum of its terms' magnitudes, and the stored inverse is known to about gamma(20) of |to_object|
+// |to_world|; 32 units of 2^-53 cover all of it.
 glm::dvec3 round_trip(const Instance &instance, const glm::dvec3 &reach) {
   const glm::dvec3 world = magnitudes(instance.to_world.linear) * reach + glm::abs(instance.to_world.translation);
   return 0x1p-48 * (magnitudes(instance.to_object.linear) * world + glm::abs(instance.to_object.translation) + reach);
 }
 
-// Boxes in the world, widened by what rounding may move.
+// Boxes in the world, padded by the displacement through rounding.
 Extent shape_box(const Instance &instance) {
   const glm::dmat3 m = magnitudes(instance.to_world.linear);
   glm::dvec3 half = m * round_trip(instance, glm::dvec3(1.0));
@@ -106,7 +106,7 @@ Extent mesh_box(const Instance &instance, const std::vector<Extent> &parts, cons
     box.lo = glm::min(box.lo, middle - half);
     box.hi = glm::max(box.hi, middle + half);
   }
-  // This is not finite either where the place of a part is not.
+  // The box is not finite if the position of a part is not.
   const glm::dvec3 moved = m * round_trip(instance, reach);
   return {box.lo - moved, box.hi + moved};
 }
@@ -136,7 +136,7 @@ PlacedScene place_scene(const Geometry &geometry) {
   for (const Instance &instance : geometry.instances)
     if (instance.kind == ShapeKind::Mesh)
       ++uses[instance.mesh];
-  std::vector<std::vector<Extent>> mesh_parts; // one where that is narrow enough
+  std::vector<std::vector<Extent>> mesh_parts; // a single box for meshes with one instance
   for (size_t i = 0; i < geometry.meshes.size(); ++i) {
     const Mesh &mesh = geometry.meshes[i];
     const Extent whole = mesh_extent(mesh);
@@ -145,7 +145,7 @@ PlacedScene place_scene(const Geometry &geometry) {
     mesh_parts.push_back(uses[i] > 1 ? mesh_cells(mesh, whole) : std::vector{whole});
   }
 
-  // Place every instance; find the world box of those that have one.
+  // Place every instance; find the world box of each bounded one.
   std::vector<Extent> extents;
   Extent all;
   scene.shapes.reserve(geometry.instances.size());

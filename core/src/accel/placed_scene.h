@@ -1,4 +1,4 @@
-// What all accelerators share: the scene's instances as plain records, their boxes, and those that have none.
+// Data shared by all accelerators: the scene's instances as plain records, their boxes, and the instances without a box.
 #pragma once
 
 #include "accel/bounds.h"
@@ -10,12 +10,12 @@
 namespace lancer {
 
 struct PlacedScene {
-  std::vector<PlacedShape> shapes;         // one per instance of the geometry
+  std::vector<PlacedShape> shapes;         // one per instance
   std::vector<PlacementFrame> mesh_frames; // one per mesh
-  std::vector<glm::dvec3> mesh_reach;      // and the largest coordinates, without sign
-  std::vector<uint32_t> unbounded; // instances without a finite box, infinite planes above all: tested against every ray
-  std::vector<uint32_t> bounded;   // all others that have anything to hit
-  std::vector<Box> boxes;          // of bounded, in the frame world
+  std::vector<glm::dvec3> mesh_reach;      // largest absolute coordinates, one per mesh
+  std::vector<uint32_t> unbounded;         // instances without a finite box, mostly infinite planes: tested against every ray
+  std::vector<uint32_t> bounded;           // all other instances that are not empty
+  std::vector<Box> boxes;                  // of bounded, in the frame world
   PlacementFrame world;
 
   size_t bytes() const;
@@ -23,20 +23,20 @@ struct PlacedScene {
 
 PlacedScene place_scene(const Geometry &geometry);
 
-// The box of a triangle in its mesh's frame, widened by kBoxPad.
+// Returns the box of a triangle in its mesh's frame, padded by kBoxPad.
 Box triangle_box(const Mesh &mesh, const PlacementFrame &frame, uint32_t triangle);
 
-// Boxes of a mesh's triangles in the frame of the world, as an instance places them.
+// Boxes of an instance's triangles in the frame of the world.
 class PlacedTriangleBoxes {
 public:
-  // reach: the largest coordinates of the mesh.
+  // reach: the largest absolute coordinates of the mesh.
   PlacedTriangleBoxes(const Mesh &mesh, const Instance &instance, const glm::dvec3 &reach, const PlacementFrame &world);
   Box operator()(uint32_t triangle) const;
 
 private:
   const Mesh &mesh;
   const Affine to_world;
-  const glm::dvec3 moved; // how far rounding may move a point
+  const glm::dvec3 moved; // bound on the displacement of a point by rounding
   const PlacementFrame world;
 };
 

@@ -1,6 +1,6 @@
-// An instance as the traversals read it, and a ray carried into its space: started afresh near its middle, the same numbers for
-// every accelerator. Plain numbers and forced inlining: the kernels are compiled once per instruction set and may leave no
-// shared symbol.
+// An instance as traversals read it, and the transformation of rays into its space. The origin moves near the instance's
+// centre, with the same numbers for every accelerator. Plain records and forced inlining: the kernels are compiled once per
+// instruction set and must not emit a shared symbol.
 #pragma once
 
 #include "scene/ray.h"
@@ -11,7 +11,7 @@
 
 namespace lancer {
 
-// The power of two in a double, and its inverse, both exact: of any width.
+// The power of two in a double, and its inverse, both exact, for any number of lanes.
 LANCER_LANE double with_words(double x, const auto &f) { return std::bit_cast<double>(f(std::bit_cast<uint64_t>(x))); }
 namespace {
 template <int W> LANCER_LANE Double<W> with_words(const Double<W> &x, const auto &f) {
@@ -31,7 +31,7 @@ template <class D> LANCER_LANE D power_of_two_within(const D &x) {
   return with_words(
       x, [](auto words) __attribute__((always_inline)) { return words & (0x7ffull << 52); });
 }
-// Of what that returns.
+// Returns 1 / power, exactly, for a power of two.
 template <class D> LANCER_LANE D inverse_of_power(const D &power) {
   return with_words(
       power, [](auto words) __attribute__((always_inline)) { return (2046ull << 52) - words; });
@@ -47,17 +47,18 @@ struct PlacementFrame {
 };
 
 struct alignas(32) PlacedShape {
-  double to_object[4][4]; // the columns of a 3 x 4 matrix, each with a 0 behind it
+  double to_object[4][4]; // columns of a 3 x 4 matrix, each followed by a 0
   PlacementFrame frame;   // box frame in object space; unit for exact surfaces
-  double slack;           // exact surfaces: how far rounding may lift a stored surface point off the surface, object space
+  double slack;           // exact surfaces: bound on the distance by which rounding lifts a stored hit point off the surface,
+                          // object space
   ShapeKind kind;
   uint32_t mesh;        // kNone for exact surfaces
   uint32_t hidden_from; // bits of Ray::kinds
 };
 
-// Points o + tau d; t = t0 + tau * unit is the parameter of the world ray.
-// d is the object-space direction over a power of two, its largest component in [1, 2): no scale overflows or underflows.
-// o is the closest approach to the frame's centre, so that coordinates are of the mesh's own size however far the eye is.
+// Points are o + tau d; t = t0 + tau * unit is the parameter of the world ray. d is the object-space direction over a power of
+// two, its largest component in [1, 2), so that no scale overflows or underflows. o is the closest approach to the frame's
+// centre, so that coordinates are of the mesh's own size at any distance of the viewer.
 struct ObjectRay {
   double o[3];
   double q[3]; // o relative to the frame's centre
@@ -65,7 +66,7 @@ struct ObjectRay {
   double t0;
   double unit, inverse_unit; // powers of two
 };
-// The same as vectors: of one ray, or of as many as D has lanes.
+// ObjectRay as vectors: of one ray, or of as many as D has lanes.
 template <class V, class D> struct EnteredRay {
   V o, q, d;
   D t0, unit, inverse_unit;
@@ -74,8 +75,8 @@ template <class V, class D> struct EnteredRay {
 template <class D> LANCER_LANE D largest_component(const Vector3<D> &v) { return max(v.z, max(v.y, v.x)); }
 template <class D> LANCER_LANE D sum_of_components(const Vector3<D> &v) { return v.x + v.y + v.z; }
 
-// What divides a direction by the power of two of its largest component. False where it is zero, not finite, or beyond
-// 2^+-1000.
+// Computes the scale that divides a direction by the power of two of its largest component. Returns false if the direction is
+// zero, not finite, or beyond 2^+-1000.
 template <class D> LANCER_LANE auto scale_of(const D &largest, const D &sum, D &unit, D &inverse_unit) {
   inverse_unit = power_of_two_within(largest);
   unit = inverse_of_power(inverse_unit);
@@ -89,7 +90,7 @@ template <class D> LANCER_LANE auto scale_direction(D (&d)[3], D &unit, D &inver
   return usable;
 }
 
-// Origin and direction of a ray in an object's space; t is unchanged. m(column, row): of the matrix, 3 x 4.
+// Transforms origin and direction of a ray to object space; t is unchanged. m(column, row): element of the 3 x 4 matrix.
 template <class D, class Matrix>
 LANCER_LANE void to_object_space(const Matrix &m, const D (&from_o)[3], const D (&from_d)[3], D (&o)[3], D (&d)[3]) {
   for (int i = 0; i < 3; ++i) {
@@ -107,7 +108,7 @@ LANCER_LANE void to_object_space(const PlacedShape &shape, const Ray &ray, doubl
       [&](int column, int row) __attribute__((always_inline)) { return shape.to_object[column][row]; }, ray, o, d);
 }
 
-// Starts the ray o + t d afresh at its closest approach to the frame's centre. False where it is not usable.
+// Restarts the ray o + t d at its closest approach to the frame's centre. Returns false if the ray is not usable.
 template <class V, class D> LANCER_LANE auto enter_frame(const V &centre, const V &o, const V &d, EnteredRay<V, D> &ray) {
   const V size = abs(d);
   const auto scaled = scale_of<D>(largest_component(size), sum_of_components(size), ray.unit, ray.inverse_unit);
@@ -137,7 +138,7 @@ LANCER_LANE bool enter_frame(const PlacementFrame &frame, const double (&o)[3], 
   return usable;
 }
 
-// Whether the ray can see the shape at all.
+// Returns whether the shape is visible to the ray's kind.
 LANCER_LANE bool visible(const PlacedShape &shape, const Ray &ray) { return (ray.kinds & ~shape.hidden_from) != 0; }
 
 LANCER_LANE bool enter_shape(const PlacedShape &shape, const Ray &ray, ObjectRay &object_ray) {
@@ -146,8 +147,8 @@ LANCER_LANE bool enter_shape(const PlacedShape &shape, const Ray &ray, ObjectRay
   return enter_frame(shape.frame, o, d, object_ray);
 }
 
-// The ray in the scene's frame. False for rays that are defined to meet nothing: not finite, no direction, an empty range or
-// one that is no number.
+// Transforms the ray to the scene's frame. Returns false for rays that by definition hit nothing: a non-finite value, no
+// direction, an empty range or a NaN in the range.
 LANCER_LANE bool enter_world(const PlacementFrame &world, const Ray &ray, ObjectRay &world_ray) {
   const double o[3] = {ray.o.x, ray.o.y, ray.o.z}, d[3] = {ray.d.x, ray.d.y, ray.d.z};
   return ray.tmin < ray.tmax && enter_frame(world, o, d, world_ray);
@@ -155,9 +156,9 @@ LANCER_LANE bool enter_world(const PlacementFrame &world, const Ray &ray, Object
 
 LANCER_LANE double world_t(const ObjectRay &ray, double tau) { return ray.t0 + tau * ray.unit; }
 
-// Box-frame parameters that no hit with parameter <= t (>= t) exceeds. t = t0 + tau unit was rounded once and t - t0 is rounded
-// once here: together at most 2^-53 (|t| + |t - t0|) <= 2^-51 (|t| + |t0|). ray: with the t0 and inverse_unit of ObjectRay;
-// scale: of its frame.
+// Bounds on the box-frame parameter of every hit with parameter <= t (above) or >= t (below). t = t0 + tau unit was rounded
+// once and t - t0 is rounded once here: together at most 2^-53 (|t| + |t - t0|) <= 2^-51 (|t| + |t0|). ray: has the t0 and
+// inverse_unit of ObjectRay; scale: of its frame.
 template <class D> LANCER_LANE D box_tau_above(const auto &ray, double scale, const D &t) {
   return ((t - ray.t0) + D(0x1p-51) * (abs(t) + abs(ray.t0))) * ray.inverse_unit * D(scale);
 }

@@ -1,12 +1,12 @@
-// Where a line enters and leaves a convex solid with a quadric's surface: what the test of one and that of many share.
-// Forced inlining, as in placed_shape.h.
+// Entry and exit of a line through a convex solid bounded by a quadric, for one solid or several in lanes. Forced inlining, as
+// in placed_shape.h.
 #pragma once
 
 #include "accel/placed_shape.h"
 
 namespace lancer {
 
-// A sum of squares as if computed in twice the precision: next to a surface nearly all of its digits cancel.
+// A sum of squares in twice the precision: near a surface nearly all of its digits cancel.
 template <class D> struct PreciseSum {
   D value{0.0}, rest{0.0};
 
@@ -37,8 +37,8 @@ private:
   }
 };
 
-// Where a line enters and leaves a convex solid, and whether that place is on the surface that it started from.
-// All closed shapes are intersections of convex solids, so a line that enters always leaves: no gap at the rims.
+// Entry and exit of a line through a convex solid, and whether each is the surface point that the ray starts from. All closed
+// shapes are intersections of convex solids, so a line that enters always leaves: no gap at the rims.
 struct Interval {
   double entry = -__builtin_inf(), exit = __builtin_inf();
   bool entry_is_start = false, exit_is_start = false;
@@ -50,8 +50,8 @@ LANCER_LANE Interval between(double first, double second, bool first_is_start) {
   return {second, first, false, first_is_start};
 }
 
-// Roots of a t^2 - 2 b t + c = 0 with root^2 = b^2 - a c known better than that difference gives it.
-// first is the root of smaller magnitude: c / q loses no digit where c is small.
+// Roots of a t^2 - 2 b t + c = 0 for a root with root^2 = b^2 - a c that is more precise than this difference. first is the
+// root of smaller magnitude: c / q loses no digit if c is small. Returns false without a solution.
 LANCER_LANE bool solve(double a, double b, double c, double root, double &first, double &second) {
   const double q = b + __builtin_copysign(root, b);
   first = c / q;
@@ -59,7 +59,8 @@ LANCER_LANE bool solve(double a, double b, double c, double root, double &first,
   return q != 0.0;
 }
 
-// The first of both places that is on the ray and not its start. unit: of ObjectRay. leaves: the ray starts on this surface.
+// Finds the first of entry and exit that is on the ray and not its origin; returns false if there is none. unit: of ObjectRay.
+// leaves: the ray starts on this surface.
 LANCER_LANE bool first_place(const Interval &i, double unit, bool leaves, double tmin, double tmax, double &t) {
   if (!(i.entry <= i.exit))
     return false;
@@ -70,8 +71,8 @@ LANCER_LANE bool first_place(const Interval &i, double unit, bool leaves, double
   return !(leaves && i.exit_is_start) && tmin < t && t < tmax;
 }
 
-// A line and the unit sphere: the terms of solve(), whether there are roots at all known first. b^2 - a c is a - |o x d|^2
-// (Lagrange): the squared distance of the line from the centre, without the cancellation of o.o.
+// The terms of solve() for a line and the unit sphere; the discriminant first, since most lines miss. b^2 - a c is a - |o x
+// d|^2 (Lagrange): the squared distance of the line from the centre, without the cancellation of o.o.
 template <class D> struct SphereTerms {
   D a, b, c, discriminant;
 
@@ -90,7 +91,7 @@ template <class D> struct SphereTerms {
   }
 };
 
-// slack: how far c of a point on the surface may be from 0. False where the line touches nothing.
+// slack: bound on |c| for a point on the surface. Returns false without a solution.
 LANCER_LANE bool sphere_interval(double a, double b, double c, double root, double slack, Interval &i) {
   double first, second;
   if (!solve(a, b, c, root, first, second))

@@ -1,33 +1,32 @@
-// Watertight ray-triangle test (Woop, Benthin, Wald 2013) in double, of one triangle or of as many as there are lanes: the same
-// bits.
+// Watertight ray-triangle test (Woop, Benthin, Wald 2013) in double. One triangle and several in lanes give the same bits.
 #pragma once
 
 #include "accel/placed_shape.h"
 
 namespace lancer {
 
-// a b = product + rest, exactly, by Veltkamp's splitting.
+// Returns a b - product for the rounded product, exactly, by Veltkamp's splitting.
 LANCER_LANE double rest_of_product(double a, double b, double product) {
   const double sa = 134217729.0 * a, sb = 134217729.0 * b;
   const double high_a = sa - (sa - a), high_b = sb - (sb - b), low_a = a - high_a, low_b = b - high_b;
   return ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b;
 }
 
-// a b - c d, to its last digit.
+// Returns a b - c d, accurate to its last digit.
 LANCER_LANE double difference_of_products(double a, double b, double c, double d) {
   const double p = a * b, q = c * d;
   return (p - q) + (rest_of_product(a, b, p) - rest_of_product(c, d, q));
 }
 
-// Whether the origin lies within a triangle with the corners (x, y) where some of its edge functions w have rounded to zero;
-// w[i] = x[k] y[j] - y[k] x[j] with the corners j and k after i. Computes those again, to their last digit. An origin exactly
-// on an edge is moved by an infinitesimal towards +x, and by one of second order towards +y, the same for every triangle: so
-// that of the triangles around an edge or a corner one is met for each crossing of their surface.
+// Decides whether the origin lies within a triangle with the corners (x, y) if some of its edge functions w have rounded to
+// zero; w[i] = x[k] y[j] - y[k] x[j] with the corners j and k after i. Recomputes these edge functions to their last digit. An
+// origin exactly on an edge is moved by an infinitesimal towards +x, and by one of second order towards +y, the same for every
+// triangle: so exactly one of the triangles around an edge or a corner is hit for each crossing of their surface.
 LANCER_LANE bool within_edges(const double x[3], const double y[3], double w[3]) {
   int sides = 0;
   for (int i = 0; i < 3; ++i) {
     const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
-    // Both products have rounded to the same number: their rests differ, or nothing does.
+    // Both products have rounded to the same number: the edge function is the difference of their rounding errors, or zero.
     if (w[i] == 0.0)
       w[i] = difference_of_products(x[k], y[j], y[k], x[j]);
     const double side = w[i] != 0.0 ? w[i] : y[k] != y[j] ? y[k] - y[j] : x[j] - x[k];
@@ -36,13 +35,13 @@ LANCER_LANE bool within_edges(const double x[3], const double y[3], double w[3])
   return sides == 3 || sides == -3;
 }
 
-// a + b + c whatever their order: the same bits.
+// Returns a + b + c with the same bits for any order of the three.
 template <class D> LANCER_LANE D sum_in_any_order(const D &a, const D &b, const D &c) {
   const D low = min(b, a), high = max(b, a);
   return (min(c, low) + max(c, high)) + max(min(c, high), low);
 }
 
-// The axes of a ray: kz is the one that its direction is longest along.
+// The axes of a ray: kz is the axis of its direction's largest component.
 struct RayAxes {
   uint32_t kx, ky, kz;
 };
@@ -55,10 +54,10 @@ LANCER_LANE uint32_t longest_axis(const double d[3]) {
   return z >= x && z >= y ? 2 : (y >= x ? 1 : 0);
 }
 
-// A ray as the test reads it, its axes in the order kx, ky, kz: the shear turns it into the axis z = 1 through the origin.
+// A ray with its axes in the order kx, ky, kz: the shear maps the ray to the axis z = 1 through the origin.
 template <class D> struct ShearedRay {
   D o[3];
-  D shear[2], upright; // direction over its component along kz; one over that
+  D shear[2], upright; // direction over its component along kz; one over this component
   D t0, unit;          // of ObjectRay
 };
 LANCER_LANE ShearedRay<double> shear_ray(const ObjectRay &ray, const RayAxes &k) {
@@ -66,14 +65,14 @@ LANCER_LANE ShearedRay<double> shear_ray(const ObjectRay &ray, const RayAxes &k)
   return {{ray.o[k.kx], ray.o[k.ky], ray.o[k.kz]}, {ray.d[k.kx] / up, ray.d[k.ky] / up}, 1.0 / up, ray.t0, ray.unit};
 }
 
-// Where a ray meets a triangle: its parameter, the same bits for any order of the corners; the weights of the corners 1 and 2
+// Hit of a ray on a triangle: its parameter, with the same bits for any order of the corners; the weights of corners 1 and 2
 // are wb / det and wc / det.
 template <class D> struct TriangleHit { D t, wb, wc, det; };
 
 namespace {
 
-// Asks within_edges() about the lanes of ties: rays that meet an edge exactly, which are few. Returns the lanes of met without
-// those that pass beside.
+// Resolves ties, the lanes of rays exactly through an edge, by within_edges(); they are rare. Returns met without the lanes
+// that miss.
 template <class D>
 [[gnu::noinline, gnu::cold]] uint32_t settle_ties(const D (&x)[3], const D (&y)[3], uint32_t ties, uint32_t met, D (&w)[3]) {
   constexpr size_t count = sizeof(D) / sizeof(double);
@@ -100,8 +99,9 @@ template <class D>
 
 } // namespace
 
-// Bit i: lane i meets its triangle, somewhere on its line. corner: by number, and by axis in the ray's order. Edge functions
-// change sign exactly when their corners are swapped, so of triangles that share an edge one is met.
+// Tests each lane's line against its triangle; bit i of the result: lane i hits. corner: by number, and by axis in the ray's
+// order. Edge functions change sign exactly when their corners are swapped, so exactly one of the triangles at a shared edge is
+// hit.
 template <class D>
 LANCER_LANE uint32_t intersect_triangle(const D (&corner)[3][3], const ShearedRay<D> &ray, TriangleHit<D> &hit) {
   // Shear the corners into the ray's frame.
@@ -119,7 +119,7 @@ LANCER_LANE uint32_t intersect_triangle(const D (&corner)[3][3], const ShearedRa
     return 0;
   if (const uint32_t ties = met & bits(w[0] * w[1] * w[2] == zero); ties != 0)
     met = settle_ties(x, y, ties, met, w);
-  // Interpolate the depth and return to the world's parameter.
+  // Interpolate the depth and return to the parameter of the world ray.
   const D det = sum_in_any_order(w[0], w[1], w[2]);
   const D depth = sum_in_any_order(w[0] * (ray.upright * z[0]), w[1] * (ray.upright * z[1]), w[2] * (ray.upright * z[2]));
   hit = {ray.t0 + (depth / det) * ray.unit, w[1], w[2], det};

@@ -1,6 +1,5 @@
-// The tests of blocks of the wide BVH: four triangles or four spheres at a time, and four triangles with as many rays as there
-// are registers for.
-// Part of bvh_kernel.cpp: everything has internal linkage.
+// Tests of the wide BVH's blocks: four triangles or four spheres with one ray, and four triangles with as many rays as fit in
+// registers. Part of bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 
 #include "accel/bvh/enter.h"
@@ -9,11 +8,11 @@
 namespace lancer {
 namespace {
 
-// Rays that are tested at a time against four triangles, and the lanes that they make.
+// Rays tested at a time against four triangles, and the resulting number of lanes.
 constexpr int kTogether = kLanes >= 8 ? 2 : 1;
 constexpr int kPairs = 4 * kTogether;
 
-// Where lanes meet triangles.
+// Hits of lanes on triangles.
 template <int W> struct alignas(64) BlockHits {
   double t[W], wb[W], wc[W], det[W];
 
@@ -25,7 +24,7 @@ template <int W> struct alignas(64) BlockHits {
   }
 };
 
-// Bit i: triangle i is met with tmin < t < tmax and t <= limit.
+// Tests four triangles; bit i of the result: triangle i is hit with tmin < t < tmax and t <= limit.
 LANCER_LANE uint32_t intersect_block(const TriangleBlock &block, const MeshRay &s, double tmin, double tmax, double limit,
                                      BlockHits<4> &hits) {
   using Four = Double<4>;
@@ -51,8 +50,8 @@ LANCER_LANE uint32_t intersect_block(const TriangleBlock &block, const MeshRay &
   return met;
 }
 
-// Four triangles and some lanes whose directions are longest along the same axis; corner: the triangles' for each of them.
-// Bit 4 k + i: the lane of number k meets triangle i with tmin < t < tmax and t <= limit.
+// Tests four triangles with kTogether lanes whose directions have the same longest axis; corner: the triangles' corners,
+// repeated for each lane. Bit 4 k + i of the result: the lane lanes[k] hits triangle i with tmin < t < tmax and t <= limit.
 LANCER_LANE uint32_t intersect_together(const Double<kPairs> (&corner)[3][3], const PacketRays &r, uint32_t longest,
                                         const uint32_t (&lanes)[kTogether], const Entering &e, const double *limit,
                                         BlockHits<kPairs> &hits) {
@@ -72,15 +71,15 @@ LANCER_LANE uint32_t intersect_together(const Double<kPairs> (&corner)[3][3], co
   return met & bits((of(e.tmin) < hit.t) & (hit.t < of(e.tmax)) & (hit.t <= of(limit)));
 }
 
-// Four spheres and a ray: SphereTerms, with the root of the discriminant, in units of the scaled direction.
+// Four spheres and a ray: SphereTerms with the square root of the discriminant, in units of the scaled direction.
 struct BlockRoots {
   alignas(32) double a[4], b[4], c[4], root[4], unit[4];
 };
 
-// Bit i: the ray's line meets sphere i.
+// Tests four spheres; bit i of the result: the ray's line hits sphere i.
 LANCER_LANE uint32_t intersect_spheres(const SphereBlock &block, const Ray &ray, BlockRoots &roots) {
   using Four = Double<4>;
-  // Carry the ray into the four unit spaces.
+  // Transform the ray to the four unit spaces.
   Four o[3], d[3], unit, inverse_unit;
   to_object_space(
       [&](int column, int row) __attribute__((always_inline)) { return load_doubles<4>(block.to_object[column][row]); }, ray, o,
@@ -100,7 +99,7 @@ LANCER_LANE uint32_t intersect_spheres(const SphereBlock &block, const Ray &ray,
   return met;
 }
 
-// intersect_quadric() for sphere i of those met.
+// intersect_quadric() for sphere i, once intersect_spheres() has set its bit.
 LANCER_LANE bool choose_root(const BlockRoots &r, int i, double slack, bool leaves, double tmin, double tmax, double &t) {
   Interval interval;
   return sphere_interval(r.a[i], r.b[i], r.c[i], r.root[i], 4.0 * slack, interval) &&

@@ -66,7 +66,8 @@ private:
       kernel.any(scene, rays.data(), occluded.data(), rays.size());
   }
 
-  // Instances whose triangles stand in the world's own tree: those of meshes that are placed once, and copies of small ones.
+  // Chooses the instances whose triangles become part of the world's tree: those of meshes used once, and copies of small
+  // meshes.
   std::vector<uint8_t> choose_unfolded(const Geometry &geometry) const {
     std::vector<uint32_t> uses(geometry.meshes.size(), 0);
     size_t triangles = 0;
@@ -80,13 +81,13 @@ private:
       const Instance &instance = geometry.instances[number];
       if (instance.kind != ShapeKind::Mesh)
         continue;
-      // Boxes in the world's frame are widened by kBoxPad: triangles should be larger than that.
+      // Boxes in the world's frame are padded by kBoxPad: triangles should be larger than the padding.
       const size_t count = geometry.meshes[instance.mesh].triangles.size();
       const Float4 size = placed.boxes[i].hi - placed.boxes[i].lo;
       const float largest = std::max({size[0], size[1], size[2]});
       if (largest < 16.0f * kBoxPad * std::sqrt(static_cast<float>(count)))
         continue;
-      // Copies may take an eighth of the memory.
+      // Let copies take an eighth of the memory.
       if (uses[instance.mesh] > 1) {
         if ((copies + count) * 8 > triangles + 8192)
           continue;
@@ -97,7 +98,7 @@ private:
     return unfolded;
   }
 
-  // Large meshes one after the other, each on all threads; then the small ones side by side.
+  // Builds large meshes one after the other, each on all threads, then the small ones in parallel.
   void build_meshes(const Geometry &geometry, const std::vector<uint8_t> &unfolded, const BuildContext &context) {
     std::vector<uint8_t> wanted(meshes.size(), 0);
     for (uint32_t i = 0; i < geometry.instances.size(); ++i)

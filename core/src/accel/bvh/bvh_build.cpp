@@ -17,7 +17,7 @@ void set_order(const Parts &parts, uint32_t count, BvhNode &node) {
     for (int axis = 0; axis < 3; ++axis)
       middle[axis][i / 4][i % 4] = parts[i].box.centroid()[axis];
   for (uint32_t octant = 0; octant < 4; ++octant) {
-    // A child's rank is how many are farther; among equals the first is farther.
+    // The rank of a child is the number of farther children; of equals the first counts as farther.
     Float4 place[2];
     Int4 rank[2]{};
     for (int half = 0; half < 2; ++half)
@@ -31,7 +31,7 @@ void set_order(const Parts &parts, uint32_t count, BvhNode &node) {
       for (int half = 0; half < 2; ++half)
         rank[half] -= (other > place[half]) | ((other == place[half]) & after[half]);
     }
-    // From the other side it is the other way round.
+    // The opposite octant has the reverse order.
     uint32_t order = 0, reverse = 0;
     for (uint32_t i = 0; i < kBvhWidth; ++i) {
       const uint32_t r = i < count ? static_cast<uint32_t>(rank[i / 4][i % 4]) : i;
@@ -43,7 +43,7 @@ void set_order(const Parts &parts, uint32_t count, BvhNode &node) {
   }
 }
 
-// A subtree that is left for the threads: its place in the tree above it, and its range.
+// A subtree deferred to the threads: its slot in its parent, and its range.
 struct Task {
   uint32_t node, slot, depth;
   BuildRange range;
@@ -54,12 +54,12 @@ class Builder {
 public:
   Builder(const RangeSplitter &s, HugeVector<LeafRef> &l, const BuildContext &c) : splitter(s), leaves(l), context(c) {}
 
-  // Appends the subtree of range to nodes; ranges of at most task_size are left to tasks, where given.
+  // Appends the subtree of range to nodes; if tasks is given, defers ranges of at most task_size to it.
   uint32_t build(const BuildRange &range, uint32_t depth, HugeVector<BvhNode> &nodes, uint32_t task_size,
                  std::vector<Task> *tasks) const {
     poll_cancel(context);
 
-    // Split the largest part until there are eight, or nothing is left to split.
+    // Split the largest part until there are eight parts or only leaves.
     Parts parts;
     uint32_t part_count = 1;
     parts[0] = range;
@@ -119,7 +119,7 @@ private:
   const BuildContext &context;
 };
 
-// Appends the subtrees in the order in which they were met.
+// Appends the subtrees in order of creation.
 void join(HugeVector<BvhNode> &nodes, std::vector<Task> &tasks, const BuildContext &context) {
   std::vector<uint32_t> offsets;
   size_t count = nodes.size();
@@ -148,12 +148,13 @@ WideTree build_wide_tree(HugeVector<BuildRef> refs, uint32_t group, const BuildC
   if (refs.empty())
     return tree;
   if (refs.size() > kBuildLeaf >> 2)
-    throw std::bad_alloc(); // more than a leaf's 29 bits can address
+    throw std::bad_alloc(); // exceeds the 29 bits of a leaf
   const uint32_t count = static_cast<uint32_t>(refs.size());
   HugeVector<BuildRef> other(count);
   tree.leaves.resize(count);
 
-  // Build the top with all threads on one range, then the subtrees side by side. Where the top ends depends on the size alone.
+  // Build the top with all threads on one range, then the subtrees in parallel. The extent of the top depends on the size
+  // alone.
   const RangeSplitter splitter(refs.data(), other.data(), group, context);
   std::vector<Task> tasks;
   const uint32_t task_size = std::max(count / 64, 4096u);

@@ -1,5 +1,5 @@
-// Builds eight-wide trees over boxes by the surface-area heuristic: ranges of boxes are halved, halves become nodes, and what
-// leaves hold is gathered in blocks.
+// Builds eight-wide trees over boxes by the surface-area heuristic: ranges of boxes are split in two, parts become nodes, and
+// the primitives of a leaf are gathered in blocks.
 #pragma once
 
 #include "accel/accelerator.h"
@@ -13,30 +13,30 @@
 
 namespace lancer {
 
-// An owner that is an instance by itself, not a triangle's.
+// Owner of a box that bounds a whole instance instead of a triangle.
 inline constexpr uint32_t kWholeInstance = 0xffffffffu;
-// The owner of all spheres; their numbers are those of instances.
+// Owner of all spheres; their ids are instance numbers.
 inline constexpr uint32_t kSpheres = 0xfffffffeu;
 
-// Boxes that become a subtree.
+// A range of boxes that becomes a subtree.
 struct BuildRange {
   uint32_t begin = 0, end = 0;
-  uint32_t buffer = 0; // which of the two holds them
+  uint32_t buffer = 0; // number of the buffer with the boxes
   bool leaf = false;
   Box box, centroids;
 
   uint32_t count() const { return end - begin; }
 };
 
-// Splits move boxes from one buffer to the other, in their order: the result depends on the boxes alone.
+// Splits move boxes from one buffer to the other in stable order: the result depends on the boxes alone.
 class RangeSplitter {
 public:
   RangeSplitter(BuildRef *first, BuildRef *second, uint32_t g, const BuildContext &c)
       : buffers{first, second}, group(g), context(c) {}
 
-  // The range of all boxes of the first buffer.
+  // Returns the range of all boxes of the first buffer.
   BuildRange all(uint32_t count) const;
-  // Neither side is empty. left may be range itself.
+  // Splits range into two non-empty sides. left may alias range.
   void split(const BuildRange &range, bool by_count, BuildRange &left, BuildRange &right) const;
   const BuildRef *refs(const BuildRange &range) const { return buffers[range.buffer]; }
 
@@ -51,29 +51,29 @@ private:
   const BuildContext &context;
 };
 
-// Children of a tree under construction that are no nodes: (first << 2 | count - 1) into leaves.
+// Leaves as children of a tree under construction: (first << 2 | count - 1) into leaves.
 inline constexpr uint32_t kBuildLeaf = 0x80000000u;
 inline constexpr uint32_t kBuildEmpty = 0xffffffffu;
 
-// What is left of a BuildRef once its box has found its place.
+// The part of a BuildRef that a finished leaf keeps.
 struct LeafRef {
   uint32_t id, owner;
 };
 
 struct WideTree {
   HugeVector<BvhNode> nodes;
-  HugeVector<LeafRef> leaves; // one after the other
+  HugeVector<LeafRef> leaves; // leaf after leaf
 };
 
-// group: how many primitives are tested at the price of one (1 or kBvhLeafSize), and the most that a leaf holds; all of one
-// owner. The result depends on refs alone.
+// group: number of primitives tested at the cost of one (1 or kBvhLeafSize), and the capacity of a leaf, whose primitives all
+// have one owner. The result depends on refs alone.
 WideTree build_wide_tree(HugeVector<BuildRef> refs, uint32_t group, const BuildContext &context);
 
-// A tree whose leaves are blocks of triangles; in the world's also blocks of spheres, and instances.
+// A tree whose leaves are blocks of triangles; the world's tree also has blocks of spheres and instances as leaves.
 struct MeshBvh {
   HugeVector<BvhNode> nodes;
   HugeVector<TriangleBlock> blocks;
-  HugeVector<uint32_t> owners; // of blocks; empty where all have the same
+  HugeVector<uint32_t> owners; // of blocks; empty if all blocks have the same owner
   HugeVector<SphereBlock> spheres;
 
   BvhView view() const { return {nodes.empty() ? nullptr : nodes.data(), blocks.data()}; }
@@ -85,7 +85,8 @@ struct MeshBvh {
 
 MeshBvh build_mesh_bvh(const Mesh &mesh, const PlacementFrame &frame, const BuildContext &context);
 
-// The tree of the world. unfolded: instances whose triangles are in it themselves; all other bounded instances are leaves.
+// Builds the tree of the world. unfolded: instances whose triangles are part of this tree; all other bounded instances are
+// leaves.
 MeshBvh build_world_bvh(const Geometry &geometry, const PlacedScene &placed, const std::vector<uint8_t> &unfolded,
                         const BuildContext &context);
 

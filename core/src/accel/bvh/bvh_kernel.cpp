@@ -1,6 +1,6 @@
-// Traversal of the wide BVH. Compiled once per instruction set, with LANCER_ISA naming it; all give the same bits, because no
-// operation is contracted and boxes only ever decide what is not worth testing.
-// This file may emit no shared (weak) symbol: the linker would keep one unit's copy for all. Hence plain structs, forced
+// Traversal of the wide BVH. Compiled once per instruction set, with LANCER_ISA naming it. All copies give the same bits,
+// because no operation is contracted and boxes only cull.
+// This file must not emit a shared (weak) symbol: the linker would keep one unit's copy for all. Hence plain structs, forced
 // inlining, and no call of an inline function of another header out of line.
 #include "accel/bvh/bvh_kernel.h"
 
@@ -12,7 +12,7 @@ namespace lancer {
 
 namespace {
 
-// Starts a ray; false where its answer is known at once.
+// Starts a ray; returns false if its answer is already known.
 LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e, uint32_t lane, Slot &s) {
   s.best.t = __builtin_inf();
   s.best.u = s.best.v = 0.0;
@@ -42,7 +42,7 @@ LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e,
   return (e.usable >> lane & 1) && s.size > 1;
 }
 
-// Nobody wants the answers of rays whose work is counted.
+// Counted queries discard the answer.
 template <Question q> LANCER_LANE void store_answer(const Hit &best, size_t number, Hit *hits, uint8_t *occluded) {
   if constexpr (q.counted)
     return;
@@ -52,7 +52,7 @@ template <Question q> LANCER_LANE void store_answer(const Hit &best, size_t numb
     hits[number] = best;
 }
 
-// The slots that wait for the same kind of work.
+// Slots that wait for the same kind of work.
 struct Queue {
   uint32_t count = 0;
   Slot *slots[kSlots];
@@ -68,9 +68,9 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
   size_t next = 0, row = q.any || q.counted ? 4 : find_row(rays, count);
   Entering entering;
   Leftovers leftovers;
-  uint32_t waiting = 0; // the lanes of what is entering that no slot has taken up yet
+  uint32_t waiting = 0; // lanes of entering that no slot has taken
   bool together = false;
-  // Fills a slot with the next ray that has a way to go alone.
+  // Fills a slot with the next ray that needs a traversal of its own.
   const auto refill = [&](Slot & s) __attribute__((always_inline)) {
     for (;;) {
       while (waiting != 0) {
@@ -89,7 +89,7 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       }
       if (next == count)
         return;
-      // Take the next rays: a square of the image where the batch comes row by row.
+      // Take the next rays: a square of the image if the batch comes in rows.
       const size_t left = count - next, taken = left < kPacket ? left : kPacket;
       if (next % (4 * row) == 0 && left < 4 * row)
         row = 4;
@@ -110,7 +110,7 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       }
     }
   };
-  // Does the work of one kind for all that wait for it.
+  // Does the work of one kind for all slots that wait for it.
   const auto each = [&](uint32_t kind, auto work) __attribute__((always_inline)) {
     Queue &queue = queues[kind];
     other_count = queue.count;
@@ -134,7 +134,7 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
     refill(s);
   }
   for (;;) {
-    // Sort the slots by what they wait for; take up what most wait for.
+    // Sort the slots by kind; process the kind with the most slots.
     for (uint32_t i = 0; i < other_count; ++i) {
       Queue &queue = queues[others[i]->kind];
       queue.slots[queue.count++] = others[i];
@@ -153,7 +153,7 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
         counts->nodes += present;
       for (uint32_t i = 0; i < present; ++i)
         visit_node(*queue.slots[i]);
-      // Those that come to another node stay.
+      // Keep the slots that wait for another node.
       uint32_t inner = 0, other = 0;
       for (uint32_t i = 0; i < present; ++i) {
         Slot *s = queue.slots[i];

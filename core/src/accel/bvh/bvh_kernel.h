@@ -14,43 +14,43 @@ struct BvhKernel {
   const char *name;
   void (*closest)(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count);
   void (*any)(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count);
-  // The same of the hits that count.
+  // The same queries over the hits that pass a filter.
   void (*closest_filtered)(const BvhScene &scene, const Ray *rays, Hit *hits, size_t count, const HitFilter &filter);
   void (*any_filtered)(const BvhScene &scene, const Ray *rays, uint8_t *occluded, size_t count, const HitFilter &filter);
-  // Adds up the work of the one or the other, where each ray goes alone.
+  // Adds the work of either query, with each ray traced alone, to counts.
   void (*count)(const BvhScene &scene, const Ray *rays, size_t count, bool any, TraversalCounts &counts);
 };
 
-// Each is the same source, bvh_kernel.cpp, compiled with LANCER_ISA set to the name.
+// Each is bvh_kernel.cpp compiled with LANCER_ISA set to the name.
 LANCER_DECLARE_KERNEL(BvhKernel, bvh_kernel)
 
-// What a split of the builder does with each box, one copy per instruction set. A build takes a tenth less time than without.
+// The work of a split on each box, one copy per instruction set, which makes a build a tenth faster.
 
 inline constexpr uint32_t kMaxBins = 16;
 
-// Maps centroids to bins, the same way in every pass. Lane 3 of the origin is 1 and of the scale 0: a compiler that sees that
-// nobody asks for lane 3 lets numbers through there, which are denormal as floats, and a product of them takes as long as all
-// of a box's other work.
+// Maps centroids to bins, identically in every pass. Lane 3 of the origin is 1 and of the scale 0. Without this, a compiler
+// that sees that lane 3 is unused leaves ids in it, which are denormal as floats, and their product takes as long as all other
+// work on a box.
 struct Binning {
   Float4 origin, scale;
 };
 
-// Unset until binned: only as many as are used.
+// Uninitialised; binning sets only the used bins.
 struct Bins {
   alignas(64) GrowingBox boxes[kMaxBins][3]; // bin, axis
   alignas(16) uint32_t counts[kMaxBins][4];
 };
 
 struct SplitKernel {
-  // Sorts boxes into the first bins along all three axes.
+  // Sorts boxes into the first `used` bins along all three axes.
   void (*bin)(const BuildRef *refs, uint32_t count, const Binning &binning, uint32_t used, Bins &bins);
-  // By axis: moves boxes from refs[begin] to refs[end] to the places from left on where their bin is below the given one, else
-  // from right on; and gives the boxes of both sides' centroids.
+  // By axis: moves the boxes refs[begin ... end) to positions from left on if their bin is below the given one, else to
+  // positions from right on; returns the boxes of both sides' centroids.
   void (*move[3])(const BuildRef *refs, uint32_t begin, uint32_t end, const Binning &binning, int32_t bin, BuildRef *to,
                   uint32_t left, uint32_t right, GrowingBox centroids[2]);
 };
 
-// Each is the same source, split_kernel.cpp, compiled with LANCER_ISA set to the name.
+// Each is split_kernel.cpp compiled with LANCER_ISA set to the name.
 LANCER_DECLARE_KERNEL(SplitKernel, split_kernel)
 
 } // namespace lancer

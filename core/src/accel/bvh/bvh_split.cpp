@@ -12,15 +12,15 @@ const SplitKernel &split_kernel() { return LANCER_CHOSEN_KERNEL(split_kernel); }
 
 namespace {
 
-// What one thread bins or moves at a time.
+// Boxes that one thread bins or moves at a time.
 constexpr uint32_t kPiece = 32768;
 
-// Small ranges are worth few bins: a sweep over them costs more than their boxes.
+// Few bins for small ranges: a sweep over many bins would cost more than binning the boxes.
 uint32_t bin_count(uint32_t refs) { return std::min(kMaxBins, 4 + refs / 4); }
 
 Binning make_binning(const Box &centroids, uint32_t bins) {
   Binning binning{centroids.lo, {}};
-  binning.origin[3] = 1.0f; // what the free lane holds vanishes beside it
+  binning.origin[3] = 1.0f; // absorbs the value of the free lane
   for (int axis = 0; axis < 3; ++axis) {
     const float extent = centroids.hi[axis] - centroids.lo[axis];
     const float s = static_cast<float>(bins) * 0.999999f / extent;
@@ -41,12 +41,12 @@ void add(const Bins &bins, uint32_t used, Bins &sum) {
 
 struct Plane {
   int axis = -1;
-  int32_t bin = 0; // the first bin of the right side
+  int32_t bin = 0; // first bin of the right side
 };
 
-// What the boxes of all three axes cost together with their primitives; not a number where there are none.
+// Costs of the boxes of all three axes with their primitives; NaN for an empty side.
 Float4 cost(const GrowingBox boxes[3], Int4 counts, uint32_t group) {
-  // The sizes have their signs turned, which their products do not show.
+  // The sizes are negated, which cancels in their products.
   const Float4 a = boxes[0].lo + boxes[0].minus_hi, b = boxes[1].lo + boxes[1].minus_hi, c = boxes[2].lo + boxes[2].minus_hi;
   const Float4 x{a[0], b[0], c[0], 0.0f}, y{a[1], b[1], c[1], 0.0f}, z{a[2], b[2], c[2], 0.0f};
   const Int4 tests = group == 4 ? (counts + 3) >> 2 : counts;
@@ -91,7 +91,7 @@ Plane find_plane(const Bins &bins, uint32_t used, uint32_t group) {
 BuildRange RangeSplitter::all(uint32_t count) const {
   std::vector<BuildRange> pieces((count + kPiece - 1) / kPiece);
   parallel_for(context, pieces.size(), [&](size_t piece) {
-    BuildRange part; // of this thread's stack
+    BuildRange part; // local to the thread's stack
     const uint32_t begin = static_cast<uint32_t>(piece) * kPiece;
     for (uint32_t i = begin; i < std::min(begin + kPiece, count); ++i) {
       part.box.grow(buffers[0][i].box());
@@ -143,7 +143,7 @@ bool RangeSplitter::split_by_area(const BuildRange &range, BuildRange sides[2]) 
   if (plane.axis < 0)
     return false;
 
-  // The bins know the sides' boxes and sizes.
+  // Take the sides' boxes and sizes from the bins.
   const auto count_left = [&](const Bins &bins) {
     uint32_t count = 0;
     for (int32_t bin = 0; bin < plane.bin; ++bin)
@@ -183,13 +183,13 @@ bool RangeSplitter::split_by_area(const BuildRange &range, BuildRange sides[2]) 
 }
 
 void RangeSplitter::split_by_count(const BuildRange &range, BuildRange sides[2]) const {
-  // Halve along the widest axis; coincident centroids have no order.
+  // Halve along the widest axis; coincident centroids stay in order.
   BuildRef *r = buffers[range.buffer];
   const Float4 extent = range.centroids.hi - range.centroids.lo;
   const int axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : (extent[1] >= extent[2] ? 1 : 2);
   const uint32_t middle = range.begin + range.count() / 2;
   if (extent[axis] > 0.0f) {
-    // Ties go by number, and each side keeps its order: so every machine builds the same tree.
+    // Break ties by id, and keep the order within each side: every machine builds the same tree.
     const auto key = [axis](const BuildRef &ref) { return std::pair(ref.centroid()[axis], ref.id()); };
     std::vector<std::pair<float, uint32_t>> keys;
     for (uint32_t i = range.begin; i < range.end; ++i)
@@ -210,7 +210,7 @@ void RangeSplitter::split_by_count(const BuildRange &range, BuildRange sides[2])
 }
 
 void RangeSplitter::split(const BuildRange &range, bool by_count, BuildRange &left, BuildRange &right) const {
-  // Where all centroids coincide, and where the tree is too deep, the count decides.
+  // Split by count if all centroids coincide or the tree is too deep.
   BuildRange sides[2];
   if (by_count || !split_by_area(range, sides))
     split_by_count(range, sides);

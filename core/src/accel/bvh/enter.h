@@ -1,5 +1,5 @@
-// Rays on their way into the world and into the space of a mesh: one, or neighbours together.
-// Part of bvh_kernel.cpp: everything has internal linkage.
+// Transformation of rays into the world's frame and into the space of a mesh: one ray, or a packet of neighbours. Part of
+// bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 
 #include "accel/bvh/slot.h"
@@ -10,8 +10,8 @@
 namespace lancer {
 namespace {
 
-// Three numbers of one ray, an axis a lane: half the work of one after the other where meshes are entered singly (a closed room
-// renders 2.5 % sooner).
+// Three components of one ray, one axis per lane: half the work of scalar code for single rays that enter meshes (a closed room
+// renders 2.5 % faster).
 struct Axes {
   using D4 = Double<4>;
   D4 v;
@@ -51,7 +51,7 @@ LANCER_LANE bool enter_mesh(const PlacedShape &shape, const Ray &ray, MeshRay &r
   r.t0 = entered.t0;
   r.unit = entered.unit;
   r.inverse_unit = entered.inverse_unit;
-  // Shear the largest axis upright.
+  // Shear along the largest axis.
   r.axes = axes_from(longest_axis(r.d));
   const double up = r.d[r.axes.kz];
   store(r.shear, entered.d.v / D4(up));
@@ -59,31 +59,31 @@ LANCER_LANE bool enter_mesh(const PlacedShape &shape, const Ray &ray, MeshRay &r
   return true;
 }
 
-// Rays that are handled at a time when they enter a space.
+// Rays of a packet, transformed together.
 constexpr uint32_t kPacket = 16;
 constexpr uint32_t kAllOfPacket = (1u << kPacket) - 1;
 
-// Rays as the box test reads them, a lane a ray: see Slab.
+// Rays as the box test reads them, one ray per lane: see Slab.
 struct alignas(64) PacketSlabs {
   float inverse[3][kPacket], shift[3][kPacket], tau_min[kPacket], tau_max[kPacket];
   double t0[kPacket], inverse_unit[kPacket];
   double scale;
 };
 
-// Rays as they enter the world, some at a time.
+// A packet of rays that enter the world.
 struct Entering : PacketSlabs {
   const Ray *rays[kPacket];
   uint32_t number[kPacket];                                                                   // in the batch
-  alignas(64) double origin[3][kPacket], tmin[kPacket], direction[3][kPacket], tmax[kPacket]; // as they come
+  alignas(64) double origin[3][kPacket], tmin[kPacket], direction[3][kPacket], tmax[kPacket]; // as given
   alignas(64) double d[3][kPacket], q[3][kPacket];
   uint32_t usable = 0; // lanes
 };
 
-// Rays in the space of a mesh: see MeshRay.
+// A packet of rays in the space of a mesh: see MeshRay.
 struct alignas(64) PacketRays {
   double o[3][kPacket], shear[3][kPacket], upright[kPacket];
   double t0[kPacket], unit[kPacket];
-  uint32_t longest[3]; // lanes whose directions are longest along the axis
+  uint32_t longest[3]; // lanes whose direction is longest along each axis
   uint32_t usable;     // lanes
 };
 
@@ -109,7 +109,7 @@ LANCER_LANE void end_slab(PacketSlabs &slabs, uint32_t lane, double t) {
   slabs.tau_max[lane] = round_up(box_tau_above(ray, slabs.scale, t));
 }
 
-// Turns rays into lanes.
+// Transposes rays into lanes.
 LANCER_LANE void turn_into_lanes(Entering &e) {
   for (uint32_t i = 0; i < kPacket; i += 4) {
     Double<4> o[4], d[4];
@@ -146,12 +146,13 @@ LANCER_LANE void enter_world_packet(const PlacementFrame &world, Entering &e) {
   }
 }
 
-// Rays whose directions lie in a cone and that pass the scene's middle side by side look at the same boxes. Guesses: a wrong
-// answer costs time only.
+// Rays whose directions lie in a cone and that pass close to each other at the scene's centre visit the same boxes. Heuristic:
+// a wrong choice costs only time.
 constexpr double kPacketCosine2 = 0.99;
 constexpr double kPacketWidth = 0.25; // in the scene's frame
 
-// How many rays lie between a ray of the batch and its neighbour in the next row of the image, if they come row by row; else 4.
+// Returns the number of rays from a ray of the batch to its neighbour in the next row of the image if the rays come in rows;
+// else 4.
 LANCER_LANE size_t find_row(const Ray *rays, size_t count) {
   const auto apart = [&](size_t i) __attribute__((always_inline)) {
     const double x = rays[i].d.x - rays[0].d.x, y = rays[i].d.y - rays[0].d.y, z = rays[i].d.z - rays[0].d.z;
@@ -169,7 +170,7 @@ LANCER_LANE size_t find_row(const Ray *rays, size_t count) {
   return row;
 }
 
-// Bit i: lane i goes down the axis.
+// Bit i of the result: lane i has a negative direction along the axis.
 LANCER_LANE uint32_t lanes_down(const float *inverse) {
   uint32_t down = 0;
   for (uint32_t i = 0; i < kPacket; i += kLanes)
@@ -177,7 +178,7 @@ LANCER_LANE uint32_t lanes_down(const float *inverse) {
   return down;
 }
 
-// Whether all lanes are usable, go down the same axes and lie close together.
+// Returns whether all lanes are usable, have the same octant and lie close together.
 LANCER_LANE bool stay_together(const PlacementFrame &world, const Entering &e) {
   if (e.usable != kAllOfPacket)
     return false;
@@ -203,7 +204,7 @@ LANCER_LANE bool stay_together(const PlacementFrame &world, const Entering &e) {
   return true;
 }
 
-// enter_mesh() for each lane; their slabs, too, where these are asked for. limit: of each lane's t.
+// enter_mesh() for each lane, with slabs if slabs is given. limit: of each lane's t.
 LANCER_LANE void enter_mesh_packet(const PlacedShape &shape, const Entering &e, PacketRays &r, PacketSlabs *slabs = nullptr,
                                    const double *limit = nullptr) {
   r.usable = r.longest[0] = r.longest[1] = r.longest[2] = 0;
@@ -215,7 +216,7 @@ LANCER_LANE void enter_mesh_packet(const PlacedShape &shape, const Entering &e, 
         {from_o.x, from_o.y, from_o.z}, {from_d.x, from_d.y, from_d.z}, o, d);
     PacketRay ray;
     r.usable |= bits(enter_frame(centre_of(shape.frame), {o[0], o[1], o[2]}, {d[0], d[1], d[2]}, ray)) << i;
-    // Shear the largest axis upright.
+    // Shear along the largest axis.
     const D x = abs(d[0]), y = abs(d[1]), z = abs(d[2]);
     const M on_z = (z >= x) & (z >= y), on_y = (y >= x) & !on_z;
     r.longest[2] |= bits(on_z) << i;

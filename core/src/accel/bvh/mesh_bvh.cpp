@@ -9,10 +9,10 @@ namespace lancer {
 namespace {
 
 constexpr uint32_t kPiece = 16384;
-// How many blocks ahead triangles are asked for; their corners at half of it.
+// Number of blocks by which the prefetch of triangles is ahead; corners are prefetched at half of it.
 constexpr size_t kAhead = 16;
 
-// What a traversal reads of a child.
+// Encodes a child as the traversal reads it.
 uint32_t entry(uint32_t kind, size_t number, uint32_t steps) {
   if (number * steps > kBvhPlace)
     throw std::bad_alloc(); // more than 16 GiB
@@ -31,11 +31,11 @@ SphereBlock sphere_block(const PlacedShape *shapes, const LeafRef *refs, uint32_
   return block;
 }
 
-// Makes blocks of a finished tree's leaves.
+// Converts the leaves of a finished tree to blocks.
 template <class MeshOf>
 MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &mesh_of, const PlacedShape *shapes,
                       const BuildContext &context) {
-  // Number the blocks in the order of the nodes that hold them.
+  // Number the blocks in the order of their nodes.
   MeshBvh bvh;
   std::vector<uint32_t> firsts, sphere_leaves;
   for (BvhNode &node : tree.nodes)
@@ -61,7 +61,7 @@ MeshBvh gather_blocks(WideTree tree, uint32_t kind, bool owned, const MeshOf &me
       firsts.push_back(leaf);
     }
 
-  // Gather the corners of each block, which are spread over the mesh: ask for them some blocks ahead.
+  // Gather the corners of each block. They are scattered over the mesh: prefetch them some blocks ahead.
   const auto prefetch_block = [&](const LeafRef *leaf, uint32_t last, bool indices) {
     const Mesh &mesh = mesh_of(leaf->owner);
     for (uint32_t lane = 0; lane <= last; ++lane) {

@@ -1,6 +1,5 @@
-// Rays that stay together go down the tree together: each child's box is tested for all of them at once.
-// What few of them come to is left over, for each to do alone.
-// Part of bvh_kernel.cpp: everything has internal linkage.
+// Traversal of packets of coherent rays: each child's box is tested for all rays at once. Subtrees that only few rays hit are
+// left over for a traversal ray by ray. Part of bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 
 #include "accel/bvh/blocks.h"
@@ -9,10 +8,10 @@ namespace lancer {
 
 namespace {
 
-constexpr uint32_t kFew = 2;       // lanes that are better off alone
-constexpr uint32_t kLeftovers = 8; // of a lane
+constexpr uint32_t kFew = 2;       // number of lanes that are faster alone
+constexpr uint32_t kLeftovers = 8; // per lane
 
-// What each lane has still to visit, and its best hit so far.
+// The entries that each lane still has to visit, and its best hit so far.
 struct Leftovers {
   Hit best[kPacket];
   alignas(64) double best_t[kPacket];
@@ -21,7 +20,7 @@ struct Leftovers {
   uint32_t children[kPacket][kLeftovers];
 };
 
-// Leaves work for each of some lanes to do alone; false where one has no room.
+// Appends a child to the leftovers of each of these lanes; returns false if a lane has no room.
 LANCER_LANE bool leave_over(uint32_t child, uint32_t lanes, const float *entry, Leftovers &l) {
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1)
     if (l.count[__builtin_ctz(rest)] == kLeftovers)
@@ -35,7 +34,7 @@ LANCER_LANE bool leave_over(uint32_t child, uint32_t lanes, const float *entry, 
   return true;
 }
 
-// Goes on alone with what is left of a lane, the nearest on top.
+// Continues with the leftovers of a lane alone, the nearest on top.
 LANCER_LANE void resume(const Leftovers &l, uint32_t lane, Slot &s) {
   s.best = l.best[lane];
   s.unbounded = 0;
@@ -47,21 +46,21 @@ LANCER_LANE void resume(const Leftovers &l, uint32_t lane, Slot &s) {
 struct Packet {
   PacketRays rays; // in the space of an instance
   uint32_t instance;
-  uint32_t seeing; // lanes that can meet it
+  uint32_t seeing; // lanes that can hit the instance
   PacketSlabs inner;
   uint32_t size; // of the stack
   alignas(64) float entries[kStackSize][kPacket];
   uint32_t children[kStackSize];
 };
 
-// Which ray each lane carries, and what is asked of it.
+// The ray of each lane, and the query.
 struct PacketAsks {
   const Ray *const *rays;
   const uint32_t *number; // in the batch
   const HitFilter *filter;
 };
 
-// Keeps a hit that is closer, if it counts.
+// Keeps a closer hit if it passes the filter.
 template <Question q>
 LANCER_LANE bool keep_hit(const PacketAsks &asks, Leftovers &l, PacketSlabs &slabs, uint32_t lane, const Hit &hit) {
   if (left_out<q>(asks.filter, asks.number[lane], hit))
@@ -124,7 +123,7 @@ LANCER_LANE void visit_triangles(const TriangleBlock &block, const PacketAsks &a
     for (uint32_t k = 0; k < 3; ++k)
       for (uint32_t i = 0; i < 3; ++i)
         corner[i][k] = repeat<kTogether>(load_widened(block.corner[i][order[k]]));
-    // The last may go more than once.
+    // An odd last lane is tested twice.
     while (rest != 0) {
       uint32_t lanes[kTogether];
       for (int i = 0; i < kTogether; ++i) {
@@ -144,7 +143,7 @@ LANCER_LANE void visit_triangles(const TriangleBlock &block, const PacketAsks &a
   }
 }
 
-// The lanes that can see an instance.
+// Returns the lanes to which an instance is visible.
 LANCER_LANE uint32_t seeing(const PlacedShape &shape, const Ray *const *rays) {
   uint32_t lanes = 0;
   for (uint32_t i = 0; i < kPacket; ++i)
@@ -152,10 +151,10 @@ LANCER_LANE uint32_t seeing(const PlacedShape &shape, const Ray *const *rays) {
   return lanes;
 }
 
-// The packet in registers.
+// Registers per packet.
 constexpr int kSteps = kPacket / kLanes;
 
-// Visits a tree's leaves with the active lanes that meet them, the nearest first. All active lanes go down the same axes.
+// Visits a tree's leaves with the active lanes that hit them, the nearest first. All active lanes have the same octant.
 template <class Leaf>
 LANCER_LANE void walk(const BvhNode *nodes, uint32_t octant, const float *entry, const PacketSlabs &slabs, Packet &p,
                       const char *const *arrays, Leaf leaf) {
@@ -166,7 +165,7 @@ LANCER_LANE void walk(const BvhNode *nodes, uint32_t octant, const float *entry,
   p.size = base + 1;
   const uint32_t down[3] = {octant & 1, octant >> 1 & 1, octant >> 2};
   while (p.size > base) {
-    // Take up what some lane may still meet before its best hit.
+    // Pop an entry that some lane enters before its best hit.
     const uint32_t child = p.children[--p.size];
     F parent[kSteps], limit[kSteps];
     uint32_t active = 0;
@@ -197,7 +196,7 @@ LANCER_LANE void walk(const BvhNode *nodes, uint32_t octant, const float *entry,
           near[axis] = multiply_subtract(F(node.bounds[axis][down[axis]][at]), inverse[i][axis], shift[i][axis]);
           far[axis] = multiply_subtract(F(node.bounds[axis][down[axis] ^ 1][at]), inverse[i][axis], shift[i][axis]);
         }
-        // Lanes that are not active have no entry, and none below: of two that are not ordered the first is taken.
+        // Inactive lanes have NaN as entry and pass NaN on: max of unordered operands returns the first.
         const F first = max(max(parent[i], near[2]), max(near[1], near[0]));
         const F last = min(min(limit[i], far[2]), min(far[1], far[0]));
         store(p.entries[size] + i * kLanes, drop_greater(first, last));
@@ -206,7 +205,7 @@ LANCER_LANE void walk(const BvhNode *nodes, uint32_t octant, const float *entry,
       p.children[size] = node.child[at];
       size += met != 0;
     }
-    // Start loading all that has been found.
+    // Prefetch all children found.
     for (uint32_t i = p.size; i < size; ++i)
       for (int offset = 0; offset < 256; offset += 64)
         __builtin_prefetch(arrays[p.children[i] >> kBvhKindShift] + size_t{p.children[i] & kBvhPlace} * kBvhStep + offset);
@@ -219,7 +218,7 @@ LANCER_LANE void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t 
                            Leftovers &l) {
   const uint32_t x = lanes_down(p.inner.inverse[0]), y = lanes_down(p.inner.inverse[1]), z = lanes_down(p.inner.inverse[2]);
   const char *const arrays[kBvhKinds] = {reinterpret_cast<const char *>(bvh.nodes), reinterpret_cast<const char *>(bvh.blocks)};
-  // Take the lanes that go down the same axes.
+  // Take the lanes with the same octant.
   while (active != 0) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(active));
     const uint32_t octant = (x >> lane & 1) | (y >> lane & 1) << 1 | (z >> lane & 1) << 2;
@@ -240,7 +239,7 @@ LANCER_LANE void walk_mesh(const BvhView &bvh, const PacketAsks &asks, uint32_t 
   }
 }
 
-// Traces rays that stay together, all but what is left over. Returns the lanes that have something left.
+// Traces coherent rays, except for the leftovers. Returns the lanes that have leftovers.
 template <Question q>
 [[gnu::noinline, gnu::flatten]] uint32_t trace_packet(const BvhScene &scene, Entering &e, const HitFilter *filter,
                                                       Leftovers &l) {
@@ -253,7 +252,7 @@ template <Question q>
     l.best_t[i] = __builtin_inf();
     l.count[i] = 0;
   }
-  // Try what has no box.
+  // Test the unbounded instances.
   for (uint32_t i = 0; i < scene.unbounded_count; ++i) {
     const uint32_t instance = scene.unbounded[i];
     if (scene.shapes[instance].mesh == kNone)
@@ -315,7 +314,7 @@ template <Question q>
           return true;
         });
   }
-  // Forget what is left behind the best hits.
+  // Drop leftovers behind the best hits.
   uint32_t waiting = 0;
   for (uint32_t i = 0; i < kPacket; ++i) {
     uint32_t count = 0;

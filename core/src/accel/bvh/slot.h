@@ -1,5 +1,5 @@
-// A ray under way in the wide BVH: its box test, what waits on its stack, its best hit.
-// Part of bvh_kernel.cpp: everything has internal linkage.
+// The state of a ray in the wide BVH: its box test, its stack, its best hit. Part of bvh_kernel.cpp: everything has internal
+// linkage.
 #pragma once
 
 #include "accel/bvh/bvh.h"
@@ -8,19 +8,19 @@
 
 namespace lancer {
 
-// quadric.cpp, compiled once for all.
+// Defined in quadric.cpp, which is compiled once.
 bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, double &t);
 
 namespace {
 
-// What is asked of a traversal: its variants share one source.
+// Parameters of a query: its variants share one source.
 struct Question {
-  bool any = false;      // anything answers, not the closest alone
-  bool filtered = false; // some hits do not count
-  bool counted = false;  // how much work it is
+  bool any = false;      // any hit ends the query, not only the closest
+  bool filtered = false; // a filter may reject hits
+  bool counted = false;  // count the work
 };
 
-// Whether a hit does not count.
+// Returns whether the filter rejects a hit.
 template <Question q> LANCER_LANE bool left_out(const HitFilter *filter, size_t number, const Hit &hit) {
   if constexpr (q.filtered)
     return filter->instances[hit.instance] != 0 && !filter->counts(filter->context, number, hit);
@@ -28,7 +28,7 @@ template <Question q> LANCER_LANE bool left_out(const HitFilter *filter, size_t 
     return false;
 }
 
-// The next place of a ray on an exact surface, beyond t.
+// Finds the next hit of a ray on an exact surface, beyond t.
 LANCER_LANE bool next_place(const PlacedShape &shape, uint32_t instance, const Ray &ray, double &t) {
   if (t == ray.tmin)
     return intersect_quadric(shape, ray, ray.skip_instance == instance, t);
@@ -37,7 +37,7 @@ LANCER_LANE bool next_place(const PlacedShape &shape, uint32_t instance, const R
   return intersect_quadric(shape, rest, ray.skip_instance == instance, t);
 }
 
-// Rays that a thread has under way at once: while one waits for its node or block, the others go on.
+// Rays in flight per thread: while one waits for its node or block, the others proceed.
 constexpr uint32_t kSlots = 32;
 constexpr uint32_t kStackSize = 2 * kBvhTreeStack;
 
@@ -45,14 +45,14 @@ constexpr uint32_t kStackSize = 2 * kBvhTreeStack;
 struct Slab {
   float inverse[3], shift[3];
   float tau_min, tau_max;
-  double t0, inverse_unit, scale; // how tau follows from t, see box_tau_above()
-  uint32_t octant;                // bit i: the ray goes down axis i
+  double t0, inverse_unit, scale; // conversion of t to tau, see box_tau_above()
+  uint32_t octant;                // bit i: the direction is negative along axis i
 };
 
 // The ray in the space of an instance, as the triangle test reads it.
 struct alignas(32) MeshRay {
   double o[4];
-  double shear[4]; // direction over its largest component; then one over that
+  double shear[4]; // direction over its largest component; then one over this component
   double d[4], q[4];
   double t0, unit, inverse_unit;
   RayAxes axes;
@@ -60,16 +60,16 @@ struct alignas(32) MeshRay {
 
 struct alignas(64) Slot {
   Slab slab;
-  const char *arrays[kBvhKinds]; // by kind: what its places are in
-  const char *at;                // what comes next
-  uint32_t kind;                 // and its kind
+  const char *arrays[kBvhKinds]; // by kind: the array of its entries
+  const char *at;                // current entry
+  uint32_t kind;                 // its kind
   uint32_t size;                 // of the stack
-  uint32_t base;                 // where the stack of the tree that the ray is in begins
-  uint32_t instance;             // whose ray this is
+  uint32_t base;                 // start of the current tree's entries on the stack
+  uint32_t instance;             // instance that the ray is in
   uint32_t skip;
-  uint32_t unbounded; // how many of the scene's are still to be tried
+  uint32_t unbounded; // number of unbounded instances still to test
   uint32_t number;    // of the ray in its batch
-  bool usable;        // whether the ray can meet the instance
+  bool usable;        // whether the ray can hit the instance
   double tmin, tmax;
   Hit best;
   MeshRay ray;
@@ -78,23 +78,23 @@ struct alignas(64) Slot {
   uint32_t children[kStackSize + 8];
 };
 
-// Rounds outwards: a parameter beyond the float's last digit must not be cut off.
+// Rounds outwards: narrowing to float must not cut off a parameter.
 template <class D> LANCER_LANE auto round_up(const D &x) { return narrow(x + D(0x1p-22) * abs(x)); }
 template <class D> LANCER_LANE auto round_down(const D &x) { return narrow(x - D(0x1p-22) * abs(x)); }
 
-// Directions below 2^-66 of the largest component move a ray by less than 2^-63 of the box frame: kBoxPad covers taking them
-// for 2^-66, and no infinity times zero can arise.
+// Directions below 2^-66 of the largest component move a ray by less than 2^-63 of the box frame: they are replaced by 2^-66,
+// which kBoxPad covers, and infinity times zero cannot arise.
 template <class D> LANCER_LANE auto inverse_component(const D &d) {
   const auto x = narrow(d);
   using F = std::remove_const_t<decltype(x)>;
   return select(abs(x) < F(0x1p-66f), copysign(F(0x1p66f), x), F(1.0f) / x);
 }
-// Of an axis, with its inverse.
+// Shift along one axis.
 template <class D, class F> LANCER_LANE F slab_shift(const PlacementFrame &frame, const D &q, const F &inverse) {
   return narrow(q * D(frame.scale)) * inverse;
 }
 
-// From where on nothing counts any more.
+// Ends the ray at t.
 LANCER_LANE void end_slab(Slab &s, double t) { s.tau_max = round_up(box_tau_above(s, s.scale, t)); }
 
 LANCER_LANE void make_slab(const PlacementFrame &frame, const MeshRay &ray, double tmin, double tmax, Slab &slab) {
@@ -117,7 +117,7 @@ LANCER_LANE void push(Slot &s, float entry, uint32_t child) {
   ++s.size;
 }
 
-// Takes up what waits on top of the stack, and starts loading it.
+// Pops the top of the stack and prefetches its data.
 LANCER_LANE void go_on(Slot &s) {
   const uint32_t child = s.children[--s.size];
   s.kind = child >> kBvhKindShift;
@@ -126,7 +126,7 @@ LANCER_LANE void go_on(Slot &s) {
     __builtin_prefetch(s.at + offset);
 }
 
-// Forgets what waits behind the best hit.
+// Drops entries behind the best hit.
 LANCER_LANE void shorten(Slot &s) {
   end_slab(s.slab, s.best.t);
   uint32_t kept = s.base;

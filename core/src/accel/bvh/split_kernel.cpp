@@ -1,5 +1,5 @@
-// Bins and moves boxes. Compiled once per instruction set, with LANCER_ISA naming it; all give the same trees.
-// This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+// Bins and moves boxes. Compiled once per instruction set, with LANCER_ISA naming it; all copies give the same trees.
+// This file must not emit a shared (weak) symbol: see bvh_kernel.cpp.
 #include "accel/bvh/bvh_kernel.h"
 
 #include "simd/kernel_choice.h"
@@ -24,7 +24,7 @@ LANCER_LANE void clear(Bins &bins, uint32_t used) {
   }
 }
 
-// The eight numbers of a box, as many at a time as a register holds.
+// The eight numbers of a box, in as few registers as possible.
 constexpr int kWidth = kLanes < 8 ? kLanes : 8;
 struct BoxLanes {
   Float<kWidth> of[8 / kWidth];
@@ -54,14 +54,14 @@ LANCER_LANE void add(const BuildRef &ref, const Binning &binning, Bins &bins) {
 
 [[gnu::flatten]] void bin(const BuildRef *refs, uint32_t count, const Binning &binning, uint32_t used, Bins &bins) {
   clear(bins, used);
-  // A few fill one set of bins.
+  // Few boxes fill one set of bins.
   constexpr uint32_t kFew = 256;
   if (count < kFew) {
     for (uint32_t i = 0; i < count; ++i)
       add(refs[i], binning, bins);
     return;
   }
-  // Many fill two by turns, so that no box waits for the one before it to be stored.
+  // Many boxes fill two sets alternately, so that no box waits for the previous store.
   Bins second;
   clear(second, used);
   for (uint32_t i = 0; i + 1 < count; i += 2) {
@@ -77,11 +77,11 @@ LANCER_LANE void add(const BuildRef &ref, const Binning &binning, Bins &bins) {
     }
 }
 
-// Without branches on boxes.
+// Partitions without branches on boxes.
 template <int kAxis>
 [[gnu::flatten]] void move(const BuildRef *refs, uint32_t begin, uint32_t end, const Binning &given, int32_t bin, BuildRef *to,
                            uint32_t left, uint32_t right, GrowingBox centroids[2]) {
-  const Binning binning = given; // a copy, which no store changes
+  const Binning binning = given; // a copy that no store can alias
   GrowingBox left_centroids = kEmpty, right_centroids = kEmpty;
   for (uint32_t i = begin; i < end; ++i) {
     const BuildRef ref = refs[i];
@@ -90,7 +90,7 @@ template <int kAxis>
     to[(left & ~mask) | (right & mask)] = ref;
     left += mask + 1;
     right -= mask;
-    // With all bits set a lane is not a number, and loses against every other.
+    // A lane with all bits set is NaN, which min ignores.
     const Int4 bits = __builtin_bit_cast(Int4, c), lost = Int4{} + static_cast<int32_t>(mask);
     const Float4 on_left = __builtin_bit_cast(Float4, bits | lost), on_right = __builtin_bit_cast(Float4, bits | ~lost);
     left_centroids = {lancer::min4(on_left, left_centroids.lo), lancer::min4(-on_left, left_centroids.minus_hi)};

@@ -1,5 +1,5 @@
-// Visits of a single ray: to nodes, instances, and blocks of triangles and spheres.
-// Part of bvh_kernel.cpp: everything has internal linkage.
+// Steps of a single ray: nodes, instances, and blocks of triangles and spheres. Part of bvh_kernel.cpp: everything has internal
+// linkage.
 #pragma once
 
 #include "accel/bvh/blocks.h"
@@ -8,11 +8,11 @@ namespace lancer {
 
 namespace {
 
-// Replaces a node by its children that the ray meets, the nearest on top.
+// Replaces a node by its children that the ray hits, the nearest on top.
 LANCER_LANE void visit_node(Slot &s) {
   const Slab &ray = s.slab;
   const BvhNode &node = *reinterpret_cast<const BvhNode *>(s.at);
-  // As many children at a time as a register holds.
+  // Width of a register, at most the eight children.
   constexpr int kWidth = kLanes < 8 ? kLanes : 8;
   using Children = Float<kWidth>;
   Children entry[8 / kWidth], exit[8 / kWidth];
@@ -39,7 +39,7 @@ LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const
   s.usable = visible(shape, ray) && enter_mesh(shape, ray, s.ray);
 }
 
-// Keeps the first place of an exact surface that counts, if it is closer. find(t): the next place beyond t.
+// Keeps the first hit on an exact surface that passes the filter, if it is closer. find(t): finds the next hit beyond t.
 template <Question q, class Find> LANCER_LANE void try_places(uint32_t instance, const HitFilter *filter, Slot &s, Find find) {
   double t = s.tmin;
   while (find(t) && closer(t, instance, 0, s.best)) {
@@ -81,7 +81,7 @@ template <Question q> LANCER_LANE void visit_spheres(const BvhScene &scene, cons
   }
 }
 
-// Enters an instance, if the ray can meet it at all.
+// Enters an instance, if the ray can hit it.
 template <Question q> LANCER_LANE void enter_instance(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   const PlacedShape &shape = *reinterpret_cast<const PlacedShape *>(s.at);
   const uint32_t instance = static_cast<uint32_t>(&shape - scene.shapes);
@@ -135,7 +135,7 @@ template <Question q> LANCER_LANE void visit_triangles(const HitFilter *filter, 
   }
 }
 
-// A block of the world's own tree: it has its instance's space to itself.
+// Tests a block of the world's tree, whose triangles are in the space of their instance.
 template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   const uint32_t instance = scene.block_instance[reinterpret_cast<const TriangleBlock *>(s.at) - scene.blocks];
   if (instance != s.instance)
@@ -144,7 +144,7 @@ template <Question q> LANCER_LANE void visit_placed(const BvhScene &scene, const
     visit_triangles<q>(filter, s);
 }
 
-// Tries what has no box, up to the next mesh.
+// Tests the unbounded instances, up to the next mesh.
 template <Question q>
 LANCER_LANE void visit_unbounded(const BvhScene &scene, const Ray &ray, const HitFilter *filter, Slot &s) {
   while (s.unbounded > 0 && !(q.any && s.best.instance != kNone)) {

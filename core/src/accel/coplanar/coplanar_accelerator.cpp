@@ -16,7 +16,7 @@ public:
   const char *instruction_set() const override { return inner->instruction_set(); }
 
 private:
-  // What is asked, and what of it counts beforehand.
+  // A query with its filter.
   struct Asked {
     const CoplanarAccelerator &self;
     std::span<const Ray> rays;
@@ -36,15 +36,15 @@ private:
     Hit found;
   };
   struct Searches {
-    const Asked &asked; // without a filter, faces that let light through are found as well
+    const Asked &asked; // without a filter, transparent faces are found as well
     std::vector<Ray> rays;
     std::vector<Search> all;
   };
 
-  // A light that a ray ends on unless something stops it, and the faces in its plane.
+  // A light at the end of a shadow ray, and the faces in its plane.
   struct End {
     size_t ray = 0;
-    bool known = false, shines = false, stops = false; // any face found, one that emits, one on the way
+    bool known = false, shines = false, stops = false; // any face found, an emitting one, one that occludes
     PlaneOrder best{};
     bool best_shines = false;
   };
@@ -62,7 +62,7 @@ private:
       for (size_t i = 0; i < rays.size(); ++i)
         search_flagged(i, hits[i], searches);
     } else {
-      // Ask again about the few rays that meet the plane that they have left.
+      // Trace again the few rays that hit the plane that they start in.
       inner->closest_hit(rays, hits);
       std::vector<size_t> back;
       for (size_t i = 0; i < rays.size(); ++i) {
@@ -85,7 +85,7 @@ private:
     if (filter) {
       trace(asked, occluded);
     } else {
-      // Ask again about rays that start or end where coplanar faces may: the answer does not tell which face stopped them.
+      // Trace again the rays that start or end where coplanar faces may be: the result does not say which face occluded them.
       inner->any_hit(rays, occluded);
       std::vector<size_t> back;
       for (size_t i = 0; i < rays.size(); ++i)
@@ -97,7 +97,7 @@ private:
       look_at_ends(asked, occluded);
   }
 
-  // Some of the rays, by the rule.
+  // Traces a subset of the rays by the rule.
   template <class Answer>
   void again(std::span<const Ray> rays, const std::vector<size_t> &which, std::span<Answer> answers) const {
     if (which.empty())
@@ -147,7 +147,7 @@ private:
     const Ray &asked_ray = asked.rays[ray];
     if (rule.starts_in_plane(asked_ray, hit) || (rule.may_end_on_light(asked_ray) && rule.ends_in_plane(asked_ray, hit)))
       return false;
-    // A face that lets light through takes none of it where one of higher priority covers it.
+    // A transparent face has no effect where a face of higher priority covers it.
     if (asked.filter && asked.filter->instances[hit.instance]) {
       Hit there = hit;
       const Asked all{*this, asked.rays, nullptr};
@@ -173,7 +173,7 @@ private:
     searches.all.push_back({ray, &hit, *across, rule.order_of(hit), hit});
   }
 
-  // Looks at all that rays meet, without an end.
+  // Visits all hits along the rays.
   template <class Looks> void look(Looks &looks) const {
     if (looks.all.empty())
       return;
@@ -206,7 +206,7 @@ private:
     s.found = there;
   }
 
-  // Where a light is coplanar with other faces, it is seen if the one of highest priority emits.
+  // A light that is coplanar with other faces is visible if the face of highest priority emits.
   void look_at_ends(const Asked &asked, std::span<uint8_t> occluded) const {
     Ends ends{asked, {}, {}};
     for (size_t i = 0; i < occluded.size(); ++i)
@@ -235,7 +235,7 @@ private:
 
   const std::unique_ptr<Accelerator> inner;
   const PlaneRule rule;
-  const std::vector<uint8_t> everything; // by instance: ask about its hits
+  const std::vector<uint8_t> everything; // by instance: report its hits to the filter
 };
 
 } // namespace

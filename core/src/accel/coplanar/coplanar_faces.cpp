@@ -7,14 +7,14 @@ namespace lancer {
 
 namespace {
 
-// Boxes, and faces in boxes that meet, that each is compared with: bounds for many instances in one place.
+// Comparisons per face, of boxes and of faces whose boxes overlap: bounds for many instances at one place.
 constexpr size_t kBoxes = 256, kPairs = 32;
-// Others of a face in a heap: two that both have so many are not compared with each other any more.
+// Number of coplanar faces after which a face counts as heaped: two heaped faces are not compared.
 constexpr uint32_t kOthers = 64;
-// Where others cover faces, for all of them together; beyond, they are covered anywhere.
+// Limit of patches over all faces; beyond it faces count as covered anywhere.
 constexpr size_t kPatches = 1 << 17;
 
-// Whether two triangles in one plane share more than a border that is this wide.
+// Returns whether two triangles in one plane overlap by more than a border of this width.
 bool overlap(const FaceCandidate &one, const FaceCandidate &other, double border) {
   const glm::dvec3 &n = one.face.n;
   for (const FaceCandidate *c : {&one, &other})
@@ -39,14 +39,14 @@ bool overlap(const FaceCandidate &one, const FaceCandidate &other, double border
 bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const FaceCandidate &other) {
   const FaceCandidate &large = one.face.height >= other.face.height ? one : other, &small = &large == &one ? other : one;
   const glm::dvec3 middle = (small.corner[0] + small.corner[1] + small.corner[2]) / 3.0;
-  // Mostly much less will do.
+  // Reject most pairs by the cheap upper bound.
   const double most = large.rounding + small.rounding;
   if (!parallel(large.face, small.face, most))
     return false;
   const double apart = rounding.apart(large.instance, small.instance, large.face.n, middle);
   if (!parallel(large.face, small.face, apart))
     return false;
-  // Allow more beyond the larger one, where its plane is known less well.
+  // Allow more outside the larger face, where its plane is less precise.
   const glm::dvec3 centre = (large.corner[0] + large.corner[1] + large.corner[2]) / 3.0;
   for (const glm::dvec3 &corner : small.corner)
     if (!(std::abs(glm::dot(corner - large.face.p, large.face.n)) <=
@@ -55,7 +55,7 @@ bool in_one_plane(const FaceRounding &rounding, const FaceCandidate &one, const 
   return overlap(one, other, 8.0 * apart);
 }
 
-// Where another covers a face.
+// The part of a face that another covers.
 struct Patch {
   uint64_t face; // instance and primitive
   CoverPatch where;
@@ -85,7 +85,7 @@ private:
     uint32_t candidate;
   };
 
-  // False where there are too many to compare them all.
+  // Returns false if there are too many pairs to compare.
   bool compare() {
     std::vector<Entry> entries;
     for (uint32_t i = 0; i < candidates.size(); ++i)
@@ -118,7 +118,7 @@ private:
     return true;
   }
 
-  // Where not all were compared: an instance that lies on another at one face may do so at each.
+  // Extrapolates an incomplete comparison: if one face of an instance has a coplanar face, any compared face of it may.
   void spread() {
     std::vector<uint8_t> found(geometry.instances.size(), 0);
     for (const FaceCandidate &c : candidates)
@@ -132,7 +132,7 @@ private:
     c.anywhere = c.anywhere || patches.size() >= kPatches;
     if (c.anywhere)
       return;
-    // What rounding holds apart is the least that counts as covered.
+    // A place counts as covered up to the rounding distance from the patch.
     CoverPatch patch =
         make_patch(coordinates_on_face(geometry, c.instance, c.primitive), c.corner, by.corner, c.rounding + by.rounding);
     patch.loses =
@@ -140,7 +140,7 @@ private:
     patches.push_back({number_of(c), patch});
   }
 
-  // Neighbours in a mesh, which are most of what lies in one plane.
+  // Returns whether two faces are neighbours in a mesh, as most coplanar faces are.
   bool same_border(const FaceCandidate &one, const FaceCandidate &other) const {
     if (one.instance != other.instance)
       return false;
@@ -156,7 +156,7 @@ private:
     return shared == 1 || shared == 2;
   }
 
-  // False where others than those compared may be in one plane, too.
+  // Returns false if faces that were not compared may be coplanar, too.
   bool mark(CoplanarFaces &faces) const {
     bool all = true;
     for (size_t begin = 0, end; begin < candidates.size(); begin = end) {
@@ -185,9 +185,9 @@ private:
     return all;
   }
 
-  // What was not compared itself: all of the planes in which something was found.
+  // Marks the faces of an instance that were not compared: those in the planes of coplanar faces found.
   void mark_planes(uint32_t instance, size_t begin, size_t end, size_t found, uint64_t *bits) const {
-    // Take an instance that lies on another at many of its faces to do so at each.
+    // Mark all faces of an instance if many of its compared faces are coplanar with others.
     const bool all = found * 8 > end - begin;
     std::vector<uint64_t> cells;
     for (size_t i = begin; i < end; ++i)
@@ -212,7 +212,7 @@ private:
     });
   }
 
-  // Tells where on the faces others are: nowhere else need anyone look for them.
+  // Records the covered parts of the faces, so that rays search for coplanar faces only there.
   void cover(CoplanarFaces &faces) {
     uint32_t marked = 0;
     for (const uint64_t word : faces.bits) {
@@ -221,7 +221,7 @@ private:
     }
     std::stable_sort(patches.begin(), patches.end(), [](const Patch &a, const Patch &b) { return a.face < b.face; });
     std::vector<CoverPatch> own;
-    // Words of bits are in the order of candidates. The halves of one face come together.
+    // Bits are in the order of candidates, with the two halves of a face together.
     for (size_t begin = 0, end; begin < candidates.size(); begin = end) {
       const uint64_t face = number_of(candidates[begin]);
       bool found = false, anywhere = false;

@@ -1,6 +1,6 @@
-// The priority order among coplanar faces, of which a ray meets one alone: the faces that others in the same plane overlap,
-// found once; a grid on each of them, which tells at a hit whether another covers the place; and the accelerator that applies
-// the order to the hits of any other.
+// The priority order among coplanar faces, which decides the one that a ray hits. Faces that others in the same plane overlap
+// are found once; a grid on each of them returns at a hit whether another covers the place; an accelerator applies the order to
+// the hits of any other accelerator.
 #pragma once
 
 #include "accel/accelerator.h"
@@ -13,30 +13,30 @@
 
 namespace lancer {
 
-// What the priority order needs of a scene beside its geometry.
+// Input of the priority order besides the geometry.
 struct PlaneRules {
-  glm::dvec3 origin{0.0};                   // of the user's world, which floats placed the instances from
-  std::vector<uint8_t> transparent_slots{}; // by slot: its material lets light through; empty: none does
-  std::vector<uint8_t> emitting_slots{};    // by slot: its material shines; empty: none does
+  glm::dvec3 origin{0.0};                   // of the user's world, in which instances are placed in float
+  std::vector<uint8_t> transparent_slots{}; // by slot: its material is transparent; empty: none is
+  std::vector<uint8_t> emitting_slots{};    // by slot: its material emits; empty: none does
 };
 
-// The priority of a face: where coplanar faces cover a place, a ray meets the one with the least.
+// The priority of a face: of the coplanar faces at a place, a ray hits the one with the smallest order.
 using PlaneOrder = std::tuple<bool, bool, uint32_t, uint32_t, uint32_t>;
 PlaneOrder plane_order(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive);
 bool face_emits(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive);
 
-// A triangle in the coordinates of the face that it covers: within its three sides slope * at + offset is not negative.
+// A triangle in the coordinates of the face that it covers: inside, slope * at + offset >= 0 for all three sides.
 struct CoverPatch {
   glm::dvec2 slope[3];
   double offset[3];
-  glm::dvec2 low, high; // the box around what of it lies on the face
-  bool loses = false;   // the face has the lower priority
+  glm::dvec2 low, high; // bounding box of its part on the face
+  bool loses = false;   // the covered face has lower priority
 
   bool has(const glm::dvec2 &at) const {
     return glm::dot(slope[0], at) + offset[0] >= 0.0 && glm::dot(slope[1], at) + offset[1] >= 0.0 &&
            glm::dot(slope[2], at) + offset[2] >= 0.0;
   }
-  // Whether no side has the whole of a box behind it.
+  // Returns false if a box lies entirely outside one side.
   bool meets(const glm::dvec2 &middle, const glm::dvec2 &half) const {
     for (int i = 0; i < 3; ++i)
       if (glm::dot(slope[i], middle) + glm::dot(glm::abs(slope[i]), half) + offset[i] < 0.0)
@@ -45,17 +45,17 @@ struct CoverPatch {
   }
 };
 
-// Of one triangle on another. border: how far beyond its sides it may still be met.
+// Makes the patch of the triangle `other` on `face`. border: width by which it may be hit beyond its sides.
 CoverPatch make_patch(const FaceCoordinates &coordinates, const glm::dvec3 face[3], const glm::dvec3 other[3], double border);
 
-// The patches of some faces, which are numbered as they are added, each face's in a grid.
+// The patches of faces, numbered in order of adding, with a grid for each face.
 class Cover {
 public:
   void add_face(std::span<const CoverPatch> patches, const FaceCoordinates &coordinates);
   void add_face_covered_anywhere() { faces_.emplace_back(); }
 
   bool empty() const { return faces_.empty(); }
-  // Whether there may be a patch at a place of a face; and one of higher priority than the face.
+  // Returns whether a place of a face may have a patch; may_lose(): a patch of higher priority than the face.
   bool may_be_covered(size_t face, const glm::dvec3 &p) const {
     return faces_[face].side == 0 || may_be(faces_[face], faces_[face].coordinates(p), false);
   }
@@ -72,35 +72,35 @@ private:
     uint32_t first_cell = 0;
     int side = 0; // cells along each axis; 0: covered anywhere
 
-    // At or beyond the border: -1 and side.
+    // Outside the grid: -1 or side.
     glm::ivec2 cell(const glm::dvec2 &at) const;
   };
 
   bool may_be(const Face &face, const glm::dvec2 &at, bool to_lose) const;
 
   std::vector<Face> faces_;
-  std::vector<uint32_t> begins_; // by cell: its first entry; the next cell's ends it
+  std::vector<uint32_t> begins_; // by cell: its first entry; the next cell's begin ends it
   std::vector<uint32_t> entries_;
   std::vector<CoverPatch> patches_;
 };
 
-// Faces that others may overlap; among them may be a few of the same planes that none does.
+// Faces that may have coplanar faces over them; a few without any may be among them.
 struct CoplanarFaces {
-  std::vector<uint8_t> instances; // 1: it has such faces; empty where nothing has
+  std::vector<uint8_t> instances; // 1: the instance has such faces; empty if no instance has
   std::vector<uint32_t> first;    // by instance: its first word of bits
   std::vector<uint64_t> bits;     // by face
-  std::vector<uint32_t> ranks;    // by word of bits: how many faces are marked before it
-  Cover cover;                    // by rank; empty where each may be covered anywhere
+  std::vector<uint32_t> ranks;    // by word of bits: number of faces marked before it
+  Cover cover;                    // by rank; empty if each face may be covered anywhere
 
   bool any() const { return !instances.empty(); }
   bool has(uint32_t instance, uint32_t primitive) const {
     return instances[instance] && bits[first[instance] + (primitive >> 6)] >> (primitive & 63) & 1;
   }
-  // Whether there may be others at a place of such a face.
+  // Returns whether other faces may be at a place of such a face.
   bool may_be_covered(uint32_t instance, uint32_t primitive, const glm::dvec3 &p) const {
     return cover.empty() || cover.may_be_covered(rank(instance, primitive), p);
   }
-  // And whether such another may have the higher priority. at: p, or the weights of a triangle's corners that a hit gives.
+  // Returns whether such a face may have higher priority. at: p, or the weights of a triangle's corners in a hit.
   template <class Place> bool may_lose(uint32_t instance, uint32_t primitive, const Place &at) const {
     return cover.empty() || cover.may_lose(rank(instance, primitive), at);
   }
@@ -117,14 +117,14 @@ private:
   }
 };
 
-// The same for every accelerator; its cost is bounded.
+// Returns the same faces for every accelerator; its cost is bounded.
 CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const PlaneRules &rules,
                                   const BuildContext &context);
 
-// An accelerator with the priority order on top. Where faces cover the same place of a plane, as far as rounding tells, a ray
-// from either side meets an opaque one before one that lets light through, then one that emits, then the one of the smaller
-// instance, of the smaller slot, of the smaller number. A ray that starts on a face meets no other of its plane. A scene
-// without such faces gets the plain accelerator.
+// Builds an accelerator with the priority order on top. Of faces that cover the same place of a plane within rounding, a ray
+// from either side hits the first by this order: opaque before transparent, then emitting, then smaller instance, smaller slot,
+// smaller number. A ray that starts on a face hits no other face of its plane. A scene without such faces gets the plain
+// accelerator.
 std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, PlaneRules rules,
                                                const BuildContext &context);
 

@@ -7,13 +7,13 @@ namespace lancer {
 
 namespace {
 
-// Cells of a face's grid along an axis, at most.
+// Maximum number of cells of a face's grid along an axis.
 constexpr int kLongestSide = 128;
-// More patches than this in one cell are heaps in one place: something may be anywhere in it.
+// A cell with more patches than this counts as covered everywhere.
 constexpr uint32_t kLooked = 64;
-// Half a cell and what rounding may add to it.
+// Half a cell, padded for rounding.
 constexpr double kWider = 0.5 + 0x1p-20;
-// Entries for each patch.
+// Maximum mean number of grid entries per patch.
 constexpr size_t kShare = 32;
 
 } // namespace
@@ -23,10 +23,10 @@ CoverPatch make_patch(const FaceCoordinates &coordinates, const glm::dvec3 face[
   const glm::dvec2 own[3] = {coordinates(face[0]), coordinates(face[1]), coordinates(face[2])};
   const glm::dvec3 a = face[1] - face[0], b = face[2] - face[0];
   const glm::dmat2 to_edges = glm::inverse(glm::dmat2(own[1] - own[0], own[2] - own[0]));
-  // Hits tell their places in floats: to 2^-24 of the face's size.
+  // Hits store their coordinates in float: to 2^-24 of the face's size.
   const double longest = std::max({glm::length(a), glm::length(b), glm::length(b - a)});
   border += 0x1p-20 * longest;
-  // Take the other's sides in these coordinates, further out by the border.
+  // Express the sides of the other triangle in these coordinates, moved outwards by the border.
   CoverPatch patch;
   const glm::dvec3 n = glm::cross(other[1] - other[0], other[2] - other[0]);
   for (int i = 0; i < 3; ++i) {
@@ -38,7 +38,7 @@ CoverPatch make_patch(const FaceCoordinates &coordinates, const glm::dvec3 face[
   const glm::dvec2 low = glm::min(own[0], glm::min(own[1], own[2])), high = glm::max(own[0], glm::max(own[1], own[2]));
   patch.low = glm::max(low, glm::min(places[0], glm::min(places[1], places[2])));
   patch.high = glm::min(high, glm::max(places[0], glm::max(places[1], places[2])));
-  // The border against the least height is the most that it can be in these coordinates.
+  // The border over the least height bounds its size in these coordinates.
   const glm::dvec2 wide = border * longest / glm::length(glm::cross(a, b)) * (high - low);
   patch.low -= wide;
   patch.high += wide;
@@ -68,7 +68,7 @@ void Cover::add_face(std::span<const CoverPatch> patches, const FaceCoordinates 
         if (patch.meets(face.low + (glm::dvec2(x, y) + 0.5) * size, kWider * size))
           use(static_cast<size_t>(y * face.side + x));
   };
-  // Choose cells of about a quarter of the size of patches that lie side by side, and larger ones where they lie on each other.
+  // Choose cells of about a quarter of the size of patches that lie side by side, and larger cells for overlapping patches.
   face.side = std::min(kLongestSide, 1 + static_cast<int>(4.0 * std::sqrt(static_cast<double>(patches.size()))));
   std::vector<uint32_t> counts;
   for (;; face.side /= 2) {

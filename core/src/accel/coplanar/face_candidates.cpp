@@ -10,11 +10,11 @@ namespace lancer {
 
 namespace {
 
-// Faces to compare: all of small scenes, a share of large meshes, some of each instance; and the most of all.
+// Limits of compared faces: all of small scenes, a share of large meshes, some of each instance; and the total.
 constexpr size_t kCompared = 4096, kOfMeshes = 256, kOfEach = 16, kMost = 16384;
-// Pairs of boxes that are compared for each instance: a bound for many of them in one place.
+// Compared pairs of boxes per instance: a bound for many instances at one place.
 constexpr size_t kPairs = 128;
-// Steps of planes in the scene's extent.
+// Quantisation steps of planes over the scene's extent.
 constexpr double kOffsetCells = 256.0;
 
 class Chooser {
@@ -27,7 +27,7 @@ public:
   }
 
 private:
-  // Instances whose boxes meet those of others.
+  // Returns the instances whose boxes overlap others.
   std::vector<uint8_t> find_neighbours(const std::vector<glm::dvec3> &low, const std::vector<glm::dvec3> &high) const {
     std::vector<uint8_t> met(low.size(), 0);
     std::vector<uint32_t> order(low.size());
@@ -46,7 +46,7 @@ private:
     return met;
   }
 
-  // Some of a mesh's triangles, evenly, and those that are large for it.
+  // Chooses some of a mesh's triangles evenly, and those that are large for it.
   std::vector<uint32_t> choose_triangles(const Mesh &mesh, double extent, size_t most) const {
     const uint32_t count = static_cast<uint32_t>(mesh.triangles.size());
     std::vector<uint32_t> chosen;
@@ -55,10 +55,10 @@ private:
         chosen.push_back(i);
       return chosen;
     }
-    // Four times the size that they would have if all were equal and covered a cube.
+    // Four times the size that triangles would have if all were equal and covered a cube.
     const float large = static_cast<float>(4.0 * extent * std::sqrt(12.0 / count));
     const uint32_t stride = static_cast<uint32_t>(2 * count / most + 1);
-    // The last corner has nothing behind it that could be read with it.
+    // Loads four floats; the last vertex has no float behind it.
     const uint32_t last = static_cast<uint32_t>(mesh.positions.size()) - 1;
     const auto corner = [&](uint32_t vertex) {
       const glm::vec3 &p = mesh.positions[vertex];
@@ -98,7 +98,7 @@ private:
     found.faces.push_back(c);
   }
 
-  // The square around a flat part of an exact surface, in its own space at a height.
+  // Adds the square around a flat part of an exact surface, in its own space at a height.
   void add_square(uint32_t instance, double height, double half) {
     const Affine &place = geometry.instances[instance].to_world;
     glm::dvec3 p[4];
@@ -163,7 +163,7 @@ private:
   }
 
   void add_plane(uint32_t i, const glm::dvec3 &low, const glm::dvec3 &high) {
-    // As large as the scene.
+    // Make the square as large as the scene.
     const Instance &instance = geometry.instances[i];
     if (!(low.x <= high.x))
       return add_square(i, 0.0, 1.0);

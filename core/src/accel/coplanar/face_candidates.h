@@ -1,4 +1,4 @@
-// Which faces of a scene are compared with each other, and what is needed for that.
+// Choice of the faces of a scene that are compared with each other.
 #pragma once
 
 #include "accel/accelerator.h"
@@ -13,23 +13,23 @@ namespace lancer {
 struct FaceCandidate {
   glm::dvec3 corner[3];
   FlatFace face;
-  double rounding; // what it adds to FaceRounding::apart() at most
+  double rounding; // upper bound of its share in FaceRounding::apart()
   glm::dvec3 low, high;
   uint32_t instance, primitive;
-  uint32_t found = 0;    // others in its plane
-  bool anywhere = false; // more of them than are kept in mind
+  uint32_t found = 0;    // number of coplanar faces found
+  bool anywhere = false; // more of them than patches keep
 };
 
 struct FaceCandidates {
-  std::vector<FaceCandidate> faces; // those of an instance come one after the other
-  double step = 1.0;                // planes are told apart in steps of this
+  std::vector<FaceCandidate> faces; // grouped by instance
+  double step = 1.0;                // quantisation step of the distance of planes
 };
 
-// The same for every accelerator. Their number is bounded: of large meshes come some triangles, and those that are large for
-// their mesh; first those of instances that touch others.
+// Returns the same faces for every accelerator. Their number is bounded: a large mesh contributes some triangles and those that
+// are large for it; instances that touch others come first.
 FaceCandidates choose_faces(const Geometry &geometry, const FaceRounding &rounding, const BuildContext &context);
 
-// How many faces an instance has; 0 where it has no flat ones.
+// Returns the number of faces of an instance; 0 if it has no flat ones.
 size_t faces_of(const Geometry &geometry, uint32_t instance);
 
 inline bool boxes_meet(const glm::dvec3 &low, const glm::dvec3 &high, const glm::dvec3 &other_low,
@@ -38,10 +38,11 @@ inline bool boxes_meet(const glm::dvec3 &low, const glm::dvec3 &high, const glm:
          low.z <= other_high.z && other_low.z <= high.z;
 }
 
-// Calls use() with each cell of planes that the face's may lie in. A face that is too small to tell has none.
+// Calls use() with each cell of quantised planes that may hold the face's plane. A face whose plane is too imprecise has none.
 template <class Use> void for_each_plane_cell(const FlatFace &face, double rounding, double step, Use &&use) {
   constexpr double kNormalCells = 16.0;
-  // No face that anyone models is upright on it: so a direction and its opposite always lie on different sides.
+  // A direction that is perpendicular to no normal found in models: a normal and its opposite are on different sides of it,
+  // whatever the rounding.
   const glm::dvec3 reference(0.5432, 0.7531, 0.3711);
   const glm::dvec3 n = glm::dot(face.n, reference) < 0.0 ? -face.n : face.n;
   const double turned = 0x1p-20 + rounding / face.height;

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Half a unit in the last place of each corner is 2^-24; modelling tools come to it through two or three operations in float.
+// Half a unit in the last place of each corner is 2^-24; modelling tools need two or three operations in float to compute it.
 constexpr double kCornerRounding = 0x1p-22;
-// A placement is a product of a few matrices; a larger bound would take instances that stand a unit apart for coplanar.
+// A placement is a product of a few matrices; a larger bound would treat instances one unit apart as coplanar.
 constexpr double kPlaceRounding = 0x1p-23;
-// A distance above this share of an instance's size is taken for modelled, however far out the instance stands.
+// A distance above this share of an instance's size counts as modelled, at any distance of the instance from the origin.
 constexpr double kMeant = 0x1p-10;
 
 glm::dmat3 magnitudes(const glm::dmat3 &m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
@@ -24,7 +24,7 @@ std::optional<FlatFace> quadric_face(const Instance &instance, const glm::dvec3 
   if (instance.kind == ShapeKind::Sphere)
     return {};
   const SurfacePoint at = quadric_point(instance.kind, instance.to_object.point(o), instance.to_object.vector(d), t);
-  // The disks of cylinders and cones, and planes, look along the axis.
+  // Only the disks of cylinders and cones, and planes, have a normal along the axis.
   if (at.n.x != 0.0 || at.n.y != 0.0)
     return {};
   const glm::dvec3 n = glm::transpose(instance.to_object.linear) * at.n;
@@ -94,7 +94,7 @@ FaceRounding::FaceRounding(const Geometry &g, const glm::dvec3 &o) : geometry(g)
   }
 }
 
-// How far its own numbers may move a surface along each axis of the world.
+// Bounds the displacement of a surface along each axis of the world by the rounding of its own coordinates.
 glm::dvec3 FaceRounding::within(uint32_t number, const glm::dvec3 &p) const {
   const Instance &instance = geometry.instances[number];
   const glm::dvec3 reach = instance.kind == ShapeKind::Mesh
@@ -104,7 +104,7 @@ glm::dvec3 FaceRounding::within(uint32_t number, const glm::dvec3 &p) const {
   return kCornerRounding * (magnitudes(instance.to_world.linear) * reach);
 }
 
-// And its place.
+// Bounds the displacement by the rounding of the instance's position.
 glm::dvec3 FaceRounding::moved(uint32_t instance) const {
   return kPlaceRounding * glm::abs(geometry.instances[instance].to_world.translation - origin);
 }
@@ -151,7 +151,7 @@ double FaceRounding::share(uint32_t instance, const glm::dvec3 &p) const {
 }
 
 bool parallel(const FlatFace &one, const FlatFace &other, double apart) {
-  // Matrices of floats turn by some 2^-22.
+  // Float matrices rotate by up to some 2^-22.
   const double turned = 0x1p-20 + apart / one.height + apart / other.height;
   const glm::dvec3 sine = glm::cross(one.n, other.n);
   return glm::dot(sine, sine) <= turned * turned;

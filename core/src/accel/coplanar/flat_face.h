@@ -1,4 +1,4 @@
-// Flat faces where they stand in the world, and how far rounding may hold two apart that are meant to lie in one plane.
+// Flat faces in the world, and the distance by which rounding may separate faces that are meant to be coplanar.
 #pragma once
 
 #include "scene/geometry.h"
@@ -9,17 +9,17 @@
 namespace lancer {
 
 struct FlatFace {
-  glm::dvec3 p; // in its plane
+  glm::dvec3 p; // a point of its plane
   glm::dvec3 n; // unit, on either side
-  // The least height of a triangle, infinite for exact surfaces: what moves a corner by x turns the plane by x / height.
+  // The least height of a triangle, infinite for exact surfaces: moving a corner by x turns the plane by x / height.
   double height;
 };
 
-// A triangle, by its corners in the world.
+// Makes the face of a triangle from its corners in the world.
 FlatFace triangle_face(const glm::dvec3 corner[3]);
 void world_corners(const Geometry &geometry, uint32_t instance, uint32_t triangle, glm::dvec3 corner[3]);
 
-// Where a place of the world is on a face, as hits tell it: weights of a triangle's corners, x and y of an exact surface.
+// Coordinates of a world point on a face, as hits have them: weights of a triangle's corners, or x and y of an exact surface.
 struct FaceCoordinates {
   glm::dvec3 o, x, y;
 
@@ -27,22 +27,22 @@ struct FaceCoordinates {
 };
 FaceCoordinates coordinates_on_face(const Geometry &geometry, uint32_t instance, uint32_t primitive);
 
-// The face that a ray meets, with p where it does; none where the surface is curved there.
+// Returns the face of a hit with p at the hit; none if the surface is curved there.
 std::optional<FlatFace> face_met(const Geometry &geometry, const Ray &ray, const Hit &hit);
-// The face that a ray starts on, with p next to its start.
+// Returns the face that a ray starts on, with p near its origin.
 std::optional<FlatFace> face_left(const Geometry &geometry, const Ray &ray);
 
-// Corners are floats in their mesh, and placements are floats of the user's world that were computed in float: both know their
-// surfaces to a few units of the last place.
+// Rounding of surfaces. Corners are floats of their mesh, and placements are floats of the user's world that were computed in
+// float: both are known to a few units in the last place.
 class FaceRounding {
 public:
   // origin: of the user's world.
   FaceRounding(const Geometry &geometry, const glm::dvec3 &origin);
-  // Faces of two instances with the normal n that are less than this apart, at p, lie in one plane.
+  // Returns the distance below which faces of two instances with the normal n, at p, are coplanar.
   double apart(uint32_t one, uint32_t other, const glm::dvec3 &n, const glm::dvec3 &p) const;
-  // What one of both adds to that at most, whatever the normal.
+  // Returns the upper bound of one instance's share in apart(), for any normal.
   double share(uint32_t instance, const glm::dvec3 &p) const;
-  // No face of an instance is further from the others of its plane than this, whatever they add.
+  // Clamps sum to an upper bound on the distance of an instance's face from faces coplanar with it.
   double most(uint32_t instance, double sum) const;
   // The largest extent of an instance along an axis, in the world.
   double extent(uint32_t instance) const;
@@ -59,7 +59,7 @@ private:
   std::vector<glm::dvec3> low, high; // by mesh
 };
 
-// Whether the normals of two faces are the same line, as far as both are known. apart: of the two, by FaceRounding.
+// Returns whether two faces have the same normal up to sign, within their precision. apart: of the two, by FaceRounding.
 bool parallel(const FlatFace &one, const FlatFace &other, double apart);
 
 } // namespace lancer

@@ -65,7 +65,7 @@ void PlaneRule::find_light_planes() {
       const Hit hit{0.0, 0.0f, 0.0f, i, primitive};
       if (!flagged(hit) || !emits(hit))
         continue;
-      // Take each by itself: the plane of a triangle is known less well beyond it.
+      // Test each triangle by itself: its plane is less precise outside it.
       shines_anywhere = !mesh || light_planes.size() == kLightPlanes;
       if (shines_anywhere)
         return;
@@ -100,7 +100,7 @@ bool PlaneRule::starts_in_plane(const Ray &ray, const Hit &hit) const {
                                 rounding.apart(ray.skip_instance, hit.instance, start->n, end->p));
   if (!parallel(*start, *end, apart))
     return false;
-  // The larger one knows the plane better.
+  // The larger face has the more precise plane.
   const FlatFace &plane = start->height >= end->height ? *start : *end;
   const glm::dvec3 way = end->p - start->p;
   return std::abs(glm::dot(way, plane.n)) <= apart * (1.0 + glm::length(way) / plane.height);
@@ -121,7 +121,7 @@ Ray PlaneRule::around_end(const Ray &ray) {
   return around;
 }
 
-// How much any face at p adds at most to how far it may be from another.
+// Returns the largest share of any face at p in the distance between coplanar faces.
 double PlaneRule::others(const glm::dvec3 &p) const {
   double most = widest;
   for (const uint32_t plane : planes)

@@ -1,4 +1,4 @@
-// A kd-tree over padded boxes, whatever they hold: instances, or the triangles of a mesh.
+// A kd-tree over padded boxes: of instances, or of the triangles of a mesh.
 #pragma once
 
 #include "accel/accelerator.h"
@@ -9,8 +9,8 @@
 
 namespace lancer {
 
-// Inner nodes: bits = below << 2 | axis; the child below the plane is numbered so, the one above follows it.
-// Leaves: bits = count << 2 | 3, first is their start in items.
+// Inner nodes: bits = below << 2 | axis; below is the child below the plane, the child above follows it.
+// Leaves: bits = count << 2 | 3; first is their start in items.
 struct KdNode {
   union {
     float split;
@@ -24,18 +24,18 @@ struct KdNode {
   uint32_t count() const { return bits >> 2; }
 };
 
-// Depth is at most 8 + 1.3 log2(2^32); each level leaves one cell on the stack.
+// Depth is at most 8 + 1.3 log2(2^32); each level pushes one cell.
 inline constexpr uint32_t kKdStackSize = 64;
 
 struct KdTree {
-  std::vector<KdNode> nodes; // the root is the first
+  std::vector<KdNode> nodes; // root first
   std::vector<uint32_t> items;
   Box bounds;
 
   size_t bytes() const { return nodes.capacity() * sizeof(KdNode) + items.capacity() * sizeof(uint32_t); }
 
-  // Calls visit(item) for the boxes on the ray, cell by cell from front to back, until it returns true. A box that lies in
-  // several cells is visited in each. limit() is the parameter, in the boxes' frame, that no interesting hit exceeds.
+  // Calls visit(item) for the boxes on the ray, cell by cell from front to back, until it returns true. A box in several cells
+  // is visited once per cell. limit(): upper bound, in the boxes' frame, on the parameter of hits that still matter.
   template <class Visit, class Limit>
   void traverse(const ObjectRay &ray, const PlacementFrame &frame, double tau_min, const Limit &limit,
                 const Visit &visit) const;
@@ -51,7 +51,7 @@ void KdTree::traverse(const ObjectRay &ray, const PlacementFrame &frame, double 
   if (nodes.empty())
     return;
 
-  // Clip the ray to the bounds. The boxes' padding is millions of times the rounding of these doubles.
+  // Clip the ray to the bounds. The boxes' padding is millions of times the rounding error of these doubles.
   double o[3], inverse[3];
   double entry = tau_min, exit = limit();
   for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +74,7 @@ void KdTree::traverse(const ObjectRay &ray, const PlacementFrame &frame, double 
   uint32_t size = 0;
   Cell cell{0, entry, exit};
   for (;;) {
-    // Descend to the first leaf, leaving the farther halves on the stack.
+    // Descend to the nearest leaf and push the farther halves.
     const KdNode *node = &nodes[cell.node];
     while (!node->leaf()) {
       const uint32_t axis = node->axis();
@@ -98,15 +98,14 @@ void KdTree::traverse(const ObjectRay &ray, const PlacementFrame &frame, double 
       if (visit(items[node->first + i]))
         return;
 
-    // Nothing behind this cell can be closer than what was met before its end.
+    // Stop if the best hit is in front of all remaining cells.
     if (size == 0 || limit() < cell.exit)
       return;
     cell = stack[--size];
   }
 }
 
-// test_cost: the price of testing an item over that of a step through the tree.
-// The result depends on boxes alone.
+// test_cost: cost of testing an item relative to a traversal step. The result depends on boxes alone.
 KdTree build_kdtree(const std::vector<Box> &boxes, float test_cost, const BuildContext &context);
 
 } // namespace lancer

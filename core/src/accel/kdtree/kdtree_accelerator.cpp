@@ -9,7 +9,7 @@
 namespace lancer {
 namespace {
 
-// Prices over a step through the tree: a triangle is a few operations more, an instance a change of space and a tree of its
+// Costs relative to a traversal step: a triangle takes a few more operations, an instance a change of space and a tree of its
 // own.
 constexpr float kTriangleCost = 1.5f;
 constexpr float kInstanceCost = 8.0f;
@@ -52,7 +52,7 @@ private:
     if (!enter_world(placed.world, ray, world_ray))
       return best;
 
-    // Try what has no box, then the instances on the way.
+    // Test unbounded instances, then the instances along the ray.
     for (const uint32_t instance : placed.unbounded)
       if (intersect_instance<any>(ray, instance, counting, best))
         return best;
@@ -62,7 +62,7 @@ private:
     return best;
   }
 
-  // True where the search may end.
+  // Returns true if the search may end.
   template <bool any> bool intersect_instance(const Ray &ray, uint32_t instance, const Counting &counting, Hit &best) const {
     const PlacedShape &shape = placed.shapes[instance];
     if (!visible(shape, ray))

@@ -9,10 +9,10 @@
 namespace lancer {
 namespace {
 
-constexpr size_t kExactSize = 48; // up to here every box face is a candidate
+constexpr size_t kExactSize = 48; // up to this number of items every box face is a candidate
 constexpr uint32_t kBins = 32;
 constexpr float kEmptyBonus = 0.8f; // factor on the cost of a split that cuts off empty space
-constexpr uint32_t kMaxBad = 2;     // splits in a row that do not pay by themselves but may open the way for one that does
+constexpr uint32_t kMaxBad = 2;     // consecutive splits that may not pay, but may enable one that does
 
 struct Split {
   float cost = Box::kInf;
@@ -21,7 +21,7 @@ struct Split {
   size_t below = 0, above = 0;
 };
 
-// A cell still to be built: the node that it becomes, and what overlaps it.
+// A cell to build: its node, and the items that overlap it.
 struct Cell {
   uint32_t node, depth, bad;
   Box box;
@@ -40,7 +40,7 @@ public:
         max_depth(static_cast<uint32_t>(8.0 + 1.3 * std::numbers::log2e * log(static_cast<double>(b.size()) + 1.0))),
         context(c) {}
 
-  // Builds the cell into tree; cells of at most task_size items are left to tasks, where given.
+  // Builds the cell into tree; if tasks is given, defers cells of at most task_size items to it.
   void build(Cell cell, KdTree &tree, size_t task_size, std::vector<Subtree> *tasks) const {
     poll_cancel(context);
     if (tasks && cell.items.size() <= task_size) {
@@ -48,7 +48,7 @@ public:
       return;
     }
 
-    // Make a leaf where no split lowers the expected cost.
+    // Make a leaf if no split lowers the expected cost.
     const size_t count = cell.items.size();
     const float leaf_cost = test_cost * static_cast<float>(count);
     const Split split = count > 1 && cell.depth < max_depth ? find_split(cell) : Split{};
@@ -61,7 +61,7 @@ public:
       return;
     }
 
-    // Give each child what overlaps it: a box that the plane cuts goes to both.
+    // Give each child its overlapping items: a box cut by the plane goes to both.
     const uint32_t child = static_cast<uint32_t>(tree.nodes.size());
     tree.nodes.resize(child + 2);
     tree.nodes[cell.node].split = split.position;
@@ -84,7 +84,7 @@ public:
   }
 
 private:
-  // Weighs a plane by the surface-area heuristic against the best so far.
+  // Evaluates a plane by the surface-area heuristic and keeps it if it is the best so far.
   void weigh(const Cell &cell, int axis, float position, size_t below, size_t above, Split &best) const {
     const size_t count = cell.items.size();
     if (!(cell.box.lo[axis] < position && position < cell.box.hi[axis]) || (below == count && above == count))
@@ -119,7 +119,7 @@ private:
     std::sort(starts, starts + count);
     std::sort(ends, ends + count);
 
-    // Walk both lists in step: below is how many start before the plane, above how many end behind it.
+    // Walk both lists in step: below is the number of boxes that start before the plane, above the number that end behind it.
     size_t started = 0, ended = 0;
     while (ended < count) {
       const float position = started < count && starts[started] <= ends[ended] ? starts[started] : ends[ended];
@@ -158,7 +158,7 @@ private:
   const BuildContext &context;
 };
 
-// Hangs a finished subtree under its node of tree.
+// Attaches a finished subtree at its node of tree.
 void graft(const Subtree &subtree, KdTree &tree) {
   const uint32_t node_offset = static_cast<uint32_t>(tree.nodes.size()) - 1; // the subtree's root moves into its node
   const uint32_t item_offset = static_cast<uint32_t>(tree.items.size());
@@ -183,7 +183,7 @@ KdTree build_kdtree(const std::vector<Box> &boxes, float test_cost, const BuildC
   if (boxes.empty())
     return tree;
   if (boxes.size() >= 1u << 28)
-    throw std::bad_alloc(); // a leaf counts with 30 bits, cut boxes included
+    throw std::bad_alloc(); // a leaf has 30 bits for its count, including split boxes
   Cell root{0, 0, 0, {}, std::vector<uint32_t>(boxes.size())};
   for (uint32_t i = 0; i < boxes.size(); ++i) {
     root.box.grow(boxes[i]);
@@ -192,7 +192,7 @@ KdTree build_kdtree(const std::vector<Box> &boxes, float test_cost, const BuildC
   tree.bounds = root.box;
   tree.nodes.emplace_back();
 
-  // Build the top, then the subtrees on all threads. Where the top ends depends on the size alone.
+  // Build the top, then the subtrees on all threads. The extent of the top depends on the size alone.
   const Builder builder(boxes, test_cost, context);
   std::vector<Subtree> tasks;
   builder.build(std::move(root), tree, std::max<size_t>(boxes.size() / 64, 1024), &tasks);
