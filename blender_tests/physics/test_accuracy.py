@@ -313,7 +313,7 @@ def test_refining_is_refused_in_wrong_states():
         refused(session, "every pixel needs 2 samples")
         session.render(1, 47)
         finished(session)
-        refused(session, "48 samples are no power of two")
+        refused(session, "48 samples are not a power of two")
         session.render(48, FOREVER - 48)
         refused(session, "still being rendered")
         session.cancel()

@@ -40,7 +40,6 @@ struct Remainder {
 std::optional<Remainder> remainder_of(const Program &program, const Parameter &value);
 
 // A surface cut out by an image: its transmittance is known without shading.
-//
 
 // The alpha of one image.
 struct AlphaImage : FlatImage {

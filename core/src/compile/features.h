@@ -45,7 +45,6 @@ Features find_features(const Description &description);
 std::string feature_names(const Features &features);
 
 // Whether materials let light through a surface.
-//
 
 // Whether a lobe may refract.
 bool is_glass(const LobeDescription &lobe);
@@ -53,7 +52,6 @@ bool is_glass(const LobeDescription &lobe);
 bool lets_light_through(const Material &material);
 
 // Classes of materials by their shading code: vertices of one class may share the lanes of a block.
-//
 
 // Returns the class of each material. Materials without nodes share a class if their lobes differ in numbers alone; a material
 // with nodes has its own class, because its program differs.

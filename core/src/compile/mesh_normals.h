@@ -7,7 +7,6 @@
 namespace lancer {
 
 // Normals of a mesh: of its faces, of its vertices, and after displacement.
-//
 
 // Returns a vector along a face's normal, of the length of twice the face's area.
 glm::dvec3 twice_area(const Mesh &mesh, uint32_t triangle);
@@ -25,7 +24,6 @@ std::vector<glm::vec3> vertex_normals(const Mesh &mesh);
 void renew_normals(Mesh &mesh, const std::vector<bool> &triangles);
 
 // The places at which flat shading evaluates the one colour of a polygon.
-//
 
 // Returns the centres by polygon number. The normal is the sum of the triangles' area vectors (Newell's). The centre is the
 // mean of the polygon's vertices; for a warped polygon, the place straight above or below the mean along the normal; for a

@@ -10,7 +10,6 @@ namespace lancer {
 
 // Bounds of a cluster of the light tree: position, directions and energy (Conty and Kulla, Importance Sampling of Many Lights
 // with Adaptive Tree Splitting, 2018).
-//
 
 // The cone holds normals within theta_o of the axis; light leaves within theta_e of each of them.
 struct LightCone {

@@ -1,4 +1,4 @@
-// What a picture shows where it shows nothing else, where that need not be traced.
+// The background of a picture, where pixels show nothing else and need not be traced.
 #pragma once
 
 #include "integrator/sample.h"
@@ -12,11 +12,11 @@ struct Background {
   SampleResult sample = SampleResult(); // of every pixel that is not covered
 };
 
-// camera: normalised. Where the background varies, few samples are planned, or features are not to be left out, everything may
-// be covered.
+// camera: normalised. Returns a coverage of all pixels where the background varies, where few samples are planned, or where all
+// features are requested.
 Background find_background(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Film &film);
 
-// Whether all camera rays that meet nothing show the same.
+// Whether all camera rays that miss the scene return the same radiance.
 bool has_even_background(const Scene &scene, const Camera &camera);
 
 } // namespace lancer

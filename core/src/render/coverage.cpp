@@ -8,15 +8,16 @@ namespace lancer {
 
 namespace {
 
-// Boxes of so few blocks are not looked into.
+// A box of at most this many blocks is marked whole.
 constexpr uint32_t kSmallBox = 4;
 
 bool seen_by_camera(uint32_t hidden_from) { return !(hidden_from & LANCER_RAY_CAMERA); }
 
-// A side of a convex polygon: what a point of the plane lies inside of it by, in units of its length.
+// A side of a convex polygon. inside() returns an upper bound of the signed distance of a point from the side, inwards, times
+// the side's length.
 struct Side {
   glm::dvec2 from, inwards; // inwards: as long as the side
-  double length, doubt;     // doubt: what rounding may add, for each unit of a point's distance
+  double length, doubt;     // doubt: bound of the rounding error per unit of a point's distance
 
   double inside(const glm::dvec2 &point, double reach) const {
     const glm::dvec2 apart = point - from;
@@ -44,7 +45,7 @@ void Coverage::add_lamps(const LightSet &lights, const Projection &projection) {
       mark(around(projection, projection.to_camera(), lamp.bounds.low, lamp.bounds.high));
 }
 
-// False where that takes more effort, or where something has no bounds.
+// Returns false where the triangles exceed the effort, or where a surface has no bounds.
 bool Coverage::add_surfaces(const Geometry &geometry, const Projection &projection, uint64_t effort) {
   const auto spend = [&](uint64_t triangles) {
     const bool enough = triangles <= effort;
@@ -62,7 +63,7 @@ bool Coverage::add_surfaces(const Geometry &geometry, const Projection &projecti
     for (const glm::vec3 &position : geometry.meshes[i].positions)
       bounds[i] = {glm::min(bounds[i].low, position), glm::max(bounds[i].high, position)};
   }
-  // Mark what each instance covers: its box, where that is small or marked already, or its triangles.
+  // Mark the pixels of each instance: its box, where the box is small or marked already, or else its triangles.
   for (const Instance &instance : geometry.instances) {
     if (!seen_by_camera(instance.hidden_from))
       continue;
@@ -113,7 +114,7 @@ void Coverage::add_triangles(const Projection &projection, const Affine &to_came
   }
 }
 
-// Convex. margin: in pixels, around it.
+// The polygon is convex. margin: in pixels, around it.
 void Coverage::add_polygon(std::span<const glm::dvec2> corners, double margin) {
   glm::dvec2 low = corners[0], high = corners[0];
   for (const glm::dvec2 &corner : corners) {
@@ -125,7 +126,7 @@ void Coverage::add_polygon(std::span<const glm::dvec2> corners, double margin) {
     return mark(box);
   if (marked(box))
     return;
-  // Turn all sides inwards. A polygon so narrow that rounding decides which way that is counts by its box.
+  // Orient all sides inwards. A polygon so narrow that rounding decides its orientation is replaced by its box.
   double area = 0.0;
   for (size_t i = 0; i < corners.size(); ++i) {
     const glm::dvec2 a = corners[i] - corners[0], b = corners[(i + 1) % corners.size()] - corners[0];
@@ -138,7 +139,7 @@ void Coverage::add_polygon(std::span<const glm::dvec2> corners, double margin) {
     const glm::dvec2 along = turn * (corners[(i + 1) % corners.size()] - corners[i]);
     sides[i] = {corners[i], {-along.y, along.x}, glm::length(along), 1e-12 * glm::length(along)};
   }
-  // Mark the blocks that no side has wholly outside.
+  // Mark the blocks that are not entirely outside any side.
   const double half = 0.5 * kBlock;
   for (uint32_t y = box.begin.y; y < box.end.y; ++y)
     for (uint32_t x = box.begin.x; x < box.end.x; ++x) {
@@ -172,7 +173,7 @@ Coverage::Blocks Coverage::around(const Projection &projection, const Affine &to
   return within(least - margin, most + margin);
 }
 
-// Pixels from low to high. What is not finite may be anywhere.
+// Returns the blocks of the pixels from low to high. Bounds that are not finite give all blocks.
 Coverage::Blocks Coverage::within(const glm::dvec2 &low, const glm::dvec2 &high) const {
   if (!(low.x <= high.x && low.y <= high.y))
     return {{0, 0}, {across_, up_}};

@@ -11,14 +11,15 @@ namespace lancer {
 
 namespace {
 
-// Edges use a window one size larger, as few of its pixels are edges.
+// Edges use a window one size larger, because few of its pixels are edges.
 constexpr std::array<int, 7> kRadii = {1, 2, 3, 5, 8, 12, 20};
 constexpr size_t kPlainRadii = 6;
-// (sum v)^2 / sum v^2 is how many pixels bear the variance; of n equal ones it is n / 3, since the square of one difference
-// spreads as chi-square with one degree of freedom. 20 of them know their common standard error to an eighth.
+// (sum v)^2 / sum v^2 is the effective number of pixels that carry the variance; for n equal ones it is n / 3, since the square
+// of one difference is distributed as chi-square with one degree of freedom. 20 of them estimate their common standard error to
+// an eighth.
 constexpr double kBearers = 20.0;
 
-// Of the variances in a window.
+// Sums over the variances in a window.
 struct Sums {
   double pixels = 0.0, sum = 0.0, squares = 0.0;
 
@@ -32,9 +33,9 @@ struct Sums {
   double degrees_of_freedom() const { return squares > 0.0 ? std::min(3.0 * sum * sum / squares, pixels) : pixels; }
 };
 
-// Within how many standard errors 95 % lie where the variance is an estimate, over the same of a known variance: Student's t by
-// the first terms of its series in 1 / freedom (Fisher, Cornish, "The percentile points of distributions having known
-// cumulants", 1960).
+// Returns the ratio of the number of standard errors that contain 95 % for an estimated variance to that for a known variance:
+// Student's t by the first terms of its series in 1 / freedom (Fisher, Cornish, "The percentile points of distributions having
+// known cumulants", 1960).
 double student_over_gaussian(double freedom) {
   constexpr double z2 = 1.96 * 1.96, z4 = z2 * z2, z6 = z4 * z2;
   const double a = (z2 + 1.0) / 4.0, b = (5.0 * z4 + 16.0 * z2 + 3.0) / 96.0;
@@ -50,7 +51,8 @@ struct Window {
         x1(std::min(x + uint32_t(radius) + 1, map.width)), y1(std::min(y + uint32_t(radius) + 1, map.height)) {}
 };
 
-// The smallest window that has enough variances, or the last. sums_of: what a window sums up to.
+// Returns the sums of the smallest window with enough variances, or of the largest window. sums_of: returns the sums of a
+// window.
 template <class SumsOf> Sums smallest_window(const LuminanceMap &map, uint32_t x, uint32_t y, size_t radii, SumsOf &&sums_of) {
   Sums sums;
   for (size_t i = 0; i < radii && !sums.enough(); ++i)
@@ -58,10 +60,10 @@ template <class SumsOf> Sums smallest_window(const LuminanceMap &map, uint32_t x
   return sums;
 }
 
-// Sums over any window by four look-ups in each table.
+// Summed-area tables: sums over any window by four look-ups in each table.
 class Tables {
 public:
-  // counts: whether a pixel does.
+  // counts: whether a pixel is included.
   template <class Counts> Tables(const LuminanceMap &map, Counts &&counts) : stride_(map.width + 1) {
     sums_.resize(size_t(stride_) * (map.height + 1));
     for (uint32_t y = 0; y < map.height; ++y) {
@@ -91,7 +93,8 @@ private:
   std::vector<Sums> sums_;
 };
 
-// What a sample varies by, at most, where it shows either the darkest or the brightest of the 3 x 3 and the mean is what it is.
+// Returns the largest variance that samples can have if each lies between the darkest and the brightest mean of the 3 x 3 and
+// their mean is the pixel's.
 float mixture_variance(const LuminanceMap &map, uint32_t x, uint32_t y) {
   const Window window(map, x, y, 1);
   const float own = map.mean[size_t(y) * map.width + x];
@@ -104,8 +107,8 @@ float mixture_variance(const LuminanceMap &map, uint32_t x, uint32_t y) {
   return (own - dark) * (bright - own);
 }
 
-// [height][width]: kPlain, or of an edge the power of four that it would vary by. Edges share with those of the same power and
-// of the two beside it.
+// [height][width]: kPlain, or, for an edge, the exponent of its mixture variance as a power of four. Edges share variances with
+// edges of the same exponent and of the two beside it.
 constexpr int16_t kPlain = std::numeric_limits<int16_t>::min();
 
 std::vector<int16_t> kinds_of(const LuminanceMap &map) {
@@ -160,10 +163,11 @@ namespace {
 
 struct Half {
   double pixels = 0.0;
-  double own = 0.0, other = 0.0; // sum over pixels of a sample's relative variance: what it has, and what its other half says
+  double own = 0.0, other = 0.0; // sum over pixels of the relative variance of a sample: measured in the half, and predicted by
+                                 // the other half
   double count = 0.0, planned = 0.0;
 
-  // What doubling takes off the sum of squared errors, for each sample that it costs.
+  // Returns the decrease of the sum of squared errors per sample when the samples are doubled.
   double gain() const { return other / (2.0 * planned * planned * pixels); }
 };
 
@@ -183,7 +187,7 @@ Refinement plan_refinement(const Film &film, const LuminanceMap &map, const Rela
       half.own += 0.5 * (double(relative.own[place]) + relative.shared[place]);
     }
   }
-  // A half without pixels has nothing to say about its other half, which then goes by itself.
+  // A half without pixels predicts nothing for its other half, which then uses its own variance.
   for (size_t i = 0; i < halves.size(); ++i) {
     const Half &other = halves[i ^ 1];
     halves[i].other = other.pixels > 0.0 ? other.own * halves[i].pixels / other.pixels : halves[i].own;
@@ -198,7 +202,7 @@ Refinement plan_refinement(const Film &film, const LuminanceMap &map, const Rela
     if (2.0 * half.count <= most)
       order.push_back(i);
   }
-  // Double in thought whatever gains most until the target is met.
+  // Simulate doubling the half of the largest gain until the target is met.
   const auto gains_less = [&](uint32_t a, uint32_t b) {
     return halves[a].gain() != halves[b].gain() ? halves[a].gain() < halves[b].gain() : a > b;
   };

@@ -86,7 +86,7 @@ SessionSettings read_settings(const lancer_settings &source) {
   settings.integrator.mist_depth = source.mist_depth;
   settings.integrator.mist_falloff = source.mist_falloff;
   settings.integrator.blended_features = source.blended_features != 0;
-  // The error is the film's own: no sample has it.
+  // The film computes the error itself; samples do not contain it.
   settings.integrator.passes = source.passes & ~bit(Pass::Error);
   settings.integrator.all_features = source.features == LANCER_FEATURES_ALL;
   settings.passes = settings.integrator.passes;

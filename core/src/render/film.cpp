@@ -43,7 +43,7 @@ void Film::Layout::add(std::vector<Run> &runs, Pass pass, uint32_t to) {
     runs.push_back({from, to, count});
 }
 
-// Row by row; of a chessboard every two rows together have as many cells of each colour as they are wide.
+// Pixels are numbered row by row; in a chessboard, every pair of rows has as many cells of each colour as the tile is wide.
 uint32_t Film::Tile::pixels() const {
   if (cells == Cells::All)
     return width * height;
@@ -82,7 +82,7 @@ Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes,
 
 double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t samples) {
   const Layout layout(passes);
-  // The worst count on the way has nothing but ones.
+  // The largest number of waiting sums on the way occurs at a count with all bits set.
   const int levels = std::bit_width(uint64_t(samples) + 1) - 1;
   return width * height *
          ((double(layout.summed_channels) * sizeof(double) + sizeof(float)) * levels +
@@ -98,14 +98,14 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
   }
   Sums carry;
   for (uint32_t s = 0; s < samples; ++s) {
-    // Make all room first: where there is none, what has been counted stays as it is.
+    // Allocate first: if memory is missing, the samples counted so far stay valid.
     const uint32_t level = uint32_t(std::countr_one(tile.count));
     if (tile.levels.size() <= level)
       tile.levels.resize(level + 1);
     carry.channels.resize(size_t(pixels) * layout_.summed_channels);
     carry.differences.assign(pixels, 0.0f);
     gather(results.subspan(size_t(s) * pixels, pixels), carry, tile.brightest.data());
-    // A new leaf joins every complete neighbour, the smaller numbers first. All pixels stand at the same leaf.
+    // A new leaf joins every complete neighbour, the smaller numbers first. All pixels have the same count.
     for (uint32_t joined = 0; joined < level; ++joined) {
       if (joined + 1 == level)
         keep_differences(tile.levels[joined], joined, carry);
@@ -117,7 +117,7 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
   forget_joined(tile);
 }
 
-// Sums of equal numbers are those numbers times a power of two, to the bit.
+// The sum of 2^k equal numbers is exactly 2^k times the number.
 void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
   const uint32_t pixels = tile.pixels();
   const std::lock_guard lock(tile.mutex);
@@ -143,7 +143,7 @@ void Film::add_even(Tile &tile, uint32_t samples, const SampleResult &result) {
   forget_joined(tile);
 }
 
-// Sums that have been joined are not needed any more.
+// Frees sums that have been joined into larger ones.
 void Film::forget_joined(Tile &tile) {
   for (uint32_t level = 0; level < tile.levels.size(); ++level)
     if (!tile.waits(level))
@@ -177,7 +177,7 @@ Film::Dropped Film::dropped() const {
 void Film::round_down(Tile &tile) {
   const std::lock_guard lock(tile.mutex);
   tile.count = std::bit_floor(tile.count);
-  // The numbers below a power of two are those of less width than it has.
+  // The sample numbers below a power of two are those with a smaller bit width.
   const auto width = size_t(std::bit_width(tile.count));
   if (tile.dropped.size() > width) {
     tile.dropped.resize(width);
@@ -212,19 +212,19 @@ double Film::mean_luminance(const Sums &sums, uint32_t level, uint32_t pixel) co
   return luminance(glm::dvec3(color[0], color[1], color[2])) / double(1u << level);
 }
 
-// Of two halves that are about to be joined, of so many levels each.
+// Stores the differences of two halves before they are joined; each half has 2^level samples.
 void Film::keep_differences(const Sums &earlier, uint32_t level, Sums &later) const {
   for (uint32_t pixel = 0; pixel < later.differences.size(); ++pixel)
     later.differences[pixel] = float(mean_luminance(earlier, level, pixel) - mean_luminance(later, level, pixel));
 }
 
-// One sample of all pixels, as they are summed.
+// Stores one sample of all pixels in the layout of the sums.
 void Film::gather(std::span<const SampleResult> results, Sums &sums, float *brightest) const {
   double *to = sums.channels.data();
   for (const SampleResult &result : results) {
     *brightest = std::max(*brightest, luminance(result.radiance));
     ++brightest;
-    // The picture comes first, and mostly alone.
+    // The picture comes first, and is mostly the only pass.
     const float *numbers = numbers_of(result);
     for (uint32_t i = 0; i < 4; ++i)
       to[i] = double(numbers[i]);
@@ -236,7 +236,7 @@ void Film::gather(std::span<const SampleResult> results, Sums &sums, float *brig
 }
 
 bool Film::finite(const SampleResult &result) const {
-  // What is not finite less itself is none: four at a time, the last ones of a run maybe twice.
+  // x - x is 0 for a finite x and NaN otherwise. Four floats at a time; the last ones of a run may be tested twice.
   const float *numbers = numbers_of(result);
   Float<4> sum(0.0f);
   float rest = 0.0f;

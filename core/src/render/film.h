@@ -1,4 +1,4 @@
-// Where samples land: tiles of double sums that do not depend on who added them when.
+// The film: tiles of double sums that do not depend on the order in which threads add samples.
 #pragma once
 
 #include "render/pass.h"
@@ -10,27 +10,28 @@
 namespace lancer {
 
 // The samples of a pixel are summed along one fixed binary tree over their numbers: sample s is a leaf, and two neighbouring
-// complete subtrees of equal size are always joined. While samples arrive in order only the sums that wait for their neighbour
-// are kept, one per bit of the count, as in a binary counter. So neither threads nor tiles nor the split of the range show in
+// complete subtrees of equal size are always joined. While samples arrive in order, only the sums that wait for their neighbour
+// are stored, one per bit of the count, as in a binary counter. So neither threads nor tiles nor the split of the range show in
 // the bits, and any complete subtree can be computed elsewhere.
-// Beside the sum of a subtree stands what the luminances of its two halves differ by: from that the error of the picture is
-// told. All samples of a pixel are one sequence. Of its first N = 2^k points, let V(N) be the variance of the mean and A and B
-// the means of both halves: U(N) = E (A - B)^2 / 4 = V(N / 2) - V(N), as halves are scrambled like the whole. U is V where the
-// variance falls as 1 / N, and more than V where it falls faster: on twenty scenes its root was 1.00 to 1.10 of the real
-// error's in the most, and up to 1.8 where 64 samples are the first to be even.
+//
+// Beside the sum of a subtree, the film stores the difference of the luminances of its two halves, from which the error of the
+// picture is estimated. All samples of a pixel are one sequence. Of its first N = 2^k points, let V(N) be the variance of the
+// mean and A and B the means of both halves: U(N) = E (A - B)^2 / 4 = V(N / 2) - V(N), as halves are scrambled like the whole.
+// U is V where the variance falls as 1 / N, and more than V where it falls faster: on twenty scenes its root was mostly 1.00 to
+// 1.10 of the root of the real error, and up to 1.8 where points first become even at 64 samples.
 class Film {
 public:
-  // Which pixels of its rectangle a tile has: all, or those of one colour of a chessboard.
+  // The pixels of its rectangle that a tile has: all, or those of one colour of a chessboard.
   enum class Cells : uint32_t { All, Even, Odd };
 
-  // passes: bits 1u << Pass; Combined is always kept, and with a light pass the colour that it is divided by. In halves: every
-  // square is two tiles of a chessboard, tile 2 i + 1 the other half of tile 2 i.
+  // passes: bits 1u << Pass; Combined is always stored, and with a light pass the colour that it is divided by. halves: every
+  // square becomes two tiles of a chessboard; tile 2 i + 1 is the other half of tile 2 i.
   Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves = false);
 
-  // The most that a film of this size takes on its way to so many samples.
+  // Returns the most memory that a film of this size uses while it receives so many samples.
   static double bytes_needed(double width, double height, uint32_t passes, uint32_t samples);
 
-  // A complete subtree: [pixel][summed channel], and [pixel] the difference of its halves' mean luminances, 0 of a leaf.
+  // A complete subtree: [pixel][summed channel], and [pixel] the difference of its halves' mean luminances, 0 for a leaf.
   struct Sums {
     std::vector<double> channels;
     std::vector<float> differences;
@@ -40,11 +41,11 @@ public:
     uint32_t x, y, width, height;
     Cells cells = Cells::All;
     uint32_t count = 0; // samples of each of its pixels
-    // By bit of count. Where the bit is not set there is nothing, or memory without meaning.
+    // By bit of count. Where the bit is not set, the level is empty or its content is meaningless.
     std::vector<Sums> levels;
     std::vector<float> first;      // [pixel][channel of sample 0]
     std::vector<float> brightest;  // [pixel] largest luminance of a sample
-    std::vector<uint64_t> dropped; // by the bit width of the sample's number; empty where none was
+    std::vector<uint64_t> dropped; // by the bit width of the sample's number; empty where none was dropped
     SampleAddress first_dropped{0, 0, 0};
     mutable std::mutex mutex;
 
@@ -59,34 +60,36 @@ public:
   const Tile &tile(size_t i) const { return *tiles_[i]; }
   bool halves() const { return halves_; }
 
-  // Adds the next whole samples of a tile: results[s][pixel] in order of sample, one for each pixel. Where memory ends the tile
-  // keeps those that it has counted.
+  // Adds the next samples of all pixels of a tile: results[s][pixel] in order of sample. If memory runs out, the tile keeps the
+  // samples counted so far.
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
-  // Adds samples that all show the same in all pixels, to a tile that has no others.
+  // Adds samples that are equal in all pixels, to a tile that has no other samples.
   void add_even(Tile &tile, uint32_t samples, const SampleResult &result);
-  // Counts a sample of those that are added next, which is not finite. In order of sample and of place.
+  // Counts a dropped sample, which is not finite, before the samples of its batch are added. Calls must be in order of sample
+  // and pixel.
   void drop(Tile &tile, const SampleAddress &address);
   struct Dropped {
     uint64_t samples = 0;
-    SampleAddress first{0, 0, 0}; // the least number of a sample, and then the lowest row
+    SampleAddress first{0, 0, 0}; // the lowest number of a sample, and among equal ones the lowest row
   };
-  // Of the samples that the film has.
+  // Returns the dropped samples among those that the film has.
   Dropped dropped() const;
   // Forgets the samples beyond the last power of two.
   void round_down(Tile &tile);
-  // Least and most samples of a pixel.
+  // Returns the least and the largest number of samples of a pixel.
   std::pair<uint32_t, uint32_t> sample_range() const;
-  // What a tile knows of its pixels' luminances. variance: of the mean; of a power of two by one degree of freedom.
+  // Statistics of a pixel's luminance. variance: of the mean; for a power-of-two count it has one degree of freedom.
   struct Luminance {
     double mean, variance, brightest;
   };
-  // The fewest samples of a pixel that tell how far they are off.
+  // The fewest samples of a pixel from which an error can be estimated.
   static constexpr uint32_t kLeastSamples = 2;
-  // out: one for each pixel of the tile. Returns its samples; 0 below kLeastSamples, where nothing is known.
+  // out: one record for each pixel of the tile. Returns the tile's number of samples per pixel, or 0 below kLeastSamples, where
+  // out stays unset.
   uint32_t luminances(const Tile &tile, std::span<Luminance> out) const;
-  // Whether all that would be summed is finite.
+  // Whether all summed channels are finite.
   bool finite(const SampleResult &result) const;
-  // [height][width][channels], row 0 at the bottom; a pixel without samples is 0, its depth 1e10.
+  // Writes [height][width][channels], row 0 at the bottom; a pixel without samples is 0, and its depth 1e10.
   void read(Pass pass, std::span<float> out) const;
   bool has(Pass pass) const { return (passes_ & bit(pass)) != 0; }
   size_t bytes() const;
@@ -94,18 +97,18 @@ public:
   uint32_t height() const { return height_; }
 
 private:
-  // Which channels are kept, in order of pass.
+  // The channels that are stored, in order of pass.
   struct Layout {
     explicit Layout(uint32_t passes);
 
-    // Channels that stand together in a sample and in the film.
+    // Consecutive channels, both in a sample and in the film.
     struct Run {
       uint32_t from, to, count;
     };
     static void add(std::vector<Run> &runs, Pass pass, uint32_t to);
 
     std::vector<Run> summed, first;
-    std::array<uint32_t, kPassCount> at{}; // of a pass, where its channels begin in its list
+    std::array<uint32_t, kPassCount> at{}; // first channel of a pass in its list
     uint32_t summed_channels = 0, first_channels = 0;
   };
 

@@ -1,4 +1,4 @@
-// What a film tells: passes, and how far luminances are off.
+// Reading a film: passes and estimates of the error of luminances.
 #include "render/film.h"
 
 #include "simd/rounding.h"
@@ -10,7 +10,7 @@ namespace lancer {
 
 namespace {
 
-// Depth where there is no sample.
+// Depth of a pixel without samples.
 constexpr float kNothing = 1e10f;
 
 } // namespace
@@ -44,15 +44,15 @@ void Film::read_means(Pass pass, const Tile &tile, uint32_t pixel, float *target
   };
   const auto color = [&](Pass of) { return glm::dvec3(mean(of, 0), mean(of, 1), mean(of, 2)); };
   if (divisor(pass) != pass) {
-    // A colour may be darker than what float holds of light over it.
+    // A colour may be so dark that the quotient exceeds the range of float.
     const glm::vec3 light = nearest_float(divide_by_color(color(pass), color(divisor(pass))));
     for (int i = 0; i < 3; ++i)
       target[i] = light[i];
   } else if (pass == Pass::Mist) {
-    // Samples count what is clear; the sky is all mist.
+    // Samples sum up the share without mist; the sky is all mist.
     target[0] = float(std::clamp(1.0 - mean(pass, 0), 0.0, 1.0));
   } else {
-    // Occlusion is counted from the open downwards, sometimes further than 0.
+    // Samples of ambient occlusion are 1 minus the occlusion and may be negative: clamp the mean at 0.
     const float least = uint32_t(pass) == LANCER_PASS_AMBIENT_OCCLUSION ? 0.0f : -std::numeric_limits<float>::infinity();
     for (uint32_t c = 0; c < channels(pass); ++c)
       target[c] = std::max(float(mean(pass, c)), least);
@@ -65,7 +65,8 @@ uint32_t Film::luminances(const Tile &tile, std::span<Luminance> out) const {
     return 0;
   for (uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) {
     double mean = 0.0, variance = 0.0;
-    // Each waiting sum counts by its share of the samples; a single one is compared with all before it.
+    // Each waiting sum is weighted by its share of the samples; a single sample is compared with the mean of all samples before
+    // it.
     for (uint32_t level = uint32_t(tile.levels.size()); level-- > 0;) {
       if (!tile.waits(level))
         continue;

@@ -1,4 +1,4 @@
-// What the film can show: how many numbers a pass has, where a sample holds them, how a sum becomes a picture.
+// The passes of the film: their channels, their place in a sample, and the step from a sum to a picture.
 #pragma once
 
 #include "integrator/sample.h"
@@ -16,31 +16,32 @@ enum class Pass : uint32_t {
   MaterialIndex = LANCER_PASS_MATERIAL_INDEX,
   Uv = LANCER_PASS_UV,
   Mist = LANCER_PASS_MIST,
-  Emission = LANCER_PASS_EMISSION, // the first of those that are parts of the light, in the order of LightPass
+  Emission = LANCER_PASS_EMISSION, // the first of the parts of the light, in the order of LightPass
   DiffuseDirect = LANCER_PASS_DIFFUSE_DIRECT,
   DiffuseIndirect = LANCER_PASS_DIFFUSE_INDIRECT,
   DiffuseColor = LANCER_PASS_DIFFUSE_COLOR,
   TransmissionColor = LANCER_PASS_TRANSMISSION_COLOR, // the last of them
   DenoisingNormal = LANCER_PASS_DENOISING_NORMAL,
   DenoisingDepth = LANCER_PASS_DENOISING_DEPTH,
-  Error = LANCER_PASS_ERROR // of the film as a whole: no sample has it
+  Error = LANCER_PASS_ERROR // computed by the film; samples do not contain it
 };
 inline constexpr uint32_t kPassCount = LANCER_PASS_COUNT;
 
 constexpr uint32_t bit(Pass pass) { return 1u << uint32_t(pass); }
 
 uint32_t channels(Pass pass);
-// Whether sample 0 alone decides: a mean of depths or numbers would be that of no thing.
+// Whether sample 0 alone decides: a mean of depths or indices would belong to no object.
 bool of_first_sample(Pass pass);
-// The colour that a direct or indirect pass is divided by; the pass itself where there is none.
+// Returns the colour that a direct or indirect pass is divided by, or the pass itself if there is none.
 Pass divisor(Pass pass);
-// The passes asked for with Combined and all divisors.
+// Returns the requested passes, together with Combined and all divisors.
 uint32_t kept_passes(uint32_t passes);
 
-// Where the channels of a pass begin among the floats of a sample.
+// Returns the index of a pass's first channel among the floats of a sample.
 uint32_t place_in_sample(Pass pass);
 
-// Light over its colour. A channel without colour gets the mean of the others that have some: grey, where nothing is known.
+// Divides light by its colour. A channel without colour gets the mean of the other channels that have colour; without any
+// colour, the quotient is 0.
 glm::dvec3 divide_by_color(const glm::dvec3 &light, const glm::dvec3 &color);
 
 } // namespace lancer

@@ -10,8 +10,8 @@ namespace lancer {
 
 namespace {
 
-// In units of the mean. No pixel of light comes near it; colours below zero, which the mean leaves out, may go beyond. Squares
-// of it, of a neighbourhood together and over a hundredth squared, are still floats.
+// In units of the mean. No pixel of light comes near this bound; negative colours, which the mean ignores, may exceed it. Sums
+// of squares over a neighbourhood, divided by a hundredth squared, still fit into floats.
 constexpr double kMost = 1e15;
 
 } // namespace
@@ -33,7 +33,7 @@ LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.
   }
   dark = !(sum > 0.0);
   unit = dark ? 1.0 : sum / double(pixels);
-  // Lay out what tiles know.
+  // Lay out the tiles' statistics as a picture.
   for (size_t i = 0; i < film.tile_count(); ++i) {
     const Film::Tile &tile = film.tile(i);
     luminances.resize(tile.pixels());
@@ -54,11 +54,12 @@ LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.
 namespace {
 
 constexpr int kRadius = 3;
-// The mean square of differences may be this many times what noise makes of it on average. Of nine pairs of equal pixels, whose
-// noise eighteen differences tell, chance makes more of it less than once in a hundred times (F, 9 and 18 degrees of freedom).
+// The mean square of differences may be this many times its expected value from noise. For nine pairs of equal pixels, whose
+// noise is estimated from eighteen differences, chance exceeds this factor less than once in a hundred times (F, 9 and 18
+// degrees of freedom).
 constexpr float kNoise = 4.0f;
 
-// Goes through the pairs of pixels that are one offset apart: p, and q = p + (dx, dy).
+// Processes the pairs of pixels with one offset: p, and q = p + (dx, dy).
 class Pairs {
 public:
   Pairs(const LuminanceMap &map, const std::vector<float> &of_mean, SimilarNeighbours &sums)
@@ -71,7 +72,7 @@ public:
     const int height = int(map_.height) - dy;
     if (height <= 0)
       return;
-    // Three rows of sums at a time, those beyond the picture empty.
+    // Keep three rows of sums at a time; rows beyond the picture are 0.
     std::fill(rows_[2].begin(), rows_[2].end(), 0.0f);
     sum_row(0, dx, dy, rows_[0]);
     for (int y = 0; y < height; ++y) {
@@ -88,7 +89,7 @@ private:
   int begin(int dx) const { return std::max(0, -dx); }
   int end(int dx) const { return int(map_.width) - std::max(0, dx); }
 
-  // By how much squared differences exceed what noise may make of them, of three pairs in a row.
+  // Sums, over three pairs in a row, the excess of squared differences over the bound for noise.
   void sum_row(int y, int dx, int dy, std::vector<float> &row) {
     const size_t p = size_t(y) * map_.width, q = size_t(y + dy) * map_.width;
     const float *mean_p = map_.mean.data() + p, *mean_q = map_.mean.data() + q;
@@ -110,7 +111,7 @@ private:
       similar[x] = rows_[0][size_t(x)] + rows_[1][size_t(x)] + rows_[2][size_t(x)] <= 0.0f ? 1.0f : 0.0f;
     const auto add = [&](std::vector<float> &sums, const float *values) {
       float *to_p = sums.data() + p, *to_q = sums.data() + q;
-      // One after the other: in one row the two overlap.
+      // Two loops, because p and q overlap within a row.
       for (int x = begin(dx); x < end(dx); ++x)
         to_p[x] += similar[x] * (values ? values[q + size_t(x + dx)] : 1.0f);
       for (int x = begin(dx); x < end(dx); ++x)
@@ -136,7 +137,7 @@ SimilarNeighbours::SimilarNeighbours(const LuminanceMap &map)
   for (size_t i = 0; i < map.size(); ++i)
     of_mean[i] = map.count[i] > 0.0f ? map.variance[i] / map.count[i] : 0.0f;
   Pairs pairs(map, of_mean, *this);
-  // Every pair once, from its upper or left pixel.
+  // Visit each pair once, from its upper or left pixel.
   for (int dy = 0; dy <= kRadius; ++dy)
     for (int dx = dy == 0 ? 1 : -kRadius; dx <= kRadius; ++dx)
       pairs.add(dx, dy);
@@ -144,12 +145,12 @@ SimilarNeighbours::SimilarNeighbours(const LuminanceMap &map)
 
 namespace {
 
-// Squares of pixels within which unmet light is bounded, and the rule of three: what has not come up in m samples has, at 95 %,
-// a probability below 3 / m.
+// Undiscovered light is bounded within squares of kSquare pixels by the rule of three: an event that has not occurred in m
+// samples has, at 95 % confidence, a probability below 3 / m.
 constexpr uint32_t kSquare = 16;
 constexpr double kThree = 3.0;
 
-// z such that a Gaussian number lies within +- z with this probability.
+// Returns z such that a Gaussian number lies within +- z with this probability.
 double gaussian_reach(double confidence) {
   double low = 0.0, high = 40.0;
   while (high - low > 1e-12) {
@@ -208,8 +209,8 @@ PictureError picture_error(const LuminanceMap &map, const RelativeVariance &rela
   if (!map.known)
     return result;
   const double low = std::sqrt(mean_over(map, relative.own)), high = std::sqrt(mean_over(map, relative.shared));
-  // The sum of squares of real errors and that of the measured ones each spread as chi-square: of Gaussian errors by 4/3 of the
-  // sum of squares of what was measured, of others by more.
+  // The sum of squared true errors and that of the measured ones are each distributed as chi-square: for Gaussian errors, the
+  // variance of their difference is 4/3 of the sum of squares of the measured values; for others it is larger.
   double sum = 0.0, squares = 0.0;
   for (size_t i = 0; i < map.size(); ++i) {
     const double value = double(relative.own[i]) / map.count[i];
@@ -219,7 +220,7 @@ PictureError picture_error(const LuminanceMap &map, const RelativeVariance &rela
   constexpr double kSpread = 2.0;
   const double spread = sum > 0.0 ? 0.5 * std::sqrt(kSpread * squares) / sum : 0.0;
   const double reach = exp(gaussian_reach(confidence) * spread);
-  // The difference of halves tells V(N / 2) - V(N): 2^p - 1 times V(N) where variance falls as N^-p. Allow for p = 2.
+  // The difference of halves estimates V(N / 2) - V(N): 2^p - 1 times V(N) where variance falls as N^-p. Allow for p = 2.
   constexpr double kMostOvertold = 3.0;
   result.low = std::min(low, high) / (reach * std::sqrt(kMostOvertold));
   result.high = std::max(low, high) * reach;

@@ -24,22 +24,22 @@ constexpr uint32_t kFewest = 128, kMostPixels = 1024;
 constexpr size_t kFewestNoisy = 160;
 constexpr uint32_t kLooks = 16;
 constexpr uint32_t kMost = 8;
-// What another way has to bring: samples that are dearer for nothing only make the first pictures late.
+// Least gain of another split: samples that cost more without a gain only delay the first pictures.
 constexpr double kWorth = 0.95;
-// Share of the pixels, those of most noise, beyond whose least noise none counts: flashes of light are too rare in so few
-// samples to tell anything.
+// Share of the pixels, those with the most noise, whose noise is clamped to the least among them: bright flashes are too rare
+// in so few samples to estimate their variance.
 constexpr double kNoisiest = 0.005;
 // Costs of a camera ray, a ray that goes on or to a light, and a vertex: in whole numbers, whose sum is the same in any order.
 // Fitted to the times of 26 public files split in four ways each, which they foretell within 10 % (one standard deviation).
 constexpr uint64_t kCameraRay = 4, kRay = 20, kVertex = 15;
 
-// Places that fill a square evenly, however many are taken: multiples of the powers of the plastic number (Roberts, "The
+// Returns places that fill the unit square evenly for any count: multiples of the powers of the plastic number (Roberts, "The
 // unreasonable effectiveness of quasirandom sequences", 2018).
 glm::dvec2 place_of(uint32_t number) {
   return glm::fract(glm::dvec2(0.5) + double(number) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
 }
 
-// What is not finite is dropped.
+// Returns the luminance of a sample; 0 where it is not finite.
 float level_of(const SampleResult &result) {
   const float level = luminance(result.radiance);
   return std::isfinite(level) ? level : 0.0f;
@@ -56,17 +56,17 @@ uint64_t cost_of(const Integrator &integrator) {
 Pilot::Pilot(const Scene &scene, const Camera &camera, const Background &background, const IntegratorSettings &settings,
              uint32_t threads)
     : scene_(scene), camera_(camera), background_(background), settings_(settings), costs_(threads), barrier_(threads) {
-  // Passes cost, and tell nothing of noise.
+  // Other passes cost time and do not change the noise of the picture.
   settings_.passes = 1u << LANCER_PASS_COMBINED;
   settings_.splits = {};
-  // Every seed, and every frame of an animation that changes nothing else, finds the same way.
+  // Fix the seed: every seed, and every frame of an animation that changes nothing else, gets the same splits.
   settings_.seed = 0;
   for (uint32_t thread = 0; thread < threads; ++thread)
     integrators_.push_back(make_integrator(scene, camera, settings_));
 }
 
 void Pilot::work(uint32_t thread) {
-  // A thread that leaves, even by failing, keeps no other waiting.
+  // A thread that leaves, even by an exception, must not block the others.
   struct Leave {
     Pilot &pilot;
     uint32_t thread;
@@ -87,7 +87,7 @@ void Pilot::work(uint32_t thread) {
   }
 }
 
-// Doubles each of the two numbers by turns as long as that pays, first the one that pays more.
+// Doubles each of the two numbers in turn as long as that pays, beginning with the one that pays more.
 void Pilot::search() {
   const auto doubled = [&](bool lights) {
     Splits splits = best_;
@@ -116,7 +116,7 @@ void Pilot::search() {
   }
 }
 
-// Takes pixels that have noise from the whole image. Returns what they tell of not splitting.
+// Chooses pixels with noise from the whole image. Returns the measurement of the picture without splits.
 Pilot::Look Pilot::find_pixels() {
   const double planned = double(camera_.width) * camera_.height * settings_.samples;
   const auto wanted = std::bit_floor(uint32_t(std::clamp(planned / kSamplesEach, double(kFewest), double(kMostPixels))));
@@ -126,12 +126,12 @@ Pilot::Look Pilot::find_pixels() {
   uint64_t traced = 0;
   while (looked_at == 0 || (pixels_.size() < kFewestNoisy && looked_at < kLooks * wanted && !settings_.cancelled())) {
     std::vector<Pixel> some;
-    // Of all, in their order, so that the sum is the same whether what is empty is traced or not.
+    // Keep the order of all pixels, so that the sum is the same whether empty pixels are traced or not.
     std::vector<double> levels(wanted, level_of(background_.sample));
     std::vector<uint32_t> numbers;
     for (uint32_t i = 0; i < wanted; ++i) {
       const glm::dvec2 at = place_of(looked_at++) * glm::dvec2(camera_.width, camera_.height);
-      // Addresses begin at the region, which may lie beyond: they come around.
+      // Addresses start at the region's corner and wrap around for pixels outside it.
       const Pixel pixel{.x = std::min(uint32_t(at.x), camera_.width - 1) - camera_.x,
                         .y = std::min(uint32_t(at.y), camera_.height - 1) - camera_.y};
       if (is_empty(pixel))
@@ -152,7 +152,7 @@ Pilot::Look Pilot::find_pixels() {
   }
   looks_ = 1;
   darkest_ = std::max(0.01 * sum / looked_at, 1e-30);
-  // Others mostly show the background, for a camera ray; where that is even, the picture does not trace them.
+  // The other pixels mostly show the background at the cost of a camera ray; an even background is not traced by the picture.
   const uint64_t cost_of_rays = kCameraRay * kSamples * (traced - pixels_.size());
   if (has_even_background(scene_, camera_))
     plain.cost -= cost_of_rays;
@@ -161,7 +161,7 @@ Pilot::Look Pilot::find_pixels() {
   return plain;
 }
 
-// Whether it shows the background for certain.
+// Whether a pixel certainly shows the background.
 bool Pilot::is_empty(const Pixel &pixel) const {
   return pixel.x < camera_.region_width && pixel.y < camera_.region_height && !background_.coverage.covers(pixel.x, pixel.y);
 }
@@ -176,9 +176,10 @@ Pilot::Look Pilot::look(const Splits &splits) {
   return look;
 }
 
-// Whether variance times cost is less than that of another, times a factor. Noise counts relative to what a pixel shows, that
-// of dark ones to a share of the whole picture, as errors are told. All looks together say what it shows: a pixel that one of
-// them alone finds bright by chance would have less noise in that look than in others.
+// Whether variance times cost of a measurement is less than that of another, times a factor. Variance is relative to a pixel's
+// level, which for dark pixels is a share of the picture's mean, as in the error of a picture. The level is the mean over all
+// measurements: if each measurement used its own level, a pixel that one of them finds bright by chance would have less noise
+// there than in the others.
 bool Pilot::is_better(const Look &look, const Look &than, double by) const {
   const auto relative = [&](const Look &of, size_t i) {
     const double level = pixels_[i].level / looks_ + darkest_;
@@ -199,7 +200,7 @@ bool Pilot::is_better(const Look &look, const Look &than, double by) const {
   return product(look) < by * product(than);
 }
 
-// Returns what it cost.
+// Returns the cost.
 uint64_t Pilot::run(const std::vector<Pixel> &pixels, const Splits &splits) {
   addresses_.clear();
   for (const Pixel &pixel : pixels)
@@ -221,9 +222,9 @@ double Pilot::mean_of(size_t pixel) const {
   return sum / kSamples;
 }
 
-// Squares of what neighbouring stretches of a pixel's samples differ by: its halves, their halves, and theirs. Where variance
-// falls as N^-1.5, as it mostly does, each counts for about the same; shorter ones would tell of other samples than a picture
-// has.
+// Sums the squared differences of neighbouring ranges of a pixel's samples: its halves, quarters and eighths. Where variance
+// falls as N^-1.5, as it mostly does, each level contributes about the same; shorter ranges would describe other samples than
+// those of a picture.
 double Pilot::noise_of(size_t pixel) const {
   constexpr uint32_t kStretches = 8;
   double sums[kStretches] = {}, noise = 0.0;

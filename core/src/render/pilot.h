@@ -1,4 +1,4 @@
-// How samples split: found out by a few pixels, before the first sample of a picture.
+// The pilot: finds, from a few pixels, how samples split before the first sample of a picture.
 #pragma once
 
 #include "render/background.h"
@@ -9,32 +9,32 @@
 
 namespace lancer {
 
-// Renders some pixels of the whole image with one way of splitting after the other, and takes the one whose variance times cost
-// is least. Its own samples are thrown away: a picture whose samples had been looked at before would be biased. Variance is
-// told by halves, as that of the picture is; cost is counted in rays and vertices. So nothing depends on threads, clocks, the
-// seed or the region that is rendered.
+// Renders some pixels of the whole image with different splits and chooses the one with the least variance times cost. The
+// pilot's samples are discarded: a picture that keeps samples on which a decision was based would be biased. Variance is
+// estimated from halves, as that of the picture; cost is counted in rays and vertices. So the result does not depend on
+// threads, clocks, the seed or the rendered region.
 class Pilot {
 public:
-  // Fewer planned samples are not worth it.
+  // Below this number of planned samples, the search does not pay.
   static constexpr uint32_t kLeastPlanned = 16;
 
-  // What is given must outlive it. background: what need not be looked at; it changes nothing but the time. threads: how many
-  // will work.
+  // All references must outlive the pilot. background: pixels that need not be traced; it changes nothing but the time.
+  // threads: the number of threads that will call work().
   Pilot(const Scene &scene, const Camera &camera, const Background &background, const IntegratorSettings &settings,
         uint32_t threads);
 
-  // Every thread calls it once, all at the same time; each returns when the way is found.
+  // Every thread must call it once, all at the same time; each call returns when the splits are found.
   void work(uint32_t thread);
-  // Then.
+  // The result, valid after work().
   const Splits &splits() const { return best_; }
 
 private:
   // A pixel that has noise.
   struct Pixel {
     uint32_t x, y;
-    double level = 0.0; // mean luminances of all looks, summed
+    double level = 0.0; // sum over all measurements of the mean luminance
   };
-  // What the pixels tell of a way.
+  // The measurement of one way of splitting.
   struct Look {
     Splits splits;
     std::vector<double> noise; // [pixel]
@@ -56,15 +56,15 @@ private:
   const Background &background_;
   IntegratorSettings settings_;
   std::vector<Pixel> pixels_;
-  uint32_t looks_ = 0;          // that levels are sums of
+  uint32_t looks_ = 0;          // number of measurements in level
   double darkest_ = 0.0;        // added to every level
-  uint64_t cost_of_others_ = 0; // of pixels without noise, whichever way
-  // Of what is looked at now.
+  uint64_t cost_of_others_ = 0; // of pixels without noise, independent of the splits
+  // The current measurement.
   Splits tried_;
   std::vector<SampleAddress> addresses_;                 // [pixel][sample]
-  std::vector<float> luminances_;                        // of each
+  std::vector<float> luminances_;                        // of each address
   std::vector<std::unique_ptr<Integrator>> integrators_; // by thread
-  std::vector<uint64_t> costs_;                          // of each
+  std::vector<uint64_t> costs_;                          // of each thread
   std::atomic<size_t> next_batch_{0};
   Splits best_;
   std::atomic<bool> done_{false};

@@ -17,7 +17,7 @@ template <class Target, class Vector> void store(Target *target, const Vector &v
     target[i] = Target(v[i]);
 }
 
-// t keeps its meaning: origin and direction are scaled similar.
+// t stays the same: origin and direction are scaled alike.
 std::vector<Ray> rays_of(const Scene &scene, uint32_t count, const double *origins, const double *directions,
                          const double *tmin, const double *tmax) {
   std::vector<Ray> rays(count);
@@ -132,7 +132,7 @@ void probe_light_pdf(const Scene &scene, uint32_t light, uint32_t count, const d
       pdf[i] = float(scene.lights.environment().pdf(w, false));
       continue;
     }
-    // Sum over all places where the direction meets the emitter: the sampler may have chosen any of them.
+    // Sum over all places where the direction hits the emitter: sampling may have chosen any of them.
     const Emitter &emitter = scene.lights.emitters()[light - described];
     double sum = 0.0;
     Ray ray;

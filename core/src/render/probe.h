@@ -1,4 +1,4 @@
-// Questions to formulas and materials, without a picture.
+// Probes: queries of formulas and materials without a picture.
 #pragma once
 
 #include "compile/scene.h"
@@ -12,7 +12,7 @@
 
 namespace lancer {
 
-// What the probes are given from outside: numbers that stand for random ones, and directions.
+// Checks of a probe's input: numbers in [0, 1), and finite directions.
 
 inline void check_unit(const float *u, size_t count) {
   for (size_t i = 0; i < count; ++i)
@@ -26,7 +26,7 @@ inline void check_directions(const double *directions, size_t count) {
       bad_argument("probe: direction " + std::to_string(i / 3) + " holds " + std::to_string(directions[i]));
 }
 
-// The stages by themselves, for tests: arrays in, arrays out, through the code that renders.
+// Probes of single stages, for tests: arrays in, arrays out, through the code that renders.
 
 // Shapes, units and frames as in lancer.h.
 void probe_intersect(const Scene &scene, uint32_t count, const double *origins, const double *directions, const double *tmin,
@@ -44,7 +44,7 @@ void probe_filter(const PixelFilter &filter, uint32_t count, const float *u, flo
 void probe_camera(const Session &session, uint32_t count, const double *raster, const double *lens, double *origins,
                   double *directions);
 
-// Materials and the world by themselves, for tests and panels: arrays in, arrays out, through the code that renders.
+// Probes of materials and the world, for tests and panels: arrays in, arrays out, through the code that renders.
 
 // Shapes, units and frames as in lancer.h.
 void probe_bsdf(const Scene &scene, uint32_t material, uint32_t count, const float *wo, const float *wi, float *f, float *pdf);
@@ -52,7 +52,8 @@ void probe_bsdf_sample(const Scene &scene, uint32_t material, uint32_t count, co
                        lancer_bsdf_sample *samples);
 void probe_lobes(const Scene &scene, uint32_t material, const float *wo, lancer_lobe_info *lobes, uint32_t capacity,
                  uint32_t *count, float *emission, float *transmittance);
-// The value (float[4]) of a node of constants alone.
+// Computes the value (float[4]) of a node whose inputs are constants. Throws Error for a node that depends on the shading
+// point.
 void evaluate_node(const lancer_node &node, float *value);
 void probe_node(const Scene &scene, uint32_t material, uint32_t node, uint32_t count, const float *uv, float *values);
 void probe_world(const Scene &scene, uint32_t count, const double *directions, float *radiance, float *pdf);

@@ -16,7 +16,7 @@ void store(float *target, const glm::vec3 &v) {
     target[i] = v[i];
 }
 
-// A unit square in the plane z = 0, UV map and all, on which a material is looked at.
+// A unit square in the plane z = 0 with a UV map, on which a material is evaluated.
 class Stage {
 public:
   Stage(const Scene &scene, uint32_t material) : shader_(scene, nullptr), material_(material) {
@@ -43,13 +43,13 @@ public:
     surface.p = geometry_.instances[0].to_world.point({double(uv.x), double(uv.y), 0.0});
     surface.instance = 0;
     surface.material = material_;
-    // Below the diagonal (u, v) = u - v of vertex 1 and v of vertex 2; above it u of vertex 1 and v - u of vertex 2.
+    // Below the diagonal, the weights of vertices 1 and 2 are (u - v, v); above it, (u, v - u).
     surface.primitive = uv.y <= uv.x ? 0 : 1;
     surface.bary = surface.primitive == 0 ? glm::dvec2(uv.x - uv.y, uv.y) : glm::dvec2(uv.x, uv.y - uv.x);
     return surface;
   }
 
-  // The material in the middle of the square as wo (local: tangent x, normal z) sees it.
+  // Returns the material in the middle of the square, seen from wo (local: tangent x, normal z).
   const Shaded &seen_from(const glm::vec3 &wo) {
     shader_.shade(at(glm::vec2(0.5f)), {.wo = wo}, shaded_);
     return shaded_;
@@ -64,7 +64,7 @@ private:
   Shaded shaded_;
 };
 
-// A lobe's kind as lancer.h names what it has become.
+// Returns the kind in lancer.h of a built lobe.
 uint32_t kind_of(const Lobe<float> &lobe) {
   switch (lobe.shape) {
   case LobeShape::Lambert:
@@ -148,7 +148,7 @@ void probe_lobes(const Scene &scene, uint32_t material, const float *wo, lancer_
 
 void evaluate_node(const lancer_node &node, float *value) {
   if (!asks_no_place(node.kind))
-    bad_argument("node: kind " + std::to_string(node.kind) + " has no value by itself");
+    bad_argument("node: kind " + std::to_string(node.kind) + " depends on the shading point");
   Description description;
   const Program program = read_program(description, "node", &node, 1);
   glm::vec4 result(0.0f);

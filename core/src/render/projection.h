@@ -1,4 +1,4 @@
-// From the world to pixels of a flat picture, with all around them that may show a point.
+// Projection from the world to pixels of a flat picture, with a margin for the filter and the lens.
 #pragma once
 
 #include "scene/camera.h"
@@ -9,7 +9,7 @@
 
 namespace lancer {
 
-// A point as the camera has it: x and y across, z the depth along its axis.
+// A point in camera space: x and y across, z the depth along the axis.
 using CameraPoint = glm::dvec3;
 
 class Projection {
@@ -29,20 +29,20 @@ public:
   }
 
   const Affine &to_camera() const { return to_camera_; }
-  // Whether a point lies beyond the near plane; an orthographic camera's is not asked.
+  // Whether a point lies beyond the near plane; always true for an orthographic camera.
   bool is_beyond(const CameraPoint &point) const { return !perspective_ || point.z > nearest_; }
-  // Pixels of the region, from its lower left corner.
+  // Returns the pixel in the region, from its lower left corner.
   glm::dvec2 pixel(const CameraPoint &point) const {
     return scale_ * (perspective_ ? glm::dvec2(point) / point.z : glm::dvec2(point)) + shift_;
   }
-  // How far from its pixel a point may be seen. What the lens adds is largest at a corner of a polygon: on its plane the
-  // inverse depth (orthographic: the depth) is a linear function of the pixel.
+  // Returns the distance from its pixel within which a point may be visible. Over a polygon, the part of the lens is largest at
+  // a corner: in the polygon's plane the inverse depth (orthographic: the depth) is a linear function of the pixel.
   double margin(const CameraPoint &point) const {
     if (!(lens_ > 0.0))
       return filter_;
     return filter_ + lens_ * std::abs(perspective_ ? 1.0 / point.z - 1.0 / in_focus_ : 1.0 - point.z / in_focus_);
   }
-  // Cuts a triangle at the near plane. Returns how many corners are left, at most four.
+  // Clips a triangle at the near plane. Returns the number of corners of the rest, at most four.
   uint32_t clip(const std::array<CameraPoint, 3> &triangle, std::array<CameraPoint, 4> &left) const {
     uint32_t count = 0;
     for (int i = 0; i < 3; ++i) {
@@ -58,15 +58,15 @@ public:
   }
 
 private:
-  // Far beyond what rounding moves a ray or a corner, in pixels.
+  // In pixels: far above the rounding error of a ray or a corner.
   static constexpr double kSlack = 1.0 / 16.0;
 
   bool perspective_;
   double nearest_;
   Affine to_camera_;
   glm::dvec2 scale_, shift_; // from the window to pixels
-  double filter_;            // what the pixel filter reaches, pixels
-  double lens_, in_focus_;   // radius of the lens, in pixels at depth 1; depth of what is in focus
+  double filter_;            // radius of the pixel filter, in pixels
+  double lens_, in_focus_;   // radius of the lens, in pixels at depth 1; depth of the plane in focus
 };
 
 } // namespace lancer

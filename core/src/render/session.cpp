@@ -13,9 +13,9 @@ namespace lancer {
 namespace {
 
 constexpr uint32_t kTileSize = 32, kSmallestTile = 8, kLargestTile = 256;
-// At the end threads wait for the last tile: so many for each keep that near a hundredth of the time.
+// Threads wait for the last tile at the end: so many tiles per thread keep the wait near a hundredth of the time.
 constexpr uint64_t kTilesEach = 64;
-// Squares whose samples are judged together. Fixed, so that what is refined depends on neither tile size nor threads.
+// Side of the squares whose samples are refined together. Fixed, so that refinement depends on neither tile size nor threads.
 constexpr uint32_t kRefinedSize = 16;
 
 Camera normalised(Camera camera, const Normalisation &normalisation) {
@@ -25,7 +25,7 @@ Camera normalised(Camera camera, const Normalisation &normalisation) {
   return camera;
 }
 
-// Refuses a film that the machine cannot hold.
+// Throws Error for a film that exceeds the machine's memory.
 const Camera &checked_memory(const Camera &camera, const SessionSettings &settings) {
   const uint32_t samples = std::max(settings.integrator.samples, 1u);
   check_memory("film: " + std::to_string(camera.region_width) + " x " + std::to_string(camera.region_height) + " pixels, " +
@@ -99,10 +99,10 @@ bool Session::refine(double target, double confidence) {
   for (size_t i = 0; i < film_.tile_count(); ++i)
     if (!std::has_single_bit(film_.tile(i).count))
       throw Error(Fault::State, "session: " + std::to_string(film_.tile(i).count) +
-                                    " samples are no power of two; only those can be doubled");
+                                    " samples are not a power of two; only powers of two can be doubled");
   const RelativeVariance relative(map);
   const PictureError error = picture_error(map, relative, confidence);
-  // What the target leaves for the error itself when its bound is to meet it.
+  // The error that meets the target when its upper bound, with the light that may be missing, has to.
   const double bound = error.high + error.cannot_exclude;
   const double goal = bound > 0.0 ? target * error.error / bound : target;
   const Refinement refinement = plan_refinement(film_, map, relative, goal, settings_.integrator.samples);
@@ -128,7 +128,7 @@ void Session::start() {
   started_ = true;
   active_ = pool_.size();
   start_ = std::chrono::steady_clock::now();
-  // What ended before the first sample is found anew.
+  // If the last range ended before the first sample, the background and the splits are found anew.
   pilot_.reset();
   background_found_.reset();
   if (film_.sample_range().second == 0) {
@@ -140,7 +140,7 @@ void Session::start() {
 }
 
 void Session::work(uint32_t thread) {
-  // However the thread leaves, the clock stops with the last one.
+  // The clock stops with the last thread, even if a thread leaves by an exception.
   struct Leave {
     Session &session;
     ~Leave() {
@@ -166,7 +166,7 @@ void Session::work(uint32_t thread) {
   }
 }
 
-// The first thread looks, the others wait for it, however it leaves.
+// The first thread searches; the others wait until it leaves, even by an exception.
 void Session::look_for_background(uint32_t thread) {
   if (thread != 0)
     return background_found_->wait();
@@ -186,7 +186,7 @@ void Session::find_splits(uint32_t thread) {
   splits_ = pilot_->splits();
 }
 
-// Takes back what a stopped range has added beyond powers of two.
+// Drops the samples of a stopped range beyond powers of two.
 void Session::settle() {
   stop_ = false;
   samples_ = 0;
@@ -197,7 +197,7 @@ void Session::settle() {
     film_.round_down(tile);
     samples_ += uint64_t(tile.count) * tile.pixels();
   }
-  // Of the range nothing is left to be cancelled.
+  // No part of the range is left to cancel.
   range_samples_ = 0;
 }
 
@@ -256,7 +256,7 @@ void Session::read(Pass pass, std::span<float> out) const {
     return;
   }
   if (!film_.has(pass))
-    bad_argument("session: pass " + std::to_string(uint32_t(pass)) + " is not kept; ask for it in the settings");
+    bad_argument("session: pass " + std::to_string(uint32_t(pass)) + " is not stored; request it in the settings");
   film_.read(pass, out);
 }
 
@@ -284,7 +284,7 @@ SessionError Session::error(double confidence) const {
   Energy energy;
   for (const auto &worker : workers_)
     energy += worker->energy();
-  // Energy is also that of samples which a stopped range has taken back.
+  // Energy includes samples that a stopped range has dropped.
   light *= double(counted_samples_) / std::max(samples, 1.0);
   if (light > 0.0) {
     result.clipped = energy.clipped / (light + energy.clipped);

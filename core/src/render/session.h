@@ -1,4 +1,4 @@
-// One render: a scene seen through a camera, samples in ranges, the film they fall on.
+// One render: a scene seen by a camera, ranges of samples, and the film that stores them.
 #pragma once
 
 #include "lancer.h"
@@ -20,10 +20,10 @@ struct SessionSettings {
   uint32_t threads = 0;
   uint32_t tile_size = 0;
   bool refines = false;      // the film is laid out for refine()
-  bool finds_splits = false; // integrator.splits are to be found
+  bool finds_splits = false; // the session has to find integrator.splits
 };
 
-// Checks and copies settings; an Error names the setting and its value.
+// Checks and copies settings; throws Error with the name of the setting and its value.
 SessionSettings read_settings(const lancer_settings &source);
 FilterKind read_filter(uint32_t filter, float width);
 
@@ -45,13 +45,13 @@ struct SessionStatistics {
   Splits splits{0, 0}; // 0 before the first sample
 };
 
-// What a picture may still be wrong by, and what its settings have taken from it.
+// The error of the picture and the light that its settings remove.
 struct SessionError {
   PictureError picture;
-  double clipped = 0.0; // share of the picture's light that clamping has taken away
-  double missing = 0.0; // share that paths beyond the depth limit would add, as far as the last bounces tell
+  double clipped = 0.0; // share of the picture's light that clamping removes
+  double missing = 0.0; // share that paths beyond the depth limit would add, estimated from the last bounces
   uint32_t least_samples = 0, most_samples = 0;
-  double planned_samples = 0.0; // pixel samples that the last refine() still wanted in all
+  double planned_samples = 0.0; // further pixel samples that the last refine() predicted
 };
 
 class Session {
@@ -60,15 +60,16 @@ public:
   Session(std::shared_ptr<const Scene> scene, const Camera &camera, const SessionSettings &settings);
   ~Session();
 
-  // Starts samples first ... first + count - 1; Error when first does not follow, or while another range runs.
+  // Starts samples first ... first + count - 1; throws Error when first does not follow the last sample, or while another range
+  // runs.
   void render(uint32_t first, uint32_t count);
-  // Starts a round that doubles the samples of some pixels: plan_refinement(). False when nothing can be doubled any more.
-  // confidence: of the bound that is to come below target.
+  // Starts a round that doubles the samples of some pixels: plan_refinement(). Returns false when nothing can be doubled.
+  // confidence: of the upper bound that has to fall below target.
   bool refine(double target, double confidence);
   enum class State { Done, Running, Cancelled };
   State wait(uint32_t milliseconds, Progress &progress);
   void cancel() { cancel_ = true; }
-  // Ends the range like cancel(), but no pixel keeps more samples than the last power of two, and the session can go on.
+  // Ends the range like cancel(), but each pixel keeps only a power of two of samples, and the session can go on.
   void stop() {
     stop_ = true;
     cancel_ = true;
@@ -80,7 +81,7 @@ public:
   SessionError error(double confidence) const;
   const Scene &scene() const { return *scene_; }
   const Camera &camera() const { return camera_; }
-  // Computes one sample by itself. Not while rendering.
+  // Computes one sample alone. Must not be called while a range runs.
   SampleResult replay(const SampleAddress &address, std::vector<PathVertex> &vertices);
 
 private:
@@ -101,26 +102,26 @@ private:
   std::vector<std::unique_ptr<TileWorker>> workers_;
   std::atomic<bool> cancel_{false}, stop_{false};
   std::atomic<size_t> next_task_{0};
-  std::atomic<uint64_t> samples_{0}, counted_samples_{0}; // that the film has; that it has ever had
+  std::atomic<uint64_t> samples_{0}, counted_samples_{0}; // samples in the film; samples ever added
   uint64_t range_samples_ = 0, samples_before_ = 0;
-  // What runs: tiles in order, and the samples that each of their pixels then has.
+  // The running range: tiles in order, with the samples that each of their pixels has afterwards.
   struct Task {
     uint32_t tile, end;
   };
   std::vector<Task> tasks_;
-  std::unique_ptr<Pilot> pilot_; // of a range that begins with finding how samples split
+  std::unique_ptr<Pilot> pilot_; // set while a range starts by finding the splits
   Background background_;
-  std::unique_ptr<std::latch> background_found_; // of a range that begins with looking for it
+  std::unique_ptr<std::latch> background_found_; // set while a range starts by searching the background
   double planned_samples_ = 0.0;
   bool cancelled_ = false, failed_ = false;
   double seconds_before_ = 0.0;
   std::chrono::steady_clock::time_point start_;
   bool started_ = false;
-  mutable std::mutex mutex_; // of what follows
+  mutable std::mutex mutex_; // guards the following members
   Splits splits_;
   std::chrono::steady_clock::time_point end_time_;
   std::atomic<uint32_t> active_{0};
-  ThreadPool pool_; // last: its threads end before anything else does
+  ThreadPool pool_; // last: its threads end before other members are destroyed
 };
 
 } // namespace lancer

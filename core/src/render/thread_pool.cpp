@@ -32,7 +32,7 @@ using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
 File open(const std::string &path) { return {std::fopen(path.c_str(), "r"), &std::fclose}; }
 
-// The numbers at the start of a file; 0 for those that are not there, as where it says "max".
+// Returns the numbers at the start of a file; 0 for missing ones, as for the text "max".
 std::array<double, 2> numbers(const std::string &path) {
   std::array<double, 2> found{};
   if (const File file = open(path))
@@ -41,7 +41,7 @@ std::array<double, 2> numbers(const std::string &path) {
   return found;
 }
 
-// Quota over period of one group; infinity where it has no limit.
+// Returns quota over period of one group; infinity where it has no limit.
 double quota(const std::string &folder) {
   // Version 2: "max 100000" or "150000 100000".
   auto [time, period] = numbers(folder + "/cpu.max");
@@ -53,8 +53,8 @@ double quota(const std::string &folder) {
   return time > 0.0 && period > 0.0 ? time / period : std::numeric_limits<double>::infinity();
 }
 
-// The least quota of a group and of those that hold it. Inside a container the path may be that of the host, of which the
-// container sees the end as its root.
+// Returns the least quota of a group and its ancestors. Inside a container, the path may be that of the host, whose last part
+// is the container's root.
 double quota_of_all(const std::string &mount, std::string path) {
   double least = quota(mount);
   while (path.size() > 1) {
@@ -64,7 +64,7 @@ double quota_of_all(const std::string &mount, std::string path) {
   return least;
 }
 
-// The least quota of the groups that hold this process, by the kernel's lines "number:controllers:path".
+// Returns the least quota of the groups of this process, by the kernel's lines "number:controllers:path".
 double quota_of_process(const std::string &root) {
   double least = std::numeric_limits<double>::infinity();
   const File file = open(root + "/proc/self/cgroup");
@@ -86,7 +86,7 @@ double quota_of_process(const std::string &root) {
   return least;
 }
 
-// Processors that the calling thread may run on; 0 where the kernel does not tell.
+// Returns the number of processors that the calling thread may run on; 0 where the kernel does not report it.
 uint32_t allowed_processors() {
   for (int room = 1024; room <= 1 << 20; room *= 4) {
     cpu_set_t *const set = CPU_ALLOC(size_t(room));
@@ -99,7 +99,7 @@ uint32_t allowed_processors() {
     CPU_FREE(set);
     if (known)
       return uint32_t(count);
-    // More processors than there was room for.
+    // EINVAL: the system has more processors than the set has bits.
     if (error != EINVAL)
       return 0;
   }
@@ -115,7 +115,7 @@ uint32_t usable_processors([[maybe_unused]] const std::string &root) {
   if (const uint32_t allowed = allowed_processors())
     count = allowed;
   const double least = quota_of_process(root);
-  // Half a processor more is a thread more, which waits half of the time.
+  // Round up: a part of a processor is worth a thread, which waits for the rest of the time.
   if (least < count)
     count = std::max(1u, uint32_t(std::ceil(least)));
 #endif
@@ -124,13 +124,13 @@ uint32_t usable_processors([[maybe_unused]] const std::string &root) {
 
 namespace {
 
-// Small enough that freeing it does not give it back to the system.
+// Small enough that free() does not return it to the system.
 constexpr size_t kReserve = size_t(64) << 10;
 
-// What is free afterwards is there for prepare_to_fail(); without any the pool fails with words.
+// Leaves free memory for prepare_to_fail(); if there is none, the pool reports missing memory.
 void reserve_memory() {
   const std::unique_ptr<char[]> memory(new char[kReserve]);
-  // Not to be left out by the compiler.
+  // Keeps the compiler from removing the allocation.
   *static_cast<volatile char *>(memory.get()) = 0;
 }
 
@@ -148,7 +148,7 @@ uint64_t float_control() {
 }
 void set_float_control(uint64_t value) { asm volatile("msr fpcr, %0" : : "r"(value)); }
 #else
-// What C knows of: the rounding.
+// Standard C has control of the rounding mode alone.
 constexpr uint64_t kPlainFloats = FE_TONEAREST;
 uint64_t float_control() { return uint64_t(std::fegetround()); }
 void set_float_control(uint64_t value) { std::fesetround(int(value)); }
@@ -168,7 +168,7 @@ ThreadPool::ThreadPool(uint32_t count) {
       done_.wait(lock, [this] { return ready_ == size(); });
     }
   } catch (...) {
-    // Not all threads could be had: end those that were, then tell.
+    // Not all threads could be started: end those that were, then rethrow.
     {
       const std::lock_guard lock(mutex_);
       stop_ = true;
@@ -230,7 +230,7 @@ void ThreadPool::loop(uint32_t thread) {
     lock.unlock();
     std::exception_ptr failure;
     try {
-      // No other work comes before this one is done: a copy, which takes memory, is not needed.
+      // No other work starts before this one is done: a copy, which takes memory, is not needed.
       work_(thread);
     } catch (...) {
       failure = std::current_exception();

@@ -12,15 +12,15 @@
 
 namespace lancer {
 
-// The number of processors that this process may use.
+// Returns the number of processors that this process may use.
 
-// Threads that can run at a time: the processors that the process may run on, fewer where its control group (1 or 2) has a
-// quota of processor time. At least 1. root: where the file system begins.
+// The number of threads that can run at a time: the processors that the process may run on, fewer where its control group (1 or
+// 2) has a quota of processor time. At least 1. root: prefix of the file system's paths.
 uint32_t usable_processors(const std::string &root = "");
 
-// Threads that wait for work and can be watched from outside.
+// Threads that wait for work and can be observed from outside.
 
-// Runs one job at a time on all of its threads. The first exception of a job is kept for the one who waits.
+// The pool runs one job at a time on all of its threads. The first exception of a job is stored for the caller of wait().
 class ThreadPool {
 public:
   // count 0: one per processor that the process may use.
@@ -31,9 +31,9 @@ public:
   ThreadPool &operator=(const ThreadPool &) = delete;
 
   uint32_t size() const { return uint32_t(threads_.size()); }
-  // Starts work(thread) on every thread; none may be running.
+  // Starts work(thread) on every thread; no job may be running.
   void start(std::function<void(uint32_t thread)> work);
-  // True when the job is done; waits at most the given time. Rethrows what the job threw, once.
+  // Waits at most the given time and returns whether the job is done. Rethrows the exception of the job, once.
   bool wait(uint32_t milliseconds);
   bool running() const;
 
@@ -50,8 +50,8 @@ private:
   std::vector<std::thread> threads_;
 };
 
-// Sets the processor's float arithmetic to round-to-nearest with subnormals for as long as it lives: other code in the same
-// process may have set it otherwise, and threads inherit that.
+// Sets the processor's float arithmetic to round-to-nearest with subnormals during its lifetime: other code in the same process
+// may have set another mode, which threads inherit.
 class FloatEnvironment {
 public:
   FloatEnvironment();

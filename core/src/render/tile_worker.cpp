@@ -6,10 +6,11 @@ namespace {
 
 // A batch of paths that fills the queues without leaving the second-level cache.
 constexpr uint32_t kBatch = 1024;
-// Where pixels are not covered a batch has more samples of the others, and results of so many batches at most.
+// Where some pixels are not covered, a batch takes more samples of the others; its results, with those of uncovered pixels,
+// fill at most this many batches.
 constexpr uint32_t kMostBatches = 2;
 
-// Nothing but where the camera ray ended.
+// Returns a sample with nothing but the hit of the camera ray.
 SampleResult place_of(const SampleResult &result) {
   SampleResult place(true);
   place.depth = result.depth;
@@ -29,7 +30,7 @@ void TileWorker::render(Film &film, Film::Tile &tile, uint32_t end, const Backgr
   const uint32_t pixels = tile.pixels();
   if (pixels == 0)
     return;
-  // Find the pixels that may show anything.
+  // Find the covered pixels.
   covered_.clear();
   for (uint32_t pixel = 0; pixel < pixels; ++pixel)
     if (const glm::uvec2 place = tile.place(pixel); background.coverage.covers(place.x, place.y))
@@ -42,7 +43,7 @@ void TileWorker::render(Film &film, Film::Tile &tile, uint32_t end, const Backgr
   }
   const uint32_t per_batch = std::max(1u, std::min(kBatch / covered, kMostBatches * kBatch / pixels));
   while (tile.count < end && !settings_.cancelled()) {
-    // Take their next whole samples.
+    // Render the next samples of all of them.
     const uint32_t samples = std::min(per_batch, end - tile.count);
     render_batch(tile, samples);
     if (settings_.cancelled())
@@ -63,7 +64,7 @@ void TileWorker::render_batch(const Film::Tile &tile, uint32_t samples) {
     }
   results_.resize(addresses_.size());
   batch_energy_ = {};
-  // Large tiles go through the integrator in several batches.
+  // Large tiles pass through the integrator in several batches.
   for (size_t begin = 0; begin < addresses_.size(); begin += kBatch) {
     const size_t size = std::min<size_t>(kBatch, addresses_.size() - begin);
     integrator_->run(std::span(addresses_).subspan(begin, size), std::span(results_).subspan(begin, size), nullptr);
@@ -80,7 +81,7 @@ void TileWorker::drop_invalid(Film &film, Film::Tile &tile) {
   }
 }
 
-// The results of whole samples: those of covered pixels, and the background between them.
+// Returns the results of all pixels: those of covered pixels, and the background in the others.
 std::span<const SampleResult> TileWorker::all_pixels(const Film::Tile &tile, uint32_t samples, const SampleResult &background) {
   const uint32_t pixels = tile.pixels();
   if (covered_.size() == pixels)

@@ -1,4 +1,4 @@
-// How one thread renders tiles: batches of samples through its integrator, onto the film.
+// The work of one thread: renders tiles in batches of samples and adds them to the film.
 #pragma once
 
 #include "render/background.h"
@@ -11,17 +11,17 @@ namespace lancer {
 
 class TileWorker {
 public:
-  // What is given must outlive it.
+  // All references must outlive the worker.
   TileWorker(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);
 
   void set_splits(const Splits &splits) { integrator_->set_splits(splits); }
   const char *kernel() const { return integrator_->kernel(); }
-  // Adds the next samples of a tile, up to end. count() is told of each batch that the film has got. A batch that is broken
-  // off, as settings.cancel says, is worth nothing.
+  // Adds the next samples of a tile, up to end, and calls count() after each batch that the film has received. A batch that
+  // settings.cancel interrupts is discarded.
   void render(Film &film, Film::Tile &tile, uint32_t end, const Background &background,
               const std::function<void(uint64_t samples)> &count);
 
-  // Of all batches that the film has got; while others run.
+  // Totals of all batches that the film has received; may be called while rendering.
   RayCounts rays() const;
   VertexCounts vertices() const;
   Energy energy() const;
@@ -36,9 +36,9 @@ private:
   std::unique_ptr<Integrator> integrator_;
   std::vector<uint32_t> covered_; // pixels of the tile
   std::vector<SampleAddress> addresses_;
-  std::vector<SampleResult> results_, spread_; // of addresses; of all pixels
+  std::vector<SampleResult> results_, spread_; // of addresses_; of all pixels
   Energy batch_energy_;
-  // What other threads read.
+  // Members that other threads read.
   mutable std::mutex mutex_;
   RayCounts rays_;
   VertexCounts vertices_;
