@@ -168,7 +168,7 @@ def test_bad_programs_name_material_node_and_value():
             values(nodes, [(0.5, 0.5)])
         return str(caught.value)
 
-    assert "material 'nodes': node 1: input 0 names node 1, which does not come before it" in refusal(
+    assert "material 'nodes': node 1: input 0 refers to node 1, which does not precede it" in refusal(
         UV, Node(NodeKind.ALPHA, inputs=(NodeRef(1),))
     )
     assert "material 'nodes': node 0: images 0 + 1 > 0 images" in refusal(Node(NodeKind.IMAGE, image_count=1))

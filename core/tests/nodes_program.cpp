@@ -68,15 +68,15 @@ std::string refusal(const lancer_node &bad) {
 
 TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   EXPECT_EQ(refusal(add(result_of(0))), "");
-  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind 29 is none");
+  EXPECT_EQ(refusal(node(LANCER_NODE_COUNT)), "material 'Wood': node 1: kind 29 is unknown");
   EXPECT_EQ(refusal(node(LANCER_NODE_MATH, LANCER_MATH_COUNT)), "material 'Wood': node 1: option 41 >= 41 options");
-  EXPECT_EQ(refusal(add(result_of(1))), "material 'Wood': node 1: input 0 names node 1, which does not come before it");
-  EXPECT_EQ(refusal(add(result_of(-2))), "material 'Wood': node 1: input 0 names node -2, which does not come before it");
+  EXPECT_EQ(refusal(add(result_of(1))), "material 'Wood': node 1: input 0 refers to node 1, which does not precede it");
+  EXPECT_EQ(refusal(add(result_of(-2))), "material 'Wood': node 1: input 0 refers to node -2, which does not precede it");
   EXPECT_EQ(refusal(add(constant(0.0f), constant(0.0f, NAN, 0.0f))), "material 'Wood': node 1: input 1 is nan");
   EXPECT_EQ(refusal(add(constant(INFINITY))), "material 'Wood': node 1: input 0 is inf");
   lancer_node bad = node(LANCER_NODE_TRANSFORM);
   bad.matrix[7] = INFINITY;
-  EXPECT_EQ(refusal(bad), "material 'Wood': node 1: matrix holds inf");
+  EXPECT_EQ(refusal(bad), "material 'Wood': node 1: matrix contains inf");
   bad = node(LANCER_NODE_IMAGE);
   bad.image = 1;
   bad.image_count = 1;
@@ -93,7 +93,7 @@ TEST(NodesProgram, RefusalsNameMaterialNodeAndValue) {
   EXPECT_NE(refusal(flagged(node(LANCER_NODE_SEPARATE), 1)), "");
   bad = node(LANCER_NODE_BUMP);
   bad.first = 2;
-  EXPECT_EQ(refusal(bad), "material 'Wood': node 1: first 2 comes after it");
+  EXPECT_EQ(refusal(bad), "material 'Wood': node 1: first 2 is a later node");
   Description description;
   EXPECT_THROW(read_program(description, "x", nullptr, 1), Error);
   EXPECT_THROW(read_program(description, "x", &bad, 4097), Error);

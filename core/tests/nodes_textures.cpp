@@ -240,11 +240,12 @@ TEST(NodesCurves, RefusesWhatIsNoTable) {
   };
   EXPECT_EQ(refusal(std::move(Tables(3).description), 0), "");
   EXPECT_EQ(refusal(std::move(Tables(3).description), 1), "test: node 0: image 1 >= 1 images");
-  EXPECT_EQ(refusal(std::move(Tables(3, 1).description), 0), "test: node 0: image 0 is no row of floating point texels");
+  EXPECT_EQ(refusal(std::move(Tables(3, 1).description), 0),
+            "test: node 0: image 0 is not a row of at least two floating-point texels");
   Description description;
   const std::vector<uint8_t> bytes = {1, 2};
   add_image(description, image_of(bytes, 2, 1, 1));
-  EXPECT_EQ(refusal(std::move(description), 0), "test: node 0: image 0 is no row of floating point texels");
+  EXPECT_EQ(refusal(std::move(description), 0), "test: node 0: image 0 is not a row of at least two floating-point texels");
 }
 
 glm::vec4 grey(float value) { return {value, value, value, 1.0f}; }

@@ -1,4 +1,4 @@
-// Maps between the frames of objects and world, and the frame in which scenes are traced.
+// Affine maps between object and world space, and the frame in which scenes are traced.
 #pragma once
 
 #include "sampling/elementary.h"
@@ -8,9 +8,7 @@
 
 namespace lancer {
 
-// An affine map of the world: the placement of an object.
-
-// p' = linear * p + translation, in double: the composition of placements is where far-away scenes lose their digits.
+// p' = linear * p + translation, in double: composed placements are where far-away scenes lose their digits.
 struct Affine {
   glm::dmat3 linear{1.0};
   glm::dvec3 translation{0.0};
@@ -42,30 +40,29 @@ inline Affine operator*(const Affine &a, const Affine &b) {
   return {a.linear * b.linear, a.linear * b.translation + a.translation};
 }
 
-// The inverse; the caller has checked that the determinant is not zero.
+// Returns the inverse; the determinant must not be zero.
 inline Affine inverse(const Affine &a) {
   const glm::dmat3 m = glm::inverse(a.linear);
   return {m, -(m * a.translation)};
 }
 
-// How much areas grow under a map, over all ways that they may face.
+// Returns the factor by which a map scales areas, averaged over orientations.
 inline double mean_area_scale(const glm::dmat3 &map) { return exp(2.0 / 3.0 * log(std::abs(glm::determinant(map)))); }
 
-// A vector without length stays 0.
+// Returns the unit vector; 0 for a zero vector.
 template <class T> glm::vec<3, T> unit_or_zero(const glm::vec<3, T> &v) {
   const T length = glm::length(v);
   return length > T(0) ? v / length : glm::vec<3, T>(T(0));
 }
 
-// A normal on the other side of a map, whose way back is given; unit, 0 stays 0.
+// Transforms a normal by a map whose inverse is given; returns a unit normal, or 0 for 0.
 inline glm::vec3 carried_normal(const Affine &back, const glm::dvec3 &n) {
   return glm::vec3(unit_or_zero(glm::transpose(back.linear) * n));
 }
 
-// The frame in which scenes are traced, whatever their size and place.
+// Normalisation of scenes.
 
-// p_normalised = (p_world - centre) * scale, scale a power of two: the same scene at any size and place becomes the same
-// numbers.
+// p_normalised = (p_world - centre) * scale, scale a power of two: a scene has the same numbers at any size and position.
 struct Normalisation {
   glm::dvec3 centre{0.0};
   double scale = 1.0;

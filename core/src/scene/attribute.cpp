@@ -4,7 +4,7 @@ namespace lancer {
 
 namespace {
 
-// Where the values of a corner begin.
+// Returns the index of a corner's first value.
 size_t offset_of(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, int corner) {
   switch (attribute.domain) {
   case Domain::Vertex:

@@ -1,4 +1,4 @@
-// Named attributes of a mesh, at a place of one of its triangles.
+// Named attributes of a mesh at a point of a triangle.
 #pragma once
 
 #include "scene/geometry.h"
@@ -6,32 +6,33 @@
 
 namespace lancer {
 
-// Between the corners of a triangle.
+// Interpolates between the corners of a triangle.
 
 template <class F>
 LANCER_LANE Vector3<F> interpolate(const Vector3<F> &a, const Vector3<F> &b, const Vector3<F> &c, const Vector3<F> &weights) {
   return weights.x * a + weights.y * b + weights.z * c;
 }
-// Of texture coordinates, in double.
+// Interpolates texture coordinates, in double.
 template <class D> LANCER_LANE auto interpolate_uv(const D &a, const D &b, const D &c, const D &u, const D &v) {
   return narrow((D(1.0) - u - v) * a + u * b + v * c);
 }
 
-// The number under which a mesh keeps its vertices as they were before displacement: it stands for no name, so that no
-// attribute or node can use it by mistake.
+// The number under which a mesh keeps its vertex positions before displacement. It is no number of a name, so that no other
+// attribute or node can use it.
 inline constexpr uint32_t kUndisplaced = UINT32_MAX;
 
-// The attribute with this number of a name; null where the mesh has none.
+// Returns the attribute with this name number; null if the mesh has none.
 const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name);
 
-// At a triangle's corners. One channel is in all of x, y, z; two or three leave z at 0 and w at 1.
+// Reads an attribute at a triangle's corners. One channel is copied to x, y and z; with two or three, z is 0 and w is 1 if
+// missing.
 void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]);
 
-// The texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute, which may have been found before;
-// false where there are none.
+// Reads the texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute's, which the caller may have
+// looked up. Returns false if there are none.
 bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
 bool corner_uvs(const Mesh &mesh, const MeshAttribute *attribute, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
-// Between them; 0 where there are none. bary: weights of vertex 1 and 2.
+// Returns interpolated texture coordinates; 0 if there are none. bary: weights of vertices 1 and 2.
 glm::vec2 uv_at(const Mesh &mesh, uint32_t name, uint32_t triangle, const glm::dvec2 &bary);
 
 } // namespace lancer

@@ -1,4 +1,4 @@
-// Rays of flat pictures, panoramas and lenses.
+// Camera rays: flat projections, panoramas and lenses.
 #include "scene/camera.h"
 
 #include "sampling/elementary.h"
@@ -12,21 +12,20 @@ namespace lancer {
 
 namespace {
 
-// A direction at the angle theta from the axis; across: which way, of any length.
+// Returns a direction at the angle theta from the axis; across: its azimuth, as a vector of any length.
 glm::dvec3 off_axis(double theta, const glm::dvec2 &across) {
   const double length = glm::length(across);
   const glm::dvec2 unit = length > 0.0 ? across / length : glm::dvec2(1.0, 0.0);
   return {unit.x * sin(theta), unit.y * sin(theta), -cos(theta)};
 }
 
-// The angle from the axis that a lens of the polynomial kind gives to a point at r mm from the middle; its sign turns the
-// picture around.
+// Returns the angle from the axis at r mm from the centre of a polynomial lens; a negative angle flips the picture.
 double polynomial_angle(const Camera &camera, double r) {
   const auto &k = camera.panorama;
   return -(k[3] + r * (k[4] + r * (k[5] + r * (k[6] + r * k[7]))));
 }
 
-// The radius in mm at which a lens of the polynomial kind shows an angle, by Newton's method.
+// Returns the radius in mm at which a polynomial lens shows an angle, by Newton's method.
 double polynomial_radius(const Camera &camera, double theta) {
   const auto &k = camera.panorama;
   double r = (-theta - k[3]) / k[4];
@@ -40,7 +39,7 @@ double polynomial_radius(const Camera &camera, double theta) {
   return r;
 }
 
-// Where the direction across the axis, scaled to length r, lies in a sensor.
+// Returns the place on a sensor at radius r in the azimuth of a direction.
 glm::dvec2 on_sensor(const glm::dvec3 &d, double r, double width, double height) {
   const double across = hypot(d.x, d.y);
   const glm::dvec2 unit = across > 0.0 ? glm::dvec2(d.x, d.y) / across : glm::dvec2(0.0);
@@ -74,7 +73,7 @@ glm::dvec3 panorama_direction(const Camera &camera, const glm::dvec2 &place) {
     return std::abs(theta) > 0.5 * p[0] ? glm::dvec3(0.0) : off_axis(theta, sensor);
   }
   case CameraKind::MirrorBall: {
-    // The ball is seen from afar; its normal halves the angle to what it mirrors.
+    // The ball is seen from afar; its normal halves the angle between viewer and mirrored direction.
     const glm::dvec2 at = 2.0 * middle;
     const double depth2 = 1.0 - glm::dot(at, at);
     if (depth2 < 0.0)
@@ -108,7 +107,7 @@ glm::dvec2 panorama_place(const Camera &camera, const glm::dvec3 &d) {
   case CameraKind::FisheyePolynomial:
     return on_sensor(d, polynomial_radius(camera, theta), p[1], p[2]);
   case CameraKind::MirrorBall: {
-    // Half way between the direction and the viewer stands the normal.
+    // The normal is halfway between the direction and the viewer.
     const double scale = 0.5 / std::sqrt(std::max(0.5 * (1.0 - d.z), std::numeric_limits<double>::min()));
     return {0.5 * (d.x * scale + 1.0), 0.5 * (d.y * scale + 1.0)};
   }
@@ -154,8 +153,8 @@ Ray Camera::ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const {
     return ray;
   }
   if (lens_radius > 0.0) {
-    // The lens stands across this very direction, its first axis as near as that allows to forwards; a mirror ball's to the
-    // right, and the second the other way around.
+    // The lens is perpendicular to this direction, its first axis as close to forwards as possible. The lens of a mirror ball
+    // has its first axis close to the right, and its second axis inverted.
     const bool ball = kind == CameraKind::MirrorBall;
     const glm::dvec3 along = ball ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0),
                      across = along - glm::dot(along, d) * d;
@@ -171,11 +170,11 @@ Ray Camera::ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const {
 glm::dvec2 Camera::aperture(const glm::vec2 &u) const {
   if (aperture_blades < 3)
     return round_aperture(*this, u.x, u.y);
-  // Choose one of the triangles around the middle, and a point of it.
+  // Sample one of the triangles around the centre, and a point of it.
   const double scaled = double(u.x) * aperture_blades, blade = std::floor(scaled);
   const double across = std::sqrt(scaled - blade), along = double(u.y) * across;
   const double half = glm::pi<double>() / aperture_blades;
-  // Its corners: the middle, and the rim at half a blade to either side.
+  // The corners of the triangle: the centre, and the rim at half a blade to either side.
   const glm::dvec2 p(across * cos(half), (2.0 * along - across) * sin(half));
   const double turn = aperture_rotation + 2.0 * half * blade, c = cos(turn), s = sin(turn);
   return {(c * p.x - s * p.y) / aperture_ratio, s * p.x + c * p.y};
@@ -190,7 +189,7 @@ glm::vec3 Camera::direction_to_camera(const glm::dvec3 &d) const {
   const glm::dvec3 local = glm::transpose(to_world.linear) * d;
   if (!is_panorama())
     return glm::vec3(local.x, local.y, -local.z);
-  // Blender's panoramas look along +x with z up; those of a mirror ball along -y.
+  // Blender's panoramas face +x with z up; those of a mirror ball face -y.
   return kind == CameraKind::MirrorBall ? glm::vec3(local.x, local.z, local.y) : glm::vec3(-local.z, -local.x, local.y);
 }
 

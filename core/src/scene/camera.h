@@ -1,4 +1,4 @@
-// From a place on the film to a ray: flat pictures, panoramas, the lens.
+// Generates a ray from a place on the film: flat projections, panoramas, the lens.
 #pragma once
 
 #include "scene/affine.h"
@@ -20,7 +20,7 @@ enum class CameraKind : uint32_t {
 };
 
 // The camera looks along its local -z, y up. The window is the full image's rectangle: on the plane z = -1 (perspective), at
-// any depth (orthographic), of a panorama whose whole is 0 ... 1; sensor fit, shift and pixel aspect are all in it.
+// any depth (orthographic), in a panorama of which 0 ... 1 is the whole; it includes sensor fit, shift and pixel aspect.
 struct Camera {
   Affine to_world;
   CameraKind kind = CameraKind::Perspective;
@@ -28,37 +28,37 @@ struct Camera {
   uint32_t x = 0, y = 0;          // lower left pixel of the region
   uint32_t region_width = 0, region_height = 0;
   double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
-  std::array<double, 8> panorama{}; // as the kind says
+  std::array<double, 8> panorama{}; // meaning depends on kind
   double clip_start = 0.0, clip_end = 0.0;
   double lens_radius = 0.0, focal_distance = 0.0;
-  uint32_t aperture_blades = 0; // below 3: a round lens
+  uint32_t aperture_blades = 0; // below 3: a round aperture
   double aperture_rotation = 0.0, aperture_ratio = 1.0;
 
   bool is_panorama() const { return kind > CameraKind::Orthographic; }
-  // Lengths of the scene times scale.
+  // Multiplies the lengths of the scene by scale.
   void scale_lengths(double scale);
 
-  // raster: pixels of the full image, (0, 0) the lower left corner; lens: a point of the lens, as aperture() gives it.
-  // t is the depth: the direction's component along the axis is 1; panoramas: the direction is unit. tmax < 0: no ray, this
-  // panorama shows nothing there.
+  // raster: pixels of the full image, (0, 0) the lower left corner; lens: a point of the lens from aperture(). t is the depth:
+  // the direction's component along the axis is 1; panoramas: the direction is unit. tmax < 0 means no ray: outside a
+  // panorama's field of view.
   Ray ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const;
-  // A point of the lens, in units of its radius, for u in [0, 1)^2.
+  // Returns a point of the lens, in units of its radius, for u in [0, 1)^2.
   glm::dvec2 aperture(const glm::vec2 &u) const;
 
-  // Depth of a point of the world as the depth pass has it: along the axis; panoramas: the distance.
+  // Returns the depth of a world point as in the depth pass: along the axis; panoramas: the distance.
   double depth(const glm::dvec3 &p) const;
-  // A point, or a direction, in the camera's frame with z forwards, as nodes see it.
+  // Transforms a point or a direction to the camera's frame with z forwards, as nodes use it.
   glm::vec3 to_camera(const glm::dvec3 &p) const;
   glm::vec3 direction_to_camera(const glm::dvec3 &d) const;
-  // Where the picture shows a point: (0, 0) the lower left corner, (1, 1) the upper right; z is 0.
+  // Returns the place of a point in the picture: (0, 0) the lower left corner, (1, 1) the upper right; z is 0.
   glm::vec3 to_window(const glm::dvec3 &p) const;
 };
 
-// Panoramic projections: a place of the whole picture, 0 ... 1, to a direction and back. Local frame: -z forwards, y up.
+// Panoramic projections between a place in the whole panorama, 0 ... 1, and a direction. Local frame: -z forwards, y up.
 
-// Unit; zero where the panorama shows nothing.
+// Returns a unit direction; zero outside the field of view.
 glm::dvec3 panorama_direction(const Camera &camera, const glm::dvec2 &place);
-// d: unit. The place that shows it, also beyond the picture's edge.
+// d: unit. Returns its place, which may be outside the picture.
 glm::dvec2 panorama_place(const Camera &camera, const glm::dvec3 &d);
 
 } // namespace lancer

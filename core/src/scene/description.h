@@ -1,4 +1,4 @@
-// The scene while it is being filled: checked copies of what the user gives, in the user's units.
+// The scene while it is being filled: checked copies of the user's records, in the user's units.
 #pragma once
 
 #include "lancer.h"
@@ -13,12 +13,12 @@
 
 namespace lancer {
 
-// Everything that was left out or replaced, one line each; the same line is said once, with a count.
+// Reports on everything left out or replaced, one line each; equal lines are merged with a count.
 class Messages {
 public:
   void add(const std::string &object, const std::string &what);
   void add(const Messages &others);
-  // All lines, each ended by a newline.
+  // Returns all lines, each with a trailing newline.
   std::string text() const;
 
 private:
@@ -29,7 +29,7 @@ private:
   void add_line(const std::string &text, uint64_t count);
 
   std::vector<Line> lines_;
-  std::unordered_map<std::string, size_t> numbers_; // of a line, by its text
+  std::unordered_map<std::string, size_t> numbers_; // index of a line by its text
 };
 
 struct Description {
@@ -38,13 +38,13 @@ struct Description {
   std::vector<Material> materials;
   std::vector<LightDescription> lights;
   std::vector<Image> images;
-  std::vector<std::string> attribute_names{""}; // that nodes ask for; Node::name is a number of this list
+  std::vector<std::string> attribute_names{""}; // read by nodes; Node::name is an index into this list
   World world;
   uint32_t instances_given = 0; // including those left out
   Messages messages;
 };
 
-// Each checks one record and copies it; an Error names object and value and leaves the description as it was.
+// Each function checks and copies one record; an Error names object and value and leaves the description unchanged.
 void add_mesh(Description &description, const lancer_mesh &mesh);
 void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
                    const uint32_t *slots, const char *names, size_t names_size);
@@ -54,14 +54,15 @@ void add_light(Description &description, const lancer_light &light);
 void add_image(Description &description, const lancer_image &image);
 void set_world(Description &description, const lancer_world &world);
 
-// Checks and copies the nodes of an owner ("material 'Wood'"), and a parameter that may refer to one of them.
+// Checks and copies the nodes of an owner ("material 'Wood'"); check_reference() checks a parameter that may refer to one of
+// them.
 Program read_program(Description &description, const std::string &owner, const lancer_node *nodes, uint32_t count);
 void check_reference(const std::string &owner, const char *what, const lancer_parameter &parameter, const Program &program);
 
-// The number of a name among attribute_names; a new name gets the next one.
+// Returns the index of a name in attribute_names; adds a new name.
 uint32_t attribute_name(Description &description, const std::string &name);
 
-// "name", or "#number" where there is no name.
+// Returns "kind 'name'", or "kind #number" without a name.
 std::string label(const char *kind, const char *name, size_t number);
 
 } // namespace lancer

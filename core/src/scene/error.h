@@ -1,4 +1,4 @@
-// What goes wrong, said once: the message names the object and the value.
+// Errors: the message names the object and the value.
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// Checks that all readers of the user's records share, numbers as text for their messages, and the camera's reader.
+// Checks shared by all readers of the user's records, numbers as text for their messages, and the reader of cameras.
 #pragma once
 
 #include "lancer.h"
@@ -20,15 +20,15 @@ inline void check_rays(const std::string &object, uint32_t hidden_from) {
     bad_argument(object + ": hidden_from " + std::to_string(hidden_from) + " has bits beyond the last kind of ray");
 }
 
-// where: what the sentence begins with, "object: ".
+// where: start of the message, "object: ".
 inline void check_flags(const std::string &where, uint32_t flags, uint32_t known) {
   if (flags & ~known)
     bad_argument(where + "flags " + std::to_string(flags) + " has bits beyond the last flag");
 }
 
-// Checks and copies a camera; an Error says what no camera can have.
+// Checks and copies a camera; throws an Error for invalid values.
 Camera read_camera(const lancer_camera &source);
-// An Error where the camera, in the normalised world, is too far from everything.
+// Throws an Error if the camera, in the normalised world, is too far from the scene.
 void check_reach(const Camera &camera);
 
 } // namespace lancer

@@ -14,7 +14,7 @@ namespace {
 void check_rigid(const Affine &map) {
   if (!map.finite())
     bad_argument("camera: its matrix is not finite");
-  // Blender's matrices are products of floats: unit to about 1e-6; a scale would show far beyond that.
+  // Blender's matrices are products of floats: unit to about 1e-6; a scale would exceed this by far.
   const glm::dmat3 gram = glm::transpose(map.linear) * map.linear;
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
@@ -33,7 +33,7 @@ void check_region(const lancer_camera &source) {
                  ", " + text(source.y) + ") leaves the image of " + text(source.width) + " x " + text(source.height));
 }
 
-// What a projection divides by, and what it measures angles with.
+// Checks the divisors and angles of a projection.
 void check_panorama(const lancer_camera &source) {
   const double *p = source.panorama;
   for (int i = 0; i < 8; ++i)
@@ -69,10 +69,10 @@ void check_panorama(const lancer_camera &source) {
 } // namespace
 
 void check_reach(const Camera &camera) {
-  // Squares of distances must fit into floats: those from 2^60 away do, and sums of some of them. The scene is 2^10 wide.
+  // Squares of distances must fit into floats: this holds up to 2^60, also for sums of several. The scene is 2^10 wide.
   const double place = largest_coordinate(camera.to_world.translation);
   if (!(place < 0x1p60 && camera.lens_radius < 0x1p60))
-    bad_argument("camera: it stands, or its lens reaches, more than 1e15 times the scene's size away from the scene");
+    bad_argument("camera: its distance or its lens radius is more than 1e15 times the scene's size");
 }
 
 Camera read_camera(const lancer_camera &source) {

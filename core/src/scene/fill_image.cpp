@@ -1,4 +1,4 @@
-// Checks and copies pictures; colours are multiplied by a straight alpha here, once, in the depth in which they are stored.
+// Checks and copies images; straight alpha is multiplied into the colours once, here, in the stored bit depth.
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
@@ -12,7 +12,7 @@ namespace lancer {
 
 namespace {
 
-// A side beyond this is no picture; below it, the size in bytes fits 64 bits.
+// The largest side; within it, the size in bytes fits 64 bits.
 constexpr uint32_t kLargestSide = 1u << 20;
 
 uint8_t multiplied(uint8_t color, uint8_t alpha) { return uint8_t(uint32_t(color) * alpha / 255u); }
@@ -27,7 +27,7 @@ template <class Texel> void associate(Image &image) {
       texel[c] = multiplied(texel[c], texel[3]);
 }
 
-// A texel with a number that is not finite becomes black and clear: half of it would be a wrong hue.
+// Clears texels with a non-finite number in any channel: replacing only that number would give a wrong hue.
 size_t clear_not_finite(Image &image) {
   auto *texel = reinterpret_cast<float *>(image.texels.get());
   const size_t count = size_t(image.width) * image.height;
@@ -64,7 +64,7 @@ void check_image(const std::string &object, const lancer_image &source) {
     bad_argument(object + ": texels is NULL");
   for (int i = 0; i < 9; ++i)
     if (!std::isfinite(source.matrix[i]))
-      bad_argument(object + ": matrix holds " + to_text(source.matrix[i]));
+      bad_argument(object + ": matrix contains " + to_text(source.matrix[i]));
 }
 
 } // namespace
@@ -90,7 +90,7 @@ void add_image(Description &description, const lancer_image &source) {
   try {
     image.texels = allocate_texels(image.bytes());
   } catch (const std::bad_alloc &) {
-    throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, which are not free");
+    throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, more than is free");
   }
   std::memcpy(image.texels.get(), source.texels, image.bytes());
   if (image.kind == TexelKind::Float) {

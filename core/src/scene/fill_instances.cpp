@@ -1,4 +1,4 @@
-// Checks and copies placements: known meshes and materials, maps that can be inverted.
+// Checks and copies placements: existing meshes and materials, invertible maps.
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
@@ -10,10 +10,10 @@ namespace lancer {
 
 namespace {
 
-// Scales beyond these would leave the range in which squares of squares are finite in double.
+// Larger scales would overflow squares of squares in double.
 constexpr double kLargestScale = 1.2676506002282294e30; // 2^100
 
-// Why a placement cannot be traced; empty if it can.
+// Returns why a placement cannot be traced; an empty string if it can.
 std::string fault_of(const Affine &map) {
   if (!map.finite())
     return "its matrix is not finite";
@@ -24,11 +24,11 @@ std::string fault_of(const Affine &map) {
     if (length == 0.0)
       return "its matrix is singular (a scale of 0)";
     if (!(length < kLargestScale) || !(length > 1.0 / kLargestScale))
-      return "its scale is beyond what can be traced";
+      return "its scale is outside 2^-100 ... 2^100";
   }
   if (!(largest_coordinate(map.translation) < kLargestScale))
-    return "its place is beyond what can be traced";
-  // Judge the determinant of unit columns: it does not depend on scale. At double's roundoff the map has lost a dimension.
+    return "its position is beyond 2^100";
+  // Test the determinant of the unit columns, which does not depend on scale. At double's roundoff the map is singular.
   const glm::dmat3 directions(map.linear[0] / columns[0], map.linear[1] / columns[1], map.linear[2] / columns[2]);
   if (!(std::abs(glm::determinant(directions)) > std::ldexp(1.0, -50)))
     return "its matrix is singular";
@@ -63,10 +63,10 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     bad_argument("instances: names must end with a NUL");
   for (uint32_t i = 0; i < slot_count; ++i) {
     if (slots[i] >= description.materials.size())
-      bad_argument("instances: slot " + std::to_string(i) + " names material " + std::to_string(slots[i]) +
+      bad_argument("instances: slot " + std::to_string(i) + " refers to material " + std::to_string(slots[i]) +
                    " >= " + std::to_string(description.materials.size()) + " materials");
   }
-  // Check all before keeping any: a refused call adds nothing.
+  // Check all before adding any: a rejected call adds nothing.
   const auto name_of = [&](const lancer_instance &given) { return given.name < names_size ? names + given.name : ""; };
   for (uint32_t i = 0; i < count; ++i) {
     if (names_size && instances[i].name >= names_size)

@@ -10,10 +10,10 @@
 
 namespace lancer {
 
-// Checks and copies lights; a value that no light can have is replaced and said.
+// Replaces invalid values of lights, with a message.
 namespace {
 
-// Where a disk is so bright that float has no number for its radiance it is as good as a point, and a small sun a direction.
+// Largest finite radiance of a disk: a smaller lamp becomes a point, a smaller sun a direction.
 constexpr double kBrightestDisk = 1e36;
 
 double disk_radiance(const glm::vec3 &emission, double radius) {
@@ -32,7 +32,7 @@ public:
     return used;
   }
 
-  // 0 where a float could not hold how bright a disk of that radius is.
+  // Returns 0 if the radiance of a disk with this radius overflows float.
   float not_too_small(const char *what, float value, double radius, const glm::vec3 &emission) {
     if (!(radius > 0.0) || !(disk_radiance(emission, radius) > kBrightestDisk))
       return value;
@@ -84,7 +84,7 @@ void add_light(Description &description, const lancer_light &source) {
     if (light.kind == LightKind::Sun)
       light.sun_angle = reader.not_too_small("sun angle", light.sun_angle, sin(0.5 * double(light.sun_angle)), light.emission);
     light.sun_flat = source.sun_flat != 0;
-    // A spot needs some stretch; whoever leaves it 0 has a round one in mind.
+    // A spot needs a positive stretch; a size of 0, 0 means round.
     const float smallest = light.kind == LightKind::Spot ? 1e-6f : 0.0f;
     const bool round = light.kind == LightKind::Spot && source.size[0] == 0.0f && source.size[1] == 0.0f;
     light.size = round ? glm::vec2(1.0f)
@@ -100,7 +100,7 @@ void add_light(Description &description, const lancer_light &source) {
     light.diffuse_color = reader.read("diffuse colour", source.diffuse_color);
     light.specular_color = reader.read("specular colour", source.specular_color);
   }
-  // A light that gives nothing keeps its number: lights are numbered as added.
+  // A light without emission keeps its number: lights are numbered in order of adding.
   description.lights.push_back(std::move(light));
 }
 

@@ -1,4 +1,4 @@
-// Checks and copies materials; values outside the model are replaced and said, structure that cannot be read is refused.
+// Checks and copies materials: replaces values outside a model's range, with a message, and rejects invalid structure.
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
@@ -15,7 +15,7 @@ public:
   MaterialReader(std::string object, const Program &program, Messages &messages)
       : object_(std::move(object)), program_(program), messages_(messages) {}
 
-  // Each component: NaN becomes fallback, the rest is brought into [low, high]. What a node gives is brought there later.
+  // Each component: NaN becomes fallback, other values are clamped to [low, high]. Results of nodes are clamped when evaluated.
   Parameter read(const char *what, const lancer_parameter &given, float low, float high, float fallback) const {
     check_reference(object_, what, given, program_);
     Parameter parameter;
@@ -36,7 +36,7 @@ public:
     return read(what, given, 0.0f, high, 0.0f);
   }
 
-  // A scalar in value[0]; the other two are ignored without a message.
+  // Reads a scalar in value[0]; the other two components are ignored.
   Parameter read_scalar(const char *what, lancer_parameter given, float low, float high, float fallback) const {
     given.value[1] = given.value[2] = low;
     Parameter parameter = read(what, given, low, high, fallback);
@@ -49,7 +49,7 @@ public:
   }
 
   Parameter read_ior(const char *what, const lancer_parameter &given) const {
-    // Zero and below have no meaning; glass's own default is the least surprise.
+    // An index of zero or below is invalid; use the default of Blender's glass.
     const float value = given.value[0];
     lancer_parameter checked = given;
     if (given.node < 0 && !(value > 0.0f)) {
@@ -63,7 +63,7 @@ public:
     return read(what, given, -kBrightest, kBrightest, 0.0f);
   }
 
-  // fallback: of a number that is none; a colour is black then, and an index that of glass.
+  // fallback: replaces NaN; a colour becomes black instead, an index that of glass.
   template <ParameterKind kind> Parameter read(const char *what, const lancer_parameter &given, float fallback) const {
     if constexpr (kind == ParameterKind::Color)
       return read_color(what, given);
@@ -104,7 +104,7 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
   lobe.option = given.option;
   lobe.weight = reader.read_color("weight", given.weight);
   lobe.normal = reader.read_vector("normal", given.normal);
-  // Only what the lobe uses is checked: a value without effect gives no message.
+  // Check only parameters that the lobe uses: a value without effect gives no message.
   const bool coating = lobe.kind == LobeKind::Beckmann, blinn = lobe.kind == LobeKind::BlinnPhong,
              glass = lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction,
              metal = lobe.kind == LobeKind::Glossy || lobe.kind == LobeKind::Conductor;
@@ -138,7 +138,7 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
   const std::string where = object + ": lobe " + std::to_string(i) + " has ";
   const auto check = [&](const char *what, uint32_t value, uint32_t count) {
     if (value >= count)
-      bad_argument(where + what + " " + std::to_string(value) + ", which is none");
+      bad_argument(where + what + " " + std::to_string(value) + ", which is unknown");
   };
   check("kind", lobe.kind, LANCER_LOBE_KIND_COUNT);
   check("distribution", lobe.distribution, LANCER_DISTRIBUTION_MULTI_GGX + 1);
@@ -153,7 +153,7 @@ void check_lobe(const std::string &object, const lancer_lobe &lobe, uint32_t i) 
   check("rules", lobe.principled->rules, LANCER_RULES_BLENDER_45 + 1);
 }
 
-// All parameters that decide how a lobe looks.
+// Collects all parameters of a lobe.
 void collect(const LobeDescription &lobe, std::vector<Parameter> &parameters) {
   parameters.insert(parameters.end(), {lobe.weight, lobe.color, lobe.roughness, lobe.ior, lobe.shininess, lobe.edge,
                                        lobe.anisotropy, lobe.rotation, lobe.normal, lobe.tangent});
@@ -203,7 +203,7 @@ void add_material(Description &description, const lancer_material &source) {
   material.index = source.material_index;
   material.flags = source.flags;
   material.program = read_program(description, object, source.nodes, source.node_count);
-  Messages messages; // kept only if nothing refuses the material
+  Messages messages; // discarded if the material is rejected
   const MaterialReader reader(object, material.program, messages);
   for (uint32_t i = 0; i < source.lobe_count; ++i)
     material.lobes.push_back(read_lobe(reader, source.lobes[i]));

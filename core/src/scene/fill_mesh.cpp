@@ -19,7 +19,7 @@ void check_indices(const std::string &object, const lancer_mesh &mesh) {
   }
 }
 
-// The faces that can be hit: finite corners, and an area that is not zero in double.
+// Returns the faces that can be hit: finite corners, and an area that is not zero in double.
 std::vector<uint32_t> kept_faces(const std::string &object, const Mesh &mesh, Messages &messages) {
   std::vector<uint32_t> kept;
   kept.reserve(mesh.triangles.size());
@@ -40,7 +40,7 @@ std::vector<uint32_t> kept_faces(const std::string &object, const Mesh &mesh, Me
   return kept;
 }
 
-// Copies an array of so many vectors; NULL stands for none.
+// Copies an array of count vectors; NULL copies none.
 template <class Vector> void copy(const float *source, size_t count, std::vector<Vector> &target) {
   const auto *in = reinterpret_cast<const Vector *>(source);
   if (in)
@@ -55,7 +55,7 @@ void copy_normals(const lancer_mesh &source, Mesh &mesh) {
   copy(source.normals, corners ? size_t(source.triangle_count) * 3 : source.vertex_count, mesh.normals);
 }
 
-// A zero normal makes the surface take its geometric one; so does one that is not finite.
+// Replaces normals that are not finite by zero, which means the geometric normal.
 void check_normals(const std::string &object, Mesh &mesh, Messages &messages) {
   size_t replaced = 0;
   for (glm::vec3 &n : mesh.normals) {
@@ -128,7 +128,7 @@ MeshAttribute copy_attribute(Description &description, const lancer_attribute &s
   return attribute;
 }
 
-// The bounds of all vertices that are somewhere.
+// Finds the bounds of all usable vertices.
 void find_bounds(Mesh &mesh) {
   glm::vec3 low(INFINITY), high(-INFINITY);
   for (const glm::vec3 &p : mesh.positions) {
@@ -147,7 +147,7 @@ void find_bounds(Mesh &mesh) {
 
 void add_mesh(Description &description, const lancer_mesh &source) {
   const std::string object = label("mesh", source.name, description.geometry.meshes.size());
-  // Refuse what cannot be read.
+  // Reject invalid arrays.
   if (source.vertex_count && !source.positions)
     bad_argument(object + ": positions is NULL for " + std::to_string(source.vertex_count) + " vertices");
   if (source.triangle_count && !source.triangles)
@@ -158,7 +158,7 @@ void add_mesh(Description &description, const lancer_mesh &source) {
   check_polygons(object, source);
   check_attributes(object, source);
 
-  // Copy all of it, then leave the faces that can be hit.
+  // Copy the mesh, then drop the faces that cannot be hit.
   Mesh mesh;
   mesh.name = source.name ? source.name : "";
   copy(source.positions, source.vertex_count, mesh.positions);
@@ -178,7 +178,7 @@ void add_mesh(Description &description, const lancer_mesh &source) {
     keep_faces(mesh, kept);
   find_bounds(mesh);
 
-  // Replace what is no number.
+  // Replace values that are not finite.
   check_normals(object, mesh, description.messages);
   size_t replaced = zero_where_not_finite(mesh.uvs) + zero_where_not_finite(mesh.colors);
   for (MeshAttribute &attribute : mesh.attributes)

@@ -1,4 +1,4 @@
-// Checks and copies nodes: all that the machine relies on when it runs them.
+// Checks and copies nodes, so that evaluation needs no checks.
 #include "scene/attribute.h"
 #include "scene/description.h"
 #include "scene/error.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kMostNodes = 4096;
 
-// What a kind of node reads: how many inputs, which options there are, whether its matrix counts.
+// Data that a kind of node reads: the number of inputs, the number of options, whether the matrix is used.
 struct Shape {
   int inputs;
   uint32_t options;
@@ -81,7 +81,7 @@ Shape shape_of(const lancer_node &node) {
   }
 }
 
-// The flags that a kind knows.
+// Returns the valid flags of a kind.
 uint32_t flags_of(uint32_t kind) {
   switch (kind) {
   case LANCER_NODE_COORDINATE:
@@ -114,7 +114,7 @@ public:
   Node read(const lancer_node &given, uint32_t at) {
     where_ = owner_ + ": node " + std::to_string(at) + ": ";
     if (given.kind >= LANCER_NODE_COUNT)
-      bad_argument(where_ + "kind " + std::to_string(given.kind) + " is none");
+      bad_argument(where_ + "kind " + std::to_string(given.kind) + " is unknown");
     const Shape shape = shape_of(given);
     if (shape.options && given.option >= shape.options)
       bad_argument(where_ + "option " + std::to_string(given.option) + " >= " + std::to_string(shape.options) + " options");
@@ -133,7 +133,7 @@ public:
       read_table(given, node);
     if (given.kind == LANCER_NODE_BUMP) {
       if (given.first > at)
-        bad_argument(where_ + "first " + std::to_string(given.first) + " comes after it");
+        bad_argument(where_ + "first " + std::to_string(given.first) + " is a later node");
       node.first = given.first;
     }
     read_names(given, node);
@@ -146,7 +146,7 @@ private:
     Parameter result;
     result.node = given.node;
     if (given.node < -1 || given.node >= int64_t(at))
-      bad_argument(where_ + input + "names node " + std::to_string(given.node) + ", which does not come before it");
+      bad_argument(where_ + input + "refers to node " + std::to_string(given.node) + ", which does not precede it");
     if (given.node >= 0)
       return result;
     for (int k = 0; k < 3; ++k) {
@@ -160,7 +160,7 @@ private:
   void read_matrix(const lancer_node &given, Node &node) const {
     for (int i = 0; i < 12; ++i) {
       if (!std::isfinite(given.matrix[i]))
-        bad_argument(where_ + "matrix holds " + to_text(given.matrix[i]));
+        bad_argument(where_ + "matrix contains " + to_text(given.matrix[i]));
       node.matrix[i] = given.matrix[i];
     }
   }
@@ -186,12 +186,12 @@ private:
                    " images");
     const Image &table = description_.images[given.image];
     if (table.kind != TexelKind::Float || table.height != 1 || table.width < 2)
-      bad_argument(where_ + "image " + std::to_string(given.image) + " is no row of floating point texels");
+      bad_argument(where_ + "image " + std::to_string(given.image) + " is not a row of at least two floating-point texels");
     node.image = given.image;
     node.image_count = 1;
   }
 
-  // Turns names into numbers, those that the kind stands for as well.
+  // Converts names to numbers, including names that the kind implies.
   void read_names(const lancer_node &given, Node &node) {
     const std::string name = given.name ? given.name : "";
     const bool generated = (node.kind == LANCER_NODE_COORDINATE && node.option == LANCER_COORDINATE_GENERATED) ||
@@ -207,7 +207,7 @@ private:
   std::string where_;
 };
 
-// The nodes of a bump that its height needs.
+// Returns the nodes of a bump that its height depends on.
 Schedule height_schedule(const Program &program, uint32_t bump) {
   const Node &owner = program.nodes[bump];
   std::vector<bool> needed(bump);
@@ -264,7 +264,7 @@ Program read_program(Description &description, const std::string &owner, const l
 
 void check_reference(const std::string &owner, const char *what, const lancer_parameter &parameter, const Program &program) {
   if (parameter.node < -1 || parameter.node >= int64_t(program.nodes.size()))
-    bad_argument(owner + ": " + what + " names node " + std::to_string(parameter.node) + ", but there are " +
+    bad_argument(owner + ": " + what + " refers to node " + std::to_string(parameter.node) + ", but there are " +
                  std::to_string(program.nodes.size()) + " nodes");
 }
 

@@ -1,4 +1,4 @@
-// Rays of flat pictures, through a pinhole or a lens: F is a float, or lanes of them; places and rays are double.
+// Rays of flat projections, through a pinhole or a lens: F is float or lanes of it; raster places and rays are double.
 #pragma once
 
 #include "sampling/warp.h"
@@ -7,16 +7,16 @@
 
 namespace lancer {
 
-// A point of a round lens, in units of its radius, for u and v in [0, 1).
+// Returns a point of a round lens, in units of its radius, for u and v in [0, 1).
 template <class F> LANCER_LANE Vector2<DoubleOf<F>> round_aperture(const Camera &camera, F u, F v) {
   const Vector2<F> disk = warp_disk(u, v);
   return {widen(disk.x) / DoubleOf<F>(camera.aperture_ratio), widen(disk.y)};
 }
 
-// d of any length.
+// d has any length.
 template <class F> struct RayLanes { Double3Of<F> o, d; };
 
-// As Camera::ray() is asked; lens is read only where the camera has one.
+// See Camera::ray(); lens is read only if the camera has a lens.
 template <class F>
 LANCER_LANE RayLanes<F> flat_ray(const Camera &camera, const Vector2<DoubleOf<F>> &raster, const Vector2<DoubleOf<F>> &lens) {
   using D = DoubleOf<F>;
@@ -28,7 +28,7 @@ LANCER_LANE RayLanes<F> flat_ray(const Camera &camera, const Vector2<DoubleOf<F>
     d = {D(0.0), D(0.0), D(-1.0)};
   }
   if (camera.lens_radius > 0.0) {
-    // Aim every point of the lens at the same point of the plane in focus.
+    // Aim every point of the lens at the same point of the focal plane.
     const Double3Of<F> shift(D(camera.lens_radius) * lens.x, D(camera.lens_radius) * lens.y, D(0.0));
     o = o + shift;
     d = d - shift / D(camera.focal_distance);

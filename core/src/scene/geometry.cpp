@@ -8,7 +8,7 @@ namespace lancer {
 
 namespace {
 
-// The largest sum of absolute values in a row: how much a map can enlarge the largest component.
+// Returns the largest sum of absolute values in a row: the factor by which a map can enlarge the largest component.
 double row_norm(const glm::dmat3 &m) {
   double norm = 0.0;
   for (int row = 0; row < 3; ++row)
@@ -29,7 +29,7 @@ void Instance::place(const Affine &map) {
 
 namespace {
 
-// Moves what stays to the front: width entries for each face.
+// Moves the kept entries to the front: width entries per face.
 template <class Entry> void keep(std::vector<Entry> &entries, size_t width, const std::vector<uint32_t> &kept) {
   if (entries.empty())
     return;
@@ -41,7 +41,7 @@ template <class Entry> void keep(std::vector<Entry> &entries, size_t width, cons
 } // namespace
 
 bool is_usable(const glm::vec3 &vertex) {
-  // Turned so that NaN is none.
+  // Written so that NaN is not usable.
   constexpr float limit = 0x1p60f;
   return std::abs(vertex.x) <= limit && std::abs(vertex.y) <= limit && std::abs(vertex.z) <= limit;
 }
@@ -51,7 +51,7 @@ bool has_area(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c) {
 }
 
 void keep_faces(Mesh &mesh, const std::vector<uint32_t> &kept) {
-  // What the user numbered them.
+  // Record the user's face numbers.
   if (mesh.face_of.empty()) {
     mesh.face_of.resize(mesh.triangles.size());
     std::iota(mesh.face_of.begin(), mesh.face_of.end(), 0u);

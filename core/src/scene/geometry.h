@@ -1,4 +1,4 @@
-// Everything that a ray can meet, as the user described it: meshes and their placements.
+// The geometry as the user described it: meshes and their instances.
 #pragma once
 
 #include "scene/affine.h"
@@ -14,7 +14,7 @@ enum class ShapeKind : uint32_t { Mesh = 0, Sphere = 1, Plane = 2, Cylinder = 3,
 enum class Shading : uint32_t { AsMesh = 0, Flat = 1, Gouraud = 2, Phong = 3 };
 enum class NormalDomain : uint32_t { None = 0, Vertex = 1, Corner = 2 };
 
-// A named attribute, one to four numbers each; name is a number of Description::attribute_names.
+// A named attribute, one to four numbers each; name is an index into Description::attribute_names.
 enum class Domain : uint32_t { Vertex = 0, Face = 1, Corner = 2 };
 struct MeshAttribute {
   uint32_t name = 0;
@@ -23,34 +23,35 @@ struct MeshAttribute {
   std::vector<float> values;
 };
 
-// Where a polygon's one colour is computed, under flat shading.
+// The point at which flat shading computes a polygon's colour.
 struct PolygonCenter {
-  uint32_t triangle = 0;  // it lies in this one
-  glm::dvec2 place{0.0};  // weights of vertex 1 and 2 there
-  glm::vec3 normal{0.0f}; // object space, unit; 0 where its areas add up to none
+  uint32_t triangle = 0;  // the triangle that contains it
+  glm::dvec2 place{0.0};  // weights of vertices 1 and 2
+  glm::vec3 normal{0.0f}; // object space, unit; 0 if the polygon's areas cancel
 };
 
-// A triangle mesh in its object's space. Only faces of finite, non-zero area are kept.
+// A triangle mesh in object space. Only faces of finite, non-zero area are kept.
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
   std::vector<glm::uvec3> triangles;
-  std::vector<uint32_t> face_of;        // triangle -> face as the user numbered it; empty: the same number
+  std::vector<uint32_t> face_of;        // triangle -> the user's face number; empty: the same number
   std::vector<glm::vec3> normals;       // by normal_domain: per vertex, or three per triangle
   std::vector<glm::vec2> uvs;           // empty, or three per triangle
   std::vector<glm::vec3> colors;        // empty, or three per triangle
   std::vector<uint16_t> material_slots; // empty (all 0), or per triangle
-  std::vector<uint32_t> polygons;       // empty (each triangle is one), or which polygon each triangle is a part of
+  std::vector<uint32_t> polygons;       // empty (each triangle is a polygon), or the polygon of each triangle
   std::vector<MeshAttribute> attributes;
-  glm::vec3 low{-1.0f}, high{1.0f}; // bounds of the positions as they were given
+  glm::vec3 low{-1.0f}, high{1.0f}; // bounds of the given positions
   NormalDomain normal_domain = NormalDomain::None;
-  std::vector<glm::vec3> smooth_normals; // per vertex; only where PHONG or GOURAUD is asked of a mesh without normals
-  std::vector<PolygonCenter> centers;    // by polygon; only where FLAT is asked of a mesh with polygons
+  std::vector<glm::vec3> smooth_normals; // per vertex; only if an instance with PHONG or GOURAUD uses a mesh without normals
+  std::vector<PolygonCenter> centers;    // by polygon; only if an instance with FLAT uses a mesh with polygons
 
   glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
 };
 
-// How much a placement can enlarge the largest coordinate of a point, and what it adds: bounds of rounding errors need them.
+// Factors by which a placement can enlarge the largest coordinate of a point, and its largest translation: for bounds of
+// rounding errors.
 struct Reach {
   double there = 1.0, moved = 0.0;     // object to world
   double back = 1.0, moved_back = 0.0; // world to object
@@ -71,16 +72,16 @@ struct Instance {
   float terminator = 0.0f; // cosine below which shadow rays start on the curved surface
   uint32_t number = 0;     // in the user's order of adding
 
-  // Puts the shape there; the map has an inverse.
+  // Places the shape; the map must be invertible.
   void place(const Affine &map);
-  // The doubles of to_world, to_object and reach in a row, as kernels read them.
+  // Returns the doubles of to_world, to_object and reach in a row, as kernels read them.
   const double *placement() const { return &to_world.linear[0][0]; }
 };
 
-// The largest of the coordinates' absolute values.
+// Returns the largest absolute coordinate.
 double largest_coordinate(const glm::dvec3 &v);
 
-// What OBJECT_INFO nodes tell of an object.
+// Data of OBJECT_INFO nodes.
 struct ObjectInfo {
   glm::vec4 color{1.0f};
   float random = 0.0f;
@@ -89,17 +90,17 @@ struct ObjectInfo {
 struct Geometry {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
-  std::vector<ObjectInfo> object_infos; // by Instance::number; what is missing is as it begins
+  std::vector<ObjectInfo> object_infos; // by Instance::number; missing entries have the default
 };
 
-// Which faces of a mesh can be traced, and a mesh of some of its faces only.
+// Selection of the faces of a mesh that can be traced.
 
-// Finite, and not beyond 2^60, where squares leave float's range; no scene is measured so.
+// Returns whether a vertex is finite and not beyond 2^60, where squares leave the range of float.
 bool is_usable(const glm::vec3 &vertex);
-// More than 0, in double.
+// Returns whether the area is above 0, in double.
 bool has_area(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c);
 
-// Leaves the triangles with these numbers, in rising order, with all that belongs to them.
+// Keeps the triangles with these numbers, in ascending order, with all their data.
 void keep_faces(Mesh &mesh, const std::vector<uint32_t> &kept);
 
 } // namespace lancer

@@ -1,4 +1,4 @@
-// What a shape is like where a ray has met it: a template over the number type, of which surface_at() is width 1.
+// The surface at a hit: a template over the number type; surface_at() is its width 1.
 #pragma once
 
 #include "scene/affine.h"
@@ -7,13 +7,13 @@
 
 namespace lancer {
 
-// Where each lane's instance has been placed: the doubles of Instance from to_world on.
+// The placement of each lane's instance: the doubles of Instance from to_world on.
 template <class F> struct Placements {
   static constexpr int kWidth = LanesOf<F>::kWidth;
   static constexpr int kToWorld = 0, kToObject = 12, kThere = 24, kMoved = 25, kBack = 26, kMovedBack = 27;
 
   const double *const *of;
-  bool same; // all lanes have one
+  bool same; // whether all lanes have the same placement
 
   LANCER_LANE explicit Placements(const double *const *lanes) : of(lanes), same(all_equal<kWidth>(lanes)) {}
 
@@ -55,7 +55,7 @@ private:
 
 template <class D> LANCER_LANE D largest_of(const Vector3<D> &v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
-// Unit, of a vector that has a length.
+// Normalises a vector that is not zero.
 template <class F> LANCER_LANE Vector3<F> unit(const Double3Of<F> &v) {
   using D = DoubleOf<F>;
   const D length2 = dot(v, v);
@@ -67,7 +67,7 @@ template <class F> LANCER_LANE Vector3<F> unit(const Double3Of<F> &v) {
   return result;
 }
 
-// Bound of the distance between the computed point and the surface, seen through the maps there and back again.
+// Returns a bound on the distance between the computed point and the surface after a round trip through the maps.
 // Each coordinate of M p + T is three products and three sums: at most gamma(4) of the sum of absolute values, and the ray that
 // leaves is mapped back with the same kind of error, enlarged again by M. 2^-49 is eight times the unit roundoff of double.
 template <class F>
@@ -79,26 +79,27 @@ LANCER_LANE DoubleOf<F> position_bound(const Placements<F> &placed, const Double
   return (there + back) * DoubleOf<F>(0x1p-49);
 }
 
-// As Surface.
+// See Surface.
 template <class F> struct SurfaceLanes {
   Double3Of<F> p;
   DoubleOf<F> offset;
   Vector3<F> ng, ns; // outwards
 };
 
-// A place of a triangle by the weights of its corners 1 and 2. n: normals of the corners, read in the lanes of smooth.
+// Returns the surface at a point of a triangle given by the weights of its corners 1 and 2. n: normals of the corners, read in
+// the lanes of smooth.
 template <class F>
 LANCER_LANE SurfaceLanes<F> triangle_surface(const Placements<F> &placed, const Vector3<F> (&v)[3], const Vector3<F> (&n)[3],
                                              MaskOf<F> smooth, DoubleOf<F> u, DoubleOf<F> w) {
   using D3 = Double3Of<F>;
   const MapLanes<F> to_world(placed, Placements<F>::kToWorld), to_object(placed, Placements<F>::kToObject);
   SurfaceLanes<F> surface;
-  // Take the point from its weights: it lies in the triangle's plane however far the ray came.
+  // Compute the point from its weights: it lies in the triangle's plane for a ray of any length.
   const DoubleOf<F> first = DoubleOf<F>(1.0) - u - w;
   const D3 v0 = widen(v[0]), v1 = widen(v[1]), v2 = widen(v[2]);
   surface.p = to_world.point(first * v0 + u * v1 + w * v2);
   surface.offset = position_bound(placed, max(abs(v0), max(abs(v1), abs(v2))), surface.p);
-  // The inverse transpose keeps a normal's outward side, mirrored or not.
+  // The inverse transpose keeps the outward side of a normal, also for mirrored maps.
   surface.ng = unit<F>(to_object.transposed(cross(v1 - v0, v2 - v0)));
   surface.ns = surface.ng;
   if (any(smooth)) {
@@ -108,7 +109,7 @@ LANCER_LANE SurfaceLanes<F> triangle_surface(const Placements<F> &placed, const 
   return surface;
 }
 
-// A place of an exact surface. o, d: the ray; t: where it met.
+// Returns the surface at a hit on an exact surface. o, d: the ray; t: the hit.
 template <class F>
 LANCER_LANE SurfaceLanes<F> quadric_surface(const Placements<F> &placed, const QuadricKinds<F> &kinds, const Double3Of<F> &o,
                                             const Double3Of<F> &d, DoubleOf<F> t) {
@@ -121,7 +122,7 @@ LANCER_LANE SurfaceLanes<F> quadric_surface(const Placements<F> &placed, const Q
   return surface;
 }
 
-// Where a ray towards d leaves a surface: on the side of d, beyond the bound of its place. ng: outwards.
+// Returns the origin of a ray that leaves a surface towards d: on the side of d, beyond the error bound of p. ng: outwards.
 template <class D>
 LANCER_LANE Vector3<D> origin_towards(const Vector3<D> &p, D offset, const Vector3<D> &ng, const Vector3<D> &d) {
   const D side = select(dot(ng, d) < D(0.0), D(-1.0), D(1.0));

@@ -1,4 +1,4 @@
-// A picture as described: its texels, and how they are to be read.
+// An image as described: its texels and their interpretation.
 #pragma once
 
 #include "simd/huge_pages.h"
@@ -12,8 +12,8 @@
 
 namespace lancer {
 
-// The memory of pictures. Large ones ask the system for large pages: somewhere in 256 MB a look-up would otherwise wait for the
-// page table before it waits for the texel.
+// The memory of images. Large images request large pages: a lookup in 256 MB would otherwise wait for a page table walk before
+// the texel.
 struct FreeTexels {
   void operator()(std::byte *texels) const { free_aligned(texels); }
 };
@@ -21,7 +21,7 @@ using Texels = std::unique_ptr<std::byte[], FreeTexels>;
 
 inline Texels allocate_texels(size_t bytes) {
   const size_t alignment = bytes >= 2 * kLargePage ? kLargePage : alignof(std::max_align_t);
-  // Kernels read whole words: the last texel's may reach beyond it.
+  // Kernels read whole words, which may extend beyond the last texel.
   const size_t rounded = (bytes + 3 + alignment - 1) / alignment * alignment;
   Texels texels(static_cast<std::byte *>(allocate_aligned(alignment, rounded)));
   if (!texels)
@@ -29,7 +29,7 @@ inline Texels allocate_texels(size_t bytes) {
   return texels;
 }
 
-// Pictures in memory, in their own bit depth.
+// Images in memory, in their own bit depth.
 enum class TexelKind : uint32_t { U8 = 0, U16 = 1, Float = 2 };
 enum class Transfer : uint32_t { Linear = 0, Srgb = 1 };
 enum class AlphaMode : uint32_t { Associated = 0, Straight = 1, ChannelPacked = 2, None = 3 };

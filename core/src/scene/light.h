@@ -1,4 +1,4 @@
-// Lights and the world as described by the user: world units, not yet normalised.
+// Lights and the world as the user described them: world units, not yet normalised.
 #pragma once
 
 #include "scene/affine.h"
@@ -36,14 +36,14 @@ struct LightDescription {
   glm::vec3 ambient_color{1.0f}, diffuse_color{1.0f}, specular_color{1.0f};
 };
 
-// What lies beyond everything, as described: one radiance, or nodes over the direction.
+// The environment as described: one radiance, or nodes over the direction.
 struct World {
   Program program;
   Parameter radiance;
   Schedule schedule;                // of radiance
   uint32_t hidden_from = 0;         // LANCER_RAY_* bits
   uint32_t map_resolution = 0;      // 0 = by its images
-  std::optional<glm::vec3> ambient; // in place of the mean radiance, for Ka
+  std::optional<glm::vec3> ambient; // replaces the mean radiance for Ka
 
   bool varies() const { return radiance.varies(); }
 };

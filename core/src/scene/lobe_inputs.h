@@ -1,4 +1,4 @@
-// Lobes as a material describes them, with every parameter a value: what the BSDF of one place is built from.
+// Lobes of a material with every parameter evaluated: the input from which a BSDF is built at a hit.
 #pragma once
 
 #include "scene/principled_table.h"
@@ -28,20 +28,20 @@ enum class LobeKind : uint32_t {
   Minnaert = 14
 };
 inline constexpr uint32_t kLobeKinds = 15;
-// Of one material, and of one place once Principled has become its lobes.
+// Maximum number of lobes of a material, and of a hit after Principled has become its lobes.
 inline constexpr int kMaxLobes = 64;
 
-// How the facets of a rough surface are distributed.
+// Microfacet distribution of a rough surface.
 enum class Facets : uint32_t { Ggx = 0, Beckmann = 1, AshikhminShirley = 2, MultiGgx = 3 };
-// Whose definitions hold: Blender 3.x, 4.0 ... 4.4, 4.5 and newer.
+// The Blender versions whose definitions hold: 3.x, 4.0 ... 4.4, 4.5 and newer.
 enum class Rules : uint32_t { Blender3 = 0, Blender4 = 1, Blender45 = 2 };
 
-// What a parameter is: as lancer_parameter says.
+// Kinds of parameters, see lancer_parameter.
 enum class ParameterKind { Color, Share, Amount, Index, Denser, Turns, Direction };
 template <class F, ParameterKind kind>
 using ValueOf = std::conditional_t<kind == ParameterKind::Color || kind == ParameterKind::Direction, Vec3<F>, F>;
 
-// Their numbers are those of every lane; what they are is the same in all lanes.
+// Values vary by lane; the kinds are the same in all lanes.
 template <class F> struct LobeInputs {
   using V = Vec3<F>;
   LobeKind kind = LobeKind::Lambert;
@@ -56,12 +56,12 @@ template <class F> struct LobeInputs {
   V normal{F(0.0f)}, tangent{F(0.0f)}; // world; 0 = the shading normal, any tangent
 };
 
-// The weight of a lobe that its colour scales.
+// Returns the weight of a lobe whose colour scales it.
 template <class F> LANCER_LANE Vec3<F> colored_weight(const LobeInputs<F> &inputs) {
   return inputs.weight * max(inputs.color, Vec3<F>(F(0.0f)));
 }
 
-// weight, normal and tangent are those of the lobe that carries the record.
+// weight, normal and tangent are in the LobeInputs of the lobe that has this record.
 template <class F> struct PrincipledInputs {
   Rules rules = Rules::Blender45;
   Facets distribution = Facets::MultiGgx;

@@ -1,4 +1,4 @@
-// A material as described: lobes whose parameters are constants or the results of nodes.
+// A material as described: lobes with parameters that are constants or results of nodes.
 #pragma once
 
 #include "scene/lobe_inputs.h"
@@ -10,7 +10,7 @@
 
 namespace lancer {
 
-// No colour, level or length of a material or a light is taken as larger.
+// The largest value of a colour, level or length of a material or a light.
 inline constexpr float kBrightest = 1e30f;
 
 struct PrincipledDescription {
@@ -44,37 +44,37 @@ struct Material {
 
   std::shared_ptr<const ReadyLobe[]> ready; // by number of lobe; set by commit()
 
-  // Which nodes each question needs.
+  // The nodes that each query needs.
   Schedule surface_nodes;       // lobes, emission, transmittance, holdout, ambient, normal
   Schedule transmittance_nodes; // for shadow rays
-  Schedule emission_nodes;      // for light samples, with those of layered emission
+  Schedule emission_nodes;      // for light samples, including layered emission
   Schedule displacement_nodes;
 
-  bool layered_emission = false;                       // some Principled lobe emits
-  bool fixed() const { return program.nodes.empty(); } // nodes decide nothing
+  bool layered_emission = false;                       // a Principled lobe emits
+  bool fixed() const { return program.nodes.empty(); } // no node decides anything
   bool emits() const { return layered_emission || emission.varies() || emission.value != glm::vec3(0.0f); }
   bool displaces() const { return displacement.varies() || displacement.value != glm::vec3(0.0f); }
   bool transmits() const { return transmittance.varies() || transmittance.value != glm::vec3(0.0f); }
 };
 
-// Of a scalar.
+// For a scalar parameter.
 inline bool may_be_positive(const Parameter &parameter) { return parameter.varies() || parameter.value.x > 0.0f; }
 
-// Comparisons are turned so that NaN gives low.
+// Clamps; NaN becomes low.
 template <class F> LANCER_LANE F within(F value, float low, float high) {
   return select(value > low, select(value < high, value, F(high)), F(low));
 }
 
-// The values of nodes at one place.
+// The results of nodes at one hit.
 struct PlaceValues {
   std::span<const glm::vec4> values;
   glm::vec3 operator()(const Parameter &parameter) const { return value_of(parameter, values); }
 };
 
-// Blender's smallest index; the course's lobes take what they are given.
+// Blender's smallest index; the lobes of CLASSIC use any index.
 inline constexpr float kSmallestIor = 1e-5f;
 
-// Reads parameters, brought into the ranges that the models know; what is no number becomes 0. Values: gives a parameter's
+// Reads parameters and clamps them to the range of their model; NaN becomes the lower end, or 0. Values: returns a parameter's
 // value in every lane.
 template <class F, class Values> struct ParameterReader {
   using V = Vec3<F>;
@@ -93,7 +93,7 @@ template <class F, class Values> struct ParameterReader {
     const F value = values(parameter).x;
     return select(abs(value) < __builtin_inff(), value, F(0.0f));
   }
-  // Unit, or 0.
+  // Returns a unit direction, or 0.
   LANCER_LANE V direction(const Parameter &parameter) const {
     const V v = values(parameter);
     const F length = sqrt(dot(v, v));
@@ -117,7 +117,7 @@ template <class F, class Values> struct ParameterReader {
   }
 };
 
-// A described lobe with its values of one place.
+// Evaluates a described lobe at a hit.
 template <class F, class Values>
 LANCER_LANE LobeInputs<F> evaluate(const LobeDescription &lobe, const ParameterReader<F, Values> &read) {
   LobeInputs<F> inputs;
@@ -158,7 +158,7 @@ inline LobeInputs<float> evaluate(const LobeDescription &lobe, std::span<const g
 inline PrincipledInputs<float> evaluate(const PrincipledDescription &principled, std::span<const glm::vec4> values) {
   return evaluate(principled, ParameterReader<float, PlaceValues>{{values}});
 }
-// The light that a weight or an emission stands for.
+// Evaluates a weight or an emission.
 inline glm::vec3 evaluate(const Parameter &color, std::span<const glm::vec4> values) {
   return ParameterReader<float, PlaceValues>{{values}}.color(color);
 }

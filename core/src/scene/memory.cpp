@@ -27,7 +27,7 @@ double physical_memory() {
 
 void check_memory(const std::string &what, double bytes) {
   const double present = physical_memory();
-  // Blender and the scene have their share, too.
+  // Leave a share to Blender and the scene.
   if (bytes > 0.8 * present)
     throw Error(Fault::Memory, what + " need " + std::to_string(uint64_t(bytes / 1e6)) + " MB, this machine has " +
                                    std::to_string(uint64_t(present / 1e6)) + " MB");

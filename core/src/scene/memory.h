@@ -1,14 +1,14 @@
-// What is refused before it takes the machine down: things that are larger than its memory.
+// Rejection of requests that exceed the machine's memory.
 #pragma once
 
 #include <string>
 
 namespace lancer {
 
-// The machine's memory, in bytes.
+// Returns the machine's memory, in bytes.
 double physical_memory();
 
-// what: "image 'Sky': 65536 x 65536 texels".
+// Throws an Error if bytes exceed the memory. what: "image 'Sky': 65536 x 65536 texels".
 void check_memory(const std::string &what, double bytes);
 
 } // namespace lancer

@@ -1,4 +1,4 @@
-// Which nodes are needed.
+// Schedules: the nodes that parameters depend on.
 #include "scene/node.h"
 
 namespace lancer {
@@ -16,7 +16,7 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
   std::vector<bool> needed(nodes.size());
   for (const Parameter &parameter : parameters)
     mark(parameter, needed);
-  // Nodes refer to earlier ones only: one pass backwards meets every user before what it uses.
+  // Nodes refer to earlier ones only: one backward pass visits every user before its inputs.
   for (size_t i = nodes.size(); i-- > 0;) {
     if (!needed[i])
       continue;
@@ -28,7 +28,7 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
     }
     if (node.kind != LANCER_NODE_BUMP)
       continue;
-    // A bump runs its own nodes; what those take from before them is needed here.
+    // A bump evaluates its height nodes; their inputs from before it are needed here.
     for (const uint16_t number : heights[node.heights]) {
       const Node &inner = nodes[number];
       for (int k = 0; k < 5; ++k)

@@ -1,4 +1,4 @@
-// Nodes: what a material, or the world, computes at a place before its lobes are known.
+// Nodes: computations of a material or the world at a hit, before its lobes are known.
 #pragma once
 
 #include "lancer.h"
@@ -21,27 +21,27 @@ struct Parameter {
 struct Node {
   uint32_t kind = 0, option = 0, flags = 0;
   uint32_t image = 0, image_count = 0, first = 0;
-  uint32_t name = 0;    // number of the name among Description::attribute_names; 0 is "", kUndisplaced is none of them
-  uint32_t tangent = 0; // likewise, of the tangents that belong to the UV map of that name
-  uint32_t heights = 0; // BUMP: number of its schedule among Program::heights
+  uint32_t name = 0;    // index into Description::attribute_names; 0 is "", kUndisplaced is outside the list
+  uint32_t tangent = 0; // index of the name of the tangents of this UV map
+  uint32_t heights = 0; // BUMP: index of its schedule in Program::heights
   Parameter inputs[5];
   float matrix[12] = {};
 };
 
-// Within the height of a bump another bump only hands on its normal.
+// Returns whether a height evaluation reads an input: a bump inside the height of another bump only passes on its normal.
 inline bool is_read_in_height(const Node &node, int input) { return node.kind != LANCER_NODE_BUMP || input == 3; }
 
-// Numbers of nodes in the order in which to compute them.
+// Numbers of nodes in order of evaluation.
 using Schedule = std::vector<uint16_t>;
 
 struct Program {
   std::vector<Node> nodes;
-  std::vector<Schedule> heights; // of each BUMP: those of its nodes [first, this) that its height needs
-  bool asks_light_path = false;  // a node of it does
+  std::vector<Schedule> heights; // of each BUMP: the nodes among [first, this) that its height depends on
+  bool asks_light_path = false;  // whether a node reads the light path
 
-  // The nodes that the parameters need, directly or not, in order; a BUMP's own height nodes are left to it.
+  // Returns the nodes that the parameters depend on, directly or not, in order, without a BUMP's own height nodes.
   Schedule schedule(std::span<const Parameter> parameters) const;
-  // The node that a value comes from; null where it is constant.
+  // Returns the node of a value; null if it is constant.
   const Node *source(const Parameter &value) const { return value.varies() ? &nodes[size_t(value.node)] : nullptr; }
 };
 
@@ -49,7 +49,7 @@ inline glm::vec3 value_of(const Parameter &parameter, std::span<const glm::vec4>
   return parameter.node < 0 ? parameter.value : glm::vec3(values[size_t(parameter.node)]);
 }
 
-// Whether a node asks nothing of a surface, a ray or a picture: with constants for inputs it has a value by itself.
+// Returns whether a kind of node depends on its inputs alone, not on a surface, a ray or an image.
 bool asks_no_place(uint32_t kind);
 
 } // namespace lancer

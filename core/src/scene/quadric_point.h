@@ -1,4 +1,4 @@
-// Exact surfaces in their unit frames: the nearest place on a shape, its parametrisation and parts.
+// Exact surfaces in their unit frames: the nearest surface point, its parametrisation and parts.
 #pragma once
 
 #include "scene/geometry.h"
@@ -6,7 +6,7 @@
 
 namespace lancer {
 
-// Which shape each lane has; the others have spheres.
+// The shape of each lane; lanes in none of the masks are spheres.
 template <class F> struct QuadricKinds { MaskOf<F> plane, cylinder, cone; };
 
 template <class F> struct QuadricPoint {
@@ -14,7 +14,7 @@ template <class F> struct QuadricPoint {
   Double3Of<F> n; // outward geometric normal, unit
 };
 
-// Of cylinders and cones: on the side, or on one of the disks.
+// Returns the nearest point of a cylinder or cone: on the side or on a disk.
 template <class F> LANCER_LANE QuadricPoint<F> tube_point(MaskOf<F> cone, const Double3Of<F> &at) {
   using D = DoubleOf<F>;
   using D3 = Double3Of<F>;
@@ -49,7 +49,7 @@ template <class F> LANCER_LANE QuadricPoint<F> quadric_point(const QuadricKinds<
   return point;
 }
 
-// Points of exact surfaces in their unit frames (lancer.h says which): where they lie, and how they are numbered.
+// Points of exact surfaces in their unit frames (see lancer.h): position and parametrisation.
 
 inline QuadricKinds<float> kinds_of(ShapeKind kind) {
   return {kind == ShapeKind::Plane, kind == ShapeKind::Cylinder, kind == ShapeKind::Cone};
@@ -60,11 +60,11 @@ struct SurfacePoint {
   glm::dvec3 n; // outward geometric normal, unit, object space
 };
 
-// The point o + t d of an object-space ray, moved to the nearest place exactly on the surface.
+// Returns the point o + t d of an object-space ray, projected onto the surface.
 SurfacePoint quadric_point(ShapeKind kind, const glm::dvec3 &o, const glm::dvec3 &d, double t);
 
-// The parametrisation at an object-space surface point. Sphere: longitude, latitude; cylinder and cone: angle, height; all in
-// [0, 1]. Plane: x, y.
+// Returns the parametrisation at an object-space surface point. Sphere: longitude, latitude; cylinder and cone: angle, height;
+// all in [0, 1]. Plane: x, y.
 glm::dvec2 quadric_uv(ShapeKind kind, const glm::dvec3 &p);
 
 } // namespace lancer

@@ -1,4 +1,4 @@
-// The question and the answer of every accelerator.
+// Input and output of every accelerator.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@ namespace lancer {
 
 inline constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
-// Points o + t d with tmin < t < tmax, in the normalised world. d need not be unit: t is in units of its length.
-// Double throughout: a hit point keeps the digits that the surface has, so that no visible offset is ever needed.
+// Points o + t d with tmin < t < tmax, in the normalised world. d need not be unit: t is in units of its length. All in double:
+// a hit point keeps the digits of the surface, so that no visible offset is needed.
 struct Ray {
   glm::dvec3 o{0.0};
   double tmin = 0.0;
   glm::dvec3 d{0.0, 0.0, 1.0};
   double tmax = std::numeric_limits<double>::infinity();
-  // The flat primitive that the ray starts on: it cannot be met again. kNone: none.
+  // The flat primitive that the ray starts on and does not hit again. kNone: none.
   uint32_t skip_instance = kNone;
   uint32_t skip_primitive = kNone;
-  // Bits of LANCER_RAY_*: what sent it. A thing hidden from all of them is not there.
+  // Bits of LANCER_RAY_*: the ray's origin. An object hidden from all of them does not exist for the ray.
   uint32_t kinds = ~0u;
 };
 
@@ -34,24 +34,24 @@ struct Hit {
   bool valid() const { return instance != kNone; }
 };
 
-// Decides whether what a ray meets counts. Other hits are left out as if they were not there: the ray goes on within the same
-// traversal, and an exact surface is met again where the ray leaves it.
+// A filter of hits. Rejected hits are skipped as if they did not exist: the ray continues within the same traversal, and may
+// hit an exact surface again where it leaves it.
 struct HitFilter {
-  const uint8_t *instances; // by instance: 0 where every hit counts, unasked
-  // Of rays[ray] of the batch. Asked in any order and maybe more than once about
-  // - every hit that is closer than the closest that counts, by closer(), and some that are not;
-  // - any hit at all: all hits of a ray that is not occluded.
-  // What did not count may count after other hits have been asked about, where the order makes no difference to the asker.
+  const uint8_t *instances; // by instance: 0 if every hit counts, without a call
+  // Returns whether a hit of rays[ray] of the batch counts. Called in any order, possibly more than once, for
+  // - closest hit: every hit that is closer, by closer(), than the closest that counts, and some that are not;
+  // - any hit: all hits of a ray that is not occluded.
+  // A rejected hit may count after calls for other hits, if the order makes no difference to the caller.
   bool (*counts)(void *context, size_t ray, const Hit &hit);
   void *context;
 };
 
-// What a batch of rays had to look at on its way.
+// The work of a traversal for a batch of rays.
 struct TraversalCounts {
   uint64_t nodes = 0, triangle_blocks = 0, sphere_blocks = 0, instances = 0;
 };
 
-// The rule that makes "closest" unique: smaller t, then smaller instance, then smaller primitive.
+// Defines "closest" uniquely: smaller t, then smaller instance, then smaller primitive.
 [[gnu::always_inline]] inline bool closer(double t, uint32_t instance, uint32_t primitive, const Hit &best) {
   if (t != best.t)
     return t < best.t;
