@@ -1,4 +1,4 @@
-// What an integrator is asked, and what it answers: batches of pixel samples.
+// The interface of integrators: batches of pixel samples, and their results.
 #pragma once
 
 #include "compile/scene.h"
@@ -15,11 +15,11 @@ namespace lancer {
 
 enum class IntegratorKind : uint32_t { Path = 0, Classic = 1, Normals = 2 };
 
-// Splitting (Arvo, Kirk, "Particle transport and image synthesis", 1990): what a sample does at the first surface on its way
-// that scatters into more than single directions. What comes before, and the pixel's own place, is shared.
+// Splitting (Arvo, Kirk, "Particle transport and image synthesis", 1990) of a sample at the first surface on its path that
+// scatters into more than single directions. The part of the path before the split, and the place on the pixel, are shared.
 struct Splits {
-  uint32_t lights = 1; // it asks so many lights there,
-  uint32_t paths = 1;  // and goes on along so many paths
+  uint32_t lights = 1; // lights sampled there
+  uint32_t paths = 1;  // paths continued from there
 
   bool any() const { return lights > 1 || paths > 1; }
   bool operator==(const Splits &) const = default;
@@ -39,14 +39,14 @@ struct IntegratorSettings {
   bool transparent_glass = false;
   float glass_alpha2 = 0.0f; // glass of at most this alpha_x alpha_y leaves the film transparent
   uint32_t transparent_bounces = 8, transparent_shadows = 8;
-  float alpha_threshold = 0.5f;         // the first surface at least this opaque gives depth, normal, position, indices, UV
+  float alpha_threshold = 0.5f;         // the first surface of at least this opacity gives depth, normal, position, indices, UV
   bool environment_reflections = false; // CLASSIC
   double occlusion_distance = 0.0;      // scene units; 0 = any
   float mist_start = 5.0f, mist_depth = 25.0f, mist_falloff = 2.0f;
-  bool blended_features = false; // denoising features as Blender 5.2 has them
+  bool blended_features = false; // denoising guides as in Blender 5.2
   uint32_t passes = 1;           // bits 1u << Pass of render/pass.h
   bool all_features = false;
-  const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with results that are worth nothing
+  const std::atomic<bool> *cancel = nullptr; // raised: a batch may end with invalid results
 
   bool cancelled() const { return cancel && *cancel; }
 };
@@ -56,7 +56,7 @@ struct SampleAddress {
   uint32_t x, y, sample;
 };
 
-// Light by the way that it came, in the order of LANCER_PASS_EMISSION and what follows.
+// Parts of the light, in the order of the passes from LANCER_PASS_EMISSION on.
 enum LightPass : uint32_t {
   kLightEmission = 0,
   kLightEnvironment = 1,
@@ -65,7 +65,7 @@ enum LightPass : uint32_t {
   kLightPasses = 12
 };
 
-// What one sample adds to the film: nothing but floats, those that are summed in the order of their passes.
+// The contribution of one sample to the film: floats only; those that are summed stand in the order of their passes.
 struct SampleResult {
   glm::vec3 radiance{0.0f};
   float alpha = 0.0f;
@@ -73,12 +73,12 @@ struct SampleResult {
   glm::vec3 albedo{0.0f};
   glm::vec3 uv{0.0f};
   float mist = 0.0f;
-  // Parts of radiance, where settings ask for them; colours are their divisors. Elsewhere nobody reads them.
+  // Parts of radiance, set only where settings request them; colours are their divisors.
   glm::vec3 light[kLightPasses];
   glm::vec3 denoising_normal{0.0f}; // camera space
   float denoising_depth = 0.0f;
-  // Where the camera ray ended.
-  float depth = 1e10f; // scene units along the camera's z; 1e10: nothing there
+  // The hit of the camera ray.
+  float depth = 1e10f; // scene units along the camera's z; 1e10: no hit
   glm::vec3 position{0.0f};
   float object_index = 0.0f, material_index = 0.0f;
 
@@ -99,7 +99,7 @@ struct RayCounts {
   }
 };
 
-// Vertices on surfaces: shaded side by side in lanes, or one by one.
+// Vertices on surfaces: shaded in lanes, or one by one.
 struct VertexCounts {
   uint64_t wide = 0, narrow = 0;
 
@@ -110,19 +110,20 @@ struct VertexCounts {
   }
 };
 
-// Luminance that settings take from the picture, summed over samples.
+// Luminance that settings remove from the picture, summed over samples.
 struct Energy {
   double clipped = 0.0;                 // by clamping
   double last = 0.0, before_last = 0.0; // found by the last bounce that is followed, and by the one before
 
-  // What bounces beyond the last would find if each went on to find less than the one before by the same factor; the light
-  // that surfaces send on falls off no slower once it has spread. Infinite where the last bounce finds no less.
+  // Returns an estimate of the light of all bounces beyond the last, if each finds less than the previous one by the same
+  // factor; indirect light falls off no slower once it has spread. Infinite where the last bounce finds no less than the one
+  // before.
   double beyond() const {
     if (last <= 0.0)
       return 0.0;
     return last < before_last ? last * last / (before_last - last) : std::numeric_limits<double>::infinity();
   }
-  // A sample that is not finite is dropped, and what would have been clipped of it.
+  // Ignores values that are not finite: their sample is dropped.
   void clip(double light) { clipped += std::isfinite(light) ? light : 0.0; }
   Energy &operator+=(const Energy &other) {
     clipped += other.clipped;
@@ -144,12 +145,12 @@ struct PathVertex {
 class Integrator {
 public:
   virtual ~Integrator() = default;
-  // results[i] answers addresses[i]; trace (may be null) collects the vertices of a batch of one.
+  // Writes the sample of addresses[i] to results[i]; trace (may be null) collects the vertices of a batch of one.
   virtual void run(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                    std::vector<PathVertex> *trace) = 0;
-  // Between batches: how samples split from here on, where they do.
+  // Sets how samples split in the following batches, for integrators that split.
   virtual void set_splits(const Splits &) {}
-  // The specialisation in use, for the statistics.
+  // Returns the name of the specialisation in use, for the statistics.
   virtual const char *kernel() const = 0;
   const RayCounts &counts() const { return counts_; }
   const VertexCounts &vertices() const { return vertices_; }
@@ -173,10 +174,10 @@ enum VertexDimension : uint32_t {
   kVertexLightChoice = 4,
   kVertexLobe = 5,
   kVertexRoulette = 6,
-  kVertexLightDigits = 7, // more digits of the choice: a million faces need them
+  kVertexLightDigits = 7, // more digits of the choice, which a million faces need
   kVertexStride = 8
 };
-// Layers of opacity at one vertex have numbers of their own, far behind the others.
+// Layers of opacity have their own dimensions, far behind the others.
 inline constexpr uint32_t kDimensionOpacity = 1u << 16;
 inline constexpr uint32_t kMaxCrossings = 1025;
 

@@ -41,11 +41,11 @@ void record_seen(const Scene &scene, const Camera &camera, const IntegratorSetti
 }
 
 float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Surface &surface) {
-  // Parallel rays count along the axis.
+  // An orthographic camera measures along its axis.
   const bool parallel = camera.kind == CameraKind::Orthographic;
   const double way = parallel ? std::abs(camera.depth(surface.p)) : glm::length(surface.p - camera.to_world.translation);
   const double distance = way / scene.normalisation.scale;
-  // Without a depth there is none, as in Cycles.
+  // A depth of 0 gives no mist, as in Cycles.
   if (!(settings.mist_depth > 0.0f))
     return 0.0f;
   const double ratio = std::clamp((distance - double(settings.mist_start)) / double(settings.mist_depth), 0.0, 1.0);
@@ -56,7 +56,7 @@ float mist_at(const Scene &scene, const Camera &camera, const IntegratorSettings
 
 namespace {
 
-// How far away the picture begins in the unit direction d: on a plane, or of a panorama on a sphere.
+// Returns the distance of the near clipping surface in the unit direction d: a plane, or a sphere for a panorama.
 double near_distance(const Camera &camera, const glm::dvec3 &d) {
   if (camera.is_panorama())
     return camera.clip_start;
@@ -74,14 +74,15 @@ DenoisingGuides begin_guides(const IntegratorSettings &settings, bool wanted) {
 
 void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixture<float> &mixture, const glm::vec3 &wo,
                           const glm::vec3 &transmittance, double distance, DenoisingGuides &features, SampleResult &result) {
-  // Count from where the camera begins to see.
+  // Subtract the distance of the near clipping surface.
   if (features.first)
     distance -= near_distance(camera, glm::dvec3(-wo));
   features.first = false;
   result.denoising_depth += features.share * mean(features.beta) * nearest_float(distance / scene.normalisation.scale);
   const glm::vec3 normal = camera.direction_to_camera(glm::dvec3(mixture.normal));
   if (features.blended) {
-    // Give what is matt, and all where that is half of it; the rest and what passes straight on wait for the next surface.
+    // Add the matt share, or all lobes where half of them is matt; the rest and the transmitted light continue to the next
+    // surface.
     const float here = mixture.all > 0.0f ? smooth_step(mixture.matt / (0.5f * mixture.all)) : 0.0f;
     const float passing = mean(transmittance);
     const float solid = mixture.all > 0.0f ? mixture.all / (mixture.all + passing) : 0.0f;
@@ -91,7 +92,7 @@ void add_denoising_guides(const Scene &scene, const Camera &camera, const Mixtur
     features.open = largest(features.beta) > 0.0f;
     return;
   }
-  // Three quarters of mirror: look at what it shows.
+  // At least three quarters are mirror-like: use the surface in the reflection.
   if (mixture.all > 0.0f && mixture.matt * 4.0f <= mixture.all) {
     features.beta *= mixture.specular;
     return;

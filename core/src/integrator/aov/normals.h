@@ -1,4 +1,4 @@
-// The course's first picture: the normal as a colour, the sky where nothing is.
+// The course's first picture: the normal as a colour, and the sky.
 #pragma once
 
 #include "integrator/aov/first_surface.h"
@@ -67,7 +67,7 @@ private:
       surfaces_.ask_nodes(views);
     }
     surfaces_.find_lobes();
-    // This picture shows every surface whole.
+    // This picture shows every surface as opaque.
     std::fill_n(surfaces_.transmittance, surfaces_.count(), glm::vec3(0.0f));
     surfaces_.describe();
     for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
@@ -99,8 +99,8 @@ private:
   SurfaceStage surfaces_;
   ShadingQueues queues_;
   LightPasses passes_;
-  uint32_t number_[kBlockLanes]; // of the ray that each lane of the block has
-  std::vector<uint32_t> slots_;  // rays_[i] is of results[slots_[i]]
+  uint32_t number_[kBlockLanes]; // number of the ray of each lane of the block
+  std::vector<uint32_t> slots_;  // rays_[i] belongs to results[slots_[i]]
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
 };

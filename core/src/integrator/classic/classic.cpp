@@ -11,19 +11,18 @@ namespace lancer {
 
 namespace {
 
-// Glass doubles the rays of every depth. Where more than so many are under way, the batch begins anew in parts that are small
-// enough for the deepest recursion.
+// Glass doubles the rays at every depth. If more than kCrowd rays are queued, the batch is restarted in parts of kSmallPart
+// samples, small enough for the deepest recursion.
 constexpr size_t kCrowd = 8192, kSmallPart = 64;
 
-// The light from everywhere that Ka reflects: the world's own, else the environment where it is the same in all directions,
-// else its mean.
+// Returns the ambient light that Ka reflects: the world's own, else the environment where it is constant, else its mean.
 glm::vec3 ambient_light(const Scene &scene, const Camera &camera) {
   if (scene.world.ambient)
     return *scene.world.ambient;
   const Environment &environment = scene.lights.environment();
   if (!environment.varies())
     return environment.constant();
-  // The mean of the six directions of the axes: Ka is no more than a guess of light from everywhere.
+  // Take the mean of the six axis directions: ambient light is a rough model anyway.
   std::vector<glm::vec4> values(scene.world.program.nodes.size());
   glm::vec3 sum(0.0f);
   for (int axis = 0; axis < 3; ++axis) {
@@ -51,18 +50,18 @@ void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<
     if (run_part(addresses.subspan(begin, size), results.subspan(begin, size), trace))
       begin += size;
     else
-      // It is likely so for the batches that follow, too.
+      // The following batches are likely to need small parts, too.
       crowded_ = true;
   }
 }
 
-// False where the rays became too many: nothing is done then.
+// Returns false where the rays exceed kCrowd; counts are then restored, and the part has to be rendered again.
 bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                                  std::vector<PathVertex> *trace) {
   const RayCounts before = counts_;
   const VertexCounts vertices_before = vertices_;
   generate(addresses, results);
-  // Trace the recursion depth by depth: a pixel's sum has the same order in any batch.
+  // Trace the recursion depth by depth, so that a pixel's sum has the same order in any batch.
   while (!rays_.empty() && !settings_.cancelled()) {
     hits_.resize(rays_.size());
     scene_.accelerator->closest_hit(rays_, hits_);
@@ -118,7 +117,7 @@ void ClassicIntegrator::miss(const Branch &branch, const glm::dvec3 &eye, const 
   add(branch, branch.weight * sky, true, result);
 }
 
-// What follows from a ray: its own light and the rays that go on.
+// Adds the light of a ray's vertex and queues the rays that leave it.
 void ClassicIntegrator::leave(size_t number, SampleResult &result, std::vector<PathVertex> *trace) {
   Branch &branch = branches_[number];
   const Ray &ray = rays_[number];
@@ -139,7 +138,7 @@ void ClassicIntegrator::leave(size_t number, SampleResult &result, std::vector<P
   branch_out(number, result);
 }
 
-// What is met says where it is; what is lit says its colour.
+// Position comes from the hit, colour from the shaded vertex.
 void ClassicIntegrator::keep_vertex(size_t number, const SampleResult &result, std::vector<PathVertex> &trace) const {
   const Hit &hit = hits_[number];
   const Surface met = surface_at(scene_.geometry, scene_.slots, rays_[number], hit);
@@ -156,7 +155,7 @@ void ClassicIntegrator::add(const Branch &branch, const glm::vec3 &light, bool e
     passes_.add_seen(result, light, environment);
 }
 
-// The way from the eye to another place than the ray goes to, of any length. Layers that it has passed are no eye.
+// Returns the unnormalised view direction from the eye to a place p other than the hit. A transparent layer is not the eye.
 glm::dvec3 ClassicIntegrator::view_of(const Branch &branch, const Ray &ray, const glm::dvec3 &p) const {
   if (branch.depth > 0)
     return p - ray.o;
@@ -166,7 +165,7 @@ glm::dvec3 ClassicIntegrator::view_of(const Branch &branch, const Ray &ray, cons
 void ClassicIntegrator::branch_out(size_t number, SampleResult &result) {
   const Branch &branch = branches_[number];
   const Vertex &vertex = lit_[number];
-  // Features follow every branch by its share of the light.
+  // Guides follow each branch with its share of the light.
   const float all = branch.features.open ? mean(vertex.transmittance + vertex.reflected + vertex.refracted) : 0.0f;
   const auto child = [&](const glm::vec3 &part) {
     Branch next = branch;
@@ -182,7 +181,7 @@ void ClassicIntegrator::branch_out(size_t number, SampleResult &result) {
     ++behind.layers;
     push(behind, lancer::leave(surface_at(scene_.geometry, scene_.slots, ray, hit), ray.d, ray.tmax - hit.t));
   }
-  // Beyond the depth limit a ray is black: it need not be traced.
+  // Beyond the depth limit a ray is black and need not be traced.
   if (branch.depth >= settings_.max_bounces)
     return;
   if (vertex.mirrors)
@@ -197,11 +196,11 @@ void ClassicIntegrator::spawn(Branch child, const Vertex &vertex, const glm::vec
   child.kinds = kind;
   child.layers = 0;
   ++child.depth;
-  // Stop what can no longer matter.
+  // Stop a ray whose contribution cannot matter.
   const float share = largest(child.weight);
   if (!(share > 0.0f) || share <= settings_.contribution_threshold)
     return;
-  // The cheap way: the colour that the environment has there, whatever stands between.
+  // The cheap reflection: take the environment in that direction without testing for occluders.
   if (settings_.environment_reflections)
     return miss(child, vertex.p, direction, result);
   next_branches_.push_back(child);

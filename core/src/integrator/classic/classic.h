@@ -1,4 +1,4 @@
-// The recursive ray tracer: direct light of every lamp, mirror reflection and refraction, nothing left to chance.
+// The recursive ray tracer: direct light of every lamp, mirror reflection and refraction, without random choices.
 #pragma once
 
 #include "compile/scene.h"
@@ -19,7 +19,7 @@
 
 namespace lancer {
 
-// Light of the rays of a batch that is found in any order of rays and added up in theirs.
+// Light of the rays of a batch: it is found in any order and summed in the order of the rays.
 class LightByRay {
 public:
   void begin(size_t rays) {
@@ -30,16 +30,16 @@ public:
     found_.push_back({ray, light});
     ++ends_[ray + 1];
   }
-  // After the last.
+  // Call after the last add().
   void sort() {
     for (size_t i = 1; i < ends_.size(); ++i)
       ends_[i] += ends_[i - 1];
     sorted_.resize(found_.size());
-    // The start of each becomes its end.
+    // The start of each ray's light becomes its end.
     for (const Found &found : found_)
       sorted_[ends_[found.ray]++] = found.light;
   }
-  // What was added for a ray, in that order.
+  // Returns the light added for a ray, in the order of add().
   std::span<const glm::vec3> of(size_t ray) const {
     const uint32_t begin = ray == 0 ? 0 : ends_[ray - 1];
     return std::span(sorted_).subspan(begin, ends_[ray] - begin);
@@ -61,7 +61,7 @@ private:
 
 inline bool is_flat(const Instance &instance) { return instance.kind == ShapeKind::Mesh && instance.shading == Shading::Flat; }
 
-// The surface at the centre of the polygon that hit is of, about the polygon's normal. The instance is_flat.
+// Returns the surface at the centre of the hit polygon, with the polygon's normal. The instance must satisfy is_flat().
 Surface surface_at_center(const Scene &scene, const Hit &hit);
 
 class ClassicIntegrator final : public Integrator {
@@ -72,30 +72,30 @@ public:
   const char *kernel() const override { return "classic"; }
 
 private:
-  // A ray of the recursion; all of one depth are traced together.
+  // A ray of the recursion; all rays of one depth are traced together.
   struct Branch {
-    glm::vec3 weight{1.0f}; // of what it brings back
+    glm::vec3 weight{1.0f}; // throughput
     uint32_t slot = 0;
     uint32_t depth = 0;
     uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
-    uint32_t layers = 0;                // passed straight through
+    uint32_t layers = 0;                // transparent surfaces passed
     bool seen = false;                  // the first surface has been recorded
     double passed = 0.0;                // t of the camera ray up to its last layer
     DenoisingGuides features{};
   };
-  // What shading leaves of a ray's vertex until its turn comes: vertices are shaded by the code that they need, but a pixel's
-  // sum has the order of the rays.
+  // Results of shading a ray's vertex, kept until its light is summed: vertices are shaded in the order of their code, but a
+  // pixel's sum has the order of the rays.
   struct Vertex {
-    bool nothing = false; // a hole, behind which nothing is seen
+    bool nothing = false; // a hole in the picture
     bool mirrors = false, refracts = false;
     uint32_t instance = kNone, primitive = kNone;
-    glm::dvec3 p{0.0}; // where it is lit; as of Surface
+    glm::dvec3 p{0.0}; // shaded place; members as in Surface
     double offset = 0.0;
     glm::vec3 ng{0.0f};
     glm::vec3 emission{0.0f}, ambient{0.0f}, transmittance{0.0f}; // ambient: Ka
     glm::vec3 reflected{0.0f}, refracted{0.0f}, mirrored{0.0f}, through{0.0f};
   };
-  // And for denoisers.
+  // The same for denoisers.
   struct FeaturesOf {
     Mixture<float> mixture;
     glm::vec3 wo{0.0f};
@@ -138,13 +138,13 @@ private:
   SurfaceStage surfaces_;
   VertexBlock &block_;
   const ClassicKernel &kernel_;
-  glm::vec3 ambient_;    // light from everywhere, for Ka
-  bool only_combined_;   // no other pass is asked for
+  glm::vec3 ambient_;    // ambient light for Ka
+  bool only_combined_;   // no other pass is requested
   bool corners_ = false; // the block's vertices are lit at the corners of their triangles
-  bool crowded_ = false; // batches are done in small parts
+  bool crowded_ = false; // batches are rendered in small parts
   // Of the block's lanes.
   uint32_t number_[kBlockLanes]; // of the ray
-  Hit lit_at_[kBlockLanes];      // where that is not the hit
+  Hit lit_at_[kBlockLanes];      // the shaded place, where it differs from the hit
   // By light, corner and lane.
   struct CornerLight {
     glm::vec3 light{0.0f}, own{0.0f};

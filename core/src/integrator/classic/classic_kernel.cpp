@@ -1,4 +1,5 @@
-// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+// Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
+// bvh_kernel.cpp.
 #include "integrator/classic/classic_kernel.h"
 
 #include "integrator/classic/classic_terms.h"
@@ -23,13 +24,13 @@ void branch(VertexBlock &block) {
     store3(block.refracted, first, branches.refracted);
     store3(block.wi, first, branches.mirrored);
     store3(block.through_wi, first, branches.through);
-    // About an interpolated normal a mirrored direction may point into the surface: such a ray is black.
+    // With an interpolated normal, a mirrored direction may point into the surface: such a ray is black.
     block.mirrors |= placed_bits(dot(branches.mirrored, bsdf.ng) > F(0.0f), first);
     block.refracts |= placed_bits(dot(branches.through, bsdf.ng) < F(0.0f), first);
   }
 }
 
-// A sample of the lamp, or the one that is given.
+// Samples the lamp, or reads the sample that the block already has.
 LANCER_LANE LightSampleLanes<F> ask(VertexBlock &block, int first, const Light *lamp) {
   LightSampleLanes<F> sample;
   sample.wi = load3(block.light_wi, first);

@@ -1,4 +1,4 @@
-// The recursive ray tracer's own shading in lanes, of surfaces whose lobes VertexKernel has found.
+// Shading of the recursive ray tracer in lanes, for surfaces whose lobes VertexKernel has found.
 #pragma once
 
 #include "integrator/stages/vertex_kernel.h"
@@ -7,9 +7,9 @@
 namespace lancer {
 
 struct ClassicKernel {
-  // What the surface mirrors and lets through, and where it goes.
+  // Computes the mirrored and the transmitted share and their directions.
   void (*branch)(VertexBlock &block);
-  // The light of one lamp as if nothing stood between. Null: the samples of another light are given.
+  // Computes the light of one lamp without occlusion. lamp null: the block has the samples of another light.
   void (*illuminate)(VertexBlock &block, const Light *lamp, uint32_t hidden_from);
 };
 LANCER_DECLARE_KERNEL(ClassicKernel, classic_kernel)

@@ -1,4 +1,4 @@
-// Vertices of the recursion side by side: their surfaces, what they show, and the light of every lamp.
+// Vertices of the recursion in lanes: their surfaces, their passes, and the light of every lamp.
 #include "integrator/classic/classic.h"
 
 #include "compile/mesh_normals.h"
@@ -12,7 +12,7 @@ namespace lancer {
 
 namespace {
 
-// Every lamp at every depth has numbers of its own, behind those of a path.
+// Each lamp at each depth has its own dimensions, after those of a path.
 constexpr uint32_t kDimensionLamp = 1u << 24;
 
 template <class Visit> void each_lane(uint32_t lanes, const Visit &visit) {
@@ -98,7 +98,7 @@ void ClassicIntegrator::ask_nodes() {
   surfaces_.ask_nodes(views);
 }
 
-// Holes end what the camera sees.
+// Cuts holdouts out of the camera's view.
 void ClassicIntegrator::cut_holes(std::span<SampleResult> results) {
   block_.holes = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
@@ -123,7 +123,7 @@ void ClassicIntegrator::cut_holes(std::span<SampleResult> results) {
   }
 }
 
-// Fills the passes that describe what the camera sees.
+// Fills the passes that describe the camera's view.
 void ClassicIntegrator::record(std::span<SampleResult> results) {
   surfaces_.describe();
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
@@ -133,7 +133,7 @@ void ClassicIntegrator::record(std::span<SampleResult> results) {
     Branch &branch = branches_[number];
     if (branch.depth > 0 || lit_[number].nothing)
       continue;
-    // What is met says where it is; what is lit says its colour.
+    // Position comes from the hit, colour from the shaded vertex.
     const Surface met = surface_at(scene_.geometry, scene_.slots, rays_[number], hits_[number]);
     SampleResult &result = results[branch.slot];
     if (!branch.seen && mean(surfaces_.opacity(lane)) >= settings_.alpha_threshold) {
@@ -167,15 +167,15 @@ void ClassicIntegrator::keep(uint32_t lane) {
   vertex.through = get(block_.through_wi, lane);
 }
 
-// Which point of a light to take: its middle when there is one sample only.
+// Returns the random numbers for a point of a light: its middle if the picture has a single sample.
 glm::vec2 ClassicIntegrator::light_numbers(const Branch &branch, uint32_t light) const {
   if (generator_.middle())
     return glm::vec2(0.5f);
   return samplers_[branch.slot].get2(kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + light));
 }
 
-// Makes ready what the kernel needs to know of a light: numbers for a lamp, samples of another one. False where no surface
-// shows its light. met: the block where the rays have met their surfaces.
+// Prepares a light for the kernel: random numbers for a lamp, samples for other lights. Returns false where no surface shows
+// its light. met: the block at the places of the hits.
 bool ClassicIntegrator::ask(uint32_t number, const VertexBlock &met) {
   const LightSet &lights = scene_.lights;
   if (number < lights.lights().size()) {
@@ -219,7 +219,7 @@ void ClassicIntegrator::light_block() {
   }
 }
 
-// Light that a lane gets once its shadow ray is through.
+// Queues the light of a lane with its shadow ray.
 void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane) {
   const LightSet &lights = scene_.lights;
   const uint32_t ray_number = number_[lane];
@@ -231,7 +231,7 @@ void ClassicIntegrator::send_shadow(uint32_t number, uint32_t lane) {
   surfaces_.write_shadow_ray(lane, far, shadows_.push(ray_number, 0, contribution));
 }
 
-// Moves all lanes to a corner of their triangles, as if the ray had met it.
+// Moves all lanes to a corner of their triangles, as if the rays had hit it.
 void ClassicIntegrator::move_to_corner(uint32_t corner) {
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
     lit_at_[lane] = hits_[number_[lane]];
@@ -240,7 +240,7 @@ void ClassicIntegrator::move_to_corner(uint32_t corner) {
     surfaces_.move(lane, lit_at_[lane]);
   }
   surfaces_.find();
-  // Look from the eye, which needs the place.
+  // View the corner from the eye, which needs the corner's position.
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     put(view_of(branch_of(lane), surfaces_.ray(lane), get(block_.p, lane)), block_.d, lane);
   surfaces_.find();
@@ -253,7 +253,7 @@ void ClassicIntegrator::move_to_corner(uint32_t corner) {
   surfaces_.find_lobes();
 }
 
-// Under Gouraud shading the triangle's corners are lit, as if nothing stood between.
+// Gouraud shading: lights the triangles' corners without occlusion, and tests occlusion at the hits.
 void ClassicIntegrator::light_corners() {
   const auto &lamps = scene_.lights.lights();
   const uint32_t light_count = uint32_t(scene_.lights.size());
@@ -280,7 +280,7 @@ void ClassicIntegrator::light_corners() {
   block_ = met;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     surfaces_.move(lane, hits_[number_[lane]]);
-  // Ask whether the lamps are seen from the hit points, on the viewer's side of the surface.
+  // Test whether the lamps are visible from the hits, on the viewer's side of the surface.
   for (uint32_t number = 0; number < light_count; ++number)
     for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
       glm::vec3 light(0.0f);

@@ -1,5 +1,5 @@
-// Local illumination of the recursive ray tracer, one light at one point without its shadow, and what surfaces mirror and let
-// through. F is a float, or lanes of them.
+// Local illumination of the recursive ray tracer, for one light at one point without its shadow, and the mirrored and
+// transmitted shares of surfaces. F is a float, or lanes of floats.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -12,7 +12,7 @@
 
 namespace lancer {
 
-// The lectures' attenuation; ratio = d / r.
+// Returns the lectures' attenuation; ratio = d / r.
 template <class D> LANCER_LANE D attenuation(Falloff falloff, D ratio) {
   const D zero(0.0), one(1.0), rest = max(zero, one - ratio * ratio);
   switch (falloff) {
@@ -31,14 +31,14 @@ template <class D> LANCER_LANE D attenuation(Falloff falloff, D ratio) {
   return one;
 }
 
-// What the texts call lc, as irradiance at normal incidence from a light's sample, after the light's own attenuation.
-// The attenuations other than PHYSICAL replace 1/d^2: such a light is at every distance d att(d) times what it is at one unit.
+// Returns lc of the texts: the irradiance at normal incidence from a light's sample, after the light's own attenuation.
+// Attenuations other than PHYSICAL replace 1/d^2: at distance d, the light has att(d) times its irradiance at one unit.
 template <class F> LANCER_LANE Vector3<F> classic_irradiance(const ClassicLight &light, const LightSampleLanes<F> &sample) {
   using D = DoubleOf<F>;
   const Double3Of<F> physical = widen(sample.radiance) / sample.pdf;
   if (light.falloff == Falloff::Physical)
     return narrow(physical);
-  // Undo the inverse square in world units, then attenuate as the light asks.
+  // Multiply by the squared distance in world units, then apply the light's attenuation.
   const D infinity(std::numeric_limits<double>::infinity()), d = sample.distance / D(light.world_unit);
   D ratio = infinity;
   if (light.radius > 0.0)
@@ -46,7 +46,7 @@ template <class F> LANCER_LANE Vector3<F> classic_irradiance(const ClassicLight 
   return narrow(select(sample.distance == infinity, physical, physical * (d * d * attenuation(light.falloff, ratio))));
 }
 
-// A power of a cosine that is 0 from behind; x^0 is 1 in front.
+// Returns a power of a cosine: 0 from behind; x^0 is 1 in front.
 template <class F> LANCER_LANE F lobe_power(F cosine, F n) {
   return select(cosine > 0.0f, pow(min(cosine, F(1.0f)), n), F(0.0f));
 }
@@ -54,12 +54,12 @@ template <class F> LANCER_LANE F lobe_power(F cosine, F n) {
 inline constexpr uint32_t kClassicShapes = shape_bit(LobeShape::Lambert) | shape_bit(LobeShape::Beckmann) |
                                            shape_bit(LobeShape::Phong) | shape_bit(LobeShape::BlinnPhong);
 
-// Sum of Kd/pi (l.n) lc and the specular lobes for one light; diffuse and specular colours of the light apply.
+// Returns the sum of Kd/pi (l.n) lc and the specular lobes for one light, with the light's diffuse and specular colours.
 //   BECKMANN     Ks D F G / (4 (l.n)(v.n)) (l.n) lc
-//   PHONG        Ks (R.V)^n lc / pi, BLINN_PHONG Ks (N.H)^n lc / pi: C of the lectures is lc / pi, so that Kd means the same
-//   everywhere
-// Lobes of other kinds give what they give in PATH, on the viewer's side. hidden: bits LANCER_RAY_* that the light is hidden
-// from.
+//   PHONG        Ks (R.V)^n lc / pi
+//   BLINN_PHONG  Ks (N.H)^n lc / pi
+// C of the lectures is lc / pi, so that Kd means the same in all models. Lobes of other kinds give the same as in PATH, on the
+// viewer's side. hidden: LANCER_RAY_* bits of the rays that do not see the light.
 template <class F>
 LANCER_LANE Vec3<F> classic_illumination(const Bsdf<F> &bsdf, const Vec3<F> &wi_world, const ClassicLight &light,
                                          const Vec3<F> &irradiance, uint32_t hidden) {
@@ -110,10 +110,10 @@ LANCER_LANE Vec3<F> classic_illumination(const Bsdf<F> &bsdf, const Vec3<F> &wi_
   return irradiance * (diffuse * V(light.diffuse_color) + specular * V(light.specular_color));
 }
 
-// What is mirrored and what is let through, as shares of light.
+// The mirrored and the transmitted share of light.
 template <class F> struct BranchShares { Vec3<F> reflected{F(0.0f)}, refracted{F(0.0f)}; };
 
-// Of a lobe, seen at that cosine to its normal.
+// Returns the shares of a lobe, seen at that cosine to its normal.
 template <class F> LANCER_LANE BranchShares<F> branch_shares(const Lobe<F> &lobe, F cosine) {
   BranchShares<F> shares;
   switch (lobe.shape) {
@@ -130,8 +130,8 @@ template <class F> LANCER_LANE BranchShares<F> branch_shares(const Lobe<F> &lobe
     shares = {lobe.albedo - lobe.through, lobe.through};
     break;
   case LobeShape::Microfacet: {
-    // What rough facets reflect on average; smooth ones, and those that let light through, answer as the one they are taken
-    // for, so that no light is lost between the two shares.
+    // Rough facets use their mean reflection. Smooth facets and facets that refract are treated as a single smooth boundary, so
+    // that no light is lost between the two shares.
     shares.reflected = lobe.albedo;
     const MaskOf<F> as_one = lobe.delta | uniform<F>(refracts(lobe));
     if (!any(as_one))
@@ -148,8 +148,8 @@ template <class F> LANCER_LANE BranchShares<F> branch_shares(const Lobe<F> &lobe
   return shares;
 }
 
-// Weights of the mirrored and of the refracted ray, F c_s and (1 - F) c_s summed over the lobes, and where they go in the
-// world: as the strongest lobe of each has it, about its own normal.
+// Weights of the mirrored and of the refracted ray, F c_s and (1 - F) c_s summed over the lobes, and their directions in the
+// world: those of the strongest lobe of each kind, about the lobe's own normal.
 template <class F> struct Branches : BranchShares<F> { Vec3<F> mirrored{F(0.0f)}, through{F(0.0f)}; };
 
 template <class F> LANCER_LANE Branches<F> find_branches(const Bsdf<F> &bsdf) {
@@ -161,7 +161,7 @@ template <class F> LANCER_LANE Branches<F> find_branches(const Bsdf<F> &bsdf) {
     const Lobe<F> &lobe = bsdf.lobes[i];
     const Frame<F> &frame = bsdf.frames[lobe.frame];
     const V &wo = bsdf.wo_local[lobe.frame];
-    // From behind its own normal a lobe is not seen.
+    // A lobe is invisible from behind its own normal.
     const MaskOf<F> seen = (!black(lobe.color)) & (wo.z > zero);
     const BranchShares<F> shares = branch_shares(lobe, wo.z);
     branches.reflected = select(seen, branches.reflected + shares.reflected, branches.reflected);
@@ -173,7 +173,7 @@ template <class F> LANCER_LANE Branches<F> find_branches(const Bsdf<F> &bsdf) {
     if (any(mirrors))
       branches.mirrored = select(mirrors, frame.to_world(reflect_local(wo)), branches.mirrored);
     if (any(passes)) {
-      // Straight on where the index bends nothing.
+      // The ray passes straight through where the index does not refract.
       const Fresnel<F> boundary = fresnel(wo.z, lobe.ior);
       const MaskOf<F> bends = (lobe.ior != F(1.0f)) & (boundary.cos_t > zero);
       const V bent = select(bends, frame.to_world(refract_local(wo, lobe.ior, boundary.cos_t)), -bsdf.wo);

@@ -1,4 +1,4 @@
-// What the last bounces of a batch find: the part of the light that says what a limit on bounces cuts off.
+// The light found by the last bounces of a batch, from which the light beyond the limit on bounces is estimated.
 #pragma once
 
 #include "integrator/sample.h"
@@ -19,11 +19,11 @@ public:
     stage_ = 0;
     before_[0] = before_[1] = 0.0;
   }
-  // Whether the light of this turn of the queues is to be noted. Light of paths that pass clear surfaces comes a turn later
-  // each: it counts as late, which makes too much of it rather than too little.
+  // Whether the light of this turn of the queues has to be noted. Each transparent surface delays a path by one turn; its light
+  // is counted as later than it is, so the estimate is too large rather than too small.
   bool due(uint32_t turn) const { return turn + 1 >= max_bounces_ && stage_ < 2; }
-  // After what the rays of this turn have met was added. slot(i): of the sample of the i-th of count paths, which several may
-  // share; light(slot): how much it has gathered.
+  // Notes the light gathered so far, after that of this turn's hits is added. slot(i): of the sample of the i-th of count
+  // paths; shared: several paths may have one sample; light(slot): the light that it has gathered.
   template <class Slot, class Light> void note(uint32_t turn, size_t count, bool shared, Slot &&slot, Light &&light) {
     if (stage_ == 0)
       for (size_t i = 0; i < count; ++i)
@@ -32,7 +32,7 @@ public:
       std::sort(slots_.begin(), slots_.end());
       slots_.erase(std::unique(slots_.begin(), slots_.end()), slots_.end());
     }
-    // Without any bounce the light before the last is all that there is at first.
+    // With max_bounces of 0, only the light before the last bounce is noted at first.
     stage_ = turn + 1 == max_bounces_ ? 1 : 2;
     before_[stage_ - 1] = sum(light);
   }
@@ -57,7 +57,7 @@ private:
 
   uint32_t max_bounces_, stage_ = 0;
   double before_[2] = {};
-  std::vector<uint32_t> slots_; // of the paths that were still on their way
+  std::vector<uint32_t> slots_; // of the unfinished paths
 };
 
 } // namespace lancer

@@ -10,7 +10,7 @@ namespace lancer {
 
 namespace {
 
-// Roulette starts where most of the light has been gathered.
+// Roulette starts after the bounces that carry most of the light.
 constexpr uint32_t kRouletteAfter = 2;
 
 } // namespace
@@ -22,14 +22,14 @@ void PathIntegrator::run(std::span<const SampleAddress> addresses, std::span<Sam
   generate(addresses, results);
   const auto gathered = [&](uint32_t slot) { return film_.gathered(slot); };
   for (uint32_t turn = 0; !paths_.empty() && !settings_.cancelled(); ++turn) {
-    // Find where every path goes next.
+    // Find the next hit of every path.
     find_hits();
-    // Gather emission, ask a light, choose how each path goes on.
+    // Add emission, sample a light, sample the next direction of each path.
     shade();
     if (last_bounces_.due(turn))
       last_bounces_.note(
           turn, paths_.size(), settings_.splits.paths > 1, [&](size_t i) { return paths_[i].slot; }, gathered);
-    // Add the light that was not in shadow.
+    // Add the light of the samples that are not occluded.
     counts_.shadow +=
         shadows_.trace([&](const WaitingLight &waiting, const glm::vec3 &light) { film_.add_lit(waiting, light); });
     counts_.bounce += next_rays_.size();
@@ -81,7 +81,7 @@ void PathIntegrator::shade() {
   });
 }
 
-// How a path looks at what it meets at t.
+// Returns the view of a path's hit at t.
 View PathIntegrator::view_of(const Path &path, const Ray &ray, double t) const {
   const double unit = glm::length(ray.d), way = path.length + t * unit;
   return {.wo = glm::vec3(-glm::normalize(ray.d)),
@@ -94,7 +94,7 @@ void PathIntegrator::keep_vertex(const Path &path, const Surface &surface, doubl
                      film_.gathered(path), surface.instance, surface.primitive, surface.material, path.scatterings});
 }
 
-// Unless the path has passed all that it may.
+// Continues a path straight through a surface, unless it has passed all surfaces that it may.
 void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight) {
   if (path.crossings_left(settings_.transparent_bounces) == 0)
     return;
@@ -112,8 +112,8 @@ void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const 
 bool PathIntegrator::survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta) {
   if (scatterings <= kRouletteAfter)
     return true;
-  // End dark paths early; what survives is brightened by exactly that. By the root, instead of beta itself, they go on longer:
-  // variance times rays falls by a twentieth in the mean of five scenes.
+  // End dark paths early and divide the survivors by their probability. The root of beta instead of beta itself lets paths go
+  // on longer: variance times rays falls by a twentieth in the mean of five scenes.
   const float q = std::min(1.0f, std::sqrt(sharers * largest(beta)));
   if (u >= q)
     return false;

@@ -29,7 +29,8 @@ public:
         occlusion_reach_(settings.occlusion_distance > 0.0 ? settings.occlusion_distance * scene.normalisation.scale
                                                            : std::numeric_limits<double>::infinity()),
         last_bounces_(settings.max_bounces), queues_(scene) {
-    // What shadow rays pass, or do not see, other rays meet.
+    // Fill the defaults: a vertex takes one light and one path. Next rays can test ambient occlusion only where shadow rays see
+    // the same surfaces as they do.
     std::fill_n(block_.lights, kBlockLanes, 1.0);
     std::fill_n(block_.paths, kBlockLanes, 1.0);
     block_.next_rays_look = !(scene.features & (kFeatureTransparency | kFeatureVisibility));
@@ -43,25 +44,25 @@ public:
   const char *kernel() const override { return "path"; }
 
 private:
-  // Numbers of a vertex, as bits.
+  // Random numbers of a vertex, as bits.
   static constexpr uint32_t kLightNumbers = 3u << kVertexLight | 1u << kVertexLightChoice | 1u << kVertexLightDigits;
   static constexpr uint32_t kPathNumbers = 3u << kVertexBsdf | 1u << kVertexLobe | 1u << kVertexRoulette;
 
   // A vertex that waits for the others of its block.
   struct Waiting {
     size_t number;          // of its path
-    uint32_t leader;        // of the paths that it splits into
-    bool ends;              // nothing is scattered there any more
-    bool nothing;           // a hole, behind which nothing is seen
-    Mixture<float> mixture; // of its lobes, where passes for denoising are open
+    uint32_t leader;        // number of the leader among the branches
+    bool ends;              // the vertex scatters no light
+    bool nothing;           // a hole in the picture
+    Mixture<float> mixture; // of its lobes, while the path looks for the surface of the denoising guides
   };
 
   void generate(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
-  // Where paths go next.
+  // Finding hits.
   void find_hits();
   bool is_there(size_t ray, const Hit &hit);
   void pass_clear(size_t number);
-  // What they find there.
+  // Shading hits.
   void shade();
   void put_in_lane(size_t number, const Material &material);
   void shade_block();
@@ -76,7 +77,7 @@ private:
   void go_on();
   bool passes_straight(uint32_t lane);
   void scatter_lane(uint32_t lane, uint32_t number);
-  // The light that they find.
+  // Adding light.
   void add_emission(const Path &path, const Surface &surface, const glm::vec3 &emission);
   void miss(size_t number);
   void add_missed();
@@ -84,12 +85,12 @@ private:
   void add_met(size_t first, uint32_t met, uint32_t number);
   void add_light_met(size_t i, uint32_t number);
   template <class Chosen> void add_light_met(size_t i, uint32_t number, const LightHit &met, const Chosen &chosen);
-  double way_end(size_t i) const; // distance from the last scattering to where the ray ends
+  double way_end(size_t i) const; // distance from the last scattering to the end of the ray
   void send_shadow_of(uint32_t lane);
   void look_around(uint32_t lane);
   void send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, const glm::vec3 &weight);
   void count_occluded();
-  // How they go on.
+  // Continuing paths.
   bool stays_in_view(uint32_t lane) const;
   void pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight);
   static bool survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta);
@@ -110,24 +111,25 @@ private:
   LightStage lights_;
   PathFilm film_;
   const LightPasses &passes_;
-  Crossings clear_;        // surfaces on the way of which nothing is there
-  bool any_clear_;         // they are passed together; not where passes for denoising add up the ways between them
+  Crossings clear_;        // absent surfaces on the rays
+  bool any_clear_;         // rays pass absent surfaces in one traversal; not with denoising guides, which sum the distances
+                           // between surfaces
   double occlusion_reach_; // normalised units
   SegmentBlock segments_{};
   MetLight met_light_{};
   Waiting waiting_[kBlockLanes];
-  bool one_bounce_ = true;     // all lanes of the block are of one
-  uint32_t splitting_ = 0;     // those whose samples split
+  bool one_bounce_ = true;     // all lanes of the block have the same bounce
+  uint32_t splitting_ = 0;     // bits of the lanes whose samples split
   size_t missed_[kBlockLanes]; // numbers of paths
   uint32_t missed_count_ = 0;
   // The queue: paths_[i] travels along rays_[i].
   std::vector<Path> paths_, next_paths_;
   std::vector<Ray> rays_, next_rays_;
   std::vector<Hit> hits_;
-  std::vector<PathVertex> *trace_ = nullptr; // of a batch that is to be told vertex by vertex
+  std::vector<PathVertex> *trace_ = nullptr; // of a batch whose vertices are recorded
   LastBounces last_bounces_;
-  ShadingQueues queues_; // paths by the class of the material that they have met
-  Shaded clear_point_;   // of a surface of which nothing is there
+  ShadingQueues queues_; // paths by the class of the hit material
+  Shaded clear_point_;   // of an absent surface
 };
 
 std::unique_ptr<Integrator> make_path(const Scene &scene, const Camera &camera, const IntegratorSettings &settings);

@@ -1,4 +1,4 @@
-// Where paths go next: past surfaces that a picture has cut away, all within one traversal.
+// Finding the next hits: one traversal passes all surfaces that an image has cut away.
 #include "integrator/path/path.h"
 
 namespace lancer {
@@ -17,8 +17,8 @@ void PathIntegrator::find_hits() {
       pass_clear(i);
 }
 
-// Whether there is anything of a surface that a ray meets. Where not, its vertex would choose to pass straight on with weight
-// 1, and ask no light for anything.
+// Whether a surface is present at a hit. At an absent surface, the vertex would pass straight through with weight 1 and sample
+// no light.
 bool PathIntegrator::is_there(size_t ray, const Hit &hit) {
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   if (!scene_.cutouts[material].may_end)
@@ -26,7 +26,7 @@ bool PathIntegrator::is_there(size_t ray, const Hit &hit) {
   Crossing *known = clear_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
-  // What lies behind as many layers as the path may still pass is out of its reach.
+  // Surfaces behind as many layers as the path may still pass are out of reach.
   const Path &path = paths_[ray];
   if (!known && clear_.count_before(ray, hit) >= path.crossings_left(settings_.transparent_bounces))
     return true;
@@ -36,12 +36,12 @@ bool PathIntegrator::is_there(size_t ray, const Hit &hit) {
   return false;
 }
 
-// Counts the layers before a path's hit, as if it had gone from one to the next.
+// Counts the layers before a path's hit, as if the path had passed them one by one.
 void PathIntegrator::pass_clear(size_t number) {
   Path &path = paths_[number];
   const Ray &ray = rays_[number];
   const Hit end = hits_[number];
-  // Mostly they are few, and nobody wants to know more than how many.
+  // Mostly the number of layers suffices.
   const uint32_t count = clear_.count_before(number, end);
   if (count == 0)
     return;
@@ -52,12 +52,12 @@ void PathIntegrator::pass_clear(size_t number) {
     const Hit &hit = layer.hit;
     if (!closer(hit.t, hit.instance, hit.primitive, end))
       return;
-    // The path may pass no more: it ends here.
+    // The path has passed all surfaces that it may: it ends here.
     if (path.crossings_left(limit) == 0) {
       hits_[number] = hit;
       return;
     }
-    // Passes tell of places where little is seen, too.
+    // Passes also record places of low opacity.
     const bool recorded = film_.awaits_surface(path);
     if (recorded || trace_) {
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);

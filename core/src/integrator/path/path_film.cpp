@@ -7,7 +7,7 @@
 namespace lancer {
 
 void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
-  // Only the first samples of pixels tell of places.
+  // Only the first samples of pixels record places.
   only_combined_ = passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
   energy = {};
@@ -28,7 +28,8 @@ void PathFilm::end() {
   }
 }
 
-// Clamps what each path of a sample has found, as if it were the only one: its own with the weight of all, and what all share.
+// Clamps the light of each path of a sample as if the path were the only one: its own light times the number of paths, plus the
+// shared light.
 void PathFilm::clamp(uint32_t slot) {
   const auto paths = float(settings_.splits.paths);
   const glm::vec3 shared = before_splitting(slot);
@@ -48,7 +49,7 @@ void PathFilm::clamp(uint32_t slot) {
     return;
   std::fill_n(indirect_.begin() + ptrdiff_t(slot * places()), places(), glm::vec3(0.0f));
   indirect_[slot * places()] = kept / paths;
-  // Passes do not tell the paths apart.
+  // Passes store the sum over the paths: scale them by the mean factor.
   glm::vec3 of_passes(factor);
   for (int channel = 0; channel < 3 && places() > 1; ++channel)
     of_passes[channel] = all[channel] != 0.0f ? kept[channel] / all[channel] : 1.0f;
@@ -57,11 +58,11 @@ void PathFilm::clamp(uint32_t slot) {
 
 void PathFilm::add(const Path &path, const glm::vec3 &radiance, bool environment) {
   SampleResult &result = results_[path.slot];
-  // Light that was scattered at most once is direct; clamping never touches it.
+  // Light that was scattered at most once is direct; clamping never changes it.
   const bool indirect = path.scatterings > 1;
   if (wants_guides(path))
     result.albedo += guides_[path.slot].beta * radiance;
-  // What the camera sees through clear glass is in no pass of indirect light: clamp it by itself.
+  // Light seen through clear glass is in no pass of indirect light: clamp it separately.
   if (path.in_view) {
     const float top = largest(radiance), limit = settings_.clamp_indirect / float(path.sharers);
     const glm::vec3 seen = indirect && limit > 0.0f && top > limit ? radiance * (limit / top) : radiance;
@@ -93,10 +94,10 @@ void PathFilm::add_lit(const WaitingLight &waiting, const glm::vec3 &light) {
 void PathFilm::record(const Path &path, const Surface &surface, const Material &material, const glm::vec3 &normal,
                       const glm::vec3 &opacity, double t) {
   SampleResult &result = results_[path.slot];
-  // A surface that is hardly there gives way to the next one, unless the path ends on it.
+  // The first surface with enough opacity is recorded.
   Record &record = records_[path.slot];
   const bool here = path.leads && !record.seen && mean(opacity) >= settings_.alpha_threshold;
-  // The first sample of a pixel tells the place.
+  // Place passes use the first sample of a pixel.
   if (path.leads && !record.seen && path.is_first(settings_.splits.paths))
     record_place(scene_, surface, &material, record.depth + t, result);
   if (here)

@@ -1,4 +1,4 @@
-// Vertices of paths that are shaded side by side: into the lanes of a block, through the kernels, and out again.
+// Shading the vertices of paths in lanes: into a block, through the kernels, and out again.
 #include "integrator/path/path.h"
 #include "integrator/stages/lane_access.h"
 #include "lancer.h"
@@ -18,7 +18,7 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   if (ends && film_.only_combined() && !material.emits() && !material.transmits() && !instance.holdout)
     return;
   const uint32_t lane = surfaces_.add(rays_[number], hit, material);
-  // Part by part: a copy of the whole would wait until they have left the processor's stores.
+  // Member by member: a copy of the whole would stall on the pending stores of its members.
   Waiting &waiting = waiting_[lane];
   waiting.number = number;
   waiting.ends = ends;
@@ -27,7 +27,7 @@ void PathIntegrator::put_in_lane(size_t number, const Material &material) {
   block_.ends |= uint32_t{ends} << lane;
   put(path.beta, block_.beta, lane);
   block_.pixel[lane] = path.sampler.pixel();
-  // Lanes of one bounce draw their numbers side by side.
+  // Lanes of one bounce draw their random numbers together.
   const uint32_t dimension = path.vertex_dimension();
   if (lane == 0) {
     block_.dimension = dimension;
@@ -53,9 +53,9 @@ void PathIntegrator::split() {
   }
 }
 
-// Draws these numbers of all lanes, bits of u. In lanes that split they are those of one of count lights or paths: number n of
-// sample s takes the numbers of sample count s + n, so that all together are as even as those of so many samples. Paths keep
-// that number for all that follows.
+// Draws the requested random numbers, bits of u, in all lanes. In lanes that split, number n of count lights or paths of sample
+// s takes the numbers of sample count s + n, so that all together are as even as so many samples. A path keeps this sample
+// number until its end.
 void PathIntegrator::draw_numbers(uint32_t wanted, uint32_t count, uint32_t number) {
   const uint32_t joint = std::min(8u, kJointDimensions - std::min(block_.dimension, kJointDimensions));
   uint32_t last = 0, points[8] = {};
@@ -69,7 +69,7 @@ void PathIntegrator::draw_numbers(uint32_t wanted, uint32_t count, uint32_t numb
           block_.u[i][lane] = u[i];
       continue;
     }
-    // Neighbours mostly share the sample, and the digits that its numbers are made of.
+    // Neighbours mostly have the same sample, and so the same digits.
     if (lane == 0 || sample != last)
       for (uint32_t i = 0; i < joint; ++i)
         points[i] = sobol::reversed_point(sample, block_.dimension + i);
@@ -95,7 +95,7 @@ void PathIntegrator::ask_nodes() {
   surfaces_.ask_nodes(views);
 }
 
-// Holes end what the camera sees.
+// Cuts holdouts out of the camera's view.
 void PathIntegrator::cut_holes() {
   block_.holes = 0;
   if (!(scene_.features & kFeatureHoldout))
@@ -119,7 +119,7 @@ void PathIntegrator::cut_holes() {
   }
 }
 
-// Asks lights, of every lane that goes on; more than one of those that split.
+// Samples a light in every lane whose path goes on; several lights in lanes that split.
 void PathIntegrator::ask_lights() {
   uint32_t asking = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
@@ -137,7 +137,7 @@ void PathIntegrator::ask_lights() {
   }
 }
 
-// Chooses where each path goes on, or the several of a lane that splits.
+// Samples the next ray of each path, or several rays in lanes that split.
 void PathIntegrator::go_on() {
   uint32_t going = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
@@ -163,7 +163,7 @@ void PathIntegrator::go_on() {
 void PathIntegrator::shade_block() {
   if (surfaces_.count() == 0)
     return;
-  // Ask what is there.
+  // Find surfaces and lobes.
   surfaces_.find();
   ask_nodes();
   cut_holes();
@@ -175,7 +175,7 @@ void PathIntegrator::shade_block() {
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane)
     if (!waiting_[lane].nothing)
       take_emission(lane);
-  // Ask for light, and where each path goes on.
+  // Sample lights and next rays.
   split();
   if (!splitting_)
     draw_numbers(kLightNumbers | kPathNumbers, 1, 0);
@@ -190,7 +190,7 @@ void PathIntegrator::keep_vertices() {
     keep_vertex(paths_[waiting_[lane].number], surfaces_.surface(lane), surfaces_.hit(lane).t);
 }
 
-// What passes say of the surfaces that the camera sees.
+// Fills the passes of the surfaces that the camera sees.
 void PathIntegrator::record_surfaces() {
   uint32_t seen = 0, guiding = 0;
   for (uint32_t lane = 0; lane < surfaces_.count(); ++lane) {
@@ -208,7 +208,7 @@ void PathIntegrator::record_surfaces() {
     const Waiting &waiting = waiting_[lane];
     const Path &path = paths_[waiting.number];
     block_.occlusion_asked |= uint32_t(passes_.occlusion() && !waiting.ends && path.scatterings == 0) << lane;
-    // Mostly its place is enough.
+    // Mostly the position suffices.
     Surface surface;
     if (path.is_first(settings_.splits.paths) || passes_.uv())
       surface = surfaces_.surface(lane);
@@ -225,13 +225,13 @@ void PathIntegrator::record_surfaces() {
   }
 }
 
-// Glass that does not count leaves the picture what it was.
+// Whether a path stays in the camera's view: clear glass does not end it.
 bool PathIntegrator::stays_in_view(uint32_t lane) const {
   return settings_.transparent_glass && (block_.transmitted >> lane & 1) && !(block_.diffuse >> lane & 1) &&
          block_.alpha2[lane] <= settings_.glass_alpha2;
 }
 
-// The light of the surface itself, and what it tells denoisers.
+// Adds the surface's own emission and its denoising guides.
 void PathIntegrator::take_emission(uint32_t lane) {
   const Waiting &waiting = waiting_[lane];
   const Path &path = paths_[waiting.number];
@@ -243,7 +243,7 @@ void PathIntegrator::take_emission(uint32_t lane) {
                      hits_[waiting.number].t * block_.length[lane]);
 }
 
-// Whether a lane's path goes straight on, which it then does.
+// Continues a lane's path straight through the surface if the path chooses so; returns whether it does.
 bool PathIntegrator::passes_straight(uint32_t lane) {
   Path &path = paths_[waiting_[lane].number];
   const float pass = block_.pass[lane];
@@ -254,7 +254,7 @@ bool PathIntegrator::passes_straight(uint32_t lane) {
   return true;
 }
 
-// The next ray of a lane; number: which of those that it splits into.
+// Adds the next ray of a lane; number: of the branch in a lane that splits.
 void PathIntegrator::scatter_lane(uint32_t lane, uint32_t number) {
   const Waiting &waiting = waiting_[lane];
   const Path &path = paths_[waiting.number];

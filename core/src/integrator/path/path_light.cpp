@@ -1,4 +1,4 @@
-// The light that paths find: what they run into, and what they ask for.
+// The light that paths find: lights hit by rays, and lights sampled at vertices.
 #include "integrator/path/path.h"
 #include "integrator/stages/lane_access.h"
 #include "sampling/color.h"
@@ -9,13 +9,13 @@
 
 namespace lancer {
 
-// Lights stand in no one's way: adds all that the rays pass before they end.
+// Lights occlude nothing: adds all lights that the rays pass before they end.
 void PathIntegrator::add_lights_met() {
   const LightSet &lights = scene_.lights;
   if (!lights.any_on_the_way())
     return;
   for (size_t first = 0; first < paths_.size(); first += kLightLanes) {
-    // Look from the last scattering, as sampling does.
+    // Evaluate from the last scattering, as sampling does.
     const uint32_t count = uint32_t(std::min<size_t>(kLightLanes, paths_.size() - first));
     for (uint32_t lane = 0; lane < count; ++lane) {
       const Ray &ray = rays_[first + lane];
@@ -39,7 +39,7 @@ double PathIntegrator::way_end(size_t i) const {
   return paths_[i].passed + std::min(hits_[i].t, rays_[i].tmax) * glm::length(rays_[i].d);
 }
 
-// One light, for the lanes that meet it.
+// Adds one light for the lanes that hit it.
 void PathIntegrator::add_met(size_t first, uint32_t met, uint32_t number) {
   const BinaryLightTree &few = scene_.lights.binary_tree();
   const uint32_t place = few.place_of(number);
@@ -48,7 +48,7 @@ void PathIntegrator::add_met(size_t first, uint32_t met, uint32_t number) {
   for (uint32_t rest = met; rest != 0; rest &= rest - 1) {
     const auto lane = uint32_t(std::countr_zero(rest));
     if (place == kNone)
-      // One of the tree of many.
+      // The light belongs to the tree of many.
       add_light_met(first + lane, number);
     else
       add_light_met(first + lane, number, {get(met_light_.radiance, lane), met_light_.pdf[lane], met_light_.distance[lane]},
@@ -63,14 +63,14 @@ void PathIntegrator::add_light_met(size_t i, uint32_t number) {
                 [&] { return scene_.lights.probability(path.light_query(), number); });
 }
 
-// One light, if the ray meets it on this stretch of the way. chosen(): the probability with which sampling asks it.
+// Adds one light if the ray hits it on this segment. chosen(): returns the probability with which sampling chooses the light.
 template <class Chosen>
 void PathIntegrator::add_light_met(size_t i, uint32_t number, const LightHit &met, const Chosen &chosen) {
   const Path &path = paths_[i];
   const Ray &ray = rays_[i];
   if (!(met.pdf > 0.0) || !(path.kinds & ~scene_.lights.hidden_from(number)))
     return;
-  // A sun lies behind all surfaces, wherever the view ends.
+  // A sun lies behind all surfaces, beyond the clip end.
   const double begin = path.passed + ray.tmin * glm::length(ray.d);
   const bool far = std::isinf(met.distance);
   if (far ? !std::isinf(hits_[i].t) : !(met.distance >= begin && met.distance < way_end(i)))
@@ -95,7 +95,7 @@ void PathIntegrator::add_emission(const Path &path, const Surface &surface, cons
 void PathIntegrator::miss(size_t number) {
   Path &path = paths_[number];
   film_.miss(path);
-  // A transparent film does not show the environment itself, only what it lights.
+  // A transparent film does not show the environment itself, only the light that it gives.
   if (path.in_view && settings_.film_transparent)
     return film_.cut(path, mean(path.beta));
   if (!(path.kinds & ~scene_.world.hidden_from))
@@ -110,7 +110,7 @@ void PathIntegrator::miss(size_t number) {
     add_missed();
 }
 
-// What waits beside others that have met nothing.
+// Adds the environment for the waiting paths that hit nothing.
 void PathIntegrator::add_missed() {
   if (missed_count_ == 0)
     return;
@@ -129,7 +129,7 @@ void PathIntegrator::add_missed() {
   missed_count_ = 0;
 }
 
-// A lane's sample of a light, if nothing is in its way.
+// Queues a lane's light sample with its shadow ray.
 void PathIntegrator::send_shadow_of(uint32_t lane) {
   const Path &path = paths_[waiting_[lane].number];
   const glm::vec3 contribution = get(block_.contribution, lane);
@@ -150,7 +150,7 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   lights_.write_shadow_ray(lane, ray);
 }
 
-// Looks for what is in the way around the normal of what is diffuse, with the weight of a cosine.
+// Tests ambient occlusion around the normal of the diffuse lobes, weighted by the cosine.
 void PathIntegrator::look_around(uint32_t lane) {
   const Path &path = paths_[waiting_[lane].number];
   const glm::vec3 weight = path.beta * surfaces_.opacity(lane);
@@ -164,7 +164,7 @@ void PathIntegrator::look_around(uint32_t lane) {
   if (block_.sampled >> lane & 1) {
     film_.keep_occlusion(path, occlusion);
   } else {
-    // A direction that brings no light gets a ray all the same.
+    // A next ray without weight is not traced: its direction needs an occlusion ray.
     film_.add_open(path, -glm::vec3(occlusion));
     send_occlusion_ray(lane, get(block_.wi, lane), glm::vec3(occlusion));
   }
@@ -179,7 +179,7 @@ void PathIntegrator::send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, cons
     shadows_.set_light_path(path.asking_path());
 }
 
-// What the next rays of the first surfaces have met.
+// Subtracts the occlusion of next rays from the first surfaces.
 void PathIntegrator::count_occluded() {
   for (size_t i = 0; i < paths_.size(); ++i) {
     if (paths_[i].scatterings != 1 || !paths_[i].leads)

@@ -1,4 +1,4 @@
-// What a path carries from vertex to vertex.
+// The state of a path from vertex to vertex.
 #pragma once
 
 #include "integrator/sample.h"
@@ -17,26 +17,27 @@ struct Path {
   Sampler sampler;
   glm::vec3 beta{1.0f};
   glm::dvec3 from{0.0};   // last scattering point
-  glm::vec3 normal{0.0f}; // there, and whether light may come through: what light samples are chosen by
+  glm::vec3 normal{0.0f}; // there; with transmits, the query by which light samples are chosen
   bool transmits = false;
-  double pdf = 0.0;     // of the BSDF sample that made the ray; 0 after the camera or a single direction
+  double pdf = 0.0;     // of the BSDF sample that gave the ray; 0 after the camera or a single direction
   uint32_t slot;        // of its sample's result
   bool split = false;   // the sample has split
-  uint32_t branch = 0;  // number among its paths
-  uint32_t sharers = 1; // how many paths share its weight
-  bool leads = true;    // drawn evenly from them: what the camera sees is told by this one alone
+  uint32_t branch = 0;  // number among its sample's paths
+  uint32_t sharers = 1; // number of paths that share its weight
+  bool leads = true;    // chosen uniformly among them: it alone records what the camera sees
   uint32_t scatterings = 0;
   uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
-  uint32_t layers = 0;                // passed straight through since the last scattering
-  uint32_t passed_through = 0;        // and in all
-  PathStory story;                    // for nodes that ask
-  bool in_view = true;                // what it meets is still the picture itself: nothing reflected, no glass that counts
-  bool last = false;                  // the next surface ends it
-  double passed = 0.0;                // length of the way since the last scattering, through layers
-  double length = 0.0;                // of the whole way
+  uint32_t layers = 0;                // transparent surfaces passed since the last scattering
+  uint32_t passed_through = 0;        // transparent surfaces passed in all
+  PathStory story;                    // for nodes that read it
+  bool in_view = true;                // the path still shows the camera's view: without reflections, through clear glass at
+                                      // most
+  bool last = false;                  // the path ends at the next surface
+  double passed = 0.0;                // distance from the last scattering, through layers
+  double length = 0.0;                // of the whole path
 
-  // How many layers it may still pass straight through: limit in all, but one at least. Beyond them the next surface shows
-  // its own light only.
+  // Returns the number of layers that the path may still pass straight through: limit in all, but at least one. Beyond them,
+  // the path ends at the next surface, which shows only its own light.
   uint32_t crossings_left(uint32_t limit) const {
     return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxCrossings - 1 - layers);
   }
@@ -45,24 +46,24 @@ struct Path {
     passed_through += count;
     last = passed_through >= limit;
   }
-  // pass: share of the paths here that pass straight on.
+  // pass: share of the paths here that pass straight through.
   bool chooses_to_pass(float pass) const {
     const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxCrossings + layers);
     return pass > 0.0f && (pass >= 1.0f || sampler.get1(dimension) < pass);
   }
-  // First of the numbers of the vertex that it is at.
+  // Returns the first dimension of its current vertex.
   uint32_t vertex_dimension() const { return kDimensionVertex + scatterings * kVertexStride; }
-  // Whether it is of the first sample of its pixel. paths: that samples split into.
+  // Whether the path belongs to the first sample of its pixel. paths: number of paths after a split.
   bool is_first(uint32_t paths) const { return sampler.sample() < (split ? paths : 1u); }
-  // Which of so many paths that it splits into leads them.
+  // Returns the number of the leader when the path splits into count paths.
   uint32_t leader_of(uint32_t count) const {
     return std::min(uint32_t(sampler.get1(vertex_dimension() + kVertexRoulette) * float(count)), count - 1);
   }
-  // As the last scattering asked for light.
+  // Returns the query with which the last scattering chose its light.
   LightQuery light_query() const { return LightQuery(from, normal, transmits); }
-  // What nodes see of it. length: of its ray, in scene units, from where it may meet something.
+  // Returns the Light Path values for nodes. length: of its ray, in scene units, from the ray's start.
   LightPath<float> light_path(double ray_length) const { return story.told(float(ray_length), scatterings, passed_through); }
-  // The same where a vertex asks for light: it counts as a scattering, as in Cycles.
+  // Returns the Light Path values for a light sample at a vertex, which counts as a scattering, as in Cycles.
   LightPath<float> asking_path() const {
     LightPath<float> asking = story.told(0.0f, scatterings + 1, passed_through);
     asking.kinds = 0;

@@ -1,4 +1,4 @@
-// What the kernels of one block have in common: its bits, and the lobes that they leave each other. For kernels only.
+// Shared parts of the kernels of one block: its bits, and the lobes that kernels pass on to each other. For kernels only.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -10,7 +10,7 @@ namespace {
 
 LANCER_LANE uint32_t placed_bits(M m, int first) { return bits(m) << first; }
 
-// The lobes of the lanes from first on: kept from VertexKernel::lobes() to the kernels that follow.
+// Returns the lobes of the lanes from the given one on, which VertexKernel::lobes() leaves for the following kernels.
 LANCER_LANE Bsdf<F> &lobes_of(VertexBlock &block, int first) {
   return reinterpret_cast<Bsdf<F> *>(block.lobes)[first / kLanes];
 }

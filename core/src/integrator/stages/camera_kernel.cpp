@@ -1,4 +1,5 @@
-// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+// Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
+// bvh_kernel.cpp.
 #include "integrator/stages/camera_kernel.h"
 
 #include "sampling/pixel_filter.h"
@@ -15,7 +16,7 @@ LANCER_LANE D to_double(U a) { return widen(to_float(a >> 16)) * D(65536.0) + wi
 [[gnu::flatten]] void rays(CameraBlock &block) {
   const Camera &camera = *block.camera;
   for (int first = 0; first < kCameraLanes; first += kLanes) {
-    // Draw a place of the film by the pixel's filter.
+    // Sample a place on the film by the pixel filter.
     const U x = load(block.x + first), y = load(block.y + first);
     const U pixel = hash_combine(hash_combine(U(block.key), x), y);
     store(block.pixel + first, pixel);
@@ -25,7 +26,7 @@ LANCER_LANE D to_double(U a) { return widen(to_float(a >> 16)) * D(65536.0) + wi
       u[i] = scrambled(load(block.reversed_point[i] + first), pixel, i);
     const Vector2<D> raster{(to_double(x) + D(0.5)) + widen(sample_filter(*block.filter, u[0])),
                             (to_double(y) + D(0.5)) + widen(sample_filter(*block.filter, u[1]))};
-    // Look through it.
+    // Make the ray through that place.
     Vector2<D> lens{D(0.0), D(0.0)};
     if (camera.lens_radius > 0.0)
       lens = round_aperture(camera, u[2], u[3]);

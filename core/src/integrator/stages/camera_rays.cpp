@@ -26,7 +26,7 @@ uint32_t RayGenerator::aim(std::span<const SampleAddress> addresses) {
       looking |= uint32_t{aim_alone(addresses[lane], lane)} << lane;
     return looking;
   }
-  // Most lanes are of one sample: look up its digits once.
+  // Most lanes have the same sample: look up its digits once.
   uint32_t sample = ~addresses[0].sample, digits[4] = {};
   for (uint32_t lane = 0; lane < addresses.size(); ++lane) {
     // The region's place in the image is part of the address: a border render repeats the full image's numbers.

@@ -1,4 +1,4 @@
-// From addresses of samples to camera rays, some at a time.
+// From addresses of samples to camera rays, a block at a time.
 #pragma once
 
 #include "integrator/sample.h"
@@ -13,14 +13,14 @@ namespace lancer {
 class RayGenerator {
 public:
   RayGenerator(const Camera &camera, const IntegratorSettings &settings);
-  RayGenerator(const RayGenerator &) = delete; // its block knows where its filter stands
+  RayGenerator(const RayGenerator &) = delete; // its block has the address of its filter
   RayGenerator &operator=(const RayGenerator &) = delete;
 
-  // One sample of a recursive ray tracer goes through the middle of the pixel and of the lens.
+  // Whether rays go through the middle of the pixel and of the lens: in a picture of one sample by a recursive ray tracer.
   bool middle() const { return middle_; }
 
-  // Begins every sample: clears its result and calls begin(slot, sampler) for a ray to fill in. Where there is no direction to
-  // look in nothing is called: outside a panorama's picture it is black, and as solid as Cycles has it.
+  // Begins every sample: clears its result and calls begin(slot, sampler) for a ray to fill in. A sample without a direction
+  // gets no call: outside a panorama's picture it is black and opaque, as in Cycles.
   template <class Begin>
   void start(std::span<const SampleAddress> addresses, bool with_light, std::span<SampleResult> results, Begin &&begin) {
     for (uint32_t first = 0; first < addresses.size(); first += kCameraLanes) {
@@ -30,7 +30,7 @@ public:
         std::construct_at(&results[first + lane], with_light)->alpha = 1.0f;
       for (uint32_t rest = looking; rest != 0; rest &= rest - 1) {
         const uint32_t lane = uint32_t(std::countr_zero(rest));
-        // Written where it stands: a copy would wait until its parts have left the processor's stores.
+        // Write the ray in place: a copy would stall on the pending stores of its members.
         Ray &ray = begin(first + lane, Sampler(block_->pixel[lane], now[lane].sample));
         ray.o = {block_->o[0][lane], block_->o[1][lane], block_->o[2][lane]};
         ray.tmin = camera_.clip_start;
@@ -42,14 +42,14 @@ public:
   }
 
 private:
-  // Fills the block. Returns the lanes that have a direction to look in.
+  // Fills the block. Returns the lanes that have a direction.
   uint32_t aim(std::span<const SampleAddress> addresses);
   bool aim_alone(const SampleAddress &address, uint32_t lane);
 
   const Camera &camera_;
   PixelFilter filter_;
   uint32_t seed_;
-  bool middle_, plain_; // plain: kernels know the camera
+  bool middle_, plain_; // plain: kernels support the camera
   const CameraKernel &kernel_;
   std::unique_ptr<CameraBlock> block_;
 };

@@ -7,13 +7,14 @@ namespace lancer {
 
 namespace {
 
-// What the edge functions leave of a weight that is 0: corners 1 and 2 exactly that; corner 0 what rounding leaves of 1 less
-// both quotients, each of which, as the determinant that they share, is off by 2^-53 of a sum of 1: under 2^-52 and a half.
+// Bound of a computed weight that is 0. Corners 1 and 2 give exactly 0; corner 0 gives the rounding error of 1 minus both
+// quotients. Each quotient, and the determinant that they share, has an error of 2^-53 of a sum of 1: less than 2.5 * 2^-53 in
+// all.
 constexpr double kNoWeight = 0x1p-52;
 
 bool on_border(const Hit &hit) { return hit.u == 0.0 || hit.v == 0.0 || 1.0 - hit.u - hit.v <= kNoWeight; }
 
-// The vertices that a place on a triangle's border lies between: two of an edge, one of a corner.
+// Returns the vertices between which a place on a triangle's border lies: two for an edge, one for a corner.
 std::array<uint32_t, 2> border_vertices(const Mesh &mesh, const Hit &hit) {
   const glm::uvec3 triangle = mesh.triangles[hit.primitive];
   const bool has[3] = {1.0 - hit.u - hit.v > kNoWeight, hit.u != 0.0, hit.v != 0.0};

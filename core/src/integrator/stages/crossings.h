@@ -1,4 +1,4 @@
-// Surfaces that the rays of a batch meet and pass while they are under way: each once, whatever order they are found in.
+// Surfaces that the rays of a batch pass during traversal: each is counted once, in whatever order they are found.
 #pragma once
 
 #include "scene/geometry.h"
@@ -19,21 +19,21 @@ class Crossings {
 public:
   explicit Crossings(const Geometry &geometry) : geometry_(geometry) {}
 
-  // Forgets everything; so many rays follow.
+  // Clears all crossings for the next batch of rays.
   void begin(size_t rays) {
     rays_.assign(rays, {});
     crossings_.clear();
   }
-  // Of a ray.
+  // Returns the number of crossings of a ray.
   uint32_t count(size_t ray) const { return rays_[ray].count; }
-  // The layer that a ray has passed at this very place; null where there is none. Where triangles of a mesh meet, a ray
-  // through their common edge or corner passes one surface, not several.
+  // Returns the crossing of a ray at this very place; null if there is none. A ray through a common edge or corner of a mesh's
+  // triangles passes one surface, not several.
   Crossing *find(size_t ray, const Hit &hit);
-  // known: what find() has found for it. Where triangles meet, the closest stands for all.
+  // known: result of find() for the hit. Where triangles meet, the closest one represents all.
   void put(Crossing *known, size_t ray, const Hit &hit, const glm::vec3 &transmittance);
-  // Those of a ray that are closer than a hit.
+  // Returns the number of crossings of a ray that are closer than a hit.
   uint32_t count_before(size_t ray, const Hit &hit) const;
-  // Those of a ray, the closest first, until the next call; or only those that take some light.
+  // Return the crossings of a ray, the closest first, valid until the next call: all of them, or only those that absorb light.
   std::span<const Crossing> in_order(size_t ray) { return sort(ray, true); }
   std::span<const Crossing> dimming_in_order(size_t ray) { return sort(ray, false); }
 

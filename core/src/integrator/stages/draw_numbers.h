@@ -1,4 +1,4 @@
-// Numbers of vertices in lanes, from the digits of their samples.
+// Random numbers of vertices in lanes, from the digits of their samples.
 #pragma once
 
 #include "integrator/stages/vertex_kernel.h"
@@ -8,7 +8,8 @@
 namespace lancer {
 namespace {
 
-// Draws those of u whose bits are wanted, in the lanes from first on. Numbers of later dimensions come in pairs.
+// Draws the numbers of u whose bits are set in wanted, in the lanes from the given one on. Numbers beyond kJointDimensions are
+// drawn in pairs.
 LANCER_LANE void draw_numbers(VertexBlock &block, int first, uint32_t wanted) {
   const U pixel = load(block.pixel + first);
   for (uint32_t i = 0; i < 8; i += 2) {

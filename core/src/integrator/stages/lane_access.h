@@ -1,4 +1,4 @@
-// Vectors in and out of the lanes of a block, and rays that leave them.
+// Access to vectors in the lanes of a block, and rays that leave them.
 #pragma once
 
 #include "integrator/stages/vertex_kernel.h"
@@ -23,7 +23,7 @@ inline glm::dvec3 get(const VertexBlock::Doubles (&lanes)[3], uint32_t lane) {
   return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
 }
 
-// A ray whose origin a lane has found, away from what a hit lies on. It is written where it stands.
+// Fills a ray from an origin that a lane has computed, off the surface of the hit. The ray is written in place.
 inline void leave(const Hit &hit, const glm::dvec3 &o, const glm::dvec3 &d, double tmax, uint32_t kinds, Ray &ray) {
   ray.o = o;
   ray.d = d;

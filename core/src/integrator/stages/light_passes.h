@@ -1,4 +1,4 @@
-// Which pass a contribution belongs to: direct or indirect, and the component of the first scattering.
+// The pass of a contribution: direct or indirect, and the component of the first scattering.
 #pragma once
 
 #include "integrator/sample.h"
@@ -8,7 +8,7 @@ namespace lancer {
 
 // Light that waits for its shadow ray.
 struct WaitingLight {
-  uint32_t slot = 0, place = 0;                            // of the sample, and where its path gathers
+  uint32_t slot = 0, place = 0;                            // of the sample, and the place where its path gathers
   bool indirect = false;                                   // scattered more than once
   bool occlusion = false;                                  // no light: the pass of ambient occlusion
   glm::vec3 share[2] = {glm::vec3(0.0f), glm::vec3(0.0f)}; // diffuse, glossy; the rest is transmission
@@ -23,19 +23,20 @@ public:
         features_((settings.passes & kAnyFeature) != 0), places_((settings.passes & kPlaces) != 0),
         only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
 
-  // SampleResult::light is asked for, or a part of it.
+  // Whether SampleResult::light is requested, or a part of it.
   bool wanted() const { return wanted_; }
-  // Light by component, or its colour.
+  // Whether light by component, or its colour, is requested.
   bool components() const { return components_; }
   bool occlusion() const { return occlusion_; }
   bool mist() const { return mist_; }
   bool uv() const { return uv_; }
   bool features() const { return features_; }
-  // Where the first surface is, which sample 0 says; and nothing else beside the picture.
+  // Whether passes of the first surface's place, which sample 0 decides, are requested; and whether nothing else is requested
+  // beside the picture.
   bool places() const { return places_; }
   bool only_places() const { return only_places_; }
 
-  // Light that came by a first scattering with these shares.
+  // Adds light that came by a first scattering with these shares.
   void add(SampleResult &result, const glm::vec3 &light, const glm::vec3 (&share)[2], bool indirect) const {
     if (!components_)
       return;
@@ -45,12 +46,12 @@ public:
     result.light[first + 3] += glossy;
     result.light[first + 6] += light - diffuse - glossy;
   }
-  // Light that the camera sees itself.
+  // Adds light that the camera sees directly.
   void add_seen(SampleResult &result, const glm::vec3 &light, bool environment) const {
     if (wanted_)
       result.light[environment ? kLightEnvironment : kLightEmission] += light;
   }
-  // Scales all indirect light, as clamping does.
+  // Scales all indirect light, for clamping.
   void scale_indirect(SampleResult &result, const glm::vec3 &factor) const {
     for (uint32_t component = 0; component < 3 && components_; ++component)
       result.light[kLightComponents + 3 * component + 1] *= factor;

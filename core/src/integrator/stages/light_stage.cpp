@@ -19,7 +19,7 @@ LightQuery LightStage::query(uint32_t lane) const {
   return LightQuery(get(block_.p, lane), get(block_.viewer_ns, lane), block_.transmits >> lane & 1);
 }
 
-// Goes on with the lanes that have chosen the cluster of all lights with a place.
+// Continues the choice in the lanes that have chosen the cluster of all lights with a position.
 void LightStage::choose_of_many(uint32_t asking) {
   if (scene_.lights.wide_tree().empty())
     return;
@@ -76,7 +76,8 @@ LightStage::Chosen LightStage::choose(uint32_t asking) {
   return chosen;
 }
 
-// Goes on with the lanes that have chosen an emitter, those of one together. Returns those that have found something to ask.
+// Continues the choice in the lanes that have chosen an emitter, together for lanes of one emitter. Returns the lanes that have
+// chosen a face of positive probability.
 uint32_t LightStage::choose_faces(uint32_t lanes) {
   uint32_t found = 0;
   while (lanes != 0) {
@@ -107,7 +108,7 @@ uint32_t LightStage::choose_faces(uint32_t lanes) {
   return found;
 }
 
-// Samples the faces that lanes have chosen. Returns the lanes; those of exact surfaces are not among them.
+// Samples the faces that lanes have chosen. Returns the sampled lanes; those with exact surfaces are not among them.
 uint32_t LightStage::sample_faces(uint32_t lanes) {
   faces_.used = 0;
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
@@ -168,19 +169,19 @@ void LightStage::sample_emitter(uint32_t lane, const LightPath<float> &path) {
   block_.light_delta[lane] = light.delta;
 }
 
-// What nodes of the world are told of a lane. eye: where a camera ray begins, null for any other.
+// Sets the inputs of the world's nodes for a lane. eye: where a camera ray begins, null for any other ray.
 void LightStage::see_sky(uint32_t lane, LightPath<float> path, const glm::dvec3 *eye) {
   nodes_.eye[lane] = eye;
   path.length = std::numeric_limits<float>::max();
   put(path, nodes_, lane);
 }
 
-// What the nodes of the world say in these directions.
+// Evaluates the nodes of the world in these directions.
 void LightStage::ask_world(const VertexBlock::Doubles (&wi)[3], uint32_t lanes) {
   nodes_.used = lanes;
   for (int axis = 0; axis < 3; ++axis)
     for (int lane = 0; lane < kBlockLanes; ++lane) {
-      // The surface of the world looks back at the viewer.
+      // The normals of the world's surface point back to the viewer.
       const float back = float(-wi[axis][lane]);
       nodes_.p[axis][lane] = -double(back);
       nodes_.wo[axis][lane] = nodes_.ns[axis][lane] = nodes_.ng[axis][lane] = back;
@@ -220,7 +221,7 @@ void LightStage::sample_sky(uint32_t lanes) {
 
 void LightStage::add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye) {
   put(glm::normalize(d), misses_.wi, lane);
-  // What lies beyond everything counts as one scattering more, as in Cycles.
+  // A ray that hits nothing counts as one scattering more, as in Cycles.
   path.depth += 1.0f;
   see_sky(lane, path, eye);
 }

@@ -1,4 +1,4 @@
-// Light for the lanes of a block: which light each asks, a sample of it, and what the sky shows in given directions.
+// Light for the lanes of a block: the choice of a light, its sample, and the radiance of the sky in given directions.
 #pragma once
 
 #include "integrator/sample.h"
@@ -12,12 +12,13 @@
 
 namespace lancer {
 
-// One object per thread: it looks at the block of its surfaces.
+// One object per thread: it works on the block of its surfaces.
 class LightStage {
 public:
   LightStage(const Scene &scene, const Camera &camera, SurfaceStage &surfaces);
 
-  // Chooses a light for each of these lanes and samples it into the block. path(lane): of what asks.
+  // Chooses a light for each of these lanes and samples it into the block. path(lane): returns the Light Path values of the
+  // vertex.
   template <class PathOf> void ask(uint32_t lanes, PathOf &&path) {
     const Chosen chosen = choose(lanes);
     const uint32_t sampled = sample_faces(chosen.emitters);
@@ -36,20 +37,21 @@ public:
     }
     sample_sky(chosen.skies);
   }
-  // The light that a lane has asked.
+  // Returns the light that a lane has chosen.
   uint32_t light(uint32_t lane) const { return choices_[lane].light; }
-  // The ray from a lane to the sample of its light, written where it stands.
+  // Writes the ray from a lane to its light sample in place.
   void write_shadow_ray(uint32_t lane, Ray &ray) const { surfaces_.write_shadow_ray(lane, far_[lane], ray); }
 
-  // Directions in which rays meet nothing, side by side: add them lane by lane, look, and read.
+  // Directions of rays that hit nothing, in lanes: add them lane by lane, evaluate all, and read them.
   void add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye);
   void look_at_sky(uint32_t count);
   glm::vec3 sky_radiance(uint32_t lane) const;
-  // Of the sky's sample in the direction of a miss, where it is sampled as a light; transmits: as what asked.
+  // Returns the density with which the sky's map gives the direction of a miss; the environment must be a light. transmits: as
+  // in the query of the last scattering.
   double sky_pdf(uint32_t lane, bool transmits) const { return miss_pdf_[transmits][lane]; }
 
 private:
-  // Lanes by what has to be sampled apart from the kernels.
+  // Lanes whose lights are sampled outside the kernels.
   struct Chosen {
     uint32_t emitters = 0, skies = 0;
   };
@@ -59,7 +61,7 @@ private:
   uint32_t choose_faces(uint32_t lanes);
   Chosen choose(uint32_t lanes);
   uint32_t sample_faces(uint32_t lanes);
-  // What a lane gets of the point of a face that was sampled for it.
+  // Computes the light that a lane gets from its sampled point of a face.
   template <class PathOf> void look_at_face(uint32_t lane, PathOf &&path) {
     const Emitter &emitter = emitter_of(lane);
     const uint32_t number = material_of(scene_.geometry, scene_.slots, emitter.instance(), choices_[lane].face);
@@ -83,8 +85,8 @@ private:
   SurfaceStage &surfaces_;
   VertexBlock &block_;
   LightSet::Choice choices_[kBlockLanes];
-  bool far_[kBlockLanes] = {}; // the light has no end
-  // By whether light may come through what asks.
+  bool far_[kBlockLanes] = {}; // the light is at infinity
+  // By LightQuery::transmits.
   DirectionTable sky_[2];
   SkyBlock misses_{}, samples_{};
   double miss_pdf_[2][kBlockLanes] = {};

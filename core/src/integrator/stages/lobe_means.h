@@ -1,4 +1,4 @@
-// What passes tell of the lobes of a surface as one: their mean normal, and for denoisers how matt they are.
+// Means over the lobes of a surface for passes: the mean normal, and the matt share for denoisers.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -6,20 +6,22 @@
 
 namespace lancer {
 
-// The normals of the lobes, or of those that are diffuse, each with its weight; the shading normal where none has any.
+// Returns the mean normal of the lobes, or of the diffuse lobes, weighted by their colours; the shading normal where all
+// weights are 0.
 template <class F> LANCER_LANE Vec3<F> mean_normal(const Bsdf<F> &bsdf, bool diffuse_only = false) {
   using V = Vec3<F>;
   V sum(F(0.0f));
   for (int i = 0; i < bsdf.count; ++i)
     if (!diffuse_only || bsdf.lobes[i].component == Component::Diffuse)
       sum += bsdf.frames[bsdf.lobes[i].frame].n * mean(bsdf.lobes[i].color);
-  // The square of a very dark or bright colour is no float: bring the sum to about 1, which changes no other bit.
+  // The square of a very dark or bright colour leaves the range of float: scale the sum to about 1 by a power of two, which
+  // changes no other bit.
   const auto power = as_word(largest(abs(sum))) & WordOf<F>(0x7f800000u);
   const MaskOf<F> normal = (!equal(power, WordOf<F>(0u))) & !equal(power, WordOf<F>(0x7f800000u));
   return select(normal, normalize(sum * (1.0f / as_float(power))), bsdf.ns);
 }
 
-// Lobes up to this alpha show what they mirror more than themselves.
+// A lobe of at most this alpha is treated as a mirror.
 inline constexpr float kMirrorLike = 0.075f;
 
 template <class F> LANCER_LANE F smooth_step(F x) {
@@ -27,7 +29,7 @@ template <class F> LANCER_LANE F smooth_step(F x) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// How much of a lobe is matt rather than a mirror: 0 or 1, or blended over twice the limit.
+// Returns the matt share of a lobe: 0 or 1, or a smooth step over twice the limit.
 template <class F> LANCER_LANE F matt_share(const Lobe<F> &lobe, bool blended) {
   F alpha(0.0f);
   switch (lobe.shape) {
@@ -47,14 +49,14 @@ template <class F> LANCER_LANE F matt_share(const Lobe<F> &lobe, bool blended) {
   return select(alpha > kMirrorLike, F(1.0f), F(0.0f));
 }
 
-// All that a surface scatters, by how matt it is.
+// The scattering of a surface, divided into matt and mirror-like.
 template <class F> struct Mixture {
   using V = Vec3<F>;
   V normal{F(0.0f)}, diffuse{F(0.0f)}, specular{F(0.0f)};
   F all{0.0f}, matt{0.0f};
 };
 
-// Without blending what passes straight on is a mirror, too.
+// Without blending, transmitted light is treated as mirrored.
 template <class F> LANCER_LANE Mixture<F> mix(const Bsdf<F> &bsdf, const Vec3<F> &transmittance, bool blended) {
   const F zero(0.0f);
   Mixture<F> mixture;

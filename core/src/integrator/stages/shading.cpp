@@ -1,4 +1,4 @@
-// Materials at surfaces, and samples of the lights that shine there.
+// Shading of surfaces, and samples of the lights of a scene.
 #include "integrator/stages/shading.h"
 
 #include "compile/material_lobes.h"
@@ -35,7 +35,7 @@ void Shader::shade(const Surface &surface, const View &view, Shaded &result) {
   result.material = surface.material == kNone ? nullptr : &scene_.materials[surface.material];
   static const Material nothing;
   const Material *const material = result.material ? result.material : &nothing;
-  // Compute what the nodes say here, then what becomes of the lobes seen from wo.
+  // Evaluate the nodes, then build the lobes as seen from wo.
   run_nodes(*material, material->surface_nodes, surface, view);
   find_lobes<float>(&material, PlaceValues{values_}, false, view.wo, surface.ns, surface.ng, result.bsdf);
   result.emission = value_of(material->emission, values_) + result.bsdf.emission;
@@ -51,7 +51,7 @@ glm::vec3 Shader::transmittance(const Ray &ray, const Hit &hit, const LightPath<
   const Material &material = scene_.materials[number];
   if (!material.transmits() || (material.flags & LANCER_MATERIAL_OPAQUE_SHADOWS))
     return glm::vec3(0.0f);
-  // Look no further than the answer needs.
+  // Use the cheapest evaluation that suffices.
   if (!material.transmittance.varies())
     return glm::max(material.transmittance.value, 0.0f);
   const Instance &instance = scene_.geometry.instances[hit.instance];
@@ -87,7 +87,7 @@ glm::vec3 Shader::emission(const Surface &surface, const glm::vec3 &wo, const Li
     return glm::vec3(0.0f);
   const Material &material = scene_.materials[surface.material];
   if (material.layered_emission) {
-    // What lies above the emitting layer depends on the direction: ask the whole material.
+    // The layers above the emitting one depend on the direction: shade the whole material.
     shade(surface, {.wo = wo, .path = path}, layered_);
     return layered_.emission;
   }
@@ -103,7 +103,7 @@ glm::vec4 Shader::node_value(const Surface &surface, uint32_t node, const glm::v
   return values_[node];
 }
 
-// Nodes that ask a mesh for nothing but the triangle and the place within it.
+// Runs nodes that read nothing of a mesh but the triangle and the place within it.
 void Shader::run_painted(const Material &material, const Schedule &schedule, const Hit &hit) {
   Surface surface;
   surface.instance = hit.instance;
@@ -129,7 +129,7 @@ Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3
   Ray ray = leave(surface, sample.wi, far ? std::numeric_limits<double>::infinity() : 1.0);
   const glm::dvec3 lift = terminator_offset(geometry, surface, ns, ng, wi);
   if (lift != glm::dvec3(0.0)) {
-    // From below the triangle's own plane it may be met; from above it cannot.
+    // A ray from below the triangle's own plane may hit the triangle; one from above cannot.
     ray.o = surface.p + lift;
     if (!((glm::dot(wi, ng) > 0.0f) == (glm::dot(wi, ns) > 0.0f)))
       ray.skip_instance = ray.skip_primitive = kNone;
@@ -141,7 +141,7 @@ Ray shadow_ray(const Geometry &geometry, const Surface &surface, const glm::vec3
 }
 
 PixelCone::PixelCone(const Camera &camera) {
-  // Compare the rays through the middle of the picture and one pixel beside it.
+  // Compare the rays through the middle of the picture and through the neighbouring pixels.
   const glm::dvec2 middle(0.5 * camera.width, 0.5 * camera.height);
   const Ray here = camera.ray(middle, glm::dvec2(0.0));
   const Ray right = camera.ray(middle + glm::dvec2(1.0, 0.0), glm::dvec2(0.0));
@@ -153,7 +153,7 @@ PixelCone::PixelCone(const Camera &camera) {
 
 namespace {
 
-// face: null, by power.
+// face: null to choose one by power.
 LightSample sample_any(const Scene &scene, uint32_t light, const uint32_t *face, const glm::dvec3 &p, const glm::vec2 &u,
                        Shader &shader, LightPath<float> path) {
   const size_t described = scene.lights.lights().size();
@@ -161,7 +161,7 @@ LightSample sample_any(const Scene &scene, uint32_t light, const uint32_t *face,
     return sample(scene.lights.lights()[light], p, u);
   if (light - described >= scene.lights.emitters().size())
     return scene.lights.environment().sample(u, shader.values(), shader.camera(), false);
-  // Ask the material of the emitter's surface what it sends towards p.
+  // Evaluate the emitter's material towards p.
   const Emitter &emitter = scene.lights.emitters()[light - described];
   Surface surface;
   LightSample result = face ? emitter.sample_face(scene.geometry, scene.slots, *face, p, u, surface)
@@ -186,7 +186,7 @@ LightSample sample_scene_light(const Scene &scene, uint32_t light, const glm::dv
 
 EmissionAt surface_emission(const Scene &scene) {
   const auto shader = std::make_shared<Shader>(scene, nullptr);
-  // As the first surface that the camera sees would ask for it.
+  // Evaluate with the depth of a first surface's light sample.
   return [shader](const Surface &surface, const glm::vec3 &wo) { return shader->emission(surface, wo, {.depth = 1.0f}); };
 }
 
@@ -198,7 +198,7 @@ struct SmoothTriangle {
   glm::dvec3 v[3], n[3]; // object space
 };
 
-// False where the triangle has no normals of its own.
+// Returns false where the triangle has no smooth normals.
 bool read_triangle(const Mesh &mesh, const Instance &instance, uint32_t triangle, SmoothTriangle &smooth) {
   glm::vec3 n[3];
   if (!corner_normals(mesh, instance.shading, triangle, n))
@@ -211,8 +211,8 @@ bool read_triangle(const Mesh &mesh, const Instance &instance, uint32_t triangle
   return smooth.n[0] != smooth.n[1] || smooth.n[1] != smooth.n[2];
 }
 
-// How far the plane through corner i across its normal lies above p, sign times, at least 0; the plane is raised until it is
-// above the other corners.
+// Returns the height of the tangent plane at corner i above p, times sign, at least 0. The plane is raised until it is above
+// the other corners.
 double plane_above(const SmoothTriangle &t, int i, const glm::dvec3 &p, double sign) {
   double raised = 0.0;
   for (int k = 0; k < 3; ++k)
@@ -220,13 +220,13 @@ double plane_above(const SmoothTriangle &t, int i, const glm::dvec3 &p, double s
   return std::max(0.0, sign * glm::dot(t.v[i] - p, t.n[i]) + raised);
 }
 
-// Height of the curved surface over the triangle at barycentrics b, along the interpolated normal.
+// Returns the height of the curved surface over the triangle at barycentrics b, along the interpolated normal.
 double height(const SmoothTriangle &t, const glm::dvec3 &b, const glm::dvec3 &p, bool outwards) {
-  // A paraboloid that turns at the corners as the normals do.
+  // A paraboloid whose slope changes between the corners as the normals do.
   const double e02 = glm::dot(t.n[2] - t.n[0], t.v[0] - t.v[2]), e12 = glm::dot(t.n[2] - t.n[1], t.v[1] - t.v[2]);
   const double e01 = glm::dot(t.n[1] - t.n[0], t.v[1] - t.v[0]);
   const double bulge = e02 * b.x * (b.x - 1.0) + (e02 + e12 + e01) * b.x * b.y + e12 * b.y * (b.y - 1.0);
-  // At least up to the lowest of the corners' tangent planes.
+  // At least the lowest of the corners' tangent planes.
   const double sign = outwards ? 1.0 : -1.0;
   const double planes = std::min({plane_above(t, 0, p, sign), plane_above(t, 1, p, sign), plane_above(t, 2, p, sign)});
   return sign * std::max(planes, sign * 0.5 * bulge);

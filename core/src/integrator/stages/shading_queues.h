@@ -1,4 +1,4 @@
-// Paths in queues by the code that shades what they have met.
+// Queues of paths by the shading code of the surfaces that they have hit.
 #pragma once
 
 #include "compile/scene.h"
@@ -18,12 +18,12 @@ public:
     starts_.resize(order_.size() + 2);
   }
 
-  // What an instance without slots shows: black.
+  // Returns the material of an instance without slots: black.
   static const Material &nothing() {
     static const Material material;
     return material;
   }
-  // A path that has met a surface.
+  // A path that has hit a surface.
   struct Met {
     uint32_t number;
     const Material *material;
@@ -35,7 +35,7 @@ public:
 
   void begin() { met_.clear(); }
   size_t size() const { return met_.size(); }
-  // number: of the path that has met it.
+  // number: of the path.
   void add(size_t number, const Hit &hit) {
     const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
     if (material == kNone)
@@ -43,7 +43,7 @@ public:
     else
       met_.push_back({{uint32_t(number), &scene_.materials[material]}, places_[material]});
   }
-  // Calls shade(paths) with those of each class, one material after the other.
+  // Calls shade(paths) with the paths of each class, one material after the other.
   template <class Shade> void each(const Shade &shade) {
     // Count, then place.
     std::fill(starts_.begin(), starts_.end(), 0u);
@@ -73,8 +73,8 @@ private:
   };
 
   const Scene &scene_;
-  std::vector<uint32_t> places_; // of each material among all, by classes
-  std::vector<uint32_t> order_;  // the materials at these places
+  std::vector<uint32_t> places_; // of each material in the order by classes
+  std::vector<uint32_t> order_;  // the materials in that order
   std::vector<Queued> met_;
   std::vector<uint32_t> starts_;
   std::vector<Met> sorted_;

@@ -23,7 +23,7 @@ uint64_t ShadowQueue::trace_clear() {
     if (occluded_[i])
       contribution = glm::vec3(0.0f);
     else if (crossings_.count(i) > 0)
-      // Lose light on the way, in the same order whatever the order of finding.
+      // Multiply the transmittances in order of distance, whatever the order of finding.
       for (const Crossing &layer : crossings_.dimming_in_order(i))
         contribution *= layer.transmittance;
   }
@@ -34,7 +34,7 @@ bool ShadowQueue::stops(size_t ray, const Hit &hit) {
   Crossing *known = crossings_.find(ray, hit);
   if (known && known->hit.primitive == hit.primitive)
     return false;
-  // Beyond the last layer nothing passes.
+  // No light passes beyond the last layer.
   if (!known && waiting_[ray].passed + crossings_.count(ray) >= deepest_)
     return true;
   LightPath<float> path = ray < light_paths_.size() ? light_paths_[ray] : shadow_path();

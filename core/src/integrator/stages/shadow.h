@@ -1,4 +1,4 @@
-// Shadow rays, kept in a queue and traced as a batch: how much of a light's contribution arrives.
+// Shadow rays, queued and traced as a batch: the part of each light contribution that arrives.
 #pragma once
 
 #include "integrator/sample.h"
@@ -19,14 +19,14 @@ public:
             scene.materials, [](const Material &m) { return m.transmittance.varies() && m.program.asks_light_path; })),
         crossings_(scene.geometry) {}
 
-  // contribution reaches the waiting sum where nothing stands between. passed: surfaces that the path already passed straight
-  // through; they count against the same limit.
+  // Queues a contribution that is added to its waiting sum as far as the ray's transmittance allows. passed: surfaces that the
+  // path already passed straight through; they count against the same limit.
   void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
     rays_.push_back(ray);
     waiting_.push_back({waiting, contribution, passed});
   }
-  // The same for a sum that keeps no account of the way. The ray is the caller's to write where it stands: it would not be
-  // copied before it has left the processor's stores.
+  // Queues a contribution without shares. Returns the ray for the caller to write in place: a copy would stall on the pending
+  // stores of its members.
   Ray &push(uint32_t slot, uint32_t place, const glm::vec3 &contribution, bool indirect = false, uint32_t passed = 0) {
     Waiting &waiting = waiting_.emplace_back();
     waiting.light.slot = slot;
@@ -36,13 +36,13 @@ public:
     waiting.passed = passed;
     return rays_.emplace_back();
   }
-  // Of the light that was pushed last, by component.
+  // Sets the shares by component of the last pushed light.
   void set_shares(const glm::vec3 (&share)[2]) {
     waiting_.back().light.share[0] = share[0];
     waiting_.back().light.share[1] = share[1];
   }
 
-  // Whether a surface may ask for the Light Path of a shadow ray: that of the ray that was pushed last.
+  // Whether a surface may read the Light Path of a shadow ray, which set_light_path() sets for the last pushed ray.
   bool asks_light_path() const { return asks_light_path_; }
   void set_light_path(const LightPath<float> &path) {
     light_paths_.resize(rays_.size(), shadow_path());
@@ -50,7 +50,7 @@ public:
     light_paths_.back().kinds = LANCER_RAY_SHADOW;
   }
 
-  // Light that nothing can stop.
+  // Queues light that nothing occludes.
   void push_lit(const WaitingLight &waiting, const glm::vec3 &contribution) {
     Ray ray;
     ray.tmax = ray.tmin;
@@ -58,7 +58,7 @@ public:
   }
 
   // Traces all rays, calls arrive(waiting, contribution times transmittance) in the order of pushing, and empties the queue.
-  // Returns how many rays it took.
+  // Returns the number of rays.
   template <class Arrive> uint64_t trace(Arrive &&arrive) {
     const uint64_t count = any_clear_ ? trace_clear() : trace_solid();
     for (const Waiting &waiting : waiting_)
@@ -73,16 +73,16 @@ public:
 private:
   struct Waiting {
     WaitingLight light;
-    glm::vec3 contribution{0.0f}; // what arrives of it
-    uint32_t passed = 0;          // surfaces on the way so far
+    glm::vec3 contribution{0.0f}; // arriving part of the light
+    uint32_t passed = 0;          // surfaces passed so far
   };
 
   static LightPath<float> shadow_path() { return {.kinds = LANCER_RAY_SHADOW}; }
-  // Everything blocks: any hit answers.
+  // Traces rays where all surfaces are opaque: any hit occludes.
   uint64_t trace_solid();
-  // Some surfaces let a share pass.
+  // Traces rays where some surfaces transmit light.
   uint64_t trace_clear();
-  // Whether a surface that a ray meets ends it; keeps what passes, if not.
+  // Whether a hit surface occludes a ray; keeps the surface's transmittance if not.
   bool stops(size_t ray, const Hit &hit);
 
   const Scene &scene_;
@@ -92,7 +92,7 @@ private:
   Crossings crossings_; // that the rays have passed
   std::vector<Ray> rays_;
   std::vector<Waiting> waiting_;
-  std::vector<LightPath<float>> light_paths_; // by ray, as far as they were set
+  std::vector<LightPath<float>> light_paths_; // by ray, up to the last one that was set
   std::vector<uint8_t> occluded_;
 };
 

@@ -98,7 +98,7 @@ void SurfaceStage::ask_nodes(std::span<const View> views) {
   }
 }
 
-// With both normals on the viewer's side.
+// Both normals are turned to the viewer's side.
 void SurfaceStage::place_nodes(const Material &material, std::span<const View> views) {
   nodes_.used = (1u << count_) - 1u;
   nodes_.backfacing = 0;
@@ -147,7 +147,7 @@ Surface SurfaceStage::surface(uint32_t lane) const {
   surface.offset = block.offset[lane];
   surface.ng = get(block.ng, lane);
   surface.ns = get(block.ns, lane);
-  // Exact surfaces have no weights of corners: their hits say 0.
+  // Exact surfaces have no corner weights: their hits have 0.
   surface.bary = {met.u, met.v};
   surface.instance = met.instance;
   surface.primitive = met.primitive;

@@ -1,6 +1,5 @@
-// Shadow rays near the end of the lit side of smooth meshes: they start on the curved surface that the normals stand for, so
-// that the triangles' own edges throw no shadow there. The way of Hanika, Hacking the Shadow Terminator (Ray Tracing Gems II,
-// 4).
+// Shadow rays near the shadow terminator of smooth meshes: they start on the curved surface that the normals describe, so that
+// the triangles' own edges cast no shadow there. The method of Hanika, Hacking the Shadow Terminator (Ray Tracing Gems II, 4).
 #pragma once
 
 #include "scene/geometry.h"
@@ -9,7 +8,7 @@
 
 namespace lancer {
 
-// How much of its way to the curved surface a ray towards wi starts: it fades in as the light gets close to grazing. limit:
+// Returns the share of the full offset for a ray towards wi: it fades in as the light approaches grazing angles. limit:
 // Instance::terminator.
 template <class F> LANCER_LANE F terminator_amount(F limit, const Vec3<F> &n, const Vec3<F> &ng, const Vec3<F> &wi) {
   const F facing = dot(n, wi), cos_n = abs(facing), cos_g = dot(select(facing < 0.0f, -ng, ng), wi);
@@ -17,8 +16,8 @@ template <class F> LANCER_LANE F terminator_amount(F limit, const Vec3<F> &n, co
   return select(limit > 0.0f, amount, F(0.0f));
 }
 
-// How far to lift the start of a ray towards the unit direction wi, in the normalised world; n: the shading normal, ng: the
-// geometric one, both on the viewer's side. 0 where the mesh is not smooth or wi is far enough from grazing.
+// Returns the offset of the start of a ray towards the unit direction wi, in the normalised world; n: the shading normal, ng:
+// the geometric one, both on the viewer's side. 0 where the mesh is not smooth or wi is far enough from grazing.
 glm::dvec3 terminator_offset(const Geometry &geometry, const Surface &surface, const glm::vec3 &n, const glm::vec3 &ng,
                              const glm::vec3 &wi);
 

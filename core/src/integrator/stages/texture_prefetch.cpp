@@ -10,7 +10,7 @@ namespace lancer {
 
 namespace {
 
-// Smaller pictures stay in the caches by themselves.
+// Smaller images stay in the caches anyway.
 constexpr size_t kLarge = size_t(4) << 20;
 
 } // namespace

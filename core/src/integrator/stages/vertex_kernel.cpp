@@ -1,4 +1,5 @@
-// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+// Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
+// bvh_kernel.cpp.
 #include "integrator/stages/vertex_kernel.h"
 
 #include "compile/material_lobes.h"
@@ -38,7 +39,7 @@ LANCER_LANE void store_surface(VertexBlock &block, int first, const SurfaceLanes
   for (int first = 0; first < kBlockLanes; first += kLanes) {
     if (!(block.used >> first))
       return;
-    // Back along the ray.
+    // wo points back along the ray.
     const D3 d = load3(block.d, first);
     const D length = sqrt(dot(d, d));
     const D scale = D(1.0) / length;
@@ -76,7 +77,7 @@ LANCER_LANE void store_surface(VertexBlock &block, int first, const SurfaceLanes
   }
 }
 
-// Samples of lamps, beside those that are given.
+// Samples lamps in the lanes that request it; the other lanes keep their samples.
 LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
   const M asked = some(block.asked, first);
   if (!any(asked))
@@ -89,7 +90,7 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
   const D probability = load(block.light_pdf + first);
   sample.pdf = probability;
   sample_light(EachLight<F>{block.lamp + first}, p, load(block.u[2] + first), load(block.u[3] + first), asked, sample);
-  // Dark ones are none.
+  // A sample of a black light counts as no sample.
   sample.pdf = select(asked & black(sample.radiance), D(0.0), sample.pdf);
   store3(block.light_target, first, sample.target);
   store3(block.light_wi, first, sample.wi);
@@ -100,7 +101,7 @@ LANCER_LANE void ask_lamps(VertexBlock &block, int first, const D3 &p) {
 
 LANCER_LANE M has_bit(const uint32_t *words, uint32_t bit) { return !equal(load(words) & U(bit), U(0u)); }
 
-// What the nodes of the material say in every lane.
+// Values of the material's nodes in every lane.
 struct NodeValues {
   const VertexBlock &block;
   int first;
@@ -151,7 +152,7 @@ void describe(VertexBlock &block) {
   }
 }
 
-// Shares paths between what passes straight on and what the surface scatters.
+// Returns the share of paths that pass straight through instead of being scattered.
 LANCER_LANE F share_passing(VertexBlock &block, int first, const Bsdf<F> &bsdf) {
   const F zero(0.0f), through = load(block.through + first);
   F pass = zero;
@@ -162,14 +163,14 @@ LANCER_LANE F share_passing(VertexBlock &block, int first, const Bsdf<F> &bsdf) 
   return pass;
 }
 
-// a / b, 0 where b is.
+// Returns a / b, and 0 where b is 0.
 LANCER_LANE V3 divided(const V3 &a, const V3 &b) {
   const F zero(0.0f);
   return {select(b.x != zero, a.x / b.x, zero), select(b.y != zero, a.y / b.y, zero), select(b.z != zero, a.z / b.z, zero)};
 }
 
-// What the light's sample brings to the viewer where nothing is in its way. scatters: share of paths that do not pass straight
-// on: they find the same light.
+// Computes the contribution of the light sample without occlusion. scatters: share of paths that are scattered, which can find
+// the same light.
 LANCER_LANE void light_of(VertexBlock &block, int first, const Bsdf<F> &bsdf, D scatters) {
   const F zero(0.0f);
   const D pdf = load(block.light_pdf + first);
@@ -182,10 +183,11 @@ LANCER_LANE void light_of(VertexBlock &block, int first, const Bsdf<F> &bsdf, D 
   for (int component = 0; component < 3; ++component)
     value.part[component] = select(has_bit(block.light_hidden + first, kinds[component]), Vec3<F>(zero), value.part[component]);
   const V3 f = value.f();
-  // The BSDF finds the same light, unless it is a single direction. Where samples split, both count as if each were one: what
-  // is shaded as if it were round gets other light of one than of the other, and Cycles weighs them so.
+  // BSDF samples find the same light, unless it is a single direction. The weights count one sample of each technique even
+  // where samples split: with interpolated normals, the two techniques do not see the same light, so the weights change the
+  // picture, and Cycles counts one of each.
   const F weight = select(has_bit(block.light_delta + first, 1u), F(1.0f), mis_weight(pdf, widen(value.pdf) * scatters));
-  // What is scattered of a density is of the order of 1, however narrow the lobe and however bright the light.
+  // f over a density is of the order of 1, however narrow the lobe and however bright the light.
   const V3 contribution = load3(block.beta, first) * (f * narrow(widen(weight) / (pdf * load(block.lights + first)))) *
                           load3(block.light_radiance, first);
   store3(block.contribution, first, contribution);
@@ -195,11 +197,12 @@ LANCER_LANE void light_of(VertexBlock &block, int first, const Bsdf<F> &bsdf, D 
   block.lifted |= placed_bits(terminator_amount(load(block.terminator + first), bsdf.ns, bsdf.ng, wi) > zero, first);
 }
 
-// Rays of ambient occlusion: the next rays of matt surfaces are drawn by the same cosine and tell as much. What is open counts
-// 1, less the next ray's weight where that is blocked, which is exact in the open. Only directions above both normals:
-// elsewhere a BSDF may lose what it draws, and a direction that occlusion draws there has a ray of its own.
+// Ambient occlusion: matt surfaces sample their next rays by the same cosine, which then replace occlusion rays. The estimate
+// is 1, minus the next ray's weight where that ray is occluded, which is exact without occluders. Only directions above both
+// normals are replaced: in others, the BSDF may discard its sample, and a direction that occlusion samples there gets its own
+// ray.
 LANCER_LANE void look_around(VertexBlock &block, int first, const Bsdf<F> &bsdf, const BsdfSample<F> &sample) {
-  // The least share of the cosine in what the surface draws: weights are at most 1 over it.
+  // The least share of cosine lobes in the BSDF's samples: weights are at most 1 over it.
   constexpr float kLeastCosine = 0.5f;
   const M asked = some(block.occlusion_asked, first);
   if (!any(asked))
@@ -248,7 +251,7 @@ void scatter(VertexBlock &block) {
     const D3 p = load3(block.p, first), outwards = widen(load3(block.ng, first));
     const D offset = load(block.offset + first);
     const D scatters = D(1.0) - widen(load(block.pass + first));
-    // Go on in a direction of the BSDF.
+    // Sample the next direction from the BSDF.
     const BsdfSample<F> sample = bsdf.sample(load(block.u[5] + first), load(block.u[0] + first), load(block.u[1] + first));
     store3(block.next_origin, first, origin_towards(p, offset, outwards, D3(widen(sample.wi))));
     store3(block.wi, first, sample.wi);
