@@ -1,4 +1,4 @@
-// Beckmann's distribution of microfacets: density, masking, and sampling of the normals that are visible from wo.
+// Beckmann's distribution of microfacets: density, masking, and sampling of the normals visible from wo.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 
 namespace lancer {
 
-// tan^2 of a direction's angle to n. Never from 1 - cos^2, which loses a small roughness in rounding.
+// Returns tan^2 of a direction's angle to n. Not computed from 1 - cos^2, which loses a small roughness in rounding.
 template <class V> LANCER_LANE NumberOf<V> tan2_theta(const V &w) { return (w.x * w.x + w.y * w.y) / (w.z * w.z); }
 
-// D: density of microfacet normals per solid angle. Beyond exp(-87) of the top a float holds 0.
+// D: density of microfacet normals per solid angle. Below exp(-87) of its maximum it is 0 in float.
 template <class F> LANCER_LANE F beckmann_d(F tan2, F alpha) {
   const F alpha2 = alpha * alpha, sec2 = 1.0f + tan2;
   const auto near = tan2 <= 87.0f * alpha2;
@@ -26,30 +26,31 @@ template <class F> LANCER_LANE F beckmann_d(F tan2, F alpha) {
 // The masking parameter a = 1 / (alpha tan(theta)); infinite along n.
 template <class F> LANCER_LANE F beckmann_a(const Vec3<F> &w, F alpha) { return w.z / (alpha * sqrt(w.x * w.x + w.y * w.y)); }
 
-// Walter's rational fit of G1, which is the value of the model; the fit exceeds 1 just below its end.
+// Walter's rational fit of G1, which the model uses as its value; the fit exceeds 1 just below its end.
 template <class F> LANCER_LANE F beckmann_g1(F a) {
   const F fit = min(F(1.0f), a * (3.535f + 2.181f * a) / (1.0f + a * (2.276f + 2.577f * a)));
   return select(a < 1.6f, fit, F(1.0f));
 }
 
-// Beyond this a the share that masking takes is below erfc(4) = 2e-8, less than a float can tell.
+// Beyond this a, masking removes less than erfc(4) = 2e-8, below the precision of float.
 inline constexpr float kUnmasked = 4.0f;
 
-// The exact G1, which makes the density of visible normals integrate to 1.
+// The exact G1, with which the density of visible normals integrates to 1.
 template <class F> LANCER_LANE F beckmann_g1_exact(F a) {
   const auto masked = a < kUnmasked;
   if (!any(masked))
     return F(1.0f);
   constexpr float inv_2_sqrt_pi = 0.5f * std::numbers::inv_sqrtpi_v<float>;
-  // Over a common denominator, so that a = 0 is no division by zero.
+  // Use a common denominator, so that a = 0 causes no division by zero.
   return select(masked, a / (a + inv_2_sqrt_pi * exp(-a * a) - 0.5f * a * erfc(a)), F(1.0f));
 }
 
-// Slope along wo's azimuth, in units of alpha, of a normal visible from masking parameter a: density (a - x) exp(-x^2), x < a.
+// Samples the slope along wo's azimuth, in units of alpha, of a normal visible from masking parameter a: density (a - x)
+// exp(-x^2), x < a.
 inline double beckmann_visible_slope(float a_float, float u_float) {
   constexpr double half_sqrt_pi = 0.5 / std::numbers::inv_sqrtpi_v<double>;
   const double a = a_float;
-  // The middle of the float's cell: 0 would ask for the end of an infinite tail.
+  // Use the middle of the float's cell: u = 0 would select the end of an infinite tail.
   const double u = static_cast<double>(u_float) + 0x1p-25;
   const auto integral = [&](double x, double exp_x2) { return a * half_sqrt_pi * erfc(-x) + 0.5 * exp_x2; };
   const double total = integral(a, exp(-a * a));
@@ -66,7 +67,7 @@ inline double beckmann_visible_slope(float a_float, float u_float) {
     if (std::abs(error) < 0x1p-30)
       break;
     (error > 0.0 ? high : low) = x;
-    // Halley's step, or halve the bracket where that would leave it.
+    // Take Halley's step, or halve the bracket if the step would leave it.
     const double slope = (a - x) * exp_x2 / total;
     const double newton = error / slope;
     const double step = newton / (1.0 + newton * (0.5 / (a - x) + x));
@@ -76,11 +77,11 @@ inline double beckmann_visible_slope(float a_float, float u_float) {
   return x;
 }
 
-// Angle from wo's azimuth of a slope of length r = eccentricity * a: density (1 - eccentricity cos(phi)) / (2 pi). Its
-// distribution is Kepler's equation, phi - eccentricity sin(phi) = mean anomaly.
+// Samples the angle from wo's azimuth of a slope of length r = eccentricity * a: density (1 - eccentricity cos(phi)) / (2 pi).
+// Its distribution function is Kepler's equation, phi - eccentricity sin(phi) = mean anomaly.
 inline float beckmann_visible_angle(float eccentricity, float u) {
   const float mean = kPi * std::abs(2.0f * u - 1.0f);
-  // Newton from above: the function is convex between 0 and pi, so every step falls towards the root.
+  // Newton from above: the function is convex between 0 and pi, so every step decreases towards the root.
   float phi = std::min(mean + eccentricity, kPi);
   for (int i = 0; i < 20; ++i) {
     const float error = phi - eccentricity * sin(phi) - mean;
@@ -92,32 +93,32 @@ inline float beckmann_visible_angle(float eccentricity, float u) {
   return std::copysign(phi, 2.0f * u - 1.0f);
 }
 
-// A normal h visible from wo (wo.z > 0), density G1_exact(wo) max(0, wo.h) D(h) / wo.z per solid angle of h.
+// Samples a normal h visible from wo (wo.z > 0), with density G1_exact(wo) max(0, wo.h) D(h) / wo.z per solid angle of h.
 template <class F> LANCER_LANE Vec3<F> beckmann_sample_visible(const Vec3<F> &wo, F alpha_x, F alpha_y, F u, F v) {
-  // Squeeze the facets to roughness 1; wo goes along.
+  // Scale the facets, together with wo, to roughness 1.
   const F along = alpha_x * wo.x, across = alpha_y * wo.y;
   const F sin_theta = sqrt(along * along + across * across);
   const F a = wo.z / sin_theta;
   const auto tilted = sin_theta > 0.0f;
   const F azimuth_x = select(tilted, along / sin_theta, F(1.0f)), azimuth_y = select(tilted, across / sin_theta, F(0.0f));
-  // Draw the slope along wo's azimuth and across it.
+  // Sample the slope along wo's azimuth and across it.
   F slope_x(0.0f), slope_y(0.0f);
   const auto masked = a < kUnmasked;
   if (any(masked)) {
-    // The part along it by its visible share; the part across as it is, Gaussian.
+    // Along wo's azimuth by visibility; across it Gaussian.
     slope_x = each(a, u, [](float of, float number) {
       return of < kUnmasked ? static_cast<float>(beckmann_visible_slope(of, number)) : 0.0f;
     });
     slope_y = erf_inverse(2.0f * v + (0x1p-24f - 1.0f));
   }
   if (any(!masked)) {
-    // Nothing is masked: Gaussian in length (log1p keeps the digits of small u), and turned by the projected area alone.
+    // Without masking: length from a Gaussian (log1p keeps the digits of small u), angle by projected area alone.
     const F r = sqrt(-log1p(-u));
     const F phi = each(min(r / a, F(1.0f)), v, beckmann_visible_angle);
     slope_x = select(masked, slope_x, r * cos(phi));
     slope_y = select(masked, slope_y, r * sin(phi));
   }
-  // Turn it to wo's azimuth and stretch it again; the normal leans against the slope.
+  // Rotate the slope to wo's azimuth and scale it back; the normal tilts against the slope.
   const F x = alpha_x * (azimuth_x * slope_x - azimuth_y * slope_y);
   const F y = alpha_y * (azimuth_y * slope_x + azimuth_x * slope_y);
   return normalize(Vec3<F>(-x, -y, F(1.0f)));

@@ -1,4 +1,4 @@
-// A surface's whole answer at one place: a sum of lobes with one way to evaluate it and one to sample it.
+// The BSDF of a surface at a hit: a sum of lobes with one evaluation and one sampling routine.
 #pragma once
 
 #include "bsdf/frame.h"
@@ -6,7 +6,7 @@
 
 namespace lancer {
 
-// Light scattered from wi towards wo, by component: f |cos(wi)|, and the density with which sample() would have taken wi.
+// Light scattered from wi towards wo, by component: f |cos(wi)|, and the density with which sample() samples wi.
 template <class F> struct BsdfValue {
   using V = Vec3<F>;
   V part[3] = {V(F(0.0f)), V(F(0.0f)), V(F(0.0f))}; // by Component
@@ -15,43 +15,42 @@ template <class F> struct BsdfValue {
   LANCER_LANE V f() const { return part[0] + part[1] + part[2]; }
 };
 
-// weight 0 = no sample: the path ends there.
+// weight 0 means no sample: the path ends.
 template <class F> struct BsdfSample {
   using V = Vec3<F>;
   V wi{F(0.0f)};     // world, unit
-  V weight{F(0.0f)}; // f |cos(wi)| / pdf over all smooth lobes, or the single direction's weight over its probability
-  V share[2] = {V(F(0.0f)), V(F(0.0f))};     // of weight that is diffuse, glossy; the rest is transmission
-  F pdf{0.0f};                               // per solid angle; for a single direction the probability of having chosen it
+  V weight{F(0.0f)}; // f |cos(wi)| / pdf over all smooth lobes, or the weight of a single direction over its probability
+  V share[2] = {V(F(0.0f)), V(F(0.0f))};     // diffuse and glossy shares of weight; the rest is transmission
+  F pdf{0.0f};                               // per solid angle; for a single direction its probability
   MaskOf<F> delta = uniform<F>(false);       // a single direction: evaluation and pdf elsewhere are 0
-  MaskOf<F> transmitted = uniform<F>(false); // it goes through the surface
-  WordOf<F> component{0u};                   // Component of the chosen lobe
-  F alpha2{1.0f};                            // alpha_x alpha_y of the chosen lobe; 0 for a single direction
+  MaskOf<F> transmitted = uniform<F>(false); // wi passes through the surface
+  WordOf<F> component{0u};                   // Component of the sampled lobe
+  F alpha2{1.0f};                            // alpha_x alpha_y of the sampled lobe; 0 for a single direction
 };
 
 // Contract
-//   Place     begin() says where: wo unit, away from the surface; ng unit, on the side of wo; ns unit, turned over as ng was:
-//             beyond the surface where the mesh's normals look away from their face, and there it lights as Cycles has it;
-//             inside: wo lies behind the outward side. All directions are in the world.
-//   Lobes     are added by add_lobe and add_principled (build.h); complete() makes the probabilities. A lobe's normal may be
-//             its own. It acts on the side of its normal and scatters through to the other; lobes that need wo there are 0
-//             where wo is behind their normal.
-//   eval      f |cos| of smooth lobes, single directions are 0; the cosine is that of the lobe's own normal.
-//   eval_lit  the same as samples of lights are weighed, as in Cycles: rough boundaries also pass light between directions
-//             that lie on one side of their half vector. No facet does that: their own sampler never draws it, so that what
-//             it shows depends on the other technique's density, here as there. sample() weighs with it, too, where another
-//             lobe draws such a direction. Its pdf also counts directions that pass the surface the wrong way by ng.
-//   pdf       per solid angle; that of eval integrates to 1 minus the probability of single directions minus what is lost at
+//   Place     begin() sets wo: unit, away from the surface; ng: unit, on the side of wo; ns: unit, flipped together with ng. ns
+//             points below the surface where the mesh's normals oppose their face; light there is as in Cycles. inside: wo is
+//             behind the outward side. All directions are in world space.
+//   Lobes     add_lobe and add_principled (build.h) add lobes; complete() computes their probabilities. A lobe may have its own
+//             normal. It reflects on the side of its normal and transmits to the other; lobes that need wo on this side are 0
+//             if wo is behind their normal.
+//   eval      f |cos| of smooth lobes, with the cosine to the lobe's own normal; single directions are 0.
+//   eval_lit  f |cos| for light samples as Cycles weights them: rough boundaries also transmit between directions on one side
+//             of their half vector. No facet does this, so the lobe's own sampler never samples it, and its result depends on
+//             the density of the other technique, as in Cycles. sample() weights with this value, too, if another lobe samples
+//             such a direction. Its pdf includes directions that cross the surface to the wrong side of ng.
+//   pdf       per solid angle; the pdf of eval integrates to 1 minus the probability of single directions minus the loss at
 //             the horizon.
-//   Sides     A lobe decides by its own normal whether wi is reflected or goes through. Two other normals have a say:
-//             - ns, where the lobe's normal differs from it (bump): a direction on the other side of ns than the lobe says
-//               is 0, and diffuse lobes end smoothly before it where bump_correction is set.
-//               A lobe that reflects, and one that lets through, keep what they draw themselves beyond ns, as in Cycles.
-//             - ng: sample() never takes a direction that would pass the surface the wrong way, so its pdf is 0; of lobes that
-//               refract by the rules of Blender 3 it does, as Cycles 3. The value stays: lights are met as on the smooth
-//               surface that interpolated normals stand for, and what is in the way of the shadow ray decides.
-//   Lanes     F is float, or lanes of it: every lane is a place of its own, with lobes of the same code. A lobe that is black
-//   in a
-//             lane is not there in it.
+//   Sides     A lobe decides by its own normal whether wi is reflected or transmitted. Two other normals matter:
+//             - ns, if the lobe's normal differs from it (bump): a direction on the other side of ns than the lobe assumes is
+//               0, and diffuse lobes fall off smoothly towards it if bump_correction is set.
+//               Reflecting and transmitting lobes keep their own samples beyond ns, as in Cycles.
+//             - ng: sample() never samples a direction to the wrong side, so its pdf is 0, except for refracting lobes by the
+//               rules of Blender 3, as in Cycles 3. The value stays: lights illuminate the smooth surface that interpolated
+//               normals describe, and the shadow ray finds occluders.
+//   Lanes     F is float or lanes of it: every lane is a hit of its own, with lobes of the same code. A lobe that is black in
+//             a lane does not exist in it.
 template <class F> struct Bsdf {
   using V = Vec3<F>;
   using B = MaskOf<F>;
@@ -59,21 +58,21 @@ template <class F> struct Bsdf {
   V wo{F(0.0f), F(0.0f), F(1.0f)}, ns{F(0.0f), F(0.0f), F(1.0f)}, ng{F(0.0f), F(0.0f), F(1.0f)};
   B inside = uniform<F>(false);
   B flat = uniform<F>(true);       // ns is ng
-  B smooth = uniform<F>(false);    // some lobe is more than single directions; set by complete()
-  B transmits = uniform<F>(false); // some lobe lets light through; set by complete()
+  B smooth = uniform<F>(false);    // some lobe has more than single directions; set by complete()
+  B transmits = uniform<F>(false); // some lobe transmits; set by complete()
   bool bump_correction = true;
-  bool shares = true; // samples say their shares by component
+  bool shares = true; // samples carry their shares by component
   int frame_count = 0;
   int count = 0;
-  V emission{F(0.0f)}; // what layered lobes emit towards wo
-  // Neither is initialised: only the first frame_count and count entries exist.
+  V emission{F(0.0f)}; // emission of layered lobes towards wo
+  // Uninitialised: only the first frame_count and count entries exist.
   union {
     Frame<F> frames[kMaxFrames];
   };
   union {
     V wo_local[kMaxFrames]; // wo in each of the frames
   };
-  // The first frame that is the same in a lane: its number, or its own.
+  // By lane: the number of the first equal frame, possibly the frame itself.
   union {
     WordOf<F> first_same[kMaxFrames];
   };
@@ -85,28 +84,28 @@ template <class F> struct Bsdf {
 
   void begin(const V &wo, const V &ns, const V &ng, B inside, bool bump_correction);
   void complete();
-  // Adds a lobe unless it is black or no room is left.
+  // Adds a lobe unless it is black or the array is full.
   void add(const Lobe<F> &lobe);
 
-  // drawn: the lobe that drew wi, as sample() weighs it; -1: none.
+  // drawn: the lobe that sampled wi, to weight it as sample() does; -1: none.
   BsdfValue<F> eval(const V &wi, int drawn = -1) const;
-  // For light samples. shapes: bits of the lobes that are asked.
+  // For light samples. shapes: bits of the lobes to evaluate.
   BsdfValue<F> eval_lit(const V &wi, uint32_t shapes = kAllShapes) const;
-  // u_lobe picks the lobe, and what it says beyond that picks reflection or refraction; u and v the direction; all in [0, 1).
+  // u_lobe selects the lobe, and its remainder selects reflection or refraction; u and v select the direction; all in [0, 1).
   BsdfSample<F> sample(F u_lobe, F u, F v) const;
 
-  // Sum of the lobes' albedos.
+  // Returns the sum of the lobes' albedos.
   V albedo() const;
-  // What the passes call the colour of a component: the albedo, except for lobes that Cycles 3 shows without Fresnel.
+  // Returns the colour of a component for the passes: the albedo, except for lobes that Cycles 3 shows without Fresnel.
   V shown(Component component) const;
 
 private:
-  // Directions of one wi in all frames.
+  // Local directions of one wi in all frames.
   struct Local {
     V wi[kMaxFrames];
-    F cos_ng; // to ng
+    F cos_ng; // cosine to ng
   };
-  // The lobe that drew wi in each lane, with the half vector that its sampler had, if it had one.
+  // The lobe that sampled wi in each lane, with its sampler's half vector, if any.
   struct Drawn {
     WordOf<F> lobe, frame;
     B has_h;

@@ -1,19 +1,19 @@
-// Sampling of a BSDF: a lobe, a direction from it, and the weight of all lobes there.
+// Sampling of a BSDF: selects a lobe, samples a direction from it, and weights the direction by all lobes.
 #pragma once
 
 #include "bsdf/bsdf_terms.h"
 
 namespace lancer {
 
-// What each lane has drawn from its lobe.
+// The direction that each lane has sampled from its lobe.
 template <class F> struct Bsdf<F>::Direction {
-  V cosine, facet; // what the warps of all lanes gave: by the cosine, and a visible normal
-  V wi, h, weight; // in the lobe's frame; weight of single directions, over their probability within the lobe
+  V cosine, facet; // results of the warps shared by all lanes: by the cosine, and a visible normal
+  V wi, h, weight; // in the lobe's frame; weight of single directions over their probability within the lobe
   F probability;   // of single directions, within the lobe
   B valid, single, has_h;
 };
 
-// A direction from one lobe, in the lanes that picked it.
+// Samples a direction from one lobe, in the lanes that selected it.
 template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u, F v, Direction &direction) const {
   const F zero(0.0f), one(1.0f);
   const V &wo_l = wo_local[lobe.frame];
@@ -82,7 +82,7 @@ template <class F> void Bsdf<F>::draw(const Lobe<F> &lobe, B mine, F u_side, F u
   }
   const bool wide = lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen;
   if (!wide) {
-    // Seen from behind there is nothing to reflect; a sampler may aim below the horizon; that light is lost.
+    // A lobe seen from behind reflects nothing; a direction sampled below the horizon is lost.
     valid = valid & (wo_l.z > zero);
     if (!is_facets(lobe))
       valid = valid & (single | (wi.z > zero));
@@ -100,8 +100,8 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
   const F zero(0.0f), one(1.0f);
   const auto numbered = [](int i) __attribute__((always_inline)) { return WordOf<F>(static_cast<uint32_t>(i)); };
   BsdfSample<F> result;
-  // Pick the lobe that u_lobe falls on, which keeps what remains of it, again in [0, 1). A lobe of probability 0 is never
-  // picked, even where rounding leaves u beyond the last sum.
+  // Select the lobe by u_lobe and rescale the remainder to [0, 1). A lobe of probability 0 is never selected, even if rounding
+  // leaves u beyond the last sum.
   WordOf<F> chosen(~0u);
   B open = uniform<F>(true);
   for (int i = 0; i < count; ++i) {
@@ -136,7 +136,7 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
   if (any(visible))
     direction.facet = ggx_sample_visible(seen, alpha_x, alpha_y, u, v);
 
-  // Draw each lane's direction, and turn it to the world.
+  // Sample each lane's direction and transform it to world space.
   WordOf<F> frame(0u);
   for (int i = 0; i < count; ++i) {
     const Lobe<F> &lobe = lobes[i];
@@ -167,7 +167,7 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
       valid = valid & ((!mine) | draws_on_side(lobes[i], through, local.cos_ng));
   }
 
-  // Weigh with the sum over all smooth lobes, whichever was picked; h goes along with all digits of the sampler.
+  // Weight by the sum over all smooth lobes, whichever was selected; h keeps all digits of the sampler.
   const B single = valid & direction.single, spread = valid & !direction.single;
   result.weight = select(single, direction.weight, V(zero));
   result.pdf = select(single, direction.probability, zero);

@@ -1,4 +1,4 @@
-// How the lobes of a Bsdf are summed and sampled. Included by bsdf.h.
+// Sum and sampling probabilities of a Bsdf's lobes. Included by bsdf.h.
 #pragma once
 
 #include "bsdf/ashikhmin.h"
@@ -14,14 +14,14 @@ namespace lancer {
 
 template <class F> bool is_facets(const Lobe<F> &lobe) { return lobe.shape == LobeShape::Microfacet; }
 
-// Whether a lobe sends light both back and through the surface, by its own choice.
+// Returns whether a lobe chooses between reflection and transmission.
 template <class F> bool splits(const Lobe<F> &lobe) { return is_facets(lobe) || lobe.shape == LobeShape::Dielectric; }
 
 template <class F> bool lets_through(const Lobe<F> &lobe) {
   return (is_facets(lobe) && refracts(lobe)) || lobe.shape == LobeShape::Dielectric || matte_transmits(lobe);
 }
 
-// alpha_x alpha_y, or what takes its place.
+// Returns alpha_x alpha_y, or its equivalent.
 template <class F> LANCER_LANE F alpha2_of(const Lobe<F> &lobe) {
   switch (lobe.shape) {
   case LobeShape::Microfacet:
@@ -31,15 +31,15 @@ template <class F> LANCER_LANE F alpha2_of(const Lobe<F> &lobe) {
     return lobe.alpha_x * lobe.alpha_x;
   case LobeShape::Phong:
   case LobeShape::BlinnPhong:
-    // Beckmann's lobe of the same curvature at its top.
+    // A Beckmann lobe of the same curvature at its peak.
     return min(F(1.0f), 2.0f / (lobe.shininess + 2.0f));
   default:
     return F(1.0f);
   }
 }
 
-// Where a lobe draws a direction on that side of ng: none passes the surface the wrong way, except that Cycles 3 does not ask
-// it of lobes that refract.
+// Returns whether a lobe samples a direction on this side of ng: never on the wrong side, except that Cycles 3 does not check
+// refracting lobes.
 template <class F> LANCER_LANE MaskOf<F> draws_on_side(const Lobe<F> &lobe, MaskOf<F> through, F cos_ng) {
   if (lobe.rules == Rules::Blender3 && is_facets(lobe) && refracts(lobe))
     return uniform<F>(true);
@@ -67,15 +67,15 @@ template <class F> LANCER_LANE void Bsdf<F>::add(const Lobe<F> &lobe) {
 }
 
 template <class F> void Bsdf<F>::complete() {
-  // Lobes are picked by the light that they are expected to scatter, the mean of its colours: by the largest one, a saturated
-  // base takes samples that its gloss needs.
+  // Select lobes by the light that they are expected to scatter, averaged over channels: by the largest channel, a saturated
+  // base would take samples that its gloss needs.
   const F zero(0.0f);
   F total = zero;
   smooth = transmits = uniform<F>(false);
   for (int i = 0; i < count; ++i) {
     Lobe<F> &lobe = lobes[i];
     const B there = !black(lobe.color);
-    // The albedo of rough refraction is that of the smooth surface, which may reflect all where tilted facets do not.
+    // The albedo of rough refraction is that of the smooth surface, which may reflect totally where tilted facets do not.
     V expected = lobe.albedo;
     if (is_facets(lobe) && !reflects(lobe))
       expected = select(lobe.delta | lobe.delta_through, expected, lobe.color);
@@ -113,7 +113,7 @@ template <class F> Vec3<F> Bsdf<F>::shown(Component component) const {
   return total;
 }
 
-// known: the frame in which wi is known in each lane.
+// known: by lane, the frame in which wi_known is wi.
 template <class F>
 void Bsdf<F>::turn_to_frames(const V &wi, const WordOf<F> &known, const V &wi_known, B single, Local &local) const {
   for (int i = 0; i < frame_count; ++i) {
@@ -123,7 +123,7 @@ void Bsdf<F>::turn_to_frames(const V &wi, const WordOf<F> &known, const V &wi_kn
   local.cos_ng = select(flat & !single, local.wi[0].z, dot(ng, wi));
 }
 
-// Of lobes that only reflect, or scatter widely, without the colour. h: of lobes that reflect about it.
+// Evaluates lobes that only reflect, or scatter widely, without the colour. h: for lobes that reflect about it.
 template <class F> ColorValue<F> Bsdf<F>::smooth_value(const Lobe<F> &lobe, const V &wi, const V &h) const {
   const V &wo_l = wo_local[lobe.frame];
   LobeValue<F> grey;
@@ -177,7 +177,7 @@ template <class F> BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &dr
     if (lobe.frame != 0) {
       const B acts = bump_acts(lobe, drew);
       bump = select(acts, bump_factor(lobe, frames[lobe.frame].n, ns, local.wi[0].z, wi.z, bump_correction), bump);
-      // Where the lobe that drew wi gives nothing the sample is lost: its density is not in the sum either.
+      // If the lobe that sampled wi is 0, the sample is lost: the sum does not include its density either.
       lost = lost | (there & drew & (bump == zero));
       there = there & (bump != zero);
     }
@@ -198,7 +198,7 @@ template <class F> BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &dr
       add(Component::Transmission, crossing,
           microfacet_eval_through(lobe, wo_l, wi, select(drew & drawn.has_h, drawn.h, bent), lit));
     }
-    // What is left reflects about the half vector.
+    // The remaining lobes reflect about the half vector.
     const B above = there & (wo_l.z > zero) & (wi.z > zero);
     if (!any(above))
       continue;

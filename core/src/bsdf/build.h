@@ -1,4 +1,4 @@
-// From inputs to lobes: which lobes a described one becomes at this place, with which weights.
+// Conversion of lobe inputs to lobes: the lobes at this hit and their weights.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -8,7 +8,7 @@
 
 namespace lancer {
 
-// Each node adds to a BSDF between begin() and complete(); what finds no room any more is dropped. add_principled() is in
+// Each function adds to a BSDF between begin() and complete(); lobes beyond its capacity are dropped. add_principled() is in
 // principled.h.
 template <class F>
 LANCER_LANE Lobe<F> classic_lobe(LobeShape shape, Component component, uint8_t frame, const LobeInputs<F> &inputs) {
@@ -56,13 +56,13 @@ template <class F> LANCER_LANE void add_matte(Bsdf<F> &bsdf, const LobeInputs<F>
   bsdf.add(lobe);
 }
 
-// Roughness along the tangent and across it, and the frame that they lie in.
+// Roughness along the tangent and across it, and their frame.
 template <class F> struct Stretched {
   F alpha_x, alpha_y;
   uint8_t frame;
 };
 
-// axis: what the tangent is turned about; along, across: factors on the roughness in lanes of stretched ones.
+// axis: rotation axis of the tangent; along, across: factors of the roughness in anisotropic lanes.
 template <class F>
 LANCER_LANE Stretched<F> stretched(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Vec3<F> &n, const Vec3<F> &axis, F alpha,
                                    MaskOf<F> is_stretched, F along, F across) {
@@ -75,7 +75,7 @@ LANCER_LANE Stretched<F> stretched(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, c
           add_frame(bsdf, n, select(is_stretched, turned, none))};
 }
 
-// The Glossy node's: squeezed one way as it is drawn out the other.
+// The Glossy node: one roughness shrinks as the other grows.
 template <class F> LANCER_LANE Stretched<F> glossy_roughness(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Vec3<F> &n) {
   const F alpha = alpha_of(inputs.roughness), anisotropy = min(max(inputs.anisotropy, F(-0.99f)), F(0.99f));
   const auto negative = anisotropy < 0.0f;
@@ -84,7 +84,7 @@ template <class F> LANCER_LANE Stretched<F> glossy_roughness(Bsdf<F> &bsdf, cons
                    select(negative, shorter, longer));
 }
 
-// The Metallic node's, as Principled has it.
+// The Metallic node: as in Principled.
 template <class F> LANCER_LANE Stretched<F> conductor_roughness(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Vec3<F> &n) {
   const F alpha = alpha_of(inputs.roughness), anisotropy = clamp01(inputs.anisotropy);
   const F aspect = sqrt(1.0f - 0.9f * anisotropy);
@@ -92,7 +92,7 @@ template <class F> LANCER_LANE Stretched<F> conductor_roughness(Bsdf<F> &bsdf, c
                    aspect);
 }
 
-// The index from wo's side; Cycles keeps the node's away from 0.
+// Returns the index as seen from wo's side; Cycles clamps the node's away from 0.
 template <class F> LANCER_LANE F index_from(MaskOf<F> inside, F ior) {
   const F outside = max(ior, F(1e-5f));
   return select(inside, 1.0f / outside, outside);
@@ -104,8 +104,8 @@ template <class F> LANCER_LANE void add_facets(Bsdf<F> &bsdf, Lobe<F> lobe, cons
   bsdf.add(lobe);
 }
 
-// The facets of the nodes Glossy, Metallic and Glass, not by the rules of Blender 3 but where that preserves energy, still to
-// be completed; with the weight of the node in color.
+// Makes the facets of the nodes Glossy, Metallic and Glass, to be completed, with the weight of the node in color. By the rules
+// of Blender 3 only if they preserve energy.
 template <class F>
 LANCER_LANE Lobe<F> facets_of(const LobeInputs<F> &inputs, uint8_t frame, F alpha_x, F alpha_y, MaskOf<F> inside) {
   using V = Vec3<F>;
@@ -129,7 +129,7 @@ LANCER_LANE Lobe<F> facets_of(const LobeInputs<F> &inputs, uint8_t frame, F alph
   return lobe;
 }
 
-// Of inputs without a direction along the surface.
+// For inputs without a tangent.
 template <class F> LANCER_LANE MicrofacetPlan<F> plan_facets(const LobeInputs<F> &inputs, MaskOf<F> inside) {
   const F alpha = alpha_of(inputs.roughness);
   Lobe<F> lobe = facets_of(inputs, 0, alpha, alpha, inside);
@@ -158,7 +158,7 @@ template <class F> LANCER_LANE void add_conductor(Bsdf<F> &bsdf, const LobeInput
 
 template <class F> LANCER_LANE void add_refraction(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
-  const F alpha = inputs.roughness * inputs.roughness; // below 0, too
+  const F alpha = inputs.roughness * inputs.roughness; // also for negative roughness
   Lobe<F> lobe = make_microfacet(Scatter::Refract, frame, colored_weight(inputs), alpha, alpha, inputs.rules);
   lobe.ior = index_from(bsdf.inside, inputs.ior);
   add_facets(bsdf, lobe, inputs, false);
@@ -169,7 +169,7 @@ template <class F> LANCER_LANE void add_glass(Bsdf<F> &bsdf, const LobeInputs<F>
   const F alpha = alpha_of(inputs.roughness), eta = index_from(bsdf.inside, inputs.ior);
   const bool preserving = inputs.distribution == Facets::MultiGgx;
   if (inputs.rules == Rules::Blender3 && !preserving) {
-    // Blender 3.x: Fresnel of the smooth surface shares the light between two lobes of facets without Fresnel.
+    // Blender 3.x: Fresnel of the smooth surface splits the light between two lobes of facets without Fresnel.
     const F f = fresnel_dielectric(bsdf.wo_local[frame].z, eta);
     for (Scatter scatter : {Scatter::Reflect, Scatter::Refract}) {
       const F share = scatter == Scatter::Reflect ? f : 1.0f - f;
@@ -182,7 +182,7 @@ template <class F> LANCER_LANE void add_glass(Bsdf<F> &bsdf, const LobeInputs<F>
   add_facets(bsdf, facets_of(inputs, frame, alpha, alpha, bsdf.inside), inputs, preserving);
 }
 
-// What CLASSIC knows beside Lambert.
+// Adds the lobes of CLASSIC other than Lambert.
 template <class F> LANCER_LANE void add_classic(Bsdf<F> &bsdf, const LobeInputs<F> &inputs) {
   const uint8_t frame = add_frame(bsdf, reflecting_normal(bsdf, inputs.normal));
   const Vec3<F> &wo = bsdf.wo_local[frame];

@@ -1,4 +1,4 @@
-// Plans of facets that are the same wherever their material is met, made once, with their tables read ahead along the cosine.
+// Plans of facets that are the same wherever their material is hit, made once, with their tables sampled along the cosine.
 #pragma once
 
 #include "bsdf/principled.h"
@@ -8,13 +8,13 @@
 
 namespace lancer {
 
-// One record for every lane: its numbers side by side, read once where all lanes have the same one.
+// One record per lane: its members side by side, read once if all lanes have the same record.
 template <class F, class Record> struct LaneRecords {
   static constexpr int kWidth = LanesOf<F>::kWidth;
-  const Record *of[kWidth] = {}; // only the first is read where all are the same
+  const Record *of[kWidth] = {}; // if all are the same, only the first is read
   bool same = true;
 
-  // get: the number, vector or condition of one record.
+  // get: returns the number, vector or condition of one record.
   template <class Get> LANCER_LANE F number(const Get &get) const {
     if (same)
       return F(get(*of[0]));
@@ -34,8 +34,8 @@ template <class F, class Record> struct LaneRecords {
 
 struct CachedPlan {
   MicrofacetPlan<float> plan;
-  // In a row: what single scattering sends out, kFine values, or kCoarse of a lobe that refracts; and the mix between the
-  // ends of the curve.
+  // Rows: the albedo of single scattering, kFine values, or kCoarse for a refracting lobe; and the position between the ends of
+  // the Fresnel curve.
   float single[tables::kFine] = {}, mix[tables::kCoarse] = {};
 };
 inline std::shared_ptr<const CachedPlan> keep(const MicrofacetPlan<float> &plan) {
@@ -50,12 +50,12 @@ inline std::shared_ptr<const CachedPlan> keep(const MicrofacetPlan<float> &plan)
   return kept;
 }
 
-// The plan of each lane. All are of one kind of lobe.
+// The plan of each lane. All plans have the same kind of lobe.
 template <class F> struct LanePlans : LaneRecords<F, CachedPlan> {
   using LaneRecords<F, CachedPlan>::of, LaneRecords<F, CachedPlan>::same;
   using LaneRecords<F, CachedPlan>::number, LaneRecords<F, CachedPlan>::vector, LaneRecords<F, CachedPlan>::condition;
 
-  // A row at its place: read_row() of each lane.
+  // Interpolates a row in each lane, as read_row() does.
   template <class Row> LANCER_LANE F read(const Row &row, int n, F x) const {
     const tables::AxisPlace<F> at = tables::place_on_axis(x, n);
     const WordOf<F> first = truncate(at.node);
@@ -75,7 +75,7 @@ template <class F> struct LanePlans : LaneRecords<F, CachedPlan> {
         [](const CachedPlan &k) __attribute__((always_inline)) { return k.mix; }, tables::kCoarse, cos_o);
   }
 
-  // The plans as one, with what their kind of lobe reads.
+  // Returns the plans as one, with the members that their kind of lobe reads.
   LANCER_LANE MicrofacetPlan<F> plan() const {
 #define LANCER_OF(member)                                                                                                      \
   [](const CachedPlan &k) __attribute__((always_inline)) { return k.plan.member; }

@@ -1,4 +1,4 @@
-// Lobes of the course: mirrors and smooth glass, the rough coating, Phong and Blinn-Phong.
+// Lobes of CLASSIC: mirrors and smooth glass, the rough coating, Phong and Blinn-Phong.
 #pragma once
 
 #include "bsdf/beckmann.h"
@@ -10,7 +10,7 @@
 
 namespace lancer {
 
-// A direction of a delta lobe: weight without the lobe's colour, and the probability of having taken it.
+// A direction of a delta lobe: weight without the lobe's colour, and the probability of having selected it.
 template <class F> struct DeltaDirection {
   Vec3<F> wi{F(0.0f)};
   F weight{0.0f};
@@ -22,30 +22,30 @@ template <class V> LANCER_LANE DeltaDirection<NumberOf<V>> mirror_sample(const V
   return {reflect_local(wo), F(1.0f), F(1.0f)};
 }
 
-// The mirror with Fresnel's weight.
+// A mirror weighted with Fresnel.
 template <class F> LANCER_LANE DeltaDirection<F> smooth_coating_sample(const Lobe<F> &lobe, const Vec3<F> &wo) {
   return {reflect_local(wo), fresnel_dielectric(wo.z, lobe.ior), F(1.0f)};
 }
 
-// Smooth glass, reflected with probability F, else refracted. wo.z > 0; the lobe's index is that of the far side over that of
-// the near one. u in [0, 1).
-// The radiance is not scaled with 1/eta^2 on the way through: a path that leaves the glass again would undo it, and Cycles,
-// with which pictures agree, does without it for lights and cameras inside glass, too.
+// Smooth glass: reflects with probability F, else refracts. wo.z > 0; the lobe's index is that of the far side over that of
+// the near side. u in [0, 1).
+// The radiance is not scaled by 1/eta^2 on transmission: a path that leaves the glass again would undo the factor, and Cycles
+// omits it also for lights and cameras inside glass.
 template <class F> LANCER_LANE DeltaDirection<F> dielectric_sample(const Lobe<F> &lobe, const Vec3<F> &wo, F u) {
   const F eta = lobe.ior;
   const auto straight = eta == F(1.0f);
   const Fresnel<F> boundary = fresnel(wo.z, eta);
-  // Both choices carry their share as probability, so that the weight stays 1.
+  // The probability of either choice equals its share, so that the weight is 1.
   const auto reflects = (u < boundary.reflectance) & !straight;
   const Vec3<F> through = select(straight, -wo, refract_local(wo, eta, boundary.cos_t));
   return {select(reflects, reflect_local(wo), through), F(1.0f),
           select(reflects, boundary.reflectance, select(straight, F(1.0f), 1.0f - boundary.reflectance))};
 }
 
-// Below this roughness a float half vector cannot tell directions of the lobe apart: it is a mirror weighted with F.
+// Below this roughness a float half vector cannot distinguish directions of the lobe: it becomes a mirror weighted with F.
 inline constexpr float kMirrorAlpha = 2e-5f;
 
-// D, where the half vector is one of a reflection.
+// Returns D if h is the half vector of a reflection, else 0.
 template <class F> LANCER_LANE F coating_d(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &h) {
   return select((h.z > 0.0f) & (dot(wo, h) > 0.0f), beckmann_d(tan2_theta(h), lobe.alpha_x), F(0.0f));
 }
@@ -53,7 +53,7 @@ template <class F> LANCER_LANE F coating_d(const Lobe<F> &lobe, const Vec3<F> &w
 // f; d: coating_d().
 template <class F>
 LANCER_LANE F coating_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi, const Vec3<F> &h, F d) {
-  // Each G1 is divided by its cosine at once: both vanish together at the horizon.
+  // Divide each G1 by its cosine at once: both vanish together at the horizon.
   const F a_o = beckmann_a(wo, lobe.alpha_x), a_i = beckmann_a(wi, lobe.alpha_x);
   const F reflectance = fresnel_dielectric(dot(wo, h), lobe.ior);
   return select(d != F(0.0f), 0.25f * d * reflectance * (beckmann_g1(a_o) / wo.z) * (beckmann_g1(a_i) / wi.z), F(0.0f));
@@ -70,8 +70,8 @@ LANCER_LANE LobeValue<F> coating_eval_pdf(const Lobe<F> &lobe, const Vec3<F> &wo
   return where<F>(there, LobeValue<F>{coating_eval(lobe, wo, wi, h, d), 0.25f * d * seen});
 }
 
-// About the share of light that the lobe reflects for wo: Fresnel at n, and at a facet that leans away by the roughness.
-// Never 0 unless F is 0 for every direction (ior = 1).
+// Estimates the reflected share of light from wo: Fresnel at n, and at a facet tilted away by the roughness. It is 0 only if F
+// is 0 for every direction (ior = 1).
 template <class F> LANCER_LANE F coating_albedo_estimate(const Lobe<F> &lobe, const Vec3<F> &wo) {
   const F leaning = wo.z / sqrt(1.0f + lobe.alpha_x * lobe.alpha_x);
   return 0.75f * fresnel_dielectric(wo.z, lobe.ior) + 0.25f * fresnel_dielectric(leaning, lobe.ior);
@@ -80,7 +80,8 @@ template <class F> LANCER_LANE F coating_albedo_estimate(const Lobe<F> &lobe, co
 // Two lobes of a power of a cosine, n the shininess. Modified Phong: f = (n + 2) / (2 pi) max(0, R.V)^n around the mirrored
 // direction R. Blinn-Phong: f = (n + 2)(n + 4) / (8 pi (2^(-n/2) + n)) (N.H)^n, which reflects all light at normal incidence.
 
-// A direction around +z with density (n + 1) / (2 pi) cos^n: 1 - cos comes from expm1, which keeps narrow lobes apart.
+// Samples a direction around +z with density (n + 1) / (2 pi) cos^n: 1 - cos comes from expm1, which keeps the digits of narrow
+// lobes.
 template <class F> LANCER_LANE Vec3<F> sample_cosine_power(F n, F u, F v) {
   const F x = -expm1(log1p(-u) / (n + 1.0f));
   const F sin_theta = sqrt(x * (2.0f - x));
@@ -108,8 +109,8 @@ template <class F> LANCER_LANE LobeValue<F> blinn_phong_eval_pdf(const Lobe<F> &
   // cos^n from tan^2, which keeps its digits near n where the cosine has none.
   const F power = select(n > 0.0f, exp(-0.5f * n * log1p(tan2_theta(h))), F(1.0f));
   const F f = (n + 2.0f) * (0.125f * kInvPi) * ((n + 4.0f) / (exp(-0.5f * std::numbers::ln2_v<float> * n) + n)) * power;
-  // Half vectors of density (n + 1) / (2 pi) cos^n become directions of density / (4 wo.h), which a float cannot hold where
-  // both directions are opposite along the horizon.
+  // Half vectors of density (n + 1) / (2 pi) cos^n become directions of density / (4 wo.h), which overflows float if both
+  // directions are opposite along the horizon.
   const F pdf = (n + 1.0f) * (0.125f * kInvPi) * power / cos_oh;
   return where<F>((h.z > 0.0f) & (cos_oh > 0.0f) & (abs(pdf) < __builtin_inff()), LobeValue<F>{f, pdf});
 }

@@ -20,7 +20,7 @@ template <class F> struct Frame {
     b = V(c, sign + n.y * n.y * a, -n.y);
   }
 
-  // t lies in the plane of n and tangent; any t where those are parallel.
+  // t lies in the plane of n and tangent; it is arbitrary if they are parallel.
   LANCER_LANE Frame(const V &normal, const V &tangent) : Frame(normal) {
     const V across = cross(normal, tangent);
     const F length2 = dot(across, across);
@@ -35,7 +35,7 @@ template <class F> struct Frame {
 Frame(const glm::vec3 &)->Frame<float>;
 Frame(const glm::vec3 &, const glm::vec3 &)->Frame<float>;
 
-// The mirrored direction in the local frame.
+// Returns the mirrored direction in the local frame.
 template <class V> LANCER_LANE V reflect_local(const V &w) { return {-w.x, -w.y, w.z}; }
 
 } // namespace lancer

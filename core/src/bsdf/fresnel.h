@@ -1,4 +1,4 @@
-// Unpolarised Fresnel reflectance of a smooth dielectric boundary, and the direction that goes through it.
+// Unpolarised Fresnel reflectance of a smooth dielectric boundary, and the refracted direction.
 #pragma once
 
 #include "bsdf/lobe.h"
@@ -12,16 +12,16 @@ namespace lancer {
 template <class F> struct Fresnel {
   F reflectance;   // F
   F cos_t;         // cosine of the refracted direction; 0 under total internal reflection
-  F transmittance; // 1 - F, with all digits where F is nearly 1
+  F transmittance; // 1 - F, with all digits if F is nearly 1
 };
 
-// cos_i: cosine on the incident side, taken as at least 0. eta: index beyond the boundary over index before it; infinite =
-// mirror. Double carries the whole range of float indices: e^2 neither overflows nor vanishes, and the small differences near
-// eta = 1 keep at least 8 digits. So one form serves everywhere, and F is exact to the rounding of the result.
+// cos_i: cosine on the incident side, clamped to at least 0. eta: index beyond the boundary over index before it; infinite =
+// mirror. Double covers the whole range of float indices: e^2 neither overflows nor vanishes, and the small differences near
+// eta = 1 keep at least 8 digits. So one formula covers all cases, and F is exact to the rounding of the result.
 template <class F> LANCER_LANE Fresnel<F> fresnel(F cos_i, F eta) {
   using D = DoubleOf<F>;
   const D c = min(max(widen(cos_i), D(0.0)), D(1.0));
-  // Snell's law; total internal reflection where no cosine is left.
+  // Snell's law; total internal reflection if cos^2 is not positive.
   const D n = widen(eta), e = D(1.0) / n;
   const D cos2_t = (n - D(1.0)) * e * ((n + D(1.0)) * e) + (e * c) * (e * c);
   const D g = sqrt(cos2_t);
@@ -29,7 +29,7 @@ template <class F> LANCER_LANE Fresnel<F> fresnel(F cos_i, F eta) {
   const D rs = (e * c - g) / (e * c + g);
   const D rp = (c - e * g) / (c + e * g);
   const D f = D(0.5) * (rs * rs + rp * rp);
-  // Grazing, totally reflecting, and what bends nothing at all or everything.
+  // Special cases: grazing incidence, total reflection, eta of 1 or infinity.
   const MaskOf<F> total = !(cos2_t > D(0.0)), mirror = eta == F(__builtin_inff()), straight = eta == F(1.0f);
   const MaskOf<F> all = MaskOf<F>(c == D(0.0)) | total | mirror;
   return {select(straight, F(0.0f), select(all, F(1.0f), narrow(f))),
@@ -39,7 +39,7 @@ template <class F> LANCER_LANE Fresnel<F> fresnel(F cos_i, F eta) {
 
 template <class F> LANCER_LANE F fresnel_dielectric(F cos_i, F eta) { return fresnel(cos_i, eta).reflectance; }
 
-// Unpolarised reflectance of a metal of index n + i k, seen from the vacuum.
+// Returns the unpolarised reflectance of a metal of index n + i k, seen from vacuum.
 template <class F> LANCER_LANE F fresnel_conductor(F cos_i, F n, F k) {
   const F zero(0.0f), c = clamp01(cos_i), c2 = c * c, sin2 = (1.0f - c) * (1.0f + c);
   // The square root u + i v of (n + i k)^2 - sin^2.
@@ -47,7 +47,7 @@ template <class F> LANCER_LANE F fresnel_conductor(F cos_i, F n, F k) {
   const F length = hypot(re, im);
   const F u2 = max(0.5f * (length + re), zero), v2 = max(0.5f * (length - re), zero);
   const F u = sqrt(u2);
-  // Polarised across the plane of incidence, then along it: rp = rs times a further ratio.
+  // Polarised perpendicular to the plane of incidence, then parallel: rp = rs times a further ratio.
   const F across = (c - u) * (c - u) + v2, across_sum = (c + u) * (c + u) + v2;
   const F rs = select(across_sum > zero, across / across_sum, F(1.0f));
   const F mean = (u2 + v2) * c2 + sin2 * sin2, mixed = 2.0f * c * u * sin2;
@@ -55,19 +55,19 @@ template <class F> LANCER_LANE F fresnel_conductor(F cos_i, F n, F k) {
   return 0.5f * (rs + rp);
 }
 
-// The refracted direction for wo with wo.z > 0; cos_t from fresnel(wo.z, eta). It leaves on the other side, z < 0.
+// Returns the refracted direction for wo with wo.z > 0; cos_t from fresnel(wo.z, eta). It is on the other side, z < 0.
 template <class F> LANCER_LANE Vec3<F> refract_local(const Vec3<F> &wo, F eta, F cos_t) {
   return normalize(Vec3<F>(-wo.x / eta, -wo.y / eta, -cos_t));
 }
 
-// What the facets of a lobe reflect and let through.
+// Reflected and transmitted shares at a lobe's facets.
 
 template <class F> struct FacetResponse {
   using V = Vec3<F>;
   V reflected{F(0.0f)}, through{F(0.0f)}; // shares of light, tints included
-  F cos_t{0.0f};                          // of the refracted direction, against the facet
+  F cos_t{0.0f};                          // cosine of the refracted direction to the facet
 
-  // The probability of choosing reflection.
+  // Returns the probability of choosing reflection.
   LANCER_LANE F reflected_share() const {
     const F zero(0.0f);
     const MaskOf<F> opaque = black(through);
@@ -83,25 +83,25 @@ template <class F> struct FacetResponse {
 template <class F> bool reflects(const Lobe<F> &lobe) { return (lobe.variant & static_cast<uint8_t>(Scatter::Reflect)) != 0; }
 template <class F> bool refracts(const Lobe<F> &lobe) { return (lobe.variant & static_cast<uint8_t>(Scatter::Refract)) != 0; }
 
-// Reflectance of a dielectric at the normal.
+// Returns the reflectance of a dielectric at normal incidence.
 template <class F> LANCER_LANE F f0_of_ior(F ior) {
   const F r = (ior - 1.0f) / (ior + 1.0f);
   return select(abs(ior) < __builtin_inff(), r * r, F(1.0f));
 }
 
-// Schlick's curve less b cos (1 - cos)^6: Lazanyi's term, which darkens metals before the rim.
+// Schlick's curve minus b cos (1 - cos)^6: Lazanyi's term, which darkens metals before the rim.
 template <class F> LANCER_LANE Vec3<F> fresnel_f82(F cos_i, const Vec3<F> &f0, const Vec3<F> &b) {
   const F s = clamp01(1.0f - cos_i), s2 = s * s, s5 = s2 * s2 * s;
   const Vec3<F> one(F(1.0f));
   return clamp01(f0 + (one - f0) * s5 - b * (cos_i * s5 * s));
 }
 
-// f0 ... f90, as far as the dielectric's own curve is from its lowest value to 1.
+// Interpolates f0 ... f90 by the dielectric's own curve, normalised from its lowest value to 1.
 template <class F> LANCER_LANE Vec3<F> schlick(const Lobe<F> &lobe, F reflectance) {
   return lobe.f0 + (lobe.f90 - lobe.f0) * clamp01((reflectance - lobe.lowest) * lobe.per_range);
 }
 
-// cos_i: wo against the facet.
+// cos_i: of wo to the facet.
 template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lobe, F cos_i) {
   using V = Vec3<F>;
   FacetResponse<F> r;
@@ -121,7 +121,7 @@ template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lo
   default:
     break;
   }
-  // Only boundaries of dielectrics let light through.
+  // Only dielectric boundaries transmit.
   const Fresnel<F> boundary = fresnel(cos_i, lobe.ior);
   r.cos_t = boundary.cos_t;
   switch (lobe.fresnel) {
@@ -134,7 +134,7 @@ template <class F> LANCER_LANE FacetResponse<F> facet_response(const Lobe<F> &lo
   case FresnelKind::Principled3:
     r.reflected = schlick(lobe, boundary.reflectance) * lobe.reflection;
     if (refracts(lobe)) {
-      // Nothing goes through where the boundary reflects totally, whatever f90.
+      // Total reflection transmits nothing, whatever f90.
       const F left = min(boundary.transmittance * lobe.per_range, F(1.0f));
       const V through = ((V(F(1.0f)) - lobe.f90) + (lobe.f90 - lobe.f0) * left) * lobe.transmission;
       r.through = select(boundary.cos_t > 0.0f, through, r.through);

@@ -1,4 +1,4 @@
-// A lobe of one place in every lane, ready to be evaluated and sampled: what is left of a material after nodes, layers and wo.
+// A lobe at a hit in every lane, ready for evaluation and sampling: the material after nodes, layers and wo.
 #pragma once
 
 #include "scene/lobe_inputs.h"
@@ -6,15 +6,15 @@
 
 namespace lancer {
 
-// Which mathematics a lobe follows.
+// The formulas of a lobe.
 enum class LobeShape : uint8_t {
   Lambert = 0,    // color / pi
-  Beckmann = 1,   // the course's coating: exact Fresnel, Walter's G1
+  Beckmann = 1,   // coating of CLASSIC: exact Fresnel, Walter's G1
   Mirror = 2,     // one direction
   Dielectric = 3, // smooth glass: one or two directions
   Phong = 4,
   BlinnPhong = 5,
-  Matte = 6,      // Oren-Nayar, Burley, velvet, translucent, Minnaert: smooth and wide, told apart by variant
+  Matte = 6,      // Oren-Nayar, Burley, velvet, translucent, Minnaert: smooth and wide, distinguished by variant
   Microfacet = 7, // GGX or Beckmann, reflection, refraction or both, smooth or rough
   Ashikhmin = 8,  // Ashikhmin-Shirley, the clear coat of 3.x
   Sheen = 9       // microfibres
@@ -23,62 +23,62 @@ inline constexpr uint32_t kLobeShapes = 10;
 constexpr uint32_t shape_bit(LobeShape shape) { return 1u << static_cast<uint32_t>(shape); }
 inline constexpr uint32_t kAllShapes = (1u << kLobeShapes) - 1u;
 
-// The kinds of light that passes and ray visibility tell apart.
+// The kinds of light that passes and ray visibility distinguish.
 enum class Component : uint8_t { Diffuse = 0, Glossy = 1, Transmission = 2 };
 constexpr bool operator==(uint32_t number, Component component) { return number == static_cast<uint32_t>(component); }
 
-// Where the facets of Microfacet send light; Lobe::variant.
+// Where the facets of Microfacet send light; stored in Lobe::variant.
 enum class Scatter : uint8_t { Reflect = 1, Refract = 2, Both = 3 };
 
-// How a microfacet reflects: F of the half vector's cosine.
+// The Fresnel curve of a microfacet: F of the half vector's cosine.
 enum class FresnelKind : uint8_t {
-  None = 0,       // 1 reflected, 1 refracted: color says all; f0 is the mean of further bounces
+  None = 0,       // 1 reflected, 1 refracted: color is the full weight; f0 is the mean of further bounces
   Dielectric = 1, // of ior
   Conductor = 2,  // n = f0, k = f90
   F82 = 3,        // f0 at the normal, b the Lazanyi term
-  Schlick = 4,    // f0 ... f90 along the dielectric of ior
-  Principled3 = 5 // the same as Blender 3.x has it
+  Schlick = 4,    // f0 ... f90 along the dielectric curve of ior
+  Principled3 = 5 // the same by the rules of Blender 3.x
 };
 
 inline constexpr int kMaxFrames = 16;
 
-// What it is, is the same in all lanes; its numbers differ.
+// Kinds are the same in all lanes; numbers differ.
 template <class F> struct Lobe {
   using V = Vec3<F>;
   using B = MaskOf<F>;
 
   LobeShape shape = LobeShape::Lambert;
-  uint8_t variant = 0;                      // of Matte, Ashikhmin; of Microfacet: Scatter
-  Component component = Component::Diffuse; // of what stays on the side of wo, where a lobe does both
-  uint8_t frame = 0;                        // of Bsdf::frames
-  bool beckmann = false;                    // the facets' distribution; else GGX
+  uint8_t variant = 0;                      // of Matte, Ashikhmin; Scatter of Microfacet
+  Component component = Component::Diffuse; // of the light on wo's side, if a lobe reflects and transmits
+  uint8_t frame = 0;                        // index into Bsdf::frames
+  bool beckmann = false;                    // distribution of the facets; else GGX
   FresnelKind fresnel = FresnelKind::None;
   Rules rules = Rules::Blender45;
 
-  B delta = uniform<F>(false);         // a single direction: too smooth to be evaluated
-  B delta_through = uniform<F>(false); // what Microfacet refracts goes in a single direction, even if what it reflects does not
-  V color{F(0.0f)};                    // times everything
-  F probability{0.0f};                 // of being sampled, set when the BSDF is complete
-  F alpha_x{0.0f}, alpha_y{0.0f};      // or the one roughness in alpha_x
-  F ior{1.5f};                         // seen from wo's side: beyond over before
+  B delta = uniform<F>(false);         // a single direction: too smooth for evaluation
+  B delta_through = uniform<F>(false); // Microfacet refracts in a single direction, even if its reflection is rough
+  V color{F(0.0f)};                    // factor of the whole lobe
+  F probability{0.0f};                 // of being selected, set by Bsdf::complete()
+  F alpha_x{0.0f}, alpha_y{0.0f};      // a single roughness is in alpha_x
+  F ior{1.5f};                         // from wo's side: beyond over before
   F shininess{0.0f};
-  F energy{1.0f}; // what multiple scattering multiplies the single one with
-  F shown{0.0f};  // the colour of the passes is color times this; 0: it is the albedo
+  F energy{1.0f}; // factor of single scattering that adds multiple scattering
+  F shown{0.0f};  // the passes' colour is color times this; 0: the albedo
   V f0{F(0.0f)}, f90{F(1.0f)}, b{F(0.0f)};
-  F lowest{0.0f}, per_range{1.0f};              // Schlick: of ior, at the normal, and 1 over what is left to 1
+  F lowest{0.0f}, per_range{1.0f};              // Schlick: reflectance of ior at normal incidence, and 1 over the rest to 1
   V reflection{F(1.0f)}, transmission{F(1.0f)}; // tints
-  V albedo{F(0.0f)};                            // share of light from wo that is scattered, color included
-  V through{F(0.0f)};                           // the part of albedo that goes through, of lobes that do both
-  F hidden{0.0f}, g1{0.0f};                     // of Microfacet, from wo: facet_hidden(), facet_g1()
+  V albedo{F(0.0f)};                            // scattered share of light from wo, color included
+  V through{F(0.0f)};                           // transmitted part of albedo, if a lobe reflects and transmits
+  F hidden{0.0f}, g1{0.0f};                     // of Microfacet, for wo: facet_hidden(), facet_g1()
 };
 
-// What every smooth lobe answers. Directions are in the local frame, turned so that wo.z > 0 and wi.z > 0.
+// Value of a smooth lobe. Directions are in the local frame, oriented so that wo.z > 0 and wi.z > 0.
 template <class F> struct LobeValue {
-  F f{0.0f};   // without the lobe's colour and without the cosine, 1/sr
+  F f{0.0f};   // without the lobe's colour and the cosine, 1/sr
   F pdf{0.0f}; // per solid angle of wi
 };
 
-// Coloured, with the cosine in it; pdf per solid angle of wi.
+// Coloured value with the cosine; pdf per solid angle of wi.
 template <class F> struct ColorValue {
   Vec3<F> f{F(0.0f)};
   F pdf{0.0f};
@@ -90,7 +90,7 @@ template <class F> LANCER_LANE LobeValue<F> where(const MaskOf<F> &m, const Lobe
   return {select(m, value.f, F(0.0f)), select(m, value.pdf, F(0.0f))};
 }
 
-// The zero vector where both directions are so close to the horizon that nothing is left of their sum.
+// Returns the zero vector if the directions are so close to the horizon that their sum vanishes.
 template <class V> LANCER_LANE V half_vector(const V &wo, const V &wi) {
   using F = NumberOf<V>;
   const V sum = wo + wi;

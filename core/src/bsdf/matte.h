@@ -1,5 +1,5 @@
-// Lambert, and the other smooth, wide lobes, told apart by Lobe::variant: Oren-Nayar, Burley's diffuse, velvet, the dust sheen
-// of 3.x, translucency, Minnaert. Local frame, wo.z > 0. Values are f |cos(wi)| without the lobe's colour.
+// Lambert, and the other smooth, wide lobes, distinguished by Lobe::variant: Oren-Nayar, Burley's diffuse, velvet, the dust
+// sheen of 3.x, translucency, Minnaert. Local frame, wo.z > 0. Values are f |cos(wi)| without the lobe's colour.
 #pragma once
 
 #include "bsdf/beckmann.h"
@@ -10,37 +10,38 @@
 namespace lancer {
 
 // Minnaert: f = (k + 1) / (2 pi) (cos_i cos_o)^(k - 1), the reciprocal law of limb darkening (Minnaert 1941; scaled as the
-// diffuse lobe of Lafortune et al. 1997), k = Lobe::shininess. k = 1 is Lambert; above, the rim is darker; below, brighter.
+// diffuse lobe of Lafortune et al. 1997), k = Lobe::shininess. k = 1 is Lambert; larger k darkens the rim; smaller k brightens
+// it.
 //
-// Energy: the albedo of colour rho is rho cos_o^(k - 1): rho from straight above, and for k < 1 more than 1 towards the
-// horizon. So no cosine counts as less than m = rho^(1 / (1 - k)), at which that albedo is 1; rho is the colour's largest
-// channel. With
+// Energy: the albedo of colour rho is rho cos_o^(k - 1): rho at normal incidence, and for k < 1 more than 1 towards the
+// horizon. Cosines are therefore clamped to at least m = rho^(1 / (1 - k)), at which the albedo is 1; rho is the colour's
+// largest channel. With
 //   c = max(cos, m) in both powers, and A = integral of c_i^(k - 1) cos_i = 2 pi ((1 - m^(k+1)) / (k + 1) + m^(k+1) / 2),
 //   f = (c_i c_o)^(k - 1) / A, albedo rho c_o^(k - 1) <= 1, equal to rho at c_o = 1.
-// f stays reciprocal, is the plain law where m vanishes (k >= 1, or a dark colour), and Lambert for k < 1 and white.
+// f stays reciprocal, is the plain law if m vanishes (k >= 1, or a dark colour), and Lambert for k < 1 and white.
 
-// No logarithm of a cosine is less: powers of two of them stay within a float.
+// Lower bound on logarithms of cosines, so that their powers of two stay in the range of float.
 inline constexpr float kLowestLogCosine = -40.0f;
 
-// log max(cos, m), from the tangent, which keeps its digits near the normal; behind the surface as on the horizon.
+// Returns log max(cos, m), from the tangent, which keeps its digits near the normal; behind the surface log m.
 template <class F> LANCER_LANE F minnaert_log_cosine(const Lobe<F> &lobe, const Vec3<F> &w) {
   return select(w.z > 0.0f, max(-0.5f * log1p(tan2_theta(w)), lobe.alpha_x), lobe.alpha_x);
 }
 
-// (cos of w)^(k - 1), bounded.
+// Returns the bounded (cos of w)^(k - 1).
 template <class F> LANCER_LANE F minnaert_power(const Lobe<F> &lobe, const Vec3<F> &w) {
   return exp((lobe.shininess - 1.0f) * minnaert_log_cosine(lobe, w));
 }
 
-// The parts of A / (2 pi) above m and below it.
+// The parts of A / (2 pi) above and below m.
 template <class F> struct MinnaertParts { F above, below; };
 template <class F> LANCER_LANE MinnaertParts<F> minnaert_parts(const Lobe<F> &lobe) {
   const F exponent = (lobe.shininess + 1.0f) * lobe.alpha_x; // of m^(k + 1)
   return {-expm1(exponent) / (lobe.shininess + 1.0f), 0.5f * exp(exponent)};
 }
 
-// lobe: its colour and k are set; alpha_x becomes log m, alpha_y 1 / A, energy what f owes to wo. rho: the largest channel of
-// the surface's own colour, without the weights of mixtures.
+// Requires the lobe's colour and k; sets alpha_x to log m, alpha_y to 1 / A, energy to the factor of f that depends on wo. rho:
+// the largest channel of the surface's own colour, without weights of mixtures.
 template <class F> LANCER_LANE void complete_minnaert(Lobe<F> &lobe, F rho, const Vec3<F> &wo) {
   const F k = lobe.shininess, lowest(kLowestLogCosine);
   lobe.alpha_x = select(k < 1.0f, max(log(min(rho, F(1.0f))) / (1.0f - k), lowest), lowest);
@@ -50,14 +51,14 @@ template <class F> LANCER_LANE void complete_minnaert(Lobe<F> &lobe, F rho, cons
   lobe.albedo = lobe.color * lobe.energy;
 }
 
-// f cos, and the density of minnaert_sample.
+// Returns f cos, and the density of minnaert_sample.
 template <class F> LANCER_LANE LobeValue<F> minnaert_eval_pdf(const Lobe<F> &lobe, const Vec3<F> &wi) {
   const F pdf = lobe.alpha_y * minnaert_power(lobe, wi) * wi.z;
   return {lobe.energy * pdf, pdf};
 }
 
 template <class F> LANCER_LANE Vec3<F> minnaert_sample(const Lobe<F> &lobe, F u, F v) {
-  // Above m the share of directions within an angle is 1 - cos^(k + 1), below it the rest falls as sin^2 there.
+  // Above m the share of directions within an angle is 1 - cos^(k + 1); below m the remaining share falls with cos^2.
   const MinnaertParts<F> parts = minnaert_parts(lobe);
   const F inside = u * (parts.above + parts.below);
   const auto high = (inside < parts.above) | (parts.below == F(0.0f));
@@ -74,7 +75,7 @@ template <class F> bool is_matte(const Lobe<F> &lobe, Matte variant) {
   return lobe.shape == LobeShape::Matte && lobe.variant == static_cast<uint8_t>(variant);
 }
 
-// Below this roughness Cycles takes Lambert in place of Oren-Nayar.
+// Below this roughness Cycles replaces Oren-Nayar by Lambert.
 inline constexpr float kLambertRoughness = 1e-5f;
 
 template <class F> LANCER_LANE F fifth_power(F x) { return x * x * (x * x) * x; }
@@ -82,16 +83,16 @@ template <class F> LANCER_LANE F fifth_power(F x) { return x * x * (x * x) * x; 
 // (1 - cos)^5, Schlick's weight.
 template <class F> LANCER_LANE F schlick_weight(F cos_theta) { return fifth_power(clamp01(1.0f - cos_theta)); }
 
-// The part of Fujii's directional albedo that the roughness scales. (1 - s^3) tan is taken apart so that the horizon needs no
-// case of its own.
+// The part of Fujii's directional albedo that the roughness scales. (1 - s^3) tan is factored so that the horizon needs no
+// special case.
 template <class F> LANCER_LANE F oren_nayar_g(F cos_theta) {
   const F c = clamp01(cos_theta);
   const F s = sqrt((1.0f - c) * (1.0f + c));
   return s * (atan2(s, c) - 2.0f / 3.0f - s * c) + 2.0f / 3.0f * s * c * (1.0f + s + s * s) / (1.0f + s);
 }
 
-// Blender's Diffuse BSDF. weight carries the colour; preserving: the form of 4.3 and newer, whose lost light comes back with
-// the colour's share of each further bounce. A smooth one is Lambert: alpha_x is 0.
+// Blender's Diffuse BSDF. weight includes the colour; preserving: the form of 4.3 and newer, which returns lost light with the
+// colour of each further bounce. A smooth one is Lambert: alpha_x is 0.
 template <class F>
 LANCER_LANE Lobe<F> make_diffuse(const Vec3<F> &weight, const Vec3<F> &color, F roughness, bool preserving, F cos_o) {
   Lobe<F> lobe;
@@ -109,7 +110,7 @@ LANCER_LANE Lobe<F> make_diffuse(const Vec3<F> &weight, const Vec3<F> &color, F 
   lobe.alpha_y = b;
   lobe.f0 = Vec3<F>(F(0.0f));
   if (preserving) {
-    // Light that single scattering loses, spread by the reciprocal product of what both directions lack.
+    // The loss of single scattering, distributed by the reciprocal product of the loss in both directions.
     const Vec3<F> rho = clamp01(color), one(F(1.0f));
     const F mean = a * kPi + (2.0f * kPi - 5.6f) / 3.0f * b;
     const Vec3<F> bounces = rho * rho * (mean / (1.0f - mean)) / (one - rho * (1.0f - mean));
@@ -127,14 +128,14 @@ template <class F> LANCER_LANE Lobe<F> make_matte(Matte variant, const Vec3<F> &
   return lobe;
 }
 
-// Principled's diffuse of 3.x.
+// The diffuse lobe of Principled in 3.x.
 template <class F> LANCER_LANE Lobe<F> make_burley(const Vec3<F> &weight, F roughness) {
   Lobe<F> lobe = make_matte<F>(Matte::Burley, weight);
   lobe.alpha_x = roughness;
   return lobe;
 }
 
-// Ashikhmin's velvet; Cycles keeps sigma at 0.01 or more.
+// Ashikhmin's velvet; Cycles clamps sigma to at least 0.01.
 template <class F> LANCER_LANE Lobe<F> make_velvet(const Vec3<F> &weight, F sigma) {
   Lobe<F> lobe = make_matte<F>(Matte::Velvet, weight);
   const F s = min(max(sigma, F(0.01f)), F(1.0f));
@@ -142,7 +143,7 @@ template <class F> LANCER_LANE Lobe<F> make_velvet(const Vec3<F> &weight, F sigm
   return lobe;
 }
 
-// The course's Minnaert; rho as of complete_minnaert.
+// Minnaert of CLASSIC; rho: see complete_minnaert.
 template <class F> LANCER_LANE Lobe<F> make_minnaert(const Vec3<F> &weight, F k, F rho, const Vec3<F> &wo) {
   Lobe<F> lobe = make_matte<F>(Matte::Minnaert, weight);
   lobe.shininess = k;
@@ -150,10 +151,10 @@ template <class F> LANCER_LANE Lobe<F> make_minnaert(const Vec3<F> &weight, F k,
   return lobe;
 }
 
-// Light that comes out behind counts as diffuse, as in Cycles: in passes, and for lights that are hidden from such rays.
+// Translucent light counts as diffuse, as in Cycles: in passes, and for lights hidden from such rays.
 template <class F> bool matte_transmits(const Lobe<F> &lobe) { return is_matte(lobe, Matte::Translucent); }
 
-// f cos, which is also the density of its sampler.
+// Returns f cos, which is also the density of its sampler.
 template <class V> LANCER_LANE ColorValue<NumberOf<V>> lambert_eval(const V &wi) {
   const NumberOf<V> value = warp_cosine_hemisphere_pdf(wi.z);
   return {V(value), value};
@@ -174,7 +175,7 @@ template <class F> LANCER_LANE ColorValue<F> oren_nayar_eval(const Lobe<F> &lobe
 
 template <class F> LANCER_LANE ColorValue<F> burley_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
   const F view = schlick_weight(wo.z), light = schlick_weight(wi.z);
-  // 2 cos^2 of the difference angle is 1 + wi.wo; it scales the light that turns back.
+  // 2 cos^2 of the difference angle is 1 + wi.wo; it scales retroreflection.
   const F back = lobe.alpha_x * (dot(wi, wo) + 1.0f);
   const F f = (1.0f - 0.5f * view) * (1.0f - 0.5f * light) + back * (light + view + light * view * (back - 1.0f));
   return {Vec3<F>(f * wi.z * kInvPi), warp_cosine_hemisphere_pdf(wi.z)};
@@ -185,7 +186,7 @@ template <class F> LANCER_LANE ColorValue<F> velvet_eval(const Lobe<F> &lobe, co
   const Vec3<F> h = half_vector(wo, wi);
   const F sin2 = h.x * h.x + h.y * h.y, cos_ho = dot(h, wo);
   const F inv_sigma2 = lobe.alpha_x;
-  // Fibres that stand across the normal: an inverted Gaussian, which vanishes faster than any power of the sine.
+  // Fibres perpendicular to the normal: an inverted Gaussian, which vanishes faster than any power of the sine.
   const F exponent = h.z * h.z / sin2 * inv_sigma2;
   const auto there = (sin2 > zero) & (cos_ho > zero) & (abs(exponent) < __builtin_inff());
   const F d = exp(-exponent) * inv_sigma2 * kInvPi / (sin2 * sin2);
@@ -199,8 +200,8 @@ template <class V> LANCER_LANE ColorValue<NumberOf<V>> dust_sheen_eval(const V &
   return {V(schlick_weight(cos_h) * wi.z), warp_cosine_hemisphere_pdf(wi.z)};
 }
 
-// 0 where wi is on the wrong side: above for translucency, below for all others. Velvet and dust are also 0 where wo is behind
-// the normal; the others go on as at the horizon, as where a coarse mesh's interpolated normal looks away from the viewer.
+// 0 if wi is on the wrong side: above for translucency, below for all others. Velvet and dust are also 0 if wo is behind the
+// normal; the others continue as at the horizon, for coarse meshes whose interpolated normals face away from the viewer.
 template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
   const F zero(0.0f);
   const MaskOf<F> above = wi.z > zero, seen = above & (wo.z > zero);
@@ -224,14 +225,14 @@ template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, con
   return {Vec3<F>(value), value};
 }
 
-// Even over the hemisphere: velvet is brightest along the horizon.
+// Samples the hemisphere uniformly: velvet is brightest along the horizon.
 template <class F> LANCER_LANE Vec3<F> velvet_sample(F u, F v) {
   const F sin_theta = sqrt((1.0f - u) * (1.0f + u));
   const SinCos<F> phi = sin_cos_turn(v);
   return {sin_theta * phi.cos, sin_theta * phi.sin, u};
 }
 
-// Whether a lobe draws directions by the cosine: all of one number may share the warp.
+// Returns whether a lobe samples by the cosine, so that lanes may share the warp.
 template <class F> bool draws_cosines(const Lobe<F> &lobe) {
   return lobe.shape == LobeShape::Lambert ||
          (lobe.shape == LobeShape::Matte && !is_matte(lobe, Matte::Velvet) && !is_matte(lobe, Matte::Minnaert));

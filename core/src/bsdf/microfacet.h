@@ -1,7 +1,7 @@
-// Lobes of microfacets: how they are set up, and what they scatter in all.
+// Construction and albedo of microfacet lobes.
 //
 //   Lobe lobe = make_microfacet(Scatter::Reflect, frame, weight, alpha_x, alpha_y, rules);
-//   set_...(lobe, ...);                              one of them: how the facets reflect
+//   set_...(lobe, ...);                              one of them: the Fresnel curve of the facets
 //   complete_microfacet(lobe, cos_o, preserving);    then: smoothness, energy, albedo
 #pragma once
 
@@ -11,18 +11,18 @@
 
 namespace lancer {
 
-// Below this product of both roughnesses Cycles takes a lobe for a mirror; ours is a little above it, where float half vectors
-// stop telling directions apart (alpha 2e-5).
+// Below this product of both roughnesses Cycles treats a lobe as a mirror; our limit is slightly higher, where float half
+// vectors no longer distinguish directions (alpha 2e-5).
 inline constexpr float kMirrorAlpha2 = 4e-10f;
 inline constexpr float kMirrorAlpha2Blender3 = 1e-7f;
 
-// From the roughness of nodes that stay within 0 ... 1.
+// Returns alpha for a node's roughness, clamped to 0 ... 1.
 template <class F> LANCER_LANE F alpha_of(F roughness) {
   const F within = clamp01(roughness);
   return within * within;
 }
 
-// The lobe reflects all (FresnelKind::None) until one of the following is set.
+// The lobe reflects everything (FresnelKind::None) until one of the following functions sets a curve.
 template <class F>
 LANCER_LANE Lobe<F> make_microfacet(Scatter scatter, uint8_t frame, const Vec3<F> &color, F alpha_x, F alpha_y, Rules rules) {
   Lobe<F> lobe;
@@ -40,7 +40,7 @@ LANCER_LANE Lobe<F> make_microfacet(Scatter scatter, uint8_t frame, const Vec3<F
   return lobe;
 }
 
-// further: what each further bounce keeps; the node's colour, where color carries it together with other weights.
+// further: the share kept by each further bounce; the node's colour, if color has it multiplied with other weights.
 template <class F> LANCER_LANE void set_constant(Lobe<F> &lobe, const Vec3<F> &further) {
   lobe.fresnel = FresnelKind::None;
   lobe.f0 = further;
@@ -58,7 +58,7 @@ template <class F> LANCER_LANE void set_conductor(Lobe<F> &lobe, const Vec3<F> &
   lobe.f90 = k;
 }
 
-// Schlick's curve at the angle of cosine 1/7, and what b has to be there per unit of difference.
+// Schlick's curve at cosine 1/7, and the factor that gives b from a difference there.
 inline constexpr float kSix7 = 6.0f / 7.0f, kFifth = kSix7 * kSix7 * kSix7 * kSix7 * kSix7;
 inline constexpr float kEdgeScale = 7.0f / (kFifth * kSix7);
 template <class V> LANCER_LANE V schlick_at_edge(const V &f0) {
@@ -66,14 +66,14 @@ template <class V> LANCER_LANE V schlick_at_edge(const V &f0) {
   return f0 + (V(F(1.0f)) - f0) * F(kFifth);
 }
 
-// tint: factor on Schlick's curve at 82 degrees.
+// tint: factor of Schlick's curve at 82 degrees.
 template <class F> LANCER_LANE void set_f82(Lobe<F> &lobe, const Vec3<F> &f0, const Vec3<F> &tint) {
   lobe.fresnel = FresnelKind::F82;
   lobe.f0 = f0;
   lobe.b = schlick_at_edge(f0) * F(kEdgeScale) * (Vec3<F>(F(1.0f)) - tint);
 }
 
-// The dielectric whose curve Schlick's follows; one that reflects all is at its end everywhere.
+// Sets the dielectric whose curve Schlick's follows; a perfect reflector is at the end of the curve everywhere.
 template <class F> LANCER_LANE void set_curve(Lobe<F> &lobe, F ior) {
   lobe.ior = ior;
   const F lowest = f0_of_ior(ior), range = 1.0f - lowest;
@@ -82,7 +82,7 @@ template <class F> LANCER_LANE void set_curve(Lobe<F> &lobe, F ior) {
   lobe.per_range = select(bends, 1.0f / range, F(1.0f));
 }
 
-// f0 ... f90 along the curve of the dielectric; ior as seen from wo's side.
+// Sets f0 ... f90 along the curve of the dielectric; ior as seen from wo's side.
 template <class F>
 LANCER_LANE void set_schlick(Lobe<F> &lobe, const Vec3<F> &f0, const Vec3<F> &f90, F ior, const Vec3<F> &reflection,
                              const Vec3<F> &transmission) {
@@ -94,7 +94,7 @@ LANCER_LANE void set_schlick(Lobe<F> &lobe, const Vec3<F> &f0, const Vec3<F> &f9
   lobe.transmission = transmission;
 }
 
-// f0 ... 1 along the curve of the dielectric, Blender 3.x.
+// Sets f0 ... 1 along the curve of the dielectric, Blender 3.x.
 template <class F> LANCER_LANE void set_principled3(Lobe<F> &lobe, const Vec3<F> &f0, F ior) {
   lobe.fresnel = FresnelKind::Principled3;
   lobe.f0 = clamp01(f0);
@@ -102,26 +102,27 @@ template <class F> LANCER_LANE void set_principled3(Lobe<F> &lobe, const Vec3<F>
   lobe.transmission = Vec3<F>(F(0.0f));
 }
 
-// The index above 1 whose reflectance at the normal is f0; Cycles ends at 0.99.
+// Returns the index above 1 whose reflectance at normal incidence is f0; Cycles clamps f0 to 0.99.
 template <class F> LANCER_LANE F ior_of_f0(F f0) {
   const F root = sqrt(min(max(f0, F(0.0f)), F(0.99f)));
   return (1.0f + root) / (1.0f - root);
 }
 
-// Share of light from a white sky that a smooth dielectric reflects, outside and inside: the fit of Kulla and Conty 2017.
+// Returns the share of light from a white sky that a smooth dielectric reflects, outside and inside: the fit of Kulla and Conty
+// 2017.
 template <class F> LANCER_LANE F dielectric_sky(F eta) {
   const F inside = 0.997118f + eta * (0.1014f - eta * (0.965241f + eta * 0.130607f));
   const F outside = select(abs(eta) < __builtin_inff(), (eta - 1.0f) / (4.08567f + 1.00071f * eta), F(1.0f));
   return select(eta < 1.0f, inside, outside);
 }
 
-// The integral of fresnel_f82 over a white sky.
+// Returns the integral of fresnel_f82 over a white sky.
 template <class V> LANCER_LANE V f82_sky(const V &f0, const V &b) {
   using F = NumberOf<V>;
   return f0 + (V(F(1.0f)) - f0) * F(1.0f / 21.0f) - b * F(1.0f / 126.0f);
 }
 
-// Colour that a bounce of light between the facets has on average.
+// Returns the mean colour of a bounce between the facets.
 template <class F> LANCER_LANE Vec3<F> further_bounce(const Lobe<F> &lobe) {
   using V = Vec3<F>;
   switch (lobe.fresnel) {
@@ -130,7 +131,7 @@ template <class F> LANCER_LANE Vec3<F> further_bounce(const Lobe<F> &lobe) {
   case FresnelKind::Dielectric:
     return V(dielectric_sky(lobe.ior));
   case FresnelKind::Conductor: {
-    // The curve of F82 through the values at the normal and at the edge.
+    // The curve of F82 through the values at normal incidence and at the edge.
     const auto at = [&](F cosine) {
       return V(fresnel_conductor(cosine, lobe.f0.x, lobe.f90.x), fresnel_conductor(cosine, lobe.f0.y, lobe.f90.y),
                fresnel_conductor(cosine, lobe.f0.z, lobe.f90.z));
@@ -150,9 +151,10 @@ template <class F> LANCER_LANE Vec3<F> further_bounce(const Lobe<F> &lobe) {
   return select(through, lobe.transmission, lobe.reflection * schlick(lobe, dielectric_sky(lobe.ior)));
 }
 
-// Share of the light lost between facets that further bounces bring back (Turquin 2019, with Kulla and Conty's colour).
+// Returns the share of the light lost by single scattering that further bounces return (Turquin 2019, with Kulla and Conty's
+// colour).
 template <class F> LANCER_LANE Vec3<F> further_light(const Lobe<F> &lobe, F roughness) {
-  // Beyond 1 the sum over all bounces would not end.
+  // Beyond 1 the sum over all bounces would diverge.
   const Vec3<F> one(F(1.0f)), bounce = min(further_bounce(lobe), one);
   const MaskOf<F> whole = same(bounce, one);
   if (all(whole))
@@ -161,21 +163,21 @@ template <class F> LANCER_LANE Vec3<F> further_light(const Lobe<F> &lobe, F roug
   return select(whole, bounce, bounce * mean / (one - bounce * (1.0f - mean)));
 }
 
-// The same in two steps, for lobes whose numbers are the same wherever they are met: the plan, then its look from wo.
+// Two-step construction for lobes whose numbers are the same at every hit: the plan, then the view from wo.
 template <class F> struct MicrofacetPlan {
   Lobe<F> lobe; // all but color, energy and albedo
   MaskOf<F> preserving = uniform<F>(false);
   F roughness{0.0f};
-  Vec3<F> further{F(1.0f)}; // share of the lost light that comes back, by colour
+  Vec3<F> further{F(1.0f)}; // returned share of the lost light, by colour
 };
 
-// What its tables say of a plan along the cosine of wo: looked up.
+// Table lookups of a plan along the cosine of wo.
 template <class F> struct AlbedoLookup {
-  // What single scattering sends out at once.
+  // Returns the albedo of single scattering.
   LANCER_LANE F single(const MicrofacetPlan<F> &plan, F cos_o) const {
     return refracts(plan.lobe) ? glass_albedo(plan.roughness, cos_o, plan.lobe.ior) : ggx_albedo(plan.roughness, cos_o);
   }
-  // How far the facets reflect between the ends of their curve.
+  // Returns the position of the facets' mean reflectance between the ends of their curve.
   LANCER_LANE F mix(const MicrofacetPlan<F> &plan, F cos_o) const {
     return plan.lobe.fresnel == FresnelKind::F82 ? fifth_power_mix(plan.roughness, cos_o)
                                                  : dielectric_mix(plan.roughness, cos_o, plan.lobe.ior);
@@ -186,20 +188,20 @@ template <class F> LANCER_LANE void set_smoothness(Lobe<F> &lobe) {
   const F alpha2 = lobe.alpha_x * lobe.alpha_y;
   lobe.delta = alpha2 <= (lobe.rules == Rules::Blender3 ? kMirrorAlpha2Blender3 : kMirrorAlpha2);
   if (refracts(lobe)) {
-    // The refracted lobe is narrower than the reflected one by the share by which the index bends.
+    // The refracted lobe is narrower than the reflected one by the factor by which the index bends light.
     const F bent = abs(1.0f - 1.0f / lobe.ior);
     lobe.delta_through = (abs(lobe.ior - 1.0f) < kStraightIor) | (alpha2 * bent * bent < kMirrorAlpha2);
   }
 }
 
-// What Cycles takes for the reflected albedo, without the colour; smooth: of a smooth surface.
+// Returns the reflected albedo as in Cycles, without the colour; smooth: response of a smooth surface.
 template <class F, class Tables>
 LANCER_LANE Vec3<F> reflected_albedo(const MicrofacetPlan<F> &plan, F cos_o, const FacetResponse<F> &smooth,
                                      const Tables &tables) {
   using V = Vec3<F>;
   const Lobe<F> &lobe = plan.lobe;
   V mean = smooth.reflected;
-  // Fresnel curves are averaged over the facets.
+  // Average the Fresnel curve over the facets.
   if (lobe.fresnel == FresnelKind::Schlick) {
     mean = (lobe.f0 + (lobe.f90 - lobe.f0) * tables.mix(plan, cos_o)) * lobe.reflection;
   } else if (lobe.fresnel == FresnelKind::F82) {
@@ -211,12 +213,12 @@ LANCER_LANE Vec3<F> reflected_albedo(const MicrofacetPlan<F> &plan, F cos_o, con
   return select(black(smooth.reflected), V(F(0.0f)), mean);
 }
 
-// Where nothing but the mean over the facets is asked for, and a smooth surface would not be black either.
+// Returns whether only the mean over the facets is needed, and a smooth surface would not be black either.
 template <class F> LANCER_LANE bool needs_no_smooth_response(const Lobe<F> &lobe) {
   return lobe.fresnel == FresnelKind::Schlick && !refracts(lobe) && !any(black(lobe.f0));
 }
 
-// Gives a lobe its energy, its colour and its albedo from wo. color: the weight of the lobe; cos_o: wo.z in the lobe's frame.
+// Sets a lobe's energy, colour and albedo for wo. color: the weight of the lobe; cos_o: wo.z in the lobe's frame.
 template <class F, class Tables>
 LANCER_LANE Lobe<F> seen_from(const MicrofacetPlan<F> &plan, F cos_o, const Vec3<F> &color, const Tables &tables) {
   using V = Vec3<F>;
@@ -242,9 +244,8 @@ LANCER_LANE Lobe<F> seen_from(const MicrofacetPlan<F> &plan, F cos_o, const Vec3
   return lobe;
 }
 
-// preserving: gives back the light that single scattering loses (GGX only), with the colour that further bounces give it;
-// afterwards color holds that share, too. The albedo is what Cycles takes for it: Fresnel averaged over the facets that are
-// seen, or of a smooth surface.
+// preserving: returns the light lost by single scattering (GGX only), coloured by further bounces; color then includes that
+// factor. The albedo is as in Cycles: Fresnel averaged over visible facets, or of a smooth surface.
 template <class F> LANCER_LANE MicrofacetPlan<F> plan_microfacet(const Lobe<F> &lobe, MaskOf<F> preserving) {
   MicrofacetPlan<F> plan;
   plan.lobe = lobe;

@@ -10,32 +10,32 @@
 
 namespace lancer {
 
-// The GGX distribution of microfacets, stretched along the frame's axes: density, masking, sampling of what is seen from wo.
+// The GGX distribution of microfacets, anisotropic along the frame's axes: density, masking, sampling of visible normals.
 
-// D: density of microfacet normals per solid angle. A sum of squares: no digit is lost for small roughness.
+// D: density of microfacet normals per solid angle. A sum of squares loses no digit for small roughness.
 template <class F> LANCER_LANE F ggx_d(const Vec3<F> &h, F alpha_x, F alpha_y) {
   const F x = h.x / alpha_x, y = h.y / alpha_y, length2 = x * x + y * y + h.z * h.z;
   return kInvPi / (alpha_x * alpha_y * length2 * length2);
 }
 
-// The length of a direction's part along the surface after squeezing facets of that roughness to roughness 1.
+// Returns the tangential length of a direction after scaling facets of that roughness to roughness 1.
 template <class F> LANCER_LANE F squeezed(const Vec3<F> &w, F alpha_x, F alpha_y) {
   const F x = alpha_x * w.x, y = alpha_y * w.y;
   return sqrt(x * x + y * y);
 }
 
-// Facets hidden from w, as area: Smith's Lambda times |cos|, which no grazing direction sends to infinity.
+// Returns the area of facets hidden from w: Smith's Lambda times |cos|, finite at grazing angles.
 template <class F> LANCER_LANE F ggx_hidden(const Vec3<F> &w, F alpha_x, F alpha_y) {
   const F along = squeezed(w, alpha_x, alpha_y), z = abs(w.z);
   const F all = z + sqrt(z * z + along * along);
   return select(all > 0.0f, 0.5f * along * (along / all), F(0.0f));
 }
 
-// A normal h visible from wo (wo.z > 0), density G1(wo) max(0, wo.h) D(h) / wo.z. Dupuy and Benyoub 2023: mirrored at facets of
-// roughness 1, a view falls evenly on a cap of the sphere.
+// Samples a normal h visible from wo (wo.z > 0), density G1(wo) max(0, wo.h) D(h) / wo.z. Dupuy and Benyoub 2023: reflected at
+// facets of roughness 1, a view is uniform on a spherical cap.
 template <class F> LANCER_LANE Vec3<F> ggx_sample_visible(const Vec3<F> &wo, F alpha_x, F alpha_y, F u, F v) {
   const Vec3<F> w = normalize(Vec3<F>(alpha_x * wo.x, alpha_y * wo.y, wo.z));
-  // 1 - cos of the angle on the cap, so that its apex keeps its digits.
+  // Use 1 - cos of the angle on the cap, which keeps the digits near its apex.
   const F s = u * (1.0f + w.z);
   const F sin_theta = sqrt(max(F(0.0f), s * (2.0f - s)));
   const SinCos<F> phi = sin_cos_turn(v);
@@ -43,10 +43,10 @@ template <class F> LANCER_LANE Vec3<F> ggx_sample_visible(const Vec3<F> &wo, F a
   return normalize(Vec3<F>(alpha_x * h.x, alpha_y * h.y, h.z));
 }
 
-// Closer to 1 than this the index bends nothing, as in Cycles.
+// An index closer to 1 than this does not bend light, as in Cycles.
 inline constexpr float kStraightIor = 1e-4f;
 
-// ggx_hidden() for Beckmann by Walter's rational fit of Lambda, as Cycles has it: exactly 0 for small slopes.
+// ggx_hidden() for Beckmann by Walter's rational fit of Lambda, as in Cycles: exactly 0 for small slopes.
 template <class F> LANCER_LANE F beckmann_hidden(const Vec3<F> &w, F alpha_x, F alpha_y) {
   const F along = squeezed(w, alpha_x, alpha_y), a = abs(w.z) / along;
   const F fit = along * max(F(0.0f), (1.0f + a * (0.396f * a - 1.259f)) / (3.535f + 2.181f * a));
@@ -61,28 +61,28 @@ template <class F> LANCER_LANE F facet_d(const Lobe<F> &lobe, const Vec3<F> &h) 
   if (!lobe.beckmann)
     return ggx_d(h, lobe.alpha_x, lobe.alpha_y);
   const F x = h.x / lobe.alpha_x, y = h.y / lobe.alpha_y, z2 = h.z * h.z, exponent = (x * x + y * y) / z2;
-  // Beyond exp(-87) of the top a float holds 0.
+  // Below exp(-87) of its maximum it is 0 in float.
   return select(exponent <= 87.0f, exp(-exponent) * kInvPi / (lobe.alpha_x * lobe.alpha_y * z2 * z2), F(0.0f));
 }
 
-// The share of the facets of Beckmann that w sees, exactly.
+// Returns the exact visible share of Beckmann's facets from w.
 template <class F> LANCER_LANE F beckmann_seen(const Lobe<F> &lobe, const Vec3<F> &w) {
   return beckmann_g1_exact(abs(w.z) / squeezed(w, lobe.alpha_x, lobe.alpha_y));
 }
 
-// G1 / wo.z, exact, as the density of the sampler needs it; hidden: of wo.
+// Returns the exact G1 / wo.z, for the density of the sampler; hidden: of wo.
 template <class F> LANCER_LANE F facet_g1(const Lobe<F> &lobe, const Vec3<F> &wo, F hidden) {
   return lobe.beckmann ? beckmann_seen(lobe, wo) / wo.z : 1.0f / (wo.z + hidden);
 }
 
-// G2 / wo.z: masking and shadowing, correlated by height from Blender 4.0 on, of each direction by itself before.
+// Returns G2 / wo.z: masking and shadowing, height-correlated from Blender 4.0 on, separable before.
 template <class F> LANCER_LANE F facet_g2(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
   const F o = lobe.hidden, i = facet_hidden(lobe, wi), z = abs(wi.z);
   const F seen = lobe.rules == Rules::Blender3 ? (wo.z + o) * (z + i) : (wo.z + o) * z + wo.z * i;
   const F both = select(seen > 0.0f, z / seen, F(0.0f));
   if (!lobe.beckmann)
     return both;
-  // By Cycles' fit both directions may see up to 0.3 % more of the facets than one does: more light than came.
+  // By Cycles' fit the facets visible from both directions exceed those visible from one by up to 0.3 %: a gain of energy.
   return min(both, min(beckmann_seen(lobe, wo), beckmann_seen(lobe, wi)) / wo.z);
 }
 
@@ -102,8 +102,8 @@ LANCER_LANE ColorValue<F> microfacet_eval_reflected(const Lobe<F> &lobe, const V
                           response.reflected_share() * common * lobe.g1});
 }
 
-// The facet that bends wo into wi, turned to the side of n; eta: index beyond over index before. The zero vector where the
-// directions do not say.
+// Returns the facet normal that refracts wo into wi, on the side of n; eta: index beyond over index before. Returns the zero
+// vector if the directions do not define it.
 template <class F> LANCER_LANE Vec3<F> refraction_half_vector(const Vec3<F> &wo, const Vec3<F> &wi, F eta) {
   const Vec3<F> sum = wo + eta * wi;
   const F length2 = dot(sum, sum);
@@ -111,7 +111,7 @@ template <class F> LANCER_LANE Vec3<F> refraction_half_vector(const Vec3<F> &wo,
   return select(says, copysign(1.0f / sqrt(length2), sum.z) * sum, Vec3<F>(F(0.0f)));
 }
 
-// any_sides: also where both directions lie on one side of h, as no facet sends light; see Bsdf::eval_lit.
+// any_sides: evaluate also if both directions are on one side of h, where no facet sends light; see Bsdf::eval_lit.
 template <class F>
 LANCER_LANE ColorValue<F> microfacet_eval_through(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi, const Vec3<F> &h,
                                                   bool any_sides = false) {
@@ -123,7 +123,7 @@ LANCER_LANE ColorValue<F> microfacet_eval_through(const Lobe<F> &lobe, const Vec
   // Solid angle of normals per solid angle of wi: eta^2 |wi.h| / (wo.h + eta wi.h)^2.
   const F stretch = cos_oh / lobe.ior + cos_ih;
   const F common = d * abs(cos_oh * cos_ih) / (stretch * stretch);
-  // A facet has both directions on its two sides.
+  // The directions must be on opposite sides of the facet.
   auto there = (!lobe.delta_through) & (wo.z > zero) & (h.z > zero) & (d != zero) & (abs(common) < __builtin_inff());
   if (!any_sides)
     there = there & (cos_oh > zero) & (cos_ih < zero);
@@ -134,14 +134,14 @@ LANCER_LANE ColorValue<F> microfacet_eval_through(const Lobe<F> &lobe, const Vec
                           (1.0f - response.reflected_share()) * common * lobe.g1});
 }
 
-// A direction drawn. delta: single, with the weight of the lobe over the probability of the choice.
+// A sampled direction. delta: single, with the weight of the lobe over the probability of the choice.
 template <class F> struct MicrofacetDirection {
   Vec3<F> wi, weight;
   F probability;
   MaskOf<F> delta, valid;
 };
 
-// A direction from a facet h that wo sees, or from the smooth surface, by what it sends where.
+// Samples reflection or refraction at a visible facet h, or at the smooth surface, by their shares.
 template <class F>
 LANCER_LANE MicrofacetDirection<F> microfacet_sample(const Lobe<F> &lobe, const Vec3<F> &wo, F u_side, const Vec3<F> &h) {
   using V = Vec3<F>;
@@ -153,7 +153,7 @@ LANCER_LANE MicrofacetDirection<F> microfacet_sample(const Lobe<F> &lobe, const 
   result.weight = V(zero);
   result.probability = one;
   result.valid = back.z > zero;
-  // Where nothing goes through there is no choice, and what is reflected is weighed later.
+  // Without refraction there is no choice, and a reflected direction is weighted later.
   if (!refracts(lobe) && !any(lobe.delta))
     return result;
   const F cos_oh = select(lobe.delta, wo.z, dot(wo, h));
@@ -163,8 +163,7 @@ LANCER_LANE MicrofacetDirection<F> microfacet_sample(const Lobe<F> &lobe, const 
   result.weight = response.reflected * (lobe.energy / share);
   result.probability = share;
   if (any(!reflected)) {
-    // Bend wo at the facet: wi = (wo.h / eta - cos_t) h - wo / eta. Where nothing is bent nothing is shadowed either, in
-    // Cycles.
+    // Refract wo at the facet: wi = (wo.h / eta - cos_t) h - wo / eta. Cycles omits shadowing if light is not bent.
     const V at_facet = (cos_oh / eta - response.cos_t) * h - wo / eta;
     const V at_surface(-wo.x / eta, -wo.y / eta, -response.cos_t);
     const V through = select(eta == one, -wo, normalize(select(lobe.delta, at_surface, at_facet)));
@@ -175,7 +174,7 @@ LANCER_LANE MicrofacetDirection<F> microfacet_sample(const Lobe<F> &lobe, const 
     result.probability = select(reflected, share, rest);
     result.delta = lobe.delta | (lobe.delta_through & !reflected);
   }
-  // Seen again from the wrong side: shadowed, one bounce is all that is followed.
+  // A direction on the wrong side is shadowed; only single scattering is followed.
   const MaskOf<F> right = ((result.wi.z > zero) & reflected) | ((result.wi.z < zero) & !reflected);
   result.valid = select(choice, right & !response.is_black(), result.valid);
   return result;

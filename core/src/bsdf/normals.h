@@ -1,4 +1,4 @@
-// The normals and tangents that lobes stand about, and their frames.
+// Normals and tangents of lobes, and their frames.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -9,23 +9,23 @@
 
 namespace lancer {
 
-// v of length 1; another where it has no direction.
+// Returns the unit vector of v, or `otherwise` if v has no direction.
 template <class V> LANCER_LANE V unit_or(const V &v, const V &otherwise) {
   const NumberOf<V> length2 = dot(v, v);
   return select((length2 > 0.0f) & (length2 < __builtin_inff()), v / sqrt(length2), otherwise);
 }
 
-// n itself or, where it is 0, the shading normal.
+// Returns n, or the shading normal if n is 0.
 template <class F> LANCER_LANE Vec3<F> normal_or_shading(const Bsdf<F> &bsdf, const Vec3<F> &n) {
   if (all(black(n)))
     return bsdf.ns;
-  // To normalise once more might move it by a bit, and make a second frame of the first.
+  // Normalising ns again could change a bit and create a second frame.
   return select(same(n, bsdf.ns), n, unit_or(n, bsdf.ns));
 }
 
-// A unit normal for lobes that reflect: n (0 = the shading normal) if what it mirrors from wo stays above the surface, else
-// turned towards ng just far enough. As it is where the material wants no bump correction.
-// The mirrored direction shall rise above the surface by this cosine, or nearly as much as wo does.
+// reflecting_normal() returns a unit normal for reflecting lobes: n (0 = the shading normal) if the mirror direction of wo is
+// above the surface, else n tilted towards ng as little as necessary. n is unchanged without bump correction.
+// least_rise() is the least cosine to ng of the mirror direction, nearly that of wo at grazing angles.
 template <class V> LANCER_LANE NumberOf<V> least_rise(const V &wo, const V &ng) {
   using F = NumberOf<V>;
   return min(0.9f * dot(wo, ng), F(0.01f));
@@ -43,31 +43,31 @@ template <class F> LANCER_LANE Vec3<F> reflecting_normal(const Bsdf<F> &bsdf, co
   if (all(rises))
     return normal;
   const F cos_o = dot(bsdf.wo, bsdf.ng), least = least_rise(bsdf.wo, bsdf.ng);
-  // In the plane of both normals wo is (x, z). The normal at angle t from ng mirrors its z to x sin(2t) + z cos(2t), which is
-  // to be least: the sine and cosine of the two angles where it is, taken on the side towards the given normal.
+  // In the plane of both normals wo is (x, z). The normal at angle t from ng mirrors its z to x sin(2t) + z cos(2t), which must
+  // equal `least`: of the two solutions, use the one on the side of the given normal.
   const V side = unit_or(normal - dot(normal, bsdf.ng) * bsdf.ng, normal);
   const F x = dot(bsdf.wo, side), z = cos_o;
   const F length2 = x * x + z * z;
   const F reach = sqrt(max(F(0.0f), length2 - least * least));
-  // cos(2t) of the solution; the tilt is the largest that still works.
+  // cos(2t) of the solution; the largest valid tilt.
   const F cos_2t = (z * least - x * reach) / length2;
   const F cos_t = sqrt(clamp01(0.5f * (1.0f + cos_2t))), sin_t = sqrt(clamp01(0.5f * (1.0f - cos_2t)));
   return select(rises, normal, normalize(sin_t * side + cos_t * bsdf.ng));
 }
 
-// The normal of lobes that need not reflect: as it is given; Blender 3.x bent it, too.
+// Returns the normal of lobes that need not reflect: unchanged, but adjusted in Blender 3.x.
 template <class F> LANCER_LANE Vec3<F> wide_normal(const Bsdf<F> &bsdf, const Vec3<F> &n, Rules rules) {
   return rules == Rules::Blender3 ? reflecting_normal(bsdf, n) : n;
 }
 
-// t turned about the unit axis by turns, counter-clockwise seen from its tip.
+// Rotates t about the unit axis by turns, counter-clockwise seen from its tip.
 template <class F> LANCER_LANE Vec3<F> turn_about(const Vec3<F> &t, const Vec3<F> &axis, F turns) {
   const F angle = 2.0f * std::numbers::pi_v<float> * turns, c = cos(angle), s = sin(angle);
   return c * t + s * cross(axis, t) + (1.0f - c) * dot(axis, t) * axis;
 }
 
-// The number of a frame about the normal n with tangent t (0 = any); the shading frame where both are 0. Where room is out, the
-// shading frame.
+// Returns the number of a frame about the normal n with tangent t (0 = any): the shading frame if both are 0 or the array is
+// full.
 template <class F> uint8_t add_frame(Bsdf<F> &bsdf, const Vec3<F> &n, const Vec3<F> &t) {
   using U = WordOf<F>;
   const auto numbered = [](int i) __attribute__((always_inline)) { return U(static_cast<uint32_t>(i)); };
@@ -79,7 +79,7 @@ template <class F> uint8_t add_frame(Bsdf<F> &bsdf, const Vec3<F> &n, const Vec3
   Frame<F> frame;
   if (!is_plain)
     frame = Frame<F>(normal, t);
-  // One that is there already will do: in every lane the first, so that no lane depends on its neighbours.
+  // Reuse an existing frame: in every lane the first equal one, so that no lane depends on its neighbours.
   const U nobody(~0u);
   U found = nobody;
   for (int i = 0; i < bsdf.frame_count; ++i) {
@@ -108,15 +108,15 @@ template <class F> uint8_t add_frame(Bsdf<F> &bsdf, const Vec3<F> &n, const Vec3
 }
 template <class F> uint8_t add_frame(Bsdf<F> &bsdf, const Vec3<F> &n) { return add_frame(bsdf, n, Vec3<F>(F(0.0f))); }
 
-// Where a lobe's normal and the shading normal disagree: what bump and normal maps must not light, and how the lit side ends.
+// Bump correction where a lobe's normal and the shading normal differ: no light from behind, and a smooth terminator.
 
-// Whether the lit side of a bump ends smoothly: lobes that scatter widely.
+// Returns whether a lobe has a smooth terminator under bump: lobes that scatter widely.
 template <class F> bool ends_smoothly(const Lobe<F> &lobe) {
   return lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen;
 }
 
-// Where bump takes light from a direction, as Cycles asks it: of what a lobe draws itself only where it reflects widely, of
-// all other light of every lobe but velvet.
+// Returns where bump attenuates a direction, as in Cycles: for a lobe's own samples only if it reflects widely, for all other
+// light for every lobe but velvet.
 template <class F> LANCER_LANE MaskOf<F> bump_acts(const Lobe<F> &lobe, MaskOf<F> drawn) {
   if (matte_transmits(lobe))
     return !drawn;
@@ -133,7 +133,7 @@ template <class F> LANCER_LANE F chiang_shadowing(F cos_ns, F cos_n, F cos_tilt,
 }
 
 // Conty Estevez, Lecocq, Stein, "A microfacet-based shadowing function to solve the bump terminator problem", 2019: the bump
-// stands for facets of GGX whose roughness follows from its tilt.
+// represents GGX facets whose roughness follows from its tilt.
 template <class F> LANCER_LANE F conty_shadowing(F cos_ns, F cos_tilt) {
   const F one(1.0f), c = abs(cos_ns), tilt = abs(cos_tilt);
   const auto tan2 = [](F x) __attribute__((always_inline)) { return (1.0f - x) * (1.0f + x) / (x * x); };
@@ -141,7 +141,7 @@ template <class F> LANCER_LANE F conty_shadowing(F cos_ns, F cos_tilt) {
   return select((c >= one) | (tilt >= one), one, 2.0f / (1.0f + sqrt(1.0f + alpha2 * tan2(c))));
 }
 
-// What a lobe about n keeps of light from a direction with cosines cos_ns to the shading normal ns and cos_n to n.
+// Returns the factor of light at a lobe about n, for a direction with cosines cos_ns to the shading normal ns and cos_n to n.
 template <class F>
 LANCER_LANE F bump_factor(const Lobe<F> &lobe, const Vec3<F> &n, const Vec3<F> &ns, F cos_ns, F cos_n, bool correction) {
   const F one(1.0f), cos_tilt = dot(n, ns);
@@ -152,7 +152,7 @@ LANCER_LANE F bump_factor(const Lobe<F> &lobe, const Vec3<F> &n, const Vec3<F> &
   } else {
     if (smooth_end && correction)
       kept = conty_shadowing(cos_ns, cos_tilt);
-    // On the other side of the surface than the lobe believes; Blender 3.x asked this of wide lobes only.
+    // 0 on the other side of the surface than the lobe assumes; Blender 3.x checks this for wide lobes only.
     if (lobe.rules != Rules::Blender3)
       kept = select(cos_ns * cos_tilt * cos_n < 0.0f, F(0.0f), kept);
   }

@@ -1,22 +1,22 @@
-// The Principled BSDF of Blender 4 and newer: from the artist's sliders to lobes, layer upon layer.
+// The Principled BSDF of Blender 4 and newer: converts the inputs to lobes, layer by layer.
 #pragma once
 
 #include "bsdf/build.h"
 
 namespace lancer {
 
-// Layers and shares smaller than this are not there, as in Cycles.
+// Layers and shares below this are dropped, as in Cycles.
 inline constexpr float kLeastLayer = 1e-5f;
 
 enum class PrincipledLayer : uint8_t { Sheen, Coat, Emission, Metal, Glass, Gloss, Diffuse };
 inline constexpr int kLayerCount = 7;
-// What a layer leaves of the light for those below it: all, what it does not scatter, or what its share does not take.
+// The light that a layer leaves for the layers below it: all, the unscattered part, or the part outside its share.
 enum class Leaves : uint8_t { All, Unscattered, Unshared };
-// Top to bottom.
+// Listed top to bottom.
 struct LayerRow {
   PrincipledLayer layer;
   Leaves leaves;
-  bool facets; // a lobe of microfacets, which may be planned ahead
+  bool facets; // a microfacet lobe, which may be planned in advance
 };
 constexpr LayerRow kLayers[kLayerCount] = {
     {PrincipledLayer::Sheen, Leaves::Unscattered, false}, {PrincipledLayer::Coat, Leaves::Unscattered, true},
@@ -27,10 +27,10 @@ constexpr LayerRow kLayers[kLayerCount] = {
 template <class F> LANCER_LANE F cos_in(const Bsdf<F> &bsdf, uint8_t frame) { return max(F(0.0f), bsdf.wo_local[frame].z); }
 template <class V> LANCER_LANE V positive(const V &x) { return max(x, V(NumberOf<V>(0.0f))); }
 
-// Both roughnesses that all lobes of the base share.
+// Both roughnesses, shared by all lobes of the base.
 template <class F> struct Grain {
   F alpha_x, alpha_y;
-  MaskOf<F> stretched; // along the turned tangent
+  MaskOf<F> stretched; // anisotropic along the rotated tangent
 };
 template <class F> LANCER_LANE Grain<F> grain_of(const LobeInputs<F> &lobe, F roughness, F anisotropic) {
   const F alpha = roughness * roughness, aspect = sqrt(max(F(0.0f), 1.0f - 0.9f * anisotropic));
@@ -41,7 +41,7 @@ template <class F> LANCER_LANE Grain<F> base_grain(const LobeInputs<F> &lobe, co
   return grain_of(lobe, clamp01(in.roughness), clamp01(in.anisotropic));
 }
 
-// The share of a layer in the light that arrives at it; of a layer of no share nothing is there.
+// Returns the share of a layer in the light that arrives at it; a layer with share 0 is dropped.
 template <class F> LANCER_LANE F share_of(PrincipledLayer layer, const PrincipledInputs<F> &in) {
   switch (layer) {
   case PrincipledLayer::Sheen:
@@ -57,7 +57,7 @@ template <class F> LANCER_LANE F share_of(PrincipledLayer layer, const Principle
   }
 }
 
-// What a layer leaves for those below it: one factor for all colours, by the channel that it takes most of.
+// Returns the light left for the layers below: one factor for all colours, from the channel with the largest loss.
 template <class V> LANCER_LANE V below(const V &weight, const V &albedo) {
   using F = NumberOf<V>;
   const F zero(0.0f);
@@ -66,18 +66,19 @@ template <class V> LANCER_LANE V below(const V &weight, const V &albedo) {
   taken = select(weight.y != zero, max(taken, albedo.y / weight.y), taken);
   taken = select(weight.z != zero, max(taken, albedo.z / weight.z), taken);
   const F left = 1.0f - taken;
-  // What is no number stays none.
+  // NaN passes through.
   return weight * select(left < zero, zero, select(left > F(1.0f), F(1.0f), left));
 }
 
-// The light that a coat's colour lets pass on a slanted way down: Beer's law over 1/cos of the refracted direction.
+// Returns the transmittance of a coat's colour along a slanted path: Beer's law over 1/cos of the refracted direction.
 template <class F> LANCER_LANE Vec3<F> through_coat(const Vec3<F> &tint, F cos_o, F ior, F coat) {
   const F sin = sqrt(max(F(0.0f), (1.0f - cos_o) * (1.0f + cos_o))) / ior;
   const F depth = 1.0f / sqrt((1.0f - sin) * (1.0f + sin));
   return mix(Vec3<F>(F(1.0f)), Vec3<F>(pow(tint.x, depth), pow(tint.y, depth), pow(tint.z, depth)), coat);
 }
 
-// The index of the plastic, which bends with the artist's level, on its own side of 1; f0: its reflectance at the normal.
+// Returns the index of the plastic, adjusted by the specular level, on its own side of 1; f0: its reflectance at normal
+// incidence.
 template <class F> LANCER_LANE F plastic_ior(const PrincipledInputs<F> &in, F &f0) {
   const F ior = max(in.ior, F(1e-5f));
   f0 = f0_of_ior(ior);
@@ -89,7 +90,7 @@ template <class F> LANCER_LANE F plastic_ior(const PrincipledInputs<F> &in, F &f
   return select(moved, select(ior < 1.0f, 1.0f / bent, bent), ior);
 }
 
-// The lobe of a layer of facets as far as neither wo nor what lies above changes it, without its weight.
+// Returns the lobe of a facet layer as far as it depends neither on wo nor on the layers above, without its weight.
 template <class F>
 LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs<F> &inputs, const PrincipledInputs<F> &in,
                                          MaskOf<F> inside) {
@@ -102,7 +103,7 @@ LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs
     const F alpha = alpha_of(in.coat_roughness);
     lobe = make_microfacet(Scatter::Reflect, 0, one, alpha, alpha, in.rules);
     set_dielectric(lobe, max(in.coat_ior, F(1.0f)));
-    // From Blender 4.5 on it keeps all its light.
+    // From Blender 4.5 on the coat preserves energy.
     preserving = in.rules == Rules::Blender45;
     break;
   }
@@ -129,13 +130,13 @@ LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs
   return plan_microfacet(lobe, uniform<F>(preserving));
 }
 
-// Plans every layer where it is met.
+// Plans every layer at its hit.
 template <class F> struct NoPlans {
   LANCER_LANE bool has(PrincipledLayer) const { return false; }
   LANCER_LANE Lobe<F> seen(PrincipledLayer, F, const Vec3<F> &) const { return {}; }
 };
 
-// plans: which layers are planned already, and how they are seen under a cosine with a weight.
+// plans: the layers planned in advance, and their lobes for a cosine and a weight.
 template <class F, class Plans>
 void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInputs<F> &in, const Plans &plans) {
   using V = Vec3<F>;
@@ -143,7 +144,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
   const V n = normal_or_shading(bsdf, inputs.normal), n_reflect = reflecting_normal(bsdf, inputs.normal);
   const V n_coat = normal_or_shading(bsdf, in.coat_normal);
   V weight = inputs.weight;
-  // Metal, glass and plastic share a normal and a grain, along a tangent where they are stretched.
+  // Metal, glass and plastic share a normal and a roughness, along a tangent if anisotropic.
   const MaskOf<F> stretched = base_grain(inputs, in).stretched;
   const V tangent = any(stretched) ? select(stretched, turn_about(inputs.tangent, n, in.anisotropic_rotation), none) : none;
   int base_frame = -1;
@@ -153,7 +154,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
     if (!any(there))
       continue;
     const auto weighted = [&](const V &color) __attribute__((always_inline)) { return select(there, color, none); };
-    // Where a layer is not there it makes no frame that later lobes would find.
+    // A lane without the layer must not create a frame that later lobes would find.
     const auto framed = [&](const V &normal) __attribute__((always_inline)) {
       return add_frame(bsdf, select(there, normal, none));
     };
@@ -164,7 +165,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
       bsdf.emission += in.emission * weight;
       continue;
     case PrincipledLayer::Sheen: {
-      // Cloth on top of all, its normal between the base's and the coat's.
+      // Cloth on top, with a normal between those of base and coat.
       frame = framed(select(same(n_coat, n), n, mix(n, n_coat, clamp01(in.coat))));
       lobe = make_sheen(weighted(share * positive(in.sheen_tint) * weight), clamp01(in.sheen_roughness), cos_in(bsdf, frame));
       lobe.rules = in.rules;
@@ -187,7 +188,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
         frame = static_cast<uint8_t>(base_frame);
       }
       if (row.layer == PrincipledLayer::Gloss && !plans.has(row.layer)) {
-        // Nothing where the surface bends no light.
+        // No gloss if the surface does not bend light.
         F f0;
         there = there & (plastic_ior(in, f0) != F(1.0f));
         if (!any(there))
@@ -206,7 +207,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
       weight = select(there, below(weight, lobe.albedo), weight);
     else if (row.leaves == Leaves::Unshared)
       weight = select(there, weight * (1.0f - share), weight);
-    // The coat colours what passes it twice.
+    // The coat tints light on its way in and out.
     if (row.layer == PrincipledLayer::Coat && !all(same(in.coat_tint, V(F(1.0f)))))
       weight = select(there & !same(in.coat_tint, V(F(1.0f))),
                       weight * through_coat(positive(in.coat_tint), cos_in(bsdf, frame), lobe.ior, in.coat), weight);
@@ -219,7 +220,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
 
 namespace lancer {
 
-// lobe carries weight, normal and tangent; plans as of add_layers().
+// lobe has weight, normal and tangent; plans: see add_layers().
 template <class F, class Plans>
 void add_principled(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const PrincipledInputs<F> &principled, const Plans &plans) {
   if (principled.rules == Rules::Blender3)
@@ -231,7 +232,7 @@ template <class F> void add_principled(Bsdf<F> &bsdf, const LobeInputs<F> &lobe,
   add_principled(bsdf, lobe, principled, NoPlans<F>());
 }
 
-// Any other node; its facets may be planned, too.
+// Adds any other node; its facets may be planned, too.
 template <class F, class Plans> void add_cached(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Plans &plans) {
   if (!plans.has(PrincipledLayer::Gloss))
     return add_lobe(bsdf, inputs);

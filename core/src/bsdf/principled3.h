@@ -1,18 +1,19 @@
-// The Principled BSDF of Blender 3: a sum of lobes. Included by principled.h alone.
+// The Principled BSDF of Blender 3: a sum of lobes. Included by principled.h only.
 #pragma once
 
 #include "bsdf/principled.h"
 
 namespace lancer {
 
-// Hue and saturation of a colour, its luminance brought to 1.
+// Returns a colour's hue and saturation with luminance 1.
 template <class V> LANCER_LANE V hue_of(const V &color, const glm::vec3 &luminance_weights) {
   using F = NumberOf<V>;
   const F luminance = dot(color, V(luminance_weights));
   return select(luminance > 0.0f, color / luminance, V(F(1.0f)));
 }
 
-// Cycles 3 walks from facet to facet at random, with height-correlated masking; the compensated lobe of Blender 4 stands in.
+// Cycles 3 walks randomly from facet to facet with height-correlated masking; the energy-preserving lobe of Blender 4
+// approximates this.
 inline constexpr Rules kSeveralBounces = Rules::Blender45;
 
 // Adds a lobe in some lanes.
@@ -27,8 +28,8 @@ LANCER_LANE void add_facets3(Bsdf<F> &bsdf, Lobe<F> lobe, MaskOf<F> lanes, F cos
   bsdf.add(lobe);
 }
 
-// Glass of one bounce: reflection and refraction each weighted by Fresnel at the normal, with roughnesses of their own; of
-// several bounces: one lobe.
+// Glass of a single bounce: reflection and refraction, each weighted by Fresnel at the normal, with their own roughnesses.
+// Glass of several bounces: one lobe.
 template <class F>
 LANCER_LANE void add_glass3(Bsdf<F> &bsdf, uint8_t frame, const Vec3<F> &weight, const PrincipledInputs<F> &in, F ior) {
   using V = Vec3<F>;
@@ -56,7 +57,7 @@ LANCER_LANE void add_glass3(Bsdf<F> &bsdf, uint8_t frame, const Vec3<F> &weight,
 template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const PrincipledInputs<F> &in) {
   using V = Vec3<F>;
   const V one(F(1.0f)), none(F(0.0f));
-  // Every normal is bent so that what it mirrors stays above the surface, the diffuse one too.
+  // All normals, including the diffuse one, are adjusted so that the mirror direction is above the surface.
   const V n = reflecting_normal(bsdf, lobe.normal);
   const Grain<F> grain = grain_of(lobe, in.roughness, in.anisotropic);
   const V tangent =
@@ -84,7 +85,7 @@ template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const
     bsdf.add(dust);
   }
 
-  // One reflection for plastic and metal: what it does at the normal goes from a level to the base colour.
+  // One reflection for plastic and metal: its value at normal incidence varies from the specular level to the base colour.
   const MaskOf<F> is_glossy = (1.0f - glass > kLeastLayer) & ((in.specular > kLeastLayer) | (in.metallic > kLeastLayer));
   if (any(is_glossy)) {
     const V hue = mix(one, hue_of(in.base_color, {0.3f, 0.6f, 0.1f}), in.specular_tint.x);
@@ -112,7 +113,7 @@ template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const
     Lobe<F> coat = make_clear_coat(select(is_coated, in.coat * lobe.weight, none), in.coat_roughness * in.coat_roughness,
                                    cos_in(bsdf, coat_frame));
     coat.frame = coat_frame;
-    // The passes show it whole, whatever its weight.
+    // The passes show the full coat, whatever its weight.
     coat.shown = 4.0f / in.coat;
     bsdf.add(coat);
   }

@@ -1,5 +1,5 @@
 // Cloth by multiple scattering in a layer of microfibres (Zeltner, Burley, Chiang 2022): a linearly transformed cosine whose
-// two coefficients and albedo follow wo and the roughness, linearly between the nodes of a table. Local frame, wo.z > 0; values
+// two coefficients and albedo depend on wo and the roughness, interpolated linearly in a table. Local frame, wo.z > 0; values
 // are f cos(wi) without the colour.
 #pragma once
 
@@ -10,11 +10,11 @@
 
 namespace lancer {
 
-// The cosine lobe is stretched by 1/a and sheared by b against the direction of wo along the surface.
+// The cosine lobe is stretched by 1/a and sheared by b against the tangential direction of wo.
 template <class F> struct SheenFit { F a, b, albedo; };
 template <class F> LANCER_LANE SheenFit<F> sheen_fit(F cos_o, F roughness) {
   constexpr float kLast = kSheenNodes - 1;
-  // Cycles keeps the roughness at 1e-3 or more.
+  // Cycles clamps the roughness to at least 1e-3.
   const F y = kLast * on_axis(roughness, 1e-3f), x = kLast * on_axis(cos_o);
   const F row = min(to_float(truncate(y)), F(kSheenNodes - 2)), column = min(to_float(truncate(x)), F(kSheenNodes - 2));
   const F v = y - row, u = x - column;
@@ -31,7 +31,7 @@ template <class F> LANCER_LANE SheenFit<F> sheen_fit(F cos_o, F roughness) {
   return {fit[0], fit[1], fit[2]};
 }
 
-// color is black where the layer does nothing: Cycles leaves it out where a or the albedo is below 1e-5.
+// color is black if the layer has no effect: Cycles drops it if a or the albedo is below 1e-5.
 template <class F> LANCER_LANE Lobe<F> make_sheen(const Vec3<F> &weight, F roughness, F cos_o) {
   SheenFit<F> fit = sheen_fit(cos_o, roughness);
   const auto nothing = (fit.a < 1e-5f) | (fit.albedo < 1e-5f);
@@ -44,7 +44,7 @@ template <class F> LANCER_LANE Lobe<F> make_sheen(const Vec3<F> &weight, F rough
   return lobe;
 }
 
-// w turned about n so that wo lies over +x.
+// Rotates w about n so that wo is above +x.
 template <class V> LANCER_LANE V sheen_turn(const V &wo, const V &w, float sign) {
   using F = NumberOf<V>;
   const F length2 = wo.x * wo.x + wo.y * wo.y;
@@ -52,7 +52,7 @@ template <class V> LANCER_LANE V sheen_turn(const V &wo, const V &w, float sign)
   return select(length2 > 0.0f, V(c * w.x + s * w.y, c * w.y - s * w.x, w.z), w);
 }
 
-// Value and density are the same.
+// Value and density are equal.
 template <class F> LANCER_LANE ColorValue<F> sheen_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
   const F a = lobe.alpha_x, b = lobe.alpha_y;
   const Vec3<F> w = sheen_turn(wo, wi, 1.0f);
