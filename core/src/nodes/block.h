@@ -1,4 +1,4 @@
-// Up to 16 places at which one program of nodes runs side by side. Plain numbers: kernels read and write it.
+// Up to 16 hits at which one program of nodes runs in lanes. Plain numbers, read and written by kernels.
 #pragma once
 
 #include "nodes/light_path.h"
@@ -14,20 +14,20 @@ struct Geometry;
 struct Image;
 struct Normalisation;
 
-// What all nodes may look at.
+// Scene data that any node may read.
 struct NodeScene {
-  const Geometry *geometry = nullptr; // null: nothing is placed
+  const Geometry *geometry = nullptr; // null: no instances
   const std::vector<Image> *images = nullptr;
   const Normalisation *normalisation = nullptr; // null: the user's world is the normalised one
-  const Camera *camera = nullptr;               // null: CAMERA and WINDOW see the world's frame
+  const Camera *camera = nullptr;               // null: CAMERA and WINDOW use the world's frame
 };
 
 inline constexpr int kNodeLanes = 16;
 
-// Fill in the lanes that are used, in all arrays that the kind of place has; the others may hold anything.
+// Set the used lanes of every array that the kind of place needs; other lanes may hold anything.
 //
-// What LIGHT_PATH does not ask for need not be there. On surfaces: everything but eye. ns and ng are unit and look to the
-// viewer's side; backfacing tells where those of the surface itself look the other way. For directions of the world (surface is
+// Data that only LIGHT_PATH reads may be missing. On surfaces set everything but eye: ns and ng are unit, on the viewer's side;
+// backfacing marks lanes where the surface's own normals are on the other side. For directions of the world (surface is
 // false): p is the direction, ns = ng = wo = -p, and eye.
 struct alignas(64) NodeBlock {
   NodeScene scene;
@@ -35,12 +35,12 @@ struct alignas(64) NodeBlock {
   uint32_t used = 0, backfacing = 0; // bits of lanes
 
   alignas(64) uint32_t instance[kNodeLanes], primitive[kNodeLanes];
-  double bary[2][kNodeLanes]; // weights of vertex 1 and 2; 0 on exact surfaces
+  double bary[2][kNodeLanes]; // weights of vertices 1 and 2; 0 on exact surfaces
   double p[3][kNodeLanes];    // normalised world
   float ns[3][kNodeLanes], ng[3][kNodeLanes], wo[3][kNodeLanes];
-  float footprint[kNodeLanes];       // radius of what a pixel covers, normalised units; 0: no bumps
-  const glm::dvec3 *eye[kNodeLanes]; // where a camera's ray starts; null: any other ray
-  // As LightPath has them.
+  float footprint[kNodeLanes];       // radius of the pixel's footprint, normalised units; 0: no bumps
+  const glm::dvec3 *eye[kNodeLanes]; // origin of a camera ray; null: any other ray
+  // As in LightPath.
   uint32_t kinds[kNodeLanes];
   float length[kNodeLanes], depth[kNodeLanes], diffuse[kNodeLanes], glossy[kNodeLanes], transmission[kNodeLanes],
       transparent[kNodeLanes], portal[kNodeLanes];
@@ -57,7 +57,7 @@ inline void put(const LightPath<float> &path, NodeBlock &block, uint32_t lane) {
   block.portal[lane] = path.portal;
 }
 
-// What one node gave: x, y, z or RGB, and alpha.
+// Results of one node: x, y, z or RGB, and alpha.
 struct alignas(64) NodeLanes {
   float of[4][kNodeLanes];
 };

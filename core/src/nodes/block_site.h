@@ -1,4 +1,4 @@
-// The lanes of a block as the place of nodes. Like lanes.h.
+// The lanes of a block as a site. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "nodes/dispatch.h"
@@ -8,7 +8,7 @@
 namespace lancer {
 namespace {
 
-// From lane first on. Lanes that are not used stand where one does that is.
+// Returns the site of the lanes from first on. Unused lanes copy a used one.
 template <class F> Site<F> site_of(const NodeBlock &block, int first) {
   constexpr int width = Site<F>::kWidth;
   using D = DoubleOf<F>;

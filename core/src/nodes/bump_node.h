@@ -1,4 +1,4 @@
-// Bumps: the height's slope, looked at a pixel's width away, tilts the normal. Like lanes.h.
+// Bumps: the height's slope over a pixel's footprint tilts the normal. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "nodes/normal_nodes.h"
@@ -7,24 +7,24 @@
 
 namespace lancer {
 
-// Memory for values of nodes that are too many for the stack.
+// Memory for values of nodes that do not fit on the stack.
 // Aligned for lanes. Throws std::bad_alloc.
 void *allocate_values(size_t bytes);
 void free_values(void *values);
 
 namespace {
 
-// Computes the scheduled nodes at a site: dispatch.h.
+// Computes the scheduled nodes at a site; defined in dispatch.h.
 template <class F>
 void run_nodes(const Program &program, const Schedule &schedule, const Site<F> &site, const Values<F> &values);
 
-// How barycentric weights grow along the triangle's plane.
+// The change of barycentric weights along a triangle's plane.
 template <class F> struct Plane {
   using D = DoubleOf<F>;
   Vector3<D> e1, e2; // normalised world
   D g11, g12, g22, det;
 
-  // The weights of vertex 1 and 2 that an offset adds.
+  // Computes the change of the weights of vertices 1 and 2 by an offset.
   LANCER_LANE void step(const Vector3<D> &offset, D (&weights)[2]) const {
     const D zero(0.0), d1 = dot(e1, offset), d2 = dot(e2, offset);
     const auto solid = det > zero;
@@ -44,23 +44,23 @@ template <class F> Plane<F> plane_of(const Site<F> &site) {
   return r;
 }
 
-// Two directions along the surface, and how the surface moves along them: lengths of a pixel, in the user's units.
+// Two directions along the surface, and the surface's displacement along them by one pixel's footprint, in the user's units.
 template <class F> struct Steps {
   using D = DoubleOf<F>;
   Vector3<D> x, y; // unit, in the normalised world
   Vector3<D> px, py;
-  Plane<F> plane;                // of lanes on meshes
-  AttributeLanes<F> undisplaced; // where found px, py and the normal are the object's
+  Plane<F> plane;                // in lanes on meshes
+  AttributeLanes<F> undisplaced; // where found, px, py and the normal are in object space
 };
 
-// The same surface, moved by an offset in its tangent plane (normalised world); its attributes as bump finds them there.
+// Moves a site by an offset in its tangent plane (normalised world), with the attributes as bump reads them.
 template <class F> void move(const Plane<F> &plane, const Vector3<DoubleOf<F>> &offset, Site<F> &site) {
   using D = DoubleOf<F>;
   site.p += offset;
   if (!any(site.on_mesh))
     return;
-  // What is painted on a mesh goes the other way on a face that is seen from behind, as in Cycles: there the derivatives of
-  // the parametrisation are turned together with the normal.
+  // Attributes of a mesh move the other way on backfaces, as in Cycles, which flips the derivatives of the parametrisation
+  // together with the normal.
   D weights[2];
   plane.step(select(site.backfacing, -offset, offset), weights);
   for (int k = 0; k < 2; ++k)
@@ -94,14 +94,14 @@ template <class F> Steps<F> steps_at(const Node &node, const Site<F> &site) {
     r.undisplaced.found = uniform<F>(false);
     return r;
   }
-  // Where nothing was displaced: the same surface, in its object's space.
+  // Without displacement: the same surface, in object space.
   const Vector3<D> x = r.x * footprint, y = r.y * footprint;
   r.px = vector_to_object(site, x);
   r.py = vector_to_object(site, y);
   r.undisplaced = find_attributes(site, node.name);
   if (!any(r.undisplaced.found))
     return r;
-  // The same steps in weights of the vertices, taken on the surface as it was.
+  // The same steps in weights of the vertices, taken on the undisplaced surface.
   const Triangle<F> was = triangle_of(site, r.undisplaced);
   const Vector3<D> e1 = widen(was.v1) - widen(was.v0), e2 = widen(was.v2) - widen(was.v0);
   const auto moved_by = [&](const Vector3<D> &offset) {
@@ -114,7 +114,7 @@ template <class F> Steps<F> steps_at(const Node &node, const Site<F> &site) {
   return r;
 }
 
-// Where the height is looked at: moved, and on the surface as it was where that is asked for.
+// Returns the site of a height evaluation: moved, and on the undisplaced surface if the node asks for it.
 template <class F> Site<F> height_site(const Site<F> &site, const Steps<F> &steps, const Vector3<DoubleOf<F>> &offset) {
   Site<F> place = site;
   move(steps.plane, offset, place);
@@ -127,7 +127,7 @@ template <class F> Site<F> height_site(const Site<F> &site, const Steps<F> &step
   return place;
 }
 
-// The normal input; on a flat face that was displaced its normal before that.
+// Returns the normal input; on a displaced flat face its normal before displacement.
 template <class F> Vector3<F> flat_normal_before(const Inputs<F> &in, const Site<F> &site) {
   const Vector3<F> normal = in.normal(3, site);
   if (!any(site.on_mesh))
@@ -141,8 +141,8 @@ template <class F> Vector3<F> flat_normal_before(const Inputs<F> &in, const Site
   return select(flat, select(dot(n, site.ng) < F(0.0f), -n, n), normal);
 }
 
-// Values of some nodes, kept while others take their place. Nothing between keep() and bring_back() throws: a destructor would
-// need tables of exceptions, which are shared symbols, in kernels.
+// Saves values of nodes while others overwrite them. Nothing between keep() and bring_back() throws: a destructor would need
+// exception tables, which are shared symbols, in kernels.
 template <class F> class Kept {
 public:
   void keep(const Schedule &schedule, const Values<F> &values) {
@@ -164,13 +164,13 @@ private:
   Value<F> *kept_ = few_;
 };
 
-// Runs the nodes of the height at three places; values end as they were.
+// Runs the height's nodes at three points and restores the values.
 template <class F> Value<F> bump_node(const Program &program, const Inputs<F> &in, const Site<F> &site) {
   using D = DoubleOf<F>;
   using D3 = Vector3<D>;
   const F zero(0.0f), one(1.0f);
   const Vector3<F> normal = in.node.flags & 4 ? flat_normal_before(in, site) : in.normal(3, site);
-  // The height of a bump does not see other bumps: each would look at its own three times as often.
+  // The height of a bump ignores other bumps: each level would triple the evaluations.
   if (site.in_height || !site.surface)
     return solid(normal);
   const F filter = in.scalar(4);
@@ -180,7 +180,7 @@ template <class F> Value<F> bump_node(const Program &program, const Inputs<F> &i
   const bool in_object = in.node.flags & 2;
   const Steps<F> steps = steps_at(in.node, site);
 
-  // Compute the height here and beside, and leave the values as they were.
+  // Compute the height here and at both offsets, and restore the values.
   const Schedule &schedule = program.heights[in.node.heights];
   Kept<F> kept;
   kept.keep(schedule, in.values);

@@ -1,5 +1,5 @@
-// Numbers without visible structure for the cells of a lattice, those that Blender's textures are made of: the same bits for
-// every number of lanes. U is a uint32_t, or lanes of them; F a float, or lanes of them.
+// Hashes of lattice cells, as in Blender's textures: the same bits for every number of lanes. U is uint32_t or lanes of it; F
+// is float or lanes of it.
 #pragma once
 
 #include "simd/rounding.h"
@@ -8,14 +8,14 @@ namespace lancer {
 
 template <class U> LANCER_LANE constexpr U rotated(const U &x, int by) { return (x << by) | (x >> (32 - by)); }
 
-// One step of the last mixing, and of that between blocks of three words, of Bob Jenkins' lookup3.
+// One step of the final mixing, and of the mixing between blocks of three words, of Bob Jenkins' lookup3.
 template <class U> LANCER_LANE constexpr void stir(U &x, const U &y, int by) { x = (x ^ y) - rotated(y, by); }
 template <class U> LANCER_LANE constexpr void blend(U &x, U &y, const U &z, int by) {
   x = (x - y) ^ rotated(y, by);
   y = y + z;
 }
 
-// lookup3 of up to four words.
+// Returns lookup3 of up to four words.
 template <int N, class U> LANCER_LANE constexpr U cell_hash(const U (&key)[N]) {
   const U seed(0xdeadbeefu + 4u * static_cast<uint32_t>(N) + 13u);
   U a = seed + key[0], b = seed, c = seed;
@@ -42,8 +42,8 @@ template <int N, class U> LANCER_LANE constexpr U cell_hash(const U (&key)[N]) {
   return c;
 }
 
-// The words of a cell, each mixed with all others: the permuted congruential generator of 2, 3 or 4 words, with shifts that
-// keep the sign; 31 bits of each.
+// Mixes each word of a cell with all others: the permuted congruential generator of 2, 3 or 4 words, with arithmetic shifts;
+// leaves 31 bits of each.
 template <class U> LANCER_LANE U halves_mixed(const U &x) {
   const U sign = U(0u) - (x >> 31);
   return x ^ ((x >> 16) | (sign << 16));
@@ -70,12 +70,12 @@ template <int N, class U> LANCER_LANE void cell_permutation(U (&v)[N]) {
     v[i] = v[i] & U(0x7fffffffu);
 }
 
-// A word as a share of all words, 0 ... 1. Both halves are exact, so that only their sum is rounded.
+// Maps a word to 0 ... 1. Both halves are exact, so that only their sum is rounded.
 template <class F> LANCER_LANE F unit_of(const WordOf<F> &x) {
   return (to_float(x >> 16) * F(65536.0f) + to_float(x & WordOf<F>(0xffffu))) * F(0x1p-32f);
 }
 
-// A whole number as an integer; the least integer where it does not fit, as processors convert.
+// Converts a whole float to an integer; the smallest integer if it does not fit, as processors convert.
 template <class F> LANCER_LANE WordOf<F> cell_of(const F &whole) {
   const MaskOf<F> fits = abs(whole) < F(0x1p31f);
   return select(fits, truncate(select(fits, whole, F(0.0f))), WordOf<F>(0x80000000u));

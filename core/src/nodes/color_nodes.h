@@ -1,5 +1,4 @@
-// Mixing and changing colours, as Blender's Mix, Gamma, Invert, RGB to BW, Separate and Combine Color nodes have
-// it. Like lanes.h.
+// Colour nodes: Blender's Mix, Gamma, Invert, RGB to BW, Separate and Combine Color. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "nodes/vector_nodes.h"
@@ -25,7 +24,7 @@ template <class F> Vector3<F> to_hsv(const Vector3<F> &c) {
 }
 
 template <class F> Vector3<F> from_hsv(const Vector3<F> &hsv) {
-  // Each channel is a trapezoid over the circle of hues, a third of it apart from the others.
+  // Each channel is a trapezoid over the circle of hues, shifted by a third of it.
   const F one(1.0f), hue = select(hsv.x == one, F(0.0f), hsv.x);
   const auto channel = [&](float turn) {
     const F at = hue + F(turn), place = (at - floor(at)) * F(6.0f);
@@ -33,7 +32,7 @@ template <class F> Vector3<F> from_hsv(const Vector3<F> &hsv) {
     return hsv.z * (one - hsv.y * (one - share));
   };
   const Vector3<F> inside{channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f)};
-  // Hues outside 0 ... 1 are taken for the last sixth, as in Cycles.
+  // Hues outside 0 ... 1 are treated as the last sixth, as in Cycles.
   const F sixths = hue * F(6.0f), least = hsv.z * (one - hsv.y);
   const F falling = hsv.z * (one - hsv.y * (sixths - floor(sixths)));
   return select((hue < F(0.0f)) | (hue >= one), Vector3<F>{hsv.z, least, falling}, inside);
@@ -55,7 +54,7 @@ template <class F> Vector3<F> from_hsl(const Vector3<F> &hsl) {
   return {channel(abs(six - F(3.0f)) - one), channel(two - abs(six - two)), channel(two - abs(six - F(4.0f)))};
 }
 
-// Those modes that take hue, saturation or value of the second colour.
+// Modes that use hue, saturation or value of the second colour.
 template <class F> Vector3<F> mix_hsv(uint32_t mode, const F &t, const Vector3<F> &a, const Vector3<F> &b) {
   const F zero(0.0f), rest = F(1.0f) - t;
   Vector3<F> hsv = to_hsv(a);
@@ -66,7 +65,7 @@ template <class F> Vector3<F> mix_hsv(uint32_t mode, const F &t, const Vector3<F
     hsv.x = other.x;
     if (mode == LANCER_MIX_COLOR)
       hsv.y = other.y;
-    // A grey has no hue to give.
+    // A grey has no hue.
     return select(other.y == zero, a, blend(a, from_hsv(hsv), t));
   case LANCER_MIX_SATURATION: {
     const auto grey = hsv.y == zero;

@@ -1,4 +1,4 @@
-// Where the ray has met the surface, in every frame that nodes know, and what meshes have painted there. Like lanes.h.
+// The position of a hit in every frame that nodes use, and the attributes of meshes there. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "nodes/mesh_lanes.h"
@@ -9,7 +9,7 @@
 namespace lancer {
 namespace {
 
-// Half of what a mesh reaches from, and its extent, by lane.
+// Maps p to 0 ... 1 over the bounds of each lane's mesh.
 template <class F> LANCER_LANE Vector3<DoubleOf<F>> in_bounds(const Site<F> &site, const Vector3<DoubleOf<F>> &p) {
   using D = DoubleOf<F>;
   const auto along = [&](int axis, const D &x) __attribute__((always_inline)) {
@@ -17,7 +17,7 @@ template <class F> LANCER_LANE Vector3<DoubleOf<F>> in_bounds(const Site<F> &sit
       return by_lane<D>([&](int i) { return site.mesh[i] ? static_cast<double>((&(site.mesh[i]->*which).x)[axis]) : 0.0; });
     };
     const D low = bound(&Mesh::low), high = bound(&Mesh::high);
-    // A flat mesh is in the middle of what it has no extent in.
+    // A flat mesh has coordinate 0.5 along an axis without extent.
     const D middle = D(0.5) * (low + high), size = high - low;
     return (x - middle) / select(size > D(0.0), size, D(1.0)) + D(0.5);
   };
@@ -73,13 +73,13 @@ template <class F> Vector3<F> object_space_normal(const Site<F> &site) {
   const Vector3<F> shading = normal_to_object(site, site.ns);
   if (!site.in_height || !any(site.on_mesh))
     return shading;
-  // A bump looks at neighbours, whose interpolated normals differ.
+  // A bump evaluates neighbouring points, whose interpolated normals differ.
   const Vector3<F> n = interpolated_normal(site), unit = unit_or_zero(n);
   const Vector3<F> seen = select(site.backfacing, -unit, unit);
   return select(site.on_mesh, select(black(n), normal_to_object(site, site.ng), seen), shading);
 }
 
-// What a scalar function of the camera says of each lane.
+// Evaluates a scalar function of the camera in each lane.
 template <class F, class Function> Vector3<F> ask_camera(const Vector3<DoubleOf<F>> &p, const Function &f) {
   constexpr int width = LanesOf<F>::kWidth;
   alignas(64) float numbers[3][width];
@@ -102,15 +102,15 @@ template <class F> Vector3<F> in_camera(const Site<F> &site) {
   });
 }
 
-// The point that stands for a lane in the picture.
+// Returns the point that represents a lane in the picture.
 template <class F> glm::dvec3 seen_at(const Site<F> &site, int i, const glm::dvec3 &p) {
   const Camera &camera = *site.scene.camera;
   if (site.surface)
     return p;
   if (camera.kind != CameraKind::Orthographic)
     return camera.to_world.translation + p;
-  // All parallel rays look the same way: one of the camera's is where it starts; any other's direction is taken for a point of
-  // the user's world, as Cycles has it.
+  // Parallel rays all have the same direction: a camera ray is represented by its origin; for any other ray the direction is
+  // used as a point of the user's world, as in Cycles.
   if (site.eye[i])
     return *site.eye[i];
   return site.scene.normalisation ? site.scene.normalisation->to_normalised(p) : p;
@@ -122,7 +122,7 @@ template <class F> Vector3<F> window(const Site<F> &site) {
     return narrow(user_position(site));
   return ask_camera<F>(site.p, [&](int i, const glm::dvec3 &p) {
     const glm::vec3 place = camera->to_window(seen_at(site, i, p));
-    // Nothing right beside a perspective camera has a place in its picture.
+    // Directions perpendicular to a perspective camera's axis have no place in its picture.
     return is_finite(place.x) && is_finite(place.y) ? place : glm::vec3(0.0f);
   });
 }

@@ -1,4 +1,4 @@
-// Curves and colour ramps as tables of values at equal distances, with straight lines between.
+// Curves and colour ramps as tables of values at equal distances, linearly interpolated.
 #pragma once
 
 #include "lancer.h"
@@ -7,12 +7,12 @@
 
 namespace lancer {
 
-// Numbers in a row: those of one channel are stride apart.
+// A table; the values of one channel are stride apart.
 struct CurveTable {
   const float *values = nullptr;
   uint32_t count = 0, stride = 1;
-  float low = 0.0f, high = 1.0f; // what the first and the last value belong to
-  bool extrapolates = false;     // beyond them along the first and the last line; else by their values
+  float low = 0.0f, high = 1.0f; // arguments of the first and the last value
+  bool extrapolates = false;     // extends the first and the last line; else clamps to the end values
   bool interpolates = true;      // else the value at or before
 };
 
@@ -36,7 +36,7 @@ template <class F> LANCER_LANE F on_curve(const CurveTable &table, uint32_t chan
   return value;
 }
 
-// The node CURVES: each channel by the curve of its own, or all of them by x; as far as factor says.
+// The node CURVES: each channel by its own curve, or all channels by the curve of x, blended by factor.
 template <class F> LANCER_LANE Vector3<F> on_curves(const CurveTable &table, const F &factor, const Vector3<F> &value) {
   const F rest = F(1.0f) - factor;
   if (table.stride < 3)

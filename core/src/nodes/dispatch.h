@@ -1,4 +1,4 @@
-// Runs scheduled nodes in order: which formula is a kind's. Like lanes.h.
+// Runs scheduled nodes in order and maps each kind to its formula. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "nodes/bump_node.h"
@@ -9,7 +9,7 @@
 namespace lancer {
 namespace {
 
-// What one node gives at a site.
+// Returns the value of one node at a site.
 template <class F> Value<F> node_value(const Program &program, const Inputs<F> &in, const Site<F> &site) {
   const Node &node = in.node;
   switch (node.kind) {

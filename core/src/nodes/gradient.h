@@ -29,7 +29,7 @@ template <class F> LANCER_LANE F gradient_texture(uint32_t kind, const Vector3<F
     value = narrow(angle(widen(p.y), widen(p.x)) * DoubleOf<F>(0.15915494309189535)) + F(0.5f);
     break;
   default: {
-    // A little less than 1, so that directions end at 0 in spite of rounding.
+    // Slightly below 1, so that unit vectors give 0 despite rounding.
     const F r = max(zero, F(0.999999f) - sqrt(p.x * p.x + p.y * p.y + p.z * p.z));
     value = kind == LANCER_GRADIENT_QUADRATIC_SPHERE ? r * r : r;
   }

@@ -1,5 +1,5 @@
-// Gradient noise of Perlin's kind in one to four dimensions: at each point of the whole numbers' lattice a slope, and between
-// them a smooth mixture. The lattice's slopes are those of Open Shading Language, which Cycles shares.
+// Gradient noise of Perlin's kind in one to four dimensions: a slope at each point of the integer lattice, smoothly
+// interpolated. The slopes are those of Open Shading Language, which Cycles shares.
 #pragma once
 
 #include "nodes/cell_hash.h"
@@ -8,8 +8,8 @@ namespace lancer {
 
 constexpr float kNoisePeriod = 100000.0f;
 
-// The rest of a division by the period, with the sign of x. Every product and difference is exact: the quotients of at most
-// 30 digits meet a divisor of 12.
+// Returns the remainder of a division by the period, with the sign of x. Every product and difference is exact: the quotients
+// have at most 30 digits and the divisor 12.
 template <class F> LANCER_LANE F within_period(const F &x) {
   using D = DoubleOf<F>;
   if (!any(abs(x) >= F(kNoisePeriod)))
@@ -23,12 +23,12 @@ template <class F> LANCER_LANE F within_period(const F &x) {
   return copysign(narrow(rest), x);
 }
 
-// v with its sign changed where a bit is set.
+// Negates v if the bit is set.
 template <class F> LANCER_LANE F negated(const F &v, const WordOf<F> &bits, int bit) {
   return as_float(as_word(v) ^ ((bits >> bit) << 31));
 }
 
-// The slope that belongs to a hash, times the way d from its lattice point.
+// Returns the dot product of a hash's slope and the vector d from its lattice point.
 template <int N, class F> LANCER_LANE F slope_along(const WordOf<F> &hash, const F (&d)[N]) {
   using U = WordOf<F>;
   const U zero(0u);
@@ -51,11 +51,11 @@ template <int N, class F> LANCER_LANE F slope_along(const WordOf<F> &hash, const
   }
 }
 
-// About -1 ... 1; 0 at lattice points, and where a coordinate is no finite number. repeats: every kNoisePeriod along each axis,
-// and half a cell further beyond ten of them, where floats are whole numbers.
+// Returns about -1 ... 1; 0 at lattice points, and if a coordinate is not finite. repeats: with period kNoisePeriod along each
+// axis, and shifted by half a cell beyond ten periods, where floats are whole numbers.
 template <int N, class F> LANCER_LANE F signed_noise(const F (&given)[N], bool repeats) {
   using U = WordOf<F>;
-  constexpr float kRange[] = {0.25f, 0.6616f, 0.982f, 0.8344f}; // of N dimensions: brings extremes near 1
+  constexpr float kRange[] = {0.25f, 0.6616f, 0.982f, 0.8344f}; // by N: scales extremes to about 1
   U cell[N];
   F at[N], fade[N];
   MaskOf<F> finite = is_finite(given[0]);

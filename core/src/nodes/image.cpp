@@ -24,8 +24,8 @@ const float *srgb_bytes() {
   return table.data();
 }
 
-// The curve's second derivative is at most 3.02, so that lines leave it by no more than 3.02 / 8 / 4096^2 = 2.3e-8; but for the
-// line across 0.04045, where the slope jumps from 0.0774 to 0.0787 and the curve lies up to 7.4e-8 beneath.
+// The curve's second derivative is at most 3.02, so that lines deviate by no more than 3.02 / 8 / 4096^2 = 2.3e-8; except the
+// line across 0.04045, where the slope jumps from 0.0774 to 0.0787 and the curve lies up to 7.4e-8 below it.
 const float *srgb_lines() {
   static const std::array<float, kSrgbSteps + 2> table = [] {
     std::array<float, kSrgbSteps + 2> values{};
@@ -59,7 +59,7 @@ void prefetch(const Image &image, const glm::vec2 &uv, Extension extension) {
   const Taps<float> across = taps(uv.x, image.width, extension, Interpolation::Linear);
   const Taps<float> up = taps(uv.y, image.height, extension, Interpolation::Linear);
   const size_t texel = image.bytes() / (size_t(image.width) * image.height);
-  // A row's neighbours mostly share a line of the cache.
+  // Neighbours in a row mostly share a cache line.
   for (int i = 0; i < 2; ++i)
     if (up.there[i] && across.there[0])
       __builtin_prefetch(image.texels.get() + (size_t(up.at[i]) * image.width + size_t(across.at[0])) * texel);

@@ -1,18 +1,18 @@
-// Looking up one place of a picture.
+// Lookup of one point of an image.
 #pragma once
 
 #include "scene/image.h"
 
 namespace lancer {
 
-// The colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; w is alpha. straight:
-// the colour divided by alpha where the picture's mode keeps it multiplied.
+// Returns the colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; w is alpha.
+// straight: divide the colour by alpha if the image's mode keeps it multiplied.
 glm::vec4 lookup(const Image &image, glm::vec2 uv, Extension extension, Interpolation interpolation, bool straight);
 
-// The alpha alone.
+// Returns the alpha only.
 float lookup_alpha(const Image &image, const glm::vec2 &uv, Extension extension, Interpolation interpolation);
 
-// Asks memory for the texels that a look-up there will want.
+// Prefetches the texels that a lookup at uv reads.
 void prefetch(const Image &image, const glm::vec2 &uv, Extension extension);
 
 } // namespace lancer

@@ -1,4 +1,5 @@
-// From vectors to pictures: flat, box, sphere and tube projection, tiles, and the environment's maps. Like lanes.h.
+// Mappings from vectors to images: flat, box, sphere and tube projection, tiles, and environment maps. Internal linkage, as in
+// lanes.h.
 #pragma once
 
 #include "nodes/look_up.h"
@@ -13,7 +14,7 @@ template <class F> LANCER_LANE Place<F> select(const MaskOf<F> &m, const Place<F
   return {select(m, a.u, b.u), select(m, a.v, b.v)};
 }
 
-// What stands where a picture is missing.
+// Replaces a missing image.
 template <class F> LANCER_LANE Value<F> missing() { return solid(Vector3<F>(F(1.0f), F(0.0f), F(1.0f))); }
 
 template <class F> LANCER_LANE const Image &picture(const Inputs<F> &in, const Site<F> &site, uint32_t number) {
@@ -25,7 +26,7 @@ template <class F> Value<F> look_up(const Inputs<F> &in, const Image &image, con
   return {found.color, found.alpha};
 }
 
-// Each lane in a picture of its own: its number among the node's, or none of them.
+// Looks up each lane in an image of its own: its number among the node's images; other numbers are missing.
 template <class F>
 Value<F> look_up_each(const Inputs<F> &in, const Site<F> &site, const WordOf<F> &number, const Place<F> &place) {
   Value<F> r = missing<F>();
@@ -37,7 +38,7 @@ Value<F> look_up_each(const Inputs<F> &in, const Site<F> &site, const WordOf<F> 
   return r;
 }
 
-// In the tile that holds the place. Like Blender, cuts off the fraction: just below 0 still is the first tile.
+// Looks up the tile that contains the place. Truncates, as Blender does: slightly below 0 is still the first tile.
 template <class F> Value<F> look_up_tile(const Inputs<F> &in, const Site<F> &site, const Place<F> &place) {
   using U = WordOf<F>;
   const F zero(0.0f), far(1e6f);
@@ -55,7 +56,7 @@ template <class F> Value<F> look_up_tile(const Inputs<F> &in, const Site<F> &sit
   return look_up_each(in, site, select(known, number, U(in.node.image_count)), {place.u - column, place.v - row});
 }
 
-// Longitude and latitude of a box that is -1 ... 1.
+// Returns longitude and latitude of a point in the box -1 ... 1.
 template <class F> Place<F> on_sphere(const Vector3<F> &p) {
   constexpr float pi = 3.14159265358979323846f;
   const F zero(0.0f), half(0.5f), radius = hypot(p.x, p.y);
@@ -70,19 +71,19 @@ template <class F> Place<F> on_tube(const Vector3<F> &p) {
                 Place<F>{half - atan2(p.x, p.y) / F(2.0f * pi), half * (p.z + F(1.0f))});
 }
 
-// Shares of the three sides of a box for a normal with n.x + n.y + n.z = 1, all positive. Think of a triangle whose corners are
-// the sides: near a corner one picture stands alone, near an edge two are mixed, in the middle three.
+// Returns the weights of a box's three sides for a normal with n.x + n.y + n.z = 1, all positive. In the triangle with the
+// sides as corners there is one image near a corner, a mix of two near an edge, and a mix of three in the middle.
 template <class F> Vector3<F> box_shares(const Vector3<F> &n, const F &blend) {
   using V3 = Vector3<F>;
   const F zero(0.0f), one(1.0f), half(0.5f), two(2.0f), limit = half * (one + blend);
   V3 shares = (F(two - limit) * n + V3(limit - one)) / F(two * limit - one);
-  // The side is left out where the other two stand far above it: of i its share, of j the rest.
+  // Omit side `out` if the other two are far larger: i gets its share, j the rest.
   const auto edge = [&](const F &out, const F &i, const F &j, F &of_i) {
     of_i = clamp01(F((i / (i + j) - half * (one - blend)) / blend));
     return out < (one - limit) * (i + j);
   };
   F share;
-  // The first that holds counts: z, x, y left out.
+  // The first match wins: z, x, y omitted.
   auto only = edge(n.y, n.x, n.z, share);
   shares = select(only, V3(share, zero, one - share), shares);
   only = edge(n.x, n.y, n.z, share);
@@ -102,7 +103,7 @@ template <class F> Value<F> box(const Inputs<F> &in, const Site<F> &site, const 
   const F sum = size.x + size.y + size.z;
   const Vector3<F> unit = select(sum > zero, size / sum, Vector3<F>(one, zero, zero));
   const Vector3<F> shares = box_shares(unit, in.scalar(1));
-  // Turn each side so that no picture is mirrored.
+  // Orient each side so that no image is mirrored.
   const Place<F> places[3] = {{select(n.x < zero, one - p.y, p.y), p.z},
                               {select(n.y > zero, one - p.x, p.x), p.z},
                               {select(n.z > zero, one - p.y, p.y), p.x}};
@@ -119,8 +120,8 @@ template <class F> Value<F> box(const Inputs<F> &in, const Site<F> &site, const 
   return result;
 }
 
-// The side that a direction leaves a cube through, and where; upright for one who stands inside with +z up, and for +z and -z
-// for one who looks towards +y first and then raises or lowers his head.
+// Looks up the side of a cube that a direction leaves through; upright as seen from inside with +z up, and +z and -z as seen by
+// a viewer who faces +y and then looks up or down.
 template <class F> Value<F> cube(const Inputs<F> &in, const Site<F> &site, const Vector3<F> &d) {
   using U = WordOf<F>;
   const F zero(0.0f), half(0.5f);
@@ -160,7 +161,7 @@ template <class F> Value<F> environment_node(const Inputs<F> &in, const Site<F> 
   const F zero(0.0f), one(1.0f), half(0.5f);
   Place<F> place;
   if (in.node.option == LANCER_ENVIRONMENT_MIRROR_BALL) {
-    // The ball, seen along +y, is bent half way between the viewer and d.
+    // The ball is seen along +y; its normal is halfway between the viewer and d.
     const Vector3<F> d = unit_or_zero(given);
     const F size = F(2.0f) * sqrt(max(F(-0.5f) * (d.y - one), zero)), length = select(size > zero, size, one);
     place = {half * (d.x / length + one), half * (d.z / length + one)};

@@ -1,4 +1,4 @@
-// A picture as look-ups read it: its texels and plain numbers, and how it is looked at.
+// An image as lookups read it: its texels, plain numbers, and the lookup mode.
 #pragma once
 
 #include "scene/image.h"
@@ -6,8 +6,8 @@
 
 namespace lancer {
 
-// Steps of the lines that stand for the curve of sRGB between 0 and 1, and those lines' ends; the curve at the 256 values that
-// a byte can have; and anywhere.
+// The sRGB curve: as kSrgbSteps line segments between 0 and 1, given by their end points; at the 256 values of a byte; and at
+// any value.
 inline constexpr uint32_t kSrgbSteps = 4096;
 const float *srgb_lines();
 const float *srgb_bytes();
@@ -17,16 +17,16 @@ struct ImageView {
   const std::byte *texels = nullptr;
   const glm::mat3 *matrix = nullptr; // null: decoded colours are in the working space
   uint32_t width = 0, height = 0, channels = 0;
-  uint32_t texel_bytes = 0; // of a channel: 1, 2, or 4 for floats
+  uint32_t texel_bytes = 0; // per channel: 1, 2, or 4 for floats
   Extension extension = Extension::Repeat;
   Interpolation interpolation = Interpolation::Linear;
-  bool curve = false;       // texels are of sRGB's, or linear
-  bool large = false;       // offsets in it need more than 32 bits
-  bool straight = false;    // the colour is divided by alpha
-  bool keeps_alpha = false; // in the fourth channel; else 1
+  bool curve = false;       // texels are in sRGB; else linear
+  bool large = false;       // offsets exceed 32 bits
+  bool straight = false;    // divide the colour by alpha
+  bool keeps_alpha = false; // alpha is the fourth channel; else 1
 };
 
-// As nodes with these flags look at it. As long as the image is neither changed nor moved.
+// Returns the view of nodes with these flags. Valid as long as the image is neither changed nor moved.
 LANCER_LANE ImageView image_view(const Image &image, uint32_t flags) {
   const bool multiplied = image.alpha == AlphaMode::Associated || image.alpha == AlphaMode::Straight;
   ImageView r;

@@ -1,4 +1,4 @@
-// The Light Path: what is known of the ray for which nodes are asked, and of the path before it.
+// The Light Path node: data about the ray that evaluates nodes, and about the path before it.
 #pragma once
 
 #include "lancer.h"
@@ -8,13 +8,13 @@
 
 namespace lancer {
 
-// Beside LANCER_RAY_* bits, of the scattering that sent the ray: into one direction alone, to the side it came from.
+// Bits beside LANCER_RAY_* for the scattering event that sent the ray: a single direction, reflection.
 constexpr uint32_t kRaySingular = 64, kRayReflected = 128;
 
 template <class F> struct LightPath {
-  WordOf<F> kinds = WordOf<F>(0u); // LANCER_RAY_*, kRaySingular, kRayReflected; a light that is sampled is asked for by none
+  WordOf<F> kinds = WordOf<F>(0u); // LANCER_RAY_*, kRaySingular, kRayReflected; 0 for a sampled light
   F length = F(0.0f);              // of the ray, in the user's units
-  // Scatterings before the ray: all of them, and by what they were; surfaces passed straight through.
+  // Scattering events before the ray: all, and by kind; surfaces passed straight through.
   F depth = F(0.0f), diffuse = F(0.0f), glossy = F(0.0f), transmission = F(0.0f), transparent = F(0.0f), portal = F(0.0f);
 };
 
@@ -42,12 +42,12 @@ template <class F> LANCER_LANE F light_path_value(uint32_t which, const LightPat
   }
 }
 
-// What a Light Path node is told of a path: by what its last ray was sent, and how often it was scattered in which way.
+// Data of a Light Path node about a path: the kind of its last scattering event, and counts by kind.
 struct PathStory {
-  uint8_t kinds = LANCER_RAY_CAMERA; // as LightPath::kinds
+  uint8_t kinds = LANCER_RAY_CAMERA; // see LightPath::kinds
   uint8_t diffuse = 0, glossy = 0, transmission = 0;
 
-  // Beyond 255 scatterings the counts stay.
+  // The counts saturate at 255.
   void scatter(bool is_diffuse, bool transmitted, bool singular) {
     uint8_t &count = transmitted ? transmission : is_diffuse ? diffuse : glossy;
     count = uint8_t(std::min(count + 1, 255));

@@ -1,4 +1,5 @@
-// Looking up pictures, in lanes of F: texels, their weights, and how what is stored becomes a colour. Like lanes.h.
+// Image lookups in lanes of F: texels, their weights, and the conversion of stored values to colours. Internal linkage, as in
+// lanes.h.
 #pragma once
 
 #include "nodes/image_view.h"
@@ -9,15 +10,15 @@
 namespace lancer {
 namespace {
 
-// Neighbours along one axis, as whole numbers, with their weights and whether there are such texels; of only one, its weight is
-// not set. What is beyond count is not set.
+// Neighbouring texels along one axis, as whole numbers, with their weights and whether they exist. A single one has no weight.
+// Entries beyond count are unset.
 template <class F> struct Taps {
   F at[4], weight[4];
   MaskOf<F> there[4];
   int count;
 };
 
-// i modulo size, of an i that is at most two texels outside, which a picture of one texel is twice.
+// Returns i modulo size, for i at most two texels outside, which is two periods of a one-texel image.
 template <class F> LANCER_LANE F folded(F i, const F &size) {
   const F zero(0.0f);
   i = select(i < zero, i + size, i);
@@ -26,7 +27,7 @@ template <class F> LANCER_LANE F folded(F i, const F &size) {
   return select(i >= size, i - size, i);
 }
 
-// The texel that stands at index i of an endless row, near the picture.
+// Returns the texel at index i of an infinite row, near the image.
 template <class F> LANCER_LANE F wrapped(const F &i, const F &size, Extension extension, MaskOf<F> &there) {
   const F zero(0.0f), last = size - F(1.0f);
   there = uniform<F>(true);
@@ -46,7 +47,7 @@ template <class F> LANCER_LANE F wrapped(const F &i, const F &size, Extension ex
   return min(max(i, zero), last);
 }
 
-// A coordinate brought to where texel indices are small, without a change of what is found there.
+// Maps a coordinate to a range of small texel indices with the same lookup result.
 template <class F> LANCER_LANE F near_picture(const F &u, Extension extension) {
   if (extension == Extension::Repeat)
     return u - floor(u);
@@ -55,11 +56,11 @@ template <class F> LANCER_LANE F near_picture(const F &u, Extension extension) {
   return min(max(u, F(-8.0f)), F(9.0f));
 }
 
-// Of a finite coordinate. Sides are at most 2^20, so that floats hold all these indices.
+// For finite coordinates. Sides are at most 2^20, so that floats represent all these indices.
 template <class F> LANCER_LANE Taps<F> taps(const F &u, uint32_t side, Extension extension, Interpolation interpolation) {
   Taps<F> r;
   const F one(1.0f), size(static_cast<float>(side)), x = near_picture(u, extension) * size;
-  // Texels are centred at halves: the place between two centres is half a texel lower.
+  // Texels are centred at halves: subtract half a texel.
   const F place = interpolation == Interpolation::Closest ? x : x - F(0.5f), whole = floor(place), part = place - whole;
   const auto neighbour = [&](int i, float step) __attribute__((always_inline)) {
     r.at[i] = wrapped(F(whole + F(step)), size, extension, r.there[i]);
@@ -91,7 +92,7 @@ template <class F> LANCER_LANE Taps<F> taps(const F &u, uint32_t side, Extension
   return r;
 }
 
-// What is looked for: a colour with alpha, or the alpha alone.
+// Results of a lookup: a colour with alpha, or the alpha only.
 template <class F> struct Texel {
   Vector3<F> color;
   F alpha;
@@ -114,7 +115,7 @@ template <class F> LANCER_LANE Alpha<F> select(const MaskOf<F> &m, const Alpha<F
   return {select(m, a.alpha, b.alpha)};
 }
 
-// The words that begin this many bytes into a texel.
+// Returns the words at this byte offset into a texel.
 template <uint32_t Bytes, class F>
 LANCER_LANE WordOf<F> words_at(const ImageView &image, const F &x, const F &y, uint32_t into) {
   using U = WordOf<F>;
@@ -129,7 +130,7 @@ LANCER_LANE WordOf<F> words_at(const ImageView &image, const F &x, const F &y, u
   });
 }
 
-// By the bytes of a channel.
+// Bytes: of a channel.
 template <uint32_t Bytes, class F> LANCER_LANE F channel(const WordOf<F> &word, uint32_t byte) {
   using U = WordOf<F>;
   if constexpr (Bytes == 4)
@@ -190,7 +191,7 @@ LANCER_LANE Found between(const ImageView &image, const Taps<F> &across, const T
   }
   if (all(whole))
     return found;
-  // More of them, or some beyond the edge of a clipped picture.
+  // More neighbours, or some beyond the edge of a clipped image.
   Found sum = Found::zero();
   for (int y = 0; y < up.count; ++y) {
     Found row = Found::zero();
@@ -209,7 +210,7 @@ template <class Found, class F> LANCER_LANE Found found_at(const ImageView &imag
                                   : between<1, Found>(image, across, up);
 }
 
-// Straight lines between points of the curve from 0 to 1, and a step beyond, where sums of weighted bytes may round to.
+// Linear interpolation of the curve from 0 to 1, and one step beyond, which sums of weighted bytes may reach by rounding.
 template <class F> LANCER_LANE F decode(const float *lines, const F &value) {
   const F zero(0.0f), steps(static_cast<float>(kSrgbSteps));
   const auto on_lines = (value >= zero) & (value < F(1.0f + 1.0f / static_cast<float>(kSrgbSteps)));
@@ -225,19 +226,20 @@ template <class F> LANCER_LANE F decode_byte(const F &value) {
   return gather(srgb_bytes(), truncate(select(on_table, place, F(0.0f))));
 }
 
-// The colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; 0 at what is no place.
+// Returns the colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right, in the working space; 0 if a
+// coordinate is not finite.
 template <class F> LANCER_LANE Texel<F> look_up(const ImageView &image, const F &u, const F &v) {
   const F zero(0.0f), one(1.0f);
   const auto place = is_finite(u) & is_finite(v);
   Texel<F> texel = found_at<Texel<F>>(image, select(place, u, zero), select(place, v, zero));
-  // A picture of one number is solid even where it is clipped; one of three is clear there, as in Blender.
+  // Outside a clipped image, alpha is 1 with one channel and 0 with three, as in Blender.
   if (image.channels == 1)
     texel.alpha = F(1.0f);
   Vector3<F> &c = texel.color;
   const auto divided = uniform<F>(image.straight) & (texel.alpha != one) & (texel.alpha != zero);
   if (any(divided))
     c = select(divided, c / texel.alpha, c);
-  // Decode what was interpolated as it is stored.
+  // Interpolate stored values first, then decode.
   if (image.curve) {
     const bool bytes = image.texel_bytes == 1 && image.interpolation == Interpolation::Closest;
     const Vector3<F> stored = c;
@@ -256,7 +258,7 @@ template <class F> LANCER_LANE Texel<F> look_up(const ImageView &image, const F 
   return select(place, texel, Texel<F>::zero());
 }
 
-// The alpha alone.
+// Returns the alpha only.
 template <class F> LANCER_LANE F look_up_alpha(const ImageView &image, const F &u, const F &v) {
   const F zero(0.0f);
   const auto place = is_finite(u) & is_finite(v);

@@ -1,4 +1,4 @@
-// Arithmetic of numbers, as Blender's Math node has it: what is undefined gives 0. Like lanes.h.
+// Arithmetic of Blender's Math node: undefined results are 0. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "lancer.h"
@@ -11,8 +11,7 @@
 namespace lancer {
 namespace {
 
-// Of a number and what is none the number, as C99's fmin() and fmax(); of zeros of both signs the first, which those leave
-// open.
+// As C99's fmin() and fmax(): of a number and a NaN the number. Of zeros of both signs the first, which C99 leaves open.
 template <class F> LANCER_LANE F least(const F &a, const F &b) { return select((b < a) | (a != a), b, a); }
 template <class F> LANCER_LANE F largest(const F &a, const F &b) { return select((b > a) | (a != a), b, a); }
 
@@ -32,7 +31,7 @@ template <class F> LANCER_LANE F logarithm(const F &a, const F &base) {
   return select((a > zero) & (base > zero), divide(log(a), log(base)), zero);
 }
 
-// The smaller, rounded off over the distance k.
+// The minimum, smoothed over the distance k.
 template <class F> LANCER_LANE F smooth_minimum(const F &a, const F &b, const F &k) {
   const F smaller = least(a, b), h = largest(k - abs(a - b), F(0.0f)) / k;
   return select(k == F(0.0f), smaller, smaller - h * h * h * k / F(6.0f));

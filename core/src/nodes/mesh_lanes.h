@@ -1,5 +1,5 @@
-// What meshes say at a place, in lanes of F: named attributes, texture coordinates, normals, corners. Lanes read each a
-// triangle of its own. Like lanes.h.
+// Mesh data at a hit, in lanes of F: named attributes, texture coordinates, normals, corners. Each lane reads its own triangle.
+// Internal linkage, as in lanes.h.
 #pragma once
 
 #include "nodes/site.h"
@@ -23,7 +23,7 @@ template <class F> LANCER_LANE AttributeLanes<F> find_attributes(const Site<F> &
   return r;
 }
 
-// An attribute at the corners of every lane's triangle, and whether it is one for the whole face; 0 in lanes without.
+// An attribute at the corners of every lane's triangle, and whether it has one value per face; 0 in lanes without it.
 template <class F> struct CornerValues {
   Value<F> corner[3];
   MaskOf<F> face;
@@ -48,7 +48,7 @@ template <class F> CornerValues<F> corner_values(const Site<F> &site, const Attr
   return r;
 }
 
-// The attribute where its weights are these.
+// Returns the attribute interpolated with these weights.
 template <class F> LANCER_LANE Value<F> between(const CornerValues<F> &of, const Vector3<F> &weights) {
   const Value<F> &a = of.corner[0], &b = of.corner[1], &c = of.corner[2];
   const Value<F> mixed{interpolate(a.v, b.v, c.v, weights), weights.x * a.alpha + weights.y * b.alpha + weights.z * c.alpha};
@@ -58,7 +58,7 @@ template <class F> LANCER_LANE Value<F> attribute_at(const Site<F> &site, const 
   return between(corner_values(site, attribute), site.weights());
 }
 
-// Texture coordinates at the corners; found: there are some.
+// Texture coordinates at the corners; found: whether they exist.
 template <class F> struct CornerUVs {
   F u[3], v[3];
   MaskOf<F> found;
@@ -86,7 +86,7 @@ template <class F> CornerUVs<F> corner_uvs(const Site<F> &site, uint32_t name) {
   return r;
 }
 
-// Vectors of three floats, a corner each, by lane.
+// Loads three floats per corner in each lane.
 template <class F, class Read> LANCER_LANE void load_corners(const Site<F> &site, const Read &read, Vector3<F> (&r)[3]) {
   constexpr int width = Site<F>::kWidth;
   alignas(64) float numbers[3][3][width];
@@ -103,7 +103,7 @@ template <class F, class Read> LANCER_LANE void load_corners(const Site<F> &site
                  load_lanes<width>(numbers[corner][2])};
 }
 
-// The normal between a triangle's corners in the object's space, of any length; 0 where the surface is flat.
+// Returns the interpolated normal in object space, of any length; 0 if the surface is flat.
 template <class F> Vector3<F> interpolated_normal(const Site<F> &site) {
   Vector3<F> n[3];
   load_corners(
@@ -112,7 +112,7 @@ template <class F> Vector3<F> interpolated_normal(const Site<F> &site) {
   return interpolate(n[0], n[1], n[2], site.weights());
 }
 
-// The triangle's edges from its first corner, in the object's space.
+// The triangle's edges from its first corner, in object space.
 template <class F> struct Edges { Vector3<DoubleOf<F>> first, second; };
 template <class F> Edges<F> edges_of(const Site<F> &site) {
   Vector3<F> v[3];

@@ -1,4 +1,5 @@
-// Compiled once per instruction set, with LANCER_ISA naming it. This file may emit no shared (weak) symbol: see bvh_kernel.cpp.
+// Compiled once per instruction set, with LANCER_ISA naming it. This file must not emit a shared (weak) symbol: see
+// bvh_kernel.cpp.
 #include "nodes/block_site.h"
 #include "simd/kernel_choice.h"
 #include "simd/kernel_lanes.h"

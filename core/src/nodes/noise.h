@@ -1,5 +1,5 @@
-// The Noise Texture: octaves of gradient noise, summed or multiplied in five ways, those of "Texturing and Modeling"
-// (Ebert et al.) as Blender has them; and its Musgrave Texture of before 4.1, which counts octaves otherwise.
+// The Noise Texture: octaves of gradient noise, combined in the five ways of "Texturing and Modeling" (Ebert et al.) as Blender
+// defines them; and the Musgrave Texture of before 4.1, which counts octaves differently.
 #pragma once
 
 #include "lancer.h"
@@ -10,7 +10,7 @@ namespace lancer {
 
 template <class F> struct NoiseOctaves { F detail, roughness, lacunarity, offset, gain; };
 
-// How a texture's second and later noises are moved, so that they look like others: 100 ... 200 along each axis.
+// Returns the offset that decorrelates a texture's second and later noises: 100 ... 200 along each axis.
 constexpr float seed_offset(int dimensions, int seed, int axis) {
   const uint32_t first = std::bit_cast<uint32_t>(static_cast<float>(seed));
   const uint32_t one[] = {first}, two[] = {first, std::bit_cast<uint32_t>(static_cast<float>(axis))};
@@ -29,7 +29,7 @@ static F octaves_of_noise(uint32_t kind, uint32_t flags, const F (&given)[N], co
   const F zero(0.0f), one(1.0f);
   const bool is_terrain = kind == LANCER_NOISE_HETERO_TERRAIN, is_ridged = kind == LANCER_NOISE_RIDGED_MULTIFRACTAL;
   const F detail = min(F(15.0f), max(zero, of.detail)), roughness = max(zero, of.roughness);
-  // The octaves that count in full, and the share of the one after them.
+  // The number of full octaves, and the fraction of the next.
   const F whole = floor(detail), rest = detail - whole;
   F full_octaves = flags & LANCER_NOISE_COUNTED ? whole : whole + one;
   if (is_terrain || is_ridged)
@@ -72,7 +72,7 @@ static F octaves_of_noise(uint32_t kind, uint32_t flags, const F (&given)[N], co
       signal = ridge * ridge * (octave == 0 ? one : min(one, max(zero, signal * of.gain)));
       value = octave == 0 ? signal : select(full, value + signal * amplitude, value);
     }
-    // The first octave of these two is as it is.
+    // The first octave of these two has full amplitude.
     if (octave > 0 || !(is_terrain || is_ridged))
       amplitude = select(full, amplitude * roughness, amplitude);
     scale = scale * of.lacunarity;
@@ -101,7 +101,7 @@ static Vector3<F> noise_at(uint32_t kind, uint32_t flags, const F (&given)[N], c
       move_by_seed(q, i);
       p[i] = p[i] + signed_noise(q, (flags & LANCER_NOISE_REPEATS) != 0) * distortion;
     }
-  // Red is the texture's one value; the other channels are it elsewhere.
+  // Red is the texture's scalar value; the other channels are the same noise at an offset.
   F channels[3];
   for (int channel = 0; channel < (flags & LANCER_NOISE_COLOR ? 3 : 1); ++channel) {
     F q[N];

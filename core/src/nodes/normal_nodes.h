@@ -1,4 +1,5 @@
-// Normals and what depends on them: normal maps, tangents, displacement, Fresnel and layer weight. Like lanes.h.
+// Normals and functions of them: normal maps, tangents, displacement, Fresnel and layer weight. Internal linkage, as in
+// lanes.h.
 #pragma once
 
 #include "bsdf/fresnel.h"
@@ -7,14 +8,14 @@
 namespace lancer {
 namespace {
 
-// A tangent in the object's space and the hand of its frame.
+// A tangent in object space and the handedness of its frame.
 template <class F> struct Tangent {
   Vector3<F> t;
   F sign;
   MaskOf<F> found;
 };
 
-// Outwards, of any length: maps stand in the interpolated frame as it is.
+// Outward, of any length: normal maps use the interpolated frame without normalising it.
 template <class F> Vector3<F> object_normal(const Site<F> &site) {
   const auto outward = [&](const Vector3<F> &n) { return normal_to_object(site, select(site.backfacing, -n, n)); };
   if (!any(site.on_mesh))
@@ -27,7 +28,7 @@ template <class F> Vector3<F> object_normal(const Site<F> &site) {
   return all(site.on_mesh) ? r : select(site.on_mesh, r, outward(site.ns));
 }
 
-// Where u grows along a triangle.
+// Returns the direction of growing u on a triangle.
 template <class F> Tangent<F> uv_tangent(const Site<F> &site, uint32_t name, const Vector3<F> &n) {
   using D = DoubleOf<F>;
   const CornerUVs<F> uv = corner_uvs(site, name);
@@ -35,7 +36,7 @@ template <class F> Tangent<F> uv_tangent(const Site<F> &site, uint32_t name, con
   const auto difference = [&](const F(&of)[3], int corner) { return D(widen(of[corner]) - widen(of[0])); };
   const D u1 = difference(uv.u, 1), v1 = difference(uv.v, 1), u2 = difference(uv.u, 2), v2 = difference(uv.v, 2);
   const D zero(0.0), det = u1 * v2 - v1 * u2, hand = select(det < zero, D(-1.0), D(1.0));
-  // Keep what lies across the normal.
+  // Project out the normal.
   Vector3<D> t = hand * (v2 * e.first - v1 * e.second);
   const Vector3<D> normal = widen(unit_or_zero(n));
   t = t - D(dot(t, normal)) * normal;
@@ -63,7 +64,7 @@ template <class F> Tangent<F> tangent_at(const Node &node, const Site<F> &site, 
     }
   }
   if (!all(site.on_mesh)) {
-    // Exact surfaces run around their axis; a plane along x.
+    // On exact surfaces the tangent is around the axis; on a plane along x.
     const Vector3<D> p = object_position(site);
     const Vector3<F> around = unit_or_zero(narrow(Vector3<D>(-p.y, p.x, D(0.0))));
     const M plane = by_lane<M>([&](int i) { return site.instance[i]->kind == ShapeKind::Plane; });
@@ -86,7 +87,7 @@ template <class F> Value<F> normal_map_node(const Inputs<F> &in, const Site<F> &
     const V3 interpolated = object_normal(site);
     const V3 normal = in.node.flags & 1 ? unit_or_zero(interpolated) : interpolated;
     const Tangent<F> frame = tangent_at(in.node, site, normal);
-    // Strength flattens the map before it is turned into the frame.
+    // Apply the strength before the transformation to the frame.
     color.x *= strength;
     color.y *= strength;
     color.z = one + (color.z - one) * clamp01(strength);
@@ -119,7 +120,7 @@ template <class F> Value<F> tangent_node(const Node &node, const Site<F> &site) 
     t = frame.t;
     found = frame.found;
   } else {
-    // Around the axis through the middle of the generated coordinates.
+    // Around the axis through the centre of the generated coordinates.
     const V3 g = generated(site, node.name) - V3(F(0.5f));
     t = node.option == 0 ? V3(zero, -g.z, g.y) : node.option == 1 ? V3(-g.z, zero, g.x) : V3(-g.y, g.x, zero);
   }
@@ -135,11 +136,11 @@ template <class F> Value<F> displacement_node(const Inputs<F> &in, const Site<F>
     return solid(n * offset);
   if (in.node.option == 0)
     return solid(normal_to_object(site, n) * offset);
-  // A length in the world, in the user's units, as the object sees it.
+  // A world length, in the user's units, converted to object space.
   return solid(narrow(vector_to_object(site, widen(n) * (widen(offset) * D(site.user_scale())))));
 }
 
-// Of the cosine between the viewer and the normal of input 1.
+// Returns the absolute cosine between the viewer and the normal of input 1.
 template <class F> LANCER_LANE F cosine_to_viewer(const Inputs<F> &in, const Site<F> &site) {
   return abs(F(dot(site.wo, in.normal(1, site))));
 }

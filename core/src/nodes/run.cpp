@@ -1,4 +1,4 @@
-// Runs nodes: the kernel of this processor, and memory for values.
+// Runs nodes: chooses the kernel of this processor and allocates memory for values.
 #include "nodes/run.h"
 
 #include "nodes/dispatch.h"
@@ -20,7 +20,7 @@ constexpr std::align_val_t kAlignment{64};
 void *allocate_values(size_t bytes) { return ::operator new(bytes, kAlignment); }
 void free_values(void *values) { ::operator delete(values, kAlignment); }
 
-// The node machine at one place.
+// The node machine at one hit.
 namespace {
 
 Site<float> site_of(const NodeContext &context) {
@@ -32,7 +32,7 @@ Site<float> site_of(const NodeContext &context) {
   site.eye[0] = context.eye;
   site.path = context.path;
   if (!context.surface) {
-    // All that the world knows is the direction; its surface would look back at the viewer.
+    // For the world only the direction is defined; its surface faces the viewer.
     site.instance[0] = nullptr;
     site.place();
     site.primitive[0] = 0;

@@ -1,4 +1,4 @@
-// The place at which nodes are evaluated, in lanes of F, and the inputs of a node there. Like lanes.h.
+// The hit at which nodes are evaluated, in lanes of F, and the inputs of a node there. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "nodes/run.h"
@@ -10,7 +10,7 @@
 namespace lancer {
 namespace {
 
-// A map's linear part, by columns as glm has it, or any three vectors.
+// The linear part of a map, by columns as in glm, or any three vectors.
 template <class T> struct Columns {
   Vector3<T> c[3];
 
@@ -25,13 +25,13 @@ template <class T> LANCER_LANE Columns<T> operator*(const Columns<T> &a, const C
 }
 
 template <class T> LANCER_LANE T length(const Vector3<T> &v) { return sqrt(dot(v, v)); }
-// A vector without length stays 0.
+// Returns the unit vector; 0 for a zero vector.
 template <class T> LANCER_LANE Vector3<T> unit_or_zero(const Vector3<T> &v) {
   const T size = length(v);
   return select(size > T(0), v / size, Vector3<T>(T(0)));
 }
 
-// What a node gives.
+// The result of a node.
 template <class F> struct Value {
   Vector3<F> v;
   F alpha;
@@ -43,10 +43,10 @@ template <class F> LANCER_LANE Value<F> select(const MaskOf<F> &m, const Value<F
   return {select(m, a.v, b.v), select(m, a.alpha, b.alpha)};
 }
 
-// Where values of nodes lie: four numbers a node, each of as many lanes as stand between one number and the next.
+// Storage of node values: four numbers per node, with a stride of `lanes`.
 template <class F> struct Values {
   float *at;
-  size_t lanes; // 1: numbers of one place in a row
+  size_t lanes; // 1: the numbers of one hit in a row
 
   LANCER_LANE F get(int32_t node, int k) const {
     return load_lanes<LanesOf<F>::kWidth>(at + (size_t(node) * 4 + size_t(k)) * lanes);
@@ -67,23 +67,23 @@ template <class F> struct Site {
   using M = MaskOf<F>;
 
   NodeScene scene;
-  bool surface = false;   // or a direction of the world
+  bool surface = false;   // else a direction of the world
   bool placed = false;    // lanes have instances
-  bool together = false;  // and all the same one
-  bool in_height = false; // a BUMP is looking at its own nodes
+  bool together = false;  // and all lanes have the same one
+  bool in_height = false; // a BUMP is evaluating its height
   const Instance *instance[kWidth];
   const Mesh *mesh[kWidth]; // null on exact surfaces
   uint32_t primitive[kWidth];
   const glm::dvec3 *eye[kWidth];
   M on_mesh;
-  Vector3<D> p; // normalised world; for the world the direction
+  Vector3<D> p; // normalised world; for the world, the direction
   D bary[2];
-  Vector3<F> ns, ng, wo; // normals towards the viewer
+  Vector3<F> ns, ng, wo; // normals on the viewer's side
   F footprint;
   M backfacing;
   LightPath<F> path;
 
-  // Of the instances in all lanes.
+  // Sets the members that follow from the instances of all lanes.
   LANCER_LANE void place() {
     placed = surface && scene.geometry;
     together = placed;
@@ -94,11 +94,11 @@ template <class F> struct Site {
     on_mesh = by_lane<M>([&](int i) { return mesh[i] != nullptr; });
   }
   LANCER_LANE double user_scale() const { return scene.normalisation ? scene.normalisation->scale : 1.0; }
-  // Of what is interpolated over a mesh.
+  // Returns the interpolation weights on a mesh.
   LANCER_LANE Vector3<F> weights() const { return {narrow(D(1.0) - bary[0] - bary[1]), narrow(bary[0]), narrow(bary[1])}; }
 };
 
-// One of an instance's maps, of every lane's.
+// Returns a map of every lane's instance.
 template <class F> LANCER_LANE Columns<DoubleOf<F>> linear_of(const Site<F> &site, Affine Instance::*map) {
   using D = DoubleOf<F>;
   Columns<D> r;
@@ -126,7 +126,7 @@ template <class F> LANCER_LANE Vector3<DoubleOf<F>> translation_of(const Site<F>
   return {part(0), part(1), part(2)};
 }
 
-// Points, vectors and normals between the spaces; the world's own frame is its object space. Normals are unit; 0 stays 0.
+// Transformations of points, vectors and normals; the world's own frame is its object space. Normals are unit; 0 stays 0.
 template <class F> LANCER_LANE Vector3<DoubleOf<F>> vector_to_object(const Site<F> &site, const Vector3<DoubleOf<F>> &v) {
   return site.placed ? linear_of(site, &Instance::to_object).times(v) : v;
 }
@@ -145,7 +145,7 @@ template <class F> LANCER_LANE Vector3<F> normal_to_object(const Site<F> &site, 
 template <class F> LANCER_LANE Vector3<F> normal_to_world(const Site<F> &site, const Vector3<F> &n) {
   return carried_normal(site, &Instance::to_object, n);
 }
-// A point of the normalised world in the user's.
+// Converts a point of the normalised world to the user's.
 template <class F> LANCER_LANE Vector3<DoubleOf<F>> in_user_world(const Site<F> &site, const Vector3<DoubleOf<F>> &p) {
   using D = DoubleOf<F>;
   if (!site.scene.normalisation)
@@ -153,12 +153,12 @@ template <class F> LANCER_LANE Vector3<DoubleOf<F>> in_user_world(const Site<F> 
   const glm::dvec3 &c = site.scene.normalisation->centre;
   return p / D(site.scene.normalisation->scale) + Vector3<D>(D(c.x), D(c.y), D(c.z));
 }
-// Where the site is there; for the world the direction itself.
+// Returns the site's position in the user's world; for the world, the direction.
 template <class F> LANCER_LANE Vector3<DoubleOf<F>> user_position(const Site<F> &site) {
   return site.surface ? in_user_world(site, site.p) : site.p;
 }
 
-// The inputs of one node, as values.
+// The input values of one node.
 template <class F> struct Inputs {
   const Node &node;
   Values<F> values;
@@ -172,7 +172,7 @@ template <class F> struct Inputs {
     return input.varies() ? values.get(input.node, 0) : F(input.value.x);
   }
   LANCER_LANE F alpha(int i) const { return node.inputs[i].varies() ? values.get(node.inputs[i].node, 3) : F(1.0f); }
-  // The constant 0 stands for the shading normal.
+  // Returns a normal input; the constant 0 means the shading normal.
   LANCER_LANE Vector3<F> normal(int i, const Site<F> &site) const {
     const Parameter &input = node.inputs[i];
     return !input.varies() && input.value == glm::vec3(0.0f) ? site.ns : (*this)[i];

@@ -1,4 +1,4 @@
-// Textures, tables and what is known of objects and rays, as the machine asks for them. Like lanes.h.
+// Nodes of textures, tables, objects and rays. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "nodes/curves.h"
@@ -38,7 +38,7 @@ template <class F> Value<F> curves_node(const Inputs<F> &in, const Site<F> &site
   return {color, image.channels == 4 ? on_curve(table, 3, x) : F(1.0f)};
 }
 
-// Where an object is, and what tells it from others of its kind.
+// The Object Info node: location, and data that distinguish objects.
 template <class F> Value<F> object_info_node(const Node &node, const Site<F> &site) {
   using D = DoubleOf<F>;
   if (!site.placed)

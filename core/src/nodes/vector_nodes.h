@@ -1,4 +1,4 @@
-// Arithmetic of vectors, as Blender's Vector Math, Mapping and Vector Transform nodes have it: what is undefined gives 0. Like
+// Arithmetic of Blender's Vector Math, Mapping and Vector Transform nodes: undefined results are 0. Internal linkage, as in
 // lanes.h.
 #pragma once
 
@@ -8,16 +8,16 @@
 
 namespace lancer {
 
-// Matrices of nodes that are the same for all places.
+// Matrices of nodes that are the same for all hits.
 
-// By Euler angles, x first.
+// Returns the rotation by Euler angles, x first.
 glm::mat3 rotation(const glm::vec3 &angles);
-// 3 x 3, both row-major; false where there is none.
+// Computes the inverse transpose of a 3 x 3 matrix, both row-major; returns false if it is singular.
 bool inverse_transpose(const float (&rows)[9], double (&result)[9]);
 
 namespace {
 
-// One function of every component.
+// Applies a function to every component.
 template <class F, class Function> LANCER_LANE Vector3<F> componentwise(const Vector3<F> &a, const Function &f) {
   return {f(a.x), f(a.y), f(a.z)};
 }
@@ -29,7 +29,7 @@ template <class F> LANCER_LANE Vector3<F> divide(const Vector3<F> &a, const Vect
   return {divide(a.x, b.x), divide(a.y, b.y), divide(a.z, b.z)};
 }
 
-// By Euler angles, x first.
+// Returns the rotation by Euler angles, x first.
 template <class F> Columns<F> turn_by(const Vector3<F> &angles) {
   const F zero(0.0f), one(1.0f);
   const Vector3<F> c{cos(angles.x), cos(angles.y), cos(angles.z)}, s{sin(angles.x), sin(angles.y), sin(angles.z)};
@@ -100,7 +100,7 @@ template <class F> Value<F> vector_math_node(const Inputs<F> &in) {
   }
 }
 
-// The turn of a node is mostly one constant for all lanes.
+// Returns the rotation of a node, mostly one constant for all lanes.
 template <class F> LANCER_LANE Columns<F> turn_of(const Inputs<F> &in) {
   if (in.node.inputs[2].varies())
     return turn_by(in[2]);
@@ -126,7 +126,7 @@ template <class F> Value<F> mapping_node(const Inputs<F> &in) {
   }
 }
 
-// Rows of a matrix times v, and the last column times the share of it.
+// Returns the rows of a matrix times v plus the last column times translation.
 template <class D> LANCER_LANE Vector3<D> rows_times(const float (&m)[12], const Vector3<D> &v, double translation) {
   const auto row = [&](int i) __attribute__((always_inline)) {
     const double last = static_cast<double>(m[4 * i + 3]);
@@ -140,7 +140,7 @@ template <class F> Value<F> transform_node(const Inputs<F> &in) {
   const auto v = widen(in[0]);
   if (in.node.option != 2)
     return solid(narrow(rows_times(in.node.matrix, v, in.node.option == 0 ? 1.0 : 0.0)));
-  // Normals take the inverse transpose.
+  // Transform normals by the inverse transpose.
   float rows[9];
   double inverse[9];
   for (int i = 0; i < 9; ++i)

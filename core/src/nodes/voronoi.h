@@ -1,4 +1,5 @@
-// The Voronoi Texture: octaves of a feature of cells, as Blender 4.0 and newer sum them; of one octave in all.
+// The Voronoi Texture: octaves of a feature of cells, as summed by Blender 4.0 and newer; one octave is the same in all
+// versions.
 #pragma once
 
 #include "nodes/voronoi_cells.h"
@@ -7,13 +8,13 @@ namespace lancer {
 
 template <class F> struct VoronoiOctaves { F scale, detail, roughness, lacunarity; };
 
-// What the node gives: a vector (a colour, a position or one number three times) and a number beside it.
+// Outputs of the node: a vector (a colour, a position or one number three times) and a number.
 template <class F> struct VoronoiValue {
   Vector3<F> vector;
   F number;
 };
 
-// Octave i counts with a share: all of it, the rest of a fractional detail, or none.
+// Returns the weight of octave i: 1, the fraction of detail, or 0.
 template <class F> LANCER_LANE F share_of_octave(int octave, const F &detail) {
   const F number(static_cast<float>(octave)), whole = floor(detail);
   return select(number <= detail, F(1.0f), select(number == whole + F(1.0f), detail - whole, F(0.0f)));
@@ -65,7 +66,7 @@ static VoronoiValue<F> voronoi_octaves(uint32_t feature, uint32_t flags, const F
   }
   if (!(flags & LANCER_VORONOI_POSITION))
     return {flags & LANCER_VORONOI_COLOR ? color : Vector3<F>(distance), distance};
-  // One dimension is w, and the fourth.
+  // One dimension is w, the fourth coordinate.
   F axes[4] = {zero, zero, zero, zero};
   for (int i = 0; i < N; ++i)
     axes[N == 1 ? 3 : i] = select(of.scale == zero, zero, position[i] / of.scale);
@@ -119,7 +120,7 @@ LANCER_LANE VoronoiValue<F> voronoi_texture(uint32_t feature, uint32_t flags, co
   shape.exponent = form.y;
   shape.randomness = min(one, max(zero, place.z));
   const F roughness = min(one, max(zero, octaves.y));
-  // Without roughness there is one octave.
+  // With zero roughness there is one octave.
   const F detail = select(roughness == zero, zero, min(F(15.0f), max(zero, octaves.x)));
   const VoronoiOctaves<F> of{place.y, detail, roughness, octaves.z};
   const F x = vector.x * of.scale, y = vector.y * of.scale, z = vector.z * of.scale, w = place.x * of.scale;

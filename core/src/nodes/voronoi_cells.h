@@ -1,4 +1,4 @@
-// One point in each cell of a lattice, and what lies nearest: the features of the Voronoi Texture in one to four dimensions.
+// One point in each cell of a lattice, and its features: the Voronoi Texture in one to four dimensions.
 #pragma once
 
 #include "lancer.h"
@@ -14,7 +14,7 @@ namespace lancer {
 template <class F> struct VoronoiShape {
   uint32_t metric = LANCER_VORONOI_EUCLIDEAN;
   bool by_integers = false; // the hash of Blender 5 and newer, for two and more dimensions
-  bool is_bounded = false;  // before 4.0 nothing is further than 8
+  bool is_bounded = false;  // distances are at most 8, as before 4.0
   F smoothness, exponent, randomness;
 };
 
@@ -23,7 +23,7 @@ template <int N, class F> struct VoronoiFeature {
   Vector3<F> color;
 };
 
-// Distances of one metric are in the same order as these measures of them.
+// Returns a measure with the same order as the metric's distance.
 template <int N, class F> LANCER_LANE F measure_of(const F (&way)[N], const VoronoiShape<F> &shape) {
   if (N == 1)
     return abs(way[0]);
@@ -60,7 +60,7 @@ template <int N, class F> LANCER_LANE F furthest_measure(const VoronoiShape<F> &
   return N > 1 && shape.metric == LANCER_VORONOI_MINKOWSKI ? pow(eight, shape.exponent) : eight;
 }
 
-// The words that a cell is hashed by: those of its numbers as floats, or as integers.
+// Computes the words that hash a cell: its coordinates as floats, or as integers.
 template <int N, class F>
 LANCER_LANE void key_of(const F (&cell)[N], const F (&offset)[N], bool by_integers, WordOf<F> (&key)[N]) {
   for (int i = 0; i < N; ++i)
@@ -69,7 +69,7 @@ LANCER_LANE void key_of(const F (&cell)[N], const F (&offset)[N], bool by_intege
 
 template <class F> LANCER_LANE F share_of_bits(const WordOf<F> &bits) { return to_float(bits) * F(0x1p-31f); }
 
-// Where in a cell its point is, 0 ... 1 along each axis.
+// Computes a cell's point, 0 ... 1 along each axis.
 template <int N, class F> LANCER_LANE void point_in_cell(const WordOf<F> (&key)[N], bool by_integers, F (&point)[N]) {
   using U = WordOf<F>;
   const U one = as_word(F(1.0f)), two = as_word(F(2.0f));
@@ -124,7 +124,8 @@ template <int N, class F> LANCER_LANE Vector3<F> color_of_cell(const WordOf<F> (
   }
 }
 
-// How many cells lie within reach steps along every axis; and the steps to one of them, the first axis fastest.
+// Returns the number of cells within reach steps along every axis; steps_to() returns the steps to one of them, the first axis
+// fastest.
 template <int N> constexpr int cells_within(int reach) {
   int count = 1;
   for (int i = 0; i < N; ++i)
@@ -138,9 +139,9 @@ template <int N, class F> LANCER_LANE void steps_to(int number, int reach, F (&s
   }
 }
 
-// A place among the cells.
+// A point in the lattice.
 template <int N, class F> struct VoronoiPlace {
-  F cell[N], local[N]; // its cell, and where in it
+  F cell[N], local[N]; // its cell, and its position within
 
   LANCER_LANE explicit VoronoiPlace(const F (&coordinate)[N]) {
     for (int i = 0; i < N; ++i) {
@@ -149,7 +150,7 @@ template <int N, class F> struct VoronoiPlace {
       local[i] = p - cell[i];
     }
   }
-  // The point of the cell at an offset, seen from the corner of this one; and the cell's colour.
+  // Computes the point of the cell at an offset, relative to the corner of this cell; color() returns that cell's colour.
   LANCER_LANE void point(const F (&offset)[N], const VoronoiShape<F> &shape, F (&point)[N]) const {
     WordOf<F> key[N];
     key_of(cell, offset, N > 1 && shape.by_integers, key);
@@ -164,7 +165,7 @@ template <int N, class F> struct VoronoiPlace {
   }
 };
 
-// a where the condition holds, else what was there.
+// Assigns a where the condition holds.
 template <int N, class F> LANCER_LANE void assign_where(const MaskOf<F> &m, const F (&a)[N], F (&to)[N]) {
   for (int i = 0; i < N; ++i)
     to[i] = select(m, a[i], to[i]);
@@ -180,7 +181,7 @@ template <int N, class F> LANCER_LANE F dot_of(const F (&a)[N], const F (&b)[N])
   return sum;
 }
 
-// The nearest point, or the second.
+// Returns the nearest point, or the second nearest.
 template <int N, class F>
 static VoronoiFeature<N, F> nearest_feature(const F (&coordinate)[N], const VoronoiShape<F> &shape, bool second) {
   const VoronoiPlace<N, F> place(coordinate);
@@ -217,7 +218,7 @@ static VoronoiFeature<N, F> nearest_feature(const F (&coordinate)[N], const Voro
   return feature;
 }
 
-// All points near, each the less the further it is than those before it.
+// Blends all points nearby, each by how much nearer it is than the result so far.
 template <int N, class F> static VoronoiFeature<N, F> smooth_feature(const F (&coordinate)[N], const VoronoiShape<F> &shape) {
   const VoronoiPlace<N, F> place(coordinate);
   const F zero(0.0f), one(1.0f), half(0.5f), s = shape.smoothness;
@@ -245,7 +246,7 @@ template <int N, class F> static VoronoiFeature<N, F> smooth_feature(const F (&c
   return feature;
 }
 
-// The distance to where another point is as near as the nearest.
+// Returns the distance to the nearest boundary between cells.
 template <int N, class F> static F edge_distance(const F (&coordinate)[N], const VoronoiShape<F> &shape) {
   const VoronoiPlace<N, F> place(coordinate);
   const F furthest = shape.is_bounded ? F(8.0f) : F(std::numeric_limits<float>::max());
@@ -253,7 +254,7 @@ template <int N, class F> static F edge_distance(const F (&coordinate)[N], const
   for (int i = 0; i < N; ++i)
     nearest[i] = F(0.0f);
   if constexpr (N == 1) {
-    // The neighbours of the place's own cell, wherever the nearest point is.
+    // Use the neighbours of the point's own cell, wherever the nearest point is.
     F middle[1];
     place.point({F(0.0f)}, shape, middle);
     for (const float side : {-1.0f, 1.0f}) {
@@ -287,7 +288,7 @@ template <int N, class F> static F edge_distance(const F (&coordinate)[N], const
   return best;
 }
 
-// Half the distance from the nearest point to the point nearest to it.
+// Returns half the distance from the nearest point to that point's nearest neighbour.
 template <int N, class F> static F sphere_radius(const F (&coordinate)[N], const VoronoiShape<F> &shape) {
   const VoronoiPlace<N, F> place(coordinate);
   const F furthest(std::numeric_limits<float>::max());
@@ -301,7 +302,7 @@ template <int N, class F> static F sphere_radius(const F (&coordinate)[N], const
       found[i] = offset_found[i] = F(0.0f);
     best = furthest;
     for (int number = 0; number < cells_within<N>(1); ++number) {
-      // The second time round, the neighbours of the nearest point's cell.
+      // The second pass searches the neighbours of the nearest point's cell.
       if (pass == 1 && number == cells_within<N>(1) / 2)
         continue;
       F offset[N], point[N], way[N];
