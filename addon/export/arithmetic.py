@@ -1,4 +1,4 @@
-"""Sums on numbers and on threes of them: a scalar is a float, a colour or vector a tuple of three."""
+"""Arithmetic on scalars and triples: a scalar is a float, a colour or vector a tuple of three."""
 
 import math
 
@@ -17,7 +17,7 @@ def each(function, *values):
 
 
 def single(value):
-    """What single precision, in which the core computes, has for a constant: its largest number beyond, 0 for what is none."""
+    """Clamp a constant to the range of the core's single precision; NaN becomes 0."""
     if isinstance(value, NodeRef):
         return value
     if isinstance(value, tuple):
@@ -38,5 +38,5 @@ def mix(factor, a, b):
 
 
 def is_constant(value, number):
-    """Whether a value is that number, in all channels, and no node's result."""
+    """Whether a value is constant and equal to number in all channels."""
     return not isinstance(value, NodeRef) and all(x == number for x in triple(value))

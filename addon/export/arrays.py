@@ -1,4 +1,4 @@
-"""Whole arrays of Blender's meshes, in whatever place each Blender keeps them; parts of them at the corners of triangles."""
+"""Arrays of Blender's meshes, from wherever the running Blender keeps them, and their values at the corners of triangles."""
 
 import ctypes
 
@@ -15,9 +15,9 @@ def read(collection, attribute, dtype, width):
 
 
 def look(collection, attribute, dtype, width):
-    """What read gives, without a copy where Blender has one plain array of it. Use it up before anything changes the mesh.
+    """Return the values of read(), as a view where Blender stores them in one plain array. The view ends when the mesh changes.
 
-    Such an array has the stride of its values, and a sample of them is what Blender tells.
+    The array counts as plain if its stride is the size of a value and a sample of its values equals those of Blender's API.
     """
     count, size = len(collection), np.dtype(dtype).itemsize * width
     if count < 2:
@@ -34,7 +34,7 @@ def look(collection, attribute, dtype, width):
 
 
 def built_in(mesh, name, domain):
-    """The data of a built-in attribute; None where this Blender keeps it elsewhere."""
+    """Return the data of a built-in attribute; None if this Blender keeps it elsewhere."""
     attribute = mesh.attributes.get(name)
     if attribute is None or attribute.domain != domain or len(attribute.data) == 0:
         return None
@@ -49,19 +49,19 @@ def corner_vertices(mesh):
 
 
 def triangle_faces(mesh):
-    """Of which face each triangle is a part."""
+    """Return the index of each triangle's face."""
     if hasattr(mesh, "loop_triangle_polygons"):
         return read(mesh.loop_triangle_polygons, "value", np.int32, 1)
     return read(mesh.loop_triangles, "polygon_index", np.int32, 1)
 
 
 def gather(values, indices, poll):
-    """values[indices], in parts short enough to be stopped between."""
+    """Return values[indices], calling poll between parts so that the user can stop the export."""
     result = np.empty(indices.shape + values.shape[1:], values.dtype)
     for first in range(0, len(indices), _TRIANGLES_AT_ONCE):
         poll()
         part = slice(first, first + _TRIANGLES_AT_ONCE)
-        # Clipping takes less time than looking for indices out of range, and there are none.
+        # All indices are in range; mode "clip" skips numpy's check for it.
         np.take(values, indices[part], axis=0, out=result[part], mode="clip")
     return result
 

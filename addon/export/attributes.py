@@ -1,4 +1,4 @@
-"""Attributes of a mesh that materials ask for by name: UV maps, colours, tangents, coordinates before deformation."""
+"""Mesh attributes that materials read by name: UV maps, colours, tangents, coordinates before deformation."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ from .tangents import corner_tangents
 
 _TANGENT = "tangent:"
 _NAMED = "named:"
-# Wanted beside the attributes: which triangles are one polygon, for flat shading.
+# Requested like an attribute: the polygon of each triangle, for flat shading.
 POLYGONS = "polygons:"
 _DOMAINS = {"POINT": Domain.VERTEX, "FACE": Domain.FACE, "CORNER": Domain.CORNER}
-# Blender's types of attributes: the field that holds a value, its numbers, and how many of them are used.
+# Blender's attribute types: the field that holds a value, the type of its numbers, and how many of them are used.
 _TYPES = {
     "FLOAT": ("value", np.float32, 1),
     "INT": ("value", np.int32, 1),
@@ -25,7 +25,7 @@ _TYPES = {
 
 
 def attribute_name(name):
-    """What an attribute of Blender's is called in a snapshot, where some names have a meaning of their own."""
+    """Return the name of a Blender attribute in a snapshot, in which some names are reserved."""
     is_taken = name in ("generated", POLYGONS) or name.startswith((_TANGENT, _NAMED)) or name.endswith(" ")
     return _NAMED + name if is_taken else name
 
@@ -35,7 +35,7 @@ def tangents_name(uv_map):
 
 
 def named_attributes(wanted):
-    """Those of the wanted that have names of Blender's, as Blender has them."""
+    """Return Blender's names of the wanted attributes, without generated coordinates, tangents and polygons."""
     own = (_TANGENT, POLYGONS)
     return sorted(_name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(own))
 
@@ -45,9 +45,9 @@ def _name_in_blender(name):
 
 
 def read_attributes(mesh, data, wanted, corners, faces, poll):
-    """Those of the wanted names that the mesh has; data is what was read of it before.
+    """Return the wanted attributes that the mesh has. data: the MeshData read so far.
 
-    corners and faces: of each triangle; None where they are Blender's own.
+    corners, faces: Blender's corners and face of each triangle; None if every face is a triangle.
     """
     found = []
     for name in sorted(wanted - {POLYGONS}):
@@ -62,7 +62,7 @@ def read_attributes(mesh, data, wanted, corners, faces, poll):
 
 
 def _generated(mesh):
-    """Places before modifiers moved them, 0 to 1 over the texture space."""
+    """Return the positions before modifiers, mapped to 0 to 1 over the texture space."""
     places = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.vertices.foreach_get("undeformed_co", places)
     middle, half = np.array(mesh.texspace_location), np.array(mesh.texspace_size)
@@ -71,7 +71,7 @@ def _generated(mesh):
 
 
 def _tangents(mesh, data, name, corners, poll):
-    """(x, y, z, sign) along u at each corner; None where the mesh has no such UV map."""
+    """Return (x, y, z, sign) of the tangent along u at each corner; None if the mesh lacks the UV map."""
     layer = _tangents_layer(mesh, name)
     if layer is None:
         return None
@@ -85,7 +85,7 @@ def _tangents_layer(mesh, name):
 
 
 def attribute_sources(mesh, wanted):
-    """What read_attributes reads of the mesh for these names, beside its faces, places and normals: arrays, and None."""
+    """Yield the values of the mesh that read_attributes depends on, besides faces, positions and normals; None if missing."""
     for name in sorted(wanted - {POLYGONS}):
         if name == "generated":
             yield _generated(mesh).values
@@ -103,7 +103,7 @@ def render_uv_map(mesh):
 
 
 def read_uv_map(layer):
-    """(corners of Blender's, 2)"""
+    """Return (Blender's corners, 2)."""
     data, field = (layer.uv, "vector") if hasattr(layer, "uv") else (layer.data, "uv")
     values = np.empty(2 * len(data), np.float32)
     data.foreach_get(field, values)
@@ -123,7 +123,7 @@ def _named(mesh, name, corners, faces):
 
 
 def _values(mesh, name):
-    """(values, domain) of a named attribute as Blender has it; None where it has none that can be read."""
+    """Return (values, domain) of a named attribute; None if the mesh lacks it or its type or domain is not supported."""
     layer = mesh.uv_layers.get(_name_in_blender(name))
     if layer is not None:
         return read_uv_map(layer), Domain.CORNER

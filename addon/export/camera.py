@@ -12,14 +12,14 @@ NO_CAMERA = "scene '{}' has no camera: add one, or choose one in the scene prope
 
 
 def image_size(scene):
-    """Full image in pixels, as Blender truncates it."""
+    """Return (width, height) of the full image in pixels, truncated as in Blender."""
     render = scene.render
     percentage = render.resolution_percentage
     return render.resolution_x * percentage // 100, render.resolution_y * percentage // 100
 
 
 def border(scene, width, height):
-    """(x, y, width, height) of the rendered region, rounded as Blender does, in single precision."""
+    """Return (x, y, width, height) of the rendered region, computed in single precision and truncated as in Blender."""
     render = scene.render
     if not render.use_border:
         return 0, 0, width, height
@@ -29,7 +29,7 @@ def border(scene, width, height):
 
 
 def export_camera(camera, depsgraph, messages):
-    """camera is the object to look through; None means that the scene has none."""
+    """Return the snapshot.Camera of a camera object; raise LancerError if it is None, no camera, or its image is empty."""
     scene = depsgraph.scene
     if camera is None:
         raise LancerError(NO_CAMERA.format(scene.name))
@@ -54,7 +54,7 @@ def export_camera(camera, depsgraph, messages):
 
 
 def camera_fields(camera, depsgraph, messages):
-    """The fields of a snapshot.Camera that hang on an evaluated camera alone, not on the picture that it takes."""
+    """Return the fields of a snapshot.Camera that depend on the evaluated camera but not on the image size and window."""
     data = camera.data
     who = f"camera '{camera.name}'"
     kind, numbers = _projection(data, depsgraph.scene, who, messages)
@@ -77,7 +77,7 @@ def camera_fields(camera, depsgraph, messages):
 
 
 def _projection(data, scene, who, messages):
-    """(kind, the panorama's numbers)."""
+    """Return (kind, parameters of the panorama)."""
     if data.type == "PANO":
         render, (width, height) = scene.render, image_size(scene)
         aspect = width * render.pixel_aspect_x / (height * render.pixel_aspect_y)
@@ -90,14 +90,14 @@ def _projection(data, scene, who, messages):
 
 
 def _window(camera, depsgraph, kind, width, height):
-    """left, right, bottom, top from Blender's own projection, which knows sensor fit, shift and pixel aspect."""
+    """Return left, right, bottom, top from Blender's projection matrix, which includes sensor fit, shift and pixel aspect."""
     if kind not in (CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC):
         x, y = camera.data.shift_x, camera.data.shift_y
         return x, 1.0 + x, y, 1.0 + y
     render = depsgraph.scene.render
     p = camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y)
     if camera.data.type not in ("PERSP", "ORTHO"):
-        # Blender gives a panoramic camera no projection: its stand-in has the same lens on the same sensor.
+        # Blender has no projection matrix for a panoramic camera: its perspective stand-in uses the same lens and sensor.
         half = 0.5 * camera.data.sensor_width / max(camera.data.lens, 1e-6)
         aspect = height * render.pixel_aspect_y / (width * render.pixel_aspect_x)
         return -half, half, -half * aspect, half * aspect
@@ -105,14 +105,17 @@ def _window(camera, depsgraph, kind, width, height):
 
 
 def window_of(p, kind):
-    """The window of a projection matrix."""
+    """Return left, right, bottom, top of the window of a projection matrix."""
     if kind == CameraKind.PERSPECTIVE:
         return tuple((sign + p[axis][2]) / p[axis][axis] for axis in (0, 1) for sign in (-1.0, 1.0))
     return tuple((sign - p[axis][3]) / p[axis][axis] for axis in (0, 1) for sign in (-1.0, 1.0))
 
 
 def rigid(matrix, who, messages):
-    """Scale is left out as everywhere in Blender; what is left is made exactly orthogonal, mirrored where it was."""
+    """Return the (3, 4) frame of a camera matrix without scale and shear, exactly orthogonal, mirrored if the matrix is.
+
+    Raise LancerError if the matrix is not finite or its axes do not span space.
+    """
     if not np.isfinite(matrix).all():
         raise LancerError(f"{who}: its transform is not finite")
     columns = matrix[:3, :3].T
@@ -120,12 +123,12 @@ def rigid(matrix, who, messages):
     if not lengths.all():
         raise LancerError(f"{who}: its scale is zero along an axis")
     x, y, z = columns / lengths[:, None]
-    # The view direction leads; shear is what the other two have along it and along each other.
+    # Keep the view direction; shear is the part of x and y along z and along each other.
     upright = y - z * (y @ z)
     length = np.linalg.norm(upright)
     if not length > 0.0:
         raise LancerError(f"{who}: its axes lie in one plane")
-    # Float matrices are orthogonal to some 1e-7 a product; parents without shear stay below 1e-5.
+    # Rounding to single precision leaves dot products of about 1e-7 per matrix product; parents without shear stay below 1e-5.
     if max(abs(x @ y), abs(x @ z), abs(y @ z)) > 1e-5:
         messages.add(f"{who}: shear is not supported, its view direction is kept", "feature:sheared camera")
     y = upright / length
@@ -137,7 +140,7 @@ def rigid(matrix, who, messages):
 
 
 def _lens(data, kind, matrix, clip_start, depsgraph, who, messages):
-    """Aperture radius and focal distance; radius 0 without depth of field."""
+    """Return aperture radius and focal distance; radius 0 without depth of field."""
     dof = data.dof
     if not dof.use_dof:
         return 0.0, 1.0
@@ -155,6 +158,6 @@ def _lens(data, kind, matrix, clip_start, depsgraph, who, messages):
         messages.add(f"{who}: its focus distance is {distance:g}, everything is kept sharp")
         return 0.0, 1.0
     if kind == CameraKind.ORTHOGRAPHIC and bpy.app.version < (4, 0):
-        # There Cycles puts the lens on the near clipping plane: seen from the camera the same cone of rays is wider and longer.
+        # Before 4.0 Cycles puts the lens on the near clipping plane: the same cone of rays is wider and longer at the camera.
         return radius * (distance + clip_start) / distance, distance + clip_start
     return radius, distance

@@ -1,4 +1,4 @@
-"""What a scene asks for that has no counterpart: each thing becomes a message that names its owner."""
+"""Settings of a scene that Lancer does not support: each becomes a message that names its owner."""
 
 import bpy
 
@@ -6,22 +6,22 @@ from ..bindings.enums import Pass
 from ..messages.severity import Severity
 from .cycles_settings import check_cycles
 
-# As passes.py renders them, by the names of a view layer's switches.
+# Passes that engine/passes.py renders, by the names of a view layer's switches.
 _COMPONENTS = ("diffuse", "glossy", "transmission")
 _PASSES_HERE = {f"{component}_{part}" for component in _COMPONENTS for part in ("direct", "indirect", "color")} | {
     "combined", "z", "mist", "position", "normal", "uv", "object_index", "material_index", "emit", "environment",
     "ambient_occlusion",
 }  # fmt: skip
-# No picture of its own, and one that Blender draws itself.
+# A switch without an image of its own, and a pass that Blender itself draws.
 _NO_PASSES = {"cryptomatte_accurate", "grease_pencil"}
-# What stays black with an integrator, whatever the scene is.
+# Passes that stay black with an integrator in every scene.
 _LIT = {Pass[f"{component}_{part}".upper()] for component in _COMPONENTS for part in ("direct", "indirect")}
 EMPTY_PASSES = {
     "PATH": frozenset(),
     "CLASSIC": frozenset({Pass.AMBIENT_OCCLUSION, *_LIT}),
     "NORMALS": frozenset({Pass.EMISSION, Pass.ENVIRONMENT, Pass.AMBIENT_OCCLUSION, *_LIT}),
 }
-# To look in vain for what other Blenders have, or keep in the Cycles add-on, takes as long as all the rest.
+# Look up once which properties this Blender has: a failing getattr per object takes as long as all other checks.
 _OF_OBJECTS = bpy.types.Object.bl_rna.properties
 _HAS_LINKING = "light_linking" in _OF_OBJECTS
 _HAS_CATCHER = "is_shadow_catcher" in _OF_OBJECTS
@@ -38,7 +38,7 @@ def check_scene(scene, messages):
 
 
 def check_passes(scene, passes, messages):
-    """passes: of enums.Pass, those that are asked for."""
+    """Add a message for the requested passes (of enums.Pass) that the integrator leaves empty."""
     empty = sorted(EMPTY_PASSES[scene.lancer.integrator].intersection(passes))
     if empty:
         title = scene.lancer.bl_rna.properties["integrator"].enum_items[scene.lancer.integrator].name
@@ -56,7 +56,7 @@ def check_view_layer(scene, view_layer, messages):
 
 
 def _missing_passes(view_layer):
-    """The names of all passes that are asked for and not rendered."""
+    """Return the names of all requested passes that are not rendered."""
     names = []
     for owner in (view_layer, getattr(view_layer, "cycles", None), getattr(view_layer, "eevee", None)):
         for field in owner.bl_rna.properties if owner is not None else ():
@@ -78,7 +78,7 @@ def check_object(thing, scene, messages):
             f"object '{thing.name}': shadow catchers are not supported, it is rendered as any other object",
             "feature:shadow catcher",
         )
-    # An add-on, which may be off.
+    # Cycles is an add-on and may be disabled.
     cycles = getattr(thing, "cycles", None)
     offset = thing.shadow_terminator_shading_offset if _HAS_OFFSET else getattr(cycles, "shadow_terminator_offset", 0.0)
     if offset > 0.0:
@@ -98,13 +98,13 @@ def check_object(thing, scene, messages):
 
 
 def _check_subdivision(thing, scene, who, messages):
-    """Cycles divides by the camera's distance where the last modifier says so; Blender itself by the modifier's levels."""
+    """Add a message if Cycles subdivides adaptively by camera distance; the depsgraph's mesh uses the modifier's levels."""
     last = thing.modifiers[-1]
     if last.type != "SUBSURF" or not last.show_render:
         return
     adaptive = getattr(last, "use_adaptive_subdivision", None)
     if adaptive is None:
-        # Before 5.0 it is an experiment of the Cycles add-on, which may be off.
+        # Before 5.0 adaptive subdivision is an experimental feature of the Cycles add-on, which may be disabled.
         experiments = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
         adaptive = experiments and thing.cycles.use_adaptive_subdivision
     if adaptive:
@@ -115,7 +115,7 @@ def _check_subdivision(thing, scene, who, messages):
 
 
 def check_hair(thing, messages):
-    """Strands are no geometry of the depsgraph: nothing of them arrives by itself."""
+    """Add a message for each system of hair particles: the depsgraph has no geometry of strands."""
     for modifier in thing.modifiers:
         if modifier.type != "PARTICLE_SYSTEM" or not modifier.show_render or modifier.particle_system is None:
             continue

@@ -1,4 +1,4 @@
-"""What each shader node adds to a surface: lobes, light, passage and holes."""
+"""Readers of shader nodes: each adds the lobes, emission, transmittance or holdout of its node to a Surface."""
 
 from ..bindings.enums import Distribution, LobeKind
 from ..messages.severity import Severity
@@ -16,7 +16,7 @@ def _diffuse(surface, site, weight):
 
 
 def _roughness(surface, site, default):
-    """Of a mirror none, whatever the socket says."""
+    """Return the roughness; 0 for the distribution Sharp, whose socket Cycles ignores."""
     return 0.0 if getattr(site.node, "distribution", "") == "SHARP" else surface.share(site, ("Roughness",), default)
 
 
@@ -120,7 +120,7 @@ def _holdout(surface, site, weight):
 
 def _toon(surface, site, weight):
     if site.node.component == "GLOSSY":
-        surface.graph.tell(site, "Toon is not supported, a glossy surface of the size is used")
+        surface.graph.tell(site, "Toon is not supported, a glossy surface of this size is used")
         size = surface.share(site, ("Size",), 0.5)
         surface.add(LobeKind.GLOSSY, weight, surface.color(site), roughness=size, normal=surface.normal(site))
     else:

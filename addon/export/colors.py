@@ -1,4 +1,4 @@
-"""Colour nodes: each reader takes (graph, site, output) and gives a value, None where it cannot."""
+"""Colour nodes: each reader takes (graph, site, output) and returns a value, or None if the node is not supported."""
 
 import math
 
@@ -11,9 +11,9 @@ from .curves import ramp_by_table
 from .maths import smooth_step
 
 _MODELS = {"HSV": (ColorModel.TO_HSV, ColorModel.FROM_HSV), "HSL": (ColorModel.TO_HSL, ColorModel.FROM_HSL)}
-_COLDEST, _HOTTEST = 800.0, 12000.0  # kelvin; beyond them the colour stays
-# Rec. 709 colours of glowing bodies as polynomials, constants first, over the logarithm of the temperature, -1 at the coldest
-# and 1 at the hottest. They were fitted to what Blender shows, and are off by 8e-4 of the larger of 1 and the channel.
+_COLDEST, _HOTTEST = 800.0, 12000.0  # kelvin; temperatures are clamped to this range
+# Rec. 709 colours of black bodies as polynomials, constants first, in the logarithm of the temperature mapped to -1 (coldest)
+# to 1 (hottest). Fitted to Blender's colours; the error is at most 8e-4 of the larger of 1 and the channel.
 _GLOW = (
     (1.72398, 0.85585, 0.29827), (-1.90935, 0.45323, 1.12889), (1.51980, -0.52949, 0.72547), (-0.61215, 0.23330, -0.47111),
     (0.02951, 0.04540, -0.38149), (0.23415, -0.09815, 0.22852), (-0.19899, 0.02570, 0.10929), (-0.00728, 0.01068, -0.06209),
@@ -116,7 +116,7 @@ def _separate_color(graph, site, output):
 
 
 def _ramp(graph, site, output):
-    """Stops mixed one after the other; every stop begins where the one before is reached."""
+    """Mix in the stops one after the other: each segment starts at the stop where the one before ends."""
     node = site.node
     ramp = node.color_ramp
     factor = graph.input(site, node.inputs[0])

@@ -1,4 +1,4 @@
-"""Blender's own conversions to the scene's working space, as curves and matrices that the core applies."""
+"""Conversions from Blender's colour spaces to the working space, as curves and matrices that the core applies."""
 
 import contextlib
 import ctypes
@@ -15,14 +15,14 @@ from ..bindings.enums import Transfer
 from ..host import main_thread
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-# OpenColorIO works in single precision, with curves that are off by 2.4e-5: a matrix or curve this near is that one. An eighth
-# of it is what one step of 8 bits is worth at most to a colour between 0 and 1.
+# OpenColorIO works in single precision and its curves have errors of up to 2.4e-5: a matrix or curve within this distance
+# counts as equal. It is a sixteenth of an 8-bit step.
 _NEAR = 2.0**-12
-_TEXELS_AT_ONCE = 1 << 18  # converted in one piece, between which Blender answers
+_TEXELS_AT_ONCE = 1 << 18  # converted in one call; Blender responds between calls
 
 
 def _working_space():
-    """Something that differs where the working space does."""
+    """Return a key of the working space for caches."""
     settings = getattr(bpy.data, "colorspace", None)
     return getattr(settings, "working_space", "")
 
@@ -41,7 +41,7 @@ def srgb_to_linear(values):
 
 
 def conversion(name):
-    """(transfer, matrix) from a colour space to the working space; None where it takes more than a curve and a matrix."""
+    """Return (transfer, matrix) from a colour space to the working space; None if a curve and a matrix do not suffice."""
     return _conversion(name, _working_space())
 
 
@@ -60,14 +60,14 @@ def _conversion(name, working_space):
 
 
 def convert(pixels, name):
-    """(height, width, 4) in a colour space to the working space."""
+    """Return pixels, (height, width, 4), converted from a colour space to the working space."""
     rows = max(1, _TEXELS_AT_ONCE // pixels.shape[1])
     converted = [_convert(pixels[first : first + rows], name) for first in range(0, len(pixels), rows)]
     return np.concatenate(converted)
 
 
 def _convert(pixels, name):
-    """Writes pixels to a file as they are and reads them as those of a colour space."""
+    """Write pixels to a file unchanged and load the file with the colour space set, so that Blender converts them."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "pixels.exr")
         main_thread.run(lambda: _write(pixels, path))
@@ -86,9 +86,9 @@ def _write(pixels, path):
 
 @contextlib.contextmanager
 def loaded(path, name, alpha_mode):
-    """A file as an image of Blender's, beside the user's data, for as long as it is looked at.
+    """Yield a file as a temporary Blender image outside the user's data.
 
-    name: of the colour space; "" lets Blender choose by the file, None is data, whose values stay as they are.
+    name: the colour space; "" lets Blender choose by the file, None is for data, whose values stay unchanged.
     """
     main_thread.look()
     image, held = main_thread.run(lambda: _load(path, name, alpha_mode))
@@ -99,12 +99,12 @@ def loaded(path, name, alpha_mode):
 
 
 def stored(path):
-    """The same with values as the file stores them: not decoded, neither multiplied nor divided by alpha."""
+    """Yield the image with the values that the file stores: not decoded, neither multiplied nor divided by alpha."""
     return loaded(path, None, "CHANNEL_PACKED")
 
 
 def _load(path, name, alpha_mode):
-    """The image, whose pixels are read when they are asked for, and what to close for it to go."""
+    """Return the image, whose pixels Blender reads on first access, and the ExitStack that frees it."""
     with contextlib.ExitStack() as stack:
         image = stack.enter_context(_own_data()).images.load(path, check_existing=False)
         if name is None:
@@ -117,16 +117,16 @@ def _load(path, name, alpha_mode):
 
 @contextlib.contextmanager
 def _own_data():
-    """Data beside the user's, freed in the end."""
+    """Yield a BlendData apart from the user's, freed on exit."""
     with bpy.data.temp_data() as data:
-        # Blender holds this object twice and counts one: the name, this call's argument and the holder would be three.
+        # Blender keeps two references to this object but counts one; with the name and the argument there should be three.
         if sys.getrefcount(data) < 3:
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(data))
         yield data
 
 
 def floats(image):
-    """(height, width, channels) as Blender holds it: bytes over 255, floating point in the working space."""
+    """Return (height, width, channels) in Blender's representation: bytes over 255, floating point in the working space."""
     width, height = image.size
     values = np.empty(width * height * image.channels, np.float32)
     image.pixels.foreach_get(values)

@@ -1,7 +1,8 @@
-"""The settings that the export reads, in Blender's own names: each of them stands in a panel while Lancer is the engine.
+"""The settings of Blender that the export reads, by Blender's names. Each is shown in a panel while Lancer is the engine.
 
-Who reads another one adds it here and to a panel (addon/ui). Tests change every setting of a scene, and compare those that
-change what is exported with this list, the names in the export's text with it, and it with what the panels show.
+Add each further setting that the export reads to this list and to a panel (addon/ui). Tests change every setting of a scene
+and compare the settings that change the export with this list; they also compare the list with the names in the export's
+source and with the panels.
 """
 
 from typing import NamedTuple
@@ -20,9 +21,9 @@ _PASSES = (
 
 
 class Controls(NamedTuple):
-    """Settings of a type, as far as the versions of Blender read them here: from since on, up to but without before."""
+    """Settings of a type that are read from Blender version since on, before version before."""
 
-    owner: str  # the type's name; that of all lamps is Light
+    owner: str  # the type's name; Light for lamps of all types
     names: tuple
     since: tuple = (3, 4)
     before: tuple = (99, 0)
@@ -68,5 +69,5 @@ CONTROLS = (
     Controls("CyclesMaterialSettings", ("displacement_method", "use_transparent_shadow", "sample_as_light"), before=(4, 2)),
     Controls("CyclesMaterialSettings", ("emission_sampling", "use_bump_map_correction"), since=(4, 2)),
 )
-# Of Lancer's own types all settings are read.
+# Lancer's own types, of which all settings are read.
 OWN = ("LancerSceneSettings", "LancerObjectSettings", "LancerMaterialSettings", "LancerLightSettings", "LancerWorldSettings")

@@ -1,4 +1,4 @@
-"""Nodes that say where a ray meets a surface: coordinates, attributes, geometry."""
+"""Nodes about the point where a ray meets a surface: coordinates, attributes, geometry."""
 
 import numpy as np
 from mathutils import Euler
@@ -90,7 +90,7 @@ def _uv_map(graph, site, output):
 
 
 def _named(graph, name):
-    # To Cycles this name is that of Generated coordinates, whatever attribute a mesh has under it.
+    # Cycles gives this name to Generated coordinates, even if the mesh has an attribute of that name.
     key = name if name == "generated" else attribute_name(name)
     if name:
         graph.attributes.add(key)
@@ -123,7 +123,7 @@ def _geometry(graph, site, output):
 
 
 def default_tangent(graph):
-    """Round the z axis of the object, as Cycles lays the highlights of anisotropic surfaces."""
+    """Return the tangent around the object's z axis, Cycles' default for anisotropic surfaces."""
     graph.attributes.add("generated")
     return graph.emit(NodeKind.TANGENT, option=_RADIAL["Z"])
 
@@ -154,7 +154,7 @@ def _mapping(graph, site, output):
 
 
 def mapping_matrix(kind, location, angles, scale):
-    """Rows of the 3 x 4 matrix of a Mapping node; a scale of 0 divides to 0, as there."""
+    """Return the rows of the 3 x 4 matrix of a Mapping node; division by a scale of 0 gives 0, as in Cycles."""
     rows = Euler(angles).to_matrix()
     if kind != MappingType.TEXTURE:
         return [(*(row[k] * scale[k] for k in range(3)), location[i]) for i, row in enumerate(rows)]

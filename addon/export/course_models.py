@@ -1,7 +1,7 @@
-"""The course's models: the lobes that their parameters describe, and the node groups that stand for them.
+"""The course's models: the lobes that their parameters describe, and the node groups that represent them.
 
-A custom property of a group's tree names the model: copies, links, renames and Blenders without the add-on keep it. The
-sockets alone are read, constant or linked, by their names; the nodes inside are what Cycles and EEVEE show.
+A custom property of a group's tree names the model; the property survives copying, linking, renaming and Blenders without
+the add-on. Lancer reads the group's sockets, constant or linked, by name; Cycles and EEVEE show the nodes inside.
 """
 
 import math
@@ -11,12 +11,12 @@ from ..bindings.enums import LobeKind, Rules
 from .sockets import find
 
 TAG = "lancer_model"
-_INSIDE = "lancer_inside"  # what the nodes inside were like when the group was made
+_INSIDE = "lancer_inside"  # the links between the nodes inside when the group was made
 NORMAL = "Normal"
 
-# field: of the lobe that it shapes.
+# field: the parameter's field of the lobe.
 Parameter = namedtuple("Parameter", "socket kind default low high field", defaults=("color", 0.0, 0.0, math.inf, "color"))
-# By the names of the material's own settings, which give the sockets their defaults, ranges and descriptions.
+# Keyed by the names of the material's settings, from which the sockets get their descriptions.
 PARAMETERS = {
     "ka": Parameter("Ambient"),
     "kd": Parameter("Diffuse"),
@@ -36,29 +36,29 @@ MODELS = {
 
 
 def parameters_of(model):
-    """Names of a model's parameters, in the order of its sockets."""
+    """Return the names of a model's parameters, in the order of its sockets."""
     return (*(name for _, *names in MODELS[model] for name in names), "ka")
 
 
 def lobes_of(model, value):
-    """(kind, fields) of each lobe; value gives that of a parameter by its name."""
+    """Yield (kind, fields) of each lobe; value(name) returns the value of a parameter."""
     for kind, *names in MODELS[model]:
         yield kind, {PARAMETERS[name].field: value(name) for name in names}
 
 
 def model_of(tree):
-    """The model that a node tree stands for; None for all other trees and for models of versions to come."""
+    """Return the model that a node tree represents; None for other trees and for models that this version lacks."""
     model = None if tree is None else tree.get(TAG)
     return model if isinstance(model, str) and model in MODELS else None
 
 
 def mark(tree, model):
-    """Makes a finished tree the group of a model."""
+    """Mark a finished tree as the group of a model."""
     tree[TAG], tree[_INSIDE] = model, _inside(tree)
 
 
 def is_as_made(tree):
-    """Whether the same nodes are linked as when the group was made; of sockets Blender changes names and numbers."""
+    """Whether the same pairs of nodes are linked as when the group was made. Blender versions rename and reorder sockets."""
     return tree.get(_INSIDE) == _inside(tree)
 
 
@@ -67,18 +67,18 @@ def _inside(tree):
 
 
 def read_group(surface, site, weight):
-    """Adds the lobes of a group node, and its share of ambient light."""
+    """Add the lobes and the ambient colour of a group node to a Surface."""
     graph, tree = surface.graph, site.node.node_tree
     model = model_of(tree)
     if not is_as_made(tree):
         graph.tell(
             site,
-            f"the nodes inside '{tree.name}' were changed, which Cycles and EEVEE show; Lancer shows the model by the node's "
-            "inputs alone. Ungroup the node to have its nodes instead",
+            f"the nodes inside '{tree.name}' were changed, which only Cycles and EEVEE show; Lancer shows the model that the "
+            "node's inputs describe. Ungroup the node to render its nodes instead",
         )
     normal = surface.normal(site, _identifiers(site, NORMAL))
     for kind, fields in lobes_of(model, lambda name: _value(graph, site, name)):
-        # The models are the same in all Blenders.
+        # The models are the same in all versions of Blender.
         surface.add(kind, weight, rules=Rules.BLENDER_45, normal=normal, **fields)
     surface.add_ambient(graph.multiply(_value(graph, site, "ka"), weight))
 

@@ -1,4 +1,4 @@
-"""Curves of colours, vectors and numbers, as the tables that Cycles makes of them. Readers take (graph, site, output)."""
+"""Curves of colours, vectors and numbers as tables with Cycles' resolution. Readers take (graph, site, output)."""
 
 import bpy
 import numpy as np
@@ -8,7 +8,7 @@ from ..bindings.shading import NodeRef
 from .arithmetic import mix
 
 _STEPS = 256
-# As many values as steps, or one more, so that 1 is a step's end as 0 is.
+# Number of values: as many as steps before 4.0; since then one more, so that the last value is at the end of the last step.
 _VALUES = _STEPS + int(bpy.app.version >= (4, 0))
 _EXTRAPOLATES, _STEPPED = 1, 2
 _OF_NUMBER = 1
@@ -20,12 +20,12 @@ def _ready(mapping):
 
 
 def _ends(curves):
-    """The interval over which the curves have points: what a table covers."""
+    """Return the interval over which the curves have points, which the table covers."""
     return min(curve.points[0].location[0] for curve in curves), max(curve.points[-1].location[0] for curve in curves)
 
 
 def _curved(graph, mapping, functions, curves, factor, value):
-    """functions[i](x) in channel i, by a table over where the curves have points; curves: those that decide where."""
+    """Emit a table of functions[i](x) in channel i over the interval of curves."""
     low, high = _ends(curves)
     places = low + np.arange(_VALUES) / (_VALUES - 1) * (high - low)
     table = np.array([[function(x) for function in functions] for x in places.tolist()], np.float32)
@@ -67,7 +67,7 @@ def _number(graph, site, output):
 
 
 def ramp_by_table(graph, ramp, factor, is_alpha):
-    """A colour ramp of any interpolation and colour mode, of a factor that varies."""
+    """Return a colour ramp of any interpolation and colour mode at a factor that varies."""
     places = (np.arange(_VALUES) / (_VALUES - 1)).tolist()
     table = np.array([tuple(ramp.evaluate(x)) for x in places], np.float32)
     flags = _STEPPED if ramp.interpolation == "CONSTANT" else 0

@@ -1,9 +1,8 @@
-"""Cycles' own settings of a scene that change its light and that Lancer does not follow.
+"""Messages about Cycles' settings of a scene that change its light and that Lancer does not follow.
 
-Its light paths are told in one line wherever they limit the light otherwise than Lancer's, as they do when Blender starts: a
-hint as long as no limit is one that somebody has set. Each other setting is told where it is not as it comes. Those that
-Lancer's settings stand for (samples, filter, seed, transparent bounces) are not read, and those that change noise and time only
-need not be.
+One message reports all limits of Cycles' light paths that differ from Lancer's. They differ by default: the message is a hint
+while all of Cycles' limits are Blender's defaults. Each other setting is reported if it differs from its default. Settings with
+a counterpart in Lancer (samples, filter, seed, transparent bounces) and those that change only noise and time are not read.
 """
 
 from ..messages.severity import Severity
@@ -12,7 +11,7 @@ _KINDS = ("diffuse", "glossy", "transmission")
 
 
 def check_cycles(scene, messages):
-    # Cycles is an add-on and may be off.
+    # Cycles is an add-on and may be disabled.
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
         return
@@ -23,12 +22,12 @@ def check_cycles(scene, messages):
 
 
 def _light_paths(own, cycles):
-    # The other integrators show pictures of their own.
+    # The other integrators are not meant to match Cycles.
     if own.integrator != "PATH":
         return
-    # (Setting, words) of each limit that Lancer's do not hold.
+    # (Setting, text) of each limit that Lancer does not apply.
     theirs = [("max_bounces", f"Total {cycles.max_bounces}")] if cycles.max_bounces != own.max_bounces else []
-    # A kind that may bounce as often as a path at all is not limited.
+    # A limit of one kind has no effect if it is not below the limit of all bounces.
     deepest = min(cycles.max_bounces, own.max_bounces)
     for kind in _KINDS:
         limit = getattr(cycles, f"{kind}_bounces")
@@ -71,7 +70,7 @@ def _simplified(scene, cycles):
     for name, title in (("texture_limit_render", "Texture Limit"), ("texture_resolution_render", "Texture Resolution")):
         if name in cycles.bl_rna.properties and _changed(cycles, name):
             yield f"Simplify's {title} is not supported, pictures are used in full size"
-    # Cycles never culls for these.
+    # Cycles never culls for stereo and panoramic cameras.
     camera = scene.camera
     if render.use_multiview or (camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO"):
         return
@@ -82,5 +81,5 @@ def _simplified(scene, cycles):
 
 
 def _changed(owner, name):
-    """Whether a setting is another than Blender starts with."""
+    """Whether a setting differs from its default."""
     return getattr(owner, name) != owner.bl_rna.properties[name].default

@@ -1,4 +1,4 @@
-"""What a material becomes, in lines for its panel."""
+"""Lines for a material's panel: the lobes that its nodes become."""
 
 import math
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ _NAMES = {
 _ROUGH = {LobeKind.DIFFUSE, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR, LobeKind.SHEEN}
 _FACETS = {LobeKind.BECKMANN, LobeKind.GLOSSY, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.CONDUCTOR}
 _REFRACTIVE = {LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION}
-# Inputs of the Principled BSDF that are shown where they are not neutral, with their names.
+# Inputs of the Principled BSDF that are shown if they are not 0, with their names.
 _PRINCIPLED = (
     ("metallic", "metallic"),
     ("transmission", "transmission"),
@@ -44,16 +44,16 @@ _PRINCIPLED = (
 
 @dataclass(frozen=True)
 class Description:
-    lobes: tuple  # of lines: what scatters light, what shines, what is let through
-    losses: tuple  # of lines: what of its nodes is left out or replaced, each once
+    lobes: tuple  # of lines: lobes, emission, transmittance, holdout
+    losses: tuple  # of lines: nodes and inputs that are left out or replaced, each once
 
 
 def describe_material(material):
     messages = Messages()
-    # A panel is drawn often, and must not read files.
+    # Panels are drawn often: read no files.
     materials = Materials(messages, images=NoPictures())
     exported = materials.list[materials.number(material, None)]
-    # The other lobes are what they are told to be.
+    # The core splits only Principled lobes into several.
     layered = any(lobe.kind == LobeKind.PRINCIPLED for lobe in exported.lobes)
     seen = probe(exported) if layered else None
     if seen is None:
@@ -69,13 +69,13 @@ def describe_material(material):
 
 
 def _without_owner(line, material):
-    """A message without the name of the material, which its panel shows already."""
+    """Return a message without the name of the material, which the panel shows."""
     text = line.removeprefix(f"material '{material.name}'").lstrip(":, ")
     return text[0].upper() + text[1:]
 
 
 def _probed(lobe):
-    """Its share of the light, and what shapes it; roughness as shader nodes have it."""
+    """Return the line of a ProbedLobe: albedo, IOR, and roughness in the units of shader nodes."""
     text = f"{_NAMES[lobe.kind]}: {_told(lobe.albedo)}"
     if lobe.kind in _FACETS:
         text += f", roughness {_told(math.sqrt(lobe.alpha))}"

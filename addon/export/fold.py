@@ -1,9 +1,9 @@
-"""Nodes of constants are computed once, when they are exported, by the core's own formulas."""
+"""Constant folding: the export evaluates nodes whose inputs are constant, with the core's own formulas."""
 
 from ..bindings.enums import NodeKind, VectorOperation
 from ..bindings.nodes import evaluate
 
-# What asks nothing of a place: a node of constants of these kinds is a constant.
+# Kinds that depend on nothing but their inputs: with constant inputs their result is constant.
 FOLDED = {
     NodeKind.ALPHA, NodeKind.CLAMP, NodeKind.COLOR_MODEL, NodeKind.COMBINE, NodeKind.GAMMA, NodeKind.GREY, NodeKind.INVERT,
     NodeKind.MAPPING, NodeKind.MATH, NodeKind.MIX, NodeKind.SEPARATE, NodeKind.VECTOR_MATH,
@@ -13,11 +13,11 @@ _MEASURES = {VectorOperation.DOT_PRODUCT, VectorOperation.DISTANCE, VectorOperat
 
 
 def gives_number(node):
-    """Whether a node's result is one number and not three."""
+    """Whether a node's result is one number instead of three."""
     return node.kind in _NUMBERS or node.kind == NodeKind.VECTOR_MATH and node.option in _MEASURES
 
 
 def fold(node):
-    """The value of a snapshot.Node of constants: a float, or a tuple of three; not finite where its mathematics is not."""
+    """Return the value of a snapshot.Node with constant inputs: a float or a tuple of three, which may not be finite."""
     value = evaluate(node)
     return value[0] if gives_number(node) else value[:3]

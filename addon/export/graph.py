@@ -5,8 +5,8 @@
     color = graph.parameter(node, ("Color",), kind="color")       # three numbers, or a NodeRef
     snapshot.World(radiance=graph.multiply(color, strength), nodes=graph.nodes)
 
-node is a node of Blender, or a Site where it may lie in a group. Sums and products fold too: add, multiply, mix, subtract.
-closures.emission_of(graph, tree, "OUTPUT_WORLD" or "OUTPUT_LIGHT") does the whole way for worlds and lights.
+node is a node of Blender, or a Site if it may be inside a group. add, multiply, mix and subtract fold constants too.
+surface.emission_of(graph, tree, "OUTPUT_WORLD" or "OUTPUT_LIGHT") reads the whole tree of a world or light.
 """
 
 import math
@@ -30,14 +30,14 @@ _OF_THREE = {NodeKind.MIX, NodeKind.VECTOR_MATH, NodeKind.INVERT}
 _SCALARS = {"VALUE", "INT", "BOOLEAN"}
 _VECTORS = {"VECTOR", "ROTATION"}
 _UNKNOWN = {"mid-grey": (0.5, 0.5, 0.5), "white": (1.0, 1.0, 1.0)}
-_DEEPEST = 150  # nodes read one within the other; each takes a handful of Python's thousand calls
-_STRIDE = 100  # nodes one behind the other, after which the value of one is computed ahead
-_MOST_NODES = 4096  # of the core
+_DEEPEST = 150  # depth of recursion in nodes; each node takes several of Python's 1000 nested calls
+_STRIDE = 100  # depth in nodes at which _look_ahead computes and caches a value
+_MOST_NODES = 4096  # the core's limit
 _CONVERTS_ENDS_ONLY = bpy.app.version >= (5, 0)
 
 
 class _Scope:
-    """What was computed before, and may be used again from here."""
+    """Nodes and values computed so far that the following nodes may refer to."""
 
     def __init__(self):
         self.numbers = {}
@@ -46,16 +46,16 @@ class _Scope:
 
 class NodeGraph:
     def __init__(self, owner, messages, images=None, depsgraph=None, unknown="mid-grey"):
-        """unknown: what a colour that cannot be told is taken for; mid-grey for what reflects, white for what shines."""
+        """unknown: the colour of nodes that are not supported, mid-grey for surfaces and white for emitters."""
         self.owner = owner
         self.messages = messages
         self.images = images
         self.depsgraph = depsgraph
         self.unknown = unknown
         self.attributes = set()  # names of mesh attributes that the nodes read
-        self.objects = set()  # identities of the objects whose place they read
-        self.material_index = 0  # of the owner; 0 of what is no material
-        self.normal = (0.0, 0.0, 0.0)  # what takes the place of the shading normal where it is bumped as a whole
+        self.objects = set()  # identities of the objects whose transform the nodes read
+        self.material_index = 0  # of the owner; 0 if the owner is no material
+        self.normal = (0.0, 0.0, 0.0)  # the bumped normal of the whole material; (0, 0, 0) is the shading normal
         self.walker = Walker()
         self._nodes = []
         self._tables = {}
@@ -70,8 +70,8 @@ class NodeGraph:
     # ---- building ----
 
     def emit(self, kind, *inputs, option=0, flags=0, name="", image=0, image_count=0, first=0, matrix=None):
-        """The value of a node of the core: a constant where it can be computed now."""
-        # A constant number stands in all three channels, as the result of a node does.
+        """Add a node of the core and return its NodeRef, or its value if all inputs are constant and its kind folds."""
+        # Spread a constant number over all three channels, as the results of nodes are.
         inputs = tuple(map(single, map(_three, inputs) if kind in _OF_THREE else inputs))
         fields = {} if matrix is None else {"matrix": tuple(float(x) for x in matrix)}
         node = snapshot.Node(
@@ -99,7 +99,7 @@ class NodeGraph:
         return 0.0 if gives_number(node) else (0.0, 0.0, 0.0)
 
     def table(self, values):
-        """The number of the picture that holds a table (n, channels) of single precision as its one row; equal ones are one."""
+        """Return the number of an image with the table, (n, channels) of float32, as its only row. Equal tables share one."""
         key = values.shape, values.tobytes()
         if key not in self._tables:
             picture = snapshot.Image(name="table", texels=values[None], alpha=AlphaMode.CHANNEL_PACKED)
@@ -107,7 +107,7 @@ class NodeGraph:
         return self._tables[key]
 
     def height_nodes(self, build):
-        """(first, value) of build(), with nodes of its own from number first on: BUMP computes them at other places."""
+        """Return (first, value) of build(), whose nodes from number first on are not shared: BUMP evaluates them elsewhere."""
         first = len(self._nodes)
         self._scopes.append(_Scope())
         value = build()
@@ -145,7 +145,7 @@ class NodeGraph:
         return a if is_constant(b, 0.0) else self.op(MathOperation.SUBTRACT, a, b)
 
     def mix(self, factor, a, b):
-        """Of colours; the factor is clamped."""
+        """Return the mix of two colours; the factor is clamped to 0 to 1."""
         if is_constant(factor, 0.0) or is_constant(factor, 1.0):
             return b if is_constant(factor, 1.0) else a
         return self.emit(NodeKind.MIX, factor, _three(a), _three(b), option=MixMode.MIX, flags=1)
@@ -162,16 +162,16 @@ class NodeGraph:
     # ---- reading ----
 
     def tell(self, site, text, key=None, severity=Severity.DIFFERENT):
-        """key: of Messages.add; by default the node itself is what is missing, "" where nothing is."""
+        """Add a message that names the node. key: of Messages.add; None counts the node's type as missing, "" nothing."""
         node = _site(site).node
         self.messages.add(
             f"{self.owner}, node '{node.name}': {text}", f"node:{node.bl_label}" if key is None else key, severity
         )
 
     def parameter(self, site, names, default=0.0, kind="number", low=-math.inf, high=math.inf):
-        """The input of a node that has one of the names, made usable; default where this Blender has none.
+        """Return the node's first input with one of the names, made finite; default if this Blender has none.
 
-        kind: number, color (not negative) or vector; low and high are for constant numbers.
+        kind: number, color (not negative) or vector. low and high limit constant numbers.
         """
         site = _site(site)
         socket = find(site.node, names)
@@ -188,7 +188,7 @@ class NodeGraph:
         return tuple(self.messages.number(x, who, socket.name, 0.0) for x in triple(value))
 
     def value(self, site, name):
-        """An input as it is, by identifier or by number."""
+        """Return the value of an input, given by identifier or by number."""
         socket = site.node.inputs[name] if isinstance(name, int) else find(site.node, (name,))
         return self.input(site, socket)
 
@@ -198,7 +198,7 @@ class NodeGraph:
         return socket is not None and self.walker.origin(site, socket).site is not None
 
     def linked(self, site, names, default):
-        """The value of an input that means something else where nothing is linked to it, or nothing that has a value."""
+        """Return the value linked to an input; default if no link with a supported source reaches the input."""
         site = _site(site)
         socket = find(site.node, names)
         origin = None if socket is None else self.walker.origin(site, socket)
@@ -213,7 +213,7 @@ class NodeGraph:
         return self.input(site, socket)
 
     def input(self, site, socket):
-        """The value that reaches a socket, finite where it is constant."""
+        """Return the value that reaches a socket; a constant that is not finite becomes 0, with a message."""
         value = self._read(site, socket)
         if isinstance(value, NodeRef) or all(map(math.isfinite, triple(value))):
             return value
@@ -230,7 +230,7 @@ class NodeGraph:
             value = _constant(origin.socket)
         else:
             value, types = self._stand_in(site, socket, origin), types[:1]
-        # Convert at every socket passed on the way; from 5.0 on only constants are.
+        # Convert at every socket on the way; from 5.0 on only constants are converted at each, node results once.
         if _CONVERTS_ENDS_ONLY and isinstance(value, NodeRef):
             types = (types[0], types[-1])
         for target, source in zip(reversed(types[:-1]), reversed(types[1:]), strict=True):
@@ -238,7 +238,7 @@ class NodeGraph:
         return value
 
     def color_of(self, origin):
-        """The value of an origin as a colour; the unknown one where it has none."""
+        """Return the value of an origin as a colour; the unknown colour, with a message, if it is not supported."""
         value = self._output(origin.site, origin.output)
         if value is None:
             self.tell(
@@ -248,7 +248,7 @@ class NodeGraph:
         return _three(value)
 
     def _output(self, site, output):
-        """The value of an output; None where it has none."""
+        """Return the value of an output; None if its node is not supported or nests too deeply."""
         values = self._scopes[-1].values
         key = (*site.key, output.as_pointer())
         if key in values:
@@ -265,7 +265,7 @@ class NodeGraph:
         return value
 
     def _look_ahead(self, site, output):
-        """Computes values along chains that are longer than calls can nest, from the far end on."""
+        """Compute values along chains of nodes that are longer than calls can nest, starting at the far end."""
         self._is_ahead = True
         depths, open_ = {}, [(site, output, None)]
         while open_:
@@ -284,7 +284,7 @@ class NodeGraph:
         self._is_ahead = False
 
     def _stand_in(self, site, socket, origin):
-        """What is used for an input whose source cannot be computed."""
+        """Return the stand-in, with a message, for an input whose source is not supported."""
         source = f"'{origin.site.node.name}' ({origin.site.node.bl_label})"
         if socket.type == "RGBA":
             told = f"input '{socket.name}' is linked to {source}, which is not supported, {self.unknown} is used"
@@ -318,12 +318,12 @@ def _three(value):
 
 
 def _like(value, a, b):
-    """value as a number where both operands were, else with three channels."""
+    """Return value as a number if both operands are numbers, else with three channels."""
     return value if isinstance(a, float) and isinstance(b, float) else _three(value)
 
 
 def _constant(socket):
-    """The constant of a socket; 0 where it has none."""
+    """Return the constant of a socket; 0 if it has none."""
     value = getattr(socket, "default_value", 0.0)
     if hasattr(value, "__len__") and not isinstance(value, str):
         return (*map(float, value[:3]), 0.0, 0.0, 0.0)[:3]

@@ -1,4 +1,4 @@
-"""Pictures in their own bit depth, once each, however many materials show them."""
+"""Images in their own bit depth, exported once however many materials use them."""
 
 import os
 
@@ -12,27 +12,27 @@ from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
 
-_VALUES_AT_ONCE = 1 << 18  # converted in one piece, which stays in the cache
+_VALUES_AT_ONCE = 1 << 18  # converted in one pass, small enough for the processor's cache
 _WHITE = 65535.0
-_ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # their colour is multiplied by alpha in the file
+_ASSOCIATED_FORMATS = ("OPEN_EXR", "OPEN_EXR_MULTILAYER", "HDR")  # formats that store colour multiplied by alpha
 
 
-# In the place of pictures that nothing asks for any more, so that the others keep their numbers.
+# Replaces images that are not used any more, so that the others keep their numbers.
 _NOTHING = snapshot.Image(name="nothing", texels=np.zeros((1, 1, 1), np.uint8))
 
 
 class Images:
-    """Numbers the pictures that nodes ask for."""
+    """The images that nodes use, by number."""
 
     def __init__(self, obey=None, kept=None):
-        """obey is called before each file; it raises Cancelled when the user has enough. kept: of earlier frames, a Kept."""
+        """obey is called before each file and raises Cancelled if the user cancels. kept: the Kept of earlier frames."""
         self.list = []
         self.obey = obey
         self._kept = kept
         self._ranges = {}
 
     def numbers(self, image, user, tell):
-        """(first, count) of a Blender image, more for tiles; None where there is none. tell takes text, key and severity."""
+        """Return (first, count) of a Blender image, one for each tile; None if it cannot be read. tell(text, key, severity)."""
         path = _frame_path(image, user, tell)
         key = (identity(image), image.colorspace_settings.name, image.alpha_mode, path)
         if key not in self._ranges:
@@ -43,18 +43,18 @@ class Images:
             self._ranges[key] = (first, len(self.list) - first) if len(self.list) > first else None
         if self._ranges[key] is None:
             tell(
-                f"image '{image.name}' has no picture ({path or image.filepath or 'empty'}), magenta is used",
+                f"image '{image.name}' has no pixels ({path or image.filepath or 'empty'}), magenta is used",
                 severity=Severity.WRONG,
             )
         return self._ranges[key]
 
     def repeat(self, pictures):
-        """The number of the first of pictures that are to stand in a row, known ones too."""
+        """Append images, even known ones, so that their numbers are consecutive; return the first number."""
         self.list += pictures
         return len(self.list) - len(pictures)
 
     def forget(self, changed, used):
-        """Drops the pictures of the Blender images that have changed, by identity, and all but the used numbers."""
+        """Drop the images whose identity is in changed and those whose number is not in used."""
         for key, found in list(self._ranges.items()):
             if key[0] in changed or found is not None and found[0] not in used:
                 del self._ranges[key]
@@ -65,7 +65,7 @@ class Images:
 
 
 class NoPictures:
-    """Stands for Images where only whether there is a picture matters."""
+    """A stand-in for Images that reads no file, for panels and lamps."""
 
     def numbers(self, image, user, tell):
         return 0, 1
@@ -75,11 +75,11 @@ class NoPictures:
 
 
 def _frame_path(image, user, tell):
-    """The file of the current frame of a sequence; "" for what has one picture only."""
+    """Return the file of a sequence's current frame; "" if the image is no sequence."""
     if image.source != "SEQUENCE":
         return ""
     if user is None:
-        # Which file belongs to a frame is kept by the nodes that show it; without one Blender would name that of frame 0.
+        # The node's ImageUser maps frames to files; without one Blender would return the file of frame 0.
         tell(
             f"image '{image.name}' is a sequence, of which only the file that it was made from is used",
             "feature:image sequence",
@@ -97,13 +97,13 @@ def _read_all(image, path, tell):
         return _read_file(image, path, tell)
     if image.source == "MOVIE":
         tell(f"image '{image.name}' is a movie, of which only the frame that Blender shows is used", "feature:movie as image")
-    # Bytes that Blender holds are those of the file, unless it has divided them by alpha.
+    # Blender's bytes in memory equal the file's, unless Blender has divided them by alpha.
     is_file = image.source == "FILE" and image.packed_file is None and not image.is_dirty
     if is_file and (not image.has_data or image.is_float or image.alpha_mode == "PREMUL"):
         pictures = _read_file(image, bpy.path.abspath(image.filepath, library=image.library), tell)
         if pictures:
             return pictures
-    # What Blender had not loaded before, it need not keep.
+    # Free the pixels again if Blender had not loaded them before.
     had_data = image.has_data
     pictures = _read(image, image, tell, _space(image))
     if not had_data and not image.is_dirty:
@@ -112,12 +112,12 @@ def _read_all(image, path, tell):
 
 
 def _space(image):
-    """(name, whether it is data) of the colour space. Tiles that Blender has not looked at have no name yet."""
+    """Return (name, is_data) of the colour space. The name is empty for tiles that Blender has not loaded yet."""
     return image.colorspace_settings.name, image.colorspace_settings.is_data
 
 
 def _read_file(image, path, tell, tile=0):
-    """A file outside of the .blend with its values as they are stored, which Cycles decodes after interpolation."""
+    """Read a file outside the .blend with its stored values, which Cycles decodes after interpolation."""
     if not os.path.isfile(path):
         return []
     try:
@@ -142,7 +142,7 @@ def _read_tile(image, number, tell):
 
 
 def _read_packed(image, number, tell):
-    """A tile that lies in the .blend: its bytes are a file, which Blender decodes."""
+    """Read a tile packed in the .blend: its bytes are written to a temporary file, which Blender decodes."""
     packed = next((item for item in image.packed_files if getattr(item, "tile_number", 0) == number), None)
     if packed is None or packed.packed_file is None:
         return []
@@ -160,12 +160,12 @@ def _read_packed(image, number, tell):
 
 
 def _read(image, source, tell, space, tile=0, is_stored=False):
-    """The picture of source under the settings of image, in a list; empty where it has no pixels.
+    """Return a list with the image of source under the settings of image; empty if it has no pixels.
 
-    is_stored: floating point, too, is in the colour space, as bytes always are; otherwise it is in the working space.
+    is_stored: floating point values are in the image's colour space, as bytes always are; else in the working space.
     """
     if min(source.size) < 1 or source.channels < 1:
-        # Only now Blender has looked at the file. It gives scripts no pixels of its layers.
+        # Blender knows the type only after it has read the file, and gives scripts no pixels of the layers.
         if source.type == "MULTILAYER":
             text = "is a multilayer EXR, save its layer as a plain EXR or PNG; mid-grey is used"
             tell(f"image '{image.name}' {text}", "feature:multilayer EXR", severity=Severity.WRONG)
@@ -177,13 +177,13 @@ def _read(image, source, tell, space, tile=0, is_stored=False):
     if values.shape[2] == 2:
         values = values[:, :, [0, 0, 0, 1]]
     if values.shape[2] == 4 and (alpha == AlphaMode.NONE or bool((values[:, :, 3] == 1.0).all())):
-        # The mode stays: it says what becomes of colour where the picture is clipped.
+        # Keep the alpha mode: it decides the colour outside the image with extension Clip.
         values = values[:, :, :3]
     transfer, matrix = Transfer.LINEAR, IDENTITY
-    # Without a name Cycles takes values as they are.
+    # Without the name of a colour space Cycles uses the values unchanged.
     if name and not is_data and (is_stored or not source.is_float):
         found = conversion(name)
-        # Cycles keeps texels encoded where the curve alone makes them scene-linear; what takes more comes before interpolation.
+        # Cycles decodes after interpolation only if the sRGB curve alone suffices; else it converts before interpolation.
         if found is None or (found[0] == Transfer.SRGB and found[1] != IDENTITY):
             values, alpha = _converted(values, name, alpha)
             return [_picture(image, values, transfer, alpha, tile, matrix)]
@@ -197,26 +197,26 @@ def _picture(image, texels, transfer, alpha, tile, matrix):
 
 
 def _alpha_mode(image, source, is_data, is_stored):
-    """As Cycles takes the pixels of source, per version."""
+    """Return the AlphaMode of the pixels of source, as each version of Cycles chooses it."""
     if image.alpha_mode == "NONE":
         return AlphaMode.NONE
     if is_data or image.alpha_mode == "CHANNEL_PACKED":
         return AlphaMode.CHANNEL_PACKED
     if bpy.app.version >= (5, 1):
-        # As the image says, even of pixels that Blender has already multiplied or divided.
+        # Cycles follows the image's setting, even for pixels that Blender has already multiplied or divided.
         associated = image.alpha_mode == "PREMUL"
     elif is_stored:
         associated = source.file_format in _ASSOCIATED_FORMATS
     else:
-        # As Blender keeps pixels in memory.
+        # In memory Blender keeps floating point associated and bytes straight.
         associated = source.is_float
     return AlphaMode.ASSOCIATED if associated else AlphaMode.STRAIGHT
 
 
 def _converted(values, name, alpha):
-    """Values of a colour space that takes more than its curve, as floating point in the working space; and their alpha mode.
+    """Return (values, alpha mode) converted to floating point in the working space.
 
-    Colour with alpha is converted straight, and multiplied by it after, as interpolation wants it.
+    Colour is divided by alpha before the conversion and multiplied after it, so that interpolation sees associated alpha.
     """
     full = np.ones((*values.shape[:2], 4), np.float32)
     full[:, :, : values.shape[2]] = values
@@ -234,12 +234,12 @@ def _converted(values, name, alpha):
 
 
 def _divide(values):
-    """Colour by alpha, where there is any."""
+    """Divide colour by alpha in place where alpha is positive."""
     np.divide(values[:, :, :3], values[:, :, 3:], out=values[:, :, :3], where=values[:, :, 3:] > 0.0)
 
 
 def _floating(values):
-    """Floating point texels; those of a 16 bit file, which are whole steps of it, as 16 bits."""
+    """Return texels as float32, or as uint16 if all are multiples of 1/65535, as those of 16-bit files are."""
     values = np.ascontiguousarray(values)
     if not np.isfinite(values).all():
         values[~np.isfinite(values).all(axis=2)] = 0.0
@@ -250,7 +250,7 @@ def _floating(values):
 
 
 def _is_stepped(values):
-    """Whether all are whole steps of 16 bits, to the rounding of single precision, which is 2^-9 of a step."""
+    """Whether all values are multiples of 1/65535 up to the rounding of single precision, which is 2^-9 of a step."""
     if values.min() < 0.0 or values.max() > 1.0:
         return False
     steps = values * _WHITE
@@ -258,7 +258,7 @@ def _is_stepped(values):
 
 
 def _quantised(values, scale, dtype):
-    """Whole steps between 0 and 1 again, some rows at a time so that memory does not peak."""
+    """Return values between 0 and 1 rounded to integers of dtype, in blocks of rows to limit peak memory."""
     texels = np.empty(values.shape, dtype)
     rows = max(1, _VALUES_AT_ONCE // (values.shape[1] * values.shape[2]))
     for first in range(0, len(values), rows):

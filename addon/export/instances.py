@@ -1,4 +1,4 @@
-"""Everything that the depsgraph shows: meshes once each, and a table of where they stand."""
+"""All visible entries of the depsgraph: each mesh once, a table of instances, and the lights."""
 
 from array import array
 from typing import NamedTuple
@@ -13,21 +13,21 @@ from .checks import check_hair
 from .lights import export_light
 from .objects import Objects
 
-# Types whose surface arrives as a MESH entry of its own, beside the original.
+# Types whose surface is a separate MESH entry of the depsgraph.
 _SHOWN_AS_MESH = {"CURVE", "FONT", "META", "SURFACE"}
-# Strokes are drawn by Blender itself, over the picture.
+# Types without a surface. Blender itself draws strokes over the image.
 _SHOWS_NOTHING = {"ARMATURE", "CAMERA", "EMPTY", "GPENCIL", "GREASEPENCIL", "LATTICE", "LIGHT_PROBE", "SPEAKER"}
-# Before 4.5 what brings a light in did not narrow which rays see it.
+# Before 4.5 the visibility of an instancer does not apply to its lights.
 _LIGHTS_ARE_OBJECTS = bpy.app.version >= (4, 5)
-# Before 5.0 reading a column of all entries leaks the temporary object that the mesh comes in of a text which is the first.
+# Before 5.0 foreach_get over all entries leaks the temporary object with the mesh of a text object, if it is the first entry.
 _LEAKS_FIRST = bpy.app.version < (5, 0)
 _POLL_EVERY = 256
-# Objects that come once each may bring a material each.
+# Poll more often for single objects, each of which may have a material to read.
 _POLL_EVERY_OBJECT = 16
 
 
 class Places(NamedTuple):
-    """Where the rows of a table find their matrices, in a depsgraph that shows the same entries."""
+    """The entries of a depsgraph from which the rows of the instance table read their matrices."""
 
     entries: np.ndarray  # of each row
     count: int  # of all entries
@@ -46,7 +46,7 @@ class Places(NamedTuple):
         return matrices
 
     def _columns(self, walk):
-        """(entries, 4, 4): the columns of all matrices. A second walk is faster than an object of Python's for each entry."""
+        """Return (entries, 4, 4), the columns of all matrices. A second walk is faster than a Python object for each entry."""
         if self.one_by_one:
             return np.array([entry.matrix_world for entry in walk], np.float32).transpose(0, 2, 1)
         columns = np.empty(16 * self.count, np.float32)
@@ -55,13 +55,13 @@ class Places(NamedTuple):
 
 
 class Instances:
-    """Collects entries; to_table() and meshes give the snapshot's parts, lights the lamps met on the way.
+    """Collects the entries of a depsgraph: to_table() returns the instances, meshes and lights the other parts of a snapshot.
 
-    There may be millions: of each entry only numbers are kept, and matrices are read all at once.
+    There may be millions of entries: only numbers are stored for each, and all matrices are read in one call.
     """
 
     def __init__(self, depsgraph, materials, messages, kept=None, parts=None, space=None):
-        """space: a SpaceView3D, whose local view and filters leave objects out."""
+        """space: a SpaceView3D, whose local view and filters exclude objects."""
         self.depsgraph = depsgraph
         self.messages = messages
         self.lights = []
@@ -102,14 +102,14 @@ class Instances:
                 self._check_hair(thing)
             if not (shows_surfaces and entry.show_self):
                 continue
-            # Evaluated data lives as long as the depsgraph, while the objects of entries are reused: keep addresses only.
+            # Evaluated data lives as long as the depsgraph, but the objects of entries are reused: store addresses only.
             if entry.is_instance:
                 key = thing.original.as_pointer(), thing.data.as_pointer(), self._narrowed_by(entry.parent)
                 row = rows.get(key)
                 if row is None:
                     row = rows[key] = self._new_row(thing, entry.instance_object, *key, poll)
             else:
-                # What nobody brings in comes once: there is nothing to remember.
+                # An object that is no instance appears once: no cache is needed.
                 if number % _POLL_EVERY_OBJECT == 0:
                     poll()
                 row = self._new_row(thing, thing, thing.original.as_pointer(), thing.data.as_pointer(), None, poll)
@@ -126,7 +126,7 @@ class Instances:
         def column(values, dtype=np.uint32):
             return np.array(values, dtype)[look_of]
 
-        # Equal slot lists are kept once, however many objects share them.
+        # Store each list of slots once, however many objects share it.
         starts, slots = {}, []
         for look in looks:
             if look.slots not in starts:

@@ -1,8 +1,8 @@
-"""Meshes and pictures that the frames of an animation, or the renders of one scene with Persistent Data, have in common.
+"""A cache of meshes and images for the frames of an animation, and for renders of one scene with Persistent Data.
 
-What was read is kept beside all that it was read from, and used again only where that is there again, bit by bit. So a frame
-still reads what Blender holds, but computes nothing of it, and decodes no file again. What a picture did not use goes with the
-next one.
+Each entry keeps its sources, all data from which it was computed, and is reused only if the sources are equal bit by bit. So
+each frame reads Blender's data again, but computes nothing from equal data and decodes no file twice. An entry that a frame
+does not use is dropped at the next frame.
 """
 
 import hashlib
@@ -19,19 +19,19 @@ _NEW_NORMALS = bpy.app.version >= (4, 1)
 
 
 class _Entry:
-    """sources: arrays and other values, in an order of their own. value: what was read of them."""
+    """sources: arrays and other values in a fixed order. value: the result computed from them."""
 
     def __init__(self, sources, value):
         self.sources, self.value, self.used = sources, value, True
 
     @property
     def bytes(self):
-        """Of all arrays, each counted once."""
+        """The memory of all arrays, each counted once."""
         return sum({id(array): array.nbytes for array in _arrays((self.sources, self.value))}.values())
 
 
 class Kept:
-    """What was kept so far; counts tells of the picture at hand what was read and what was there already."""
+    """The cache. counts holds the numbers of meshes and images read and reused in the current frame."""
 
     def __init__(self):
         self._entries = {}
@@ -39,7 +39,7 @@ class Kept:
         self.next_picture()
 
     def next_picture(self):
-        """Drops what the picture before did not use. All layers of a picture share."""
+        """Drop entries that the frame before did not use. All view layers of a frame share the entries."""
         for key, entries in list(self._entries.items()):
             left = self._entries[key] = [entry for entry in entries if entry.used]
             for entry in left:
@@ -53,7 +53,7 @@ class Kept:
         return sum(entry.bytes for entries in self._entries.values() for entry in entries)
 
     def meshes(self, export_mesh):
-        """export_mesh that asks here first."""
+        """Return an export_mesh that looks in the cache first."""
 
         def export(mesh, name, poll, wanted):
             sources = _sources_of_mesh(mesh, wanted, poll)
@@ -62,7 +62,7 @@ class Kept:
         return export
 
     def pictures(self, read_all):
-        """read_all of images.py that asks here first; what it told is told again."""
+        """Return a _read_all of images.py that looks in the cache first and repeats the messages of cached images."""
 
         def read_again(image, path, tell):
             def make():
@@ -85,7 +85,7 @@ class Kept:
                 return entry.value
         self.counts[f"read_{kind}"] += 1
         if sources is not None:
-            # Blender's own arrays go with the frame, and to make normals may move them.
+            # Copy the arrays: Blender's own end with the frame, and computing normals may move them.
             sources = tuple(np.array(source) if isinstance(source, np.ndarray) else source for source in sources)
         value = make()
         if sources is not None:
@@ -111,7 +111,7 @@ def _bits(array):
 
 
 def _arrays(value):
-    """The arrays that stand in tuples, lists and records."""
+    """Yield the arrays inside tuples, lists and records."""
     if isinstance(value, np.ndarray):
         yield value
     elif isinstance(value, (tuple, list)):
@@ -122,7 +122,7 @@ def _arrays(value):
 
 
 def _sources_of_mesh(mesh, wanted, poll):
-    """All that export_mesh makes its arrays of; None where Blender does not give all of it."""
+    """Return all data that export_mesh reads; None if Blender does not expose all of it."""
     if not _NEW_NORMALS and mesh.has_custom_normals:
         return None
     places, corners = built_in(mesh, "position", "POINT"), built_in(mesh, ".corner_vert", "CORNER")
@@ -147,7 +147,7 @@ def _sources_of_mesh(mesh, wanted, poll):
 
 
 def _sources_of_normals(mesh):
-    """What decides them beside faces and places: hard edges, flat faces, and the user's normals as they come out."""
+    """Yield the data besides faces and positions that normals depend on: sharp edges, flat faces, custom normals."""
     if not _NEW_NORMALS:
         yield mesh.use_auto_smooth
         yield mesh.auto_smooth_angle
@@ -171,7 +171,7 @@ def _sources_of_normals(mesh):
 
 
 def _sources_of_image(image, path):
-    """What a picture is read from and by which settings; None where that may change without a trace."""
+    """Return the file identity and the settings of an image; None if its pixels can change without changing these."""
     if image.is_dirty or image.source in ("MOVIE", "VIEWER"):
         return None
     settings = (image.source, image.alpha_mode, image.colorspace_settings.name, image.has_data, image.filepath, path)
@@ -187,7 +187,7 @@ def _sources_of_image(image, path):
 
 
 def _files_of(image, path):
-    """What the system tells of each file; None where one is missing."""
+    """Return path, time, size and inode of each file; None if one is missing."""
     names = [path or image.filepath]
     if image.source == "TILED":
         names = [image.filepath.replace("<UDIM>", str(tile.number)) for tile in image.tiles]

@@ -19,14 +19,14 @@ _KINDS = {"POINT": LightKind.POINT, "SPOT": LightKind.SPOT, "SUN": LightKind.SUN
 
 
 def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
-    """The light of an object; None, with a message, where it cannot shine. hidden: Ray bits in place of the object's own."""
+    """Return the light of an object; None, with a message, if it cannot shine. hidden: Ray bits instead of the object's own."""
     light = thing.data
     who = f"light '{thing.name}'"
     matrix = np.array(matrix_world, float)
     if not np.isfinite(matrix).all():
         messages.add(f"{who}: its transform is not finite, it is left out", severity=Severity.LEFT_OUT)
         return None
-    # A portal gives no light: it tells Cycles where to look for the sky's.
+    # A portal emits no light: it only guides Cycles' sampling of the sky.
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
         return None
     _check(thing, light, who, messages)
@@ -41,7 +41,7 @@ def export_light(thing, matrix_world, messages, depsgraph=None, hidden=None):
     if kind == LightKind.AREA and not size[0] * size[1] > 0.0:
         messages.add(f"{who}: its area is zero, it is left out", severity=Severity.LEFT_OUT)
         return None
-    # A picture varies, so that none is read.
+    # Only constant light is supported: read no images.
     graph = NodeGraph(who, messages, NoPictures(), depsgraph, unknown="white")
     own = light.lancer
     separate = own.use_separate_colors
@@ -77,7 +77,7 @@ def _ambient(own, who, messages):
 
 
 def _rotation(matrix):
-    """Directions are columns of unit length; a column without length takes the axis it stood for."""
+    """Return the matrix with columns of unit length; a column of length 0 becomes the unit vector of its axis."""
     result = matrix[:3].copy()
     lengths = np.linalg.norm(result[:, :3], axis=0)
     for axis in range(3):
@@ -86,7 +86,7 @@ def _rotation(matrix):
 
 
 def _stretch(matrix):
-    """What an uneven scale does to a spot's cone along x and y; before 4.0 Cycles kept it round."""
+    """Return the stretch of a spot's cone along x and y by its scale; before 4.0 Cycles keeps the cone round."""
     lengths = np.linalg.norm(matrix[:3, :3], axis=0)
     if bpy.app.version < (4, 0) or not lengths.all():
         return 1.0, 1.0
@@ -94,12 +94,12 @@ def _stretch(matrix):
 
 
 def _casts_shadow(light):
-    """Cycles' own switch in the versions that have it, where use_shadow is EEVEE's."""
+    """Whether the light casts shadows: by Cycles' own switch in versions that have it, in which use_shadow is EEVEE's."""
     return getattr(getattr(light, "cycles", None), "cast_shadow", light.use_shadow)
 
 
 def _power(light, graph):
-    """Watts a channel: energy, colour, temperature, exposure and constant nodes together."""
+    """Return watts per channel: the product of energy, colour, temperature, exposure and constant nodes."""
     who, messages = graph.owner, graph.messages
     energy = messages.number(light.energy, who, "power", 0.0, 0.0)
     color = messages.color(light.color, who, "colour", 1.0)
@@ -111,7 +111,7 @@ def _power(light, graph):
 
 
 def _watts_to_emission(light, kind, radius, sun_angle, shape, size):
-    """The factor from watts to W/sr (point, spot), W/m^2 (sun) or W/(m^2 sr) (area)."""
+    """Return the factor from watts to W/sr (point, spot), W/m^2 (sun) or W/(m^2 sr) (area)."""
     normalize = getattr(light, "normalize", True)
     if kind == LightKind.SUN:
         if bpy.app.version < (4, 0):
@@ -124,18 +124,18 @@ def _watts_to_emission(light, kind, radius, sun_angle, shape, size):
         return 1.0 / (math.pi * area) if bpy.app.version >= (4, 0) else 1.0 / (4.0 * area)
     if normalize:
         return 1.0 / (4.0 * math.pi)
-    # The ball's radiance is P/pi, seen over its cross-section pi r^2; Cycles gives a true point the cross-section 1.
+    # The ball's radiance is P/pi over its cross-section pi r^2; Cycles gives a point without radius the cross-section 1.
     return radius**2 if radius > 0.0 else 1.0 / math.pi
 
 
 def _old_sun(sun_angle):
-    """Before 4.0 the strength was that of a flat disk at distance 1: its mean cosine is missing at normal incidence."""
+    """Return the factor before 4.0, where the sun is a flat disk at distance 1 that loses its mean cosine."""
     tangent2 = math.tan(0.5 * min(sun_angle, math.radians(179.9))) ** 2
     return 2.0 / (math.sqrt(1.0 + tangent2) + 1.0)
 
 
 def _area(light, matrix, who, messages):
-    """Shape and full lengths in the world: Blender scales the sides by the object's axes."""
+    """Return the shape and the full side lengths in world space; the object's axes scale the sides."""
     x = messages.number(light.size, who, "size", 1.0, 0.0)
     y = messages.number(light.size_y, who, "size y", 1.0, 0.0) if light.shape in ("RECTANGLE", "ELLIPSE") else x
     shape = AreaShape.ELLIPSE if light.shape in ("DISK", "ELLIPSE") else AreaShape.RECTANGLE
@@ -144,7 +144,7 @@ def _area(light, matrix, who, messages):
 
 
 def _nodes(light, graph):
-    """Colour times strength of the light's own nodes where they are constant; (1, 1, 1) without nodes."""
+    """Return colour times strength of the light's nodes; (1, 1, 1) without nodes, or, with a message, if they vary."""
     neutral = (1.0, 1.0, 1.0)
     if light.node_tree is None or (bpy.app.version < (5, 2) and not light.use_nodes):
         return neutral
@@ -178,8 +178,8 @@ def _check(thing, light, who, messages):
 
 
 def _sheared(matrix):
-    """Whether the axes are not upright to one another. Under parents float matrices are so to 1e-5; ten times that, a cone
-    bent by 0.006 degrees, is not seen.
+    """Whether the axes are not orthogonal. Parents leave errors of 1e-5 in single precision; ten times that bends a cone by
+    0.006 degrees, which is invisible.
     """
     columns = matrix[:3, :3].T
     lengths = np.linalg.norm(columns, axis=1)

@@ -1,4 +1,4 @@
-"""Blender materials as lobes: their weights and values, what they emit, let through, and where they move the surface."""
+"""Blender materials as lobes with weights, emission, transmittance, holdout and displacement."""
 
 from typing import NamedTuple
 
@@ -16,29 +16,29 @@ from .sockets import RULES, output_node
 from .surface import Surface
 from .walk import Site
 
-# What Cycles shows where there is no material: since 5.0 its Principled BSDF as it comes.
+# Cycles' surface without a material: since 5.0 its Principled BSDF with default values.
 _DEFAULT_LOBE = (
     snapshot.Lobe(LobeKind.LAMBERT, (0.8, 0.8, 0.8))
     if bpy.app.version < (5, 0)
     else snapshot.Lobe(LobeKind.PRINCIPLED, (1.0, 1.0, 1.0), rules=RULES, principled=snapshot.Principled(rules=RULES))
 )
 _DEFAULT = snapshot.Material(name="default grey", lobes=(_DEFAULT_LOBE,))
-# Cycles' filter width of the bump that stands for displacement, in pixels; before it was one pixel.
-_APART = (ObjectFact.COLOR, ObjectFact.RANDOM)  # what an OBJECT_INFO node tells that must be read for it
+_APART = (ObjectFact.COLOR, ObjectFact.RANDOM)  # values of OBJECT_INFO that the export reads only on request
+# Cycles' filter width, in pixels, of the bump that replaces displacement.
 _BUMP_WIDTH = 0.1 if bpy.app.version >= (4, 5) else 1.0
 
 
 class _Exported(NamedTuple):
     material: snapshot.Material
     attributes: frozenset = frozenset()  # names of the mesh attributes that it reads
-    objects: frozenset = frozenset()  # identities of the objects whose place it reads
+    objects: frozenset = frozenset()  # identities of the objects whose transform it reads
 
 
 class Materials:
-    """Numbers the materials that objects ask for; each is read once."""
+    """The materials that objects use, by number; each is read once."""
 
     def __init__(self, messages, override=None, images=None, depsgraph=None, parts=None):
-        """parts: of earlier exports, a Parts."""
+        """parts: the Parts of earlier exports, or None."""
         self.messages = messages
         self.override = override
         self.images = Images() if images is None else images
@@ -49,7 +49,7 @@ class Materials:
         self._attributes = []
 
     def number(self, material, asker):
-        """The number of a material; None is the default grey, as everywhere in Blender. asker is the object's name."""
+        """Return the number of a material; None is Blender's default grey. asker is the object's name."""
         material = self.override or material
         key = None if material is None else material.original.as_pointer()
         if key not in self._numbers:
@@ -69,11 +69,11 @@ class Materials:
         return self._parts.shader(material, self.messages, read)
 
     def tell_apart(self, numbers):
-        """Whether one of these materials asks for an object's colour or random number."""
+        """Whether one of these materials reads an object's colour or random number."""
         return any(_tells_apart(self.list[number]) for number in numbers)
 
     def attributes(self, numbers):
-        """Names of the mesh attributes that these materials read: what export_mesh takes as wanted."""
+        """Return the names of the mesh attributes that these materials read, for export_mesh's wanted."""
         return frozenset().union(*(self._attributes[number] for number in numbers))
 
 
@@ -82,7 +82,7 @@ def _tells_apart(material):
 
 
 def _export(material, messages, asker, images, depsgraph):
-    """An _Exported. asker is the object that is met first with it: messages name it too."""
+    """Return an _Exported. asker is the name of the first object with the material, which messages include."""
     who = f"material '{material.name}'" + ("" if asker is None else f" on object '{asker}'")
     own = material.lancer
     graph = NodeGraph(who, messages, images, depsgraph)
@@ -106,7 +106,7 @@ def _export(material, messages, asker, images, depsgraph):
 
 
 def _flags(material):
-    """Cycles' own settings of a material; it is an add-on and may be off."""
+    """Return the MaterialFlag bits of Cycles' settings; Cycles is an add-on and may be disabled."""
     cycles = getattr(material, "cycles", None)
     flags = MaterialFlag(0)
     if not getattr(cycles, "use_bump_map_correction", True):
@@ -119,13 +119,13 @@ def _flags(material):
 
 
 def _is_weak(material, surface):
-    """Whether Cycles leaves the emission to be found by chance: so it decides by itself from Blender 3.5 on."""
+    """Whether Cycles does not sample the emission as a light, by its automatic choice from Blender 3.5 on."""
     automatic = getattr(getattr(material, "cycles", None), "emission_sampling", "") == "AUTO"
     return automatic and 0.0 < max(map(abs, surface.estimated)) <= 0.5
 
 
 def _own_model(own, who, messages):
-    """The lobes of the material's own settings; black ones are none."""
+    """Return the lobes of the material's own settings, without black ones."""
 
     def value(name):
         wanted, given = PARAMETERS[name], getattr(own, name)
@@ -139,7 +139,7 @@ def _own_model(own, who, messages):
 
 
 def _from_nodes(material, graph):
-    """The fields of a material that its node tree gives."""
+    """Return the fields of a snapshot.Material from its node tree."""
     who, messages, tree = graph.owner, graph.messages, material.node_tree
     output = output_node(tree, "OUTPUT_MATERIAL") if tree is not None else None
     if output is None:
@@ -172,7 +172,7 @@ def _color(value):
 
 
 def _displacement(material, graph, site):
-    """True displacement of the material's method, and the bump that stands for it or goes with it."""
+    """Return the fields of displacement: true displacement, a bump in its place, or both, by the material's method."""
     if not graph.is_linked(site, ("Displacement",)):
         return {}
     socket = site.node.inputs["Displacement"]
@@ -189,7 +189,7 @@ def _displacement(material, graph, site):
         both = "displacement" in values
         normal = bump(graph, first, height, 1.0, 1.0, graph.normal, _BUMP_WIDTH, undisplaced=both)
         graph.normal = values["normal"] = normal
-        # The bump shows what displacement does to the normals; both would show it twice.
+        # The bump contains the displacement's change of normals: keep the undisplaced normals below it.
         if both:
             values["flags"] = int(MaterialFlag.KEEP_NORMALS)
     return values

@@ -1,11 +1,11 @@
-"""Value and vector nodes: each reader takes (graph, site, output) and gives a value, None where it cannot."""
+"""Value and vector nodes: each reader takes (graph, site, output) and returns a value, or None if it is not supported."""
 
 from mathutils import Euler, Matrix, Vector
 
 from ..bindings.enums import MathOperation, NodeKind, VectorOperation
 from ..bindings.shading import NodeRef
 
-# Operations on vectors that are those on numbers, for each channel by itself.
+# Operations on vectors that apply an operation on numbers to each channel.
 _PER_CHANNEL = {name: MathOperation[name] for name in ("POWER", "ROUND", "SIGN", "WRAP")}
 
 
@@ -38,7 +38,7 @@ def _vector_math(graph, site, output):
 
 
 def _refract(graph, incident, normal, eta):
-    """eta i - (eta n.i + sqrt k) n with k = 1 - eta^2 (1 - (n.i)^2); nothing where k is negative."""
+    """Return eta i - (eta n.i + sqrt k) n with k = 1 - eta^2 (1 - (n.i)^2); 0 if k is negative."""
     m = MathOperation
     n = graph.vector_op(VectorOperation.NORMALIZE, normal)
     cosine = graph.vector_op(VectorOperation.DOT_PRODUCT, n, incident)
@@ -92,7 +92,7 @@ def _mapped(graph, node, values):
 
 
 def smooth_step(graph, t, twice=False):
-    """t^2 (3 - 2 t), or the smoother t^3 (t (6 t - 15) + 10), of t between 0 and 1."""
+    """Return t^2 (3 - 2 t), or if twice t^3 (t (6 t - 15) + 10), for t between 0 and 1."""
     m = MathOperation
     square = graph.op(m.MULTIPLY, t, t)
     if not twice:
@@ -118,7 +118,7 @@ def _normal(graph, site, output):
 
 
 def _rotate(graph, site, output):
-    """As a matrix, for which centre, axis and angle must be constant."""
+    """Return the rotated vector, by a constant matrix; None if centre, axis or angle are not constant."""
     node = site.node
     vector, center = graph.value(site, "Vector"), graph.value(site, "Center")
     if node.rotation_type == "EULER_XYZ":
@@ -140,7 +140,7 @@ def _rotate(graph, site, output):
 
 
 def transformed(graph, vector, rows):
-    """Rows of a 3 x 4 matrix times a vector."""
+    """Return a 3 x 4 matrix, given by its rows, times a vector."""
     flat = [float(x) for row in rows for x in row]
     if flat == [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]:
         return vector

@@ -1,4 +1,4 @@
-"""Evaluated Blender meshes as arrays, by foreach_get, which copies whole arrays where Blender holds them so."""
+"""Evaluated Blender meshes as arrays, read by foreach_get, which copies whole arrays if Blender stores them as such."""
 
 import contextlib
 import ctypes
@@ -17,10 +17,10 @@ _SAMPLE = 8
 
 @contextlib.contextmanager
 def shown_mesh(thing, owner):
-    """The mesh of an object that shows one; owner: the evaluated object that it is, or is an instance of.
+    """Yield the mesh of an object. owner: the evaluated object itself, or the one of which thing is an instance.
 
-    While its mesh is being edited an object has a wrapper of it, which looks empty until Blender makes a mesh of that. Cycles
-    asks for one, too, for all objects of that mesh and their instances, but not for what Geometry Nodes made.
+    In Edit Mode the evaluated mesh is a wrapper that looks empty; to_mesh() returns its faces. Like Cycles, call it for all
+    objects with that mesh and their instances, but not for geometry made by Geometry Nodes.
     """
     mesh = thing.data
     if not mesh.is_editmode or owner.data != mesh:
@@ -33,10 +33,10 @@ def shown_mesh(thing, owner):
 
 
 def export_mesh(mesh, name, poll, wanted=frozenset()):
-    """The mesh with the normals that Blender shades with, its render UV map and colours, and the attributes that are wanted.
+    """Return the MeshData of a mesh: its shading normals, render UV map, colours and the wanted attributes.
 
-    wanted: names of further UV maps and attributes as attribute_name gives them, tangents_name's, "generated", POLYGONS. poll
-    ends the export by an exception; one array of Blender's is the least that it can wait for.
+    wanted: names from attribute_name() and tangents_name(), "generated", POLYGONS. poll is called between arrays and ends
+    the export by an exception.
     """
     positions = read_positions(mesh)
     poll()
@@ -45,7 +45,7 @@ def export_mesh(mesh, name, poll, wanted=frozenset()):
     count = len(mesh.loop_triangles)
     if count == 0:
         return MeshData(name=name, positions=positions)
-    # Blender tessellates a triangle to itself and keeps the order of faces.
+    # Blender's tessellation maps a triangle to itself and keeps the order of faces.
     if count == len(mesh.polygons) and len(mesh.loops) == 3 * count:
         corners = None
     else:
@@ -83,14 +83,14 @@ def read_positions(mesh):
 
 
 def _triangle_corners(mesh, count):
-    """(count, 3): which corners of Blender's faces make the triangles. Use it up before anything changes the mesh.
+    """Return (count, 3), the corners of Blender's faces that make the triangles, as a view that ends when the mesh changes.
 
-    Blender has them in one array, but calls a function for each when asked by name. So look at the array itself, where its
-    stride and a sample of its values are those that Blender tells.
+    Blender stores them in one array, but foreach_get calls a function for each triangle. So use the array itself if its
+    stride and a sample of its values equal those of Blender's API.
     """
     triangles = mesh.loop_triangles
     first, last = triangles[0].as_pointer(), triangles[count - 1].as_pointer()
-    # Blender 3 keeps the number of the face beside the three.
+    # Up to 4.0 the index of the face follows the three corners.
     width = 4 if bpy.app.version < (4, 1) else 3
     if count > 1 and last - first == 4 * width * (count - 1):
         view = np.ctypeslib.as_array((ctypes.c_int32 * (width * count)).from_address(first)).reshape(count, width)[:, :3]
@@ -108,10 +108,10 @@ def _uvs(mesh, corners, poll):
 
 
 def color_attribute(mesh):
-    """The one that is rendered; None where there is none."""
+    """Return the colour attribute for rendering; None if the mesh has no colours."""
     if len(mesh.color_attributes) == 0:
         return None
-    # Blender renders the one with the camera; files of old versions have none so marked.
+    # Files of old versions may have no attribute marked for rendering: take the first.
     index = mesh.color_attributes.render_color_index
     return mesh.color_attributes[index if 0 <= index < len(mesh.color_attributes) else 0]
 
@@ -127,12 +127,12 @@ def _colors(mesh, corners, triangles, poll):
 
 
 def face_slots(mesh):
-    """The material slot of each of Blender's faces; None where all have the first."""
+    """Return the material slot of each of Blender's faces; None if all have the first."""
     data = built_in(mesh, "material_index", "FACE")
     if data is not None:
         slots = read(data, "value", np.int32, 1)
     elif bpy.app.version >= (3, 5):
-        # Newer Blenders leave the attribute out where every face has slot 0.
+        # Since 3.5 the attribute is missing if every face has slot 0.
         return None
     else:
         slots = read(mesh.polygons, "material_index", np.int32, 1)
@@ -145,5 +145,5 @@ def _material_slots(mesh, corners):
         return None
     if corners is not None:
         slots = slots[triangle_faces(mesh)]
-    # Faces may point anywhere; the core takes the last slot for one beyond it.
+    # Faces may have any slot index; the core uses the last slot for an index beyond it.
     return np.clip(slots, 0, 0xFFFF).astype(np.uint16)

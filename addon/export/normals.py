@@ -1,4 +1,4 @@
-"""Nodes about normals: maps, bumps, displacement, and what depends on the angle of view."""
+"""Nodes about normals: normal maps, bump, displacement, Fresnel and Layer Weight."""
 
 import bpy
 
@@ -12,9 +12,9 @@ from .sockets import RULES
 _SPACES = {"TANGENT": 0, "OBJECT": 1, "WORLD": 2, "BLENDER_OBJECT": 3, "BLENDER_WORLD": 4}
 _FRESNEL, _FACING = 0, 1
 _INVERTED, _UNDISPLACED, _FLAT_BEFORE = 1, 2, 4  # flags of BUMP
-# Of NORMAL_MAP: from Blender 5.2 on the interpolated normal is made unit first.
+# Flag of NORMAL_MAP: from Blender 5.2 on the interpolated normal is normalised first.
 _UNIT_NORMAL = 1 if bpy.app.version >= (5, 2) else 0
-_WHOLE_PIXEL = 1.0  # the filter width of Blenders whose Bump node has no input for it
+_WHOLE_PIXEL = 1.0  # the filter width in versions whose Bump node has no input for it
 _ORIGIN = (0.0, 0.0, 0.0)
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _OBJECT, _WORLD = 0, 1  # the space of a displacement's length
@@ -35,7 +35,7 @@ def _normal_map(graph, site, output):
         return graph.emit(
             NodeKind.NORMAL_MAP, strength, color, option=space, name=attribute_name(node.uv_map), flags=_UNIT_NORMAL
         )
-    # Blender 3 tilts the normal by a share of the way to the mapped one.
+    # Blender 3 interpolates linearly from the normal to the mapped one.
     v = VectorOperation
     mapped = graph.emit(NodeKind.NORMAL_MAP, 1.0, color, option=space, name=attribute_name(node.uv_map))
     plain = graph.normal if isinstance(graph.normal, NodeRef) else coordinate(graph, Coordinate.SHADING_NORMAL)
@@ -55,7 +55,7 @@ def _bump(graph, site, output):
 
 
 def bump(graph, first, height, strength, distance, normal, width, invert=False, undisplaced=False):
-    """A height that varies, as a normal; undisplaced looks at the surface as it was before true displacement."""
+    """Return the normal bumped by a height; undisplaced evaluates the height on the surface before true displacement."""
     if not isinstance(height, NodeRef):
         return normal
     flags = (_INVERTED if invert else 0) | (_UNDISPLACED if undisplaced else 0)
@@ -96,7 +96,7 @@ def _vector_displacement(graph, site, output):
 
 
 def _to_object(graph, vector):
-    """A vector in the world as the object has it: as much along each axis as it says."""
+    """Return a displacement vector from world space in object space."""
     result = _ORIGIN
     for number, axis in enumerate(_AXES):
         height = graph.component(vector, number)
@@ -106,7 +106,7 @@ def _to_object(graph, vector):
 
 
 def _from_tangents(graph, vector):
-    """A vector along tangent, normal and bitangent, in this order, as the object has it."""
+    """Return a vector with components along tangent, normal and bitangent, in this order, in object space."""
     v = VectorOperation
     want_tangents(graph, "")
     tangent = graph.emit(NodeKind.ATTRIBUTE, name=tangents_name(""))
@@ -120,7 +120,7 @@ def _from_tangents(graph, vector):
 
 
 def displacement_height(graph, site, socket):
-    """How far the displacement that is linked to a socket moves the surface along its normal."""
+    """Return the distance along the normal by which the displacement linked to a socket moves the surface."""
     m, v = MathOperation, VectorOperation
     origin = graph.walker.origin(site, socket)
     if origin.site is None:
@@ -140,7 +140,7 @@ def displacement_height(graph, site, socket):
 
 
 def _stretch(graph):
-    """What a step along the object's normal is along the world's: 1 over that of a world's step, seen from the object."""
+    """Return the world-space length along the normal of a unit step along the object-space normal."""
     steps = (graph.emit(NodeKind.DISPLACEMENT, 1.0, 0.0, 1.0, _ORIGIN, option=option) for option in (_OBJECT, _WORLD))
     return graph.op(MathOperation.DIVIDE, 1.0, graph.vector_op(VectorOperation.DOT_PRODUCT, *steps))
 

@@ -1,4 +1,4 @@
-"""What an object of the depsgraph is apart from its place: its mesh, its materials, who sees it. Looks that agree are one."""
+"""Properties of the depsgraph's objects apart from the transform: mesh, materials, visibility. Equal looks are stored once."""
 
 from typing import NamedTuple
 
@@ -14,13 +14,13 @@ from .mesh import export_mesh, read_positions, shown_mesh
 from .visibility import object_hidden_from
 
 _TERMINATOR = "shadow_terminator_geometry_offset"
-# Before 4.5 it belongs to Cycles, an add-on that may be off.
+# Before 4.5 the property belongs to Cycles, an add-on that may be disabled.
 _HAS_TERMINATOR = _TERMINATOR in bpy.types.Object.bl_rna.properties
 _HAS_HOLDOUT = "is_holdout" in bpy.types.Object.bl_rna.properties
 
 
 class Look(NamedTuple):
-    """A row of the instance table without its place and its name."""
+    """A row of the instance table without transform and name."""
 
     kind: int
     mesh: int
@@ -34,10 +34,10 @@ class Look(NamedTuple):
 
 
 class Objects:
-    """Reads each object once; meshes, looks and placements are lists in the order of their numbers."""
+    """Reads each object once; meshes, looks and placements are lists indexed by their numbers."""
 
     def __init__(self, depsgraph, materials, messages, kept=None, parts=None):
-        """kept: of earlier frames, a Kept; parts: of earlier exports for a window, a Parts."""
+        """kept: the Kept of earlier frames; parts: the Parts of earlier exports for a window."""
         self._parts = parts
         self._export_mesh = export_mesh if kept is None else kept.meshes(export_mesh)
         self.scene = depsgraph.scene
@@ -52,11 +52,11 @@ class Objects:
         self._placed = {}
         self._wanted = {}
         self._checked = set()
-        # To ask Blender about each object takes longer than everything else.
+        # Query collections only if needed: Blender's call per object takes longer than all other reads.
         self._asks_layer = _has_special_collections(self.view_layer)
 
     def sight(self, thing, narrowed):
-        """(Ray bits that do not see it, InstanceFlag bits) of an object, as what brings it in narrows them; see narrowed_by."""
+        """Return (Ray bits that do not see the object, InstanceFlag bits). narrowed: narrowed_by() of an instancer, or None."""
         hidden, holdout = object_hidden_from(thing), self._is_holdout(thing)
         if narrowed is None:
             indirect = self._is_indirect(thing)
@@ -69,7 +69,7 @@ class Objects:
         return hidden, int(InstanceFlag.HOLDOUT) if holdout else 0
 
     def narrowed_by(self, instancer):
-        """What an object that brings others in does to their sight: (Ray bits, a hole or not, seen indirectly only or not)."""
+        """Return an instancer's effect on the visibility of its instances: (hidden Ray bits, holdout, indirect only)."""
         return object_hidden_from(instancer), self._is_holdout(instancer), self._is_indirect(instancer)
 
     def _is_holdout(self, thing):
@@ -81,10 +81,10 @@ class Objects:
         return self._asks_layer and thing.original.indirect_only_get(view_layer=self.view_layer)
 
     def look(self, thing, owner, original_key, data_key, narrowed, poll):
-        """(Number of the look, name) of an object that shows a mesh; (-1, "") where there is nothing to see.
+        """Return (number of the look, name) of an object with a mesh; (-1, "") if nothing of it is visible.
 
-        owner: the evaluated object that thing is, or is an instance of. Instances exist for a moment only: settings of add-ons
-        that are read from one stay allocated for ever.
+        owner: the evaluated object itself, or the one of which thing is an instance. Read settings of add-ons from owner:
+        reading them from a temporary instance allocates memory that Blender never frees.
         """
         if self._parts is not None:
             self._parts.count("objects")
@@ -117,13 +117,13 @@ class Objects:
         return number, name
 
     def _colors_polygons(self, own):
-        """Whether each face of the object gets one colour: Classic has to know which triangles are one face then."""
+        """Whether Classic shades each face with one colour, which requires the polygon of each triangle."""
         return own.shading == "FLAT" and self.scene.lancer.integrator == "CLASSIC"
 
     def _mesh(self, thing, owner, name, data_key, slots, polygons, poll):
-        """The number of the object's mesh and the slots that its faces use; -1 for a mesh without faces.
+        """Return the number of the object's mesh, -1 without faces, and the slots that its faces use.
 
-        Objects that share a mesh may show it with materials that read different attributes of it.
+        Objects that share a mesh may have materials that read different attributes: the mesh is read again if one is missing.
         """
         wanted = self._wanted.get(slots)
         if wanted is None:
@@ -143,7 +143,7 @@ class Objects:
             found = wanted, number, used
             copies.append(found)
         _, number, used = found
-        # Nodes may well give instances alone.
+        # Geometry Nodes may produce instances alone: add no message.
         if number < 0 and not any(modifier.type == "NODES" for modifier in thing.modifiers):
             self.messages.add(f"object '{name}': has no faces, it is left out")
         return number, used
@@ -157,7 +157,7 @@ class Objects:
         return read() if self._parts is None else self._parts.mesh(thing, owner, data_key, wanted, read)
 
     def _placement(self, thing, owner, name, kind, data_key):
-        """The number of what brings the unit shape to where the object's mesh is; -1 where the mesh has no vertices."""
+        """Return the number of the transform from the unit shape to the mesh's bounds; -1 if the mesh has no vertices."""
         number = self._placed.get((kind, data_key))
         if number is None:
             with shown_mesh(thing, owner) as mesh:
@@ -173,12 +173,12 @@ class Objects:
         return number
 
     def _tell_exact(self, name, slots):
-        """Says what materials ask for that only a mesh has."""
+        """Add a message about attributes and displacement that materials read and that an exact shape lacks."""
         lost = [f"attribute '{attribute}'" for attribute in named_attributes(self.materials.attributes(slots))]
         if any(not is_constant(self.materials.list[slot].displacement, 0.0) for slot in slots):
             lost.insert(0, "displacement")
         if lost:
-            self.messages.add(f"object '{name}': its exact shape is without what its mesh would have: {', '.join(lost)}")
+            self.messages.add(f"object '{name}': its exact shape lacks what its mesh would have: {', '.join(lost)}")
 
     def _tell_empty(self, name, materials, used):
         if self.materials.override is not None:
@@ -189,7 +189,7 @@ class Objects:
 
 
 def _has_special_collections(view_layer):
-    """Whether any collection holds its objects out or shows them indirectly only."""
+    """Whether any collection is a holdout or indirect only."""
     waiting = [view_layer.layer_collection]
     while waiting:
         collection = waiting.pop()
@@ -200,12 +200,15 @@ def _has_special_collections(view_layer):
 
 
 def _terminator(thing):
-    """Blender's geometry offset of the shadow terminator."""
+    """Return Blender's geometry offset of the shadow terminator."""
     return float(getattr(thing if _HAS_TERMINATOR else getattr(thing, "cycles", None), _TERMINATOR, 0.1))
 
 
 def _placement(kind, positions):
-    """Unit frame of an exact surface to the object's frame: bounds' centre and half extents; a plane has no extent."""
+    """Return the (4, 4) matrix from an exact shape's unit frame to object space, by the bounds' centre and half extents.
+
+    A plane has no extent: only the centre is used. None without positions.
+    """
     if len(positions) == 0:
         return None
     low, high = positions.min(axis=0).astype(float), positions.max(axis=0).astype(float)

@@ -13,11 +13,11 @@ _KINDS = {
 
 
 def panorama(data, aspect, who, messages):
-    """(kind, panorama) of a camera of type PANO; a perspective, with a message, where there is no counterpart.
+    """Return (kind, parameters) of a camera of type PANO; a perspective camera, with a message, if it is not supported.
 
-    aspect: width over height of the image with its pixels' own.
+    aspect: width over height of the image, including the aspect of pixels.
     """
-    # The projection is the camera's own since it left the Cycles add-on, which may be off.
+    # Before 4.2 the properties belong to the Cycles add-on, which may be disabled.
     owner = data if hasattr(data, "panorama_type") else getattr(data, "cycles", None)
     if owner is None:
         messages.add(f"{who}: panoramas are set by the Cycles add-on, which is off, a perspective camera is used")
@@ -49,7 +49,7 @@ def _values(owner, data, kind, aspect):
 
 
 def _sensor(data, aspect):
-    """Width and height in millimetres of the part of the sensor that the image covers."""
+    """Return width and height in millimetres of the part of the sensor that the image covers."""
     fit = data.sensor_fit
     size = data.sensor_height if fit == "VERTICAL" else data.sensor_width
     if fit == "HORIZONTAL" or (fit == "AUTO" and aspect > 1.0):

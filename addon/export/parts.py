@@ -1,10 +1,10 @@
-"""What a window has read of a scene: only what the depsgraph says has changed is read again.
+"""Incremental export for a window: only data that the depsgraph reports as updated is read again.
 
     parts = Parts()
     snapshot, messages = export_scene(depsgraph, ExportOptions(view=camera, parts=parts))
 
-The snapshot is the same as without parts; parts.counts tells what was read for it. For a depsgraph of which every update is
-exported, as those of windows are.
+The snapshot is the same as without parts; parts.counts counts what was read for it. Every update of the depsgraph must be
+exported, as a window's view_update does.
 """
 
 import dataclasses
@@ -20,13 +20,13 @@ _CHANGES_WITH_TIME = ("MOVIE", "SEQUENCE")
 
 
 class _Mesh(NamedTuple):
-    owners: frozenset  # identities of what changes it
+    owners: frozenset  # identities of the data whose updates change it
     size: tuple  # of Blender's mesh
     data: object
 
 
 class _Shader(NamedTuple):
-    """What the nodes of a material or of the world gave."""
+    """The export of a material's or a world's nodes."""
 
     exported: object
     messages: Messages
@@ -36,7 +36,7 @@ class _Shader(NamedTuple):
 
 
 class _Asked:
-    """Stands for Images, and notes what one shader asks of it."""
+    """A wrapper of Images that records the requests of one shader."""
 
     def __init__(self, images):
         self._images = images
@@ -70,9 +70,10 @@ class Parts:
         self._last = None  # snapshot, Messages and Places of the last export
 
     def begin(self, depsgraph, obey):
-        """Forgets what has changed since the last export.
+        """Drop data that has changed since the last export.
 
-        (snapshot, Messages) where objects have moved and nothing else has; else None, and end() is to come.
+        Return (snapshot, Messages) if objects have moved and nothing else has changed. Else return None; the caller exports
+        and then calls end().
         """
         self._used_meshes, self._used_shaders = {}, {}
         self.counts = dict.fromkeys(("objects", "meshes", "shaders", "images"), 0)
@@ -86,14 +87,14 @@ class Parts:
         try:
             matrices = places.matrices(depsgraph)
         except (RuntimeError, TypeError):
-            # Another number of entries is there than was: foreach_get refuses.
+            # foreach_get fails if the number of entries has changed.
             return None
         snapshot = snapshot.replaced(instances=dataclasses.replace(snapshot.instances, matrices=matrices))
         self._last = snapshot, messages, places
         return snapshot, messages.copy()
 
     def _forget(self, updates, frame):
-        """Whether there was anything to forget."""
+        """Drop what the updates change; return whether anything was dropped."""
         changed = {update.key for update in updates}
         reshaped = {update.key for update in updates if update.reshapes}
         moved = {update.key for update in updates if update.moves}
@@ -110,7 +111,7 @@ class Parts:
         return before != (len(self._meshes), len(self._shaders))
 
     def mesh(self, thing, owner, data_key, wanted, read):
-        """The mesh of an evaluated object, by read() where it is not there."""
+        """Return the mesh of an evaluated object, from read() if it is not cached."""
         data = thing.data
         size = len(data.vertices), len(data.loops), len(data.polygons)
         original = thing.original.data
@@ -124,7 +125,7 @@ class Parts:
         return found.data
 
     def shader(self, block, messages, read):
-        """What read(messages, images) gives of a material or world; it has the identities of objects that it was read from."""
+        """Return read(messages, images) of a material or world, cached. Its field objects lists the objects it depends on."""
         key = identity(block)
         found = self._shaders.get(key)
         if found is None:
@@ -141,7 +142,7 @@ class Parts:
         self.counts[kind] += number
 
     def end(self, snapshot, messages, places):
-        """Keeps what this export has used."""
+        """Keep the data that this export has used, and drop the rest."""
         self._meshes, self._used_meshes = self._used_meshes, {}
         self._shaders, self._used_shaders = self._used_shaders, {}
         self.images.forget((), self._numbers())
@@ -152,7 +153,7 @@ class Parts:
 
 
 class _Update:
-    """What one of the depsgraph's updates means for an export."""
+    """One update of the depsgraph, classified for the export."""
 
     def __init__(self, update):
         block = update.id
@@ -160,8 +161,8 @@ class _Update:
         self.key = identity(block)
         self.is_picture = isinstance(block, bpy.types.Image)
         self.moves = update.is_updated_transform
-        # A new material is told to all objects and meshes that show it, which keep their shape.
+        # A new material updates the shading of all its objects and meshes, not their geometry.
         self.reshapes = update.is_updated_geometry
-        # Lamps are read together with their place.
+        # A lamp's light depends on its transform and must be read again.
         is_lamp = is_object and block.type == "LIGHT"
         self.moves_only = is_object and self.moves and not (self.reshapes or update.is_updated_shading or is_lamp)

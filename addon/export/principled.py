@@ -1,4 +1,4 @@
-"""The Principled BSDF as its record: each Blender's inputs under their newest names."""
+"""The Principled BSDF as a record: the inputs of each Blender version under their newest names."""
 
 from ..bindings import snapshot
 from ..bindings.enums import LobeKind, Rules
@@ -9,9 +9,9 @@ from .distributions import read_distribution
 from .sockets import DIFFUSE_OPTION, PRINCIPLED, RULES, SMALLEST_IOR, find
 
 _WHITE = (1.0, 1.0, 1.0)
-# What belongs to these is read where they are not 0 alone.
+# Layers whose other inputs are read only if the layer's weight is not 0.
 _LAYERS = ("coat", "sheen", "anisotropic")
-# Weights of layers are amounts to the core, and shares to Blender.
+# Weights that the core accepts beyond 1 and Blender clamps to 0 to 1.
 _SHARES = ("coat", "sheen")
 _FILM = ("thin_film", "the surface has no film")
 _WALL = ("thin_wall", "the surface bounds a solid")
@@ -23,7 +23,7 @@ def read_principled(surface, site, weight):
     def number(name, default, low=float("-inf"), high=float("inf")):
         return graph.parameter(site, PRINCIPLED[name], default, low=low, high=high)
 
-    # Take what alpha leaves; the rest of the light passes straight on.
+    # Alpha weighs the surface; the rest of the light passes straight through.
     alpha = number("alpha", 1.0, 0.0, 1.0)
     surface.transmit(graph.multiply(graph.subtract(1.0, alpha), weight))
     weight = graph.multiply(weight, alpha)
@@ -53,7 +53,7 @@ def read_principled(surface, site, weight):
             values[name] = number(name, default, SMALLEST_IOR)
     values["base_color"] = _base_color(surface, site, values)
     if RULES == Rules.BLENDER_3 and not is_constant(values["coat"], 0.0):
-        # Cycles 3 weighs the base by a chance of the coat that its sampler does not have.
+        # Cycles 3 weighs the base by a probability of the coat that differs from its sampler's.
         graph.tell(site, "Clearcoat leaves the base its light, which is brighter under a sky than in Cycles 3")
     emission = _emission(surface, site)
     if _is_bare(values):
@@ -76,7 +76,7 @@ def read_principled(surface, site, weight):
 
 
 def _tint(surface, site, name):
-    """A colour from 4.0 on; before, a share of the base colour, in the first channel."""
+    """Return a tint: a colour from 4.0 on; before, a share of the base colour, in the first channel."""
     if RULES != Rules.BLENDER_3:
         return surface.color(site, PRINCIPLED[name], _WHITE)
     share = surface.graph.parameter(site, PRINCIPLED[name], 0.0, low=0.0, high=1.0)
@@ -84,7 +84,7 @@ def _tint(surface, site, name):
 
 
 def _base_color(surface, site, values):
-    """What scatters below the surface is shown as diffuse, in the colour that Blender has for it."""
+    """Return the base colour; subsurface scattering, with a message, becomes diffuse reflection in its colour."""
     graph = surface.graph
     base = surface.color(site, PRINCIPLED["base_color"])
     share = surface.share(site, PRINCIPLED["subsurface"])
@@ -109,5 +109,5 @@ def _emission(surface, site):
 
 
 def _is_bare(values):
-    """Whether nothing lies over what shines: its light is then the material's own. Blender 3 never laid anything over it."""
+    """Whether no coat or sheen covers the emission, which is then the material's own. In Blender 3 nothing covers it."""
     return RULES == Rules.BLENDER_3 or is_constant(values["coat"], 0.0) and is_constant(values["sheen"], 0.0)

@@ -1,4 +1,4 @@
-"""The lobes that the core makes of a material, seen straight on: Principled is many, in layers."""
+"""The lobes that the core makes of a material, evaluated at normal incidence: a Principled lobe becomes several."""
 
 from dataclasses import dataclass
 
@@ -15,8 +15,8 @@ _answers = {}
 @dataclass(frozen=True)
 class ProbedLobe:
     kind: LobeKind
-    albedo: tuple  # what it scatters of the light that comes straight on
-    alpha: float  # the mean of both directions'
+    albedo: tuple  # at normal incidence
+    alpha: float  # the mean over both directions
     ior: float
 
 
@@ -28,9 +28,9 @@ class Probed:
 
 
 def probe(material):
-    """Probed of a snapshot's Material; None where textures make it another at each point, and where the core cannot be asked.
+    """Return the Probed of a snapshot's Material; None if it has nodes, which vary over the surface, or the core fails.
 
-    A panel asks at every drawing: the core is, once for each change.
+    Panels call this at every redraw: results are cached until the material changes.
     """
     if material.nodes:
         return None

@@ -1,4 +1,4 @@
-"""Textures that are computed: noise, cells and gradients. Each reader takes (graph, site, output) and gives a value."""
+"""Procedural textures: noise, Voronoi and gradients. Each reader takes (graph, site, output) and returns a value."""
 
 import bpy
 
@@ -17,13 +17,13 @@ from ..bindings.shading import NodeRef
 from .coordinates import coordinate
 from .textures import legacy_mapping
 
-# What Cycles of the running Blender does otherwise than others.
-_SMOOTHEST = 1.0 if bpy.app.version < (4, 1) else float("inf")  # the roughness of noise is no larger
+# Rules of the running Blender's Cycles that differ between versions.
+_SMOOTHEST = 1.0 if bpy.app.version < (4, 1) else float("inf")  # limit of the roughness of noise
 _REPEATS = bpy.app.version >= (4, 2)
 _HASHES_INTEGERS = bpy.app.version >= (5, 0)
 _IS_BOUNDED = bpy.app.version < (4, 0)
-_CONFUSES_LACUNARITY = (4, 0) <= bpy.app.version < (4, 3)  # the Voronoi Texture reads it where its smoothness is
-_LEAST = 1e-5  # of the Musgrave Texture's dimension and lacunarity
+_CONFUSES_LACUNARITY = (4, 0) <= bpy.app.version < (4, 3)  # a linked Smoothness is also used as the Lacunarity of Voronoi
+_LEAST = 1e-5  # lower limit of the Musgrave Texture's dimension and lacunarity
 
 
 def _vector(graph, site):
@@ -34,12 +34,12 @@ def _vector(graph, site):
 
 
 def _dimensions(name):
-    """The bits of "1D" ... "4D"."""
+    """Return the flag bits of "1D" to "4D"."""
     return int(name[0]) - 1
 
 
 def _packed(graph, site, *wanted):
-    """Up to three inputs of a node as one vector: (name, what stands for it where this Blender has none)."""
+    """Combine up to three inputs of a node into one vector. wanted: (name, default if this Blender lacks the input)."""
     return graph.combine(*(graph.parameter(site, (name,), default) for name, default in (*wanted, ("", 0.0), ("", 0.0))[:3]))
 
 
@@ -51,7 +51,7 @@ def _noise(graph, site, output):
         flags |= NoiseFlag.NORMALIZED
     if _REPEATS:
         flags |= NoiseFlag.REPEATS
-    # Its red is the factor.
+    # With colours the factor is the red channel.
     wants_color = node.outputs["Color"].is_linked
     if wants_color:
         flags |= NoiseFlag.COLOR
@@ -71,7 +71,7 @@ def _noise(graph, site, output):
 
 
 def _musgrave(graph, site, output):
-    """Of Blender before 4.1: noise whose octaves fall off by a power of the lacunarity."""
+    """Return the Musgrave Texture of Blender before 4.1: noise whose octaves decrease by a power of the lacunarity."""
     node, m = site.node, MathOperation
     lacunarity = graph.op(m.MAXIMUM, graph.parameter(site, ("Lacunarity",), 2.0), _LEAST)
     dimension = graph.op(m.MAXIMUM, graph.parameter(site, ("Dimension",), 2.0), _LEAST)
@@ -101,7 +101,7 @@ def _voronoi(graph, site, output):
     has_cells = feature not in (VoronoiFeature.DISTANCE_TO_EDGE, VoronoiFeature.N_SPHERE_RADIUS)
     if has_cells and shown in ("Position", "W"):
         flags |= VoronoiFlag.POSITION
-    # The distance stands beside the colour.
+    # With colours the distance is in the alpha channel.
     elif has_cells and (shown == "Color" or node.outputs["Color"].is_linked):
         flags |= VoronoiFlag.COLOR
     smoothness = graph.parameter(site, ("Smoothness",), 1.0)

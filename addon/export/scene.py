@@ -1,4 +1,4 @@
-"""One depsgraph to one snapshot."""
+"""Export of one depsgraph to one snapshot."""
 
 from dataclasses import dataclass
 
@@ -17,17 +17,20 @@ from .world import export_world
 
 @dataclass(frozen=True)
 class ExportOptions:
-    camera: object = None  # the object to look through; None = the scene's
+    camera: object = None  # the camera object; None is the scene's
     passes: tuple = (Pass.COMBINED,)
-    kept: object = None  # a Kept, of earlier frames
-    # Of a window:
-    view: object = None  # a snapshot.Camera in the place of an object
-    space: object = None  # the SpaceView3D that leaves objects out
-    parts: object = None  # a Parts, of earlier exports
+    kept: object = None  # the Kept of earlier frames
+    # For a window:
+    view: object = None  # a snapshot.Camera that replaces the camera object
+    space: object = None  # the SpaceView3D, whose local view and filters exclude objects
+    parts: object = None  # the Parts of earlier exports
 
 
 def export_scene(depsgraph, options=None, poll=None):
-    """(SceneSnapshot, Messages). poll is called every few objects; True from it raises Cancelled."""
+    """Return (SceneSnapshot, Messages). poll is called every few objects; raise Cancelled if it returns True.
+
+    Raise LancerError if there is no camera or no image to render.
+    """
     options = options or ExportOptions()
 
     def obey():
@@ -38,9 +41,9 @@ def export_scene(depsgraph, options=None, poll=None):
     messages = Messages()
     scene = depsgraph.scene
     view_layer = depsgraph.view_layer
-    # Ask for camera and settings first: what is missing there should not cost an export.
+    # Read camera and settings first, so that an error in them ends the export early.
     camera = options.view or export_camera(options.camera or scene.camera, depsgraph, messages)
-    # Scene and view layer are the user's own, in which nothing of the animation has arrived.
+    # The view layer refers to original data without animation: use the evaluated copies.
     world = _evaluated(getattr(view_layer, "world_override", None) or scene.world, depsgraph)
     override = _evaluated(view_layer.material_override, depsgraph)
     settings = export_settings(depsgraph, options.passes, world, messages)
@@ -51,7 +54,7 @@ def export_scene(depsgraph, options=None, poll=None):
     if parts is not None:
         again = parts.begin(depsgraph, obey)
         if again is not None:
-            # Its messages are all there are: what was checked up to here has not changed either.
+            # The messages of the last export include those of the checks above, which have not changed.
             snapshot, messages = again
             return snapshot.replaced(camera=camera, settings=settings), messages
     images = Images(obey, options.kept) if parts is None else parts.images

@@ -1,20 +1,20 @@
-"""scene.lancer and Blender's own render settings as the core's settings."""
+"""scene.lancer and Blender's render settings as the core's settings."""
 
 import bpy
 
 from ..bindings import snapshot
 from ..bindings.enums import Accelerator, Features, Integrator, Pass, PixelFilter
 
-# Threads of a render whose scene leaves their number to Blender, 0 = all: as the add-on's preferences say.
+# Number of threads, from the add-on's preferences, if the scene does not fix one; 0 = all.
 default_threads = 0
-# The core's own limit: glass doubles the rays of Classic with every depth.
+# The core's limit: glass doubles the rays of Classic with every bounce.
 _DEEPEST_RECURSION = 16
-# The exponents of Blender's names.
+# The exponents of Blender's falloffs.
 _MIST_FALLOFFS = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
 
 
 def export_settings(depsgraph, passes, world, messages):
-    """passes: of enums.Pass; world: the one that is seen, or None."""
+    """Return the snapshot.Settings of a depsgraph. passes: of enums.Pass; world: the evaluated world, or None."""
     scene = depsgraph.scene
     own = scene.lancer
     render = scene.render
@@ -37,13 +37,13 @@ def export_settings(depsgraph, passes, world, messages):
         split_lights=0,
         split_paths=0,
         pixel_filter=PixelFilter[own.pixel_filter],
-        # The width is that of Cycles' setting, whose window reaches as far to each side.
+        # As in Cycles, the window reaches the filter width to each side.
         filter_width=2.0 * own.filter_width if own.pixel_filter == "BLACKMAN_HARRIS" else 1.0,
         film_transparent=render.film_transparent,
         transparent_glass=own.film_transparent_glass,
-        # The setting is a roughness as shader nodes have it.
+        # The setting is a roughness in the units of shader nodes: alpha is its square.
         glass_roughness=messages.number(own.film_transparent_roughness, who, "glass roughness", 0.1, 0.0, 1.0) ** 2,
-        # Before Blender 5.0 Cycles follows paths through one surface more than shadows; since then, through one at least.
+        # Before 5.0 Cycles lets paths pass one more transparent surface than shadow rays; since then, at least one.
         transparent_bounces=own.transparent_bounces + 1 if bpy.app.version < (5, 0) else max(1, own.transparent_bounces),
         transparent_shadows=own.transparent_bounces,
         alpha_threshold=messages.number(depsgraph.view_layer_eval.pass_alpha_threshold, who, "alpha threshold", 0.5, 0.0, 1.0),
@@ -58,7 +58,7 @@ def export_settings(depsgraph, passes, world, messages):
 
 
 def _world_settings(world, messages):
-    """What the passes of mist and occlusion ask of the world; without one, Cycles' own numbers."""
+    """Return the settings of the mist and ambient occlusion passes; without a world, Cycles' defaults."""
     if world is None:
         return {"mist_start": 0.0, "mist_depth": 100.0, "mist_falloff": 1.0}
     who = f"world '{world.name}'"

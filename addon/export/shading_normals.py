@@ -1,8 +1,8 @@
-"""The normals that Cycles shades a mesh with, which are not always those that Blender shows, version by version.
+"""Shading normals as in each version of Cycles; they can differ from Blender's own.
 
-A flat face has the normals of its triangles, unless a hard edge or a normal of the user's is anywhere in the mesh: then it has
-that of the whole face, and from 5.1 on beside smooth faces, too. Up to 5.0 Cycles keeps one normal at each vertex, after it has
-parted vertices at hard edges and around flat faces: what these do not part shares the normal of its last corner.
+A flat face has the normals of its triangles. It has the normal of the whole face if the mesh has a sharp edge or custom normals
+anywhere, and from 5.1 on also if the mesh has smooth faces. Up to 5.0 Cycles stores one normal per vertex, after it has split
+vertices at sharp edges and around flat faces: corners that stay joined share the normal of the last of them.
 """
 
 import bpy
@@ -14,9 +14,9 @@ _KEEPS_CORNERS = bpy.app.version >= (5, 1)
 
 
 def shading_normals(mesh, positions, triangles, corners, poll):
-    """None for flat triangles, (vertices, 3) where all is smooth, else (triangles, 3, 3).
+    """Return normals: None if all triangles are flat, (vertices, 3) if all are smooth, else (triangles, 3, 3).
 
-    corners: of Blender's faces, (triangles, 3); None where each face is a triangle. triangles: their vertices.
+    corners: Blender's corners, (triangles, 3); None if every face is a triangle. triangles: vertices, (triangles, 3).
     """
     if not hasattr(mesh, "normals_domain"):
         if not mesh.use_auto_smooth:
@@ -44,7 +44,7 @@ def _any(mesh, name, domain):
 
 
 def _of_vertices(mesh, flat, positions, triangles, corners, poll):
-    """Normals of vertices, and where faces are flat those of their triangles."""
+    """Return the normals of vertices, replaced by the triangles' normals on flat faces; None if all faces are flat."""
     if flat.all():
         return None
     normals = read(mesh.vertex_normals, "vector", np.float32, 3)
@@ -61,7 +61,7 @@ def _of_vertices(mesh, flat, positions, triangles, corners, poll):
 
 
 def _last_of_vertices(mesh, normals, corners, poll):
-    """normals, (corners of Blender's faces, 3), with those of the last corner wherever Cycles has one vertex for several."""
+    """Return normals, (corners of Blender's faces, 3); corners that share a vertex in Cycles get the last one's normal."""
     vertices = corner_vertices(mesh)
     one = np.zeros((len(mesh.vertices), 3), np.float32)
     one[vertices] = normals
@@ -77,8 +77,8 @@ def _last_of_vertices(mesh, normals, corners, poll):
     parted[vertices[ends]] = parted[vertices[following[ends]]] = True
     poll()
     if not _has_free_normals(mesh):
-        # At vertices that are parted, Blender's own normals differ where Cycles parts them, too, but at edges of more than two
-        # faces or of two that do not go round the same way.
+        # At split vertices Blender's normals already differ exactly where Cycles splits, except at edges of more than two
+        # faces or of two faces with opposite orientation.
         odd = _odd_edges(edges, vertices < vertices[following])
         touched = np.zeros(len(one), bool)
         ends = odd[edges]
@@ -95,7 +95,7 @@ def _last_of_vertices(mesh, normals, corners, poll):
 
 
 def _around_faces(mesh, count):
-    """Of each corner: its edge to the next corner of its face, that corner, and the one before."""
+    """Return for each corner: the edge to the next corner of its face, the next corner, and the one before."""
     data = built_in(mesh, ".corner_edge", "CORNER")
     edges = read(mesh.loops, "edge_index", np.int32, 1) if data is None else read(data, "value", np.int32, 1)
     starts, counts = (read(mesh.polygons, name, np.int32, 1) for name in ("loop_start", "loop_total"))
@@ -113,7 +113,7 @@ def _split_edges(mesh, edges):
 
 
 def _has_free_normals(mesh):
-    """Whether the user's normals are vectors of each corner, and not turns of Blender's own, which neighbours share."""
+    """Whether custom normals are free vectors per corner, instead of offsets from Blender's normals that neighbours share."""
     custom = mesh.attributes.get("custom_normal")
     return custom is not None and custom.data_type == "FLOAT_VECTOR"
 
@@ -124,12 +124,12 @@ def _odd_edges(edges, upwards):
 
 
 def _connected(vertices, edges, other_edges, split, parted):
-    """A number for each corner, equal for those of one vertex: connected by edges that are not split, or never parted."""
+    """Return a group number for each corner: corners of a vertex that unsplit edges connect, or that is not split at all."""
     count = len(vertices)
     own = np.arange(count)
     keys = []
     for ends in (edges, other_edges):
-        # A split edge connects a corner with none but itself.
+        # A split edge connects no corners: use a key of the corner's own.
         key = np.where(split[ends], -1 - own, vertices * (len(split) + 1) + ends + 1)
         keys.append(np.where(parted, key, vertices * (len(split) + 1)))
     _, keys = np.unique(np.concatenate(keys), return_inverse=True)
@@ -146,7 +146,7 @@ def _connected(vertices, edges, other_edges, split, parted):
 
 
 def _share_last(normals, chosen, groups, corners):
-    """normals with those of chosen corners replaced by that of the corner of their group that triangles name last."""
+    """Return normals in which each chosen corner has the normal of the corner of its group that triangles list last."""
     named = np.arange(len(normals)) if corners is None else corners.ravel()
     order = np.zeros(len(normals), np.int64)
     order[named] = np.arange(len(named))

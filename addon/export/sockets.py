@@ -1,17 +1,17 @@
-"""What differs between Blender versions: names of sockets, rules of closures; and the output nodes that renders use."""
+"""Differences between Blender versions: socket names and closure rules; and the output node that renders use."""
 
 import bpy
 
 from ..bindings.enums import Rules
 
 RULES = Rules.BLENDER_3 if bpy.app.version < (4, 0) else Rules.BLENDER_4 if bpy.app.version < (4, 5) else Rules.BLENDER_45
-# Before 4.3 Blender's rough diffuse surface loses light: option of DIFFUSE and of the Principled BSDF.
+# Option of DIFFUSE and of the Principled BSDF: before 4.3 Blender's rough diffuse surface loses light.
 DIFFUSE_OPTION = int(bpy.app.version >= (4, 3))
-SMALLEST_IOR = 1e-5  # as Cycles takes smaller ones
+SMALLEST_IOR = 1e-5  # Cycles clamps to it
 
 _MUTED_OUTPUTS_ARE_OFF = bpy.app.version < (5, 0)
 
-# Identifiers of the Principled BSDF, newest first; a name that a version lacks is simply not found.
+# Socket identifiers of the Principled BSDF, newest first; versions may lack some.
 PRINCIPLED = {
     "base_color": ("Base Color",),
     "metallic": ("Metallic",),
@@ -42,7 +42,7 @@ PRINCIPLED = {
 
 
 def find(node, identifiers):
-    """The first enabled input with one of the identifiers; None where this Blender has none."""
+    """Return the first enabled input with one of the identifiers; None if this Blender has none."""
     for identifier in identifiers:
         for socket in node.inputs:
             if socket.identifier == identifier and socket.enabled:
@@ -51,7 +51,7 @@ def find(node, identifiers):
 
 
 def output_node(tree, kind):
-    """The output node that Cycles takes: the active one of its type that is not for EEVEE alone; None where there is none."""
+    """Return the output node that Cycles uses: the active one of its type that is not for EEVEE alone; None if missing."""
     node = tree.get_output_node("CYCLES")
     if node is not None and node.type != kind:
         nodes = [other for other in tree.nodes if other.type == kind and getattr(other, "target", "ALL") != "EEVEE"]

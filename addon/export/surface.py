@@ -1,4 +1,4 @@
-"""Shader nodes as weighted lobes, light, passage and holes: the walk through Mix and Add Shaders down to closures."""
+"""Shader nodes as weighted lobes, emission, transmittance and holdout, collected through Mix and Add Shaders."""
 
 from dataclasses import fields, replace
 
@@ -13,15 +13,15 @@ from .graph import NodeGraph
 from .sockets import RULES, output_node
 from .walk import Site
 
-_MAX_LOBES = 64  # of the core
+_MAX_LOBES = 64  # the core's limit
 _NONE = (0.0, 0.0, 0.0)  # a normal or tangent: the surface's own
-# Twice the colour is twice the light for these, so that a constant weight is a part of the colour. Rough diffuse is none of
-# them: what its bounces between facets bring back goes with powers of the colour.
+# Lobes linear in their colour, into which a constant weight is multiplied. Rough diffuse is not linear: its interreflection
+# between facets depends on powers of the colour.
 _LINEAR = {LobeKind.LAMBERT, LobeKind.TRANSLUCENT, LobeKind.REFRACTION, LobeKind.SHEEN}
 
 
 class Surface:
-    """Walks from a shader socket upstream; the weights of Mix and Add Shaders become those of the closures below them."""
+    """Collects closures upstream of a shader socket, weighted by the Mix and Add Shaders on the way."""
 
     def __init__(self, graph):
         self.graph = graph
@@ -29,9 +29,9 @@ class Surface:
         self.transmittance = 0.0
         self.holdout = 0.0
         self.ambient = 0.0
-        # What Cycles takes the emission for when it asks whether to sample it: all that is linked counts as 1.
+        # Cycles' estimate of the emission, which decides whether to sample it: linked inputs count as 1.
         self.estimated = _NONE
-        self._share = 1.0  # of the closure at hand, in the same way
+        self._share = 1.0  # estimated weight of the current closure
         self._lobes = []
 
     @property
@@ -44,13 +44,13 @@ class Surface:
         return tuple(self._lobes[:_MAX_LOBES])
 
     def read(self, site, socket):
-        """Adds all that shines or scatters above a shader socket."""
+        """Add all closures upstream of a shader socket."""
         walker = self.graph.walker
         root = walker.origin(site, socket)
         if root.site is None:
             return
         weights, shares = {_key(root): 1.0}, {_key(root): 1.0}
-        # A colour in place of the whole shader is a preview, which Cycles samples as a light only where it is very bright.
+        # Cycles treats a colour linked to the output as a preview, and samples it as a light only if it is very bright.
         if root.output.type != "SHADER":
             shares[_key(root)] = 0.1
         for origin in self._in_order(root):
@@ -64,7 +64,7 @@ class Surface:
                     weights[key] = self.graph.add(weights.get(key, 0.0), self.graph.multiply(weight, part))
                     shares[key] = shares.get(key, 0.0) + self._share * (1.0 if isinstance(part, NodeRef) else part)
         if RULES == Rules.BLENDER_3 and not is_constant(self.transmittance, 0.0) and any(map(_lets_through, self._lobes)):
-            # Cycles 3 takes the one direction of Transparent for one of many, and adds what the other lobe sends there.
+            # Cycles 3 treats Transparent's direction as sampled from all lobes, and adds the other lobes' values for it.
             self.graph.messages.add(
                 f"{self.graph.owner}: beside Translucent, rough Glass or Refraction a Transparent part shows what is behind "
                 "in its own colour, which Cycles 3 mixes with theirs",
@@ -72,7 +72,7 @@ class Surface:
             )
 
     def _in_order(self, root):
-        """The closures under root, each before those that it mixes; without recursion, for chains of any length."""
+        """Return the closures from root on, each before those that it mixes. Iterative, for chains of any length."""
         done, order, open_ = set(), [], [(root, False)]
         while open_:
             origin, finished = open_.pop()
@@ -88,10 +88,10 @@ class Surface:
         return reversed(order)
 
     def _read_one(self, origin, weight):
-        """Adds one closure; gives those that a Mix or Add Shader passes its weight on to, and which part of it."""
+        """Add one closure, or return the (origin, part of the weight) pairs of a Mix or Add Shader."""
         graph, site, node = self.graph, origin.site, origin.site.node
         if origin.output.type != "SHADER":
-            # A colour where a shader belongs shines.
+            # A colour linked to a shader socket is emission.
             color = graph.color_of(origin)
             self.estimate(color, 1.0)
             self.emit(graph.multiply(color, weight))
@@ -125,7 +125,7 @@ class Surface:
         self.ambient = self.graph.add(self.ambient, color)
 
     def add(self, kind, weight, color=(1.0, 1.0, 1.0), rules=RULES, **values):
-        """Equal lobes become one, and black ones none: the scene pays for what it shows."""
+        """Add a lobe; skip black ones and merge it with an equal one, to save time."""
         weight, color = (value if isinstance(value, NodeRef) else triple(value) for value in (weight, color))
         if is_constant(color, 0.0) and kind != LobeKind.CONDUCTOR or is_constant(weight, 0.0):
             return
@@ -144,7 +144,7 @@ class Surface:
         return self.graph.linked(site, names, self.graph.normal)
 
     def tangent(self, site, anisotropy):
-        """Matters to lobes that are stretched."""
+        """Return the tangent, which only anisotropic lobes need."""
         if is_constant(anisotropy, 0.0):
             return _NONE
         tangent = self.graph.linked(site, ("Tangent",), None)
@@ -166,7 +166,7 @@ def _key(origin):
 
 
 def _lets_through(lobe):
-    """Whether light goes through it in more than one direction."""
+    """Whether a lobe transmits light in more than one direction."""
     if lobe.kind == LobeKind.PRINCIPLED:
         return not is_constant(lobe.principled.transmission, 0.0)
     rough = not is_constant(lobe.roughness, 0.0)
@@ -174,16 +174,16 @@ def _lets_through(lobe):
 
 
 def _same_but(lobe, other, field):
-    """Whether two lobes differ in one field at most, which is constant in both."""
+    """Whether two lobes are equal but for one field, which is constant in both."""
     if any(isinstance(getattr(item, field), NodeRef) for item in (lobe, other)):
         return False
     return all(getattr(lobe, f.name) == getattr(other, f.name) for f in fields(lobe) if f.name != field)
 
 
 def emission_of(graph: NodeGraph, tree, kind):
-    """What the output node of that type (OUTPUT_WORLD, OUTPUT_LIGHT) shines: RGB, or a NodeRef.
+    """Return the emission, RGB or NodeRef, of a tree's output node of type kind (OUTPUT_WORLD, OUTPUT_LIGHT).
 
-    Black where nothing is linked; closures that do not shine are told and left out.
+    Black if nothing is linked; other closures are left out, with a message.
     """
     output = output_node(tree, kind) if tree is not None else None
     if output is None:

@@ -1,8 +1,9 @@
-"""MikkTSpace tangents of triangles, as Cycles computes them: Blender's own stop at faces of more than four corners.
+"""MikkTSpace tangents of triangles, as in Cycles: Blender's own fail on faces of more than four corners.
 
-The tangent of a triangle points where u grows. A corner takes the mean of those of the triangles that share its place, normal
-and texture coordinate, each laid across the normal and weighted by the angle at its corner; mirrored triangles stay apart.
-Where mirrored and plain triangles take turns round a vertex, MikkTSpace has a tangent for each run; here each hand has one.
+The tangent of a triangle points to increasing u. A corner has the mean over the triangles that share its position, normal and
+texture coordinate: each triangle's tangent is projected onto the plane of the normal and weighted by the angle at its corner.
+Mirrored triangles are averaged separately. Where mirrored and plain triangles alternate around a vertex, MikkTSpace has one
+tangent for each run of equal ones; here there is one for each handedness.
 """
 
 import numpy as np
@@ -11,7 +12,7 @@ _SMALLEST = np.finfo(np.float32).tiny
 
 
 def corner_tangents(positions, triangles, normals, uvs, poll):
-    """(3 triangles, 4): x, y, z and the hand of the frame, 1 or -1. normals: None (flat), of vertices or of corners."""
+    """Return (3 triangles, 4): x, y, z and handedness, 1 or -1. normals: None (flat), per vertex or per corner."""
     places = positions[triangles]
     if normals is None:
         flat = _unit(np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]))
@@ -21,7 +22,7 @@ def corner_tangents(positions, triangles, normals, uvs, poll):
     poll()
     tangents, area, usable = _along_u(places, uvs)
     poll()
-    # Sum the triangles' tangents at what they share, mirrored ones in a second row.
+    # Sum the triangles' tangents over shared corners, those of mirrored triangles in a second row.
     count = int(shared.max()) + 1
     hands = (area <= 0.0).astype(np.intp)
     rows = 2 * shared + hands[:, None]
@@ -33,7 +34,7 @@ def corner_tangents(positions, triangles, normals, uvs, poll):
     known = np.zeros(2 * count, bool)
     known[rows[usable]] = True
     poll()
-    # A triangle without a tangent takes its neighbours', one without neighbours x.
+    # A triangle without a tangent uses its neighbours' tangent, or x without such neighbours.
     other = ~usable[:, None] & ~known[rows]
     rows = np.where(other, rows ^ 1, rows)
     result = np.empty((*rows.shape, 4), np.float32)
@@ -43,7 +44,7 @@ def corner_tangents(positions, triangles, normals, uvs, poll):
 
 
 def _along_u(places, uvs):
-    """Of each triangle: the unit vector along which u grows, the signed area of its texture, whether it has both."""
+    """Return for each triangle: the unit vector of increasing u, twice the signed area in UV space, whether both exist."""
     e1, e2 = places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]
     d1, d2 = uvs[:, 1] - uvs[:, 0], uvs[:, 2] - uvs[:, 0]
     area = d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0]
@@ -53,7 +54,7 @@ def _along_u(places, uvs):
 
 
 def _shared(positions, triangles, normals, uvs):
-    """(triangles, 3): equal numbers for corners of equal place, normal and texture coordinate."""
+    """Return (triangles, 3): equal numbers for corners of equal position, normal and texture coordinate."""
     at_vertices = normals.ndim == 2
     keys = _hashes(np.zeros(len(positions), np.uint64), positions, *([normals] if at_vertices else []))[triangles]
     keys = _hashes(keys, uvs, *([] if at_vertices else [normals]))
@@ -62,9 +63,9 @@ def _shared(positions, triangles, normals, uvs):
 
 
 def _hashes(keys, *values):
-    """Numbers of 64 bits; among ten million rows two different ones have the same with a chance of 3e-6."""
+    """Return 64-bit hashes of rows; among ten million different rows two collide with probability 3e-6."""
     for array in values:
-        # Adding 0 makes one zero of both.
+        # Adding 0 turns -0 into 0.
         bits = (array.astype(np.float32) + np.float32(0.0)).view(np.uint32)
         for axis in range(array.shape[-1]):
             keys = (keys ^ bits[..., axis]) * np.uint64(0x9E3779B97F4A7C15)
@@ -73,7 +74,7 @@ def _hashes(keys, *values):
 
 
 def _angles(places, normals):
-    """Of each corner, between its two sides as they are seen along its normal."""
+    """Return the angle at each corner between its two edges, projected along its normal."""
     onward = _across(np.roll(places, -1, axis=1) - places, normals)
     back = _across(np.roll(places, 1, axis=1) - places, normals)
     return np.arccos(np.clip(_dot(onward, back), -1.0, 1.0))

@@ -1,4 +1,4 @@
-"""Image nodes: what picture, where on it, and how it is read."""
+"""Image nodes: the image, its coordinates, interpolation and extension."""
 
 from ..bindings.enums import (
     Coordinate,
@@ -53,8 +53,8 @@ def _image_texture(graph, site, output):
 
 def _environment_texture(graph, site, output):
     node = site.node
-    # Without pictures it is magenta, yet no constant: Cycles samples a sky that has such a node as a lamp, and what that sheds
-    # past objects that cast no shadow comes beside what they pass on.
+    # Without an image the node is magenta but must not become a constant: Cycles samples a sky with such a node as a light,
+    # and objects that cast no shadow then both let its light pass and transmit it themselves.
     first, count = _picture(graph, site) or (0, 0)
     vector = graph.linked(site, ("Vector",), None)
     if vector is None:
@@ -82,7 +82,7 @@ def _has_color_under_alpha(image):
 
 
 def legacy_mapping(graph, site, vector):
-    """The mapping that nodes of old files carry within themselves: axes chosen first, then moved."""
+    """Apply the texture mapping stored inside nodes of old files: swap axes first, then transform."""
     own = site.node.texture_mapping
     kind, location, scale = MappingType[own.vector_type], tuple(own.translation), tuple(own.scale)
     if kind in (MappingType.VECTOR, MappingType.NORMAL):
@@ -93,7 +93,7 @@ def legacy_mapping(graph, site, vector):
     sources = [_AXES[getattr(own, f"mapping_{axis}")] for axis in "xyz"]
     rows = [(*(sum(row[i] for i in range(3) if sources[i] == axis) for axis in range(3)), row[3]) for row in rows]
     moved = transformed(graph, vector, rows)
-    # Where the mapping changes nothing, normals keep their length.
+    # An identity mapping leaves the length of normals unchanged.
     return graph.vector_op(VectorOperation.NORMALIZE, moved) if kind == MappingType.NORMAL and moved is not vector else moved
 
 

@@ -1,4 +1,4 @@
-"""What a region of a 3D view shows: the part of it that is rendered, and a camera for that part alone."""
+"""The rendered part of a 3D view's region, and a camera for that part."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from .camera import camera_fields, rigid, window_of
 
 
 class Rectangle(NamedTuple):
-    """In pixels of the region, from its lower left corner."""
+    """A rectangle in pixels of the region, from its lower left corner."""
 
     x: int
     y: int
@@ -27,16 +27,16 @@ class Rectangle(NamedTuple):
 
 class View(NamedTuple):
     rectangle: Rectangle
-    camera: snapshot.Camera  # its image is the rectangle, a pixel of the region each
+    camera: snapshot.Camera  # its image is the rectangle, with one pixel for each pixel of the region
 
     def coarser(self, size):
-        """The same camera for pixels of size times size of the region's."""
+        """Return the camera with pixels of size x size pixels of the region."""
         width, height = (max(1, round(side / size)) for side in self.rectangle[2:])
         return self.camera.replaced(width=width, height=height, region_width=width, region_height=height)
 
 
 def export_view(region, region_data, space, depsgraph, messages):
-    """The View of a region; None where nothing of it is to be rendered. region_data: a RegionView3D; space: its SpaceView3D."""
+    """Return the View of a region; None if no pixel is to be rendered. region_data: a RegionView3D; space: its SpaceView3D."""
     whole = Rectangle(0, 0, region.width, region.height)
     thing = space.camera if region_data.view_perspective == "CAMERA" else None
     if thing is not None and thing.type == "CAMERA":
@@ -48,7 +48,7 @@ def export_view(region, region_data, space, depsgraph, messages):
     matrix = rigid(np.array(region_data.view_matrix.inverted(), float), "view", messages)
     start, end = space.clip_start, space.clip_end
     if kind == CameraKind.ORTHOGRAPHIC:
-        # Blender shows as much behind the place that it looks from as before it.
+        # Blender's orthographic view shows as much behind the viewpoint as in front of it.
         matrix[:, 3] += end * matrix[:, 2]
         start, end = 0.0, 2.0 * end
     window = _part(window_of(region_data.window_matrix, kind), whole, rectangle)
@@ -57,7 +57,7 @@ def export_view(region, region_data, space, depsgraph, messages):
 
 
 def _through_camera(thing, whole, region_data, depsgraph, messages):
-    # Ask for the camera first: what cannot be looked through has no frame.
+    # Read the camera first: it raises an error for a camera whose transform has no frame.
     fields = camera_fields(thing, depsgraph, messages)
     kind = fields["kind"]
     render = depsgraph.scene.render
@@ -66,7 +66,7 @@ def _through_camera(thing, whole, region_data, depsgraph, messages):
     if min(rectangle[2:]) < 1:
         return None
     if kind in (CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC):
-        # Blender's own projection of the region knows how the camera's picture lies in it.
+        # Blender's projection of the region includes the place of the camera's frame in it.
         window = _part(window_of(region_data.window_matrix, kind), whole, rectangle)
     else:
         x, y = thing.data.shift_x, thing.data.shift_y
@@ -75,7 +75,7 @@ def _through_camera(thing, whole, region_data, depsgraph, messages):
 
 
 def _part(window, whole, part):
-    """The window of a part of the rectangle that has the given one."""
+    """Return the window of a part of the rectangle whole, of which window is given."""
     left, right, bottom, top = window
     x, y = (right - left) / whole.width, (top - bottom) / whole.height
     start = left + (part.x - whole.x) * x, bottom + (part.y - whole.y) * y
@@ -83,7 +83,7 @@ def _part(window, whole, part):
 
 
 def _frame(thing, whole, region_data, scene):
-    """The rectangle, in fractions of pixels, in which the camera's picture stands; it may reach beyond the region."""
+    """Return the rectangle of the camera's frame, in fractions of pixels; it may extend beyond the region."""
     matrix = region_data.perspective_matrix @ thing.matrix_world.normalized()
     corners = [matrix @ Vector((*corner, 1.0)) for corner in thing.data.view_frame(scene=scene)]
     places = np.array([[corner.x / corner.w, corner.y / corner.w] for corner in corners])
@@ -93,7 +93,7 @@ def _frame(thing, whole, region_data, scene):
 
 
 def _border(owner, prefix, frame, whole):
-    """The pixels of the region that an owner's border, in fractions of the frame, leaves."""
+    """Return the Rectangle of the region inside an owner's border, given in fractions of the frame."""
     left, right, bottom, top = (getattr(owner, f"{prefix}_{edge}") for edge in ("min_x", "max_x", "min_y", "max_y"))
     x, y = round(frame.x + left * frame.width), round(frame.y + bottom * frame.height)
     width = round(frame.x + right * frame.width) - x

@@ -1,4 +1,4 @@
-"""Which rays do not see a thing, as the bits of lancer.h."""
+"""Ray visibility as the bits of lancer.h: the kinds of rays that do not see an object or a world."""
 
 import bpy
 
@@ -15,14 +15,14 @@ _BITS = {
 }
 
 
-# To look in vain for what only other Blenders have takes as long as all the rest.
+# Look up once which switches this Blender has: failing lookups per object take as long as all other reads.
 _OF_OBJECTS = tuple(
     (f"visible_{name}", int(bit)) for name, bit in _BITS.items() if f"visible_{name}" in bpy.types.Object.bl_rna.properties
 )
 
 
 def hidden_from(owner):
-    """The bits of a world's switches; 0 without an owner, as where Cycles is off."""
+    """Return the bits of a world's switches; 0 without an owner, as when Cycles is disabled."""
     bits = 0
     for name, bit in _BITS.items():
         if not getattr(owner, name, True):

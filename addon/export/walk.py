@@ -1,4 +1,4 @@
-"""Links of node trees followed to what feeds them: through reroutes, muted nodes and groups, as Cycles does."""
+"""Links of node trees, followed to their sources through reroutes, muted nodes and groups, as in Cycles."""
 
 from dataclasses import dataclass
 
@@ -6,16 +6,16 @@ import bpy
 
 from .course_models import model_of
 
-# A reroute or muted node that nothing feeds is no link at all from 5.0 on; before, it gave 0.
+# From 5.0 on a link from a reroute or muted node without input counts as no link; before, its value is 0.
 _LOOSE_ENDS_ARE_ZERO = bpy.app.version < (5, 0)
-# The latter are nodes of add-ons, which bring a tree along.
+# CUSTOM GROUP is a node of an add-on with a tree of its own.
 _GROUPS = {"GROUP", "CUSTOM GROUP"}
-_LONGEST = 10000  # hops; a ring of reroutes has no end
+_LONGEST = 10000  # hops: ends the walk in a cycle of reroutes
 
 
 @dataclass(frozen=True)
 class Site:
-    """A node, and the group nodes that were entered on the way to it, outermost first."""
+    """A node and the group nodes around it, outermost first."""
 
     node: object
     path: tuple = ()
@@ -27,9 +27,9 @@ class Site:
 
 @dataclass(frozen=True)
 class Origin:
-    """What feeds a socket: output of site; or, where site is None, the constant of a socket on the way, 0 where that is None.
+    """The source of a socket: an output of site. If site is None, the constant of socket; if that is None too, 0.
 
-    types are those of the sockets passed, the asked one first: values are converted at each.
+    types: the types of all sockets on the way, from the given one on; values are converted at each.
     """
 
     site: object
@@ -39,7 +39,7 @@ class Origin:
 
 
 class Walker:
-    """Remembers the links of each tree, which Blender would search for every socket anew."""
+    """Caches the links of each tree, which Blender would search for every socket."""
 
     def __init__(self):
         self._links = {}
@@ -82,12 +82,12 @@ class Walker:
 
 
 def _is_closure(node, output):
-    """Whether a group node is one of the course's models, which are read as they are."""
+    """Whether a group node is one of the course's models, which are read as closures."""
     return output.type == "SHADER" and model_of(node.node_tree) is not None
 
 
 def _passed_through(node, output):
-    """The input that a reroute or muted node gives on at an output; None where it gives none."""
+    """Return the input that a reroute or muted node passes to an output; None if there is none."""
     if node.type == "REROUTE":
         return node.inputs[0]
     return next((inner.from_socket for inner in node.internal_links if inner.to_socket == output), None)
@@ -98,7 +98,7 @@ def _by_identifier(sockets, identifier):
 
 
 def _group_result(node, output):
-    """The socket inside a group that gives one of its outputs; None where the group is missing or empty."""
+    """Return the socket inside a group that feeds one of its outputs; None if the group is missing or empty."""
     if node.node_tree is None:
         return None
     results = [inner for inner in node.node_tree.nodes if inner.type == "GROUP_OUTPUT"]

@@ -1,4 +1,4 @@
-"""The world: one radiance, or nodes over the direction; or the course's six pictures."""
+"""The world: a constant radiance, nodes over the direction, or the course's cube of six images."""
 
 from typing import NamedTuple
 
@@ -19,11 +19,11 @@ CUBE_SIDES = tuple(f"cube_{sign}_{axis}" for axis in "xyz" for sign in ("positiv
 
 class Sky(NamedTuple):
     world: snapshot.World
-    objects: frozenset = frozenset()  # identities of the objects whose place its nodes read
+    objects: frozenset = frozenset()  # identities of the objects whose transform its nodes read
 
 
 def export_world(world, images, depsgraph, messages):
-    """A Sky. images: the registry that all materials share."""
+    """Return the Sky of a world, black if it is None. images: the Images that all materials share."""
     if world is None:
         return Sky(snapshot.World())
     who = f"world '{world.name}'"
@@ -65,11 +65,11 @@ def _nodes(world, graph, who, messages):
 
 
 def _cube(own, graph, who, messages):
-    """Radiance by the picture of the side that a direction leaves a cube through."""
+    """Return the radiance of the course's cube: the image of the side through which a direction leaves it."""
     sides = [_side(getattr(own, name), own.bl_rna.properties[name].name, graph.images, who, messages) for name in CUBE_SIDES]
     first = sides[0][0]
     if [number for number, _ in sides] != list(range(first, first + 6)):
-        # The core wants them in a row: say them again where a picture stands for two sides or for something else, too.
+        # The core requires consecutive numbers: add the images again if one is used twice or elsewhere.
         first = graph.images.repeat([picture for _, picture in sides])
     direction = graph.emit(NodeKind.COORDINATE, option=Coordinate.GENERATED)
     shown = graph.emit(
@@ -80,7 +80,7 @@ def _cube(own, graph, who, messages):
 
 
 def _side(image, name, images, who, messages):
-    """(number, picture) of one side; a black one, with a message, where there is none."""
+    """Return (number, image) of one side; a black image, with a message, if there is none."""
     found = None
     if image is not None:
         found = images.numbers(
@@ -88,5 +88,5 @@ def _side(image, name, images, who, messages):
         )
     if found is not None:
         return found[0], images.list[found[0]]
-    messages.add(f"{who}: side {name} of its cube has no picture, it is black", severity=Severity.WRONG)
+    messages.add(f"{who}: side {name} of its cube has no image, it is black", severity=Severity.WRONG)
     return -1, snapshot.Image(name="black", texels=np.zeros((1, 1, 3), np.uint8), alpha=AlphaMode.NONE)

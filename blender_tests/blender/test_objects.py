@@ -64,4 +64,4 @@ def test_messages(case):
     assert got["empty slot"] == ["object 'Cube': material slot 1 is empty, grey is used"] and got["override"] == []
     assert got["strokes"] == [True, []]
     lost = "displacement, attribute 'Map'"
-    assert got["exact"] == [f"object 'SPHERE': its exact shape is without what its mesh would have: {lost}"]
+    assert got["exact"] == [f"object 'SPHERE': its exact shape lacks what its mesh would have: {lost}"]

@@ -47,8 +47,8 @@ def test_light_between_facets_is_told_where_it_is_computed_differently(which, tm
 def test_where_samplers_of_cycles_weigh_a_sky_otherwise(which, tmp_path):
     got = blenders.run(which, tmp_path, "stand_in_cases", "samplers")
     got.pop("console")
-    lacquer = "Ashikhmin-Shirley keeps to its model, under a sky a rough surface is darker at grazing angles than in Cycles"
-    brushed = "stretched Beckmann keeps to its model, under a sky the surface is darker or brighter than in Cycles 3"
+    lacquer = "Ashikhmin-Shirley follows its model, under a sky a rough surface is darker at grazing angles than in Cycles"
+    brushed = "anisotropic Beckmann follows its model, under a sky the surface is darker or brighter than in Cycles 3"
     coated = "Clearcoat leaves the base its light, which is brighter under a sky than in Cycles 3"
     said = {"rough lacquer": lacquer, "varying lacquer": lacquer}
     if which == PROGRAM:

@@ -53,7 +53,7 @@ _DRAWN_WITHOUT_MASK = (
     "Cycles 3 draws stretched facets of Beckmann as if none were hidden: brighter under a sky. Under a sun both agree "
     "(sun_on_anisotropic_beckmann)"
 )
-_STRETCHED_TOLD = "stretched Beckmann keeps to its model"
+_STRETCHED_TOLD = "anisotropic Beckmann follows its model"
 _TABLE3 = {"blender3": ((0.003, 0.008), BECKMANN3)}
 # What Blender 3 does differently in both parts.
 _EXACT3 = {"anisotropic_beckmann": {"blender3": ((0.07, 0.30), _DRAWN_WITHOUT_MASK, _STRETCHED_TOLD)}}
@@ -240,7 +240,7 @@ def furnace_ashikhmin(scene):
     "FURNACE",
     size=size_of(_PHONG_GRAZING),
     bounces=1,
-    announced="Ashikhmin-Shirley keeps to its model",
+    announced="Ashikhmin-Shirley follows its model",
     limit=(0.16, 0.42),
     reason="Cycles' sampler of this lobe mirrors about half vectors that face away, which brightens rough surfaces at grazing "
     "angles under a sky; the values agree, as under lamps, and ours is their integral",
