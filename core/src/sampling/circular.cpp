@@ -13,20 +13,20 @@ namespace lancer {
 namespace {
 
 // An angle of any size by quarters of a turn:
-// x = (quarters + 4 n) pi / 2 + high + low, |high| <= pi / 4 but for rounding, and low the part of it that high has no room
-// for: together within 2^-60 of them, relatively. x is finite.
+// x = (quarters + 4 n) pi / 2 + high + low, |high| <= pi / 4 except for rounding, and low the part that does not fit in high:
+// together within a relative 2^-60. x is finite.
 struct QuarterTurns {
   uint32_t quarters = 0; // 0 ... 3
   double high = 0.0, low = 0.0;
 };
 
-// pi / 2: parts of 33 bits, whose products with numbers of 20 bits are exact, and the rest.
+// pi / 2: parts of 33 bits, whose products with numbers of 20 bits are exact, and the remainder.
 constexpr double kPart1 = 0x1.921fb544p+0, kPart2 = 0x1.0b4611a6p-34, kPart3 = 0x1.3198a2e037073p-69;
-// As a double and the rest.
+// pi / 2 as a double and the remainder.
 constexpr double kHalfPi = 0x1.921fb54442d18p+0, kHalfPiRest = 0x1.1a62633145c07p-54;
 constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
 
-// The digits of 2 / pi from the point on.
+// The digits of 2 / pi after the binary point.
 constexpr uint32_t kDigits[] = {
     0xa2f9836e, 0x4e441529, 0xfc2757d1, 0xf534ddc0, 0xdb629599, 0x3c439041, 0xfe5163ab, 0xdebbc561, 0xb7246e3a, 0x424dd2e0,
     0x06492eea, 0x09d1921c, 0xfe1deb1c, 0xb129a73e, 0xe88235f5, 0x2ebb4484, 0xe99c7026, 0xb45f7e41, 0x3991d639, 0x835339f4,
@@ -34,7 +34,7 @@ constexpr uint32_t kDigits[] = {
     0x7527bac7, 0xebe5f17b, 0x3d0739f7, 0x8a5292ea, 0x6bfb5fb1, 0x1f8d5d08, 0x56033046, 0xfc7b6bab,
 };
 
-// 64 digits of a number of words, the lowest first, from this digit on.
+// Returns 64 digits of a multi-word number, lowest word first, from this digit on.
 uint64_t window(const uint32_t *words, uint32_t digit) {
   const uint32_t *w = words + digit / 32;
   const uint64_t low = w[0] | static_cast<uint64_t>(w[1]) << 32;
@@ -42,8 +42,7 @@ uint64_t window(const uint32_t *words, uint32_t digit) {
   return shift == 0 ? low : low >> shift | static_cast<uint64_t>(w[2]) << (64 - shift);
 }
 
-// A double that is exactly a * b beside the one that is nearest to it. Dekker, "A floating-point technique for extending the
-// available precision", 1971.
+// Returns a * b - product, exactly a double. Dekker, "A floating-point technique for extending the available precision", 1971.
 double product_rest(double a, double b, double product) {
   const double split = 0x1p27 + 1.0;
   const double a1 = split * a - (split * a - a), a2 = a - a1;
@@ -51,12 +50,12 @@ double product_rest(double a, double b, double product) {
   return ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2;
 }
 
-// Of |x| >= 2^-2: by as many digits of 2 / pi as count. Payne, Hanek, "Radian reduction for trigonometric functions", 1983.
+// Reduces |x| >= 2^-2 by the significant digits of 2 / pi. Payne, Hanek, "Radian reduction for trigonometric functions", 1983.
 QuarterTurns by_digits(double x) {
   const uint64_t bits = std::bit_cast<uint64_t>(x);
   const int exponent = static_cast<int>(bits >> 52 & 0x7ff) - 1075;
   const uint64_t whole = (bits & 0xfffffffffffffull) | 1ull << 52;
-  // Words of 2 / pi whose products with x are whole turns do not matter; after seven more what is left is below 2^-137.
+  // Skip words of 2 / pi whose products with x are whole turns; after seven more words the remainder is below 2^-137.
   const int first = exponent > 2 ? (exponent - 2) / 32 : 0;
   uint32_t product[11] = {};
   for (int half = 0; half < 2; ++half) {
@@ -73,7 +72,7 @@ QuarterTurns by_digits(double x) {
   QuarterTurns result;
   result.quarters = static_cast<uint32_t>(window(product, point)) & 3u;
   uint64_t high = window(product, point - 64), low = window(product, point - 128);
-  // To the nearest quarter.
+  // Round to the nearest quarter.
   const bool below = high >> 63 != 0;
   if (below) {
     ++result.quarters;
@@ -109,14 +108,14 @@ QuarterTurns quarter_turns(double x) {
     const double first = x - n * kPart1, step = n * kPart2, second = first - step;
     const double below = n * kPart3 - ((first - second) - step);
     const double high = second - below;
-    // Of the third part's product 2^-100 was rounded away.
+    // The third part's product has a rounding error of 2^-100.
     if (std::abs(high) > 0x1p-30)
       return {static_cast<uint32_t>(static_cast<int32_t>(n)) & 3u, high, (second - high) - below};
   }
   return by_digits(x);
 }
 
-// |high| <= pi / 4. The low part turns the rest by so little that the first order tells.
+// high| <= pi / 4. low is so small that its first order suffices.
 double sine_near(double high, double low) {
   const double z = high * high;
   return high + (high * z * sine_rest(z) + low * (1.0 - 0.5 * z));
@@ -138,7 +137,7 @@ double sin(double x) {
   if (std::abs(x) < 0x1p-27)
     return x;
   const QuarterTurns at = quarter_turns(x);
-  // Both, for a branch that nothing foretells costs more than the other.
+  // Compute both: an unpredictable branch costs more than the other value.
   const double both[2] = {sine_near(at.high, at.low), cosine_near(at.high, at.low)};
   return signed_by(both[at.quarters & 1], at.quarters >> 1);
 }
@@ -161,12 +160,12 @@ double tan(double x) {
   return at.quarters & 1 ? -c / s : s / c;
 }
 
-// Angles by their tangent, sine or cosine; and the length of two sides.
+// Inverse tangent, sine and cosine; and the hypotenuse.
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A power of two that brings two sides, of which this is the larger, to where nothing of them is lost.
+// Returns a power of two that scales two sides, of which this is the larger, into a range without overflow or underflow.
 double into_range(double larger, double largest) {
   return larger > largest ? 0x1p-600 : larger < 1.0 / largest ? 0x1p600 : 1.0;
 }
@@ -187,7 +186,7 @@ double atan2(double y, double x) {
 
 double atan(double x) { return atan2(x, 1.0); }
 
-// Factors of 1 - x^2 keep its digits.
+// Factoring 1 - x^2 keeps its digits.
 double asin(double x) {
   return std::abs(x) <= 1.0 ? atan2(x, std::sqrt((1.0 - x) * (1.0 + x))) : std::numeric_limits<double>::quiet_NaN();
 }

@@ -1,4 +1,4 @@
-// One number for a colour, where a choice, a weight or a pixel's alpha needs one.
+// Scalars of a colour, for choices, weights and alpha.
 #pragma once
 
 #include "simd/vectors.h"
@@ -9,12 +9,12 @@ namespace lancer {
 
 template <class V> LANCER_LANE NumberOf<V> mean(const V &v) { return (v.x + v.y + v.z) / 3.0f; }
 
-// Of linear light with the primaries of ITU-R BT.709.
+// Luminance of linear light with the primaries of ITU-R BT.709.
 template <class T> T luminance(const glm::vec<3, T> &v) { return T(0.2126f) * v.x + T(0.7152f) * v.y + T(0.0722f) * v.z; }
 
 template <class V> LANCER_LANE NumberOf<V> largest(const V &v) { return max(max(v.x, v.y), v.z); }
 
-// Of light: what is negative counts as dark.
+// Returns the largest component; negative light counts as 0.
 inline double brightest(const glm::dvec3 &v) { return std::max({0.0, v.x, v.y, v.z}); }
 
 } // namespace lancer

@@ -5,12 +5,12 @@
 
 namespace lancer {
 
-// Row 0 holds the directions around +z; column 0 begins at -x and columns run with the angle about z. Within a cell the density
-// is constant per solid angle, so that neither the poles nor the seam are special.
+// Row 0 has the directions around +z; column 0 begins at -x, and columns follow the angle about z. Within a cell the density is
+// constant per solid angle, so that neither the poles nor the seam are special.
 class DirectionMap {
 public:
   DirectionMap() = default;
-  // weights[row * width + column]: what to be proportional to, per solid angle; 0 where never.
+  // weights[row * width + column]: density up to a factor, per solid angle; 0 is never sampled.
   DirectionMap(uint32_t width, uint32_t height, const std::vector<float> &weights);
 
   bool empty() const { return height_ == 0; }
@@ -19,14 +19,14 @@ public:
     double pdf = 0.0;          // per solid angle; 0 = no sample
   };
   Sample sample(const glm::vec2 &u) const;
-  // Of a direction in floats, as the nodes of a world see it.
+  // Returns the density of a direction in floats, as in the nodes of a world.
   double pdf(const glm::vec3 &direction) const;
 
-  // The direction at a place of the grid, (0, 0) its first corner, even in the angles.
+  // Returns the direction at a position of the grid, (0, 0) its first corner, linear in the angles.
   glm::dvec3 direction(double column, double row) const;
-  // Solid angle of each cell of a row.
+  // Returns the solid angle of each cell of a row.
   double solid_angle(uint32_t row) const { return solid_angles_[from_pole(row)]; }
-  // As long as the map is neither changed nor moved.
+  // Returns a table that is valid as long as the map is neither changed nor moved.
   DirectionTable table() const;
   size_t bytes() const;
 

@@ -1,4 +1,4 @@
-// Directions by the numbers of a DirectionMap. F is a float, or lanes of them.
+// Sampling of a DirectionMap. F is float or lanes of it.
 #pragma once
 
 #include "sampling/angle.h"
@@ -7,26 +7,25 @@
 
 namespace lancer {
 
-// Sums and guides are those of WeightedChoice, a guide with the last entry
-// behind it: the entry for a number lies between two of the guide. A line of the columns' for each row, then one of the rows'
-// own.
+// Sums and guides are those of WeightedChoice, each guide followed by the last entry: the entry for a number lies between two
+// of the guide. Columns have one row of sums and guide per row of the map, rows have one.
 struct DirectionTable {
   uint32_t width = 0, height = 0, column_steps = 0, row_steps = 0;
-  // By row: 1 - cos of the angle to the pole of the edge towards it, which keeps its digits there, where cos has none left; and
-  // the solid angle of a cell. Rows count from the nearer pole.
+  // By row: 1 - cos of the angle from the pole to the edge on its side, which keeps its digits near the pole, where cos has
+  // none left; and the solid angle of a cell. Rows count from the nearer pole.
   const double *versines = nullptr, *solid_angles = nullptr;
   const double *row_sums = nullptr, *column_sums = nullptr;
   const uint32_t *row_guide = nullptr, *column_guide = nullptr;
 };
 
-// An entry of a table that a number falls on, as WeightedChoice::Choice.
+// The entry of a table selected by a number, as WeightedChoice::Choice.
 template <class F> struct TableEntry {
   WordOf<F> index;
-  DoubleOf<F> width, u; // of its interval; where the number fell inside
+  DoubleOf<F> width, u; // of its interval; position of the number within
 };
 
-// The entry whose interval sums[i] <= number < sums[i + 1] holds the number; halves what two entries of the guide leave. Sums
-// and guide begin at these places of theirs.
+// Finds the entry whose interval sums[i] <= number < sums[i + 1] contains the number, by bisection between two entries of the
+// guide. sums_at, guide_at: starts within the arrays.
 template <class F>
 LANCER_LANE TableEntry<F> find_entry(const double *sums, WordOf<F> sums_at, const uint32_t *guide, WordOf<F> guide_at,
                                      uint32_t steps, F number) {
@@ -46,7 +45,7 @@ LANCER_LANE TableEntry<F> find_entry(const double *sums, WordOf<F> sums_at, cons
   return {low, width, min((u - from) / width, D(kBelowOne))};
 }
 
-// Whether a row is nearer to the upper pole; its number from the nearer one.
+// is_upper_row() returns whether a row is nearer to the upper pole, row_from_pole() its number from the nearer pole.
 template <class F> LANCER_LANE MaskOf<F> is_upper_row(const DirectionTable &map, WordOf<F> row) {
   return F(2.0f) * to_float(row) < F(static_cast<float>(map.height));
 }
@@ -54,7 +53,7 @@ template <class F> LANCER_LANE WordOf<F> row_from_pole(const DirectionTable &map
   return select(is_upper_row<F>(map, row), row, WordOf<F>(map.height - 1u) - row);
 }
 
-// Of a cell, per solid angle.
+// Returns the density of a cell, per solid angle.
 template <class F> LANCER_LANE DoubleOf<F> cell_density(const DirectionTable &map, WordOf<F> row, WordOf<F> column) {
   using D = DoubleOf<F>;
   using U = WordOf<F>;
@@ -66,17 +65,17 @@ template <class F> LANCER_LANE DoubleOf<F> cell_density(const DirectionTable &ma
 
 template <class F> struct DirectionSample {
   Double3Of<F> direction; // unit
-  DoubleOf<F> pdf;        // per solid angle; not above 0: no sample
+  DoubleOf<F> pdf;        // per solid angle; 0 or less: no sample
 };
 
 template <class F> LANCER_LANE DirectionSample<F> sample_direction(const DirectionTable &map, F u, F v) {
   using D = DoubleOf<F>;
   using U = WordOf<F>;
-  // Choose a row, a column in it, and with what is left of both numbers a place in the cell.
+  // Select a row, a column in it, and a position in the cell by the remainders of both numbers.
   const TableEntry<F> row = find_entry(map.row_sums, U(0u), map.row_guide, U(0u), map.row_steps, v);
   const TableEntry<F> column = find_entry(map.column_sums, row.index * U(map.width + 1u), map.column_guide,
                                           row.index * U(map.column_steps + 1u), map.column_steps, u);
-  // Even steps of the cosine are even steps of the solid angle. Count from the nearer pole.
+  // The solid angle is linear in the cosine. Count from the nearer pole.
   const D one(1.0);
   const MaskOf<F> upper = is_upper_row<F>(map, row.index);
   const U pole = row_from_pole<F>(map, row.index);
@@ -88,7 +87,7 @@ template <class F> LANCER_LANE DirectionSample<F> sample_direction(const Directi
   return {{-(across * turn.cos), -(across * turn.sin), up}, cell_density<F>(map, row.index, column.index)};
 }
 
-// Where a direction in floats, as the nodes of a world see it, lies on the map.
+// Returns the map position of a direction in floats, as in the nodes of a world.
 template <class F> LANCER_LANE MapPlace<DoubleOf<F>> place_of(const Vector3<F> &direction) {
   const Double3Of<F> d = widen(direction);
   return place_on_map(d.x, d.y, d.z, sqrt(d.x * d.x + d.y * d.y));

@@ -1,4 +1,4 @@
-// Picking one of several things in proportion to weights.
+// Selects one of several items in proportion to weights.
 #pragma once
 
 #include <algorithm>
@@ -9,20 +9,20 @@
 
 namespace lancer {
 
-// What is left of a random number stays below 1.
+// Upper bound on the remainder of a random number.
 inline constexpr double kBelowOne = 1.0 - 0x1p-53;
 
 class WeightedChoice {
 public:
   struct Choice {
     uint32_t index = 0;
-    float pmf = 0.0f; // 0: nothing to choose from
-    float u = 0.0f;   // where u fell inside the chosen interval, uniform in [0, 1): a fresh number
+    float pmf = 0.0f; // 0: nothing to select
+    float u = 0.0f;   // position of u within the selected interval, uniform in [0, 1): a new random number
   };
 
   WeightedChoice() = default;
 
-  // Weights that are negative or not finite count as 0. Where all are 0 nothing is ever chosen.
+  // Weights that are negative or not finite count as 0. If all are 0, nothing is selected.
   explicit WeightedChoice(const std::vector<double> &weights) : cdf_(weights.size() + 1, 0.0) {
     const auto usable = [](double w) { return w > 0.0 && std::isfinite(w) ? w : 0.0; };
     double largest = 0.0;
@@ -36,7 +36,7 @@ public:
     const double total = cdf_.back();
     for (double &c : cdf_)
       c /= total;
-    // Note for even steps of the number which entry it falls on, so that looking for one begins beside it.
+    // Record the entry at equal steps of the number, where a search begins.
     guide_.resize(guide_steps(weights.size()));
     uint32_t entry = 0;
     for (std::size_t step = 0; step < guide_.size(); ++step) {
@@ -46,10 +46,10 @@ public:
     }
   }
 
-  // How many steps the guide of so many weights has.
+  // Returns the number of steps in the guide of this many weights.
   static constexpr std::size_t guide_steps(std::size_t size) { return size / kPerStep + 1; }
-  // For other ways to look: sums of weights up to each entry, the last 1; and the entries that even steps of the number fall
-  // on. Where nothing can be chosen the sums are 0 and there is no guide.
+  // For other searches: sums of weights up to each entry, the last is 1; and the entries at equal steps of the number. If
+  // nothing can be selected the sums are 0 and the guide is empty.
   const std::vector<double> &sums() const { return cdf_; }
   const std::vector<uint32_t> &guide() const { return guide_; }
 
@@ -59,7 +59,7 @@ public:
   Choice sample(double u) const {
     if (size() == 0 || cdf_.back() == 0.0)
       return {};
-    // Find the interval cdf[i] <= u < cdf[i + 1]: an entry of weight 0 has none.
+    // Find the interval cdf[i] <= u < cdf[i + 1]: an entry of weight 0 has an empty interval.
     const double steps = static_cast<double>(guide_.size());
     uint32_t i = guide_[std::min(static_cast<std::size_t>(u * steps), guide_.size() - 1)];
     while (i > 0 && cdf_[i] > u)
@@ -71,13 +71,13 @@ public:
     return {i, static_cast<float>(width), std::min(static_cast<float>((u - cdf_[i]) / width), below_one)};
   }
 
-  // The probability of index i, exactly that with which sample returns it.
+  // Returns the probability of index i, exactly the pmf that sample() returns.
   float pmf(std::size_t i) const { return static_cast<float>(cdf_[i + 1] - cdf_[i]); }
 
   std::size_t bytes() const { return cdf_.size() * sizeof(double) + guide_.size() * sizeof(uint32_t); }
 
 private:
-  static constexpr std::size_t kPerStep = 4; // entries to a step of the guide
+  static constexpr std::size_t kPerStep = 4; // entries per step of the guide
   std::vector<double> cdf_;
   std::vector<uint32_t> guide_;
 };

@@ -8,14 +8,14 @@
 
 namespace lancer {
 
-// exp() for doubles and for lanes of them: the same bits from every library, compiler and number of lanes.
+// exp() for double and lanes of it: the same bits with every library, compiler and number of lanes.
 
-// 2 to the power of a whole number within +-1022: added to such a number it stands in the lowest digits.
+// Returns 2 to the power of a whole number within +-1022: the sum has the exponent in its lowest digits.
 [[gnu::always_inline]] inline double power_of_two(double whole) {
   return std::bit_cast<double>(std::bit_cast<uint64_t>(whole + (0x1.8p52 + 1023.0)) << 52);
 }
 
-// exp(r) - 1 where |r| <= log(2) / 2. Fitted to 2e-19.
+// Returns exp(r) - 1 for |r| <= log(2) / 2. Fitted to 2e-19.
 template <class Double> [[gnu::always_inline]] inline Double exp_near_zero(Double r) {
   const Double r2 = r * r, r4 = r2 * r2;
   const Double low =
@@ -27,26 +27,26 @@ template <class Double> [[gnu::always_inline]] inline Double exp_near_zero(Doubl
   return r + r2 * (low + r4 * (middle + r4 * high));
 }
 
-// x = whole log(2) + rest, of |x| < 1000. A sum of the first line's size has no fraction; log(2)'s first part has 33 digits, so
-// that its product is exact, and the difference from that.
+// Splits x = whole log(2) + rest, for |x| < 1000. A sum of the first line's size has no fraction; log(2)'s first part has 33
+// digits, so that its product is exact, and so is the difference from it.
 template <class Double> struct ExpParts { Double whole, rest; };
 template <class Double> [[gnu::always_inline]] inline ExpParts<Double> exp_parts(Double x) {
   const Double size(0x1.8p52), n = (x * Double(0x1.71547652b82fep+0) + size) - size;
   return {n, (x - n * Double(0x1.62e42fefp-1)) - n * Double(0x1.473de6af278edp-34)};
 }
 
-// exp(x) of |x| < 700.
+// Returns exp(x) for |x| < 700.
 template <class Double> [[gnu::always_inline]] inline Double exp_within(Double x) {
   const ExpParts<Double> at = exp_parts(x);
   return (Double(1.0) + exp_near_zero(at.rest)) * power_of_two(at.whole);
 }
 
-// Elementary functions with the same bits from every library, compiler and processor: of + - * / and sqrt, which IEEE 754
-// rounds, of comparisons and of the numbers' bits alone. Special values are those of C99's annex F.
+// Elementary functions with the same bits with every library, compiler and processor: they use only + - * / and sqrt, which
+// IEEE 754 rounds, comparisons, and the bits of numbers. Special values are those of C99's annex F.
 //
-// Of the true value, those of double are within 1 unit in the last place (exp, log, sin, cos), 1.5 (log1p, cosh below 700, erf,
-// hypot), 3 (expm1, sinh, cosh, tanh, tan, atan, atan2, asin, acos) or 6 (erfc), whatever the argument. Those of float round
-// them once: within 0.500001 units.
+// The error of double functions is within 1 unit in the last place (exp, log, sin, cos), 1.5 (log1p, cosh below 700, erf,
+// hypot), 3 (expm1, sinh, cosh, tanh, tan, atan, atan2, asin, acos) or 6 (erfc), for any argument. Float functions round the
+// double result once: within 0.500001 units.
 double exp(double x);
 double expm1(double x);
 double sinh(double x);
@@ -65,7 +65,7 @@ double hypot(double x, double y);
 double erf(double x);
 double erfc(double x);
 
-// Of floats alone: a product of the logarithm of doubles would lose a dozen bits.
+// For float only: the product with a double logarithm would lose a dozen bits of a double result.
 float pow(float x, float y);
 
 [[gnu::always_inline]] inline float exp(float x) { return static_cast<float>(exp(static_cast<double>(x))); }
@@ -89,7 +89,7 @@ float pow(float x, float y);
 }
 [[gnu::always_inline]] inline float erfc(float x) { return static_cast<float>(erfc(static_cast<double>(x))); }
 
-// Of lanes. Beyond what a float holds of it, exp() need not be told apart.
+// For lanes. exp() clamps beyond the range of float.
 template <class F>
 concept ManyLanes = LanesOf<F>::kWidth >
 1;
@@ -146,7 +146,7 @@ template <ManyLanes F> LANCER_LANE F hypot(F x, F y) {
   return each(x, y, [](float a, float b) { return hypot(a, b); });
 }
 
-// The inverse of the error function: turns a uniform number into a Gaussian one.
+// The inverse of the error function: maps a uniform number to a Gaussian one.
 
 // Relative error below 4e-7 for |y| < 1. Giles, "Approximating the erfinv function", GPU Computing Gems 2, 2010.
 template <class F> LANCER_LANE F erf_inverse(F y) {

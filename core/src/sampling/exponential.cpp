@@ -18,10 +18,10 @@ double exp(double x) {
   if (std::abs(x) < 700.0)
     return exp_within(x);
   if (!(x < 710.0))
-    return x + kInfinity; // or not a number
+    return x + kInfinity; // or NaN
   if (x < -746.0)
     return 0.0;
-  // In two steps, for neither end of the range holds the whole power; only the second can round.
+  // In two steps, because the whole power overflows at either end of the range; only the second step can round.
   const ExpParts<double> at = exp_parts(x);
   const double half = std::floor(0.5 * at.whole);
   return (1.0 + exp_near_zero(at.rest)) * power_of_two(half) * power_of_two(at.whole - half);
@@ -36,16 +36,16 @@ double expm1(double x) {
   const double rest = exp_near_zero(at.rest);
   if (at.whole == 0.0)
     return x == 0.0 ? x : rest;
-  if (at.whole > 60.0) // 1 is less than what rounding takes
+  if (at.whole > 60.0) // 1 is below the rounding error
     return exp(x);
-  // The power less 1 is exact up to 2^53, and beyond it the larger of the two by far.
+  // The power minus 1 is exact up to 2^53; beyond it the power dominates.
   const double power = power_of_two(at.whole);
   return (power - 1.0) + power * rest;
 }
 
 double sinh(double x) {
   const double a = std::abs(x);
-  if (a > 700.0) { // where exp() is beyond the range before its half is
+  if (a > 700.0) { // exp() overflows before its half does
     const double e = exp(0.5 * a);
     return std::copysign(0.5 * e * e, x);
   }
@@ -59,18 +59,18 @@ double cosh(double x) {
 }
 
 double tanh(double x) {
-  // 1 - tanh(20) is less than what rounding takes.
+  // 1 - tanh(20) is below the rounding error.
   const double e = expm1(2.0 * (std::abs(x) < 20.0 ? std::abs(x) : 20.0));
   return x != x ? x : std::copysign(e / (e + 2.0), x);
 }
 
-// Logarithms to base e, and powers by them.
+// Natural logarithms, and powers by them.
 namespace {
 
 constexpr double kLog2High = 0x1.62e42fefp-1, kLog2Low = 0x1.473de6af278edp-34;
 
-// log(1 + f) + whole log(2), of sqrt(1/2) <= 1 + f < sqrt(2). With s = f / (2 + f) it is 2 atanh(s), and 2 s = f - s f: what is
-// rounded is small beside f. Fitted to 5e-18.
+// Returns log(1 + f) + whole log(2), for sqrt(1/2) <= 1 + f < sqrt(2). With s = f / (2 + f) it is 2 atanh(s), and 2 s = f - s
+// f: the rounded terms are small compared with f. Fitted to 5e-18.
 double near_one(double f, double whole) {
   const double s = f / (2.0 + f), z = s * s, z2 = z * z;
   const double p = ((0.666666666666667 + z * 0.39999999999899505) + z2 * (0.28571428625975487 + z * 0.2222221113479508)) +
@@ -96,7 +96,7 @@ double log(double x) {
   } else if (x == std::numeric_limits<double>::infinity()) {
     return x;
   }
-  // The exponent, counted from sqrt(1/2).
+  // The exponent relative to sqrt(1/2).
   constexpr int64_t root = std::bit_cast<int64_t>(0x1.6a09e667f3bcdp-1);
   const int64_t exponent = (bits - root) >> 52;
   return near_one(std::bit_cast<double>(bits - (exponent << 52)) - 1.0, static_cast<double>(whole + exponent));
@@ -108,7 +108,7 @@ double log1p(double x) {
   const double u = 1.0 + x;
   if (!(x > -1.0 && x < 0x1p60))
     return log(u);
-  // The logarithm's slope times what 1 + x lost in rounding.
+  // Add the logarithm's slope times the rounding error of 1 + x.
   const double lost = x < 1.0 ? x - (u - 1.0) : 1.0 - (u - x);
   return log(u) + lost / u;
 }
@@ -117,7 +117,7 @@ float pow(float x, float y) {
   if (x == 1.0f || y == 0.0f)
     return 1.0f;
   const double a = std::abs(static_cast<double>(x)), b = static_cast<double>(y);
-  // At most 104 matters to a float: the product's rounding is within 2^-46 of it.
+  // Exponents up to 104 matter to a float: the product's rounding error is within a relative 2^-46.
   const float power = a == 1.0 ? 1.0f : static_cast<float>(exp(b * log(a)));
   if (!std::signbit(x))
     return power;
@@ -130,7 +130,7 @@ float pow(float x, float y) {
 
 namespace {
 
-// erf(x) of |x| <= 1. Fitted to 7e-18.
+// Returns erf(x) for |x| <= 1. Fitted to 7e-18.
 double near_zero(double x) {
   const double z = x * x, z2 = z * z, z4 = z2 * z2;
   const double p =
@@ -142,8 +142,8 @@ double near_zero(double x) {
   return x + x * p;
 }
 
-// (1 + 2 x) exp(x^2) erfc(x) of 1/2 <= x <= 28, by (x - 4) / (x + 4). Schonfelder, "Chebyshev expansions for the error and
-// related functions", 1978, has such a variable; from the constant up. Fitted to 1e-18.
+// (1 + 2 x) exp(x^2) erfc(x) for 1/2 <= x <= 28, as a polynomial in (x - 4) / (x + 4), constant term first. The variable is
+// that of Schonfelder, "Chebyshev expansions for the error and related functions", 1978. Fitted to 1e-18.
 constexpr double kScaled[] = {
     1.2329951186255526,      -0.1396211168405625,     0.015379652102619901,    0.06809705425468844,
     -0.1010390660363143,     0.09373283499853434,     -0.06633036581196795,    0.03716751553379472,
@@ -153,17 +153,17 @@ constexpr double kScaled[] = {
     -1.8406671051403966e-08, -9.652213521087604e-09,  1.9717656765049794e-09,  0.0,
 };
 
-// erfc(x), x >= 1/2.
+// Returns erfc(x) for x >= 1/2.
 double far_out(double x) {
   if (x > 28.0)
     return 0.0;
   const double t = (x - 4.0) / (x + 4.0);
-  // Four at a time: one after another each would wait for the one before.
+  // Evaluate four terms at a time: in Horner's scheme each would wait for the one before.
   const double t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
   const auto four = [&](const double *c) { return (c[0] + t * c[1]) + t2 * (c[2] + t * c[3]); };
   const double p = (four(kScaled) + t4 * four(kScaled + 4)) +
                    t8 * ((four(kScaled + 8) + t4 * four(kScaled + 12)) + t8 * (four(kScaled + 16) + t4 * four(kScaled + 20)));
-  // exp(-x^2): the square of the number's upper half is exact, and what is beside it below 2^-15.
+  // exp(-x^2): the square of the number's upper half is exact, and the rest is below 2^-15.
   const double upper = std::bit_cast<double>(std::bit_cast<uint64_t>(x) & 0xfffffffff8000000ull);
   const double beside = (x - upper) * (x + upper);
   return exp(-upper * upper) * (1.0 - beside * (1.0 - 0.5 * beside * (1.0 - beside * (1.0 / 3.0)))) * (p / (1.0 + 2.0 * x));

@@ -1,4 +1,4 @@
-// The pixel's filter by importance sampling: a sample lands where the filter weighs it, and counts 1.
+// The pixel filter by importance sampling: samples are distributed as the filter and have weight 1.
 #pragma once
 
 #include "simd/scalar.h"
@@ -7,7 +7,7 @@ namespace lancer {
 
 enum class FilterKind : unsigned { Box = 0, BlackmanHarris = 1 };
 
-// The table that a filter is drawn from; of a box there is none.
+// The table from which a filter is sampled; a box uses none.
 struct FilterTable {
   static constexpr uint32_t kCells = 512;
 
@@ -16,14 +16,14 @@ struct FilterTable {
   float place[kCells + 1] = {};
 };
 
-// Offset from the pixel's middle in pixels, in [-width / 2, width / 2], never falling as u rises.
+// Returns the offset from the pixel's centre in pixels, in [-width / 2, width / 2], monotonic in u.
 template <class F> LANCER_LANE F sample_filter(const FilterTable &table, F u) {
   using U = WordOf<F>;
   constexpr float cells = FilterTable::kCells;
   const F half(0.5f);
   if (table.kind == FilterKind::Box)
     return (u - half) * F(table.width);
-  // Go as far from the nearer end as this share of the window takes: half of it is symmetric.
+  // Interpolate the half of the window on the nearer side: the window is symmetric.
   const F from_end = min(u, F(1.0f) - u), at = sqrt(from_end + from_end) * F(cells);
   const U cell = truncate(min(at, F(cells - 1.0f)));
   const F begin = gather(table.place, cell), end = gather(table.place, cell + U(1u));
@@ -31,7 +31,7 @@ template <class F> LANCER_LANE F sample_filter(const FilterTable &table, F u) {
   return select(u < half, place - half, half - place) * F(table.width);
 }
 
-// Both filters are separable, symmetric and zero outside their full width (in pixels).
+// A filter that is separable, symmetric and zero outside its full width (in pixels).
 class PixelFilter {
 public:
   PixelFilter(FilterKind kind, float width);

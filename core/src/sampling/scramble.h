@@ -1,4 +1,4 @@
-// Numbers of the sampler: hashes, Sobol's sequence, Owen's scrambling.
+// The sampler's numbers: hashes, Sobol sequence, Owen scrambling.
 #pragma once
 
 #include "simd/scalar.h"
@@ -9,7 +9,7 @@
 
 namespace lancer {
 
-// Integer hashes: an address in, bits without visible structure out. U is a uint32_t, or lanes of them.
+// Integer hashes of an address. U is uint32_t or lanes of it.
 
 // A bijection of 32 bits in which every input bit flips every output bit with a probability near one half.
 template <class U> LANCER_LANE constexpr U hash(U x) {
@@ -21,17 +21,17 @@ template <class U> LANCER_LANE constexpr U hash(U x) {
   return x ^ (x >> 16);
 }
 
-// Extends the hash h of an address by one more coordinate. The order of coordinates matters; for one h no two values collide.
+// Extends the hash h of an address by another coordinate. The order of coordinates matters; for one h no two values collide.
 template <class U> LANCER_LANE constexpr U hash_combine(U h, std::type_identity_t<U> value) {
   return hash((h ^ value * U(0x9e3779b1u)) + U(0x7f4a7c15u));
 }
 
-// Dimensions of one Sobol sequence: the camera's, and those of two vertices.
+// Dimensions of one Sobol sequence: those of the camera and of two vertices.
 inline constexpr uint32_t kJointDimensions = 20;
 
 namespace sobol {
 
-// U is a uint32_t, or lanes of them.
+// U is uint32_t or lanes of it.
 template <class U> LANCER_LANE constexpr U reverse_bits(U x) {
   x = x >> 16 | x << 16;
   x = (x & U(0xff00ff00u)) >> 8 | (x & U(0x00ff00ffu)) << 8;
@@ -42,11 +42,11 @@ template <class U> LANCER_LANE constexpr U reverse_bits(U x) {
 
 using NibbleTable = std::array<std::array<std::array<uint32_t, 16>, 8>, kJointDimensions>;
 
-// For each dimension and each group of four index bits the sum of the generator matrix's columns, digits reversed. 8 KB stay in
-// the first-level cache, where a table over whole bytes (64 KB) would not; an index below 4096 takes three look-ups.
+// For each dimension and each group of four index bits, the sum of the generator matrix's columns, digits reversed. 8 KB fit in
+// the first-level cache, where a table over whole bytes (64 KB) would not; an index below 4096 takes three lookups.
 extern const NibbleTable kNibbles;
 
-// Coordinate of point index in a joint dimension; bit 0 is the first digit after the binary point.
+// Returns a point's coordinate in a joint dimension; bit 0 is the first digit after the binary point.
 inline uint32_t reversed_point(uint32_t index, uint32_t dimension) {
   const auto &table = kNibbles[dimension];
   uint32_t x = 0;
@@ -66,11 +66,11 @@ template <class U> LANCER_LANE constexpr U reversed_second_dimension(U index) {
 
 } // namespace sobol
 
-// Owen's nested scrambling, and the numbers that it makes of the digits of a Sobol sequence. Digits are reversed: bit 0 is the
-// first after the binary point. U is a uint32_t, or lanes of them.
+// Owen's nested scrambling of the digits of a Sobol sequence. Digits are reversed: bit 0 is the first after the binary point. U
+// is uint32_t or lanes of it.
 
-// Each digit is flipped by a hash of the digits before it. Sums, and products with even numbers, carry upwards only, which is
-// exactly that dependence.
+// Flips each digit by a hash of the digits before it. Sums, and products with even numbers, carry upwards only, which gives
+// exactly this dependence.
 template <class U> LANCER_LANE U nested_scramble(U x, std::type_identity_t<U> seed) {
   x = x ^ x * U(0x3d20adeau);
   x = x + seed;
@@ -79,21 +79,21 @@ template <class U> LANCER_LANE U nested_scramble(U x, std::type_identity_t<U> se
   return x ^ x * U(0x53a22864u);
 }
 
-// The number of a dimension whose digits are given, of the pixel with this key. A float has 24 digits: the rest is cut, so that
-// 1 is never reached.
+// Returns the number in [0, 1) of a dimension with the given digits, for the pixel with this key. A float has 24 digits: the
+// others are cut off, so that 1 is never reached.
 template <class U> LANCER_LANE auto scrambled(U reversed, std::type_identity_t<U> pixel, uint32_t dimension) {
   const U x = sobol::reverse_bits(nested_scramble(reversed, hash_combine(pixel, U(dimension))));
   const auto whole = to_float(x >> 8);
   return whole * decltype(to_float(x))(0x1p-24f);
 }
 
-// The order in which a pair of later dimensions is taken: scrambling an index is a permutation that keeps every aligned
-// power-of-two block together.
+// Returns the order of a pair of later dimensions: scrambling an index is a permutation that keeps every aligned power-of-two
+// block together.
 template <class U> LANCER_LANE U shuffled_index(U reversed_sample, std::type_identity_t<U> pixel, uint32_t pair) {
   return sobol::reverse_bits(nested_scramble(reversed_sample, hash_combine(pixel, U(0x80000000u | pair))));
 }
 
-// Both numbers of a pair of later dimensions, the first of them even.
+// Returns both numbers of a pair of later dimensions; dimension is even.
 template <class U> LANCER_LANE auto pair_numbers(U reversed_sample, std::type_identity_t<U> pixel, uint32_t dimension) {
   const U index = shuffled_index(reversed_sample, pixel, dimension / 2);
   return Vector2{scrambled(index, pixel, dimension), scrambled(sobol::reversed_second_dimension(index), pixel, dimension + 1)};

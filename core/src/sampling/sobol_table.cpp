@@ -1,4 +1,4 @@
-// The generator matrices behind the table, from polynomials and direction numbers; all of it is computed by the compiler.
+// The generator matrices of the table, from polynomials and direction numbers; computed at compile time.
 #include "sampling/scramble.h"
 
 namespace lancer::sobol {
@@ -11,10 +11,10 @@ struct Polynomial {
   uint32_t m[7];
 };
 
-// Which polynomial and numbers a dimension has was searched for (simulated annealing): the mean gain coefficients (Owen,
-// "Scrambled net variance for integrals of smooth functions", 1997) of 8 to 4096 points are least in the projections that a
-// path depends on. Those are place in the pixel, direction and lobe, place on the light and its choice, each by itself, with
-// the pixel's, and of the first vertex with the second's. Against the numbers of Joe and Kuo (2008), taken in turn, seven
+// Polynomials and numbers of each dimension were optimised by simulated annealing: they minimise the mean gain coefficients
+// (Owen, "Scrambled net variance for integrals of smooth functions", 1997) of 8 to 4096 points in the projections that matter
+// to a path. These are position in the pixel, direction and lobe, position on the light and its choice, each by itself, with
+// the pixel's, and of the first vertex with the second's. Compared with the numbers of Joe and Kuo (2008) in order, seven
 // scenes have 0.69 to 1.02 of the variance at 64 samples.
 constexpr Polynomial kPolynomials[kJointDimensions] = {
     {4, 1, {1, 1, 5, 13}},
@@ -39,7 +39,7 @@ constexpr Polynomial kPolynomials[kJointDimensions] = {
     {5, 2, {1, 1, 3, 11, 31}},
 };
 
-// Columns of the generator matrix of one dimension, bit 0 being the first digit after the binary point.
+// Returns the columns of the generator matrix of one dimension; bit 0 is the first digit after the binary point.
 constexpr std::array<uint32_t, 32> reversed_columns(uint32_t dimension) {
   std::array<uint32_t, 32> column{};
   if (kPolynomials[dimension].degree == 0) {

@@ -1,4 +1,4 @@
-// Directions to a triangle, even over the solid angle that it fills. D is a double, or lanes of them.
+// Samples a triangle uniformly in solid angle. D is double or lanes of it.
 #pragma once
 
 #include "sampling/angle.h"
@@ -13,7 +13,7 @@ template <class D> struct SphericalTriangle {
   V a, b, c; // unit, towards the corners
   D solid_angle;
 
-  // Towards corners that are given as seen from the point. 0 where it is seen edge on.
+  // Takes vectors from the point to the corners. The solid angle is 0 if the triangle is seen edge on.
   LANCER_LANE SphericalTriangle(const V &to_a, const V &to_b, const V &to_c)
       : a(to_a / sqrt(dot(to_a, to_a))), b(to_b / sqrt(dot(to_b, to_b))), c(to_c / sqrt(dot(to_c, to_c))) {
     // Van Oosterom, Strackee, "The solid angle of a plane triangle", 1983.
@@ -22,7 +22,8 @@ template <class D> struct SphericalTriangle {
     solid_angle = select(angles > D(0.0), angles, D(0.0));
   }
 
-  // Arvo, "Stratified sampling of spherical triangles", 1995. Unit; density 1 / solid_angle, which is above 0.
+  // Arvo, "Stratified sampling of spherical triangles", 1995. Returns a unit direction of density 1 / solid_angle, which must
+  // be above 0.
   LANCER_LANE V sample(const D &u, const D &v) const {
     const D zero(0.0), one(1.0);
     // Cut off a triangle that keeps a and b and has the share u of the area: c moves along its arc with a.
@@ -36,13 +37,13 @@ template <class D> struct SphericalTriangle {
     const D ratio = ((k2 * cos_phi - k1 * sin_phi) * cos_alpha - k2) / below;
     const D cos_b = select(below != zero, min(max(ratio, -one), one), one);
     const V moved = cos_b * a + sqrt((one - cos_b) * (one + cos_b)) * c_along;
-    // Go from b along the arc to it: areas about b are even in 1 - cos.
+    // Move from b along the arc: area about b is linear in 1 - cos.
     const D down = v * (one - min(dot(moved, b), one)), cos_theta = one - down;
     return cos_theta * b + sqrt(max(zero, down * (one + cos_theta))) * across(moved, b);
   }
 
 private:
-  // The unit direction of v across unit n; any where they are parallel.
+  // Returns the unit component of v perpendicular to unit n; 0 if they are parallel.
   static LANCER_LANE V across(const V &v, const V &n) {
     const V w = v - dot(v, n) * n;
     const D length = sqrt(dot(w, w));

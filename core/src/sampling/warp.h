@@ -1,4 +1,4 @@
-// From the unit square to disks, directions and triangles; each warp stands beside its density. F is a float, or lanes of them.
+// Warps from the unit square to disks, directions and triangles, each with its density. F is float or lanes of it.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,7 +12,7 @@ namespace lancer {
 inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 
-// Uniform on the unit disk; squares around the middle become circles, so that neighbours stay neighbours.
+// Uniform on the unit disk; squares around the centre become circles, so that neighbours stay neighbours.
 template <class F> LANCER_LANE Vector2<F> warp_disk(F u, F v) {
   const F a = F(2.0f) * u - F(1.0f), b = F(2.0f) * v - F(1.0f), zero(0.0f);
   const MaskOf<F> wide = abs(a) > abs(b), middle = (a == zero) & (b == zero);
@@ -41,7 +41,7 @@ template <class F> LANCER_LANE Vector3<F> warp_sphere(F u, F v) {
 LANCER_LANE glm::vec3 warp_sphere(const glm::vec2 &u) { return warp_sphere(u.x, u.y); }
 LANCER_LANE float warp_sphere_pdf() { return 0.25f * kInvPi; }
 
-// 1 - cos(theta) from sin(theta)^2, without the cancellation: a cone keeps its size however narrow it is.
+// Returns 1 - cos(theta) from sin(theta)^2 without cancellation: a cone of any width keeps its size.
 template <class F> LANCER_LANE F one_minus_cos(F sin2) { return sin2 / (F(1.0f) + sqrt(max(F(0.0f), F(1.0f) - sin2))); }
 
 // Uniform over the cone of directions around +z with cos(theta) >= 1 - one_minus_cos_max.
@@ -54,8 +54,8 @@ template <class F> LANCER_LANE Vector3<F> warp_cone(F u, F v, F one_minus_cos_ma
 LANCER_LANE glm::vec3 warp_cone(const glm::vec2 &u, float one_minus_cos_max) { return warp_cone(u.x, u.y, one_minus_cos_max); }
 template <class F> LANCER_LANE F warp_cone_pdf(F one_minus_cos_max) { return F(0.5f * kInvPi) / one_minus_cos_max; }
 
-// Uniform on a triangle: barycentric weights of corners 1 and 2. The square is folded over its diagonal, not squeezed into a
-// corner.
+// Uniform on a triangle: barycentric weights of corners 1 and 2. The square is folded over its diagonal, which preserves
+// stratification.
 template <class F> LANCER_LANE Vector2<F> warp_triangle(F u, F v) {
   const MaskOf<F> above = v > u;
   const F half = F(0.5f) * select(above, u, v);
