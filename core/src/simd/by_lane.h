@@ -1,4 +1,4 @@
-// Lanes one by one: for what reads a place of memory of its own in each, or is too rare to be written for all at once.
+// Access to single lanes: for code that reads separate memory in each lane, or is too rare for a vector version.
 #pragma once
 
 #include "simd/memory.h"
@@ -14,7 +14,7 @@ template <int W> LANCER_LANE bool lane(Mask<W> m, int i) { return (bits(m) >> i 
 
 } // namespace
 
-// Lanes of any type from what f says of each, by its number.
+// Builds lanes of any type from a function of the lane number.
 template <class T> struct ByLane {
   template <class Function> static LANCER_LANE T of(const Function &f) { return f(0); }
 };
@@ -41,7 +41,7 @@ template <class T, class Function> LANCER_LANE T by_lane(const Function &f) { re
 
 namespace {
 
-// Names of lanes would hide those of single numbers from templates that stand beside them.
+// Declared again, because names for lanes would hide those of single numbers from templates in this file.
 using lancer::abs;
 using lancer::all;
 using lancer::any;

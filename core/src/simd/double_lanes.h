@@ -1,4 +1,4 @@
-// Lanes of doubles, in two halves of W / 2, and their conversions. Like lanes.h.
+// Lanes of doubles, in two halves of W / 2, and their conversions. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "simd/lanes.h"
@@ -61,7 +61,7 @@ template <int W> struct Double {
 #endif
       return {low_half(m) ? a.lo : b.lo, high_half(m) ? a.hi : b.hi};
   }
-  // The first where they are equal or not ordered.
+  // Returns the first if they are equal or unordered.
   friend LANCER_LANE Double max(Double a, Double b) {
 #if defined(__AVX__)
     if constexpr (W == 8)
@@ -101,12 +101,12 @@ template <int W> struct Double {
     return a;
   }
   friend LANCER_LANE Double abs(Double a) { return {both(a.lo, ~(1ull << 63)), both(a.hi, ~(1ull << 63))}; }
-  // 1 with the sign of a.
+  // Returns 1 with the sign of a.
   friend LANCER_LANE Double sign(Double a) {
     const Words one = (Words)(1.0 - Vector{});
     return {(Vector)((Words)both(a.lo, 1ull << 63) | one), (Vector)((Words)both(a.hi, 1ull << 63) | one)};
   }
-  // 2 to the power of a whole number within +-1022, as that of exponential.h.
+  // Returns 2 to the power of a whole number within +-1022, see elementary.h.
   friend LANCER_LANE Double power_of_two(Double whole) {
     const Double digits = whole + Double(0x1.8p52 + 1023.0);
     return {(Vector)((Words)digits.lo << 52), (Vector)((Words)digits.hi << 52)};
@@ -134,11 +134,11 @@ template <int W> struct Double {
     }
     return r;
   }
-  // Towards zero, of what an int32 holds.
+  // Rounds towards zero; the value must fit an int32.
   friend LANCER_LANE Word<W> truncate(Double a) {
 #if defined(__AVX512F__)
     if constexpr (W == 16) {
-      // By intrinsics: GCC 12 takes a vector's conversion to floats and back for none at all.
+      // By intrinsics: GCC 12 drops a vector's conversion to floats and back.
       const __m256i low = _mm512_maskz_cvttpd_epi32(kHalfLanes, (__m512d)a.lo);
       const __m256i high = _mm512_maskz_cvttpd_epi32(kHalfLanes, (__m512d)a.hi);
       return Word<W>((VectorOf<uint32_t, W>)_mm512_maskz_inserti32x8(kAllLanes, _mm512_castsi256_si512(low), high, 1));

@@ -1,5 +1,5 @@
-// As many doubles as one register holds, four with AVX and eight with AVX-512, without the two halves of double_lanes.h; and
-// what a kernel asks of four or eight doubles beside arithmetic, whatever holds them. Like lanes.h.
+// As many doubles as fit in one register, four with AVX and eight with AVX-512, without the two halves of double_lanes.h; and
+// operations of kernels on four or eight doubles, in either representation. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "simd/memory.h"
@@ -17,7 +17,7 @@ constexpr int kRegisterDoubles = 2;
 template <int W>
 concept OneRegister = W >= 4 && W <= kRegisterDoubles;
 
-// Conditions of such doubles, a bit a lane.
+// Conditions of such doubles, one bit per lane.
 template <int W> struct LaneBits {
   uint32_t v;
 
@@ -64,7 +64,7 @@ struct Double<W> {
   LANCER_COMPARE(==, _CMP_EQ_OQ)
 #undef LANCER_COMPARE
 
-  // The first where they are equal or not ordered.
+  // Returns the first if they are equal or unordered.
   friend LANCER_LANE Double max(Double a, Double b) {
 #if defined(__AVX512F__)
     if constexpr (W == 8)
@@ -93,7 +93,7 @@ struct Double<W> {
 };
 #endif
 
-// From arrays that are aligned to the lanes, and from anywhere.
+// Loads from arrays aligned to the lanes, or from any address.
 template <int W> LANCER_LANE auto load_doubles(const double *p) {
   if constexpr (OneRegister<W>)
     return Double<W>(*reinterpret_cast<const VectorOf<double, W> *>(p));
@@ -108,7 +108,7 @@ template <int W> LANCER_LANE Double<W> load_anywhere(const double *p) {
 template <int W>
 requires OneRegister<W> LANCER_LANE void store(double *p, Double<W> a) { *reinterpret_cast<VectorOf<double, W> *>(p) = a.v; }
 
-// Four floats in a row as doubles.
+// Loads four floats as doubles.
 LANCER_LANE Double<4> load_widened(const float *p) {
 #if defined(__AVX__)
   return (VectorOf<double, 4>)_mm256_cvtps_pd(_mm_load_ps(p));
@@ -117,7 +117,7 @@ LANCER_LANE Double<4> load_widened(const float *p) {
 #endif
 }
 
-// As many numbers as there are places, four times each.
+// Loads Count numbers and repeats each four times.
 template <int Count> LANCER_LANE Double<4 * Count> four_of_each(const double *p, const uint32_t (&at)[Count]) {
   static_assert(Count <= 2);
   if constexpr (Count == 1)
@@ -130,7 +130,7 @@ template <int Count> LANCER_LANE Double<4 * Count> four_of_each(const double *p,
     return {p[at[0]] - VectorOf<double, 4>{}, p[at[1]] - VectorOf<double, 4>{}};
 #endif
 }
-// The same four doubles, Count times.
+// Repeats four doubles Count times.
 template <int Count> LANCER_LANE Double<4 * Count> repeat(Double<4> a) {
   static_assert(Count <= 2);
   if constexpr (Count == 1)
@@ -147,7 +147,7 @@ template <int Count> LANCER_LANE Double<4 * Count> repeat(Double<4> a) {
 #endif
 }
 
-// Four by four doubles, rows for columns.
+// Transposes four by four doubles.
 LANCER_LANE void transpose(Double<4> &a, Double<4> &b, Double<4> &c, Double<4> &d) {
 #if defined(__AVX__)
   using Vector = VectorOf<double, 4>;

@@ -1,4 +1,4 @@
-// Memory for large arrays, on pages of 2 MiB where the system has them, and vectors in it.
+// Memory for large arrays on pages of 2 MiB, if the system has them, and vectors in it.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +15,17 @@
 
 namespace lancer {
 
-// Memory for large arrays: on pages of 2 MiB where the system has them, so that their addresses stay in the processor's tables.
+// Large pages keep the addresses of an array in the processor's TLB.
 inline constexpr size_t kLargePage = size_t(2) << 20;
 
-// alignment: a power of two that divides bytes. nullptr where there is no memory.
+// alignment: a power of two that divides bytes. Returns nullptr if there is not enough memory.
 inline void *allocate_aligned(size_t alignment, size_t bytes) {
 #if defined(_WIN32)
   return _aligned_malloc(bytes, alignment);
 #else
   void *const memory = std::aligned_alloc(alignment, bytes);
 #if defined(__linux__)
-  // A hint: without large pages everything works, slower.
+  // A hint: without large pages everything works, but slower.
   if (memory && alignment >= kLargePage)
     (void)madvise(memory, bytes, MADV_HUGEPAGE);
 #endif
@@ -41,7 +41,7 @@ inline void free_aligned(void *memory) {
 #endif
 }
 
-// Vectors for the large arrays that rays wander through.
+// An allocator for the large arrays that rays access randomly.
 template <class T> struct HugePageAllocator {
   using value_type = T;
 
@@ -60,7 +60,7 @@ template <class T> struct HugePageAllocator {
       throw std::bad_alloc();
     return static_cast<T *>(memory);
   }
-  // Elements that are not given a value have none: threads touch their own parts of new memory first.
+  // Elements without a value stay uninitialised: threads touch their own parts of new memory first.
   template <class U> void construct(U *element) { ::new (static_cast<void *>(element)) U; }
   template <class U, class... Values> void construct(U *element, Values &&...values) {
     ::new (static_cast<void *>(element)) U(std::forward<Values>(values)...);
@@ -71,7 +71,7 @@ template <class T> struct HugePageAllocator {
 
 template <class T> using HugeVector = std::vector<T, HugePageAllocator<T>>;
 
-// Gives a vector's memory back; to assign {} would keep it.
+// Frees a vector's memory; assigning {} would keep it.
 template <class Vector> void release(Vector &vector) { Vector().swap(vector); }
 
 } // namespace lancer

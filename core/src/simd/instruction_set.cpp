@@ -17,7 +17,7 @@ struct Registers {
   uint32_t b = 0, c = 0;
 };
 
-// What the processor says of itself at a leaf of CPUID; nothing where it has no such leaf.
+// Returns the registers of a CPUID leaf; zeros if the processor does not have the leaf.
 Registers ask(uint32_t leaf) {
   uint32_t a, b, c, d;
   return __get_cpuid_count(leaf, 0, &a, &b, &c, &d) ? Registers{b, c} : Registers{};
@@ -25,27 +25,27 @@ Registers ask(uint32_t leaf) {
 
 bool has(uint32_t present, uint32_t bits) { return (present & bits) == bits; }
 
-// Which registers the operating system keeps for each thread: XCR0.
+// Returns the registers that the operating system saves for each thread: XCR0.
 uint32_t saved_registers() {
   uint32_t low, high;
   asm volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
   return low;
 }
 
-// Asks the processor itself: behind __builtin_cpu_supports there may be a runtime library that says no to everything.
+// Queries the processor directly: __builtin_cpu_supports may be backed by a runtime library that reports nothing.
 InstructionSet best_set() {
   const uint32_t basic = ask(1).c, more = ask(7).b, extended = ask(0x80000001).c;
-  // All that x86-64-v3 has: the compiler uses any of it.
+  // Require all of x86-64-v3: the compiler may use any of it.
   if (!has(basic, bit_OSXSAVE | bit_AVX | bit_F16C | bit_FMA | bit_MOVBE) || !has(more, bit_AVX2 | bit_BMI | bit_BMI2) ||
       !has(extended, bit_LZCNT) || !has(saved_registers(), 0x06))
     return InstructionSet::Sse4;
 #if defined(__APPLE__)
-  // Darwin keeps the wide registers from a thread's first use of them on, and says so only then.
+  // Darwin saves the wide registers from a thread's first use on, and reports them only then.
   const bool wide_saved = true;
 #else
   const bool wide_saved = has(saved_registers(), 0xe6);
 #endif
-  // What x86-64-v4 adds.
+  // Additions of x86-64-v4.
   const uint32_t wide = bit_AVX512F | bit_AVX512BW | bit_AVX512CD | bit_AVX512DQ | bit_AVX512VL;
   return wide_saved && has(more, wide) ? InstructionSet::Avx512 : InstructionSet::Avx2;
 }
@@ -53,7 +53,7 @@ InstructionSet best_set() {
 } // namespace
 
 InstructionSet instruction_set() {
-  // Asked once: in a virtual machine each question costs as much as a thousand instructions.
+  // Queried once: in a virtual machine each CPUID costs as much as a thousand instructions.
   static const InstructionSet best = best_set();
   const char *asked = std::getenv("LANCER_ISA");
   const std::string_view limit = asked ? asked : "";

@@ -1,7 +1,7 @@
 // Kernels are compiled once per instruction set, with LANCER_ISA naming it; one copy of each runs.
 #pragma once
 
-// Kernels are compiled once per instruction set, with LANCER_ISA naming it; the name as text.
+// The instruction set's name as text.
 
 #define LANCER_TEXT(x) #x
 #define LANCER_TEXT_OF(x) LANCER_TEXT(x)
@@ -10,11 +10,9 @@
 #define LANCER_ISA generic
 #endif
 
-// Kernels are compiled once per instruction set; one copy of each runs.
-
-// LANCER_DECLARE_KERNEL: all copies of a kernel, and the function of its name that gives the one which this processor runs, or
-// which LANCER_ISA asks for. LANCER_CHOSEN_KERNEL: what that function returns. LANCER_CHOSEN_SHADING_KERNEL: the same of a
-// kernel that has a copy of one lane.
+// LANCER_DECLARE_KERNEL declares all copies of a kernel, and the function of its name that returns the copy for this processor
+// or for the environment variable LANCER_ISA. LANCER_CHOSEN_KERNEL is the body of this function. LANCER_CHOSEN_SHADING_KERNEL
+// is the body for a kernel that also has a copy of one lane.
 #define LANCER_CHOSEN_SHADING_KERNEL(name)                                                                                     \
   instruction_set() == InstructionSet::Scalar ? one_lane::name : LANCER_CHOSEN_KERNEL(name)
 #if defined(__x86_64__)
@@ -50,11 +48,11 @@
 
 namespace lancer {
 
-// Which copy of the kernels runs.
+// The copy of the kernels that runs.
 enum class InstructionSet { Scalar, Generic, Sse4, Avx2, Avx512 };
 
-// The best one that this processor runs, or the lesser one that the environment's LANCER_ISA asks for.
-// Scalar: of shading a copy of one lane, in which a fault is easier to follow; of the rest the least one.
+// Returns the best set that this processor supports, or the smaller one in the environment variable LANCER_ISA.
+// Scalar: shading uses a copy of one lane, which is easier to debug; other kernels use the smallest set.
 InstructionSet instruction_set();
 
 } // namespace lancer

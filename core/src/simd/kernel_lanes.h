@@ -1,4 +1,4 @@
-// The lanes of a kernel: as many as the instruction set that this unit is compiled for has in a register of floats.
+// The lanes of a kernel: as many as a register of floats has in the instruction set of this unit.
 #pragma once
 
 #include "simd/memory.h"
@@ -26,7 +26,7 @@ using D = double;
 using U = uint32_t;
 using M = bool;
 LANCER_LANE M mask_of(uint32_t bits) { return bits != 0; }
-// Operations of one lane beside those of many, which would hide them.
+// Declared again, because operations of many lanes would hide those of one lane.
 using lancer::all;
 using lancer::any;
 using lancer::as_float;
@@ -49,7 +49,7 @@ LANCER_LANE M mask_of(uint32_t bits) { return mask_from<kLanes>(bits); }
 using V3 = Vector3<F>;
 using D3 = Vector3<D>;
 
-// Of a block's bits, those of the lanes from first on.
+// Returns the bits of a block for the lanes from first on.
 LANCER_LANE M some(uint32_t lanes, int first) { return mask_of(lanes >> first & ((1u << kLanes) - 1u)); }
 
 LANCER_LANE F load(const float *p) { return load_lanes<kLanes>(p); }
@@ -57,7 +57,7 @@ LANCER_LANE U load(const uint32_t *p) { return load_lanes<kLanes>(p); }
 LANCER_LANE D load(const double *p) { return load_lanes<kLanes>(p); }
 template <class T> LANCER_LANE bool all_same(const T *const *of) { return all_equal<kLanes>(of); }
 
-// Vectors in blocks of 16 lanes.
+// Loads and stores vectors in blocks of 16 lanes.
 LANCER_LANE V3 load3(const float (*p)[16], int first) { return {load(p[0] + first), load(p[1] + first), load(p[2] + first)}; }
 LANCER_LANE D3 load3(const double (*p)[16], int first) { return {load(p[0] + first), load(p[1] + first), load(p[2] + first)}; }
 template <class T> LANCER_LANE void store3(T (*p)[16], int first, const auto &a) {
@@ -65,7 +65,7 @@ template <class T> LANCER_LANE void store3(T (*p)[16], int first, const auto &a)
   store(p[1] + first, a.y);
   store(p[2] + first, a.z);
 }
-// Only the lanes of m.
+// Stores only the lanes of m.
 template <class T> LANCER_LANE void store3(T (*p)[16], int first, M m, const auto &a) {
   store(p[0] + first, m, a.x);
   store(p[1] + first, m, a.y);

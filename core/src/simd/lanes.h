@@ -1,7 +1,6 @@
-// Lanes: the same number of W paths side by side in vector registers, W = 4, 8 or 16, in the instruction set that this
-// translation unit is compiled for; a width that it has no registers for is made of several. Every operation is that of
-// IEEE 754 in each lane, so that a lane holds the bits that a scalar would.
-// All of it has internal linkage, so that no other unit can pick up this unit's instructions.
+// Lanes: W paths in vector registers, W = 4, 8 or 16, in the instruction set of this translation unit; wider lanes use several
+// registers. Every operation is that of IEEE 754 in each lane, so that a lane has the same bits as scalar code.
+// Everything has internal linkage, so that no other unit can use this unit's instructions.
 #pragma once
 
 #include "simd/scalar.h"
@@ -15,7 +14,7 @@
 namespace lancer {
 namespace {
 
-// What lanes have of the same names would hide those of width 1.
+// Declared again, because operations of lanes would hide those of width 1.
 using lancer::all;
 using lancer::any;
 using lancer::as_float;
@@ -25,7 +24,7 @@ using lancer::to_float;
 template <class T, int N> struct VectorType { typedef T type __attribute__((vector_size(sizeof(T) * N))); };
 template <class T, int N> using VectorOf = typename VectorType<T, N>::type;
 
-// Which lanes a condition holds in.
+// The lanes in which a condition holds.
 template <int W> struct Mask {
   VectorOf<int32_t, W> v;
 
@@ -37,7 +36,8 @@ template <int W> struct Mask {
 };
 
 #if defined(__AVX512F__)
-// GCC 12 warns of what the plain forms of the intrinsics leave undefined; those with a full mask become the same instructions.
+// GCC 12 warns about the undefined operands of the plain intrinsics; the forms with a full mask compile to the same
+// instructions.
 constexpr __mmask16 kAllLanes = 0xffff;
 constexpr __mmask8 kHalfLanes = 0xff;
 template <> struct Mask<16> {
@@ -69,7 +69,7 @@ template <int W> LANCER_LANE uint32_t bits(Mask<W> m) {
 template <int W> LANCER_LANE bool any(Mask<W> m) { return bits(m) != 0; }
 template <int W> LANCER_LANE bool all(Mask<W> m) { return bits(m) == (1u << W) - 1u; }
 
-// The lanes whose bits are set.
+// Returns the mask of the set bits.
 template <int W> LANCER_LANE Mask<W> mask_from(uint32_t bits) {
 #if defined(__AVX512F__)
   if constexpr (W == 16)
@@ -84,7 +84,7 @@ template <int W> LANCER_LANE Mask<W> mask_from(uint32_t bits) {
   }
 }
 
-// One condition of doubles from its two halves, and back.
+// Conversion between a condition of floats and the two halves of a condition of doubles.
 template <int W, int... I>
 LANCER_LANE VectorOf<int32_t, W> narrow_halves(VectorOf<int64_t, W / 2> lo, VectorOf<int64_t, W / 2> hi,
                                                std::integer_sequence<int, I...>) {
@@ -126,7 +126,7 @@ template <int W> struct Word {
   }
   friend LANCER_LANE Word select(Mask<W> m, Word a, Word b) {
 #if defined(__AVX2__)
-    // GCC 12 compares a mask with 0 before it blends by it.
+    // GCC 12 would compare the mask with 0 before the blend.
     if constexpr (W == 8)
       return Word((Vector)_mm256_blendv_epi8((__m256i)b.v, (__m256i)a.v, (__m256i)m.v));
 #endif
@@ -188,7 +188,7 @@ template <int W> struct Float {
 #endif
       return Float(m.v ? a.v : b.v);
   }
-  // The first where they are equal or not ordered, as std::max and std::min.
+  // Returns the first if they are equal or unordered, as std::max and std::min.
   friend LANCER_LANE Float max(Float a, Float b) {
 #if defined(__AVX512F__)
     if constexpr (W == 16)
@@ -224,7 +224,7 @@ template <int W> struct Float {
       a.v[i] = __builtin_sqrtf(a.v[i]);
     return a;
   }
-  // The largest whole number that is not above.
+  // Returns the largest whole number not above a.
   friend LANCER_LANE Float floor(Float a) {
 #if defined(__AVX512F__)
     if constexpr (W == 16)
@@ -247,7 +247,7 @@ template <int W> struct Float {
   friend LANCER_LANE Float copysign(Float magnitude, Float sign) {
     return as_float((as_word(magnitude) & Word<W>(0x7fffffffu)) | (as_word(sign) & Word<W>(0x80000000u)));
   }
-  // Towards zero, of what an int32 holds.
+  // Rounds towards zero; the value must fit an int32.
   friend LANCER_LANE Word<W> truncate(Float a) {
     return Word<W>((VectorOf<uint32_t, W>)__builtin_convertvector(a.v, VectorOf<int32_t, W>));
   }

@@ -1,4 +1,4 @@
-// Lanes from memory and back: from arrays aligned to 64 bytes, or each from a place of its own. Like lanes.h.
+// Loads and stores of lanes: arrays aligned to 64 bytes, or gathers. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "simd/double_lanes.h"
@@ -9,7 +9,7 @@ namespace {
 using lancer::gather;
 using lancer::gather_bytes;
 
-// W numbers in a row.
+// Loads W consecutive numbers.
 template <int W> LANCER_LANE auto load_lanes(const float *p) {
   if constexpr (W == 1)
     return *p;
@@ -38,13 +38,13 @@ template <int W> LANCER_LANE void store(double *p, Double<W> a) {
 LANCER_LANE void store(float *p, float a) { *p = a; }
 LANCER_LANE void store(uint32_t *p, uint32_t a) { *p = a; }
 LANCER_LANE void store(double *p, double a) { *p = a; }
-// Only the lanes of m.
+// Stores only the lanes of m.
 template <int W> LANCER_LANE void store(float *p, Mask<W> m, Float<W> a) { store(p, select(m, a, load_lanes<W>(p))); }
 template <int W> LANCER_LANE void store(double *p, Mask<W> m, Double<W> a) { store(p, select(m, a, load_lanes<W>(p))); }
 LANCER_LANE void store(float *p, bool m, float a) { *p = m ? a : *p; }
 LANCER_LANE void store(double *p, bool m, double a) { *p = m ? a : *p; }
 
-// Whether all of W lanes read the same place.
+// Returns whether all W lanes have the same pointer.
 template <int W, class T> LANCER_LANE bool all_equal(const T *const *of) {
   bool same = true;
   for (int i = 1; i < W; ++i)
@@ -91,7 +91,7 @@ template <int W> LANCER_LANE Double<W> gather(const double *table, Word<W> index
   }
   return r;
 }
-// The words that begin at each of these bytes.
+// Gathers the words at these byte offsets.
 template <int W> LANCER_LANE Word<W> gather_bytes(const void *table, Word<W> offset) {
 #if defined(__AVX512F__)
   if constexpr (W == 16)

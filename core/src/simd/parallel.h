@@ -1,4 +1,4 @@
-// A loop over independent pieces on the threads that a build was given.
+// A parallel loop over independent pieces on the threads of a build.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +23,11 @@ inline void poll_cancel(const BuildContext &context) {
     throw BuildCancelled{};
 }
 
-// Makes what a thread needs to throw anything. It is made when first needed, and a process without the memory for it ends: so a
-// thread has it made before its work may take all memory. The compiler would leave out a question whose answer nobody reads.
+// Allocates the per-thread data of exceptions. It is allocated on first use, and without memory for it the process ends: so a
+// thread allocates it before its work may use up all memory. volatile, because the compiler would remove an unused call.
 inline void prepare_to_fail() { [[maybe_unused]] const volatile int exceptions = std::uncaught_exceptions(); }
 
-// Calls piece(0) ... piece(count - 1), in any order; the first exception ends the loop and is thrown here.
+// Calls piece(0) ... piece(count - 1) in any order; the first exception ends the loop and is rethrown here.
 template <class Piece> void parallel_for(const BuildContext &context, size_t count, Piece &&piece) {
   std::atomic<size_t> next{0};
   std::exception_ptr failure;
@@ -53,9 +53,9 @@ template <class Piece> void parallel_for(const BuildContext &context, size_t cou
     for (size_t i = 1; i < threads; ++i)
       helpers.emplace_back(work);
   } catch (const std::system_error &) {
-    // The system gives no more threads: those that there are do the work.
+    // The system has no more threads: continue with those created.
   } catch (const std::bad_alloc &) {
-    // There is no memory for one.
+    // No memory for another thread.
   }
   work();
   for (std::thread &helper : helpers)

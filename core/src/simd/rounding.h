@@ -1,4 +1,4 @@
-// Whole numbers beside a number of any width, with the bits of ceil() and trunc(); whether it is a number; the nearest float.
+// Rounding for any width, with the bits of ceil() and trunc(); is_finite(); the nearest finite float.
 #pragma once
 
 #include "simd/scalar.h"
@@ -12,10 +12,10 @@ namespace lancer {
 template <class F> LANCER_LANE F ceil(const F &a) { return -floor(-a); }
 template <class F> LANCER_LANE F trunc(const F &a) { return copysign(floor(abs(a)), a); }
 
-// Neither infinite nor none.
+// Returns false for infinities and NaN.
 template <class F> LANCER_LANE MaskOf<F> is_finite(const F &x) { return x - x == F(0.0f); }
 
-// The nearest float that is finite: what a scene tells of places beyond float's range is at its edge.
+// Returns the nearest finite float: values beyond the range of float are clamped to its ends.
 inline float nearest_float(double value) {
   constexpr double largest = double(std::numeric_limits<float>::max());
   return float(std::clamp(value, -largest, largest));

@@ -1,5 +1,5 @@
-// A single number as lanes of width 1: the operations that lanes have beside arithmetic, for float, double, uint32_t and bool.
-// A formula that is a template over its number type then is scalar code, too.
+// A single number as lanes of width 1: the operations of lanes besides arithmetic, for float, double, uint32_t and bool. A
+// formula that is a template over its number type is thereby also scalar code.
 #pragma once
 
 #include <bit>
@@ -20,7 +20,7 @@ LANCER_LANE double select(bool m, double a, double b) { return m ? a : b; }
 LANCER_LANE uint32_t select(bool m, uint32_t a, uint32_t b) { return m ? a : b; }
 LANCER_LANE bool select(bool m, bool a, bool b) { return m ? a : b; }
 
-// The first where they are equal or not ordered, as std::max and std::min.
+// Returns the first if they are equal or unordered, as std::max and std::min.
 LANCER_LANE float max(float a, float b) { return a < b ? b : a; }
 LANCER_LANE float min(float a, float b) { return b < a ? b : a; }
 LANCER_LANE double max(double a, double b) { return a < b ? b : a; }
@@ -33,7 +33,7 @@ LANCER_LANE double abs(double a) { return __builtin_fabs(a); }
 LANCER_LANE float floor(float a) { return __builtin_floorf(a); }
 LANCER_LANE float copysign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
 
-// 1 with the sign of a.
+// Returns 1 with the sign of a.
 LANCER_LANE double sign(double a) { return __builtin_copysign(1.0, a); }
 
 LANCER_LANE float as_float(uint32_t a) { return std::bit_cast<float>(a); }
@@ -44,8 +44,8 @@ LANCER_LANE double widen(float a) { return static_cast<double>(a); }
 LANCER_LANE float narrow(double a) {
   float r = static_cast<float>(a);
 #if defined(__GNUC__) && !defined(__clang__)
-  // GCC 12 makes a vector of several numbers' conversions, and takes that to floats and back for none at all: (double)(float)x
-  // would be x. It may not look through this.
+  // GCC 12 vectorises several conversions and drops those to floats and back: (double)(float)x would be x. The asm statement
+  // hides the value from the optimiser.
 #if defined(__x86_64__)
   asm("" : "+x"(r));
 #elif defined(__aarch64__)
@@ -54,7 +54,7 @@ LANCER_LANE float narrow(double a) {
 #endif
   return r;
 }
-// Towards zero, of what an int32 holds; and back.
+// Rounds towards zero, for values that fit an int32; and converts back.
 LANCER_LANE uint32_t truncate(float a) { return static_cast<uint32_t>(static_cast<int32_t>(a)); }
 LANCER_LANE uint32_t truncate(double a) { return static_cast<uint32_t>(static_cast<int32_t>(a)); }
 LANCER_LANE float to_float(uint32_t a) { return static_cast<float>(static_cast<int32_t>(a)); }
@@ -62,14 +62,14 @@ LANCER_LANE float to_float(uint32_t a) { return static_cast<float>(static_cast<i
 LANCER_LANE float gather(const float *table, uint32_t index) { return table[index]; }
 LANCER_LANE double gather(const double *table, uint32_t index) { return table[index]; }
 LANCER_LANE uint32_t gather(const uint32_t *table, uint32_t index) { return table[index]; }
-// The word that begins at a byte.
+// Returns the word at a byte offset.
 LANCER_LANE uint32_t gather_bytes(const void *table, uint32_t offset) {
   uint32_t word;
   __builtin_memcpy(&word, static_cast<const unsigned char *>(table) + offset, 4);
   return word;
 }
 
-// The number types that belong together: those of as many lanes as F.
+// The number types with as many lanes as F.
 template <class F> struct LanesOf;
 template <> struct LanesOf<float> {
   static constexpr int kWidth = 1;
@@ -78,7 +78,7 @@ template <> struct LanesOf<float> {
   using Mask = bool;
   static LANCER_LANE Mask uniform(bool m) { return m; }
 };
-// Lanes of floats, or a float.
+// float or lanes of it.
 template <class F>
 concept FloatLanes = requires {
   typename LanesOf<F>::Double;
@@ -86,10 +86,10 @@ concept FloatLanes = requires {
 template <class F> using DoubleOf = typename LanesOf<F>::Double;
 template <class F> using WordOf = typename LanesOf<F>::Word;
 template <class F> using MaskOf = typename LanesOf<F>::Mask;
-// The same condition in all lanes.
+// Returns the same condition in all lanes.
 template <class F> LANCER_LANE MaskOf<F> uniform(bool m) { return LanesOf<F>::uniform(m); }
 
-// One lane of many, and all lanes from a function of their number.
+// lane() returns one lane; from_lanes() builds lanes from a function of the lane number.
 LANCER_LANE float lane(float a, int) { return a; }
 LANCER_LANE double lane(double a, int) { return a; }
 LANCER_LANE uint32_t lane(uint32_t a, int) { return a; }
@@ -97,7 +97,7 @@ template <class F, class Function> LANCER_LANE F from_lanes(const Function &f) {
   if constexpr (LanesOf<F>::kWidth == 1)
     return f(0);
   else {
-    // By way of memory: numbers put into a register one by one wait for each other.
+    // Through memory: insertions into a register would wait for each other.
     alignas(64) decltype(f(0)) of[LanesOf<F>::kWidth];
     for (int i = 0; i < LanesOf<F>::kWidth; ++i)
       of[i] = f(i);
@@ -107,7 +107,7 @@ template <class F, class Function> LANCER_LANE F from_lanes(const Function &f) {
   }
 }
 
-// A scalar function of every lane, for what is too rare to be written for lanes.
+// Applies a scalar function to every lane, for code too rare for a vector version.
 template <class Function> LANCER_LANE float each(float a, const Function &f) { return f(a); }
 template <class Function> LANCER_LANE double each(double a, const Function &f) { return f(a); }
 template <class Function> LANCER_LANE float each(float a, float b, const Function &f) { return f(a, b); }

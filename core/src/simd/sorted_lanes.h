@@ -1,5 +1,4 @@
-// Lanes written close together, for stacks of what is still to be visited: eight keys, each with a number of its own. Like
-// lanes.h.
+// Compaction of lanes, for traversal stacks: eight keys, each with a number. Internal linkage, as in lanes.h.
 #pragma once
 
 #include "simd/memory.h"
@@ -7,14 +6,14 @@
 namespace lancer {
 namespace {
 
-// W numbers in a row that begin anywhere.
+// Loads W consecutive numbers from any address.
 template <int W> LANCER_LANE Float<W> load_anywhere(const float *p) {
   Float<W> r;
   __builtin_memcpy(&r, p, sizeof(r));
   return r;
 }
 
-// a b - c, rounded as the processor has it: not the same bits everywhere.
+// Returns a b - c with or without contraction, depending on the processor: not the same bits everywhere.
 template <int W> LANCER_LANE Float<W> multiply_subtract(Float<W> a, Float<W> b, Float<W> c) {
 #if defined(__AVX512F__)
   if constexpr (W == 16)
@@ -27,7 +26,7 @@ template <int W> LANCER_LANE Float<W> multiply_subtract(Float<W> a, Float<W> b, 
   return a * b - c;
 }
 
-// The bits of a <= b.
+// Returns the bits of a <= b.
 template <int W> LANCER_LANE uint32_t less_equal_bits(Float<W> a, Float<W> b) {
 #if defined(__AVX__)
   if constexpr (W == 8)
@@ -36,7 +35,7 @@ template <int W> LANCER_LANE uint32_t less_equal_bits(Float<W> a, Float<W> b) {
   return bits(a <= b);
 }
 
-// a where a <= b, undefined elsewhere.
+// Returns a where a <= b, else NaN.
 template <int W> LANCER_LANE Float<W> drop_greater(Float<W> a, Float<W> b) {
 #if defined(__AVX512F__)
   if constexpr (W == 16)
@@ -51,8 +50,8 @@ LANCER_LANE __m256i load_eight(const uint32_t *p) { return _mm256_loadu_si256(re
 LANCER_LANE void store_eight(uint32_t *p, __m256i a) { _mm256_storeu_si256(reinterpret_cast<__m256i *>(p), a); }
 
 #if !defined(__AVX512VL__)
-// By mask of eight lanes: the numbers of those that are set, a byte each. With a loop over the lanes in its place, 22 public
-// files rendered 4 % longer.
+// By mask of eight lanes: the numbers of the set lanes, one byte each. With a loop over the lanes instead, 22 public files
+// rendered 4 % slower.
 struct SetLanes {
   uint64_t of[256] = {};
 
@@ -66,7 +65,7 @@ struct SetLanes {
 constexpr SetLanes kSetLanes;
 #endif
 
-// Writes the lanes of the mask close together, each with its number. Returns how many there are.
+// Writes the lanes of the mask contiguously, each with its number. Returns their count.
 LANCER_LANE uint32_t store_close(float *keys, uint32_t *numbers, __m256 k, __m256i n, uint32_t mask) {
 #if defined(__AVX512VL__)
   const __mmask8 m = static_cast<__mmask8>(mask);
@@ -81,8 +80,8 @@ LANCER_LANE uint32_t store_close(float *keys, uint32_t *numbers, __m256 k, __m25
 }
 #endif
 
-// Writes the keys that are not above the limit, and their numbers, close together; only the first count of eight are looked at.
-// Up to eight places behind them may be overwritten. Returns how many there are.
+// Writes the keys that are not above the limit, and their numbers, contiguously; reads only the first count of eight. May
+// overwrite up to eight entries behind them. Returns the number of keys written.
 LANCER_LANE uint32_t keep_below(float *keys, uint32_t *numbers, const float *key, const uint32_t *number, uint32_t count,
                                 float limit) {
 #if defined(__AVX2__)
@@ -110,9 +109,9 @@ LANCER_LANE uint32_t keep_below(float *keys, uint32_t *numbers, const float *key
 #endif
 }
 
-// Writes the keys that are not above their ends, and their numbers, close together in another order: three bits each, the first
-// in the lowest. Up to eight places behind them may be overwritten. Returns how many there are. key(first), end(first): the
-// lanes from first on.
+// Writes the keys that are not above their ends, and their numbers, contiguously in the given order: three bits each, the first
+// in the lowest. May overwrite up to eight entries behind them. Returns the number of keys written. key, end: groups of W
+// lanes.
 template <int W>
 LANCER_LANE uint32_t keep_ordered(float *keys, uint32_t *numbers, const Float<W> (&key)[8 / W], const Float<W> (&end)[8 / W],
                                   const uint32_t *number, uint32_t order) {

@@ -1,4 +1,4 @@
-// Vectors of two and of three numbers of any width, with the sums in glm's order.
+// Vectors of two and three numbers of any width, with sums in glm's order.
 #pragma once
 
 #include "simd/scalar.h"
@@ -11,7 +11,7 @@ namespace lancer {
 template <class T> struct Vector2 {
   T x, y;
 
-  // Width 1 is glm's own.
+  // Width 1 converts to glm's vectors.
   LANCER_LANE operator glm::vec<2, T>() const requires(std::is_floating_point_v<T>) { return {x, y}; }
 };
 
@@ -21,10 +21,10 @@ template <class T> struct Vector3 {
   Vector3() = default;
   LANCER_LANE constexpr Vector3(const T &a, const T &b, const T &c) : x(a), y(b), z(c) {}
   LANCER_LANE explicit constexpr Vector3(const T &a) : x(a), y(a), z(a) {}
-  // Of one colour or direction for all lanes.
+  // From one colour or direction for all lanes.
   template <class S>
   LANCER_LANE constexpr Vector3(const glm::vec<3, S> &v) requires(std::is_constructible_v<T, S>) : x(v.x), y(v.y), z(v.z) {}
-  // Width 1 is glm's own.
+  // Width 1 converts to glm's vectors.
   LANCER_LANE operator glm::vec<3, T>() const requires(std::is_floating_point_v<T>) { return {x, y, z}; }
 
   friend LANCER_LANE Vector3 operator+(const Vector3 &a, const Vector3 &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -55,7 +55,7 @@ template <class T> struct Vector3 {
   friend LANCER_LANE auto black(const Vector3 &a) { return same(a, Vector3(T(0))); }
 };
 
-// Vectors as formulas have them: glm's own of one number, Vector3 of lanes.
+// Vectors in formulas: glm's for one number, Vector3 for lanes.
 template <class F> struct VectorOfNumbers { using Type = Vector3<F>; };
 template <> struct VectorOfNumbers<float> { using Type = glm::vec3; };
 template <> struct VectorOfNumbers<double> { using Type = glm::dvec3; };
@@ -69,11 +69,11 @@ LANCER_LANE bool black(const glm::vec3 &a) { return a == glm::vec3(0.0f); }
 LANCER_LANE glm::dvec3 widen(const glm::vec3 &a) { return glm::dvec3(a); }
 LANCER_LANE glm::vec3 narrow(const glm::dvec3 &a) { return glm::vec3(a); }
 
-// From a to b.
+// Interpolates from a to b.
 template <class T> LANCER_LANE Vector3<T> mix(const Vector3<T> &a, const Vector3<T> &b, const T &t) {
   return a * (T(1) - t) + b * t;
 }
-// Of a number or a vector.
+// For a number or a vector.
 template <class T> LANCER_LANE T clamp01(const T &x) { return min(max(x, T(0)), T(1)); }
 
 template <class T> LANCER_LANE auto widen(const Vector3<T> &a) {
@@ -83,7 +83,7 @@ template <class D> LANCER_LANE auto narrow(const Vector3<D> &a) {
   return Vector3<decltype(narrow(a.x))>(narrow(a.x), narrow(a.y), narrow(a.z));
 }
 
-// Of as many lanes as F.
+// Doubles with as many lanes as F.
 template <class F> using Double3Of = Vector3<DoubleOf<F>>;
 
 } // namespace lancer
