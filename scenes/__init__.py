@@ -1,12 +1,11 @@
 """Scenes by name, for tests, benchmark and README: `import scenes; scenes.load("balls")`.
 
 A builder fills the current, empty Blender scene and works in Blender 3.4 to 5.2, with or without the engine registered.
-What judges pictures in scenes.parity needs no Blender, so that this package asks for it only where it builds.
-"""
+The judge of pictures in scenes.parity needs no Blender, so this package imports bpy only inside the functions that build."""
 
 import importlib
 
-# The module and the function of each.
+# The module and the function of each scene.
 BUILDERS = {
     "showcase": "showcase.build",
     "balls": "spheres.build_balls",
@@ -36,7 +35,7 @@ BUILDERS = {
 
 
 def load(name):
-    """Starts an empty file, builds the named scene in it and returns it."""
+    """Opens an empty file, builds the named scene in it and returns the scene."""
     import bpy
 
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)

@@ -1,4 +1,4 @@
-"""Scenes that weigh: one mesh of a million triangles, or of ten million, and 20 000 or 100 000 instances of a smaller one."""
+"""Large scenes: one mesh of a million triangles, or of ten million, and 20 000 or 100 000 instances of a smaller mesh."""
 
 import math
 import random
@@ -21,7 +21,7 @@ def build_million(scene):
 
 
 def build_instances(scene, count=20_000):
-    """count instances of one mesh of 15 744 triangles, turned and scaled at random, in a wide field."""
+    """Adds count instances of one mesh of 15 744 triangles, with random rotations and scales, in a wide field."""
     source = random.Random(count)
     parts.set_size(scene, 320, 180, 16)
     grey = parts.principled("Grey", base_color=(0.6, 0.5, 0.4), roughness=0.4, ior=1.5)
@@ -53,7 +53,7 @@ def build_terrain(scene, side=2240):
     height = sum(0.6 / f * np.sin(f * x + f) * np.cos(1.3 * f * y) for f in (1.0, 2.7, 7.1, 19.0))
     number = np.arange((side + 1) ** 2, dtype=np.int32).reshape(side + 1, side + 1)
     corners = np.stack([number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]], axis=-1)
-    # A list of ten million faces would need gigabytes.
+    # Fill arrays: a list of ten million faces would need gigabytes.
     mesh = bpy.data.meshes.new("Hills")
     mesh.vertices.add(number.size)
     mesh.vertices.foreach_set("co", np.stack([x, y, height], axis=-1).astype(np.float32).ravel())

@@ -1,11 +1,11 @@
-"""Many lamps of unequal power over a floor with blocks: what a light is worth differs from place to place."""
+"""Many lamps of unequal power over a floor with blocks: the contribution of each lamp differs from place to place."""
 
 import math
 import random
 
 from . import parts
 
-# All lamps together, in watts, however many they are.
+# The power of all lamps together, in watts, for any number of lamps.
 _POWER = 6000.0
 
 
@@ -22,7 +22,7 @@ def build_lights(scene, count):
         height = source.uniform(0.4, 2.4)
         turn = source.uniform(0.0, math.pi)
         parts.place(scene, f"Block {index}", block, paint, (x, y, height / 2), (1.1, 1.1, height), (0, 0, turn))
-    # Powers spread evenly over ten powers of two; with two lamps one is four times as strong as the other.
+    # Spread the powers evenly over ten powers of two; of two lamps, one is four times as strong as the other.
     weights = [2.0 ** source.uniform(0.0, 10.0) for _ in range(count)] if count > 2 else [4.0, 1.0]
     for index, weight in enumerate(weights):
         place = source.uniform(-10.0, 10.0), source.uniform(-10.0, 10.0), source.uniform(2.8, 4.5)

@@ -1,4 +1,4 @@
-"""Under a pictured sky: scanned models with textures, and a tree whose leaves are cut out by alpha."""
+"""Scenes under an image of a sky: scanned models with textures, and a tree whose leaves are cut out by alpha."""
 
 import math
 import random
@@ -10,7 +10,7 @@ from mathutils import Euler, Vector
 
 from . import parts, pictures
 
-# Beside the project, and not part of it.
+# This folder lies beside the project and is not part of it.
 MODELS = Path(__file__).resolve().parents[2] / "shared" / "models"
 
 
@@ -19,7 +19,7 @@ class MissingModels(RuntimeError):
 
 
 def textured(name, image, roughness=0.5, coordinates="UV", alpha=False):
-    """A Principled material whose base colour, and with alpha its outline, come from the image."""
+    """Returns a Principled material with the image as its base colour and, with alpha, as its alpha."""
     material = parts.principled(name, roughness=roughness, ior=1.5)
     tree = material.node_tree
     principled = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
@@ -43,7 +43,7 @@ def set_sky(scene, image, strength=1.0):
 
 
 def _model_mesh(name):
-    """The named model standing up, 2 high, its middle over the origin; smooth, with UVs (from above where it has none)."""
+    """Returns the named model upright, 2 high, centred over the origin; smooth, with UVs (from above if the file has none)."""
     path = MODELS / f"{name}.obj"
     if not path.is_file():
         raise MissingModels(f"{path} is missing: the scene 'models' needs the folder shared/models beside the project")
@@ -73,19 +73,19 @@ def _model_mesh(name):
 
 
 def build_models(scene):
-    """The Stanford bunny and spot, textured, on a floor under a pictured sky."""
+    """The Stanford bunny and spot, textured, on a floor under an image of a sky."""
     _show_models(scene)
 
 
 def build_textured(scene):
-    """The same where images give roughness and normals, too."""
+    """The same scene with images for roughness and normals, too."""
     _show_models(scene)
     for name in ("Cloth", "Hide", "Tiles"):
         wear_out(bpy.data.materials[name])
 
 
 def wear_out(material):
-    """Roughness and normals by images, where the colour already has one."""
+    """Adds images for roughness and normals to a material whose colour has an image."""
     tree = material.node_tree
     principled = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
     places = next(node for node in tree.nodes if node.type == "TEX_COORD").outputs["UV"]
@@ -115,7 +115,7 @@ def _show_models(scene):
 
 
 def flat_uvs(mesh):
-    """The unit square over a grid of one face, corner by corner."""
+    """Maps the unit square over a grid, corner by corner."""
     layer = mesh.uv_layers.new(name="UVMap") if not mesh.uv_layers else mesh.uv_layers[0]
     size = max(abs(vertex.co.x) for vertex in mesh.vertices)
     for loop in mesh.loops:
@@ -124,7 +124,7 @@ def flat_uvs(mesh):
 
 
 def build_leaves(scene, count=6000):
-    """A tree of one mesh of count cards, each a leaf cut out by its picture's alpha, under sky and sun."""
+    """A tree of one mesh of count cards, each a leaf cut out by its image's alpha, under sky and sun."""
     parts.set_size(scene, 640, 480, 64)
     leaf = textured("Leaf", pictures.leaf(), 0.6, alpha=True)
     parts.place(scene, "Leaves", crown_mesh("Leaves", count), leaf)
@@ -138,7 +138,7 @@ def build_leaves(scene, count=6000):
 
 
 def crown_mesh(name, count):
-    """count cards with UVs, crowded towards the outside of a ball, as a tree's leaves are."""
+    """Returns count cards with UVs, denser towards the surface of a ball, like a tree's leaves."""
     source = random.Random(count)
     corners, faces = [], []
     for index in range(count):
@@ -156,7 +156,7 @@ def crown_mesh(name, count):
 
 
 def build_foliage(scene, trees=60, tufts=3000):
-    """A wood under a pictured sky: trees with cut-out leaves and worn bark, tufts of grass on soil; Normal and Z passes."""
+    """A wood under an image of a sky: trees with cut-out leaves and worn bark, tufts of grass on soil; Normal and Z passes."""
     source = random.Random(trees)
     parts.set_size(scene, 512, 384, 32)
     parts.add_passes(scene)

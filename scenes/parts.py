@@ -1,4 +1,4 @@
-"""What scenes are made of: meshes, materials, lights, camera and world, alike in Blender 3.4 to 5.2."""
+"""Building blocks of scenes: meshes, materials, lights, camera and world, identical in Blender 3.4 to 5.2."""
 
 import math
 
@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-# Principled's sockets by their names since 4.0, and what 3.x calls them.
+# Principled's sockets by their names since 4.0, with their names in 3.x.
 OLD_SOCKETS = {
     "Specular IOR Level": "Specular",
     "Transmission Weight": "Transmission",
@@ -22,7 +22,7 @@ OLD_SOCKETS = {
 
 
 def mesh_from_bmesh(name, make, smooth):
-    """A mesh of what make(bm) adds to an empty bmesh."""
+    """Returns a mesh of the geometry that make(bm) adds to an empty bmesh."""
     bm = bmesh.new()
     make(bm)
     mesh = bpy.data.meshes.new(name)
@@ -63,11 +63,11 @@ def cone_mesh(name, bottom=1.0, top=0.0, height=2.0, segments=64):
 
 
 def monkey_mesh(name, subdivisions):
-    """Blender's monkey, every face of which becomes 4 ** subdivisions quads of the Catmull-Clark surface."""
+    """Returns Blender's monkey; every face becomes 4 ** subdivisions quads of the Catmull-Clark surface."""
     mesh = mesh_from_bmesh(name, bmesh.ops.create_monkey, smooth=True)
     if not subdivisions:
         return mesh
-    # Let the modifier subdivide on a passing object, and keep the evaluated mesh.
+    # Let the modifier subdivide a temporary object, and keep the evaluated mesh.
     owner = bpy.data.objects.new(name, mesh)
     bpy.context.scene.collection.objects.link(owner)
     modifier = owner.modifiers.new("Subdivision", "SUBSURF")
@@ -98,7 +98,7 @@ def torus_mesh(name, major=1.0, minor=0.3, major_segments=128, minor_segments=64
 
 
 def lathe_mesh(name, profile, segments=96):
-    """The points (radius, height) of profile turned around the z axis, smooth; UVs go around and along."""
+    """Returns the points (radius, height) of profile rotated around the z axis, smooth; UVs run around and along."""
     turns = np.arange(segments + 1) * (2 * math.pi / segments)
     radii, heights = np.array(profile, float).T
     ring = np.stack([np.cos(turns[:-1]), np.sin(turns[:-1])], axis=-1)
@@ -119,7 +119,7 @@ def lathe_mesh(name, profile, segments=96):
 
 
 def _joined_at_poles(mesh):
-    """Without the faces of no area that rings of no radius make."""
+    """Returns the mesh without the degenerate faces of rings with radius 0."""
     bm = bmesh.new()
     bm.from_mesh(mesh)
     bmesh.ops.remove_doubles(bm, verts=bm.verts, dist=1e-6)
@@ -132,7 +132,7 @@ def _joined_at_poles(mesh):
 
 
 def place(scene, name, mesh, material=None, location=(0, 0, 0), scale=(1, 1, 1), rotation=(0, 0, 0), shape="MESH"):
-    """Adds an object. shape: the exact surface that Lancer traces in place of the mesh, which other engines show."""
+    """Adds an object. shape: the exact surface that Lancer traces instead of the mesh; other engines render the mesh."""
     thing = bpy.data.objects.new(name, mesh)
     thing.location = location
     thing.scale = (scale,) * 3 if isinstance(scale, (int, float)) else scale
@@ -150,7 +150,7 @@ def place(scene, name, mesh, material=None, location=(0, 0, 0), scale=(1, 1, 1),
 
 
 def aim(thing, location, target):
-    """Puts a camera or light at location, looking at target."""
+    """Moves a camera or light to location and turns it towards target."""
     direction = Vector(target) - Vector(location)
     thing.matrix_world = Matrix.Translation(location) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4()
 
@@ -168,7 +168,7 @@ def add_light(scene, name, kind, energy, location, target=(0, 0, 0), color=(1, 1
 
 
 def add_camera(scene, location, target, lens=50.0, fstop=None, focus=None):
-    """The scene's camera; with fstop a thin lens that is sharp at the point focus (default: target)."""
+    """Adds the scene's camera; with fstop, a thin lens focused at the point focus (default: target)."""
     camera = bpy.data.cameras.new("Camera")
     camera.lens = lens
     thing = bpy.data.objects.new("Camera", camera)
@@ -177,7 +177,7 @@ def add_camera(scene, location, target, lens=50.0, fstop=None, focus=None):
     if fstop is not None:
         camera.dof.use_dof = True
         camera.dof.aperture_fstop = fstop
-        # The focal plane lies across the view, so the distance counts along the camera's axis.
+        # The focal plane is perpendicular to the view, so the distance is measured along the camera's axis.
         axis = (Vector(target) - Vector(location)).normalized()
         camera.dof.focus_distance = (Vector(focus or target) - Vector(location)).dot(axis)
     scene.camera = thing
@@ -188,7 +188,7 @@ def add_camera(scene, location, target, lens=50.0, fstop=None, focus=None):
 
 
 def enable_nodes(owner):
-    """An empty node tree; since 5.0 there always is one, and asking for it is deprecated."""
+    """Returns an empty node tree; since 5.0 a tree always exists, and use_nodes is deprecated."""
     if bpy.app.version < (5, 0, 0):
         owner.use_nodes = True
     owner.node_tree.nodes.clear()
@@ -196,7 +196,7 @@ def enable_nodes(owner):
 
 
 def principled(name, **inputs):
-    """A Principled material; inputs by socket name with underscores: base_color, roughness, transmission_weight ..."""
+    """Returns a Principled material; inputs by socket name with underscores: base_color, roughness, transmission_weight ..."""
     material = bpy.data.materials.new(name)
     tree = enable_nodes(material)
     node = tree.nodes.new("ShaderNodeBsdfPrincipled")
@@ -217,7 +217,7 @@ def principled(name, **inputs):
 
 
 def course_material(name, kd, ks, roughness, ior, **settings):
-    """The course's Kd, Ks model: exact in Lancer, a similar Principled elsewhere."""
+    """Returns a material of the course's Kd, Ks model: exact in Lancer, a similar Principled elsewhere."""
     material = principled(name, base_color=kd, roughness=math.sqrt(roughness), ior=ior)
     if hasattr(material, "lancer"):
         material.lancer.model = "KD_KS"
@@ -247,12 +247,12 @@ def set_size(scene, width, height, samples):
 
 
 def add_passes(scene):
-    """Normal and Z, which compositors ask for most."""
+    """Adds Normal and Z, the most common passes for compositing."""
     scene.view_layers[0].use_pass_normal = scene.view_layers[0].use_pass_z = True
 
 
 def set_look(scene, *names):
-    """Takes the first look that this Blender knows; looks change names with the view transform of the release."""
+    """Sets the first look that this Blender has; the names of looks depend on the view transform of the release."""
     for name in names:
         try:
             scene.view_settings.look = name

@@ -1,4 +1,4 @@
-"""Pictures computed here and packed: an evening sky, a painted cloth, a grain, wear, a weave, a leaf with a cut-out outline."""
+"""Computed images, packed: an evening sky, a painted cloth, a grain, wear, a weave, a leaf with a cut-out outline."""
 
 import bpy
 import numpy as np
@@ -7,7 +7,7 @@ _LINEAR = "Linear Rec.709" if bpy.app.version >= (4, 0) else "Linear"
 
 
 def make_image(name, pixels, linear=False):
-    """An image of (height, width, 4) values as stored, row 0 the lowest; linear ones are kept as floats."""
+    """Returns an image of (height, width, 4) values as stored, row 0 the lowest; linear images are stored as floats."""
     height, width = pixels.shape[:2]
     result = bpy.data.images.new(name, width, height, alpha=True, float_buffer=linear)
     if linear:
@@ -37,7 +37,7 @@ def sky(width=512, height=256):
 
 
 def cloth(name="Cloth", size=256, cells=12):
-    """Checks of two hues with a shift of colour across, so that no two places look alike."""
+    """Checks of two hues with a gradient of colour, so that no two places have the same colour."""
     x, y = _grid(size, size)
     check = ((np.floor(x * cells) + np.floor(y * cells)) % 2)[..., None]
     warm = np.stack([0.85 - 0.3 * y, 0.45 + 0.3 * x, 0.25 + 0 * x], axis=-1)
@@ -48,7 +48,7 @@ def cloth(name="Cloth", size=256, cells=12):
 
 
 def grain(name, color, size=256, waves=9):
-    """One hue, lighter and darker by crossed waves."""
+    """One hue, lighter and darker in crossed waves."""
     x, y = _grid(size, size)
     shade = np.sin(2 * np.pi * waves * (x + 0.3 * np.sin(4 * np.pi * y))) * np.cos(2 * np.pi * (waves + 2) * y)
     pixels = np.ones((size, size, 4))
@@ -57,7 +57,7 @@ def grain(name, color, size=256, waves=9):
 
 
 def _data(name, pixels):
-    """An image of numbers instead of colours."""
+    """Returns an image of non-colour data."""
     image = make_image(name, pixels)
     image.colorspace_settings.name = "Non-Color"
     image.pack()

@@ -26,10 +26,10 @@ def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__)
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--scene", default="showcase", choices=sorted(scenes.BUILDERS), help="a scene of this folder")
-    what.add_argument("--blend", type=Path, help="a file of Blender")
+    what.add_argument("--blend", type=Path, help="a .blend file")
     what.add_argument("--snapshot", type=Path, help="a snapshot (.npz) or a bug report (.zip)")
-    parser.add_argument("--frame", type=int, help="default: the frame that the file was saved at")
-    parser.add_argument("--samples", type=int, help="per pixel; default: what the scene says")
+    parser.add_argument("--frame", type=int, help="default: the current frame of the file")
+    parser.add_argument("--samples", type=int, help="per pixel; default: the setting of the scene")
     parser.add_argument("--output", type=Path, help="the picture; default: build/NAME.png")
     arguments = parser.parse_args()
     if arguments.samples is not None and arguments.samples < 1:
@@ -39,7 +39,7 @@ def read_arguments():
 
 @contextlib.contextmanager
 def captured_output():
-    """Keeps what Blender itself writes to standard output in a file, and yields (terminal, that file)."""
+    """Redirects Blender's own standard output to a file, and yields (terminal, that file)."""
     sys.stdout.flush()
     saved = os.dup(1)
     with os.fdopen(os.dup(1), "w", buffering=1) as terminal, tempfile.TemporaryFile("w+") as log:
@@ -53,7 +53,7 @@ def captured_output():
 
 
 class Progress:
-    """Shows the engine's own line of statistics: rewritten in place on a terminal, a line per 10 % elsewhere."""
+    """Shows the engine's status line: rewritten in place on a terminal, one line per 10 % elsewhere."""
 
     def __init__(self, terminal):
         self.terminal = terminal
@@ -102,7 +102,7 @@ def output_path(arguments):
 
 
 def set_up(scene, arguments):
-    """Settings for this run only: the file is never saved."""
+    """Applies the options of this run to the scene; the file is never saved."""
     scene.render.engine = "LANCER"
     if arguments.samples is not None:
         scene.lancer.samples = arguments.samples

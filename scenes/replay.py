@@ -1,4 +1,4 @@
-"""Renders a snapshot, alone or in a bug report, as the engine would: no data of Blender's, only its writer of image files."""
+"""Renders a snapshot, alone or in a bug report, as the engine would; Blender only writes the image file."""
 
 import dataclasses
 import math
@@ -19,7 +19,7 @@ from addon.messages.messages import Messages
 
 
 def load(path, samples=None):
-    """(snapshot, facts) of a file; ends the program with a sentence where it has none."""
+    """Returns (snapshot, facts) of a file; ends the program with a message if the file has no snapshot."""
     try:
         snapshot, facts = bug_report.load(path)
     except FileNotFoundError:
@@ -33,7 +33,7 @@ def load(path, samples=None):
 
 
 def render(snapshot, show):
-    """(picture of (height, width, 4) float32, the library's Messages, statistics). show(text) is told how far it is."""
+    """Returns (picture as (height, width, 4) float32, the library's Messages, statistics); show(text) receives the progress."""
     try:
         with Session.upload(snapshot) as session:
             schedule = Schedule(session)
@@ -50,7 +50,7 @@ def render(snapshot, show):
 
 
 def write(picture, path, kind):
-    """kind: of Blender's file formats. Files of bytes get the view transform Standard."""
+    """Writes the picture. kind: one of Blender's file formats. Formats of 8 bits get the view transform Standard."""
     height, width = picture.shape[:2]
     image = bpy.data.images.new("Replay", width, height, alpha=True, float_buffer=True)
     image.colorspace_settings.name = "Linear Rec.709" if bpy.app.version >= (4, 0) else "Linear"
@@ -67,7 +67,7 @@ def write(picture, path, kind):
 
 
 def report(snapshot, facts, messages, numbers):
-    """Lines on what was rendered."""
+    """Yields lines about the render."""
     for name, version in facts.get("versions", {}).items():
         yield f"reported with {name}: {version}"
     for message in facts.get("exported", ()):
@@ -83,7 +83,7 @@ def report(snapshot, facts, messages, numbers):
 
 
 def replay(path, samples, output, kind, progress):
-    """Renders the file to output; gives the lines of its report."""
+    """Renders the file to output; returns the lines of its report."""
     snapshot, facts = load(path, samples)
     picture, messages, numbers = render(snapshot, progress)
     write(picture, output, kind)

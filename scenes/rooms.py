@@ -1,4 +1,4 @@
-"""Blender's default cube, one triangle, a closed room of indirect light, and one of a million triangles lit by its windows."""
+"""Blender's default cube, one triangle, a closed room of indirect light, and a room of a million triangles with windows."""
 
 import math
 
@@ -16,7 +16,7 @@ def build_default_cube(scene):
 
 
 def build_cornell(scene):
-    """A closed box: the lamp shines at the ceiling from a shade, so walls and blocks are lit by what the ceiling returns."""
+    """A closed box: its lamp shines at the ceiling from a shade, so the ceiling's light reaches walls and blocks."""
     parts.set_size(scene, 512, 512, 128)
     white = parts.principled("White", base_color=(0.75, 0.75, 0.75), roughness=1.0, specular_ior_level=0.0)
     red = parts.principled("Red", base_color=(0.6, 0.05, 0.04), roughness=1.0, specular_ior_level=0.0)
@@ -42,7 +42,7 @@ def build_cornell(scene):
 
 
 def build_room(scene):
-    """The closed box with a true shade under its lamp, so that no renderer sees the lamp itself, or light behind it."""
+    """The closed box with a real shade under its lamp, so that no renderer shows the lamp itself, or light behind it."""
     build_cornell(scene)
     shade = parts.principled("Shade", base_color=(0.2, 0.2, 0.2), roughness=1.0, specular_ior_level=0.0)
     parts.place(scene, "Shade", parts.plane_mesh("Shade", 0.54), shade, (0, 0, 1.49))
@@ -89,7 +89,7 @@ def build_daylight(scene):
 
 
 def build_triangle(scene):
-    """One grey triangle before a grey sky: what is left is what a renderer does for each sample anyway."""
+    """One grey triangle before a grey sky: the time of this scene is the fixed cost of a sample."""
     parts.set_size(scene, 640, 480, 64)
     grey = parts.principled("Grey", base_color=(0.6, 0.6, 0.6), roughness=1.0, specular_ior_level=0.0)
     parts.place(scene, "Triangle", parts.mesh_from_points("Triangle", [(-1, 0, -1), (1, 0, -1), (0, 0, 1)], [(0, 1, 2)]), grey)

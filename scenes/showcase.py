@@ -1,4 +1,4 @@
-"""The picture of the README: exact spheres, cylinder and cone beside meshes; glass, mirror, metal, plastic; a lens in focus."""
+"""The picture of the README: exact spheres, cylinder and cone beside meshes; glass, mirror, metal, plastic; a thin lens."""
 
 import colorsys
 import math
@@ -14,7 +14,7 @@ def build(scene):
     add_pearls(scene)
     ground = parts.principled("Ground", base_color=(0.32, 0.30, 0.29), roughness=0.28, ior=1.45)
     parts.place(scene, "Ground", parts.plane_mesh("Ground", 60.0), ground, shape="PLANE")
-    # A warm key from the left, a cool fill from the right, and a rim that draws the outlines.
+    # A warm key light from the left, a cool fill light from the right, and a rim light for the outlines.
     parts.add_light(scene, "Key", "AREA", 1400.0, (-6.0, -4.0, 6.5), (0, 0, 0.8), (1.0, 0.80, 0.58), size=3.0)
     parts.add_light(scene, "Fill", "AREA", 260.0, (7.0, -4.0, 4.0), (0, 0, 0.8), (0.55, 0.75, 1.0), size=5.0)
     parts.add_light(scene, "Rim", "AREA", 700.0, (3.5, 7.0, 5.0), (0, 0, 1.0), (1.0, 0.9, 0.8), size=2.5)
@@ -26,7 +26,7 @@ def build(scene):
 
 
 def add_figures(scene):
-    """The large things, from left to right."""
+    """Adds the large objects, from left to right."""
     sphere = parts.sphere_mesh("Sphere")
     cylinder = parts.cone_mesh("Cylinder", 1.0, 1.0)
     cone = parts.cone_mesh("Cone", 1.0, 0.0)
@@ -53,7 +53,7 @@ def add_figures(scene):
 
 
 def add_pearls(scene):
-    """Small spheres between and behind the figures, out of focus the farther they are."""
+    """Adds small spheres between and behind the figures; distant ones are out of focus."""
     source = random.Random(7)
     sphere = parts.sphere_mesh("Pearl", 32, 16)
     keep_out = [

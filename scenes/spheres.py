@@ -1,4 +1,4 @@
-"""Many spheres on a plane: `balls` and `coated` of the comparison with Cycles, and `spheres600`, the course's own yardstick."""
+"""Many spheres on a plane: `balls` and `coated` of the comparison with Cycles, and `spheres600`, the course's own benchmark."""
 
 import colorsys
 import math
@@ -10,7 +10,7 @@ from . import parts
 
 
 def scatter(random_source, count, half_width, radii, clearance=1.02):
-    """count circles (x, y, radius) inside a square that do not touch; the draw is repeated until there is room."""
+    """Returns count circles (x, y, radius) inside a square that do not touch; a draw is repeated until its circle fits."""
     circles = []
     while len(circles) < count:
         radius = random_source.uniform(*radii)
@@ -31,7 +31,7 @@ def build_balls(scene, shape="MESH"):
 
 
 def build_coated(scene):
-    """The same balls by threes: brushed metal, cloth with sheen, varnish with a tint."""
+    """The same balls in three groups: brushed metal, cloth with sheen, varnish with a tint."""
     tint = {"coat_tint": (0.9, 0.6, 0.4)} if bpy.app.version >= (4, 0) else {}
     looks = (
         {"metallic": 1.0, "anisotropic": 0.7, "anisotropic_rotation": 0.1},

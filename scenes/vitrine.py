@@ -1,4 +1,4 @@
-"""Things to be looked at: clear balls, polished and brushed ones under the sun; a product between softboxes."""
+"""Scenes of products: clear, polished and brushed balls under the sun; a product between softboxes."""
 
 import math
 
@@ -27,7 +27,7 @@ def build(scene):
 
 
 def build_product(scene):
-    """A bottle, a worn can and a ring on a sweep of paper, between three softboxes; a thin lens, Normal and Z passes."""
+    """A bottle, a worn can and a ring on a curved sheet of paper, between three softboxes; a thin lens, Normal and Z passes."""
     parts.set_size(scene, 512, 384, 32)
     parts.add_passes(scene)
     can = outdoors.textured("Can", pictures.cloth("Label", cells=9), 0.4)
@@ -43,7 +43,7 @@ def build_product(scene):
     parts.place(scene, "Can", parts.lathe_mesh("Can", body), can, (0.55, -0.1, 0.002))
     parts.place(scene, "Ring", parts.torus_mesh("Ring", 0.3, 0.07), gold, (-0.1, -0.9, 0.072))
     parts.place(scene, "Ball", parts.sphere_mesh("Ball"), lacquer, (1.3, -0.7, 0.302), 0.3)
-    # A sweep that bends up behind.
+    # The paper curves upwards behind the product.
     bend = [
         (-3.0, 0.0),
         (2.0, 0.0),

@@ -1,1 +1,1 @@
-"""`make course`: what the course's three texts ask for, what was built for it, and whether it does what their formulas say."""
+"""`make course`: the requirements of the course's three texts, their implementation, and the errors against the formulas."""

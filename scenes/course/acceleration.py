@@ -1,4 +1,4 @@
-"""Finding the surface that a ray meets without asking them all."""
+"""Finding the surface that a ray hits without testing all surfaces."""
 
 import dataclasses
 
@@ -15,7 +15,7 @@ _ROUNDS = 3
 
 
 def _rendered(shot, accelerator):
-    """The picture and the most rays a second of three renders."""
+    """Returns the picture and the highest number of rays per second of three renders."""
     best, picture = 0.0, None
     with Session.upload(with_settings(shot, accelerator=accelerator)) as session:
         session.render_all()
@@ -65,7 +65,7 @@ def trees(quick):
 
 
 def _asked(shot):
-    """What a camera ray asks of the BVH, on average."""
+    """Returns the mean numbers of tests in the BVH per camera ray."""
     camera = shot.camera
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(0, camera.width, 4), np.arange(0, camera.height, 4)))
     with Session.upload(shot) as session:

@@ -1,4 +1,4 @@
-"""What a chapter of the report is made of."""
+"""The parts of a chapter of the report."""
 
 import math
 import re
@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @dataclass(frozen=True)
 class Figure:
-    """A number that was measured just now, and the range that it has to be in; why says where the range comes from."""
+    """A number measured in this run, and the range that it must be in; why: the derivation of the range."""
 
     what: str
     measured: float
@@ -27,7 +27,7 @@ class Figure:
 
     @classmethod
     def near(cls, what, measured, expected, limit, why):
-        """Within limit of a closed form; a limit of 0 asks for the number itself."""
+        """Returns a figure within limit of a closed form; a limit of 0 requires the number itself."""
         text = number(expected) if limit == 0 else f"{number(expected)} ± {limit:.2g}"
         return cls(what, float(measured), expected - limit, expected + limit, text, why)
 
@@ -42,7 +42,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Picture:
-    """pixels: (height, width, 3 or 4), linear, row 0 the lowest, as renders give them; white is what is shown as 1."""
+    """pixels: (height, width, 3 or 4), linear, row 0 the lowest, as from a render; white: the value displayed as 1."""
 
     name: str
     caption: str
@@ -52,7 +52,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Source:
-    """A function, by the file it stands in and the text with which its definition begins."""
+    """A function, by its file and the text with which its definition begins."""
 
     file: str
     text: str
@@ -67,13 +67,13 @@ class Source:
 
     @property
     def name(self):
-        """The last word of the text, which is the function's own."""
+        """Returns the last word of the text: the function's name."""
         return re.findall(r"\w+", self.text)[-1]
 
 
 @dataclass(frozen=True)
 class Chapter:
-    """texts: where the texts ask for it; built: what there is; problems: what had to be solved on the way."""
+    """texts: where the texts require it; built: the implementation; problems: the difficulties and their solutions."""
 
     title: str
     texts: str
@@ -86,7 +86,7 @@ class Chapter:
 
     @classmethod
     def of(cls, prose, figures, pictures=()):
-        """prose: the fields that chapters.toml has."""
+        """prose: the fields of the chapter in chapters.toml."""
         sources = tuple(Source(*source) for source in prose["sources"])
         return cls(**{**prose, "sources": sources}, figures=tuple(figures), pictures=tuple(pictures))
 
@@ -96,12 +96,12 @@ class Chapter:
 
 
 def number(value):
-    """Short, and a whole number as it is."""
+    """Returns the number with four digits, or all digits of a whole number."""
     return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e9 else f"{value:.4g}"
 
 
 def worst(measured, expected):
-    """The largest deviation, relative to what is expected where that is not 0."""
+    """Returns the largest deviation, relative to the expected value where that is not 0."""
     measured, expected = np.asarray(measured, float), np.asarray(expected, float)
     scale = np.where(expected != 0.0, np.abs(expected), 1.0)
     return float(np.max(np.abs(measured - expected) / scale))

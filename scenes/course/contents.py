@@ -1,4 +1,4 @@
-"""The chapters of the report, in the order of chapters.toml, which has their words; the modules measure and render."""
+"""The chapters of the report, in the order of chapters.toml, which holds their texts; the modules measure and render."""
 
 from pathlib import Path
 
@@ -12,9 +12,9 @@ _MAKERS = {make.__name__: make for module in _MODULES for make in module.CHAPTER
 
 PROSE = tomllib.loads(Path(__file__).with_name("chapters.toml").read_text(encoding="utf-8"))
 if set(PROSE) != set(_MAKERS):
-    raise LookupError(f"words and figures are not of the same chapters: {set(PROSE) ^ set(_MAKERS)}")
+    raise LookupError(f"these chapters lack their text or their figures: {set(PROSE) ^ set(_MAKERS)}")
 
 
 def make_chapter(name, quick):
-    """A chapter, measured and rendered now."""
+    """Measures, renders and returns a chapter."""
     return Chapter.of(PROSE[name], *_MAKERS[name](quick))

@@ -1,4 +1,4 @@
-"""Rays, and where they meet spheres, planes, cylinders, cones and triangles."""
+"""Intersections of rays with spheres, planes, cylinders, cones and triangles."""
 
 import math
 
@@ -13,21 +13,21 @@ from addon.bindings.snapshot import Instance, MeshData
 from . import studio
 from .chapter import Figure, Picture, worst
 
-# A parallel grid of rays along +y over the square -2 ... 2; all of it is exact in double precision.
+# A parallel grid of rays along +y over the square -2 ... 2; all of its coordinates are exact in double precision.
 _ORIGIN = -10.0
 _TRIANGLE = MeshData("triangle", [(-1, 0, -1), (1, 0, -1), (0, 0, 1)], [(0, 1, 2)])
 _DOUBLE = "t in double precision: 2^-53 of the 10 units on the way, a dozen times, and 1/cos of up to 200 at the outline"
 
 
 def _grid(count):
-    """Odd whole numbers (x, z) of the grid's rays, and their places."""
+    """Returns the odd integers (x, z) of the grid's rays, and their origins."""
     odd = 2 * np.arange(count) + 1 - count
     x, z = (axis.ravel() for axis in np.meshgrid(odd, odd))
     return x, z, np.stack([x * 2.0 / count, np.full(x.shape, _ORIGIN), z * 2.0 / count], axis=1)
 
 
 def _shapes(x, z, half):
-    """name: (instance, meshes, which rays hit, told in whole numbers, distance to the plane y = 0 for those)."""
+    """Returns name: (instance, meshes, which rays hit, computed in integers, distance of those hits to the plane y = 0)."""
     s = 1.0 / half
     inside = np.abs(z) < half
     slope = inside & (2 * np.abs(x) < half - z)
@@ -83,14 +83,14 @@ def _portrait(name, instance, meshes):
 
 
 def _shared_edge(count):
-    """Rays through the shared diagonal of two triangles, at places that no float hits exactly."""
+    """Returns rays through the shared diagonal of two triangles, at places that no float represents exactly."""
     rng = np.random.default_rng(1)
     corners = rng.uniform(-1, 1, (4, 3)).astype(np.float32)
     mesh = MeshData("fold", corners, [(0, 1, 2), (1, 0, 3)])
     share = rng.uniform(0.01, 0.99, (40 * count, 1))
     a, b = corners[:2].astype(float)
     targets = a + share * (b - a)
-    # From places from which the two triangles stand to both sides of the edge.
+    # Start from places where the two triangles lie on different sides of the edge.
     edge = (b - a) / np.linalg.norm(b - a)
     wings = [corners[k].astype(float) - a for k in (2, 3)]
     wings = [w - edge * (w @ edge) for w in wings]

@@ -1,4 +1,4 @@
-"""Local illumination: the models of the texts, the lamps and how they weaken."""
+"""Local illumination: the models of the texts, the lamps and their attenuation."""
 
 import dataclasses
 import math
@@ -42,7 +42,7 @@ class Lit:
         return self.l[..., 2:]
 
     def mirrored(self):
-        """R·v, R the lamp's direction mirrored at the plane."""
+        """Returns R·v, R the lamp's direction mirrored at the plane."""
         return _dot(self.l * np.array([-1.0, -1.0, 1.0]), self.v)
 
 
@@ -51,13 +51,13 @@ def _power(cosine, n):
 
 
 def _facets(s, alpha, ior):
-    """D F G / (4 (l·n)(v·n)) at 50 digits."""
+    """Returns D F G / (4 (l·n)(v·n)) at 50 digits."""
     value = np.vectorize(lambda wo, wi: float(reference.beckmann_bsdf(wo, wi, alpha, ior)), signature="(3),(3)->()")
     return value(s.v, s.l)[..., None]
 
 
 def minnaert_f(color, k, *cosines):
-    """f of lancer.h: below k = 1 no cosine counts as less than the one at which all light comes back."""
+    """Returns f of lancer.h: below k = 1, cosines are clamped to the one at which all light is reflected."""
     color = np.asarray(color, float)
     least = color.max() ** (1 / (1 - k)) if k < 1 else 0.0
     q = least ** (k + 1)
@@ -74,14 +74,14 @@ _FORMULAS = {
 
 
 def light_of(kind, s, color=(0.8, 0.8, 0.8), **values):
-    """What the texts say that a lobe reflects of the lamp's light towards the eye; values: as those of a Lobe."""
+    """Returns the light of the lamp that a lobe reflects towards the eye by the texts' formula; values: as those of a Lobe."""
     if kind == LobeKind.MINNAERT:
         return minnaert_f(color, values.get("shininess", 50.0), s.cosine, s.v[..., 2:]) * s.cosine * s.lc
     return np.asarray(color) * _FORMULAS[kind](s, **values) * s.lc
 
 
 def _two(kind, **values):
-    """A matt body and a lobe."""
+    """Returns a material of a matt body and a lobe."""
     return Material("course", lobes=(Lobe(color=tuple(_KD)), Lobe(kind, color=tuple(_KS), **values)))
 
 
@@ -96,7 +96,7 @@ def _ball(material, world=0.0):
 
 
 def _deviation(material):
-    """The largest relative deviation of the plane's pixels from the sum of the lobes' formulas."""
+    """Returns the largest relative deviation of the plane's pixels from the sum of the lobes' formulas."""
     shot = classic([plane()], [material], [lamp()], max_bounces=0)
     lit = Lit(shot)
     wanted = {LobeKind.BECKMANN: ("roughness", "ior"), LobeKind.LAMBERT: ()}
@@ -127,10 +127,10 @@ def facets(quick):
     alphas, cosines = np.float32([0.001, 0.01, 0.1, 0.3, 0.7]), np.float32([1.0, 0.999, 0.9, 0.7, 0.5, 0.1, 0.01])
     terms = {"D": 0.0, "F": 0.0, "G1": 0.0}
     for alpha in alphas:
-        # Angles at which the lobe has something to show.
+        # Angles at which the lobe is not negligible.
         at = np.float32(1.0 / np.sqrt(1.0 + (alpha * np.array([0.0, 0.5, 1.0, 2.0])) ** 2))
         d = microfacet(at, 1.0, 1.0, alpha, 1.5)[0]
-        # tan² from a cosine carries its roundings, (1 - c)/2^-24 of them, times tan²/alpha².
+        # tan² from a cosine has the cosine's rounding errors, (1 - c)/2^-24 of them, times tan²/alpha².
         want = np.array([float(reference.beckmann_d(c, alpha)) for c in at])
         terms["D"] = max(terms["D"], worst(d, want))
         g = microfacet(1.0, 1.0, cosines, alpha, 1.5)[2]
@@ -144,7 +144,7 @@ def facets(quick):
         figures.append(Figure.at_most(f"{name}: largest relative deviation from 50 digits", error, limits[name], why))
     for alpha, ior in ((0.05, 1.5), (0.3, 1.33), (0.7, 2.0)):
         alpha = float(np.float32(alpha))
-        # D answers with 2 tan/alpha² to the rounding of h; tan reaches 0.9 on the part of the plane that is seen.
+        # D amplifies the rounding error of h by 2 tan/alpha²; tan reaches 0.9 on the visible part of the plane.
         limit = SINGLE + 4e-7 * (1 + 0.9 / alpha**2)
         what = f"Kd Ks, α = {alpha:.2g}, IOR {ior}: largest relative deviation of 256 pixels"
         error = _deviation(_two(LobeKind.BECKMANN, roughness=alpha, ior=float(np.float32(ior))))
@@ -164,7 +164,7 @@ def facets(quick):
 
 
 def _energy():
-    """What the layer reflects of light from everywhere, by the sampler's weights; it must not be more than arrives."""
+    """Returns the albedo of the layer under a uniform white sky, from the weights of samples; it must be at most 1."""
     rng = np.random.default_rng(2)
     u = rng.random((20000, 3))
     most = 0.0
@@ -198,7 +198,7 @@ _ATTENUATIONS = {
 
 
 def _middle(lights, material=None, **settings):
-    """The pixel under the middle of the plane."""
+    """Returns the pixel at the middle of the plane."""
     shot = classic([plane()], [material or lambert()], lights, camera=tiny_scenes.pencil((3, 0, 4)), **settings)
     return studio.render(shot)[0, 0, :3]
 
@@ -251,7 +251,7 @@ def ambient(quick):
     material = Material("ambient", lobes=(), ambient=ka)
 
     def seen(lights, world):
-        """The middle of the plane under a ball, which no lamp above it lights."""
+        """Returns the middle of the plane below a ball, which blocks the lamp."""
         shot = classic([plane(), sphere(1, move(z=9.0))], [material, lambert()], lights, camera=tiny_scenes.pencil((3, 0, 4)))
         return studio.render(dataclasses.replace(shot, world=world))[0, 0, :3]
 

@@ -1,4 +1,4 @@
-"""What takes more than one ray a pixel: anti-aliasing, lenses, global illumination; and whether it holds at the extremes."""
+"""Effects that need several rays per pixel: anti-aliasing, lenses, global illumination; and extreme parameters."""
 
 import dataclasses
 import math
@@ -18,7 +18,7 @@ from .studio import SINGLE, SINGLE_WHY
 
 
 def _edge(pixels):
-    """A glowing half-plane whose slanted edge is the line y = slope x, seen from above; and each pixel's true share of it."""
+    """Returns a glowing half-plane with the slanted edge y = slope x, seen from above, and its exact share of each pixel."""
     slope, window = 0.3127, 1.0
     far = 50.0
     corners = [(-far, -slope * far, 0), (far, slope * far, 0), (far, far * 2, 0), (-far, far * 2, 0)]
@@ -104,7 +104,7 @@ def lens(quick):
 
 
 def _furnace(albedo, bounces, samples):
-    """The mean of 32 x 32 pixels inside of a ball that glows by 1, and its standard error."""
+    """Returns the mean of 32 x 32 pixels inside a ball of emission 1, and its standard error."""
     shot = tiny_scenes.furnace(albedo, 1.0, samples=samples, max_bounces=bounces)
     camera = dataclasses.replace(shot.camera, width=32, height=32, region_width=32, region_height=32)
     values = studio.render(dataclasses.replace(shot, camera=camera))[..., 0]
@@ -172,7 +172,7 @@ def stability(quick):
 
 
 def _lobes_at_the_ends():
-    """A white sky in surfaces that neither make nor lose light to speak of: all of it comes back, whatever the parameters."""
+    """Surfaces without absorption under a white sky: all light must come back, for any parameters."""
     mirror = Material("rough", lobes=(Lobe(LobeKind.GLOSSY, color=(1, 1, 1), roughness=math.sqrt(0.001)),))
     void = Material("void", lobes=(Lobe(LobeKind.GLASS, color=(1, 1, 1), ior=1.0000001, roughness=0.0),))
     for name, material, why in (

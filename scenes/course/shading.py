@@ -27,14 +27,14 @@ _SHINY = Material("shiny", lobes=(Lobe(color=(0.5, 0.1, 0.05)), Lobe(LobeKind.PH
 
 
 def _lit(points, normals):
-    """Lambert's law for albedo 1 under a lamp of intensity 9."""
+    """Returns Lambert's law for albedo 1 under a lamp of intensity 9."""
     way = _PLACE - points
     distance = np.linalg.norm(way, axis=-1)
     return np.maximum(np.sum(way * normals, axis=-1) / distance, 0.0) * 9.0 / distance**2 / math.pi
 
 
 def _triangle(shading):
-    """The picture of one triangle whose corners have normals of their own, and where its pixels are."""
+    """Returns the picture of one triangle with a different normal at each corner, and the places of its pixels."""
     camera = studio.parallel((0.0, 0.0, 5.0), width=4.0, pixels=32)
     shot = classic([Instance(shading=shading)], [lambert()], [lamp(_PLACE)], [_TILTED], camera=camera)
     points, _ = studio.seen_on_plane(shot)
@@ -72,7 +72,7 @@ def shading(quick):
 
 
 def _ball(shading):
-    """A coarse ball with the sphere's normals, or for None the exact sphere."""
+    """Returns a coarse ball with the sphere's normals, or for None the exact sphere."""
     camera = studio.perspective((0.0, -5.0, 0.8), (0, 0, 0), 160, 0.25)
     thing = sphere() if shading is None else Instance(shading=shading)
     return studio.render(classic([thing], [_SHINY], [lamp((-3, -4, 4), 60.0)], [_COARSE], camera=camera))

@@ -1,4 +1,4 @@
-"""Snapshots and their pictures, as the chapters share them: small scenes made here, and scenes of this folder from Blender."""
+"""Snapshots and pictures shared by the chapters: small scenes made here, and scenes of this folder exported from Blender."""
 
 import tempfile
 from pathlib import Path
@@ -11,7 +11,7 @@ from addon.bindings.abi import Integrator, LightKind, Pass
 from addon.bindings.session import Session
 from addon.bindings.snapshot import Camera, Light, SceneSnapshot
 
-# One sample through the middle of all has no noise.
+# A picture of one sample through the middle of each pixel has no noise.
 SINGLE = 2e-6
 SINGLE_WHY = "a dozen products in single precision, 6e-8 each"
 EYE = np.array((3.0, 0.0, 4.0))
@@ -19,18 +19,18 @@ LAMP = np.array((-1.0, 2.0, 2.0))
 
 
 def render(shot, which=Pass.COMBINED, **settings):
-    """A pass of a snapshot, (height, width, channels), row 0 the lowest, by all threads."""
+    """Returns a pass of a snapshot, (height, width, channels), row 0 the lowest, rendered by all threads."""
     return tiny_scenes.render(tiny_scenes.with_settings(shot, **{"threads": 0, **settings}), which)
 
 
 def classic(things, materials, lights=(), meshes=(), world=0.0, camera=None, **settings):
-    """A snapshot for the recursive ray tracer: one sample in the middle of each pixel."""
+    """Returns a snapshot for the recursive ray tracer: one sample in the middle of each pixel."""
     settings = {"integrator": Integrator.CLASSIC, "samples": 1, "max_bounces": 10, **settings}
     return tiny_scenes.scene(things, materials, lights, meshes, world, camera or parallel(), **settings)
 
 
 def parallel(eye=EYE, target=(0.0, 0.0, 0.0), width=4.0, pixels=16):
-    """A camera without perspective."""
+    """Returns an orthographic camera."""
     return tiny_scenes.pencil(tuple(eye), tuple(target), width, pixels)
 
 
@@ -43,7 +43,7 @@ def lamp(position=LAMP, intensity=9.0, **fields):
 
 
 def seen_on_plane(shot):
-    """The points of z = 0 in the middles of the pixels, (height, width, 3), and the unit vectors to the camera."""
+    """Returns the points of z = 0 in the middles of the pixels, (height, width, 3), and the unit vectors to the camera."""
     height, width = shot.camera.height, shot.camera.width
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     with Session.upload(shot) as session:
@@ -54,10 +54,9 @@ def seen_on_plane(shot):
 
 
 def from_blender(name, width, height, prepare=None):
-    """A scene of this folder through Blender and its exporter, as F12 would hand it over; prepare(scene) may change it before.
+    """Returns a scene of this folder as Blender's exporter gives it to F12; prepare(scene) may change the scene before.
 
-    The file is the road from the add-on's own classes to those that the small scenes are made of.
-    """
+    Saving and loading converts the add-on's own classes to those of the small scenes."""
     import bpy
 
     import scenes
@@ -76,5 +75,5 @@ def from_blender(name, width, height, prepare=None):
 
 
 def beside(*pictures):
-    """Pictures of one height in a row."""
+    """Returns pictures of one height in a row."""
     return np.concatenate([np.asarray(picture)[..., :3] for picture in pictures], axis=1)

@@ -1,4 +1,4 @@
-"""Pictures on surfaces: colours, any parameter of the BSDF, surroundings, bumps, normals and displacement."""
+"""Images on surfaces: colours, any parameter of the BSDF, environments, bumps, normals and displacement."""
 
 import dataclasses
 import math
@@ -35,13 +35,13 @@ def _picture_node(**fields):
 
 
 def _square(material, texels, camera=None, **settings):
-    """The square -2 ... 2 under a lamp, its material's node 1 the picture."""
+    """Returns the square -2 ... 2 under a lamp; node 1 of its material reads the image."""
     shot = classic([Instance()], [material], [lamp()], [_SQUARE], camera=camera, max_bounces=0, **settings)
     return dataclasses.replace(shot, images=(Image("texels", np.float32(texels)),))
 
 
 def _texels_seen(shot, size):
-    """Row and column of the texel in each pixel's middle, and the pixels on the square."""
+    """Returns row and column of the texel in each pixel's middle, and the pixels on the square."""
     points, _ = studio.seen_on_plane(shot)
     on = np.all(np.abs(points[..., :2]) < 2.0, axis=-1)
     column, row = (np.clip(((points[..., k] + 2) / 4 * size).astype(int), 0, size - 1) for k in (0, 1))
@@ -65,7 +65,7 @@ def images(quick):
     return tuple(figures), tuple(shown)
 
 
-# Two values for each parameter of the lobes, side by side in a picture.
+# Two values for each parameter of the lobes, side by side in an image.
 _HALVES = {
     "color": ((0.75, 0.5, 0.25), (0.125, 0.25, 0.5)),
     "roughness": (0.25, 0.5),
@@ -94,7 +94,7 @@ def parameters(quick):
 
 
 def _modulated(kind, name):
-    """A picture of two values in one parameter of a lobe, against the formula of each half."""
+    """Returns the error of an image of two values in one parameter of a lobe, against the formula for each half."""
     others = {} if name == "color" or "shininess" not in _PARAMETERS[kind] else {"color": (0.8, 0.8, 0.8)}
     lobe = Lobe(kind, **{**others, name: NodeRef(1)})
     material = Material("textured", (lobe,), nodes=(_UV, _picture_node()))
@@ -109,7 +109,7 @@ def _modulated(kind, name):
 
 
 def _shown(model, grouped, integrator):
-    """A ball of a model in Blender, by the material's settings or by the node group, with the same numbers."""
+    """Returns a ball with a model in Blender, by the material's settings or by the node group, with the same numbers."""
     values = {"kd": (0.5, 0.25, 0.125), "ks": (0.75, 0.5, 0.25), "ka": (0.25, 0.125, 0.0)}
     values |= {"roughness": 0.3, "ior": 1.75, "shininess": 30.0, "darkness": 1.75}
 
@@ -202,7 +202,7 @@ def relief(quick):
 
 
 def _lit_by(normal):
-    """Lambert's law about another normal, for albedo 1 on the square."""
+    """Returns Lambert's law about another normal, for albedo 1 on the square."""
     return lambda s: np.maximum(np.sum(s.l * normal, axis=-1, keepdims=True), 0.0) * s.lc / math.pi
 
 
@@ -223,7 +223,7 @@ def _normal_map():
 
 
 def _bump():
-    """A height that grows by 1/4 a unit along x: n' = (-1/4, 0, 1) / |...|."""
+    """A height that grows by 1/4 per unit along x: n' = (-1/4, 0, 1) / |...|."""
     normal = np.array((-0.25, 0.0, 1.0)) / math.hypot(0.25, 1.0)
     position = Node(NodeKind.COORDINATE, Coordinate.POSITION)
     height = Node(NodeKind.SEPARATE, 0, inputs=(NodeRef(0),))

@@ -1,4 +1,4 @@
-"""Rays that go on: shadows, mirrors, glass, and where the recursion ends."""
+"""Secondary rays: shadows, mirrors, glass, and the end of the recursion."""
 
 import math
 
@@ -19,8 +19,8 @@ _GLASS = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior
 
 
 def _wrong_shadow(blocker, light, radius, pixels):
-    """Pixels of the plane that are dark outside of a circle about the origin, or lit within."""
-    # The eye stands below the blocker, so that nothing is in its way.
+    """Returns how many pixels are dark outside of a circle about the origin or lit inside, and how many are dark."""
+    # The eye is below the blocker and sees the plane without obstruction.
     camera = studio.parallel((0.5, 0.0, 1.0), width=4.0, pixels=pixels)
     shot = classic([plane(), blocker], [lambert()], [light], camera=camera)
     points, _ = studio.seen_on_plane(shot)
@@ -32,7 +32,7 @@ def shadows(quick):
     pixels = 64 if quick else 256
     sun = Light("sun", kind=LightKind.SUN, emission=rgb(1.0))
     by_sun, dark = _wrong_shadow(sphere(0, move(z=9.0)), sun, 1.0, pixels)
-    # A lamp at height 10 above a ball of radius r at height 5: the cone that touches it, where it meets the plane.
+    # A lamp at height 10 above a ball of radius r at height 5: the tangent cone's circle in the plane.
     r = 0.5
     by_lamp, _ = _wrong_shadow(sphere(0, move(z=5.0) @ scale(r)), lamp((0, 0, 10.0)), 10 * math.tan(math.asin(r / 5)), pixels)
     figures = [
@@ -80,7 +80,7 @@ def _acne(size):
 
 
 def _hall(bounces, **settings):
-    """Between two mirrors that face each other, each glowing by 1 and returning a half."""
+    """Returns the light between two facing mirrors, each of emission 1 and reflectance 0.5."""
     glow = Material("wall", lobes=(Lobe(LobeKind.MIRROR, color=rgb(0.5)),), emission=rgb(1.0))
     things = [plane(0), plane(0, move(z=2.0) @ rotate_x(math.pi))]
     camera = tiny_scenes.pencil((0, 0, 1.0), (0, 0, 0))
@@ -139,11 +139,11 @@ def glass(quick):
 
 
 def _snell():
-    """Where a glowing strip is seen through a slab, found by halving: the shift that the law foretells."""
+    """Finds by bisection where a glowing strip appears through a slab, and compares it with the shift by Snell's law."""
     eta, thickness, angle = 1.5, 1.0, 0.7
     inside = math.asin(math.sin(angle) / eta)
     glow = Material("glow", lobes=(), emission=(1, 1, 1))
-    # Everything from x = 0 on glows.
+    # The half-plane from x = 0 on glows.
     strip = MeshData("edge", [(0, -9, 0), (9, -9, 0), (9, 9, 0), (0, 9, 0)], [(0, 1, 2), (0, 2, 3)])
     slab = Instance(kind=InstanceKind.CYLINDER, matrix=scale(100.0, 100.0, thickness / 2))
     camera = tiny_scenes.pencil((-math.sin(angle), 0.0, thickness / 2 + math.cos(angle)), (0, 0, thickness / 2))
@@ -159,7 +159,7 @@ def _snell():
 
 
 def _total():
-    """From inside, at 56° where the critical angle is 42°, the glowing floor is seen in full."""
+    """From inside, at 56° where the critical angle is 42°, the reflection of the glowing floor is total."""
     glow = Material("glow", lobes=(), emission=(1, 1, 1))
     camera = tiny_scenes.pencil((0, 0, -1.0), (1.5, 0, 0.0))
     things = [plane(0), plane(1, move(z=-2.0))]

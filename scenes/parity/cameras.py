@@ -1,4 +1,4 @@
-"""Cameras: each scene is judged as a picture, and once more by the Position of every pixel's centre."""
+"""Cameras: each scene is judged as a picture, and a second time by the Position of every pixel's centre."""
 
 import math
 
@@ -11,7 +11,7 @@ from .stages import sky
 
 
 def _surroundings(scene):
-    """Walls and blocks of different colours all around the origin."""
+    """Adds a floor and blocks of different colours all around the origin."""
     parts.place(scene, "Floor", parts.plane_mesh("Floor", 12.0), shader("ShaderNodeBsdfDiffuse", Color=(0.5, 0.5, 0.45)))
     cube = parts.cube_mesh("Block", 1.0)
     for index in range(9):
@@ -34,9 +34,9 @@ def _look(scene, location=(0, -6, 2.5), target=(0, 0, 0.6), **fields):
 def seen(quick=False, position=True, position_until=(99, 0), finer=12, **fields):
     """Enters the scene twice: its picture, and its positions in a picture many times finer.
 
-    Cycles keeps the position of one sample, which lies within 0.005 pixels of the middle: in a coarse picture that alone is
-    1e-4 of the distance where a floor is seen aslant, and in this one less than a third of it.
-    """
+    Cycles keeps the position of one sample, which lies within 0.005 pixels of the middle: in a coarse picture this offset
+    alone
+    is 1e-4 of the distance where a floor is seen at a grazing angle; in the finer one it is less than a third of that."""
 
     def enter(build):
         case(name=f"camera_{build.__name__}", quick=quick, bounces=1, **fields)(build)
@@ -134,14 +134,14 @@ def clipping_orthographic(scene):
 
 @seen()
 def scaled_object(scene):
-    """The camera object's scale changes nothing."""
+    """The scale of the camera object must not change the picture."""
     eye = _look(scene)
     eye.scale = (2.0, 3.0, 0.5)
 
 
 def _panorama(scene, kind, **fields):
     eye = _look(scene, (0.2, -0.3, 2.2), (1, 2, 1.7), type="PANO")
-    # These settings moved from Cycles to the camera itself.
+    # In newer versions these settings belong to the camera instead of Cycles.
     owner = eye.data if hasattr(eye.data, "panorama_type") else eye.data.cycles
     owner.panorama_type = kind
     for name, value in fields.items():
@@ -180,7 +180,7 @@ def fisheye_equisolid(scene):
     _panorama(scene, "FISHEYE_EQUISOLID", fisheye_fov=math.radians(180), fisheye_lens=10.5)
 
 
-# Its rim holds half of all directions, where no picture is fine enough for the position of one sample.
+# The rim contains half of all directions: no picture is fine enough there for the position of one sample.
 @seen(position=False)
 def mirror_ball(scene):
     _panorama(scene, "MIRRORBALL")
@@ -199,7 +199,7 @@ def cylindrical(scene):
 
 
 def _glows(scene):
-    """Small bright squares before and behind the focus, which the lens draws as its own outline, before an even wall."""
+    """Adds small bright squares before and behind the focus, whose blur has the shape of the aperture, before a plain wall."""
     wall = shader("ShaderNodeEmission", Color=(0.5, 0.7, 0.9), Strength=2.0)
     parts.place(scene, "Wall", parts.plane_mesh("Wall", 200.0), wall, (0, 20, 0), rotation=(math.pi / 2, 0, 0))
     for index, (x, depth, side) in enumerate(((-1.7, 8.0, 0.9), (0.35, 2.0, 0.16))):
@@ -209,7 +209,7 @@ def _glows(scene):
 
 
 def _focus(scene, **fields):
-    """Focus at 3 with a lens of nearly 2 in diameter: an outline is as wide as half the picture is high."""
+    """Adds the squares and a camera focused at 3, with a lens of nearly 2 in diameter: blur of half the picture's height."""
     _glows(scene)
     eye = parts.add_camera(scene, (0, 0, 0), (0, 1, 0))
     return _open(eye, focus_distance=3.0, **fields)
@@ -224,7 +224,7 @@ def _open(eye, **fields):
 
 
 def blurred(quick=False):
-    """Enters the scene by its picture alone: of what is out of focus no position says anything."""
+    """Enters the scene by its picture alone: places out of focus have no single position."""
     return seen(quick=quick, position=False)
 
 
@@ -256,7 +256,7 @@ def focus_orthographic(scene):
 
 @blurred()
 def focus_object(scene):
-    """An object to focus on, in place of the distance."""
+    """Focuses on an object instead of a distance."""
     target = bpy.data.objects.new("Target", None)
     target.location = (0.5, 3.0, 0.3)
     scene.collection.objects.link(target)
@@ -268,7 +268,7 @@ def focus_panorama(scene):
     _glows(scene)
     eye = parts.add_camera(scene, (0, 0, 0), (0, 1, 0))
     eye.data.type = "PANO"
-    # These settings moved from Cycles to the camera itself.
+    # In newer versions these settings belong to the camera instead of Cycles.
     owner = eye.data if hasattr(eye.data, "panorama_type") else eye.data.cycles
     owner.panorama_type = "EQUIRECTANGULAR"
     owner.latitude_min, owner.latitude_max = -0.25, 0.25

@@ -1,4 +1,4 @@
-"""The list of parity scenes: a decorator enters a builder under its name, with what it is judged by."""
+"""The list of parity scenes: a decorator enters a builder under its name, with the rules by which the scene is judged."""
 
 import fnmatch
 import importlib
@@ -41,21 +41,21 @@ class Case:
     subject: str
     build: object  # build(scene) fills an empty scene
     kind_name: str = "EXACT"
-    limit: Limit | None = None  # in place of the kind's
+    limit: Limit | None = None  # instead of the kind's
     reason: str = ""  # why that limit is looser
     since: tuple = (3, 4)  # the first Blender that has the feature
-    until: tuple = (99, 0)  # the first that lacks it again
+    until: tuple = (99, 0)  # the first Blender that lacks it again
     bounces: int = 2
     transparent_bounces: int = 32
-    samples: int = 32  # of each half of each engine, at first
+    samples: int = 32  # initial number, for each half of each engine
     size: tuple = (96, 64)
     filter_width: float = 0.0  # 0: the box of one pixel; else the width of a Blackman-Harris filter
     passes: tuple = ("Combined",)  # by the names of Blender 5
-    dark: tuple = ()  # the passes that must show nothing
-    needs: object = None  # needs() gives "" or the sentence that tells what is absent here
-    sum_of_passes: bool = False  # compare the sum of our passes with our Combined
+    dark: tuple = ()  # the passes that must be black
+    needs: object = None  # needs() returns "" or a sentence that names the missing requirement
+    sum_of_passes: bool = False  # compare the sum of Lancer's passes with its Combined
     announced: str = ""  # words that one of Lancer's messages must contain; they excuse no difference
-    exposure: float = 1.0  # of Cycles' film; Lancer has none, so its picture is brought to that here
+    exposure: float = 1.0  # exposure of Cycles' film; Lancer has none, so its picture is scaled here
     quick: bool = False  # belongs to the subset of `make test`
 
     @property
@@ -68,21 +68,20 @@ class Case:
 
 
 def case(kind_name="EXACT", *, name=None, limit=None, reason="", blender3=None, **fields):
-    """Decorates build(scene); the scene's name is the function's.
+    """Returns a decorator for build(scene); the scene's name is the function's.
 
-    blender3: (limit, reason) of its own for Blender 3, and what a message there must say if one must.
-    """
+    blender3: (limit, reason) for Blender 3, followed by words that a message must contain there, if any."""
     if blender3 and bpy.app.version < (4, 0):
         limit, reason, *words = blender3
         if words:
             fields["announced"] = words[0]
     if (limit is None) != (not reason):
-        raise ValueError(f"{name}: a limit of its own and the reason for it go together")
+        raise ValueError(f"{name}: a limit needs a reason, and a reason a limit")
 
     def enter(build):
         key = name or build.__name__
         if key in CASES:
-            raise ValueError(f"two scenes are called {key}")
+            raise ValueError(f"two scenes have the name {key}")
         subject = build.__module__.rpartition(".")[2]
         CASES[key] = Case(key, subject, build, kind_name, Limit(*limit) if limit else None, reason, **fields)
         return build
@@ -91,7 +90,7 @@ def case(kind_name="EXACT", *, name=None, limit=None, reason="", blender3=None, 
 
 
 def variants(kind_name="EXACT", *, values, **fields):
-    """Decorates build(scene, value): one scene for each {suffix: value}; a value may be (value, fields of this scene)."""
+    """Returns a decorator for build(scene, value): one scene for each {suffix: value}; value may be (value, its fields)."""
 
     def enter(build):
         for suffix, value in values.items():
@@ -115,14 +114,14 @@ def _bind(build, value):
 
 
 def load():
-    """All cases by name, subject after subject."""
+    """Returns all cases by name, subject after subject."""
     for subject in SUBJECTS:
         importlib.import_module(f"{__package__}.{subject}")
     return CASES
 
 
 def select(pattern="", quick=False):
-    """The cases whose name or subject matches one of the comma-separated patterns."""
+    """Returns the cases whose name or subject matches one of the comma-separated patterns."""
     patterns = [part.strip() for part in pattern.split(",") if part.strip()] or ["*"]
     return [
         item
@@ -133,7 +132,7 @@ def select(pattern="", quick=False):
 
 
 def smaller(item):
-    """The case as `make test` renders it: a quarter of the blocks where there are many, few samples."""
+    """Returns the case as `make test` renders it: a quarter of the blocks where there are many, few samples."""
     width, height = item.size
     if item.kind.relative or not item.kind.averages:
         return item

@@ -32,7 +32,7 @@ def film_transparent_glass(scene):
 
 @case()
 def film_transparent_glass_rough(scene):
-    """Rougher glass than the threshold stays opaque."""
+    """Glass above the threshold of roughness stays opaque."""
     _things(scene, glass_roughness=0.5)
     scene.render.film_transparent = True
     scene.cycles.film_transparent_glass = True
@@ -41,7 +41,7 @@ def film_transparent_glass_rough(scene):
 
 @case(announced="film exposure", exposure=2.0)
 def film_exposure(scene):
-    """Cycles' exposure of the film scales the picture. Lancer says that it does not, and but for that it is the same."""
+    """Cycles' exposure of the film scales the picture. Lancer reports that it ignores it; otherwise the pictures agree."""
     _things(scene)
 
 
@@ -55,7 +55,7 @@ def film_exposure(scene):
     bounces=0,
 )
 def film_filter(scene, width):
-    """Slanted bars before a wall, all of light alone: every pixel at their edges is what the filter makes of it."""
+    """Slanted bars before a wall, all emissive: the values of their edge pixels depend on the filter alone."""
     wall = shader("ShaderNodeEmission", Color=(0.8, 0.9, 1.0), Strength=1.5)
     parts.place(scene, "Wall", parts.plane_mesh("Wall", 20.0), wall, (0, 0, -1))
     for index in range(9):

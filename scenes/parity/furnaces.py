@@ -1,4 +1,4 @@
-"""Every closure's lobe in an even white light, at five angles and four roughnesses."""
+"""Every closure's lobe under a uniform white sky, at five angles and four roughnesses."""
 
 import math
 from types import MappingProxyType
@@ -39,23 +39,23 @@ _CLOSURES = {
 }
 
 
-# Where Cycles' fit of Beckmann's masking shows: for smoother surfaces and steeper angles it is exact.
+# Angles at which Cycles' fit of Beckmann's masking deviates: for smoother surfaces and steeper angles it is exact.
 _FITTED = {0.3: (80,), 0.6: (65, 80), 1.0: (45, 65, 80)}
 _EXACT = {roughness: tuple(a for a in ANGLES if a not in _FITTED.get(roughness, ())) for roughness in ROUGHNESS}
 _WALTER = {
     "limit": (0.003, 0.0035),
-    "reason": "Cycles divides by the chance of a facet as Walter's fit of the masking tells it, which is up to 0.31 % off; "
-    "ours is the one that the facets are really drawn with",
+    "reason": "Cycles divides by a facet's probability from Walter's fit of the masking, with errors up to 0.31 %; Lancer "
+    "divides by the probability with which facets are sampled",
 }
 
 
 _DRAWN_WITHOUT_MASK = (
-    "Cycles 3 draws stretched facets of Beckmann as if none were hidden: brighter under a sky. Under a sun both agree "
+    "Cycles 3 samples stretched facets of Beckmann without masking: brighter under a sky. Under a sun both agree "
     "(sun_on_anisotropic_beckmann)"
 )
 _STRETCHED_TOLD = "anisotropic Beckmann follows its model"
 _TABLE3 = {"blender3": ((0.003, 0.008), BECKMANN3)}
-# What Blender 3 does differently in both parts.
+# Differences of Blender 3 in both parts.
 _EXACT3 = {"anisotropic_beckmann": {"blender3": ((0.07, 0.30), _DRAWN_WITHOUT_MASK, _STRETCHED_TOLD)}}
 _FITTED3 = {
     "anisotropic_beckmann": {"blender3": ((0.14, 0.70), _DRAWN_WITHOUT_MASK, _STRETCHED_TOLD)},
@@ -66,7 +66,7 @@ _FITTED3 = {
 
 
 def _closures(names, tiles, blender3=MappingProxyType({}), **fields):
-    """Their values with the fields that each scene has of its own."""
+    """Returns the closures' values with the fields of their scenes."""
     fields["size"] = size_of(tiles)
     return {
         name: (_CLOSURES[name], {"needs": with_node(_CLOSURES[name][0]), **fields, **blender3.get(name, {})}) for name in names
@@ -82,7 +82,8 @@ def _closure(scene, value, tiles):
 
 
 _MULTIPLE = tuple(name for name in _CLOSURES if "multiple" in name)
-# Blender 3 walks from facet to facet, which shows where surfaces are rough, and where they are seen straight on.
+# Blender 3 simulates a random walk between facets: a visible difference for rough surfaces, and for surfaces seen along the
+# normal.
 _WALKED = {0.1: (0,), 0.3: (0, 80), 0.6: ANGLES, 1.0: ANGLES}
 _STRAIGHT = {0.1: ANGLES[1:], 0.3: ANGLES[1:-1]}
 _COMPENSATED = _STRAIGHT if bpy.app.version < (4, 0) else TILES
@@ -135,7 +136,7 @@ def furnace_fitted(scene, value):
     bounces=0,
 )
 def sun_on(scene, value):
-    """The same plates, lit from one direction only: what a lobe is worth, whoever draws it."""
+    """The same plates, lit from one direction only: the value of a lobe, without its sampling."""
     _closure(scene, value, TILES)
     _one_sun(scene, (0.9, 0.4, 0))
 
@@ -161,12 +162,12 @@ def _one_sun(scene, turn):
     bounces=0,
 )
 def sun_behind(scene, value):
-    """The same plates with a sun aslant behind them, which no facet bends to the viewer from most."""
+    """The same plates with an oblique sun behind them, in a direction that most facets do not refract to the viewer."""
     _closure(scene, value, TILES)
     _one_sun(scene, (math.pi - 0.6, 0.3, 0))
 
 
-# Where velvet reflects a ten thousandth of the light and less, too few samples meet it to tell its albedo.
+# Where velvet reflects at most a ten thousandth of the light, too few samples find light to measure its albedo.
 _VELVET = {0.1: ANGLES[-1:], 0.3: ANGLES[-2:], 0.6: ANGLES, 1.0: ANGLES}
 
 
@@ -181,10 +182,9 @@ def furnace_translucent(scene):
     set_plates(scene, lambda _: shader("ShaderNodeBsdfTranslucent", Color=(0.8, 0.8, 0.8)), {1.0: ANGLES})
 
 
-# Seen from the denser side smooth surfaces reflect all light beyond 50 degrees; the last angle shows what facets still pass.
-_SAME_SIDE = (
-    "Cycles 3 counts refraction that ends on the viewer's side of the surface, too, which light inside a glass cannot do"
-)
+# Seen from the denser side, smooth surfaces reflect all light beyond 50 degrees; the last angle shows only the light that rough
+# facets transmit.
+_SAME_SIDE = "Cycles 3 also counts refraction that ends on the viewer's side of the surface, which is impossible inside glass"
 _INSIDE = {0.1: ANGLES[:3], 0.3: ANGLES[:3], 0.6: ANGLES[:4], 1.0: ANGLES}
 _INSIDE_EXACT = {roughness: tuple(a for a in angles if a in _EXACT[roughness]) for roughness, angles in _INSIDE.items()}
 _INSIDE_FITTED = {0.6: (65,), 1.0: (45, 65, 80)}
@@ -243,7 +243,7 @@ def furnace_ashikhmin(scene):
     announced="Ashikhmin-Shirley follows its model",
     limit=(0.16, 0.42),
     reason="Cycles' sampler of this lobe mirrors about half vectors that face away, which brightens rough surfaces at grazing "
-    "angles under a sky; the values agree, as under lamps, and ours is their integral",
+    "angles under a sky; the values agree, as under lamps, and Lancer's result is their integral",
 )
 def furnace_ashikhmin_grazing(scene):
     _phong(scene, _PHONG_GRAZING)

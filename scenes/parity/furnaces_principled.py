@@ -1,4 +1,4 @@
-"""Principled in an even white light, at five angles and four roughnesses."""
+"""Principled under a uniform white sky, at five angles and four roughnesses."""
 
 from .catalogue import case, variants
 from .nodes import shader, with_socket

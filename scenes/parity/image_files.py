@@ -1,4 +1,4 @@
-"""Pictures by way of files of sixteen bits and more, as scanners, sculptors and photographers save them."""
+"""Image files of sixteen bits and more, as scanners, sculptors and photographers save them."""
 
 import os
 import struct
@@ -17,12 +17,12 @@ def load(path, colorspace):
 
 
 def from_file(kind, pixels, colorspace="sRGB", name="Picture"):
-    """Pixels, row 0 the lowest, as a file of PNG or TIFF with 16 bits, EXR, or HDR stores them; and the image that shows it."""
+    """Stores pixels, row 0 the lowest, as a 16-bit PNG or TIFF, EXR or HDR file, and returns the image of that file."""
     return load(write(kind, os.path.join(bpy.app.tempdir, name), pixels), colorspace)
 
 
 def write(kind, stem, pixels):
-    """The path of such a file: stem and what the format is told by."""
+    """Writes such a file and returns its path: stem with the ending of the format."""
     encode, ending = {"PNG": (_png, ".png"), "TIFF": (_tiff, ".tif")}.get(kind, (None, ""))
     if encode is None:
         return _by_blender(kind, stem, pixels)
@@ -36,7 +36,7 @@ def _png(rows):
 
 
 def _tiff(rows):
-    """One strip without compression; a fourth channel is alpha that colour is not multiplied by."""
+    """Returns a TIFF of one strip without compression; a fourth channel is straight alpha."""
     height, width, channels = rows.shape
     data = (np.clip(rows, 0.0, 1.0) * 65535.0 + 0.5).astype("<u2").tobytes()
     short, long = 3, 4
@@ -60,7 +60,7 @@ def _tiff(rows):
 
 
 def _by_blender(kind, stem, pixels):
-    """Stored as they are: data know no colour space, and colour with alpha counts as multiplied by it."""
+    """Writes the values unchanged: data have no colour space, and colour with alpha counts as premultiplied."""
     full = np.ones((*pixels.shape[:2], 4))
     full[..., : pixels.shape[2]] = pixels
     source = image("Written", full, "Non-Color", is_float=True, pack=False)

@@ -1,4 +1,4 @@
-"""Pictures made of numbers: every pixel tells its place, and no edge is like its opposite."""
+"""Synthetic images: every pixel has a different value, and no edge resembles its opposite."""
 
 import os
 
@@ -11,7 +11,7 @@ LINEAR = "Linear Rec.709" if bpy.app.version >= (4, 0) else "Linear"
 
 
 def image(name, pixels, colorspace="sRGB", is_float=False, alpha_mode="STRAIGHT", pack=True):
-    """An image of (height, width, 4) values as stored; row 0 is the lowest."""
+    """Returns an image of (height, width, 4) values as stored; row 0 is the lowest."""
     height, width = pixels.shape[:2]
     result = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
     result.colorspace_settings.name = colorspace
@@ -26,7 +26,7 @@ def image(name, pixels, colorspace="sRGB", is_float=False, alpha_mode="STRAIGHT"
 def gradient_pixels(width=16, height=12):
     x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
     pixels = np.stack([x, y, 0.5 + 0.4 * np.cos(7 * x) * np.sin(5 * y), np.ones_like(x)], axis=-1)
-    # A mark in one corner shows mirrored and turned pictures at once.
+    # A mark in one corner reveals mirrored and rotated images.
     pixels[: height // 4, : width // 4, :3] = (0.9, 0.9, 0.1)
     return pixels
 
@@ -46,7 +46,7 @@ def checker(name="Checker", **fields):
 
 
 def from_file(name, pixels, colorspace="sRGB"):
-    """The pixels by way of a PNG file."""
+    """Returns the pixels as an image loaded from a PNG file."""
     path = os.path.join(bpy.app.tempdir, f"{name}.png")
     with open(path, "wb") as file:
         file.write(png.encode(pixels[::-1]))

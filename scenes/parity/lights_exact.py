@@ -1,4 +1,4 @@
-"""Every kind of lamp and every switch of it, on one matt spot: the number of its light, to a thousandth."""
+"""Every kind of lamp and each of its switches on one matt plane: the amount of light, to a thousandth."""
 
 import math
 
@@ -13,7 +13,7 @@ _FIELDS = {"bounces": 0, "size": (32, 32), "quick": True}
 
 
 def _spot(scene):
-    """A camera that sees two hundredths of a plane, so that nothing changes over the picture but the noise."""
+    """Adds a camera that sees two hundredths of a plane, so that only noise varies over the picture."""
     grey = shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.8, 0.8))
     parts.place(scene, "Plane", parts.plane_mesh("Plane", 2.0), grey)
     eye = parts.add_camera(scene, (0, 0, 1), (0, 0, 0))
@@ -39,7 +39,7 @@ _LAMPS = {
     "spot_wide": {"kind": "SPOT", "shadow_soft_size": 0.2, "spot_size": math.radians(175), "spot_blend": 0.3},
     "sun_hard": {"kind": "SUN", "angle": 0.0},
     "sun_soft": {"kind": "SUN", "angle": 0.2},
-    # With few samples it is noisier than its limit, as glowing meshes are.
+    # Its noise with few samples exceeds the limit, as that of glowing meshes does.
     "sun_wide": ({"kind": "SUN", "angle": 1.5}, {"quick": False}),
     "area_square": {"kind": "AREA", "shape": "SQUARE", "size": 1.2},
     "area_rectangle": {"kind": "AREA", "shape": "RECTANGLE", "size": 2.0, "size_y": 0.5},
@@ -58,7 +58,7 @@ def light(scene, fields):
 
 @variants("LIGHT", values={"half": (0.5, 0.35), "full": (1.0, 0.3)}, **_FIELDS)
 def light_spot_blend(scene, value):
-    """Between the edge of the cone and where it is fully lit."""
+    """Between the edge of the cone and its fully lit part."""
     blend, aside = value
     _spot(scene)
     lamp = parts.add_light(scene, "Light", "SPOT", 200.0, (1.2, -0.8, 2.5), (aside, 0, 0), shadow_soft_size=0.0)
@@ -68,7 +68,7 @@ def light_spot_blend(scene, value):
 @variants("LIGHT", values={"point": "POINT", "spot": "SPOT"}, since=(4, 0), **_FIELDS)
 def light_true_sphere(scene, kind):
     light = _lamp(scene, kind, shadow_soft_size=0.5).data
-    # Blender 4.0 had nothing else, and no switch.
+    # Blender 4.0 always has this falloff, without a switch.
     if hasattr(light, "use_soft_falloff"):
         light.use_soft_falloff = False
 
@@ -103,7 +103,7 @@ def light_own_nodes(scene, fields):
 
 @variants("LIGHT", values=_KINDS, **_FIELDS)
 def light_shadow_off(scene, fields):
-    """A card in the way, which such light passes."""
+    """A card between lamp and plane, which the light of such a lamp ignores."""
     light = _lamp(scene, **fields).data
     grey = shader("ShaderNodeBsdfDiffuse", Color=(0.5, 0.5, 0.5))
     parts.place(scene, "Card", parts.plane_mesh("Card", 0.4), grey, (0.4, -0.27, 0.83))

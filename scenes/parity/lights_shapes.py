@@ -1,4 +1,4 @@
-"""Lamps of every kind and shape over a floor with a block on it, direct light alone."""
+"""Lamps of every kind and shape over a floor with a block on it, direct light only."""
 
 import math
 
@@ -68,7 +68,7 @@ def area_spread(scene, value):
 
 @case(bounces=0)
 def area_seen(scene):
-    """Lamps themselves, seen by the camera from front and back."""
+    """The lamps themselves, seen by the camera from front and back."""
     floor(scene)
     parts.add_light(scene, "Front", "AREA", 20.0, (-1, 0, 1), (-1, -5, 2), shape="DISK", size=1.0)
     parts.add_light(scene, "Back", "AREA", 20.0, (1, 0, 1), (1, 5, 1), size=1.0)
@@ -93,7 +93,7 @@ def point_scaled(scene):
 
 @case(bounces=0)
 def spot_scaled(scene):
-    """An uneven scale makes the cone an ellipse."""
+    """A non-uniform scale makes the cone elliptic."""
     floor_and_block(scene)
     light = parts.add_light(scene, "Light", "SPOT", 500.0, (0.8, -1.2, 3.5), spot_size=0.8, shadow_soft_size=0.0)
     light.scale = (2.0, 1.0, 1.0)
@@ -101,7 +101,7 @@ def spot_scaled(scene):
 
 @case(bounces=1)
 def lamp_in_mirror(scene):
-    """Lamps as a mirror shows them; what it throws on the floor is not the matter here, and noisy."""
+    """Lamps in a mirror; the light that the mirror reflects to the floor is noisy and excluded."""
     floor(scene)
     mirror = shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.9, 0.9), Roughness=0.0)
     parts.place(scene, "Mirror", parts.plane_mesh("Mirror", 3.0), mirror, (0, 1.2, 1.2), rotation=(1.3, 0, 0))

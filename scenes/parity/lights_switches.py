@@ -1,4 +1,4 @@
-"""What a lamp's settings and nodes, and glowing meshes, do to its light."""
+"""Effects of a lamp's settings and nodes, and of glowing meshes."""
 
 import bpy
 
@@ -33,7 +33,7 @@ def with_light_field(name):
 @variants(values=_KINDS, bounces=0, needs=with_light_field("normalize"))
 def normalize_off(scene, kind):
     floor_and_block(scene)
-    # Watts of a square metre in place of watts.
+    # The power is per square metre instead of total.
     _light(scene, kind, normalize=False, energy={"SUN": 50.0}.get(kind, 40.0))
 
 
@@ -96,7 +96,7 @@ def shadow_off(scene, kind):
 
 @variants(values={"camera": "camera", "diffuse": "diffuse", "glossy": "glossy", "transmission": "transmission"})
 def light_invisible_to(scene, ray):
-    """A lamp seen directly, in a mirror, through glass and by a matt floor, and then not by one of these."""
+    """A lamp seen directly, in a mirror, through glass and by a matt floor, and hidden from one of these."""
     floor(scene)
     mirror = shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.9, 0.9), Roughness=0.0)
     glass = shader("ShaderNodeBsdfRefraction", Color=(1, 1, 1), Roughness=0.0, IOR=1.2)
@@ -115,13 +115,13 @@ def mesh_emission(scene, value):
     floor_and_block(scene)
     glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=strength)
     lamp = parts.place(scene, "Glow", parts.cube_mesh("Glow", size), glow, (1.1, -0.4, 1.3), rotation=(0.4, 0.3, 0))
-    # The outline of a small and bright one would be all of the picture's noise.
+    # The outline of a small and bright lamp would dominate the picture's noise.
     lamp.visible_camera = size > 0.5
 
 
 @case(bounces=1)
 def shadowless_beside_others(scene):
-    """A large lamp without shadow is met by chance only where nothing is in the way: how often it is asked shows."""
+    """Rays find a large lamp without shadow only if nothing occludes it: the rate at which it is sampled is visible."""
     floor_and_block(scene)
     large = parts.add_light(scene, "Large", "POINT", 150.0, (1.2, -0.8, 2.5), shadow_soft_size=0.8)
     _cast_no_shadow(large.data)
@@ -130,7 +130,7 @@ def shadowless_beside_others(scene):
 
 @case(bounces=1)
 def mesh_emission_weak(scene):
-    """Too weak to be sampled as a light: what is hidden from shadow rays alone stands in its way all the same."""
+    """Emission too weak to be sampled as a light: an object hidden from shadow rays alone still occludes it."""
     floor_and_block(scene)
     glow = shader("ShaderNodeEmission", Color=(1.0, 0.7, 0.4), Strength=0.5)
     parts.place(scene, "Glow", parts.plane_mesh("Glow", 6.0), glow, (0, 0, 3.0))
@@ -140,7 +140,7 @@ def mesh_emission_weak(scene):
 
 @case(bounces=1)
 def mesh_emission_scaled(scene):
-    """A glowing ball under an uneven, mirroring scale."""
+    """A glowing ball under a non-uniform, mirroring scale."""
     floor_and_block(scene)
     glow = shader("ShaderNodeEmission", Color=(0.4, 0.7, 1.0), Strength=8.0)
     thing = ball(scene, glow, segments=24, radius=0.3, location=(1.1, -0.4, 1.3))

@@ -22,7 +22,7 @@ def diffuse(scene, roughness):
 
 @case()
 def glossy_mirror(scene):
-    # Before 4.0 SHARP is what roughness 0 is since.
+    # SHARP before 4.0 equals roughness 0 since then.
     studio(scene, shader(_GLOSSY, Color=_STEEL, Roughness=0.0))
 
 
@@ -46,7 +46,7 @@ def glossy_ashikhmin_high(scene):
 
 
 def _under_a_point(scene, surface):
-    """Light that no ray meets by chance: what Cycles' sampler does with a lobe is no part of the picture."""
+    """Adds a point light, which no ray finds by chance: sampling in Cycles does not affect the picture."""
     floor(scene)
     ball(scene, surface)
     parts.add_light(scene, "Light", "POINT", 300.0, (1.5, -2.5, 3.5), shadow_soft_size=0.0)
@@ -61,7 +61,7 @@ def glossy_multiple(scene, roughness):
 @variants(
     values={
         "ggx": ("GGX", 0.7, 0.0),
-        # Blender 3 draws stretched facets as if none were hidden: see the next scene.
+        # Blender 3 samples stretched facets without masking: see the next scene.
         "beckmann": (("BECKMANN", 0.7, 0.0), {"since": (4, 0)}),
         "negative": ("GGX", -0.6, 0.0),
         "turned": ("GGX", 0.7, 0.2),
@@ -99,9 +99,9 @@ def glass(scene, roughness):
 
 @case(bounces=4)
 def glass_under_a_lamp(scene):
-    """The lamp's own light through glass, on what stands behind it."""
+    """The lamp's own light through glass, on the objects behind it."""
     studio(scene, shader("ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.95), Roughness=0.0, IOR=1.45), caustics=True)
-    # Paths meet the lamp behind glass by chance alone.
+    # Paths find the lamp behind glass by chance alone.
     scene.objects["Lamp"].data.size = 8.0
 
 
@@ -114,9 +114,9 @@ def glass_rough(scene, value):
 
 @variants(values={"refraction": "ShaderNodeBsdfRefraction", "glass": "ShaderNodeBsdfGlass"}, bounces=4)
 def rough_under_a_lamp(scene, kind):
-    """Light from a lamp and not from a sky alone."""
+    """Light from a lamp in addition to a sky."""
     studio(scene, shader(kind, {"distribution": "GGX"}, Color=(0.9, 1.0, 0.95), Roughness=0.7, IOR=1.45))
-    # Large, so that little of the light comes by chance.
+    # Large, so that little of the light is found by chance.
     scene.objects["Lamp"].data.size = 8.0
 
 
@@ -218,7 +218,7 @@ def holdout_half(scene):
 
 @case(bounces=1)
 def back_of_a_material(scene):
-    """A closure that turns itself by which side is seen: an open bowl of gloss, outside and inside."""
+    """A closure whose normal follows the visible side: an open glossy bowl, outside and inside."""
     floor(scene)
     bowl = parts.mesh_from_bmesh("Bowl", _make_bowl, smooth=True)
     steel = shader(_GLOSSY, {"distribution": "GGX"}, Color=_STEEL, Roughness=0.3)
@@ -229,7 +229,7 @@ def back_of_a_material(scene):
 
 
 def _make_bowl(bm):
-    """The lower half of a ball."""
+    """Makes the lower half of a ball."""
     bmesh.ops.create_uvsphere(bm, u_segments=64, v_segments=32, radius=1.0)
     upper = [vert for vert in bm.verts if vert.co.z > 0.01]
     bmesh.ops.delete(bm, geom=upper, context="VERTS")

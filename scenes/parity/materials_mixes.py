@@ -37,7 +37,7 @@ def mix_shader(scene):
 
 @case(blender3=((0.05, 0.2), CLEAR3, CLEAR3_TOLD))
 def mix_shader_clear_leaf(scene):
-    """Two ways through a surface: straight on, and spread."""
+    """A surface that transmits light both straight through and scattered."""
 
     def build(nodes):
         clear = nodes.add("ShaderNodeBsdfTransparent", Color=(0.9, 0.6, 0.3))
@@ -48,7 +48,7 @@ def mix_shader_clear_leaf(scene):
 
 @case()
 def mix_shader_rough(scene):
-    """The light between the facets of a rough surface goes with its own colour, however small its share."""
+    """Light reflected between the facets of a rough surface keeps its own colour, however small its share."""
 
     def build(nodes):
         clay = nodes.add("ShaderNodeBsdfDiffuse", Color=(0.3, 0.1, 0.95), Roughness=1.0)
@@ -59,11 +59,11 @@ def mix_shader_rough(scene):
 
 @case(
     limit=(0.005, 0.03),
-    reason="from 5.0 Cycles counts some of what the other layer reflects twice there: its pictures of the two layers alone do "
-    "not add up to that of the mix by as much; ours do",
+    reason="from 5.0 on, Cycles counts some light of the other layer twice there: its picture of the mix exceeds the sum of "
+    "its pictures of the two layers by this amount; in Lancer both are equal",
 )
 def mix_shader_turned_away(scene):
-    """One of two layers faces inwards on half of the ball: a normal that does not turn with the surface."""
+    """One of two layers faces inwards on half of the ball: its normal does not follow the visible side."""
 
     def build(nodes):
         fixed = nodes.add("ShaderNodeNormalMap", props={"space": "WORLD"}, Color=(0.3, 0.4, 0.9))
@@ -173,7 +173,7 @@ def folded_values(scene):
 
 @case()
 def node_group(scene):
-    """A group with a value and a shader passing in and out, and another group inside."""
+    """A group with a value and a shader as inputs and outputs, and another group inside."""
 
     def build(nodes):
         outer = _group("Outer", lambda inner, ins: _inside(inner, ins))

@@ -116,8 +116,8 @@ def principled_coat_normal(scene):
 @case(
     "LOBES",
     limit=(0.01, 0.055),
-    reason="the coat mirrors the lamp right at the horizon, where the smooth normal sees it and the facet does not: Cycles "
-    "weighs that light by a chance of finding it that its sampler does not have, and loses a tenth of the highlight",
+    reason="the coat mirrors the lamp at the horizon, above the plane of the smooth normal and below that of the facet: Cycles "
+    "weights this light by a probability that its sampler does not use, and loses a tenth of the highlight",
 )
 def principled_coat_normal_horizon(scene):
     _coat_leaning(scene, (0.8, 0.5, 0.9))
@@ -125,7 +125,7 @@ def principled_coat_normal_horizon(scene):
 
 def _coat_leaning(scene, color):
     def build(nodes):
-        # A map of one colour leans the coat, and the coat alone.
+        # A map of one colour tilts the normal of the coat, and of the coat alone.
         lean = nodes.add("ShaderNodeNormalMap", props={"space": "WORLD"}, Color=color)
         return nodes.add(_KIND, Base_Color=_RED, Roughness=0.7, Coat_Weight=1.0, Coat_Roughness=0.15, Coat_Normal=lean)
 
@@ -178,7 +178,7 @@ def principled_diffuse_roughness(scene):
 @case(
     "LOBES",
     limit=(0.05, 0.25),
-    reason="a diffuse surface stands in for light under the skin, which softens the edge of the shadow; a message says so",
+    reason="a diffuse surface replaces sub-surface scattering, which softens the edge of the shadow; a message reports it",
     announced="is not supported, a diffuse surface is used",
 )
 def principled_subsurface(scene):

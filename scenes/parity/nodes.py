@@ -1,10 +1,10 @@
-"""Node trees in few words, with names of sockets that all versions of Blender understand."""
+"""Short notation for node trees, with names of sockets for all versions of Blender."""
 
 import bpy
 
 from .. import parts
 
-# Principled's sockets since 4.0, and what 3.x calls them.
+# Principled's sockets by their names since 4.0, with their names in 3.x.
 OLD_SOCKETS = {
     **parts.OLD_SOCKETS,
     "Subsurface Weight": "Subsurface",
@@ -12,7 +12,7 @@ OLD_SOCKETS = {
     "Coat Roughness": "Clearcoat Roughness",
     "Coat Normal": "Clearcoat Normal",
 }
-# Nodes that another one took over.
+# Nodes that another node replaced.
 _OLD_NODES = {"ShaderNodeBsdfSheen": "ShaderNodeBsdfVelvet"}
 
 
@@ -23,11 +23,11 @@ class Nodes:
         self.tree = tree
 
     def add(self, kind, *values, props=None, **inputs):
-        """A node. values set inputs by position, inputs by name with _ for blanks; an output in their place is linked."""
+        """Adds and returns a node. values set inputs by position, inputs by name with _ for blanks; an output is linked."""
         if bpy.app.version < (4, 0, 0):
             kind = _OLD_NODES.get(kind, kind)
         node = self.tree.nodes.new(kind)
-        # Settings first: they decide which sockets there are.
+        # Settings first: they decide which sockets exist.
         for name, value in (props or {}).items():
             setattr(node, name, value)
         for socket, value in zip(node.inputs, values, strict=False):
@@ -55,17 +55,17 @@ def first_output(node):
 
 
 def find(sockets, name):
-    """The enabled socket of that name in any version, without regard to case."""
+    """Returns the enabled socket of that name in any version, ignoring case; raises KeyError if there is none."""
     names = [name, OLD_SOCKETS.get(name, name)]
     lower = {n.lower() for n in names}
     for socket in sockets:
         if socket.enabled and socket.name.lower() in lower:
             return socket
-    raise KeyError(f"{name}: there are {[socket.name for socket in sockets if socket.enabled]}")
+    raise KeyError(f"no socket {name} among {[socket.name for socket in sockets if socket.enabled]}")
 
 
 def material(build, name="Material", displacement=None):
-    """A material whose surface is what build(nodes) returns."""
+    """Returns a material with the surface that build(nodes) returns."""
     result = bpy.data.materials.new(name)
     nodes = Nodes(parts.enable_nodes(result))
     output = nodes.add("ShaderNodeOutputMaterial")
@@ -78,7 +78,7 @@ def material(build, name="Material", displacement=None):
 
 
 def shader(kind, props=None, name="Material", **inputs):
-    """A material of one shader."""
+    """Returns a material of one shader."""
     return material(lambda nodes: nodes.add(kind, props=props, **inputs), name)
 
 
@@ -87,7 +87,7 @@ def principled(**inputs):
 
 
 def world(scene, build):
-    """A world whose surface is what build(nodes) returns."""
+    """Sets a world with the surface that build(nodes) returns."""
     result = bpy.data.worlds.new("World")
     nodes = Nodes(parts.enable_nodes(result))
     nodes.link(build(nodes), nodes.add("ShaderNodeOutputWorld").inputs["Surface"])
@@ -96,7 +96,7 @@ def world(scene, build):
 
 
 def with_node(kind):
-    """For a case's `needs`: tells where this Blender has no such node."""
+    """Returns a function for a case's `needs`, which reports whether this Blender lacks the node."""
 
     def needs():
         return "" if hasattr(bpy.types, kind) else f"this Blender has no {kind}"
@@ -105,7 +105,7 @@ def with_node(kind):
 
 
 def with_socket(kind, name):
-    """For a case's `needs`: tells where the node has no such input."""
+    """Returns a function for a case's `needs`, which reports whether the node lacks the input."""
 
     def needs():
         tree = bpy.data.node_groups.new("Probe", "ShaderNodeTree")

@@ -1,4 +1,4 @@
-"""What an object's own switches do: visibility by kind of ray, holdout, transparent shadows, override, instances."""
+"""Effects of an object's own switches: visibility by kind of ray, holdout, transparent shadows, override, instances."""
 
 import bpy
 from mathutils import Matrix
@@ -10,7 +10,7 @@ from .stages import ball, camera, floor, lamp, sky
 
 
 def _gallery(scene):
-    """A red ball seen directly, in a mirror and through glass, on a floor that it shades and colours."""
+    """A red ball seen directly, in a mirror and through glass, on a floor with its shadow and its reflected colour."""
     floor(scene)
     red = shader("ShaderNodeBsdfDiffuse", Color=(0.9, 0.15, 0.1))
     thing = ball(scene, red, radius=0.6, location=(0, 0.2, 0.6))
@@ -21,7 +21,7 @@ def _gallery(scene):
         parts.place(scene, "Mirror", pane, mirror, (-1.3, 0.8, 0.8), (1.5, 1.5, 1.5), (1.5, 0, 0.9)),
         parts.place(scene, "Pane", pane, glass, (0.5, -1.0, 0.7), rotation=(1.4, 0, 0)),
     )
-    # What they throw on the floor is noise, and not the matter here.
+    # Their caustics on the floor are noise and excluded.
     for piece in in_the_way:
         piece.visible_diffuse = False
     lamp(scene)
@@ -55,7 +55,7 @@ def object_holdout(scene):
 
 @case(quick=True, bounces=1)
 def object_holdout_alone(scene):
-    """The hole in the floor's picture, and the shadow on it that stays."""
+    """The hole in the picture of the floor, and the remaining shadow on it."""
     scene.render.film_transparent = True
     floor(scene, size=6.0)
     ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.9, 0.15, 0.1)), radius=0.6, location=(0, 0.2, 0.6)).is_holdout = True
@@ -75,7 +75,7 @@ def collection_indirect_only(scene):
 
 
 def _into_collection(scene, thing):
-    """Moves the thing into a collection of its own and gives that collection's switches in the layer."""
+    """Moves the object into a new collection and returns that collection's switches in the view layer."""
     own = bpy.data.collections.new("Own")
     scene.collection.children.link(own)
     own.objects.link(thing)
@@ -97,7 +97,7 @@ def transparent_shadow(scene):
 
 @case(bounces=1)
 def glass_shadow(scene):
-    """Glass itself stops the light that lamps send straight."""
+    """Glass itself occludes the direct light of lamps."""
     floor(scene)
     _pane(scene, shader("ShaderNodeBsdfGlass", Color=(1, 1, 1), Roughness=0.0, IOR=1.3), 0.8, 1.5)
     parts.add_light(scene, "Light", "POINT", 300.0, (0.8, -0.5, 3), shadow_soft_size=0.0)
@@ -129,7 +129,7 @@ def transparent_bounces(scene, count):
 
 @case()
 def transparent_counts_no_bounce(scene):
-    """Panes of alpha do not use up the bounces of light."""
+    """Transparent panes do not use up the bounces of light."""
     floor(scene)
     half = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.7, 0.3), Alpha=0.3, Specular_IOR_Level=0.0)
     mesh = parts.plane_mesh("Pane", 1.6)
@@ -142,7 +142,7 @@ def transparent_counts_no_bounce(scene):
 
 @case(quick=True)
 def no_material(scene):
-    """What is shown where nobody chose a material."""
+    """The default surface of an object without a material."""
     floor(scene)
     ball(scene, None, radius=0.8, location=(0, 0, 0.8))
     lamp(scene)
@@ -178,7 +178,7 @@ def collection_instances(scene):
 
 @case()
 def sheared_mesh(scene):
-    """A matrix that no location, turn and scale can give."""
+    """A matrix that is no product of location, rotation and scale."""
     floor(scene)
     thing = ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.5, 0.3)), radius=0.8)
     thing.matrix_world = Matrix.Translation((0, 0, 1)) @ Matrix.Shear("XY", 4, (0.5, 0.2)) @ Matrix.Scale(0.8, 4)
@@ -202,7 +202,7 @@ def modifier_evaluated(scene):
 
 @case()
 def curve_and_text(scene):
-    """What becomes a mesh only at the render."""
+    """Objects that become meshes only at the render."""
     floor(scene)
     surface = material(lambda nodes: nodes.add("ShaderNodeBsdfDiffuse", Color=(0.8, 0.5, 0.3)))
     curve = bpy.data.curves.new("Ring", "CURVE")

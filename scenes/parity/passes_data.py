@@ -10,14 +10,14 @@ from .stages import add_uv, ball, camera, sky
 
 _ONE_SAMPLE = {
     "limit": (0.005, 1e-3),
-    "reason": "Cycles keeps the data of one sample, up to 0.005 pixels off the middle: on a ball of 30 pixels that turns the "
-    "normal by 3e-4, and three times that in its outer tenth, which is the worst hundredth of the picture; where a surface is "
-    "seen as much aslant it moves depth, map and mist likewise",
+    "reason": "Cycles keeps the data of one sample, up to 0.005 pixels off the middle: on a ball of 30 pixels this turns the "
+    "normal by 3e-4, and three times as much in its outer tenth, the worst hundredth of the picture; on surfaces at such "
+    "grazing angles, depth, UV and mist change as much",
 }
 _NORMALS = {
     "limit": (0.005, 2e-3),
     "reason": "Cycles keeps the normal of one sample, up to 0.005 pixels off the middle: in the outer tenth of a ball of 30 "
-    "pixels that spreads it by 6e-4, and noise may be a third of a limit",
+    "pixels this varies the normal by 6e-4, and noise may be a third of a limit",
 }
 
 
@@ -79,7 +79,7 @@ def pass_mist(scene, falloff):
 
 @case("PIXELS", passes=("Normal",), filter_width=0.01, bounces=0, samples=16, size=(192, 128), **_NORMALS)
 def pass_normal_mapped(scene):
-    """With the map's lean, as the shader sees it."""
+    """The normal includes the normal map's tilt, as in the shader."""
 
     def build(nodes):
         picture = nodes.add("ShaderNodeTexImage", props={"image": images.gradient(colorspace="Non-Color")})
@@ -92,10 +92,9 @@ def pass_normal_mapped(scene):
 
 @case("PIXELS", passes=("Depth", "Position", "Normal"), filter_width=0.01, bounces=2, samples=16, **_ONE_SAMPLE)
 def pass_data_through_panes(scene):
-    """Two panes before the scene, one of alpha 0 and one of alpha 1: which surface the data tell of.
+    """Two panes before the scene, one of alpha 0 and one of alpha 1: the surface that data passes record.
 
-    Of what lies between, Cycles keeps a path that it chose by chance.
-    """
+    For values in between, Cycles keeps a randomly chosen path."""
     _corner(scene)
     for name, alpha, x in (("Clear", 0.0, -0.1), ("Solid", 1.0, 1.7)):
         surface = shader("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.7, 0.3), Alpha=alpha)
@@ -104,7 +103,7 @@ def pass_data_through_panes(scene):
 
 @case("PIXELS", passes=("Denoising Depth",), filter_width=0.01, samples=16, size=(192, 128), **_ONE_SAMPLE)
 def pass_denoising_depth_of_the_sky(scene):
-    """From 5.2 as far as a number reaches, before that 0."""
+    """The largest float since 5.2, 0 before."""
     ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.3, 0.2)))
     sky(scene)
     camera(scene, (0, -4.5, 1.5), (0, 0, 0.9))

@@ -1,4 +1,4 @@
-"""The passes of light, each as Cycles splits it, and their sum."""
+"""The passes of light, split as in Cycles, and their sum."""
 
 from .. import parts
 from .catalogue import case
@@ -9,7 +9,7 @@ _LIGHT = tuple(f"{kind} {part}" for kind in ("Diffuse", "Glossy", "Transmission"
 
 
 def _still_life(scene):
-    """One thing for every pass, with reflections of one in the other."""
+    """One object for every pass, with mutual reflections."""
     floor(scene)
     ball(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.3, 0.2)), radius=0.6, location=(-1.3, 0.3, 0.6))
     steel = shader("ShaderNodeBsdfGlossy", {"distribution": "GGX"}, Color=(0.8, 0.8, 0.6), Roughness=0.4)
@@ -26,7 +26,7 @@ def _still_life(scene):
 
 
 def _room(scene, surface):
-    """Bright walls and a ball of one closure fill the view, so that light between them is strong in every block."""
+    """Bright walls and a ball of one closure fill the view, so that indirect light is strong in every block."""
     for name, place, turn in (
         ("Floor", (0, 0, 0), (0, 0, 0)),
         ("Back", (0, 2, 0), (1.5708, 0, 0)),
@@ -50,7 +50,7 @@ def pass_glossy(scene):
 
 
 def _behind_pane(scene, y):
-    """The room through a wide rough pane at that y, which a lamp also lights from behind."""
+    """The room through a wide rough pane at the given y, which a lamp also lights from behind."""
     _room(scene, shader("ShaderNodeBsdfDiffuse", Color=(0.8, 0.7, 0.6)))
     clear = shader("ShaderNodeBsdfRefraction", {"distribution": "GGX"}, Color=(0.8, 0.9, 1.0), Roughness=0.2, IOR=1.3)
     parts.place(scene, "Pane", parts.plane_mesh("Pane", 4.0), clear, (0, y, 1.2), rotation=(1.5708, 0, 0))
@@ -59,19 +59,19 @@ def _behind_pane(scene, y):
 
 @case(passes=_LIGHT[6:])
 def pass_transmission(scene):
-    """The pane stands before all of the room's lamp."""
+    """The pane is between the camera and the whole lamp of the room."""
     _behind_pane(scene, -2.6)
 
 
 @case(passes=_LIGHT[6:], bounces=1)
 def pass_transmission_cut_lamp(scene):
-    """The room's lamp reaches through the pane's plane and lights it slantingly from the far side."""
+    """The room's lamp extends through the pane's plane and lights it obliquely from the far side."""
     _behind_pane(scene, -1.9)
 
 
 @case(passes=_LIGHT, dark=_LIGHT[3:])
 def pass_translucent(scene):
-    """In which of the passes the light through a leaf is counted: the lamp's straight, and the floor's."""
+    """The passes that contain the light through a leaf: the lamp's direct light, and the floor's."""
     floor(scene)
     leaf = shader("ShaderNodeBsdfTranslucent", Color=(0.4, 0.8, 0.3))
     parts.place(scene, "Leaf", parts.plane_mesh("Leaf", 3.0), leaf, (0, -1.0, 1.2), rotation=(1.4, 0, 0))
@@ -97,7 +97,7 @@ def pass_ambient_occlusion(scene):
 
 @case("LOBES", passes=_LIGHT[:6], bounces=2)
 def pass_light_principled(scene):
-    """One node that feeds several of them."""
+    """One node that contributes to several passes."""
     _room(scene, shader("ShaderNodeBsdfPrincipled", Base_Color=(0.8, 0.4, 0.3), Roughness=0.6, Metallic=0.4))
 
 
@@ -108,7 +108,7 @@ def _varnished(scene, **more):
     camera(scene, (0, -4.2, 2.2), (0, 0, 0.85))
 
 
-# Before 4.0 Cycles loses light below a clear coat under a sky, and in the darkest blocks nearly all.
+# Before 4.0 Cycles loses light below a clear coat under a sky, in the darkest blocks nearly all.
 @case("LOBES", passes=_LIGHT[:6], since=(4, 0))
 def pass_light_varnish(scene):
     _varnished(scene)
@@ -118,7 +118,7 @@ def pass_light_varnish(scene):
 
 @case("LOBES", passes=(_LIGHT[0], *_LIGHT[2:4], _LIGHT[5]), bounces=0)
 def pass_light_coat(scene):
-    """Under a sun, so that each layer's share is told by its value alone."""
+    """Under a sun, where each layer's share depends on its value alone."""
     _varnished(scene, Coat_Roughness=0.3)
     parts.set_world(scene, (0, 0, 0))
     parts.add_light(scene, "Sun", "SUN", 3.0, (0, 0, 30), angle=0.0).rotation_euler = (0.7, 0.4, 0)
@@ -126,7 +126,7 @@ def pass_light_coat(scene):
 
 @case(passes=("Combined", *_LIGHT, "Emission", "Environment"), sum_of_passes=True, quick=True)
 def pass_sum(scene):
-    """Ours alone: the passes put together again are the picture."""
+    """Lancer alone: the sum of the passes equals the picture."""
     _still_life(scene)
 
 
@@ -137,7 +137,7 @@ def pass_denoising(scene):
 
 @case(passes=("Denoising Depth",))
 def pass_denoising_depth(scene):
-    """Along the ray, from where the camera begins to see."""
+    """Along the ray, from the camera's near clipping distance."""
     _still_life(scene)
     white = shader("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7))
     parts.place(scene, "Back", parts.plane_mesh("Back", 40.0), white, (0, 6, 0), rotation=(1.5708, 0, 0))

@@ -1,4 +1,4 @@
-"""Plates in an even white light: one tile of the picture for each angle (from left) and roughness (from below)."""
+"""Plates under a uniform white sky: one tile of the picture for each angle (from left) and roughness (from below)."""
 
 import math
 
@@ -19,17 +19,17 @@ SIZE = size_of(TILES)
 
 
 def set_plates(scene, make, tiles=TILES):
-    """make(roughness) gives a material; tiles tells the angles of each roughness.
+    """make(roughness) returns a material; tiles: the angles of each roughness.
 
-    The plates fill the tiles of an orthographic picture, and stand so far behind one another that they hardly meet. Where a
-    row has fewer of them the sky shows.
-    """
+    The plates fill the tiles of an orthographic picture, far enough behind one another that they exchange hardly any light.
+    The
+    sky fills the tiles that a row lacks."""
     columns, rows = max(len(angles) for angles in tiles.values()), len(tiles)
     for row, (roughness, angles) in enumerate(tiles.items()):
         surface = make(roughness)
         for column, angle in enumerate(angles):
             turn = math.radians(angle)
-            # Stretched by what leaning shortens it.
+            # Stretch the plate by the factor by which its tilt shortens it.
             plate = parts.place(
                 scene,
                 f"Plate {angle} {roughness}",

@@ -7,7 +7,7 @@ import numpy as np
 
 
 def encode(picture, depth=8):
-    """The bytes of a PNG of display values in [0, 1], (height, width, 3 or 4) with 8 or 16 bits; row 0 is the top row."""
+    """Returns a PNG of display values in [0, 1], (height, width, 3 or 4) with 8 or 16 bits; row 0 is the top row."""
     values = (np.clip(np.nan_to_num(picture), 0.0, 1.0) * (2**depth - 1) + 0.5).astype(f">u{depth // 8}")
     height, width, channels = values.shape
     rows = b"".join(b"\0" + row.tobytes() for row in values)
@@ -21,7 +21,7 @@ def encode(picture, depth=8):
 
 
 def display(picture, exposure=1.0):
-    """Three channels through the sRGB curve; fewer are repeated, of more the first three are shown."""
+    """Returns three channels through the sRGB curve; a single channel is repeated, channels beyond three are dropped."""
     picture = np.asarray(picture, np.float64)[..., :3]
     if picture.shape[-1] < 3:
         picture = np.repeat(picture[..., :1], 3, axis=-1)

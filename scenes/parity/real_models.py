@@ -1,4 +1,4 @@
-"""Real material: scanned and modelled meshes, glTF, Blender's start-up file and templates."""
+"""Real assets: scanned and modelled meshes, glTF, Blender's start-up file and templates."""
 
 import os
 from pathlib import Path
@@ -12,7 +12,7 @@ from .catalogue import case, variants
 from .nodes import principled
 from .stages import camera, floor, lamp, sky
 
-# Beside the project, and not part of it.
+# This folder lies beside the project and is not part of it.
 MODELS = Path(__file__).resolve().parents[3] / "shared" / "models"
 _NAMES = ("stanford-bunny", "spot", "teapot", "fandisk", "rocker-arm", "cheburashka")
 
@@ -28,7 +28,7 @@ def real_model(scene, name):
 
 
 def _show(scene, things):
-    """The things on a floor in a small studio, brought to a height of about 2."""
+    """Places the objects on a floor in a small studio, scaled to a height of about 2."""
     bpy.context.view_layer.update()
     corners = [thing.matrix_world @ Vector(corner) for thing in things for corner in thing.bound_box]
     low, high = (Vector(pick(corner[axis] for corner in corners) for axis in range(3)) for pick in (min, max))
@@ -47,14 +47,14 @@ def _show(scene, things):
 
 
 def _with_gltf():
-    """Blender 3's importer calls bool by a name that numpy had before 1.24."""
+    """Returns "" or why this Blender lacks glTF: the importer of Blender 3 uses a name of bool that numpy removed in 1.24."""
     works = bpy.app.version >= (4, 0) or hasattr(np, "bool")
     return "" if works else f"this Blender's glTF importer does not run with numpy {np.__version__}"
 
 
 @case("LOBES", needs=_with_gltf)
 def real_gltf(scene):
-    """Written and read back: what glTF makes of materials, lamps and camera."""
+    """Export and import by glTF: its conversion of materials, lamps and camera."""
     bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
     for index in range(4):
         surface = principled(Base_Color=(0.8, 0.3 + 0.15 * index, 0.2), Metallic=float(index % 2), Roughness=0.2 + 0.2 * index)
@@ -79,7 +79,7 @@ def real_gltf(scene):
     bounces=4,
 )
 def real_startup(scene, template):
-    """What Blender opens with, and where that is an empty view a lit cube and a camera before it."""
+    """Blender's start-up file or template; if that has no objects, a lit cube and a camera are added."""
     bpy.ops.wm.read_homefile(app_template="" if template == "General" else template, use_factory_startup=True)
     scene = bpy.context.scene
     if not any(thing.type == "MESH" for thing in scene.objects):

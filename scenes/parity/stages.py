@@ -1,4 +1,4 @@
-"""Where a feature is shown: camera, lamp, sky, floor, and the thing itself."""
+"""The surroundings in which features are shown: camera, lamp, sky, floor and subject."""
 
 from .. import parts
 from .nodes import shader
@@ -12,7 +12,7 @@ def camera(scene, location=(0, -5, 3), target=(0, 0, 0.5), **fields):
 
 
 def lamp(scene, energy=150.0, location=(2.5, -2.5, 4)):
-    """Large, so that paths which meet it only by chance meet it often."""
+    """Adds a large lamp, which paths often find by chance."""
     return parts.add_light(scene, "Lamp", "AREA", energy, location, (0, 0, 0.5), size=3.0)
 
 
@@ -25,7 +25,7 @@ def floor(scene, color=(0.5, 0.45, 0.4), size=40.0):
 
 
 def floor_and_block(scene):
-    """A block on a floor, both diffuse, under a camera; the light is the scene's matter."""
+    """A block on a floor, both diffuse, under a camera; the scene adds the light."""
     floor(scene)
     block = shader("ShaderNodeBsdfDiffuse", Color=(0.3, 0.5, 0.75))
     parts.place(scene, "Block", parts.cube_mesh("Block", 1.0), block, (-0.3, 0.2, 0.5), rotation=(0, 0, 0.4))
@@ -36,15 +36,14 @@ def ball(scene, material, segments=128, radius=1.0, location=(0, 0, 1)):
     return parts.place(scene, "Ball", parts.sphere_mesh("Ball", segments, segments // 2), material, location, radius)
 
 
-# Whose light on other things comes by chance, as caustics.
+# Shaders whose light on other objects, as caustics, is found by chance.
 _MIRRORING = {"BSDF_GLOSSY", "BSDF_ANISOTROPIC", "BSDF_GLASS", "BSDF_REFRACTION", "BSDF_METALLIC", "BSDF_PRINCIPLED"}
 
 
 def studio(scene, material, light_energy=150.0, caustics=False):
     """A ball of the material on a floor, under a lamp and a dim sky, filling most of the picture.
 
-    caustics: the floor gets what a mirroring ball throws at it, too, which is the noisiest light there is.
-    """
+    caustics: whether the floor receives the caustics of a mirroring ball, the noisiest light of all."""
     floor(scene)
     thing = ball(scene, material)
     thing.visible_diffuse = caustics or not any(node.type in _MIRRORING for node in material.node_tree.nodes)
@@ -55,7 +54,7 @@ def studio(scene, material, light_energy=150.0, caustics=False):
 
 
 def open_air(scene, material):
-    """A ball before striped blocks under an even sky: for glass, whose light from lamps comes by chance alone."""
+    """A ball before striped blocks under a uniform sky: for glass, whose light from lamps is found by chance alone."""
     floor(scene)
     thing = ball(scene, material)
     block = parts.cube_mesh("Block", 0.8)
@@ -69,7 +68,7 @@ def open_air(scene, material):
 
 
 def card(scene, material, size=3.0):
-    """One square of the material seen straight on, lit evenly: for what lies on a surface."""
+    """One square of the material seen from the front, lit evenly: for textures."""
     thing = parts.place(scene, "Card", parts.plane_mesh("Card", size), material)
     add_uv(thing.data)
     sky(scene, (0.8, 0.8, 0.8), 1.0)
@@ -78,7 +77,7 @@ def card(scene, material, size=3.0):
 
 
 def add_uv(mesh, scale=1.0):
-    """A map of the x, y extent of the mesh onto the unit square, `scale` times repeated."""
+    """Adds a UV map from the mesh's extent in x and y to the unit square, repeated `scale` times."""
     layer = mesh.uv_layers.active or mesh.uv_layers.new(name="UVMap")
     xs = [v.co.x for v in mesh.vertices]
     ys = [v.co.y for v in mesh.vertices]

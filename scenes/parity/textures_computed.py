@@ -1,4 +1,4 @@
-"""Textures that are computed, curves, and what nodes know of an object and of the path of a ray."""
+"""Procedural textures, curves, and nodes about the object and the path of a ray."""
 
 import bpy
 
@@ -15,7 +15,7 @@ _DEPTHS = ("Ray", "Diffuse", "Glossy", "Transmission")
 
 
 def _shown(scene, build):
-    """On a card; build(nodes, vector) gives the colour."""
+    """Shows a colour on a card; build(nodes, vector) returns it."""
 
     def surface(nodes):
         return nodes.add("ShaderNodeEmission", Color=build(nodes, nodes.add("ShaderNodeTexCoord").outputs["Object"]))
@@ -138,7 +138,7 @@ def color_ramp_of(scene, ramp):
     values={name.lower().replace(" ", "_"): name for name in ("Location", "Color", "Alpha", "Object Index", "Random")},
 )
 def object_info(scene, output):
-    """Three balls of one material, and a fourth brought in by a collection."""
+    """Three balls of one material, and a fourth as an instance of a collection."""
     surface = material(lambda nodes: nodes.add("ShaderNodeEmission", Color=_between(nodes, output)))
     for number in range(3):
         thing = ball(scene, surface, radius=0.5, location=(number - 1.0, 0.3 * number, 0.5))
@@ -154,7 +154,7 @@ def object_info(scene, output):
 
 
 def _between(nodes, output):
-    """Numbers of some size brought to where light is."""
+    """Returns an output scaled to the range of visible colours."""
     found = nodes.add("ShaderNodeObjectInfo").outputs[output]
     return nodes.add("ShaderNodeVectorMath", found, (0.2,) * 3, (0.5,) * 3, props={"operation": "MULTIPLY_ADD"})
 
@@ -164,7 +164,7 @@ def _path(nodes, output):
 
 
 def _found_by_chance(surface):
-    """Sampled as a light it is asked by no kind of ray, and what was weighted for that is lost, differently by each engine."""
+    """Disables light sampling of the material: light samples have no kind of ray, and the engines weight them differently."""
     if hasattr(surface.cycles, "emission_sampling"):
         surface.cycles.emission_sampling = "NONE"
     else:
@@ -179,7 +179,7 @@ def _found_by_chance(surface):
     }
 )
 def light_path(scene, output):
-    """A ball that shines for some rays only, seen directly, by a mirror, by a rough plate, through glass and by the floor."""
+    """A ball that emits for some rays only, seen directly, by a mirror, by a rough plate, through glass and by the floor."""
 
     def build(nodes):
         return nodes.add("ShaderNodeEmission", Color=(0.9, 0.5, 0.2), Strength=_path(nodes, output))
@@ -199,7 +199,7 @@ def light_path(scene, output):
 
 @variants(values={"camera": "Is Camera Ray", "glossy": "Is Glossy Ray", "depth": "Ray Depth"})
 def light_path_of_world(scene, output):
-    """A background that some rays see otherwise."""
+    """A background that differs for some rays."""
     floor(scene)
     mirror = material(lambda nodes: nodes.add("ShaderNodeBsdfGlossy", Color=(0.9, 0.9, 0.9), Roughness=0.0))
     ball(scene, mirror, radius=0.7, location=(0, 0.2, 0.7))
@@ -215,7 +215,7 @@ def light_path_of_world(scene, output):
 
 @case(quick=True)
 def light_path_shadow(scene):
-    """What is solid to look at lets light pass."""
+    """A visibly solid surface that lets the light of shadow rays pass."""
 
     def build(nodes):
         mix = nodes.add("ShaderNodeMixShader", _path(nodes, "Is Shadow Ray"))

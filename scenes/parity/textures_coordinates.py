@@ -1,4 +1,4 @@
-"""Where a texture gets its coordinates from, and colours that the mesh itself carries."""
+"""The sources of texture coordinates, and colours stored in the mesh."""
 
 import bpy
 
@@ -42,7 +42,7 @@ def coordinate_of_another_object(scene):
 
 @case()
 def coordinate_default(scene):
-    """An image without a vector takes the map; a picture in a box takes the generated coordinates."""
+    """Without a vector, an image reads the UV map, and a box projection the generated coordinates."""
     image = images.gradient()
 
     def build(nodes, projection):
@@ -126,7 +126,7 @@ def attribute_by_name(scene):
 
 @case()
 def mesh_of_several_materials(scene):
-    """Faces with slots of their own, one of them empty; of each cube three are seen."""
+    """Faces with different material slots, one of them empty; three faces of each cube are visible."""
     for x, first in ((-1.0, 0), (1.0, 2)):
         mesh = parts.cube_mesh("Cube", 1.2)
         for color in ((0.8, 0.2, 0.1), (0.2, 0.7, 0.2), (0.2, 0.3, 0.9)):

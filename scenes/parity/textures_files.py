@@ -1,4 +1,4 @@
-"""Image files of more than eight bits: Cycles interpolates what a file stores, and decodes sRGB after."""
+"""Image files of more than eight bits: Cycles interpolates the stored values and decodes sRGB afterwards."""
 
 import os
 
@@ -13,17 +13,17 @@ from .stages import camera, card
 FORMATS = {"png": "PNG", "tiff": "TIFF", "exr": "OPEN_EXR"}
 ALPHA_MODES = {"straight": "STRAIGHT", "premultiplied": "PREMUL", "packed": "CHANNEL_PACKED", "none": "NONE"}
 OLD_HDR = (
-    "Debian's OpenImageIO reads the bytes of RGBE half a step, 0.2 to 0.4 %, brighter than Blender, the curve makes it 0.9 %"
+    "Debian's OpenImageIO decodes RGBE bytes half a step, 0.2 to 0.4 %, brighter than Blender; the sRGB curve makes this 0.9 %"
 )
 
 
 def _coarse(low=0.0, high=1.0, channels=3, seed=3):
-    """Few texels, far apart in value: between them encoded and linear values differ most."""
+    """Few texels with very different values: between them, encoded and linear interpolation differ most."""
     return np.random.default_rng(seed).uniform(low, high, (5, 7, channels))
 
 
 def _shown(scene, image, alpha=False, **props):
-    """The picture as light; alpha: mixed with another by its alpha."""
+    """Shows the image as emission; alpha: mixed with another shader by the image's alpha."""
 
     def build(nodes):
         picture = nodes.add("ShaderNodeTexImage", props={"image": image, **props})
@@ -75,7 +75,7 @@ def image_depth_colorspace(scene, choice):
 
 
 def _veil(kind):
-    """A picture with alpha, by which colour is multiplied as the format has it."""
+    """Returns an image with alpha, premultiplied where the format is."""
     pixels = _coarse(0.1, 1.0, channels=4)
     if kind == "OPEN_EXR":
         pixels[..., :3] *= pixels[..., 3:]
@@ -106,7 +106,7 @@ def image_depth_beyond(scene):
 
 @variants(values={f"{k}_{mode}": (kind, value) for k, kind in FORMATS.items() for mode, value in ALPHA_MODES.items()})
 def image_depth_packed(scene, choice):
-    """A file within the .blend, which Blender decodes before Cycles interpolates."""
+    """A file packed in the .blend, which Blender decodes before Cycles interpolates."""
     kind, mode = choice
     image = image_files.from_file(kind, _veil(kind))
     image.alpha_mode = mode
@@ -124,7 +124,7 @@ def image_bytes_packed(scene, mode):
 
 @variants(values=ALPHA_MODES)
 def image_depth_painted(scene, mode):
-    """Floating point that was never a file, under the name of sRGB."""
+    """Float values without a file, with the colour space sRGB."""
     _shown(scene, images.image("Painted", _veil("OPEN_EXR"), "sRGB", is_float=True, alpha_mode=mode, pack=False), alpha=True)
 
 
@@ -166,7 +166,7 @@ def image_depth_sequence(scene):
 
 @variants(values={"png": "PNG", "exr": "OPEN_EXR"})
 def world_depth(scene, kind):
-    """A sky of few texels, encoded."""
+    """A sky of few texels, encoded in sRGB."""
     image = image_files.from_file(kind, _coarse())
 
     def build(nodes):
@@ -179,6 +179,6 @@ def world_depth(scene, kind):
 
 @variants(values={"bytes": 8, "deep": 16}, since=(5, 0))
 def image_working_space(scene, depth):
-    """Where sRGB takes a matrix beside its curve, texels are converted before interpolation."""
+    """Where the working space needs a matrix besides sRGB's curve, texels are converted before interpolation."""
     bpy.ops.wm.set_working_color_space(working_space="ACEScg", convert_colors=False)
     _shown(scene, images.from_file("Bytes", _coarse()) if depth == 8 else image_files.from_file("PNG", _coarse()))

@@ -1,4 +1,4 @@
-"""Image textures: projections, borders, interpolation, colour, alpha, and where the pixels come from."""
+"""Image textures: projections, borders, interpolation, colour, alpha, and sources of pixels."""
 
 import os
 
@@ -24,7 +24,7 @@ def _matt(nodes, color):
 
 
 def _stretched(nodes, scale):
-    """The coordinates of the map, from beyond one border to beyond the other."""
+    """Returns UV coordinates that extend beyond both borders of the image."""
     uv = nodes.add("ShaderNodeTexCoord").outputs["UV"]
     return nodes.add("ShaderNodeMapping", Vector=uv, Location=((1 - scale) / 2,) * 3, Scale=(scale,) * 3)
 
@@ -86,7 +86,7 @@ def image_colorspace(scene, colorspace):
 
 @case(since=(4, 0))
 def image_colorspace_other(scene):
-    """A space with other primaries, which Blender alone can convert."""
+    """A colour space with other primaries, which only Blender can convert."""
     card(scene, material(lambda nodes: _matt(nodes, _picture(nodes, images.gradient(colorspace="Linear DCI-P3 D65")))))
 
 
@@ -119,13 +119,13 @@ def image_alpha(scene, mode):
 
 @case()
 def image_alpha_unlinked(scene):
-    """Colour alone, of a picture with alpha."""
+    """The colour of an image with alpha."""
     card(scene, material(lambda nodes: _matt(nodes, _picture(nodes, images.from_file("Veil", _veil())))))
 
 
 @case()
 def image_alpha_clips(scene):
-    """Holes cut by a picture's alpha, and their shadow."""
+    """Holes cut by an image's alpha, and their shadow."""
 
     def build(nodes):
         pixels = images.checker_pixels()
@@ -187,7 +187,7 @@ def image_udim(scene):
         return _matt(nodes, _picture(nodes, image))
 
     thing = card(scene, material(build))
-    # Two tiles by two; the fourth is missing.
+    # Two by two tiles; the fourth is missing.
     for item in thing.data.uv_layers.active.data:
         item.uv = item.uv * 2.0
 
@@ -213,7 +213,7 @@ def image_sequence(scene):
 
 @case()
 def image_large(scene):
-    """Finer than the picture: many texels in each pixel."""
+    """An image finer than the picture: many texels in each pixel."""
     source = np.random.default_rng(7)
     pixels = np.ones((512, 512, 4))
     pixels[..., :3] = source.uniform(0.0, 1.0, (512, 512, 3))
@@ -222,7 +222,7 @@ def image_large(scene):
 
 @case()
 def image_roughness(scene):
-    """A picture in place of a number."""
+    """An image as the roughness."""
 
     def build(nodes):
         rough = _picture(nodes, images.gradient(colorspace="Non-Color"))

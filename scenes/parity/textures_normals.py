@@ -1,4 +1,4 @@
-"""Surfaces that lean without bending: normal maps, bump, and true displacement."""
+"""Modified normals and surfaces: normal maps, bump, and true displacement."""
 
 import math
 
@@ -14,7 +14,7 @@ from .stages import add_uv, ball, camera, card, floor, lamp, sky, studio
 
 
 def _waves(space):
-    """Directions of gentle waves, coded as colours."""
+    """Returns an image of gently varying normals, encoded as colours."""
     x, y = np.meshgrid(np.linspace(0, 1, 32), np.linspace(0, 1, 32))
     direction = np.stack([0.5 * np.sin(9 * x), 0.4 * np.cos(7 * y), np.ones_like(x)], axis=-1)
     if space == "BLENDER":
@@ -65,7 +65,7 @@ def normal_map_on_barrel(scene):
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     layer = mesh.uv_layers.new(name="UVMap")
     for face in mesh.polygons:
-        # Sides are unrolled, each from its own edge on, the ends are seen from above.
+        # Sides are unrolled, each from its own edge; the ends are projected from above.
         start = np.floor(np.arctan2(face.center.y, face.center.x) / (np.pi / 6))
         for corner in face.loop_indices:
             x, y, z = mesh.vertices[mesh.loops[corner].vertex_index].co
@@ -77,7 +77,7 @@ def normal_map_on_barrel(scene):
 
 @case()
 def normal_map_on_ball(scene):
-    """Tangents of a map that turns and shrinks over a round mesh."""
+    """Tangents of a UV map that rotates and shrinks over a round mesh."""
     thing = studio(scene, _leaning("TANGENT"))
     add_uv(thing.data)
 
@@ -121,14 +121,14 @@ def bump(scene, settings):
 
 @case("LOBES", quick=True)
 def bump_principled(scene):
-    """How the lit side of a bump ends, which newer Blenders do otherwise than older ones."""
+    """The shadow terminator of a bump, which differs between versions of Blender."""
     card(scene, _bump(distance=0.6, kind="ShaderNodeBsdfPrincipled", color="Base Color"))
     parts.add_light(scene, "Sun", "SUN", 4.0, (1, -0.5, 0.25), angle=0.1)
 
 
 @variants(values={"leaf": "ShaderNodeBsdfTranslucent", "cloth": "ShaderNodeBsdfSheen"})
 def normal_map_turned_away(scene, kind):
-    """A normal that does not turn with the surface, on what does not reflect about it."""
+    """A normal that does not follow the visible side, on lobes that do not reflect about it."""
 
     def build(nodes):
         fixed = nodes.add("ShaderNodeNormalMap", props={"space": "WORLD"}, Color=(0.7, 0.6, 0.9), Strength=0.5)
@@ -139,7 +139,7 @@ def normal_map_turned_away(scene, kind):
 
 @variants(values={"uv": "UV", "generated": "Generated", "object": "Object"})
 def bump_from_behind(scene, coordinate):
-    """What is painted on the mesh stands out to the other side there, what lies in space does not."""
+    """Seen from behind, bumps in texture coordinates of the mesh are inverted; bumps in object space are not."""
     thing = _tilted_card(scene, _bump(coordinate=coordinate))
     thing.rotation_euler.rotate_axis("X", math.pi)
 
@@ -157,7 +157,7 @@ def _displace(surface, method):
 
 @variants(values={"true": "DISPLACEMENT", "both": "BOTH", "bump": "BUMP"})
 def displacement(scene, method):
-    """Hills that the mesh can follow, with ripples finer than its faces, which only bump shows whole."""
+    """Hills that the mesh can follow, with ripples finer than its faces, which need bump."""
 
     def build(nodes):
         picture = nodes.add("ShaderNodeTexImage", props={"image": _heights(0.06)})
@@ -184,7 +184,7 @@ def _grid(count, size):
 
 @case()
 def smooth_and_sharp(scene):
-    """Faces of both kinds in one mesh: the normals of the corners decide."""
+    """Smooth and flat faces in one mesh: the normals of the corners decide."""
     mesh = parts.cone_mesh("Cylinder", 0.9, 0.5, 1.8, 12)
     for face in mesh.polygons:
         face.use_smooth = len(face.vertices) == 4
@@ -197,7 +197,7 @@ def smooth_and_sharp(scene):
 
 
 def _hills(fins):
-    """A hilly grid whose faces are no planes; with fins some of its edges have three faces."""
+    """Returns a hilly grid with non-planar faces; with fins, some of its edges have three faces."""
     side = 6
     places = [
         (x, y, 0.9 * math.sin(1.7 * x) * math.cos(2.3 * y)) for y in np.linspace(-1, 1, side) for x in np.linspace(-1, 1, side)
@@ -224,7 +224,7 @@ def _under_lamp(scene, mesh, surface=None):
 
 @case(quick=True)
 def smooth_and_flat_divided(scene):
-    """Flat faces beside smooth ones, none of them a plane."""
+    """Flat faces beside smooth ones, none of them planar."""
     mesh = _hills(False)
     mesh.polygons.foreach_set("use_smooth", [index % 3 > 0 for index in range(len(mesh.polygons))])
     modifier = _under_lamp(scene, mesh).modifiers.new("Subdivision", "SUBSURF")
@@ -232,7 +232,7 @@ def smooth_and_flat_divided(scene):
 
 
 def _set_normals(mesh, normals):
-    """One for each corner, in the order of the faces."""
+    """Sets one normal for each corner, in the order of the faces."""
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     if hasattr(mesh, "use_auto_smooth"):
         mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
@@ -241,7 +241,7 @@ def _set_normals(mesh, normals):
 
 @case()
 def normals_at_edges_of_three_faces(scene):
-    """The user's normals: those of the fins lean the other way."""
+    """Custom normals: those of the fins are tilted the other way."""
     mesh = _hills(True)
     normals = [(0.4, 0.0, 0.9165) if face.index < 25 else (-0.4, -0.5, 0.7681) for face in mesh.polygons for _ in face.vertices]
     _set_normals(mesh, normals)
@@ -249,7 +249,7 @@ def normals_at_edges_of_three_faces(scene):
 
 
 def _normals_away(scene, surface):
-    """Leaves whose normals were taken from elsewhere: those of every other face look away from it, and lean in the others."""
+    """Leaves with transferred normals: those of every other face point away from the viewer, the others are tilted."""
     mesh = _hills(False)
     normals = [(0.5, 0.3, -0.8124) if face.index % 2 else (0.4, 0.0, 0.9165) for face in mesh.polygons for _ in face.vertices]
     _set_normals(mesh, normals)
@@ -277,7 +277,7 @@ def normals_away_lobe(scene, value):
 
 @case("LOBES", since=(4, 0))
 def normals_away_glass(scene):
-    """In Blender 3 one face is 6 % brighter than in Cycles under the sky alone, though both lobes are right by themselves."""
+    """In Blender 3 one face is 6 % brighter than in Cycles under the sky alone, although both lobes agree separately."""
     _normals_away(scene, shader("ShaderNodeBsdfGlass", Roughness=0.3))
 
 
@@ -290,7 +290,7 @@ def normals_away_glass(scene):
     },
 )
 def normals_leaning(scene, value):
-    """A pane from behind, along its face: about normals that lean to the viewer Blender 3 bends light back to their side."""
+    """A pane seen from behind: with normals tilted towards the viewer, Blender 3 refracts light back to the viewer's side."""
     kind, roughness = value
     pane = parts.plane_mesh("Pane", 3.0)
     _set_normals(pane, [(0.0, -0.7071, 0.7071)] * 4)
@@ -309,7 +309,7 @@ def normals_leaning(scene, value):
     },
 )
 def coarse(scene, value):
-    """Few smooth faces, whose interpolated normals look away from the viewer at the rim."""
+    """Few smooth faces, whose interpolated normals point away from the viewer at the rim."""
     kind, props, inputs = value
     ball(scene, shader(kind, props, **inputs), segments=12)
     lamp(scene)

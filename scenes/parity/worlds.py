@@ -1,4 +1,4 @@
-"""The sky: plain, pictured, turned, with a sun of one pixel, and none."""
+"""The sky: uniform, an image, rotated, with a sun of one pixel, and none."""
 
 import bpy
 import numpy as np
@@ -28,7 +28,7 @@ def world_color(scene, strength):
 
 @case(bounces=1)
 def world_none(scene):
-    """Without a sky only the lamp shines."""
+    """Without a sky, only the lamp emits."""
     _things(scene, mirror=False)
     scene.world = None
     parts.add_light(scene, "Lamp", "POINT", 200.0, (1, -2, 3), shadow_soft_size=0.3)
@@ -108,7 +108,7 @@ def world_mirror_ball(scene):
 
 @case()
 def world_seam_and_pole(scene):
-    """Straight up and to the seam, with few texels: how they blend across the borders."""
+    """Views of the zenith and the seam of an image with few texels: interpolation across the borders."""
     scene.world = None
     _pictured(scene, _heaven(8, 4), strength=0.8)
     camera(scene, (0, 0, 0), (-0.4, 0.02, 1), lens=10.0)
@@ -116,7 +116,7 @@ def world_seam_and_pole(scene):
 
 @variants(values={name: name for name in ("camera", "diffuse", "glossy", "transmission", "shadow")})
 def world_invisible_to(scene, ray):
-    """The sky kept from one kind of ray. Its switch for shadows does nothing: in front of it there is no place for one."""
+    """The sky hidden from one kind of ray. The switch for shadows has no effect: the sky casts no shadow."""
     _things(scene)
     glass = shader("ShaderNodeBsdfRefraction", Color=(1, 1, 1), Roughness=0.0, IOR=1.3)
     parts.place(scene, "Pane", parts.plane_mesh("Pane", 1.2), glass, (0, -0.9, 0.9), rotation=(1.4, 0, 0))
@@ -161,7 +161,7 @@ _SKIES = {
 
 
 def _even():
-    """A picture of one colour."""
+    """Returns an image of one colour."""
     return images.image("Even", np.tile((0.9, 0.1, 0.9, 1.0), (4, 8, 1)), images.LINEAR, is_float=True, pack=False)
 
 
@@ -173,7 +173,7 @@ def _even():
     bounces=4,
 )
 def world_glass_without_shadow(scene, choice):
-    """What a sky that is sampled as a lamp throws through glass that casts no shadow comes beside what the glass refracts."""
+    """A sampled sky behind glass without shadows: light samples pass the glass, in addition to refracted light."""
     kind, sky = choice
     floor(scene, size=6.0)
     node, inputs = _GLASS[kind]
