@@ -1,10 +1,10 @@
-# The front door. Every target installs what it lacks first; `make help` lists them.
+# All targets of the project; `make help` lists them. Each target first installs the packages that it needs.
 SHELL := /bin/sh
 .DEFAULT_GOAL := build
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
 
-# Comparisons are with the Cycles of the newest Blender, whose module needs Python 3.13; without it they are with that of .venv.
+# Comparisons use the Cycles of the newest Blender, whose module needs Python 3.13; without it, that of .venv.
 ifneq ($(filter bench tradeoff corpus,$(MAKECMDGOALS)),)
 ifneq ($(filter found,$(shell python3.13 -c pass 2>/dev/null && echo found)),)
 PYTHON ?= python3.13
@@ -34,10 +34,10 @@ python := $(VENV)/bin/python
 core := build/core
 tools := blender_tests/tools/start.py
 cmake := cmake -S core -G Ninja $(if $(WERROR),-DLANCER_WERROR=$(WERROR))
-# Ninja's moving line is for terminals; a log gets warnings and errors only.
+# Ninja's progress line is for terminals; a log gets warnings and errors only.
 compile := -j $(JOBS) $(if $(MAKE_TERMOUT),,-- --quiet)
 
-# Runs a command into a log: silent when it goes well, all of it when it does not. $(call logged,LOG,COMMAND)
+# $(call logged,LOG,COMMAND): runs a command with its output in a log, which is printed if the command fails.
 logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 
 platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
@@ -47,7 +47,7 @@ zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
 .PHONY: python-run python-test python-dev python-bench python-charts python-zig core-programs core-tests
 
-build: packages-build ## build the core; the library lands in addon/lib, where the add-on loads it
+build: packages-build ## build the core into addon/lib, where the add-on loads the library
 	@mkdir -p build
 	@test -e $(core)/build.ninja -a -z '$(WERROR)' || { $(call logged,build/configure.log,$(cmake) -B $(core)); }
 	@echo "== core"
@@ -57,11 +57,11 @@ render: packages-run python-run build ## render the showcase, or a file: make re
 	@$(python) scenes/render.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SNAPSHOT),--snapshot "$(SNAPSHOT)") $(if $(FRAME),--frame $(FRAME)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(SAMPLES),--samples $(SAMPLES))
 
-test: packages-test python-test core-tests addon ## all tests but the slow ones
+test: packages-test python-test core-tests addon ## run all tests except the slow ones
 	@echo "== blender_tests"
 	@$(python) -m pytest -q blender_tests -m "not slow"
 
-test-slow: packages-test python-test core-programs addon ## the tests that take minutes
+test-slow: packages-test python-test core-programs addon ## run the tests that take minutes
 	@echo "== a thousand renders cancelled"
 	@LANCER_CANCELS=1000 $(core)/lancer_failures --gtest_brief=1 --gtest_filter='*Cancel*'
 	@echo "== blender_tests, slow"
@@ -77,7 +77,7 @@ core-tests: core-programs
 	@$(call logged,build/ctest.log,ctest --test-dir $(core) -j $(JOBS) --output-on-failure)
 	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest.log
 
-sanitize: packages-test ## the C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
+sanitize: packages-test ## run the C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
 	@mkdir -p build
 	@$(call logged,build/configure-sanitize.log,$(cmake) -B build/sanitize -DLANCER_SANITIZE=ON)
 	@echo "== core under sanitizers"
@@ -85,8 +85,8 @@ sanitize: packages-test ## the C++ tests under AddressSanitizer and UndefinedBeh
 	@$(call logged,build/ctest-sanitize.log,ctest --test-dir build/sanitize -j $(JOBS) --output-on-failure)
 	@grep -E '^[0-9]+% tests passed|^Total Test time' build/ctest-sanitize.log
 
-# What calls have found goes into core/fuzz/corpus once it is mended, and is replayed by ctest.
-fuzz: packages-fuzz python-test ## try the C interface and the loading of snapshots with anything: make fuzz [MINUTES=10]
+# Inputs that found a fault go into core/fuzz/corpus once the fault is fixed; ctest replays them.
+fuzz: packages-fuzz python-test ## fuzz the C interface and the loading of snapshots: make fuzz [MINUTES=10]
 	@mkdir -p build/fuzz-found build/fuzz-corpus
 	@$(call logged,build/configure-fuzz.log,$(cmake) -B build/fuzz -DLANCER_FUZZ=ON -DCMAKE_C_COMPILER=clang-19 -DCMAKE_CXX_COMPILER=clang++-19)
 	@echo "== core under sanitizers, to be fuzzed"
@@ -95,7 +95,7 @@ fuzz: packages-fuzz python-test ## try the C interface and the loading of snapsh
 	@cmake --build build/sanitize --target lancer $(compile)
 	@.ci/fuzz.sh $(MINUTES) $(python)
 
-bench: packages-run packages-bench python-bench build ## every renderer side by side: make bench [QUICK=1] [ONLY='balls*'] [README=1] [BEFORE=revision]
+bench: packages-run packages-bench python-bench build ## compare the renderers: make bench [QUICK=1] [ONLY='balls*'] [README=1] [BEFORE=revision]
 ifneq ($(BEFORE),)
 	@rm -rf build/before && mkdir -p build/before
 	@git archive $(BEFORE) | tar -x -C build/before
@@ -106,57 +106,57 @@ endif
 	@$(python) $(tools) bench.run $(if $(BEFORE),--before build/before) $(if $(QUICK),--quick) \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(README),--readme)
 
-features: packages-run python-run build ## what each feature costs where used, and where only compiled in: make features [QUICK=1] [ONLY=glass]
+features: packages-run python-run build ## measure the cost of each feature, used and unused: make features [QUICK=1] [ONLY=glass]
 	@$(python) $(tools) features.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
-tradeoff: packages-run python-charts build ## error against seconds: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
+tradeoff: packages-run python-charts build ## measure error against time: make tradeoff [BLEND=file.blend] [SAMPLES=n] [OUT=folder] [QUICK=1] [README=1]
 	@$(python) $(tools) tradeoff.run $(if $(BLEND),--blend "$(BLEND)") $(if $(SAMPLES),--samples $(SAMPLES)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(QUICK),--quick) $(if $(README),--readme)
 
-accuracy: packages-run python-run build ## is the error that renders tell true: make accuracy [QUICK=1] [ONLY='glass*']
+accuracy: packages-run python-run build ## check the error that renders report: make accuracy [QUICK=1] [ONLY='glass*']
 	@$(python) $(tools) accuracy.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
-course: packages-test python-test build ## the course's texts, chapter by chapter, measured now: make course [QUICK=1] [ONLY=shadows]
+course: packages-test python-test build ## measure the course's texts, chapter by chapter: make course [QUICK=1] [ONLY=shadows]
 	@$(python) $(tools) course.run $(if $(QUICK),--quick) $(if $(ONLY),--only '$(ONLY)')
 
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
 	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P $(tools) --,$(python) $(tools)) parity.run \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
 
-corpus: packages-run python-run build ## files of others, by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1]
+corpus: packages-run python-run build ## render public files by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1]
 	@$(python) $(tools) corpus.run $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PX),--pixels $(PX)) $(if $(BLENDER),--blender "$(BLENDER)") \
 	  $(if $(README),--readme)
 
-addon: packages-run python-run build ## the zips for this machine: build/lancer-VERSION-PLATFORM.zip (Blender 4.2+) and -blender3.zip (3.x)
+addon: packages-run python-run build ## build the zips for this machine: build/lancer-VERSION-PLATFORM.zip (Blender 4.2+) and -blender3.zip (3.x)
 	@$(python) .ci/package.py
 
-addons: packages-run python-run python-zig ## the zips for Linux, Windows and macOS, into build/addons: make addons [ONLY=windows-x64]
+addons: packages-run python-run python-zig ## build the zips for Linux, Windows and macOS into build/addons: make addons [ONLY=windows-x64]
 	@for platform in $(or $(ONLY),$(platforms)); do \
 	  echo "== core for $$platform"; JOBS=$(JOBS) .ci/cross.sh $$platform "$(zig)" lancer || exit 1; done
 	@LANCER_ZIG="$(zig)" $(python) .ci/package.py build/platforms $(or $(ONLY),$(platforms))
 
-test-platforms: packages-platforms python-test python-zig ## run what this machine can of the other platforms' libraries: make test-platforms [ONLY=windows-x64]
+test-platforms: packages-platforms python-test python-zig ## test the other platforms' libraries as far as this machine can run them: make test-platforms [ONLY=windows-x64]
 	@LANCER_ZIG="$(zig)" JOBS=$(JOBS) .ci/test_platforms.sh $(python) $(or $(ONLY),$(platforms))
 
-bindings: ## write the Python side of the C interface anew, after core/include/lancer.h has changed
+bindings: ## generate the Python side of the C interface from core/include/lancer.h
 	@$(PYTHON) .ci/bindings.py
 
-format: packages-format python-dev ## lay out C++ and Python text
+format: packages-format python-dev ## format C++ and Python code
 	@$(VENV)/bin/ruff check --quiet --fix . && $(VENV)/bin/ruff format --quiet .
 	@find core -name '*.h' -o -name '*.cpp' | xargs $(VENV)/bin/clang-format -i
 
-clean: ## remove what was built (not .venv)
+clean: ## remove all build results (not .venv)
 	@rm -rf build addon/lib .pytest_cache .ruff_cache
 	@find addon blender_tests scenes .ci -name __pycache__ -prune -exec rm -rf {} +
 
-help: ## this list
+help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1~\2/p' Makefile | awk -F'~' '{ printf "%-17s %s\n", $$1, $$2 }'
 
 packages-build packages-run packages-test packages-fuzz packages-format packages-platforms: packages-%:
 	@PYTHON='$(PYTHON)' .ci/packages.sh $*
 
-# What only a peer of the benchmark needs may be missing: the benchmark names that peer as missing.
+# Packages that only one peer of the benchmark needs may be missing: the benchmark reports that peer as missing.
 packages-bench: packages-run
 	@for set in povray llvm; do PYTHON='$(PYTHON)' .ci/packages.sh $$set || true; done
 

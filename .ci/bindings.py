@@ -1,16 +1,16 @@
-"""The interface's numbers and structs in Python, and the core's table of parameters, made of the C header.
+"""Generates the interface's numbers and structs in Python, and the core's table of parameters, from the C header.
 
-    bindings.py              writes addon/bindings/enums.py and structs.py and core/src/scene/principled_table.h, from
-                             core/include/lancer.h
-    bindings.py HEADER FOLDER     of another header, all into another folder
+    bindings.py                writes addon/bindings/enums.py and structs.py and core/src/scene/principled_table.h, from
+                               core/include/lancer.h
+    bindings.py HEADER FOLDER  reads another header and writes all files into another folder
 
-The header is read in the plain style in which it is written: an enum is named lancer_something, or by the typedef on the line
-above it; a struct has one kind of member on a line. Names follow by rule:
+The parser relies on the plain style of the header: an enum is named lancer_something, or by the typedef on the line above it; a
+struct has one kind of member on a line. Names follow by rule:
   - lancer_light_sample is LightSample; its docstring is the first sentence of the comment above it.
-  - A member of an enum loses the words with which all members of that enum begin; ..._COUNT is none.
+  - Members of an enum lose the words with which all members of that enum begin; ..._COUNT is no member.
   - An enum without 0 has bits, and is an IntFlag.
-  - Where comments of members begin with [n], as those of passes do, n is its number of channels.
-  - Where they begin with [kind number], as those of parameters do, that is what a parameter is and its default.
+  - Where comments of members begin with [n], as those of passes do, n is the number of channels.
+  - Where they begin with [kind number], as those of parameters do, these are the parameter's kind and default.
 """
 
 import re
@@ -26,7 +26,7 @@ WIDTH = 128
 
 HEAD = '''"""{what}
 
-Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 """
 '''
 NUMBERS = {"char": "c_char", "float": "c_float", "double": "c_double"} | {
@@ -49,7 +49,7 @@ def class_name(name):
 
 
 def docstring(comment):
-    """The first sentence of a comment, as a class has it; nothing without one."""
+    """Returns the first sentence of a comment as the lines of a class docstring; no lines without a comment."""
     words = " ".join(re.sub(r"^ \* ?", "", line).strip() for line in (comment or "").splitlines())
     sentence = re.match(r"(.*?)[.:](?:\s|$)", words)
     if not sentence:
@@ -59,12 +59,12 @@ def docstring(comment):
 
 
 def without_comments(text):
-    """But for the [n] with which some begin."""
+    """Returns the text without comments, except a leading [n]."""
     return re.sub(r"/\* (\[\d\])?.*?\*/", r"\1", text, flags=re.DOTALL)
 
 
 def values(body):
-    """(name, value, channels) of an enum's members; those without a number follow the one before."""
+    """Returns (name, value, channels) of an enum's members; a member without a number follows the previous one."""
     found, following = [], 0
     for name, value, channels in VALUE.findall(without_comments(body)):
         following = int(value) if value else following
@@ -75,7 +75,7 @@ def values(body):
 
 
 def shortened(names):
-    """Without the words with which all of them begin, as far as names are left that Python can have."""
+    """Returns the names without their common leading words, as long as they remain valid in Python."""
     words = [name.split("_") for name in names]
     alike = 0
     while all(len(w) > alike + 1 and w[alike] == words[0][alike] and not w[alike + 1][0].isdigit() for w in words):
@@ -99,7 +99,7 @@ def enum_class(match):
 
 
 def field_type(member, length):
-    """In ctypes; numbers behind a pointer are arrays, as addresses."""
+    """Returns the type in ctypes; pointers to numbers are arrays, passed as addresses."""
     kind = member["type"]
     if member["pointer"]:
         if kind == "char":
@@ -110,7 +110,7 @@ def field_type(member, length):
 
 
 def fields(body):
-    """(name, type) of a struct's members."""
+    """Yields (name, type) of a struct's members."""
     for member in MEMBER.finditer(without_comments(body)):
         for item in member["names"].split(","):
             pointer, name, length = re.fullmatch(r"(\*?)(\w+)(?:\[(\d+)\])?", item.strip()).groups()
@@ -131,12 +131,12 @@ def enums_text(header):
 
 
 def parameters(body):
-    """(name, kind, default) of a struct's parameters that say what they are."""
+    """Returns (name, kind, default) of a struct's parameters, as their comments state them."""
     return [(match["name"], match["kind"], float(match["default"])) for match in PARAMETER.finditer(body)]
 
 
 def parameter_lines(name, body):
-    """What parameters are, for Python."""
+    """Returns the lines of a struct's parameters for Python."""
     lines = [f"    {class_name(name)}: {{"]
     for parameter, kind, default in parameters(body):
         value = f"({', '.join([str(default)] * 3)})" if kind in VECTORS else default
@@ -145,16 +145,16 @@ def parameter_lines(name, body):
 
 
 def table_text(header):
-    """The parameters of the Principled BSDF for the core: kind, member, what an artist calls it, default."""
+    """Returns the parameters of the Principled BSDF for the core: kind, member, artists' name, default."""
     body = next(match["body"] for match in STRUCT.finditer(header) if match["name"] == "principled")
     rows = ["#define LANCER_PRINCIPLED_PARAMETERS(X)"]
     for name, kind, default in parameters(body):
         spoken = name.replace("_", " ").replace("color", "colour").replace("ior", "IOR")
         rows.append(f'  X({kind.capitalize()}, {name}, "{spoken}", {default}f)')
-    # As clang-format lays it out.
+    # The layout of clang-format.
     table = "".join(f"{row:<{WIDTH - 1}}\\\n" for row in rows[:-1]) + rows[-1]
-    return f"""// The parameters of lancer_principled: X(kind, member, what an artist calls it, default).
-// Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+    return f"""// The parameters of lancer_principled: X(kind, member, name for artists, default).
+// Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 #pragma once
 
 {table}
@@ -172,15 +172,15 @@ def structs_text(header):
     for name in described:
         named = [member for member, kind in fields(found[name]["body"]) if kind == "Parameter"]
         if named != [parameter for parameter, *_ in parameters(found[name]["body"])]:
-            sys.exit(f"A parameter of lancer_{name} does not say what it is: [kind default].")
-    kinds = ["# Of their parameters: kind and default, as lancer.h says.", "PARAMETERS = {"]
+            sys.exit(f"A parameter of lancer_{name} lacks its [kind default] in the comment.")
+    kinds = ["# Kind and default of each parameter, from lancer.h.", "PARAMETERS = {"]
     kinds += [line for name in described for line in parameter_lines(name, found[name]["body"])] + ["}"]
     used = sorted(set(re.findall(r"\bc_\w+", "\n".join(classes))) | {"c_void_p"})
     head = [
         HEAD.format(what="The structs of the interface in ctypes, field by field."),
         f"from ctypes import POINTER, Structure, {', '.join(used)}\n",
         "from .enums import Struct\n",
-        "# Arrays cross as plain addresses: numpy gives them without a conversion for each element type.",
+        "# Arrays are passed as plain addresses, which numpy provides without a conversion for each element type.",
         "Array = c_void_p",
     ]
     table = ["STRUCTS = {", *(f"    Struct.{name}: {class_name(name)}," for name in numbered), "}"]
@@ -188,7 +188,7 @@ def structs_text(header):
 
 
 def main(header=HEADER, folder=FOLDER, table=None):
-    # Directions to the formatter stand between a comment and what it is about.
+    # Remove directives for the formatter, which separate comments from their declarations.
     text = re.sub(r"/\* clang-format \w+ \*/\n", "", Path(header).read_text(encoding="utf-8"))
     (Path(folder) / "enums.py").write_text(enums_text(text), encoding="utf-8")
     (Path(folder) / "structs.py").write_text(structs_text(text), encoding="utf-8")

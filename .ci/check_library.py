@@ -1,8 +1,7 @@
-"""check_library.py PLATFORM FILE: does a library ask no more of its system than the oldest one that is served has?
+"""check_library.py PLATFORM FILE: checks that a library needs no more than the oldest supported system offers.
 
-Looks at what can be known without running it: processor, exported names, libraries and versions of symbols that it wants, least
-system; by llvm-readobj and llvm-objdump, which read all three kinds of file.
-"""
+Checks what is known without running the library: processor, exported names, required libraries and versions of symbols, oldest
+system; by llvm-readobj and llvm-objdump, which read all three file formats."""
 
 import re
 import subprocess
@@ -12,14 +11,14 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 OLDEST_GLIBC = (2, 28)
 OLDEST_MACOS = (11, 0)
-# What each may load: the C library of its system and nothing else. Windows 10 and newer bring the last ones.
+# Libraries that each platform may load: the C library of its system only. The last ones are part of Windows 10 and newer.
 LIBRARIES = {
     "linux": r"lib(c|m|dl|pthread|rt)\.so\.\d+|ld-linux-(x86-64|aarch64)\.so\.\d+",
     "windows": r"KERNEL32\.dll|api-ms-win-crt-[a-z]+-l1-1-0\.dll",
     "macos": r"/usr/lib/libSystem\.B\.dylib",
 }
-# What zig's linker shows beside our own: its marks of the file, and new and delete, of which macOS has the whole process use
-# one definition, the system's, as in every program in C++.
+# Symbols that zig's linker exports in addition: marks of the file, and new and delete, for which macOS uses the system's
+# definition in the whole process, as in every C++ program.
 SHOWN_ANYWAY = {"macos": r"_Zn[aw]\w+|_Zd[al]\w+|__dso_handle|_mh_dylib_header"}
 
 
@@ -31,7 +30,7 @@ def said(*command):
 
 
 def declared():
-    """The names of the C interface."""
+    """Returns the names of the C interface."""
     text = (ROOT / "core/include/lancer.h").read_text()
     return set(re.findall(r"^LANCER_API [^;(]*?\b(lancer_\w+)\(", text, re.MULTILINE))
 
@@ -62,7 +61,7 @@ def check_macho(path):
     needed = re.findall(r"cmd LC_(?:LOAD|LOAD_WEAK|REEXPORT)_DYLIB\b.*?name (\S+)", commands, re.DOTALL)
     least = re.search(r"cmd LC_BUILD_VERSION.*?minos ([\d.]+)", commands, re.DOTALL)[1]
     facts = {f"macOS {least}": version(least) <= OLDEST_MACOS}
-    # Apple's own processors run nothing that is not signed, if only by itself.
+    # Apple's own processors run only signed code; an ad-hoc signature suffices.
     if "ARM64" in commands:
         facts["signed"] = "LC_CODE_SIGNATURE" in commands
     symbols = said("llvm-objdump", "--macho", "--exports-trie", path)

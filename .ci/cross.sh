@@ -12,7 +12,7 @@ done
 [ $# -eq 0 ] || shift
 folder=build/platforms/$platform
 mkdir -p "$folder"
-# zig keeps what it has compiled itself.
+# zig has its own cache of compiled files.
 if ! cmake -S core -B "$folder" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$PWD/core/toolchains/zig.cmake" -DLANCER_PLATFORM="$platform" \
   -DLANCER_ZIG="$zig" -DCMAKE_C_COMPILER_LAUNCHER= -DCMAKE_CXX_COMPILER_LAUNCHER= -DLANCER_LIBRARY_DIR="$PWD/$folder/lib" \
   "$@" >"$folder/configure.log" 2>&1; then

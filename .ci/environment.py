@@ -1,9 +1,9 @@
-"""environment.py FOLDER GROUP... [--optional GROUP...]: a virtual environment that holds the named groups of pyproject.toml.
+"""environment.py FOLDER GROUP... [--optional GROUP...]: makes a virtual environment with the named groups of pyproject.toml.
 
-Does nothing where it already does. A changed pyproject.toml or another Python makes it anew. A group after --optional that
-cannot be installed is told, and is no failure. Any Python 3 must get as far as the sentence that refuses them, so this file
-keeps to plain syntax.
-"""
+Does nothing if the environment is up to date. A changed pyproject.toml or another Python makes it anew. A group after
+--optional
+that cannot be installed is reported, and is no failure. Any Python 3 must reach the message that refuses its version, so this
+file keeps to plain syntax."""
 
 import hashlib
 import json
@@ -21,7 +21,7 @@ def dotted(version):
 
 
 def read_groups(names):
-    """The project's own groups, and those of the tools that are named."""
+    """Returns the optional dependencies of the project, and the named groups of tools."""
     import tomllib
 
     with open(os.path.join(ROOT, "pyproject.toml"), "rb") as file:
@@ -42,7 +42,7 @@ def main(folder, wanted, optional):
     if sys.version_info[:2] not in SUPPORTED:
         sys.exit(
             f"Blender's Python module needs Python {' or '.join(map(dotted, SUPPORTED))}, and {sys.executable} is "
-            f"{dotted(sys.version_info[:2])}: name another one, as in `make render PYTHON=python{dotted(SUPPORTED[0])}`."
+            f"{dotted(sys.version_info[:2])}: use another one, as in `make render PYTHON=python{dotted(SUPPORTED[0])}`."
         )
     groups = read_groups(wanted)
     identity = hashlib.sha256(json.dumps([groups, sys.version, sys.base_prefix], sort_keys=True).encode()).hexdigest()
@@ -64,7 +64,7 @@ def main(folder, wanted, optional):
         if install(folder, groups[name]):
             missing.append(name)
         else:
-            print(f"== python: {name} could not be installed, what needs it is left out", flush=True)
+            print(f"== python: {name} could not be installed; features that need it are missing", flush=True)
     with open(record_path, "w", encoding="utf-8") as file:
         json.dump({"identity": identity, "groups": sorted(set(installed + missing))}, file)
 
@@ -76,7 +76,7 @@ def install(folder, requirements):
 
 
 def applies(requirement):
-    """Whether a line of ours is meant for this Python; the only marker in use is python_version."""
+    """Whether a requirement applies to this Python; the only marker in use is python_version."""
     return "python_version" not in requirement or f"'{dotted(sys.version_info[:2])}'" in requirement
 
 

@@ -1,13 +1,13 @@
 #!/bin/sh
-# fuzz.sh MINUTES PYTHON    fuzzes the C interface and, beside it, the loading of snapshots, for so many minutes each. An input
-# that goes wrong stays in build/fuzz-found, and its report is printed.
+# fuzz.sh MINUTES PYTHON    fuzzes the C interface and, at the same time, the loading of snapshots, for so many minutes. An
+# input that fails stays in build/fuzz-found, and its report is printed.
 set -eu
 
 seconds=$(awk "BEGIN { print int($1 * 60) + 1 }")
 python=$2
 echo "== calls and files, $seconds s each"
-# Python itself is not built for the sanitizers: their library comes before all others, with the one that throws, which it looks for
-# at once. Python's own leaks are not ours.
+# Python itself is built without sanitizers: preload their library before all others, with libstdc++, whose exceptions it
+# intercepts at start-up. Leaks of Python itself are ignored.
 files=0
 first="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so)"
 LD_PRELOAD="$first" ASAN_OPTIONS=detect_leaks=0 LANCER_LIBRARY="$PWD/build/sanitize/liblancer.so" \
@@ -22,6 +22,6 @@ times
 [ "$calls" -eq 0 ] || tail -60 build/fuzz.log
 grep -E '^stat::' build/fuzz.log || true
 [ "$files" -eq 0 ] || tail -60 build/fuzz-files.log
-# The last seed where it failed, else how many files met which end.
+# The last seed after a failure, else the number of files by result.
 echo "files: $(cat build/fuzz-seed.txt)"
 [ "$calls" -eq 0 ] && [ "$files" -eq 0 ]

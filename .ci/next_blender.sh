@@ -1,12 +1,12 @@
 #!/bin/sh
-# next_blender.sh ARGUMENT...    runs the next Debian's Blender in the root that test_platforms.sh makes. The project and /tmp are
-# where they are outside, and there is no network. The mounts are the process's own and end with it.
+# next_blender.sh ARGUMENT...    runs the next Debian's Blender in the root that test_platforms.sh makes. The project and /tmp
+# have the same paths inside as outside, and there is no network. The mounts belong to the process and end with it.
 set -eu
 
 project=$(cd "$(dirname "$0")/.." && pwd)
 sudo=
 [ "$(id -u)" -eq 0 ] || sudo="sudo -E"
-# Mounts stay inside where that can be asked for: not in a root within a root, whose own are private or nobody's.
+# Keep mounts private where the system allows it; inside another root, existing mounts may refuse to become private.
 inside=private
 $sudo unshare --mount true 2>/dev/null || inside=unchanged
 # shellcheck disable=SC2016 # the inner shell's own arguments

@@ -1,11 +1,11 @@
-"""The zips that Blender installs, made of addon/ as it stands: for each platform an extension (4.2 and newer) and a classic
-add-on (3.x), each with that platform's library alone.
+"""Builds the zips that Blender installs from addon/, each with one platform's library only.
 
-    package.py                  for this machine, with the library in addon/lib, into build/
-    package.py FOLDER PLATFORM...   with the libraries in FOLDER/PLATFORM/lib, into build/addons/; LANCER_ZIG is what built them
+For each platform there is an extension (4.2 and newer) and a classic add-on (3.x).
 
-The same files give the same bytes: entries are sorted and carry no date of their own.
-"""
+    package.py                      for this machine, with the library in addon/lib, into build/
+    package.py FOLDER PLATFORM...   with the libraries in FOLDER/PLATFORM/lib, into build/addons/; LANCER_ZIG: their compiler
+
+The same files give the same bytes: entries are sorted and have no date."""
 
 import ast
 import hashlib
@@ -22,7 +22,7 @@ BUILD = ROOT / "build"
 OLDEST_DATE = (1980, 1, 1, 0, 0, 0)
 LIBRARIES = {"linux": "liblancer.so", "windows": "lancer.dll", "macos": "liblancer.dylib"}
 GLM_NOTICE = Path("/usr/share/doc/libglm-dev/copyright")
-# What zig links into the library: of the C++ and C libraries' notices, by where its package has them.
+# Licence notices of the C++ and C libraries that zig links into the library, by their path in zig's package.
 ZIG_NOTICES = {
     "libc++": "libcxx/LICENSE.TXT",
     "libc++abi": "libcxxabi/LICENSE.TXT",
@@ -33,7 +33,7 @@ SYSTEM_NOTICES = {"linux": {"glibc": "libc/glibc/LICENSES"}, "windows": {"mingw-
 
 
 def read_version():
-    """The release, which bl_info says: Blender 3.x reads it without running the file."""
+    """Returns the release from bl_info, without importing the add-on, as Blender 3.x reads it."""
     for node in ast.parse((ADDON / "__init__.py").read_text()).body:
         if isinstance(node, ast.Assign) and any(getattr(target, "id", None) == "bl_info" for target in node.targets):
             return ".".join(map(str, ast.literal_eval(node.value)["version"]))
@@ -52,12 +52,12 @@ def manifest(version, tag):
 
 
 def marked(library):
-    """Its name with a mark of what it holds, after which the add-on takes an update for another library."""
+    """Returns the library's name with a hash of its content, so that an update of the add-on loads the new library."""
     return f"{library.stem}-{hashlib.sha256(library.read_bytes()).hexdigest()[:12]}{library.suffix}"
 
 
 def notices(tag, zig):
-    """Name in the zip -> file: what the licences of those parts ask for that the library holds beside our own."""
+    """Returns name in the zip -> file: the notices that the licences of the linked parts require."""
     found = {"GLM": GLM_NOTICE}
     if zig:
         sources = Path(zig).resolve().parent / "lib"
@@ -70,9 +70,9 @@ def notices(tag, zig):
 
 
 def list_files(version, tag, library, zig):
-    """Path inside the add-on -> its bytes."""
+    """Returns path inside the add-on -> its bytes."""
     if not library.is_file():
-        sys.exit(f"{library} is missing: it has to be built first.")
+        sys.exit(f"{library} is missing: build it first.")
     files = {
         path.relative_to(ADDON).as_posix(): path.read_bytes()
         for path in ADDON.rglob("*")
@@ -95,7 +95,7 @@ def write_zip(path, files):
 
 
 def validate(path):
-    """Ask Blender's own packager, which comes with the bpy module."""
+    """Validates the zip with Blender's own packager, which comes with the bpy module."""
     tools = sorted(Path(sys.prefix).glob("lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
     if not tools:
         sys.exit("Blender's packager is not in the bpy module: the zip could not be validated.")

@@ -1,7 +1,7 @@
 #!/bin/sh
-# packages.sh SET...    installs what is missing of the named sets (build, run, test, fuzz, format, platforms, and of the benchmark's
-# peers povray, llvm) with one call of apt-get.
-# Each thing is looked for by what it gives (a command, a library, a header), so that a copy from elsewhere is good enough.
+# packages.sh SET...    installs the missing packages of the named sets (build, run, test, fuzz, format, platforms, and povray,
+# llvm for the benchmark's peers) with one call of apt-get. Each package is detected by its content (a command, a library, a
+# header), so that a copy from elsewhere suffices.
 set -eu
 
 command_is_there() { command -v "$1" >/dev/null 2>&1; }
@@ -11,7 +11,7 @@ python_has() { command_is_there "$1" && "$1" -c "import $2" >/dev/null 2>&1; }
 
 python=${PYTHON:-python3}
 if [ "$python" != python3 ] && ! "$python" -c "" >/dev/null 2>&1; then
-  echo "PYTHON=$python: there is no such Python here." >&2
+  echo "PYTHON=$python: this machine has no such Python." >&2
   exit 1
 fi
 
@@ -29,8 +29,8 @@ want_build() {
   want libglm-dev file_is_there "/usr/include/glm/glm.hpp /usr/local/include/glm/glm.hpp"
 }
 
-# Blender's Python module links against the X libraries even where it opens no window, and ends the process where it draws strokes of
-# grease pencil and finds no EGL.
+# Blender's Python module links against the X libraries even without windows, and aborts without EGL when it draws strokes of
+# grease pencil.
 want_run() {
   want_build
   want python3 command_is_there "$python"
@@ -58,14 +58,14 @@ want_test() {
   want libgl1-mesa-dri file_is_there "/usr/lib/*/dri/*_dri.so /usr/lib/dri/*_dri.so"
 }
 
-# A compiler that brings libFuzzer.
+# A compiler with libFuzzer.
 want_fuzz() {
   want_test
   want clang-19 command_is_there clang++-19
   want libclang-rt-19-dev file_is_there "/usr/lib/llvm-19/lib/clang/19/lib/linux/libclang_rt.fuzzer-*.a"
 }
 
-# What runs and reads the libraries of other systems.
+# Programs that run and inspect the libraries of other systems.
 want_platforms() {
   want_test
   want debootstrap command_is_there debootstrap
@@ -79,7 +79,7 @@ want_povray() {
   want povray command_is_there povray
 }
 
-# What Mitsuba compiles its kernels with.
+# Mitsuba compiles its kernels with this library.
 want_llvm() {
   want libllvm19 library_is_there libLLVM.so.19.1
 }
@@ -97,13 +97,13 @@ missing=$(printf '%s\n' $missing | sort -u | tr '\n' ' ')
 [ -n "$(printf '%s' "$missing" | tr -d ' ')" ] || exit 0
 
 if ! command_is_there apt-get; then
-  echo "Lancer needs these packages (Debian's names), and there is no apt-get here to install them: $missing" >&2
+  echo "Lancer needs these packages (names of Debian), and this machine has no apt-get to install them: $missing" >&2
   exit 1
 fi
 sudo=
 if [ "$(id -u)" -ne 0 ]; then
   if ! command_is_there sudo; then
-    echo "Lancer needs these packages, and installing them takes root: apt-get install $missing" >&2
+    echo "Lancer needs these packages, whose installation requires root: apt-get install $missing" >&2
     exit 1
   fi
   sudo=sudo

@@ -1,7 +1,8 @@
 #!/bin/sh
 # test_platforms.sh PYTHON PLATFORM...    runs the C++ tests and those of the bindings with the libraries of other platforms: of
-# Linux on the oldest Debian that is served, of arm64 under qemu, of Windows under wine. What cannot be run is looked at. The zips
-# of this machine's platform are installed, and Rendered shading runs in windows of the next Debian's Blender.
+# Linux on the oldest supported Debian, of arm64 under qemu, of Windows under wine. Libraries that cannot be run here are
+# inspected. The zips of this machine's platform are installed, and Rendered shading runs in windows of the next Debian's
+# Blender.
 set -eu
 
 case $1 in
@@ -13,10 +14,11 @@ JOBS=${JOBS:-2}
 places=$PWD/build/platforms
 roots=$places/roots
 oldest=bullseye
-# A Windows Python that Maven's registry has whole, and a C library of Microsoft's for it: wine's own lacks what numpy calls.
+# A complete Windows Python from Maven's registry, with a C library of Microsoft's: wine's own lacks functions that numpy calls.
 windows_python=org.bytedeco:cpython:3.12.1-1.5.10:jar:windows-x86_64
 windows_runtime=org.bytedeco:javacpp:1.5.10:jar:windows-x86_64
-# What the bindings' tests stand on; those that need a compiler or another process, or measure time, stay at home.
+# Dependencies of the bindings' tests; tests that need a compiler or another process, or measure time, run only on this
+# platform.
 packages="numpy scipy pytest iniconfig packaging pluggy pygments colorama trimesh mpmath"
 tests="abi/test_abi abi/test_abi_handles abi/test_abi_sessions abi/test_abi_states abi/test_library_file abi/test_snapshot
   physics/test_classic physics/test_camera physics/test_nodes physics/test_pass_values blender/test_uses"
@@ -24,7 +26,7 @@ tests="abi/test_abi abi/test_abi_handles abi/test_abi_sessions abi/test_abi_stat
 say() { echo "== $*"; }
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
 
-# A folder with the files of a Debian's packages; nothing in it is ever set up. root NAME RELEASE ARCHITECTURE PACKAGES
+# root NAME RELEASE ARCHITECTURE PACKAGES: unpacks a Debian's packages into a folder without setting them up.
 root() {
   [ ! -e "$roots/$1.done" ] || return 0
   say "root $1: Debian $2, $3"
@@ -36,7 +38,7 @@ root() {
   touch "$roots/$1.done"
 }
 
-# The next Debian with its Blender, set up, for next_blender.sh.
+# Sets up the next Debian with its Blender, for next_blender.sh.
 next_debian() {
   [ ! -e "$roots/trixie.done" ] || return 0
   say "root trixie: Debian 13 and its Blender"
@@ -61,7 +63,7 @@ wheels() {
   touch "$folder.done"
 }
 
-# The project as it would be on the other system. stage PLATFORM
+# stage PLATFORM: copies the project as it would be on the other system.
 stage() {
   tree=$places/$1/tree
   rm -rf "$tree"
@@ -75,8 +77,8 @@ stage() {
 # files: the tests' paths in the staged tree.
 files() { for name in $tests; do printf 'blender_tests/%s.py ' "$name"; done; }
 
-# cpp PLATFORM COMMAND...: the C++ tests and all that fuzzing has found, behind a command that runs the platform's programs. As
-# many processes as there are processors share the tests: under qemu they take the better part of an hour.
+# cpp PLATFORM COMMAND...: runs the C++ tests and all inputs found by fuzzing, with a command that runs the platform's programs.
+# One process per processor shares the tests: under qemu they take the better part of an hour.
 cpp() {
   platform=$1 ending='' shard=0
   shift
@@ -95,11 +97,12 @@ cpp() {
     grep -E '^\[  (PASSED|FAILED)|Failure' "$log" || true
     { grep -q '^\[  PASSED  \]' "$log" && ! grep -q '^\[  FAILED' "$log"; } || failed="$failed $log"
   done
-  [ -z "$failed" ] || { say "$platform: C++ tests failed, or did not come to their end:$failed"; exit 1; }
+  [ -z "$failed" ] || { say "$platform: C++ tests failed or did not finish:$failed"; exit 1; }
   "$@" "$places/$platform/lancer_replay$ending" core/fuzz/corpus </dev/null >"$places/$platform/replay.log" 2>&1
 }
 
-# python_tests PLATFORM COMMAND...: those of the bindings. A pipe, for wine's Python cannot write to a file.
+# python_tests PLATFORM COMMAND...: runs the tests of the bindings. Output goes through a pipe, because wine's Python cannot
+# write to a file.
 python_tests() {
   platform=$1
   shift
@@ -127,7 +130,8 @@ linux_x64() {
   in_blender "$PWD/.ci/next_blender.sh" blender/test_install.py blender/test_viewport.py -k "not module"
 }
 
-# in_blender PROGRAM FILE... [OPTION...]: tests with the zips and the library of linux-x64, in Debian's Blender where PROGRAM is empty.
+# in_blender PROGRAM FILE... [OPTION...]: runs tests with the zips and the library of linux-x64, in Debian's Blender if PROGRAM
+# is empty.
 in_blender() {
   program=$1 zips=$PWD/build/addons
   shift
@@ -145,7 +149,7 @@ linux_arm64() {
 }
 
 windows_x64() {
-  # A home of its own; no windows and no other systems' machines inside it.
+  # A separate home, without the engines of .NET and HTML.
   export WINEPREFIX="$places/wine" WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml=;ucrtbase=n,b"
   if [ ! -e "$WINEPREFIX.done" ]; then
     say "Windows' Python"
@@ -158,7 +162,7 @@ windows_x64() {
     "$python" -c 'import sys, zipfile
 for path in sys.argv[2:]:
     zipfile.ZipFile(path).extractall(sys.argv[1])' "$places/windows" "$places"/jars/*.jar
-    # Asks wine for what it has not; Python goes without.
+    # This module calls functions that wine lacks; Python works without it.
     find "$places/windows" -name _wmi.pyd -delete
     home=$places/windows/org/bytedeco/cpython/windows-x86_64
     cp "$home"/lib/vcruntime*.dll "$places/windows/org/bytedeco/javacpp/windows-x86_64/ucrtbase.dll" "$home"
@@ -187,6 +191,6 @@ for platform in "$@"; do
   linux-x64) linux_x64 ;;
   linux-arm64) linux_arm64 ;;
   windows-x64) windows_x64 ;;
-  macos-*) say "$platform: looked at, not run: there is nothing that runs it here" ;;
+  macos-*) say "$platform: inspected, not run: this machine cannot run it" ;;
   esac
 done

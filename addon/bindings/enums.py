@@ -1,6 +1,6 @@
 """The numbers of the interface.
 
-Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 """
 
 from enum import IntEnum, IntFlag

@@ -1,13 +1,13 @@
 """The structs of the interface in ctypes, field by field.
 
-Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 """
 
 from ctypes import POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int32, c_uint32, c_uint64, c_void_p
 
 from .enums import Struct
 
-# Arrays cross as plain addresses: numpy gives them without a conversion for each element type.
+# Arrays are passed as plain addresses, which numpy provides without a conversion for each element type.
 Array = c_void_p
 
 
@@ -413,7 +413,7 @@ STRUCTS = {
     Struct.ERROR: Error,
 }
 
-# Of their parameters: kind and default, as lancer.h says.
+# Kind and default of each parameter, from lancer.h.
 PARAMETERS = {
     Principled: {
         "base_color": ("color", (0.8, 0.8, 0.8)),

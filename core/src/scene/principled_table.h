@@ -1,5 +1,5 @@
-// The parameters of lancer_principled: X(kind, member, what an artist calls it, default).
-// Generated from core/include/lancer.h by `make bindings`; what is changed here is lost.
+// The parameters of lancer_principled: X(kind, member, name for artists, default).
+// Generated from core/include/lancer.h by `make bindings`; changes here are lost.
 #pragma once
 
 #define LANCER_PRINCIPLED_PARAMETERS(X)                                                                                        \
