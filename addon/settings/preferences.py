@@ -7,6 +7,9 @@ from bpy.props import EnumProperty, IntProperty
 from ..export import settings
 from .scene_settings import QUALITIES
 
+# Blender knows an add-on by its top package, above this room.
+_ADDON = __package__.rpartition(".")[0]
+
 
 def _threads_changed(self, _context):
     # A render may not ask Blender's context.
@@ -14,7 +17,7 @@ def _threads_changed(self, _context):
 
 
 class LancerPreferences(bpy.types.AddonPreferences):
-    bl_idname = __package__
+    bl_idname = _ADDON
 
     threads: IntProperty(
         name="Threads",
@@ -47,7 +50,7 @@ class LancerPreferences(bpy.types.AddonPreferences):
 
 def _found():
     """The preferences; None where this is no add-on that was switched on, but a module that a script has imported."""
-    addon = bpy.context.preferences.addons.get(__package__)
+    addon = bpy.context.preferences.addons.get(_ADDON)
     return None if addon is None else addon.preferences
 
 
