@@ -43,7 +43,7 @@ logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
 zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
-.PHONY: build render test test-slow test-platforms bench accuracy tradeoff features parity corpus course sanitize fuzz addon addons bindings format clean help
+.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff features parity corpus course sanitize fuzz addon addons bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
 .PHONY: python-run python-test python-dev python-bench python-charts python-zig core-programs core-tests
 
@@ -94,6 +94,9 @@ fuzz: packages-fuzz python-test ## fuzz the C interface and the loading of snaps
 	@$(call logged,build/configure-sanitize.log,$(cmake) -B build/sanitize -DLANCER_SANITIZE=ON)
 	@cmake --build build/sanitize --target lancer $(compile)
 	@.ci/fuzz.sh $(MINUTES) $(python)
+
+mutants: packages-test python-test build ## make one line of a copy wrong at a time, and run the tests that must fail: make mutants [ONLY='export*'] [QUICK=1]
+	@$(python) $(tools) mutants.run --jobs $(JOBS) $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
 
 bench: packages-run packages-bench python-bench build ## compare the renderers: make bench [QUICK=1] [ONLY='balls*'] [README=1] [BEFORE=revision]
 ifneq ($(BEFORE),)

@@ -1,0 +1,1 @@
+"""Does a test fail where the code is wrong: `make mutants`."""
