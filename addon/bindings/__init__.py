@@ -1,1 +1,1 @@
-"""The road from arrays to the C library; knows neither bpy nor Blender."""
+"""The C library's interface for numpy arrays. No bpy."""

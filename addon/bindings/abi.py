@@ -1,4 +1,4 @@
-"""lancer.h in ctypes: its functions, and the loading of the library. Its structs and numbers are found here too."""
+"""lancer.h in ctypes: loads the library and declares its functions; also re-exports structs and enums."""
 
 import contextlib
 import ctypes
@@ -19,7 +19,7 @@ _FILES = {"win32": ("lancer", ".dll"), "darwin": ("liblancer", ".dylib")}
 UINT32_MAX = 0xFFFFFFFF
 
 _u32, _u64 = c_uint32, c_uint64
-# Arguments of the calls that return a lancer_status.
+# Argument types of the functions that return a lancer_status.
 _CALLS = {
     "lancer_scene_create": (POINTER(_u64),),
     "lancer_scene_destroy": (_u64,),
@@ -70,7 +70,7 @@ _QUERIES = {
 
 
 class LancerError(Exception):
-    """One sentence for the user; status is the lancer_status behind it, or None where no call failed."""
+    """An error with a sentence for the user; status: the lancer_status of the call that failed, or None."""
 
     def __init__(self, text, status=None):
         super().__init__(text)
@@ -78,10 +78,10 @@ class LancerError(Exception):
 
 
 def library_path():
-    """Where the build puts the library and where the add-on loads it from.
+    """Return the path of the newest library in addon/lib; if there is none, the path at which the build writes it.
 
-    The zips mark its name with what it holds: a process that has loaded one file takes another of that name for the same, so
-    that an update would run with the library that it replaced.
+    The zips put a hash of the content into the file name: a process that has loaded a file returns the old library for
+    another file of the same name, so that an updated add-on would run with the old library.
     """
     folder = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "lib")
     stem, ending = _FILES.get(sys.platform, ("liblancer", ".so"))
@@ -92,7 +92,7 @@ def library_path():
 
 
 def load_library(path=None):
-    """The library with typed functions; raises LancerError where it is absent, broken or does not fit this add-on."""
+    """Return the library with typed functions; raise LancerError if it is missing, broken or of another version."""
     return _load(os.path.abspath(os.fspath(path)) if path is not None else library_path())
 
 
@@ -110,7 +110,7 @@ def _load(path):
     except OSError as error:
         if not _has_room(2 * os.path.getsize(path)):
             raise LancerError(f"there is not enough memory or address space to load Lancer's library ({error})") from None
-        # Not every system says which file it was.
+        # Not every system's error names the file.
         raise LancerError(f"Lancer's library cannot be loaded ({error}; {path}): {remedy}") from None
     try:
         for name, (result, arguments) in _QUERIES.items():
@@ -135,7 +135,7 @@ def _load(path):
 
 
 def _has_room(size):
-    """Whether so many bytes can be mapped: the loader says of a mapping that failed neither how large it was nor why."""
+    """Whether size bytes can be mapped. The loader's error does not say whether memory was the cause."""
     try:
         mmap.mmap(-1, size).close()
     except (OSError, MemoryError):
@@ -144,7 +144,7 @@ def _has_room(size):
 
 
 def check(status, library=None):
-    """Returns status where the call did its work; raises LancerError with the library's sentence where it failed."""
+    """Return status as a Status; raise LancerError with the library's message if the call failed."""
     if status <= Status.CANCELLED:
         return Status(status)
     text = (library or load_library()).lancer_last_error().decode("utf-8", "replace")

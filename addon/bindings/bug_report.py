@@ -1,6 +1,6 @@
-"""A bug report: one .zip of a scene's snapshot and of what is known of the render, which replays without Blender.
+"""Bug reports: one .zip with a scene's snapshot and facts about the render, which renders again without Blender.
 
-It may come from anywhere: load gives a snapshot that is safe to render, or raises SnapshotError.
+A report may come from any source: load() returns a snapshot that is safe to render, or raises SnapshotError.
 """
 
 import json
@@ -17,9 +17,9 @@ _CHUNK = 1 << 20
 
 
 def save(path, facts, snapshot=None, tell=None):
-    """Writes the report beside path, and puts it there when it is whole.
+    """Write the report to a temporary file beside path and rename it when it is complete.
 
-    facts: what json can hold. snapshot: None where there is none. tell(share) is called while it is written.
+    facts: a dict for JSON. snapshot: a SceneSnapshot or None. tell(fraction) is called during the writing.
     """
     folder, name = os.path.split(os.path.abspath(path))
     with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=folder) as place:
@@ -44,7 +44,7 @@ def _copy(source, target, size, tell):
 
 
 def load(path):
-    """(SceneSnapshot, facts) of a report; the facts are {} where the file is a snapshot alone."""
+    """Return (SceneSnapshot, facts) of a report; facts is {} for a plain snapshot. Raise SnapshotError or OSError."""
     path = os.fspath(path)
     if not zipfile.is_zipfile(path):
         with open(path, "rb"):
@@ -64,5 +64,5 @@ def load(path):
     except SnapshotError:
         raise
     except Exception as error:
-        # A damaged archive can fail anywhere.
+        # A damaged archive can raise any exception.
         raise SnapshotError(f"{path} holds no scene snapshot: {type(error).__name__}: {error}") from error

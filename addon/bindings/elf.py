@@ -1,7 +1,7 @@
-"""Is this file a whole shared library for this processor?
+"""Check of an ELF file before it is loaded.
 
-The dynamic loader maps a truncated library without complaint and the process dies of SIGBUS at the first touch of the
-missing part, so the file is judged before it is loaded.
+The dynamic loader maps a truncated library without an error, and the process ends with SIGBUS at the first access to the
+missing part.
 """
 
 import os
@@ -12,7 +12,7 @@ _MACHINES = {"x86_64": 62, "amd64": 62, "aarch64": 183, "arm64": 183}
 
 
 def fault(path):
-    """What is wrong with the ELF file at path, as the end of a sentence; None when it is whole and fits this machine."""
+    """Return the fault of the ELF file at path as the end of a sentence; None if it is complete and for this machine."""
     size = os.path.getsize(path)
     with open(path, "rb") as file:
         header = file.read(64)
@@ -29,7 +29,7 @@ def fault(path):
         return "is not a shared library"
     if machine != _MACHINES.get(platform.machine().lower(), machine):
         return "is for another kind of processor"
-    # Linkers write the section table last, so that its end is the end of a whole file.
+    # Linkers write the section table last: a complete file reaches to its end.
     if section_table + section_size * section_count > size:
         return "is cut short"
     return None

@@ -1,6 +1,6 @@
-"""Records of snapshot.py as structs of lancer.h.
+"""Conversion of the records of snapshot.py to the structs of lancer.h.
 
-A struct holds addresses of the record's own arrays, so the record must outlive the call; the library copies.
+A struct holds addresses of the record's arrays, so the record must outlive the call; the library copies the arrays.
 """
 
 import ctypes
@@ -23,12 +23,12 @@ def _row_major(matrix):
 
 
 def _text(text):
-    """UTF-8 that ends where C sees its end; half a character, which Python's text can hold, becomes a question mark."""
+    """Return text as UTF-8 without null characters; lone surrogates become question marks."""
     return text.replace("\0", " ").encode("utf-8", "replace")
 
 
 def _parameter(value):
-    """A number, three numbers or a NodeRef; the number of a node stands in for a value."""
+    """Return the abi.Parameter of a number, three numbers or a NodeRef."""
     if isinstance(value, NodeRef):
         return abi.Parameter((ctypes.c_float * 3)(), value.node)
     vector = tuple(value) if isinstance(value, (tuple, list)) else (value, 0.0, 0.0)
@@ -39,7 +39,7 @@ def _same(value):
     return value
 
 
-# How a record's value becomes a member of each type; members of other types are given by whoever knows them.
+# Conversion of a record's value to a member of each type; the caller of _struct passes members of other types.
 _MEMBERS = {
     ctypes.c_char_p: _text,
     abi.Array: _address,
@@ -59,12 +59,12 @@ def _members(kind):
 
 
 def _struct(kind, record, /, **given):
-    """The record as a struct of that kind: what is not given is what the record has by the member's name."""
+    """Return the record as a struct of type kind; members that are not given come from the record's field of that name."""
     return kind(**{name: given[name] if name in given else made(getattr(record, name)) for name, made in _members(kind)})
 
 
 def _many(kind, structs):
-    """A C array of structs, or NULL for none."""
+    """Return a C array of structs, or None if there are none."""
     structs = list(structs)
     return (kind * len(structs))(*structs) if structs else None
 
@@ -85,7 +85,7 @@ def mesh(m):
 
 
 def instances(table):
-    """The arguments of lancer_scene_add_instances after the scene."""
+    """Return the arguments of lancer_scene_add_instances after the scene."""
     encoded = [_text(name) + b"\0" for name in table.names]
     offsets = np.cumsum([0] + [len(name) for name in encoded]).astype(np.uint32)
     names = b"".join(encoded)
@@ -101,7 +101,7 @@ def instances(table):
     rows["hidden_from"] = table.hidden_from
     rows["terminator"] = table.terminators
     rows["flags"] = table.flags
-    # data_as keeps the array alive for as long as the pointer lives; a bare address would not.
+    # The pointer from data_as keeps the array alive; a plain address would not.
     pointer = rows.ctypes.data_as(ctypes.c_void_p)
     return len(rows), pointer, len(table.slots), _address(table.slots), names, len(names)
 
@@ -119,7 +119,7 @@ def image(i):
 
 
 def node(n):
-    # What a node leaves unsaid is 0, and no reference.
+    # Inputs that the node does not have are the constant 0.
     inputs = (abi.Parameter * 5)(*map(_parameter, n.inputs + (0.0,) * (5 - len(n.inputs))))
     return _struct(abi.Node, n, inputs=inputs)
 

@@ -1,4 +1,4 @@
-"""Nodes by themselves, as the core computes them."""
+"""Evaluation of single nodes by the core."""
 
 import ctypes
 
@@ -7,7 +7,7 @@ from .abi import check, load_library
 
 
 def evaluate(node):
-    """The four numbers of a snapshot.Node whose inputs are constants; LancerError where it asks for a place to look at."""
+    """Return the four numbers of a snapshot.Node with constant inputs; raise LancerError if it depends on a shading point."""
     library = load_library()
     value = (ctypes.c_float * 4)()
     check(library.lancer_evaluate_node(ctypes.byref(marshal.node(node)), value), library)

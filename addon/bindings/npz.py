@@ -1,7 +1,7 @@
-"""Trees of registered dataclasses to and from one .npz without pickle: the arrays as they are, the rest as JSON beside them.
+"""Trees of registered dataclasses, saved to and loaded from one .npz without pickle: arrays as such, all else as JSON.
 
-A file may come from anywhere: whatever is in it, load_npz gives records whose fields have the types that their classes name, or
-raises SnapshotError. A file that cannot be opened is an OSError, as everywhere.
+A file may come from any source: load_npz returns records whose fields have the types that their classes declare, or raises
+SnapshotError. A file that cannot be opened raises OSError.
 """
 
 import dataclasses
@@ -15,16 +15,16 @@ import numpy as np
 
 _TYPES = {}
 _TREE = "tree"
-# The library's numbers have 32 bits; what is larger would come out as another number there.
+# The library's integers have 32 bits; ctypes would truncate larger ones.
 _LARGEST = 2**32 - 1
 
 
 class SnapshotError(ValueError):
-    """A file that holds no snapshot, or a broken one; says which file, and what is wrong with it."""
+    """A file without a valid snapshot; the text names the file and its fault."""
 
 
 def register(cls):
-    """Class decorator: this dataclass may be saved and loaded."""
+    """Class decorator: allow this dataclass to be saved and loaded."""
     _TYPES[cls.__name__] = cls
     return cls
 
@@ -57,7 +57,7 @@ def load_npz(path):
         try:
             return _read(file)
         except Exception as error:
-            # A damaged file can fail anywhere: in the archive, in an array's header, in the tree, in a record.
+            # A damaged file can raise any exception: in the archive, an array's header, the tree or a record.
             reason = "it holds no tree of records" if isinstance(error, _NoTree) else f"{type(error).__name__}: {error}"
             raise SnapshotError(f"{path} holds no scene snapshot: {reason}") from error
 
@@ -97,7 +97,7 @@ def _types_of(cls):
 
 
 def _fits(value, kind):
-    """Whether a loaded value may stand in a field of that type; a parameter is numbers, or what says where they come from."""
+    """Whether a loaded value is valid for a field of that type. A field of type object is a parameter: numbers or a NodeRef."""
     options = typing.get_args(kind)
     if typing.get_origin(kind) is tuple:
         return isinstance(value, tuple) and all(_fits(item, options[0]) for item in value)
@@ -106,7 +106,7 @@ def _fits(value, kind):
     if kind in (int, bool):
         return isinstance(value, int) and 0 <= value <= _LARGEST
     if kind is float:
-        # A file's integers have any number of digits.
+        # JSON integers can exceed the range of float.
         return isinstance(value, float) or isinstance(value, int) and abs(value) <= sys.float_info.max
     if kind is object:
         return (

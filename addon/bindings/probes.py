@@ -1,6 +1,6 @@
-"""The stages of the tracer by themselves, vectorised over numpy arrays, for tests.
+"""Single stages of the tracer, vectorised over numpy arrays, for tests.
 
-Inputs broadcast to the common number of rows. Results that are structs come as record arrays: hits.t, hits.normal.
+Inputs broadcast to the common number of rows. Structs are returned as record arrays: hits.t, hits.normal.
 """
 
 import ctypes
@@ -12,22 +12,22 @@ from .abi import check, load_library
 
 
 def _rows(count, value, dtype, width=None):
-    """value broadcast to (count,) or (count, width)."""
+    """Return value broadcast to (count,) or (count, width)."""
     shape = (count,) if width is None else (count, width)
     return np.ascontiguousarray(np.broadcast_to(np.asarray(value, dtype), shape))
 
 
 def _count(*vectors, scalars=()):
-    """Common number of rows of arrays of vectors and of arrays of scalars."""
+    """Return the common number of rows of arrays of vectors and of scalars."""
     lengths = [np.atleast_2d(v).shape[0] for v in vectors] + [np.atleast_1d(s).shape[0] for s in scalars]
     return max(lengths)
 
 
 class SceneProbes:
-    """For a committed scene: needs self.library and self.handle."""
+    """Methods of a committed scene; require self.library and self.handle."""
 
     def intersect(self, origins, directions, tmin=0.0, tmax=np.inf):
-        """Closest hits with tmin < t < tmax as records of lancer_hit."""
+        """Return the closest hits with tmin < t < tmax as records of lancer_hit."""
         count, rays = self._rays(origins, directions, tmin, tmax)
         hits = np.zeros(count, np.dtype(abi.Hit))
         addresses = [a.ctypes.data for a in (*rays, hits)]
@@ -35,7 +35,7 @@ class SceneProbes:
         return hits.view(np.recarray)
 
     def occluded(self, origins, directions, tmin=0.0, tmax=np.inf):
-        """True where anything is met with tmin < t < tmax."""
+        """Return (count,) bool: whether each ray hits anything with tmin < t < tmax."""
         count, rays = self._rays(origins, directions, tmin, tmax)
         occluded = np.zeros(count, np.uint8)
         addresses = [a.ctypes.data for a in (*rays, occluded)]
@@ -43,7 +43,7 @@ class SceneProbes:
         return occluded.astype(bool)
 
     def traversal(self, origins, directions, tmin=0.0, tmax=np.inf, any_hit=False):
-        """What the wide BVH looks at for all rays together: nodes, triangle blocks, sphere blocks, instances."""
+        """Return the numbers of nodes, triangle blocks, sphere blocks and instances that all rays visit in the wide BVH."""
         count, rays = self._rays(origins, directions, tmin, tmax)
         counts = np.zeros(4, np.uint64)
         addresses = [a.ctypes.data for a in rays]
@@ -53,7 +53,7 @@ class SceneProbes:
         return dict(zip(("nodes", "triangle_blocks", "sphere_blocks", "instances"), counts.tolist(), strict=True))
 
     def bsdf(self, material, wo, wi):
-        """f (count, 3) without cosine and pdf (count,) per solid angle, in the local frame."""
+        """Return f (count, 3) without cosine and pdf (count,) per solid angle, in the local frame."""
         count = _count(wo, wi)
         wo, wi = (_rows(count, w, np.float32, 3) for w in (wo, wi))
         f, pdf = np.zeros((count, 3), np.float32), np.zeros(count, np.float32)
@@ -62,7 +62,7 @@ class SceneProbes:
         return f, pdf
 
     def bsdf_sample(self, material, wo, u):
-        """Records of lancer_bsdf_sample for u (count, 3)."""
+        """Return records of lancer_bsdf_sample for u (count, 3)."""
         count = _count(wo, u)
         wo, u = (_rows(count, w, np.float32, 3) for w in (wo, u))
         samples = np.zeros(count, np.dtype(abi.BsdfSample))
@@ -71,8 +71,8 @@ class SceneProbes:
         return samples.view(np.recarray)
 
     def lobes(self, material, wo=(0.0, 0.0, 1.0)):
-        """The lobes of a material for the local direction wo, as records of lancer_lobe_info, with the emission and the
-        transmittance (3,) that go with them."""
+        """Return a material's lobes for the local direction wo, as records of lancer_lobe_info, its emission (3,) and its
+        transmittance (3,)."""
         wo = _rows(1, wo, np.float32, 3)
         emission, transmittance = np.zeros(3, np.float32), np.zeros(3, np.float32)
         count = ctypes.c_uint32()
@@ -87,7 +87,7 @@ class SceneProbes:
         return lobes.view(np.recarray), emission, transmittance
 
     def node(self, material, node, uv):
-        """Values (count, 4) of a material's node at texture coordinates (count, 2)."""
+        """Return values (count, 4) of a material's node at texture coordinates (count, 2)."""
         count = _count(uv)
         uv, values = _rows(count, uv, np.float32, 2), np.zeros((count, 4), np.float32)
         addresses = uv.ctypes.data, values.ctypes.data
@@ -95,7 +95,7 @@ class SceneProbes:
         return values
 
     def world(self, directions):
-        """Radiance (count, 3) of the world in unit directions, and the density per solid angle of sampling them."""
+        """Return the world's radiance (count, 3) in unit directions, and the pdf per solid angle of sampling them."""
         count = _count(directions)
         directions = _rows(count, directions, np.float64, 3)
         radiance, pdf = np.zeros((count, 3), np.float32), np.zeros(count, np.float32)
@@ -104,7 +104,7 @@ class SceneProbes:
         return radiance, pdf
 
     def light(self, light, points, u):
-        """Records of lancer_light_sample for points (count, 3) and u (count, 2)."""
+        """Return records of lancer_light_sample for points (count, 3) and u (count, 2)."""
         count = _count(points, u)
         points, u = _rows(count, points, np.float64, 3), _rows(count, u, np.float32, 2)
         samples = np.zeros(count, np.dtype(abi.LightSample))
@@ -113,7 +113,7 @@ class SceneProbes:
         return samples.view(np.recarray)
 
     def light_pdf(self, light, points, wi):
-        """Density per solid angle with which the light would sample wi."""
+        """Return the pdf per solid angle with which the light samples wi."""
         count = _count(points, wi)
         points, wi = (_rows(count, a, np.float64, 3) for a in (points, wi))
         pdf = np.zeros(count, np.float32)
@@ -129,10 +129,10 @@ class SceneProbes:
 
 
 class SessionProbes:
-    """For a session: needs self.library and self.handle."""
+    """Methods of a session; require self.library and self.handle."""
 
     def probe_camera(self, raster, lens=(0.5, 0.5)):
-        """Origins and directions (count, 3) for raster positions and lens points (count, 2)."""
+        """Return origins and directions (count, 3) for raster positions and lens points (count, 2)."""
         count = _count(raster, lens)
         raster, lens = (_rows(count, a, np.float64, 2) for a in (raster, lens))
         origins, directions = np.zeros((count, 3)), np.zeros((count, 3))
@@ -142,7 +142,7 @@ class SessionProbes:
 
 
 def microfacet(cos_nh, cos_lh, cos_nv, alpha, ior, library=None):
-    """D, F and G1 of BECKMANN, each (count,)."""
+    """Return D, F and G1 of BECKMANN, each (count,)."""
     library = library or load_library()
     inputs = (cos_nh, cos_lh, cos_nv, alpha, ior)
     count = _count(scalars=inputs)
@@ -153,7 +153,7 @@ def microfacet(cos_nh, cos_lh, cos_nv, alpha, ior, library=None):
 
 
 def sampler(seed, x, y, sample, dimensions, library=None):
-    """The numbers of one sample's address for dimensions 0 ... dimensions - 1."""
+    """Return the random numbers of one sample for dimensions 0 to dimensions - 1."""
     library = library or load_library()
     out = np.zeros(dimensions, np.float32)
     check(library.lancer_probe_sampler(seed, x, y, sample, dimensions, out.ctypes.data), library)
@@ -161,7 +161,7 @@ def sampler(seed, x, y, sample, dimensions, library=None):
 
 
 def pixel_filter(kind, width, u, library=None):
-    """Offsets in pixels from the pixel's middle that the filter gives for u (count,)."""
+    """Return the offsets from the pixel's centre, in pixels, that the filter samples for u (count,)."""
     library = library or load_library()
     u = np.ascontiguousarray(np.atleast_1d(u), np.float32)
     offset = np.zeros_like(u)

@@ -1,4 +1,4 @@
-"""What the records of a snapshot have in common: checked arrays and equality."""
+"""Base of the records of a snapshot: checked arrays and equality."""
 
 import dataclasses
 import math
@@ -7,7 +7,7 @@ import numpy as np
 
 
 def array(value, dtype, shape, what):
-    """value as a read-only C-contiguous array; shape may hold None for any length."""
+    """Return value as a read-only C-contiguous array; raise ValueError for another shape. None in shape is any length."""
     array = np.ascontiguousarray(value, dtype).view()
     if array.ndim != len(shape) or any(want is not None and want != got for want, got in zip(shape, array.shape, strict=True)):
         raise ValueError(f"{what} has shape {array.shape}, expected {shape}")
@@ -30,7 +30,7 @@ def same(a, b):
 
 
 class Record:
-    """Equality that understands arrays."""
+    """A dataclass with equality of arrays by value."""
 
     __hash__ = None
 
@@ -40,7 +40,7 @@ class Record:
         return all(same(getattr(self, f.name), getattr(other, f.name)) for f in dataclasses.fields(self))
 
     def replaced(self, **values):
-        """The same with other values, which are as a record of this kind makes them: nothing is checked or copied again."""
+        """Return a copy with other values, without checks: values must have the form that __post_init__ gives them."""
         copy = object.__new__(type(self))
         copy.__dict__.update(vars(self) | values)
         return copy

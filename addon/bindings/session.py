@@ -1,10 +1,10 @@
-"""Snapshots through the C interface: a committed Scene and the Sessions that render it.
+"""Rendering of snapshots through the C interface: a committed Scene and the Sessions that render it.
 
     with Session.upload(snapshot) as session:
         session.render_all(64)
         picture = session.read(Pass.COMBINED)
 
-poll is a function without arguments that is called at least every 0.1 s while waiting; True from it cancels.
+poll is a function without arguments that is called at least every 0.1 s while waiting; it returns True to cancel.
 """
 
 import ctypes
@@ -37,7 +37,7 @@ _STEP = 0.05
 
 
 class Cancelled(Exception):
-    """poll asked to stop before there was anything to show."""
+    """The user cancelled: poll returned True before there was a result."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Progress:
     seconds: float
     samples: int
     rays: int
-    finished: bool  # the range is over: done or cancelled
+    finished: bool  # the range has ended: done or cancelled
     cancelled: bool
 
 
@@ -89,9 +89,9 @@ class Statistics:
 
 @dataclass(frozen=True)
 class PictureError:
-    """How far a picture is from the converged one: lancer_error of lancer.h."""
+    """The error estimate of a picture: lancer_error of lancer.h."""
 
-    error: float  # infinity before anything is known
+    error: float  # infinity while it is unknown
     low: float
     high: float
     cannot_exclude: float
@@ -107,12 +107,12 @@ class PictureError:
 
     @property
     def bound(self):
-        """What the error stays below, with the confidence that was asked for."""
+        """The upper bound of the error at the requested confidence."""
         return self.high + self.cannot_exclude
 
 
 class _Handle:
-    """Owns one handle; close() may be called any number of times, and a forgotten object closes itself."""
+    """Owner of a handle. close() may be called repeatedly; garbage collection closes the handle too."""
 
     def _own(self, library, destroy, handle):
         self.library = library
@@ -133,7 +133,7 @@ class _Handle:
 
 
 class Scene(_Handle, SceneProbes):
-    """A scene in the library, empty until filled and of no use until committed; upload does all three."""
+    """A scene in the library: create, fill, commit; upload() does all three."""
 
     def __init__(self, library=None):
         library = library or load_library()
@@ -143,7 +143,7 @@ class Scene(_Handle, SceneProbes):
 
     @classmethod
     def upload(cls, snapshot, library=None, poll=None, release=False):
-        """A committed scene from a snapshot; its settings give accelerator and threads. release: see fill."""
+        """Return a committed scene with the accelerator and threads of the snapshot's settings. release: see fill."""
         scene = cls(library)
         try:
             scene.fill(snapshot, poll, release)
@@ -154,14 +154,14 @@ class Scene(_Handle, SceneProbes):
         return scene
 
     def fill(self, snapshot, poll=None, release=False):
-        """Copies the snapshot into the library. release: takes out of it what has been copied, so that none is held twice."""
+        """Copy the snapshot into the library. release: remove each part from the snapshot when copied, to save memory."""
         for _ in self.filling(snapshot, release):
             _obey(poll)
 
     def filling(self, snapshot, release=False):
-        """fill() in pieces: yields after each thing that was copied, so that one of them is the longest that it takes."""
+        """Run fill() in steps: yield after each copied record, so that the caller can poll."""
         library, handle = self.library, self.handle
-        # What refers to another thing comes after it.
+        # Materials refer to images: add images first.
         for add, to_struct, name in (
             (library.lancer_scene_add_image, marshal.image, "images"),
             (library.lancer_scene_add_mesh, marshal.mesh, "meshes"),
@@ -172,7 +172,7 @@ class Scene(_Handle, SceneProbes):
             if release:
                 snapshot.set(name, ())
             while records:
-                # The struct holds addresses only, of what must live until the call is over.
+                # The struct holds addresses of the record's arrays: keep the record until the call returns.
                 record = records.pop()
                 self._check(add(handle, ctypes.byref(to_struct(record))))
                 yield
@@ -201,11 +201,11 @@ class Scene(_Handle, SceneProbes):
         self._check(self.library.lancer_scene_commit(self.handle, int(accelerator), int(threads)))
 
     def is_committed(self, seconds=0.0):
-        """Whether the commit is over, after waiting at most that long; raises what made it fail."""
+        """Wait at most that long and return whether the commit has ended; raise LancerError if it failed."""
         return self._check(self.library.lancer_scene_wait(self.handle, int(seconds * 1000))) is not Status.RUNNING
 
     def messages(self):
-        """What the library left out or replaced, a line each."""
+        """Return a line for each thing that the library left out or replaced."""
         needed = ctypes.c_size_t()
         self._check(self.library.lancer_scene_messages(self.handle, None, 0, ctypes.byref(needed)))
         text = ctypes.create_string_buffer(max(1, needed.value))
@@ -214,7 +214,7 @@ class Scene(_Handle, SceneProbes):
 
 
 class Session(_Handle, SessionProbes):
-    """A film over a committed scene. scene stays open when the session closes, unless upload made it."""
+    """A film over a committed scene. The scene stays open when the session closes, unless upload() created it."""
 
     def __init__(self, scene, camera, settings):
         handle = ctypes.c_uint64()
@@ -229,7 +229,7 @@ class Session(_Handle, SessionProbes):
 
     @classmethod
     def upload(cls, snapshot, library=None, poll=None, release=False):
-        """Scene and session of a snapshot in one; close() frees both. release: see Scene.fill."""
+        """Create the scene and the session of a snapshot; close() frees both. release: see Scene.fill."""
         scene = Scene.upload(snapshot, library, poll, release)
         try:
             session = cls(scene, snapshot.camera, snapshot.settings)
@@ -245,11 +245,11 @@ class Session(_Handle, SessionProbes):
             self.scene.close()
 
     def render(self, first, count):
-        """Starts samples first ... first + count - 1 of every pixel; wait() watches them."""
+        """Start samples first to first + count - 1 of every pixel in the background; wait() reports their progress."""
         self._check(self.library.lancer_session_render(self.handle, int(first), int(count)))
 
     def wait(self, seconds):
-        """Waits at most that long and tells how far the range is."""
+        """Wait at most that long and return the Progress of the range."""
         progress = abi.Progress()
         milliseconds = max(0, round(seconds * 1000))
         status = self._check(self.library.lancer_session_wait(self.handle, milliseconds, ctypes.byref(progress)))
@@ -266,21 +266,24 @@ class Session(_Handle, SessionProbes):
         self._check(self.library.lancer_session_cancel(self.handle))
 
     def stop(self):
-        """As cancel, but pixels keep a power of two of samples and the session can go on."""
+        """Cancel, but keep a power of two of samples per pixel, so that the session can continue."""
         self._check(self.library.lancer_session_stop(self.handle))
 
     def refine(self, target=0.0, confidence=0.95):
-        """Starts a round that doubles samples where it helps most; False where none is left. Needs settings.refines."""
+        """Start a round that doubles the samples of the pixels that reduce the error most; False if no pixel is left.
+
+        Requires settings.refines.
+        """
         return self._check(self.library.lancer_session_refine(self.handle, float(target), float(confidence))) is Status.OK
 
     def error(self, confidence=0.95):
-        """The PictureError of the film as it is."""
+        """Return the PictureError of the film's current state."""
         raw = abi.Error()
         self._check(self.library.lancer_session_error(self.handle, float(confidence), ctypes.byref(raw)))
         return PictureError(**{f.name: getattr(raw, f.name) for f in dataclasses.fields(PictureError)})
 
     def render_all(self, samples=None, poll=None):
-        """Renders samples 0 ... samples - 1 (the settings' number where not given); True where poll did not cancel."""
+        """Render samples 0 to samples - 1, by default the settings' number; return False if poll cancelled."""
         self.render(0, self.settings.samples if samples is None else samples)
         while True:
             progress = self.wait(_STEP)
@@ -290,7 +293,7 @@ class Session(_Handle, SessionProbes):
                 self.cancel()
 
     def read(self, which=Pass.COMBINED):
-        """One pass of the region as (height, width, channels) float32; row 0 is the bottom row."""
+        """Return one pass of the region as (height, width, channels) float32; row 0 is the bottom row."""
         which = Pass(which)
         out = np.empty((self.camera.region_height, self.camera.region_width, which.channels), np.float32)
         self._check(self.library.lancer_session_read(self.handle, int(which), out.ctypes.data, out.size))
@@ -306,7 +309,7 @@ class Session(_Handle, SessionProbes):
         return self.scene.messages()
 
     def debug_sample(self, x, y, s, capacity=64):
-        """Sample s of pixel (x, y) again: its RGBA and its vertices (a record array of lancer_vertex)."""
+        """Trace sample s of pixel (x, y) again; return its RGBA and its vertices (a record array of lancer_vertex)."""
         rgba = np.zeros(4, np.float32)
         vertices = np.zeros(capacity, np.dtype(abi.Vertex))
         count = ctypes.c_uint32()

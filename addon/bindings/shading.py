@@ -1,6 +1,6 @@
-"""Materials, nodes, images and the world as records of a snapshot. Meanings, units and frames are those of lancer.h.
+"""Materials, nodes, images and the world as records of a snapshot. lancer.h defines meanings, units and frames.
 
-A parameter is a number, three numbers, or a NodeRef: the result of a node of the same owner.
+A parameter is a number, three numbers, or a NodeRef: the result of a node of the same material or world.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def _parameter(value):
 
 
 class _Parameters(Record):
-    """Has the parameters of a struct of lancer.h, with the defaults that stand there."""
+    """A record with the parameters of a struct of lancer.h and their defaults."""
 
     PARAMETERS = ()
 
@@ -56,7 +56,7 @@ class Image(Record):
     texels: np.ndarray = field(default_factory=lambda: np.zeros((1, 1, 4), np.uint8))
     transfer: int = Transfer.LINEAR
     alpha: int = AlphaMode.STRAIGHT
-    tile: int = 0  # UDIM number; 0 = not one of several tiles
+    tile: int = 0  # UDIM number; 0 for an image without tiles
     matrix: tuple = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)  # decoded RGB to the working space, row-major
 
     def __post_init__(self):
@@ -130,7 +130,7 @@ class World(_Parameters, struct=structs.World):
     nodes: tuple[Node, ...] = ()
     hidden_from: int = 0  # Ray bits
     map_resolution: int = 0
-    ambient: tuple | None = None  # light from everywhere that Ka reflects in CLASSIC; None: the mean of the radiance
+    ambient: tuple | None = None  # ambient light, which Ka reflects in CLASSIC; None: the mean of the radiance
 
     def __post_init__(self):
         super().__post_init__()

@@ -1,6 +1,6 @@
-"""A scene as frozen dataclasses of C-contiguous arrays: test fixture, benchmark input, bug report and farm job in one.
+"""A scene as frozen dataclasses of C-contiguous arrays, for rendering, tests, benchmarks and bug reports. No bpy.
 
-Units and frames are those of lancer.h. Snapshots compare with == (NaN equals NaN: it is the same data) and know no bpy.
+lancer.h defines units and frames. Snapshots compare by value; NaN equals NaN.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _IDENTITY = np.eye(4)[:3]
 @register
 @dataclass(frozen=True, eq=False)
 class MeshAttribute(Record):
-    """values: (n, channels); n is the number of vertices, triangles or 3 triangles, as domain says."""
+    """values: (n, channels); n is the number of vertices, of triangles, or 3 times that of triangles, by domain."""
 
     name: str = ""
     values: np.ndarray = field(default_factory=lambda: np.empty((0, 1), np.float32))
@@ -57,7 +57,7 @@ class MeshData(Record):
     uvs: np.ndarray | None = None  # (T, 3, 2)
     colors: np.ndarray | None = None  # (T, 3, 3), linear
     material_slots: np.ndarray | None = None  # (T,)
-    polygons: np.ndarray | None = None  # (T,), each below T: the polygon of each triangle; None: each is one
+    polygons: np.ndarray | None = None  # (T,), each below T: the polygon of each triangle; None: one polygon per triangle
     attributes: tuple[MeshAttribute, ...] = ()
 
     def __post_init__(self):
@@ -85,7 +85,7 @@ class MeshData(Record):
 
     @classmethod
     def from_trimesh(cls, mesh, name="mesh", smooth=False):
-        """A trimesh.Trimesh; smooth takes its vertex normals."""
+        """Convert a trimesh.Trimesh; smooth uses its vertex normals."""
         normals = mesh.vertex_normals if smooth else None
         uv = getattr(mesh.visual, "uv", None)
         uvs = None if uv is None else np.asarray(uv)[mesh.faces]
@@ -94,7 +94,7 @@ class MeshData(Record):
 
 @dataclass(frozen=True)
 class Instance:
-    """One placed object as a convenience for InstanceTable.build; matrix is 3 x 4 or 4 x 4."""
+    """One instance, for InstanceTable.build; matrix is 3 x 4 or 4 x 4."""
 
     mesh: int = 0
     matrix: np.ndarray = field(default_factory=lambda: _IDENTITY)
@@ -116,7 +116,7 @@ _INSTANCE_COLUMNS = (
 @register
 @dataclass(frozen=True, eq=False)
 class InstanceTable(Record):
-    """All placed objects, a column for each property; materials are slots[first_slot : first_slot + slot_count]."""
+    """All instances, a column for each property; materials are slots[first_slot : first_slot + slot_count]."""
 
     matrices: np.ndarray = field(default_factory=lambda: np.empty((0, 3, 4)))
     kinds: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
@@ -126,10 +126,10 @@ class InstanceTable(Record):
     object_indices: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
     shadings: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
     name_indices: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
-    hidden_from: np.ndarray | None = None  # zeros where not given
+    hidden_from: np.ndarray | None = None  # zeros if not given
     flags: np.ndarray | None = None
     terminators: np.ndarray | None = None  # float
-    infos: np.ndarray | None = None  # (n, 5): colour, alpha and random number, for nodes that ask; None: white and 0
+    infos: np.ndarray | None = None  # (n, 5): colour, alpha and random number for OBJECT_INFO; None: white and 0
     names: tuple[str, ...] = ()
     slots: np.ndarray = field(default_factory=lambda: np.empty(0, np.uint32))
 
@@ -156,7 +156,7 @@ class InstanceTable(Record):
 
     @classmethod
     def build(cls, instances):
-        """From a list of Instance (or of dicts with its fields); equal names and slots are kept once."""
+        """Build the table from Instances, or dicts of their fields; equal names and slots are stored once."""
         instances = [Instance(**i) if isinstance(i, dict) else i for i in instances]
         names, slot_starts, slots = {}, {}, []
         for instance in instances:
@@ -204,7 +204,7 @@ class Light(Record):
     ambient_color: tuple = (1.0, 1.0, 1.0)
     diffuse_color: tuple = (1.0, 1.0, 1.0)
     specular_color: tuple = (1.0, 1.0, 1.0)
-    hidden_from: int = Ray.CAMERA  # bits; lamps are invisible to the camera unless asked for
+    hidden_from: int = Ray.CAMERA  # bits; by default lamps are invisible to the camera
     no_shadow: bool = False
 
     def __post_init__(self):
@@ -215,7 +215,7 @@ class Light(Record):
 @register
 @dataclass(frozen=True, eq=False)
 class Camera(Record):
-    """window: left, right, bottom, top at z = -1 (perspective). The region is the whole image where not given."""
+    """window: left, right, bottom, top at z = -1 (perspective). The region is the whole image if not given."""
 
     matrix: np.ndarray = field(default_factory=lambda: _IDENTITY)
     kind: int = CameraKind.PERSPECTIVE
@@ -233,7 +233,7 @@ class Camera(Record):
     aperture_blades: int = 0
     aperture_rotation: float = 0.0
     aperture_ratio: float = 1.0
-    panorama: tuple = (0.0,) * 8  # as the kind says
+    panorama: tuple = (0.0,) * 8  # parameters of the panoramic kinds
 
     def __post_init__(self):
         self.set("matrix", array(np.asarray(self.matrix, float)[:3], np.float64, (3, 4), "camera matrix"))
@@ -255,7 +255,7 @@ class Settings(Record):
     max_bounces: int = 10
     contribution_threshold: float = 0.0
     clamp_indirect: float = 0.0
-    split_lights: int = 1  # 0, both of them: found out by a few pixels
+    split_lights: int = 1  # 0 for both: chosen by a pilot render of a few pixels
     split_paths: int = 1
     pixel_filter: int = PixelFilter.BOX
     filter_width: float = 1.0
@@ -270,7 +270,7 @@ class Settings(Record):
     mist_start: float = 5.0
     mist_depth: float = 25.0
     mist_falloff: float = 2.0
-    blended_features: bool = False  # what denoisers are told, as Blender 5.2 tells it
+    blended_features: bool = False  # denoising passes as in Blender 5.2
     features: int = Features.SCENE
     passes: tuple = (Pass.COMBINED,)
     threads: int = 0
@@ -309,7 +309,7 @@ class SceneSnapshot(Record):
 
     @classmethod
     def load(cls, path):
-        """The snapshot in a file; SnapshotError where the file holds none, or a broken one."""
+        """Return the snapshot in a file; raise SnapshotError if the file holds no valid one."""
         snapshot = load_npz(path)
         if not isinstance(snapshot, cls):
             raise SnapshotError(f"{path} holds no scene snapshot: it holds a {type(snapshot).__name__}")

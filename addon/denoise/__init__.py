@@ -1,1 +1,1 @@
-"""Pictures without their noise, by the library that Blender brings."""
+"""Denoising by the library that Blender contains."""

@@ -1,8 +1,8 @@
-"""Pictures without their noise, by Open Image Denoise.
+"""Denoising of arrays by Open Image Denoise.
 
     image = denoise(color, albedo, normal).image
 
-The library works in a thread of its own, which asks nothing of Blender, while the caller polls.
+The library runs in a thread of its own, which makes no calls to Blender, while the caller polls.
 """
 
 import os
@@ -17,25 +17,26 @@ from ..bindings.session import Cancelled
 from . import oidn
 
 _STEP = 0.05
-# For the library's own work: large pictures go through it in pieces, which takes a twentieth longer and gives the same picture.
+# Memory limit of the library: it filters large pictures in tiles, which takes 5 % longer and gives the same picture.
 _MEMORY_MB = 512
-# The largest half-precision number: the network was made for colours up to here, in multiples of a usual picture's middle.
+# The largest half-precision number: the range of the network's input, relative to the median of a usual picture.
 _BRIGHTEST = 65504.0
 
 
 @dataclass(frozen=True)
 class Denoised:
-    image: np.ndarray  # shaped as the colours; alpha as it was
+    image: np.ndarray  # the shape of the colours; alpha unchanged
     seconds: float
-    memory_bytes: int  # the images, and by how much the process grew at most; 0 where that is not known
+    memory_bytes: int  # the images plus the largest growth of the process; 0 if unknown
     version: str
 
 
 def denoise(color, albedo=None, normal=None, *, threads=0, poll=None, tell=None, library=None):
-    """Denoised of linear colours, (height, width, 3 or 4) float32, of which a fourth channel stays as it is.
+    """Return the Denoised of linear colours, (height, width, 3 or 4) float32; a fourth channel is copied.
 
-    albedo and normal, (height, width, 3), are what a camera ray finds; they are freed of their own noise first, and neither
-    they nor color are written to. threads: 0 = all. poll() True raises Cancelled; tell(fraction) is called while waiting.
+    albedo and normal, (height, width, 3), are those of the first hit; they are denoised first. The arguments are not modified.
+    threads: 0 = all. tell(fraction) is called while waiting. Raise Cancelled if poll returns True, LancerError for inputs of
+    wrong shape or with values that are not finite, and if the library fails.
     """
     image, guides = _checked(color, albedo, normal)
     library = library or oidn.load()
@@ -44,7 +45,7 @@ def denoise(color, albedo=None, normal=None, *, threads=0, poll=None, tell=None,
     if not device:
         raise LancerError(f"Open Image Denoise: {oidn.fault(library, None)[1]}")
     try:
-        # Threads tied to processors would crowd those that Blender has there.
+        # Without affinity: pinned threads would compete with Blender's threads on the same processors.
         library.oidnSetDeviceBool(device, b"setAffinity", False)
         if threads > 0:
             library.oidnSetDeviceInt(device, b"numThreads", threads)
@@ -52,10 +53,10 @@ def denoise(color, albedo=None, normal=None, *, threads=0, poll=None, tell=None,
         _check(library, device)
         number = library.oidnGetDeviceInt(device, b"version")
         exposure = _Exposure(image[..., :3])
-        # Black stays black.
+        # A black picture needs no denoising.
         if exposure.lit:
             work = _Work(library, device, 1 + len(guides), poll, tell, memory)
-            # Guides that have no noise themselves may guide more closely.
+            # Denoise the guides first, so that the filter can rely on them (cleanAux).
             for name, guide in guides.items():
                 work.run({name: guide}, guide)
             work.run({"color": image, **guides}, image, hdr=True, cleanAux=bool(guides))
@@ -68,9 +69,10 @@ def denoise(color, albedo=None, normal=None, *, threads=0, poll=None, tell=None,
 
 
 class _Exposure:
-    """Brings colours, in place, to where the network knows its way, and the denoised ones back.
+    """Scales colours in place into the network's range, and the denoised colours back.
 
-    The library adjusts exposure itself, but fails at very dim pictures, and a pixel far too bright spoils all around it.
+    The library adjusts exposure itself, but fails for very dark pictures, and an extremely bright pixel spoils its
+    surroundings.
     """
 
     def __init__(self, color):
@@ -79,21 +81,21 @@ class _Exposure:
         self.lit = exponents.size > 0
         if not self.lit:
             return
-        # Take the middle exponent of all that is lit: a power of two changes no digit, and single bright pixels do not move it.
+        # Scale by the median exponent of lit pixels: a power of two is exact, and the median ignores single bright pixels.
         self._exponent = int(exponents[exponents.size // 2])
-        # Darken what is too bright, but keep its hue.
+        # Clamp pixels that are too bright, but keep their hue.
         self._excess = np.maximum(peak / np.ldexp(_BRIGHTEST, self._exponent), 1.0)
         color[...] = np.ldexp(color / self._excess[..., None], -self._exponent)
 
     def restore(self, color):
-        # Give back their brightness to lamps that are seen; a single bright pixel is noise that the network has taken away.
+        # Restore the brightness of visible lamps; single bright pixels are noise that the network has removed.
         seen = color.max(axis=2) > 0.5 * _BRIGHTEST
         excess = np.where(seen, self._excess, 1.0)[..., None]
         color[...] = np.minimum(np.ldexp(color * excess, self._exponent), np.finfo(np.float32).max)
 
 
 class _Work:
-    """Filters of one device, one after the other; each counts the same in what is told."""
+    """Filters of one device, run in order; each counts equally in the progress."""
 
     def __init__(self, library, device, filters, poll, tell, memory):
         self._library, self._device, self._memory = library, device, memory
@@ -101,7 +103,7 @@ class _Work:
         self._filters, self._done = filters, 0
 
     def run(self, inputs, output, **switches):
-        """Filters inputs, by their names in the library, into output."""
+        """Run a filter with inputs, by their names in the library, and write output."""
         library = self._library
         stop, fraction = threading.Event(), [0.0]
 
@@ -128,7 +130,7 @@ class _Work:
             try:
                 self._wait(thread, fraction)
             finally:
-                # Whatever ended the waiting: the images must outlive the work on them.
+                # Join the thread even after an exception: the images must outlive the filter.
                 stop.set()
                 thread.join()
             _check(library, self._device)
@@ -149,7 +151,7 @@ class _Work:
 
 
 class _Memory:
-    """By how much the process has grown at most, as far as it was looked at."""
+    """The largest growth of the process's memory among the calls of look()."""
 
     def __init__(self):
         self._start = _resident_bytes()
@@ -170,7 +172,7 @@ def _resident_bytes():
 
 
 def _checked(color, albedo, normal):
-    """Copies that may be written to: the colours, and the guides by their names in the library."""
+    """Return writable copies of the colours, and of the guides by their names in the library; raise LancerError if invalid."""
     shape = np.shape(color)
     if len(shape) != 3 or shape[2] not in (3, 4) or 0 in shape:
         raise LancerError(f"denoising: colours of shape {shape}, not (height, width, 3 or 4)")

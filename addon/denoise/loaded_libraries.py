@@ -1,4 +1,4 @@
-"""The shared libraries of the running process, by the paths of their files, in the order in which the system names them."""
+"""Paths of the shared libraries in the running process, in the order in which the system lists them."""
 
 import ctypes
 import os

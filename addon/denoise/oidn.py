@@ -1,7 +1,6 @@
-"""Open Image Denoise as Blender brings it: found in the running process, with typed functions, version 1 and 2 alike.
+"""Blender's Open Image Denoise, found in the running process, with typed functions of versions 1 and 2.
 
-Nothing is loaded twice: the library that Blender has mapped is used, or the one beside the TBB that Blender has mapped, so that
-no second TBB comes into the process.
+Use the library that Blender has mapped, or the one beside Blender's TBB, so that no second TBB is loaded.
 """
 
 import contextlib
@@ -23,7 +22,7 @@ CANCELLED = 6
 
 Monitor = ctypes.CFUNCTYPE(c_bool, c_void_p, c_double)
 
-# As Linux, Windows and macOS call them.
+# File names on Linux, Windows and macOS.
 _LIBRARY = re.compile(r"libOpenImageDenoise\.so(\.\d+)*|OpenImageDenoise\.dll|libOpenImageDenoise(\.\d+)*\.dylib")
 _TBB = re.compile(r"libtbb\.so(\.\d+)*|tbb\d*\.dll|libtbb(\.\d+)*\.dylib")
 
@@ -39,7 +38,7 @@ _COMMON = {
     "oidnExecuteFilter": (None, (c_void_p,)),
     "oidnReleaseFilter": (None, (c_void_p,)),
 }
-# What is called otherwise from version 2 on, and before.
+# Functions with different names from version 2 on, and before.
 _RENAMED = {
     ("oidnSetDeviceBool", "oidnSetDevice1b"): (None, (c_void_p, c_char_p, c_bool)),
     ("oidnSetDeviceInt", "oidnSetDevice1i"): (None, (c_void_p, c_char_p, c_int)),
@@ -50,7 +49,7 @@ _RENAMED = {
 
 
 def find(files=None):
-    """The path of the library that this process's Blender brings, or None. files: what is taken for the process's libraries."""
+    """Return the path of Blender's library, or None. files: paths of loaded libraries, by default the process's."""
     files = loaded_libraries.files() if files is None else files
     for path in files:
         if _LIBRARY.fullmatch(os.path.basename(path)) and os.path.isfile(path):
@@ -59,7 +58,7 @@ def find(files=None):
         if _TBB.fullmatch(os.path.basename(path)):
             folder = os.path.dirname(path)
             with contextlib.suppress(OSError):
-                # The newest interface; of the same the shortest name, to which the others are links or are linked.
+                # The highest major version; then the shortest name, which refers to the same file as the others.
                 beside = [name for name in os.listdir(folder) if _LIBRARY.fullmatch(name)]
                 for name in sorted(beside, key=lambda name: (-_major(name), len(name))):
                     return os.path.join(folder, name)
@@ -67,18 +66,18 @@ def find(files=None):
 
 
 def load(path=None):
-    """The library with typed functions; LancerError says what is missing. path: that file, not Blender's own."""
+    """Return the library with typed functions; raise LancerError if it is missing. path: a file instead of Blender's own."""
     if path is not None:
         return _load(os.path.abspath(os.fspath(path)))
     found = find()
-    # Some Blenders hold it in the program itself.
+    # Some builds of Blender link the library statically.
     if found is None and not _has_symbols(None):
         raise LancerError(MISSING)
     return _load(found)
 
 
 def fault(library, device):
-    """The number of the error since the last look, 0 for none, and its text."""
+    """Return (code, text) of the error since the last call; code 0 is no error."""
     text = c_char_p()
     code = library.oidnGetDeviceError(device, ctypes.byref(text))
     return code, (text.value or b"an error without a name").decode("utf-8", "replace")
@@ -98,7 +97,7 @@ def _has_symbols(path):
 
 @functools.cache
 def _load(path):
-    """path: None is the program itself."""
+    """Load the library; path None is the program itself."""
     where = path or "in the program"
     try:
         what = elf.fault(path) if path and sys.platform.startswith("linux") else None

@@ -1,6 +1,6 @@
-"""A view layer's finished picture without noise: whether it is wanted, what it needs of the render, and what is told of it.
+"""Denoising of a view layer's finished picture.
 
-What denoising shows is a guess. No figure about accuracy counts it: DECLARATION goes wherever such a figure goes.
+Denoising is a guess, which no figure about accuracy includes: DECLARATION accompanies each such figure.
 """
 
 import dataclasses
@@ -16,22 +16,22 @@ from . import denoiser, oidn
 DECLARATION = "denoised: the error given is that of the picture before denoising"
 
 AS_IT_IS = "the picture is shown with its noise"
-# What guides the network, as in Cycles by default.
+# The network's guides, as in Cycles by default.
 _GUIDES = (Pass.ALBEDO, Pass.DENOISING_NORMAL)
 _GUIDE_SAMPLES = 32
 
 
 def wanted(scene, view_layer):
-    """Does this layer ask for it? The layer's own switch is that of Cycles, an add-on that may be off."""
+    """Whether the layer is to be denoised. The layer's own switch belongs to Cycles, an add-on that may be disabled."""
     settings = scene.lancer
-    # Normals shows geometry, which has no noise to guess at.
+    # The integrator NORMALS has no noise.
     here = getattr(getattr(view_layer, "cycles", None), "use_denoising", True)
     return settings.use_denoising and settings.integrator != "NORMALS" and here
 
 
 @functools.cache
 def missing():
-    """Why it cannot be done here, as a sentence; "" where it can."""
+    """Return a sentence about why denoising is impossible in this Blender; "" if it is possible."""
     try:
         oidn.load()
     except LancerError as error:
@@ -44,9 +44,9 @@ def ready(scene, view_layer):
 
 
 def apply(session, poll=None, tell=None):
-    """(Denoised, "") of the session's picture; (None, "") where poll() said to stop; (None, why) where it failed.
+    """Return (Denoised, "") of the session's picture, (None, "") if poll cancelled, or (None, reason) if denoising failed.
 
-    tell(text) is called while it works.
+    tell(text) reports progress.
     """
     started = time.monotonic()
     try:
@@ -69,9 +69,9 @@ def apply(session, poll=None, tell=None):
 
 
 def _guides(session, poll, tell):
-    """Albedo and normal of the picture's own first samples.
+    """Return albedo and normal of the picture's first samples; raise Cancelled by poll.
 
-    They are rendered by themselves: beside them each sample of the picture would take longer, and few of them are enough.
+    They are rendered separately, since few samples suffice: as passes they would slow down every sample of the picture.
     """
     if set(_GUIDES) <= set(session.settings.passes):
         return [session.read(source) for source in _GUIDES]
@@ -87,7 +87,7 @@ def _guides(session, poll, tell):
 
 
 def statistics(denoised):
-    """For last_statistics; denoised: what apply gave, or None."""
+    """Return the entries of last_statistics. denoised: the Denoised from apply, or None."""
     if denoised is None:
         return {"denoised": "", "denoiser": "", "denoising_seconds": 0.0, "denoising_bytes": 0}
     return {

@@ -1,1 +1,1 @@
-"""How the add-on lives inside Blender: data by scene, the main thread, priorities, registration."""
+"""The add-on inside Blender: data by scene, the main thread, priorities, registration."""

@@ -1,4 +1,4 @@
-"""What is kept of scenes in memory: found by a scene or its name, followed when it is renamed, gone when it is."""
+"""Data kept in memory for scenes, by scene or current name: it survives renaming and ends with the scene."""
 
 from collections.abc import MutableMapping
 
@@ -6,7 +6,7 @@ import bpy
 
 
 class ByScene(MutableMapping):
-    """A mapping whose keys are scenes of bpy.data, or the names that they have now; it iterates over names."""
+    """A mapping whose keys are scenes of bpy.data or their current names; iteration yields names."""
 
     def __init__(self):
         self._values = {}
@@ -27,23 +27,23 @@ class ByScene(MutableMapping):
         return sum(1 for _ in self)
 
     def clear(self):
-        # What is kept of scenes that are gone, too.
+        # Drop the data of removed scenes too, over which MutableMapping.clear would not iterate.
         self._values.clear()
 
 
 def identity(block):
-    """What stays the same of a scene, or of other data, when it is renamed, edited and undone, and is that of no later one.
+    """Return a key of a data-block that renaming, editing and undo keep and that no later data-block shares.
 
-    Blenders before 4.1 tell its address only, which a later one may have: there one with another name is another one.
+    Before Blender 4.1 the key is address and name: a later data-block may get the same address, and renaming changes the key.
     """
     block = block.original
     uid = getattr(block, "session_uid", None)
-    # Blocks of different types may share a number.
+    # Data-blocks of different types may share a number.
     return (type(block).__name__, *((block.as_pointer(), block.name) if uid is None else (uid,)))
 
 
 def find(wanted):
-    """The scene of that identity; None when it is gone."""
+    """Return the scene of that identity; None if it has been removed."""
     return next((scene for scene in bpy.data.scenes if identity(scene) == wanted), None)
 
 

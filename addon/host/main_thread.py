@@ -1,10 +1,10 @@
-"""What only Blender's main thread may do, done there for the thread that renders.
+"""Work that only Blender's main thread may do, run there for the render thread.
 
-In a window Blender renders in a thread of its own while the main one draws and obeys the user; to make and to remove data is
-safe in the main one only. In the background, and where a script waits for the render, both are one.
+In a window Blender renders in a separate thread while the main thread draws and handles input; only the main thread may create
+and remove data. In background mode, and when a script waits for the render, there is only the main thread.
 
-Only the main thread may begin a timer, and F12 calls no Python there: so a slow one waits as long as Lancer is the engine of a
-scene, and is quick in a render.
+Only the main thread may start a timer, and F12 calls no Python there: so a timer runs as long as Lancer is the engine of any
+scene, slowly before a render and fast during one.
 """
 
 import contextlib
@@ -18,18 +18,18 @@ from bpy.app.handlers import persistent
 
 ENGINE = "LANCER"
 
-_QUICK, _SLOW = 0.01, 0.1  # seconds between the main thread's looks: in a render, and before
-_PATIENCE = 0.05  # between two looks whether the user still waits
+_QUICK, _SLOW = 0.01, 0.1  # seconds between calls of the timer: during a render, and otherwise
+_PATIENCE = 0.05  # seconds between checks whether the user has cancelled
 
 _asked = queue.SimpleQueue()
 _obey = contextvars.ContextVar("obey", default=None)
 _serving = False
-_owner = object()  # of what is heard of changes of the engine
+_owner = object()  # of the message bus subscriptions to changes of the engine
 
 
 @contextlib.contextmanager
 def obeying(obey):
-    """Within it, long work calls obey() again and again, which raises Cancelled when the user has enough; None never does."""
+    """Context in which long work calls obey() repeatedly; obey raises Cancelled if the user cancels. None: never."""
     token = _obey.set(obey)
     try:
         look()
@@ -39,14 +39,14 @@ def obeying(obey):
 
 
 def look():
-    """Raises Cancelled when the user has enough."""
+    """Raise Cancelled if the user has cancelled."""
     obey = _obey.get()
     if obey is not None:
         obey()
 
 
 def run(work):
-    """What work() gives, done by the main thread."""
+    """Run work() in the main thread and return its result; raise its exception, or Cancelled before it has started."""
     if _is_here():
         return work()
     future = _ask(work)
@@ -56,13 +56,13 @@ def run(work):
         except BaseException:
             if future.cancel():
                 raise
-            # It is being done right now, and its giver wants to know what came of it.
+            # The work is already running: wait for its result.
             break
     return future.result()
 
 
 def post(work):
-    """Has work() done by the main thread some time; nobody waits."""
+    """Run work() in the main thread later, without waiting for it."""
     if _is_here():
         work()
     else:
@@ -80,7 +80,7 @@ def _ask(work):
 
 
 def serve():
-    """Does what is asked for; for the main thread alone."""
+    """Run all posted work. Call it from the main thread only."""
     with contextlib.suppress(queue.Empty):
         while True:
             future, work = _asked.get_nowait()
@@ -103,7 +103,7 @@ def _tick():
 
 @persistent
 def _look(*_):
-    """The file's scenes may have changed, or the engine of one."""
+    """Start the timer after a possible change of the scenes or of a scene's engine; _tick ends it if Lancer is not used."""
     global _serving
     if not _serving:
         _serving = True
@@ -112,7 +112,7 @@ def _look(*_):
 
 @persistent
 def _loaded(*_):
-    # Loading ends all subscriptions.
+    # Loading a file ends all subscriptions.
     _subscribe()
     _look()
 
@@ -126,7 +126,7 @@ _HANDLERS = (("load_post", _loaded), ("undo_post", _look), ("redo_post", _look))
 
 
 def register():
-    # Timers never come in the background.
+    # Timers never run in background mode.
     if not bpy.app.background:
         for name, handler in _HANDLERS:
             getattr(bpy.app.handlers, name).append(handler)

@@ -1,4 +1,4 @@
-"""Drawing anew what tells of a render or a measurement: Blender itself does it only where the pointer is."""
+"""Redraw of panels with results of a render or a measurement; Blender redraws only the area under the pointer by itself."""
 
 import bpy
 
@@ -15,7 +15,7 @@ def properties():
 
 
 def properties_after_render():
-    """Once the render that is running is over; may be called by the thread that renders."""
+    """Redraw the properties editors when the running render has ended; may be called from the render thread."""
     if not bpy.app.background:
         main_thread.post(_watch)
 
@@ -33,6 +33,6 @@ def _when_over():
 
 
 def forget():
-    """Nothing is drawn anew when the render is over."""
+    """Cancel the redraw after the render."""
     if bpy.app.timers.is_registered(_when_over):
         bpy.app.timers.unregister(_when_over)

@@ -1,10 +1,10 @@
-"""Things given to Blender all or none."""
+"""Registration of all items or none."""
 
 import contextlib
 
 
 def add_all(things, add, remove):
-    """Adds one after the other. Where one fails, those before it are removed again, and its error is raised."""
+    """Add all things in order. If one fails, remove those before it and raise its error."""
     with contextlib.ExitStack() as added:
         for thing in things:
             add(thing)

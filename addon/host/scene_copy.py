@@ -1,19 +1,19 @@
-"""A second scene with all that is in another one, for as long as it is looked at."""
+"""A temporary copy of a scene."""
 
 import contextlib
 
 import bpy
 
-# In older Blenders what lies in a scene's own collection counts a user too many for ever once the scene was copied.
+# Before 4.2 Scene.copy() leaves one user too many on the objects of the scene's own collection.
 _CAN_COPY = bpy.app.version >= (4, 2)
-# Of a scene itself; its groups of settings come beside these.
+# Properties of the scene itself, besides its groups of settings.
 _OF_SCENE = ("world", "camera", "background_set", "frame_start", "frame_end", "frame_current", "gravity", "use_gravity")
 _OF_COLLECTION = ("exclude", "holdout", "indirect_only")
 
 
 @contextlib.contextmanager
 def copied(scene, name):
-    """The copy, of that name. Where it is put together anew it is without rigid bodies' own world."""
+    """Yield a copy of the scene with that name. Before Blender 4.2 the copy has no rigid body world."""
     copy = scene.copy() if _CAN_COPY else bpy.data.scenes.new(name)
     try:
         copy.name = name
@@ -41,7 +41,7 @@ def _fill(copy, scene):
 
 
 def _copy_groups(source, target):
-    """The settings that add-ons have added."""
+    """Copy the groups of settings that add-ons have registered."""
     for prop in source.bl_rna.properties:
         value = getattr(source, prop.identifier) if prop.type == "POINTER" else None
         if isinstance(value, bpy.types.PropertyGroup) and prop.identifier != "rna_type":
@@ -52,7 +52,7 @@ def _copy_groups(source, target):
 def _copy_values(source, target):
     for prop in source.bl_rna.properties:
         if not prop.is_readonly and prop.type != "COLLECTION" and source.is_property_set(prop.identifier):
-            # Of some enums the items hang on the machine, and what is set may be none of them; some names cannot be set.
+            # The value of an enum may be missing on this machine, and some properties cannot be set.
             with contextlib.suppress(TypeError, AttributeError):
                 setattr(target, prop.identifier, getattr(source, prop.identifier))
 

@@ -1,1 +1,1 @@
-"""What a render costs and how near it comes, told beforehand and afterwards; numpy, no bpy."""
+"""Time and accuracy of renders: forecasts, reports, costs of features. numpy, no bpy."""

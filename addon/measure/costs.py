@@ -1,7 +1,7 @@
-"""What each feature of a scene costs, measured: the scene and the scene without it take turns in short runs, small pictures.
+"""Measured cost of each feature: short renders of small pictures alternate between the scene and the scene without it.
 
-Time is that of the processor, so that what else the machine does counts little. A figure comes with its uncertainty, and a hint
-is given only where the saving is beyond both that and 3 %.
+Times are processor times, so that other work on the machine has little influence. Each figure has an uncertainty; a feature is
+a hint only if its saving exceeds both the uncertainty and 3 %.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from .scene_features import used_features, without
 
 LEAST_SAVING = 0.03
 _PIXELS = 16384
-_RUN_SECONDS = 0.03  # of the processor, for each run
-# Fewer than six say nothing about their median at 95 %.
+_RUN_SECONDS = 0.03  # processor time of a run
+# The 95 % interval of a median needs at least six values.
 _LEAST_ROUNDS, _MOST_ROUNDS = 6, 40
-_ENOUGH = 0.005  # an uncertainty below which nothing more is asked
+_ENOUGH = 0.005  # an uncertainty below which a measurement ends
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one feature: share of the time for the same samples that would be saved without it, negative where it saves time."""
+    """Cost of one feature. share: the share of time saved without it at equal samples; negative if the feature saves time."""
 
     name: str
     count: int
@@ -42,9 +42,9 @@ class Cost:
 
 @dataclass(frozen=True)
 class Costs:
-    measured: tuple = ()  # of Cost, the dearest first
-    skipped: tuple = ()  # names of features for which there was no time
-    frame_seconds: float = 0.0  # of sampling, by the runs that were timed
+    measured: tuple = ()  # of Cost, the highest first
+    skipped: tuple = ()  # names of features for which time did not suffice
+    frame_seconds: float = 0.0  # sampling time of the frame, extrapolated from the timed runs
 
     @property
     def hints(self):
@@ -58,10 +58,10 @@ def median(values):
 
 
 def median_with_uncertainty(values):
-    """The median, and the farther end of its 95 % interval: between two of the values, however they are distributed."""
+    """Return the median and the distance to the farther end of its 95 % interval, for any distribution of the values."""
     ordered, n = sorted(values), len(values)
     middle = median(values)
-    # The median lies below the value number k (from 0) with the chance that at most k of n coins show heads.
+    # The true median is below value k (from 0) with the probability that at most k of n fair coins show heads.
     chance, outside = 0.0, -1
     for k in range(n // 2):
         chance += math.comb(n, k) / 2.0**n
@@ -74,7 +74,7 @@ def median_with_uncertainty(values):
 
 
 def small_picture(camera, pixels=_PIXELS):
-    """The camera with a picture of about so many pixels, of the same view."""
+    """Return the camera with the same view and at most about pixels pixels."""
     factor = math.sqrt(pixels / (camera.region_width * camera.region_height))
     if factor >= 1.0:
         return camera
@@ -86,7 +86,10 @@ def small_picture(camera, pixels=_PIXELS):
 
 
 def with_splits(scene, snapshot, poll=None):
-    """The snapshot, its samples split as those of the whole picture are: a small one might find another way."""
+    """Return the snapshot with the split of samples that the pilot chooses for the whole picture; raise Cancelled by poll.
+
+    For a small picture the pilot might choose another split.
+    """
     settings = snapshot.settings
     if settings.integrator != Integrator.PATH or settings.split_lights or settings.split_paths:
         return snapshot
@@ -99,7 +102,7 @@ def with_splits(scene, snapshot, poll=None):
 
 
 class _Runs:
-    """A session that renders the same number of samples again and again, timed."""
+    """A session for timed runs, each of which continues with the next samples."""
 
     def __init__(self, scene, camera, settings, poll):
         self.session = Session(scene, camera, settings)
@@ -107,8 +110,8 @@ class _Runs:
         self.first = 0
 
     def __call__(self, samples):
-        """Seconds of the processor."""
-        # A short run ends before it is watched once.
+        """Render samples per pixel and return the processor time in seconds; raise Cancelled by poll."""
+        # A short run ends before the loop below polls.
         if self.poll is not None and self.poll():
             raise Cancelled
         start = time.process_time()
@@ -126,7 +129,7 @@ class _Runs:
 
 
 def measure_costs(snapshot, seconds=10.0, poll=None, tell=None, library=None):
-    """Costs of what snapshot uses, in about so many seconds. Raises Cancelled where poll asks for it.
+    """Measure the Costs of the features of a snapshot in about that many seconds; raise Cancelled if poll returns True.
 
     tell(fraction, text) is called before each feature.
     """
@@ -154,7 +157,7 @@ def measure_costs(snapshot, seconds=10.0, poll=None, tell=None, library=None):
 
 
 def _calibrated(scene, snapshot, poll):
-    """(camera, runs, samples a run, wall seconds of a pixel's sample) for runs that are long enough to be timed, no longer."""
+    """Return (camera, runs, samples per run, wall seconds of a pixel's sample) for runs of about _RUN_SECONDS."""
     camera = small_picture(snapshot.camera)
     while True:
         runs = _Runs(scene, camera, snapshot.settings, poll)
@@ -162,7 +165,7 @@ def _calibrated(scene, snapshot, poll):
         pixels = camera.region_width * camera.region_height
         if once <= 4.0 * _RUN_SECONDS or pixels <= 64:
             break
-        # A sample of so large a picture takes too long here.
+        # One sample per pixel takes too long: reduce the picture.
         runs.session.close()
         camera = small_picture(camera, pixels * _RUN_SECONDS / once)
     samples = min(4096, max(1, round(_RUN_SECONDS / max(once, 1e-6))))
@@ -174,7 +177,7 @@ def _calibrated(scene, snapshot, poll):
 
 
 def _ratios(scene, snapshot, feature, camera, base, samples, until, poll, library):
-    """Time without the feature over the time with it, in turns: with, without, without, with."""
+    """Return ratios of the time without the feature to the time with it, each from runs with, without, without, with."""
     plain = without(snapshot, feature.name, library)
     same = all(
         getattr(plain, name) is getattr(snapshot, name) for name in ("meshes", "instances", "materials", "lights", "world")
@@ -184,7 +187,7 @@ def _ratios(scene, snapshot, feature, camera, base, samples, until, poll, librar
         lens = dataclasses.replace(camera, lens_radius=plain.camera.lens_radius)
         runs = _Runs(other, lens, plain.settings, poll)
         with runs.session:
-            # The first look at a scene brings it into the caches.
+            # The first run warms the caches.
             runs(samples)
             ratios = []
             while len(ratios) < _MOST_ROUNDS:

@@ -1,4 +1,4 @@
-"""How long a render will take and how near it will come, told from the points of trial_renders.py.
+"""Forecast of a render's time and error from the points of trial_renders.py.
 
 measured = trial_renders.measure(snapshot, 10.0)
 told = forecast(measured, pixels, target_error=0.03, samples=8192)
@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from .schedule import FIRST_LOOK, SAMPLES, TARGET, TIME
 from .trial_renders import Point
 
-# The power of the samples with which the error falls, before anything is measured: 1/2 by chance alone, up to 3/4 at edges and
-# 1 in smooth places for samples that fill space evenly, less where more samples keep meeting brighter flashes.
+# Prior of the exponent p of error ~ samples^-p: 1/2 for independent samples, up to 3/4 at edges and 1 in smooth places for
+# low-discrepancy samples, less if further samples keep finding brighter fireflies.
 _SLOPE, _SLOPE_SPREAD = 0.55, 0.12
 _SLOWEST, _FASTEST = 0.35, 1.0
-_FITTED = 4  # the last points, which the samples to come are likest to
-# How surely a rate is known at best: clocks of processors and other work vary from minute to minute.
+_FITTED = 4  # number of last points in the fit, which resemble the following samples most
+# Least relative uncertainty of a rate: processor clocks and other work vary from minute to minute.
 _LEAST_SPREAD = 0.03
-_REACH = 1.96  # of 95 % of a Gaussian
+_REACH = 1.96  # standard deviations of the 95 % interval of a Gaussian
 
 
 @dataclass(frozen=True)
@@ -40,12 +40,12 @@ class Forecast:
     ended_by: str
 
     def misses(self, target_error):
-        """Whether the limit of samples is expected to end it before that error is reached; False without one."""
+        """Whether the limit of samples is expected to end the render above the target error; False if the target is 0."""
         return target_error > 0.0 and self.ended_by == SAMPLES
 
 
 def forecast(measured, pixels, target_error=0.0, samples=0, time_limit=0.0):
-    """What a render of so many pixels would come to by these settings: Forecast."""
+    """Return the Forecast of a render with that many pixels and these settings."""
     refines = target_error > 0.0 or time_limit > 0.0
     curve = _Curve(measured, pixels, refines)
     ends = [(Range(float(samples), float(samples), float(samples)), SAMPLES)]
@@ -53,7 +53,7 @@ def forecast(measured, pixels, target_error=0.0, samples=0, time_limit=0.0):
         ends.append((curve.samples_for(target_error), TARGET))
     if time_limit > 0.0:
         ends.append((curve.samples_within(time_limit - measured.before), TIME))
-    # What ends it first by its own best figure; any of them may do so in the interval.
+    # Name the limit with the least expected samples; within the interval any of them may end the render.
     by = min(ends, key=lambda end: end[0].value)[1]
     needed = Range(*(min(getattr(end, name) for end, _ in ends) for name in ("value", "low", "high")))
     seconds = curve.seconds(needed)
@@ -63,29 +63,29 @@ def forecast(measured, pixels, target_error=0.0, samples=0, time_limit=0.0):
 
 
 def classic_seconds(measured, pixels, samples):
-    """Seconds of a render in CLASSIC, None where it was not measured."""
+    """Return the seconds of a render in CLASSIC; None if CLASSIC was not measured."""
     return measured.before + measured.classic_seconds * pixels * samples if measured.classic_seconds > 0.0 else None
 
 
 class _Curve:
-    """Error and seconds of a picture of so many pixels, by samples."""
+    """Error and time of a picture with that many pixels as functions of the samples."""
 
     def __init__(self, measured, pixels, refines):
         self.measured, self.pixels, self.refines = measured, pixels, refines
         self.size, self.size_spread = _size_factor(measured, pixels)
         self.points = measured.refined if refines else _even_points(measured)
         self.slope, self.slope_spread = slope(self.points)
-        # The interval of an error narrows with the root of the pixels that it is measured on.
+        # The width of an error's interval falls with the square root of the number of pixels.
         self.narrowing = math.sqrt(min(1.0, measured.pixels / pixels))
 
     def samples_for(self, target):
-        # What a render compares with its target is the error's upper bound, and light that no sample has met yet.
+        # A render compares its target with the error's upper bound plus the share of light that samples may have missed.
         levels = [self._bound(point) for point in self.points]
         x = _inverse(
             [(math.log(p.samples), _log(b)) for p, b in zip(self.points, levels, strict=True)], _log(target), self.slope
         )
         spread = self._spread(x) / self.slope
-        # A target is looked at from FIRST_LOOK samples on.
+        # A render checks its target from FIRST_LOOK samples on.
         return Range(*(max(float(FIRST_LOOK), math.exp(min(x + step * spread, 40.0))) for step in (0.0, -_REACH, _REACH)))
 
     def samples_within(self, seconds):
@@ -129,25 +129,25 @@ class _Curve:
         )
 
     def _spread(self, x):
-        """Of the error's logarithm where the logarithm of the samples is x."""
+        """Return the standard deviation of ln error at ln samples = x."""
         beyond = max(0.0, x - math.log(self.points[-1].samples))
         return math.hypot(self.points[-1].spread, self.size_spread, beyond * self.slope_spread)
 
     def _rate(self):
-        """Seconds of a pixel's sample beyond the points, and the spread of its logarithm."""
+        """Return the seconds of a pixel's sample beyond the points, and the standard deviation of their logarithm."""
         rates = _rates(self.points, self.measured.pixels)
         other = _rates(self.measured.even, self.measured.even_pixels)
         spread = 0.5 * math.log(max(rates[-3:]) / min(rates[-3:]))
-        # If a quarter of the pixels changes the rate by so much, more of them may change it by as much again.
+        # The difference of the rates of the two picture sizes estimates the change from the larger one to the whole picture.
         alike = _rates([p for p in self.measured.refined if p.samples <= FIRST_LOOK], self.measured.pixels)
         return rates[-1], math.hypot(spread, math.log(alike[-1] / other[min(len(alike), len(other)) - 1]), _LEAST_SPREAD)
 
 
 def slope(points):
-    """(p, its standard deviation) of error = constant * samples^-p, by the last points, each weighed by how surely it is known.
+    """Return (p, its standard deviation) of error = constant * samples^-p, a weighted fit to the last points.
 
-    Errors of one render grow from the same samples and so vary together; the deviation takes them as independent, which is
-    on the safe side. No power fits for ever: half of the difference between the first and the second half of them is added.
+    The points share samples and are correlated; the deviation assumes independence, which is conservative. The exponent may
+    change: half of the difference between the fits of the first and the second half of the points is added.
     """
     known = [p for p in points[-_FITTED:] if p.error > 0.0]
     if len(known) < 2 or known[-1].samples == known[0].samples:
@@ -156,7 +156,7 @@ def slope(points):
     if len(known) >= 4:
         half = len(known) // 2
         deviation = math.hypot(deviation, 0.5 * (_line(known[: half + 1])[0] - _line(known[half - 1 :])[0]))
-    # Both are weighed by how surely they are known: a measurement that says little leaves what was known before.
+    # Combine the fit with the prior, each weighted by its inverse variance.
     own, other = 1.0 / max(deviation, 1e-3) ** 2, 1.0 / _SLOPE_SPREAD**2
     return min(max((own * p + other * _SLOPE) / (own + other), _SLOWEST), _FASTEST), (own + other) ** -0.5
 
@@ -172,9 +172,9 @@ def _line(points):
 
 
 def _size_factor(measured, pixels):
-    """Error of so many pixels over that of the larger picture, and the spread of its logarithm.
+    """Return the ratio of the whole picture's error to that of the larger trial picture, and its logarithm's deviation.
 
-    The square of the error has a part that edges bring, which falls as 1 / width: two widths tell both parts.
+    The squared error has a part from edges that falls as 1 / width: two widths determine both parts.
     """
     growth = math.sqrt(pixels / measured.pixels)
     if growth <= 1.0 or measured.even_pixels >= measured.pixels:
@@ -185,7 +185,7 @@ def _size_factor(measured, pixels):
     step = math.sqrt(measured.pixels / measured.even_pixels) - 1.0
     edges = min(max(((small.error / large.error) ** 2 - 1.0) / step, 0.0), 1.0)
     factor = math.sqrt(1.0 - edges * (1.0 - 1.0 / growth))
-    # The law is a guess, and the difference of two errors is known less well than each.
+    # The model is approximate, and a difference of two errors is less certain than each of them.
     doubt = math.hypot(large.spread, small.spread) / step * (1.0 - 1.0 / growth)
     return factor, math.hypot(0.5 * math.log(factor), doubt)
 
@@ -195,7 +195,7 @@ def _at_pilot(points):
 
 
 def _even_points(measured):
-    """Of the larger picture as if it went on with the same samples everywhere: as the smaller one did."""
+    """Return the larger picture's points, continued with equal samples for all pixels as measured in the smaller one."""
     at = _at_pilot(measured.refined)
     base = _at_pilot(measured.even)
     scale = at.error / base.error if base.error > 0.0 else 1.0
@@ -206,7 +206,7 @@ def _even_points(measured):
 
 
 def _rates(points, pixels):
-    """Seconds of a pixel's sample, from point to point."""
+    """Return the seconds of a pixel's sample between successive points."""
     before, found = (0.0, 0.0), []
     for p in points:
         found.append(max(p.seconds - before[1], 1e-12) / ((p.samples - before[0]) * pixels))
@@ -219,7 +219,7 @@ def _log(value):
 
 
 def _between(points, x):
-    """Straight lines between points in order of x."""
+    """Interpolate linearly between points sorted by x."""
     for (x0, y0), (x1, y1) in zip(points[:-1], points[1:], strict=True):
         if x <= x1:
             return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
@@ -227,7 +227,7 @@ def _between(points, x):
 
 
 def _value(logs, x, slope):
-    """ln error at ln samples: between the points, and beyond either end by the slope."""
+    """Return ln error at ln samples = x: interpolated between the points, extrapolated by the slope."""
     for end in (logs[0], logs[-1]):
         if (x <= end[0]) if end is logs[0] else (x >= end[0]):
             return end[1] - slope * (x - end[0])
@@ -235,7 +235,7 @@ def _value(logs, x, slope):
 
 
 def _inverse(logs, y, slope):
-    """The least ln samples from which on ln error is y or less."""
+    """Return the least ln samples from which on ln error is at most y."""
     if y <= logs[-1][1]:
         return logs[-1][0] + (logs[-1][1] - y) / slope
     for (x0, y0), (x1, y1) in reversed(list(zip(logs[:-1], logs[1:], strict=True))):

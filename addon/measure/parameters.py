@@ -1,4 +1,4 @@
-"""What feeds the parameters of a material: which nodes, how to put constants in their place, and which nodes are left over."""
+"""The nodes that feed a material's parameters: find them, replace them by constants, remove unused ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PRINCIPLED = Principled.PARAMETERS
 
 
 def is_zero(value):
-    """Whether a parameter is the constant 0; the result of a node may be anything."""
+    """Whether a parameter is the constant 0; False for a NodeRef, whose value is unknown."""
     if isinstance(value, NodeRef):
         return False
     return not any(value) if isinstance(value, tuple) else value == 0.0
@@ -26,7 +26,7 @@ def may_be_positive(value):
 
 
 def sources(nodes, value):
-    """Numbers of all nodes that a parameter depends on."""
+    """Return the numbers of all nodes that a parameter depends on."""
     found, open_ = set(), [value.node] if isinstance(value, NodeRef) else []
     while open_:
         number = open_.pop()
@@ -35,7 +35,7 @@ def sources(nodes, value):
         found.add(number)
         node = nodes[number]
         open_.extend(x.node for x in node.inputs if isinstance(x, NodeRef))
-        # What a bump asks for its height is a range of nodes.
+        # A bump evaluates a range of nodes for its height.
         if node.kind == NodeKind.BUMP:
             open_.extend(range(node.first, number))
     return found
@@ -46,7 +46,10 @@ def kinds_of_sources(nodes, value):
 
 
 def map_parameters(material, change):
-    """The material with change(owner, name, value) for every parameter; owner: "material", "lobe" or "principled"."""
+    """Return the material with every parameter replaced by change(owner, name, value), or itself if none changes.
+
+    owner: "material", "lobe" or "principled".
+    """
 
     def mapped(record, owner, names):
         values = {name: change(owner, name, getattr(record, name)) for name in names}
@@ -65,7 +68,7 @@ def map_parameters(material, change):
 
 
 def parameters(material):
-    """(owner, name, value) of every parameter."""
+    """Return (owner, name, value) of every parameter."""
     found = []
 
     def note(owner, name, value):
@@ -77,7 +80,7 @@ def parameters(material):
 
 
 def without_idle_nodes(material):
-    """The material without the nodes that no parameter depends on."""
+    """Return the material without the nodes that no parameter depends on."""
     if not material.nodes:
         return material
     used = set()

@@ -1,4 +1,4 @@
-"""Figures of a finished render, and what they say in words: for the file's metadata, for the terminal, for the panel."""
+"""Figures of a finished render and sentences about them, for the file's metadata, the terminal and the panel."""
 
 import dataclasses
 import math
@@ -7,24 +7,24 @@ from enum import IntEnum
 from ..bindings.enums import Integrator
 from .schedule import CANCELLED, SAMPLES, TARGET, TIME
 
-# Less than this is not worth a sentence.
+# Shares of light below this are not reported.
 _NOTHING = 5e-5
 
 
 def percent(share):
-    """A share with two digits that mean something."""
+    """Return a share in percent, rounded to two or three digits; "unknown" if it is not finite."""
     if not math.isfinite(share):
         return "unknown"
     return f"{100.0 * share:.3g} %" if share >= 0.0995 else f"{100.0 * share:.2g} %"
 
 
 def interval(numbers):
-    """The error and the interval in which it lies with 95 % confidence; numbers: a PictureError."""
+    """Return the error and its 95 % interval as text; numbers: a PictureError."""
     return f"{percent(numbers.error)} ({percent(numbers.low)} to {percent(numbers.high)})"
 
 
 def duration(value):
-    """Seconds with two digits that mean something, in the unit that one would say."""
+    """Return seconds as text with about two digits, in seconds, minutes or hours; "unknown" if not finite."""
     if not math.isfinite(value):
         return "unknown"
     for limit, unit, name in ((99.5, 1.0, "s"), (99.5 * 60.0, 60.0, "min"), (math.inf, 3600.0, "h")):
@@ -34,7 +34,7 @@ def duration(value):
 
 
 def account(session, schedule):
-    """What a Session that a Schedule has driven tells of itself, by the names that engine.last_statistics has."""
+    """Return the statistics of a Session that a Schedule has rendered, as a dict for engine.last_statistics."""
     statistics, error = session.statistics(), session.error()
     numbers = dataclasses.asdict(statistics)
     numbers["pixel_samples"] = numbers["samples"]
@@ -53,28 +53,28 @@ def account(session, schedule):
 
 
 def of_layers(statistics):
-    """The lines of all view layers of a render, of engine.last_statistics."""
+    """Return the accuracy lines of all view layers in engine.last_statistics."""
     return [line for numbers in statistics.get("layers", {"": statistics}).values() for line in numbers["accuracy"]]
 
 
 def lines(numbers, settings, layer=""):
-    """Sentences on the accuracy of a render: numbers as in engine.last_statistics, settings of its snapshot.
+    """Return sentences about the accuracy of a render: numbers as in engine.last_statistics, settings of its snapshot.
 
-    layer: the view layer's name where there are several. The first line tells the error, or that its target was missed.
+    layer: the view layer's name if there are several. The first line reports the error, or that the target was missed.
     """
     told = [*missed(numbers, settings), *_accuracy(numbers, settings)]
     return [f"view layer '{layer}': {line}" for line in told] if layer else told
 
 
 def missed(numbers, settings):
-    """A sentence where the target error was not reached, with what is expected to reach it."""
+    """Yield a sentence if the target error was not reached, with the settings that are expected to reach it."""
     target, bound = settings.target_error, numbers["error_high"] + numbers["error_cannot_exclude"]
     if target <= 0.0 or bound <= target or numbers["ended_by"] in (TARGET, CANCELLED):
         return
     if not math.isfinite(bound):
         yield f"{percent(target)} was not reached: the error is not known before there are two samples a pixel"
         return
-    # The error falls with the root of the number of samples.
+    # The error falls with the square root of the number of samples.
     more = (bound / target) ** 2
     helps = []
     samples = numbers["samples_most"] * more
@@ -111,7 +111,7 @@ def _accuracy(numbers, settings):
 
 
 def biases(numbers, settings):
-    """What the error does not count, a sentence each."""
+    """Yield a sentence for each bias that the error does not include."""
     if numbers["error_cannot_exclude"] > _NOTHING and math.isfinite(numbers["error_cannot_exclude"]):
         yield f"light in flashes that no sample has met could add {percent(numbers['error_cannot_exclude'])} to the error"
     if settings.clamp_indirect > 0.0:
@@ -127,7 +127,7 @@ def biases(numbers, settings):
 
 
 def fields(numbers, settings):
-    """(name, text) pairs for the metadata of a file."""
+    """Yield (name, text) pairs for the metadata of a file."""
     for name in ("error", "error_low", "error_high", "error_cannot_exclude", "error_clipped", "error_missing"):
         yield name, f"{numbers[name]:.6g}"
     yield "samples", str(numbers["samples"])

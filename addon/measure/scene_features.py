@@ -1,7 +1,7 @@
-"""What a scene uses, feature by feature, with counts and names; and the scene without one of them.
+"""The features that a scene uses, with counts and names; and the scene without one of them.
 
-A feature that can be taken away says in a sentence what "without" means. Only what is placed counts, as in the core: a material
-that nothing shows costs nothing.
+A feature that can be removed has a sentence about the scene without it. Only instanced objects and their materials count, as in
+the core: an unused material costs nothing.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..bindings.snapshot import SceneSnapshot
 from . import simpler_materials, simpler_scene
 from .parameters import is_zero
 
-_MOST_OWNERS = 8  # named; the count is of all
+_MOST_OWNERS = 8  # number of names listed; the count includes all owners
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Feature:
     name: str
     text: str  # "3 materials use refraction"
     count: int
-    owners: tuple  # names of the first of them
-    without: str  # what the scene is then, in words; "" where it cannot be taken away
+    owners: tuple  # names of the first owners
+    without: str  # a description of the scene without it; "" if it cannot be removed
     pronoun: str  # "without it", "without them"
 
 
@@ -37,7 +37,7 @@ class _Kind:
     name: str
     one: str  # with {n}, for one owner
     many: str
-    owners: Callable  # (snapshot, the materials that it shows) -> (how many, names of the first of them)
+    owners: Callable  # (snapshot, its shown materials) -> (count, names of the first owners)
     take: Callable | None = None  # (snapshot, library) -> the snapshot without it
     without: str = ""
     pronoun: str = "it"
@@ -51,17 +51,17 @@ def _named(names):
 
 
 def _number(of):
-    """For what the scene has by itself."""
+    """Return an owners function for a property of the scene, without names."""
     return lambda snapshot, shown: (int(of(snapshot)), ())
 
 
 def shown_materials(snapshot):
-    """Numbers of the materials that placed objects have."""
+    """Return the numbers of the materials that instances use."""
     table = snapshot.instances
     if not len(table):
         return []
     shown = np.zeros(len(snapshot.materials), bool)
-    # Objects that have the same slots say so by the same numbers: many objects are few lists.
+    # Instances with equal slots share a range of slots: few distinct ranges for many instances.
     for both in np.unique(table.first_slots.astype(np.uint64) << np.uint64(32) | table.slot_counts).tolist():
         first, count = both >> 32, both & 0xFFFFFFFF
         shown[table.slots[first : first + count]] = True
@@ -135,7 +135,7 @@ _GRID = (np.stack(np.meshgrid(*[(np.arange(32) + 0.5) / 32] * 2), axis=-1)).resh
 
 
 def _as_means(numbers_of):
-    """Constants in place of what nodes give: the mean of each over a unit square that carries the material."""
+    """Return a take function that replaces nodes by constants: their means over a unit square with the material."""
 
     def take(snapshot, library):
         wanted = {number: nodes for number in shown_materials(snapshot) if (nodes := numbers_of(snapshot.materials[number]))}
@@ -161,7 +161,7 @@ def _material(name, what, plain, without, pronoun="it"):
     return _Kind(name, one, many, _changed_by(plain), _each_material(plain), without, pronoun)
 
 
-# In the order in which they are shown and measured: what costs much first.
+# In the order of display and measurement, from the most expensive on.
 _KINDS = (
     _material("glass", "refraction", simpler_materials.opaque_glass, "they are opaque, in the same colour"),
     _material("transparency", "transparency", simpler_materials.opaque, "they are opaque"),
@@ -226,7 +226,7 @@ _KINDS = (
         "they are meshes of 48 sides", "that",
     ),
     _material("displacement", "displacement", simpler_materials.undisplaced, "their meshes are as modelled"),
-    # What is only named.
+    # Features that are only listed.
     _Kind("triangles", "{n} object is a mesh", "{n} objects are meshes", _objects_of(InstanceKind.MESH)),
     _Kind("instances", "{n} object shares a mesh", "{n} objects share meshes", _objects_where(_is_copy)),
     _Kind("spheres", "{n} exact sphere", "{n} exact spheres", _objects_of(InstanceKind.SPHERE)),
@@ -251,12 +251,12 @@ _KINDS = (
 
 
 def used_features(snapshot):
-    """The features of a snapshot, those that can be taken away first."""
+    """Return the features of a snapshot, those that can be removed first."""
     found = []
     shown = [snapshot.materials[number] for number in shown_materials(snapshot)]
     for kind in _KINDS:
         count, names = kind.owners(snapshot, shown)
-        # A single lamp is no choice among lamps, and few bounces are no depth.
+        # A single lamp needs no choice among lamps, and few bounces cannot be reduced.
         least = {"lamps": 2, "bounces": simpler_scene.FEW_BOUNCES + 1}.get(kind.name, 1)
         if count >= least:
             text = (kind.one if count == 1 else kind.many or kind.one).format(n=f"{count:,}".replace(",", " "))
@@ -265,7 +265,7 @@ def used_features(snapshot):
 
 
 def without(snapshot, name, library=None):
-    """The snapshot without that feature. It shares with the snapshot given what is the same in both."""
+    """Return the snapshot without that feature; both share the unchanged parts."""
     kind = next(kind for kind in _KINDS if kind.name == name)
     return kind.take(snapshot, library)
 
@@ -278,5 +278,5 @@ _KERNELS = {
 
 
 def kernel_in_words(kernel):
-    """What the code that ran is made for, for the name that statistics give it."""
+    """Return a description of the kernel with that name in the statistics."""
     return _KERNELS.get(kernel, kernel)

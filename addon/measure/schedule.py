@@ -1,4 +1,4 @@
-"""What a session renders next, until samples, a target error or a time limit end it.
+"""Schedule of a session's sample ranges until samples, a target error or a time limit end the render.
 
 schedule = Schedule(session)
 while schedule.start():
@@ -11,44 +11,44 @@ import contextlib
 import math
 import time
 
-# Ranges of 1, 1, 2, 4 ... samples as long as one takes no longer than this: then of as many as fit.
+# Longest range in seconds: ranges have 1, 1, 2, 4 ... samples up to it, then as many samples as fit.
 _LONGEST_INTERVAL = 1.0
-# From here on the error is known well enough to decide by.
+# Samples from which on the error is certain enough for decisions.
 FIRST_LOOK = 16
-# Of ending a render whose error is still above its target: one half for the first look, a quarter for the second ...
+# Total probability of ending a render above its target; the first check gets one half of it, the second a quarter, and so on.
 _MISTAKE = 0.05
 
 SAMPLES, TARGET, TIME, CANCELLED = "samples", "target error", "time limit", "cancelled"
 
 
 class Schedule:
-    """Drives a Session by its settings: samples, target_error, time_limit.
+    """Renders a Session by its settings: samples, target_error, time_limit.
 
-    started: when the time limit began, by time.monotonic().
-    Without target and limit all pixels get the same samples. With either, ranges double the samples of every pixel, and from
-    FIRST_LOOK on those of the pixels that need it most (Session.refine).
+    started: the start of the time limit, by time.monotonic().
+    Without target and time limit all pixels get equal samples. With either, each range doubles the samples of all pixels, and
+    from FIRST_LOOK on only those of the pixels that reduce the error most (Session.refine).
     """
 
     def __init__(self, session, started=None):
         self.session = session
         self.settings = session.settings
-        self.reason = None  # why it ended
+        self.reason = None  # why the render ended
         self.longest = _LONGEST_INTERVAL
         self.samples = 0  # of every pixel, at least
-        self.error = None  # the last PictureError that was asked for
+        self.error = None  # the last PictureError that was read
         self.confidence = 1.0 - _MISTAKE
-        self.reserve = 0.0  # seconds of the time limit that are needed after the last sample
+        self.reserve = 0.0  # seconds of the time limit to keep for work after the last sample
         self._started = time.monotonic() if started is None else started
         self._looks = 0
         self._refining = False
         self._stopping = False
-        self._range = (0.0, 0)  # when it was started, pixel samples before it
+        self._range = (0.0, 0)  # start time of the range, pixel samples before it
         self._seconds_per_sample = 0.0
         self._progress = None
         self.pixels = session.camera.region_width * session.camera.region_height
 
     def start(self):
-        """Starts the next range; False when there is none."""
+        """Start the next range; return False if the render is over."""
         if self.over:
             return False
         self._refining = self._refining and self._refine()
@@ -63,7 +63,7 @@ class Schedule:
         return True
 
     def wait(self, seconds):
-        """Session.wait, which also stops the range when time is up."""
+        """Call Session.wait and stop the range if the time limit has passed."""
         progress = self.session.wait(seconds)
         if progress.finished:
             self._finished(progress)
@@ -78,7 +78,7 @@ class Schedule:
 
     @property
     def over(self):
-        """Whether there is no other range to come; the error is asked for where a target hangs on it."""
+        """Whether no further range follows; reads the error if there is a target."""
         if self.reason is None and (self._progress is None or self._progress.finished):
             self.reason = self._ended()
         return self.reason is not None
@@ -89,12 +89,12 @@ class Schedule:
         return limit > 0.0 and time.monotonic() >= self._started + limit - self.reserve
 
     def look(self):
-        """Asks for the error as it is now."""
+        """Read and return the current error."""
         self.error = self.session.error()
         return self.error
 
     def remaining(self):
-        """(seconds, reason): what is expected to end the render first, and in how long; infinity while nothing is known."""
+        """Return (seconds, reason) of the limit that is expected to end the render first; infinity while unknown."""
         ends = []
         limit = self.settings.time_limit
         if limit > 0.0:
@@ -107,14 +107,14 @@ class Schedule:
             if target > 0.0 and known:
                 needed = self._needed(progress, target)
                 ends.append((needed / rate, TARGET))
-            # With a target the limit of samples is far beyond what most scenes need.
+            # With a target the limit of samples is usually never reached: ignore it until the error is known.
             if target <= 0.0 or known:
                 ends.append((max(0.0, self.settings.samples * self.pixels - progress.samples) / rate, SAMPLES))
         return min(ends, default=(math.inf, SAMPLES))
 
     @property
     def fraction(self):
-        """Share of the whole render that is done, as far as it can be foretold."""
+        """Expected share of the render that is done."""
         seconds, reason = self.remaining()
         elapsed = time.monotonic() - self._started
         if reason is SAMPLES:
@@ -123,7 +123,7 @@ class Schedule:
         return min(1.0, elapsed / max(elapsed + seconds, 1e-9))
 
     def _needed(self, progress, target):
-        """Pixel samples that the target still wants: as planned, or as if the error fell evenly with their square root."""
+        """Return the pixel samples still needed for the target: as planned by refine, or by error ~ samples^-1/2."""
         if self._refining and self.error.planned_samples > 0.0:
             return max(0.0, self.error.planned_samples - (progress.samples - self._range[1]))
         return progress.samples * max(0.0, (self.error.bound / target) ** 2 - 1.0)
@@ -147,14 +147,14 @@ class Schedule:
         return None
 
     def _refine(self):
-        """Whether a round began. If not, no pixel can be doubled, so all have the same number, the largest power of two."""
+        """Start a round of refinement; return False if no pixel can be doubled: all then have the largest power of two."""
         if self.session.refine(self.settings.target_error, self.confidence):
             return True
         self.samples = self.session.error().most_samples
         return False
 
     def _count(self):
-        """Samples of the next range, where all pixels get the same."""
+        """Return the samples of the next range for all pixels."""
         count = max(1, self.samples)
         if not self.settings.refines and self._seconds_per_sample > 0.0:
             count = min(count, max(1, int(self.longest / self._seconds_per_sample)))
@@ -169,16 +169,16 @@ class Schedule:
 
 
 class TimeShare:
-    """Work beside the rendering that may take no more than its share of the time.
+    """Repeated work during a render, limited to a share of the time.
 
-    share: of the time; shortest: seconds between two times at least.
+    share: the work's share of the time; shortest: least seconds between two runs of the work.
     """
 
     def __init__(self, share, shortest):
         self._share = share
         self._shortest = shortest
         self._last = None
-        self.cost = 0.0  # seconds that it took last
+        self.cost = 0.0  # seconds of the last run
 
     @property
     def interval(self):

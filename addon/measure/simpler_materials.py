@@ -1,7 +1,6 @@
-"""Materials without one of their features: what each becomes when an artist does without it.
+"""Materials without one of their features, as an artist would simplify them.
 
-Every function gives the material that it was given where there is nothing to take away, so that "uses it" and "changes without
-it" are one question.
+Every function returns the same object if the material lacks the feature: identity of the result shows that it is unused.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ _GLASS = {LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION}
 _METAL = {LobeKind.MIRROR, LobeKind.GLOSSY, LobeKind.CONDUCTOR}
 _GLOSS = {LobeKind.BECKMANN, LobeKind.PHONG, LobeKind.BLINN_PHONG}
 _PICTURES = {NodeKind.IMAGE, NodeKind.ENVIRONMENT}
-# Nodes whose results do not differ from place to place unless those of their inputs do.
+# Nodes whose results vary over a surface only if their inputs do.
 _DULL = {
     NodeKind.ALPHA, NodeKind.MAPPING, NodeKind.TRANSFORM, NodeKind.MATH, NodeKind.VECTOR_MATH, NodeKind.MIX, NodeKind.SEPARATE,
     NodeKind.COMBINE, NodeKind.GREY, NodeKind.CLAMP, NodeKind.GAMMA, NodeKind.INVERT,
@@ -25,12 +24,12 @@ _DULL = {
 
 
 def _three(value):
-    """A constant as the library takes it: of a single number the first of three."""
+    """Return a constant as three numbers; a single number becomes the first."""
     return value if isinstance(value, tuple) else (value, 0.0, 0.0)
 
 
 def _with_lobes(material, change):
-    """change gives a lobe, the same or another, or None."""
+    """Return the material with change(lobe) for each lobe; change returns a lobe, or None to remove it."""
     lobes = [change(lobe) for lobe in material.lobes]
     if all(new is old for new, old in zip(lobes, material.lobes, strict=True)):
         return material
@@ -38,12 +37,12 @@ def _with_lobes(material, change):
 
 
 def _matt(lobe, color):
-    # What turns a facet's normal turns a matt surface's, too.
+    # Keep the normal map or bump of the replaced lobe.
     return Lobe(LobeKind.LAMBERT, color=color, weight=lobe.weight, normal=lobe.normal, rules=lobe.rules)
 
 
 def _principled(lobe, **values):
-    """The lobe with these inputs of its Principled; itself where it has them already."""
+    """Return the lobe with these inputs of its Principled; the lobe itself if they are equal."""
     old = lobe.principled
     values = {name: value for name, value in values.items() if getattr(old, name) != value}
     return lobe.replaced(principled=old.replaced(**values)) if values else lobe
@@ -65,7 +64,7 @@ def _color_of_metal(lobe):
         return lobe.color
     if isinstance(lobe.color, NodeRef) or isinstance(lobe.edge, NodeRef):
         return (0.8, 0.8, 0.8)
-    # Reflectance at normal incidence of index n and extinction k.
+    # Reflectance at normal incidence for refractive index n and extinction k.
     return tuple(
         ((n - 1) ** 2 + k * k) / ((n + 1) ** 2 + k * k) for n, k in zip(_three(lobe.color), _three(lobe.edge), strict=True)
     )
@@ -145,7 +144,7 @@ def smooth_matt(material):
 
 
 def single_scattering(material):
-    """Multiple scattering between facets, which single scattering leaves out."""
+    """Return the material without multiple scattering between facets."""
 
     def change(lobe):
         if lobe.principled is not None and lobe.principled.distribution == Distribution.MULTI_GGX:
@@ -166,7 +165,7 @@ def opaque(material):
 
     def change(owner, name, value):
         if owner == "lobe" and name == "weight" and sources(material.nodes, value) & behind:
-            # What covers the surface in part covers all of it then.
+            # Lobes that cover the surface partly now cover all of it.
             return (1.0 / len(shares),) * 3
         if owner == "lobe" and name == "weight" and not isinstance(value, NodeRef) and rest > 0.0:
             return tuple(min(1.0, x / rest) for x in _three(value))
@@ -204,9 +203,9 @@ def _is_of_the_surface(owner, name):
 
 
 def _varied(material, pictured):
-    """The parameters beside normals that pictures feed, or (not pictured) that other nodes make differ from place to place.
+    """Return the nodes of parameters, except normals, that images feed or, if not pictured, that only other nodes vary.
 
-    Where a picture cuts holes, what is left of the surface and what is not belong together and stay.
+    If a node controls the transmittance, it and the lobes' weights depend on each other and are left out.
     """
     nodes, found = material.nodes, set()
     if not nodes:
@@ -232,7 +231,7 @@ def computed_nodes(material):
 
 
 def with_constants(material, values):
-    """values: {node: three numbers} in place of parameters that refer to it, normals and what cuts holes left alone."""
+    """Replace parameters that refer to nodes by values, {node: three numbers}, except the parameters that _varied omits."""
     cut = isinstance(material.transmittance, NodeRef)
 
     def change(owner, name, value):

@@ -1,6 +1,6 @@
-"""Objects, lamps, sky, camera and settings without one of their features: what is left when an artist does without it.
+"""Objects, lamps, sky, camera and settings without one of their features, as an artist would simplify them.
 
-Every function gives the snapshot that it was given where there is nothing to take away.
+Every function returns the same object if the snapshot lacks the feature.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..bindings.shading import NodeRef, World
 from ..bindings.snapshot import Light, MeshData
 
 FEW_BOUNCES = 3
-# Exact shapes that end, as meshes of this many sides.
+# Sides of the meshes that replace exact shapes.
 _SIDES = 48
 _DIRECTIONS = 4096
 
@@ -28,7 +28,7 @@ def _replaced(record, **values):
 
 
 def is_smooth(snapshot):
-    """By instance: whether its normals are interpolated."""
+    """Return (instances,) bool: whether the normals are interpolated."""
     table = snapshot.instances
     own = np.array([mesh.normals is not None for mesh in snapshot.meshes] + [False])
     on_mesh = table.kinds == InstanceKind.MESH
@@ -67,7 +67,7 @@ def shapes_as_meshes(snapshot):
 
 
 def _turned(kind):
-    """A surface of revolution about z in its unit frame, with a vertex normal for each of its corners."""
+    """Return the mesh of an exact shape in its unit frame: a surface of revolution about z. Only the sphere has normals."""
     if kind == InstanceKind.SPHERE:
         angles = np.linspace(0.0, math.pi, _SIDES // 2 + 1)
         outline = [(math.sin(a), math.cos(a)) for a in angles]
@@ -82,7 +82,7 @@ def _turned(kind):
     triangles = []
     for ring, ((r0, _), (r1, _)) in enumerate(zip(outline, outline[1:], strict=False)):
         a, b = ring * _SIDES + corner, ring * _SIDES + (corner + 1) % _SIDES
-        # At the poles one of the two triangles of a face has no area.
+        # At the poles one of the two triangles of a face has no area: leave it out.
         if r1 > 1e-9:
             triangles.append(np.stack([a, a + _SIDES, b + _SIDES], axis=1))
         if r0 > 1e-9:
@@ -108,7 +108,7 @@ def _as_point(light):
         return _replaced(light, sun_angle=0.0)
     if light.kind != LightKind.AREA:
         return _replaced(light, radius=0.0)
-    # Its power, pi radiance area, into the half space that it shines to.
+    # The lamp's power, pi radiance area, as radiant intensity that is equal in all directions of its half space.
     intensity = tuple(e * _area(light) / 2.0 for e in light.emission)
     spot = {"spot_angle": min(light.spread, math.pi), "spot_blend": 0.0, "size": (1.0, 1.0)}
     return _replaced(light, kind=LightKind.SPOT, emission=intensity, radius=0.0, **spot)
@@ -125,7 +125,7 @@ def point_lamps(snapshot):
 
 
 def _power(light: Light):
-    """In watts; no lamp is as strong as a sun."""
+    """Return the power in watts; infinity for a sun."""
     level = sum(light.emission) / 3.0
     if light.kind == LightKind.SUN:
         return math.inf if level > 0.0 else 0.0
@@ -142,10 +142,10 @@ def one_lamp(snapshot):
 
 
 def even_sky(snapshot, probe_world):
-    """probe_world: radiance (count, 3) of this snapshot's world in unit directions (count, 3)."""
+    """Return the snapshot with the mean radiance of its sky. probe_world(directions (count, 3)) returns radiance (count, 3)."""
     if not isinstance(snapshot.world.radiance, NodeRef):
         return snapshot
-    # Places of a spiral each stand for the same solid angle.
+    # Each point of the spiral represents the same solid angle.
     i = np.arange(_DIRECTIONS) + 0.5
     z, turn = 1.0 - 2.0 * i / _DIRECTIONS, math.pi * (1.0 + math.sqrt(5.0)) * i
     r = np.sqrt(1.0 - z * z)

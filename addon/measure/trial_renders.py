@@ -1,7 +1,7 @@
-"""Short renders of small pictures of a scene, from which forecast.py tells how long the whole one will take.
+"""Trial renders of small pictures of a scene, from which forecast.py predicts time and error of the whole picture.
 
-One small picture gets samples where the error is, as a render with a target does; the other, of a quarter of its pixels, gets
-the same everywhere. Between the two sizes they show how the error depends on the size of the picture.
+One small picture is refined where the error is largest, like a render with a target; the other, with a quarter of its pixels,
+gets equal samples everywhere. The two sizes show how the error depends on the size of the picture.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from ..bindings.session import Cancelled, Scene, Session
 from .costs import small_picture, with_splits
 from .schedule import FIRST_LOOK
 
-# Pixels of the larger of the small pictures.
+# Limits of the pixels of the larger picture, and the smaller picture's fraction and least pixels.
 _FEWEST, _MOST = 1024, 36864
 _QUARTER, _LEAST_QUARTER = 4, 64
-# Of the time: for the samples that all pixels get, of either picture.
+# Share of the time for the equal samples of all pixels, in each picture.
 _EVEN_SHARE = 0.2
-_FIRST = 8  # samples before which an error is not worth a point
-_NEXT = 0.7  # of the last bound: the target of the next round
-_DEEPEST = 1 << 16  # samples of a pixel
-_ENOUGH = 0.01  # an error below which nothing more is asked
-_CLASSIC_DEPTH = 16  # the core's own limit
-_REACH = 1.96  # of 95 % of a Gaussian
+_FIRST = 8  # samples before which no point is recorded
+_NEXT = 0.7  # target of the next round, relative to the last bound
+_DEEPEST = 1 << 16  # most samples of a pixel
+_ENOUGH = 0.01  # an error below which the measurement ends
+_CLASSIC_DEPTH = 16  # the core's limit
+_REACH = 1.96  # standard deviations of the 95 % interval of a Gaussian
 
 
 @dataclass(frozen=True)
 class Point:
-    """samples: of a pixel, on average; seconds: since the first sample."""
+    """samples: the mean over pixels; seconds: since the first sample."""
 
     samples: float
     error: float
@@ -42,7 +42,7 @@ class Point:
 
     @property
     def spread(self):
-        """Of the error's logarithm, one standard deviation."""
+        """The standard deviation of the error's logarithm."""
         return math.log(max(self.high / self.error, 1.0)) / _REACH if self.error > 0.0 else 0.0
 
 
@@ -50,8 +50,8 @@ class Point:
 class Measured:
     """Points of the two small pictures, in order of samples."""
 
-    refined: tuple  # of the larger; the same for all pixels up to FIRST_LOOK samples
-    even: tuple  # of the smaller
+    refined: tuple  # the larger picture; equal samples for all pixels up to FIRST_LOOK
+    even: tuple  # the smaller picture
     pixels: int
     even_pixels: int
     before: float = 0.0  # seconds from F12 to the first sample
@@ -59,7 +59,10 @@ class Measured:
 
 
 def measure(snapshot, seconds=10.0, poll=None, tell=None, library=None):
-    """Measured, in about so many seconds. Raises Cancelled where poll asks for it; tell(fraction, text) hears how far it is."""
+    """Return the Measured of a snapshot after about that many seconds; tell(fraction, text) reports progress.
+
+    Raise Cancelled if poll returns True, LancerError if the picture is too small for an error.
+    """
     started = time.monotonic()
     tell = tell or (lambda fraction, text: None)
     with Scene.upload(snapshot, library, poll) as scene:
@@ -84,12 +87,12 @@ class _Run:
     def __init__(self, scene, snapshot, until, poll, show):
         self.scene, self.camera, self.poll, self.until, self.show = scene, snapshot.camera, poll, until, show
         self.doing = "A look at the scene"
-        # With a target the film is laid out for refinement.
+        # A target makes the film ready for refinement.
         self.refining = dataclasses.replace(snapshot.settings, target_error=1e-6, time_limit=0.0, samples=_DEEPEST)
         self.settings = dataclasses.replace(self.refining, target_error=0.0)
 
     def cameras(self, seconds):
-        """Of both small pictures: as large as the time allows for FIRST_LOOK samples of each pixel."""
+        """Return the cameras of both pictures, as large as the time allows for FIRST_LOOK samples per pixel."""
         camera = small_picture(self.camera, _FEWEST)
         with Session(self.scene, camera, self.settings) as session:
             once = self._seconds(session, camera)
@@ -98,12 +101,12 @@ class _Run:
         return large, small_picture(large, max(_pixels(large) / _QUARTER, _LEAST_QUARTER))
 
     def even(self, camera, until):
-        """The same samples for all pixels: FIRST_LOOK at least, then while there is time."""
+        """Return the points with equal samples for all pixels: at least FIRST_LOOK, then as long as time allows."""
         points = []
         self.doing = "All pixels alike"
         with Session(self.scene, camera, self.settings) as session:
             for done in self._doubling(session, camera, points):
-                # The next range takes as long as all before it.
+                # The next range takes as long as all ranges before it.
                 late = time.monotonic() + session.statistics().render_seconds > until
                 if done >= FIRST_LOOK and (late or session.error().bound <= _ENOUGH):
                     break
@@ -125,7 +128,7 @@ class _Run:
         return points
 
     def _doubling(self, session, camera, points):
-        """Samples of each pixel, 1, 2, 4 ..., as they are there; each adds its point."""
+        """Render 1, 2, 4 ... samples per pixel; after each range add a point and yield the samples done."""
         done = 0
         while done < _DEEPEST:
             self._render(session, done, max(1, done))
@@ -134,7 +137,7 @@ class _Run:
             yield done
 
     def classic(self):
-        """Seconds of a pixel's sample of the other integrator."""
+        """Return the seconds of a pixel's sample in CLASSIC."""
         bounces = min(self.settings.max_bounces, _CLASSIC_DEPTH)
         camera = small_picture(self.camera, 4 * _FEWEST)
         settings = dataclasses.replace(self.settings, integrator=Integrator.CLASSIC, max_bounces=bounces)
@@ -142,7 +145,7 @@ class _Run:
             return self._seconds(session, camera)
 
     def _seconds(self, session, camera):
-        """Of a pixel's sample; the first look at a scene, which brings it into the caches, is not timed."""
+        """Return the seconds of a pixel's sample, without the first sample, which warms the caches."""
         self._render(session, 0, 1)
         before = session.statistics().render_seconds
         self._render(session, 1, 3)

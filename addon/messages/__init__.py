@@ -1,1 +1,1 @@
-"""What is told of a scene, and how much it hurts the picture. No bpy."""
+"""Messages about a scene and their severity. No bpy."""

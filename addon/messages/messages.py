@@ -1,4 +1,4 @@
-"""What a render left out or replaced, counted and told once."""
+"""Messages about things that a render leaves out or replaces, each reported once with a count."""
 
 import math
 from typing import NamedTuple
@@ -17,7 +17,7 @@ class Message(NamedTuple):
         return self.text if self.count == 1 else f"{self.text} ({self.count} times)"
 
 
-# What the library's own messages say of their severity; others are of something that is shown otherwise.
+# Severities of the library's own messages by words in them; all others are DIFFERENT.
 _OF_LIBRARY = (
     ("without area were left out", Severity.HINT),
     ("left out", Severity.LEFT_OUT),
@@ -26,7 +26,7 @@ _OF_LIBRARY = (
 
 
 class Messages:
-    """Sentences, what hurts most first, else in order of their first arrival; a sentence met again is only counted."""
+    """A list of messages by severity, the highest first, then by arrival; a repeated message is only counted."""
 
     def __init__(self, lines=(), severity=Severity.DIFFERENT):
         self._messages = {}
@@ -35,21 +35,21 @@ class Messages:
 
     @classmethod
     def of_library(cls, lines):
-        """Of the lines that a Session gives."""
+        """Return the Messages of a Session's lines."""
         messages = cls()
         for text in lines:
             messages.add(text, severity=next((severity for word, severity in _OF_LIBRARY if word in text), Severity.DIFFERENT))
         return messages
 
     def add(self, text, key="", severity=Severity.DIFFERENT):
-        """key: what is missing, for programs: "node:" and the node's label, or "feature:" and its name.
+        """Add a message. key: the missing feature, for programs: "node:" and the node's label, or "feature:" and its name.
 
-        Whoever asks for it gets another picture than Cycles'. What merely warns has no key.
+        A message has a key only if the missing feature makes the picture differ from Cycles'.
         """
         self._count(Message(text, key, severity))
 
     def _count(self, message):
-        """Whether it is new here."""
+        """Add or count a message; return whether it was known before."""
         known = self._messages.get(message.text)
         if known is not None:
             message = known._replace(count=known.count + message.count, severity=max(known.severity, message.severity))
@@ -57,7 +57,7 @@ class Messages:
         return known is None
 
     def merge(self, other):
-        """Adds what another holds. Gives of it what is new here."""
+        """Add the messages of other and return those that were new."""
         new = Messages()
         for message in other._messages.values():
             if self._count(message):
@@ -70,7 +70,7 @@ class Messages:
         return messages
 
     def replaced(self, old, new):
-        """The same messages with other words in the place of some."""
+        """Return a copy with new in place of old in each text."""
         messages = Messages()
         for message in self._messages.values():
             messages._count(message._replace(text=message.text.replace(old, new)))
@@ -83,14 +83,14 @@ class Messages:
         return iter(self.lines())
 
     def told(self):
-        """Each Message, what hurts most first."""
+        """Return all Message records, the most severe first."""
         return sorted(self._messages.values(), key=lambda message: -message.severity)
 
     def lines(self):
         return [message.line for message in self.told()]
 
     def missing(self):
-        """{key: how often it was met}"""
+        """Return {key: count} of the missing features."""
         counts = {}
         for message in self._messages.values():
             if message.key:
@@ -98,10 +98,10 @@ class Messages:
         return counts
 
     def number(self, value, who, what, default, low=-math.inf, high=math.inf):
-        """value where it is a finite number in [low, high]; else the nearest usable one, with a message."""
+        """Return value clamped to [low, high], or default if it is not finite; add a message if that changes it."""
         value = float(value)
         usable = min(max(value, low), high)
-        # Blender keeps single precision, in which a limit such as pi may lie half a step outside.
+        # Blender stores single precision, in which a limit such as pi can lie half a step outside.
         if math.isfinite(value) and abs(value - usable) <= abs(value) * 2.0**-23:
             return usable
         if not math.isfinite(usable):
@@ -110,7 +110,7 @@ class Messages:
         return usable
 
     def color(self, value, who, what, default=0.0):
-        """Three channels, each finite and not negative."""
+        """Return three channels, clamped to 0 and default if not finite; add a message if that changes them."""
         channels = [float(c) for c in value[:3]]
         if all(math.isfinite(c) and c >= 0.0 for c in channels):
             return tuple(channels)

@@ -1,14 +1,14 @@
-"""How much something that is told hurts the picture."""
+"""Severity of messages and findings: how much they hurt the picture."""
 
 from enum import IntEnum
 
 
 class Severity(IntEnum):
-    """In rising order: what hurts most is told first."""
+    """Rising severity; the highest is reported first."""
 
-    HINT = 0  # no fault, or one that may be meant so: panels show it, and no render warns of it
-    WASTE = 1  # costs time, or light does not do what the setting promises
-    DIFFERENT = 2  # shown otherwise than Cycles shows it
-    LEFT_OUT = 3  # a thing of the scene is not in the picture
+    HINT = 0  # no fault, or possibly intended: shown in panels, without a warning after the render
+    WASTE = 1  # costs time, or light behaves otherwise than the setting suggests
+    DIFFERENT = 2  # differs from Cycles
+    LEFT_OUT = 3  # a part of the scene is missing in the picture
     WRONG = 4  # the picture shows a fault
     FAILED = 5  # there is no picture
