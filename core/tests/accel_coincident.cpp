@@ -1,4 +1,4 @@
-// Surfaces at one and the same place: one of them is there, always the same.
+// Coincident surfaces: a ray always hits the same one of them.
 #include "accel_scenes.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace lancer::test {
 namespace {
 
-// Every face of a closed surface six times, its corners in all orders: three see it from outside, three from inside.
+// Every face of a closed surface six times, with its corners in all orders: three face outwards, three inwards.
 Mesh faces_in_all_orders(Random &random) {
   Mesh mesh = bumpy_sphere(1.0, 24, 12, 0.2);
   std::vector<glm::uvec3> all;
@@ -26,14 +26,14 @@ glm::uvec3 sorted(glm::uvec3 t) {
   return {corner[0], corner[1], corner[2]};
 }
 
-// Of faces with the same corners the first is met: from outside, from inside, at edges, wherever the ray comes from.
+// Of faces with the same corners a ray hits the first: from outside, from inside, at edges, from any direction.
 void expect_first(const glm::dmat3 &linear, const glm::dvec3 &place) {
   Random random(81);
   Geometry geometry;
   geometry.meshes.push_back(faces_in_all_orders(random));
   const Mesh &mesh = geometry.meshes[0];
   geometry.instances.push_back(placed(ShapeKind::Mesh, linear, place));
-  // Rays into the surface and back out of it, and those that meet it at an edge.
+  // Rays into the surface and back out of it, and rays that hit it at an edge.
   std::vector<Ray> rays;
   for (int i = 0; i < 3000; ++i) {
     const uint32_t triangle = random.below(static_cast<uint32_t>(mesh.triangles.size()));
@@ -70,7 +70,7 @@ TEST(Coincident, TheFirstOfEqualFaces) {
   expect_first({{0.7, 0.2, -0.4}, {-0.3, 1.1, 0.1}, {0.5, 0.2, -0.9}}, {1.0, 2.0, 3.0});
 }
 
-// Copies of anything at one place: the first, whatever else lies between its number and theirs.
+// Of coincident copies a ray hits the first, whatever the numbers in between.
 TEST(Coincident, TheFirstOfEqualInstances) {
   Random random(82);
   Geometry geometry;

@@ -1,4 +1,5 @@
-// Surfaces of different make in one plane: one of them is there, from all sides, and the others stop no ray that leaves it.
+// Coplanar surfaces of different meshes: a ray from any side hits one of them, and a ray that leaves it hits none of the
+// others.
 #include "accel/coplanar/coplanar_faces.h"
 #include "accel_scenes.h"
 #include "scene/surface.h"
@@ -8,7 +9,8 @@
 namespace lancer::test {
 namespace {
 
-// A rectangle of n x m squares at a height, corners of its own for each triangle, carried by a map and rounded to floats.
+// Adds a rectangle of n x m squares at a height, with separate corners for each triangle, transformed by a map and rounded to
+// floats.
 void add_grid(Mesh &mesh, const Affine &place, const glm::dvec2 &low, const glm::dvec2 &high, uint32_t n, uint32_t m,
               uint16_t slot = 0) {
   const auto corner = [&](uint32_t i, uint32_t k) {
@@ -35,7 +37,7 @@ Mesh grid(const Affine &place, const glm::dvec2 &low, const glm::dvec2 &high, ui
   return mesh;
 }
 
-// As floats hold it.
+// Rounds a map to floats.
 Affine rounded(const Affine &a) { return {glm::dmat3(glm::mat3(a.linear)), glm::dvec3(glm::vec3(a.translation))}; }
 
 Affine turned(Random &random) {
@@ -52,11 +54,11 @@ Affine lifted(double height) { return {glm::dmat3(1.0), {0.0, 0.0, height}}; }
 // Two surfaces that cover the square -0.9 ... 0.9 of a plane.
 struct Scene {
   Geometry geometry;
-  Affine place;                                // of the plane z = 0
+  Affine place;                                // maps the plane z = 0
   std::vector<uint8_t> transparent_instances;  // by slot
-  uint32_t first_instance = 0;                 // which surface is there: an instance,
-  uint32_t first_triangle = 0, end = 1u << 31; // and some of its triangles
-  bool closed = false;                         // from below, other parts come first
+  uint32_t first_instance = 0;                 // the surface that rays must hit: an instance,
+  uint32_t first_triangle = 0, end = 1u << 31; // and a range of its triangles
+  bool closed = false;                         // from below, rays hit other parts first
   std::string name;
 };
 
@@ -76,7 +78,7 @@ void add(Geometry &geometry, const Affine &place, ShapeKind kind) {
   geometry.instances.push_back(instance);
 }
 
-// Five sides and a top of a box below z = 0.
+// A box below z = 0: five sides and a top.
 Mesh box() {
   Mesh mesh = grid({glm::dmat3(1.0), {0.0, 0.0, 1.0}}, glm::dvec2(-1.0), glm::dvec2(1.0), 1, 1);
   const glm::dmat3 turns[5] = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
@@ -119,7 +121,7 @@ std::vector<Scene> scenes(Random &random, double scale) {
     add(s.geometry, {}, std::move(mesh));
   }
   {
-    // The box first: what lies on it is never seen.
+    // The box first: what lies on it is hidden.
     Scene &s = begin("a square on the top of a box");
     s.closed = true;
     const Affine below = {s.place.linear, s.place.point({0.0, 0.0, -1.0})};
@@ -180,8 +182,8 @@ std::vector<Rule> all_with_rule(const Scene &scene) {
   return all;
 }
 
-// Towards the middle of what is covered, from either side, down to 1.5e-5 of a radian, where floats still make a plane; some
-// come in bundles.
+// Rays towards the middle of the covered square, from either side, down to 1.5e-5 radians, where floats still define a plane;
+// some come in bundles.
 std::vector<Ray> rays_at(Random &random, const Scene &scene, size_t count) {
   std::vector<Ray> rays;
   while (rays.size() < count) {
@@ -222,7 +224,7 @@ TEST_P(Coplanar, OneIsMetFromAllSides) {
   }
 }
 
-// What leaves the plane, to a lamp or anywhere, meets nothing more of it.
+// Rays that leave the plane, to a lamp or to infinity, hit no other face of it.
 TEST_P(Coplanar, NothingStopsWhatLeaves) {
   const double scale = GetParam();
   Random random(92);
@@ -239,7 +241,7 @@ TEST_P(Coplanar, NothingStopsWhatLeaves) {
           continue;
         const Surface surface = surface_at(scene.geometry, slots, rays[i], hits[i]);
         glm::dvec3 d = random.direction();
-        // Upwards, where no scene has anything else, and some of it along the plane.
+        // Upwards, where no scene has anything else, some nearly along the plane.
         d -= glm::dot(d, up) * up;
         d = glm::normalize(d) + std::exp2(random.uniform(-18.0, 1.0)) * up;
         on.push_back(leave(surface, d * scale, std::numeric_limits<double>::infinity()));

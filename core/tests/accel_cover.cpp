@@ -1,4 +1,4 @@
-// Things that lie on parts of a face: found wherever they are, and looked for nowhere else.
+// Faces partly covered by others: the cover is found wherever it is, and searched for nowhere else.
 #include "accel/coplanar/coplanar_faces.h"
 #include "accel_scenes.h"
 
@@ -29,7 +29,7 @@ struct Place {
   double inside; // of the nearest small triangle, by distance to its nearest side; negative outside
 };
 
-// Many small triangles, each turned its own way, on a large face: a square of two triangles or an endless plane.
+// Many small triangles, each rotated differently, on a large face: a square of two triangles or an infinite plane.
 struct Tiles {
   Geometry geometry;
   Affine frame;
@@ -63,13 +63,13 @@ struct Tiles {
     geometry.instances.push_back(instance);
   }
 
-  // Anywhere near one, and every other time next to a side of a small triangle.
+  // Returns a place anywhere near a small triangle, and every second time next to one of its sides.
   Place place(Random &random) const {
     const uint32_t tile = random.below(kTiles * kTiles);
     const Mesh &mesh = geometry.meshes[0];
     const glm::dvec3 corner[3] = {glm::dvec3(mesh.positions[0]), glm::dvec3(mesh.positions[1]), glm::dvec3(mesh.positions[2])};
     const uint32_t side = random.below(3);
-    // However it is turned, within its tile.
+    // In any rotation, within its tile.
     glm::dvec3 p(random.uniform(-0.35, 0.35), random.uniform(-0.35, 0.35), 0.0);
     if (random.below(2)) {
       const glm::dvec3 across(corner[(side + 1) % 3].y - corner[side].y, corner[side].x - corner[(side + 1) % 3].x, 0.0);
@@ -85,9 +85,10 @@ struct Tiles {
   }
 };
 
-// Placements are rounded to floats: 2^-23 of up to 16 times a tile, by several terms.
+// Placements are rounded to floats: 2^-23 of up to 16 tiles, in several terms.
 constexpr double kRounding = 0x1p-16;
-// 2^-20 of a face's size, which is below 128 tiles (an endless plane's square is twice as wide as the scene), and the rounding.
+// 2^-20 of a face's size, which is below 128 tiles (an infinite plane's square is twice as wide as the scene), plus the
+// rounding.
 constexpr double kBorder = 0x1p-12;
 
 class CoverTest : public testing::TestWithParam<double> {};
@@ -129,7 +130,7 @@ TEST_P(CoverTest, NothingIsLookedForWhereNothingLies) {
     for (int i = 0; i < 20000; ++i) {
       const Place place = tiles.place(random);
       const glm::dvec3 p = tiles.frame.point({place.at, 0.0});
-      // The diagonal of the square parts its triangles.
+      // The diagonal of the square separates its triangles.
       const uint32_t primitive = kind == ShapeKind::Mesh && place.at.y > place.at.x;
       const bool covered = faces.may_be_covered(tiles.large, primitive, p);
       EXPECT_EQ(covered, faces.may_lose(tiles.large, primitive, p));

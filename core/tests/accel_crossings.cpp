@@ -1,4 +1,4 @@
-// A ray crosses a closed surface once where it crosses it: as often inwards as outwards, also at its corners and edges.
+// A ray crosses a closed surface exactly once per crossing: as often inwards as outwards, also at corners and edges.
 #include "accel_scenes.h"
 
 #include "scene/surface.h"
@@ -9,13 +9,13 @@
 namespace lancer::test {
 namespace {
 
-// LANCER_TEST_RAYS times as many rays as usual.
+// Returns the usual number of rays times LANCER_TEST_RAYS.
 size_t ray_count(size_t usual) {
   const char *factor = std::getenv("LANCER_TEST_RAYS");
   return usual * (factor ? std::strtoull(factor, nullptr, 10) : 1);
 }
 
-// Flat sides of several triangles each, so that rays along them lie in planes of edges; all corners are of eight bits.
+// Flat sides of several triangles each, so that rays along them lie in planes of edges; corners have eight bits.
 Mesh stairs() {
   Mesh mesh;
   constexpr uint32_t n = 6;
@@ -56,7 +56,7 @@ Mesh stairs() {
   return mesh;
 }
 
-// A needle of two points, 1e7 times as long as thick, whose corners no grid holds.
+// A needle with two tips, 1e7 times as long as thick, with corners on no grid.
 Mesh needle() {
   Mesh mesh;
   constexpr uint32_t around = 12;
@@ -72,7 +72,7 @@ Mesh needle() {
   return mesh;
 }
 
-// A ray from outside through a corner, a point of an edge, or of a face; one in four along an axis of the mesh.
+// A ray from outside through a corner, a point of an edge, or of a face; one in four is along an axis of the mesh.
 Ray aimed(Random &random, const Mesh &mesh, const Affine &to_world) {
   const uint32_t triangle = random.below(static_cast<uint32_t>(mesh.triangles.size()));
   const glm::dvec3 a = mesh.vertex(triangle, 0), b = mesh.vertex(triangle, 1), c = mesh.vertex(triangle, 2);
@@ -104,7 +104,7 @@ struct Crossings {
     const auto same = [](const Hit &a, const Hit &b) { return a.primitive == b.primitive; };
     hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
   }
-  // Entries less exits.
+  // Returns entries minus exits.
   int balance(size_t ray) const {
     int sum = 0;
     for (const Hit &hit : of[ray]) {
@@ -134,14 +134,14 @@ void expect_pairs(const Mesh &mesh, const glm::dmat3 &linear, const glm::dvec3 &
         ray = aimed(random, mesh, geometry.instances[0].to_world);
       Crossings crossings{&geometry, rays.data(), std::vector<std::vector<Hit>>(rays.size())};
       c.accelerator->any_hit(rays, occluded, {all_asked, Crossings::add, &crossings});
-      // Every crossing once, each inwards with one outwards.
+      // Every crossing once, each entry with one exit.
       for (size_t i = 0; i < rays.size(); ++i) {
         crossings.sort(i);
         odd += crossings.of[i].size() & 1;
         unbalanced += crossings.balance(i) != 0;
         met += !crossings.of[i].empty();
       }
-      // From each to the next, as rays go on behind a surface: the same ones, but for those that are met at one and the same t.
+      // Step from hit to hit, as paths continue behind a surface: the same hits, except for those with equal t.
       std::vector<size_t> step(rays.size(), 0);
       for (bool more = true; more;) {
         more = false;
@@ -169,7 +169,8 @@ void expect_pairs(const Mesh &mesh, const glm::dmat3 &linear, const glm::dvec3 &
     }
     EXPECT_EQ(odd, 0u) << c.name;
     EXPECT_EQ(unbalanced, 0u) << c.name;
-    // Aims are on the surface, and those at its outline may miss: of rays along the stairs' axes more than half are.
+    // Targets are on the surface, and rays to its outline may miss: more than half of the rays along the stairs' axes are of
+    // this kind.
     EXPECT_GT(met, count * 2 / 3) << c.name;
     EXPECT_GT(walked, met) << c.name;
   }

@@ -1,4 +1,4 @@
-// Scenes and rays at the edge of sense: an answer, never a hang.
+// Degenerate scenes and rays: the query returns and never hangs.
 #include "accel_scenes.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST(AcceleratorDegenerate, NonFiniteRaysMeetNothing) {
   }
 }
 
-// Nothing separates them: the builders must give up splitting and still find the first.
+// Nothing separates the triangles: the builders must stop splitting and still find the first.
 TEST(AcceleratorDegenerate, AMillionCoincidentTriangles) {
   Geometry geometry;
   Mesh mesh;
@@ -83,7 +83,7 @@ TEST(AcceleratorDegenerate, AMillionCoincidentTriangles) {
   }
 }
 
-// Sizes in geometric progression make the surface-area heuristic peel them off one by one: the deepest trees there are.
+// Sizes in geometric progression make the surface-area heuristic split them off one by one: the deepest trees possible.
 TEST(AcceleratorDegenerate, GeometricProgression) {
   Geometry geometry;
   Mesh mesh;
@@ -119,7 +119,7 @@ TEST(AcceleratorDegenerate, InstructionSetIsNamed) {
 #if defined(__x86_64__)
   const char *const told = "sse4";
 #else
-  // Other processors have one set, whatever is asked for.
+  // Other processors have one set, whatever the environment requests.
   const char *const told = "generic";
 #endif
   EXPECT_STREQ(build_bvh_for("sse4", geometry, 1)->instruction_set(), told);

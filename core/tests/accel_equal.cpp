@@ -1,4 +1,4 @@
-// Brute force, kd-tree and the BVH of every instruction set answer with the same bits.
+// Brute force, kd-tree and the BVH of every instruction set return the same bits.
 #include "accel_scenes.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace lancer::test {
 namespace {
 
-// Rays of all kinds: inside and outside, scaled, axis-parallel, bounded, with something to skip.
+// Rays of all kinds: inside and outside, scaled, axis-parallel, bounded, with a primitive to skip.
 Ray random_ray(Random &random, const Geometry &geometry, double size) {
   Ray ray = make_ray(random.in_box(size), random.direction());
   const glm::dvec3 target = random.in_box(0.6 * size);
@@ -37,7 +37,7 @@ Ray random_ray(Random &random, const Geometry &geometry, double size) {
   return ray;
 }
 
-// All accelerators on the same rays; the share of hits tells that the rays were worth asking.
+// Traces the same rays with all accelerators; the share of hits proves that the rays test something.
 void expect_equal(const Geometry &geometry, const std::vector<Ray> &rays, double least_hits) {
   const std::vector<Contestant> all = all_accelerators(geometry);
   std::vector<Hit> oracle(rays.size()), hits(rays.size());
@@ -130,7 +130,7 @@ Geometry mixed_scene(Random &random, uint32_t count, double size, double smalles
   Geometry geometry;
   geometry.meshes.push_back(bumpy_sphere(1.0, 12, 8, 0.2));
   geometry.meshes.push_back(triangle_soup(random, 60, 1.0));
-  geometry.meshes.push_back(bumpy_sphere(1e-6, 9, 6, 0.2)); // brought back to size by its placement
+  geometry.meshes.push_back(bumpy_sphere(1e-6, 9, 6, 0.2)); // scaled up by its placement
   for (uint32_t i = 0; i < count; ++i) {
     const ShapeKind kind = static_cast<ShapeKind>(i % 7 < 3 ? 0 : i % 7 == 6 ? 1 : i % 7 - 2);
     const uint32_t mesh = i % 3;
@@ -154,7 +154,7 @@ TEST(AcceleratorsEqual, ScaleRatioOfAMillion) {
   const Geometry geometry = mixed_scene(random, 80, 10.0, 1e-6, glm::dvec3(0.0));
   std::vector<Ray> rays = random_rays(random, geometry, 2500, 14.0);
   for (int i = 0; i < 2500; ++i) {
-    // Aim at the middle of an instance, so that the tiny ones are met.
+    // Aim at the centre of an instance, so that tiny ones are hit.
     const Instance &target = geometry.instances[random.below(static_cast<uint32_t>(geometry.instances.size()))];
     const glm::dvec3 o = random.in_box(14.0);
     rays.push_back(make_ray(o, target.to_world.translation - o));
@@ -189,7 +189,7 @@ TEST(AcceleratorsEqual, AnyNumberOfThreadsBuildsTheSame) {
   }
 }
 
-// Equal t: the smaller instance, then the smaller primitive, wherever the builder has put them.
+// Equal t: the smaller instance wins, then the smaller primitive, wherever the builder has put them.
 TEST(AcceleratorsEqual, TiesGoToTheSmallerNumber) {
   Random random(7);
   Geometry geometry;

@@ -1,4 +1,4 @@
-// Hits that do not count: every accelerator leaves them out within one traversal, and asks about all that stand in the way.
+// Filtered hits: every accelerator skips rejected hits within one traversal, and passes all hits on the way to the filter.
 #include "accel_scenes.h"
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 namespace lancer::test {
 namespace {
 
-// A place that a ray was asked about.
+// A hit that was passed to the filter.
 using Place = std::tuple<double, uint32_t, uint32_t>;
 Place place_of(const Hit &hit) { return {hit.t, hit.instance, hit.primitive}; }
 
-// Lets some surfaces count, chosen by their numbers, and keeps what it was asked.
+// Accepts some surfaces, chosen by number, and records the calls.
 struct Chooser {
-  uint32_t share; // one in so many counts; 0: none
+  uint32_t share; // one in this many counts; 0: none
   std::vector<uint8_t> instances;
   std::vector<std::set<Place>> asked;
 
@@ -37,7 +37,7 @@ struct Chooser {
   }
 };
 
-// All that a ray meets, from hit to hit of the same ray.
+// Returns all hits of a ray, found one by one.
 std::vector<Hit> all_hits(const Accelerator &accelerator, Ray ray) {
   std::vector<Hit> hits;
   for (Hit hit = closest(accelerator, ray); hit.valid(); hit = closest(accelerator, ray)) {
@@ -47,7 +47,7 @@ std::vector<Hit> all_hits(const Accelerator &accelerator, Ray ray) {
   return hits;
 }
 
-// Rays from everywhere, and the neighbours of a small picture.
+// Rays from everywhere, and neighbouring rays of a small picture.
 std::vector<Ray> some_rays(Random &random, const Geometry &geometry) {
   std::vector<Ray> rays;
   for (uint32_t i = 0; i < 1024; ++i)
@@ -93,7 +93,7 @@ TEST(AcceleratorFilter, GoesOnPastWhatDoesNotCount) {
         const auto end = std::ranges::find_if(met[i], [&](const Hit &hit) { return near.counts(hit); });
         ASSERT_TRUE(same_bits(hits[i], end == met[i].end() ? Hit{} : *end));
         ASSERT_EQ(occlusion[i], end != met[i].end());
-        // Each layer was asked about, as the chain meets it; and of a ray that nothing stops nothing else was.
+        // The filter saw each layer of the chain; for a ray without occluder it saw nothing else.
         std::set<Place> passed;
         for (auto hit = met[i].begin(); hit != end; ++hit) {
           passed.insert(place_of(*hit));
@@ -108,7 +108,7 @@ TEST(AcceleratorFilter, GoesOnPastWhatDoesNotCount) {
 }
 
 TEST(AcceleratorFilter, CoincidentSurfacesAreAllAskedAbout) {
-  // The same square by three instances, one upside down, and twice within the mesh.
+  // The same square as three instances, one upside down, and twice within the mesh.
   Geometry geometry;
   Mesh mesh;
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};

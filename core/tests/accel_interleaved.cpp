@@ -1,4 +1,4 @@
-// Rays that a thread traces side by side know nothing of each other.
+// Rays that a thread traces together do not influence each other.
 #include "accel_scenes.h"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ TEST(AcceleratorInterleaved, AnyBatchSizeAndOrderGiveTheSame) {
         std::vector<Ray> batch;
         for (size_t i = 0; i < size; ++i)
           batch.push_back(rays[order[first + i]]);
-        // One more place at the end must stay as it is.
+        // An extra element at the end must stay unchanged.
         std::vector<Hit> hits(size + 1);
         std::vector<uint8_t> occlusion(size + 1, 7);
         hits[size].instance = 12345;
@@ -68,7 +68,7 @@ TEST(AcceleratorInterleaved, AnyBatchSizeAndOrderGiveTheSame) {
   }
 }
 
-// Rays of a small camera: neighbours lie next to each other, four samples a pixel. Some differ in all that a ray may say.
+// Rays of a small camera: neighbours are adjacent, with four samples per pixel. Some differ in every field of a ray.
 std::vector<Ray> camera_rays(Random &random, const glm::dvec3 &eye, const glm::dvec3 &to, double spread, size_t count) {
   const glm::dvec3 forward = glm::normalize(to - eye), right = glm::normalize(glm::cross(forward, glm::dvec3(0.1, 0.2, 1.0))),
                    up = glm::cross(right, forward);
@@ -103,7 +103,7 @@ std::vector<Ray> camera_rays(Random &random, const glm::dvec3 &eye, const glm::d
   return rays;
 }
 
-// Neighbours that go down the tree together: through instances mirrored, turned and flattened, too.
+// Neighbours that traverse the tree together, through mirrored, rotated and flattened instances.
 TEST(AcceleratorInterleaved, NeighboursGiveTheSameAsEachAlone) {
   Random random(12);
   Geometry geometry = everything(random, 40, 3000, 8.0);
@@ -131,7 +131,7 @@ TEST(AcceleratorInterleaved, NeighboursGiveTheSameAsEachAlone) {
           ASSERT_EQ(occlusion[i], hits[i].valid()) << instruction_set << ", " << i << " of view " << view;
           found += hits[i].valid();
         }
-        // The second time through what was met, from the same places and, for some, from where it was met.
+        // The second pass skips the surfaces hit, from the same origins and, for some rays, from the hit.
         for (size_t i = 0; i < rays.size(); ++i)
           if (hits[i].valid()) {
             rays[i].skip_instance = hits[i].instance;
@@ -145,7 +145,7 @@ TEST(AcceleratorInterleaved, NeighboursGiveTheSameAsEachAlone) {
   }
 }
 
-// One quad of two triangles: a ray that meets it looks at one node and one block; what misses its box at the node alone.
+// One quad of two triangles: a ray that hits it visits one node and one block; a ray that misses its box visits the node only.
 TEST(AcceleratorInterleaved, WorkIsCounted) {
   Geometry geometry;
   Mesh mesh;
@@ -167,7 +167,7 @@ TEST(AcceleratorInterleaved, WorkIsCounted) {
     }
 }
 
-// More things without a box than any stack holds.
+// More unbounded instances than a stack holds.
 TEST(AcceleratorInterleaved, AnyNumberOfPlanes) {
   Geometry geometry;
   geometry.meshes.push_back(bumpy_sphere(1.0, 9, 6, 0.0));

@@ -1,4 +1,4 @@
-// The course's first check: three rays against two spheres and two planes.
+// The first check of the course: three rays against two spheres and two planes.
 #include "accel/hit_tests.h"
 #include "accel_scenes.h"
 
@@ -43,7 +43,7 @@ TEST(AcceleratorLab, ThreeRaysTwoSpheresTwoPlanes) {
       const Hit hit = closest(*c.accelerator, e.ray);
       ASSERT_EQ(hit.instance, e.instance) << c.name;
       EXPECT_EQ(hit.primitive, 0u);
-      // Inputs are exact; the root and its division round a handful of times, 8 ulp.
+      // Inputs are exact; the root and its division have a handful of roundings, 8 ulp.
       EXPECT_NEAR(hit.t, e.t, 8 * 0x1p-52 * e.t) << c.name;
       const glm::dvec3 n = world_normal(geometry, e.ray, hit);
       EXPECT_NEAR(glm::length(n - e.normal), 0.0, 16 * 0x1p-52) << c.name;
@@ -64,7 +64,7 @@ TEST(AcceleratorLab, RangeIsRespectedAndOpen) {
     EXPECT_FALSE(closest(*c.accelerator, ray).valid()) << c.name;
     EXPECT_FALSE(occluded(*c.accelerator, ray)) << c.name;
 
-    // A shrinking tmax hides what lies at it and behind it.
+    // A shrinking tmax hides everything at or behind it.
     ray.tmin = 4.0;
     for (const double place : {25.0, 17.0, 13.0}) {
       ray.tmax = place;

@@ -1,4 +1,4 @@
-// The loop over threads, also where the system has no memory for one.
+// The parallel loop, also without memory for its threads.
 #include "allocations.h"
 
 #include "simd/parallel.h"
@@ -11,7 +11,7 @@ namespace {
 
 TEST(Parallel, WithoutMemoryForAThreadTheOthersWork) {
   const BuildContext context{.threads = 64};
-  // From no thread at all to some of them: what is missing is noticed before the first, or work goes on with fewer.
+  // From no thread to several: failure is reported before the first thread, or work continues with fewer.
   for (uint64_t left = 0; left < 12; ++left) {
     std::atomic<int> done{0};
     bool refused = false;
@@ -35,7 +35,7 @@ TEST(Parallel, TheFirstExceptionEndsIt) {
         throw std::runtime_error("ten");
     };
     EXPECT_THROW(parallel_for(BuildContext{.threads = threads}, 1u << 20, piece), std::runtime_error);
-    // How far the others come until they hear of it is the system's affair.
+    // The number of pieces that other threads finish before they stop depends on the system.
     if (threads == 1) {
       EXPECT_EQ(done, 11);
     }

@@ -1,4 +1,4 @@
-// The boxes of instances: around all that they hold, and not much more.
+// Boxes of instances: they contain the instance and are tight.
 #include "accel/placed_scene.h"
 #include "accel_scenes.h"
 
@@ -7,7 +7,7 @@
 namespace lancer::test {
 namespace {
 
-// Any turn and any stretch.
+// Any rotation and any stretch.
 glm::dmat3 turned(Random &random) {
   const glm::dvec3 x = random.direction(), y = glm::normalize(glm::cross(x, random.direction()));
   return {x, y, glm::cross(x, y)};
@@ -56,8 +56,8 @@ TEST(PlacedScene, TurnedCopiesHaveNarrowBoxes) {
   for (int i = 0; i < 100; ++i)
     geometry.instances.push_back(placed(ShapeKind::Mesh, turned(random), glm::dvec3(0.0)));
   const PlacedScene scene = place_scene(geometry);
-  // Cut into four along each axis the ball lies in boxes whose farthest corner, of those that hold points with two coordinates
-  // of a half at least and one of at most that, is at the root of 3/4 + 3/4 + 1/4. A single box would reach to the root of 3.
+  // Cut into four along each axis, the ball lies in boxes whose farthest corner, of boxes with points that have two coordinates
+  // of at least a half and one of at most a half, is at sqrt(3/4 + 3/4 + 1/4). A single box would reach to sqrt(3).
   for (uint32_t i = 0; i < 100; ++i) {
     const WorldBox box = box_of(scene, i);
     for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +74,7 @@ TEST(PlacedScene, WhatHasNoPlaceHasNoBox) {
   mesh.triangles = {{0, 1, 2}};
   for (int i = 0; i < 2; ++i)
     geometry.instances.push_back(placed(ShapeKind::Mesh, glm::dmat3(1.0), glm::dvec3(0.0)));
-  // Of two corners x is the difference of two products beyond the range of double.
+  // For two corners x is the difference of two products beyond the range of double.
   geometry.instances[1].to_world.linear[0].x = 1e308;
   geometry.instances[1].to_world.linear[1].x = -1e308;
   const PlacedScene scene = place_scene(geometry);

@@ -1,5 +1,4 @@
-// How many digits of t exact surfaces keep: spheres, cylinders, cones and planes of any size, seen from next to them, at
-// grazing angles.
+// Precision of t on exact surfaces: spheres, cylinders, cones and planes of any size, from close by and at grazing angles.
 #include "accel_scenes.h"
 #include "quad.h"
 
@@ -11,7 +10,7 @@ namespace {
 Quad root_of(Quad x) {
   if (!(x > 0))
     return 0;
-  // Start in the range of double; each step of Newton doubles the digits.
+  // Start in double; each Newton step doubles the digits.
   Quad r = std::sqrt(static_cast<double>(x));
   for (int i = 0; i < 3; ++i)
     r = (r + x / r) / 2;
@@ -29,7 +28,7 @@ struct Place {
   Quad3 n; // outward, of any length, in the shape's space
 };
 
-// Places of a t^2 + 2 b t + c = 0, or of the line b t + c = 0.
+// Adds the roots of a t^2 + 2 b t + c = 0, or of the line b t + c = 0.
 void add_roots(std::vector<Quad> &roots, Quad a, Quad b, Quad c) {
   const Quad discriminant = b * b - a * c;
   if (discriminant < 0)
@@ -41,7 +40,7 @@ void add_roots(std::vector<Quad> &roots, Quad a, Quad b, Quad c) {
     roots.push_back(q / a);
 }
 
-// The first place with t > 0 where o + t d meets the surface in its own space, in 113 bits.
+// Finds the first t > 0 where o + t d hits the surface in its own space, in 113 bits.
 bool reference(ShapeKind kind, const Quad3 &o, const Quad3 &d, Place &first) {
   std::vector<Place> places;
   const auto keep = [&](Quad t, auto &&normal, auto &&inside) {
@@ -113,7 +112,7 @@ glm::dvec3 normal_at(ShapeKind kind, const glm::dvec3 &p) {
   return kind == ShapeKind::Sphere ? p : glm::normalize(glm::dvec3(out, kind == ShapeKind::Cone ? 0.5 : 0.0));
 }
 
-// On the curved side, away from rims and apex.
+// Returns a point on the curved side, away from rims and apex.
 glm::dvec3 point_on(ShapeKind kind, Random &random) {
   if (kind == ShapeKind::Sphere)
     return random.direction();
@@ -124,8 +123,8 @@ glm::dvec3 point_on(ShapeKind kind, Random &random) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-// Errors in units of an ulp times the condition number. A change of o, of the centre, of the size or of d by eps of itself
-// moves the line against the surface by eps (|o| + |c| + r |p| + t |d|), along the line by that over |cosine|.
+// Errors in units of an ulp times the condition number. A relative change of o, the centre, the size or d by eps moves the line
+// against the surface by eps (|o| + |c| + r |p| + t |d|), and along the line by this over |cosine|.
 struct Worst {
   double ulps = 0.0;
   size_t checked = 0, missed = 0;
@@ -141,7 +140,7 @@ Worst measure(ShapeKind kind, uint64_t seed, bool grazing, double far) {
     geometry.instances.push_back(placed(kind, glm::dmat3(r), centre));
     const auto accelerator = build_accelerator(AcceleratorKind::Bvh, geometry, {});
     for (int i = 0; i < 300; ++i) {
-      // From 1e-9 of the radius above the surface, or from further.
+      // From a height of 1e-9 of the radius, or from farther away.
       const glm::dvec3 on = point_on(kind, random), n = normal_at(kind, on);
       const glm::dvec3 o = centre + r * (on + n * std::pow(10.0, random.uniform(-9.0, i & 1 ? -8.0 : 1.0)));
       const glm::dvec3 along = glm::normalize(glm::cross(n, random.direction()));
@@ -158,7 +157,7 @@ Worst measure(ShapeKind kind, uint64_t seed, bool grazing, double far) {
       const double t = static_cast<double>(want.t), length = glm::length(d);
       const double reach = glm::length(o) + glm::length(centre) + r * static_cast<double>(root_of(dot(p, p))) + t * length;
       const double unit = 0x1p-52 * reach / (cosine * length);
-      // Where it is not even sure that there is something to meet, nothing is asked.
+      // Skip rays for which rounding may decide whether there is a hit.
       if (!(unit * 64.0 < cosine * r / length))
         continue;
       const Hit hit = closest(*accelerator, make_ray(o, d));

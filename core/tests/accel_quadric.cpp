@@ -1,4 +1,4 @@
-// Exact surfaces: the accuracy of t, starts on the surface, closed rims, and points put back onto the surface.
+// Exact surfaces: accuracy of t, starts on the surface, closed rims, and projection onto the surface.
 #include "accel/hit_tests.h"
 #include "accel_scenes.h"
 #include "quad.h"
@@ -11,7 +11,7 @@ namespace {
 Quad quad_sqrt(Quad x) {
   Quad r = std::sqrt(static_cast<double>(x));
   for (int i = 0; i < 3 && r > 0; ++i)
-    r = (r + x / r) / 2; // each step of Newton doubles the digits
+    r = (r + x / r) / 2; // each Newton step doubles the digits
   return r;
 }
 
@@ -20,8 +20,8 @@ struct Reference {
   double t, cosine; // first root, and |cosine| of its angle of incidence
 };
 
-// The first root of |o + t d - c| = r in 113 bits. Differences of doubles of up to 2^40 apart and their products fit exactly
-// or nearly so: what is lost is 2^-50 of what double loses.
+// Returns the first root of |o + t d - c| = r in 113 bits. Differences of doubles up to 2^40 apart and their products are exact
+// or nearly so: the error is 2^-50 of double's.
 Reference reference_sphere(const Ray &ray, const glm::dvec3 &centre, double radius, bool second) {
   Quad a = 0, b = 0, c = -static_cast<Quad>(radius) * radius;
   for (int i = 0; i < 3; ++i) {
@@ -43,8 +43,8 @@ PlacedShape unit_shape(ShapeKind kind) {
   return shape;
 }
 
-// In the sphere's own frame t keeps nearly all digits however close the eye is: u is 2^-53.
-// c is exact to 2u; o x d and a round to some 8u, which moves q by 8u / cos^2 of itself; then two more roundings.
+// In the sphere's own frame t keeps nearly all digits at any distance of the viewer: u is 2^-53. c is exact to 2u; o x d and a
+// round to some 8u, which moves q by a relative 8u / cos^2; then two more roundings.
 TEST(Quadric, SphereKeepsTheDigitsNextToTheSurface) {
   Random random(21);
   const PlacedShape sphere = unit_shape(ShapeKind::Sphere);
@@ -64,8 +64,8 @@ TEST(Quadric, SphereKeepsTheDigitsNextToTheSurface) {
   EXPECT_GT(checked, 10000);
 }
 
-// Through a placement the eye itself is known to some u (|o| + |c| + r) per coordinate: three products, three sums, the rounded
-// matrix: 6u, in length 6 sqrt(3) u < 11u, more along a slanted surface by 1 / cos. t and d add a few u of t.
+// Through a placement the origin itself has an error of some u (|o| + |c| + r) per coordinate: three products, three sums, the
+// rounded matrix: 6u, in length 6 sqrt(3) u < 11u, more along a slanted surface by 1 / cos. t and d add a few u of t.
 void expect_accurate(double radius, const glm::dvec3 &centre, double least_height, double greatest_height, uint64_t seed) {
   Random random(seed);
   Geometry geometry;
@@ -98,7 +98,7 @@ TEST(Quadric, SphereOfAnySize) {
   expect_accurate(1e9, {1e9, 1e9, 1e9}, 1e-9, 1.0, 25);
 }
 
-// A start on the surface: never met again at once; leaving inwards the far side is met, outwards nothing.
+// A ray that starts on the surface does not hit it again at once; inwards it hits the far side, outwards nothing.
 TEST(Quadric, StartIsNotMetAgain) {
   Random random(26);
   for (const ShapeKind kind : {ShapeKind::Sphere, ShapeKind::Cylinder, ShapeKind::Cone})
@@ -129,7 +129,7 @@ TEST(Quadric, StartIsNotMetAgain) {
           // Convex: the line has left for good.
           ASSERT_FALSE(next.valid()) << "kind " << static_cast<int>(kind) << " t " << next.t;
         } else if (kind == ShapeKind::Sphere && glm::dot(away, s.n) < -1e-3) {
-          // The chord is 2 cos long; the start and the placement are known to the slack of placed_scene.cpp, 2^-48 of their
+          // The chord has length 2 cos; the start and the placement have the error of placed_scene.cpp's slack, 2^-48 of their
           // magnitudes, here at most 2^22 / 0.02 of the radius.
           ASSERT_TRUE(next.valid());
           ASSERT_NEAR(next.t, -2.0 * glm::dot(away, s.n), 0x1p-48 * 0x1p28 / -glm::dot(away, s.n));
@@ -141,7 +141,7 @@ TEST(Quadric, StartIsNotMetAgain) {
     }
 }
 
-// Rays from inside at the rims, the apex and everywhere else: a closed surface.
+// Rays from inside at the rims, the apex and everywhere else: the surface is closed.
 TEST(Quadric, ClosedAtTheRims) {
   Random random(27);
   for (const ShapeKind kind : {ShapeKind::Sphere, ShapeKind::Cylinder, ShapeKind::Cone}) {
@@ -153,14 +153,14 @@ TEST(Quadric, ClosedAtTheRims) {
       const glm::dvec3 o(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.9, 0.0));
       double t;
       ASSERT_TRUE(intersect_quadric(shape, make_ray(o, aim - o), false, t)) << static_cast<int>(kind);
-      // The aim is on the surface or, for the sphere, outside it.
+      // The target is on the surface or, for the sphere, outside it.
       ASSERT_LE(t, 1.0 + 0x1p-40);
       ASSERT_GT(t, 0.0);
     }
   }
 }
 
-// Whatever is met lies on the surface: residuals of the defining equations, and the normal is their gradient's.
+// Hits are on the surface: residuals of the defining equations, and the normal is their gradient.
 TEST(Quadric, PointsLieOnTheSurface) {
   Random random(28);
   for (const ShapeKind kind : {ShapeKind::Sphere, ShapeKind::Cylinder, ShapeKind::Cone, ShapeKind::Plane}) {
@@ -183,7 +183,7 @@ TEST(Quadric, PointsLieOnTheSurface) {
         residual = std::max(r - 0.5 * (1.0 - s.p.z), -1.0 - s.p.z);
       // One scaling and one length: 4 ulp.
       ASSERT_NEAR(residual, 0.0, 4 * 0x1p-52);
-      // The ray's own point is off by the rounding of o + t d and of t, which |cos| divides; coordinates are below 8.
+      // The ray's own point has the rounding error of o + t d and of t, divided by |cos|; coordinates are below 8.
       const double cosine = std::abs(glm::dot(ray.d, s.n));
       ASSERT_LE(glm::length(s.p - (ray.o + t * ray.d)), 64 * 0x1p-52 * (1.0 + 1.0 / (cosine * cosine)));
       ASSERT_NEAR(glm::length(s.n), 1.0, 4 * 0x1p-52);

@@ -1,4 +1,4 @@
-// A ray that leaves a surface meets neither that surface nor what lies beside or below it.
+// A ray that leaves a surface hits neither this surface nor anything beside or below it.
 #include "accel_scenes.h"
 #include "quad.h"
 
@@ -9,7 +9,8 @@
 namespace lancer::test {
 namespace {
 
-// How far p is above the plane through a, b, c, times their normal's length, in 113 bits: exact for floats of up to 2^30 apart.
+// Returns the height of p above the plane through a, b, c, times the length of their normal, in 113 bits: exact for floats up
+// to 2^30 apart.
 double above(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c, const glm::vec3 &p) {
   const auto minus = [](const glm::vec3 &u, const glm::vec3 &v, int i) { return Quad(u[i]) - Quad(v[i]); };
   Quad sum = 0;
@@ -24,7 +25,7 @@ float signed_size(Random &random, double least, double most) {
   return float((random.below(2) ? 1.0 : -1.0) * std::pow(10.0, random.uniform(least, most)));
 }
 
-// A triangle, and around it two neighbours at each corner and one at each edge, all of them below its plane.
+// Makes a triangle, with two neighbours at each corner and one at each edge, all of them below its plane.
 bool ridge(Random &random, double least, double most, Mesh &mesh) {
   glm::vec3 v[3];
   for (glm::vec3 &corner : v)
@@ -35,8 +36,8 @@ bool ridge(Random &random, double least, double most, Mesh &mesh) {
   double largest = 0.0;
   for (const glm::vec3 &corner : v)
     largest = std::max(largest, largest_coordinate(glm::dvec3(corner)));
-  // A line that starts a thousand times its length away, known to 2^-53 of that, meets it at a sine of 1e-3 within 1e-10 of the
-  // aim, which is a hundredth of its height inside or more.
+  // A line that starts a thousand times its length away, with a relative error of 2^-53, hits it at a sine of 1e-3 within 1e-10
+  // of the target, which is at least a hundredth of its height inside.
   if (!(area2 / longest > 1e-7 * largest))
     return false;
   mesh = Mesh();
@@ -62,8 +63,9 @@ bool ridge(Random &random, double least, double most, Mesh &mesh) {
   return true;
 }
 
-// Whether no triangle is thinner than an eighth of its length L: its edge functions round by 2^-53 L^2, hence places on it by
-// 2^-50 L, less than the 2^-49 L by which a ray is lifted off a surface. Next to edges of thinner ones that is not enough.
+// Returns whether no triangle is thinner than an eighth of its length L: its edge functions round by 2^-53 L^2, hence points on
+// it by 2^-50 L, less than the 2^-49 L by which a ray is lifted off a surface. Near edges of thinner triangles this is not
+// enough.
 bool all_broad(const Mesh &mesh) {
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const glm::dvec3 a = mesh.vertex(i, 0), b = mesh.vertex(i, 1), c = mesh.vertex(i, 2);
@@ -99,7 +101,7 @@ TEST(Reintersect, RidgesOfAnySize) {
     broad_ones += broad;
     const auto accelerator = build_accelerator(scene % 2 ? AcceleratorKind::Bvh : AcceleratorKind::KdTree, geometry, {});
     for (int i = 0; i < 20; ++i) {
-      // From above onto the inside of the triangle, an edge or a corner, and away again to the same side.
+      // From above to the inside of the triangle, an edge or a corner, and away again to the same side.
       const bool inside = i % 4 < 2 || !broad;
       const double u = !inside && i % 4 == 3 ? 0.0 : random.uniform(0.01, 0.98),
                    v = inside ? random.uniform(0.01, 0.99 - u) : 0.0;
@@ -126,7 +128,7 @@ TEST(Reintersect, RidgesOfAnySize) {
       const Ray next = leave(surface, away, std::numeric_limits<double>::infinity());
       const Hit again = closest(*accelerator, next);
       ASSERT_FALSE(again.valid()) << scene << ": " << again.primitive << " at " << again.t << " of " << size_here;
-      // A shadow ray to a point above is free, too.
+      // A shadow ray to a point above is unoccluded, too.
       Ray shadow = next;
       shadow.d *= size_here * std::pow(10.0, random.uniform(-3.0, 3.0));
       shadow.tmax = 1.0;

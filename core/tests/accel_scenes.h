@@ -43,7 +43,7 @@ inline Instance placed(ShapeKind kind, const glm::dmat3 &linear, const glm::dvec
   return instance;
 }
 
-// A closed surface r(direction) = radius * (1 + bump * waves); its corners are shared, so it has no holes.
+// A closed surface r(direction) = radius * (1 + bump * waves); shared corners, so no holes.
 inline Mesh bumpy_sphere(double radius, uint32_t around, uint32_t along, double bump) {
   Mesh mesh;
   const auto point = [&](double theta, double phi) {
@@ -82,8 +82,8 @@ inline Mesh triangle_soup(Random &random, uint32_t count, double half) {
   return mesh;
 }
 
-// Meshes in the world's own tree, instances, exact surfaces with and without a box, and a mesh hidden from some rays. around:
-// faces around the finer mesh; soup: triangles of the coarse one; half: of the cube that all of it lies in.
+// Meshes in the world's tree, instances, exact surfaces with and without a box, and a mesh hidden from some rays. around: faces
+// around the finer mesh; soup: triangles of the coarse one; half: half the size of the cube that contains everything.
 inline Geometry everything(Random &random, uint32_t around, uint32_t soup, double half) {
   Geometry geometry;
   geometry.meshes.push_back(bumpy_sphere(1.0, around, 3 * around / 4, 0.2));
@@ -123,7 +123,7 @@ inline std::unique_ptr<Accelerator> build_bvh_for(const char *instruction_set, c
   return build_accelerator(AcceleratorKind::Bvh, geometry, {threads, nullptr});
 }
 
-// The oracle first.
+// The reference first.
 inline std::vector<Contestant> all_accelerators(const Geometry &geometry) {
   std::vector<Contestant> all;
   all.push_back({"brute force", build_accelerator(AcceleratorKind::BruteForce, geometry, {})});

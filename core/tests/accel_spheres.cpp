@@ -1,4 +1,4 @@
-// Spheres are tested four at a time in the BVH: the same bits as one by one.
+// The BVH tests four spheres at a time: the same bits as one by one.
 #include "accel_scenes.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace lancer::test {
 namespace {
 
-// Spheres and ellipsoids with radii from 2^-smallest to 2^largest, hidden from some rays here and there.
+// Spheres and ellipsoids with radii from 2^-smallest to 2^largest, some hidden from some rays.
 Geometry spheres(Random &random, uint32_t count, double smallest, double largest) {
   Geometry geometry;
   for (uint32_t i = 0; i < count; ++i) {
@@ -20,7 +20,7 @@ Geometry spheres(Random &random, uint32_t count, double smallest, double largest
   return geometry;
 }
 
-// Brute force asks quadric.cpp.
+// Brute force uses quadric.cpp.
 void expect_equal(const Geometry &geometry, const std::vector<Ray> &rays, double least_hits) {
   const std::vector<Contestant> all = all_accelerators(geometry);
   std::vector<Hit> oracle(rays.size()), hits(rays.size());
@@ -57,11 +57,12 @@ TEST(AcceleratorSpheres, AnyNumberOfThem) {
     std::vector<Ray> rays;
     for (int i = 0; i < 2000; ++i)
       rays.push_back(aimed(random, geometry, 0.7));
-    expect_equal(geometry, rays, 0.5); // all but those that cannot see their target, a twelfth, and some ahead of it
+    expect_equal(geometry, rays, 0.5); // all but those to which their target is invisible, a twelfth, and some that hit
+                                       // something before it
   }
 }
 
-// Rays that touch: the discriminant is a few roundings from 0.
+// Tangential rays: the discriminant is a few roundings from 0.
 TEST(AcceleratorSpheres, TangentialRays) {
   Random random(22);
   const Geometry geometry = spheres(random, 40, -2.0, 0.0);
@@ -75,7 +76,7 @@ TEST(AcceleratorSpheres, TangentialRays) {
   expect_equal(geometry, rays, 0.2); // half of them touch from inside
 }
 
-// Rays that start on a sphere and leave it, to both sides.
+// Rays that start on a sphere and leave it to either side.
 TEST(AcceleratorSpheres, RaysFromTheSurface) {
   Random random(23);
   const Geometry geometry = spheres(random, 40, -2.0, 2.0);
@@ -88,7 +89,7 @@ TEST(AcceleratorSpheres, RaysFromTheSurface) {
     ray.kinds = 1;
     rays.push_back(ray);
   }
-  expect_equal(geometry, rays, 0.4); // the half that goes inside meets the other side
+  expect_equal(geometry, rays, 0.4); // the half that goes inside hits the far side
 }
 
 TEST(AcceleratorSpheres, HugeAndTiny) {
@@ -100,7 +101,7 @@ TEST(AcceleratorSpheres, HugeAndTiny) {
     ray.d *= std::exp2(random.uniform(-400.0, 400.0));
     rays.push_back(ray);
   }
-  expect_equal(geometry, rays, 0.5); // most start within a huge one
+  expect_equal(geometry, rays, 0.5); // most start inside a huge one
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// The wide tree itself: what its leaves hold, and that its bits do not depend on the threads that built it.
+// The wide tree: contents of its leaves, and bits independent of the number of threads that built it.
 #include "accel/bvh/bvh_build.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace lancer {
 namespace {
 
-// Boxes in a slab, more to one end; enough for many pieces and tasks. owners: 1 for a tree of one mesh.
+// Boxes in a slab, denser towards one end; enough for many pieces and tasks. owners: 1 for a tree of one mesh.
 HugeVector<BuildRef> many_boxes(uint32_t count, uint32_t owners) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
@@ -23,7 +23,7 @@ HugeVector<BuildRef> many_boxes(uint32_t count, uint32_t owners) {
   return refs;
 }
 
-// Walks a tree, marks what its leaves hold, and returns how many nodes it has met.
+// Walks a tree, marks the contents of its leaves, and returns the number of nodes visited.
 size_t walk(const WideTree &tree, const HugeVector<BuildRef> &refs, uint32_t node, std::vector<uint8_t> &met) {
   size_t nodes = 1;
   for (uint32_t lane = 0; lane < kBvhWidth; ++lane) {
@@ -70,7 +70,7 @@ TEST(WideTree, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-// From far to near along every diagonal: octants with a negative axis see the children mirrored.
+// From far to near along every diagonal: octants with a negative axis have mirrored children.
 TEST(WideTree, ChildrenAreOrderedAlongTheDiagonals) {
   const HugeVector<BuildRef> refs = many_boxes(3000, 1);
   const WideTree tree = build_wide_tree(refs, kBvhLeafSize, {.threads = 1});

@@ -1,4 +1,4 @@
-// A closed surface lets no ray out, wherever and however large it is.
+// No ray leaves a closed surface, at any position and size.
 #include "accel_scenes.h"
 
 #include <gtest/gtest.h>
@@ -6,8 +6,7 @@
 namespace lancer::test {
 namespace {
 
-// Rays from inside, aimed exactly at corners and at the middles of edges, where two or more triangles could each leave it to
-// the other.
+// Counts rays from inside that escape. They aim exactly at corners and midpoints of edges, where two or more triangles meet.
 size_t count_leaks(const Accelerator &accelerator, const Geometry &geometry, double radius, size_t stride) {
   const Mesh &mesh = geometry.meshes[0];
   const Affine &to_world = geometry.instances[0].to_world;
@@ -49,7 +48,7 @@ TEST(Watertight, Sheared) { expect_watertight(2.0, kSheared, glm::dvec3(1.0, 2.0
 TEST(Watertight, AMillionRadiiAway) { expect_watertight(2.0, kSheared, glm::dvec3(1483760.0, 12340.0, -2234230.0)); }
 TEST(Watertight, BroughtToSizeByItsPlacement) { expect_watertight(1e-6, glm::dmat3(1e15), glm::dvec3(1e9, 0.0, 0.0)); }
 
-// From far outside: every ray towards the middle of the sphere meets it, from a million radii as from two.
+// From far outside, a million radii or two: every ray towards the centre of the sphere hits it.
 TEST(Watertight, SeenFromFarAway) {
   Geometry geometry;
   geometry.meshes.push_back(bumpy_sphere(1.0, 64, 32, 0.1));
@@ -60,7 +59,7 @@ TEST(Watertight, SeenFromFarAway) {
       const glm::dvec3 o = random.direction() * std::exp2(random.uniform(1.0, 20.0));
       const Hit hit = closest(*c.accelerator, make_ray(o, random.in_box(0.4) - o));
       ASSERT_TRUE(hit.valid()) << c.name;
-      // d reaches the aim, which is inside, at t = 1.
+      // d reaches the target, which is inside, at t = 1.
       ASSERT_LT(hit.t, 1.0) << c.name;
     }
 }

@@ -36,7 +36,7 @@ uint64_t Allocations::count() const { return calls; }
 
 } // namespace lancer_test
 
-// All forms but the aligned ones, so that what one of them gives never goes to another library's delete.
+// All forms except the aligned ones, so that memory from one form is never freed by another library's delete.
 void *operator new(std::size_t size) { return allocate_or_throw(size); }
 void *operator new[](std::size_t size) { return allocate_or_throw(size); }
 void *operator new(std::size_t size, const std::nothrow_t &) noexcept { return allocate(size); }

@@ -1,4 +1,4 @@
-// Memory of the calling thread, watched: how often it is asked for, and what happens when there is none.
+// Counts and refuses memory requests of the calling thread.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace lancer_test {
 
-// While it lives operator new counts this thread's calls, and refuses all after the first so many. One at a time.
+// During its lifetime operator new counts this thread's calls, and fails after the allowed number. One object at a time.
 class Allocations {
 public:
   explicit Allocations(uint64_t allowed = std::numeric_limits<uint64_t>::max());

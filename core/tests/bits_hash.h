@@ -1,4 +1,4 @@
-// One number that stands for the bits of many: what differs between two machines shows in it.
+// A hash of bits: reveals any difference between two machines.
 #pragma once
 
 #include <bit>
@@ -7,7 +7,7 @@
 
 namespace lancer_test {
 
-// Fowler, Noll, Vo, "FNV-1a", of bytes from the lowest of each number up.
+// Fowler, Noll, Vo, "FNV-1a", over bytes, the lowest of each number first.
 class BitsHash {
 public:
   void add(float value) { add_bytes(std::bit_cast<uint32_t>(value), 4); }

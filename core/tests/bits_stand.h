@@ -1,4 +1,4 @@
-// Scenes through the C interface alone, of numbers that every machine reads alike, rendered into one number for all bits.
+// Scenes through the C interface alone, made of numbers that every machine reads alike, and rendered into a hash of all bits.
 #pragma once
 
 #include "bits_hash.h"
@@ -13,16 +13,16 @@
 
 namespace lancer_test {
 
-// Numbers in an order of their own.
+// A random number generator of its own, the same everywhere.
 class Dice {
 public:
   uint32_t operator()() {
     state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
     return uint32_t(state_ >> 33);
   }
-  // A multiple of 1/256 from 0 on, below 1.
+  // Returns a multiple of 1/256 in [0, 1).
   float share() { return float((*this)() >> 3 & 255u) * (1.0f / 256.0f); }
-  // One after another: arguments of a call come in an order that compilers choose.
+  // In sequence: compilers evaluate the arguments of a call in any order.
   std::array<double, 3> place(const std::array<double, 3> &from, const std::array<double, 3> &size) {
     std::array<double, 3> result = from;
     for (size_t i = 0; i < 3; ++i)
@@ -60,7 +60,7 @@ inline lancer_material plain() {
   return material;
 }
 
-// As the newest Blender has it, which kernels of many lanes know: a diffuse one is smooth.
+// A lobe by the newest rules, which kernels of many lanes support; a diffuse one is smooth.
 inline lancer_lobe newest(uint32_t kind, float color, float roughness = 0.0f) {
   lancer_lobe one = lobe(kind, color, roughness);
   one.rules = LANCER_RULES_BLENDER_45;
@@ -81,7 +81,7 @@ inline lancer_light lamp(uint32_t kind, double x, double y, double z, float stre
   return light;
 }
 
-// Turns what is placed about z and about x, by angles of triangles with sides of 3, 4 and 5.
+// Rotates a placement about z and x, by angles of triangles with sides 3, 4 and 5.
 inline void tilt(double m[12]) {
   const double turned[9] = {0.6, -0.64, 0.48, 0.8, 0.48, -0.36, 0.0, 0.6, 0.8}, scale = m[0];
   for (int row = 0; row < 3; ++row)
@@ -154,8 +154,8 @@ public:
     ASSERT_EQ(status, LANCER_OK) << lancer_last_error();
   }
 
-  // Every pass, and what is told of the error, into the hash. refine: how often the samples are doubled where that pays. The
-  // picture alone, which kernels of many lanes compute where they can, has the same bits.
+  // Hashes every pass and the error. refine: number of refinement rounds. The picture rendered alone, by kernels of many lanes
+  // where possible, must have the same bits.
   void render(int refine = 0) {
     const uint32_t passes = settings.passes;
     run(refine);
@@ -176,7 +176,7 @@ public:
     wide_vertices += statistics.wide_vertices;
   }
 
-  // A node's values over the unit square.
+  // Hashes a node's values over the unit square.
   void look_at(uint32_t material, uint32_t number) {
     std::vector<float> uv, values(4 * 64);
     for (uint32_t i = 0; i < 64; ++i)
@@ -216,7 +216,7 @@ private:
   std::vector<uint32_t> slots_;
 };
 
-// A wavy sheet over -1 ... 1 with UVs, whose corners every machine places alike.
+// A wavy sheet over -1 ... 1 with UVs, with the same corners on every machine.
 struct Sheet {
   std::vector<float> positions, uvs;
   std::vector<uint32_t> triangles;

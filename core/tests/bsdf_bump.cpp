@@ -1,4 +1,4 @@
-// Normals that disagree: the surface's, the shading normal and a lobe's own.
+// Different normals: the surface's, the shading normal and a lobe's own.
 #include "bsdf/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -42,22 +42,21 @@ LobeInputs<float> about(LobeKind kind, const glm::vec3 &n, Rules rules = Rules::
 
 const glm::vec3 kUp(0.0f, 0.0f, 1.0f);
 
-// Where an interpolated normal looks away from the viewer, wide lobes stay what they are about it, and those that reflect are
-// bent until they are seen.
+// If the interpolated normal faces away from the viewer, wide lobes keep it, and reflecting lobes tilt it until it is visible.
 TEST(BsdfBump, FromBehindTheSmoothNormal) {
   const glm::vec3 wo = direction(0.1, 0.0), ns = tilted(40.0, std::numbers::pi);
   const Place place{wo, ns, kUp};
   ASSERT_LT(glm::dot(wo, ns), 0.0f);
   const LobeInputs<float> clay = about(LobeKind::Diffuse, glm::vec3(0.0f));
   const double a = 1.0 / (std::numbers::pi + 0.5 * (0.5 * std::numbers::pi - 2.0 / 3.0)), b = 0.5 * a;
-  // Turned away from the viewer, and towards it.
+  // On the far side of the viewer, and on the near side.
   for (const glm::vec3 &wi : {direction(0.9, 2.0), direction(0.9, 0.3)}) {
     const double cos_i = glm::dot(glm::dvec3(wi), glm::dvec3(ns));
-    // The cosine: a product's 3 roundings of 1 at most, over pi; and 2 of the result, which is below 0.3.
+    // The cosine: at most 3 roundings of 1 in a product, over pi; and 2 of the result, which is below 0.3.
     EXPECT_NEAR(at(place, about(LobeKind::Lambert, glm::vec3(0.0f))).eval(wi).f().x, cos_i / std::numbers::pi, 2.0 * kUlp);
     // t is the product of two directions in the lobe's frame: 18 roundings of its axes, 12 of the components, 3 of the product.
-    // They count b each, also where t is divided by cos_i, which comes back as a factor: 33 * 0.14. The cosine's 3 count 0.28
-    // at most, which is a; and the factors' 8 what comes out, which is below 0.22. Together 7.3.
+    // Each counts b, also where t is divided by cos_i, which returns as a factor: 33 * 0.14. The cosine's 3 count at most 0.28,
+    // which is a; and the factors' 8 count the result, which is below 0.22. Together 7.3.
     const double t = glm::dot(glm::dvec3(wi), glm::dvec3(wo)), term = t > 0.0 ? t / cos_i : t;
     EXPECT_NEAR(at(place, clay).eval(wi).f().x, cos_i * (a + b * term), 8.0 * kUlp);
   }
@@ -78,7 +77,7 @@ TEST(BsdfBump, NothingIsSampledThroughTheSurface) {
       lobe.shininess = 5.0f;
       lobe.roughness = k % 3 == 0 ? 0.0f : 0.6f;
       const Place place{direction(0.05 + 0.95 * random.uniform(), 7.0 * random.uniform()), ns, kUp};
-      // A lobe that goes through must not lend its density to one that reflects.
+      // A transmitting lobe must not contribute density to a reflecting one.
       const Bsdf<float> bsdf = at(place, lobe), mixed = at(place, lobe, true);
       for (int i = 0; i < 20; ++i) {
         const float u = random.uniform(), x = random.uniform(), y = random.uniform();
@@ -86,7 +85,7 @@ TEST(BsdfBump, NothingIsSampledThroughTheSurface) {
           if (sample.pdf > 0.0f) {
             ASSERT_EQ(sample.transmitted, sample.wi.z < 0.0f) << static_cast<int>(kind);
           }
-        // The density says the same: 0 where a lobe that reflects would have to pass.
+        // The density agrees: 0 where a reflecting lobe would have to transmit.
         const glm::vec3 wi = direction(2.0 * x - 1.0, 7.0 * y);
         const bool through = kind == LobeKind::Translucent || kind == LobeKind::Refraction;
         if (kind != LobeKind::Glass && (wi.z < 0.0f) != through) {
@@ -96,7 +95,7 @@ TEST(BsdfBump, NothingIsSampledThroughTheSurface) {
     }
 }
 
-// Cycles 3 does not ask the face about what lobes that refract draw; samples, densities and values then say the same.
+// Cycles 3 does not check the samples of refracting lobes against the geometric normal; samples, densities and values agree.
 TEST(BsdfBump, WhatRefractsInBlender3MayPassTheWrongWay) {
   const Place place{direction(0.6, 0.0), tilted(120.0, 0.5), kUp};
   for (const auto &[kind, facets] :
@@ -113,8 +112,8 @@ TEST(BsdfBump, WhatRefractsInBlender3MayPassTheWrongWay) {
         const BsdfSample<float> sample = bsdf.sample(u, x, y);
         if (sample.pdf > 0.0f && sample.transmitted != (sample.wi.z < 0.0f)) {
           ++strays;
-          // The sampler knows its half vector; the value finds it again from directions that may nearly cancel: of 100000
-          // draws none is off by more than 1.5e-5.
+          // The sampler knows its half vector; the evaluation reconstructs it from directions that may nearly cancel: of 100000
+          // samples none deviates by more than 1.5e-5.
           EXPECT_NEAR(bsdf.eval(sample.wi).pdf / sample.pdf, 1.0, 2e-5);
         }
       }
@@ -146,7 +145,7 @@ TEST(BsdfBump, TheLitSideEndsSmoothly) {
     const glm::vec3 wi = direction(std::cos(degrees / 180.0 * std::numbers::pi), degrees < 0.0 ? std::numbers::pi : 0.0);
     const double cos_n = glm::dot(glm::dvec3(n), glm::dvec3(wi)), c = wi.z;
     const Place smooth{direction(0.8, 0.0), kUp, kUp, true}, hard{direction(0.8, 0.0), kUp, kUp, false};
-    // Smith's term of GGX with alpha^2 = tan^2(tilt) / 8. The tilt's cosine rounds, and tan^2 of it again: 20 roundings.
+    // Smith's term of GGX with alpha^2 = tan^2(tilt) / 8. The tilt's cosine rounds, and then its tan^2: 20 roundings.
     const double alpha2 = std::min(1.0, 0.125 * std::pow(std::tan(tilt), 2.0));
     const double g = 2.0 / (1.0 + std::sqrt(1.0 + alpha2 * (1.0 - c * c) / (c * c)));
     const double plain = std::max(0.0, cos_n) / std::numbers::pi;
@@ -156,7 +155,7 @@ TEST(BsdfBump, TheLitSideEndsSmoothly) {
     const double ratio = cos_n > 0.0 ? std::min(1.0, c / (cos_n * std::cos(tilt))) : 1.0;
     const double cubic = ratio * (1.0 + ratio - ratio * ratio);
     EXPECT_NEAR(at(smooth, about(LobeKind::Lambert, n, Rules::Blender4)).eval(wi).f().x, cubic * plain, 20.0 * kUlp) << degrees;
-    // Glossy lobes have no such end.
+    // Glossy lobes are not softened.
     const float gloss = at(smooth, about(LobeKind::Glossy, n)).eval(wi).f().x;
     EXPECT_EQ(gloss, at(hard, about(LobeKind::Glossy, n)).eval(wi).f().x) << degrees;
   }
@@ -173,15 +172,15 @@ TEST(BsdfBump, ReflectionsRiseAboveTheSurface) {
     const double height = 2.0 * glm::dot(glm::dvec3(m), glm::dvec3(wo)) * m.z - wo.z;
     const double least = std::min(0.9 * wo.z, 0.01);
     const double before = 2.0 * glm::dot(glm::dvec3(n), glm::dvec3(wo)) * n.z - wo.z;
-    // Some ten roundings of unit vectors; the root's argument may be small, but what it is a root of is then as good as 0:
-    // an error of 2^-22 below it moves the cosine by the root of that where the tilt is nearly 0 or 90 degrees.
+    // Some ten roundings of unit vectors; the argument of the root may be small, but then the root is nearly 0: an error of
+    // 2^-22 in it moves the cosine by the root of that if the tilt is nearly 0 or 90 degrees.
     constexpr double tolerance = 1e-3;
     ASSERT_NEAR(glm::length(m), 1.0, 8.0 * kUlp);
     if (before >= least + 1e-6) {
       ASSERT_NEAR(glm::distance(m, n), 0.0f, 4.0 * kUlp);
     } else {
       ASSERT_NEAR(height, least, tolerance) << k;
-      // The normal stays between both: in their plane, and no farther from the surface's than before.
+      // The normal stays between both: in their plane, and no farther from the geometric normal than before.
       ASSERT_NEAR(glm::dot(glm::cross(n, kUp), m), 0.0f, tolerance);
       ASSERT_GE(m.z, n.z - tolerance);
     }
@@ -200,7 +199,7 @@ TEST(BsdfBump, SeveralFramesAreKeptApart) {
   EXPECT_EQ(bsdf.frames[1].t, glm::vec3(0.0f, 1.0f, 0.0f));
   EXPECT_EQ(bsdf.frames[1].b, glm::vec3(-1.0f, 0.0f, 0.0f));
   EXPECT_EQ(add_frame(bsdf, kUp, {0.0f, 1.0f, 0.0f}), 1);
-  // Where no room is left the shading frame stands in.
+  // Without room for a frame, the shading frame replaces it.
   for (int i = 0; i < 2 * kMaxFrames; ++i)
     add_frame(bsdf, tilted(10.0 + i, 1.0), glm::vec3(0.0f));
   EXPECT_EQ(bsdf.frame_count, kMaxFrames);

@@ -1,4 +1,4 @@
-// Every lobe that scatters into more than single directions, at a roughness of one's choice.
+// Every lobe with more than single directions, at a given roughness.
 #pragma once
 
 #include <algorithm>
@@ -24,10 +24,11 @@ inline std::vector<double> heights() {
 
 struct Known {
   std::string name;
-  std::function<void(Bsdf<float> &, const glm::vec3 &)> look; // from wo
-  double width = 0.0;                                         // of its narrowest lobe, in slopes of the half vector; 0: wide
-  float ior = 1.0f; // by which what goes through is bent, from outside; 1: nothing does
-  // f(a, b) is f(b, a), times ior^2 through the surface.
+  std::function<void(Bsdf<float> &, const glm::vec3 &)> look; // for wo
+  double width = 0.0;                                         // width of its narrowest lobe, in slopes of the half vector; 0:
+                                                              // wide
+  float ior = 1.0f;                                           // index of refraction from outside; 1: does not bend light
+  // f(a, b) equals f(b, a), times ior^2 through the surface.
   bool reciprocal = true;
 
   Bsdf<float> from(const glm::vec3 &wo) const {
@@ -50,10 +51,10 @@ inline LobeInputs<float> at_alpha(LobeKind kind, Facets facets, double alpha, fl
   return inputs;
 }
 
-// The shininess whose peak is as curved as that of facets of this alpha.
+// Returns the shininess whose peak has the curvature of facets with this alpha.
 inline float shininess_of(double alpha) { return static_cast<float>(std::max(0.0, 2.0 / (alpha * alpha) - 2.0)); }
 
-// Lobes of facets, each by itself.
+// Single microfacet lobes.
 inline std::vector<Known> facet_lobes(double alpha) {
   const float infinity = std::numeric_limits<float>::infinity();
   const float below = 0.6f, above = 1.5f;
@@ -66,7 +67,7 @@ inline std::vector<Known> facet_lobes(double alpha) {
     add("coating of " + std::to_string(ior), at_alpha(LobeKind::Beckmann, Facets::Beckmann, alpha, ior));
   add("GGX", at_alpha(LobeKind::Glossy, Facets::Ggx, alpha));
   add("Beckmann", at_alpha(LobeKind::Glossy, Facets::Beckmann, alpha));
-  // Energy that is given back depends on the side that looks.
+  // The returned energy depends on the side of wo.
   add("GGX of several bounces", at_alpha(LobeKind::Glossy, Facets::MultiGgx, alpha), 1.0f, alpha, false);
   for (const Facets facets : {Facets::Ggx, Facets::Beckmann}) {
     LobeInputs<float> stretched = at_alpha(LobeKind::Glossy, facets, 0.5 * alpha);
@@ -94,7 +95,7 @@ inline std::vector<Known> facet_lobes(double alpha) {
   return all;
 }
 
-// All others, and mixtures.
+// All other lobes, and mixtures.
 inline std::vector<Known> other_lobes(double alpha) {
   const std::string rough = ", alpha " + std::to_string(alpha);
   const float shininess = shininess_of(alpha), infinity = std::numeric_limits<float>::infinity();

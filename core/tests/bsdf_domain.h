@@ -1,4 +1,4 @@
-// Directions laid out on the unit square, so that densities over them can be counted in cells and integrated.
+// Parametrisations of directions by the unit square, to count densities in cells and integrate them.
 #pragma once
 
 #include <algorithm>
@@ -27,13 +27,13 @@ inline double gauss_square(const SquareFunction &f, glm::dvec2 low, glm::dvec2 h
   return sum * radius.x * radius.y;
 }
 
-// How far a square is taken apart: to the noise of a float function, and so many halvings at most.
+// Limits of the subdivision: the noise of a float function, and a maximum depth.
 struct Refinement {
   double noise = 0x1p-16;
   int deepest = 7;
 };
 
-// Halves both ways until four quarters agree with the whole.
+// Halves both axes until four quarters agree with the whole.
 inline double refine_square(const SquareFunction &f, glm::dvec2 low, glm::dvec2 high, double tolerance, double whole,
                             const Refinement &refinement, int depth = 0) {
   const glm::dvec2 middle = 0.5 * (low + high);
@@ -49,7 +49,7 @@ inline double refine_square(const SquareFunction &f, glm::dvec2 low, glm::dvec2 
   return sum;
 }
 
-// Starts from cells x cells, so that no narrow peak falls between the nodes of the first guess.
+// Starts from cells x cells, so that no narrow peak falls between the nodes of the first estimate.
 inline double integrate_square(const SquareFunction &f, int cells, double tolerance, glm::dvec2 low = glm::dvec2(0.0),
                                glm::dvec2 high = glm::dvec2(1.0), const Refinement &refinement = {}) {
   const glm::dvec2 size = (high - low) / static_cast<double>(cells);
@@ -64,14 +64,14 @@ inline double integrate_square(const SquareFunction &f, int cells, double tolera
 
 inline double turn(double y, double x) { return std::atan2(y, x) / (2.0 * std::numbers::pi) + 0.5; }
 
-// A way to lay out directions wi of one side of the plane, the upper one unless it is said. density turns a function per solid
-// angle of wi into one over the square.
+// A parametrisation of directions wi on one side of the plane, by default the upper one. density converts a function per solid
+// angle of wi to one per area of the square.
 struct Domain {
   std::function<glm::dvec2(const glm::vec3 &)> place;
   std::function<SquareFunction(const std::function<double(const glm::vec3 &)> &)> density;
 };
 
-// Height and azimuth: the horizon is an edge of the square. For lobes that are broad or break off at the horizon.
+// Height and azimuth: the horizon is an edge of the square. For lobes that are wide or end at the horizon.
 inline Domain direction_domain() {
   return {[](const glm::vec3 &wi) { return glm::dvec2(wi.z, turn(wi.y, wi.x)); },
           [](const std::function<double(const glm::vec3 &)> &f) -> SquareFunction {
@@ -82,11 +82,11 @@ inline Domain direction_domain() {
           }};
 }
 
-// The half vector's slope in polar form, which resolves a lobe of microfacets however narrow it is. Half of the square's x is
-// spent on slopes r up to about scale, half on all others: x = (r / (r + scale) + r / (r + 1)) / 2.
+// The half vector's slope in polar form, which resolves a microfacet lobe of any width. Half of the square's x is for slopes r
+// up to about scale, half for all others: x = (r / (r + scale) + r / (r + 1)) / 2.
 inline double slope_to_x(double r, double scale) { return 0.5 * (r / (r + scale) + r / (r + 1.0)); }
 
-// The half vector at a place; jacobian: solid angle of half vectors per area of the square.
+// Returns the half vector at a place; jacobian: solid angle of half vectors per area of the square.
 inline glm::dvec3 half_vector_at(const glm::dvec2 &place, double scale, double &jacobian) {
   const double phi = 2.0 * std::numbers::pi * (place.y - 0.5);
   // x(r) is a quadratic equation in r; its positive root without cancellation.
@@ -111,13 +111,13 @@ inline Domain half_vector_domain(const glm::vec3 &wo_float, double scale) {
               const glm::dvec3 h = half_vector_at(place, scale, jacobian);
               const double cos_oh = glm::dot(wo, h);
               const glm::dvec3 wi = 2.0 * cos_oh * h - wo;
-              // A half vector's solid angle spans 4 wo.h of that of wi.
+              // The solid angle of wi is 4 wo.h times that of half vectors.
               return cos_oh > 0.0 && wi.z > 0.0 ? jacobian * 4.0 * cos_oh * f(glm::vec3(wi)) : 0.0;
             };
           }};
 }
 
-// The place of directions below the plane: by the facet that bends wo there.
+// Directions below the plane, by the facet that refracts wo into them.
 inline Domain bent_domain(const glm::vec3 &wo_float, double scale, double eta) {
   const glm::dvec3 wo(wo_float);
   return {[wo, scale, eta](const glm::vec3 &wi) {
@@ -135,13 +135,13 @@ inline Domain bent_domain(const glm::vec3 &wo_float, double scale, double eta) {
                 return 0.0;
               const glm::dvec3 wi = (cos_oh / eta - std::sqrt(cos2_t)) * h - wo / eta;
               const double cos_ih = glm::dot(wi, h), sum = cos_oh + eta * cos_ih;
-              // A half vector's solid angle spans this much of that of wi.
+              // Ratio of the solid angle of wi to that of half vectors.
               return wi.z < 0.0 ? jacobian * sum * sum / (eta * eta * -cos_ih) * f(glm::vec3(wi)) : 0.0;
             };
           }};
 }
 
-// Height below the plane and azimuth.
+// Height below the plane, and azimuth.
 inline Domain below_domain() {
   const Domain above = direction_domain();
   const glm::vec3 flip(1.0f, 1.0f, -1.0f);

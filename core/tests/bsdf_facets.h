@@ -1,4 +1,4 @@
-// Rough lobes for tests, and how much they scatter by exact integrals.
+// Rough lobes for tests, and their albedo by exact integrals.
 #pragma once
 
 #include "bsdf_domain.h"
@@ -14,18 +14,18 @@ inline LobeInputs<float> rough(LobeKind kind, Facets facets, float roughness, fl
   return inputs;
 }
 
-// wo bent at a facet of cosine cos_t beyond it.
+// Returns wo refracted at the facet h; cos_t: cosine beyond it.
 inline glm::vec3 bent_about(const glm::vec3 &wo, const glm::vec3 &h, float eta, float cos_t) {
   return eta == 1.0f ? -wo : glm::normalize((glm::dot(wo, h) / eta - cos_t) * h - wo / eta);
 }
 
-// Integral of f cos over the upper side, by half vectors of slopes about alpha.
+// Returns the integral of f cos over the upper side, by half vectors with slopes about alpha.
 inline double reflected(const Bsdf<float> &bsdf, double alpha) {
   const Domain domain = half_vector_domain(bsdf.wo, alpha);
   return integrate_square(domain.density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).f().x}; }), 16, 4e-7);
 }
 
-// The same for what goes through.
+// The same for transmitted light.
 inline double through(const Bsdf<float> &bsdf, double alpha, double ior) {
   const Domain domain = bent_domain(bsdf.wo, alpha, ior);
   return integrate_square(domain.density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).f().x}; }), 16, 4e-7);

@@ -1,4 +1,4 @@
-// Samplers against densities at every roughness and height: chi-square tests whose p-values must be spread evenly.
+// Samplers against densities at every roughness and height: the p-values of chi-square tests must be uniformly distributed.
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -20,19 +20,20 @@ std::size_t cell_of(const glm::dvec2 &place) {
   return index(place.x) * kSide + index(place.y);
 }
 
-// What cells of a square expect of so many draws, each to a small part of its own noise, which is 3 for the rarest that counts.
+// Computes the expected counts of cells of a square, each to a small part of its own noise, which is 3 for the rarest cell that
+// counts.
 void expect_cells(const testing::SquareFunction &density, double draws, std::vector<double> &expected) {
   for (int i = 0; i < kSide; ++i)
     for (int j = 0; j < kSide; ++j) {
       const glm::dvec2 low = glm::dvec2(i, j) / double{kSide}, high = glm::dvec2(i + 1, j + 1) / double{kSide};
-      // A sliver of a cell can slip between the nodes: no cell is called impossible, and a million draws need more nodes, which
-      // a horizon along a hundredth of a cell does not miss.
+      // A sliver of a cell can fall between the nodes: no cell counts as impossible, and a million samples need more nodes,
+      // which detect a horizon along a hundredth of a cell.
       const double share = testing::integrate_square(density, testing::slow() ? 8 : 1, 0.2 / draws, low, high);
       expected.push_back(std::max(1e-3, draws * share));
     }
 }
 
-// p-values of right samplers are even on 0 ... 1, whatever the lobe: no single one may be rare, nor all of them too good.
+// p-values of correct samplers are uniform in 0 ... 1 for any lobe: no single one may be rare, nor all of them too good.
 void judge_all(const std::vector<double> &p_values, const std::vector<std::string> &names) {
   const double level = testing::sidak_level(testing::kSignificance, p_values.size());
   for (std::size_t i = 0; i < p_values.size(); ++i)
@@ -40,11 +41,11 @@ void judge_all(const std::vector<double> &p_values, const std::vector<std::strin
   EXPECT_GT(testing::uniformity_p_value(p_values), testing::kSignificance);
 }
 
-// Facets seen from wo, by their slopes: resolved at any roughness, as the sampler's own half vector is.
+// Facets visible from wo, by slope: resolved at any roughness, like the sampler's own half vector.
 struct Facet {
   const char *name;
   bool beckmann;
-  double aspect; // alpha_y over alpha_x
+  double aspect; // alpha_y / alpha_x
 };
 constexpr Facet kFacets[] = {
     {"GGX", false, 1.0}, {"Beckmann", true, 1.0}, {"stretched GGX", false, 0.25}, {"stretched Beckmann", true, 4.0}};
@@ -93,14 +94,14 @@ TEST(BsdfFalling, FacetsAsTheyAreSeen) {
 }
 
 TEST(BsdfFalling, ASmallErrorIsSeenAtEveryRoughness) {
-  // Five percent of the width move some 3 % of the mass: of 100 000 draws ten times the noise of any cell.
+  // Five percent of the width moves some 3 % of the mass: with 100 000 samples ten times the noise of any cell.
   for (const Facet &facet : kFacets)
     for (const double alpha : {2e-5, 1e-3, 0.5})
       for (const double cosine : {0.9, 1e-3})
         EXPECT_LT(p_of_facets(facet, alpha, cosine, 100000, 7, 0.95), 1e-6) << facet.name << " " << alpha << " " << cosine;
 }
 
-// The directions of whole surfaces, above and below, each side laid out on a square of its own.
+// Directions of whole surfaces, above and below, each side parametrised by its own square.
 struct Sides {
   testing::Domain above, below;
 
@@ -113,8 +114,8 @@ struct Sides {
   }
 };
 
-// As many draws as half vectors of float directions bear: these carry 2^-24 over |wo + wi|, of which a cell, a tenth of the
-// width across, must feel no more than half the noise of its count.
+// Returns the number of samples that half vectors of float directions allow: their error is 2^-24 over |wo + wi|, and a cell, a
+// tenth of the width across, must change by no more than half the noise of its count.
 double most_draws(const Known &lobe, double cosine) {
   if (lobe.width == 0.0)
     return std::numeric_limits<double>::infinity();
@@ -129,7 +130,7 @@ double p_of_directions(const Known &lobe, double cosine, int draws, uint64_t see
   std::vector<double> expected, observed(2 * kCells + 1, 0.0);
   for (const testing::Domain *domain : {&sides.above, &sides.below})
     expect_cells(domain->density([&](const glm::vec3 &wi) { return double{bsdf.eval(wi).pdf}; }), draws, expected);
-  // Single directions and what is lost at the horizon are a cell, too.
+  // Single directions and the loss at the horizon form one more cell.
   double rest = draws;
   for (const double part : expected)
     rest -= part;

@@ -1,5 +1,5 @@
-// Lobes of facets over a grid of heights, roughnesses and indices: none gives back more than it gets, and the density of a
-// direction is that of the facet which sends light there, one in all.
+// Microfacet lobes over a grid of heights, roughnesses and indices: none has an albedo above 1, and the density of a direction
+// is that of the facet that sends light there, which integrates to one.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -16,10 +16,10 @@ using testing::direction;
 using testing::Known;
 using testing::Random;
 
-// From low to high, by equal factors.
+// Interpolates from low to high by equal factors.
 double between(double low, double high, int i, int count) { return low * std::pow(high / low, i / (count - 1.0)); }
 
-// Indices above and below 1 in turn, from those that hardly bend to those that hardly let anything through.
+// Indices alternately above and below 1, from hardly refracting to hardly transmitting.
 std::vector<float> indices(int count) {
   std::vector<float> all;
   for (int i = 0; i < count / 2; ++i) {
@@ -30,14 +30,14 @@ std::vector<float> indices(int count) {
   return all;
 }
 
-// What a white lobe gives back of the light from wo: the integral over its sampler's numbers of what each brings, which is
-// bounded and smooth but where the horizon cuts it.
+// Returns the albedo of a white lobe for wo: the integral of sample weights over the sampler's numbers. The integrand is
+// bounded, and smooth except at the horizon.
 double given_back(const Bsdf<float> &bsdf) {
   constexpr int kSide = 16;
   double sum = 0.0;
   for (int i = 0; i < kSide; ++i)
     for (int j = 0; j < kSide; ++j) {
-      // Sides in the order of the golden ratio, which is even over any stretch.
+      // Side numbers by the golden ratio, which are uniform over any range.
       const double side = std::fmod(0.5 + 0.6180339887498949 * (i * kSide + j), 1.0);
       const BsdfSample<float> sample =
           bsdf.sample(float(side), (float(i) + 0.5f) / float(kSide), (float(j) + 0.5f) / float(kSide));
@@ -51,7 +51,7 @@ struct Kind {
   const char *name;
   LobeKind kind;
   Facets facets;
-  bool bends = false; // its index has a say
+  bool bends = false; // depends on the index
   float anisotropy = 0.0f;
 };
 constexpr Kind kKinds[] = {{"coating", LobeKind::Beckmann, Facets::Beckmann, true},
@@ -109,8 +109,8 @@ TEST(BsdfGrid, VisibleFacetsIntegrateToOne) {
         }
 }
 
-// The density of visible facets is one in all. If that of directions is the same, spread
-// over the solid angle that facets span there, then it is the probability of finding one, at any height and index.
+// The density of visible facets integrates to one. If the density of directions is equal, scaled by the solid angle that facets
+// span there, then it is the probability of a sample, at any height and index.
 TEST(BsdfGrid, DensitiesAreThoseOfTheFacets) {
   const int side = testing::slow() ? 64 : 12, facets = testing::slow() ? 64 : 16;
   Random random(3);
@@ -148,13 +148,13 @@ TEST(BsdfGrid, DensitiesAreThoseOfTheFacets) {
             const glm::vec3 wi = testing::bent_about(wo, h, lobe.ior, response.cos_t);
             if (!(wi.z < 0.0f))
               continue;
-            // The solid angle that a facet's own spans, without the difference of two near cosines.
+            // The solid angle of wi spanned by that of a facet, without the difference of two nearly equal cosines.
             const double eta = lobe.ior, cos_t = response.cos_t,
                          stretch = (eta - 1.0) * (eta + 1.0) / (eta * (eta * cos_t + cos_oh)), per = stretch * stretch / cos_t,
                          got = per * double{microfacet_eval_through(lobe, wo, wi, h).pdf};
-            // A float cosine is known to six roundings: three of the sum of products, one and a half of the length of either
-            // direction. So that of wi is known, by the law of refraction, to this part of itself, and the stretch, a sum of
-            // both, by its terms. The density goes by the one and by the square of the other.
+            // A float cosine has an error of six roundings: three in the sum of products, one and a half in the length of
+            // either direction. By the law of refraction wi has this relative error, and the stretch, a sum of both, that of
+            // its terms. The density is proportional to the former and to the square of the latter.
             const double bent = std::max(1.0, 1.0 / eta),
                          known_to = 1e-5 + 6.0 * 0x1p-24 * (bent * bent / (cos_t * cos_t) + 2.0 * bent / std::abs(stretch));
             EXPECT_NEAR(got, visible * (1.0 - share), known_to * visible * (1.0 - share)) << what();

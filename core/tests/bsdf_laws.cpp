@@ -1,5 +1,5 @@
-// Laws by quadrature, at every roughness and height: no lobe gives back more than it gets, densities hold the probability that
-// samplers have, and light goes both ways alike.
+// Laws by quadrature, at every roughness and height: no albedo exceeds 1, densities integrate to the samplers' probability, and
+// light paths are reversible.
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using testing::direction;
 using testing::Known;
 using testing::Random;
 
-// A lobe of facets is asked with the half vector that its own sampler would have, which float directions do not hold.
+// Evaluates a microfacet lobe with its sampler's half vector, which float directions do not determine.
 ColorValue<float> by_facet(const Lobe<float> &lobe, const glm::vec3 &wo, const glm::vec3 &wi, const glm::vec3 &h) {
   if (lobe.shape == LobeShape::Microfacet)
     return wi.z > 0.0f ? microfacet_eval_reflected(lobe, wo, wi, h) : microfacet_eval_through(lobe, wo, wi, h);
@@ -29,16 +29,16 @@ ColorValue<float> by_facet(const Lobe<float> &lobe, const glm::vec3 &wo, const g
 constexpr double kWide = 0.05;
 
 struct Whole {
-  double f = 0.0, pdf = 0.0; // integrals of f cos, of the brightest channel, and of the density
+  double f = 0.0, pdf = 0.0; // integrals of the brightest channel of f cos, and of the density
 };
 
-// A pair of directions with the facet between them, and how much solid angle of wi an area of the square spans.
+// A pair of directions with its facet, and the solid angle of wi per area of the square.
 struct Pair {
   glm::dvec3 wi{0.0}, h{0.0, 0.0, 1.0};
-  double spanned = 0.0; // 0: there is no such pair
+  double spanned = 0.0; // 0: no such pair
 };
 
-// Narrow lobes are laid out by the slopes of their facets, wide ones by directions, whose horizon is an edge of the square.
+// Narrow lobes are parametrised by the slopes of their facets, wide ones by directions, whose horizon is an edge of the square.
 Pair by_slopes(const glm::dvec3 &wo, const glm::dvec2 &place, double width, bool through, double eta) {
   double jacobian;
   Pair pair;
@@ -61,7 +61,7 @@ Pair by_slopes(const glm::dvec3 &wo, const glm::dvec2 &place, double width, bool
 }
 
 Pair by_height(const glm::dvec3 &wo, const glm::dvec2 &place, bool through, double eta) {
-  // The root of the height spreads what grazes.
+  // The square root of the height spreads grazing directions.
   const double height = place.x * place.x, sine = std::sqrt((1.0 - height) * (1.0 + height));
   const double phi = 2.0 * std::numbers::pi * (place.y - 0.5);
   Pair pair;
@@ -73,7 +73,7 @@ Pair by_height(const glm::dvec3 &wo, const glm::dvec2 &place, bool through, doub
   return pair;
 }
 
-// Of what facets send to one side. wo: in their frame.
+// Integrates the light that facets send to one side. wo: in their frame.
 Whole over_facets(const Lobe<float> &lobe, const glm::vec3 &wo, double width, bool through) {
   const auto integral = [&](const std::function<double(const ColorValue<float> &)> &part) {
     return testing::integrate_square(
@@ -92,7 +92,7 @@ Whole over_facets(const Lobe<float> &lobe, const glm::vec3 &wo, double width, bo
   return {f, integral([](const ColorValue<float> &value) { return double{value.pdf}; })};
 }
 
-// Of all directions; width: of a narrow lobe above the surface, 0: none.
+// Integrates over all directions; width: of a narrow lobe above the surface, 0: none.
 Whole over_directions(const Bsdf<float> &bsdf, double width) {
   Whole whole;
   const testing::Domain above = width > 0.0 ? testing::half_vector_domain(bsdf.wo, width) : testing::direction_domain();
@@ -108,10 +108,10 @@ Whole over_directions(const Bsdf<float> &bsdf, double width) {
   return whole;
 }
 
-// The probability with which a lobe's sampler finds a direction: an integral over its numbers, cut where what it finds begins
-// and ends. by_number(u): the outcome, and the share of paths that have it.
+// Returns the probability that a lobe's sampler finds a direction: an integral over its numbers, split where the outcome
+// changes. by_number(u): the outcome, and its share of paths.
 struct Outcome {
-  int kind = 0; // of directions that are found; pieces of one kind are smooth
+  int kind = 0; // of the direction found; pieces of one kind are smooth
   double share = 0.0;
 };
 template <class Find> double found(const Find &find, int rows) {
@@ -126,7 +126,7 @@ template <class Find> double found(const Find &find, int rows) {
         sum += 0.5 * (high - low) * weight[i] * at(0.5 * (low + high) + 0.5 * (high - low) * node[i], y).share / rows;
     };
     for (int step = 0; step < kSteps; ++step) {
-      // The numbers of samplers crowd at neither end: pieces that are shorter there catch what falls off fast.
+      // Random numbers cluster at neither end: shorter pieces there resolve steep falloff.
       const auto place = [](double t) { return t * t * (3.0 - 2.0 * t); };
       double low = place(double(step) / kSteps), high = place((step + 1.0) / kSteps);
       const int kind = at(low, y).kind;
@@ -164,8 +164,8 @@ double found_by_facets(const Lobe<float> &lobe, const glm::vec3 &wo, int rows) {
   return found(find, rows);
 }
 
-// What the directional albedo exceeds 1 by, of lobes whose energy a table holds: between its nodes a straight line stands for
-// the curve, which is monotonous there, so that it ends at the largest of its corners.
+// Returns the excess over 1 of the directional albedo, for lobes with tabulated energy: between nodes the table is linear where
+// the curve is monotonic, so that the largest corner is a bound.
 double table_excess(const Lobe<float> &lobe, double cosine) {
   if (lobe.energy == 1.0f)
     return 0.0;
@@ -179,7 +179,7 @@ double table_excess(const Lobe<float> &lobe, double cosine) {
   for (int corner = 0; corner < 8; ++corner) {
     const float r = node(roughness, corner & 1), z = node(c, corner >> 1 & 1),
                 axis = node(tables::index_axis(lobe.ior), corner >> 2);
-    // Back from the table's axis: the root of the reflectance at the normal is its square.
+    // Invert the table's axis: the root of the reflectance at the normal is its square.
     const float bent = (1.0f + axis * axis) / (1.0f - axis * axis), ior = lobe.ior < 1.0f ? 1.0f / bent : bent;
     most = std::max(most, refracts(lobe) ? glass_albedo(r, z, ior) : ggx_albedo(r, z));
   }
@@ -203,11 +203,11 @@ TEST(BsdfLaws, FacetsKeepTheirEnergyAndTheirProbability) {
           whole.pdf += through.pdf;
         }
         EXPECT_LE(whole.f, 1.0 + 1e-5 + table_excess(lobe, cosine)) << known.name << " from " << cosine;
-        // From the horizon, slivers of what is seen slip between the nodes, and where facets begin to reflect totally both
-        // squares are crossed by a root's edge: there the density is compared facet by facet, in BsdfGrid.
+        // From the horizon, slivers of visible facets fall between the nodes, and where facets begin to reflect totally, a
+        // square-root edge crosses both squares: there BsdfGrid compares the density facet by facet.
         if (lobe.delta_through || cosine < 0.1 || lobe.ior < 1.0f)
           continue;
-        // The rows' own error, which falls with their number, is about what half and a quarter of them change.
+        // The error of the rows, which decreases with their number, is about the difference to half and a quarter of them.
         const int rows = testing::slow() ? 2048 : 512;
         const double p = found_by_facets(lobe, wo, rows), half = found_by_facets(lobe, wo, rows / 2),
                      error = std::abs(p - half) + std::abs(half - found_by_facets(lobe, wo, rows / 4));
@@ -241,7 +241,7 @@ TEST(BsdfLaws, NoOtherLobeGivesBackMoreThanItGets) {
                        [in](Bsdf<float> &bsdf, const glm::vec3 &wo) { testing::look(bsdf, in, wo); }});
       }
   }
-  // Narrow ones, as far as half vectors of float directions tell them apart: those carry 2^-24 over |wo + wi|.
+  // Narrow lobes, as far as half vectors of float directions resolve them: their error is 2^-24 over |wo + wi|.
   for (const double alpha : testing::slow() ? std::vector<double>{1e-3, 1e-2, 0.03} : std::vector<double>{1e-2})
     for (const LobeKind kind : {LobeKind::Phong, LobeKind::BlinnPhong})
       all.push_back(testing::known("shininess of alpha " + std::to_string(alpha),
@@ -256,7 +256,7 @@ TEST(BsdfLaws, NoOtherLobeGivesBackMoreThanItGets) {
     }
 }
 
-// What roundings of the cosine, once from either side, do to what a lobe's facets reflect or let through: 2^-22 of a sum of
+// Returns the effect of a rounded cosine, once from either side, on a lobe's reflectance or transmittance: 2^-22 of a sum of
 // three products each.
 double conditioned(const Lobe<float> &lobe, float cosine, bool through) {
   constexpr float kStep = 1e-4f;
@@ -271,8 +271,8 @@ double conditioned(const Lobe<float> &lobe, float cosine, bool through) {
   return at > 0.0 ? 2.0 * 0x1p-22 * slope / at : 0.0;
 }
 
-// Both ways with the same facet: what narrow lobes make of its rounding is another matter. Where Fresnel's
-// curve is steep, near total reflection, the rounding of a cosine counts.
+// Evaluates both directions with the same facet, which excludes its rounding for narrow lobes. Near total reflection, where
+// Fresnel's curve is steep, the rounding of a cosine matters.
 TEST(BsdfLaws, LightGoesBothWaysAlike) {
   Random random(11);
   for (const double alpha : {2e-5, 1e-3, 0.1, 0.5, 1.0})
@@ -301,7 +301,7 @@ TEST(BsdfLaws, LightGoesBothWaysAlike) {
         const glm::vec3 wi = testing::bent_about(wo_l, h, lobe.ior, response.cos_t);
         if (!(response.cos_t > 0.1f && wi.z < -0.1f && cos_oh > 0.1f))
           continue;
-        // From the other side the same facet has its own normal; axes turn with the side.
+        // From the other side the same facet has the opposite normal; the axes flip with the side.
         const Bsdf<float> other = known.from(bsdf.frames[lobe.frame].to_world(wi));
         const Lobe<float> &under = other.lobes[0];
         const glm::vec3 h_under = -other.frames[under.frame].to_local(bsdf.frames[lobe.frame].to_world(h));

@@ -1,5 +1,4 @@
-// What a surface gives to samples of lights: its value, and what rough boundaries pass on between directions that no facet
-// connects.
+// Evaluation for light samples: the value, and the transmission of rough boundaries between directions that no facet connects.
 #include "bsdf/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +23,7 @@ LobeInputs<float> boundary(LobeKind kind, float ior) {
   return inputs;
 }
 
-// Cosines of wo and of wi to the half vector of a boundary that bends by eta, h on the side of wo's normal.
+// Cosines of wo and wi to the half vector of a boundary with index eta, h on the side of wo's normal.
 struct Facet {
   glm::dvec3 h;
   double cos_o, cos_i;
@@ -38,8 +37,8 @@ struct Facet {
   bool connects() const { return cos_o > 0.0 && cos_i < 0.0; }
 };
 
-// Walter et al. 2007, equation 21, with the absolute cosines that it is written with, times |cos wi|, without Fresnel; Smith's
-// height-correlated masking.
+// Walter et al. 2007, equation 21, with its absolute cosines, times |cos wi|, without Fresnel; Smith's height-correlated
+// masking.
 double refracted(const glm::dvec3 &wo, const glm::dvec3 &wi, double eta) {
   const Facet facet(wo, wi, eta);
   const double a2 = double{kAlpha} * kAlpha, cos2 = facet.h.z * facet.h.z, slope = 1.0 + (a2 - 1.0) * cos2;
@@ -79,7 +78,7 @@ TEST(BsdfLit, PassesLightWhereNoFacetConnects) {
       const glm::vec3 wo = direction(0.1 + 0.9 * random.uniform());
       const glm::vec3 wi = direction(-0.1 - 0.9 * random.uniform(), 7.0 * random.uniform());
       const Facet facet(wo, wi, ior);
-      // Near these cosines the float's own half vector may lie on the other side.
+      // Near these cosines the float half vector may be on the other side.
       if (facet.connects() || std::min(std::abs(facet.cos_o), std::abs(facet.cos_i)) < 1e-3)
         continue;
       ++apart;
@@ -88,8 +87,8 @@ TEST(BsdfLit, PassesLightWhereNoFacetConnects) {
       EXPECT_EQ(bsdf.eval(wi).f(), glm::vec3(0.0f));
       const BsdfValue<float> lit = bsdf.eval_lit(wi);
       const double expected = refracted(wo, wi, ior);
-      // The inputs' roundings move wo + eta wi, no shorter than |1 - eta| = 0.3, by 2 ulp, which D's slope of at most 8 in
-      // the angle (1 / alpha^2) and the square of the length multiply; cosines of 1e-3 lose three digits.
+      // The inputs' roundings move wo + eta wi, which is at least |1 - eta| = 0.3 long, by 2 ulp, multiplied by D's slope of at
+      // most 8 in the angle (1 / alpha^2) and by the square of the length; cosines of 1e-3 lose three digits.
       const double tolerance = 40.0 * 0x1p-24 / 0.3 + 4.0 * 0x1p-24 / std::min(std::abs(facet.cos_o), std::abs(facet.cos_i));
       EXPECT_NEAR(lit.f().x / (double{0.9f} * expected), 1.0, tolerance) << wo.z << " " << wi.z;
       EXPECT_NEAR(lit.f().z / lit.f().x, 0.3f / 0.9f, 4.0 * 0x1p-24);

@@ -1,4 +1,4 @@
-// Blender's rough lobes: closed forms, their tables against exact integrals, and limits.
+// Blender's rough lobes: closed forms, tables against exact integrals, and limits.
 #include "bsdf/bsdf.h"
 
 #include <complex>
@@ -26,8 +26,8 @@ const float kInfinity = std::numeric_limits<float>::infinity();
 
 TEST(Microfacet, GgxMatchesItsTextbookForm) {
   // D = a^2 / (pi ((n.h)^2 (a^2 - 1) + 1)^2) and G = 2 n.o n.i / (n.o sqrt(a^2 + (1 - a^2) (n.i)^2) + the same exchanged), in
-  // long double from the same floats. wo + wi rounds by an ulp of 1 and more, which at slopes up to 4 alpha moves D by
-  // 16 / alpha of that; the other factors round some 40 times.
+  // long double from the same floats. wo + wi rounds by an ulp of 1 and more, which at slopes up to 4 alpha moves D by 16 /
+  // alpha of this; the other factors round some 40 times.
   Random random(1);
   for (float alpha : {1e-3f, 0.05f, 0.4f, 1.0f})
     for (int k = 0; k < 200; ++k) {
@@ -58,7 +58,7 @@ TEST(Microfacet, BeckmannOfBlender3IsTheCoatingWithoutFresnel) {
       const glm::vec3 wo = direction(0.05 + 0.95 * random.uniform()), wi = direction(0.05 + 0.95 * random.uniform(), 4.0);
       const Bsdf<float> facets = seen({inputs}, wo);
       const Bsdf<float> coating = seen({described(LobeKind::Beckmann, facets.lobes[0].alpha_x, kInfinity)}, wo);
-      // Facets seen by both directions are no more than those that each sees, exactly.
+      // Facets visible from both directions are at most those visible from either, exactly.
       float fitted = 1.0f, exact = 1.0f;
       for (const glm::vec3 &w : {wo, wi}) {
         const float at = beckmann_a(w, facets.lobes[0].alpha_x);
@@ -66,8 +66,8 @@ TEST(Microfacet, BeckmannOfBlender3IsTheCoatingWithoutFresnel) {
         exact = std::min(exact, beckmann_g1_exact(at));
       }
       const double expected = double{coating.eval(wi).f().x} * std::min(1.0, double{exact} / double{fitted});
-      // The exponent, up to 87, carries three roundings in either; at the joint of the fit G1 jumps by the 6e-5 by which it
-      // would pass 1, once for each direction.
+      // The exponent, up to 87, has three roundings in either; at the joint of the fit G1 jumps by the 6e-5 by which it would
+      // exceed 1, once for each direction.
       ASSERT_NEAR(facets.eval(wi).f().x, expected, (2.0 * 3.0 * 87.0 * kUlp + 2.0 * 1.3e-4) * expected);
     }
 }
@@ -79,7 +79,7 @@ TEST(Microfacet, ConductorMatchesComplexArithmetic) {
     const std::complex<double> index(n, kappa), sin2(1.0 - double{c} * c), g = std::sqrt(index * index - sin2);
     const std::complex<double> rs = (double{c} - g) / (double{c} + g),
                                rp = (index * index * double{c} - g) / (index * index * double{c} + g);
-    // Differences of numbers up to n^2 + k^2 = 45 next to results of 1e-2 and more in float.
+    // Differences of numbers up to n^2 + k^2 = 45 next to results of at least 1e-2 in float.
     ASSERT_NEAR(fresnel_conductor(c, n, kappa), 0.5 * (std::norm(rs) + std::norm(rp)), 2e-4) << c << " " << n << " " << kappa;
   }
 }
@@ -119,18 +119,18 @@ TEST(Microfacet, MeanAlbedoIsThatOfAWhiteSky) {
   for (int x : {6, 18, 31}) {
     const float roughness = static_cast<float>(x) / 31.0f;
     double sum = 0.0;
-    // Midpoints of 256 cosines; the albedo is smooth but for its last bend at the horizon, which weighs 1 / 256^2.
+    // Midpoints of 256 cosines; the albedo is smooth except for its bend at the horizon, which has a weight of 1 / 256^2.
     for (int i = 0; i < 256; ++i) {
       const double c = (i + 0.5) / 256.0;
       sum += 2.0 * c / 256.0 * ggx_albedo(roughness, static_cast<float>(c));
     }
-    // Straight lines between the table's 32 cosines stay below the curve by up to 1e-3.
+    // Linear interpolation between the table's 32 cosines is below the curve by up to 1e-3.
     EXPECT_NEAR(ggx_mean_albedo(roughness), sum, 1e-3) << roughness;
   }
 }
 
 TEST(Microfacet, MixIsTheMeanOverFacetsThatReflect) {
-  // Drawn facets, of which those that send light below the surface count 0.
+  // Sampled facets; those that send light below the surface count 0.
   Random random(4);
   constexpr int draws = 200000;
   for (int y : {2, 8, 15})
@@ -149,7 +149,7 @@ TEST(Microfacet, MixIsTheMeanOverFacetsThatReflect) {
           sum2 += s * s;
         }
         const double mean = sum / draws, deviation = std::sqrt((sum2 / draws - mean * mean) / draws + 1e-12);
-        // The table's rounding stands beside the noise.
+        // The table's rounding adds to the noise.
         const double p = testing::normal_p_value((mean - dielectric_mix(roughness, cosine, ior)) / (deviation + 0x1p-17));
         EXPECT_GT(p, testing::sidak_level(testing::kSignificance, 18)) << cosine << " " << roughness << " " << ior;
       }
@@ -166,14 +166,14 @@ TEST(Microfacet, SmoothGlassIsTheDielectric) {
         EXPECT_TRUE(a.delta && !facets.smooth);
         EXPECT_EQ(a.transmitted, b.transmitted);
         EXPECT_EQ(a.component, b.component);
-        // F passes through the mix of f0 and f90 and back.
+        // F is converted to the mix of f0 and f90 and back.
         EXPECT_NEAR(a.weight.x, 1.0f, 8.0 * kUlp);
         EXPECT_NEAR(a.pdf, b.pdf, 8.0 * kUlp);
       }
 }
 
 TEST(Microfacet, RoughnessBeyondItsRange) {
-  // Nodes may give any number. Most take it to its nearest end; Refraction squares it first.
+  // Nodes may return any number. Most lobes clamp it; Refraction squares it first.
   const auto alpha = [](LobeKind kind, float roughness) {
     return seen({rough(kind, Facets::Ggx, roughness)}, direction(0.5)).lobes[0].alpha_x;
   };

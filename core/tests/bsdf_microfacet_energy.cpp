@@ -1,4 +1,4 @@
-// Blender's rough lobes: no energy from nothing and none lost, reciprocity, finite numbers at every extreme.
+// Blender's rough lobes: energy is neither created nor lost, reciprocity, finite numbers at every extreme.
 #include "bsdf/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(Microfacet, NoLobeScattersMoreThanItGets) {
         for (Rules rules : {Rules::Blender3, Rules::Blender45}) {
           LobeInputs<float> glossy = rough(LobeKind::Glossy, facets, roughness);
           glossy.rules = rules;
-          // Quadrature and floats; Beckmann's rational masking may miss the exact one by 0.35 %.
+          // Quadrature and floats; Beckmann's rational masking may deviate from the exact one by 0.35 %.
           const double slack = facets == Facets::Ggx ? 2e-5 : 0.0035;
           EXPECT_LE(reflected(seen({glossy}, direction(cosine)), alpha), 1.0 + slack) << cosine << " " << roughness;
         }
@@ -40,8 +40,8 @@ TEST(Microfacet, NoLobeScattersMoreThanItGets) {
 }
 
 TEST(Microfacet, MultipleScatteringLosesNothing) {
-  // Between its nodes the table is a straight line: for roughness below 0.25 and at the horizon the albedo bends by more than
-  // 1 % within a cell, elsewhere by less than 0.3 %. At the nodes nothing but rounding is left.
+  // Between its nodes the table is linear: for roughness below 0.25 and at the horizon the albedo deviates by more than 1 %
+  // within a cell, elsewhere by less than 0.3 %. At the nodes only rounding remains.
   for (int y : {4, 16, 31})
     for (int x : {8, 16, 31}) {
       const float cosine = static_cast<float>(y) / 31.0f, roughness = static_cast<float>(x) / 31.0f;
@@ -61,7 +61,7 @@ TEST(Microfacet, FurtherBouncesTakeTheColour) {
   inputs.color = glm::vec3(0.5f);
   const Bsdf<float> bsdf = seen({inputs}, direction(1.0));
   const double e = ggx_albedo(1.0f, 1.0f), mean = ggx_mean_albedo(1.0f), f = 0.5;
-  // One bounce f E, all further ones f (1 - E) times f mean / (1 - f (1 - mean)).
+  // The first bounce f E, all further ones f (1 - E) times f mean / (1 - f (1 - mean)).
   const double expected = f * (e + (1.0 - e) * f * mean / (1.0 - f * (1.0 - mean)));
   EXPECT_NEAR(reflected(bsdf, 1.0), expected, 5e-5);
 }
@@ -74,20 +74,20 @@ TEST(Microfacet, IsReciprocal) {
         const std::vector<LobeInputs<float>> glossy{rough(LobeKind::Glossy, facets, roughness)};
         const glm::vec3 wo = direction(0.1 + 0.9 * random.uniform(), 7.0 * random.uniform()),
                         wi = direction(0.1 + 0.9 * random.uniform(), 7.0 * random.uniform());
-        // |wo + wi| >= 0.2 and |wo + 1.5 wi'| >= 0.5: half vectors carry 2^-22 over that, 1.2e-6 at most. Where they lean by
-        // less than 60 degrees that is 4.8e-6 of slope, and Beckmann's exponent s^2, s <= 9.3 widths, moves by 2 s / alpha
-        // times it.
+        // |wo + wi| >= 0.2 and |wo + 1.5 wi'| >= 0.5: half vectors have an error of 2^-22 over this, at most 1.2e-6. If they
+        // tilt by less than 60 degrees this is 4.8e-6 of slope, and Beckmann's exponent s^2, s <= 9.3 widths, moves by 2 s /
+        // alpha times it.
         const double tolerance = 2.0 * 9.3 * 4.8e-6 / (roughness * roughness);
         const double forth = seen(glossy, wo).eval(wi).f().x / wi.z, back = seen(glossy, wi).eval(wo).f().x / wo.z;
         if (glm::normalize(wo + wi).z > 0.5f) {
           ASSERT_NEAR(forth, back, tolerance * forth + std::numeric_limits<float>::min());
         }
-        // Through glass: f from outside is eta^2 of that from inside, for radiance that is not scaled at the boundary.
+        // Through glass: f from outside is eta^2 times that from inside, for radiance that is not scaled at the boundary.
         const std::vector<LobeInputs<float>> glass{rough(LobeKind::Glass, facets, roughness)};
         const glm::vec3 under = wi * glm::vec3(1.0f, 1.0f, -1.0f);
         const double in = seen(glass, wo).eval(under).f().x / wi.z, out = seen(glass, under).eval(wo).f().x / wo.z;
         const glm::vec3 h = glm::normalize(-(wo + 1.5f * under));
-        // Near total reflection what goes through follows the root of the rounding.
+        // Near total reflection the transmittance follows the square root of the rounding.
         if (h.z > 0.5f && glm::dot(wo, h) > 0.1f) {
           ASSERT_NEAR(in, 2.25 * out, tolerance * in + std::numeric_limits<float>::min());
         }

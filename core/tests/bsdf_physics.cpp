@@ -1,4 +1,4 @@
-// What holds for every surface: no energy from nothing, reciprocity, both sides alike, finite numbers at every extreme.
+// Laws of every surface: no energy from nothing, reciprocity, both sides alike, finite numbers at every extreme.
 #include "bsdf/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Lobes single(LobeKind kind, float alpha = 0.0f, float ior = 1.5f, float shinines
   return {described(kind, alpha, ior, shininess)};
 }
 
-// width: of a microfacet lobe, in slopes; 0 for the others.
+// width: of a microfacet lobe, in slopes; 0 for other lobes.
 double albedo(const Lobes &lobes, const glm::vec3 &wo, double width) {
   const Bsdf<float> bsdf = seen(lobes, wo);
   const testing::Domain domain = width > 0.0 ? testing::half_vector_domain(wo, width) : testing::direction_domain();
@@ -36,8 +36,7 @@ double albedo(const Lobes &lobes, const glm::vec3 &wo, double width) {
 constexpr double kCosines[] = {1.0, 0.9, 0.5, 0.1, 0.02};
 
 TEST(BsdfPhysics, NoLobeReflectsMoreThanItGets) {
-  // 1e-5 covers the quadrature (cells that end unresolved at 4e-7 lie along one line, 16 of them) and a float's rounding (6e-8
-  // some 20 times).
+  // 1e-5 covers the quadrature (16 cells along a line end unresolved at 4e-7) and float rounding (6e-8 some 20 times).
   for (double cosine : kCosines) {
     const glm::vec3 wo = direction(cosine);
     EXPECT_NEAR(albedo(single(LobeKind::Lambert), wo, 0.0), 1.0, 1e-5) << cosine;
@@ -115,11 +114,11 @@ TEST(BsdfPhysics, IsReciprocal) {
       const double a = 0.1 + 0.9 * random.uniform(), b = 0.1 + 0.9 * random.uniform();
       const glm::vec3 wo = direction(a, 7.0 * random.uniform()), wi = direction(b, 7.0 * random.uniform());
       const glm::vec3 forth = seen(lobes, wo).eval(wi).f() / wi.z, back = seen(lobes, wi).eval(wo).f() / wo.z;
-      // wo.h and wi.h >= 0.1 are equal but for the rounding of h and of the product, 2^-22; F falls at most with c^-4 near ior
-      // 1: 4 * 2^-22 / 0.1, and a few roundings of the other factors. At the critical angle of ior 0.9 F has a root's edge,
-      // where 2^-23 moves it by sqrt(2^-23) = 3e-4 times its slope there, about 5.
+      // wo.h and wi.h >= 0.1 are equal except for the rounding of h and of the product, 2^-22; F falls at most with c^-4 near
+      // ior 1: 4 * 2^-22 / 0.1, and a few roundings of the other factors. At the critical angle of ior 0.9 F has a square-root
+      // edge, where 2^-23 moves it by sqrt(2^-23) = 3e-4 times its slope there, about 5.
       const double tolerance = lobes[0].ior == 0.9f ? 2e-3 : 40.0 * 0x1p-22 + 12.0 * 0x1p-24;
-      // Below the smallest normal float nothing keeps its digits.
+      // Below the smallest normal float numbers lose digits.
       ASSERT_NEAR(forth.x, back.x, tolerance * forth.x + std::numeric_limits<float>::min()) << k;
     }
 }
@@ -202,14 +201,14 @@ TEST(BsdfPhysics, KnowsItsLobes) {
   EXPECT_TRUE(bsdf.smooth);
   EXPECT_EQ(bsdf.shown(Component::Diffuse), glm::vec3(0.5f, 0.0f, 0.25f));
   EXPECT_EQ(bsdf.shown(Component::Transmission), glm::vec3(0.0f));
-  // A coating seen along n reflects F = 0.04, exact but for its roundings.
+  // A coating seen along n reflects F = 0.04, exact except for roundings.
   EXPECT_NEAR(bsdf.shown(Component::Glossy).y, 0.54f, 4.0f * 0x1p-24f);
 }
 
 TEST(Frame, IsOrthonormalEverywhere) {
   Random random(8);
   for (int k = 0; k < 100000; ++k) {
-    // Every third normal lies within 1e-4 of a pole, where constructions of this kind break.
+    // Every third normal lies within 1e-4 of a pole, where such constructions break.
     const double z = k % 3 == 0 ? (1.0 - 5e-9 * random.uniform()) : 2.0 * random.uniform() - 1.0;
     const glm::vec3 n = direction(k % 2 == 0 ? z : -z, 7.0 * random.uniform());
     const Frame<float> frame(n);

@@ -1,4 +1,4 @@
-// Every lobe and their mixtures: directions fall as the pdf says, weights add up to the albedo.
+// Every lobe and their mixtures: samples are distributed as the pdf, and weights sum to the albedo.
 #include "bsdf/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ struct Case {
   std::string name;
   std::vector<LobeInputs<float>> lobes;
   double width = 0.0; // of the narrowest microfacet lobe, in slopes of the half vector; 0: none
-  double delta = 0.0; // probability of the delta lobes, known from how the case is built
+  double delta = 0.0; // probability of the delta lobes, known from the construction
 
   testing::Domain domain(const glm::vec3 &wo) const {
     return width > 0.0 ? testing::half_vector_domain(wo, width) : testing::direction_domain();
@@ -53,7 +53,7 @@ std::vector<Case> cases() {
                  {lobe(LobeKind::Phong, 0.2f, 0, 1, 50.0f), diffuse, lobe(LobeKind::BlinnPhong, 0.3f, 0, 1, 20.0f),
                   lobe(LobeKind::Beckmann, 0.5f, 0.2f)},
                  0.2});
-  // Colours 0.6, 0.3 and 0.3: half of the choices are delta lobes.
+  // Colours 0.6, 0.3 and 0.3: half of the samples are of delta lobes.
   all.push_back({"with mirror and glass", {diffuse, lobe(LobeKind::Mirror, 0.3f), lobe(LobeKind::Dielectric, 0.3f)}, 0.0, 0.5});
   return all;
 }
@@ -62,24 +62,24 @@ constexpr double kCosines[] = {1.0, 0.7, 0.1, 0.01};
 constexpr int kDraws = 250000, kSide = 16;
 
 struct Verdict {
-  double p;        // chi-square of directions, rejected ones and delta ones
+  double p;        // chi-square of directions, including rejected and delta ones
   double weight_p; // z-test of the mean weight of smooth samples against the integral of f cos
 };
 
-// Draws from one Bsdf, expects what another one's pdf says.
+// Samples one Bsdf and compares with the pdf of another.
 Verdict judge(const Bsdf<float> &drawn, const Bsdf<float> &expected_of, const Case &c, const glm::vec3 &wo, uint64_t seed) {
   const testing::Domain domain = c.domain(wo);
   const testing::SquareFunction pdf = domain.density([&](const glm::vec3 &wi) { return double{expected_of.eval(wi).pdf}; });
   constexpr std::size_t rejected = kSide * kSide, delta = rejected + 1;
   std::vector<double> observed(delta + 1, 0.0), expected(delta + 1, 0.0);
-  // A cell's expectation is wanted within a small part of its own noise, which is 3 for the rarest that is kept.
+  // The error of a cell's expectation must be a small part of its noise, which is 3 for the rarest cell that counts.
   const double tolerance = 0.2 / kDraws;
   double inside = 0.0;
   for (std::size_t i = 0; i < kSide; ++i)
     for (std::size_t j = 0; j < kSide; ++j) {
       const glm::dvec2 low = glm::dvec2(i, j) / double{kSide}, high = glm::dvec2(i + 1, j + 1) / double{kSide};
       const double mass = testing::integrate_square(pdf, 2, tolerance, low, high);
-      // A sliver of a cell above the horizon can slip between the nodes: no cell is called impossible.
+      // A sliver of a cell above the horizon can fall between the nodes: no cell counts as impossible.
       expected[i * kSide + j] = std::max(kDraws * mass, 1e-3);
       inside += mass;
     }
@@ -107,7 +107,7 @@ Verdict judge(const Bsdf<float> &drawn, const Bsdf<float> &expected_of, const Ca
   const double albedo = testing::integrate_square(
       domain.density([&](const glm::vec3 &wi) { return double{expected_of.eval(wi).f().x}; }), 16, 1e-6);
   const double mean = sum / kDraws, variance = std::max(0.0, sum2 / kDraws - mean * mean) / kDraws;
-  // The quadrature's and the floats' own errors, 1e-5 each, stand beside the noise; a constant weight has no noise at all.
+  // The errors of quadrature and floats, 1e-5 each, add to the noise; a constant weight has no noise.
   const double z = (mean - albedo) / std::sqrt(variance + 2e-10);
   return {testing::chi_square_test(observed, expected), testing::normal_p_value(z)};
 }
@@ -126,7 +126,7 @@ TEST(BsdfSampling, DirectionsFollowThePdfAndWeightsTheAlbedo) {
 }
 
 TEST(BsdfSampling, AWrongRoughnessIsSeen) {
-  // Two percent of the width move some 2 % of the mass: in 250 000 draws that is many times the noise of any cell.
+  // Two percent of the width moves some 2 % of the mass: with 250 000 samples many times the noise of any cell.
   for (float alpha : {1e-3f, 0.1f})
     for (double cosine : {1.0, 0.1}) {
       const Case wrong{"", {lobe(LobeKind::Beckmann, 1.0f, 1.02f * alpha)}, alpha};
@@ -137,8 +137,8 @@ TEST(BsdfSampling, AWrongRoughnessIsSeen) {
 }
 
 TEST(BsdfSampling, VisibleNormalsIntegrateToOne) {
-  // Exactly 1 for the exact G1. Floats: the exponent's rounding is weighed by its mean, 1; G1 / cos and alpha^2 round some 20
-  // times of 6e-8 in all; the quadrature adds less.
+  // Exactly 1 for the exact G1. Floats: the exponent's rounding is weighted by its mean, 1; G1 / cos and alpha^2 have some 20
+  // roundings of 6e-8 in total; the quadrature adds less.
   for (float alpha : {1e-3f, 1e-2f, 0.1f, 0.5f, 1.0f})
     for (double cosine : {1.0, 0.9, 0.5, 0.1, 1e-2, 1e-3}) {
       const glm::vec3 wo = direction(cosine);
@@ -149,15 +149,16 @@ TEST(BsdfSampling, VisibleNormalsIntegrateToOne) {
         const double tan2 = (h.x * h.x + h.y * h.y) / (h.z * h.z);
         return jacobian * g1 * std::max(0.0, glm::dot(glm::dvec3(wo), h)) / wo.z * beckmann_d(static_cast<float>(tan2), alpha);
       };
-      // Small cells from the start: at the edge of what wo sees a corner can slip between the nodes.
+      // Small initial cells: at the edge of visibility a corner can fall between the nodes.
       const double sum = testing::integrate_square(visible, 64, 1e-9);
       EXPECT_NEAR(sum, 1.0, 3e-6) << alpha << " " << cosine;
     }
 }
 
 TEST(BsdfSampling, ThePdfIntegratesToWhatIsNotRejected) {
-  // Where next to nothing falls below the horizon the pdf holds the whole probability: at normal incidence with slopes that
-  // reach it (tan 45 degrees) only beyond exp(-1 / alpha^2) < 1e-10. Tolerance as for visible normals, times wi's own rounding.
+  // If almost nothing is sampled below the horizon, the pdf integrates to the whole probability: at normal incidence with
+  // slopes that reach it (tan 45 degrees) only beyond exp(-1 / alpha^2) < 1e-10. Tolerance as for visible normals, times wi's
+  // own rounding.
   for (float alpha : {1e-2f, 0.1f, 0.2f}) {
     const glm::vec3 wo = direction(1.0);
     const Bsdf<float> bsdf = seen({lobe(LobeKind::Beckmann, 1.0f, alpha)}, wo);
@@ -173,9 +174,10 @@ TEST(BsdfSampling, ThePdfIntegratesToWhatIsNotRejected) {
 }
 
 TEST(BsdfSampling, WeightPdfAndValueAgree) {
-  // A sample's weight times its pdf is f cos as evaluation gives it. The half vector from wo + wi is off by up to 2^-23 (and
-  // wi's own rounding as much) over |wo + wi| >= s, the sum of heights. Slopes reach 4 widths: 2 * 4 * 2^-22 / (width s) of the
-  // value (no lobe without microfacets is narrower than 0.1); and wo.h >= s / 2 divides the pdf of Blinn-Phong: 2^-21 / s^2.
+  // A sample's weight times its pdf equals the evaluated f cos. The half vector from wo + wi has an error of up to 2^-23 (and
+  // as much from wi's own rounding) over |wo + wi| >= s, the sum of heights. Slopes reach 4 widths: 2 * 4 * 2^-22 / (width s)
+  // of the value (no lobe without microfacets is narrower than 0.1); and wo.h >= s / 2 divides the pdf of Blinn-Phong: 2^-21 /
+  // s^2.
   Random random(5);
   for (const Case &c : cases())
     for (double cosine : kCosines) {
@@ -197,7 +199,7 @@ TEST(BsdfSampling, WeightPdfAndValueAgree) {
 }
 
 TEST(BsdfSampling, LobesArePickedByTheLightOfAllColours) {
-  // A red surface under a grey mirror: a third of 0.9 to 0.1.
+  // A red surface under a grey mirror: a third of 0.9, compared with 0.1.
   const Bsdf<float> bsdf =
       seen({described(LobeKind::Lambert, 0, 1, 0, {0.9f, 0.0f, 0.0f}), described(LobeKind::Mirror, 0, 1, 0, glm::vec3(0.1f))},
            {0, 0, 1});
@@ -212,7 +214,7 @@ TEST(BsdfSampling, LobesArePickedByTheLightOfAllColours) {
 }
 
 TEST(BsdfSampling, PhongKeepsItsShapeHoweverNarrow) {
-  // Around the mirrored direction cos^(n + 1) and the azimuth are uniform; 1 - cos comes from the distance of both, in double.
+  // Around the mirror direction cos^(n + 1) and the azimuth are uniform; 1 - cos comes from the distance of both, in double.
   for (float n : {10.0f, 1e3f, 1e5f})
     for (double cosine : {0.7, 0.01}) {
       const glm::vec3 wo = direction(cosine);
@@ -239,7 +241,7 @@ TEST(BsdfSampling, PhongKeepsItsShapeHoweverNarrow) {
 
 TEST(BsdfSampling, GlassReflectsWithProbabilityFresnel) {
   Random random(9);
-  // Binomial z-test of reflections, from outside and from inside.
+  // Binomial z-test of reflections, from outside and inside.
   for (float side : {1.0f, -1.0f}) {
     glm::vec3 wo = direction(0.8);
     wo.z *= side;

@@ -1,5 +1,4 @@
-// Lobes that may go through the surface, stretched and tilted ones: directions fall as the pdf says, weights add up to the
-// value.
+// Lobes that may transmit, anisotropic and tilted ones: samples are distributed as the pdf, and weights sum to the integral.
 #include "bsdf/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -32,18 +31,18 @@ struct Case {
   std::string name;
   std::vector<LobeInputs<float>> lobes;
   double width = 0.0; // of the narrowest lobe, in slopes of the half vector; 0: wide
-  float ior = 1.5f;   // by which what goes through is bent, from outside
-  // Of the shading normal and of a lobe's own, against the surface.
+  float ior = 1.5f;   // index of refraction from outside
+  // The shading normal and a lobe's own normal, relative to the surface.
   glm::vec3 ns{0.0f, 0.0f, 1.0f};
-  // The one lobe that keeps what it draws itself beyond ns: above the surface, and below.
+  // The lobe that keeps its own samples beyond ns: above the surface, and below.
   int beyond = -1, beneath = -1;
-  // Some directions pass the surface the wrong way.
+  // Some directions cross the surface to the wrong side.
   bool strays = false;
 
   int drawn(const glm::vec3 &wi) const { return wi.z > 0.0f ? beyond : beneath; }
 };
 
-// Directions above the plane and below it, each laid out on its own square.
+// Directions above and below the plane, each side parametrised by its own square.
 struct Sides {
   testing::Domain above, below;
 
@@ -60,10 +59,10 @@ struct Sides {
 
 struct Verdict {
   double p = 0.0;        // chi-square of directions and rejected samples
-  double weight_p = 0.0; // z-test of the mean weight against the integral of what samples find of f cos
+  double weight_p = 0.0; // z-test of the mean weight against the part of the integral of f cos that samples find
 };
 
-// wo above the plane, seen in the case's own frame: inside turns the surface over.
+// wo is above the plane, in the case's own frame: inside flips the surface.
 Verdict judge(const Case &c, const glm::vec3 &wo, bool inside, uint64_t seed, const Case *expected_case = nullptr) {
   const auto look = [&](Bsdf<float> &bsdf, const Case &as) {
     const glm::vec3 ng(0.0f, 0.0f, 1.0f);
@@ -91,7 +90,8 @@ Verdict judge(const Case &c, const glm::vec3 &wo, bool inside, uint64_t seed, co
       }
     const auto value = domain->density([&](const glm::vec3 &wi) {
       const BsdfValue<float> drawn = bsdf.eval(wi, c.drawn(wi));
-      // What no facet connects weighs where another lobe draws it, and stands in the density that it is divided by.
+      // Directions that no facet connects have weight if another lobe samples them, and are part of the density by which this
+      // weight is divided.
       const BsdfValue<float> lit = bsdf.eval_lit(wi), facets = bsdf.eval(wi);
       const double f = drawn.f().x + lit.f().x - facets.f().x, density = drawn.pdf + lit.pdf - facets.pdf;
       return drawn.pdf > 0.0f ? f * drawn.pdf / density : 0.0;
@@ -115,7 +115,7 @@ Verdict judge(const Case &c, const glm::vec3 &wo, bool inside, uint64_t seed, co
     sum2 += static_cast<double>(sample.weight.x) * sample.weight.x;
   }
   const double mean = sum / kDraws, variance = std::max(0.0, sum2 / kDraws - mean * mean) / kDraws;
-  // The quadrature's and the floats' own errors, 1e-5 each and side, stand beside the noise.
+  // The errors of quadrature and floats, 1e-5 each per side, add to the noise.
   const double z = (mean - albedo) / std::sqrt(variance + 4e-10);
   return {testing::chi_square_test(observed, expected), testing::normal_p_value(z)};
 }
@@ -147,7 +147,7 @@ std::vector<Case> cases() {
   LobeInputs<float> old = rough(LobeKind::Glass, Facets::Ggx, 0.5f);
   old.rules = Rules::Blender3;
   all.push_back({"glass of Blender 3", {old}, 0.25});
-  // About a normal that looks away from its face it draws on both sides.
+  // With a normal that faces away from its face it samples both sides.
   old.roughness = 0.9f;
   const glm::vec3 away = glm::normalize(glm::vec3(0.5f, 0.3f, -0.8f));
   all.push_back({.name = "glass of Blender 3 away", .lobes = {old}, .ns = away, .strays = true});
@@ -160,7 +160,7 @@ std::vector<Case> cases() {
   clay.option = 1;
   all.push_back({"wide", {leaf, clay, cloth, shirley}});
   all.push_back({"everything", {leaf, clay, rough(LobeKind::Glass, Facets::MultiGgx, 0.8f), cloth}});
-  // Bumped: the shading normal tilts, and two lobes have normals of their own.
+  // Bumped: the shading normal is tilted, and two lobes have normals of their own.
   LobeInputs<float> bumped = clay;
   bumped.normal = glm::normalize(glm::vec3(0.5f, -0.2f, 1.0f));
   LobeInputs<float> bumped_gloss = rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f);
@@ -169,11 +169,11 @@ std::vector<Case> cases() {
   LobeInputs<float> bent_leaf = leaf;
   bent_leaf.normal = bumped.normal;
   all.push_back({"bumped leaf", {bent_leaf, clay}, 0.0, 1.5f, glm::normalize(glm::vec3(-0.2f, 0.3f, 1.0f)), -1, 0});
-  // A normal map that does not turn with the surface: the lobe faces inwards and gives nothing above, where it still draws.
+  // A normal map that does not flip with the surface: the lobe faces inwards and is 0 above, where it is still sampled.
   LobeInputs<float> turned = clay;
   turned.normal = glm::normalize(glm::vec3(0.9f, 0.1f, -0.4f));
   all.push_back({"turned away", {turned, rough(LobeKind::Glossy, Facets::MultiGgx, 0.7f)}});
-  // A coarse mesh: seen at a grazing angle the interpolated normal looks away from the viewer.
+  // A coarse mesh: at a grazing angle the interpolated normal faces away from the viewer.
   all.push_back({"behind", {clay, cloth}, 0.0, 1.5f, glm::normalize(glm::vec3(-0.5f, -0.5f, 1.0f))});
   return all;
 }

@@ -1,4 +1,4 @@
-// Which lobes a sample of a light asks: those of the shapes that are named.
+// Evaluation for light samples by lobe shape: only lobes of the requested shapes contribute.
 #include <gtest/gtest.h>
 
 #include "bsdf_domain.h"
@@ -12,7 +12,7 @@ using testing::described;
 using testing::direction;
 using testing::Random;
 
-// Two lobes of two shapes: each of them alone, and both, which is the sum to the bit.
+// Two lobes of two shapes: each alone, and both, which is the sum to the bit.
 void expect_the_sum(const LobeInputs<float> &first, LobeShape shape, const LobeInputs<float> &second, LobeShape other) {
   Random random(6);
   int seen = 0;

@@ -1,4 +1,4 @@
-// Tables of what lobes send out: whatever is asked, nothing beyond them is read.
+// Albedo tables: no argument causes a read outside them.
 #include "bsdf/albedo_tables.h"
 #include "bsdf/sheen.h"
 

@@ -72,7 +72,7 @@ TEST(Fresnel, MatchesMpmath) {
     EXPECT_NEAR(fresnel_dielectric(v.cos_i, v.eta) / v.expected, 1.0, kUlp + 1e-8) << v.cos_i << " " << v.eta;
 }
 
-// The factored form, in which no equal numbers are subtracted, in long double.
+// The factored form without a subtraction of nearly equal numbers, in long double.
 long double factored_fresnel(long double c, long double n) {
   if (n >= 1.0l) {
     const long double e = 1.0l / n, d = (n - 1.0l) * (n + 1.0l) * e * e, g = std::sqrt(e * c * e * c + d);
@@ -91,14 +91,14 @@ TEST(Fresnel, IsRightForEveryIndexAtEveryAngle) {
   for (const float n : {1.0f + 0x1p-23f, 1.0f + 0x1p-20f, 1.00001f, 1.001f, 1.33f, 1.5f, 2.5f, 1e3f, 1e9f, 1e19f, 3e38f, 0.5f,
                         0.9f, 0.999f, 1.0f - 0x1p-20f, 1.0f - 0x1p-24f})
     for (int i = 1; i <= 300; ++i) {
-      // Evenly in the angle, and 1e-5 from grazing.
+      // Uniform in the angle, and 1e-5 from grazing.
       const float c = i == 300 ? 1e-5f : std::cos(float(i) * (0.5f * kPi / 300.0f));
       const long double expected = factored_fresnel(c, n);
-      // As MatchesMpmath; near the critical angle what cancels in the root of n < 1 cancels there too, 2^-52 of c^2.
+      // As MatchesMpmath; near the critical angle the cancellation in the root of n < 1 adds 2^-52 of c^2.
       const long double left = n < 1.0f ? static_cast<long double>(c) * c - (1.0l - n) * (1.0l + n) : 1.0l;
       const double critical = left > 0.0l ? double(0x1p-50l / left) : 0.0;
       EXPECT_NEAR(double(fresnel_dielectric(c, n) / expected), 1.0, kUlp + 1e-8 + critical) << c << " " << n;
-      // What goes through keeps its digits where little does.
+      // The transmittance keeps its digits where it is small.
       if (expected < 1.0l) {
         EXPECT_NEAR(double(fresnel(c, n).transmittance / (1.0l - expected)), 1.0,
                     kUlp + 1e-8 + critical + 0x1p-50 / double(1.0l - expected))
@@ -136,7 +136,7 @@ TEST(Fresnel, TakesTheEndsOfItsRange) {
     }
   }
   EXPECT_EQ(fresnel_dielectric(0.0f, 1.5f), 1.0f);
-  // The cosine of a float unit vector can pass 1 by an ulp.
+  // The cosine of a float unit vector can exceed 1 by an ulp.
   EXPECT_EQ(fresnel_dielectric(1.0f + 0x1p-23f, 1.5f), fresnel_dielectric(1.0f, 1.5f));
 }
 
@@ -145,13 +145,14 @@ TEST(Fresnel, RefractionObeysSnell) {
     for (float sin_i : {0.0f, 1e-3f, 0.3f, 0.65f}) {
       const glm::vec3 wo(sin_i * 0.6f, sin_i * 0.8f, std::sqrt(1.0f - sin_i * sin_i));
       const glm::vec3 wi = refract_local(wo, eta, fresnel(wo.z, eta).cos_t);
-      // sin_i = eta sin_t, in the plane of incidence, on the other side. Each product, quotient and the norm round once or
-      // twice.
+      // sin_i = eta sin_t, in the plane of incidence, on the other side. Each product, quotient and the norm has one or two
+      // roundings.
       EXPECT_NEAR(wi.x * eta, -wo.x, 8.0 * kUlp * sin_i);
       EXPECT_NEAR(wi.y * eta, -wo.y, 8.0 * kUlp * sin_i);
       EXPECT_LT(wi.z, 0.0f);
       EXPECT_NEAR(glm::dot(wi, wi), 1.0f, 8.0 * kUlp);
-      // The way back reflects the same share; its cosine is known to an ulp, and F moves by at most |F'| < 20 of it here.
+      // The reverse direction reflects the same share; its cosine has an error of an ulp, and F changes by at most |F'| < 20
+      // times it here.
       EXPECT_NEAR(fresnel_dielectric(-wi.z, 1.0f / eta), fresnel_dielectric(wo.z, eta), 40.0 * kUlp);
     }
 }
@@ -186,7 +187,7 @@ TEST(Beckmann, DensityMatchesMpmath) {
       {1.0f, 1.0f, 0.46839865219455329},
       {6.25f, 1.0f, 0.032298743575021783},
   };
-  // The exponent tan^2 / alpha^2 <= 6.25 carries two roundings, the prefactor six.
+  // The exponent tan^2 / alpha^2 <= 6.25 has two roundings, the prefactor six.
   for (const auto &v : values)
     EXPECT_NEAR(beckmann_d(v.tan2, v.alpha) / v.expected, 1.0, (2.0 * 6.25 + 6.0) * kUlp) << v.tan2 << " " << v.alpha;
 }
@@ -310,7 +311,7 @@ TEST(Coating, MatchesMpmath) {
     // the error over alpha. Fresnel's slope at eta near 1 and the other factors stay within 42 roundings.
     const double tolerance = (42.0 + 2.4 * 2.0 / v.alpha) * kUlp;
     EXPECT_NEAR(testing::seen(lobes, v.wo).eval(v.wi).f().x / v.wi.z / v.expected, 1.0, tolerance) << v.alpha << " " << v.ior;
-    // Kd/pi + Ks D F G / (4 (l.n)(v.n)), colour by colour.
+    // Kd/pi + Ks D F G / (4 (l.n)(v.n)), channel by channel.
     lobes[0].color = glm::vec3(0.5f, 0.25f, 0.0f);
     lobes.push_back(testing::described(LobeKind::Lambert, 0, 1, 0, {0.75f, 0.0f, 0.5f}));
     const glm::vec3 f = testing::seen(lobes, v.wo).eval(v.wi).f() / v.wi.z;

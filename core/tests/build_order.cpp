@@ -1,5 +1,5 @@
-// What is cut in two by a key keeps its order on both sides, whatever way a library has to find the middle: sums over it, and
-// the trees that follow, are the same everywhere.
+// A partition by key keeps the order on both sides, whatever algorithm a library uses for the median: sums over it, and the
+// resulting trees, are the same everywhere.
 #include "accel/bvh/bvh_build.h"
 #include "compile/light_cut.h"
 
@@ -10,7 +10,7 @@
 namespace lancer {
 namespace {
 
-// Places in disorder, each of some of them.
+// Unordered keys, each with several elements.
 uint32_t mixed(uint32_t i) { return i * 37u % 101u / 3u; }
 
 TEST(BuildOrder, OfLightsOnBothSidesOfACut) {

@@ -1,4 +1,4 @@
-// A camera of 200 x 100 pixels at the world's centre, with a window of the whole picture.
+// A camera of 200 x 100 pixels at the origin, with a window of the whole picture.
 #pragma once
 
 #include "scene/camera.h"

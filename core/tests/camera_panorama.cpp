@@ -1,4 +1,4 @@
-// Panoramas against closed forms and their own inverses, and what a lens of blades looks like.
+// Panoramas against closed forms and their own inverses, and the shape of an aperture with blades.
 #include "scene/camera.h"
 
 #include "camera_lab.h"
@@ -41,9 +41,9 @@ TEST(Panorama, PlaceUndoesDirection) {
       if (d == glm::dvec3(0.0))
         continue;
       ++shown;
-      // A dozen roundings of 2^-53 of angles below 7 and radii below 22 mm, over them: 1e-14 at most. At a ball's rim they grow
-      // by 1 over the depth squared, which is even in 0 ... 1 over its disk: beyond 1e-5 in all but one of a hundred such
-      // draws.
+      // A dozen roundings of 2^-53 of angles below 7 and radii below 22 mm, relative to them: at most 1e-14. At a ball's rim
+      // they grow by 1 over the depth squared, which is uniform in 0 ... 1 over its disk: beyond 1e-5 in all but one of a
+      // hundred such samples.
       EXPECT_NEAR(glm::length(d), 1.0, 1e-14);
       EXPECT_LT(glm::length(panorama_place(view, d) - place), 1e-9) << int(view.kind);
     }
@@ -57,7 +57,7 @@ TEST(Panorama, TheMiddleLooksForward) {
       continue;
     if (view.kind == CameraKind::Cylindrical && view.panorama[4] != 1.0)
       continue;
-    // The polynomial lens is off by its k0, 1.17e-5 radians; the others by roundings.
+    // The polynomial lens deviates by its k0, 1.17e-5 radians; the others by roundings.
     EXPECT_LT(glm::length(panorama_direction(view, glm::dvec2(0.5)) - glm::dvec3(0.0, 0.0, -1.0)), 2e-5) << int(view.kind);
     // Right is right and up is up.
     EXPECT_GT(panorama_direction(view, {0.55, 0.5}).x, 0.0) << int(view.kind);
@@ -66,7 +66,7 @@ TEST(Panorama, TheMiddleLooksForward) {
 }
 
 TEST(Panorama, AnglesAreThoseOfTheProjection) {
-  // An equidistant fisheye of half a turn: the angle from the axis grows evenly to a quarter turn at the rim.
+  // An equidistant fisheye of half a turn: the angle from the axis grows linearly to a quarter turn at the rim.
   const glm::dvec3 side = panorama_direction(panoramas()[2], {1.0, 0.5});
   EXPECT_NEAR(side.x, 1.0, 1e-15);
   const glm::dvec3 half = panorama_direction(panoramas()[2], {0.5, 0.75});
@@ -74,7 +74,7 @@ TEST(Panorama, AnglesAreThoseOfTheProjection) {
   // Equisolid: r = 2 f sin(theta / 2).
   const glm::dvec3 solid = panorama_direction(panoramas()[4], {0.5 + 5.0 / 36.0, 0.5});
   EXPECT_NEAR(std::atan2(solid.x, -solid.z), 2.0 * std::asin(5.0 / 21.0), 1e-14);
-  // The mirror ball's rim shows what lies behind.
+  // The mirror ball's rim shows the direction behind it.
   const glm::dvec3 rim = panorama_direction(panoramas()[6], {1.0, 0.5});
   EXPECT_NEAR(rim.z, 1.0, 1e-15);
 }
@@ -99,7 +99,7 @@ TEST(Panorama, TheLensAimsAtOnePoint) {
       const Ray ray = view.ray(raster, lens);
       EXPECT_NEAR(glm::length(ray.o - middle.o), 0.2 * glm::length(lens), 1e-14);
       EXPECT_NEAR(glm::dot(ray.o - middle.o, middle.d), 0.0, 1e-14);
-      // Both lines meet in the point in focus.
+      // Both lines meet at the point in focus.
       EXPECT_LT(glm::length(glm::cross(focus - ray.o, ray.d)), 1e-14);
     }
   }
@@ -116,17 +116,17 @@ TEST(Lens, BladesFillAPolygonEvenly) {
   for (int i = 0; i < side * side; ++i) {
     const glm::dvec2 p = view.aperture({(float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side)});
     sum += p;
-    // Within the sides: the distance along the normal of every side is at most the inner radius, but for some roundings.
+    // Inside the sides: the distance along the normal of every side is at most the inner radius, except for some roundings.
     for (int k = 0; k < 5; ++k) {
       const double turn = 0.3 + 2.0 * kPiD * k / 5.0;
       EXPECT_LE(p.x * std::cos(turn) + p.y * std::sin(turn), inner + 0x1p-49);
     }
     inside += glm::length(p) <= 0.5 ? 1.0 : 0.0;
   }
-  // The inner disk's share of the area. In each blade its rim goes through all 400 rows of the grid and up and down 10 of the
-  // columns: 2100 of 160000 cells are cut. Half of each, all to one side, would be 6.6e-3.
+  // The inner disk's share of the area. In each blade its rim crosses all 400 rows of the grid and 10 columns up and down: 2100
+  // of 160000 cells are cut. Half of each, all to one side, would be 6.6e-3.
   EXPECT_NEAR(inside / (side * side), 0.25 * kPiD / area, 5e-3);
-  // The blades are each other turned; u is float, five times its rounding of 2^-25 is all that their places differ by.
+  // The blades are rotations of each other; u is float, and their places differ by at most five times its rounding of 2^-25.
   EXPECT_LT(glm::length(sum) / (side * side), 5 * 0x1p-24);
 }
 
@@ -139,7 +139,7 @@ TEST(Lens, TheRatioNarrowsIt) {
     for (int i = 0; i < 100 * 100; ++i)
       largest =
           glm::max(largest, glm::abs(view.aperture({(float(i % 100) + 0.5f) / 100.0f, (float(i / 100) + 0.5f) / 100.0f})));
-    // The rim of a disk is 1 but for a few roundings of float. A hexagon's sides stand to the right, cos(30 degrees) away, its
+    // The rim of a disk is 1 except for a few float roundings. A hexagon's sides are to the right, cos(30 degrees) away, its
     // corner above; steps of 6 hundredths of a blade in the radius squared fall short of both by 3 %.
     EXPECT_LE(largest.x, 0.5 + 1e-6);
     EXPECT_GT(largest.x, 0.4);
@@ -162,11 +162,11 @@ TEST(Camera, WindowUndoesRay) {
     const Ray ray = view.ray({20.0, 30.0}, glm::dvec2(0.0));
     const glm::dvec3 p = ray.o + 2.5 * ray.d;
     const glm::vec3 place = view.to_window(p);
-    // Once rounded to float, which has 2^-24 of numbers below 1, and 2^-22 below 4.
+    // One rounding to float, which has 2^-24 for numbers below 1, and 2^-22 below 4.
     EXPECT_NEAR(place.x, 0.25, 0x1p-24);
     EXPECT_NEAR(place.y, 0.75, 0x1p-24);
     EXPECT_NEAR(view.to_camera(p).z, 2.5, 0x1p-22);
-    // Differences and products of coordinates below 10, in double: ten roundings of 2^-53 of that.
+    // Differences and products of coordinates below 10, in double: ten roundings of 2^-53 relative to 10.
     EXPECT_NEAR(view.depth(p), 2.5, 1e-14);
   }
 }

@@ -1,4 +1,4 @@
-// Camera rays that kernels make side by side are those of the general code: Sampler, PixelFilter, Camera.
+// Camera rays from kernels in lanes equal those of the general code: Sampler, PixelFilter, Camera.
 #include "integrator/stages/camera_rays.h"
 
 #include "camera_lab.h"
@@ -24,7 +24,7 @@ std::vector<Started> start(const Camera &camera, const IntegratorSettings &setti
   return started;
 }
 
-// Places of a region, in an order that puts several samples into one block; the last block is not full.
+// Pixels of a region, in an order that puts several samples into one block; the last block is not full.
 std::vector<SampleAddress> places() {
   std::vector<SampleAddress> addresses;
   for (uint32_t i = 0; i < 16 * 40 + 5; ++i)
@@ -32,7 +32,7 @@ std::vector<SampleAddress> places() {
   return addresses;
 }
 
-// Every ray must be, bit for bit, what its address means.
+// Every ray must equal, bit for bit, the ray of its address.
 void expect_general(Camera camera, IntegratorSettings settings) {
   camera.x = 70000;
   camera.y = 21;
@@ -101,9 +101,9 @@ TEST(CameraRays, MiddlesOfPixels) {
   expect_general(lancer_test::camera(CameraKind::Perspective, {}), {.kind = IntegratorKind::Classic, .samples = 1});
 }
 
-// The last number of the filter's table is as good as the others.
+// The last entry of the filter's table is used like the others.
 TEST(CameraRays, WholeFilterInLanes) {
-  // The first 2^14 samples of a pixel take every 2^-14 of the filter in both directions, its ends among them.
+  // The first 2^14 samples of a pixel use every 2^-14 of the filter in both directions, including its ends.
   Camera camera = lancer_test::camera(CameraKind::Perspective, {});
   const IntegratorSettings settings{.filter_width = 4.0f};
   const PixelFilter filter(settings.filter, settings.filter_width);

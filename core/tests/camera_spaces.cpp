@@ -1,4 +1,4 @@
-// What nodes ask of a camera: its space, its window and its distance, panoramas' too.
+// Camera functions for nodes: its space, window and distance, including panoramas.
 #include "camera_lab.h"
 #include "nodes_lab.h"
 #include "roundings.h"
@@ -9,10 +9,10 @@
 namespace lancer_test {
 namespace {
 
-// Double roundings of three coordinates of up to 10, and twenty of directions of up to 1.
+// Double roundings of three coordinates up to 10, and twenty of directions up to 1.
 constexpr double kPlace = double_roundings(5, 10.0);
 
-// Moved and turned.
+// Translated and rotated.
 Camera camera(CameraKind kind) {
   Camera result =
       lancer_test::camera(kind, {-0.5 * glm::pi<double>(), 0.5 * glm::pi<double>(), -glm::pi<double>(), glm::pi<double>()});
@@ -23,7 +23,7 @@ Camera camera(CameraKind kind) {
 }
 
 TEST(CameraSpaces, DirectionsAreBlenders) {
-  // To the right, up and forwards in the camera's own frame.
+  // Right, up and forwards in the camera's own frame.
   const glm::dvec3 right(0, 1, 0), up(0, 0, 1), forwards(-1, 0, 0);
   const auto expect_axes = [&](CameraKind kind, const glm::vec3 &x, const glm::vec3 &y, const glm::vec3 &z) {
     const Camera view = camera(kind);
@@ -34,7 +34,7 @@ TEST(CameraSpaces, DirectionsAreBlenders) {
   };
   for (const CameraKind kind : {CameraKind::Perspective, CameraKind::Orthographic})
     expect_axes(kind, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
-  // Panoramas look along x with z up, a mirror ball along -y.
+  // Panoramas face x with z up, a mirror ball faces -y.
   expect_axes(CameraKind::Equirectangular, {0, -1, 0}, {0, 0, 1}, {1, 0, 0});
   expect_axes(CameraKind::MirrorBall, {1, 0, 0}, {0, 0, 1}, {0, -1, 0});
 }
@@ -43,14 +43,14 @@ TEST(CameraSpaces, APanoramasWindowAndDistance) {
   const Camera view = camera(CameraKind::Equirectangular);
   const Ray ray = view.ray({50.0, 70.0}, glm::dvec2(0.0));
   const glm::dvec3 p = ray.o + 2.5 * ray.d;
-  // What doubles round is lost where the place becomes a float.
+  // The conversion to float removes double's rounding error.
   expect_near(view.to_window(p), {0.25f, 0.7f, 0.0f}, 0.0f);
   EXPECT_NEAR(view.depth(p), 2.5, kPlace);
   EXPECT_EQ(camera(CameraKind::Perspective).depth(view.to_world.translation + glm::dvec3(-2.0, 5.0, 1.0)), 2.0);
 }
 
 TEST(CameraSpaces, APanoramasLensStandsByItsFirstAxis) {
-  // Its first axis is as near to forwards as the ray allows, of a mirror ball to the right.
+  // Its first axis is as close to forwards as the ray allows, for a mirror ball to the right.
   for (const auto &[kind, along] :
        {std::pair(CameraKind::Equirectangular, glm::dvec3(-1, 0, 0)), {CameraKind::MirrorBall, glm::dvec3(0, 1, 0)}}) {
     Camera view = camera(kind);
@@ -62,7 +62,7 @@ TEST(CameraSpaces, APanoramasLensStandsByItsFirstAxis) {
     const glm::dvec3 d = sharp.ray(raster, glm::dvec2(0.0)).d;
     const glm::dvec3 first = glm::normalize(along - glm::dot(along, d) * d);
     EXPECT_LT(glm::length(view.ray(raster, {1.0, 0.0}).o - view.to_world.translation - 0.5 * first), kPlace);
-    // The second completes a right-handed frame with the ray; the mirror ball's is the other way around.
+    // The second axis completes a right-handed frame with the ray; the mirror ball's is inverted.
     const glm::dvec3 second = kind == CameraKind::MirrorBall ? glm::cross(first, d) : glm::cross(d, first);
     EXPECT_LT(glm::length(view.ray(raster, {0.0, 1.0}).o - view.to_world.translation - 0.5 * second), kPlace);
   }

@@ -1,4 +1,4 @@
-// What clamping of indirect light takes, and what it leaves.
+// Clamping of indirect light: the removed and the remaining light.
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 namespace lancer_test {
 namespace {
 
-// A wall that shines with 10 behind so many panes of clear glass, or of glass that is none of the film's. paths: that a sample
-// may split into, where there is something to split at.
+// Returns the radiance of a wall with emission 10 behind panes of clear glass, or of glass that is not transparent in the film.
+// paths: limit of a sample's branches at its first surface that can split.
 float seen_through(int panes, float clamp, bool clear, uint32_t paths) {
   Studio studio;
   studio.settings.split_lights = 1;

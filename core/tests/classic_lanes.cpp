@@ -1,5 +1,5 @@
-// The recursive ray tracer shades surfaces side by side, whatever shapes, shadings and materials they have: what else is asked
-// for changes no bit of the picture.
+// CLASSIC shades surfaces in lanes, with all shapes, shadings and materials: other requested outputs change no bit of the
+// picture.
 #include "random_scenes.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 namespace lancer_test {
 namespace {
 
-// Kd, Ks, both, with a mirror, glass or more of the same; sometimes with Ka, its own light or holes.
+// Kd, Ks, both, with a mirror, glass or several of them; sometimes with Ka, emission or holes.
 uint32_t add_some_material(Studio &studio, Random &random) {
   std::vector<lancer_lobe> lobes;
   const uint32_t kind = random() % 8;
@@ -69,7 +69,7 @@ void add_lights(Studio &studio, Random &random) {
   studio.add(sun);
 }
 
-// What the first surface says.
+// Adds the passes of the first surface.
 void add_first_surface(const Studio &studio, std::vector<float> &values) {
   for (const uint32_t pass : {LANCER_PASS_NORMAL, LANCER_PASS_UV})
     for (const float x : studio.read(pass, 3))
@@ -87,7 +87,7 @@ std::vector<float> picture(uint32_t seed, uint32_t passes) {
   studio.settings.seed = seed;
   studio.settings.threads = 2;
   const Ball ball;
-  // Its triangles are halves of quadrilaterals, or of one polygon each.
+  // Its triangles are halves of quadrilaterals, or polygons of their own.
   std::vector<uint32_t> halves(ball.triangles.size() / 3);
   for (uint32_t i = 0; i < halves.size(); ++i)
     halves[i] = i / 2;

@@ -1,4 +1,4 @@
-// Stacks of squares that a picture has cut away altogether, looked at from above.
+// Stacks of squares that an image cuts out completely, seen from above.
 #include "foliage.h"
 
 #include "integrator/sample.h"
@@ -8,7 +8,7 @@
 namespace lancer_test {
 namespace {
 
-// bump: what u does to the material's normal.
+// bump: whether u tilts the material's normal.
 std::shared_ptr<const Scene> stack(Writing writing, uint32_t count, bool bump) {
   Description description;
   add_leaf_picture(description);
@@ -29,7 +29,7 @@ std::shared_ptr<const Scene> stack(Writing writing, uint32_t count, bool bump) {
   material.nodes = nodes.data();
   material.node_count = uint32_t(nodes.size());
   add_material(description, material);
-  // All of a square shows a corner of the picture.
+  // The whole of a square shows a corner of the image.
   Squares squares;
   for (uint32_t i = 0; i < count; ++i)
     squares.add({0.0, 0.0, 3.0f - 4.0f * float(i) / float(count)}, {3.0, 0.0, 0.0}, {0.0, 3.0, 0.0}, 0.2f);

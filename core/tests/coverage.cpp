@@ -1,4 +1,4 @@
-// Pixels that show nothing but the background are not traced: pictures are those of tracing everything, to the bit.
+// Pixels with nothing but background are not traced: pictures equal those of tracing everything, to the bit.
 #include "random_scenes.h"
 #include "render/pass.h"
 
@@ -47,7 +47,7 @@ protected:
     while (lancer_scene_wait(scene_, 50) == LANCER_RUNNING)
       ;
   }
-  // In ranges of a few samples.
+  // Renders in ranges of a few samples.
   Rendered render(uint32_t features) {
     settings.features = features;
     lancer_session session = 0;
@@ -69,7 +69,7 @@ protected:
     lancer_session_destroy(session);
     return rendered;
   }
-  // Returns the share of the camera rays that was traced.
+  // Returns the share of the camera rays that were traced.
   double expect_the_same_traced_or_not() {
     const Rendered few = render(LANCER_FEATURES_SCENE), all = render(LANCER_FEATURES_ALL);
     EXPECT_EQ(few.passes, all.passes);
@@ -156,8 +156,8 @@ TEST_F(Covered, TracesASkyThatVaries) {
   EXPECT_EQ(expect_the_same_traced_or_not(), 1.0);
 }
 
-// Meshes and exact shapes, stretched and turned, some around the camera; lamps; cameras of both kinds with lenses, borders and
-// filters; films that are transparent.
+// Meshes and exact shapes, stretched and rotated, some around the camera; lamps; cameras of both kinds with lenses, borders and
+// filters; transparent films.
 class CoveredByChance : public Covered, public testing::WithParamInterface<uint32_t> {};
 
 TEST_P(CoveredByChance, ShowsTheSame) {
@@ -195,7 +195,7 @@ TEST_P(CoveredByChance, ShowsTheSame) {
   settings.film_transparent = random() % 2;
   settings.refines = random() % 2;
   settings.split_lights = settings.split_paths = 1 + random() % 2;
-  // What fills the view, or crosses the camera's plane, leaves nothing empty.
+  // If something fills the view, or crosses the camera's plane, no pixel is empty.
   EXPECT_GT(expect_the_same_traced_or_not(), 0.0);
 }
 

@@ -1,4 +1,4 @@
-// Layers that rays pass: each place once, in order of distance.
+// Transparent layers along a ray: each place once, in order of distance.
 #include "integrator/stages/crossings.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace lancer {
 namespace {
 
-// A fan of four triangles around vertex 0, and a square beside them whose triangles repeat vertices 1 and 2's places.
+// A fan of four triangles around vertex 0, and a square beside it whose triangles repeat the positions of vertices 1 and 2.
 Geometry fan() {
   Geometry geometry;
   Mesh mesh;
@@ -21,7 +21,7 @@ Geometry fan() {
   return geometry;
 }
 
-// Puts them as a filter does; how many there are.
+// Adds hits like a filter; returns the number of layers.
 uint32_t count(const std::vector<Hit> &hits) {
   const Geometry geometry = fan();
   Crossings layers(geometry);
@@ -43,15 +43,15 @@ TEST(Crossings, AnExactSurfaceIsPassedWhereItIsMet) {
 }
 
 TEST(Crossings, ACommonEdgeIsPassedOnce) {
-  // Half way between vertices 0 and 2: corner 2 of the first triangle, corner 1 of the second.
+  // Halfway between vertices 0 and 2: corner 2 of the first triangle, corner 1 of the second.
   EXPECT_EQ(count({{1.0, 0.0, 0.5, 0, 0}, {1.0, 0.5, 0.0, 0, 1}}), 1u);
-  // The outer edge between vertices 1 and 2, where the weight of corner 0 is what rounding leaves of 0.
+  // The outer edge between vertices 1 and 2, where the weight of corner 0 is the rounding error of 0.
   EXPECT_EQ(count({{1.0, 0.5, 0.5 - 0x1p-54, 0, 0}, {1.0, 0.5, 0.5, 0, 0}}), 1u);
-  // Edges of two triangles that are not the same, the same edge of another instance, and an edge beside an inside.
+  // Different edges of two triangles, the same edge of another instance, and an edge next to an interior.
   EXPECT_EQ(count({{1.0, 0.0, 0.5, 0, 0}, {1.0, 0.0, 0.5, 0, 1}}), 2u);
   EXPECT_EQ(count({{1.0, 0.0, 0.5, 0, 0}, {1.0, 0.5, 0.0, 1, 1}}), 2u);
   EXPECT_EQ(count({{1.0, 0.0, 0.5, 0, 0}, {1.0, 0.5, 0.1, 0, 1}}), 2u);
-  // Two sheets that lie upon each other.
+  // Two coincident sheets.
   EXPECT_EQ(count({{1.0, 0.0, 0.5, 0, 0}, {1.0, 0.0, 0.5, 0, 4}}), 2u);
 }
 

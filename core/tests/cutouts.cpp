@@ -1,4 +1,4 @@
-// Surfaces that a picture cuts out: which are known as such.
+// Detection of surfaces that an image cuts out.
 #include "foliage.h"
 
 #include <gtest/gtest.h>
@@ -23,14 +23,14 @@ TEST(Cutouts, KnownByTheirNodes) {
   EXPECT_FALSE(plain.alpha.clamped);
   const Cutout mixed = cutout_of(Writing::Mixed);
   EXPECT_TRUE(mixed.alpha.known() && mixed.alpha.clamped && mixed.may_end && mixed.ends_with_alpha);
-  // What the nodes say, at a place of a triangle; and more than that.
+  // Alpha from nodes that depend on the place in a triangle only; and on more.
   const Cutout disguised = cutout_of(Writing::Disguised), anywhere = cutout_of(Writing::Unknown);
   EXPECT_TRUE(!disguised.alpha.known() && disguised.painted && disguised.may_end);
   EXPECT_TRUE(!anywhere.alpha.known() && !anywhere.painted && !anywhere.may_end);
 }
 
 TEST(Cutouts, SomethingMayBeLeftWhereAlphaIs0) {
-  // The surface shines, scatters by another weight, or cuts a hole.
+  // The surface emits, scatters by another weight, or is a holdout.
   EXPECT_FALSE(cutout_of(Writing::Plain, 1.0f).may_end);
   EXPECT_FALSE(changed([](Material &material) { material.lobes[0].weight.node = -1; }).may_end);
   EXPECT_FALSE(changed([](Material &material) { material.lobes[0].weight.node = 2; }).ends_with_alpha);

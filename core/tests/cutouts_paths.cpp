@@ -1,4 +1,4 @@
-// Paths go past what a picture has cut away as if they had stopped there, and every pass tells the same of it.
+// Paths skip cut-out layers as if they had stopped there, and every pass agrees.
 #include "foliage_pictures.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace lancer_test {
 namespace {
 
-// Each alone, and all at once.
+// Each feature alone, and all at once.
 const Planting kPlantings[] = {
     {},
     {.lamps = true},
@@ -19,7 +19,7 @@ const Planting kPlantings[] = {
     {.leaf_flags = LANCER_MATERIAL_OPAQUE_SHADOWS, .lamps = true, .holdout = true, .hidden = true, .mirrored = true}};
 
 constexpr uint32_t kCombined = 1u << LANCER_PASS_COMBINED, kEverything = (1u << LANCER_PASS_COUNT) - 1;
-// For denoising paths stop at every layer.
+// With denoising passes, paths stop at every layer.
 constexpr uint32_t kFeatures =
     1u << LANCER_PASS_ALBEDO | 1u << LANCER_PASS_DENOISING_NORMAL | 1u << LANCER_PASS_DENOISING_DEPTH;
 
@@ -32,8 +32,8 @@ IntegratorSettings three_bounces(uint32_t passes) {
   return settings;
 }
 
-// A ray that starts again behind a layer meets the next within roundings of double. They reach a sample's floats as a last
-// digit here and there, 2^-24 of radiances up to 1, in each of some 2^6 operations.
+// A ray restarted behind a layer hits the next within roundings of double. They change the last digit of a sample's floats
+// occasionally, 2^-24 of radiances up to 1, in each of some 2^6 operations.
 constexpr double kLightError = 0x1p-18;
 
 TEST(Cutouts, PathsGoPastWhatIsNotThereAsIfTheyHadStopped) {
@@ -57,7 +57,7 @@ TEST(Cutouts, PathsGoPastWhatIsNotThereAsIfTheyHadStopped) {
   EXPECT_GT(mean_difference(radiance(none), radiance(picture(*stopping, settings))), 0.01);
 }
 
-// Of numbers that each side rounds to float once, made of the same ones but for roundings of double.
+// Compares numbers that each side rounds to float once, computed from inputs equal except for roundings of double.
 void expect_rounded(const glm::vec3 &a, const glm::vec3 &b, float least = 0x1p-24f) {
   for (int axis = 0; axis < 3; ++axis)
     EXPECT_NEAR(a[axis], b[axis], 0x1p-23f * std::max(std::abs(b[axis]), least));
@@ -68,9 +68,9 @@ void expect_the_same_place(const SampleResult &a, const SampleResult &b) {
   EXPECT_EQ(a.material_index, b.material_index);
   expect_rounded(glm::vec3(a.depth), glm::vec3(b.depth));
   expect_rounded(a.position, b.position);
-  // A triangle's are made of its corners', up to 1, by weights that are rounded.
+  // A triangle's UVs are those of its corners, up to 1, times rounded weights.
   expect_rounded(a.uv, b.uv, 1.0f);
-  // Those of exact surfaces follow the place: it is rounded to float, and made a unit vector with three more roundings.
+  // Normals of exact surfaces follow the place: one rounding to float, and three more to normalise.
   for (int axis = 0; axis < 3; ++axis)
     EXPECT_NEAR(a.normal[axis], b.normal[axis], 4 * 0x1p-24f);
 }
@@ -104,7 +104,7 @@ TEST(Cutouts, PassesTellTheSameOfThem) {
           expect_the_same_place(fast.results[i], slow.results[i]);
         }
         expect_the_same_light(fast, slow);
-        // The picture does not depend on what else is asked for.
+        // The picture does not depend on other passes.
         settings.passes = kCombined;
         const Picture alone = picture(*plain, settings);
         EXPECT_EQ(radiance(fast), radiance(alone));
@@ -114,7 +114,7 @@ TEST(Cutouts, PassesTellTheSameOfThem) {
           seen.push_back(radiance(slow));
       }
   }
-  // All of them look different.
+  // All pictures are different.
   for (size_t i = 0; i < seen.size(); ++i)
     EXPECT_EQ(std::count(seen.begin(), seen.end(), seen[i]), 1) << i;
 }
@@ -124,7 +124,7 @@ bool same_bits(const Picture &a, const Picture &b) {
 }
 
 TEST(Cutouts, DenoisersAreToldTheSameOfThem) {
-  // Their nodes say the same, and paths stop at each.
+  // Their nodes have equal values, and paths stop at each.
   for (const Planting &planting : kPlantings) {
     const IntegratorSettings settings = three_bounces(kEverything);
     EXPECT_TRUE(same_bits(picture(*foliage(Writing::Plain, planting), settings),
@@ -140,7 +140,7 @@ TEST(Cutouts, AReplayedSampleIsTheSame) {
       const auto scene = foliage(writing, planting);
       IntegratorSettings settings = three_bounces(kEverything & ~kFeatures);
       EXPECT_TRUE(same_bits(picture(*scene, settings), picture(*scene, settings, true)));
-      // The picture alone, and where somebody wants to hear of the vertices.
+      // The picture alone, and with recorded vertices.
       settings.passes = kCombined;
       EXPECT_EQ(radiance(picture(*scene, settings)), radiance(picture(*scene, settings, true)));
     }

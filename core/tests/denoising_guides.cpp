@@ -1,5 +1,5 @@
-// What denoisers are told: of the first surface that is not mostly a mirror, as Cycles before 5.2 gives it
-// for the same scene; or of all surfaces by how matt they are, as 5.2 does.
+// Guides for denoisers: from the first surface that is not mostly a mirror, as in Cycles before 5.2; or blended over all
+// surfaces by their matt share, as in 5.2.
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ glm::vec3 albedo(const Studio &studio) { return studio.color(LANCER_PASS_ALBEDO)
 glm::vec3 normal(const Studio &studio) { return studio.color(LANCER_PASS_DENOISING_NORMAL); }
 float depth(const Studio &studio) { return studio.number(LANCER_PASS_DENOISING_DEPTH); }
 
-// Rooms are seen from (0, 0, 4) straight down. Small turns of matrices cost a few units of float's last place.
+// Rooms are seen from (0, 0, 4) straight down. Small rotations of matrices cost a few units in the last place of float.
 constexpr float kTurned = 1e-6f;
 
 void look_down(Studio &studio) {
@@ -36,13 +36,13 @@ TEST(DenoisingGuides, OfADiffusePlane) {
     studio.place(LANCER_PLANE, studio.add({colored(LANCER_LAMBERT, kWall)}), turned(behind ? 210.0 : 30.0, 0, 1, 0));
     studio.render();
     expect_near(albedo(studio), kWall);
-    // In the camera's space, whose z points into the picture: the side that it sees, whichever that is.
+    // In camera space, whose z points into the picture: the visible side, whichever it is.
     expect_near(normal(studio), {0.5f, 0.0f, -std::sqrt(0.75f)}, kTurned);
     EXPECT_NEAR(depth(studio), 4.0f, kTurned);
   }
 }
 
-// A mirror of 45 degrees that shows a wall three units to the right.
+// A mirror at 45 degrees that shows a wall three units to the right.
 std::unique_ptr<Studio> mirror_and_wall(const lancer_lobe &mirror, bool blended = false) {
   auto studio = std::make_unique<Studio>();
   look_down(*studio);
@@ -57,9 +57,9 @@ TEST(DenoisingGuides, OfWhatAMirrorShows) {
   for (const lancer_lobe &mirror : {colored(LANCER_MIRROR, kMetal), colored(LANCER_GLOSSY, kMetal, 0.0f)}) {
     const auto studio = mirror_and_wall(mirror);
     expect_near(albedo(*studio), kMetal * kWall, kTurned);
-    // The wall's own, not the mirrored one.
+    // The wall's own normal, not the mirrored one.
     expect_near(normal(*studio), {-1, 0, 0}, kTurned);
-    // To the mirror, and from there with the share of light that comes back from it, 0.6 in the mean.
+    // The distance to the mirror, and from there times the reflected share, 0.6 in the mean.
     EXPECT_NEAR(depth(*studio), 4.0f + 0.6f * 3.0f, 4.0f * kTurned);
   }
 }
@@ -69,13 +69,13 @@ float smooth_step(float x) { return x * x * (3.0f - 2.0f * x); }
 TEST(DenoisingGuides, BlendedOverAMirrorAndWhatItShows) {
   const auto mirror = mirror_and_wall(colored(LANCER_MIRROR, kMetal), true);
   expect_near(albedo(*mirror), kMetal * kWall, kTurned);
-  // By the share of light that comes back from the mirror, 0.6 in the mean.
+  // Weighted by the reflected share, 0.6 in the mean.
   expect_near(normal(*mirror), {-0.6f, 0, 0}, kTurned);
   EXPECT_NEAR(depth(*mirror), 4.0f + 0.6f * 3.0f, 4.0f * kTurned);
-  // At a third of the way to matt.
+  // A third of the transition to matt.
   const float matt = smooth_step(0.05f / 0.15f), here = smooth_step(2.0f * matt);
   const auto metal = mirror_and_wall(colored(LANCER_GLOSSY, kMetal, std::sqrt(0.05f)), true);
-  // What so smooth a metal loses to its own shadows at 45 degrees is below a thousandth; its lobe still ends on the wall.
+  // Self-shadowing of such a smooth metal at 45 degrees is below a thousandth; its lobe still hits the wall.
   expect_near(albedo(*metal), here * matt * kMetal + (1.0f - here) * (1.0f - matt) * kMetal * kWall, 1e-3f);
 }
 
@@ -89,7 +89,7 @@ TEST(DenoisingGuides, BlendedSkyIsFarthest) {
 }
 
 TEST(DenoisingGuides, OfMetalByItsRoughness) {
-  // alpha is the square of the socket: 0.075 is the last that counts as a mirror.
+  // alpha is the square of the socket: 0.075 is the upper end of mirrors.
   for (const float roughness : {std::sqrt(0.0745f), std::sqrt(0.0755f)}) {
     const bool mirror = roughness < std::sqrt(0.075f);
     const auto studio = mirror_and_wall(colored(LANCER_GLOSSY, kMetal, roughness));
@@ -99,13 +99,13 @@ TEST(DenoisingGuides, OfMetalByItsRoughness) {
     }
     EXPECT_NEAR(depth(*studio), 4.0f, kTurned);
     expect_near(normal(*studio), {std::sqrt(0.5f), 0.0f, -std::sqrt(0.5f)}, kTurned);
-    // What so smooth a metal loses to its own shadows at 45 degrees is below a thousandth.
+    // Self-shadowing of such a smooth metal at 45 degrees is below a thousandth.
     expect_near(albedo(*studio), kMetal, 1e-3f);
   }
 }
 
 TEST(DenoisingGuides, OfAMirrorAndPaint) {
-  // Three quarters of mirror are the limit.
+  // The limit is a mirror share of three quarters.
   for (const float share : {0.76f, 0.74f}) {
     Studio studio;
     look_down(studio);
@@ -129,7 +129,7 @@ TEST(DenoisingGuides, OfTheSky) {
   expect_near(albedo(empty), kSky);
   EXPECT_EQ(normal(empty), glm::vec3(0.0f));
   EXPECT_EQ(depth(empty), 0.0f);
-  // In a mirror the way there counts twice: as the features' share, and in the light that arrives.
+  // In a mirror the reflected share counts twice: in the guide, and in the light that arrives.
   Studio studio;
   look_down(studio);
   studio.place(LANCER_PLANE, studio.add({colored(LANCER_MIRROR, kMetal)}));

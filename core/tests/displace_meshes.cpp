@@ -1,4 +1,4 @@
-// Displacement where meshes are shared, where it gives what no vertex can have, and where it folds faces up.
+// Displacement of shared meshes, by invalid offsets, and with faces that collapse.
 #include "allocations.h"
 #include "nodes_lab.h"
 
@@ -64,13 +64,13 @@ TEST(DisplaceMeshes, EachInstanceGoesWhereItsOwnMaterialsSay) {
     for (uint32_t i = 0; i < order.size(); ++i)
       for (const glm::vec3 &p : mesh_of(description, i).positions)
         EXPECT_EQ(p.z, height[order[i]]) << "instance " << i;
-    // What moves alike is shared: one mesh each for still, up and down.
+    // Instances with equal displacement share a mesh: one for still, up and down each.
     EXPECT_EQ(description.geometry.meshes.size(), 3u);
   }
 }
 
 TEST(DisplaceMeshes, OnlySlotsThatOccurCount) {
-  // Both have the same material where the mesh has faces: its second slot.
+  // Both have the same material on the mesh's faces: its second slot.
   const uint16_t slots[] = {1, 1};
   lancer_mesh mesh = square();
   mesh.material_slots = slots;
@@ -86,7 +86,7 @@ TEST(DisplaceMeshes, OnlySlotsThatOccurCount) {
 }
 
 TEST(DisplaceMeshes, WhatNoVertexCanHaveIsSaid) {
-  // exp(100) is beyond float; 1e30 beyond what can be traced.
+  // exp(100) overflows float; 1e30 exceeds the largest coordinate.
   Description description;
   add_moving(description, "wild", result_of(0), {node(LANCER_NODE_MATH, LANCER_MATH_EXPONENT, {constant(100.0f)})});
   add_moving(description, "far", constant(0, 0, 1e30f));
@@ -104,7 +104,7 @@ TEST(DisplaceMeshes, WhatNoVertexCanHaveIsSaid) {
 }
 
 TEST(DisplaceMeshes, MessagesNameTheMeshAsGiven) {
-  // What the third instance moves is a copy of the first mesh.
+  // The third instance displaces a copy of the first mesh.
   Description description;
   add_moving(description, "up", constant(0, 0, 2));
   add_moving(description, "far", constant(0, 0, 1e30f));
@@ -125,7 +125,7 @@ TEST(DisplaceMeshes, MessagesNameTheMeshAsGiven) {
 TEST(DisplaceMeshes, AMeshThatDoesNotMoveCostsNoAllocationForEachFace) {
   std::vector<uint64_t> counts;
   for (const uint32_t faces : {2u, 2000u}) {
-    // The two halves again and again, in two materials by turns.
+    // The two halves repeatedly, with two alternating materials.
     std::vector<uint32_t> triangles;
     std::vector<uint16_t> slots;
     for (uint32_t i = 0; i < faces; ++i) {
@@ -148,7 +148,7 @@ TEST(DisplaceMeshes, AMeshThatDoesNotMoveCostsNoAllocationForEachFace) {
 }
 
 TEST(DisplaceMeshes, FoldedFacesAreLeftOutWithAllThatIsTheirs) {
-  // The corner at (1, 0) goes to (0, 0): the first half is a line then.
+  // The corner at (1, 0) moves to (0, 0): the first half collapses to a line.
   const float uvs[] = {0, 0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0}, weights[] = {7, 8}, heights[] = {1, 2, 3, 4};
   const float normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
   const uint16_t slots[] = {0, 1};
@@ -210,7 +210,7 @@ TEST(DisplaceMeshes, CanBeCancelled) {
 }
 
 TEST(DisplaceMeshes, NoNameMeansTheVerticesAsTheyWere) {
-  // Half of x as height, over the surface as it was; whatever attributes the user gives.
+  // Half of x as height, over the undisplaced surface, for any attributes of the user.
   const float zeros[4] = {};
   for (const char *name : {"position", "undisplaced position "}) {
     const lancer_attribute attribute = {name, zeros, LANCER_DOMAIN_VERTEX, 1};
@@ -224,7 +224,7 @@ TEST(DisplaceMeshes, NoNameMeansTheVerticesAsTheyWere) {
     const glm::vec3 n(stage.value(
         {node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_OBJECT),
          node(LANCER_NODE_VECTOR_MATH, LANCER_VECTOR_DOT_PRODUCT, {result_of(0), constant(0.5f, 0, 0)}), flagged(bump, 2)}));
-    // Heights are differences of floats of order 1 over a step of 2^-8: 2^-24 over that, a few of them.
+    // Heights are differences of floats of order 1 over a step of 2^-8: a few times 2^-24 over this.
     expect_near(n, glm::normalize(glm::vec3(-0.5f, 0.0f, 1.0f)), 1e-4f);
   }
 }

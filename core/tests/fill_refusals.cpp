@@ -1,4 +1,4 @@
-// What filling refuses or says, beyond what nodes and pictures have tests of their own for.
+// Errors and messages of fill calls, except those with tests for nodes and images.
 #include "nodes_lab.h"
 
 #include "bsdf/lobe.h"
@@ -13,7 +13,7 @@ using namespace lancer_test;
 
 namespace {
 
-// The sentence of a refusal; empty where there was none.
+// Returns the message of an error; an empty string without one.
 template <class Fill> std::string refusal(Fill &&fill) {
   Description description;
   try {
@@ -78,7 +78,7 @@ TEST(FillRefusals, ProbesWantFiniteDirections) {
   lancer_scene_destroy(scene);
 }
 
-// A material of lobes of one kind, each with a normal of its own, and the messages that commit() has about it.
+// Returns a material of lobes of one kind, each with its own normal; commit's messages about it go to the description.
 Material many(uint32_t count, const lancer_lobe &lobe, Description &description) {
   std::vector<lancer_lobe> lobes(count, lobe);
   for (uint32_t i = 0; i < count; ++i)
@@ -93,7 +93,7 @@ Material many(uint32_t count, const lancer_lobe &lobe, Description &description)
 }
 
 TEST(MaterialRoom, MoreNormalsThanABsdfHoldsAreSaid) {
-  // The shading normal is there in any case.
+  // The shading normal is always there.
   Description few;
   EXPECT_EQ(demand_of(many(kMaxFrames - 1, lobe(LANCER_DIFFUSE, 0.5f), few)).frames, size_t(kMaxFrames));
   EXPECT_EQ(few.messages.text(), "");
@@ -128,8 +128,8 @@ TEST(MaterialRoom, PrincipledCountsItsLayers) {
     // Sheen, coat, metal, glass, plastic and matte; 3: matte, sheen, gloss, two of glass, coat.
     EXPECT_EQ(demand_of(many(1, layered, description)).lobes, 6u);
     EXPECT_EQ(description.messages.text(), "");
-    // Frames: the shading normal; 4: the cloth's, the coat's, the stretched, the matte; 3: the coat's, the stretched, the
-    // glass's.
+    // Frames: the shading normal; 4: those of cloth, coat, anisotropic and matt lobes; 3: those of coat, anisotropic lobes and
+    // glass.
     EXPECT_EQ(demand_of(description.materials[0]).frames, rules == LANCER_RULES_BLENDER_3 ? 4u : 5u);
     const Material twelve = many(12, layered, description);
     EXPECT_EQ(demand_of(twelve).lobes, 72u);

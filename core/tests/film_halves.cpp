@@ -1,4 +1,4 @@
-// Tiles that are the colours of a chessboard, what halves of the samples tell, and the way back to a power of two.
+// Chessboard tiles, the variance from halves of the samples, and the reduction to a power of two.
 #include "render/film.h"
 #include "render/picture_error.h"
 
@@ -40,8 +40,8 @@ TEST(FilmHalves, EveryPixelBelongsToOneTile) {
 }
 
 TEST(FilmLuminances, AreTheMeanAndTheVarianceOfHalves) {
-  // Samples 1, 2, 5, 8 | 9, 7 | 3: the halves (1, 2) and (5, 8) have means 1.5 and 6.5, so the variance of their mean is
-  // (6.5 - 1.5)^2 / 4 = 6.25; that of the next two is (9 - 7)^2 / 4 = 1; and the last one is off the mean 16/3 of all before it
+  // Samples 1, 2, 5, 8 | 9, 7 | 3: the halves (1, 2) and (5, 8) have means 1.5 and 6.5, so the variance of their mean is (6.5 -
+  // 1.5)^2 / 4 = 6.25; that of the next two is (9 - 7)^2 / 4 = 1; and the last one deviates from the mean 16/3 of all before it
   // by 7/3. Their shares are 4/7, 2/7 and 1/7.
   const std::vector<SampleResult> results = grey({1.0f, 2.0f, 5.0f, 8.0f, 9.0f, 7.0f, 3.0f});
   const double parts[] = {16.0 * 6.25, 4.0 * 1.0, 49.0 / 9.0};
@@ -74,7 +74,7 @@ TEST(FilmLuminances, AreUnknownBelowTwoSamples) {
 }
 
 TEST(FilmLuminances, KeepTheScaleOfTheBrightest) {
-  // 1e30 squared is no float.
+  // The square of 1e30 overflows float.
   Film film(2, 1, 2, 1);
   film.add(film.tile(0), 2, grey({1e30f, 0.0f, 3e30f, 0.0f}));
   const LuminanceMap map(film);
@@ -93,7 +93,7 @@ TEST(FilmLuminances, AreThoseOfSamplesWhoseSumIsNoFloat) {
   Film::Luminance luminance[1];
   EXPECT_EQ(film.luminances(film.tile(0), luminance), 64u);
   // Halves of 1e38 and of 3e38. The three weights of luminance, as floats, each round by 6e-8, as do the values and their
-  // difference: of its square that is twice as much.
+  // difference: twice as much for its square.
   EXPECT_NEAR(luminance[0].mean, 2e38, 2e38 * 2 * 6e-8);
   EXPECT_NEAR(luminance[0].variance, 1e76, 1e76 * 2 * 3 * 6e-8);
   const LuminanceMap map(film);
@@ -105,7 +105,7 @@ TEST(FilmDropped, AreThoseThatTheFilmHas) {
   Film::Tile &even = film.tile(0), &odd = film.tile(1);
   EXPECT_EQ(film.dropped().samples, 0u);
   const std::vector<SampleResult> some = grey(std::vector<float>(4 * 6, 1.0f));
-  // Two in sample 3 of a tile and one in its sample 4; two in sample 2 of the other one.
+  // Two in sample 3 of a tile and one in its sample 4; two in sample 2 of the other.
   film.drop(even, {0, 0, 3});
   film.drop(even, {2, 0, 3});
   film.drop(even, {1, 1, 4});
@@ -121,7 +121,7 @@ TEST(FilmDropped, AreThoseThatTheFilmHas) {
   EXPECT_EQ(first(), std::tuple(0u, 1u, 2u));
   film.round_down(even);
   EXPECT_EQ(film.dropped().samples, 4u);
-  // Begins again with the same samples.
+  // Starts again with the same samples.
   film.drop(even, {1, 1, 4});
   film.add(even, 4, some);
   EXPECT_EQ(film.dropped().samples, 5u);
@@ -149,7 +149,7 @@ TEST(FilmHalves, RoundingDownGivesTheBitsOfThePower) {
     power.add(power.tile(0), std::bit_floor(count), std::span(results).first(std::bit_floor(count)));
     EXPECT_EQ(film.tile(0).count, std::bit_floor(count));
     EXPECT_EQ(read(film), read(power));
-    // And goes on as if nothing had happened.
+    // And continues normally.
     const uint32_t rest = 23 - film.tile(0).count;
     film.add(film.tile(0), rest, std::span(results).last(rest));
     power.add(power.tile(0), rest, std::span(results).last(rest));

@@ -1,4 +1,4 @@
-// Sixteen million samples in one pixel: nothing drifts, and two halves are the whole.
+// Sixteen million samples in one pixel: no drift, and two halves equal the whole.
 #include "render/film.h"
 
 #include <algorithm>
@@ -18,16 +18,16 @@ std::vector<float> read(const Film &film, Pass pass) {
   return out;
 }
 
-// Goes on with the same samples again and again.
+// Adds the same samples repeatedly.
 void add_periods(Film &film, const std::vector<SampleResult> &period, uint32_t count) {
   for (uint32_t i = 0; i < count; ++i)
     film.add(film.tile(0), uint32_t(period.size()), period);
 }
 
-// Each sum of these is a whole number of units that double holds, so a film that adds in double has no error to show:
-// 2^24 samples of up to 2^20 in units of 2^-8 take 52 bits, of fractions in units of 2^-24 or 2^-27 up to 51.
+// Each sum of these is a whole number of units that double represents, so a film that adds in double has no error: 2^24 samples
+// of up to 2^20 in units of 2^-8 take 52 bits, fractions in units of 2^-24 or 2^-27 up to 51.
 TEST(FilmLongSums, SixteenMillionSamplesAreExact) {
-  // No power of two: sums of whole periods meet all places of the tree.
+  // Not a power of two: sums of whole periods reach all places of the tree.
   constexpr uint32_t length = 5001, periods = kSamples / length;
   std::mt19937 random(3);
   std::vector<SampleResult> period(length);
@@ -35,7 +35,7 @@ TEST(FilmLongSums, SixteenMillionSamplesAreExact) {
   for (uint32_t i = 0; i < length; ++i) {
     period[i].radiance = glm::vec3(i % 2 ? kSmall : kLarge, 0.1f, std::ldexp(float(random() >> 8), -24));
     period[i].alpha = 1.0f;
-    // One bright sample in each period, and nothing beside it.
+    // One bright sample in each period, and otherwise 0.
     period[i].normal = glm::vec3(i == 77 ? kLarge : 0.0f, i == 78 ? kSmall : 0.0f, 1.0f);
     light += glm::dvec3(period[i].radiance);
     normal += glm::dvec3(period[i].normal);
@@ -51,15 +51,15 @@ TEST(FilmLongSums, SixteenMillionSamplesAreExact) {
   }
 }
 
-// Sums of neighbours, as the film promises them.
+// Sums of neighbours, as documented for the film.
 double tree_sum(const std::vector<float> &values, uint32_t begin, uint32_t size) {
   if (size == 1)
     return double(values[begin % values.size()]);
   return tree_sum(values, begin, size / 2) + tree_sum(values, begin + size / 2, size / 2);
 }
 
-// The second half takes away what the first has given, in another order: what is left are the roundings alone, every one of
-// them. A film that adds in any other order, or rounds in between, leaves others.
+// The second half subtracts the first in another order: only the roundings remain, all of them. A film that adds in any other
+// order, or rounds in between, has other roundings.
 TEST(FilmLongSums, TwoHalvesGiveTheBitsOfTheWhole) {
   std::mt19937 random(4);
   std::uniform_real_distribution<float> exponent(-20.0f, 20.0f);
@@ -77,7 +77,7 @@ TEST(FilmLongSums, TwoHalvesGiveTheBitsOfTheWhole) {
   Film film(1, 1, 1, bit(Pass::Combined) | bit(Pass::Normal));
   add_periods(film, results(given), kSamples / kPeriod / 2);
   add_periods(film, results(taken), kSamples / kPeriod / 2);
-  // Each half by itself, as another machine would send it.
+  // Each half by itself, as sent by another machine.
   const double halves = tree_sum(given, 0, kSamples / 2) + tree_sum(taken, 0, kSamples / 2);
   ASSERT_NE(halves, 0.0);
   EXPECT_EQ(read(film, Pass::Normal)[0], float(halves / kSamples));

@@ -1,4 +1,4 @@
-// Memory and the film: what it will need, and what it shows when there is no more.
+// Memory of the film: its estimate, and the picture when memory runs out.
 #include "allocations.h"
 
 #include "render/film.h"
@@ -13,7 +13,7 @@ using lancer_test::Allocations;
 
 constexpr uint32_t kSamples = 7, kPixels = 2;
 
-// Sample s is 2^s everywhere: each count has another mean, and every sum is exact.
+// Sample s is 2^s everywhere: each count has a different mean, and every sum is exact.
 std::vector<SampleResult> powers() {
   std::vector<SampleResult> results;
   for (uint32_t s = 0; s < kSamples; ++s) {
@@ -58,7 +58,7 @@ TEST(FilmMemory, WithoutMemoryTheFilmShowsTheWholeSamplesThatItHas) {
       const uint32_t count = film.tile(0).count;
       EXPECT_EQ(count == kSamples, !failed);
       expect_shows_what_it_counts(film);
-      // With memory again it goes on as if nothing had been.
+      // With memory again it continues normally.
       if (failed)
         add(film, results, count, kSamples - count);
       EXPECT_EQ(film.tile(0).count, kSamples);

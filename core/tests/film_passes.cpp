@@ -1,4 +1,4 @@
-// The film's passes: what is kept, what it costs, and how sums become pictures.
+// The film's passes: storage, cost, and conversion of sums to pictures.
 #include "render/film.h"
 
 #include <cmath>
@@ -10,14 +10,14 @@
 namespace lancer {
 namespace {
 
-// The error is of the film as a whole, not of its samples.
+// The error is of the film as a whole, not of samples.
 constexpr uint32_t kAll = ((1u << kPassCount) - 1) & ~bit(Pass::Error);
-// What every film keeps of a pixel: the sums of the picture, the difference of its halves, and the brightest sample.
+// Data that every film keeps of a pixel: the sums of the picture, the difference of its halves, and the brightest sample.
 constexpr double kPlain = 4 * sizeof(double) + 2 * sizeof(float);
 
 Pass pass(uint32_t number) { return static_cast<Pass>(number); }
 
-// Samples whose radiance is the sum of their parts, as an integrator gives them; every number differs from every other.
+// Samples whose radiance is the sum of their parts, as from an integrator; all numbers differ.
 std::vector<SampleResult> synthetic(uint32_t count) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> number(0.1f, 1.0f);
@@ -72,7 +72,7 @@ TEST(FilmPasses, LightOverADarkColourIsAtTheEdgeOfFloat) {
   const std::vector<float> light = read(*film_of(results), pass(LANCER_PASS_DIFFUSE_DIRECT));
   EXPECT_EQ(light[0], std::numeric_limits<float>::max());
   EXPECT_EQ(light[1], 2.0f);
-  // What has no colour gets the mean of what has.
+  // Without colour: the mean of the others.
   EXPECT_EQ(light[2], std::numeric_limits<float>::max());
 }
 
@@ -94,7 +94,7 @@ TEST(FilmPasses, EveryPassShowsItsOwnNumbers) {
   const auto results = synthetic(8);
   const auto film = film_of(results);
   const auto expect_mean = [&](Pass which, const std::function<float(const SampleResult &)> &last) {
-    // A sum of 8 floats and a mean in double are exact to its last digit; then it is rounded to float.
+    // The sum of 8 floats and the mean in double are exact to the last digit; then one rounding to float.
     EXPECT_EQ(read(*film, which).back(), float(mean_of(results, last))) << uint32_t(which);
   };
   expect_mean(Pass::Combined, [](const auto &r) { return r.alpha; });
@@ -135,7 +135,7 @@ TEST(FilmPasses, AreKeptOnlyWhereAskedFor) {
   const uint32_t direct = 1u << LANCER_PASS_GLOSSY_DIRECT;
   const Film film(1, 1, 1, direct);
   EXPECT_TRUE(film.has(Pass::Combined));
-  // The divisor is there, but nobody asked to read it.
+  // The divisor is stored, but reading it was not requested.
   EXPECT_FALSE(film.has(pass(LANCER_PASS_GLOSSY_COLOR)));
   EXPECT_EQ(Film::bytes_needed(1, 1, 0, 1), kPlain);
   EXPECT_EQ(Film::bytes_needed(1, 1, direct, 1), kPlain + 6 * sizeof(double));
@@ -154,7 +154,7 @@ TEST(FilmPasses, AChannelWithoutColorIsGrey) {
 TEST(FilmPasses, MistIsWhatIsNotClear) {
   SampleResult clear, sky, bright;
   clear.mist = 0.75f;
-  // Light paths that split may count a little more than all.
+  // Split paths may slightly exceed a weight of 1.
   bright.mist = 1.5f;
   EXPECT_EQ(read(*film_of({clear, sky}), Pass::Mist)[0], 0.625f);
   EXPECT_EQ(read(*film_of({sky}), Pass::Mist)[0], 1.0f);

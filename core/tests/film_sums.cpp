@@ -1,4 +1,4 @@
-// The film's sums: one fixed tree over sample numbers, whatever the split; and it is the tree that the header promises.
+// The film's sums: one fixed tree over sample numbers for any split, as documented in the header.
 #include "render/film.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace {
 
 std::vector<SampleResult> random_results(uint32_t samples, uint32_t pixels) {
   std::mt19937 random(7);
-  // Values over many magnitudes: any other order of sums would show in the last digits.
+  // Values over many magnitudes: any other order of sums would change the last digits.
   std::uniform_real_distribution<float> exponent(-20.0f, 20.0f);
   std::vector<SampleResult> results(size_t(samples) * pixels);
   for (SampleResult &result : results) {

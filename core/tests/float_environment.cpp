@@ -1,4 +1,4 @@
-// A process that rounds otherwise and has no subnormals, as others in it may ask of the processor, gets the same pictures.
+// Another rounding mode or flushed subnormals, set by other code in the process, do not change pictures.
 #include "bits_stand.h"
 
 #include <cfenv>
@@ -43,7 +43,7 @@ uint64_t picture(bool otherwise) {
     const OtherFloats floats;
     stand.commit();
     stand.render();
-    // The caller keeps its own.
+    // The caller's mode is kept.
     EXPECT_EQ(std::fegetround(), FE_UPWARD);
   } else {
     stand.commit();

@@ -1,4 +1,4 @@
-// Squares that a picture cuts out, panes, and things that let nothing pass, placed by chance.
+// Squares that an image cuts out, panes, and opaque objects, at random places.
 #pragma once
 
 #include "nodes_lab.h"
@@ -12,14 +12,14 @@
 
 namespace lancer_test {
 
-// How the leaves' nodes are written. Plain: as an alpha. Mixed: as the factor of a mix. Disguised: with a product by 1 in
-// between, so that only the nodes know what they say. Unknown: with what looks at more than the place within a triangle.
+// Forms of the leaves' nodes. Plain: as an alpha. Mixed: as the factor of a mix. Disguised: with a product by 1 in between, so
+// that only evaluation reveals the value. Unknown: with nodes that depend on more than the place in a triangle.
 enum class Writing { Plain, Mixed, Disguised, Unknown };
 
-// Sides of the leaves' picture.
+// Side of the leaves' image.
 inline constexpr uint32_t kLeafSide = 16;
 
-// Clear outside of a disk, solid within, and a rim that is neither.
+// Transparent outside a disk, opaque inside, and a rim in between.
 inline void add_leaf_picture(Description &description) {
   std::vector<uint8_t> texels;
   for (uint32_t y = 0; y < kLeafSide; ++y)
@@ -48,7 +48,7 @@ inline std::vector<lancer_node> leaf_nodes(Writing writing) {
                {constant(1.0f), result_of(writing == Writing::Mixed ? 4 : 3), constant(0.0f)})};
 }
 
-// Materials 0: leaf, 1: half a pane, 2: solid. shines: what the leaf emits beside its alpha; flags: its.
+// Materials 0: leaf, 1: half a pane, 2: solid. shines: emission of the leaf beside its alpha; flags: of the leaf.
 inline void add_foliage_materials(Description &description, Writing writing, float shines = 0.0f, uint32_t flags = 0) {
   const std::vector<lancer_node> nodes = leaf_nodes(writing);
   lancer_lobe matt = lobe(LANCER_LAMBERT, 1.0f);
@@ -76,14 +76,14 @@ inline void add_foliage_materials(Description &description, Writing writing, flo
   }
 }
 
-// What else there is to it.
+// Options of the scene.
 struct Planting {
   AcceleratorKind accelerator = AcceleratorKind::Bvh;
   uint32_t leaf_flags = 0; // of the leaves' material
-  bool lamps = false;      // three of them, among the leaves and above
-  bool holdout = false;    // the first of the two groups of leaves is cut out of the picture
+  bool lamps = false;      // three, among the leaves and above
+  bool holdout = false;    // the first of the two groups of leaves is a holdout
   bool hidden = false;     // the first group casts no shadow, the second and the floor are hidden from the camera
-  bool mirrored = false;   // the second group is
+  bool mirrored = false;   // the second group is mirrored
 };
 
 inline std::shared_ptr<const Scene> foliage(Writing writing, const Planting &planting = {}) {
@@ -92,7 +92,7 @@ inline std::shared_ptr<const Scene> foliage(Writing writing, const Planting &pla
   add_foliage_materials(description, writing, 0.0f, planting.leaf_flags);
   std::mt19937 random(5);
   const auto number = [&](double low, double high) { return low + (high - low) * double(random() >> 8) * 0x1p-24; };
-  // Leaves, most of them level so that many lie behind each other; every seventh is solid.
+  // Leaves, mostly horizontal so that many lie behind each other; every seventh is solid.
   Squares leaves;
   for (uint32_t i = 0; i < 300; ++i) {
     const glm::dvec3 middle(number(-2, 2), number(-2, 2), number(-1, 3));
@@ -101,7 +101,7 @@ inline std::shared_ptr<const Scene> foliage(Writing writing, const Planting &pla
     leaves.add(middle, across, along, 1.0f, i % 7 == 0 ? 1 : 0);
   }
   add_mesh(description, leaves.mesh());
-  // The leaves twice, panes of all kinds, a ball that is cut out, and a floor.
+  // The leaves twice, panes of all kinds, a ball as holdout, and a floor.
   struct Placed {
     uint32_t kind, first_slot, slot_count;
     double x, y, z, scale;
@@ -140,7 +140,7 @@ inline std::shared_ptr<const Scene> foliage(Writing writing, const Planting &pla
   return commit(std::move(description), planting.accelerator, surface_emission, {});
 }
 
-// Straight down on all of it.
+// Looks straight down at everything.
 inline Camera camera_above(const Scene &scene, uint32_t pixels) {
   Camera camera;
   camera.kind = CameraKind::Orthographic;

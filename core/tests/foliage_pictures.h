@@ -12,7 +12,7 @@ struct Picture {
   RayCounts counts;
 };
 
-// One sample of each of 40 x 40 pixels. one_by_one: each of them replayed by itself.
+// One sample of each of 40 x 40 pixels. one_by_one: replay each by itself.
 inline Picture picture(const Scene &scene, const IntegratorSettings &settings, bool one_by_one = false) {
   constexpr uint32_t kPixels = 40;
   const Camera camera = camera_above(scene, kPixels);
@@ -32,7 +32,7 @@ inline Picture picture(const Scene &scene, const IntegratorSettings &settings, b
   return result;
 }
 
-// What each sample says.
+// Returns a vector of each sample.
 template <class Ask> std::vector<glm::vec3> each(const Picture &picture, Ask &&ask) {
   std::vector<glm::vec3> all;
   for (const SampleResult &result : picture.results)
@@ -44,7 +44,7 @@ inline std::vector<glm::vec3> radiance(const Picture &picture) {
   return each(picture, [](const SampleResult &result) { return result.radiance; });
 }
 
-// The mean over all pixels and numbers.
+// Returns the mean over all pixels and components.
 inline double mean_difference(const std::vector<glm::vec3> &a, const std::vector<glm::vec3> &b) {
   double sum = 0.0;
   for (size_t i = 0; i < a.size(); ++i)

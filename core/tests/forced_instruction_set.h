@@ -1,4 +1,4 @@
-// The instruction set that the environment asks for, while it lives.
+// Sets the instruction set in the environment during its lifetime.
 #pragma once
 
 #include <cstdlib>
@@ -19,7 +19,7 @@ public:
 
 private:
   static constexpr const char *kName = "LANCER_ISA";
-  // Empty is as good as none.
+  // An empty value means none.
   static void set(const char *value) {
 #if defined(_WIN32)
     _putenv_s(kName, value);

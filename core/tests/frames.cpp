@@ -1,4 +1,4 @@
-// The local frame of a normal is orthonormal for every direction, and next to its poles.
+// The local frame of a normal is orthonormal for every direction, also next to its poles.
 #include "bsdf/frame.h"
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace lancer {
 namespace {
 
-// Against the same frame in double, of a normal that is unit in double.
+// Errors against the same frame in double, of a normal that is unit in double.
 struct Worst {
   double error = 0.0, angle = 0.0;
 
@@ -28,10 +28,10 @@ struct Worst {
   }
 };
 
-// x x / (1 + z) is at most 1, and four operations round it by 2^-24 of itself each; the sum with 1 by half of that. n itself is
-// off by 2^-25 in x, which counts twice, and in z.
+// x x / (1 + z) is at most 1, and four operations each round it by a relative 2^-24; the sum with 1 by half of this. n itself
+// has an error of 2^-25 in x, which counts twice, and in z.
 constexpr double kBound = 6.0 * 0x1p-24;
-// Each of both axes is off by so much in three components.
+// Both axes have this error in three components each.
 constexpr double kAngle = 2.0 * 1.7320509 * kBound;
 
 TEST(Frames, OrthonormalForFourMillionDirections) {

@@ -1,4 +1,4 @@
-// Pictures looked at side by side, of the environment and on surfaces: lane by lane the bits of one place.
+// Image lookups in lanes, of the environment and on surfaces: each lane has the bits of a single lookup.
 #include "lights/environment.h"
 #include "lights/light_kernel.h"
 #include "nodes/image.h"
@@ -12,19 +12,19 @@ namespace {
 
 using Random = std::mt19937;
 
-// How texels are stored.
+// Storage of texels.
 struct Form {
   uint32_t kind, channels, transfer, alpha;
 };
 constexpr uint32_t kKinds[] = {LANCER_TEXEL_U8, LANCER_TEXEL_U16, LANCER_TEXEL_FLOAT}, kChannels[] = {1, 3, 4};
 
-// Floats also brighter than 1 and negative, unless all shall lie in 0 ... 1.
+// Floats are also above 1 and negative, unless unit limits them to 0 ... 1.
 Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix, const Form &form, bool unit = false) {
   std::vector<uint8_t> bytes(size_t(width) * height * form.channels);
   std::vector<uint16_t> words(bytes.size());
   std::vector<float> floats(bytes.size());
   for (size_t i = 0; i < bytes.size(); ++i) {
-    // White often, where sums of shares round to more than 1.
+    // White often, where sums of weights round to more than 1.
     words[i] = uint16_t(random() % 3 ? random() : 65535);
     bytes[i] = uint8_t(words[i]);
     floats[i] = float(words[i]) / (unit || random() % 5 ? 65535.0f : -100.0f);
@@ -41,12 +41,12 @@ Image random_image(Random &random, uint32_t width, uint32_t height, bool matrix,
   return std::move(description.images[0]);
 }
 
-// Somewhere, on and beside texels' middles and borders, and at what is no place.
+// Compares lookups at random coordinates, at and beside texel centres and borders, and at coordinates that are not finite.
 void expect_looks(Random &random, const std::vector<Image> &images, uint32_t flags) {
   const Image &image = images[0];
   std::uniform_real_distribution<float> somewhere(-3.0f, 4.0f);
   const float special[] = {0.5f / float(image.height), 1.0f, 0.0f, -1e-9f, 1e30f, NAN, INFINITY, 1.0f - 0x1p-24f};
-  // Places of a picture as positions of the world.
+  // Image coordinates as world positions.
   Program program;
   Node place, look;
   place.kind = LANCER_NODE_COORDINATE;
@@ -81,7 +81,7 @@ void expect_looks(Random &random, const std::vector<Image> &images, uint32_t fla
 
 TEST(ImageLanes, LookUpsAreThoseOfOnePlace) {
   Random random(11);
-  // Every way to store a picture, and every way to look at it.
+  // Every storage, and every lookup mode.
   for (const uint32_t kind : kKinds)
     for (const uint32_t channels : kChannels)
       for (const uint32_t transfer : {LANCER_TRANSFER_LINEAR, LANCER_TRANSFER_SRGB})
@@ -100,7 +100,7 @@ TEST(ImageLanes, LookUpsAreThoseOfOnePlace) {
           }
 }
 
-// A picture of all directions, turned or not, times a colour or not.
+// An environment image, rotated or not, times a colour or not.
 struct Sky {
   World world;
   std::vector<Image> images;

@@ -1,4 +1,4 @@
-// Pictures: texels, neighbours, edges, curves and alpha, against what is stored.
+// Images: texels, neighbours, edges, curves and alpha, against the stored values.
 #include "nodes_lab.h"
 
 #include "nodes/image.h"
@@ -42,15 +42,15 @@ TEST(ImagesLookup, TexelsStandInTheirMiddle) {
         EXPECT_EQ(grey(image, u, v, extension, Interpolation::Closest), kGreys[4 * y + x]);
         EXPECT_EQ(grey(image, u, v, extension, Interpolation::Linear), kGreys[4 * y + x]);
       }
-  // Half way between two, and between four.
+  // Halfway between two texels, and between four.
   EXPECT_EQ(grey(image, 0.25f, 0.25f, Extension::Repeat, Interpolation::Linear), 1.5f);
   EXPECT_EQ(grey(image, 0.25f, 0.5f, Extension::Repeat, Interpolation::Linear), 12.75f);
-  // The closest changes at the border of two texels.
+  // The closest texel changes at the border of two texels.
   EXPECT_EQ(grey(image, 0.2499f, 0.25f, Extension::Repeat, Interpolation::Closest), 1.0f);
   EXPECT_EQ(grey(image, 0.25f, 0.25f, Extension::Repeat, Interpolation::Closest), 2.0f);
 }
 
-// What an endless row of one texel each shows at index i.
+// Returns the texel at index i of an infinite row.
 float texel_of(int i, Extension extension) {
   const int row[] = {1, 2, 4, 8};
   if (extension == Extension::Clip && (i < 0 || i > 3))
@@ -65,17 +65,17 @@ TEST(ImagesLookup, EveryExtensionAndInterpolationBeyondTheEdges) {
   const Image image = picture<float>(4, 1, 1, {1, 2, 4, 8});
   for (const Extension extension : {Extension::Repeat, Extension::Extend, Extension::Clip, Extension::Mirror})
     for (int step = -75; step < 115; ++step) {
-      // Off the grid, so that rounding cannot choose another texel.
+      // Off the grid, so that rounding cannot select another texel.
       const float x = float(step) * 0.1f + 0.03f, u = x / 4.0f;
       SCOPED_TRACE(testing::Message() << "extension " << uint32_t(extension) << " at " << x);
       EXPECT_EQ(grey(image, u, 0.5f, extension, Interpolation::Closest), texel_of(int(std::floor(x)), extension));
       const double place = double(x) - 0.5, i = std::floor(place), t = place - i;
       const auto at = [&](int k) { return double(texel_of(int(i) + k, extension)); };
-      // u carries a rounding of 2^-24 of up to 3, times 4 texels, times a slope of 8.
+      // u has a rounding of 2^-24 of up to 3, times 4 texels, times a slope of 8.
       EXPECT_NEAR(grey(image, u, 0.5f, extension, Interpolation::Linear), (1.0 - t) * at(0) + t * at(1), 2e-5);
       const double w[] = {(1 - t) * (1 - t) * (1 - t) / 6, (4 - 6 * t * t + 3 * t * t * t) / 6,
                           (1 + 3 * t + 3 * t * t - 3 * t * t * t) / 6, t * t * t / 6};
-      // Two of the four rows have weight 1/6, the one of the picture 2/3; only Clip leaves them black.
+      // Two of the four rows have weight 1/6, the one of the image 2/3; only Clip makes them black.
       const double share = extension == Extension::Clip ? 2.0 / 3.0 : 1.0;
       EXPECT_NEAR(grey(image, u, 0.5f, extension, Interpolation::Cubic),
                   share * (w[0] * at(-1) + w[1] * at(0) + w[2] * at(1) + w[3] * at(2)), 2e-5);
@@ -92,14 +92,14 @@ TEST(ImagesLookup, NoNumberIsBlack) {
     }
 }
 
-// The texel beside it is the same one again, and the one beyond that.
+// A single texel is its own neighbour, and the next one.
 TEST(ImagesLookup, OneTexelIsSeenEverywhere) {
   const Image image = picture<float>(1, 1, 1, {0.75f});
   for (const Extension extension : {Extension::Repeat, Extension::Extend, Extension::Mirror})
     for (const Interpolation interpolation : {Interpolation::Closest, Interpolation::Linear, Interpolation::Cubic})
-      // A float below 0 whose distance from the whole number below it rounds to 1.
+      // A float below 0 whose distance from the whole number below rounds to 1.
       for (const float u : {-1e-9f, 0.0f, 0.25f, 0.5f, 0.75f, 1.0f, 1.25f, 1.75f, 2.0f, -0.3f})
-        // Weights of the spline are rounded four times, along two axes.
+        // Weights of the spline round four times, along two axes.
         EXPECT_NEAR(grey(image, u, u, extension, interpolation), 0.75f, 8.0f * 0x1p-24f) << u;
 }
 
@@ -112,7 +112,7 @@ TEST(ImagesLookup, ChannelsAndDepths) {
   EXPECT_EQ(look(picture<uint8_t>(1, 1, 1, {51})).w, 1.0f);
   EXPECT_EQ(lookup(picture<float>(1, 1, 4, {3, -2, 1, 1}), uv, Extension::Repeat, Interpolation::Linear, false),
             glm::vec4(3, -2, 1, 1));
-  // A picture of three channels is clear where it is clipped, one of a single channel black and solid.
+  // Outside a clipped image: transparent with three channels, black and opaque with a single channel.
   EXPECT_EQ(lookup(picture<uint8_t>(1, 1, 3, {9, 9, 9}), glm::vec2(2.0f), Extension::Clip, Interpolation::Linear, false),
             glm::vec4(0.0f));
   EXPECT_EQ(lookup(picture<uint8_t>(1, 1, 1, {9}), glm::vec2(2.0f), Extension::Clip, Interpolation::Linear, false),
@@ -123,11 +123,11 @@ TEST(ImagesLookup, CurveIsDecodedAfterInterpolation) {
   const Image image = picture<uint8_t>(2, 1, 3, {0, 50, 100, 255, 150, 10}, LANCER_TRANSFER_SRGB);
   const glm::vec4 middle = lookup(image, {0.5f, 0.5f}, Extension::Extend, Interpolation::Linear, false);
   expect_near(glm::vec3(middle), glm::vec3(glm::dvec3(srgb(0.5), srgb(100.0 / 255.0), srgb(55.0 / 255.0))), kCurve);
-  // Every byte by itself: the table is the curve.
+  // Every byte: the table equals the curve.
   for (int i = 0; i < 256; ++i) {
     const Image one = picture<uint8_t>(1, 1, 3, {uint8_t(i), 0, 255}, LANCER_TRANSFER_SRGB);
     const glm::vec4 closest = lookup(one, glm::vec2(0.5f), Extension::Repeat, Interpolation::Closest, false);
-    // Between bytes the curve is lines, 7.4e-8 from it at most, which the curve's own rounding near white exceeds.
+    // Between bytes the curve is linear segments, at most 7.4e-8 from it, which the curve's own rounding near white exceeds.
     const glm::vec4 linear = lookup(one, glm::vec2(0.5f), Extension::Repeat, Interpolation::Linear, false);
     EXPECT_NEAR(closest.x, linear.x, kCurve);
     EXPECT_NEAR(closest.x, srgb(i / 255.0), kCurve);
@@ -141,7 +141,7 @@ TEST(ImagesLookup, CurveComesAfterInterpolationInEveryDepth) {
       EXPECT_NEAR(grey(image, 0.5f, 0.5f, Extension::Extend, interpolation), srgb(std::max(encoded, 0.0)),
                   kCurve * std::max(1.0, srgb(encoded)));
   };
-  // Half way between two texels both ways to interpolate take their mean, also below 0, where the curve ends, and above 1.
+  // Halfway between two texels both interpolations return their mean, also below 0, where the curve ends, and above 1.
   looks_like(picture<uint16_t>(2, 1, 1, {13107, 39321}, LANCER_TRANSFER_SRGB), 0.4);
   looks_like(picture<float>(2, 1, 1, {0.1f, 0.7f}, LANCER_TRANSFER_SRGB), 0.4);
   looks_like(picture<float>(2, 1, 1, {-0.5f, 1.0f}, LANCER_TRANSFER_SRGB), 0.25);
@@ -153,7 +153,7 @@ TEST(ImagesLookup, CurveIsFarthestFromItsLinesWhereItsPartsMeet) {
   for (const float c : {0.04045f, std::nextafter(0.04045f, 0.0f), 0.0404f, 0.0405f}) {
     const float got =
         grey(picture<float>(1, 1, 1, {c}, LANCER_TRANSFER_SRGB), 0.5f, 0.5f, Extension::Repeat, Interpolation::Linear);
-    // The lines' distance there, and of numbers near 0.0033 the roundings of the curve and of three steps along a line.
+    // The deviation of the segments, and for numbers near 0.0033 the roundings of the curve and of three steps along a segment.
     EXPECT_NEAR(got, srgb(double(c)), 7.4e-8 + 0.0033 * (kCurve + 3 * 0x1p-24)) << c;
   }
 }
@@ -164,9 +164,9 @@ TEST(ImagesLookup, AlphaModes) {
     return lookup(image, glm::vec2(0.5f), Extension::Repeat, Interpolation::Linear, straight);
   };
   const auto color = [](double r, double g, double b) { return glm::vec3(glm::dvec3(r, g, b) / 255.0); };
-  // Straight: multiplied in bytes, cut off: 200 128 / 255 = 100.39.
+  // Straight: multiplied in bytes, truncated: 200 128 / 255 = 100.39.
   expect_near(glm::vec3(look(LANCER_ALPHA_STRAIGHT, LANCER_TRANSFER_LINEAR, false)), color(100, 50, 25));
-  // Divided again: what rounding has left.
+  // Divided again, including the rounding.
   expect_near(glm::vec3(look(LANCER_ALPHA_STRAIGHT, LANCER_TRANSFER_LINEAR, true)), color(100, 50, 25) * float(255.0 / 128.0));
   expect_near(glm::vec3(look(LANCER_ALPHA_ASSOCIATED, LANCER_TRANSFER_LINEAR, false)), color(200, 100, 50));
   expect_near(glm::vec3(look(LANCER_ALPHA_ASSOCIATED, LANCER_TRANSFER_LINEAR, true)),
@@ -177,11 +177,11 @@ TEST(ImagesLookup, AlphaModes) {
   for (const uint32_t mode : {LANCER_ALPHA_STRAIGHT, LANCER_ALPHA_ASSOCIATED, LANCER_ALPHA_CHANNEL_PACKED})
     EXPECT_EQ(look(mode, LANCER_TRANSFER_LINEAR, false).w, 128.0f / 255.0f);
   EXPECT_EQ(look(LANCER_ALPHA_NONE, LANCER_TRANSFER_LINEAR, false).w, 1.0f);
-  // The curve comes after alpha, and leaves alpha as it is.
+  // The curve is applied after alpha, and does not change alpha.
   const glm::vec4 encoded = look(LANCER_ALPHA_STRAIGHT, LANCER_TRANSFER_SRGB, true);
   EXPECT_NEAR(encoded.x, srgb(100.0 / 128.0), kCurve);
   EXPECT_EQ(encoded.w, 128.0f / 255.0f);
-  // Nothing is divided by an alpha of 0.
+  // An alpha of 0 divides nothing.
   const Image clear = picture<float>(1, 1, 4, {0.5f, 0.5f, 0.5f, 0.0f}, LANCER_TRANSFER_LINEAR, LANCER_ALPHA_ASSOCIATED);
   EXPECT_EQ(lookup(clear, glm::vec2(0.5f), Extension::Repeat, Interpolation::Linear, true), glm::vec4(0.5f, 0.5f, 0.5f, 0.0f));
 }
@@ -224,7 +224,7 @@ TEST(ImagesLookup, RefusesWhatCannotBeRead) {
   EXPECT_FALSE(refused([](lancer_image &) {}));
   EXPECT_TRUE(refused([](lancer_image &image) { image.width = 0; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.height = 1u << 31; }));
-  // Kernels count on it.
+  // Kernels depend on it.
   EXPECT_TRUE(refused([](lancer_image &image) { image.width = (1u << 20) + 1; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.channels = 2; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.kind = 3; }));
@@ -232,7 +232,7 @@ TEST(ImagesLookup, RefusesWhatCannotBeRead) {
   EXPECT_TRUE(refused([](lancer_image &image) { image.alpha = 4; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.texels = nullptr; }));
   EXPECT_TRUE(refused([](lancer_image &image) { image.matrix[4] = NAN; }));
-  // 2^40 texels of 16 bytes: no machine has them, and the message says how many.
+  // 2^40 texels of 16 bytes: no machine has the memory, and the message states the number.
   lancer_image huge = good;
   huge.width = huge.height = 1u << 20;
   Description description;

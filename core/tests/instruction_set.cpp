@@ -1,4 +1,4 @@
-// Which copy of the kernels is taken: the widest that the processor runs, whatever library the compiler brings.
+// Choice of the kernels' copy: the widest that the processor supports, with any compiler's library.
 #include "simd/kernel_choice.h"
 
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 
 using lancer::InstructionSet;
 
-// What Linux says of the first processor.
+// Returns Linux's flags of the first processor.
 std::set<std::string> processor_flags() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
@@ -36,7 +36,7 @@ bool all_of(const std::set<std::string> &flags, std::initializer_list<const char
   return true;
 }
 
-// The instruction set that LANCER_ISA leads to, an empty one meaning none.
+// Returns the instruction set selected by LANCER_ISA; an empty limit means none.
 InstructionSet asked_for(const std::string &limit) {
   const char *before = std::getenv("LANCER_ISA");
   const std::string kept = before ? before : "";
@@ -52,7 +52,7 @@ InstructionSet asked_for(const std::string &limit) {
   return chosen;
 }
 
-// Linux leaves out the flags of registers that it does not keep for threads.
+// Linux omits the flags of registers that it does not save for threads.
 TEST(InstructionSets, TheWidestThatTheProcessorRunsIsTaken) {
   const std::set<std::string> flags = processor_flags();
   ASSERT_FALSE(flags.empty());

@@ -1,4 +1,4 @@
-// What is a hole in the picture, and where its film stays transparent: closed forms of small scenes.
+// Holdouts and transparent film: closed forms of small scenes.
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(Holdout, OfAnObject) {
       result->settings.integrator = integrator;
       result->settings.max_bounces = 1;
       result->sky(0.5f, 0.5f, 0.5f);
-      // The thing glows and is white; below it lies another that glows.
+      // The object emits and is white; another emitting object is below it.
       lancer_material thing = glow(1.0f);
       thing.transmittance = constant(clear);
       lancer_instance &instance =
@@ -33,12 +33,12 @@ TEST(Holdout, OfAnObject) {
     EXPECT_EQ(solid->color().x, 0.0f);
     EXPECT_EQ(veiled->alpha(), 0.75f);
     EXPECT_EQ(veiled->color().x, 0.0f);
-    // What it lets pass is seen, and solid.
+    // Transmitted light is visible, and opaque.
     const auto clear = studio(true, 1.0f, 0.25f, false);
     EXPECT_EQ(clear->alpha(), 0.25f);
     EXPECT_EQ(clear->color().x, 2.0f);
     EXPECT_EQ(studio(false, 1.0f, 0.0f, false)->alpha(), 1.0f);
-    // A mirror shows it as any other thing.
+    // A mirror shows it like any other object.
     const auto mirrored = studio(true, 1.0f, 0.0f, true);
     EXPECT_EQ(mirrored->alpha(), 1.0f);
     EXPECT_GE(mirrored->color().x, 1.0f);
@@ -78,10 +78,10 @@ TEST(Film, TransparentWhereTheSkyIsSeen) {
   };
   for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC}) {
     EXPECT_EQ(studio(integrator, {}, 0.75f, false, 0.0f), std::pair(0.25f, 0.0f));
-    // In a mirror the sky is light as any other.
+    // In a mirror the sky is ordinary light.
     EXPECT_EQ(studio(integrator, {newest(LANCER_MIRROR, 1.0f)}, 0.0f, true, 1.0f), std::pair(1.0f, 0.5f));
   }
-  // Glass up to a roughness counts as clear, where it is asked for.
+  // Glass up to a roughness counts as transparent, if the setting is on.
   const auto glass = [&](float roughness, bool asked, float limit) {
     return studio(LANCER_PATH, {newest(LANCER_REFRACTION, 1.0f, roughness)}, 0.0f, asked, limit);
   };
@@ -102,7 +102,7 @@ TEST(Film, SolidBlackBesideAPanorama) {
       studio.look({0, 0, 1}, {0, 0, 0}, 2);
       studio.camera.kind = LANCER_FISHEYE_EQUIDISTANT;
       studio.camera.panorama[0] = 0.1;
-      // Four pixels outside of the circle.
+      // Four pixels outside the circle.
       const double window[4] = {-1, 2, -1, 2};
       std::copy(window, window + 4, studio.camera.window);
       studio.render();

@@ -1,5 +1,4 @@
-// Vertices are shaded side by side in vector registers where the picture alone is asked for, one by one where more is: the
-// pictures are the same, bit for bit.
+// Vertices are shaded in lanes if only the picture is requested, one by one if more is: the pictures are equal, bit for bit.
 #include "random_scenes.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +7,7 @@
 namespace lancer_test {
 namespace {
 
-// Nodes of one lobe each, mixed; some of them are left to the general code.
+// Nodes of one lobe each, mixed; some are left to the general code.
 std::vector<lancer_lobe> mixture(Random &random) {
   std::vector<lancer_lobe> lobes(1 + random() % 4);
   for (lancer_lobe &one : lobes) {
@@ -32,7 +31,7 @@ std::vector<lancer_lobe> mixture(Random &random) {
 
 uint32_t add_some_material(Studio &studio, Random &random, bool may_shine) {
   lancer_material material = black();
-  // A place in the object, as a colour.
+  // The object position as a colour.
   std::vector<lancer_node> nodes;
   const bool by_nodes = random() % 2;
   if (by_nodes)
@@ -59,7 +58,7 @@ uint32_t add_some_material(Studio &studio, Random &random, bool may_shine) {
   return studio.add({layered}, material, nodes);
 }
 
-// few: lamps with a place alone, which are chosen side by side.
+// few: lamps with a position only, which are chosen in lanes.
 void add_lights(Studio &studio, Random &random, bool few) {
   lancer_light lamp = point_light();
   lamp.radius = 0.5f;
@@ -95,7 +94,7 @@ void add_lights(Studio &studio, Random &random, bool few) {
   studio.add(lamp);
 }
 
-// So many that the tree of all of them has several levels.
+// So many that the light tree has several levels.
 void add_crowd(Studio &studio, Random &random) {
   for (int i = 0; i < 60; ++i) {
     lancer_light lamp = point_light();
@@ -116,7 +115,7 @@ std::vector<float> picture(uint32_t seed, uint32_t passes) {
   studio.settings.clamp_indirect = seed % 3 ? 0.0f : 0.5f;
   studio.settings.seed = seed;
   studio.settings.threads = 2;
-  // What is seen through glass may show in the film.
+  // The film may show things through glass.
   studio.settings.film_transparent = studio.settings.transparent_glass = seed % 5 == 0;
   studio.settings.glass_roughness = 0.5f;
   const bool few = seed % 4 == 2;

@@ -1,4 +1,4 @@
-// What lets light pass straight on: how many layers, what they keep of it, and what passes tell about what lies behind.
+// Transparent layers: their number, transmittance, and the passes of surfaces behind them.
 #include "picture_lab.h"
 #include "roundings.h"
 
@@ -10,7 +10,7 @@ namespace {
 
 lancer_light sun_above(const Studio &studio) { return studio.sun({0, 0, 1}, std::numbers::pi_v<float>); }
 
-// Halves of light through so many panes onto a floor that shines, or is white under a sun.
+// Returns the light through this many panes of transmittance 1/2 from a floor that emits, or is white under a sun.
 float through(uint32_t panes, uint32_t limit, bool shines, uint32_t shadow_limit = 8, bool above = true, uint32_t flags = 0,
               uint32_t integrator = LANCER_PATH) {
   Studio studio;
@@ -32,11 +32,11 @@ float through(uint32_t panes, uint32_t limit, bool shines, uint32_t shadow_limit
 TEST(Layers, APathPassesSoMany) {
   for (const uint32_t panes : {1u, 2u, 3u})
     for (const uint32_t limit : {1u, 2u, 3u, 4u}) {
-      // Behind the last one there is own light only.
+      // Behind the last one there is only emission.
       for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC})
         EXPECT_EQ(through(panes, limit, true, 8, true, 0, integrator), panes <= limit ? std::ldexp(1.0f, -int(panes)) : 0.0f)
             << panes << " " << limit << " " << integrator;
-      // Light from above passes as many panes again.
+      // Light from above passes the same number of panes once more.
       EXPECT_NEAR(through(panes, limit, false), panes < limit ? std::ldexp(1.0f, -2 * int(panes)) : 0.0f, kWhiteFloor)
           << panes << " " << limit;
     }
@@ -46,7 +46,7 @@ TEST(Layers, AShadowRayPassesSoMany) {
   for (const uint32_t panes : {1u, 2u, 3u})
     for (const uint32_t limit : {0u, 1u, 2u, 3u, 4u, 6u}) {
       EXPECT_NEAR(through(panes, 8, false, limit, false), panes <= limit ? std::ldexp(1.0f, -int(panes)) : 0.0f, kWhiteFloor);
-      // Together with those that the path has passed.
+      // Together with the panes that the path has passed.
       EXPECT_NEAR(through(panes, 8, false, limit), 2 * panes <= limit ? std::ldexp(1.0f, -2 * int(panes)) : 0.0f, kWhiteFloor);
     }
 }
@@ -70,7 +70,7 @@ TEST(Layers, AShadowRayEndsAtItsLamp) {
     std::fill(lamp.emission, lamp.emission + 3, 16.0f * std::numbers::pi_v<float>);
     studio.add(lamp);
     studio.render();
-    // The lamp's 16 pi over 4^2 is that irradiance.
+    // The lamp's 16 pi over 4^2 is this irradiance.
     EXPECT_NEAR(studio.color().x, 1.0f, kWhiteFloor);
   }
 }
@@ -88,7 +88,7 @@ TEST(Layers, TheClippedEndStaysWhereItIs) {
 }
 
 TEST(Layers, AHalfIsHalfOfTheWhole) {
-  // A white plane of opacity 1/2 under a wide lamp has half the light of a whole one: both ways of finding the lamp share it.
+  // A white plane of opacity 1/2 under a wide lamp has half the light of an opaque one: both sampling techniques share it.
   const auto level = [](float opacity) {
     Studio studio;
     lancer_lobe white = lobe(LANCER_LAMBERT, 1.0f);
@@ -104,7 +104,7 @@ TEST(Layers, AHalfIsHalfOfTheWhole) {
     studio.render();
     return studio.color().x;
   };
-  // The spread of a sample is below twice the mean: 4 standard errors of 2^16 samples on either side.
+  // The standard deviation of a sample is below twice the mean: 4 standard errors of 2^16 samples on either side.
   EXPECT_NEAR(level(0.5f) / level(1.0f), 0.5, 0.5 * 4.0 * 2.0 * std::sqrt(2.0) / 256.0);
 }
 
@@ -133,11 +133,11 @@ TEST(Layers, TheFirstThatIsDenseEnoughIsTheOneOfThePasses) {
       EXPECT_FLOAT_EQ(studio->number(LANCER_PASS_DEPTH), depth);
       EXPECT_EQ(studio->number(LANCER_PASS_OBJECT_INDEX), float(number));
       EXPECT_EQ(studio->number(LANCER_PASS_MATERIAL_INDEX), float(10 + number));
-      // A place is made by some ten roundings to double of numbers up to 10; 5, 3 and 0 are floats.
+      // A position has some ten roundings to double of numbers up to 10; 5, 3 and 0 are floats.
       EXPECT_NEAR(studio->color(LANCER_PASS_POSITION).z, 10.0f - depth, double_roundings(10, 10.0));
       expect_near(studio->color(LANCER_PASS_NORMAL), {0, 0, 1});
     }
-  // Where nothing is, nothing is told of panes that are too faint.
+  // Without a surface behind, panes below the threshold set no pass.
   const auto empty = stack(0.7f, false);
   EXPECT_EQ(empty->number(LANCER_PASS_DEPTH), 1e10f);
   EXPECT_EQ(empty->number(LANCER_PASS_OBJECT_INDEX), 0.0f);
@@ -147,7 +147,7 @@ TEST(Layers, TheFirstThatIsDenseEnoughIsTheOneOfThePasses) {
 }
 
 TEST(Layers, APixelCoversWhatTheWholeWayMakesOfIt) {
-  // The bump of a height x^2 leans by its own step at x = 0: the floor's light is that lean, so it tells the pixel's size.
+  // The bump of a height x^2 tilts by its own step at x = 0: the floor's light is this tilt, which shows the footprint.
   const auto size = [](double distance, bool with_pane, bool mirrored) {
     Studio studio;
     lancer_material ruler = black();
@@ -177,7 +177,7 @@ TEST(Layers, APixelCoversWhatTheWholeWayMakesOfIt) {
   };
   const float near = size(4, false, false);
   EXPECT_GT(near, 0.0f);
-  // A pixel of a thousandth of a filter's width off the middle, and squares of steps below 2^-6.
+  // A pixel centre off by a thousandth of a filter's width, and squares of steps below 2^-6.
   for (const bool with_pane : {false, true})
     for (const bool mirrored : {false, true}) {
       EXPECT_NEAR(size(4, with_pane, mirrored) / near, 1.0f, 2e-3f) << with_pane << mirrored;

@@ -1,4 +1,4 @@
-// How a picture splits into passes: closed forms of small scenes.
+// Light passes of pictures: closed forms of small scenes.
 #include "picture_lab.h"
 #include "roundings.h"
 
@@ -8,7 +8,7 @@
 namespace lancer_test {
 namespace {
 
-// Without metal, glass, sheen, coat and light.
+// Without metal, glass, sheen, coat and emission.
 lancer_principled plain_principled() {
   lancer_principled p = {};
   p.rules = LANCER_RULES_BLENDER_45;
@@ -22,11 +22,11 @@ lancer_principled plain_principled() {
   return p;
 }
 
-// At most three scatterings of three factors each, of light up to 1/2; three sums up to 2; the division and the product by the
-// pass's colour: 12 roundings of 1.
+// At most three scattering events of three factors each, of light up to 1/2; three sums up to 2; the division and the product
+// by the pass's colour: 12 roundings of 1.
 constexpr float kLight = float_roundings(12);
 
-// Nothing in the picture but the light of these passes and the environment's and emission's.
+// Expects only the light of these passes and of environment and emission in the picture.
 void expect_light(const Studio &studio, float emission, float environment, const glm::vec3 &direct, const glm::vec3 &indirect,
                   float tolerance = kLight) {
   EXPECT_NEAR(studio.color(LANCER_PASS_EMISSION).x, emission, tolerance);
@@ -42,10 +42,10 @@ void expect_light(const Studio &studio, float emission, float environment, const
   EXPECT_NEAR(studio.color().x, sum, tolerance);
 }
 
-// Within a ball that glows and scatters half.
+// Inside a ball that emits and has albedo 1/2.
 std::unique_ptr<Studio> furnace(float clamp, bool sampled) {
   auto studio = std::make_unique<Studio>();
-  // A single sample tells all as long as no path is left to chance.
+  // A single sample is exact as long as no path is random.
   studio->settings.max_bounces = sampled ? 2 : 1;
   studio->settings.clamp_indirect = clamp;
   studio->settings.samples = sampled ? 1u << 14 : 1;
@@ -57,17 +57,17 @@ std::unique_ptr<Studio> furnace(float clamp, bool sampled) {
 }
 
 TEST(Passes, OfAFurnace) {
-  // Own light, once scattered and twice.
+  // Emission, after one scattering event and after two.
   expect_light(*furnace(0.0f, false), 1.0f, 0.0f, {0.5f, 0, 0}, {0.25f, 0, 0});
-  // Clamping takes indirect light only, and takes it from its pass.
+  // Clamping removes indirect light only, and removes it from its pass.
   expect_light(*furnace(0.1f, false), 1.0f, 0.0f, {0.5f, 0, 0}, {0.1f, 0, 0});
-  // Sampled as a light, and once more scattered, it is the same, but for noise:
-  // a sample's spread is below its mean, 4 / 128 of 0.5.
+  // Sampled as a light, with one more bounce, it is the same except for noise: a sample's standard deviation is below its mean,
+  // 4 / 128 of 0.5.
   expect_light(*furnace(0.0f, true), 1.0f, 0.0f, {0.5f, 0, 0}, {0.25f + 0.125f, 0, 0}, 0.02f);
 }
 
 TEST(Passes, OfWhatAMirrorShows) {
-  // What a wall of half under a sun sends by a mirror of 0.8 is the mirror's light, not the wall's kind.
+  // Light from a wall of albedo 1/2 under a sun, by a mirror of 0.8, belongs to the mirror's component, not to the wall's.
   Studio studio;
   studio.settings.max_bounces = 1;
   studio.place(LANCER_PLANE, studio.add({newest(LANCER_MIRROR, 0.8f)}), turned(45.0, 0, 1, 0));
@@ -83,7 +83,7 @@ TEST(Passes, OfTheSky) {
   seen.sky(0.5f, 0.5f, 0.5f);
   seen.render();
   expect_light(seen, 0.0f, 0.5f, {0, 0, 0}, {0, 0, 0});
-  // Through a pane it is still itself; scattered it is direct light of the component that scatters.
+  // Through a pane it is still emission; scattered it is direct light of the scattering component.
   Studio through;
   through.sky(0.5f, 0.5f, 0.5f);
   through.place(LANCER_PLANE, through.add({}, pane(0.25f)));
@@ -101,7 +101,7 @@ TEST(Passes, OfTheSky) {
   }
 }
 
-// A pane of a half at height 2 over a white floor, seen from 10, with mist from 6 that is full 8 further.
+// A pane of transmittance 1/2 at height 2 over a white floor, seen from 10, with mist from 6 that is complete 8 farther.
 std::unique_ptr<Studio> pane_over_floor(float mist_depth = 8.0f) {
   auto studio = std::make_unique<Studio>();
   studio->settings.mist_start = 6.0f;
@@ -117,20 +117,20 @@ std::unique_ptr<Studio> pane_over_floor(float mist_depth = 8.0f) {
 TEST(Passes, CountWhatAPaneLeaves) {
   const auto studio = pane_over_floor();
   EXPECT_FLOAT_EQ(studio->color(LANCER_PASS_DIFFUSE_COLOR).x, 0.4f);
-  // 2/8 and 4/8 of mist, half each: the mean of three equal numbers is a sum and a product, all else is halves.
+  // 2/8 and 4/8 of mist, half each: the mean of three equal numbers is a sum and a product, the rest is halves.
   EXPECT_NEAR(studio->number(LANCER_PASS_MIST), 0.375f, float_roundings(4));
   EXPECT_EQ(pane_over_floor(0.0f)->number(LANCER_PASS_MIST), 0.0f);
-  // Occlusion: nothing is above the pane; the floor looks through it, seen through it. Halves are exact.
+  // Occlusion: nothing is above the pane; the floor is seen through the pane and sees through it. Halves are exact.
   EXPECT_EQ(studio->color(LANCER_PASS_AMBIENT_OCCLUSION).x, 0.5f + 0.5f * 0.5f);
 }
 
 TEST(Passes, OcclusionIsOfWhatTheCameraSees) {
-  // A lid at height 10 is met from within a million, or from anywhere where the distance is 0.
+  // A lid at height 10 occludes within a distance of a million, or any distance if the setting is 0.
   for (const float distance : {5.0f, 1e6f, 0.0f}) {
     Studio studio;
     studio.settings.max_bounces = 2;
     studio.settings.occlusion_distance = distance;
-    // The mirror's own occlusion, and nothing of the lid's, which it shows.
+    // The mirror's own occlusion, and not that of the lid in it.
     studio.place(LANCER_PLANE, studio.add({newest(LANCER_MIRROR, 1.0f)}));
     studio.place(LANCER_PLANE, studio.add({lobe(LANCER_LAMBERT, 1.0f)}), moved(0, 0, 10));
     studio.look({0, 0, 1}, {0, 0, 0});
@@ -150,7 +150,7 @@ TEST(Passes, NormalsAreWeightedByColor) {
 }
 
 TEST(Passes, ALampUnderACoatIsSampledAsItShines) {
-  // The emission of a layered material lights a floor the same whether it is sampled or found by chance.
+  // The emission of a layered material lights a floor equally whether it is sampled or found by scattered rays.
   const auto level = [](uint32_t flags) {
     Studio studio;
     lancer_principled principled = plain_principled();
@@ -166,12 +166,12 @@ TEST(Passes, ALampUnderACoatIsSampledAsItShines) {
     studio.render();
     return studio.color().x;
   };
-  // Chance finds the ball with a half of the samples: their spread is that of the mean, 4 / 128 of it.
+  // Scattered rays find the ball with half of the samples: their standard deviation is the mean, 4 / 128 of it.
   EXPECT_NEAR(level(0) / level(LANCER_MATERIAL_NOT_A_LIGHT), 1.0, 4.0 / 128.0);
 }
 
 TEST(Kernels, HaveTheLayersThatAPrincipledHas) {
-  // A special kernel leaves out what cannot occur; the picture is that of the general one.
+  // A specialised kernel omits impossible cases; the picture equals that of the general one.
   const auto picture = [](float diffuse_roughness, float sheen, uint32_t features) {
     Studio studio;
     lancer_principled principled = plain_principled();

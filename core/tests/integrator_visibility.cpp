@@ -1,4 +1,4 @@
-// Which rays see what: lamps, the sky and things that are hidden from rays of one kind are there for all others.
+// Ray visibility: lamps, the sky and objects hidden from rays of one kind are visible to all others.
 #include "picture_lab.h"
 #include "roundings.h"
 
@@ -17,7 +17,7 @@ constexpr Kind kKinds[] = {{LANCER_RAY_CAMERA, "camera"},
                            {LANCER_RAY_GLOSSY, "glossy"},
                            {LANCER_RAY_TRANSMISSION, "transmission"}};
 
-// A plane that sends rays of that kind alone; rough enough for lights to be sampled, or in a single direction.
+// Adds a plane that sends rays of this kind only; rough enough for light sampling, or in a single direction.
 void add_sender(Studio &studio, uint32_t ray, bool single) {
   lancer_lobe sender = lobe(LANCER_LAMBERT, 1.0f);
   if (ray == LANCER_RAY_GLOSSY)
@@ -29,7 +29,7 @@ void add_sender(Studio &studio, uint32_t ray, bool single) {
     studio.place(LANCER_PLANE, studio.add({sender}));
 }
 
-// Where a ray of that kind goes from the plane: back up, or on.
+// Returns the direction of a ray of this kind from the plane: back up, or straight on.
 double way(uint32_t ray) { return ray == LANCER_RAY_CAMERA || ray == LANCER_RAY_TRANSMISSION ? -1.0 : 1.0; }
 
 enum class Shines { Sky, SkyByNodes, Lamp, Sun, Thing };
@@ -92,7 +92,7 @@ TEST(Visibility, OfWhatShinesInClassic) {
       }
 }
 
-// The middle of a white floor under a sun, with a ball in between that is hidden from these rays.
+// The centre of a white floor under a sun, with a ball in between that is hidden from these rays.
 float under_a_ball(uint32_t hidden_from, bool pane, bool no_shadow = false, uint32_t integrator = LANCER_PATH) {
   Studio studio;
   studio.settings.integrator = integrator;
@@ -114,9 +114,9 @@ TEST(Visibility, OfWhatCastsShadows) {
   for (const bool pane : {false, true}) {
     EXPECT_EQ(under_a_ball(0, pane), 0.0f);
     EXPECT_NEAR(under_a_ball(LANCER_RAY_SHADOW, pane), 1.0f, kWhiteFloor);
-    // Nothing else keeps it from that.
+    // Hiding it from other rays does not remove the shadow.
     EXPECT_EQ(under_a_ball(LANCER_RAY_CAMERA | LANCER_RAY_DIFFUSE | LANCER_RAY_GLOSSY | LANCER_RAY_TRANSMISSION, pane), 0.0f);
-    // Nothing stands in the way of a lamp without shadows.
+    // A lamp without shadows has no occluders.
     for (const uint32_t integrator : {LANCER_PATH, LANCER_CLASSIC}) {
       EXPECT_EQ(under_a_ball(0, pane, false, integrator), 0.0f);
       EXPECT_NEAR(under_a_ball(0, pane, true, integrator), 1.0f, kWhiteFloor);
@@ -125,7 +125,7 @@ TEST(Visibility, OfWhatCastsShadows) {
 }
 
 TEST(Visibility, ClassicMayReflectTheEnvironmentAlone) {
-  // A mirror shows a thing that glows, or the sky behind it where no ray is traced.
+  // A mirror shows an emitting object, or the sky behind it if no ray is traced.
   for (const uint32_t environment : {0u, 1u}) {
     Studio studio;
     studio.settings.integrator = LANCER_CLASSIC;
@@ -142,7 +142,7 @@ TEST(Visibility, ClassicMayReflectTheEnvironmentAlone) {
 }
 
 TEST(Visibility, GoesWithARayThroughPanes) {
-  // Through a clear pane a camera's ray is still the camera's, and a mirror's the mirror's.
+  // Through a transparent pane a camera ray is still a camera ray, and a mirror's ray a mirror's.
   for (const uint32_t ray : {LANCER_RAY_CAMERA, LANCER_RAY_GLOSSY})
     for (const uint32_t hidden_from : {LANCER_RAY_CAMERA, LANCER_RAY_GLOSSY}) {
       Studio studio;

@@ -1,4 +1,4 @@
-// Results of a formula by name, in lanes and one by one: every lane must hold the bits of the single number.
+// Results of a formula by name, in lanes and single: every lane must have the bits of the single result.
 #pragma once
 
 #include "simd/memory.h"
@@ -12,7 +12,7 @@
 
 namespace lancer::testing {
 
-// Some lanes of a number, vector or condition from those of each lane: get(lane).
+// Sets the lanes of a number, vector or condition by get(lane).
 template <class F, class T, class Get> void put_lanes(T &to, const Get &get) {
   if constexpr (std::is_same_v<T, F>)
     to = from_lanes<F>(get);
@@ -23,7 +23,7 @@ template <class F, class T, class Get> void put_lanes(T &to, const Get &get) {
     to = from_lanes<F>([&](int i) { return get(i) ? 1.0f : 0.0f; }) != F(0.0f);
 }
 
-// What a computation found, in all of its lanes.
+// The results of a computation, in all of its lanes.
 template <class F> class Report {
 public:
   static constexpr int kWidth = LanesOf<F>::kWidth;
@@ -34,7 +34,7 @@ public:
   std::vector<Entry> entries;
 
   void operator()(const char *name, const F &x) {
-    // Not-a-numbers are all alike: which of two such operands a sum keeps is the compiler's choice.
+    // All NaNs are equal: the compiler chooses which of two NaN operands a sum returns.
     add(name, [&](int i) { return lane(x, i) == lane(x, i) ? as_word(lane(x, i)) : 0x7fc00000u; });
   }
   void operator()(const char *name, const Vec3<F> &v) {
@@ -58,7 +58,7 @@ private:
   }
 };
 
-// of: reports of each lane alone. Names the first that differs.
+// of: reports of each lane alone. Names the first difference.
 template <class F>::testing::AssertionResult holds_each(const Report<F> &lanes, const std::vector<Report<float>> &of) {
   for (size_t k = 0; k < lanes.entries.size(); ++k)
     for (int i = 0; i < Report<F>::kWidth; ++i) {
@@ -75,10 +75,10 @@ template <class F>::testing::AssertionResult holds_each(const Report<F> &lanes, 
   return ::testing::AssertionSuccess();
 }
 
-// Names a number type without passing one: lanes that are wider than registers are no arguments.
+// Names a number type without passing a value: lanes wider than registers cannot be arguments.
 template <class F> struct Lanes {};
 
-// compute(Lanes<F>(), first): a report of the lanes from first on, of kMostLanes that there are.
+// compute(Lanes<F>(), first): returns a report of the lanes from first on, of kMostLanes.
 inline constexpr int kMostLanes = 16;
 template <class F, class Compute>
 void expect_lanes_hold(const Compute &compute, const std::vector<Report<float>> &alone, const std::string &what) {

@@ -1,4 +1,4 @@
-// What a traversal puts on its stack: the lanes that are kept, in the order that is asked for, in every instruction set.
+// Entries pushed by a traversal: the kept lanes, in the requested order, in every instruction set.
 #include "widths/sorted_kernel.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(Lanes, AreKeptInTheOrderAskedFor) {
       for (uint32_t i = 0; i < 8; ++i) {
         order |= lanes[i] << 3 * i;
         key[i] = static_cast<float>(i);
-        // A box that is left out ends before it begins, or is no number; one that is met in a single place is kept.
+        // A rejected box ends before it begins, or is NaN; a box hit in a single point is kept.
         end[i] = mask >> i & 1 ? key[i] : (i % 2 ? key[i] - 1.0f : std::numeric_limits<float>::quiet_NaN());
       }
       float keys[16];

@@ -1,4 +1,4 @@
-// What a Light Path node knows of the ray that sees a world, lamp or surface, and of the vertex that asks for its light.
+// Light Path nodes: data of the ray that hits a world, lamp or surface, and of the vertex that samples its light.
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,7 @@ struct Measured {
   double mean, error; // standard error of the mean
 };
 
-// A white floor under a sky of 1 + Ray Depth, seen from above. directed: nodes ask for the direction, too, and make nothing of
-// it.
+// A white floor under a sky of 1 + Ray Depth, seen from above. directed: nodes read the direction, too, without effect.
 Measured floor_under_sky(bool directed) {
   constexpr uint32_t kPixels = 16;
   Studio studio;
@@ -42,22 +41,22 @@ Measured floor_under_sky(bool directed) {
   return {mean, std::sqrt(std::max(squares / kCount - mean * mean, 0.0) / kCount)};
 }
 
-// As Cycles has both (5.0 and 5.2: 2.82288 and 3.0).
-
-// Sampled as a light the sky lies one scattering beyond the floor: 2; a ray that meets it counts itself, too: 3. With the power
-// heuristic the second takes c^2 / (c^2 + 1 / 16) at the cosine c, of densities c / pi and 1 / (4 pi), so that the floor sends
-// 2 + the integral of 2 c c^2 / (c^2 + 1 / 16) from 0 to 1, which is 2 + 1 - ln(17) / 16.
+// As in Cycles (5.0 and 5.2: 2.82288 and 3.0).
+// For a light sample the sky is one scattering event beyond the floor: 2; a ray that hits it counts itself, too: 3. By the
+// power heuristic the second technique has the weight c^2 / (c^2 + 1 / 16) at the cosine c, for densities c / pi and
+// 1 / (4 pi), so that the floor sends 2 + the integral of 2 c c^2 / (c^2 + 1 / 16) from 0 to 1, which is 2 + 1 - ln(17) / 16.
 TEST(LightPaths, ASampledSkyLiesOneScatteringBeyond) {
   const Measured seen = floor_under_sky(true);
-  // The pixels are independent: five standard errors of their mean, fine enough to tell one scattering from none.
+  // The pixels are independent: five standard errors of their mean, precise enough to distinguish one scattering event from
+  // none.
   EXPECT_NEAR(seen.mean, 3.0 - std::log(17.0) / 16.0, 5.0 * seen.error);
   EXPECT_LT(5.0 * seen.error, 0.05);
 }
 
-// Where no direction differs the sky is no light, and only rays meet it. A few roundings of floats.
+// A sky without directional variation is not a light, and only rays hit it. A few roundings of floats.
 TEST(LightPaths, ASkyWithoutDirectionsIsMetByRaysAlone) { EXPECT_NEAR(floor_under_sky(false).mean, 3.0, 3.0 * 8 * 0x1p-24); }
 
-// A shining ball over a floor, whose light is sampled and met by rays: both ask one scattering beyond the camera's.
+// An emitting ball over a floor, with light samples and ray hits: both evaluate it one scattering event beyond the camera.
 TEST(LightPaths, ASampledEmitterLiesOneScatteringBeyond) {
   const auto level = [](bool asks) {
     Studio studio;
@@ -77,9 +76,9 @@ TEST(LightPaths, ASampledEmitterLiesOneScatteringBeyond) {
   EXPECT_EQ(level(true), level(false));
 }
 
-// What a shadow ray passes asks for the ray's own path: its kind, one scattering, the way so far.
+// A surface along a shadow ray reads that ray's path: its kind, one scattering event, its length so far.
 TEST(LightPaths, APaneAsksWhichShadowRayPasses) {
-  // A lamp at height 4 of irradiance 1 on a white floor, a pane at height 2 that lets `value` of it through.
+  // A lamp at height 4 of irradiance 1 on a white floor, a pane at height 2 that transmits `value` of it.
   const auto level = [](uint32_t which, float factor) {
     Studio studio;
     lancer_material pane = black();
@@ -95,12 +94,12 @@ TEST(LightPaths, APaneAsksWhichShadowRayPasses) {
     lamp.radius = 0.0f;
     std::fill(lamp.emission, lamp.emission + 3, 16.0f * std::numbers::pi_v<float>);
     studio.add(lamp);
-    // From below the pane, straight down but for a little.
+    // From below the pane, nearly straight down.
     studio.look({0.01, 0, 1}, {0, 0, 0});
     studio.render();
     return studio.color().x;
   };
-  // The floor's share of light is 1 but for a hundredth's square, and what floats round.
+  // The floor's share of light is 1 except for a hundredth's square, and float roundings.
   EXPECT_NEAR(level(LANCER_PATH_IS_SHADOW, 0.5f), 0.5f, 1e-4f);
   EXPECT_NEAR(level(LANCER_PATH_DEPTH, 0.25f), 0.25f, 1e-4f);
   EXPECT_NEAR(level(LANCER_PATH_LENGTH, 0.125f), 0.25f, 1e-4f);

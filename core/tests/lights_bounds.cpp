@@ -1,4 +1,4 @@
-// What encloses a light says that it is behind a surface only where none of it can send anything there.
+// The bound of a light reports it behind a surface only if no part of it can send light there.
 #include "lights/light_bounds.h"
 #include "statistics.h"
 
@@ -15,7 +15,7 @@ TEST(LightBounds, NothingOfThoseBehindIsSeen) {
   Random random(3);
   int behind = 0, ahead = 0, near = 0;
   for (int i = 0; i < 200000; ++i) {
-    // A box of any size and shape, flat ones among them, at any distance; a plane that misses, touches or cuts it.
+    // A box of any size and shape, including flat ones, at any distance; a plane that misses, touches or cuts it.
     const double size = std::pow(10.0, between(random, -6.0, 3.0));
     const glm::dvec3 first(between(random, -1.0, 1.0), between(random, -1.0, 1.0), between(random, -1.0, 1.0));
     const glm::dvec3 sides(random.next() % 4 ? between(random, 0.0, 1.0) : 0.0, between(random, 0.0, 1.0),
@@ -41,7 +41,7 @@ TEST(LightBounds, NothingOfThoseBehindIsSeen) {
     }
     ASSERT_FALSE(told && off < 0.0) << i;
   }
-  // Only what nearly touches the plane, or is far aside, is left undecided.
+  // Only boxes that nearly touch the plane, or are far aside, stay undecided.
   EXPECT_GT(behind, 50000);
   EXPECT_GT(ahead, 50000);
   EXPECT_LT(near, behind);

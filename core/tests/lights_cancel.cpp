@@ -1,4 +1,4 @@
-// The making of many lights ends soon after it is cancelled.
+// Building many lights ends soon after it is cancelled.
 #include "lights/emissive_faces.h"
 #include "lights/light_set.h"
 
@@ -14,7 +14,7 @@ const BuildContext kCancelled{.cancel = &kCancel};
 TEST(Lights, ManyLampsCanBeCancelled) {
   Light lamp;
   lamp.emission = glm::dvec3(1.0);
-  std::vector<Light> lights(5, lamp); // more than are asked one by one
+  std::vector<Light> lights(5, lamp); // more than are sampled one by one
   for (size_t i = 0; i < lights.size(); ++i)
     lights[i].position.x = double(i);
   EXPECT_FALSE(LightSet(lights, {}, 0, Environment()).wide_tree().empty());

@@ -1,4 +1,4 @@
-// Several lights at once: each is found by two ways that share it, whichever light a sample has chosen.
+// Several lights at once: two techniques share each of them, whichever light a sample chooses.
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace lancer_test {
 namespace {
 
 TEST(LightsChoice, AddUpUnderASky) {
-  // A white floor under a sky of 1 and a wide sun of its own level shows both.
+  // A white floor under a sky of 1 and a wide sun of its own level receives both.
   for (const bool by_nodes : {false, true}) {
     Studio studio;
     studio.settings.samples = 1u << 16;
@@ -18,8 +18,8 @@ TEST(LightsChoice, AddUpUnderASky) {
     sun.sun_angle = 0.2f;
     studio.add(sun);
     studio.render();
-    // The sun's disk leans by its radius of 0.1 at most: the mean cosine is 1 - 0.1^2 / 4. The spread of a sample is that of
-    // which light it asks, below the mean of 2: 4 standard errors of 2^16.
+    // The sun's disk deviates by its radius of at most 0.1: the mean cosine is 1 - 0.1^2 / 4. The standard deviation of a
+    // sample is that of the light choice, below the mean of 2: 4 standard errors of 2^16.
     EXPECT_NEAR(studio.color().x, 2.0 - 0.0025, 4.0 * 2.0 / 256.0);
   }
 }

@@ -1,4 +1,4 @@
-// Directions by brightness: the density integrates to one, samples follow it, and no pole, seam or bright speck is lost.
+// Environment sampling: the density integrates to one, samples follow it, and no pole, seam or bright texel is lost.
 #include "compile/scene.h"
 #include "lights/environment.h"
 
@@ -32,7 +32,8 @@ TEST(DirectionMap, CoversTheSphereOnce) {
       total += width * map.solid_angle(row);
     // Some thousand roundings of double.
     EXPECT_NEAR(total, 4.0 * glm::pi<double>(), 1e-12);
-    // Differences of sums up to 1, which carry up to 1024 roundings of 2^-53, beside the share of a polar row, at least 9.4e-6.
+    // Differences of sums up to 1, which have up to 1024 roundings of 2^-53, relative to the share of a polar row, at least
+    // 9.4e-6.
     const double even = 0.25 / glm::pi<double>();
     EXPECT_NEAR(map.pdf({0.0, 0.0, 1.0}), even, 1.3e-8 * even);
     EXPECT_NEAR(map.pdf({0.0, 0.0, -1.0}), even, 1.3e-8 * even);
@@ -47,7 +48,7 @@ TEST(DirectionMap, SamplesHaveTheDensityThatPdfTells) {
     const DirectionMap::Sample sample = map.sample({uniform(random), uniform(random)});
     ASSERT_NEAR(glm::length(sample.direction), 1.0, 1e-15);
     ASSERT_GT(sample.pdf, 0.0);
-    // At a cell's edge the direction may round into the neighbour: look for the density next to it, too.
+    // At a cell's edge the direction may round into the neighbour: accept the density next to it, too.
     bool same = false;
     for (const double apart : {0.0, -1e-7, 1e-7})
       same |= map.pdf(glm::vec3(glm::normalize(sample.direction + glm::dvec3(apart, -apart, apart)))) == sample.pdf;
@@ -56,7 +57,7 @@ TEST(DirectionMap, SamplesHaveTheDensityThatPdfTells) {
 }
 
 TEST(DirectionMap, ChiSquare) {
-  // Counts in a finer grid of another shape, over all of the sphere: even solid angles in z and the angle about it.
+  // Counts in a finer grid of another shape, over the whole sphere: uniform solid angles in z and the angle about it.
   constexpr int kRows = 24, kColumns = 15, kCount = 200000, kFine = 100;
   const DirectionMap map(16, 8, harsh_weights(16, 8));
   std::vector<double> expected(kRows * kColumns), counts(kRows * kColumns);
@@ -87,9 +88,9 @@ TEST(DirectionMap, ChiSquare) {
     chi2 += (counts[i] - expected[i]) * (counts[i] - expected[i]) / expected[i];
     ++used;
   }
-  // The midpoint rule knows the edges between cells of the map to a fraction 1/kFine of its own.
+  // The midpoint rule resolves the edges between the map's cells to 1/kFine of its own cells.
   EXPECT_NEAR(total / kCount, 1.0, 5e-3);
-  // Mean used - 1, variance twice that; 6 standard deviations leave room for the midpoint rule's share.
+  // Mean used - 1, variance twice that; 6 standard deviations include the error of the midpoint rule.
   EXPECT_LT(chi2, used + 6.0 * std::sqrt(2.0 * used));
 }
 
@@ -99,7 +100,7 @@ TEST(DirectionMap, NothingToChooseGivesNoSample) {
   EXPECT_EQ(map.pdf({0.0, 1.0, 0.0}), 0.0);
 }
 
-// A world whose radiance is one picture, seen through a turned mapping.
+// A world whose radiance is one image, seen through a rotated mapping.
 struct Sky {
   World world;
   std::vector<Image> images;
@@ -133,7 +134,7 @@ struct Sky {
   Environment environment() const { return Environment(world, images, normalisation, BuildContext{.threads = 2}, true); }
 };
 
-// The integral of radiance over all directions, by so many of the environment's own samples.
+// Returns the integral of radiance over all directions, by this many samples of the environment.
 double integral(const Environment &environment, size_t nodes, int count, bool transmits) {
   std::vector<glm::vec4> values(nodes);
   std::mt19937 random(7);
@@ -153,13 +154,13 @@ TEST(Environment, FindsOneBrightTexelUnderAnyMapping) {
     std::vector<float> texels(size_t(width) * height, 1e-3f);
     texels[where] = 1e4f;
     for (const glm::vec3 &rotation : {glm::vec3(0.0f), glm::vec3(0.4f, 1.1f, -2.0f)}) {
-      // A texel at the picture's pole is a needle: turned away from the map's own pole a plain sum sees it no better.
+      // A texel at the image's pole is a needle: rotated away from the map's own pole, a plain sum does not resolve it.
       if (rotation != glm::vec3(0.0f) && (where < width || where >= 127 * width))
         continue;
       const Sky sky(width, height, texels, rotation);
       const Environment environment = sky.environment();
       ASSERT_TRUE(environment.varies());
-      // Rotation keeps the integral: compare with a plain sum over even directions, fine enough to see the texel well.
+      // Rotation keeps the integral: compare with a plain sum over uniform directions, fine enough to resolve the texel.
       std::vector<glm::vec4> values(3);
       const DirectionMap even(2048, 1024, std::vector<float>(2048 * 1024, 1.0f));
       double want = 0.0;
@@ -167,12 +168,14 @@ TEST(Environment, FindsOneBrightTexelUnderAnyMapping) {
         for (uint32_t column = 0; column < 2048; ++column)
           want +=
               double(environment.radiance(even.direction(column + 0.5, row + 0.5), values, nullptr).x) * even.solid_angle(row);
-      // 8 x 8 midpoints a texel of a bilinear tent know it to 1 %; the samples, whose spread is below the mean, to 0.2 %.
+      // 8 x 8 midpoints per texel of a bilinear tent give it to 1 %; the samples, whose standard deviation is below the mean,
+      // to 0.2 %.
       for (const bool transmits : {false, true})
         EXPECT_NEAR(integral(environment, 3, 200000, transmits) / want, 1.0, 0.01) << where;
-      // The map's looks count alike in their cell: at a pole, where the lower ones stand for more, that is 8 % off. Turned, a
-      // look every half cell is one every 0.75 texels where the picture's rows are short; a tent looked at so is off by
-      // 2 sinc^2(1 / 0.75) = 8.5 % at worst, and by little along its other side, where the looks divide a texel.
+      // The map's evaluations have equal weight in their cell: at a pole, where the lower ones represent more, this is 8 % off.
+      // Rotated, an evaluation every half cell is one every 0.75 texels where the image's rows are short; a tent sampled like
+      // this is off by at most 2 sinc^2(1 / 0.75) = 8.5 %, and by little along its other side, where several evaluations divide
+      // a texel.
       EXPECT_NEAR(environment.mean() * 4.0 * glm::pi<double>() / want, 1.0, 0.15);
     }
   }
@@ -214,14 +217,14 @@ TEST(Environment, SurfacesSampleWhatIsBrighterThanTheMean) {
   std::sort(above.begin(), above.end());
   std::sort(in_proportion.begin(), in_proportion.end());
   EXPECT_GT(in_proportion.front(), 0.1 * in_proportion.back());
-  // Nothing but the even share is left of what is darker than the mean.
+  // Directions darker than the mean have only the uniform share.
   EXPECT_LT(above.front(), 0.05 * above.back());
 }
 
 TEST(Environment, LooksAtEachTexelUpToABound) {
   const auto looks = [](uint32_t resolution, uint32_t widest) {
     const MapSize size = map_size(resolution, widest);
-    // No picture and no wish makes a map of more than some seconds.
+    // Without an image or a given resolution, making a map takes some seconds at most.
     EXPECT_LE(double(size.width) * size.height * size.looks * size.looks, 0x1p25);
     EXPECT_LE(size.width, 2048u);
     EXPECT_EQ(size.height, size.width / 2);

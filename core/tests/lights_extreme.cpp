@@ -1,5 +1,5 @@
 // Lights that are tiny, far, grazing or huge: solid angles by their densities, against closed forms in long double; and choices
-// between lamps of any powers.
+// between lamps of any power.
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -57,13 +57,13 @@ long double rectangle_angle(const Light &light, const glm::dvec3 &p) {
 
 TEST(LightsExtreme, RectanglesFillTheirSolidAngle) {
   Random random(1);
-  // The mean of 1 / pdf is the solid angle, whatever the size; grazing: down to 1e-6 of height.
+  // The mean of 1 / pdf is the solid angle, at any size; grazing: down to 1e-6 of height.
   for (const double size : {1.0, 0.1, 1e-3, 1e-6, 1e-9})
     for (const double tilt : {1.0, 0.1, 1e-3, 1e-6})
       for (int k = 0; k < 4; ++k) {
         const double phi = 6.28 * random.uniform();
         const glm::dvec3 towards(std::cos(phi), std::sin(phi), 0.0);
-        // Edge-on but for the tilt, and further than it is wide.
+        // Edge-on except for the tilt, and farther away than it is wide.
         const Light light =
             rectangle(0.5 * size, 0.2 * size, 2.0 * towards, glm::dvec3(tilt * towards.x, tilt * towards.y, 1.0));
         const glm::dvec3 p(0.0);
@@ -90,7 +90,7 @@ TEST(LightsExtreme, BallsFillTheirCone) {
     const long double angle = 2.0l * glm::pi<long double>() * sin2 / (1.0l + cosine);
     ASSERT_GT(sample.pdf, 0.0) << distance;
     EXPECT_NEAR(double(angle * sample.pdf), 1.0, 1e-9) << distance;
-    // What a ray finds is what is sampled, with the same density; directions near the rim may round beyond it.
+    // A ray in a sampled direction hits the light with the same density; directions near the rim may round beyond it.
     const LightHit hit = meet(light, glm::dvec3(0.0), glm::normalize(light.position));
     EXPECT_NEAR(hit.pdf / sample.pdf, 1.0, 1e-12) << distance;
   }
@@ -109,7 +109,7 @@ TEST(LightsExtreme, SunsFillTheirDisk) {
   }
 }
 
-// Nothing that a light may be asked gives a number that is none. An infinite density is one: by it nothing arrives.
+// No query of a light returns NaN. An infinite density is allowed: nothing arrives by it.
 TEST(LightsExtreme, DensitiesAreNumbers) {
   for (const double size : {1e-30, 1e-6, 1.0, 1e6})
     for (const double height : {0.0, 1e-300, 1e-30, 1e-9, 1.0}) {
@@ -125,7 +125,7 @@ TEST(LightsExtreme, DensitiesAreNumbers) {
             const glm::dvec3 p(x, 0.0, 0.0);
             for (const LightSample &sample : {lancer::sample(area, p, {u, u}), lancer::sample(ball, p, {u, u})})
               if (sample.pdf > 0.0) {
-                // Turned into the frame of a lamp so far away that the frame's own roundings count.
+                // Transformed to the frame of a lamp so far away that the frame's own roundings matter.
                 EXPECT_NEAR(glm::length(sample.wi), 1.0, 128.0 * 0x1p-53);
                 EXPECT_FALSE(std::isnan(sample.radiance.x) || std::isnan(sample.distance));
               }
@@ -151,7 +151,7 @@ std::vector<DescribedLight> lamps(int count) {
   return described;
 }
 
-// Every lamp above the horizon may be chosen, with the chance that is said, and the chances make up 1.
+// Every lamp above the horizon may be chosen, with the reported probability, and the probabilities sum to 1.
 template <class Choose> void expect_fair(const Choose &lights, int count, const std::vector<DescribedLight> &all) {
   for (const glm::vec3 &n : {glm::vec3(0, 0, 1), glm::vec3(1, 0, 0)}) {
     const LightQuery query({1.0, 2.0, 0.0}, n, false);
@@ -186,11 +186,11 @@ TEST(LightsExtreme, LampsOfAnyPowersShareTheChoices) {
     expect_fair(LightTree(lamps(count), uint32_t(count)), count, lamps(count));
 }
 
-// A blinding lamp may be hidden: those beside it are still found, and take no more than a 256th of its choices.
+// A very bright lamp may be occluded: the lamps beside it are still found, with at most a 256th of its choices.
 TEST(LightsExtreme, DimLampsBesideABlindingOneAreFound) {
   const LightQuery query({1.0, 2.0, 0.0}, {0.0f, 0.0f, 1.0f}, false);
   for (const uint32_t count : {2u, 4u, 5u, 16u}) {
-    // All in one place, so that none is in a cluster of its own.
+    // All at one place, so that none is in a cluster of its own.
     std::vector<DescribedLight> described;
     for (uint32_t i = 0; i < count; ++i) {
       Light light;
@@ -200,7 +200,7 @@ TEST(LightsExtreme, DimLampsBesideABlindingOneAreFound) {
       described.push_back(describe(light, i));
     }
     const auto expect = [&](double blinding, double dim, double part) {
-      // Of the sum that holds every dim one as this part of the blinding one.
+      // Share of the sum, for a dim lamp with this part of the bright one's importance.
       const double sum = 1.0 + (count - 1) * double{kRaised} * part;
       EXPECT_NEAR(dim * sum / (double{kRaised} * part), 1.0, 1e-6) << count;
       EXPECT_GE(blinding, 1.0 - double{kRaised}) << count;
@@ -209,7 +209,7 @@ TEST(LightsExtreme, DimLampsBesideABlindingOneAreFound) {
     expect(tree.probability(query, 0), tree.probability(query, 1), 1.0 / kBranchWidth);
     if (count > kLeafLights)
       continue;
-    // The other half of the choices goes by the lower bounds, which are not raised.
+    // The other half of the choices is by the lower bounds, which are not raised.
     const BinaryLightTree few(described, count);
     expect(few.probability(query, 0), 2.0 * few.probability(query, 1), 1.0 / count);
   }

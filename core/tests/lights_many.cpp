@@ -1,4 +1,4 @@
-// Pictures under many lamps: as bright as all of them together, and the same at every scale.
+// Pictures under many lamps: as bright as the sum over all, and the same at every scale.
 #include "picture_lab.h"
 #include "statistics.h"
 
@@ -7,7 +7,7 @@
 namespace lancer_test {
 namespace {
 
-// Level of a floor of albedo 0.8 at its middle under point lamps of unequal power.
+// Level of a floor of albedo 0.8 at its centre under point lamps of unequal power.
 struct ManyLamps {
   std::vector<lancer_light> lights;
   double level = 0.0;
@@ -50,7 +50,7 @@ TEST(LightTree, LightsAsTheSumOverAllLamps) {
     squares += double(pixels[i]) * double(pixels[i]);
   }
   const double mean = sum / count, error = std::sqrt((squares / count - mean * mean) / (count - 1.0));
-  // Two-sided at the suite's level; the view is 1e-4 wide, over which the level changes by less than that share.
+  // Two-sided at the suite's level; the view is 1e-4 wide, over which the level changes by less than this share.
   EXPECT_GT(lancer::testing::normal_p_value((mean - lamps.level) / (error + 1e-4 * lamps.level)),
             lancer::testing::kSignificance);
 }

@@ -1,4 +1,4 @@
-// Lights on a ray's way: met where sampling would have put them, and only by those that sampling can choose.
+// Lights along a ray: hit where sampling would put them, and only lights that sampling can choose.
 #include "round_lamp.h"
 #include "tiny_scene.h"
 
@@ -17,7 +17,7 @@ TEST(Lights, AreMetWhereTheyAreSampled) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0.0f, 0.999f);
   for (const bool soft : {false, true}) {
-    // From outside, and for the ball from inside too.
+    // From outside, and for the ball also from inside.
     for (const double height : {-3.0, -0.5}) {
       if (soft && height > -1.0)
         continue;
@@ -26,7 +26,7 @@ TEST(Lights, AreMetWhereTheyAreSampled) {
       for (int i = 0; i < 1000; ++i) {
         const LightSample s = sample(light, p, {uniform(random), uniform(random)});
         const LightHit hit = meet(light, p, s.wi);
-        // Directions are rounded to double: at grazing incidence the root of the ball magnifies that to 1e-8.
+        // Directions are rounded to double: at grazing incidence the root of the ball magnifies this to 1e-8.
         EXPECT_NEAR(hit.distance, s.distance, 1e-6);
         EXPECT_NEAR(hit.pdf, s.pdf, 1e-9 * s.pdf);
       }
@@ -34,7 +34,7 @@ TEST(Lights, AreMetWhereTheyAreSampled) {
   }
 }
 
-// Lamps of all shapes, from near and far, aside of them, and close to their planes.
+// Lamps of all shapes, from near and far, from aside, and close to their planes.
 TEST(Lights, RectanglesAreMetWithTheDensityThatTheyAreSampledWith) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(0.0f, 0x1.fffffep-1f);
@@ -57,12 +57,12 @@ TEST(Lights, RectanglesAreMetWithTheDensityThatTheyAreSampledWith) {
     if (!(hit.pdf > 0.0))
       continue;
     ++met;
-    // The way there and back is some roundings of double.
+    // The round trip has some roundings of double.
     EXPECT_NEAR(hit.pdf, s.pdf, 1e-9 * s.pdf);
     EXPECT_NEAR(hit.distance, s.distance, 1e-9 * s.distance);
   }
   EXPECT_GT(sampled, 19900);
-  // On the rim, where numbers of 24 bits land once in a million times, rounding decides.
+  // On the rim, which numbers of 24 bits hit once in a million times, rounding decides.
   EXPECT_GE(met, sampled - 2);
 }
 
@@ -110,9 +110,9 @@ TEST(Lights, ManyAreMetAsOneByOne) {
     glm::dvec3 o[kLightLanes], wi[kLightLanes];
     for (int lane = 0; lane < kLightLanes; ++lane) {
       const int i = round * kLightLanes + lane;
-      // From where float no longer tells small lamps from their neighbourhood, too.
+      // Also from distances at which float does not separate small lamps from their neighbours.
       o[lane] = (i % 7 ? 500.0 : 1e7) * glm::dvec3(uniform(random), uniform(random), uniform(random));
-      // Aim at lights, and along the axes, where a slab of the boxes is parallel.
+      // Aim at lights, and along the axes, parallel to the slabs of the boxes.
       const double beside = i % 7 ? 20.0 * uniform(random) : 0.0;
       wi[lane] = glm::normalize(lights[size_t(i) % 300].position + glm::dvec3(beside) - o[lane]);
       if (i % 5 == 0)
@@ -128,10 +128,10 @@ TEST(Lights, ManyAreMetAsOneByOne) {
     set.wide_tree().along(ways, uint32_t(count), [&](uint32_t lane, uint32_t number) {
       EXPECT_FALSE(candidates[lane * 300 + number]);
       candidates[lane * 300 + number] = true;
-      // What is told is near the way: a box around a lamp reaches sqrt(3) radii at its corners. It is padded by 2^-22 of
-      // 1024 and its coordinates, up to 1200 together, and for each way by 2^-21 of its half, up to 20, its distance along an
-      // axis, up to 900, and the way's coordinates, up to 1500 together; the roundings that this is for move a way as far
-      // again at most. sqrt(3) times 2224 * 2^-22 + 2 * 2420 * 2^-21 is below 2^-7.
+      // Reported lamps are near the segment: a box around a lamp reaches sqrt(3) radii at its corners. Its padding is 2^-22 of
+      // 1024 and its coordinates, up to 1200 together, and for each segment 2^-21 of its half, up to 20, its distance along an
+      // axis, up to 900, and the segment's coordinates, up to 1500 together; the roundings that the padding covers move a
+      // segment at most as far again. sqrt(3) times 2224 * 2^-22 + 2 * 2420 * 2^-21 is below 2^-7.
       const glm::dvec3 to = lights[number].position - o[lane];
       const double reach = std::sqrt(3.0) * lights[number].radius + 0x1p-7;
       const bool near = glm::length(to - glm::dot(to, wi[lane]) * wi[lane]) < reach;
@@ -150,7 +150,7 @@ TEST(Lights, ManyAreMetAsOneByOne) {
 }
 
 TEST(Lights, TheDeepestTreeIsSearchedToItsEnd) {
-  // Places in a geometric row make the deepest tree.
+  // Positions in geometric progression make the deepest tree.
   std::vector<Light> lights;
   for (int i = 0; i < 1000; ++i) {
     lights.push_back(ball(1e-3, true));
@@ -158,7 +158,7 @@ TEST(Lights, TheDeepestTreeIsSearchedToItsEnd) {
   }
   const LightSet set(lights, {}, 0, Environment());
   const glm::dvec3 o(-1.0, -1.0, 5.0);
-  // Look at every one.
+  // Aim at every one.
   for (uint32_t first = 0; first < lights.size(); first += kLightLanes) {
     const uint32_t count = std::min(uint32_t(kLightLanes), uint32_t(lights.size()) - first);
     SegmentBlock ways{};
@@ -183,7 +183,7 @@ TEST(Lights, ATinyDiskIsAPoint) {
   EXPECT_FLOAT_EQ(s.radiance.x, 0.25f);
 }
 
-// The level of a floor under a lamp; a pane of some opacity runs through the lamp, none where that is negative.
+// Returns the level of a floor under a lamp; a pane of the given opacity passes through the lamp, none if it is negative.
 double floor_level(float pane_opacity, bool soft) {
   using namespace lancer_test;
   lancer_scene scene = 0;
@@ -228,7 +228,7 @@ double floor_level(float pane_opacity, bool soft) {
 
 TEST(Lights, APaneThatIsNotThereChangesNothing) {
   for (const bool soft : {true, false}) {
-    // 65536 samples of a level whose standard deviation is below itself agree within 4 / 256.
+    // 65536 samples of a level whose standard deviation is below the level agree within 4 / 256.
     EXPECT_NEAR(floor_level(0.0f, soft) / floor_level(-1.0f, soft), 1.0, 4.0 / 256.0);
   }
 }

@@ -1,4 +1,4 @@
-// Lights on the ways of lanes: kernels meet what the general code meets, and know the same of it.
+// Lights along segments in lanes: kernels hit the same lights as the general code, with the same data.
 #include "integrator/stages/vertex_kernel.h"
 #include "lights/light_set.h"
 #include "lights/round_light.h"
@@ -64,7 +64,7 @@ TEST(Lights, LanesThatMeetALampKnowWhatItGivesAndHowItIsChosen) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto vector = [&] { return glm::dvec3(uniform(random), uniform(random), uniform(random)); };
-  constexpr uint32_t kLamps = 4; // more would stand in the tree of many
+  constexpr uint32_t kLamps = 4; // more would be in the tree of many lights
   std::vector<Light> lights;
   for (uint32_t i = 0; i < kLamps; ++i) {
     Light light = ball(0.3, i % 2);

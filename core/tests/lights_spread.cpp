@@ -1,4 +1,4 @@
-// Area lights of little spread: only the part that shines on a point is sampled, and nothing beside the light.
+// Area lights of small spread: only the part that lights a point is sampled, and nothing outside the light.
 #include "lights/light.h"
 
 #include <glm/gtc/constants.hpp>
@@ -20,7 +20,7 @@ TEST(AreaLightSpread, IsSampledWhereItShinesOnThePoint) {
   light.spread_scale = 1.0 / (light.tan_half_spread - half);
   std::mt19937 random(4);
   std::uniform_real_distribution<float> uniform(0.0f, 0x1.fffffep-1f);
-  // Before the disk's edge, where the square around the lit circle reaches beyond the disk.
+  // In front of the disk's edge, where the square around the lit circle extends beyond the disk.
   const glm::dvec3 p = light.position - 1.5 * light.z + 0.65 * (light.x + light.y);
   int met = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -29,7 +29,7 @@ TEST(AreaLightSpread, IsSampledWhereItShinesOnThePoint) {
       continue;
     ++met;
     const LightHit hit = meet(light, p, s.wi);
-    // The way there and back is some roundings of double.
+    // The round trip has some roundings of double.
     EXPECT_NEAR(hit.distance, s.distance, 1e-12);
     EXPECT_NEAR(hit.pdf, s.pdf, 1e-9 * s.pdf);
     EXPECT_LE(glm::length(s.target - light.position), 1.0 + 1e-12);

@@ -1,5 +1,5 @@
-// Choosing lights, few and many: probabilities are those of its choices, they add up to one, and no light that contributes is
-// left out.
+// Light trees for few and many lights: probabilities equal the frequencies of choices, they sum to one, and no contributing
+// light is left out.
 #include "lights/light_tree.h"
 #include "statistics.h"
 
@@ -22,7 +22,7 @@ glm::dvec3 direction(Random &random) {
   return glm::normalize(v);
 }
 
-// Every kind of lamp, of powers across six orders, some with and some without extent.
+// Lamps of every kind, with powers across six orders of magnitude, some with and some without extent.
 Light any_light(Random &random, double size) {
   Light light;
   light.kind = LightKind(random.next() % 4);
@@ -55,7 +55,7 @@ std::vector<Light> any_lights(Random &random, uint32_t count, double size = 400.
   return lights;
 }
 
-// What has no place is for the few only.
+// Lights without a position are only for the tree of few.
 template <class Tree> Tree tree_of(const std::vector<Light> &lights, bool sky = false) {
   constexpr bool few = std::is_same_v<Tree, BinaryLightTree>;
   std::vector<DescribedLight> described;
@@ -85,7 +85,7 @@ LightQuery any_query(Random &random, double size = 500.0) {
 // Sums over some dozen shares in double, each with a few roundings.
 constexpr double kSumError = 1e-13;
 
-// Clusters may promise what none of their lights keeps: then there is no choice, and the sum stays below 1.
+// Clusters may have an upper bound that none of their lights reaches: then there is no choice, and the sum stays below 1.
 template <class Tree> double sum_of(const Tree &tree, uint32_t count, const LightQuery &query) {
   double sum = 0.0;
   for (uint32_t i = 0; i < count; ++i) {
@@ -108,7 +108,7 @@ TYPED_TEST_SUITE(LightTrees, BothTrees);
 TYPED_TEST(LightTrees, ProbabilitiesAddUpToOne) {
   Random random(1);
   for (const uint32_t count : {1u, 2u, 3u, 8u, 9u, 30u, 200u, 3000u, 100000u}) {
-    // Lamps that shine everywhere, seen through a surface that lets light through: no promise is broken.
+    // Lamps that shine in all directions, on a transparent surface: every bound is reached.
     std::vector<Light> points = any_lights(random, count);
     for (Light &light : points)
       light.kind = LightKind::Point;
@@ -155,13 +155,13 @@ TYPED_TEST(LightTrees, ChoicesFollowTheirProbabilities) {
       double sum = 0.0;
       for (uint32_t i = 0; i <= count; ++i)
         sum += expected[i] = kChoices * tree.probability(query, i);
-      // What is left over is no choice, unless it is rounding.
+      // The remainder is no choice, unless it is rounding.
       expected[count + 1] = kChoices - sum > kChoices * kSumError * std::sqrt(double(count)) ? kChoices - sum : 0.0;
       for (int i = 0; i < kChoices; ++i) {
         const LightChoice choice = tree.choose(query, (i + double(random.uniform())) / kChoices);
         ++observed[choice.probability > 0.0 ? choice.number : count + 1];
       }
-      // Even numbers, one in each slice, vary less than the law supposes: a high statistic is a fault all the more.
+      // Stratified numbers, one in each slice, vary less than the law assumes: all the more is a high statistic an error.
       EXPECT_GT(testing::chi_square_test(observed, expected), testing::sidak_level(testing::kSignificance, 4 * kQueries));
     }
   }
@@ -190,7 +190,7 @@ TYPED_TEST(LightTrees, WhateverContributesHasAChance) {
     const std::vector<Light> lights = any_lights(random, round < 30 ? 3 : 60);
     const TypeParam tree = tree_of<TypeParam>(lights);
     for (int i = 0; i < 400; ++i) {
-      // Points near a light and surfaces that see it at the very edge, too.
+      // Also points near a light and surfaces that see it at their very edge.
       const Light &near = lights[random.next() % lights.size()];
       const glm::dvec3 p = i % 2 ? somewhere(random, 500.0) : near.position + somewhere(random, std::pow(10.0, -4.0 + i % 7));
       glm::dvec3 n = direction(random);
@@ -256,7 +256,7 @@ TYPED_TEST(LightTrees, StandsWhatIsDegenerate) {
     result.emission = glm::dvec3(emission);
     return result;
   };
-  // Thousands in one place, among them dark ones.
+  // Thousands at one place, some of them dark.
   std::vector<Light> lights;
   for (int i = 0; i < 5000; ++i)
     lights.push_back(light({1.0, 2.0, 3.0}, i % 10 ? 1.0 : 0.0));
@@ -265,12 +265,12 @@ TYPED_TEST(LightTrees, StandsWhatIsDegenerate) {
     for (const glm::vec3 &n : {glm::vec3(0.0f, 0.0f, 1.0f), glm::vec3(0.0f)})
       expect_sum_of_one(heap, 5000, LightQuery(p, n, true));
   EXPECT_EQ(heap.probability(LightQuery(glm::dvec3(0.0), {0, 0, 1}, true), 0), 0.0);
-  // Places in a geometric row make the deepest tree.
+  // Positions in geometric progression make the deepest tree.
   lights.clear();
   for (int i = 0; i < 1000; ++i)
     lights.push_back(light({std::ldexp(500.0, -i), 0.0, 1.0}, 1.0));
   expect_sum_of_one(tree_of<TypeParam>(lights), 1000, LightQuery(glm::dvec3(0.0), {0, 0, 1}, false));
-  // A star beside a spark: neither loses its chance, wherever they are.
+  // A very bright lamp beside a very dim one: neither loses its probability, wherever they are.
   for (const double away : {1.0, 1e4, 1e8}) {
     const TypeParam tree = tree_of<TypeParam>({light({0.0, 0.0, 1.0}, 1e12), light({0.0, away, 1.0}, 1e-6)});
     for (const glm::dvec3 &p : {glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, away, 0.0)}) {
@@ -280,7 +280,7 @@ TYPED_TEST(LightTrees, StandsWhatIsDegenerate) {
       expect_sum_of_one(tree, 2, query);
     }
   }
-  // One further away than float can tell leaves the others what they are.
+  // One lamp at a distance beyond the range of float does not change the others.
   lights.clear();
   for (int i = 0; i < 6; ++i)
     lights.push_back(light({i ? double(i) : 4e38, 0.0, 1.0}, 1.0));

@@ -1,4 +1,4 @@
-// A world that asks where the picture shows a direction: by the camera that looks, for its own rays and for all others.
+// A world that reads window coordinates of a direction: by the active camera, for its own rays and for all others.
 #include "compile/scene.h"
 #include "lights/environment.h"
 #include "scene/camera.h"
@@ -25,7 +25,7 @@ struct Framed {
     world.map_resolution = 8;
     world.schedule = world.program.schedule(std::span(&world.radiance, 1));
     environment = Environment(world, images, normalisation, BuildContext{.threads = 1}, false);
-    // At the user's (1, 2, 3), looking along +y: the camera's x, y, z are the world's x, z, -y.
+    // At the user's (1, 2, 3), facing +y: the camera's x, y, z are the world's x, z, -y.
     camera.to_world.linear = glm::dmat3(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
     camera.to_world.translation = normalisation.to_normalised(glm::dvec3(1.0, 2.0, 3.0));
     camera.kind = kind;

@@ -1,4 +1,4 @@
-// The normal of a whole material, which displacement as a bump makes: it takes the shading normal's place.
+// The normal of a whole material, used by displacement as a bump: it replaces the shading normal.
 #include "picture_lab.h"
 #include "roundings.h"
 
@@ -8,7 +8,7 @@
 namespace lancer_test {
 namespace {
 
-// The height rises by so much per unit of x, y and z: the normal leans the other way along the plane z = 0.
+// The height's slope along x, y and z: the normal tilts the other way on the plane z = 0.
 const glm::vec3 kSlope(0.4f, -0.3f, 0.7f);
 
 glm::vec3 leaning(float side = 1.0f) { return glm::normalize(glm::vec3(-kSlope.x, -kSlope.y, side)); }
@@ -18,7 +18,7 @@ constexpr float kRough = 4e-6f;
 
 enum class Bump { None, Material, Lobe };
 
-// A white plane under a sun, seen from one side, with the bump where it is asked for.
+// A white plane under a sun, seen from one side, with an optional bump.
 std::unique_ptr<Studio> plane(Bump bump, const glm::dvec3 &sun = {0, 0, 1}, double side = 1.0,
                               lancer_parameter lobe_normal = constant(0.0f), uint32_t flags = 0) {
   auto studio = std::make_unique<Studio>();
@@ -35,7 +35,7 @@ std::unique_ptr<Studio> plane(Bump bump, const glm::dvec3 &sun = {0, 0, 1}, doub
     material.normal = result_of(2);
   studio->place(LANCER_PLANE, studio->add({white}, material, nodes));
   studio->add(studio->sun(sun, std::numbers::pi_v<float>));
-  // The bump looks a pixel to the side.
+  // The bump evaluates a pixel aside.
   studio->look({0, 0, 4 * side}, {0, 0, 0}, 1, 0x1p-7);
   studio->render();
   return studio;
@@ -44,12 +44,12 @@ std::unique_ptr<Studio> plane(Bump bump, const glm::dvec3 &sun = {0, 0, 1}, doub
 TEST(MaterialNormal, LeansAgainstTheSlope) {
   expect_near(plane(Bump::Material)->color(LANCER_PASS_NORMAL), leaning(), kRough);
   expect_near(plane(Bump::None)->color(LANCER_PASS_NORMAL), {0, 0, 1}, 0.0f);
-  // From below it stands on the viewer's side.
+  // From below it is on the viewer's side.
   expect_near(plane(Bump::Material, {0, 0, -1}, -1.0)->color(LANCER_PASS_NORMAL), leaning(-1.0f), kRough);
 }
 
 TEST(MaterialNormal, LightsByItsOwnCosine) {
-  // As Cycles does, without what a socket's bump loses near the end of the lit side, and past the plane's own horizon.
+  // As in Cycles, without the softened terminator of a socket's bump, and beyond the plane's own horizon.
   for (const glm::dvec3 &sun :
        {glm::dvec3(0, 0, 1), glm::dvec3(-0.9, 0, 0.3), glm::dvec3(0.9, 0, 0.3), glm::dvec3(-1, 0.2, -0.1)}) {
     const float cosine = std::max(0.0f, glm::dot(leaning(), glm::vec3(glm::normalize(sun))));
@@ -70,7 +70,7 @@ TEST(MaterialNormal, GivesWayToALobesOwn) {
   expect_near(plane(Bump::Material, {0, 0, 1}, 1.0, constant(own.x, own.y, own.z))->color(LANCER_PASS_NORMAL), own);
 }
 
-// A triangle whose normals all lean to +x, seen aslant from the other side.
+// A triangle whose normals all tilt to +x, seen obliquely from the other side.
 std::unique_ptr<Studio> aslant(lancer_lobe look) {
   auto studio = std::make_unique<Studio>();
   const float positions[] = {-2, -2, 0, 2, -2, 0, 0, 4, 0}, normals[] = {0.6f, 0, 0.8f, 0.6f, 0, 0.8f, 0.6f, 0, 0.8f};
@@ -92,10 +92,10 @@ std::unique_ptr<Studio> aslant(lancer_lobe look) {
   return studio;
 }
 
-// Made unit where it is met, and again for the pass: seven roundings each, of a square's sum, its root, and what they divide.
+// Normalised at the hit and again for the pass: seven roundings each, of the squared length, its root, and the quotients.
 constexpr float kNormal = float_roundings(14);
 
-// What scatters widely keeps the interpolated normal even where it looks away from the viewer, as a coarse mesh's does.
+// Wide lobes keep an interpolated normal that faces away from the viewer, as on a coarse mesh.
 TEST(MaterialNormal, WideLobesKeepOneThatLooksAway) {
   const glm::vec3 n = aslant(lobe(LANCER_LAMBERT, 1.0f))->color(LANCER_PASS_NORMAL);
   EXPECT_NEAR(n.x, 0.6f, kNormal);

@@ -1,5 +1,5 @@
-// The wide lobes and the two glossy ones of their own kind: samplers fall as their density says, values keep the laws and the
-// closed forms that are known.
+// The wide lobes and the two glossy ones without a Smith term: samplers follow their density, and values agree with the laws
+// and known closed forms.
 #include "bsdf/matte.h"
 
 #include <functional>
@@ -92,7 +92,7 @@ TEST(MatteLobes, FallAsTheirDensitySays) {
           expected.push_back(std::max(1e-3, kDraws * testing::integrate_square(pdf, 2, 0.2 / kDraws, low, high)));
           sum += expected.back();
         }
-      // What falls below the horizon is a cell, too.
+      // The part below the horizon is one more cell.
       expected.push_back(std::max(1e-3, kDraws - sum));
       Random random(seed++);
       for (int k = 0; k < kDraws; ++k) {
@@ -138,8 +138,8 @@ TEST(MatteLobes, AreDarkBehind) {
   EXPECT_LT(drawn(paper, wo, {0.3f, 0.6f}).z, 0.0f);
 }
 
-// The model has edges where wi is as high as wo and where both are a quarter turn apart: cells that end there see smooth
-// functions.
+// The model has edges where wi is as high as wo and where both are a quarter turn apart: cells that end there have smooth
+// integrands.
 double oren_nayar_albedo(const Lobe<float> &lobe, const glm::vec3 &wo) {
   const testing::SquareFunction f =
       testing::direction_domain().density([&](const glm::vec3 &wi) { return double{matte_eval(lobe, wo, wi).f.x}; });
@@ -147,7 +147,7 @@ double oren_nayar_albedo(const Lobe<float> &lobe, const glm::vec3 &wo) {
          testing::integrate_square(f, 4, 1e-7, {wo.z, 0.0}, {1.0, 1.0});
 }
 
-// Fujii's directional albedo is a closed form; where the lost light of a white surface comes back none is lost at all.
+// Fujii's directional albedo is a closed form; with returned losses a white surface loses nothing.
 TEST(MatteLobes, OrenNayarKeepsItsLight) {
   const glm::vec3 white(1.0f);
   for (const float r : {1e-4f, 0.2f, 0.7f, 1.0f})
@@ -166,13 +166,13 @@ TEST(MatteLobes, SmoothOrenNayarIsLambert) {
   EXPECT_EQ(make_diffuse(glm::vec3(0.5f), glm::vec3(0.5f), 1e-4f, true, 0.4f).shape, LobeShape::Matte);
 }
 
-// Along the normal Burley's two Fresnel factors are 1 and nothing turns back.
+// Along the normal Burley's two Fresnel factors are 1 and there is no retroreflection.
 TEST(MatteLobes, BurleyAlongTheNormalIsLambert) {
   const glm::vec3 n(0.0f, 0.0f, 1.0f);
   EXPECT_NEAR(value_of(make_burley(glm::vec3(1.0f), 0.9f), n, n).f.x, std::numbers::inv_pi, 1e-7);
 }
 
-// The density of half vectors is normalised on the projected hemisphere: so is what the values are made of.
+// The density of half vectors is normalised on the projected hemisphere, and so is the distribution in the values.
 TEST(MatteLobes, ClearCoatDistributionIsNormalised) {
   for (const float alpha : {0.01f, 0.1f, 0.5f, 1.0f}) {
     const double sum =
@@ -182,7 +182,7 @@ TEST(MatteLobes, ClearCoatDistributionIsNormalised) {
           return double{gtr1_d(h, alpha)} * h.z / (4.0 * h.z);
         }),
                                   8, 1e-6);
-    // Half vectors of directions above the plane lean by at most 45 degrees: the rest of the distribution in closed form.
+    // Half vectors of directions above the plane tilt by at most 45 degrees: the rest of the distribution in closed form.
     const double a2 = double{alpha} * alpha;
     const double reached = a2 < 1.0 ? std::log((a2 + 0.5 * (1.0 - a2)) / a2) / -std::log(a2) : 0.5;
     EXPECT_NEAR(sum, reached, 1e-4) << alpha;
@@ -211,7 +211,7 @@ TEST(MatteLobes, SheenIsLinearBetweenItsNodes) {
     for (int i = 1; i < kSheenNodes; ++i) {
       const glm::vec3 near = node(j, i), far = node(j - 1, i - 1), mixed = node(j - 1, i) + node(j, i - 1);
       const SheenFit at = sheen_fit(i * kStep, j * kStep), middle = sheen_fit((i - 0.5f) * kStep, (j - 0.5f) * kStep);
-      // A rounding of the place, 31 at most, times what lies between two nodes, which is below 1.
+      // A rounding of the position, at most 31, times the difference of two nodes, which is below 1.
       const float rounding = 4.0f * 31.0f * std::numeric_limits<float>::epsilon();
       for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(glm::vec3(at.a, at.b, at.albedo)[k], near[k], rounding) << j << " " << i;
@@ -221,7 +221,7 @@ TEST(MatteLobes, SheenIsLinearBetweenItsNodes) {
     }
 }
 
-// Of this row of the table the albedo falls from 2e-5 at cos = 3/31 to 0 at 4/31.
+// In this row of the table the albedo falls from 2e-5 at cos = 3/31 to 0 at 4/31.
 TEST(MatteLobes, SheenWithHardlyAnAlbedoIsNothing) {
   const glm::vec3 white(1.0f);
   EXPECT_GT(make_sheen(white, 1.0f / 31.0f, 3.25f / 31.0f).color.x, 1e-5f);
@@ -230,7 +230,7 @@ TEST(MatteLobes, SheenWithHardlyAnAlbedoIsNothing) {
   EXPECT_EQ(lobe.albedo, glm::vec3(0.0f));
 }
 
-// What samples weigh is f / pdf: their mean is the integral of f, also where many half vectors face away.
+// Sample weights are f / pdf: their mean is the integral of f, also where many half vectors face away.
 TEST(MatteLobes, AshikhminSamplesWeighItsIntegral) {
   constexpr int kSide = 256;
   for (const float r : {0.6f, 1.0f})
@@ -240,14 +240,14 @@ TEST(MatteLobes, AshikhminSamplesWeighItsIntegral) {
       double sum = 0.0;
       for (int i = 0; i < kSide; ++i)
         for (int j = 0; j < kSide; ++j) {
-          // Half vectors turn as roots of u.y and of 1 - u.y do; of t they turn evenly at both ends.
+          // Half vectors vary as the root of u.y and of 1 - u.y; in t they vary linearly at both ends.
           const double t = (j + 0.5) / kSide, u = t * t * (3.0 - 2.0 * t), du = 6.0 * t * (1.0 - t);
           const glm::vec3 wi = drawn(lobe, wo, glm::vec2((i + 0.5) / kSide, u));
           const ColorValue<float> term = wi.z > 0.0f ? value_of(lobe, wo, wi) : ColorValue<float>{};
           sum += term.pdf > 0.0f ? du * double{term.f.x} / term.pdf : 0.0;
         }
-      // A grid's middles are off by 1 / (24 kSide^2) of the slope with which a row begins, here 6, and of that by which it
-      // breaks at the horizon, at most as much. The integral's 64 cells are refined until they change by 1e-6, up or down.
+      // A grid of midpoints has an error of 1 / (24 kSide^2) times the slope at the start of a row, here 6, and at most as much
+      // again from the break at the horizon. The integral's 64 cells are refined until they change by 1e-6, up or down.
       EXPECT_NEAR(sum / (kSide * kSide), albedo(lobe, wo), 0.5 / (kSide * kSide) + std::sqrt(64.0) * 1e-6)
           << r << " seen at " << degrees;
     }
@@ -258,7 +258,7 @@ TEST(MatteLobes, GlossGoesOverIntoAMirror) {
   EXPECT_FALSE(make_ashikhmin(glm::vec3(1.0f), 0.0f, 0.1f).delta);
   EXPECT_TRUE(make_clear_coat(glm::vec3(1.0f), 0.0f, 0.5f).delta);
   const glm::vec3 wo(0.0f, 0.0f, 1.0f);
-  // A quarter of what a dielectric of IOR 1.5 reflects along its normal.
+  // A quarter of the normal reflectance of a dielectric of IOR 1.5.
   const Lobe<float> coat = make_clear_coat(glm::vec3(1.0f), 0.0f, wo.z);
   EXPECT_NEAR(coat.color.x * gloss_delta_weight(coat, wo), 0.01f, 1e-8f);
   EXPECT_NEAR(coat.albedo.x, 0.01f, 1e-8f);

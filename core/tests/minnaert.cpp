@@ -27,7 +27,7 @@ double value(float k, const glm::vec3 &color, const glm::vec3 &wo, const glm::ve
   return double{minnaert(k, color, wo).eval(wi).f().x} / wi.z;
 }
 
-// What the formula of lancer.h says, in double.
+// The formula of lancer.h, in double.
 double expected(double k, double rho, double cos_o, double cos_i) {
   const double m = k < 1.0 ? std::pow(rho, 1.0 / (1.0 - k)) : 0.0, q = std::pow(m, k + 1.0);
   const double area = 2.0 * kPiExact * ((1.0 - q) / (k + 1.0) + 0.5 * q);
@@ -35,15 +35,15 @@ double expected(double k, double rho, double cos_o, double cos_i) {
 }
 
 TEST(Minnaert, IsTheFormulaOfTheHeader) {
-  // log1p, exp and the products round some ten times of 6e-8; the exponent k - 1 multiplies the rounding of both logarithms,
-  // which are 7 at most here.
+  // log1p, exp and the products have some ten roundings of 6e-8; the exponent k - 1 multiplies the rounding of both logarithms,
+  // which are at most 7 here.
   for (const float k : {0.0f, 0.3f, 0.7f, 0.99f, 1.0f, 1.5f, 2.0f, 10.0f})
     for (const float rho : {0.02f, 0.5f, 1.0f})
       for (const double cos_o : {1.0, 0.6, 0.05, 1e-3})
         for (const double cos_i : {1.0, 0.4, 1e-2}) {
           const double want = expected(k, rho, cos_o, cos_i);
           const double got = value(k, glm::vec3(rho, 0.5f * rho, 0.0f), direction(cos_o), direction(cos_i, 2.0));
-          // Beyond what a float holds to all its digits.
+          // Skip values that float does not represent to all digits.
           if (want * cos_i < 1e-37)
             continue;
           EXPECT_NEAR(got / want, 1.0, 1e-6 + std::abs(k - 1.0) * 14.0 * 0x1p-23) << k << " " << rho << " " << cos_o;
@@ -76,7 +76,7 @@ TEST(Minnaert, AWhiteSurfaceOfSmallKIsLambert) {
 }
 
 TEST(Minnaert, SmallKMakesAFullMoonFlat) {
-  // k = 1/2 seen from where the light is: radiance f cos does not depend on the angle, until the cosine falls to m = rho^2.
+  // k = 1/2 seen from the light's direction: radiance f cos does not depend on the angle, until the cosine falls to m = rho^2.
   const double middle = value(0.5f, glm::vec3(0.1f), direction(1.0), direction(1.0));
   for (const double cosine : {0.9, 0.5, 0.1, 0.011})
     EXPECT_NEAR(value(0.5f, glm::vec3(0.1f), direction(cosine), direction(cosine)) * cosine / middle, 1.0, 2e-6) << cosine;
@@ -106,7 +106,7 @@ TEST(Minnaert, AlbedoIsItsClosedFormAndAtMostOne) {
 }
 
 TEST(Minnaert, AMixtureKeepsTheBoundOfItsColour) {
-  // Half of a surface is half of what the whole one gives: the weight is no colour.
+  // Half of a surface has half of the whole surface's value: the weight is not a colour.
   LobeInputs<float> half = described(LobeKind::Minnaert, 0.0f, 1.5f, 0.5f, glm::vec3(0.6f));
   half.weight = glm::vec3(0.5f);
   const glm::vec3 wo = direction(0.1), wi = direction(0.2);

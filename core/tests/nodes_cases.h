@@ -1,4 +1,4 @@
-// Nodes of every kind, option and flag, with numbers of all sorts as their inputs, at places of all sorts.
+// Nodes of every kind, option and flag, with various inputs, at various hits.
 #pragma once
 
 #include "nodes_lab.h"
@@ -17,7 +17,7 @@ inline float uniform_number(Random &random, float low, float high) {
   return std::uniform_real_distribution<float>(low, high)(random);
 }
 
-// Of all sizes and signs, none of them often.
+// Numbers of all sizes and signs, none of them frequent.
 inline float any_number(Random &random) {
   const float special[] = {0.0f,  -0.0f,  1.0f,   -1.0f,  0.5f,     -0.5f,     2.0f,
                            1e30f, -1e30f, 1e-30f, 3.7e5f, INFINITY, -INFINITY, NAN};
@@ -37,8 +37,8 @@ inline glm::vec3 any_direction(Random &random) {
 
 inline constexpr uint32_t kFreeImages = 40, kTiles = kFreeImages, kSides = kTiles + 3, kTables = kSides + 6;
 
-// A world of five instances (two of meshes, three exact) and pictures of all forms: kFreeImages of any, then 3 tiles, then the
-// 6 sides of a cube, then tables of curves of 1, 3 and 4 channels.
+// A world of five instances (two meshes, three exact surfaces) and images of all forms: kFreeImages of any form, then 3 tiles,
+// then the 6 sides of a cube, then tables of curves of 1, 3 and 4 channels.
 class NodeWorld {
 public:
   Description description;
@@ -122,7 +122,7 @@ private:
     before.channels = 3;
     before.values = generated;
     description.geometry.meshes[0].attributes.push_back(before);
-    // Bare, but for what few have.
+    // Without optional data, except rare attributes.
     mesh.colors = nullptr;
     mesh.normals = nullptr;
     mesh.normal_domain = LANCER_NORMALS_NONE;
@@ -154,7 +154,7 @@ private:
   }
 };
 
-// One node, behind five whose values stand for its inputs, and for a bump its height's nodes.
+// One node, after five whose values are its inputs, and for a bump its height's nodes.
 struct NodeCase {
   std::string name;
   std::vector<lancer_node> nodes;
@@ -190,7 +190,7 @@ inline NodeCase make_case(Random &random, uint32_t kind, uint32_t option, uint32
     picture.image_count = 1;
     made.nodes.push_back(picture);
     made.nodes.push_back(node(LANCER_NODE_MATH, LANCER_MATH_MULTIPLY_ADD, {result_of(6), constant(0.3f), result_of(0)}));
-    // Now and then more than a bump keeps on the stack.
+    // Sometimes more than a bump keeps on the stack.
     for (int more = random() % 4 == 0 ? 40 : 0; more > 0; --more)
       made.nodes.push_back(
           node(LANCER_NODE_MATH, LANCER_MATH_ADD, {result_of(int32_t(made.nodes.size()) - 1), constant(0.01f)}));

@@ -5,7 +5,7 @@ using namespace lancer_test;
 
 namespace {
 
-// Turned by a quarter about z, stretched by 3 along the object's z and by 2 along x, and moved.
+// Rotated by a quarter turn about z, stretched by 3 along the object's z and by 2 along x, and translated.
 const std::vector<double> kRows = {0, -1, 0, 10, 2, 0, 0, 20, 0, 0, 3, 30};
 
 glm::vec3 at(Stage &stage, uint32_t option, double u = 0.25, double v = 0.5) {
@@ -18,11 +18,11 @@ TEST(NodesCoordinates, PlacesInEveryFrame) {
   expect_near(at(stage, LANCER_COORDINATE_OBJECT), {0.5f, 1.0f, 0.0f});
   expect_near(at(stage, LANCER_COORDINATE_POSITION), {9.0f, 21.0f, 30.0f});
   expect_near(at(stage, LANCER_COORDINATE_UV), {0.25f, 0.5f, 0.0f});
-  // The mesh reaches from 0 to 2, and is flat in z.
+  // The mesh extends from 0 to 2, and is flat in z.
   expect_near(at(stage, LANCER_COORDINATE_GENERATED), {0.25f, 0.5f, 0.5f});
   expect_near(at(stage, LANCER_COORDINATE_PARAMETRIC), {0.25f, 0.25f, 0.0f});
   expect_near(at(stage, LANCER_COORDINATE_WINDOW), {9.0f, 21.0f, 30.0f});
-  // The world's point through the map of another object.
+  // The world position transformed by the map of another object.
   lancer_node other = flagged(node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_OBJECT), 1);
   const float map[12] = {0, 1, 0, -21, 1, 0, 0, -9, 0, 0, 2, 0};
   std::copy(map, map + 12, other.matrix);
@@ -70,7 +70,7 @@ TEST(NodesCoordinates, WorldKnowsOnlyTheDirection) {
   };
   for (const uint32_t option : {LANCER_COORDINATE_GENERATED, LANCER_COORDINATE_OBJECT, LANCER_COORDINATE_POSITION})
     EXPECT_EQ(value(option), d);
-  // The surface that it stands for looks back.
+  // The world's surface faces the viewer.
   for (const uint32_t option : {LANCER_COORDINATE_NORMAL, LANCER_COORDINATE_SHADING_NORMAL, LANCER_COORDINATE_TRUE_NORMAL,
                                 LANCER_COORDINATE_INCOMING, LANCER_COORDINATE_REFLECTION})
     EXPECT_EQ(value(option), -d);

@@ -1,4 +1,4 @@
-// True displacement: vertices go where the nodes say, and normals follow.
+// True displacement: vertices move as the nodes specify, and normals follow.
 #include "nodes_lab.h"
 
 #include "compile/steps.h"
@@ -45,7 +45,7 @@ struct Grid {
   }
 };
 
-// A material that lifts by slope . object position + height, along the normal.
+// A material that displaces by slope . object position + height, along the normal.
 void add_lifting(Description &description, const glm::vec3 &slope, float height) {
   std::vector<lancer_node> nodes = {
       node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_OBJECT),
@@ -64,7 +64,7 @@ void add_still(Description &description) {
   add_material(description, material);
 }
 
-// The grid as instance 0 with the description's materials as its slots.
+// Returns the grid as instance 0, with the description's materials as its slots.
 Mesh displaced(Description &description, uint32_t domain, uint32_t threads = 1) {
   const Grid grid;
   add_mesh(description, grid.mesh(domain));
@@ -95,7 +95,7 @@ TEST(NodesDisplace, VerticesFollowTheHeight) {
     for (const glm::vec3 &n : mesh.normals)
       expect_near(n, glm::normalize(glm::vec3(-0.5f, -0.25f, 1.0f)));
     EXPECT_EQ(mesh.normals.size(), domain == LANCER_NORMALS_NONE ? 0u : mesh.positions.size());
-    // Generated coordinates stay those of the mesh as it was.
+    // Generated coordinates stay those of the undisplaced mesh.
     EXPECT_EQ(mesh.high, glm::vec3(1.0f, 1.0f, 0.0f));
   }
 }
@@ -126,7 +126,7 @@ TEST(NodesDisplace, OtherMaterialsStayWhereTheyAre) {
 }
 
 TEST(NodesDisplace, CreasesStay) {
-  // A roof of two triangles with corner normals of its own at the ridge, lifted straight up along world z by its x.
+  // A roof of two triangles with separate corner normals at the ridge, displaced along world z by its x.
   const float positions[] = {0, 0, 0, 1, 0, 1, 1, 1, 1, 2, 0, 0};
   const uint32_t triangles[] = {0, 1, 2, 1, 3, 2};
   const glm::vec3 left = glm::normalize(glm::vec3(-1, 0, 1)), right = glm::normalize(glm::vec3(1, 0, 1));
@@ -163,7 +163,8 @@ TEST(NodesDisplace, CreasesStay) {
 }
 
 TEST(NodesDisplace, KeptNormalsAndABumpThatStandsForThem) {
-  // Lifted by half of x, and a bump of the same height over the surface as it was: the normal of the lifted plane, once.
+  // Displaced by half of x, and a bump of the same height over the undisplaced surface: the normal of the displaced plane,
+  // applied once.
   Description description;
   const std::vector<lancer_node> nodes = {
       node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_OBJECT),

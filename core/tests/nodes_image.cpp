@@ -1,4 +1,4 @@
-// Image and environment nodes: which place of which picture a vector shows. The picture's colour says where it was looked up.
+// Image and environment nodes: the image and place of a vector. The image's colour encodes the place of the lookup.
 #include "nodes_lab.h"
 
 #include <cmath>
@@ -9,7 +9,7 @@ using namespace lancer_test;
 namespace {
 
 constexpr uint32_t kClosest = LANCER_INTERPOLATE_CLOSEST << 4;
-// A gradient is interpolated exactly but for rounding: u of 256 texels between their middles.
+// A gradient is interpolated exactly except for rounding: u of 256 texels between their centres.
 constexpr float kExact = 2e-6f;
 
 lancer_node image_node(uint32_t kind, uint32_t projection, const glm::vec3 &p, uint32_t count = 1, float blend = 0.0f) {
@@ -55,7 +55,7 @@ TEST_F(NodesImage, TubeIsLongitudeAndHeight) {
   }
 }
 
-// A triangle of any orientation, for box projection: the object's normal decides.
+// A triangle of any orientation, for box projection, which depends on the object's normal.
 lancer_mesh triangle_facing(const glm::vec3 &n, std::vector<float> &positions) {
   const glm::vec3 t = glm::normalize(glm::cross(n, std::abs(n.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
   const glm::vec3 b = glm::cross(n, t);
@@ -85,14 +85,14 @@ TEST_F(NodesImage, BoxShowsEachSideUpright) {
 
 TEST_F(NodesImage, BoxMixesNearItsEdges) {
   const glm::vec3 p(0.2f, 0.3f, 0.4f), x(0.3f, 0.4f, 0.0f), y(0.8f, 0.4f, 0.0f), z(0.7f, 0.2f, 0.0f);
-  // On the edge half of each; a bit away from it the share that blend spreads over n.x / (n.x + n.y) = 0.5 -+ blend / 2.
+  // At the edge half of each; near it the share that blend spreads over n.x / (n.x + n.y) = 0.5 -+ blend / 2.
   expect_near(box_at({1, 1, 0}, p, 0.4f), 0.5f * (x + y), kExact);
   expect_near(box_at({0.55f, 0.45f, 0.0f}, p, 0.4f), 0.625f * x + 0.375f * y, kExact);
   expect_near(box_at({0.75f, 0.25f, 0.0f}, p, 0.4f), x, kExact);
   expect_near(box_at({0.0f, 0.45f, 0.55f}, p, 0.4f), 0.375f * y + 0.625f * z, kExact);
   // In the corner a third of each.
   expect_near(box_at({1, 1, 1}, p, 0.4f), (x + y + z) / 3.0f, kExact);
-  // Without a blend the largest stands alone.
+  // Without a blend only the largest.
   expect_near(box_at({0.55f, 0.45f, 0.3f}, p, 0.0f), x, kExact);
 }
 
@@ -131,7 +131,7 @@ TEST_F(NodesImage, Equirectangular) {
 TEST_F(NodesImage, MirrorBallShowsTheReflectedDirection) {
   add_gradient(stage.description, 256, 256);
   for (const glm::dvec2 place : {glm::dvec2(0.5, 0.5), {0.3, 0.6}, {0.8, 0.35}, {0.5, 0.1}}) {
-    // The ball's normal there, seen by a viewer who looks along +y; what it mirrors.
+    // The ball's normal there, seen by a viewer who faces +y; its mirror direction.
     const double x = 2.0 * place.x - 1.0, z = 2.0 * place.y - 1.0;
     const glm::dvec3 n(x, -std::sqrt(1.0 - x * x - z * z), z), forwards(0, 1, 0);
     const glm::vec3 d(glm::reflect(forwards, n));
@@ -146,7 +146,7 @@ TEST_F(NodesImage, CubeStandsUpright) {
   const auto look_along = [&](const glm::vec3 &d) {
     return glm::vec3(stage.value({image_node(LANCER_NODE_ENVIRONMENT, LANCER_ENVIRONMENT_CUBE, d, 6)}));
   };
-  // Straight ahead, then a quarter of the side to the right and up, as one who stands inside and looks that way sees it.
+  // Straight ahead, then a quarter of the side to the right and up, as seen from inside.
   struct Side {
     glm::vec3 forwards, right, up;
   };

@@ -1,4 +1,4 @@
-// Nodes on a stage of their own: one placed triangle with attributes, pictures, and any program.
+// Nodes with a scene of their own: one placed triangle with attributes, images, and any program.
 #pragma once
 
 #include "accel/accelerator.h"
@@ -28,7 +28,7 @@ inline lancer_node node(uint32_t kind, uint32_t option = 0, std::initializer_lis
   return n;
 }
 
-// Without lobes, every value the constant 0.
+// A material without lobes, with every value the constant 0.
 inline lancer_material black() {
   lancer_material material = {};
   material.emission = material.transmittance = material.holdout = material.ambient = material.displacement = material.normal =
@@ -104,7 +104,7 @@ public:
     return s;
   }
 
-  // The value of the last of the nodes.
+  // Returns the value of the last node.
   glm::vec4 value(const std::vector<lancer_node> &nodes, double u = 0.25, double v = 0.5) {
     const Surface s = surface(u, v);
     return value_at(nodes, &s);
@@ -128,7 +128,7 @@ public:
   }
 };
 
-// Texels from the lowest row up, linear, their colours multiplied by alpha. As long as they are neither changed nor moved.
+// Texels from the lowest row up, linear, with colours multiplied by alpha. Valid as long as they are neither changed nor moved.
 template <class Texel>
 lancer_image image_of(const std::vector<Texel> &texels, uint32_t width, uint32_t height, uint32_t channels = 4) {
   lancer_image image = {};
@@ -142,7 +142,7 @@ lancer_image image_of(const std::vector<Texel> &texels, uint32_t width, uint32_t
   return image;
 }
 
-// A picture of floats whose colour is where the texel's middle is: u, v, 0, 1.
+// An image of floats whose colour is the position of the texel's centre: u, v, 0, 1.
 inline void add_gradient(Description &description, uint32_t width, uint32_t height, uint32_t tile = 0) {
   std::vector<float> texels;
   for (uint32_t y = 0; y < height; ++y)
@@ -153,7 +153,7 @@ inline void add_gradient(Description &description, uint32_t width, uint32_t heig
   add_image(description, image);
 }
 
-// Numbers of order 1 through a few float operations: some units in the last place.
+// Numbers of order 1 after a few float operations: some units in the last place.
 inline void expect_near(const glm::vec3 &got, const glm::vec3 &expected, float tolerance = 2e-6f) {
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(got[i], expected[i], tolerance) << "component " << i;

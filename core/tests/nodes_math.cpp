@@ -92,14 +92,14 @@ TEST(NodesMath, EveryOperation) {
               continue; // a distance
           const glm::vec4 got = stage.value({node(LANCER_NODE_MATH, operation, {constant(a), constant(b), constant(c)})});
           const double expected = function(double(a), double(b), double(c));
-          // A few roundings of float, relative to the result or to the operands that were subtracted.
+          // A few roundings of float, relative to the result or to the operands of a subtraction.
           const double tolerance = 4e-7 * std::max({std::abs(expected), 4.0});
           EXPECT_NEAR(got.x, expected, tolerance) << "operation " << operation << " of " << a << ", " << b << ", " << c;
           EXPECT_EQ(got, glm::vec4(got.x, got.x, got.x, 1.0f));
         }
 }
 
-// C99's fmin() and fmax(), but that the first of two zeros counts, whose signs those leave to each library.
+// C99's fmin() and fmax(), except that of two zeros the first is returned, whose sign C99 leaves to each library.
 TEST(NodesMath, TheFirstOfZerosAndTheNumberBesideNone) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   for (const uint32_t operation : {LANCER_MATH_MINIMUM, LANCER_MATH_MAXIMUM}) {
@@ -160,7 +160,7 @@ TEST(NodesMath, EveryVectorOperation) {
     // Numbers up to 14.1, the tangent of 1.5, with two roundings.
     expect_near(glm::vec3(stage.value({n4})), value, 4e-6f);
   }
-  // What is undefined is 0.
+  // Undefined results are 0.
   for (const uint32_t operation : {LANCER_VECTOR_DIVIDE, LANCER_VECTOR_PROJECT, LANCER_VECTOR_MODULO, LANCER_VECTOR_SNAP})
     EXPECT_EQ(glm::vec3(stage.value({node(LANCER_NODE_VECTOR_MATH, operation, {constant(1.0f), constant(0.0f)})})),
               glm::vec3(0.0f));
@@ -180,12 +180,12 @@ TEST(NodesMath, MappingIsScaleThenRotationThenLocation) {
   };
   expect_near(mapped(LANCER_MAPPING_POINT), glm::vec3(turn * (v * scale) + location));
   expect_near(mapped(LANCER_MAPPING_VECTOR), glm::vec3(turn * (v * scale)));
-  // Numbers up to 7, as it divides by a scale of a half, with a dozen roundings of 2^-24 of that.
+  // Numbers up to 7, because it divides by a scale of a half, with a dozen roundings of 2^-24 relative to this.
   expect_near(mapped(LANCER_MAPPING_TEXTURE), glm::vec3(glm::inverse(turn) * (v - location) / scale), 1e-5f);
   expect_near(mapped(LANCER_MAPPING_NORMAL), glm::vec3(glm::normalize(turn * (v / scale))));
 }
 
-// Modes channel by channel: what a full factor gives.
+// Modes per channel: the result with a factor of 1.
 double full_mix(uint32_t mode, double a, double b) {
   switch (mode) {
   case LANCER_MIX_MIX:
@@ -231,7 +231,7 @@ TEST(NodesMath, MixModesAreStraightBetweenTheirEnds) {
       for (int i = 0; i < 3; ++i)
         expected[i] = float((1.0 - double(t)) * double(a[i]) + double(t) * full_mix(mode, double(a[i]), double(b[i])));
       const lancer_node mix = node(LANCER_NODE_MIX, mode, {constant(t), constant(a.x, a.y, a.z), constant(b.x, b.y, b.z)});
-      // Numbers up to 2 (a quotient of 0.9 and 0.5), and eight roundings of 2^-24 of that with the result's.
+      // Numbers up to 2 (a quotient of 0.9 and 0.5), and eight roundings of 2^-24 relative to this and to the result.
       expect_near(glm::vec3(stage.value({mix})), expected, 1e-6f);
     }
   }
@@ -262,11 +262,11 @@ TEST(NodesMath, HueSaturationValueOfTheOther) {
   expect_near(mixed(LANCER_MIX_SATURATION, 1.0f, orange, blue), glm::vec3(0.8f, 0.6f, 0.4f));
   expect_near(mixed(LANCER_MIX_VALUE, 1.0f, orange, blue), glm::vec3(0.4f, 0.2f, 0.0f));
   expect_near(mixed(LANCER_MIX_COLOR, 1.0f, orange, blue), glm::vec3(0.4f, 0.4f, 0.8f));
-  // Half way: hue and colour in RGB, saturation and value by themselves.
+  // Halfway: hue and colour in RGB, saturation and value by themselves.
   expect_near(mixed(LANCER_MIX_HUE, 0.5f, orange, blue), glm::vec3(0.4f, 0.2f, 0.4f));
   expect_near(mixed(LANCER_MIX_SATURATION, 0.5f, orange, blue), glm::vec3(0.8f, 0.5f, 0.2f));
   expect_near(mixed(LANCER_MIX_VALUE, 0.5f, orange, blue), glm::vec3(0.6f, 0.3f, 0.0f));
-  // A grey gives no hue and takes no saturation.
+  // A grey has no hue and receives no saturation.
   expect_near(mixed(LANCER_MIX_HUE, 1.0f, orange, grey), glm::vec3(0.8f, 0.4f, 0.0f));
   expect_near(mixed(LANCER_MIX_SATURATION, 1.0f, grey, blue), glm::vec3(0.3f));
 }
@@ -296,7 +296,7 @@ TEST(NodesMath, ColorModelsAreEachOthersInverse) {
   EXPECT_LT(glm::distance(hsl, glm::vec3(1.0f / 12.0f, 0.5f, 0.5f)), 1e-6f);
   EXPECT_LT(glm::distance(converted(LANCER_COLOR_FROM_HSV, hsv), orange), 1e-6f);
   EXPECT_LT(glm::distance(converted(LANCER_COLOR_FROM_HSL, hsl), orange), 1e-6f);
-  // Greys and black have no hue and no saturation; hues beyond the circle are of its last sixth.
+  // Greys and black have no hue and no saturation; hues outside the circle are treated as its last sixth.
   for (const uint32_t option : {LANCER_COLOR_TO_HSV, LANCER_COLOR_TO_HSL})
     for (const float grey : {0.0f, 0.25f, 1.0f})
       EXPECT_EQ(converted(option, glm::vec3(grey)), glm::vec3(0.0f, 0.0f, grey));
@@ -319,7 +319,7 @@ TEST(NodesMath, SmallOnes) {
   EXPECT_EQ(stage.value({node(LANCER_NODE_CLAMP, 0, {constant(-5.0f), constant(0.5f), constant(2.0f)})}).x, 0.5f);
   EXPECT_EQ(glm::vec3(stage.value({node(LANCER_NODE_INVERT, 0, {constant(0.5f), color})})), glm::vec3(0.5f));
   EXPECT_EQ(glm::vec3(stage.value({node(LANCER_NODE_INVERT, 0, {constant(1.0f), color})})), glm::vec3(0.75f, 0.5f, 1.5f));
-  // A negative channel has no power; the exponent 0 makes white.
+  // A negative channel has no power; the exponent 0 gives white.
   expect_near(glm::vec3(stage.value({node(LANCER_NODE_GAMMA, 0, {color, constant(2.0f)})})), glm::vec3(0.0625f, 0.25f, -0.5f));
   EXPECT_EQ(glm::vec3(stage.value({node(LANCER_NODE_GAMMA, 0, {color, constant(0.0f)})})), glm::vec3(1.0f));
 }

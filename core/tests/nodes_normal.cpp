@@ -8,7 +8,7 @@ using namespace lancer_test;
 namespace {
 
 const std::vector<double> kHere = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-// Stretched: normals and tangents go different ways.
+// Stretched: normals and tangents transform differently.
 const std::vector<double> kStretched = {2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 glm::vec3 map_at(Stage &stage, const glm::vec3 &color, float strength = 1.0f, uint32_t option = 0) {
@@ -19,13 +19,13 @@ glm::vec3 map_at(Stage &stage, const glm::vec3 &color, float strength = 1.0f, ui
 TEST(NodesNormal, MapStandsInTheFrameOfTheUVs) {
   Stage stage;
   const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -0.4f, 0.8f)), color = 0.5f + 0.5f * direction;
-  // u runs along x, v along y.
+  // u is along x, v along y.
   expect_near(map_at(stage, color), direction);
   expect_near(map_at(stage, glm::vec3(0.5f, 0.5f, 1.0f)), {0, 0, 1});
   // Strength flattens x and y, and z towards 1.
   const glm::vec3 weak(0.5f * direction.x, 0.5f * direction.y, 0.5f + 0.5f * direction.z);
   expect_near(map_at(stage, color, 0.5f), glm::normalize(weak));
-  // Seen from behind the whole map looks back.
+  // From behind the whole map is flipped.
   stage.wo = {0, 0, -1};
   expect_near(map_at(stage, color), -direction);
 }
@@ -73,7 +73,7 @@ TEST(NodesNormal, MapsOfObjectAndWorld) {
   expect_near(map_at(stage, color, 0.5f, 2), glm::normalize(glm::vec3(0, 0, 1) + 0.5f * (direction - glm::vec3(0, 0, 1))));
 }
 
-// Heights are differences of floats of order 1 over a step of 2^-8: 2^-24 over that, a few of them.
+// Heights are differences of floats of order 1 over a step of 2^-8: a few times 2^-24 over this.
 constexpr float kRough = 1e-4f;
 
 // A bump whose height is slope . position, in world units.
@@ -116,7 +116,7 @@ TEST(NodesNormal, BumpFollowsEveryCoordinate) {
         {node(LANCER_NODE_COORDINATE, option), node(LANCER_NODE_SEPARATE, 0, {result_of(0)}),
          node(LANCER_NODE_BUMP, 0, {constant(1.0f), constant(factor), result_of(1), constant(0.0f), constant(1.0f)})}));
     expect_near(n, glm::normalize(glm::vec3(-1.0f, 0.0f, 1.0f)), kRough);
-    // From behind what is painted on the mesh stands out to the other side; this mesh has no attribute for GENERATED.
+    // From behind, attributes of the mesh bump to the other side; this mesh has no attribute for GENERATED.
     stage.wo = {0, 0, -1};
     const bool painted = option == LANCER_COORDINATE_UV;
     const glm::vec3 behind(stage.value(
@@ -139,7 +139,7 @@ TEST(NodesNormal, BumpsInARowAddUp) {
     n.first = first;
     return n;
   };
-  // The second's height depends on nothing but x; the first stands among its nodes and keeps its value.
+  // The second bump's height depends on x only; the first is among its nodes and keeps its value.
   const glm::vec3 n(
       stage.value({node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_POSITION), node(LANCER_NODE_SEPARATE, 1, {result_of(0)}),
                    bump(1, constant(0.0f), 0), node(LANCER_NODE_SEPARATE, 0, {result_of(0)}), bump(3, result_of(2), 0)}));
@@ -156,14 +156,14 @@ TEST(NodesNormal, BumpOfANormalBelowTheSurface) {
   const glm::vec3 n(stage.value(
       {node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_POSITION), node(LANCER_NODE_SEPARATE, 0, {result_of(0)}),
        node(LANCER_NODE_BUMP, 0, {constant(1.0f), constant(1.0f), result_of(1), constant(0, 0, -1), constant(1.0f)})}));
-  // The slope keeps its side: uphill is +x, so the normal leans to -x.
+  // The slope keeps its side: uphill is +x, so the normal tilts to -x.
   expect_near(n, glm::normalize(glm::vec3(-1, 0, -1)), kRough);
 }
 
 TEST(NodesNormal, BumpLeavesItsHeightAsItWas) {
   Stage stage;
   stage.footprint = 0.25f;
-  // What comes after the bump still sees the height of the place itself.
+  // Nodes after the bump still read the height at the hit itself.
   const glm::vec4 height =
       stage.value({node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_POSITION), node(LANCER_NODE_SEPARATE, 0, {result_of(0)}),
                    node(LANCER_NODE_BUMP, 0, {constant(1.0f), constant(1.0f), result_of(1), constant(0.0f), constant(1.0f)}),
@@ -176,15 +176,16 @@ TEST(NodesNormal, TangentsRadialAndAlongTheMap) {
   const auto tangent = [&](uint32_t option, double u, double v) {
     return glm::vec3(stage.value({node(LANCER_NODE_TANGENT, option)}, u, v));
   };
-  // Generated (0.75, 0.25, 0.5): around z that is (0.25, 0.25); a normal's way to the world halves x, then unit.
+  // Generated (0.75, 0.25, 0.5): around z this is (0.25, 0.25); a normal's transformation to the world halves x, then
+  // normalises.
   expect_near(tangent(2, 0.75, 0.25), glm::normalize(glm::vec3(0.125f, 0.25f, 0.0f)));
-  // Around x: (0, 0, y - 0.5) is along the normal, nothing is left across it.
+  // Around x: (0, 0, y - 0.5) is along the normal; nothing remains perpendicular to it.
   expect_near(tangent(0, 0.75, 0.25), glm::vec3(0.0f));
   expect_near(tangent(3, 0.2, 0.2), {1, 0, 0});
 }
 
 TEST(NodesNormal, DisplacementInObjectAndWorld) {
-  // The normal z is 4 long in the world.
+  // The normal z has length 4 in the world.
   Stage stage({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 4, 0});
   stage.normalise(glm::dvec3(0.0), 8.0);
   const auto offset = [&](uint32_t option, lancer_parameter normal) {
@@ -214,8 +215,8 @@ TEST(NodesNormal, FresnelFromBothSides) {
         const double expected = fresnel(double(cosine), side > 0.0f ? double(ior) : 1.0 / double(ior));
         // Numbers of order 1 with a dozen roundings of 2^-24; none of these angles is near the critical one.
         EXPECT_NEAR(stage.value({node(LANCER_NODE_FRESNEL, 0, {constant(ior)})}).x, expected, 1e-6);
-        // Layer weight's Fresnel has the blend 1 - 1 / ior, from which it gets 1 / ior back with an error of 2^-24: 1.5e-7 of
-        // it where ior is 2.5, and Fresnel grows by less than 1 with the logarithm of ior here.
+        // Layer weight's Fresnel has the blend 1 - 1 / ior, from which 1 / ior is recovered with an error of 2^-24: a relative
+        // 1.5e-7 for an ior of 2.5, and Fresnel grows by less than 1 with the logarithm of ior here.
         EXPECT_NEAR(stage.value({node(LANCER_NODE_LAYER_WEIGHT, 0, {constant(1.0f - 1.0f / ior)})}).x, expected, 1.2e-6);
       }
   // With a normal of its own.

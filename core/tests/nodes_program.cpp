@@ -1,4 +1,4 @@
-// Which nodes run, and which programs are refused.
+// Schedules of nodes, and rejected programs.
 #include "nodes_lab.h"
 
 #include <cmath>
@@ -36,7 +36,7 @@ TEST(NodesProgram, RunsOnlyWhatIsNeededInOrder) {
 TEST(NodesProgram, ABumpKeepsItsHeightToItself) {
   lancer_node bump = node(LANCER_NODE_BUMP, 0, {constant(1.0f), result_of(1), result_of(3), constant(0.0f), constant(1.0f)});
   bump.first = 2;
-  // 0 feeds the height from outside, 1 the distance; 2 and 3 are the bump's own.
+  // 0 is an input of the height from outside, 1 the distance; 2 and 3 belong to the bump.
   const std::vector<lancer_node> nodes = {add(constant(0.0f)), add(constant(0.0f)), node(LANCER_NODE_COORDINATE),
                                           add(result_of(2), result_of(0)), bump};
   EXPECT_EQ(schedule_of(nodes, {4}), (Schedule{0, 1, 4}));
@@ -52,7 +52,7 @@ TEST(NodesProgram, InputsThatAKindDoesNotReadAreNotRun) {
   EXPECT_EQ(schedule_of(nodes, {1}), (Schedule{1}));
 }
 
-// The message with which a program of one good and one given node is refused; empty if it is taken.
+// Returns the error message of a program of one valid and one given node; an empty string if it is accepted.
 std::string refusal(const lancer_node &bad) {
   Description description;
   add_gradient(description, 2, 2);

@@ -1,4 +1,4 @@
-// Textures that are computed, and curves, by what must hold of them; Blender's own values are compared with in blender_tests.
+// Procedural textures and curves: their invariants; blender_tests compares with Blender's own values.
 #include "nodes_lab.h"
 
 #include "nodes/curves.h"
@@ -84,7 +84,7 @@ TEST(NodesNoise, OctavesThatAreCountedAreOneMore) {
   for (uint32_t kind = 0; kind < LANCER_NOISE_COUNT; ++kind)
     for (const V &p : places(50)) {
       EXPECT_EQ(noise_at(kind, k3D | LANCER_NOISE_COUNTED, p, 4.0f), noise_at(kind, k3D, p, 3.0f));
-      // Of no octave, sums are nothing and products are one; terrains have their first.
+      // Without an octave, sums are 0 and products are 1; terrains have their first.
       const float none = noise_at(kind, k3D | LANCER_NOISE_COUNTED, p, 0.0f);
       if (kind == LANCER_NOISE_FBM || kind == LANCER_NOISE_HYBRID_MULTIFRACTAL)
         EXPECT_EQ(none, 0.0f);
@@ -119,7 +119,7 @@ TEST(NodesVoronoi, ThePointIsAsFarAsItSays) {
         const V point = cells_at(feature, flags | LANCER_VORONOI_POSITION, p).vector;
         const VoronoiValue<float> value = cells_at(feature, flags | LANCER_VORONOI_COLOR, p);
         const V way = point - p;
-        // Coordinates up to 22 are rounded by 2^-20, thrice.
+        // Coordinates up to 22 have three roundings of 2^-20.
         EXPECT_NEAR(std::sqrt(dot(way, way)), value.number, 3 * 0x1p-20f);
         if (feature != LANCER_VORONOI_F1)
           continue;
@@ -139,7 +139,7 @@ TEST(NodesVoronoi, FeaturesAreInOrder) {
     EXPECT_GE(number(LANCER_VORONOI_DISTANCE_TO_EDGE, 0) + 0x1p-20f, 0.5f * (second - first));
     EXPECT_LE(number(LANCER_VORONOI_F1, LANCER_VORONOI_CHEBYCHEV), first);
     EXPECT_GE(number(LANCER_VORONOI_F1, LANCER_VORONOI_MANHATTAN), first);
-    // Its exponent is 2 here. Each power is within a unit in the last place of its own.
+    // Its exponent is 2 here. Each power has an error of a unit in the last place.
     EXPECT_NEAR(number(LANCER_VORONOI_F1, LANCER_VORONOI_MINKOWSKI), first, 6 * 0x1p-24f);
     EXPECT_EQ(cells_at(LANCER_VORONOI_SMOOTH_F1, k3D, p, 0.0f).number, first);
     EXPECT_LE(cells_at(LANCER_VORONOI_SMOOTH_F1, k3D, p, 1.0f).number, first);
@@ -150,7 +150,7 @@ TEST(NodesVoronoi, TheBoundIsBeyondOrdinaryDistances) {
   for (const V &p : places(100))
     for (uint32_t feature = 0; feature < LANCER_VORONOI_COUNT; ++feature)
       EXPECT_EQ(cells_at(feature, k3D | LANCER_VORONOI_BOUNDED, p).number, cells_at(feature, k3D, p).number);
-  // Under an exponent of a tenth the nearest point is further.
+  // With an exponent of a tenth the nearest point is farther.
   const V form{1.0f, 0.1f, 0.0f}, octaves{0.0f, 0.5f, 2.0f};
   const uint32_t flags = by_metric(LANCER_VORONOI_MINKOWSKI);
   const auto distance = [&](uint32_t more) {
@@ -222,7 +222,7 @@ TEST(NodesCurves, ReadTheRowOfAPicture) {
   ends.option = 1;
   expect_near(glm::vec3(Tables(3).value({ends})), {0.125f, -0.25f, 7.0f}, 0.0f);
   ends.option = 0;
-  // One curve takes x alone.
+  // A single curve applies to x only.
   const float between = 0.5f * kTable[0] + 0.5f * kTable[1];
   expect_near(glm::vec3(Tables(1).value({ends})), glm::vec3(between), 0.0f);
 }

@@ -1,4 +1,4 @@
-// No memory, or no thread, at any moment of a render: the call says so, and the next render is as if nothing had been.
+// No memory, or no thread, at any moment of a render: the call reports it, and the next render is unaffected.
 #include "failing.h"
 #include "whole_render.h"
 
@@ -14,11 +14,11 @@ struct Case {
   Refuse refuse;
 };
 
-int64_t left_behind = 0; // by the last render
+int64_t left_behind = 0; // live allocations after the last render
 
 std::vector<float> room() { return std::vector<float>(kWholeFloats, 0.0f); }
 
-// A render of which the request of that number is refused; false when it never came to that.
+// Renders with the request of that number refused; returns false if there was no such request.
 bool render_refused(const Case &c, uint64_t number, std::vector<float> &picture, RenderOutcome &outcome) {
   const int64_t before = live_memory();
   const Failing failing(c.refuse, number);
@@ -39,7 +39,7 @@ TEST_P(AllocationFailures, EachIsAnErrorAndLeavesNothingBehind) {
   for (; render_refused(c, number, picture, outcome); ++number) {
     SCOPED_TRACE("request " + std::to_string(number) + ", " + (outcome.whole() ? "" : outcome.call) + ": " + outcome.message);
     if (outcome.whole()) {
-      // Something went without: a thread of a build, for one. It shows nowhere.
+      // Something did without, a thread of a build for example, with no effect on the picture.
       ASSERT_EQ(picture, expected);
     } else {
       ASSERT_EQ(outcome.status, LANCER_ERROR_MEMORY);
@@ -49,11 +49,11 @@ TEST_P(AllocationFailures, EachIsAnErrorAndLeavesNothingBehind) {
   }
   EXPECT_TRUE(outcome.whole()) << outcome.call << ": " << outcome.message;
   EXPECT_EQ(picture, expected);
-  // A render takes far more than these: the loop has not ended early.
+  // A render makes far more requests than this: the loop has not ended early.
   EXPECT_GT(number, 200u);
 }
 
-// Without a render before it: tables that are made once are made here, or are not.
+// Without a render before it: tables that are made once are made here, or fail here.
 TEST(AllocationFailures, TheFirstRenderOfAProcessIsNoExceptionToThat) {
   const Case c{"", {}, Refuse::One};
   prepare_whole();

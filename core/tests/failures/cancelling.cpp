@@ -1,4 +1,4 @@
-// Renders and builds cancelled at any moment: nothing stays behind, no thread and no memory, and the next one is as ever.
+// Renders and builds cancelled at any moment: no thread and no memory is left, and the next one is unaffected.
 #include "failing.h"
 #include "whole_render.h"
 
@@ -17,7 +17,7 @@ namespace {
 using namespace lancer_test;
 using Clock = std::chrono::steady_clock;
 
-// LANCER_CANCELS: how often; few where nothing is said.
+// LANCER_CANCELS: number of repetitions; few by default.
 int repeats() {
   const char *asked = std::getenv("LANCER_CANCELS");
   return asked ? std::atoi(asked) : 50;
@@ -30,15 +30,15 @@ size_t threads_now() {
   return count;
 }
 
-// A joined thread may be listed for a moment more; one that was left behind is listed for ever.
+// A joined thread may be listed for a moment longer; a leaked thread is listed forever.
 bool threads_come_down_to(size_t count) {
   for (int i = 0; i < 100000 && threads_now() > count; ++i)
     std::this_thread::yield();
   return threads_now() <= count;
 }
 
-// A pause of a random share of what the work takes. That hangs on what else the machine does: the longest pause becomes shorter
-// when it came too late, and longer when it did not.
+// A pause of a random share of the work's duration, which depends on the machine's load: the longest pause becomes shorter if
+// it ended too late, and longer if not.
 class Moment {
 public:
   explicit Moment(std::chrono::nanoseconds whole) : longest_(1.1 * double(whole.count())) {}
@@ -54,8 +54,8 @@ private:
   double longest_;
 };
 
-// Does a piece of work to its end, then so often broken off at a moment; counts how often it was cancelled. The work is
-// given the moment, where there is one, and the number of the time.
+// Does a piece of work completely, then repeatedly interrupted at a moment; counts cancellations. The work receives the moment,
+// if any, and the number of the repetition.
 template <class Work> void break_off(int times, int &cancelled, const Work &work) {
   // Warm up, then time the whole.
   ASSERT_EQ(work(nullptr, 0), LANCER_OK) << lancer_last_error();
@@ -85,7 +85,7 @@ lancer_status finish_scene(lancer_scene scene) {
   return status;
 }
 
-// Renders 16 samples of 24 x 16 pixels; cancels after the moment where one is given.
+// Renders 16 samples of 24 x 16 pixels; cancels after the moment, if given.
 lancer_status render(lancer_scene scene, std::vector<float> &image, Moment *moment) {
   const lancer_camera camera = make_camera();
   const lancer_settings settings = make_settings();
@@ -121,12 +121,12 @@ TEST(Cancelling, RendersLeaveNothingBehind) {
     EXPECT_TRUE(std::all_of(image.begin(), image.end(), [](float value) { return std::isfinite(value); }));
     return status;
   }));
-  // Moments are spread over the whole render, and follow its end.
+  // Moments are spread over the whole render, whatever its duration.
   EXPECT_GT(cancelled, repeats() / 4);
   lancer_scene_destroy(scene);
 }
 
-// Doubles samples until nothing is left to double; cancels or stops after the moment where one is given.
+// Doubles samples until nothing is left to double; cancels or stops after the moment, if given.
 lancer_status refine(lancer_scene scene, std::vector<float> &image, Moment *moment, bool stops) {
   const lancer_camera camera = make_camera();
   lancer_settings settings = make_settings();
@@ -168,7 +168,7 @@ TEST(Cancelling, RefinementsLeaveNothingBehind) {
   ASSERT_NO_FATAL_FAILURE(break_off(repeats(), cancelled, [&](Moment *moment, int time) {
     const bool stops = time % 2 != 0;
     const lancer_status status = refine(scene, image, moment, stops);
-    // After a stop it has gone on to the same end.
+    // After a stop it has continued to the same end.
     EXPECT_TRUE(status == LANCER_OK || !stops);
     if (status == LANCER_OK) {
       EXPECT_EQ(image, whole);
@@ -179,7 +179,7 @@ TEST(Cancelling, RefinementsLeaveNothingBehind) {
   lancer_scene_destroy(scene);
 }
 
-// A wavy sheet of so many squares a side.
+// A wavy sheet with this many squares per side.
 struct Sheet {
   std::vector<float> positions;
   std::vector<uint32_t> triangles;
@@ -205,7 +205,7 @@ struct Sheet {
   }
 };
 
-// A mesh that shines, so that a tree of lights is made as well, before its commit.
+// An emitting mesh, so that a light tree is built as well; not yet committed.
 lancer_scene open_scene(const Sheet &sheet) {
   lancer_scene scene = 0;
   EXPECT_EQ(lancer_scene_create(&scene), LANCER_OK);
@@ -228,7 +228,7 @@ TEST_P(CancelledBuilds, LeaveNothingBehind) {
   ASSERT_NO_FATAL_FAILURE(break_off(repeats() / 2, cancelled, [&](Moment *moment, int time) {
     const lancer_scene scene = open_scene(sheet);
     EXPECT_EQ(lancer_scene_commit(scene, GetParam(), 2), LANCER_OK);
-    // To end the scene is to cancel its build, too.
+    // Destroying the scene also cancels its build.
     const bool ends = moment && time % 4 == 3;
     if (moment) {
       moment->wait();

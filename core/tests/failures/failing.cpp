@@ -42,9 +42,9 @@ void give_back(void *memory) noexcept {
   std::free(memory);
 }
 
-// What the system has under that name, behind this file's own.
+// Returns the system's function of that name, which this file's function hides.
 template <class Function> Function *next_of(const char *name) {
-  return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name)); // NOLINT: the way of dlsym
+  return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name)); // NOLINT: required by dlsym
 }
 
 } // namespace
@@ -68,7 +68,7 @@ int64_t live_memory() { return live; }
 
 } // namespace lancer_test
 
-// All forms but the aligned ones, so that what one of them gives never goes to another library's delete.
+// All forms except the aligned ones, so that memory from one form is never freed by another library's delete.
 void *operator new(std::size_t size) { return allocate_or_throw(size); }
 void *operator new[](std::size_t size) { return allocate_or_throw(size); }
 void *operator new(std::size_t size, const std::nothrow_t &) noexcept { return allocate(size); }
@@ -80,7 +80,8 @@ void operator delete[](void *memory, std::size_t) noexcept { give_back(memory); 
 void operator delete(void *memory, const std::nothrow_t &) noexcept { give_back(memory); }
 void operator delete[](void *memory, const std::nothrow_t &) noexcept { give_back(memory); }
 
-// What the program defines goes before what its libraries do: nodes of trees and pictures ask here, and std::thread.
+// The program's definitions precede those of its libraries: allocations of tree nodes and images and of std::thread arrive
+// here.
 extern "C" void *aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
   static auto *const next = next_of<void *(std::size_t, std::size_t)>("aligned_alloc");
   return refuse_now() ? nullptr : next(alignment, size);

@@ -1,4 +1,4 @@
-// Memory and threads of the whole process, watched: asked for, and refused where a test wants it.
+// Counts and refuses requests for memory and threads of the whole process.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@ namespace lancer_test {
 
 enum class Refuse {
   Nothing,
-  One,       // that request alone
-  AllFromIt, // that request and all that follow
+  One,       // this request only
+  AllFromIt, // this request and all later ones
 };
 
-// While it lives requests of all threads are numbered from 1, and refused from the given number on or at it alone. One at a
-// time.
+// During its lifetime requests of all threads are numbered from 1, and refused at the given number or from it on. One object at
+// a time.
 class Failing {
 public:
   explicit Failing(Refuse refuse = Refuse::Nothing, uint64_t number = 0);
@@ -24,7 +24,7 @@ public:
   bool refused() const;
 };
 
-// The pieces of memory that have been given and not been taken back.
+// Returns the number of live allocations.
 int64_t live_memory();
 
 } // namespace lancer_test

@@ -9,7 +9,7 @@ namespace lancer_test {
 
 namespace {
 
-// Calls one after the other as long as they go well.
+// Makes calls in sequence as long as they succeed.
 class Calls {
 public:
   explicit Calls(RenderOutcome &outcome) : outcome_(outcome) {}
@@ -71,7 +71,7 @@ void ask_scene(lancer_scene scene, Calls &calls) {
   calls.make("probe_light", [&] { return lancer_probe_light(scene, 0, 1, origin, u, &light); });
 }
 
-// Doubles the samples of all pixels, then of those that are worth it; and asks to stop what has ended.
+// Doubles the samples of all pixels, then of those with the most benefit; and stops a range that has ended.
 void refine(lancer_session session, Calls &calls) {
   for (const double target : {0.0, 0.01}) {
     calls.make("session_refine", [&] { return lancer_session_refine(session, target, 0.95); });
@@ -98,7 +98,7 @@ void use_session(lancer_session session, bool refines, std::span<float> picture,
   lancer_vertex vertices[4];
   uint32_t count;
   calls.make("debug_sample", [&] { return lancer_debug_sample(session, 4, 4, 1, rgba, vertices, 4, &count); });
-  // One channel count after the other, until the call takes it.
+  // Try channel counts until the call accepts one.
   float *out = picture.data();
   for (uint32_t pass = 0; pass < LANCER_PASS_COUNT && calls.well(); ++pass)
     for (const size_t channels : {1, 3, 4}) {
@@ -112,7 +112,7 @@ void use_session(lancer_session session, bool refines, std::span<float> picture,
     }
 }
 
-// What a caller may ask after a failure, too: all of it answers, and a scene that was not committed stays so.
+// Calls that are valid after a failure: all of them return, and a scene that was not committed stays uncommitted.
 void ask_again(lancer_scene scene, lancer_session session, std::span<float> picture, Calls &calls) {
   const lancer_camera camera = make_camera(kWholeSide, kWholeSide);
   const lancer_settings settings = make_settings();
@@ -161,7 +161,7 @@ RenderOutcome render_whole(const RenderKind &kind, std::span<float> picture) {
   lancer_session session = 0;
   calls.make("session_create", [&] { return lancer_session_create(scene, &camera, &settings, &session); });
   use_session(session, kind.refines, picture, calls);
-  // What there is must go, even where no memory is.
+  // Destroying handles must work without memory.
   RenderOutcome end;
   Calls ends(end);
   if (!outcome.whole())

@@ -1,4 +1,4 @@
-// A render from the first call to the last that has a bit of everything, through the C interface.
+// A render through the C interface from the first call to the last, with a bit of everything.
 #pragma once
 
 #include "lancer.h"
@@ -16,10 +16,10 @@ struct RenderKind {
 };
 
 inline constexpr uint32_t kWholeSide = 8;
-// All passes of the picture, one after the other.
+// All passes of the picture in sequence.
 inline constexpr size_t kWholeFloats = size_t(kWholeSide) * kWholeSide * 64;
 
-// The first call that went wrong, if any did; after it nothing was called but what ends things.
+// The first call that failed, if any; after it only destroying calls were made.
 struct RenderOutcome {
   const char *call = nullptr;
   lancer_status status = LANCER_OK;
@@ -28,11 +28,11 @@ struct RenderOutcome {
   bool whole() const { return call == nullptr; }
 };
 
-// Makes what render_whole describes, which takes memory, once.
+// Makes the input of render_whole(), which allocates memory, once.
 void prepare_whole();
 
-// Renders meshes with attributes, materials of nodes, pictures, lamps enough for a tree and a sky that varies, reads all passes
-// into picture [kWholeFloats], asks for the error, statistics, a replay and probes, and leaves nothing behind. Asks for no
+// Renders meshes with attributes, materials of nodes, images, enough lamps for a tree and a sky that varies, reads all passes
+// into picture [kWholeFloats], requests the error, statistics, a replay and probes, and frees everything. Does not allocate
 // memory itself.
 RenderOutcome render_whole(const RenderKind &kind, std::span<float> picture);
 

@@ -55,7 +55,7 @@ void WholeScene::make_meshes() {
   for (uint32_t y = 0; y < kGrid; ++y)
     for (uint32_t x = 0; x < kGrid; ++x) {
       positions.insert(positions.end(), {float(x) - 2.0f, float(y) - 2.0f, float((x * y) % 3) * 0.1f});
-      // One normal is none, and is told of.
+      // One normal is NaN, which causes a message.
       normals.insert(normals.end(), {x == 1 && y == 1 ? NAN : 0.0f, 0.0f, 1.0f});
     }
   for (uint32_t y = 0; y + 1 < kGrid; ++y)
@@ -121,7 +121,7 @@ void WholeScene::make_materials() {
   lancer_node dust = node(LANCER_NODE_ATTRIBUTE);
   dust.name = "dust";
   paint_nodes = {node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV), look, dust};
-  // So many that a bump's height finds no room on the stack.
+  // So many that a bump's height does not fit on the stack.
   while (paint_nodes.size() < kLongProgram)
     paint_nodes.push_back(
         node(LANCER_NODE_MATH, LANCER_MATH_ADD, {result_of(int32_t(paint_nodes.size()) - 1), result_of(1), parameter(0.0f)}));
@@ -166,7 +166,7 @@ void WholeScene::make_materials() {
   old_lobes = {lobe(LANCER_LAMBERT, 0.4f), lobe(LANCER_PHONG, 0.3f), lobe(LANCER_MIRROR, 0.2f)};
   lancer_material old = black("old");
   old.emission = parameter(0.5f);
-  // Told of, and replaced.
+  // Replaced, with a message.
   old.ambient = parameter(-1.0f);
   set(old, old_lobes, {});
   materials = {paint, glass, leaf, old};
@@ -183,7 +183,7 @@ void WholeScene::make_materials() {
 }
 
 void WholeScene::make_lights() {
-  // More than are asked one by one.
+  // More than are sampled one by one.
   for (int i = 0; i < 7; ++i) {
     lancer_light light = point_light();
     place(light.matrix, i - 3.0, -2.0, 4.0);

@@ -1,4 +1,4 @@
-// What render_whole() hands over: a bit of everything, as records of the C interface.
+// The input of render_whole(): a bit of everything, as records of the C interface.
 #pragma once
 
 #include "lancer.h"
@@ -8,7 +8,7 @@
 
 namespace lancer_test {
 
-// The records, and what they point to.
+// The records, and the arrays that they point to.
 struct WholeScene {
   std::vector<float> positions, normals, uvs, colors, tangents;
   std::vector<uint32_t> triangles;
@@ -39,7 +39,7 @@ private:
   void make_instances();
 };
 
-// Made at the first call, which takes memory.
+// Made at the first call, which allocates memory.
 const WholeScene &whole_scene();
 
 } // namespace lancer_test

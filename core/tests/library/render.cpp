@@ -1,4 +1,4 @@
-// Renders through the library as it ships, with nothing but its header: says its release and the picture's mean.
+// Renders through the shipped library with nothing but its header; prints the release and the picture's mean.
 #include "../tiny_scene.h"
 
 #include <cstdio>
@@ -18,6 +18,6 @@ int main() {
   for (const float value : image)
     mean += double(value) / double(image.size());
   std::printf("Lancer %s: mean %.9g %s\n", lancer_version(), mean, lancer_last_error());
-  // The sky alone gives a fifth of a unit, and nothing but the lamp's own tetrahedron is beyond one.
+  // The sky alone gives a fifth, and only the lamp's own tetrahedron exceeds one.
   return rendered && mean > 0.05 && mean < 5.0 ? 0 : 1;
 }
