@@ -263,7 +263,7 @@ TEST(NodesObjectInfo, TellsWhatWasGiven) {
   EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_INDEX)}), grey(9.0f));
   stage.normalise({1.0, 1.0, 1.0}, 0.25);
   EXPECT_EQ(stage.value({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_LOCATION)}), glm::vec4(5.0f, 6.0f, 7.0f, 1.0f));
-  // The world is no object.
+  // The world is not an object.
   EXPECT_EQ(stage.value_at({node(LANCER_NODE_OBJECT_INFO, LANCER_OBJECT_COLOR)}, nullptr), glm::vec4(0.0f));
   EXPECT_THROW(set_object_infos(stage.description, 2, info), std::exception);
   const float bad[] = {0.1f, 0.2f, 0.3f, 0.4f, kInfinite};

@@ -1,4 +1,4 @@
-// Places that float cannot hold: passes tell the farthest that there is, and the picture is whole.
+// Positions beyond the range of float: passes contain the largest float, and the picture is complete.
 #include "tiny_scene.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ std::vector<float> read(lancer_session session, uint32_t pass, size_t channels) 
   return values;
 }
 
-// A plane under a sphere that is nearly as large as things may be, and a sky.
+// A plane under a sphere of nearly the largest valid size, and a sky.
 lancer_scene make_large_scene() {
   lancer_scene scene = 0;
   lancer_scene_create(&scene);
@@ -40,7 +40,7 @@ lancer_scene make_large_scene() {
 TEST(PassesFarAway, EndWhereFloatEnds) {
   const lancer_scene scene = make_large_scene();
   lancer_camera camera = make_camera();
-  // Along y over the plane, beyond all floats.
+  // Along y over the plane, beyond the range of float.
   camera.matrix[7] = 1e39;
   camera.matrix[11] = 1e29;
   camera.clip_end = 1e31;
@@ -50,7 +50,7 @@ TEST(PassesFarAway, EndWhereFloatEnds) {
   ASSERT_EQ(lancer_session_render(session, 0, 1), LANCER_OK);
   ASSERT_EQ(finish(session), LANCER_OK);
   const float farthest = std::numeric_limits<float>::max();
-  // The lowest row sees the plane.
+  // The lowest row shows the plane.
   EXPECT_EQ(read(session, LANCER_PASS_POSITION, 3)[1], farthest);
   EXPECT_EQ(read(session, LANCER_PASS_UV, 3)[1], farthest);
   EXPECT_GT(read(session, LANCER_PASS_COMBINED, 4)[0], 0.0f);

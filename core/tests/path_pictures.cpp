@@ -1,4 +1,4 @@
-// Paths under a picture of the sky, over surfaces with pictures: side by side and one by one they give the same bits.
+// Paths under a sky image, over surfaces with images: lanes and single samples have the same bits.
 #include "random_scenes.h"
 
 #include <gtest/gtest.h>
@@ -6,8 +6,7 @@
 namespace lancer_test {
 namespace {
 
-// Noise; of bytes with a curve, or of floats of which a few are bright. beyond: with an alpha that is less than 0 or more than
-// 1 at times.
+// Noise: bytes with a curve, or floats of which a few are bright. beyond: alpha is sometimes below 0 or above 1.
 void add_image(Studio &studio, Random &random, uint32_t kind, bool beyond = false) {
   constexpr uint32_t width = 32, height = 16;
   std::vector<uint8_t> bytes(width * height * 4);
@@ -27,13 +26,13 @@ uint32_t add_pictured(Studio &studio, Random &random, uint32_t image) {
   lancer_node picture = flagged(node(LANCER_NODE_IMAGE, LANCER_PROJECT_FLAT, {result_of(0)}), random() % 3 | 256);
   picture.image = image;
   picture.image_count = 1;
-  // Alpha as it is, or clamped as a mix has it.
+  // Alpha unchanged, or clamped by a mix.
   const int32_t share = random() % 2 ? 2 : 3;
   const std::vector<lancer_node> nodes = {named(node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV), ""), picture,
                                           node(LANCER_NODE_ALPHA, 0, {result_of(1)}),
                                           flagged(node(LANCER_NODE_MATH, LANCER_MATH_ADD, {result_of(2), constant(0.0f)}), 1),
                                           node(LANCER_NODE_MATH, LANCER_MATH_SUBTRACT, {constant(1.0f), result_of(share)})};
-  // Where the nodes say more than the colour.
+  // Nodes that decide more than the colour.
   lancer_material material = black();
   if (random() % 4 == 0)
     material.transmittance = result_of(1);
@@ -47,7 +46,7 @@ uint32_t add_pictured(Studio &studio, Random &random, uint32_t image) {
     layered.principled = &layers;
     return studio.add({layered}, material, nodes);
   }
-  // Not rough, so that kernels know it.
+  // Not rough, so that kernels support it.
   lancer_lobe matte = lobe(LANCER_DIFFUSE, 0.8f, 0.0f);
   matte.rules = LANCER_RULES_BLENDER_45;
   matte.color = result_of(1);
@@ -67,7 +66,7 @@ void add_sky(Studio &studio, uint32_t seed) {
   picture.image_count = 1;
   nodes.push_back(picture);
   const lancer_parameter seen = result_of(int32_t(nodes.size()) - 1);
-  // What only the general code computes, too.
+  // Sometimes a node that only the general code evaluates.
   if (seed % 3)
     nodes.push_back(node(LANCER_NODE_VECTOR_MATH, seed % 3 == 1 ? LANCER_VECTOR_MULTIPLY : LANCER_VECTOR_ADD,
                          {seen, constant(0.4f, 0.5f, 0.6f)}));
@@ -113,7 +112,7 @@ std::vector<float> picture(uint32_t seed, uint32_t passes) {
   return studio.read(LANCER_PASS_COMBINED, 4);
 }
 
-// Also where the film shows no sky.
+// Also with a film that is transparent to the sky.
 TEST(PathPictures, ThePictureIsTheSameOneByOne) { expect_the_same_one_by_one(40, 0.005, picture); }
 
 } // namespace

@@ -1,4 +1,4 @@
-// The error of films whose samples are random numbers of known variance; and what is refined because of it.
+// The error of films whose samples are random numbers of known variance; and the resulting refinement.
 #include "render/picture_error.h"
 #include "sampling/sobol.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t kSize = 64;
 
-// Fills the film with independent samples: draw(random, x, y) gives one.
+// Fills the film with independent samples: draw(random, x, y) returns one.
 template <class Draw> void fill(Film &film, uint32_t samples, uint32_t seed, Draw &&draw) {
   std::mt19937 random(seed);
   for (size_t i = 0; i < film.tile_count(); ++i) {
@@ -50,7 +50,7 @@ const Case kCases[] = {
      [](uint32_t, uint32_t) { return 0.4; }},
 };
 
-// The error that a picture really has, as the header defines it.
+// Returns the true error of a picture, as defined in the header.
 double real_error(const Case &scene, const LuminanceMap &map) {
   double level = 0.0, sum = 0.0;
   for (uint32_t y = 0; y < kSize; ++y)
@@ -64,12 +64,12 @@ double real_error(const Case &scene, const LuminanceMap &map) {
   return std::sqrt(sum / (kSize * kSize));
 }
 
-// How much of a pixel a bright clean surface covers that ends aslant before a dark clean one.
+// Returns the share of a pixel covered by a bright noise-free surface with an oblique edge in front of a dark noise-free one.
 double covered(uint32_t x, uint32_t y) { return std::clamp(20.0 + 0.37 * double(y) - double(x), 0.0, 1.0); }
 
 TEST(PictureError, BarsOfEdgesAreNotThoseOfTheirCleanFlanks) {
-  // Of pixels that are covered by a tenth at least, so that 64 samples are nearly Gaussian. They share a variance: over an edge
-  // share (1 - share) is 1/6 in the mean and 1/4 at most, where 1.96 sqrt(4/6) = 1.6 standard deviations hold 89 %.
+  // For pixels with a coverage of at least a tenth, so that 64 samples are nearly Gaussian. They share a variance: over an edge
+  // share (1 - share) is 1/6 in the mean and at most 1/4, where 1.96 sqrt(4/6) = 1.6 standard deviations contain 89 %.
   double inside = 0.0, edges = 0.0, blurred = 0.0, clean = 0.0;
   for (uint32_t seed = 0; seed < 100; ++seed) {
     Film film(kSize, kSize, 16, 1);
@@ -81,7 +81,7 @@ TEST(PictureError, BarsOfEdgesAreNotThoseOfTheirCleanFlanks) {
       for (uint32_t x = 0; x < kSize; ++x) {
         const double share = covered(x, y), bar = double(bars[y * kSize + x]);
         if (share == 0.0 || share == 1.0) {
-          // What sums over the picture leave when they are taken from one another is far below this.
+          // The rounding error of differences of sums over the picture is far below this.
           blurred += bar > 1e-6;
           clean += 1.0;
         } else if (share > 0.1 && share < 0.9) {
@@ -94,8 +94,8 @@ TEST(PictureError, BarsOfEdgesAreNotThoseOfTheirCleanFlanks) {
   EXPECT_GT(edges, 3000.0);
   EXPECT_GT(inside / edges, 0.89);
   EXPECT_LT(inside / edges, 0.965);
-  // A pixel that is covered all but by a hundredth passes for noise of its flank, if it has any, and lends it to the 600 pixels
-  // around it. That is one of the edge's pixels in a picture, which in half of them has met no second surface.
+  // A pixel covered to all but a hundredth looks like noise of its flank, if any, and spreads it to the 600 pixels around it.
+  // This is one of the edge's pixels in a picture, which in half of the pictures has not hit the second surface.
   EXPECT_LT(blurred / clean, 0.5 * 600.0 / 4032.0);
 }
 
@@ -105,8 +105,9 @@ double disc_seen(uint32_t x, uint32_t y) {
 }
 
 TEST(PictureError, IntervalsHoldTheErrorAndBarsThePixels) {
-  // 40 pictures of each kind. Intervals may miss 7 % in the long run; of 200 Bernoulli trials of that chance more than 26 fail
-  // once in a thousand times. Bars hold 95 +- 1.5 % of the pixels: chance adds sqrt(.95 .05 / 163840) = 0.05 % to that.
+  // 40 pictures of each kind. Intervals may miss 7 % in the long run; of 200 Bernoulli trials with this probability more than
+  // 26 fail once in a thousand times. Bars contain 95 +- 1.5 % of the pixels: chance adds sqrt(.95 .05 / 163840) = 0.05 % to
+  // this.
   int missed = 0;
   for (const Case &scene : kCases) {
     double inside = 0.0;
@@ -124,7 +125,7 @@ TEST(PictureError, IntervalsHoldTheErrorAndBarsThePixels) {
       for (uint32_t y = 0; y < kSize; ++y)
         for (uint32_t x = 0; x < kSize; ++x) {
           const double off = map.unit * double(map.mean[y * kSize + x]) - scene.mean(x, y);
-          // A clean pixel's mean is a float.
+          // A noise-free pixel's mean is a float.
           inside += std::abs(off) <= 1.96 * double(bars[y * kSize + x]) + 1e-6 * scene.mean(x, y);
         }
     }
@@ -135,14 +136,14 @@ TEST(PictureError, IntervalsHoldTheErrorAndBarsThePixels) {
   EXPECT_LE(missed, 26);
 }
 
-// An edge across the pixel, leaning by one of eight angles.
+// An edge across the pixel, at one of eight angles.
 bool beyond_edge(const glm::dvec2 &u, uint32_t angle) {
   const double a = 0.1 + 0.15 * angle;
   return u.x * std::cos(a) + u.y * std::sin(a) > 0.6;
 }
 
 TEST(PictureError, IntervalsHoldWhereSequencesFallFasterThanRandomNumbers) {
-  // Scrambled nets on edges: the variance falls as N^-1.5, and halves tell 2^1.5 - 1 = 1.8 times it.
+  // Scrambled nets on edges: the variance falls as N^-1.5, and halves estimate 2^1.5 - 1 = 1.8 times it.
   double mean[8] = {};
   constexpr uint32_t kFine = 1024, kPictures = 20;
   for (uint32_t angle = 0; angle < 8; ++angle)
@@ -169,15 +170,15 @@ TEST(PictureError, IntervalsHoldWhereSequencesFallFasterThanRandomNumbers) {
     held += error.low <= std::sqrt(sum) && std::sqrt(sum) <= error.high;
     told += error.error / std::sqrt(sum) / kPictures;
   }
-  // Of 20 trials that fail with a chance of 7 %, more than 5 fail once in a thousand times.
+  // Of 20 trials that fail with a probability of 7 %, more than 5 fail once in a thousand times.
   EXPECT_GE(held, 15);
-  // sqrt(1.8) = 1.35, and no less than the truth.
+  // sqrt(1.8) = 1.35, and not below the true error.
   EXPECT_GT(told, 1.0);
   EXPECT_LT(told, 1.6);
 }
 
 TEST(PictureError, EdgesInTheBlackDoNotWidenIt) {
-  // A noisy disc, and one sample in four of its edge's pixels sees it. The black around it has missed no light.
+  // A noisy disc; one sample in four of its edge's pixels hits it. The black around it has missed no light.
   const Case disc = {"disc",
                      [](std::mt19937 &random, uint32_t x, uint32_t y) {
                        return chance(random, disc_seen(x, y)) ? 1.0f + 0.3f * gaussian(random) : 0.0f;
@@ -195,15 +196,15 @@ TEST(PictureError, EdgesInTheBlackDoNotWidenIt) {
     held += error.low <= real && real <= error.high;
     told += error.error / real / kPictures;
   }
-  // Of 20 trials that fail with a chance of 7 %, more than 5 fail once in a thousand times.
+  // Of 20 trials that fail with a probability of 7 %, more than 5 fail once in a thousand times.
   EXPECT_GE(held, 15);
-  // A target costs four times its samples where errors are told twice as large.
+  // Twice the estimated error costs four times the samples for a target.
   EXPECT_LT(told, 2.0);
 }
 
 TEST(PictureError, FallsWithTheRootOfSamples) {
-  // 0.5 / 1.01 / sqrt(n). The sum over 4096 pixels of squares of one difference each tells the root to 1 / sqrt(2 * 4096) = 1.1
-  // %, and a quotient of two to 1.6 %: four times that is allowed.
+  // 0.5 / 1.01 / sqrt(n). The sum over 4096 pixels of squares of one difference each gives the root to 1 / sqrt(2 * 4096) = 1.1
+  // %, and a quotient of two to 1.6 %: four times this is allowed.
   std::vector<double> errors;
   for (const uint32_t samples : {16u, 64u, 256u}) {
     Film film(kSize, kSize, 16, 1);
@@ -236,8 +237,8 @@ TEST(PictureError, IsANumberWhereColoursFarBelowZeroAreSeen) {
     const PictureError error = picture_error(map, RelativeVariance(map), 0.95);
     EXPECT_TRUE(std::isfinite(error.high)) << depth;
     EXPECT_TRUE(error.low <= error.error && error.error <= error.high) << depth;
-    // The pixel alone makes it: a quarter of a sample's deviation, which is about its depth but 1e15 means at most, over a
-    // hundredth of the mean. The interval goes seven times below; what is left of 0.036 is for the draw.
+    // A single pixel causes it: a quarter of a sample's deviation, which is about its depth but at most 1e15 means, over a
+    // hundredth of the mean. The interval extends seven times below; the rest of 0.036 is for chance.
     EXPECT_GT(error.low, 0.012 * std::min(double(depth) / 0.2, 1e15) / 0.01 / kSize) << depth;
     for (const float bar : error_bars(map))
       ASSERT_TRUE(std::isfinite(bar)) << depth;
@@ -265,24 +266,24 @@ TEST(Refinement, DoublesWhereTheOtherHalfIsNoisy) {
   const LuminanceMap map(film);
   const RelativeVariance relative(map);
   const double now = picture_error(map, relative, 0.95).error;
-  // The last of four columns of squares has all of the noise, in eight halves. Doubling them all takes off a half of the
-  // variance, which is enough for a factor of 1.9; doubling seven takes off 7/16, which is not.
+  // The last of four columns of squares has all of the noise, in eight halves. Doubling them all removes half of the variance,
+  // which suffices for a factor of 1.9; doubling seven removes 7/16, which does not.
   const Refinement plan = plan_refinement(film, map, relative, now / std::sqrt(1.9), 1 << 20);
   EXPECT_EQ(plan.tiles.size(), 8u);
   for (const uint32_t tile : plan.tiles)
     EXPECT_GE(film.tile(tile).x, 48u);
   EXPECT_EQ(plan.samples, 64.0 * 16 * 64);
-  // Without a target all are to be doubled, those first.
+  // Without a target all are doubled, these first.
   const Refinement all = plan_refinement(film, map, relative, 0.0, 1 << 20);
   EXPECT_EQ(all.tiles.size(), film.tile_count());
   for (size_t i = 0; i < 8; ++i)
     EXPECT_GE(film.tile(all.tiles[i]).x, 48u);
-  // No pixel gets more than allowed.
+  // No pixel exceeds the limit.
   EXPECT_TRUE(plan_refinement(film, map, relative, 0.0, 127).tiles.empty());
 }
 
 TEST(Refinement, IsBlindToTheSamplesThatItJudges) {
-  // One half of a square is noisy, its other half is not: the clean half is the one that gets samples.
+  // One half of a square is noisy, its other half is not: the noise-free half receives the samples.
   Film film(16, 16, 16, 1, true);
   fill(film, 64, 1,
        [](std::mt19937 &random, uint32_t x, uint32_t y) { return (x + y) % 2 ? 1.0f : 100.0f + 50.0f * gaussian(random); });

@@ -1,4 +1,4 @@
-// Small whole renders through the C interface: a scene of few things, and the pass that tells about them.
+// Small complete renders through the C interface: a scene of few objects, and the passes of the result.
 #pragma once
 
 #include "nodes_lab.h"
@@ -9,7 +9,7 @@
 namespace lancer_test {
 
 inline glm::dmat4 moved(double x, double y, double z) { return glm::translate(glm::dmat4(1.0), glm::dvec3(x, y, z)); }
-// About an axis, degrees.
+// Rotation about an axis, in degrees.
 inline glm::dmat4 turned(double angle, double x, double y, double z) {
   return glm::rotate(glm::dmat4(1.0), glm::radians(angle), glm::dvec3(x, y, z));
 }
@@ -20,7 +20,7 @@ inline void to_rows(const glm::dmat4 &m, double rows[12]) {
       rows[row * 4 + column] = m[column][row];
 }
 
-// Local z there, local x level.
+// Local z faces this direction, local x is horizontal.
 inline glm::dmat4 facing(const glm::dvec3 &there) {
   const glm::dvec3 z = glm::normalize(there), up = std::abs(z.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   const glm::dvec3 x = glm::normalize(glm::cross(up, z));
@@ -34,7 +34,7 @@ public:
 
   Studio() {
     lancer_scene_create(&scene_);
-    // One sample in the middle of a pixel is the pixel, but for a thousandth of its width.
+    // One sample at the centre of a pixel equals the pixel, except for a thousandth of its width.
     settings.pixel_filter = LANCER_FILTER_BOX;
     settings.filter_width = 1e-3f;
     settings.samples = 1;
@@ -46,7 +46,7 @@ public:
     lancer_scene_destroy(scene_);
   }
 
-  // A parallel view of so many pixels square and that width.
+  // A parallel view of this many pixels squared and this width.
   void look(const glm::dvec3 &eye, const glm::dvec3 &target, uint32_t pixels = 1, double width = 1e-6) {
     const glm::dmat4 m = facing(eye - target);
     to_rows(moved(eye.x, eye.y, eye.z) * m, camera.matrix);
@@ -59,7 +59,7 @@ public:
     camera.focal_distance = camera.aperture_ratio = 1.0;
   }
 
-  // Lobes keep their weights; what else the material has is given. Returns its number.
+  // Adds a material with these lobes and the rest of the given one. Returns its number.
   uint32_t add(std::vector<lancer_lobe> lobes, lancer_material material = black(), std::vector<lancer_node> nodes = {}) {
     material.name = "material";
     material.lobes = lobes.data();
@@ -72,7 +72,7 @@ public:
 
   void add(const lancer_mesh &mesh) { EXPECT_EQ(lancer_scene_add_mesh(scene_, &mesh), LANCER_OK) << lancer_last_error(); }
 
-  // One more thing; what it returns may be changed until the next one is placed.
+  // Adds an object; the returned reference is valid until the next call.
   lancer_instance &place(uint32_t kind, uint32_t material, const glm::dmat4 &m = glm::dmat4(1.0)) {
     lancer_instance instance = {};
     to_rows(m, instance.matrix);
@@ -84,7 +84,7 @@ public:
     return instances_.back();
   }
 
-  // Parallel light of that irradiance from there.
+  // Returns parallel light of this irradiance from this direction.
   lancer_light sun(const glm::dvec3 &towards, float irradiance = 1.0f) const {
     lancer_light light = point_light();
     to_rows(facing(towards), light.matrix);
@@ -96,7 +96,7 @@ public:
   void add(const lancer_world &world) { EXPECT_EQ(lancer_scene_set_world(scene_, &world), LANCER_OK) << lancer_last_error(); }
   void add(const lancer_light &light) { EXPECT_EQ(lancer_scene_add_light(scene_, &light), LANCER_OK) << lancer_last_error(); }
 
-  // by_nodes: the same radiance as the result of a node, which is sampled as a light.
+  // by_nodes: the same radiance as the result of a node, which makes it a light to sample.
   void sky(float r, float g, float b, uint32_t hidden_from = 0, bool by_nodes = false) {
     lancer_node nodes[2] = {
         node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_GENERATED),
@@ -110,7 +110,7 @@ public:
     EXPECT_EQ(lancer_scene_set_world(scene_, &world), LANCER_OK) << lancer_last_error();
   }
 
-  // Once only. Then read() tells what there is to see.
+  // Renders once. Then read() returns the passes.
   void render() {
     lancer_scene_add_instances(scene_, uint32_t(instances_.size()), instances_.data(), uint32_t(slots_.size()), slots_.data(),
                                nullptr, 0);
@@ -128,7 +128,7 @@ public:
     return out;
   }
 
-  // The mean over all pixels.
+  // Returns the mean over all pixels.
   glm::vec3 color(uint32_t pass = LANCER_PASS_COMBINED) const {
     const uint32_t channels = pass == LANCER_PASS_COMBINED ? 4 : 3;
     return mean(read(pass, channels), channels);
@@ -157,14 +157,14 @@ private:
   std::vector<uint32_t> slots_;
 };
 
-// As the newest Blender has it.
+// A lobe by the newest rules.
 inline lancer_lobe newest(uint32_t kind, float color, float roughness = 0.3f) {
   lancer_lobe result = lobe(kind, color, roughness);
   result.rules = LANCER_RULES_BLENDER_45;
   return result;
 }
 
-// Lets so much light pass straight on, and scatters none.
+// A material that transmits this share of light straight through, and scatters none.
 inline lancer_material pane(float transmittance) {
   lancer_material material = black();
   material.transmittance = constant(transmittance);

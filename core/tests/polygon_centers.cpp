@@ -1,4 +1,4 @@
-// Where flat shading computes a polygon's colour.
+// The points at which flat shading computes a polygon's colour.
 #include "compile/mesh_normals.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(PolygonCenters, AreTheMeanOfTheVertices) {
 }
 
 TEST(PolygonCenters, OfAWarpedPolygonLieOnIt) {
-  // The mean is at height 5.5, above the edge that both triangles share: at height 5.
+  // The mean is at height 5.5, above the edge shared by both triangles, which is at height 5.
   const Mesh mesh = three_polygons();
   EXPECT_LT(glm::distance(place(mesh, center_hit(mesh, on(0))), glm::dvec3(1.0, 1.0, 5.0)), 1e-14);
   EXPECT_EQ(place(mesh, center_hit(mesh, on(5))), place(mesh, center_hit(mesh, on(0))));
@@ -69,7 +69,7 @@ TEST(PolygonCenters, GoWithTheFacesThatAreKept) {
   keep_faces(mesh, {1, 2, 5});
   EXPECT_EQ(mesh.polygons, (std::vector<uint32_t>{1, 1, 4}));
   mesh.centers = polygon_centers(mesh);
-  // What is left of the pentagon: four of its vertices.
+  // The rest of the pentagon has four of its vertices.
   EXPECT_LT(glm::distance(place(mesh, center_hit(mesh, on(0))), glm::dvec3(11.0, 6.0, 0.0) / 4.0), 1e-14);
   EXPECT_TRUE(polygon_centers(Mesh{}).empty());
 }

@@ -1,4 +1,4 @@
-// Principled for tests: described in a few words, seen from wo above or below the plane z = 0.
+// Principled for tests: described briefly, seen from wo above or below the plane z = 0.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Principled: what its sliders do to the light, in the layers of Blender 4 and in the sum of Blender 3.
+// Principled: effects of its inputs on light, in the layers of Blender 4 and in the sum of Blender 3.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -17,7 +17,7 @@ struct Mean {
   glm::dvec3 value{0.0}, error{0.0};
 };
 
-// Light from a white sky, by the sampler, with its standard error from rows of a jittered grid.
+// Returns the albedo under a white sky, by the sampler, with its standard error from rows of a jittered grid.
 Mean under_sky(const PrincipledInputs<float> &in, const glm::vec3 &wo, uint64_t seed) {
   constexpr int kRows = 32, kSide = 24;
   Bsdf<float> bsdf;
@@ -51,7 +51,7 @@ TEST(Principled, WeightScalesAll) {
     in.coat = 0.5f;
     in.transmission = 0.2f;
     expect_near(value(in, wo, wi, glm::vec3(0.5f)), 0.5f * value(in, wo, wi), kRounding, "half");
-    // Blender 4 takes from all colours what the most reflecting one loses; without layers each goes its own way.
+    // Blender 4 removes from all colours the largest loss of any; without layers each colour is separate.
     if (rules == Rules::Blender3)
       expect_near(value(in, wo, wi, weight), weight * value(in, wo, wi), kRounding, "coloured");
   }
@@ -68,7 +68,7 @@ TEST(Principled, WithoutGlossIsLambert) {
   expect_near(value(in, wo, wi), lambert, kRounding, "level 0");
 }
 
-// Nothing that a layer of weight 0 is told matters.
+// Inputs of a layer with weight 0 have no effect.
 TEST(Principled, AbsentLayersCostNothing) {
   const glm::vec3 wo = direction(0.6), wi = direction(0.4, 3.0);
   for (const Rules rules : kAllRules) {
@@ -100,7 +100,7 @@ TEST(Principled, MetalAndPlasticMixByTheirShare) {
   }
 }
 
-// A white metal gives back all light where the light of several bounces is kept. The tables of its loss are exact to 0.1 %.
+// A white metal with multiple scattering reflects all light. The tables of its loss are exact to 0.1 %.
 TEST(Principled, WhiteMetalLosesNothing) {
   uint64_t seed = 1;
   for (const Rules rules : {Rules::Blender4, Rules::Blender45})
@@ -115,8 +115,8 @@ TEST(Principled, WhiteMetalLosesNothing) {
       }
 }
 
-// No setting of white things makes light. Layers take Cycles' averages of Fresnel curves from each other, which are a little
-// off for each direction: 2 %. Blender 3 adds its gloss on top and does make light; so does IOR below 1.
+// White materials gain no energy with any setting. Layers subtract Cycles' averages of Fresnel curves, which are slightly wrong
+// for each direction: 2 %. Blender 3 adds its gloss on top and does gain energy; so does IOR below 1.
 TEST(Principled, MakesNoLight) {
   Random random(3);
   const auto any = [&] { return random.uniform() < 0.3f ? std::floor(2.0f * random.uniform()) : random.uniform(); };
@@ -155,7 +155,7 @@ TEST(Principled, ClothTakesWhatItScatters) {
   expect_near(value(in, wo, wi), left * bare + cloth.color * sheen_eval(cloth, wo, wi).f, kRounding, "value");
 }
 
-// A coat that bends nothing reflects nothing, and colours by Beer's law along the straight way.
+// A coat that bends no light reflects none, and tints by Beer's law along the straight path.
 TEST(Principled, CoatColoursByBeersLaw) {
   PrincipledInputs<float> in = plain(Rules::Blender45);
   in.emission = glm::vec3(1.0f);
@@ -167,7 +167,7 @@ TEST(Principled, CoatColoursByBeersLaw) {
     expect_near(emitted(in, wo), glm::pow(in.coat_tint, glm::vec3(1.0f / wo.z)), 1e-5f, "coated");
   }
   in.coat_ior = 1.5f;
-  // At an index of 1.5 a direction of cosine 0.5 goes on with sin = sqrt(3) / 3, cos = sqrt(6) / 3.
+  // At an index of 1.5 a direction of cosine 0.5 continues with sin = sqrt(3) / 3, cos = sqrt(6) / 3.
   const glm::vec3 wo = direction(0.5);
   const glm::vec3 coloured = emitted(in, wo);
   in.coat_tint = glm::vec3(1.0f);
@@ -184,7 +184,7 @@ TEST(Principled, CoatOfBlender3IsAdded) {
   expect_near(value(in, wo, wi) - bare, coat.color * gloss_eval(coat, wo, wi).f, 2e-5f, "coat");
 }
 
-// The index that bends the level bends the reflection at the normal with it: level 1 doubles F0, at most to 99 %.
+// The specular level scales the reflection at the normal through the index: level 1 doubles F0, up to 99 %.
 TEST(Principled, LevelScalesTheReflectionAtTheNormal) {
   const glm::vec3 n(0.0f, 0.0f, 1.0f);
   PrincipledInputs<float> in = plain(Rules::Blender45);

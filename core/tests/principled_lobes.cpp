@@ -1,4 +1,4 @@
-// Principled: the lobes and frames that it is made of, what passes show of them, and its extremes.
+// Principled: its lobes and frames, their passes, and extreme inputs.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-// Cycles 3 shows the weights of its closures in the passes, newer ones what they scatter.
+// Cycles 3 shows the weights of its closures in the passes, newer versions their albedos.
 TEST(Principled, PassesOfBlender3ShowNoFresnel) {
   const glm::vec3 wo = direction(0.6), weight(0.3f, 0.6f, 0.9f);
   PrincipledInputs<float> in = plain(Rules::Blender3);
@@ -47,7 +47,7 @@ TEST(Principled, GlassKnowsItsInside) {
   in.base_color = glm::vec3(1.0f);
   in.transmission = 1.0f;
   in.roughness = 0.0f;
-  // Beyond the critical angle of 41.8 degrees all is reflected from inside, and not from outside.
+  // Beyond the critical angle of 41.8 degrees everything is reflected from inside, and not from outside.
   const float cosine = 0.7f;
   Bsdf<float> bsdf;
   look(bsdf, in, direction(-cosine));
@@ -61,11 +61,11 @@ TEST(Principled, GlassKnowsItsInside) {
   const BsdfSample<float> through = bsdf.sample(0.99f, 0.5f, 0.5f);
   EXPECT_LT(through.wi.z, 0.0f);
   EXPECT_TRUE(through.transmitted);
-  // Snell: the sine of cosine 0.7 is divided by 1.5.
+  // Snell: the sine for cosine 0.7 is divided by 1.5.
   EXPECT_NEAR(std::hypot(through.wi.x, through.wi.y), std::sqrt(1.0f - cosine * cosine) / 1.5f, 1e-6f);
 }
 
-// Lobes without normals of their own share the shading frame to the bit: no bump is taken for one that is not there.
+// Lobes without normals of their own share the shading frame to the bit, so that no bump is detected.
 TEST(Principled, HasOneFrameWithoutOtherNormals) {
   Random random(5);
   for (int k = 0; k < 200; ++k) {
@@ -83,7 +83,7 @@ TEST(Principled, HasOneFrameWithoutOtherNormals) {
   }
 }
 
-// Layers that were planned ahead, with their tables read ahead, are the same layers.
+// Layers planned in advance, with sampled tables, are the same layers.
 TEST(Principled, KeptLayersAreThoseMadeInPlace) {
   Random random(11);
   for (int k = 0; k < 2000; ++k) {
@@ -115,15 +115,15 @@ TEST(Principled, KeptLayersAreThoseMadeInPlace) {
       bsdf->complete();
     }
     ASSERT_EQ(planned.count, in_place.count);
-    // Tables are read in another order: a product of ten factors, each off by a few roundings, times what 1 / (1 - albedo) of
-    // the layers above enlarges them by.
+    // Tables are interpolated in another order: a product of ten factors, each with a few roundings, times the factor 1 / (1 -
+    // albedo) of the layers above.
     const glm::vec3 a = planned.eval(wi).f(), b = in_place.eval(wi).f();
     for (int c = 0; c < 3; ++c)
       ASSERT_NEAR(a[c], b[c], 64.0f * 0x1p-24f * std::max(b[c], 1.0f)) << k;
   }
 }
 
-// Bad numbers of sockets are kept within what they mean.
+// Invalid inputs are clamped to their range.
 TEST(Principled, StaysFiniteForAnyInput) {
   const glm::vec3 wo = direction(0.6), wi = direction(0.4, 3.0);
   for (const Rules rules : kAllRules)

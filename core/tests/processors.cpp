@@ -1,4 +1,4 @@
-// How many threads a process may run: its processors and the quotas of its control groups.
+// The number of threads for a process: its processors and the quotas of its control groups.
 #include "render/thread_pool.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file system with what the kernel tells of control groups.
+// A file system with the kernel's files about control groups.
 class Groups : public testing::Test {
 protected:
   void SetUp() override {
@@ -53,7 +53,7 @@ TEST_F(Groups, WithoutLimitItIsTheProcessorsOfTheThread) {
   on_one_processor([&] { EXPECT_EQ(threads(), 1u); });
 }
 
-// Quotas of less than one processor, so that they bind on any machine.
+// Quotas below one processor, so that they limit any machine.
 TEST_F(Groups, QuotasOfBothVersionsCount) {
   write("proc/self/cgroup", "0::/");
   write("sys/fs/cgroup/cpu.max", "50000 100000");
@@ -74,7 +74,7 @@ TEST_F(Groups, TheLeastQuotaAboveAProcessCounts) {
   const uint32_t free = threads();
   write("sys/fs/cgroup/outer/cpu.max", "10000 100000");
   EXPECT_EQ(threads(), 1u);
-  // A path of the host, which the container does not see: its own group is the root.
+  // A path of the host that is invisible in the container: its own group is the root.
   write("proc/self/cgroup", "0::/docker/0123");
   EXPECT_EQ(threads(), free);
   write("sys/fs/cgroup/cpu.max", "10000 100000");

@@ -1,4 +1,4 @@
-// Numbers of 113 bits, for references: what this system calls them.
+// Numbers of 113 bits, for references: the name of their type on this system.
 #pragma once
 
 #include <cfloat>

@@ -1,4 +1,4 @@
-// What scenes made by chance are made of: two pictures of one must be equal.
+// Parts of random scenes, for comparisons of two pictures of one scene.
 #pragma once
 
 #include "picture_lab.h"
@@ -9,7 +9,7 @@
 
 namespace lancer_test {
 
-// A ball of few faces with normals of a smooth one: at its rim mirrored directions fall below the surface.
+// A ball of few faces with smooth normals: at its rim mirror directions are below the surface.
 struct Ball {
   std::vector<float> positions, normals;
   std::vector<uint32_t> triangles;
@@ -48,14 +48,14 @@ using Random = std::mt19937;
 inline float number(Random &random, float low = 0.0f, float high = 1.0f) {
   return low + (high - low) * float(random() >> 8) * 0x1p-24f;
 }
-// Often an end of the range.
+// Returns a number in 0 ... 1, often an end of the range.
 inline float share(Random &random) {
   const uint32_t kind = random() % 3;
   return kind == 0 ? 0.0f : kind == 1 ? 1.0f : number(random);
 }
 inline lancer_parameter color(Random &random) { return constant(number(random), number(random), share(random)); }
 
-// A floor and twelve balls over it: one in so many has the second mesh, a few are exact.
+// A floor and twelve balls over it: one in one_in has the second mesh, a few are exact.
 template <class Material> void place_balls(Studio &studio, Random &random, uint32_t one_in, Material &&material) {
   studio.place(LANCER_PLANE, material(), moved(0, 0, -1));
   for (int i = 0; i < 12; ++i) {
@@ -66,8 +66,8 @@ template <class Material> void place_balls(Studio &studio, Random &random, uint3
   }
 }
 
-// picture(seed, passes) is the same side by side, which is for the picture alone, and one by one; and something is to be seen:
-// its values are `least` in the mean.
+// Expects equal bits of picture(seed, passes) in lanes, used for the picture alone, and one by one; and that the picture is not
+// empty: its mean exceeds `least`.
 template <class Picture> void expect_the_same_one_by_one(uint32_t seeds, double least, Picture &&picture) {
   constexpr uint32_t alone = 1u << LANCER_PASS_COMBINED;
   for (uint32_t seed = 1; seed <= seeds; ++seed) {
@@ -80,7 +80,7 @@ template <class Picture> void expect_the_same_one_by_one(uint32_t seeds, double 
   }
 }
 
-// All layers that kernels know, and some that they do not.
+// All layers that kernels support, and some that they do not.
 inline lancer_principled principled(Random &random) {
   lancer_principled p = {};
   p.rules = random() % 2 ? LANCER_RULES_BLENDER_4 : LANCER_RULES_BLENDER_45;
@@ -88,9 +88,9 @@ inline lancer_principled principled(Random &random) {
   p.option = 1;
   p.base_color = color(random);
   p.metallic = constant(share(random));
-  // Also smooth, and so nearly smooth that only what is reflected counts as rough.
+  // Also smooth, and so nearly smooth that only the reflection counts as rough.
   p.roughness = constant(random() % 4 ? number(random, 0.02f, 1.0f) : random() % 2 ? 0.0f : 0.007f);
-  // Also what bends nothing, or so little that rough glass sends it straight on, and what bends outwards.
+  // Also indices that do not bend light, or so little that rough glass transmits straight through, and indices below 1.
   const float indices[] = {1.0f, 1.00005f, 1.001f, 0.7f};
   p.ior = constant(random() % 2 ? number(random, 1.0f, 2.5f) : indices[random() % 4]);
   p.diffuse_roughness = constant(random() % 4 ? 0.0f : 0.5f);

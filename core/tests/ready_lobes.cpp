@@ -1,4 +1,4 @@
-// What is made once of a material's lobes is what would be made at every surface.
+// Lobes prepared once for a material equal those made at every hit.
 #include "compile/ready_lobes.h"
 #include "scene/material.h"
 
@@ -14,7 +14,7 @@ namespace {
 using testing::direction;
 using testing::Random;
 
-// Every layer is there.
+// All layers.
 std::shared_ptr<PrincipledDescription> layered(Random &random) {
   auto p = std::make_shared<PrincipledDescription>();
   const auto share = [&] { return Parameter{glm::vec3(0.2f + 0.6f * random.uniform())}; };
@@ -33,7 +33,7 @@ std::shared_ptr<PrincipledDescription> layered(Random &random) {
   return p;
 }
 
-// A material of one layered lobe, some of whose inputs a node gives.
+// A material of one layered lobe, some of whose inputs are results of a node.
 struct Layered {
   Layered(std::shared_ptr<const PrincipledDescription> principled, const Parameter &tangent) {
     LobeDescription &lobe = material.lobes.emplace_back();
@@ -44,7 +44,7 @@ struct Layered {
     material.ready = make_ready_lobes(material);
   }
 
-  // f |cos|, as a shader makes the lobe with that value of the node, or all of it in place.
+  // Returns f |cos| of the lobe as a shader makes it for this value of the node, or made completely in place.
   glm::vec3 value(const glm::vec4 &node, bool in_place, const glm::vec3 &wo, const glm::vec3 &wi) const {
     const LobeDescription &lobe = material.lobes[0];
     const LobeInputs<float> inputs = evaluate(lobe, std::span(&node, 1));
@@ -93,19 +93,19 @@ TEST(ReadyLobes, WhatANodeVariesIsMadeInPlace) {
       const auto principled = layered(random);
       if (input)
         (*principled).*input = fed;
-      // Without an input the tangent is what varies.
+      // Without an input the tangent varies.
       const Layered layered(principled, input ? Parameter{glm::vec3(1.0f, 0.0f, 0.0f)} : fed);
       const glm::vec4 node(0.2f + random.uniform(), 0.3f, 0.4f, 1.0f);
       const glm::vec3 wo = direction(0.2 + 0.7 * random.uniform()), wi = direction(0.2 + 0.7 * random.uniform(), 3.0);
       const glm::vec3 ready = layered.value(node, false, wo, wi), in_place = layered.value(node, true, wo, wi);
-      // Tables are read in another order: a product of ten factors, each off by a few roundings, times what 1 / (1 - albedo)
-      // of the layers above enlarges them by.
+      // Tables are interpolated in another order: a product of ten factors, each with a few roundings, times the factor 1 / (1
+      // - albedo) of the layers above.
       for (int c = 0; c < 3; ++c)
         ASSERT_NEAR(ready[c], in_place[c], 64.0f * 0x1p-24f * std::max(in_place[c], 1.0f)) << k;
     }
 }
 
-// A material of one lobe of facets.
+// A material of one microfacet lobe.
 Material of_facets(LobeKind kind, Rules rules = Rules::Blender45, Facets facets = Facets::MultiGgx) {
   Material material;
   LobeDescription &lobe = material.lobes.emplace_back();
@@ -126,7 +126,7 @@ TEST(ReadyLobes, FacetsThatNothingChangesArePlanned) {
     for (const Rules rules : {Rules::Blender4, Rules::Blender45}) {
       Material material = of_facets(kind, rules);
       EXPECT_TRUE(is_planned(material));
-      // What varies, and what lies along the surface, is made where it is met.
+      // Lobes with varying inputs, or with a tangent, are made at the hit.
       material.program.nodes.resize(1);
       EXPECT_FALSE(is_planned(material));
       material.program.nodes.clear();
@@ -154,7 +154,7 @@ TEST(ReadyLobes, PlannedFacetsAreThoseMadeInPlace) {
                            : add_lobe(*bsdf, ready.inputs);
           bsdf->complete();
         }
-        // One factor alone, read along the cosine first or last.
+        // A single factor, interpolated along the cosine first or last.
         for (const glm::vec3 &w : {wi, -wi})
           for (int c = 0; c < 3; ++c) {
             const float a = planned.eval(w).f()[c], b = in_place.eval(w).f()[c];

@@ -5,7 +5,7 @@
 
 namespace lancer::testing {
 
-// soft: as Blender's Soft Falloff.
+// soft: with Blender's Soft Falloff.
 inline Light ball(double radius, bool soft) {
   Light light;
   light.kind = LightKind::Point;

@@ -1,11 +1,11 @@
-// Forty scenes of random lobes, nodes, shapes, lights and settings: the bits of all their passes, the same from every
-// instruction set and number of lanes.
+// Forty scenes of random lobes, nodes, shapes, lights and settings: the bits of all their passes, equal for every instruction
+// set and number of lanes.
 #include "bits_stand.h"
 
 namespace lancer_test {
 namespace {
 
-// Nodes that make numbers of about 0 ... 1 of the place: a colour, a roughness and a normal.
+// Nodes that compute numbers of about 0 ... 1 from the position: a colour, a roughness and a normal.
 struct RandomNodes {
   std::vector<lancer_node> nodes;
   lancer_parameter color, number, normal = parameter(0.0f);
@@ -46,7 +46,7 @@ struct RandomNodes {
   }
 };
 
-// Numbers or results of nodes.
+// Numbers, or results of nodes.
 lancer_lobe random_lobe(Dice &dice, const RandomNodes *by, lancer_principled &record) {
   const auto number = [&] { return by && dice() % 3 == 0 ? by->number : parameter(dice() % 3 ? dice.share() : 0.0f); };
   const auto color = [&] { return by && dice() % 2 ? by->color : dice.color(); };

@@ -1,5 +1,5 @@
-// Lamps, lenses and crowds: small scenes and the bits of all their passes, the same from every instruction set, processor,
-// compiler and system. What changes a picture changes these numbers, and says so; what is to change none leaves them.
+// Lamps, lenses and crowds: small scenes and the bits of all their passes, equal for every instruction set, processor, compiler
+// and system. A change of pictures changes these numbers and must be intended; any other change must leave them.
 #include "bits_stand.h"
 
 namespace lancer_test {
@@ -91,7 +91,7 @@ TEST(SamePictures, LensesAndPanoramas) {
   EXPECT_EQ(stand.hash.value(), 0x665d8a08b11b25cau);
 }
 
-// kind: the accelerator. All find the same; each is built by sorting.
+// kind: the accelerator. All have equal hits; each is built by sorting.
 uint64_t crowd(uint32_t kind) {
   Stand stand;
   stand.floor();

@@ -1,5 +1,5 @@
-// Surfaces: small scenes and the bits of all their passes, the same from every instruction set, processor, compiler and system.
-// What changes a picture changes these numbers, and says so; what is to change none leaves them.
+// Surfaces: small scenes and the bits of all their passes, equal for every instruction set, processor, compiler and system. A
+// change of pictures changes these numbers and must be intended; any other change must leave them.
 #include "bits_stand.h"
 
 namespace lancer_test {
@@ -98,7 +98,7 @@ TEST(SamePictures, Principled) {
     record.coat_ior = parameter(1.5f);
     record.coat_tint = i % 4 == 1 ? parameter(1.0f) : dice.color();
     record.specular_tint = record.sheen_tint = parameter(dice.share());
-    if (i % 4 == 1) // what kernels of many lanes know
+    if (i % 4 == 1) // supported by kernels of many lanes
       record.sheen = record.anisotropic = record.diffuse_roughness = parameter(0.0f);
     record.coat_normal = record.emission = parameter(0.0f);
     lancer_lobe one = lobe(LANCER_PRINCIPLED, 1.0f);
@@ -142,7 +142,7 @@ TEST(SamePictures, MathsOfNodes) {
   nodes.push_back(node(LANCER_NODE_GAMMA, 0, {result_of(1), parameter(2.125f)}));
   nodes.push_back(node(LANCER_NODE_INVERT, 0, {parameter(0.75f), result_of(1)}));
   const int32_t end = last() + 1;
-  // All of them in one colour, each by what its fraction is.
+  // All of them in one colour, each by its fraction.
   nodes.push_back(node(LANCER_NODE_VECTOR_MATH, LANCER_VECTOR_FRACTION, {result_of(first)}));
   for (int32_t number = first + 1; number < end; ++number) {
     nodes.push_back(node(LANCER_NODE_VECTOR_MATH, LANCER_VECTOR_FRACTION, {result_of(number)}));

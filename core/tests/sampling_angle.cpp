@@ -8,8 +8,8 @@
 namespace lancer {
 namespace {
 
-// Roundings of 2^-53 each: up to three of the tangent, two of the polynomial's last steps, up to three of the sums that bring
-// it back; and the library's own, of at most a unit in the last place, is two.
+// Roundings of 2^-53 each: up to three of the tangent, two of the polynomial's last steps, up to three of the sums that restore
+// the octant; and the library's own, of at most a unit in the last place, counts as two.
 constexpr double kBound = 10 * 0x1p-53;
 
 TEST(Angle, OfDirectionsAllAround) {
@@ -43,14 +43,14 @@ TEST(Angle, SineAndCosineOfATurn) {
   for (int i = 0; i <= 1000000; ++i) {
     const double u = i / 1000000.0;
     const SinCos turn = sin_cos_turn(u);
-    // Reduce before multiplying, so that the library's angle is as good.
+    // Reduce before multiplying, so that the library's angle is as precise.
     const double quarter = std::round(4.0 * u), x = 2.0 * std::numbers::pi * (u - 0.25 * quarter);
     const double s = std::sin(x), c = std::cos(x);
     const double want_s = quarter == 1.0 ? c : quarter == 2.0 ? -s : quarter == 3.0 ? -c : s;
     const double want_c = quarter == 1.0 ? -s : quarter == 2.0 ? -c : quarter == 3.0 ? s : c;
     worst = std::max({worst, std::abs(turn.sin - want_s), std::abs(turn.cos - want_c)});
   }
-  // At most 1, by two roundings of 2^-53: of the last sum, and of the square beside it.
+  // At most 1, with two roundings of 2^-53: of the last sum, and of the square beside it.
   EXPECT_LE(worst, 0x1p-52);
 }
 

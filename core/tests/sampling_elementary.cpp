@@ -1,4 +1,4 @@
-// Elementary functions: near the true values, special values, and the bits that every processor and compiler is to give.
+// Elementary functions: accuracy, special values, and bits that must be equal with every processor and compiler.
 #include "sampling/elementary.h"
 
 #include "bits_hash.h"
@@ -25,7 +25,7 @@ struct Function {
   double (*of_double)(double);
   double (*library)(double);
   long double (*longer)(long double);
-  double units; // of the last place, that the one of double may be wrong by
+  double units; // error bound of the double function, in units of the last place
   double low, high;
   uint64_t hash;
 };
@@ -43,7 +43,7 @@ struct Function {
    hash  \
   }
 
-// Where doubles are drawn evenly; they are drawn by their powers of two, too.
+// Range of uniformly distributed doubles; doubles are also distributed by powers of two.
 const Function kFunctions[] = {
     LANCER_FUNCTION(exp, 1.0, -100.0, 100.0, 0x44d47198874190ef), LANCER_FUNCTION(expm1, 3.0, -2.0, 2.0, 0x55b1d5826813de71),
     LANCER_FUNCTION(sinh, 3.0, -3.0, 3.0, 0xced58f17c19afae7),    LANCER_FUNCTION(cosh, 3.0, -3.0, 3.0, 0x50ee5cd862d85e01),
@@ -58,7 +58,7 @@ void PrintTo(const Function &f, std::ostream *out) { *out << f.name; }
 
 class Elementary : public testing::TestWithParam<Function> {};
 
-// Numbers of all sizes and both signs, in an order of their own; the same everywhere.
+// A random number generator of all sizes and both signs, the same everywhere.
 class Numbers {
 public:
   double even(double low, double high) { return low + (high - low) * (double(next() >> 11) * 0x1p-53); }
@@ -90,13 +90,13 @@ std::vector<double> arguments(const Function &f) {
   return result;
 }
 
-// Floats over all that there are: a step that is odd meets every exponent with ever other digits.
+// Floats over the whole range: an odd step reaches every exponent with varying digits.
 template <class Use> void over_floats(uint32_t step, Use use) {
   for (uint64_t bits = 0; bits < 1ull << 32; bits += step)
     use(std::bit_cast<float>(uint32_t(bits)));
 }
 
-// Half a unit from rounding, and the double's own, which is 2^-29 of a float's.
+// Half a unit from rounding, and double's own error, which is 2^-29 of a float's unit.
 TEST_P(Elementary, FloatsAreTheNearest) {
   const Function &f = GetParam();
   over_floats(16411, [&](float x) {
@@ -115,7 +115,7 @@ TEST_P(Elementary, FloatsAreTheNearest) {
 
 TEST_P(Elementary, DoublesAreWithinTheirUnits) {
   const Function &f = GetParam();
-  // Where a long double has no more digits, the library's own error is up to a unit.
+  // If long double has no more digits, the library's own error is up to a unit.
   const double units = f.units + (LDBL_MANT_DIG > DBL_MANT_DIG ? 0.01 : 1.0);
   for (const double x : arguments(f)) {
     const long double want = f.longer(static_cast<long double>(x));
@@ -130,7 +130,7 @@ TEST_P(Elementary, DoublesAreWithinTheirUnits) {
 TEST_P(Elementary, TheSameBitsEverywhere) {
   const Function &f = GetParam();
   BitsHash hash;
-  // What is none has many bits.
+  // NaN has many representations.
   over_floats(65521, [&](float x) { hash.add(std::isnan(f.of_float(x)) ? 0.0f : f.of_float(x)); });
   for (const double x : arguments(f))
     hash.add(std::isnan(f.of_double(x)) ? 0.0 : f.of_double(x));
@@ -225,7 +225,7 @@ TEST(ElementaryFunctions, PowersOfTheStandard) {
     }
 }
 
-// Half a unit from rounding, and the double's 2^-46 of a product of at most 104: 2^-22 of a float's.
+// Half a unit from rounding, and double's 2^-46 of a product of at most 104: 2^-22 of a float's unit.
 TEST(ElementaryFunctions, PowersAreTheNearest) {
   Numbers numbers;
   BitsHash hash;
@@ -292,7 +292,7 @@ TEST(ElementaryFunctions, SineAndCosineOfLargeAngles) {
   };
   for (const auto &v : values) {
     const auto within = [](double got, double want) {
-      // A unit, and half of one from rounding what is wanted.
+      // A unit, and half of one from the rounding of the expected value.
       return std::abs(got - want) <= 1.5 * std::ldexp(1.0, std::ilogb(want) - 52);
     };
     EXPECT_PRED2(within, lancer::sin(v[0]), v[1]) << v[0];

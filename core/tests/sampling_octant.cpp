@@ -8,8 +8,8 @@
 namespace lancer {
 namespace {
 
-// Of the cosine: the square's rounding, halved, and those of both sums, 2.5 x 2^-25 in all, beside at least cos(pi/4); the sine
-// has less. The fit's 4e-9 is in the rest.
+// For the cosine: half the square's rounding, and the roundings of both sums, 2.5 x 2^-25 in total, relative to at least
+// cos(pi/4); the sine has less. The rest includes the fit's 4e-9.
 constexpr double kBound = 1.85 * 0x1p-24;
 
 TEST(Octant, SineAndCosine) {
@@ -21,7 +21,7 @@ TEST(Octant, SineAndCosine) {
 }
 
 TEST(Octant, ATurn) {
-  // The angle is rounded once, to 2^-25 of at most pi/4 beside the quarter.
+  // The angle is rounded once, to 2^-25 of at most pi/4 relative to the quarter.
   constexpr double angle = 0x1p-25;
   for (int i = 0; i <= (1 << 20); ++i) {
     const float u = float(i) * 0x1p-20f;

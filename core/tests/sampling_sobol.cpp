@@ -12,7 +12,7 @@ namespace {
 
 using testing::Random;
 
-// True if every elementary interval of area 2^(t - m) holds exactly 2^t of the 2^m points.
+// Returns whether every elementary interval of area 2^(t - m) contains exactly 2^t of the 2^m points.
 bool is_net(const std::vector<glm::vec2> &points, int m, int t) {
   const int digits = m - t;
   for (int a = 0; a <= digits; ++a) {
@@ -59,8 +59,8 @@ TEST(Sobol, JointPairsAreNets) {
   }
 }
 
-// The least t for which the first 2^m points of some dimensions are a (t, m, s)-net: every box of the volume 2^(t - m) whose
-// sides are powers of two holds 2^t of them.
+// Returns the least t for which the first 2^m points of some dimensions are a (t, m, s)-net: every box of volume 2^(t - m)
+// whose sides are powers of two contains 2^t of them.
 int strength(const std::vector<uint32_t> &dimensions, int m) {
   const auto holds = [&](int t) {
     std::vector<int> digits(dimensions.size(), 0);
@@ -92,8 +92,8 @@ int strength(const std::vector<uint32_t> &dimensions, int m) {
 }
 
 TEST(Sobol, ProjectionsThatPathsDependOnAreEven) {
-  // Of 64 and of 256 points. Any m points are an (m, m, s)-net, so these are far from nothing; the numbers are those that the
-  // search has found.
+  // For 64 and for 256 points. Any m points are an (m, m, s)-net, so these values are significant; they are the results of the
+  // search.
   const uint32_t bsdf = 4, light = 6, choice = 8, lobe = 9, next = 12;
   const struct {
     std::vector<uint32_t> dimensions;
@@ -140,7 +140,7 @@ TEST(Sobol, EightAtOnceAreTheSameNumbers) {
 }
 
 TEST(Sobol, StaysBelowOne) {
-  // 2^24 samples of one dimension visit each of 2^24 cells once, the last one included. A conversion that rounds would give 1
+  // 2^24 samples of one dimension visit each of 2^24 cells once, including the last. A conversion that rounds would return 1
   // there for half of the scramblings.
   for (uint32_t seed = 0; seed < 4; ++seed) {
     float largest = 0.0f;
@@ -210,8 +210,8 @@ TEST(Sobol, ScramblingIsUnbiased) {
 }
 
 TEST(Sobol, ConvergesFasterThanRandom) {
-  // Owen: for smooth integrands the scrambled net's variance falls like N^-3, random numbers' like 1/N: at 256 points in 2-D
-  // that is a factor of thousands where t is 0. Where t is 1 the net is as even as one of half the points, and more by a gain
+  // Owen: for smooth integrands the scrambled net's variance falls like N^-3, random numbers' like 1/N: at 256 points in 2-D a
+  // factor of thousands if t is 0. If t is 1 the net is as uniform as one of half the points, with a further gain coefficient
   // of 2: less by up to 16.
   for (uint32_t d : {0u, 4u, 20u}) {
     constexpr int runs = 200, count = 256;
@@ -233,8 +233,8 @@ TEST(Sobol, ConvergesFasterThanRandom) {
 }
 
 TEST(Hash, FlipsHalfOfTheBits) {
-  // One flipped input bit flips each of 32 output bits with probability 1/2: over 4096 inputs the count is 2048 +- 32, and 6
-  // standard deviations are exceeded by chance in 1 of 5e5 of 1024 counts.
+  // One flipped input bit flips each of 32 output bits with probability 1/2: over 4096 inputs the count is 2048 +- 32, and
+  // chance exceeds 6 standard deviations in 1 of 5e5 of 1024 counts.
   for (int in = 0; in < 32; ++in) {
     int flips[32] = {};
     for (uint32_t x = 0; x < 4096; ++x) {

@@ -1,4 +1,4 @@
-// Directions to rectangles: as many as the solid angle says, spread evenly over it.
+// Sampling of rectangles: directions are uniform over the solid angle.
 #include "sampling/spherical_rectangle.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct Sides {
   SphericalRectangle<double> seen() const { return {{low.x, low.y}, {high.x, high.y}, z}; }
 };
 
-// A rectangle is cut into parts by steps along its sides.
+// A rectangle is divided into parts by steps along its sides.
 constexpr int kSteps = 8;
 
 Sides part_of(const Sides &whole, int i, int j) {
@@ -28,17 +28,17 @@ Sides part_of(const Sides &whole, int i, int j) {
 }
 
 const std::vector<Sides> kRectangles = {
-    {{-1, -1}, {1, 1}, 1},         // a side of a cube from its middle
+    {{-1, -1}, {1, 1}, 1},         // a side of a cube from its centre
     {{-3, -1}, {1, 2}, 0.02},      // from just below it
     {{5, 1}, {6, 2}, 1},           // aside
-    {{-2, 0.5}, {-1, 4}, 0.3},     // aside, the other way
+    {{-2, 0.5}, {-1, 4}, 0.3},     // aside, in the other direction
     {{0, 0}, {2, 3}, 1},           // from below a corner
     {{-0.005, -4}, {0.005, 3}, 1}, // a tube
     {{-1, 20}, {1, 22}, 100},      // far away
-    {{-1e6, -1}, {1e6, 1}, 0.5},   // longer than anyone sees
+    {{-1e6, -1}, {1e6, 1}, 0.5},   // very long
     {{-1e6, -1e6}, {1e6, 1e6}, 1}, // half of all directions
 };
-// Each is judged once, and once against parts by area.
+// Each is tested once, and once against parts by area.
 const double kLevel = testing::sidak_level(testing::kSignificance, 2 * static_cast<int>(kRectangles.size()));
 
 std::vector<double> counts_of(const Sides &whole, int draws, uint64_t seed) {
@@ -60,12 +60,12 @@ std::vector<double> counts_of(const Sides &whole, int draws, uint64_t seed) {
 
 TEST(SphericalRectangle, KnowsItsSolidAngle) {
   EXPECT_NEAR(kRectangles[0].seen().solid_angle, 4.0 * std::numbers::pi / 6.0, 1e-14);
-  // All of the hemisphere but a rim as wide as the plane's height over its extent.
+  // The whole hemisphere except a rim as wide as the plane's height over its extent.
   EXPECT_NEAR(kRectangles[8].seen().solid_angle, 2.0 * std::numbers::pi, 8e-6);
   // Far away it is area times cosine over squared distance, up to the square of its size over its distance.
   const double distance2 = 100.0 * 100.0 + 21.0 * 21.0, cosine = 100.0 / std::sqrt(distance2);
   EXPECT_NEAR(kRectangles[6].seen().solid_angle, 4.0 * cosine / distance2, 4.0 / distance2 * 1e-3);
-  // Parts add up, however it is seen.
+  // Parts sum to the whole from any point.
   for (const Sides &whole : kRectangles) {
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i)
@@ -73,7 +73,7 @@ TEST(SphericalRectangle, KnowsItsSolidAngle) {
         sum += part_of(whole, i, j).seen().solid_angle;
     EXPECT_NEAR(sum, whole.seen().solid_angle, 1e-9 * sum);
   }
-  // Edge on nothing is seen.
+  // Edge on nothing is visible.
   EXPECT_EQ(SphericalRectangle<double>({1, -1}, {2, 1}, 0.0).solid_angle, 0.0);
 }
 
@@ -86,7 +86,7 @@ TEST(SphericalRectangle, DirectionsAreEven) {
       for (int j = 0; j < kSteps; ++j)
         expected.push_back(kDraws * part_of(whole, i, j).seen().solid_angle / whole.seen().solid_angle);
     EXPECT_GT(testing::chi_square_test(counts_of(whole, kDraws, seed), expected), kLevel) << seed;
-    // Of the one far away area says the same.
+    // For the one far away, area gives the same.
     if (&whole != &kRectangles[6]) {
       EXPECT_LT(testing::chi_square_test(counts_of(whole, kDraws, seed), by_area), kLevel) << seed;
     }

@@ -1,4 +1,4 @@
-// Directions to triangles: as many as the solid angle says, spread evenly over it.
+// Sampling of triangles: directions are uniform over the solid angle.
 #include "sampling/spherical_triangle.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ struct Corners {
   SphericalTriangle<double> seen() const { return {a, b, c}; }
 };
 
-// A triangle is cut into parts by steps along two of its sides: some stand as it does, between them some are turned.
+// A triangle is divided into parts by steps along two of its sides: some have its orientation, others between them are
+// inverted.
 constexpr int kSteps = 8, kParts = kSteps * kSteps;
 
 std::size_t cell_of(int i, int j, bool upright) { return static_cast<std::size_t>((i * kSteps + j) * 2 + upright); }
@@ -30,7 +31,7 @@ Corners part_of(const Corners &whole, int i, int j, bool upright) {
   return {at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)};
 }
 
-// Where a direction meets the triangle's plane, in steps along both sides.
+// Returns the point where a direction hits the triangle's plane, in steps along both sides.
 glm::dvec2 steps_of(const Corners &whole, const glm::dvec3 &wi) {
   const glm::dvec3 e1 = whole.b - whole.a, e2 = whole.c - whole.a, across = glm::cross(wi, e2);
   const double scale = kSteps / glm::dot(across, e1);
@@ -43,9 +44,9 @@ const std::vector<Corners> kTriangles = {
     {{5, 0, 1}, {5, 1, 1}, {5, 0, 2}},                // aside
     {{0, 0, 2}, {0.01, 0, 2}, {0, 3, 1}},             // a sliver
     {{100, 0, 0}, {100, 1, 0}, {100, 0, 1}},          // far away
-    {{-1e6, -1, 0.5}, {1e6, -1, 0.5}, {0.3, 1, 0.1}}, // longer than anyone sees
+    {{-1e6, -1, 0.5}, {1e6, -1, 0.5}, {0.3, 1, 0.1}}, // very long
 };
-// Each is judged once, and once against parts by area.
+// Each is tested once, and once against parts by area.
 const double kLevel = testing::sidak_level(testing::kSignificance, 2 * static_cast<int>(kTriangles.size()));
 
 std::vector<double> counts_of(const Corners &whole, int draws, uint64_t seed) {
@@ -70,7 +71,7 @@ TEST(SphericalTriangle, KnowsItsSolidAngle) {
   EXPECT_NEAR(kTriangles[0].seen().solid_angle, 0.5 * std::numbers::pi, 1e-14);
   // Far away it is area times cosine over squared distance, up to the square of its size over its distance.
   EXPECT_NEAR(kTriangles[4].seen().solid_angle, 0.5e-4, 0.5e-4 * 1e-4);
-  // Parts add up, however it is seen.
+  // Parts sum to the whole from any point.
   for (const Corners &whole : kTriangles) {
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i)
@@ -81,7 +82,7 @@ TEST(SphericalTriangle, KnowsItsSolidAngle) {
       }
     EXPECT_NEAR(sum, whole.seen().solid_angle, 1e-9 * sum);
   }
-  // Edge on, and from one of its corners, nothing is seen.
+  // Edge on, and from one of its corners, nothing is visible.
   EXPECT_EQ(SphericalTriangle<double>({1, 0, 0}, {2, 1, 0}, {1, 1, 0}).solid_angle, 0.0);
   EXPECT_EQ(SphericalTriangle<double>({0, 0, 0}, {2, 1, 0}, {1, 1, 0}).solid_angle, 0.0);
 }
@@ -101,7 +102,7 @@ TEST(SphericalTriangle, DirectionsAreEven) {
           by_area[cell] += double(kDraws) / kParts;
         }
     EXPECT_GT(testing::chi_square_test(counts_of(whole, kDraws, seed), expected), kLevel) << seed;
-    // Of the one far away area says the same.
+    // For the one far away, area gives the same.
     if (&whole != &kTriangles[4]) {
       EXPECT_LT(testing::chi_square_test(counts_of(whole, kDraws, seed), by_area), kLevel) << seed;
     }

@@ -1,4 +1,4 @@
-// The judge is judged: exact p-values, right samplers pass, wrong ones fail.
+// Tests of the statistical tests: exact p-values, correct samplers pass, wrong ones fail.
 #include "statistics.h"
 
 #include <gtest/gtest.h>
@@ -17,12 +17,12 @@ TEST(Statistics, ChiSquareTailMatchesMpmath) {
 }
 
 TEST(Statistics, SidakKeepsTheWholeLevel) {
-  // 1 - (1 - level)^n is the level asked for, up to the rounding of 1 - level.
+  // 1 - (1 - level)^n is the requested level, up to the rounding of 1 - level.
   const double each = sidak_level(kSignificance, 250);
   EXPECT_NEAR(1.0 - std::pow(1.0 - each, 250), kSignificance, 1e-12);
 }
 
-// Counts of a density 1 + slope (2 u - 1) on [0, 1), judged as if it were uniform.
+// Counts of a density 1 + slope (2 u - 1) on [0, 1), tested against the uniform density.
 double p_value_of_slope(double slope, uint64_t seed) {
   constexpr int cells = 100, draws = 1000000;
   std::vector<double> observed(cells, 0.0);
@@ -38,19 +38,19 @@ double p_value_of_slope(double slope, uint64_t seed) {
 }
 
 TEST(Statistics, AcceptsTheRightSampler) {
-  // The seeds are fixed; a right sampler fails one of 20 with probability kSignificance in all.
+  // The seeds are fixed; a correct sampler fails one of 20 with probability kSignificance in total.
   for (uint64_t seed = 0; seed < 20; ++seed)
     EXPECT_GT(p_value_of_slope(0.0, seed), sidak_level(kSignificance, 20));
 }
 
 TEST(Statistics, RejectsASlopeOfTwoPercent) {
-  // Non-centrality draws slope^2 / 3 = 133 against 99 +- 14: over 9 standard deviations above what is expected.
+  // The non-centrality is draws * slope^2 / 3 = 133, against 99 +- 14: over 9 standard deviations above the expectation.
   for (uint64_t seed = 0; seed < 20; ++seed)
     EXPECT_LT(p_value_of_slope(0.02, seed), sidak_level(kSignificance, 20));
 }
 
 TEST(Statistics, PValuesOfARightSamplerAreUniform) {
-  // Ten cells of p-values over 2000 runs, judged by the same test: neither too strict nor too lenient.
+  // Ten cells of p-values over 2000 runs, tested by the same test: neither too strict nor too lenient.
   std::vector<double> observed(10, 0.0);
   Random random(7);
   for (int run = 0; run < 2000; ++run) {
@@ -67,7 +67,7 @@ TEST(Statistics, RejectsAHitWhereNothingMayLand) {
 }
 
 TEST(Statistics, PoolsRareCellsWithoutLosingThem) {
-  // 100 cells that expect 0.2 each hold 20 in all; 80 hits there must be seen although no cell alone could tell.
+  // 100 cells that expect 0.2 each contain 20 in total; 80 hits there must be detected although no single cell could show it.
   std::vector<double> expected(100, 0.2), observed(100, 0.8);
   expected.push_back(1000.0);
   observed.push_back(1000.0);

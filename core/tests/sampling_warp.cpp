@@ -16,7 +16,7 @@ namespace {
 using testing::Random;
 constexpr int kDraws = 1000000, kCells = 32;
 
-// Judges a warp in coordinates in [0, 1)^2 in which it should be uniform or have the given density (mean 1).
+// Tests a warp in coordinates in [0, 1)^2 in which it should be uniform or have the given density (mean 1).
 double p_value(uint64_t seed, const std::function<glm::dvec2(glm::vec2)> &place, const std::function<double(double)> &cdf_x) {
   std::vector<double> observed(kCells * kCells, 0.0), expected(kCells * kCells);
   for (int i = 0; i < kCells; ++i)
@@ -38,7 +38,7 @@ double azimuth(double x, double y) { return std::atan2(y, x) / (2.0 * std::numbe
 
 double identity(double x) { return x; }
 
-// Each warp is judged once; together with their wrong twins below they share the level.
+// Each warp is tested once; together with their wrong variants below they share the level.
 const double kLevel = testing::sidak_level(testing::kSignificance, 8);
 
 TEST(Warp, DiskIsUniform) {
@@ -72,7 +72,7 @@ TEST(Warp, SphereIsUniform) {
 }
 
 TEST(Warp, ConeIsUniformHoweverNarrow) {
-  // Seen from sin(theta)^2, which keeps its digits: 1 - cos = s2 / (1 + sqrt(1 - s2)).
+  // From sin(theta)^2, which keeps its digits: 1 - cos = s2 / (1 + sqrt(1 - s2)).
   for (float sin2 : {1.0f, 0.3f, 1e-6f, 1e-12f}) {
     const float largest = one_minus_cos(sin2);
     const auto place = [&](glm::vec2 u) {
@@ -88,7 +88,7 @@ TEST(Warp, ConeIsUniformHoweverNarrow) {
 }
 
 TEST(Warp, TriangleIsUniform) {
-  // The share with weight of corner 0 above 1 - x is x^2; along each such line the place is uniform.
+  // The share with a weight of corner 0 above 1 - x is x^2; along each such line the position is uniform.
   const auto place = [](glm::vec2 u) {
     const glm::dvec2 b(warp_triangle(u));
     return glm::dvec2(b.x + b.y, b.x / std::max(b.x + b.y, 0x1p-60));
@@ -97,7 +97,7 @@ TEST(Warp, TriangleIsUniform) {
 }
 
 TEST(Warp, DirectionsAreUnitAndFinite) {
-  // Corners of the square are where a warp breaks first. Rounding: three squares, each to a few ulp.
+  // Warps break at the corners of the square first. Rounding: three squares, each to a few ulp.
   for (float x : {0.0f, 0x1p-24f, 0.5f, 1.0f - 0x1p-24f})
     for (float y : {0.0f, 0x1p-24f, 0.5f, 1.0f - 0x1p-24f})
       for (const glm::vec3 &w :
@@ -131,7 +131,7 @@ TEST(WeightedChoice, FollowsItsWeights) {
 TEST(WeightedChoice, FindsTheEntryThatHoldsTheNumber) {
   Random random(11);
   for (const std::size_t count : {1u, 2u, 5u, 64u, 1000u}) {
-    // Powers of two, whose sums are exact; most of the weight on few.
+    // Powers of two, whose sums are exact; most of the weight in few of them.
     std::vector<double> weights(count), sums(1, 0.0);
     for (double &w : weights)
       w = random.next() % 3 ? std::ldexp(1.0, static_cast<int>(random.next() % 20)) : 0.0;
@@ -161,7 +161,7 @@ TEST(WeightedChoice, TakesBadWeights) {
   EXPECT_EQ(WeightedChoice({1.0, 1.0, 0.0}).sample(1.0 - 0x1p-53).index, 1u);
 }
 
-// The window's integral from 0 to x over its whole integral, 0.35875.
+// The window's integral from 0 to x relative to its whole integral, 0.35875.
 double blackman_harris_cdf(double x) {
   const double t = 2.0 * std::numbers::pi;
   return x + (-0.48829 * std::sin(t * x) + 0.14128 / 2.0 * std::sin(2.0 * t * x) - 0.01168 / 3.0 * std::sin(3.0 * t * x)) /
@@ -185,8 +185,9 @@ TEST(PixelFilter, BlackmanHarrisFollowsTheWindow) {
 }
 
 TEST(PixelFilter, InvertsTheWindowsIntegral) {
-  // Straight lines between 512 nodes miss a place x(t) by h^2 / 8 |x''|, and the integral by the window times that, of which
-  // |x''| w < 1.0 w_mean: 4.8e-7. Of floats, three roundings of at most 2^-25 each, where the window is at most 2.8 w_mean.
+  // Linear interpolation between 512 nodes deviates from a place x(t) by h^2 / 8 |x''|, and from the integral by the window
+  // times this, with |x''| w < 1.0 w_mean: 4.8e-7. For floats, three roundings of at most 2^-25 each, where the window is at
+  // most 2.8 w_mean.
   const PixelFilter filter(FilterKind::BlackmanHarris, 1.0f);
   for (int i = 0; i <= 1000; ++i) {
     const float u = std::min(static_cast<float>(i) / 1000.0f, 1.0f - 0x1p-24f);
@@ -205,7 +206,7 @@ TEST(PixelFilter, IsMonotoneAndStaysInside) {
     }
     EXPECT_LE(filter.sample(1.0f - 0x1p-24f), 0.75f);
     EXPECT_GE(filter.sample(0.0f), -0.75f);
-    // Symmetric: the middle of the numbers is the middle of the pixel, to the rounding of the table's sums.
+    // Symmetric: u = 0.5 is the centre of the pixel, up to the rounding of the table's sums.
     EXPECT_NEAR(filter.sample(0.5f), 0.0f, 0x1p-22f);
   }
 }

@@ -1,4 +1,4 @@
-// Whole renders through the C interface: determinism, cancelling, lifetime of handles, replay.
+// Complete renders through the C interface: determinism, cancelling, lifetime of handles, replay.
 #include "scene/memory.h"
 #include "tiny_scene.h"
 
@@ -41,7 +41,7 @@ TEST_P(Sessions, BitsDoNotDependOnThreadsTilesOrSplits) {
   settings.features = LANCER_FEATURES_ALL;
   EXPECT_EQ(image, render(scene, camera, settings));
   settings.seed = 1;
-  // NORMALS has one value per surface, but pixels at edges still see another mixture.
+  // NORMALS has one value per surface, but pixels at edges see another mixture.
   EXPECT_NE(image, render(scene, camera, settings));
   lancer_scene_destroy(scene);
 }
@@ -98,7 +98,7 @@ TEST(Session, OutlivesItsScene) {
   EXPECT_EQ(lancer_session_destroy(session), LANCER_OK);
   EXPECT_EQ(lancer_session_render(session, 2, 1), LANCER_ERROR_HANDLE);
   EXPECT_EQ(lancer_session_destroy(session), LANCER_ERROR_HANDLE);
-  // A scene's number is no session.
+  // A scene's handle is not a session's.
   EXPECT_EQ(lancer_session_cancel(scene), LANCER_ERROR_HANDLE);
 }
 
@@ -165,7 +165,7 @@ TEST(Session, RefusesWhatNoFilmCanHave) {
 }
 
 TEST(Session, RefusesSamplesWhoseSumsNoFilmCanKeep) {
-  // One sum of every pixel takes half of what a film may have; seven samples wait in three.
+  // One sum of every pixel takes half of the film's limit; seven samples are held in three sums.
   const double most = 0.8 * lancer::physical_memory();
   const auto side = uint32_t(std::sqrt(most / 2.0 / (4 * sizeof(double))));
   const lancer_scene scene = make_scene();

@@ -1,4 +1,4 @@
-// Which materials may be shaded side by side.
+// Classes of materials that may be shaded in the same lanes.
 #include "compile/features.h"
 
 #include "compile/ready_lobes.h"
@@ -43,7 +43,7 @@ TEST(ShadingClasses, OtherCodeDoes) {
                                      of(changed([](LobeDescription &lobe) { lobe.rules = Rules::Blender3; })),
                                      of(changed([](LobeDescription &lobe) { lobe.distribution = Facets::Beckmann; })),
                                      of(changed([](LobeDescription &lobe) { lobe.option = 1; })),
-                                     // Facets along a direction are not planned ahead.
+                                     // Anisotropic facets are not planned in advance.
                                      of(changed([](LobeDescription &lobe) { lobe.anisotropy = Parameter{glm::vec3(0.5f)}; })),
                                      of(glossy(0.3f, glm::vec3(0.5f)), LANCER_MATERIAL_NO_BUMP_CORRECTION), Material{}};
   Material two = materials[0];
@@ -53,7 +53,7 @@ TEST(ShadingClasses, OtherCodeDoes) {
   const std::vector<uint32_t> classes = shading_classes(materials);
   for (uint32_t i = 0; i < materials.size(); ++i)
     EXPECT_EQ(classes[i], i);
-  // And again: the numbers are those of the first.
+  // A second time: the numbers are those of the first.
   const std::vector<Material> first = materials;
   materials.insert(materials.end(), first.begin(), first.end());
   const std::vector<uint32_t> twice = shading_classes(materials);
@@ -68,7 +68,7 @@ TEST(ShadingClasses, NodesHaveOneOfTheirOwn) {
   EXPECT_EQ(shading_classes({fed, fed, of(glossy(0.3f, glm::vec3(0.5f)))}), (std::vector<uint32_t>{0, 1, 2}));
 }
 
-// A Principled of which one input is no more what it is in a plain one.
+// A Principled with one input that differs from the plain one.
 TEST(ShadingClasses, EachPartOfPrincipledIsOne) {
   using P = PrincipledDescription;
   Parameter P::*const parts[] = {&P::coat,      &P::metallic,          &P::transmission, &P::sheen,

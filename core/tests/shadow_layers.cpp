@@ -1,4 +1,4 @@
-// Shadow rays through layers: within one traversal as from hit to hit, and the same bits whoever traverses.
+// Shadow rays through layers: one traversal equals stepping from hit to hit, with the same bits for every accelerator.
 #include "foliage.h"
 #include "forced_instruction_set.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t kRays = 3000;
 
-// From all sides, endless or up to a lamp; some have passed layers before.
+// From all sides, infinite or up to a lamp; some have passed layers before.
 struct Question {
   Ray ray;
   uint32_t passed;
@@ -39,7 +39,7 @@ std::vector<Question> questions(const Scene &scene) {
   return all;
 }
 
-// What arrives of (1, 1, 1).
+// Returns the transmitted part of (1, 1, 1).
 std::vector<glm::vec3> one_traversal(const Scene &scene, uint32_t deepest) {
   IntegratorSettings settings;
   settings.transparent_shadows = deepest;
@@ -80,7 +80,7 @@ glm::vec3 from_hit_to_hit(const Scene &scene, Shader &shader, Question question,
   }
 }
 
-// How many of the rays end behind layers, unhindered or dimmed, and the most layers that one of them passes.
+// The number of rays that pass unattenuated or attenuated, and the largest number of layers passed.
 struct Arrivals {
   uint32_t lit = 0, dimmed = 0, most = 0;
 };
@@ -97,8 +97,8 @@ Arrivals expect_the_chain(const Scene &scene, uint32_t deepest) {
     arrivals.dimmed += expected != glm::vec3(0.0f) && expected != glm::vec3(1.0f);
     arrivals.lit += expected != glm::vec3(0.0f);
     arrivals.most = std::max(arrivals.most, layers);
-    // A hit's weights differ by roundings of double, so texture coordinates by one of float, 2^-24 of the picture's 16
-    // texels; from one texel to the next alpha changes by 1 at most, along two axes: 2^-19 a layer. Products add one more.
+    // A hit's weights differ by roundings of double, so texture coordinates by one of float, 2^-24 of the image's 16 texels;
+    // from one texel to the next alpha changes by at most 1, along two axes: 2^-19 per layer. Products add one more.
     const float bound = float(layers + 1) * (0x1p-19f + 0x1p-24f);
     for (int k = 0; k < 3; ++k)
       EXPECT_NEAR(arrived[i][k], expected[k], bound) << "ray " << i << ", at most " << deepest << " layers";
@@ -124,10 +124,10 @@ TEST(ShadowLayers, SomeLayersAreOpaqueForShadowsOnly) {
     const auto scene = foliage(writing, opaque);
     for (const uint32_t deepest : {1u, 4u}) {
       const Arrivals arrivals = expect_the_chain(*scene, deepest);
-      // Panes beside the leaves let light pass as ever.
+      // Panes beside the leaves transmit unchanged.
       EXPECT_GT(arrivals.dimmed, 10u);
     }
-    // Leaves stop much of what they would let pass.
+    // Leaves block much of the light that they would transmit.
     const auto lit = [](const glm::vec3 &light) { return light != glm::vec3(0.0f); };
     const std::vector<glm::vec3> stopped = one_traversal(*scene, 8), passed = one_traversal(*foliage(writing), 8);
     EXPECT_LT(std::ranges::count_if(stopped, lit), std::ranges::count_if(passed, lit) / 2);

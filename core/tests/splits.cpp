@@ -1,4 +1,5 @@
-// Samples that ask several lights and follow several paths: the same light on average, and the same way found by whoever looks.
+// Split samples, with several lights and several branches: the same light on average, and the same choice of the split by every
+// thread.
 #include "picture_lab.h"
 
 #include <array>
@@ -28,7 +29,7 @@ protected:
     EXPECT_EQ(lancer_session_read(session, pass, image.data(), image.size()), LANCER_OK) << lancer_last_error();
     return image;
   }
-  // Means over the picture of so many seeds, and the standard error of their mean.
+  // The mean over the pictures of this many seeds, and its standard error.
   struct Level {
     double mean, error;
   };
@@ -58,7 +59,7 @@ protected:
       square += (of_seed - mean) * (of_seed - mean);
     return {mean, std::sqrt(square / (kSeeds - 1) / kSeeds)};
   }
-  // Means of renders that differ in nothing but chance are more than four standard errors apart once in some ten thousand times
+  // Means of renders that differ by chance only are more than four standard errors apart once in some ten thousand times
   // (Student, 46 degrees of freedom: 2e-4).
   static void expect_same(const Level &a, const Level &b) {
     EXPECT_LT(std::abs(a.mean - b.mean), 4.0 * std::hypot(a.error, b.error)) << a.mean << " and " << b.mean;
@@ -79,14 +80,14 @@ protected:
 
 constexpr std::array<Way, 4> kWays = {Way{4, 1}, Way{1, 4}, Way{2, 3}, Way{8, 8}};
 
-// The scene has glass, a mirror that shines, a lamp, a sky, and surfaces that are half there.
+// The scene has glass, an emitting mirror, a lamp, a sky, and half transparent surfaces.
 TEST_F(Splitting, BringsTheSameLight) {
   const Level plain = level({1, 1}, 8);
   for (const Way &way : kWays)
     expect_same(level(way, 8), plain);
 }
 
-// Each path is clamped as if it were the only one of its sample: what clamping takes is the same.
+// Each branch is clamped as if it were the only one of its sample: clamping removes the same amount.
 TEST_F(Splitting, IsClampedAsOnePathIs) {
   const double open = level({1, 1}, 8).mean;
   settings.clamp_indirect = 0.02f;
@@ -96,7 +97,7 @@ TEST_F(Splitting, IsClampedAsOnePathIs) {
     expect_same(level(way, 8), plain);
 }
 
-// What clamping has taken, and what bounces beyond the last would add.
+// Light removed by clamping, and light beyond the last bounce.
 TEST_F(Splitting, DeclaresTheSameLosses) {
   settings.clamp_indirect = 0.1f;
   settings.max_bounces = 1;
@@ -131,7 +132,7 @@ TEST_F(Splitting, FillsPassesAsOnePathDoes) {
   }
 }
 
-// The parts of a picture add up to it, clamped or not.
+// The parts of a picture sum to it, clamped or not.
 TEST_F(Splitting, KeepsThePassesTogether) {
   for (const Way &way : {Way{1, 1}, Way{2, 4}})
     for (const float clamp : {0.0f, 0.05f}) {
@@ -161,7 +162,7 @@ TEST_F(Splitting, KeepsThePassesTogether) {
     }
 }
 
-// A matt ball on a matt floor under an even sky: all its noise is that of where paths go on.
+// A matt ball on a matt floor under a uniform sky: all its noise is from the direction of branches.
 lancer_scene make_open_scene() {
   lancer_scene scene = 0;
   lancer_scene_create(&scene);

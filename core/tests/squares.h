@@ -9,7 +9,7 @@ namespace lancer_test {
 
 class Squares {
 public:
-  // across, along: from the middle to the sides. The corner (0, 0) ... (uv, uv) of a picture lies on it.
+  // across, along: from the centre to the sides. The corner (0, 0) ... (uv, uv) of an image is mapped to it.
   void add(const glm::dvec3 &middle, const glm::dvec3 &across, const glm::dvec3 &along, float uv = 1.0f, uint16_t slot = 0) {
     const uint32_t first = uint32_t(positions_.size() / 3);
     for (const auto &[u, v] : {std::pair(-1.0, -1.0), {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
@@ -23,7 +23,7 @@ public:
     slots_.insert(slots_.end(), 2, slot);
   }
 
-  // As long as nothing is added, nor this moved.
+  // Valid as long as nothing is added and this object is not moved.
   lancer_mesh mesh() const {
     lancer_mesh mesh = {};
     mesh.name = "squares";

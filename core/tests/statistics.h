@@ -1,4 +1,4 @@
-// Statistical judgement for tests: a p-value says how often a correct sampler would look at least this bad.
+// Statistical tests: a p-value is the probability that a correct sampler deviates at least this much.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 
 namespace lancer::testing {
 
-// Chance that one run of the whole suite fails although nothing is wrong; shared out over its assertions by sidak_level.
+// Probability that one run of the whole suite fails without an error; sidak_level divides it among the assertions.
 inline constexpr double kSignificance = 1e-3;
 
-// Level at which each of count independent tests is judged so that any of them fails by chance with probability level.
+// Returns the level of each of count independent tests such that any of them fails by chance with probability level.
 inline double sidak_level(double level, std::size_t count) {
   return -std::expm1(std::log1p(-level) / static_cast<double>(count));
 }
@@ -50,7 +50,7 @@ inline double upper_gamma_ratio(double a, double x) {
 inline double chi_square_p_value(double statistic, double degrees) { return upper_gamma_ratio(0.5 * degrees, 0.5 * statistic); }
 
 // Pearson's test of counts against expected counts. Cells are pooled from the rarest up until each expects at least 10, where
-// the chi-square law holds well. A hit where nothing may land gives p = 0. Totals must agree: what a sampler rejects is a cell,
+// the chi-square law is accurate. A hit in an impossible cell gives p = 0. Totals must agree: rejected samples form a cell,
 // too.
 inline double chi_square_test(const std::vector<double> &observed, const std::vector<double> &expected) {
   std::vector<std::size_t> order(expected.size());
@@ -78,7 +78,7 @@ inline double chi_square_test(const std::vector<double> &observed, const std::ve
   return cells < 2 ? 1.0 : chi_square_p_value(statistic, cells - 1);
 }
 
-// Kolmogorov's test that numbers are even on 0 ... 1, with Stephens' correction for few of them.
+// Kolmogorov's test that numbers are uniform on 0 ... 1, with Stephens' correction for small counts.
 inline double uniformity_p_value(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const double n = static_cast<double>(values.size()), root = std::sqrt(n);
@@ -88,7 +88,7 @@ inline double uniformity_p_value(std::vector<double> values) {
     apart = std::max({apart, values[i] - index / n, (index + 1.0) / n - values[i]});
   }
   const double x = (root + 0.12 + 0.11 / root) * apart;
-  // The series alternates and falls at once but for tiny x, where the answer is 1.
+  // The series alternates and decreases quickly except for tiny x, where the result is 1.
   double p = 0.0;
   for (int k = 1; k <= 100; ++k)
     p += (k % 2 ? 2.0 : -2.0) * std::exp(-2.0 * k * k * x * x);
@@ -98,7 +98,7 @@ inline double uniformity_p_value(std::vector<double> values) {
 // Two-sided p-value of a standard normal deviate.
 inline double normal_p_value(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
-// Independent uniform numbers for tests, so that a test of a sampler does not lean on the sampler (SplitMix64).
+// Independent uniform numbers for tests, so that a test of a sampler does not depend on the sampler (SplitMix64).
 class Random {
 public:
   explicit Random(uint64_t seed) : state_(seed) {}

@@ -1,4 +1,4 @@
-// One mesh may be placed flat and smooth at once: what is shaded flat has no curved surface to start shadow rays from.
+// One mesh may have flat and smooth instances: a flat one has no curved surface on which shadow rays start.
 #include "integrator/stages/terminator.h"
 
 #include <cmath>
@@ -7,7 +7,7 @@
 namespace lancer {
 namespace {
 
-// A triangle without normals of its own, and the ones that a smooth placement made for it.
+// A triangle without normals of its own, and the normals computed for a smooth instance.
 Geometry one_triangle(NormalDomain domain) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -38,7 +38,7 @@ TEST(SurfaceNormals, OnlyWhatIsShadedSmoothIsLifted) {
       surface.instance = i;
       surface.primitive = 0;
       surface.bary = {0.25, 0.25};
-      // At grazing light, where the lift is whole.
+      // Grazing light, with the full offset.
       const glm::vec3 up(0, 0, 1), wi = glm::normalize(glm::vec3(1.0f, 0.0f, 0.01f));
       const bool smooth = interpolated_normal(geometry.meshes[0], shading, 0, surface.bary) != glm::vec3(0.0f);
       EXPECT_EQ(smooth, shading != Shading::Flat && (domain != NormalDomain::None || shading != Shading::AsMesh));

@@ -1,4 +1,4 @@
-// Where shadow rays of smooth meshes start: the offset against closed forms, and what it does to a coarse ball.
+// Origins of shadow rays on smooth meshes: the offset against closed forms, and its effect on a coarse ball.
 #include "picture_lab.h"
 #include "roundings.h"
 
@@ -18,7 +18,7 @@ struct Smooth {
   glm::vec3 v[3], n[3];
 };
 
-// Its mesh; vertices are stored in another order than the corners have.
+// Its mesh; vertices are stored in another order than the corners.
 struct SmoothMesh {
   glm::vec3 positions[3], normals[3];
   uint32_t corners[3] = {2, 0, 1};
@@ -39,7 +39,7 @@ struct SmoothMesh {
   }
 };
 
-// A facet of a ball: corners on a circle of that radius, normals that lean outwards by the angle.
+// A facet of a ball: corners on a circle of this radius, normals tilted outwards by the angle.
 Smooth facet(double radius, double lean) {
   Smooth t;
   for (int i = 0; i < 3; ++i) {
@@ -50,7 +50,7 @@ Smooth facet(double radius, double lean) {
   return t;
 }
 
-// Upright at the first corner, leaning away from it at the others.
+// Upright at the first corner, tilted away from it at the others.
 Smooth leaning() {
   const float s = 0.6f, c = 0.8f;
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {s, 0, c}, {0, s, c}}};
@@ -95,20 +95,20 @@ TEST(Terminator, LiftsToTheLowestTangentPlane) {
 }
 
 TEST(Terminator, LiftsToTheParaboloidWhereThatIsHigher) {
-  // The upright corner's plane is the triangle's own: half of sum b_i b_j (n_j - n_i).(v_j - v_i) over the edges is left.
+  // The upright corner's plane is the triangle's own: half of the sum b_i b_j (n_j - n_i).(v_j - v_i) over the edges remains.
   const Smooth t = leaning();
   const glm::dvec3 b(0.5, 0.3, 0.2);
   double height = 0.0;
   for (int i = 0; i < 3; ++i)
     for (int j = i + 1; j < 3; ++j)
       height += 0.5 * b[i] * b[j] * glm::dot(glm::dvec3(t.n[j]) - glm::dvec3(t.n[i]), glm::dvec3(t.v[j]) - glm::dvec3(t.v[i]));
-  // 0.5 (0.15 * 0.6 + 0.1 * 0.6 + 0.06 * 1.2), of a 0.6 that is rounded to float.
+  // 0.5 (0.15 * 0.6 + 0.1 * 0.6 + 0.06 * 1.2), with 0.6 rounded to float.
   EXPECT_NEAR(height, 0.111, float_roundings(1, 0.111));
   expect_offset(Lifted(t, b).offset(kGrazing), height * interpolated(t, b));
 }
 
 TEST(Terminator, SinksTowardsLightBehind) {
-  // Seen from within the ball, the planes lie 3/2 radius sin(lean) b_i behind.
+  // Seen from inside the ball, the planes are 3/2 radius sin(lean) b_i behind.
   const double radius = 2.0, lean = 0.4;
   const Smooth t = facet(radius, lean);
   const glm::dvec3 b(0.5, 0.3, 0.2), expected = -1.5 * radius * std::sin(lean) * 0.2 * interpolated(t, b);
@@ -126,15 +126,17 @@ TEST(Terminator, FadesInTowardsGrazing) {
   const Lifted lifted(t, glm::dvec3(1.0, 1.0, 1.0) / 3.0);
   const glm::dvec3 whole = lifted.offset(kGrazing);
   const auto share = [&](float cos_n, float cos_g) {
-    // The shading normal upright, light and geometric normal in the plane of x and z.
+    // The shading normal is upright; light and geometric normal are in the plane of x and z.
     const float light = std::acos(cos_n), tilt = light - std::acos(cos_g);
     const glm::vec3 wi(std::sin(light), 0.0f, std::cos(light)), ng(std::sin(tilt), 0.0f, std::cos(tilt));
     return glm::length(lifted.offset(wi, {0, 0, 1}, ng)) / glm::length(whole);
   };
-  // Both cosines below the limit of 0.1: 2 minus their sum over it; else 1 minus the geometric one over it.
+  // Both cosines below the limit of 0.1: 2 minus their sum over the limit; otherwise 1 minus the geometric cosine over the
+  // limit.
   EXPECT_EQ(share(0.5f, 0.5f), 0.0);
   EXPECT_EQ(share(0.11f, 0.1f), 0.0);
-  // Each cosine is made by an angle of up to 2, its sine and cosine and a product: 7 roundings, and 10 times that over 0.1.
+  // Each cosine is computed from an angle of up to 2, its sine and cosine and a product: 7 roundings, and 10 times as many over
+  // 0.1.
   constexpr double rounding = float_roundings(2 * 7 * 10);
   EXPECT_NEAR(share(0.075f, 0.075f), 0.5, rounding);
   EXPECT_NEAR(share(0.09f, 0.02f), 0.9, rounding);
@@ -144,7 +146,7 @@ TEST(Terminator, FadesInTowardsGrazing) {
 }
 
 TEST(Terminator, StandsAsTheInstanceStands) {
-  // Heights are the mesh's own; where they point is the instance's.
+  // Heights are in the mesh's space; their direction is the instance's.
   const Smooth t = facet(1.0, 0.4);
   const glm::dvec3 b(0.5, 0.3, 0.2), offset = Lifted(t, b).offset(kGrazing);
   const glm::dvec3 placed = Lifted(t, b, {0, -3, 0, 7, 2, 0, 0, 8, 0, 0, 5, 9}).offset(kGrazing);
@@ -166,7 +168,7 @@ TEST(Terminator, IsNoneWhereTheSurfaceIsNotSmooth) {
   instance.shading = Shading::AsMesh;
   instance.kind = ShapeKind::Sphere;
   EXPECT_EQ(lifted.offset(kGrazing), none);
-  // One normal at all corners, as a flat face has among smooth ones.
+  // One normal at all corners, as of a flat face among smooth ones.
   Smooth flat = t;
   flat.n[0] = flat.n[1] = flat.n[2] = {0.6f, 0.0f, 0.8f};
   EXPECT_EQ(Lifted(flat, b, kInPlace, LANCER_NORMALS_CORNER).offset(kGrazing), none);
@@ -175,7 +177,7 @@ TEST(Terminator, IsNoneWhereTheSurfaceIsNotSmooth) {
 
 constexpr int kRings = 6, kSegments = 12;
 
-// A ball of few faces whose normals are those of a true one.
+// A ball of few faces with the normals of a sphere.
 struct CoarseBall {
   std::vector<float> positions;
   std::vector<uint32_t> triangles;
@@ -207,22 +209,22 @@ struct CoarseBall {
 
 const glm::dvec3 kSun(0.9, -0.3, 0.2);
 
-// At 87 degrees to the faces that look at the camera.
+// At 87 degrees to the faces towards the camera.
 const glm::dvec3 kGrazingSun(1.0, -0.05, 0.0);
 
-// The ball under the sun from the side.
+// The ball with the sun from the side.
 std::unique_ptr<Studio> ball(float terminator, uint32_t kind = LANCER_MESH, uint32_t shading = LANCER_SHADING_AS_MESH,
                              bool with_bead = false) {
   auto studio = std::make_unique<Studio>();
   const CoarseBall shape;
   studio->add(shape.mesh());
-  // By the newest rules: older ones bend the normal where a reflection would meet the face.
+  // By the newest rules: older ones adjust the normal if a reflection would hit the face.
   lancer_lobe white = lobe(LANCER_LAMBERT, 1.0f);
   white.rules = LANCER_RULES_BLENDER_45;
   lancer_instance &instance = studio->place(kind, studio->add({white}));
   instance.terminator = terminator;
   instance.shading = shading;
-  // A bead beside the middle of the picture throws its shadow on faces that the sun just grazes.
+  // A bead beside the centre of the picture casts its shadow on faces at grazing angles to the sun.
   if (with_bead)
     studio->place(LANCER_SPHERE, studio->add({}, black()),
                   moved(0.45, -1.1, 0.0) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.15)));
@@ -233,7 +235,7 @@ std::unique_ptr<Studio> ball(float terminator, uint32_t kind = LANCER_MESH, uint
 }
 
 TEST(Terminator, ACoarseBallHasNoHardEdges) {
-  // How many pixels that face the sun by so much are in shadow, and how many are not as bright as their cosine.
+  // Counts pixels on the sun's side that are in shadow, and pixels whose brightness is not their cosine.
   const auto count = [](const Studio &studio) {
     const auto picture = studio.read(LANCER_PASS_COMBINED, 4), normals = studio.read(LANCER_PASS_NORMAL, 3);
     const glm::vec3 sun(glm::normalize(kSun));
@@ -252,7 +254,7 @@ TEST(Terminator, ACoarseBallHasNoHardEdges) {
     return std::pair(shadowed, others);
   };
   EXPECT_EQ(count(*ball(kLimit)), std::pair(0, 0));
-  // Of some 6000 pixels on the sun's side, those on faces that turn away from it.
+  // Of some 6000 pixels on the sun's side, those on faces that face away from it.
   const auto [shadowed, others] = count(*ball(0.0f));
   EXPECT_GT(shadowed, 200);
   EXPECT_EQ(others, 0);

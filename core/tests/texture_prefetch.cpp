@@ -1,4 +1,4 @@
-// Texels that are asked for before they are looked up: which ones, and that nothing else comes of it.
+// Prefetching of texels before their lookup: which texels, and no other effect.
 #include "nodes_lab.h"
 #include "tiny_scene.h"
 
@@ -14,9 +14,9 @@
 namespace lancer_test {
 namespace {
 
-// Four megabytes are large enough to be asked for.
+// Four megabytes are large enough for prefetching.
 constexpr uint32_t kSide = 1024;
-// Of image nodes.
+// Flags of image nodes.
 constexpr uint32_t kLinear = LANCER_INTERPOLATE_LINEAR << 4;
 
 enum class Thing { Outside, Wild, NoNumbers, WithoutUvs, Named, Sphere, WithoutSlot, OfAnotherMaterial, OfTheOtherSlot, Count };
@@ -33,8 +33,8 @@ void add_picture(Description &description, uint32_t side) {
   add_image(description, image);
 }
 
-// A white that the picture colours. by_hand: the UV map goes through a product with 1, so that nobody knows where the look
-// falls.
+// A white material with the image as colour. by_hand: the UV map is multiplied by 1, so that the place of the lookup is
+// unknown.
 void add_painted(Description &description, Extension extension, bool by_hand, const char *uv_map = "") {
   std::vector<lancer_node> nodes = {named(node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV), uv_map)};
   if (by_hand)
@@ -80,11 +80,11 @@ void add_quad(Description &description, const std::vector<glm::vec2> &uvs, const
   add_mesh(description, mesh);
 }
 
-// All things in a row, 3 apart, under a white sky.
+// All objects in a row, 3 apart, under a white sky.
 std::shared_ptr<const Scene> row(Extension extension, bool by_hand, uint32_t side = kSide) {
   Description description;
   add_picture(description, side);
-  // Materials 0 and 1 are painted, 2 is plain.
+  // Materials 0 and 1 have the image, 2 has none.
   add_painted(description, extension, by_hand);
   add_painted(description, extension, by_hand, "map");
   lancer_lobe grey = lobe(LANCER_LAMBERT, 0.5f);
@@ -102,11 +102,11 @@ std::shared_ptr<const Scene> row(Extension extension, bool by_hand, uint32_t sid
   add_quad(description, outside);
   add_quad(description, {});
   add_quad(description, outside, "map");
-  // Meshes are given without what is no number; what computes them may still come upon some.
+  // Checked meshes have no NaN; coordinates from computations may be NaN.
   for (glm::vec2 &uv : description.geometry.meshes[uint32_t(Thing::NoNumbers)].uvs)
     uv = {nan, INFINITY};
 
-  // The last thing's second triangle has a material of its own, all others' slots are of one.
+  // The last object's second triangle has a material of its own; the slots of each other object share one.
   const uint32_t slots[] = {0, 1, 2, 2, 0};
   std::vector<lancer_instance> instances(kThings);
   for (uint32_t i = 0; i < kThings; ++i) {
@@ -125,7 +125,7 @@ std::shared_ptr<const Scene> row(Extension extension, bool by_hand, uint32_t sid
   return commit(std::move(description), AcceleratorKind::Bvh, surface_emission, {});
 }
 
-// Straight down on so many pixels of each thing, in world units.
+// Looks straight down at this many pixels of each object, in world units.
 Camera above(uint32_t pixels) {
   Camera camera;
   camera.kind = CameraKind::Orthographic;
@@ -208,14 +208,14 @@ TEST(TexturePrefetch, ChangesNoPicture) {
     seen.push_back(picture(extension, false));
     EXPECT_EQ(seen.back(), picture(extension, true)) << uint32_t(extension);
   }
-  // They are pictures of something.
+  // The pictures are not empty.
   EXPECT_NE(seen[0], seen[1]);
   EXPECT_NE(seen[1], seen[2]);
   EXPECT_NE(seen[2], seen[3]);
 }
 
 TEST(TexturePrefetch, TakesAnyPlaceOfAnyPicture) {
-  // Of every depth and shape, down to one texel.
+  // Images of every depth and shape, down to one texel.
   for (const uint32_t kind : {LANCER_TEXEL_U8, LANCER_TEXEL_U16, LANCER_TEXEL_FLOAT})
     for (const uint32_t channels : {1u, 3u, 4u})
       for (const auto &[width, height] : {std::pair(1u, 1u), {1u, 7u}, {5u, 1u}, {64u, 3u}}) {

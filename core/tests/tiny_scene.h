@@ -1,4 +1,4 @@
-// A small scene through the C interface, for tests that need no Python.
+// A small scene through the C interface, for tests without Python.
 #pragma once
 
 #include "lancer.h"
@@ -29,7 +29,7 @@ inline lancer_lobe lobe(uint32_t kind, float color, float roughness = 0.3f) {
   return lobe;
 }
 
-// opacity: share of what is there; the rest passes.
+// opacity: share of light that does not pass straight through.
 inline void add_material(lancer_scene scene, std::vector<lancer_lobe> lobes, float emission = 0.0f, float opacity = 1.0f) {
   lancer_material material = {};
   material.name = "material";
@@ -58,7 +58,7 @@ inline lancer_light point_light() {
   return light;
 }
 
-// A plane, a glass and a coated sphere, a cone that is half there, a tetrahedron that shines; a lamp and a sky.
+// A plane, a glass and a coated sphere, a half transparent cone, an emitting tetrahedron; a lamp and a sky.
 inline lancer_scene make_scene(uint32_t accelerator = LANCER_BVH, uint32_t shading = LANCER_SHADING_AS_MESH) {
   lancer_scene scene = 0;
   lancer_scene_create(&scene);
@@ -101,7 +101,7 @@ inline lancer_scene make_scene(uint32_t accelerator = LANCER_BVH, uint32_t shadi
 
 inline lancer_camera make_camera(uint32_t width = 24, uint32_t height = 16) {
   lancer_camera camera = {};
-  // Looking from -y along +y: local x = world x, local y = world z.
+  // Facing +y from -y: local x = world x, local y = world z.
   const double m[12] = {1, 0, 0, 0, 0, 0, -1, -6, 0, 1, 0, 1.2};
   std::copy(m, m + 12, camera.matrix);
   camera.width = camera.region_width = width;

@@ -1,4 +1,4 @@
-// How many vertices the kernels of many lanes shaded, and how many the general code.
+// Numbers of vertices shaded by kernels of many lanes and by the general code.
 #include "picture_lab.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint32_t kPixels = 24, kSamples = 4, kRays = kPixels * kPixels * kSamples;
 
-// A surface that fills the view, and what the statistics say of it. Each camera ray meets it once.
+// Returns the statistics of a surface that fills the view. Each camera ray hits it once.
 lancer_statistics seen(const lancer_lobe &lobe, uint32_t passes, uint32_t threads, uint32_t integrator = LANCER_PATH) {
   Studio studio;
   studio.settings.integrator = integrator;
@@ -34,7 +34,7 @@ TEST(VertexCounts, LanesShadeTheUsualSurfaceOfAPictureAlone) {
 }
 
 TEST(VertexCounts, LanesShadeWhateverElseIsAsked) {
-  // Beside the picture another pass; a lobe of few scenes.
+  // Another pass beside the picture; a rare lobe.
   for (const lancer_statistics &statistics :
        {seen(newest(LANCER_DIFFUSE, 0.5f, 0.0f), kMore, 2), seen(newest(LANCER_SHEEN, 0.5f), kPicture, 2)}) {
     EXPECT_EQ(statistics.wide_vertices, kRays);
