@@ -1,4 +1,4 @@
-// Bytes as decisions: mostly sane values, now and then the worst ones. Where the bytes end, everything is as usual.
+// Decisions from bytes: mostly valid values, sometimes the worst ones. Beyond the last byte everything is the default.
 #pragma once
 
 #include <bit>
@@ -22,21 +22,21 @@ public:
       bits = bits << 8 | byte();
     return bits;
   }
-  // 0 ... count - 1.
+  // Returns 0 ... count - 1.
   uint32_t below(uint32_t count) { return byte() % count; }
-  // True that often in 256.
+  // Returns true with this frequency out of 256.
   bool rarely(uint32_t times) { return 255u - byte() < times; }
-  // One of so many, seldom one beyond them.
+  // Returns a choice out of count, rarely one beyond.
   uint32_t choice(uint32_t count) {
     const uint8_t b = byte();
     return b == 255 ? count : b == 254 ? ~0u : b % count;
   }
-  // The number of one of so many things, seldom of one that there is not.
+  // Returns the number of one of count objects, rarely of one that does not exist.
   uint32_t reference(size_t count) {
     const uint8_t b = byte();
     return b >= 250 || count == 0 ? (b == 255 ? ~0u : b) : uint32_t(b % count);
   }
-  // usual for 0; evenly between low and high; seldom an extreme, or any float there is.
+  // Returns usual for byte 0; otherwise uniform between low and high; rarely an extreme, or any float.
   float number(float usual, float low, float high) {
     const uint8_t b = byte();
     if (b == 0)

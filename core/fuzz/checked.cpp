@@ -16,9 +16,9 @@ lancer_status checked(const char *call, lancer_status status) {
   if (status < LANCER_OK || status >= LANCER_ERROR_INTERNAL)
     broken(call, said);
   if ((status >= LANCER_ERROR_ARGUMENT) != (*said != '\0'))
-    broken(call, "its status and its message do not fit");
+    broken(call, "its status and its message do not agree");
   if (std::strlen(said) > 1023)
-    broken(call, "its message has no end");
+    broken(call, "its message is too long");
   return status;
 }
 

@@ -1,4 +1,4 @@
-// What holds after every call.
+// Invariants of every call.
 #pragma once
 
 #include "lancer.h"
@@ -7,7 +7,7 @@ namespace lancer_fuzz {
 
 [[noreturn]] void broken(const char *what, const char *detail);
 
-// Every status is one of those that there are, none is a fault of the library's own, and an error has its sentence.
+// Checks that the status is defined and not an internal error, and that an error has a message.
 lancer_status checked(const char *call, lancer_status status);
 
 #define LANCER_CHECKED(call) checked(#call, call)

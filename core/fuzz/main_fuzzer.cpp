@@ -1,4 +1,4 @@
-// The program under libFuzzer.
+// Runs the program under libFuzzer.
 #include "program.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

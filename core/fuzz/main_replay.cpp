@@ -1,4 +1,4 @@
-// Runs every file of the named folders once: what fuzzing has found stays tested, with any compiler.
+// Runs every file of the given folders once: the fuzzer's findings stay tested, with any compiler.
 #include "program.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ int main(int count, char **folders) {
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   for (const std::filesystem::path &path : files) {
-    // Said first: the last name is that of the file which does not end well.
+    // Print the name first: the last one is the file that fails.
     std::printf("%s\n", path.filename().string().c_str());
     std::fflush(stdout);
     std::ifstream file(path, std::ios::binary);

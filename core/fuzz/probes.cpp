@@ -6,7 +6,7 @@ namespace lancer_fuzz {
 
 namespace {
 
-constexpr uint32_t kCount = 3; // of what a probe is asked
+constexpr uint32_t kCount = 3; // elements per probe
 
 } // namespace
 

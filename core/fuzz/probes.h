@@ -1,4 +1,4 @@
-// Calls that only ask, with numbers out of bytes.
+// Calls of probes, with arguments from bytes.
 #pragma once
 
 #include "records.h"
@@ -6,9 +6,9 @@
 namespace lancer_fuzz {
 
 void probe_camera(lancer_session session, Bytes &bytes);
-// filled: what is in it; null where that is not known.
+// filled: contents of the scene; null if unknown.
 void probe_scene(lancer_scene scene, const Filled *filled, Bytes &bytes);
-// What needs no scene.
+// Probes without a scene.
 void probe_nothing(Bytes &bytes);
 
 } // namespace lancer_fuzz

@@ -17,7 +17,7 @@ constexpr uint32_t kMostCalls = 40, kMostScenes = 2, kMostSessions = 3, kMostRan
 struct SceneState {
   lancer_scene handle = 0;
   Filled filled;
-  bool committed = false; // or on its way
+  bool committed = false; // or in progress
 };
 
 struct SessionState {
@@ -25,7 +25,7 @@ struct SessionState {
   uint32_t width = 0, height = 0, samples = 0;
 };
 
-// Every byte is taken in a statement of its own or where the language says which comes first: a file is to mean the same calls
+// Every byte is read in a statement of its own or in an order that the language defines, so that a file means the same calls
 // with every compiler.
 class Program {
 public:
@@ -38,7 +38,7 @@ public:
   }
 
 private:
-  // The newest, mostly; an older one, one that is gone, or one that never was.
+  // Mostly the newest handle; also an older one, a freed one, or one that never existed.
   template <class State> lancer_scene handle_of(const std::vector<State> &states) {
     const uint8_t b = bytes_.byte();
     if (b >= 253 || states.empty())
@@ -101,15 +101,15 @@ private:
     lancer_error e;
     if (LANCER_CHECKED(lancer_session_error(session, confidence, nowhere ? nullptr : &e)) != LANCER_OK)
       return;
-    // The first four are infinite as long as they are not known, and missing where the last bounce finds no less than the one
+    // The first four are infinite while they are unknown; missing is infinite if the last bounce has no less light than the one
     // before.
     const bool good = e.low >= 0.0 && e.low <= e.error && e.error <= e.high && e.cannot_exclude >= 0.0 && e.clipped >= 0.0 &&
                       e.clipped <= 1.0 && e.missing >= 0.0 && e.planned_samples >= 0.0 && e.least_samples <= e.most_samples;
     if (!good)
-      broken("lancer_session_error", "its numbers are none");
+      broken("lancer_session_error", "its numbers are invalid");
   }
 
-  // Ends a range, asks for its error, or lets that say what is rendered next.
+  // Ends a range, requests its error, or refines by it.
   void judge(lancer_session session) {
     switch (bytes_.below(6)) {
     default:
@@ -127,7 +127,7 @@ private:
     }
   }
   void refine(lancer_session session) {
-    // Each doubles what has been rendered.
+    // Each refinement doubles the samples.
     if (refinements_ == kMostRefinements)
       return;
     ++refinements_;
@@ -143,7 +143,7 @@ private:
       scenes_.push_back(scene);
   }
 
-  // The scene to fill, and what is in it; makes one where there is none.
+  // Returns the scene to fill, and its contents; creates one if there is none.
   lancer_scene open(Filled *&filled) {
     static Filled nobodys;
     nobodys = {};
@@ -215,7 +215,7 @@ private:
     std::string text(bytes_.byte(), '?');
     const lancer_status status = LANCER_CHECKED(lancer_scene_messages(scene, text.data(), text.size(), &needed));
     if (status == LANCER_OK && !text.empty() && std::memchr(text.data(), 0, text.size()) == nullptr)
-      broken("lancer_scene_messages", "its text has no end");
+      broken("lancer_scene_messages", "its text is not terminated");
   }
   void end_scene() {
     const lancer_scene scene = handle_of(scenes_);
@@ -250,7 +250,7 @@ private:
     lancer_progress progress = {};
     const lancer_status status = LANCER_CHECKED(lancer_session_wait(session, bytes_.below(3), &progress));
     if (status <= LANCER_CANCELLED && !(progress.fraction >= 0.0 && progress.fraction <= 1.0))
-      broken("lancer_session_wait", "its fraction is none");
+      broken("lancer_session_wait", "its fraction is not in 0 ... 1");
   }
   void end_session() {
     const lancer_session session = handle_of(sessions_);
@@ -260,7 +260,7 @@ private:
     std::erase_if(sessions_, [&](const SessionState &state) { return state.handle == session; });
   }
 
-  // All passes that the film keeps, the statistics, and a sample by itself.
+  // Reads all passes of the film and the statistics, and replays a sample.
   void look(lancer_session session) {
     std::vector<float> picture;
     lancer_statistics statistics;
@@ -274,7 +274,7 @@ private:
         if (LANCER_CHECKED(lancer_session_read(session, pass, picture.data(), picture.size())) != LANCER_OK)
           continue;
         for (const float value : picture)
-          // An error is infinite as long as it is not known.
+          // An error is infinite while it is unknown.
           if (std::isnan(value) || (std::isinf(value) && pass != LANCER_PASS_ERROR))
             broken("lancer_session_read", ("pass " + std::to_string(pass) + " is not finite").c_str());
       }
@@ -296,13 +296,13 @@ private:
     probe_scene(scene, state ? &state->filled : nullptr, bytes_);
   }
 
-  // To the end: a scene, a commit, a session, a range, its picture.
+  // Continues to the end: a scene, a commit, a session, a range, its picture.
   void finish() {
     if (scenes_.empty())
       create_scene();
     if (scenes_.empty())
       return;
-    // A scene without anything in it tells nothing.
+    // An empty scene tests nothing.
     if (!scenes_.back().committed && scenes_.back().filled.instances == 0) {
       add_material();
       add_instances();

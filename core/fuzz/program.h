@@ -1,4 +1,4 @@
-// Bytes as a program: calls of the C interface one after the other, and what must hold after each.
+// Bytes as a program: a sequence of calls of the C interface, and invariants after each.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace lancer_fuzz {
 
-// Runs the calls that the bytes stand for, then whatever is missing up to a read picture, and frees all. Ends the process with
-// words where a promise of the interface is broken.
+// Runs the calls encoded by the bytes, then the missing ones up to a read picture, and frees everything. Aborts with a message
+// if the interface breaks a promise.
 void run_program(const uint8_t *data, size_t size);
 
 } // namespace lancer_fuzz

@@ -8,7 +8,7 @@ namespace lancer_fuzz {
 namespace {
 
 constexpr uint32_t kMostVertices = 12, kMostTriangles = 20, kMostInstances = 6;
-constexpr uint32_t kMostSide = 8; // of pictures
+constexpr uint32_t kMostSide = 8; // of images
 const char *const kNames[] = {"thing", "", "UVMap", "generated", "tangent:", "tangent:UVMap", "\xff\xfe%s%n", nullptr};
 
 } // namespace
@@ -17,7 +17,7 @@ const char *Records::name() {
   const uint32_t which = bytes_.below(uint32_t(std::size(kNames)) + 1);
   if (which < std::size(kNames))
     return kNames[which];
-  // Longer than any text that a message has room for.
+  // Longer than the space for text in a message.
   std::vector<char> text(2000, 'x');
   text.push_back('\0');
   return keep(std::move(text));
@@ -29,7 +29,7 @@ void Records::matrix(double rows[12], double away) {
   const double scale = bytes_.number(1.0, 0.2, 3.0);
   for (int i = 0; i < 3; ++i)
     rows[5 * i] = scale;
-  if (kind >= 4) // turned about x, as things that look along -z look about
+  if (kind >= 4) // rotated about x, like objects that face along -z
     rows[5] = rows[10] = 0.0, rows[6] = -scale, rows[9] = scale;
   if (kind == 3)
     rows[0] = -rows[0];
@@ -76,7 +76,7 @@ lancer_mesh Records::mesh() {
     for (uint16_t &slot : slots)
       slot = uint16_t(bytes_.reference(3));
     mesh.material_slots = keep(std::move(slots));
-    // Pairs of triangles are polygons, and sometimes one is out of range; no byte is read for them.
+    // Pairs of triangles are polygons, and sometimes one is out of range; this reads no bytes.
     std::vector<uint32_t> polygons(mesh.triangle_count);
     for (uint32_t i = 0; i < mesh.triangle_count; ++i)
       polygons[i] = (i + mesh.triangle_count % 2) / 2 + (mesh.vertex_count == 1 ? mesh.triangle_count : 0);
@@ -87,7 +87,7 @@ lancer_mesh Records::mesh() {
     attribute = this->attribute(mesh.vertex_count, mesh.triangle_count);
   mesh.attribute_count = uint32_t(attributes.size());
   mesh.attributes = keep(std::move(attributes));
-  // Arrays that are missing.
+  // Missing arrays.
   if (bytes_.rarely(2))
     mesh.positions = nullptr;
   if (bytes_.rarely(2))
@@ -108,14 +108,14 @@ lancer_image Records::image() {
   image.transfer = bytes_.choice(2);
   image.alpha = bytes_.choice(4);
   image.tile = bytes_.rarely(60) ? 1001 + bytes_.below(25) : bytes_.rarely(4) ? ~0u : 0u;
-  // Floats whose bytes are good texels of the other kinds, too.
+  // The bytes of floats are valid texels of the other kinds, too.
   image.texels = bytes_.rarely(2) ? nullptr : floats(size_t(image.width) * image.height * 4, 0.0f, 1.0f);
   for (int i = 0; i < 9; ++i)
     image.matrix[i] = i % 4 == 0 ? 1.0f : 0.0f;
   if (flag(20))
     for (float &value : image.matrix)
       value = bytes_.number(0.5f, -1.0f, 1.0f);
-  // A size that no memory holds: refused before anything is read.
+  // A size beyond any memory: rejected before the texels are read.
   if (bytes_.rarely(2))
     image.width = image.height = 1u << (19 + bytes_.below(13));
   return image;
@@ -157,7 +157,7 @@ lancer_world Records::world(const Filled &filled) {
   world.use_ambient = world.radiance.node < 0 && world.hidden_from & 1u;
   for (int i = 0; i < 3; ++i)
     world.ambient[i] = world.radiance.value[i];
-  // The map of 0, and of large numbers, would take long where the radiance varies.
+  // A map of width 0, or of a large width, would take long if the radiance varies.
   world.map_resolution = bytes_.rarely(2) ? 65537 + bytes_.byte() : 1 + bytes_.below(32);
   node_count_ = 0;
   return world;
@@ -196,7 +196,7 @@ Records::Instances Records::instances(const Filled &filled) {
 
 lancer_camera Records::camera() {
   lancer_camera camera = {};
-  // From 6 above, downwards, onto what is about the origin.
+  // From 6 above, downwards to the origin.
   for (int i = 0; i < 3; ++i)
     camera.matrix[5 * i] = 1.0;
   camera.matrix[11] = 6.0;
@@ -238,7 +238,7 @@ lancer_settings Records::settings() {
   settings.integrator = bytes_.choice(3);
   settings.samples = bytes_.rarely(4) ? ~0u : 1 + bytes_.below(8);
   settings.seed = bytes_.byte();
-  // The recursion of CLASSIC doubles with every depth.
+  // The rays of CLASSIC double with every depth.
   settings.max_bounces = settings.integrator == LANCER_CLASSIC ? bytes_.below(4) : bytes_.below(12);
   if (bytes_.rarely(2))
     settings.max_bounces = 1025;

@@ -1,4 +1,4 @@
-// Records of the C interface out of bytes: of sizes that take no time, with contents that may be anything.
+// Records of the C interface from bytes: small, with arbitrary contents.
 #pragma once
 
 #include "bytes.h"
@@ -9,12 +9,12 @@
 
 namespace lancer_fuzz {
 
-// What has been added to a scene so far, so that most references find something.
+// The numbers of objects added to a scene, so that most references are valid.
 struct Filled {
   uint32_t meshes = 0, images = 0, materials = 0, lights = 0, instances = 0;
 };
 
-// Makes records, and keeps the arrays that they point to for as long as it lives.
+// Makes records, and keeps the arrays that they point to during its lifetime.
 class Records {
 public:
   explicit Records(Bytes &bytes) : bytes_(bytes) {}
@@ -56,7 +56,7 @@ private:
   }
 
   Bytes &bytes_;
-  uint32_t node_count_ = 0; // of the owner that is being made
+  uint32_t node_count_ = 0; // of the owner being made
   std::vector<std::shared_ptr<void>> kept_;
 };
 

@@ -1,4 +1,4 @@
-// What materials and worlds are made of.
+// Parts of materials and worlds.
 #include "records.h"
 
 #include "scene/lobe_inputs.h"
@@ -36,7 +36,7 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
   node.name = name();
   node.kind = bytes_.choice(LANCER_NODE_COUNT);
   node.option = bytes_.byte();
-  // Most options are of their kind: the largest kinds have 41 and 24.
+  // Most options are valid for their kind: the largest kinds have 41 and 24.
   if (node.kind == LANCER_NODE_MATH)
     node.option %= LANCER_MATH_COUNT + 1;
   else if (node.kind == LANCER_NODE_VECTOR_MATH)
@@ -52,7 +52,7 @@ lancer_node Records::node(const Filled &filled, uint32_t at) {
                                                        : 4;
   const bool picture = node.kind == LANCER_NODE_IMAGE || node.kind == LANCER_NODE_ENVIRONMENT;
   if (picture) {
-    // One after the other: of operands the compiler chooses which comes first.
+    // In separate statements: the compiler chooses the order of operands.
     node.flags = bytes_.choice(4);
     node.flags |= bytes_.choice(3) << 4;
     node.flags |= flag() << 8;
@@ -87,7 +87,7 @@ uint32_t Records::nodes(const Filled &filled, const lancer_node *&out) {
   const auto count = uint32_t(nodes.size());
   out = keep(std::move(nodes));
   node_count_ = count;
-  // More than there may be, and more than there are: refused before any is read.
+  // More than the maximum, and more than the array has: rejected before any is read.
   if (bytes_.rarely(1))
     return 4097 + bytes_.word() / 2;
   if (bytes_.rarely(1)) {
@@ -124,7 +124,7 @@ lancer_principled Records::principled() {
 
 lancer_lobe Records::lobe() {
   lancer_lobe lobe = {};
-  // The last kind stands one past the others, where a wrong one would: the corpus keeps its meaning.
+  // The last kind is one past the others, in the place of an invalid one, so that the corpus keeps its meaning.
   lobe.kind = bytes_.choice(LANCER_MINNAERT);
   lobe.distribution = bytes_.choice(4);
   lobe.option = bytes_.choice(2);

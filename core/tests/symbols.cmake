@@ -1,8 +1,8 @@
 # cmake -DNM=... (-DLIBRARY=liblancer.so | -DOBJECTS=a.o;b.o) -P symbols.cmake
 
-# The library shows lancer_* and nothing else, and asks no other library for elementary functions: each rounds them in its own way,
-# where pictures are to have the same bits. What IEEE 754 or C99 leave no choice in may be asked: fmod(), sqrt(), floor(), ldexp()
-# and their like; not fmin() and fmax(), whose zeros may have either sign.
+# The library exports only lancer_*, and imports no elementary functions: other libraries round them differently, and pictures must
+# have the same bits. It may import functions whose results IEEE 754 or C99 define exactly: fmod(), sqrt(), floor(), ldexp() and
+# others; but not fmin() and fmax(), whose zeros may have either sign.
 if(DEFINED LIBRARY)
   execute_process(COMMAND ${NM} -D --undefined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE text RESULT_VARIABLE code)
   if(NOT code EQUAL 0)
@@ -39,7 +39,7 @@ if(DEFINED LIBRARY)
   endif()
 endif()
 
-# A kernel object defines no weak symbol: the linker could give every CPU the copy that was compiled for AVX-512.
+# A kernel object must not define a weak symbol: the linker could use the copy for AVX-512 on every CPU.
 if(DEFINED OBJECTS)
   list(LENGTH OBJECTS count)
   if(count EQUAL 0)
