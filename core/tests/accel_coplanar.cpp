@@ -121,7 +121,7 @@ std::vector<Scene> scenes(Random &random, double scale) {
     add(s.geometry, {}, std::move(mesh));
   }
   {
-    // The box first: what lies on it is hidden.
+    // The box first: it hides the square on it.
     Scene &s = begin("a square on the top of a box");
     s.closed = true;
     const Affine below = {s.place.linear, s.place.point({0.0, 0.0, -1.0})};

@@ -114,7 +114,7 @@ template <class F> Steps<F> steps_at(const Node &node, const Site<F> &site) {
   return r;
 }
 
-// Returns the site of a height evaluation: moved, and on the undisplaced surface if the node asks for it.
+// Returns the site of a height evaluation: moved, and on the undisplaced surface if the node requests it.
 template <class F> Site<F> height_site(const Site<F> &site, const Steps<F> &steps, const Vector3<DoubleOf<F>> &offset) {
   Site<F> place = site;
   move(steps.plane, offset, place);
