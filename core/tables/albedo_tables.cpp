@@ -55,12 +55,12 @@ struct Surface {
     const double t = alpha * alpha * (1 - z * z) / (z * z);
     return 0.5 * t / (1 + std::sqrt(1 + t));
   }
-  // Share of a facet's light towards a direction with that cosine which is not shadowed.
+  // Returns the unshadowed share of a facet's light in directions with that cosine.
   double unshadowed(double z) const {
     const double o = lambda(mu);
     return (1 + o) / (1 + o + lambda(std::abs(z)));
   }
-  // The facets that are seen, laid out evenly on 0 ... 1 and half a turn; the other half is its mirror image.
+  // Returns a visible facet, uniformly distributed by u in 0 ... 1 and phi in half a turn; the other half is its mirror image.
   Vec facet(double u, double phi) const {
     const Vec w = normalised({alpha * wo.x, 0, wo.z});
     const double s = u * (1 + w.z), sine = std::sqrt(std::max(0.0, s * (2 - s)));
@@ -84,12 +84,12 @@ double fresnel(double c, double eta) {
 
 using Scalar = std::function<double(const Vec &)>;
 
-// Mean of value over the facets that are seen and where side, if there is one, is positive. Each line of constant phi is split
-// where side or one of the edges change their sign, so that the rule only meets smooth pieces.
+// Returns the mean of value over the visible facets with a positive side (all if side is null). Each line of constant phi is
+// split where side or one of the edges changes its sign, so that the rule integrates only smooth pieces.
 double mean(const Surface &s, const Scalar &side, const std::vector<Scalar> &edges, const Scalar &value) {
   static const Rule along = gauss(28), around = gauss(120);
   constexpr int kScan = 200;
-  // At its very end no facet is left.
+  // At the very end, no facet is left.
   constexpr double kEnd = 1 - 1e-9;
   double sum = 0;
   for (size_t j = 0; j < around.node.size(); ++j) {
@@ -118,7 +118,7 @@ double mean(const Surface &s, const Scalar &side, const std::vector<Scalar> &edg
     for (size_t k = 0; k + 1 < cut.size(); ++k) {
       const double a = cut[k], width = cut[k + 1] - a;
       for (size_t i = 0; i < along.node.size(); ++i) {
-        // Nodes crowd at both ends: narrow lobes are cut off steeply by the horizon.
+        // Nodes are denser at both ends: the horizon cuts narrow lobes off steeply.
         const double t = along.node[i];
         const Vec h = s.facet(a + width * t * t * (3 - 2 * t), phi);
         if (!side || side(h) > 0)
@@ -141,21 +141,21 @@ double glass_albedo(const Surface &s, double eta) {
   const double reflected = mean(
       s, [&](const Vec &h) { return s.reflected_z(h); }, {total},
       [&](const Vec &h) { return fresnel(dot(s.wo, h), eta) * s.unshadowed(s.reflected_z(h)); });
-  // Light that is bent so little that it stays above a surface seen from inside at a grazing angle counts as gone through, as
-  // in Cycles' tables. Its lobes send none there, so what they scatter is less than 1 by that part.
+  // Light that is refracted so little that it stays above a surface seen from inside at a grazing angle counts as transmitted,
+  // as in Cycles' tables. The lobes send no light there, so their sum is below 1 by this part.
   const double through = mean(s, nullptr, {total, along}, [&](const Vec &h) {
     return (1 - fresnel(dot(s.wo, h), eta)) * s.unshadowed(refracted_z(s, h, eta));
   });
   return reflected + through;
 }
 
-// Mean of a curve over the facets that reflect.
+// Returns the mean of a curve over the reflecting facets.
 double mix(const Surface &s, const std::function<double(double)> &curve) {
   return mean(
       s, [&](const Vec &h) { return s.reflected_z(h); }, {}, [&](const Vec &h) { return curve(dot(s.wo, h)); });
 }
 
-// The grids' nodes. Both ends of an axis stand a little inside; roughness 0 is a smooth surface.
+// Nodes of the grids. Both ends of an axis are slightly inside; roughness 0 is a smooth surface.
 double cosine(int i, int n) { return std::clamp(i / (n - 1.0), 1e-4, 1.0); }
 double alpha(int i, int n) { return std::pow(i / (n - 1.0), 2); }
 double index(int i, int n) {
@@ -163,12 +163,12 @@ double index(int i, int n) {
   return (1 + r) / (1 - r);
 }
 
-// Over a white sky: cosines weighted with themselves.
+// Returns the albedo under a white sky: the mean over directions, weighted by the cosine.
 double sky(const std::function<double(double)> &albedo) {
   static const Rule rule = gauss(24);
   double sum = 0;
   for (size_t i = 0; i < rule.node.size(); ++i) {
-    // Nodes crowd at the horizon, where the albedo bends.
+    // Nodes are denser at the horizon, where the albedo has a high curvature.
     const double mu = rule.node[i] * rule.node[i];
     sum += rule.weight[i] * 2 * rule.node[i] * 2 * mu * albedo(mu);
   }
@@ -199,7 +199,7 @@ int main() {
     t.push_back(x == 0 ? 1.0 : sky([&](double mu) { return mirror_albedo({alpha(x, fine), mu}); }));
   print("\nconst uint16_t kGgxMean[] = {", t, "};\n");
 
-  // An index of 1 bends nothing and loses nothing.
+  // An index of 1 neither refracts nor loses light.
   const auto eta = [](int side, int z) { return side ? 1 / index(z, coarse) : index(z, coarse); };
   for (int side = 0; side < 2; ++side) {
     t.clear();
@@ -229,7 +229,7 @@ int main() {
       }
   print("\nconst uint16_t kDielectricMix[] = {", t, "};\n");
 
-  // Cycles keeps this for all exponents; 5 lies in the middle between two of its nodes.
+  // Cycles' table is for all exponents; 5 is in the middle between two of its nodes.
   t.clear();
   for (int y = 0; y < coarse; ++y)
     for (int x = 0; x < coarse; ++x) {

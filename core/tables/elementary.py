@@ -1,7 +1,6 @@
-"""Prints the polynomials of src/sampling's elementary functions, with a Python that has mpmath.
+"""Prints the polynomials of src/sampling's elementary functions; needs a Python with mpmath.
 
-python tables/elementary.py
-"""
+python tables/elementary.py"""
 
 import sys
 
@@ -15,7 +14,7 @@ def tell(*words):
 
 
 def show(name, f, low, high, degree):
-    """Through the Chebyshev points, so that the largest error is within a few of the least. From the constant up."""
+    """Prints the polynomial through the Chebyshev points, whose largest error is close to the minimum. Constant term first."""
     coefficients, error = mp.chebyfit(f, [low, high], degree + 1, error=True)
     tell(f"{name}: within {mp.nstr(error, 2)}")
     for coefficient in coefficients[::-1]:
@@ -23,18 +22,18 @@ def show(name, f, low, high, degree):
 
 
 def series(term):
-    """A function that a division by x spoils near 0."""
+    """Returns a function by its series, for quotients by x that lose digits near 0."""
     return lambda x: mp.fsum(term(i) * x**i for i in range(60))
 
 
 def scaled_complement(t):
-    """(1 + 2 x) exp(x^2) erfc(x) at t = (x - 4) / (x + 4)."""
+    """Returns (1 + 2 x) exp(x^2) erfc(x) at t = (x - 4) / (x + 4)."""
     x = 4 * (1 + t) / (1 - t)
     return (1 + 2 * x) * mp.exp(x * x) * mp.erfc(x)
 
 
 def show_parts(name, x, *digits):
-    """As a sum: numbers of so many binary digits, and a double."""
+    """Prints x as a sum of numbers with the given binary digits, and a double."""
     parts = []
     for count in digits:
         unit = mp.mpf(2) ** (mp.floor(mp.log(x, 2)) + 1 - count)
@@ -44,7 +43,7 @@ def show_parts(name, x, *digits):
 
 
 def show_words(name, x, count):
-    """The binary digits behind the point, 32 at a time."""
+    """Prints the binary digits after the point, 32 at a time."""
     mp.mp.dps = 400
     digits = int(mp.floor(x() * mp.mpf(2) ** (32 * count)))
     tell(f"{name}:", ", ".join(f"{digits >> 32 * (count - 1 - i) & 0xFFFFFFFF:#010x}" for i in range(count)))
@@ -53,7 +52,7 @@ def show_words(name, x, count):
 def show_all():
     half = mp.log(2) / 2
     show("(exp(x) - 1 - x) / x^2", series(lambda i: 1 / mp.factorial(i + 2)), -half, half, 10)
-    # s = f / (2 + f), at most that of the square root of 2.
+    # s = f / (2 + f), at most the value for the square root of 2.
     s = mp.mpf("0.1715728752538099")
     show("(log((1 + s) / (1 - s)) / s - 2) / s^2, of s^2", series(lambda i: mp.mpf(2) / (2 * i + 3)), 0, s * s, 6)
     top = 2 / mp.sqrt(mp.pi)

@@ -1,11 +1,10 @@
-"""Writes src/bsdf/sheen_table.h: the microfibre sheen of Blender's Cycles, measured with a Python that has bpy.
+"""Writes src/bsdf/sheen_table.h: the microfibre sheen of Blender's Cycles, measured in renders; needs a Python with bpy.
 
-    python tables/sheen_table.py src/bsdf/sheen_table.h
+python tables/sheen_table.py src/bsdf/sheen_table.h
 
-Cycles looks the lobe up between nodes that stand evenly in cos(wo) and in roughness, linearly in both. So what a small white
-plate of cloth sends to the viewer under a sun of irradiance 1, leaning and rough as a node asks, is a closed form of that
-node's a, b and albedo; several suns tell all three.
-"""
+Cycles interpolates the lobe linearly between nodes that are equally spaced in cos(wo) and in roughness. A small white plate of
+cloth under a sun of irradiance 1, with the tilt and the roughness of a node, sends light to the viewer that is a closed form of
+the node's a, b and albedo; several suns determine all three."""
 
 import itertools
 import math
@@ -18,12 +17,12 @@ import numpy as np
 from mathutils import Vector
 
 NODES = 32
-# In halves of the distance between two nodes. Some ends are left out: plates seen edge-on show nothing, wo along n leaves the
-# lobe's azimuth open, and Cycles cuts small roughness off.
+# In halves of the distance between two nodes. Some ends are excluded: plates seen edge-on are invisible, wo along n leaves the
+# lobe's azimuth undefined, and Cycles clamps small roughness.
 STEPS = 2 * (NODES - 1)
 COSINES = range(1, STEPS)
 ROUGHNESSES = range(1, STEPS + 1)
-# Of each plate the middle pixel counts.
+# Only the middle pixel of each plate is used.
 PIXELS = 3
 UNIT = 1e-5
 SUNS = [(0.0, math.radians(lean)) for lean in range(-90, 92, 3)]
@@ -31,8 +30,9 @@ SUNS += [(math.radians(aside), math.radians(lean)) for aside in (-60, 30, 80) fo
 
 
 def new_stage():
-    """A white cloth for every row, a lean for every column, and nothing that sees another. Gives the scene and, of each
-    column, the matrix from the world to wo over x, y, n."""
+    """Makes a white cloth for every row, with a tilt for every column; the plates exchange no light.
+
+    Returns the scene and, for each column, the matrix from the world to wo over x, y, n."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     render, cycles = scene.render, scene.cycles
@@ -57,7 +57,7 @@ def new_stage():
         for column, cosine in enumerate(COSINES):
             plate = bpy.data.objects.new("Plate", mesh)
             plate.location = (column + 0.5, row + 0.5, 0.0)
-            # Stretched by what leaning shortens it.
+            # Stretch the plate by the factor by which its tilt shortens it.
             plate.scale = (1.0, STEPS / cosine, 1.0)
             plate.rotation_euler = (math.acos(cosine / STEPS), 0.0, 0.0)
             plate.visible_shadow = False
@@ -68,7 +68,7 @@ def new_stage():
 
 
 def frame(plate):
-    """As single precision turned it."""
+    """Returns the plate's frame as rounded by single precision."""
     n = np.cross(*(np.array(plate.matrix_world.col[axis][:3], np.float64) for axis in (0, 1)))
     n /= np.linalg.norm(n)
     y = np.cross(n, (0.0, 0.0, 1.0))
@@ -90,7 +90,7 @@ def cloth(roughness):
 
 
 def picture(scene, folder):
-    """[roughness, cosine], of the plates' middles."""
+    """Returns [roughness, cosine] of the plates' middle pixels."""
     scene.render.filepath = str(folder / "plates.exr")
     bpy.ops.render.render(write_still=True)
     image = bpy.data.images.load(scene.render.filepath)
@@ -103,7 +103,7 @@ def picture(scene, folder):
 
 
 def measure(scene, frames, folder):
-    """The directions [sun, column, xyz] to the suns, and the light [sun, row, column] of the plates under each."""
+    """Returns the directions [sun, column, xyz] to the suns, and the light [sun, row, column] of the plates under each sun."""
     lamp = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
     lamp.data.energy, lamp.data.angle, lamp.rotation_mode = 1.0, 0.0, "QUATERNION"
     scene.collection.objects.link(lamp)
@@ -119,22 +119,21 @@ def measure(scene, frames, folder):
 
 
 def solve(wi, light):
-    """a, b and albedo of one plate; not numbers where it is black.
+    """Returns a, b and albedo of one plate; NaN where it is black.
 
     light = albedo wi.z / pi (a / ((a x + b z)^2 + (a y)^2 + z^2))^2, so sqrt(wi.z / (pi light)) is linear in
-    (a, 2 b, (1 + b^2) / a) / sqrt(albedo).
-    """
-    # Of a sun along the plate single precision does not know the cosine.
+    (a, 2 b, (1 + b^2) / a) / sqrt(albedo)."""
+    # For a sun along the plate, single precision has too few digits of the cosine.
     lit = (wi[:, 2] > 1e-3) & (light > 0.0)
     if lit.sum() < 8:
         return np.full(3, np.nan)
     (x, y, z), light = wi[lit].T, light[lit]
     root = np.sqrt(z / (math.pi * light))
     rows = np.stack([x * x + y * y, x * z, z * z], axis=-1)
-    # By relative error: the light's rounding, and the direction's over the cosine.
+    # Weight by relative error: the rounding of the light, and of the direction over the cosine.
     weight = 1.0 / (root * (1.0 + 0.5 / z))
     p, *_ = np.linalg.lstsq(rows * weight[:, None], root * weight, rcond=None)
-    # Some ten roundings of single precision, where the cosine does not magnify them.
+    # About ten roundings of single precision, without the factor of the cosine.
     error = np.max(np.abs(rows @ p / root - 1.0) * z)
     assert error < 1e-6, f"no such lobe: off by {error}"
     albedo = 1.0 / (p[0] * p[2] - 0.25 * p[1] ** 2)
@@ -142,13 +141,14 @@ def solve(wi, light):
 
 
 def nodes_of(fit):
-    """Every second entry of fit, [half, half, (a, b, albedo)]; those that are not known from the entries beyond, since
-    between two nodes all is linear."""
+    """Returns every second entry of fit, [half, half, (a, b, albedo)].
+
+    Unknown entries are extrapolated from those beyond, because all values are linear between two nodes."""
     size, found = len(fit), True
     while found:
         found = False
         for i, j, di, dj in itertools.product(range(0, size, 2), range(0, size, 2), (-1, 0, 1), (-1, 0, 1)):
-            # One step along a row or a column, or over the middle of four nodes.
+            # Step along a row or a column, or over the middle of four nodes.
             around = [(i + 2 * di, j), (i, j + 2 * dj), (i + 2 * di, j + 2 * dj)]
             if np.isfinite(fit[i, j, 0]) or not all(0 <= p < size and 0 <= q < size for p, q in around):
                 continue

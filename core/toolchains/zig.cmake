@@ -1,9 +1,9 @@
-# Builds for another system on this one, with the clang, the C library and the linker that the Python package ziglang holds:
+# Cross-compiles for another system, with clang, the C library and the linker of the Python package ziglang:
 #   cmake -DCMAKE_TOOLCHAIN_FILE=... -DLANCER_PLATFORM=windows-x64 -DLANCER_ZIG=/path/of/zig
-# Platforms are called as Blender's extensions call them.
+# Platforms have their names in Blender's extensions.
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES LANCER_PLATFORM LANCER_ZIG)
 
-# The oldest systems that are served: those of Blender 4.2, which are RHEL 8 and macOS 11.
+# The oldest supported systems are those of Blender 4.2: RHEL 8 and macOS 11.
 if(LANCER_PLATFORM STREQUAL "linux-x64")
   set(target x86_64-linux-gnu.2.28)
 elseif(LANCER_PLATFORM STREQUAL "linux-arm64")
@@ -24,7 +24,7 @@ elseif(LANCER_PLATFORM MATCHES "^windows")
   set(CMAKE_SYSTEM_NAME Windows)
 else()
   set(CMAKE_SYSTEM_NAME Darwin)
-  # The linker writes both itself.
+  # The linker itself writes the install name and the oldest system.
   set(CMAKE_INSTALL_NAME_TOOL true)
   set(CMAKE_OSX_SYSROOT "")
   set(CMAKE_OSX_DEPLOYMENT_TARGET "")
@@ -35,9 +35,9 @@ set(CMAKE_C_COMPILER ${LANCER_ZIG} cc)
 set(CMAKE_CXX_COMPILER ${LANCER_ZIG} c++)
 set(CMAKE_C_COMPILER_TARGET ${target})
 set(CMAKE_CXX_COMPILER_TARGET ${target})
-# Everything is linked from objects.
+# Targets link objects directly and need no archiver.
 set(CMAKE_AR ${LANCER_ZIG} CACHE FILEPATH "")
 set(CMAKE_RANLIB true CACHE FILEPATH "")
-# Nothing of this machine's own libraries and headers.
+# Exclude the libraries and headers of the build machine.
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)

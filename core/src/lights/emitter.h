@@ -8,8 +8,7 @@
 
 namespace lancer {
 
-// An emitter is one instance in the normalised world. Rays still hit surfaces that are never sampled by chance; pdf() returns 0
-// there.
+// An emitter is one instance in the normalised world. Rays may hit surfaces that are never sampled; pdf() returns 0 there.
 class Emitter {
 public:
   // Makes the emitter of a mesh; faces must not be empty.

@@ -32,7 +32,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
     described.push_back(describe(lights_[i], i));
   for (const Emitter &emitter : emitters_)
     described.push_back(describe_cluster(emitter.bounds(), uint32_t(described.size())));
-  // An environment that only the camera sees lights nothing.
+  // An environment that is visible to the camera alone lights no surface.
   if (environment_.is_light() && lit_by(environment_.hidden_from()))
     described.push_back(describe_sky(environment_.mean(), environment_light()));
   // A light that is never chosen is never hit either: both techniques of multiple importance sampling cover the same lights.

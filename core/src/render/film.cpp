@@ -82,7 +82,7 @@ Film::Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes,
 
 double Film::bytes_needed(double width, double height, uint32_t passes, uint32_t samples) {
   const Layout layout(passes);
-  // The largest number of waiting sums on the way occurs at a count with all bits set.
+  // The largest number of waiting sums occurs at a count with all bits set.
   const int levels = std::bit_width(uint64_t(samples) + 1) - 1;
   return width * height *
          ((double(layout.summed_channels) * sizeof(double) + sizeof(float)) * levels +

@@ -102,7 +102,7 @@ bool Session::refine(double target, double confidence) {
                                     " samples are not a power of two; only powers of two can be doubled");
   const RelativeVariance relative(map);
   const PictureError error = picture_error(map, relative, confidence);
-  // The error that meets the target when its upper bound, with the light that may be missing, has to.
+  // The error at which its upper bound, together with the light that may be missing, meets the target.
   const double bound = error.high + error.cannot_exclude;
   const double goal = bound > 0.0 ? target * error.error / bound : target;
   const Refinement refinement = plan_refinement(film_, map, relative, goal, settings_.integrator.samples);
