@@ -1,1 +1,1 @@
-"""What will hurt the picture, told from a snapshot before time is spent on it: arrays and numpy, no bpy, one idea a file."""
+"""Checks of a snapshot for faults that will hurt the picture. Arrays and numpy, no bpy; one kind of fault a file."""

@@ -1,4 +1,4 @@
-"""All checks over one snapshot."""
+"""All checks of one snapshot."""
 
 import numpy as np
 
@@ -17,12 +17,13 @@ from .subject import Subject
 
 
 def check_snapshot(snapshot, thorough=True, poll=None):
-    """A list of Finding, what hurts most first.
+    """Return a list of Finding, the most severe first.
 
-    thorough: all of it. Else what costs next to nothing beside a render, and of hints those by which Cycles' picture differs:
-    F12 does so by itself. poll(share) is called on the way, with the share that is done or None; what it raises ends the check.
+    thorough: check everything. Else, as F12 does by itself, check only what is quick compared with a render, and return only
+    those hints by which the picture differs from Cycles'. poll(share) is called between steps with the share done, or None; an
+    exception from it ends the check.
     """
-    # What is not finite is left out by the core, which tells of it; here it compares as false.
+    # The core leaves out geometry that is not finite, with a message; here NaN compares as false.
     with np.errstate(all="ignore"):
         found = _all_findings(Subject(snapshot, thorough, poll))
     return by_severity(finding for finding in found if thorough or finding.severity or finding.key)

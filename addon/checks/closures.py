@@ -1,4 +1,4 @@
-"""Materials outside the model: roughness, IOR and weights that mean nothing, glass that bends no light, light that grows."""
+"""Materials outside the physical model: invalid roughness, IOR and weights, glass without refraction, gain of energy."""
 
 import math
 
@@ -12,19 +12,19 @@ from .ranges import Ranges
 from .traits import clear_lobes
 
 _SHARES = [name for name, (kind, _) in PARAMETERS[Principled].items() if kind == "share"]
-# What surely comes back of the light is its colour; of the others Fresnel decides, or a refractive index is no colour.
+# Lobes whose albedo is their colour. The albedo of other lobes depends on Fresnel, or their colour is a refractive index.
 _COLORED = {
     LobeKind.LAMBERT, LobeKind.DIFFUSE, LobeKind.MIRROR, LobeKind.GLOSSY, LobeKind.PHONG, LobeKind.BLINN_PHONG,
     LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.TRANSLUCENT, LobeKind.MINNAERT,
 }  # fmt: skip
 _WITHOUT_ROUGHNESS = {LobeKind.LAMBERT, LobeKind.PHONG, LobeKind.BLINN_PHONG, LobeKind.MIRROR, LobeKind.MINNAERT}
-# Shares of Mix Shaders in single precision add up to 1 within a few of its steps; colours are set with three digits.
+# Weights of Mix Shaders sum to 1 up to rounding of single precision; colours are entered with three digits.
 _MORE_THAN_ALL = 1.001
-# A hundredth of a picture: single texels are not worth a word.
+# Fewer texels of an image than this share are not reported.
 _SHARE_OF_TEXELS = 0.01
-# As air: light turns by less than 0.06 degrees for each 45 degrees.
+# IORs this close to 1 count as air: they refract by less than 0.06 degrees at 45 degrees.
 _NEARLY_ONE = 1e-3
-# Roulette ends paths that lose light; one that loses none goes on as long as the scene allows.
+# Russian roulette ends paths that lose light; a path without loss continues to the limit of bounces.
 _LONG = 64
 
 
@@ -41,7 +41,7 @@ def check_closures(subject):
 
 
 def _first_rows(subject):
-    """The first instance of each material that any has."""
+    """Return {material: first instance with it} for all materials in use."""
     table = subject.instances
     starts, first = np.unique(table.first_slots, return_index=True)
     rows = {}
@@ -59,7 +59,7 @@ def _flaws(material, ranges, settings):
 
 
 def _parameters(material):
-    """(name, parameter) of all that is a share, and (name, parameter) of all IORs."""
+    """Return (name, parameter) pairs of all shares, and of all IORs."""
     shares, indices = [], []
     for lobe in material.lobes:
         record = lobe.principled
@@ -80,7 +80,7 @@ def _channels(value):
 
 
 def _outside(material, ranges):
-    """Numbers that mean nothing, written there or in a picture."""
+    """Yield flaws of numbers outside their range, as constants or in images."""
     shares, indices = _parameters(material)
     told = set()
     for name, value in shares:
@@ -92,7 +92,7 @@ def _outside(material, ranges):
             severity = Severity.HINT if isinstance(value, NodeRef) else Severity.WRONG
             yield (
                 severity,
-                f"{name.replace('_', ' ')} {of} {beyond:.4g}, and only 0 to 1 means something",
+                f"{name.replace('_', ' ')} {of} {beyond:.4g}, outside the valid range of 0 to 1",
                 "bring it into that range",
                 share,
             )
@@ -101,25 +101,25 @@ def _outside(material, ranges):
         if share and not low > 0.0 and name not in told:
             told.add(name)
             of = "goes down to" if isinstance(value, NodeRef) else "is"
-            yield Severity.WRONG, f"{name} {of} {low:.4g}, which no matter has", "use 1.33 for water, 1.5 for glass", share
+            yield Severity.WRONG, f"{name} {of} {low:.4g}, which no material has", "use 1.33 for water, 1.5 for glass", share
 
 
 def _extremes(ranges, value, least=None):
-    """(lowest, highest, share of what is out of 0 ... 1, or not above least); a constant is all or nothing."""
+    """Return (lowest, highest, share of values outside 0 to 1, or not above least if given); the share of a constant is 1."""
     if not isinstance(value, NodeRef):
         value = float(value[0] if isinstance(value, tuple) else value)
         return value, value, 1.0
     values = ranges.values(value)[:, 0]
     if len(values) == 0:
         return 0.0, 1.0, 0.0
-    # Rounding of a picture's curve is below a thousandth.
+    # Rounding in the decoding of an image stays below 0.001.
     out = (values < -1e-3) | (values > 1.0 + 1e-3) if least is None else values <= least
     share = float(out.mean())
     return float(values.min()), float(values.max()), share if share >= _SHARE_OF_TEXELS else 0.0
 
 
 def _clear(material, ranges):
-    """Glass that is not there, or that is thinner than air."""
+    """Yield flaws of glass that is invisible, or whose IOR is below 1."""
     told = set()
     for ior, lobe in clear_lobes(material):
         values = ranges.values(ior)[:, 0] if isinstance(ior, NodeRef) else np.array([float(ior)])
@@ -133,7 +133,7 @@ def _clear(material, ranges):
                 told.add("invisible")
                 yield (
                     Severity.WASTE,
-                    f"glass with IOR {low:.7g} bends and mirrors no light: it cannot be seen",
+                    f"glass with IOR {low:.7g} neither refracts nor reflects light: it is invisible",
                     "use 1.33 for water, 1.5 for glass",
                     1.0,
                 )
@@ -141,14 +141,14 @@ def _clear(material, ranges):
             told.add("thin")
             yield (
                 Severity.HINT,
-                f"IOR {low:.4g} is below 1, which is right for air within water or glass alone",
+                f"IOR {low:.4g} is below 1, which is right only for air inside water or glass",
                 "use 1.33 for water, 1.5 for glass",
                 1.0 / low,
             )
 
 
 def _growing(material, ranges, settings):
-    """More light comes back than arrived: each bounce is brighter than the one before."""
+    """Yield flaws of materials that reflect more light than they receive, so that each bounce is brighter."""
     total = np.zeros(3)
     if not isinstance(material.transmittance, NodeRef):
         total += np.maximum(material.transmittance, 0.0)
@@ -165,8 +165,8 @@ def _growing(material, ranges, settings):
                 share = float(bright.mean())
                 yield (
                     Severity.WRONG,
-                    f"its picture of colours goes up to {values.max():.4g}: above 1 light grows with every bounce",
-                    "darken the picture, or clamp it to 1",
+                    f"its colour image goes up to {values.max():.4g}: above 1 light grows with every bounce",
+                    "darken the image, or clamp it to 1",
                     share,
                 )
             continue
@@ -176,21 +176,21 @@ def _growing(material, ranges, settings):
     if math.isfinite(highest) and highest > _MORE_THAN_ALL:
         yield (
             Severity.WRONG,
-            f"sends back {highest:.4g} times the light that it gets, so that light grows with every bounce",
+            f"reflects {highest:.4g} times the light that it receives, so that light grows with every bounce",
             "keep colours, and the sum of added shaders, below 1",
             highest,
         )
     elif diffuse_white and min(total) >= 1.0 and settings.max_bounces >= _LONG:
         yield (
             Severity.HINT,
-            f"keeps all light: with {settings.max_bounces} bounces paths in closed rooms end late",
+            f"reflects all light: with {settings.max_bounces} bounces paths in closed rooms end late",
             "use 0.9 or less for white paint",
             1.0,
         )
 
 
 def _color(lobe):
-    """The colour that surely comes back; None where nothing is sure."""
+    """Return the lobe's albedo as a colour; None if it is unknown."""
     if lobe.kind in _COLORED:
         return lobe.color
     if lobe.principled is not None:

@@ -1,6 +1,7 @@
-"""Flat parts of two things in one plane: where both would be seen, only one of them is, which may be the wrong one.
+"""Flat parts of two objects in one plane: where they overlap only one of them is rendered, possibly the wrong one.
 
-Where they look alike nobody can tell which. But in Cycles a ray that leaves one of them may meet the other, so both are darker.
+If they look alike, the choice does not matter in Lancer. But in Cycles a ray that leaves one may hit the other, which darkens
+both.
 """
 
 import numpy as np
@@ -15,26 +16,26 @@ from .planes import gather, in_one_plane, pairs_of
 _MOST_FACETS = 2_000_000, 20_000  # thorough, quick
 _MOST_PAIRS = 64_000_000, 200_000
 _MOST_ASKED = 1024, 64  # pairs whose triangles are compared
-_MOST_ALIKE = 65536, 128  # pairs that look alike, which are most, of which the camera is asked
+_MOST_ALIKE = 65536, 128  # pairs that look alike, usually the most, for which the camera's view is tested
 _MOST_TRIANGLES = 8_000_000
 
 
 def flat_parts(subject, duplicates=frozenset()):
-    """What planes.gather gives. duplicates: rows of copies of others in their very place, which are told elsewhere."""
+    """Return (facets, world) of planes.gather. duplicates: rows of exact copies, which have their own check."""
     return gather(subject, duplicates, _MOST_FACETS[not subject.thorough])
 
 
 def check_coincident(subject, facets, world):
-    """facets, world: of flat_parts."""
+    """Yield findings of overlapping flat parts in one plane. facets, world: of flat_parts."""
     quick = not subject.thorough
     if world is None or len(world) < 2:
         return
     i, j = pairs_of(subject, world, _MOST_PAIRS[quick])
-    # Near the border of two cells of directions a part may be paired with itself.
+    # At the border of two cells of directions a part can be paired with itself.
     keep = in_one_plane(world, i, j) & (i != j)
     i, j = i[keep], j[keep]
     hurts = _Hurts(subject, facets, world)
-    # Ask the largest first, and once for each two objects, however many instances they have.
+    # Test the largest first, and each pair of objects once, however many instances they have.
     area = np.sort(np.minimum(world.high[i], world.high[j]) - np.maximum(world.low[i], world.low[j]), axis=1)[:, 1:].prod(
         axis=1
     )
@@ -61,12 +62,12 @@ def check_coincident(subject, facets, world):
 
 
 def is_plain(traits):
-    """Of a material that only shows light which comes from elsewhere."""
+    """Whether a material scatters light but neither refracts, transmits nor emits it."""
     return traits.scatters and not (traits.refracts or traits.passes or traits.emits)
 
 
 class _Hurts:
-    """Whether two parts in one plane show in the picture."""
+    """The effect on the picture of two parts in one plane."""
 
     def __init__(self, subject, facets, world):
         self.subject = subject
@@ -76,12 +77,12 @@ class _Hurts:
         self._sheets = {}
 
     def alike(self, one, other):
-        """Whether two parts are of plain materials that look the same."""
+        """Whether two parts have plain materials that look the same."""
         first, second = int(self.world.materials[one]), int(self.world.materials[other])
         return is_plain(self.subject.traits[first]) and self.subject.alike(first, second)
 
     def may(self, one, other):
-        """What materials alone decide."""
+        """Whether the pair can hurt the picture, judged by materials and visibility alone."""
         world, traits = self.world, self.subject.traits
         first, second = int(world.materials[one]), int(world.materials[other])
         if first < 0 or second < 0:
@@ -98,19 +99,19 @@ class _Hurts:
         return traits[first].scatters or traits[first].emits or traits[first].passes or not self.subject.alike(first, second)
 
     def words(self, one, other):
-        """(Severity, what, advice); None where one hides the other from the camera."""
+        """Return (Severity, what, advice); None if the pair does not show in the camera's view."""
         world, traits = self.world, self.subject.traits
         first, second = int(world.materials[one]), int(world.materials[other])
         if self._rests(one, other) or self._rests(other, one):
             return (
                 Severity.HINT,
-                "touch exactly where one is glass: it stands on the other as if glued, with no air between",
-                "move it away a little if there shall be air",
+                "touch exactly where one is glass: it stands on the other as if glued, without air between them",
+                "move it away a little if there should be air",
             )
         if traits[first].refracts or traits[second].refracts:
             return (
                 Severity.WRONG,
-                "touch exactly where one is glass: only one of both surfaces is there, what is opaque before glass",
+                "touch exactly where one is glass: only one of the two surfaces is rendered, an opaque one before glass",
                 "move one of them a little, or let them overlap",
             )
         if not self._fight(one, other):
@@ -132,7 +133,7 @@ class _Hurts:
         return Severity.WRONG, "lie in the same plane, and only one of them is seen", "move one of them a little"
 
     def _rests(self, glass, ground):
-        """Whether glass stands on something opaque: that is there in its stead, and light in the glass ends on it, rightly."""
+        """Whether glass rests on an opaque surface, which rightly replaces the glass surface: light in the glass ends there."""
         traits, normals = self.subject.traits, self.world.normals
         above, below = (traits[int(self.world.materials[part])] for part in (glass, ground))
         if not above.refracts or below.refracts or below.passes:
@@ -140,7 +141,7 @@ class _Hurts:
         return float(normals[glass] @ normals[ground]) < 0.0 or self._is_sheet(ground)
 
     def _fight(self, one, other):
-        """Whether both show on the side where the camera is: closed bodies show what looks that way, sheets show both sides."""
+        """Whether both parts are visible from the camera's side: faces of closed bodies by their outside, sheets by either."""
         normal = self.world.normals[one]
         matrix = self.camera.matrix
         if self.camera.kind == CameraKind.ORTHOGRAPHIC:
@@ -151,13 +152,13 @@ class _Hurts:
         return side != 0.0 and all(toward)
 
     def _share(self, one, other):
-        """Of the picture, that shows where the boxes of both meet."""
+        """Return the share of the picture that shows the intersection of both parts' boxes."""
         world = self.world
         low, high = np.maximum(world.low[one], world.low[other]), np.minimum(world.high[one], world.high[other])
         return share_of_plane(self.camera, world.points[one], world.normals[one], low, high)
 
     def _is_sheet(self, part):
-        """Whether a part is seen from behind, too: some of its triangles end where no other begins."""
+        """Whether a part has open edges, so that its back is visible too."""
         row, number = int(self.world.rows[part]), int(self.world.parts[part])
         kind, mesh = InstanceKind(int(self.subject.kinds[row])), int(self.subject.instances.meshes[row])
         if kind != InstanceKind.MESH:
@@ -170,7 +171,7 @@ class _Hurts:
 
 
 def _meeting(subject, facets, world, one, other):
-    """(a point where two parts overlap, how many triangles of the first do); (None, 0) where they only border on each other."""
+    """Return (a point where two parts overlap, number of overlapping triangles of the first); (None, 0) if they only touch."""
     sets = [corners_of(subject, facets, world, part, world.points[one]) for part in (one, other)]
     axes = np.delete(np.arange(3), np.argmax(np.abs(world.normals[one])))
     endless = [not np.isfinite(corners).all() for corners in sets]
@@ -182,7 +183,7 @@ def _meeting(subject, facets, world, one, other):
     i, _ = overlapping_triangles(*(corners[:, :, axes] for corners in sets), _MOST_TRIANGLES)
     if len(i) == 0:
         return None, 0
-    # The middle of what both boxes share is a place that both cover, or near it.
+    # The centre of the boxes' intersection is covered by both parts, or close to such a point.
     low, high = np.maximum(world.low[one], world.low[other]), np.minimum(world.high[one], world.high[other])
     middle = 0.5 * (low + high) - world.points[one]
     centers = sets[0][i].mean(axis=1)
@@ -191,7 +192,7 @@ def _meeting(subject, facets, world, one, other):
 
 
 def corners_of(subject, facets, world, part, origin):
-    """(triangles, 3, 3) in the world, as seen from origin."""
+    """Return the corners of a part's triangles, (triangles, 3, 3), in world space relative to origin."""
     row, number = int(world.rows[part]), int(world.parts[part])
     kind = InstanceKind(int(subject.kinds[row]))
     matrix = subject.instances.matrices[row]
@@ -209,7 +210,7 @@ def corners_of(subject, facets, world, part, origin):
 def _finding(subject, world, one, other, words, place, count, weight):
     first, second = int(world.rows[one]), int(world.rows[other])
     severity, what, advice = words
-    partner = f"object '{subject.name(second)}'" if first != second else "others of its own faces"
+    partner = f"object '{subject.name(second)}'" if first != second else "other faces of it"
     material = subject.material_name(int(world.materials[one]))
     return Finding(
         "coincident",

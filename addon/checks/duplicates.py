@@ -1,4 +1,4 @@
-"""The same thing twice in the same place: whole objects, and faces within a mesh."""
+"""Exact duplicates in the same place: whole objects, and faces of a mesh."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .framing import LEAST_SHARE, share_of_triangles
 
 
 def duplicate_rows(subject):
-    """(row, the earlier row that is its equal) of instances that show the same thing in the same place to the same rays."""
+    """Return (row, earlier equal row) of instances with equal geometry, transform and ray visibility."""
     table = subject.instances
     if len(table) < 2:
         return []
@@ -21,7 +21,7 @@ def duplicate_rows(subject):
     again = np.flatnonzero(key[order[1:]] == key[order[:-1]])
     if len(again) == 0:
         return []
-    # Among those in one place look for equal meshes.
+    # Among instances with equal keys look for equal meshes.
     found, seen = [], {}
     for row in np.unique(np.concatenate((order[again], order[again + 1]))).tolist():
         earlier = seen.setdefault((int(key[row]), _glance(subject, row)), [])
@@ -34,7 +34,7 @@ def duplicate_rows(subject):
 
 
 def _glance(subject, row):
-    """What equal things have in common and others hardly do: where nothing was moved, all meshes stand in one place."""
+    """Return a cheap key of a mesh's content: objects that were never moved all have the same transform."""
     if not _is_mesh(subject, row):
         return None
     mesh = subject.meshes[int(subject.instances.meshes[row])]
@@ -51,7 +51,7 @@ def _same_thing(subject, row, other):
 
 
 def check_duplicates(subject, rows):
-    """rows: what duplicate_rows gives."""
+    """Yield a finding for each object with exact duplicates. rows: of duplicate_rows."""
     told = set()
     for row, first in rows:
         if first in told:
@@ -94,10 +94,10 @@ def _is_mesh(subject, row):
 
 
 def check_double_faces(subject):
-    """Triangles with the same three corners as another of their mesh."""
+    """Yield findings of triangles with the same three corners as another triangle of their mesh."""
     for number, mesh, looks in subject.shown_meshes():
         keys = corner_keys(mesh)
-        # A sum does not depend on which corner comes first.
+        # A sum does not depend on the order of corners.
         whole = mixed(keys[:, 0] + keys[:, 1] + keys[:, 2])
         order = np.argsort(whole)
         again = np.flatnonzero(whole[order[1:]] == whole[order[:-1]])
@@ -112,7 +112,7 @@ def check_double_faces(subject):
         row = looks[0]
         opposite = ~_same_turn(keys[one], keys[other])
         hurts = _hurts(subject, mesh, row, one, other, opposite)
-        # Where nothing hurts, all of them count, and a back for each face, too, is how some engines show both sides.
+        # Without harmful pairs report all of them; game meshes often have a second face for the back of each face.
         shown = np.flatnonzero(hurts) if hurts.any() else np.arange(len(one))
         share = len(shown) / len(mesh.triangles)
         subject.doubled.add(number)
@@ -126,7 +126,7 @@ def check_double_faces(subject):
             "coincident",
             severity,
             f"{what}: {SHADOWED}" if darker else what,
-            "in Edit Mode, Mesh > Merge > By Distance, then delete what is left twice",
+            "in Edit Mode, Mesh > Merge > By Distance, then delete the remaining double faces",
             object=subject.name(row),
             mesh=mesh.name,
             others=subject.others(number),
@@ -138,12 +138,12 @@ def check_double_faces(subject):
 
 
 def _same_turn(one, other):
-    """Whether two triangles pass the same three corners in the same order, wherever they begin."""
+    """Return (n,) bool: whether two triangles have the same orientation, whichever corner comes first."""
     return np.stack([(one == np.roll(other, turn, axis=1)).all(axis=1) for turn in range(3)]).any(axis=0)
 
 
 def _hurts(subject, mesh, row, one, other, opposite):
-    """Which pairs show: those of two materials, or of one that light passes, or glows, or refracts out of its own back."""
+    """Return (n,) bool, the visible pairs: materials differ, transmit or emit light, or refract with opposite orientation."""
     passes = subject.faces_with(mesh, row, lambda traits: traits.passes or traits.emits)
     clear = subject.faces_with(mesh, row, lambda traits: traits.refracts)
     count = len(mesh.triangles)

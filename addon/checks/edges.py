@@ -1,4 +1,4 @@
-"""How faces meet along edges, by the places of their vertices: a seam in the data that is none in space does not count."""
+"""Topology of faces by the positions of vertices: seams with duplicate vertices in the same place count as connected."""
 
 from dataclasses import dataclass
 
@@ -8,34 +8,34 @@ _M1, _M2, _M3 = (np.uint64(m) for m in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 
 
 
 def mixed(values):
-    """64 bits that look random, the same for the same number."""
+    """Return a 64-bit hash of each number."""
     values = (values ^ (values >> np.uint64(30))) * _M2
     values = (values ^ (values >> np.uint64(27))) * _M3
     return values ^ (values >> np.uint64(31))
 
 
 def vertex_keys(positions):
-    """A number for each place: equal places have equal ones, others differ but for one chance in 2^64."""
+    """Return a 64-bit hash of each position; different positions collide with probability 2^-64."""
     # Adding zero turns -0 into 0.
     bits = (positions + np.float32(0.0)).view(np.uint32).astype(np.uint64)
     return mixed(mixed(mixed(bits[:, 0] + _M1) + bits[:, 1]) + bits[:, 2])
 
 
 def corner_keys(mesh):
-    """(triangles, 3)"""
+    """Return the vertex keys of the triangles' corners, (triangles, 3)."""
     return vertex_keys(mesh.positions)[mesh.triangles]
 
 
 def _edges(keys):
-    """(key, direction) of the edges of triangles: one key for both directions, which are 1 and -1; 0 for a single point."""
+    """Return (key, direction) of the triangles' edges: one key for both directions, 1 and -1; 0 for an edge of length 0."""
     ends = keys[:, (1, 2, 0)]
     return mixed(keys + ends), (keys < ends).astype(np.int8) - (keys > ends).astype(np.int8)
 
 
 def is_balanced(keys):
-    """Whether each edge is passed as often one way as the other: a closed surface whose faces agree on the outside.
+    """Whether each edge is used equally often in both directions: a closed surface with consistent orientation.
 
-    The sum of one random number for each pass, with its direction as sign, is 0 for these, and else but once in 2^64.
+    The sum of the edges' hashes, signed by direction, is 0 for such surfaces, and for others with probability 2^-64.
     """
     edge, direction = _edges(keys)
     return int((edge * direction.astype(np.int64).view(np.uint64)).sum(dtype=np.uint64)) == 0
@@ -43,11 +43,11 @@ def is_balanced(keys):
 
 @dataclass(frozen=True)
 class Faults:
-    """Numbers of triangles, one for each edge at fault."""
+    """Triangles at faulty edges, one for each edge."""
 
-    open: np.ndarray  # no other face
-    flipped: np.ndarray  # two faces that look opposite ways
-    shared: np.ndarray  # three or more faces that enclose nothing
+    open: np.ndarray  # edges of one face
+    flipped: np.ndarray  # edges of two faces with opposite orientation
+    shared: np.ndarray  # edges of three or more faces that do not bound a volume
 
 
 def edge_faults(keys):
@@ -65,12 +65,12 @@ def edge_faults(keys):
 
 
 def shells(keys):
-    """The number of the connected part that each triangle belongs to, by edges and corners that they share."""
+    """Return the number of each triangle's connected part; triangles are connected by shared corners."""
     _, vertices = np.unique(keys, return_inverse=True)
     triangles = vertices.reshape(-1, 3)
     label = np.arange(int(triangles.max()) + 1)
     while True:
-        # Give all corners of a triangle the least label among them, then follow labels to their own.
+        # Give all corners of a triangle their least label, then replace each label by its own label.
         least = label[triangles].min(axis=1)
         before = label.copy()
         for corner in range(3):

@@ -1,4 +1,4 @@
-"""The flat parts of meshes and shapes: a plane, a material slot, and the triangles in it. Of large meshes only large parts."""
+"""Flat parts of meshes and exact shapes: a plane, a material slot and its triangles. Large meshes have only large parts."""
 
 from dataclasses import dataclass
 
@@ -8,30 +8,30 @@ from ..bindings.enums import InstanceKind
 from .edges import mixed
 from .sides import corners, crossed, dots, lengths
 
-# The least share of a mesh's area that a part of it has, in meshes of more than a few triangles. What is curved has no part as
-# large, so that its triangles cost nothing further.
+# Least share of the mesh's area for a part of a mesh with more than _FEW triangles. Curved surfaces have no such parts, so that
+# their triangles cost no further time.
 _FEW, _SHARE = 2048, 0.01
-# How far directions, and heights in parts of the mesh's size, may differ within a part.
+# Tolerance within a part of directions, and of heights relative to the mesh's size.
 _TURN = 2.0**-11
 _DISK = 32
 
 
 @dataclass(frozen=True)
 class Facets:
-    """Those of a mesh or a unit shape, in its own space."""
+    """The flat parts of a mesh or a unit shape, in object space."""
 
     normals: np.ndarray  # (n, 3), unit
-    points: np.ndarray  # (n, 3), one on each
+    points: np.ndarray  # (n, 3), one on each part
     boxes: np.ndarray  # (n, 2, 3)
     slots: np.ndarray  # (n,)
-    faces: tuple  # of each, numbers of its triangles; for a shape its corners themselves
-    shares: np.ndarray  # (n,) of the area of all
+    faces: tuple  # for each part, numbers of its triangles; for a shape the corners themselves
+    shares: np.ndarray  # (n,) of the mesh's area
 
     def __len__(self):
         return len(self.normals)
 
     def large(self):
-        """Those that are looked at however many triangles there are."""
+        """Return the parts with at least _SHARE of the area."""
         kept = np.flatnonzero(self.shares >= _SHARE)
         faces = tuple(self.faces[part] for part in kept)
         return Facets(self.normals[kept], self.points[kept], self.boxes[kept], self.slots[kept], faces, self.shares[kept])
@@ -41,7 +41,7 @@ _NONE = Facets(np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 2, 3)), np.empty
 
 
 def facets_of(subject, number, mesh):
-    """Of a mesh by its number: all parts of a small one, of others those that are large."""
+    """Return the Facets of a mesh by its number: all parts of a small mesh, the large parts of others."""
 
     def make():
         whole = len(mesh.triangles) <= (_FEW if subject.thorough else min(_FEW, subject.parts_left))
@@ -53,13 +53,13 @@ def facets_of(subject, number, mesh):
 
 
 def mesh_facets(mesh, share=_SHARE):
-    """Those that have at least that share of the area."""
+    """Return the Facets with at least that share of the mesh's area."""
     a, b, c = corners(mesh)
     areas, key = _cells(mesh, a, b, c)
     total = areas.sum(dtype=float)
     if not (np.isfinite(total) and total > 0.0):
         return _NONE
-    # Sum up the area of the triangles of each cell. Cells share buckets: where all of a bucket is too little, so is each.
+    # Sum the area of each cell. Cells share buckets: a bucket with too little area excludes all its cells.
     least = share * total
     bits = 16 if len(key) > 1 << 14 else 10
     bucket = (mixed(key.view(np.uint64)) >> np.uint64(64 - bits)).astype(np.int64)
@@ -70,7 +70,7 @@ def mesh_facets(mesh, share=_SHARE):
     kept = np.flatnonzero(large[group] & (areas[some] > 0.0))
     if len(kept) == 0:
         return _NONE
-    # Sort by plane, in each the largest triangle first: it tells best where the plane is.
+    # Sort by plane, the largest triangle first: it determines the plane best.
     kept = kept[np.lexsort((-areas[some[kept]], group[kept]))]
     faces = some[kept]
     starts = np.flatnonzero(np.diff(group[kept], prepend=-1))
@@ -85,7 +85,7 @@ def mesh_facets(mesh, share=_SHARE):
 
 
 def _cells(mesh, a, b, c):
-    """(areas, a number for each triangle: equal for those that look the same way from the same height in the same slot)"""
+    """Return (twice the areas, cell numbers): triangles of equal direction, height and slot have equal cell numbers."""
     normals = crossed(a, b, c)
     areas = lengths(normals)
     low, high = (np.array([pick(a[:, axis]) for axis in range(3)]) for pick in (np.min, np.max))
@@ -93,7 +93,7 @@ def _cells(mesh, a, b, c):
     normals /= areas[:, None]
     heights = dots(normals, a - np.float32(0.5) * (low + high)) / np.float32(size)
     key = np.zeros(len(a), np.int64) if mesh.material_slots is None else mesh.material_slots.astype(np.int64)
-    # 13 bits hold each: they lie within +-2048.
+    # 13 bits hold each column: the values lie within +-2048.
     for column in (normals[:, 0], normals[:, 1], normals[:, 2], heights):
         cell = np.floor(column * np.float32(1.0 / _TURN) + np.float32(0.5))
         key = (key << 13) + (np.where(np.isfinite(cell), cell, 0.0).astype(np.int64) & 8191)
@@ -101,7 +101,7 @@ def _cells(mesh, a, b, c):
 
 
 def shape_facets(kind):
-    """The flat parts of an exact shape; that of a plane has no end."""
+    """Return the Facets of an exact shape; that of a plane is infinite."""
     if kind == InstanceKind.PLANE:
         far = np.inf
         corner = np.array([[-far, -far, 0.0], [far, -far, 0.0], [far, far, 0.0], [-far, far, 0.0]])

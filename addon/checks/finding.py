@@ -1,4 +1,4 @@
-"""One thing that will hurt, in words an artist understands; and many of them as a short list."""
+"""A fault that a check has found, described for artists; and short lists of findings."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ _LINES_OF_A_KIND = 3
 class Finding:
     kind: str  # one of KINDS
     severity: Severity
-    what: str  # the sentence, without who and where
+    what: str  # the sentence without its subject and place
     advice: str
     object: str = ""
     mesh: str = ""
@@ -20,8 +20,8 @@ class Finding:
     others: int = 0  # further objects that share it
     faces: int = 0
     place: tuple | None = None  # world coordinates
-    weight: float = 0.0  # how much of it there is, among findings of one kind
-    key: str = ""  # of its message, where Cycles shows it otherwise
+    weight: float = 0.0  # extent of the fault, for sorting findings of one kind
+    key: str = ""  # key of its message if the picture differs from Cycles'
 
     @property
     def who(self):
@@ -51,7 +51,7 @@ KINDS = {
 }
 
 
-# Of opaque surfaces that lie on each other and look alike.
+# Key and text for opaque surfaces that overlap in one plane and look alike.
 IN_ONE_PLANE = "feature:faces in one plane"
 SHADOWED = "Cycles would show them darker, down to black, as each shadows the other there"
 
@@ -61,18 +61,18 @@ def told_place(place):
 
 
 def told_number(count, one):
-    """3 faces, 1 face."""
+    """Return a count with its noun: "3 faces", "1 face"."""
     return f"{count} {one}" if count == 1 else f"{count} {one}s"
 
 
 def by_severity(findings):
-    """What hurts most comes first; within a kind what there is most of."""
+    """Sort findings by severity, then kind, then weight."""
     order = list(KINDS)
     return sorted(findings, key=lambda f: (-f.severity, order.index(f.kind), -f.weight, f.who))
 
 
 def shortened(findings):
-    """(Finding, further objects of the same kind that are left out after it): a few of each kind, in the order of severity."""
+    """Return (Finding, number of further ones omitted after it): a few of each kind and severity, sorted."""
     kept, left = [], {}
     for finding in by_severity(findings):
         key = finding.kind, finding.severity
@@ -85,7 +85,7 @@ def shortened(findings):
 
 
 def told(finding, left):
-    """The line of a finding."""
+    """Return the line of a finding."""
     if not left:
         return finding.text
     what = "object" if finding.object else "light" if finding.light else "material"

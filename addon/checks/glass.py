@@ -1,4 +1,4 @@
-"""Non-manifold glass: light that enters a body must leave it again, through faces that agree on where the outside is."""
+"""Glass that is open, non-manifold or inside out: refraction requires closed bodies with consistent orientation."""
 
 import numpy as np
 
@@ -55,7 +55,7 @@ def _check_edges(subject, number, mesh, row, keys, clear):
         ),
         (
             faults.shared,
-            "more than two glass faces meet at {}: there is no telling inside from outside",
+            "more than two glass faces meet at {}: inside and outside are undefined",
             "delete faces within the body",
         ),
     ):
@@ -66,7 +66,7 @@ def _check_edges(subject, number, mesh, row, keys, clear):
 
 
 def _check_turned(subject, number, mesh, row, keys, clear):
-    """Closed bodies whose faces look inward; a cavity within another body of the mesh should."""
+    """Yield a finding of closed bodies whose faces point inward, except cavities inside another body of the mesh."""
     corners = mesh.positions.astype(float)[mesh.triangles]
     corners = corners - corners[0, 0]
     # Six times the volume between each face and one point.
@@ -93,7 +93,7 @@ def _check_turned(subject, number, mesh, row, keys, clear):
 
 
 def _is_negative(volumes):
-    """Below zero by more than the sum's own rounding, 2^-24 a term for positions of single precision."""
+    """Whether the sum is below zero by more than its rounding, 2^-24 per term for single-precision positions."""
     return volumes.sum() < -(2.0**-24) * np.abs(volumes).sum()
 
 

@@ -1,6 +1,6 @@
-"""Faces of a mesh that lie over others of its faces in one plane, as far as they look alike and share no three corners.
+"""Faces of a mesh that overlap other faces of the mesh in one plane, with the same look and without equal corners.
 
-Of the flat parts where they do the one that the picture shows most of is told.
+Of the flat parts with such faces only the one that covers most of the picture is reported.
 """
 
 import numpy as np
@@ -13,13 +13,13 @@ from .overlap import box_pairs, triangles_over
 from .subject import step
 
 _MOST_PAIRS = 8_000_000, 200_000  # thorough, quick
-# Faces lie in one plane where the corners of one are this many steps of their place from the other, at most.
+# Greatest distance between faces in one plane, in steps of single precision at their place.
 _STEPS = 4.0
-_SLIVER = 0.01  # of its size by which triangles overlap at least
+_SLIVER = 0.01  # least overlap of triangles, relative to the size of the smaller one
 
 
 def check_laid_over(subject):
-    """Follows the check of double faces, whose meshes it leaves out."""
+    """Yield findings of overlapping faces. Run it after check_double_faces, whose meshes it skips."""
     for number, mesh, looks in subject.shown_meshes():
         row = looks[0]
         if number in subject.doubled or not subject.seen_by_camera(row):
@@ -54,7 +54,7 @@ def check_laid_over(subject):
 
 
 def _seen(subject, row, mesh, triangles):
-    """(the share of the picture that triangles take, a place on one of them)"""
+    """Return (share of the picture that the triangles cover, a point on one of them)."""
     corners = mesh.positions[mesh.triangles[triangles]].astype(float)
     places = subject.world(row, corners.reshape(-1, 3)).reshape(-1, 3, 3)
     return share_of_triangles(subject.snapshot.camera, places), tuple(places[0].mean(axis=0).tolist())
@@ -65,7 +65,7 @@ def _is_plain(subject, material):
 
 
 def _overlapping(mesh, facets, parts, most):
-    """(part, numbers of its triangles that overlap an earlier one exactly in their plane), of those with any."""
+    """Yield (part, its triangles that overlap an earlier one in the same plane) for all parts with such triangles."""
     if not parts:
         return
     faces = np.concatenate([facets.faces[part] for part in parts])

@@ -1,4 +1,4 @@
-"""Area lamps that lie exactly in a face: in Cycles rounding decides for each ray whether the face is before the lamp."""
+"""Area lamps that lie exactly in a face: in Cycles rounding decides for each shadow ray whether the face is an occluder."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ _MOST_TRIANGLES = 1_000_000
 
 
 def check_lamps_in_faces(subject, facets, world):
-    """facets, world: what planes.gather gives. A lamp in a hole of a ceiling is none of them."""
+    """Yield findings of lamps in faces; a lamp in a hole of a ceiling is no fault. facets, world: of planes.gather."""
     lamps = [
         light
         for light in subject.snapshot.lights
@@ -46,16 +46,16 @@ def check_lamps_in_faces(subject, facets, world):
 
 
 def _corners(light):
-    """(4, 3): of its rectangle, or of that around its ellipse, in the world."""
+    """Return the corners (4, 3) of a lamp's rectangle, or of its ellipse's bounds, in world space."""
     x, y = (0.5 * size * light.matrix[:, axis] for axis, size in enumerate(light.size))
     return light.matrix[:, 3] + np.array([-x - y, x - y, x + y, y - x])
 
 
 def _with_lamp(world, light):
-    """The flat parts, and the lamp as one more of them, the last."""
+    """Return the World with the lamp appended as the last part."""
     corners = _corners(light)
     steps = step(np.abs(corners).max())
-    # As of any other part: the corners are rounded, and once more by a matrix.
+    # The margin of other parts: the corners are rounded twice, once by the transform.
     margin = 2.0 * steps
     last = (
         [-1], [-1], [-1], [light.matrix[:, 2]], [light.matrix[:, 3]], [corners.min(axis=0) - margin],
@@ -66,7 +66,7 @@ def _with_lamp(world, light):
 
 
 def _covers(subject, facets, world, part, light):
-    """Whether the faces of a part in the lamp's plane overlap it, beyond a common border."""
+    """Whether the faces of a part in the lamp's plane overlap the lamp, by more than a common border."""
     origin = light.matrix[:, 3]
     faces = corners_of(subject, facets, world, part, origin)
     if not np.isfinite(faces).all():

@@ -1,10 +1,10 @@
-"""Light that is not there, and light too weak to be seen beside the rest."""
+"""Scenes without light, lamps without power, and lamps that are too weak to matter."""
 
 from ..bindings.enums import Integrator, Pass
 from .finding import Finding, Severity
 from .traits import is_zero
 
-# Sums of single precision lose what is 2^-24 of them; lamps may stand some 200 times nearer, which brings the square of that.
+# Sums in single precision lose terms below 2^-24 of the sum; a lamp 256 times nearer gives 2^16 times the light.
 _UNSEEN = 2.0**-40
 
 
@@ -14,9 +14,9 @@ def check_lights(subject):
         return
     levels = [max(light.emission) for light in snapshot.lights]
     if not (any(level > 0.0 for level in levels) or not is_zero(snapshot.world.radiance) or _any_emission(subject)):
-        # Who asks for other passes may want those alone, as of a layer of masks.
+        # A scene with other passes may be meant for those alone, such as masks.
         if set(snapshot.settings.passes) == {Pass.COMBINED}:
-            what, advice = "nothing gives light, so that the picture will be black", "add a lamp or a world colour"
+            what, advice = "nothing gives light: the picture will be black", "add a lamp or a world colour"
             yield Finding("lights", Severity.WRONG, what, advice)
         return
     strongest = max(levels, default=0.0)
@@ -26,7 +26,7 @@ def check_lights(subject):
             what = "gives no light: its power or colour is 0"
             yield Finding("lights", Severity.HINT, what, "delete or hide it", light=light.name, place=place)
         elif level < _UNSEEN * strongest:
-            what = f"is {strongest / level:.2g} times weaker than the strongest lamp, beside which it is lost in rounding"
+            what = f"is {strongest / level:.2g} times weaker than the strongest lamp: its light is lost in rounding"
             yield Finding("lights", Severity.HINT, what, "delete it, or weaken the other", light=light.name, place=place)
 
 

@@ -1,4 +1,4 @@
-"""Normals that disagree with the surface: shading that turns away from the side that light comes from."""
+"""Shading normals that point away from the geometric side of the surface."""
 
 import numpy as np
 
@@ -7,9 +7,9 @@ from .edges import corner_keys, edge_faults, vertex_keys
 from .finding import Finding, Severity, told_number
 from .sides import corners, crossed, dots, lengths, middle
 
-# A share of the mesh's area: less is not seen, and slivers, whose own direction is rounding, have next to none.
+# Least share of the mesh's area: less is invisible, and slivers, whose direction is rounding, have hardly any area.
 _SHARE = 1e-3
-# Beyond 91 degrees, so that what is exactly upright does not depend on rounding.
+# Cosine of 91 degrees, so that rounding does not matter for exactly perpendicular normals.
 _AWAY = -0.0175
 
 
@@ -23,7 +23,7 @@ def check_normals(subject):
     for number, mesh, row in shown if subject.thorough else _suspects(subject, shown):
         faces, asked = subject.sample(mesh)
         away, areas = _away(mesh, faces)
-        # Where all corners turn away the face is lit from behind; where some do, the light breaks off within it.
+        # If all corners turn away, the face is lit from behind; if some do, light ends abruptly within the face.
         some, whole = away[0] | away[1] | away[2], away[0] & away[1] & away[2]
         if not some.any():
             continue
@@ -55,7 +55,7 @@ def check_normals(subject):
 
 
 def _suspects(subject, shown):
-    """Those of which any corner in the sample points away: all meshes at once, which takes a tenth of one after the other."""
+    """Return the meshes with a normal that points away in the sample. One batch for all meshes takes a tenth of the time."""
     if not shown:
         return []
     places, shading, owners = [], [], []
@@ -78,7 +78,7 @@ def _shows_normals(subject, row):
 
 
 def _away(mesh, faces):
-    """(for each of three corners which point away from their face, twice the areas)"""
+    """Return (masks of the faces whose normal points away, one for each of three corners; twice the areas)."""
     geometric = crossed(*corners(mesh, faces))
     areas = lengths(geometric)
     if mesh.normals.ndim == 2:
@@ -91,10 +91,10 @@ def _away(mesh, faces):
 
 
 def _folds(mesh, faces, bad):
-    """Mask of those among the bad faces whose normals are as smooth shading makes them at folds of more than a right angle.
+    """Return a mask of the bad faces whose normals are valid smooth normals at folds of more than a right angle.
 
-    The mean of the faces around a corner turns away from some of them there, in any engine, but never from all; a normal that
-    turns away from all of them is a fault, and so is one between faces that look opposite ways.
+    At such a fold the mean normal turns away from some faces around the corner, in any engine, but never from all. A normal
+    that turns away from all of them is a fault, and so is one between faces of opposite orientation.
     """
     folds = np.zeros(len(bad), bool)
     keys = vertex_keys(mesh.positions)
@@ -102,7 +102,7 @@ def _folds(mesh, faces, bad):
     near = np.flatnonzero(np.isin(keys, keys[mesh.triangles[chosen]])[mesh.triangles].any(axis=1))
     around = keys[mesh.triangles[near]]
     flipped = near[edge_faults(around).flipped]
-    # Every corner of a bad face with every face that has a corner in the same place.
+    # Pair every corner of a bad face with every face that has a corner in the same position.
     around = around.reshape(-1)
     order = np.argsort(around)
     corner_places = keys[mesh.triangles[chosen]].reshape(-1)
@@ -126,7 +126,7 @@ def _words(subject, number, mesh, severity, count, whole):
         )
     if whole:
         return (
-            f"shading normals point into the surface on {where}, which light falls on from behind",
+            f"shading normals point into the surface on {where}, which light reaches only from behind",
             "clear custom split normals, or recalculate them",
         )
     if severity == Severity.WRONG:
@@ -135,7 +135,7 @@ def _words(subject, number, mesh, severity, count, whole):
             "clear custom normals, mark sharp edges or shade it flat",
         )
     return (
-        f"smooth shading bends round folds of more than a right angle at {where}",
+        f"smooth shading runs around folds of more than a right angle at {where}",
         "if dark patches show there, mark sharp edges or shade it flat",
     )
 

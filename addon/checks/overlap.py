@@ -1,4 +1,4 @@
-"""Which things of many lie over each other: boxes in space, triangles in a plane. Sorted, never each with each."""
+"""Overlap tests of many boxes in space and triangles in a plane, by sorting instead of testing all pairs."""
 
 import numpy as np
 
@@ -8,17 +8,18 @@ _AT_ONCE = 1 << 21
 
 
 def box_pairs(low, high, most, group=None):
-    """(i, j), i < j, of boxes that may meet: (n, 3) arrays. Sweeps along the axis that leaves the fewest; None beyond most.
+    """Return (i, j), i < j, of overlapping boxes, by a sweep along the axis with the fewest candidates.
 
-    group: a whole number for each box; those of different groups are not asked.
+    low, high: (n, 3). group: a whole number for each box; only boxes of the same group are tested. None if there are more than
+    most candidates.
     """
     group = np.zeros(len(low)) if group is None else group.astype(float)
     best = None
     for axis in range(3):
         first, last = _within_one(low[:, axis], high[:, axis])
-        # Groups follow one another along the axis.
+        # Place the groups one after the other along the axis.
         order = np.argsort(group + first, kind="stable")
-        # Those that begin before a box ends, and not before it begins.
+        # Candidates of a box begin within its interval.
         ends = np.searchsorted((group + first)[order], (group + last)[order], side="right")
         counts = ends - np.arange(len(order)) - 1
         total = int(counts.sum())
@@ -28,7 +29,7 @@ def box_pairs(low, high, most, group=None):
     if total > most:
         return None
     found, sums = [np.empty((2, 0), np.int64)], np.cumsum(counts)
-    # Ask as many at a time as memory does not feel.
+    # Test in blocks to limit memory.
     for first in range(0, total, _AT_ONCE):
         part = np.arange(*np.searchsorted(sums, (first, first + _AT_ONCE), side="right"))
         before = sums[part] - counts[part]
@@ -43,9 +44,9 @@ def box_pairs(low, high, most, group=None):
 
 
 def _within_one(low, high):
-    """Both ends of intervals on a scale from 0 to 1, the upper a little higher than it is: sums with groups are rounded.
+    """Return both ends of intervals scaled to 0 to 1, with a margin at the upper end for the rounding of sums with groups.
 
-    What has no end reaches to the end of the scale.
+    Infinite intervals reach to the end of the scale.
     """
     finite = (low > -_ENDLESS) & (high < _ENDLESS)
     if not finite.any():
@@ -56,11 +57,11 @@ def _within_one(low, high):
 
 
 def triangles_over(one, other, margin):
-    """Whether triangles overlap by more than margin, pair by pair: (n, 3, 2) arrays and (n,) lengths."""
+    """Return (n,) bool: whether pairs of triangles, (n, 3, 2), overlap by more than margin, (n,)."""
     over = np.ones(len(one), bool)
     for sides in (one, other):
         for corner in range(3):
-            # Two triangles are apart where a line along some side of them has one on each hand.
+            # Two triangles are separate if a line along one of their edges separates them.
             edge = sides[:, (corner + 1) % 3] - sides[:, corner]
             length = np.hypot(edge[:, 0], edge[:, 1])
             across = np.stack((-edge[:, 1], edge[:, 0]), axis=1) / length[:, None]
@@ -71,13 +72,16 @@ def triangles_over(one, other, margin):
 
 
 def overlapping_triangles(one, other, most):
-    """(i, j) of triangles of two sets, (n, 3, 2) and (m, 3, 2), that overlap by a hundredth of the smaller one's size."""
+    """Return (i, j) of triangles of two sets, (n, 3, 2) and (m, 3, 2), that overlap by 1 % of the smaller one's size.
+
+    With more than most candidates only the triangles nearest to the centre of the sets' intersection are tested.
+    """
     corners = np.concatenate((one, other))
     low, high = corners.min(axis=1), corners.max(axis=1)
     flat = np.zeros((len(corners), 1))
     pairs = box_pairs(np.hstack((low, flat)), np.hstack((high, flat)), most)
     if pairs is None:
-        # Too many to ask all: those nearest the middle of what both sets share decide.
+        # Too many candidates: test those nearest to the centre of the sets' intersection.
         sets = (low[: len(one)], high[: len(one)]), (low[len(one) :], high[len(one) :])
         middle = np.maximum(*(part.min(axis=0) for part, _ in sets)) + np.minimum(*(part.max(axis=0) for _, part in sets))
         away = [np.maximum(a - 0.5 * middle, 0.5 * middle - b).max(axis=1) for a, b in sets]

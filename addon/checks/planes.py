@@ -1,4 +1,4 @@
-"""Flat parts of all things where they stand in the world, and which two of them lie in one plane."""
+"""Flat parts of all objects in world space, and the pairs of them that lie in one plane."""
 
 from dataclasses import dataclass
 
@@ -9,20 +9,20 @@ from .facets import facets_of, shape_facets
 from .overlap import box_pairs
 from .subject import step
 
-# Either surface is off by half a step along each axis, and once more where a matrix has moved it.
+# Each of the two surfaces has an error of half a step along each axis, and another half from its transform.
 _STEPS = 2.0
-# Directions are compared in cells this wide, larger than any that rounding turns.
+# Cells of directions per unit, wider than any error by rounding, and the margin at their borders in cells.
 _CELLS = 64.0
 _EDGE = 0.02
-# No face that anyone models is upright on it: so a direction and its opposite always lie on different sides.
+# A direction to which modelled faces are hardly ever parallel: its dot product tells a normal from its opposite.
 _AWRY = np.array([0.5432, 0.7531, 0.3711])
-# Planes without end, as far as boxes are concerned.
+# Extent of infinite planes in boxes.
 _FAR = 1e30
 
 
 @dataclass(frozen=True)
 class World:
-    """All flat parts where they stand."""
+    """All flat parts in world space."""
 
     rows: np.ndarray  # of instances
     parts: np.ndarray  # of their facets
@@ -31,17 +31,17 @@ class World:
     points: np.ndarray
     low: np.ndarray
     high: np.ndarray
-    steps: np.ndarray  # of the place
+    steps: np.ndarray  # of single precision at the part's place
 
     def __len__(self):
         return len(self.rows)
 
 
 def gather(subject, duplicates, most):
-    """Facets by what has them, and all of them in the world; None where there are none, or too many."""
+    """Return ({(kind, mesh): Facets}, World of all parts); the World is None if there are no parts, or more than most."""
     table = subject.instances
     facets, rows_of = {}, {}
-    # Where a dimension is lost nothing is shown; NaN is not above 0 either.
+    # Skip instances scaled to 0 along an axis, and those whose volume is NaN.
     visible = np.abs(subject.volumes) > 0.0
     if duplicates:
         visible[list(duplicates)] = False
@@ -73,10 +73,10 @@ def _only(rows, mask):
 
 
 def _place(subject, facets, rows):
-    """The columns of World for all instances of one thing."""
+    """Return the columns of World for all instances of one mesh or shape."""
     matrices = subject.instances.matrices[rows]
     linear, offset = matrices[:, :, :3], matrices[:, :, 3]
-    # Normals go with the cofactors, which exist for flattened objects too; those of mirrored ones look the other way.
+    # Transform normals by the cofactor matrix, which needs no inverse; mirroring flips them.
     x, y, z = linear[:, :, 0], linear[:, :, 1], linear[:, :, 2]
     cofactors = (
         np.stack((np.cross(y, z), np.cross(z, x), np.cross(x, y)), axis=2) * np.sign(subject.volumes[rows])[:, None, None]
@@ -89,7 +89,7 @@ def _place(subject, facets, rows):
     centers = np.einsum("rij,fj->rfi", linear, middle) + offset[:, None]
     halves = np.einsum("rij,fj->rfi", np.abs(linear), half)
     finite = (half < 0.5 * _FAR).all(axis=1)
-    # What is rounded is the place in the world, and that in the mesh.
+    # Positions are rounded in world space and in object space.
     inner = np.abs(boxes).max(axis=1) * np.where(finite, 1.0, 0.0)[:, None]
     reach = np.maximum(np.abs(points).max(axis=2), np.einsum("rij,fj->rfi", np.abs(linear), inner).max(axis=2))
     reach = np.maximum(reach, np.abs(offset).max(axis=1)[:, None])
@@ -111,14 +111,14 @@ def _place(subject, facets, rows):
 
 
 def _first_of_slots(subject, rows):
-    """One row for each list of slots, in the order of the lists' starts."""
+    """Return one row for each list of slots, in the order of the lists' starts."""
     _, first = np.unique(subject.instances.first_slots[rows], return_index=True)
     return rows[first].tolist()
 
 
 def pairs_of(subject, world, most):
-    """(i, j) of parts that look the same or the opposite way, in boxes that meet."""
-    # Sort by direction: a direction and its opposite are one; near the border of a cell one belongs to both.
+    """Return (i, j) of parts with parallel normals and overlapping boxes; empty if there are more than most candidates."""
+    # Group by cells of directions, in which opposite directions are equal; near a border a part is in both cells.
     sign = np.where(world.normals @ _AWRY < 0.0, -1.0, 1.0)
     scaled = world.normals * sign[:, None] * _CELLS + 0.5
     entries, cells = np.arange(len(world)), np.floor(scaled).astype(np.int64)
@@ -143,7 +143,7 @@ def pairs_of(subject, world, most):
 
 
 def in_one_plane(world, i, j):
-    """Whether two parts lie within the steps of their place, all over what their boxes share, which is more than a line."""
+    """Return (n,) bool: whether two parts lie in one plane, up to rounding, over an intersection of boxes that is no line."""
     low, high = np.maximum(world.low[i], world.low[j]), np.minimum(world.high[i], world.high[j])
     margin = _STEPS * np.maximum(world.steps[i], world.steps[j])
     extent = np.sort(high - low, axis=1)
@@ -153,5 +153,5 @@ def in_one_plane(world, i, j):
     cosine = np.einsum("ij,ij->i", world.normals[i], world.normals[j])
     apart = np.abs(one - np.sign(cosine) * other)
     turned = np.linalg.norm(np.cross(world.normals[i], world.normals[j]), axis=1)
-    # Boxes are wider by the margin on either hand.
+    # Boxes include the margin on both sides.
     return (extent[:, 1] > 8.0 * margin) & (apart <= margin) & (turned * np.minimum(radius, _FAR) <= 2.0 * margin)

@@ -1,4 +1,4 @@
-"""Geometry smaller than the precision at its place: Blender's 24 bits are coarse far from the origin."""
+"""Geometry smaller than the precision at its position: single precision is coarse far from the origin."""
 
 import math
 
@@ -9,16 +9,16 @@ from .finding import Finding, Severity, told_number
 from .sides import corners, dots, lengths
 from .subject import step
 
-# A corner lies up to half a step off along each axis. Over an edge of 32 steps that tilts a face by up to
-# 2 * sqrt(3) * 0.5 / 32 = 0.054, 3 degrees: mirrors show it.
+# A corner has an error of up to half a step along each axis. With an edge of 32 steps that tilts a face by up to
+# 2 * sqrt(3) * 0.5 / 32 = 0.054, 3 degrees, which is visible in mirrors.
 _WHOLE_FACE = 32.0
-# Under 4 steps the width of a needle is off by up to half of itself. Few needles are none's business.
+# With a width of less than 4 steps the error of a needle's width is up to half of the width. A few needles are not reported.
 _WIDTH = 4.0
 _SHARE_OF_FACES = 0.01
 _SHARE_OF_NEEDLES = 0.1
-# An object that is placed in steps of an eighth of itself stands visibly beside its place.
+# An object whose position has steps of an eighth of its size stands visibly beside its true position.
 _WHOLE_OBJECT = 8.0
-# Rounding a matrix of unit columns by 2^-25 turns normals by that times how near it is to flat: from 2^-5 on, by 2 degrees.
+# Rounding errors of 2^-25 in a matrix of unit columns turn normals by 2^-25 over the volume: at 2^-20 by 2^-5, 2 degrees.
 _FLATTEST = 2.0**-20
 
 
@@ -29,12 +29,12 @@ def check_precision(subject):
 
 
 def _check_meshes(subject):
-    """Meshes whose own coordinates are too coarse for their faces."""
+    """Yield findings of meshes whose coordinates are too coarse for their faces."""
     for number, mesh, looks in subject.shown_meshes(whole=False):
         if not subject.thorough and not _is_far(mesh):
             continue
         faces, count = subject.sample(mesh)
-        # Nothing is small where the shortest side is many steps of the largest coordinate: that spares most meshes the rest.
+        # Test edges against steps at the largest coordinate first: most meshes then need no further tests.
         a, b, c = corners(mesh, faces)
         limit = (_WHOLE_FACE * step(np.abs(mesh.positions).max())) ** 2
         squares = [dots(side, side) for side in (a - b, b - c, c - a)]
@@ -47,7 +47,7 @@ def _check_meshes(subject):
 
 
 def _judge(subject, number, mesh, row, few, places, count):
-    """few: of the count triangles that are looked at those that may be small; places: their corners."""
+    """Return the finding of a mesh, or None. few: the possibly small ones of count sampled triangles; places: their corners."""
     steps = step(np.maximum.reduce([np.abs(place).max(axis=1) for place in places]))
     sides = [lengths(one - other) for one, other in zip(places, places[1:] + places[:1], strict=True)]
     longest, shortest = np.maximum.reduce(sides), np.minimum.reduce(sides)
@@ -67,9 +67,9 @@ def _judge(subject, number, mesh, row, few, places, count):
     return Finding(
         "precision",
         Severity.WRONG,
-        f"{told_number(faces, 'face')} no larger than a few steps of Blender's numbers: so far from its origin a step is "
+        f"{told_number(faces, 'face')} no larger than a few steps of Blender's numbers: this far from its origin a step is "
         f"{steps[worst] * stretch:.2g}, and the smallest edge {edges[worst] * stretch:.2g}",
-        "model it near its own origin and export it again: what is rounded is lost",
+        "model it near its own origin and export it again: rounded coordinates cannot be restored",
         object=subject.name(row),
         mesh=mesh.name,
         others=subject.others(number),
@@ -80,9 +80,9 @@ def _judge(subject, number, mesh, row, few, places, count):
 
 
 def _is_far(mesh):
-    """Whether a mesh lies further from its origin than 64 times its size: 18 of 24 bits, or fewer, are left for its shape.
+    """Whether a mesh is farther from its origin than 64 times its size, so that at most 18 of 24 bits are left for its shape.
 
-    Some of its vertices tell, and mostly two: no two are further apart than sqrt(3) sizes.
+    Usually two vertices suffice for a no, since no two are farther apart than sqrt(3) sizes; else test a sample.
     """
     (x, y, z), (u, v, w) = mesh.positions[0].tolist(), mesh.positions[len(mesh.positions) // 2].tolist()
     if max(abs(x), abs(y), abs(z)) < 36.0 * max(abs(x - u), abs(y - v), abs(z - w)):
@@ -93,9 +93,9 @@ def _is_far(mesh):
 
 
 def _sizes(subject):
-    """The world size of each instance along its largest extent; infinity for planes without end."""
+    """Return the size of each instance in world space along its largest extent; infinity for infinite planes."""
     table = subject.instances
-    # The extent of the unit shapes, then that of the meshes that are looked at.
+    # Half extents: 1 for unit shapes, infinity for meshes that the check skips.
     half = np.ones((len(table), 3))
     half[table.kinds == InstanceKind.MESH] = math.inf
     for number, _, _ in subject.shown_meshes(whole=False):
@@ -107,12 +107,12 @@ def _sizes(subject):
 
 
 def _check_places(subject):
-    """Whole objects, exact shapes too, that are hardly larger than the steps in which they can be placed."""
+    """Yield a finding of objects, exact shapes too, that are hardly larger than the steps of their position."""
     table = subject.instances
     if len(table) == 0:
         return
     steps = step(np.maximum.reduce(np.abs(table.matrices[:, :, 3].T)))
-    # Nothing smaller than this is too small: sizes are worth asking for only where a place is far for its scale.
+    # Compute sizes only if some position is far from the origin compared with its scale.
     if not subject.thorough and not (steps * 2.0**16 > np.maximum.reduce(subject.scales.T)).any():
         return
     sizes = _sizes(subject)
@@ -134,11 +134,11 @@ def _check_places(subject):
 
 
 def _check_shear(subject):
-    """Matrices so sheared that rounding turns what they place."""
+    """Yield a finding of transforms so sheared that rounding turns normals."""
     scales = subject.scales
     usable = np.isfinite(subject.volumes) & (np.minimum.reduce(scales.T) > 0.0)
     rows = np.flatnonzero(usable)
-    # The volume of unit columns is 1 for a rotation with any scale along its own axes, and 0 where a dimension is lost.
+    # The volume of the unit columns is 1 for a rotation with any scale along its axes, and 0 for a singular matrix.
     volumes = np.abs(subject.volumes[rows]) / (scales[rows, 0] * scales[rows, 1] * scales[rows, 2])
     bad = rows[volumes < _FLATTEST]
     if len(bad) == 0:

@@ -1,7 +1,7 @@
-"""Which values a material's node takes, as far as its pictures tell: a sample of texels, sent through the nodes.
+"""The values of a material's nodes over their images: a sample of texels, evaluated through the nodes.
 
-What depends on the place, on two pictures at once or on what is not computed here is NaN: not known. So each number is one
-that the picture really has, and none is a bound that nothing reaches.
+Values that depend on the shading point, on two images or on nodes not evaluated here are NaN, unknown. So each value occurs in
+the image, and none is only a bound.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ _MIX = {
 
 
 class Ranges:
-    """Values of the nodes of one owner."""
+    """Values of the nodes of one material or world."""
 
     def __init__(self, nodes, images):
         self.nodes = nodes
@@ -45,12 +45,12 @@ class Ranges:
         self._known = {}
 
     def values(self, parameter):
-        """(n, 3) values that a parameter takes, without those that are not known."""
+        """Return the known values of a parameter, (n, 3)."""
         values = self._value(parameter)[0][:, :3]
         return values[np.isfinite(values).all(axis=1)]
 
     def _value(self, parameter):
-        """((n, 4), the picture that they come from or None); n is 1 without a picture."""
+        """Return (values (n, 4), the image that they come from or None); n is 1 without an image."""
         if not isinstance(parameter, NodeRef):
             scalar = not isinstance(parameter, tuple)
             return np.array([[*([parameter] * 3 if scalar else parameter), 1.0]]), None
@@ -75,13 +75,13 @@ class Ranges:
         return result, picture
 
     def _picture(self, node):
-        """Texels as nodes see them; where the picture ends or is blurred others may be seen, too."""
+        """Return texels in the nodes' colour space; extension and interpolation can produce other values too."""
         parts = [_decoded(image) for image in self.images[node.image : node.image + node.image_count]]
         return np.concatenate(parts) if parts else np.full((1, 4), np.nan)
 
 
 def _result(node, inputs):
-    """(n, 3) or (n, 4); None where it is not known."""
+    """Return a node's values, (n, 3) or (n, 4); None if its kind is not evaluated here."""
     a, b, c = (value[:, :3] for value in inputs[:3])
     if node.kind == NodeKind.MATH and node.option in _MATH:
         result = _MATH[node.option](a, b, c)
@@ -109,7 +109,7 @@ def _result(node, inputs):
 
 
 def _decoded(image):
-    """(n, 4): an even sample of the texels, straight, in the scene's colours."""
+    """Return an even sample of an image's texels, (n, 4), with straight alpha, in the working space."""
     texels = image.texels.reshape(-1, image.texels.shape[2])
     texels = texels[:: max(1, len(texels) // _TEXELS)]
     if texels.dtype != np.float32:

@@ -1,8 +1,8 @@
-"""Large flat faces that are shaded as if they were round.
+"""Large flat faces with smooth normals that differ from the face's normal.
 
-Of a direction below such a face but above its shading normal's horizon only lamps that are sampled tell, never rays that the
-surface sends: how much of that light arrives depends on the density with which an engine samples its lamps. Lamps with extent
-show it, as with those both ways are weighed.
+Directions below such a face but above the horizon of its shading normal are found only by sampling lights, never by sampling
+the BSDF. With multiple importance sampling the light from these directions depends on the engine's pdf of sampling its lights,
+so that lamps with an extent look different between engines.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from .finding import Finding, Severity, told_number
 from .framing import share_of_triangles
 from .sides import corners, crossed, dots, lengths
 
-# Of the mesh's area, of the picture: what is smaller changes no picture that anyone compares.
+# Least shares of the mesh's area and of the picture: smaller faces have no visible effect.
 _SHARE, _SHARE_OF_PICTURE = 0.05, 0.02
 _LEAN = np.cos(np.radians(10.0))
 
@@ -62,7 +62,7 @@ def _shows(subject, row):
 
 
 def _round(mesh, facets):
-    """(numbers of the triangles of large flat parts whose normals lean, the mean cosine at their corners)"""
+    """Return (triangles of large flat parts whose normals lean, mean cosine at their corners)."""
     geometric = crossed(*corners(mesh))
     areas = lengths(geometric)
     least = _SHARE * areas.sum(dtype=float)
@@ -72,7 +72,7 @@ def _round(mesh, facets):
             continue
         shading = mesh.normals[mesh.triangles[part]] if mesh.normals.ndim == 2 else mesh.normals[part]
         cosines = [dots(shading[:, k], geometric[part]) / (lengths(shading[:, k]) * areas[part]) for k in range(3)]
-        # A corner without a normal is shaded flat.
+        # The core shades a corner with a zero normal flat.
         mean = float((np.nan_to_num(cosines, nan=1.0).mean(axis=0) * areas[part]).sum() / areas[part].sum())
         if mean < _LEAN:
             leaning.append(part)

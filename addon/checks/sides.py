@@ -1,16 +1,16 @@
-"""Triangles as three columns of corners and what follows from them, in single precision as Blender has them."""
+"""Corners, normals and areas of triangles, in the single precision of Blender's meshes."""
 
 import numpy as np
 
 
 def corners(mesh, faces=slice(None)):
-    """Three (n, 3) arrays."""
+    """Return the corners of triangles as three (n, 3) arrays."""
     triangles = mesh.triangles[faces]
     return tuple(np.take(mesh.positions, triangles[:, column], axis=0) for column in range(3))
 
 
 def crossed(a, b, c):
-    """(n, 3): normals as long as twice the area. Written out, which takes a third of the time of numpy's own."""
+    """Return normals, (n, 3), with twice the area as length. Three times as fast as np.cross."""
     u, v = b - a, c - a
     return np.stack(
         (
@@ -31,5 +31,5 @@ def lengths(vectors):
 
 
 def middle(mesh, face):
-    """The centre of a triangle, in double precision."""
+    """Return the centre of a triangle in double precision."""
     return mesh.positions[mesh.triangles[face]].astype(float).mean(axis=0)

@@ -1,11 +1,11 @@
-"""The snapshot under examination: where each mesh stands, which material its faces have, and how much may be looked at."""
+"""The snapshot under examination: instances of each mesh, materials of faces, and limits of the quick check."""
 
 import numpy as np
 
 from ..bindings.enums import InstanceKind, Ray
 from .traits import look_alike, traits_of
 
-# What F12 looks at by itself: a small part of what export and the accelerator take for the smallest scenes.
+# Limits of F12's quick check, which takes a small part of the time of export and accelerator even for small scenes.
 _QUICK_MESH = 4096
 _QUICK_ALL = 16384
 _QUICK_SAMPLE = 64
@@ -14,9 +14,9 @@ _QUICK_PARTS = 8192
 
 
 class Subject:
-    """thorough: all of the scene; else small meshes whole, and of large ones what costs little.
+    """thorough: check the whole scene; else whole small meshes, and samples of large ones.
 
-    poll is called between steps, with the share that is done; it ends the check by an exception.
+    poll is called between steps with the share done; an exception from it ends the check.
     """
 
     def __init__(self, snapshot, thorough=True, poll=None):
@@ -26,8 +26,8 @@ class Subject:
         self.thorough = thorough
         self.traits = [traits_of(material) for material in snapshot.materials]
         self.kinds = self.instances.kinds
-        self.doubled = set()  # meshes of which it is told that they have faces twice
-        self.parts_left = _QUICK_PARTS  # triangles of which small flat parts are looked at, too
+        self.doubled = set()  # meshes with reported double faces
+        self.parts_left = _QUICK_PARTS  # triangles left whose small flat parts a quick check includes
         self._poll = poll
         self._seen = {}
         self._looks = self._group()
@@ -38,7 +38,7 @@ class Subject:
             self._poll(share)
 
     def _group(self):
-        """Per mesh the first row of each look: which materials and shading it is shown with; and how many rows there are."""
+        """Return {mesh: first row of each combination of slots and shading}; store the rows of each mesh."""
         table = self.instances
         rows = np.flatnonzero(table.kinds == InstanceKind.MESH)
         self._rows = rows[np.argsort(table.meshes[rows], kind="stable")]
@@ -52,10 +52,10 @@ class Subject:
         return looks
 
     def shown_meshes(self, whole=True, where=None):
-        """(number, mesh, first rows of its looks) of meshes with faces.
+        """Yield (number, mesh, first row of each look) of instanced meshes with faces; a quick check takes an even sample.
 
-        where: which materials they must have one of, by traits. whole: all faces of it will be looked at; a quick check leaves
-        large meshes out then. Of many it takes some, evenly.
+        where(traits): only meshes with such a material. whole: the caller looks at all faces, so that a quick check skips large
+        meshes.
         """
         numbers = sorted(self._looks)
         if where is not None:
@@ -79,7 +79,7 @@ class Subject:
             yield number, mesh, self._looks[number]
 
     def sample(self, mesh):
-        """Numbers of the triangles that are looked at where some of them will do; all of them in a thorough check."""
+        """Return (slice of triangles to check, their number): an even sample in a quick check, else all."""
         count = len(mesh.triangles)
         if self.thorough:
             return slice(None), count
@@ -87,7 +87,7 @@ class Subject:
         return slice(None, None, stride), len(range(0, count, stride))
 
     def cached(self, what, number, make):
-        """make() once for each mesh, or whatever number is."""
+        """Return make(), computed once for each (what, number)."""
         key = what, number
         if key not in self._seen:
             self._seen[key] = make()
@@ -97,11 +97,11 @@ class Subject:
         return self.instances.names[self.instances.name_indices[row]]
 
     def rows_of(self, number):
-        """All rows that show a mesh."""
+        """Return all rows of a mesh."""
         return self._rows[self._ends[number - 1] if number else 0 : self._ends[number]]
 
     def others(self, number):
-        """How many rows show a mesh beside the first."""
+        """Return the number of rows of a mesh besides the first."""
         return len(self.rows_of(number)) - 1
 
     def slots(self, row):
@@ -109,16 +109,16 @@ class Subject:
         return self.instances.slots[first : first + int(self.instances.slot_counts[row])]
 
     def materials_of(self, row):
-        """Numbers of all materials that an instance has."""
+        """Return the numbers of an instance's materials."""
         return self.slots(row).tolist()
 
     def material(self, row, slot):
-        """The number of the material in a slot; the last slot stands for those beyond."""
+        """Return the number of the material in a slot, the last one for a slot beyond; -1 without materials."""
         slots = self.slots(row)
         return int(slots[min(slot, len(slots) - 1)]) if len(slots) else -1
 
     def faces_with(self, mesh, row, wanted):
-        """Mask of the triangles whose material's traits satisfy wanted(); True or False where all or none do."""
+        """Return a mask of the triangles whose material's traits satisfy wanted(); True or False if all or none do."""
         slots = self.slots(row)
         if len(slots) == 0:
             return False
@@ -149,7 +149,7 @@ class Subject:
 
 
 def _measure(matrices):
-    """(the lengths of the columns, the determinants) of 3 x 4 matrices, in a fraction of the time of numpy's own."""
+    """Return (lengths of the columns, determinants) of 3 x 4 matrices, written out for speed."""
     rows = [[matrices[:, row, column] for column in range(3)] for row in range(3)]
     scales = np.stack([np.sqrt(sum(row[column] ** 2 for row in rows)) for column in range(3)], axis=1)
     (a, b, c), (d, e, f), (g, h, i) = rows
@@ -157,6 +157,6 @@ def _measure(matrices):
 
 
 def step(values):
-    """The distance between a single-precision number of that size and the next."""
+    """Return the distance between a single-precision number of that magnitude and the next."""
     values = np.abs(np.asarray(values, float))
     return np.spacing(np.maximum(values, np.finfo(np.float32).tiny).astype(np.float32)).astype(float)

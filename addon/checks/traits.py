@@ -1,4 +1,4 @@
-"""What of a material decides whether a flaw of the geometry is seen: does light go into it, pass it, come from it?"""
+"""Traits of materials that decide whether a fault of the geometry is visible."""
 
 from dataclasses import dataclass, replace
 
@@ -10,14 +10,14 @@ _CLEAR = (LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION)
 
 @dataclass(frozen=True)
 class Traits:
-    refracts: bool  # bends light into what the surface bounds
-    passes: bool  # lets light straight on
+    refracts: bool  # refracts light into the body
+    passes: bool  # transmits light straight through
     emits: bool
     scatters: bool
 
 
 def is_zero(value):
-    """Whether a parameter is 0 whatever happens."""
+    """Whether a parameter is the constant 0."""
     if isinstance(value, NodeRef):
         return False
     return not any(value) if isinstance(value, tuple) else value == 0.0
@@ -28,7 +28,7 @@ def is_number(value, number):
 
 
 def clear_lobes(material):
-    """(IOR, the lobe) of every lobe that lets light into the body."""
+    """Yield (IOR, lobe) of every lobe that refracts light into the body."""
     for lobe in material.lobes:
         if is_zero(lobe.weight):
             continue
@@ -43,7 +43,7 @@ def clear_lobes(material):
 def traits_of(material):
     principled = [lobe.principled for lobe in material.lobes if lobe.principled is not None]
     return Traits(
-        # Where both sides have the same index, in and out are alike.
+        # With IOR 1 the orientation of faces does not matter.
         refracts=any(not is_number(ior, 1.0) for ior, _ in clear_lobes(material)),
         passes=not is_zero(material.transmittance),
         emits=not is_zero(material.emission) or any(not is_zero(record.emission) for record in principled),
@@ -52,5 +52,5 @@ def traits_of(material):
 
 
 def look_alike(one, other):
-    """Whether two materials are equal but for what they are called."""
+    """Whether two materials are equal except for name and pass index."""
     return one is other or replace(one, name="", material_index=0) == replace(other, name="", material_index=0)

@@ -173,7 +173,7 @@ def test_the_larger_fault_of_normals_is_told(thorough, whole):
     normals = np.array([[down] * 3] * count + [[up, down, up]] * (len(flat.triangles) - count))
     finding = only(one(dataclasses.replace(flat, normals=normals)), thorough)
     assert finding.severity == Severity.WRONG and finding.weight > 0.5
-    assert ("light falls on from behind" if whole > 0.5 else "at some corners") in finding.what
+    assert ("light reaches only from behind" if whole > 0.5 else "at some corners") in finding.what
 
 
 def _upright(mesh):
