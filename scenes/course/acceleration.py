@@ -41,21 +41,21 @@ def trees(quick):
             int(np.sum(np.any(pictures[accelerator] != brute, axis=-1))),
             0,
             0,
-            "the structure decides what is asked, never what is met",
+            "the structure decides which surfaces are tested, never the result",
         )
         for accelerator, name in ((Accelerator.KDTREE, "the kd-tree"), (Accelerator.BVH, "the BVH"))
     ]
     for accelerator, name in ((Accelerator.KDTREE, "kd-tree"), (Accelerator.BVH, "BVH")):
-        what = f"{name}: times as many rays a second as brute force ({rates[accelerator] / 1e6:.2f} million)"
+        what = f"{name}: rays per second relative to brute force ({rates[accelerator] / 1e6:.2f} million)"
         why = "the text's own kd-tree: four times, for such a scene of 600 spheres"
         figures.append(Figure.at_least(what, rates[accelerator] / rates[Accelerator.BRUTE_FORCE], 4.0, why))
     spheres = len(shot.instances) - 1
     asked = _asked(shot)
-    what = f"blocks of spheres that a camera ray asks for in the BVH, where brute force asks {spheres} spheres"
+    what = f"blocks of spheres tested per camera ray in the BVH; brute force tests {spheres} spheres"
     figures.append(Figure.at_most(what, asked["sphere_blocks"], spheres / 4, "a quarter of all, as in the text"))
     figures.append(
         Figure.at_most(
-            "nodes of the BVH that it visits on the way", asked["nodes"], spheres / 4, "a quarter of all, as in the text"
+            "nodes of the BVH visited per camera ray", asked["nodes"], spheres / 4, "a quarter of all, as in the text"
         )
     )
     size = {"width": 480, "height": 360, "region_width": 480, "region_height": 360}

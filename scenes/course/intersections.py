@@ -59,7 +59,7 @@ def shapes(quick):
         wrong = int(np.sum(met != hit))
         figures.append(
             Figure.near(
-                f"{name}: rays of {len(x)} that hit where the equation says miss, or the other way round",
+                f"{name}: rays of {len(x)} whose hit or miss contradicts the equation",
                 wrong,
                 0,
                 0,
@@ -98,8 +98,8 @@ def _shared_edge(count):
     origins = targets + 3.0 * away / np.linalg.norm(away) + 0.1 * edge
     with Scene.upload(tiny_scenes.scene([Instance()], [lambert()], meshes=(mesh,))) as scene:
         missed = int(np.isinf(scene.intersect(origins, targets - origins).t).sum())
-    what = f"triangle: rays of {len(origins)} through an edge that two share, which slip between them"
-    return Figure.near(what, missed, 0, 0, "both triangles take the same decision about their edge")
+    what = f"triangle: rays of {len(origins)} through a shared edge that miss both triangles"
+    return Figure.near(what, missed, 0, 0, "both triangles make the same decision about their edge")
 
 
 def _normal_view():
@@ -133,7 +133,7 @@ def rays(quick):
     basis = np.abs(matrix.T @ matrix - np.eye(3)).max()
     handed = float(np.dot(np.cross(matrix[:, 0], matrix[:, 1]), matrix[:, 2]))
     return (
-        Figure.at_most("largest distance at which a ray passes the eye", at_eye, 1e-6, "directions in single precision"),
+        Figure.at_most("largest distance of a ray from the eye", at_eye, 1e-6, "directions in single precision"),
         Figure.at_most("largest 1 - cosine to the direction of the formula", 1.0 - cosine.min(), 1e-12, "rounding of both"),
         Figure.near(
             "angle between the first and the last ray of a row, degrees",

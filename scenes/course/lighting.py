@@ -173,7 +173,7 @@ def _energy():
         for z in (1.0, 0.5, 0.1):
             samples = scene.bsdf_sample(0, (math.sqrt(1 - z * z), 0.0, z), u)
             most = max(most, float(np.mean(samples.weight[:, 0])))
-    return Figure.at_most("share of light that the layer reflects, at 0°, 60° and 84°: most", most, 1.0, "no light is made")
+    return Figure.at_most("largest share of light that the layer reflects, at 0°, 60° and 84°", most, 1.0, "no gain of energy")
 
 
 def minnaert(quick):

@@ -50,7 +50,7 @@ def antialiasing(quick):
             f"error of {int(cut.sum())} pixels on a straight edge, {samples} samples",
             errors[samples],
             float(np.sqrt(np.mean((share * (1 - share))[cut]) / samples)) * 1.1,
-            "what samples at random would leave, sqrt(p (1 - p)/N), and 10 % for 4 seeds",
+            "the error of random samples, sqrt(p (1 - p)/N), and 10 % for 4 seeds",
         )
         for samples in errors
     ]
@@ -58,7 +58,7 @@ def antialiasing(quick):
     slope = math.log(errors[256] / errors[4]) / math.log(64)
     figures.append(Figure.at_most(what, slope, -0.6, "random samples: -0.5; on an edge a low-discrepancy sequence: -0.75"))
     inside = np.abs(studio.render(shot, samples=16)[..., 0] - share)[~cut].max()
-    figures.append(Figure.at_most("error of pixels that no edge cuts", inside, SINGLE, SINGLE_WHY))
+    figures.append(Figure.at_most("error of pixels without an edge", inside, SINGLE, SINGLE_WHY))
     ball = studio.classic(
         [sphere(), plane(1, move(z=-1.0))], [lambert((0.8, 0.3, 0.2)), lambert(0.5)], [studio.lamp((3, -4, 5), 60.0)]
     )
@@ -91,7 +91,9 @@ def lens(quick):
     width, height = (160, 90) if quick else (480, 270)
     shot = studio.from_blender("showcase", width, height)
     return (
-        Figure.at_most("how far 1000 rays of a pixel miss each other in the plane in focus", scatter, 1e-6, "single precision"),
+        Figure.at_most(
+            "largest distance between 1000 rays of a pixel in the plane in focus", scatter, 1e-6, "single precision"
+        ),
         Figure(
             "radius of the circle at twice the distance in focus",
             widest,
@@ -127,17 +129,17 @@ def global_illumination(quick):
     direct = studio.classic([plane()], [lambert(0.6)], [studio.lamp()], max_bounces=0, camera=camera)
     difference = worst(studio.render(direct, integrator=Integrator.PATH), studio.render(direct))
     what = "Path Tracing without bounces and Classic, a point of a matt plane under a lamp: largest relative difference"
-    figures.append(Figure.at_most(what, difference, SINGLE, "one light, one formula"))
+    figures.append(Figure.at_most(what, difference, SINGLE, "the same formula for the same light"))
     size = 128 if quick else 256
     shot = studio.from_blender("cornell", size, size)
     classic = studio.render(shot, integrator=Integrator.CLASSIC, samples=16)
     path = studio.render(shot, integrator=Integrator.PATH, samples=4 * samples)
     share = classic[..., :3].mean() / path[..., :3].mean()
     what = "closed box: share of Path Tracing's light that Classic has"
-    why = "the lamp shines at the ceiling alone: nearly all else is lit by what comes back from there"
+    why = "the lamp shines at the ceiling: nearly all other light is reflected by the ceiling"
     figures.append(Figure(what, float(share), 0.0, 0.9, "below 0.9", why))
     return tuple(figures), (
-        Picture("classic", "Classic: what the lamp itself lights", classic),
+        Picture("classic", "Classic: direct light of the lamp", classic),
         Picture("path", "Path Tracing: the same room", path),
     )
 
@@ -176,8 +178,8 @@ def _lobes_at_the_ends():
     mirror = Material("rough", lobes=(Lobe(LobeKind.GLOSSY, color=(1, 1, 1), roughness=math.sqrt(0.001)),))
     void = Material("void", lobes=(Lobe(LobeKind.GLASS, color=(1, 1, 1), ior=1.0000001, roughness=0.0),))
     for name, material, why in (
-        ("α = 0.001", mirror, "a mirror but for a tenth of a degree"),
-        ("glass of IOR 1.0000001", void, "nothing bends and nothing is lost"),
+        ("α = 0.001", mirror, "a mirror with a spread of a tenth of a degree"),
+        ("glass of IOR 1.0000001", void, "no refraction and no loss"),
     ):
         camera = studio.parallel((0.0, 0.0, 4.0), width=1.2, pixels=16)
         shot = tiny_scenes.scene([sphere()], [material], world=1.0, camera=camera, samples=64, max_bounces=16)

@@ -60,7 +60,7 @@ def images(quick):
         picture = studio.render(shot)[..., :3]
         wrong = np.sum(np.any(picture[on] != texels[row[on], column[on]], axis=-1))
         what = f"a slanted square {name} perspective: pixels of {int(on.sum())} that do not show the texel of their point"
-        figures.append(Figure.near(what, int(wrong), 0, 0, "u and v at the hit itself: the perspective is right by itself"))
+        figures.append(Figure.near(what, int(wrong), 0, 0, "u and v are computed at the hit, so the perspective is correct"))
         shown.append(Picture(name, f"An 8 x 8 picture, {name} perspective", picture))
     return tuple(figures), tuple(shown)
 
@@ -88,7 +88,7 @@ def parameters(quick):
         for integrator in (Integrator.PATH, Integrator.CLASSIC):
             differ += int(np.sum(_shown(model, False, integrator) != _shown(model, True, integrator)))
         what = f"node group {model}: values of pictures that differ from the material's own settings, both integrators"
-        figures.append(Figure.near(what, differ, 0, 0, "one road from there on"))
+        figures.append(Figure.near(what, differ, 0, 0, "both use the same code from there on"))
     caption = "Phong's node group: pictures as Kd, as Ks and as the exponent"
     return figures, [Picture("group", caption, _painted())]
 
@@ -219,7 +219,7 @@ def _normal_map():
     nodes = (_UV, _picture_node(), Node(NodeKind.NORMAL_MAP, 2, inputs=(1.0, NodeRef(1))))
     error = _turned(nodes, 2, normal, [[color]])
     what = "normal map of one turned normal: largest relative deviation from Kd/π (l·n') lc"
-    return Figure.at_most(what, error, 1e-5, "a normal of single precision, made unit")
+    return Figure.at_most(what, error, 1e-5, "a normalised normal in single precision")
 
 
 def _bump():
@@ -248,10 +248,12 @@ def _displaced():
     with Scene.upload(tiny_scenes.scene([Instance()], [material], meshes=[mesh])) as scene:
         hits = scene.intersect(np.stack([x, 0.5 + 0 * x, 50 + 0 * x], axis=1), (0, 0, -1))
     error = np.abs(hits.position[:, 2] - 2 * (x - 0.5)).max()
-    yield Figure.at_most("displacement: largest deviation of what rays meet from (h - 1/2) 2", error, 1e-6, "single precision")
+    yield Figure.at_most("displacement: largest deviation of hits from (h - 1/2) 2", error, 1e-6, "single precision")
     slope = np.array([-2.0, 0.0, 1.0]) / math.sqrt(5)
     error = np.abs(hits.normal - slope).max()
-    yield Figure.at_most("and of its normal from that of the new slope", error, 1e-6, "single precision")
+    yield Figure.at_most(
+        "displacement: largest deviation of normals from those of the new slope", error, 1e-6, "single precision"
+    )
 
 
 def _hills(name):

@@ -97,9 +97,9 @@ def mirrors(quick):
         figures.append(Figure.near(what, value, 2 - 0.5**bounces, SINGLE * 2, "1 + 1/2 + 1/4 + ... up to the depth limit"))
     for threshold, value in ((0.2, 1.75), (0.25, 1.5)):
         got, traced = _hall(10, contribution_threshold=threshold)
-        why = "rays that can bring no more are not traced"
+        why = "rays whose contribution cannot matter are not traced"
         figures.append(Figure.near(f"the same, contribution threshold {threshold}", got, value, SINGLE * 2, why))
-    figures.append(Figure.near("rays traced for it", traced, 1, 0, "weights 1/2, and 1/4, which is not above the threshold"))
+    figures.append(Figure.near("rays traced", traced, 1, 0, "weights 1/2, and 1/4, which is not above the threshold"))
     angles = np.array((1.0, 0.9, 0.7, 0.5, 0.2, 0.05))
     got = [_mirrored(cosine) for cosine in angles]
     want = [float(reference.fresnel(np.float32(cosine), 1.5)) * np.array([0.5, 2.0, 0.75]) for cosine in angles]
@@ -130,7 +130,7 @@ def glass(quick):
         camera = tiny_scenes.pencil((0.3, 0.0, 3.0), (0.3, 0.0, 0.0))
         value = studio.render(classic([slab], [_GLASS], world=1.0, camera=camera, max_bounces=bounces))[0, 0, 0]
         what = f"a slab of glass before a white sky, depth {bounces}"
-        figures.append(Figure.near(what, value, series, SINGLE, "F + (1 - F)² (1 + F + F² + ...), F = 0.04; all in the end"))
+        figures.append(Figure.near(what, value, series, SINGLE, "F + (1 - F)² (1 + F + F² + ...), F = 0.04; the sum is 1"))
     figures.append(_snell())
     figures.append(_total())
     pixels = 160 if quick else 320
