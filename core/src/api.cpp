@@ -165,7 +165,7 @@ lancer_status lancer_scene_messages(lancer_scene scene, char *text, size_t size,
     const auto object = scene_of(scene);
     const std::lock_guard lock(object->mutex);
     if (object->state == SceneObject::State::Committing)
-      throw Error(Fault::State, "scene: its commit is still running; wait for it first");
+      throw Error(Fault::State, "scene: wait for its commit first");
     const std::string messages =
         object->state == SceneObject::State::Filling ? object->description.messages.text() : object->messages;
     if (needed)

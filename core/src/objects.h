@@ -64,7 +64,7 @@ public:
   const std::shared_ptr<const Scene> &committed() const {
     if (state != State::Committed)
       throw Error(Fault::State, state == State::Filling      ? "scene: it has not been committed yet"
-                                : state == State::Committing ? "scene: its commit is still running; wait for it first"
+                                : state == State::Committing ? "scene: wait for its commit first"
                                                              : "scene: its commit failed");
     return scene;
   }
