@@ -1,4 +1,4 @@
-"""Lancer: a render engine for Blender. Registers and unregisters, nothing else."""
+"""Lancer: a render engine for Blender. This file only registers and unregisters the rooms of the add-on."""
 
 bl_info = {
     "name": "Lancer",
@@ -9,14 +9,14 @@ bl_info = {
     "description": "Ray tracing with global illumination, and the classic recursive ray tracer",
     "category": "Render",
 }
-# Blender 4.2 and newer take bl_info away from an extension, or put another in its place.
+# Blender 4.2 and newer remove bl_info from an extension or replace it.
 VERSION = ".".join(map(str, bl_info["version"]))
 
 _registered = []
 
 
 def register():
-    """Gives Blender the engine, its settings and its panels; a second call does nothing."""
+    """Register the engine, its settings and its panels; a second call has no effect. Raise RuntimeError without numpy."""
     if _registered:
         return
     import atexit
@@ -39,18 +39,18 @@ def register():
 
     modules = (properties, preferences, main_thread, results, render_engine, measuring)
     modules += (measure_features, measure_quality, check_scene, course_groups, presets)
-    # A running render is ended first, while all of the add-on is there.
+    # render_job unregisters first: it ends a running render while the rest of the add-on is still registered.
     modules += (ui, bug_report, manual, viewport, preview, render_job)
     add_all(modules, lambda module: module.register(), lambda module: module.unregister())
     _registered.extend(modules)
-    # Blender as a Python module hangs (4.5) or crashes (4.2) at exit while an engine class is registered; the program itself
-    # disables its add-ons at exit, and its classes are gone by the time atexit calls.
+    # Blender as a Python module hangs (4.5) or crashes (4.2) at exit while an engine class is registered. The program itself
+    # disables add-ons at exit, before atexit functions run.
     if not bpy.app.binary_path:
         atexit.register(unregister)
 
 
 def unregister():
-    """Takes everything away again; without register() before it, it does nothing."""
+    """Undo register(); without a preceding register() it has no effect."""
     import atexit
 
     atexit.unregister(unregister)

@@ -1,4 +1,4 @@
-"""F12: from the key to the picture in Blender's result. Scripts find the results of the last render here."""
+"""F12 renders. Scripts find the results of the last render here."""
 
 from .results import last_costs, last_messages, last_missing, last_statistics
 

@@ -1,4 +1,4 @@
-"""Render passes: one list for registering and for filling."""
+"""Render passes: one list for registration and for filling."""
 
 from typing import NamedTuple
 
@@ -10,13 +10,13 @@ from ..denoise import view_layer as denoise
 
 
 class RenderPass(NamedTuple):
-    name: str  # Blender's name: compositors and files look for it
+    name: str  # Blender's name, by which compositors and files refer to the pass
     channels: str
     kind: str  # VALUE, VECTOR or COLOR
     source: Pass
 
 
-# A view layer's use_pass_*, the pass's name from Blender 5 on and before, its channels and their kind.
+# Name of the view layer's switch use_pass_*, name of the pass from Blender 5 on and before, channels, kind, source.
 _TABLE = (
     ("z", "Depth", "Depth", "Z", "VALUE", Pass.DEPTH),
     ("mist", "Mist", "Mist", "Z", "VALUE", Pass.MIST),
@@ -42,14 +42,14 @@ _NAME = 1 if bpy.app.version >= (5, 0) else 2
 
 
 def render_passes(scene, view_layer):
-    """The passes that a view layer asks for."""
+    """Yield the passes that a view layer requests."""
     yield RenderPass("Combined", "RGBA", "COLOR", Pass.COMBINED)
     for row in _TABLE:
         if getattr(view_layer, "use_pass_" + row[0]):
             yield RenderPass(row[_NAME], *row[3:])
     if denoise.wanted(scene, view_layer):
         yield RenderPass("Noisy Image", "RGBA", "COLOR", Pass.COMBINED)
-    # The switch is that of Cycles, an add-on that may be off.
+    # The switch belongs to Cycles, an add-on that may be disabled.
     denoising = getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False)
     if denoising:
         yield RenderPass("Denoising Normal", "XYZ", "VECTOR", Pass.DENOISING_NORMAL)
@@ -67,7 +67,7 @@ def register_passes(engine, scene, view_layer):
 
 
 def fill(layer, read, wanted):
-    """Copies the passes of a result's layer; read(Pass) gives (height, width, channels) float32."""
+    """Fill the passes of a result's layer; read(Pass) returns (height, width, channels) float32."""
     sources = {item.name: item.source for item in wanted}
     for target in layer.passes:
         source = sources.get(target.name)
@@ -76,13 +76,14 @@ def fill(layer, read, wanted):
 
 
 def replace_combined(layer, image):
-    """Puts another picture, (height, width, 4) float32, in the place of Combined, of both eyes in stereoscopy."""
+    """Replace Combined, of all views with stereoscopy, by another image, (height, width, 4) float32."""
     for target in layer.passes:
         if target.name == "Combined":
             _upload(target, image)
 
 
 def _upload(target, image):
-    # foreach_set of older Blenders compares the length with the number of pixels, and then copies the whole buffer.
+    # Before 4.0 foreach_set compares the length with the number of pixels and then copies the whole buffer: pass one row per
+    # pixel.
     rows = image.reshape(-1, image.shape[2])
     target.rect.foreach_set(rows.ravel() if bpy.app.version >= (4, 0) else rows)

@@ -1,15 +1,15 @@
-"""One picture, whose view layers Blender has rendered one after the other: its messages, and the time that each may take."""
+"""One picture, whose view layers Blender renders one after the other: its messages and each layer's time limit."""
 
 import time
 
 from ..messages.messages import Messages
 
-# Seconds of a layer for which nothing is left: 0 would be no limit.
+# Least time limit of a layer in seconds; 0 would mean no limit.
 _LEAST = 1e-3
 
 
 class Picture:
-    """key: whatever tells it from another picture; layers: the names of those that are to be rendered."""
+    """key: identifies the picture; layers: the names of the view layers to render."""
 
     def __init__(self, key, layers):
         self.key = key
@@ -19,7 +19,7 @@ class Picture:
         self._pressed = self.started = time.monotonic()
 
     def has(self, key, layer):
-        """Whether this layer is one that is still to come."""
+        """Whether the picture has this key and the layer has not begun yet."""
         return key == self.key and layer not in self._begun
 
     def begin(self, layer):
@@ -27,7 +27,7 @@ class Picture:
         self.started = time.monotonic()
 
     def limit(self, seconds):
-        """Of the time that the whole picture may take, an even share for the layer that has begun; 0 is no limit."""
+        """Return the current layer's time limit, an even share of the rest of the picture's; 0 is no limit."""
         if seconds == 0.0:
             return 0.0
         left = seconds - (self.started - self._pressed)

@@ -1,6 +1,6 @@
-"""Small pictures of a material, a world or a lamp, for Blender's preview panels and icons.
+"""Previews of materials, worlds and lamps for Blender's preview panels and icons.
 
-Blender renders them of scenes of its own, in threads of its own, beside all else that the engine does: nothing is told of them.
+Blender renders them from temporary scenes in threads of its own, in parallel with other renders: they report no messages.
 """
 
 import contextlib
@@ -20,7 +20,7 @@ from . import passes
 
 _SAMPLES = 64
 _STEP = 0.02
-_PATIENCE = 0.02  # seconds between two looks whether all are over
+_PATIENCE = 0.02  # seconds between checks whether all previews have ended
 _WANTED = (passes.RenderPass("Combined", "RGBA", "COLOR", Pass.COMBINED),)
 
 _ending = threading.Event()
@@ -28,7 +28,7 @@ _running = set()
 
 
 def render(engine, depsgraph):
-    """In the place of engine.render(): shows what the depsgraph has, ever finer."""
+    """Render a preview's depsgraph progressively, instead of engine.render()."""
     with _counted():
         try:
             _render(engine, depsgraph, lambda: _ending.is_set() or engine.test_break())
@@ -75,7 +75,7 @@ def register():
 
 
 def unregister():
-    """Waits for those that are being rendered: they use the engine's class."""
+    """End running previews, which use the engine's class, and wait for them."""
     _ending.set()
     while _running:
         main_thread.serve()

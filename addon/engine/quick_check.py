@@ -1,4 +1,4 @@
-"""The checks that cost next to nothing, which every render makes by itself."""
+"""The quick checks that every render runs."""
 
 import logging
 
@@ -9,7 +9,7 @@ from ..messages.messages import Messages
 
 
 def quick_check(scene, snapshot, poll):
-    """What F12 tells by itself, as Messages."""
+    """Return the findings of the quick checks as Messages; raise Cancelled by poll."""
     if not scene.lancer.use_check:
         return Messages()
 
@@ -25,6 +25,6 @@ def quick_check(scene, snapshot, poll):
     except Cancelled:
         raise
     except Exception as error:
-        # A fault of the check must not cost the picture.
+        # An error in a check must not end the render.
         logging.getLogger(__name__).exception("check failed")
         return Messages([f"scene '{scene.name}': the check before the render failed ({type(error).__name__}: {error})"])

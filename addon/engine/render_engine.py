@@ -1,4 +1,4 @@
-"""The engine that Blender calls: exports, renders in waves, shows the picture, and reports its error."""
+"""The RenderEngine that Blender calls: exports, renders range by range, shows the picture, reports its error."""
 
 import contextlib
 import dataclasses
@@ -28,22 +28,22 @@ from .picture import Picture
 from .quick_check import quick_check
 from .results import keep_costs, last_costs, last_messages, last_missing, last_statistics
 
-# What is not read again of scenes that are animated or have Persistent Data.
+# Caches of scenes that are animated or have Persistent Data.
 _kept = ByScene()
-# What the library holds, by kind: names of last_statistics.
+# Entries of last_statistics with the library's memory.
 MEMORY = ("geometry_bytes", "accelerator_bytes", "texture_bytes", "film_bytes")
 
 _STEP = 0.05
-# As long as there is nothing to see.
+# Seconds between polls until the first picture is shown.
 _FIRST_STEP = 0.01
 _TELL_EVERY = 0.25
-# Showing may take this share of the time: Blender copies and colour-manages the whole picture each time.
+# Share of the time for showing: Blender copies and colour-manages the whole picture each time.
 _SHOW_SHARE = 0.1
 _SHOW_EVERY = 0.3
-# And asking for the error this.
+# Share of the time for reading the error.
 _ERROR_SHARE = 0.03
 _MAX_REPORTS = 30
-# After the time that is left: what it is that is expected to end the render.
+# Text after the remaining time: the limit that is expected to end the render.
 _REMAINING = {SAMPLES: "", TARGET: " to the target error", TIME: " of the time limit"}
 
 
@@ -55,7 +55,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
 
-    # Blender runs __init__ twice and __del__ at odd times, so the class has neither; what lives longer than a call starts here.
+    # Blender calls __init__ twice and __del__ at odd times, so the class has neither: initial values are class attributes.
     _snapshot = None
     _picture = None
     _uses = ()
@@ -86,13 +86,13 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
                 layer, wanted = view_layer.name, tuple(passes.render_passes(scene, view_layer))
                 denoising = denoise.ready(scene, view_layer)
-                # The snapshot has all of it, and what Blender evaluated may be larger than the render. From here on there is no
-                # depsgraph, unless Blender wants to keep it.
+                # The snapshot is complete, and Blender's evaluated data can be larger than the render: free it. The depsgraph
+                # is invalid from here on.
                 self.free_blender_memory()
                 self._guarded(scene, self._render, scene, layer, wanted, denoising)
             self._snapshot = None
             if self._is_over():
-                # The layers that were to follow do not come any more.
+                # The remaining layers are not rendered.
                 self._picture = None
             redraw.properties_after_render()
 
@@ -104,7 +104,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
 
     def _view(self):
         if self._viewport is None:
-            # It goes with the engine, which Blender frees when the view is over.
+            # The viewport ends with the engine, which Blender frees with the view.
             self._viewport = Viewport(self)
         return self._viewport
 
@@ -114,18 +114,18 @@ class LancerRenderEngine(bpy.types.RenderEngine):
             yield
             if render_job.is_ending() and not self._gave_up:
                 self._gave_up = True
-                # An error, as Blender would go on with the next frame.
-                self._fail("the add-on was switched off while it rendered")
+                # Without an error Blender would continue with the next frame.
+                self._fail("the add-on was disabled during the render")
 
     def _is_over(self):
-        """Whether the user has enough, or the add-on goes away."""
+        """Whether the user has cancelled or the add-on is being disabled."""
         return render_job.is_ending() or self.test_break()
 
     def _begin(self, depsgraph):
-        """Starts the account anew with each picture.
+        """Reset messages and statistics at the start of a picture.
 
-        One engine serves all view layers of a picture, one after the other, whose messages add up; with Persistent Data it
-        serves one picture after the other too, which tell themselves by another frame, or by a layer that is there again.
+        One engine renders all view layers of a picture, whose messages add up. With Persistent Data it also renders several
+        pictures: a new one begins with another frame, or with a layer that has already been rendered.
         """
         scene, layer = depsgraph.scene, depsgraph.view_layer.name
         key = (scene.name, scene.frame_current_final)
@@ -141,7 +141,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         self._picture.begin(layer)
 
     def _guarded(self, scene, work, *arguments):
-        """Whatever goes wrong becomes an error that Blender shows, and that ends a headless render with failure."""
+        """Run work(*arguments); report any exception as an error, which ends a headless render with exit code 1."""
         try:
             work(*arguments)
             return
@@ -151,7 +151,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         except LancerError as error:
             text = str(error)
         except KeyboardInterrupt:
-            # Python's own Ctrl-C, in Blender as a module: what runs the render should end too.
+            # Ctrl-C in Blender as a Python module.
             text = "interrupted"
         except MemoryError:
             text = "not enough memory for this scene"
@@ -168,12 +168,12 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         self.report({"ERROR"}, f"Lancer: {text}")
 
     def _export(self, depsgraph):
-        # What a failed or cancelled export left behind must not be rendered by the next call.
+        # Drop the snapshot of an earlier failed or cancelled render.
         self._snapshot = None
         self.update_stats("", "Exporting")
         scene, view_layer = depsgraph.scene, depsgraph.view_layer_eval
         if denoise.wanted(scene, view_layer) and denoise.missing():
-            # Told before the time is spent.
+            # Report it before the render takes its time.
             self._tell(scene, Messages([denoise.missing()]))
         wanted = passes.render_passes(scene, view_layer)
         options = ExportOptions(self.camera_override, tuple(item.source for item in wanted), _kept.get(scene))
@@ -187,7 +187,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
     def _render(self, scene, layer, wanted, denoising):
         self.update_stats("", "Building the scene")
         with lowered(lambda: Session.upload(self._snapshot, poll=self._is_over, release=True)) as session:
-            # The library holds its own copy from here on.
+            # The library has its own copy.
             self._snapshot = None
             self._tell(scene, Messages.of_library(session.messages()))
             camera = session.camera
@@ -213,18 +213,18 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                     passes.replace_combined(result.layers[0], denoised.image)
                 self._account(scene, layer, session, schedule, denoised)
             finally:
-                # Keep the picture as far as it is, after Esc too.
+                # Keep the unfinished picture, after Esc too.
                 self.end_result(result)
 
     def _denoise(self, scene, session):
-        """Denoised, or None: then the picture that is there already stays."""
+        """Return the Denoised; None if denoising failed or was cancelled, so that the noisy picture stays."""
         denoised, failure = denoise.apply(session, self._is_over, lambda text: self.update_stats("", text))
         if failure:
             self._tell(scene, Messages([failure]))
         return denoised
 
     def _run(self, schedule, show):
-        """Renders range by range, shows what there is now and then, and ends for Esc."""
+        """Render range by range and show the picture at intervals, until the schedule ends or the user cancels."""
         picture, error = TimeShare(_SHOW_SHARE, _SHOW_EVERY), TimeShare(_ERROR_SHARE, _TELL_EVERY)
         told = time.monotonic()
         while schedule.start():
@@ -233,7 +233,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
                 progress = schedule.wait(_STEP if picture.begun else _FIRST_STEP)
                 if not progress.finished and self._is_over():
                     schedule.cancel()
-                # At first whatever there is, tiles of the first sample too; and that sample once it is whole.
+                # Show the first picture as soon as any tile is done, and again when the first sample is complete.
                 elif progress.samples > 0 and (picture.due or first and progress.finished) and not schedule.over:
                     picture.spend(show)
                     schedule.reserve = picture.cost + error.cost
@@ -253,7 +253,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         rate = progress.rays / progress.seconds / 1e6 if progress.seconds > 0.0 else 0.0
         seconds, reason = schedule.remaining()
         samples = progress.samples / schedule.pixels
-        # Small windows cut off the end.
+        # Small windows cut off the end of the text: the most important part comes first.
         parts = [f"Remaining {_clock(seconds)}{_REMAINING[reason]}"]
         if schedule.error is not None and schedule.error.known:
             parts.append(f"Error {render_report.interval(schedule.error)}")
@@ -261,7 +261,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         self.update_stats("", " | ".join(parts))
 
     def _tell(self, scene, messages):
-        """Reports what was left out or replaced, each thing once, and keeps all of it for the panel."""
+        """Report new messages as warnings, except hints, and keep all messages for the panel."""
         room = max(0, _MAX_REPORTS - len(self._picture.messages))
         new = [message for message in self._picture.messages.merge(messages).told() if message.severity > Severity.HINT]
         last_messages[scene] = self._picture.messages
@@ -285,7 +285,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         numbers["uses"] = self._uses
         if scene in _kept:
             numbers.update(_kept[scene].counts, kept_bytes=_kept[scene].bytes)
-        # Only what get_result gives reaches the file.
+        # Only metadata of the result from get_result reaches the file.
         stamped = self.get_result()
         several = len(stamped.layers) > 1
         lines = numbers["accuracy"] = render_report.lines(numbers, session.settings, layer if several else "")
@@ -296,7 +296,7 @@ class LancerRenderEngine(bpy.types.RenderEngine):
         for name, value in render_report.fields(numbers, session.settings):
             stamped.stamp_data_add_field(f"lancer.{layer}.{name}", value)
         self.update_stats("", lines[0])
-        # Headless, what is reported goes to the terminal; in a window the panel has it.
+        # In background mode reports go to the terminal; in a window the panel shows these lines.
         if bpy.app.background:
             for line in lines:
                 self.report({"INFO"}, f"Lancer: {line}")
@@ -312,13 +312,13 @@ def _clock(seconds):
 
 @persistent
 def _forget(*_):
-    """Another file's scenes may have the same names."""
+    """Drop all caches before another file is loaded."""
     _kept.clear()
 
 
 @persistent
 def _forget_kept(scene, *_):
-    """After the last frame, or Esc."""
+    """Drop the scene's cache after the last frame, or after Esc."""
     if not scene.render.use_persistent_data:
         _kept.pop(scene, None)
 

@@ -1,8 +1,8 @@
-"""The export of what F12 would render, without a render.
+"""Export of the scene as F12 would render it, without rendering.
 
-Only a render's depsgraph has what is hidden in viewports and not what is hidden in renders, and modifiers and particles in
-their numbers for renders. Blender gives it to engines that render and to nobody else. So it renders a copy of the scene here,
-of which the engine takes the export and no picture. The artist's scene, its last picture and its handlers are not part of that.
+Only a render's depsgraph has the objects visible in renders, and modifiers and particles with their render settings, and
+Blender passes it only to a rendering engine. So start a render of a copy of the scene, during which the engine exports and
+renders nothing. The artist's scene, its last picture and its handlers are not involved.
 """
 
 import contextlib
@@ -22,11 +22,11 @@ _NAME = "Lancer looks at a scene"
 _RENDER = ("init", "pre", "post", "write", "stats", "complete", "cancel")
 _HANDLERS = (*(f"render_{name}" for name in _RENDER), "depsgraph_update_pre", "depsgraph_update_post")
 
-_asked = None  # the Export that is wanted of the render that Blender is about to begin
+_asked = None  # the Export to fill during the render that Blender is about to begin
 
 
 class Export:
-    """snapshot, messages and the seconds that the export took, without Blender's own evaluation."""
+    """snapshot, messages, and the seconds of the export without Blender's evaluation."""
 
     def __init__(self):
         self.snapshot = self.messages = self.error = None
@@ -34,12 +34,12 @@ class Export:
 
 
 def is_wanted():
-    """For the engine: whether Blender's call is for an export alone."""
+    """Whether the engine should only export and not render."""
     return _asked is not None
 
 
 def take(engine, depsgraph):
-    """In the place of the engine's own work: what is wanted of this depsgraph."""
+    """Fill the requested Export from this depsgraph, instead of rendering."""
     started = time.monotonic()
     wanted = tuple(item.source for item in render_passes(depsgraph.scene, depsgraph.view_layer_eval))
     try:
@@ -50,7 +50,7 @@ def take(engine, depsgraph):
 
 
 def export(context):
-    """The Export of the context's scene and view layer. Raises LancerError."""
+    """Return the Export of the context's scene and view layer; raise LancerError if the scene cannot be rendered."""
     global _asked
     scene, layer = context.scene, context.view_layer
     if scene.camera is None:
@@ -72,7 +72,7 @@ def export(context):
     if asked.snapshot is None:
         raise LancerError(f"Blender did not evaluate view layer '{layer.name}' for a render")
     asked.messages = asked.messages.replaced(f"'{name}'", f"'{scene.name}'")
-    # Freestyle, which would draw its lines, is off in the copy.
+    # Freestyle is off in the copy: repeat the check of the view layer with the original scene.
     missed, known = Messages(), {message.text for message in asked.messages.told()}
     check_view_layer(scene, layer, missed)
     for message in missed.told():
@@ -83,7 +83,7 @@ def export(context):
 
 @contextlib.contextmanager
 def _prepared(scene, layer):
-    """A copy of the scene by which one view layer alone is rendered and nothing but that is done."""
+    """Yield a copy of the scene that renders only one view layer, without compositing, sequencer and Freestyle."""
     try:
         with copied(scene, _NAME) as copy:
             for other in copy.view_layers:
@@ -93,13 +93,13 @@ def _prepared(scene, layer):
             render.use_persistent_data = render.use_single_layer = False
             yield copy
     finally:
-        # Blender now evaluates all that both have had, which is no change of the artist's.
+        # Evaluate the shared data now, so that it does not count as a change by the artist later.
         layer.update()
 
 
 @contextlib.contextmanager
 def _without_handlers():
-    """What other add-ons do when a render begins or ends is not called: some tell of its end, some switch the machine off."""
+    """Remove all render handlers temporarily: other add-ons' handlers may announce the end of a render or shut down."""
     kept = {name: list(getattr(bpy.app.handlers, name)) for name in _HANDLERS}
     for name in kept:
         getattr(bpy.app.handlers, name).clear()

@@ -1,7 +1,7 @@
-"""Whether Blender renders with Lancer now, and how that is ended before the add-on is taken away.
+"""State of Blender's render job with Lancer, and its end before the add-on is unregistered.
 
-In a window Blender renders in a thread of its own, which uses the engine's class until the whole job is over: all view layers,
-all frames. Handlers tell when that is.
+In a window Blender renders in a thread of its own, which uses the engine's class until the whole job has ended: all view
+layers, all frames. Handlers signal the end.
 """
 
 import contextlib
@@ -13,20 +13,20 @@ from bpy.app.handlers import persistent
 
 from ..host import main_thread
 
-_PATIENCE = 0.05  # seconds between two looks
-# Seconds that Blender has for its own work after the engine's. Its end is not told where another add-on removes our handlers.
+_PATIENCE = 0.05  # seconds between checks
+# Longest seconds of Blender's own work after the engine's; without the limit a removed handler would block for ever.
 _LONGEST = 10.0
 
 _over = threading.Event()
 _over.set()
 _enough = threading.Event()
-_thread = None  # that renders
+_thread = None  # the render thread
 _working = False
 
 
 @contextlib.contextmanager
 def working():
-    """For what the engine does in a render."""
+    """Context of the engine's work in a render."""
     global _working
     _begin()
     _working = True
@@ -41,12 +41,12 @@ def is_running():
 
 
 def is_ending():
-    """Whether the add-on goes away: the engine has to come to an end."""
+    """Whether the add-on is being unregistered, so that the engine must end."""
     return _enough.is_set()
 
 
 def _end():
-    """Ends the render that goes on in another thread, and waits for it."""
+    """End a render in another thread and wait for it."""
     _enough.set()
     if _thread is threading.current_thread():
         return
@@ -63,7 +63,7 @@ def _begin():
 
 @persistent
 def _begun(scene, *_):
-    # Blender's own work before the engine's first takes time, too.
+    # The job begins before Blender first calls the engine.
     if scene.render.engine == main_thread.ENGINE:
         _begin()
 
@@ -83,7 +83,7 @@ def register():
 
 
 def unregister():
-    """Comes first, while all of the add-on is there for the render that is ended."""
+    """End a running render; call this before other modules unregister."""
     _end()
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)

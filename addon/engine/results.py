@@ -1,4 +1,4 @@
-"""Results of the last render of each scene, for the panels and for scripts."""
+"""Results of the last render of each scene, for panels and scripts."""
 
 import dataclasses
 
@@ -7,18 +7,18 @@ from bpy.app.handlers import persistent
 
 from ..host.by_scene import ByScene
 
-# Numbers of the last view layer; "layers" has those of all view layers, by their names.
+# Statistics of the last view layer; "layers" has those of all view layers by name.
 last_statistics = ByScene()
 # Messages of all view layers.
 last_messages = ByScene()
-# Features of Cycles that the render could not show: {key of Messages.add: count}.
+# Features that Lancer does not support, as {key of Messages.add: count}.
 last_missing = ByScene()
-# A costs.Costs of the last measurement.
+# The costs.Costs of the last measurement.
 last_costs = ByScene()
 
 
 def keep_costs(scene, costs):
-    """Keeps the measured costs of a scene's features, among its statistics as well."""
+    """Store the measured costs of a scene's features, in its statistics too."""
     last_costs[scene] = costs
     if scene in last_statistics:
         last_statistics[scene]["feature_costs"] = {cost.name: dataclasses.asdict(cost) for cost in costs.measured}
@@ -26,7 +26,7 @@ def keep_costs(scene, costs):
 
 @persistent
 def _forget(*_):
-    """Another file's scenes may have the same names."""
+    """Drop all results before another file is loaded."""
     for results in (last_statistics, last_messages, last_missing, last_costs):
         results.clear()
 

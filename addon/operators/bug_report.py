@@ -1,4 +1,4 @@
-"""Save Bug Report: what a maintainer needs to see a fault of a render, in one .zip."""
+"""Save Bug Report: the data for reproducing a faulty render, in one .zip."""
 
 import os
 import platform
@@ -15,11 +15,11 @@ from ..host.registering import add_all
 from ..messages.messages import Messages
 from ..messages.severity import Severity
 
-_HOLDS = "It holds the geometry and the pictures of the scene"
+_HOLDS = "It contains the geometry and the images of the scene"
 
 
 def _settings(owner):
-    """Numbers, switches and choices that are set; no text, which may be a path."""
+    """Return the numbers, switches and enums that are set; no strings, which may be paths."""
     kinds = {"BOOLEAN", "INT", "FLOAT", "ENUM"}
     names = [field.identifier for field in owner.bl_rna.properties if field.type in kinds]
     values = {name: getattr(owner, name) for name in names if owner.is_property_set(name)}
@@ -35,7 +35,7 @@ def _processor():
 
 
 def versions():
-    """Of all that takes part in a render."""
+    """Return the versions of Lancer, Blender and the system."""
     import numpy
 
     from .. import VERSION
@@ -61,7 +61,7 @@ def _plain(messages):
 
 
 def facts(scene, exported):
-    """What is known, as json holds it. exported: the Messages of the export for this report."""
+    """Return the report's facts as a dict for JSON. exported: the Messages of the export for this report."""
     told = engine.last_messages.get(scene.name)
     return {
         "versions": versions(),
@@ -78,7 +78,7 @@ def facts(scene, exported):
 
 
 def _exported(context):
-    """(snapshot or None, Messages): a scene that cannot be exported is a fault worth a report, too."""
+    """Return (snapshot, Messages); if the export fails, (None, Messages with the error), which is worth a report too."""
     try:
         export = render_export.export(context)
         return export.snapshot, export.messages
@@ -93,7 +93,7 @@ def _size(size):
 
 
 class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
-    """Save the scene as Lancer sees it, its settings, messages and figures in one file, by which a fault can be found"""
+    """Save the exported scene, its settings, messages and statistics in one file, from which a fault can be reproduced"""
 
     bl_idname = "lancer.save_bug_report"
     bl_label = "Save Bug Report"
@@ -101,8 +101,8 @@ class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
 
     filter_glob: bpy.props.StringProperty(default="*.zip", options={"HIDDEN"})
     use_scene: bpy.props.BoolProperty(
-        name="Geometry and Pictures",
-        description="Without them the report has settings, versions, messages and figures only, and cannot be rendered",
+        name="Geometry and Images",
+        description="Without them the report has only settings, versions, messages and statistics, and cannot be rendered",
         default=True,
     )
 
@@ -124,12 +124,12 @@ class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
         column.prop(self, "use_scene")
         if self.use_scene:
             # The side of a file selector is narrow.
-            for line in ("It holds the geometry and", "the pictures of the scene"):
+            for line in ("It contains the geometry", "and images of the scene"):
                 column.label(text=line)
             numbers = engine.last_statistics.get(context.scene.name)
             if numbers is not None:
                 size = _size(numbers["geometry_bytes"] + numbers["texture_bytes"])
-                column.label(text=f"About {size}, before packing")
+                column.label(text=f"About {size} uncompressed")
 
     def execute(self, context):
         manager, scene = context.window_manager, context.scene
@@ -147,7 +147,7 @@ class LANCER_OT_save_bug_report(bpy.types.Operator, ExportHelper):
         if self.use_scene and snapshot is None:
             self.report({"WARNING"}, f"Lancer: saved a report of {size} without the scene: {messages.lines()[0]}")
         else:
-            told = f". {_HOLDS}: do not publish it if they are secret" if self.use_scene else ", without the scene"
+            told = f". {_HOLDS}: do not publish it if these are secret" if self.use_scene else ", without the scene"
             self.report({"INFO"}, f"Lancer: saved a report of {size}{told}")
         return {"FINISHED"}
 
@@ -157,7 +157,7 @@ class LANCER_RENDER_PT_bug_report(bpy.types.Panel):
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "render"
-    # Below what the last render has told.
+    # Below the messages of the last render.
     bl_parent_id = "LANCER_RENDER_PT_messages"
     bl_options = {"HIDE_HEADER"}
 

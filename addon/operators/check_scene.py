@@ -1,4 +1,4 @@
-"""Check Scene: looks for faults that will hurt the picture, and selects the object of a finding."""
+"""Check Scene finds faults that will hurt the picture; Select Object selects the object of a finding."""
 
 import bpy
 from bpy.app.handlers import persistent
@@ -10,7 +10,7 @@ from ..host.by_scene import ByScene
 from ..host.registering import add_all
 from . import measuring
 
-# Of the last Check Scene of each scene: findings, and what the export could not take as it is.
+# Findings and messages of the export of each scene's last Check Scene.
 last_findings = ByScene()
 last_messages = ByScene()
 
@@ -18,7 +18,7 @@ last_messages = ByScene()
 class LANCER_OT_check_scene(measuring.Measuring, bpy.types.Operator):
     bl_idname = "lancer.check_scene"
     bl_label = "Check Scene"
-    bl_description = "Look for what will hurt the picture or waste time, in what F12 would render. Esc stops it"
+    bl_description = "Find faults of the scene that will hurt the picture or waste time. Esc stops the check"
 
     def work(self):
         return _check
@@ -29,7 +29,7 @@ class LANCER_OT_check_scene(measuring.Measuring, bpy.types.Operator):
         for line in lines(findings):
             self.report({"WARNING"}, f"Lancer: {line}")
         if not findings:
-            self.report({"INFO"}, "Lancer: nothing found that would hurt")
+            self.report({"INFO"}, "Lancer: no faults found")
 
 
 def _check(snapshot, poll, tell):
@@ -37,7 +37,7 @@ def _check(snapshot, poll, tell):
         if poll():
             raise Cancelled
         if share is not None:
-            tell(share, "Looking for what will hurt")
+            tell(share, "Looking for faults")
 
     return check_snapshot(snapshot, poll=obey)
 
@@ -59,11 +59,11 @@ class LANCER_OT_select_object(bpy.types.Operator):
             return {"CANCELLED"}
         active = objects.active
         if active is not None and active != thing and active.mode != "OBJECT":
-            # Of two objects the one would stay in Edit Mode, out of sight, when the other becomes the active one.
+            # Else the old active object would stay in Edit Mode, unnoticed.
             bpy.ops.object.mode_set(mode="OBJECT")
         for other in objects:
             other.select_set(False)
-        # What is hidden stays unselected, but as the active one it shows its properties.
+        # A hidden object cannot be selected, but as the active object it shows its properties.
         thing.select_set(True)
         objects.active = thing
         return {"FINISHED"}
@@ -74,7 +74,7 @@ _OPERATORS = (LANCER_OT_check_scene, LANCER_OT_select_object)
 
 @persistent
 def _forget(*_):
-    """Another file's scenes may have the same names."""
+    """Drop all findings before another file is loaded."""
     last_findings.clear()
     last_messages.clear()
 

@@ -1,6 +1,6 @@
 """The course's models in the Shader Editor: Add > Lancer adds a node group with a socket for each parameter of a model.
 
-Inside, ordinary nodes show Cycles and EEVEE something like it; Lancer renders the model itself (export/course_models.py).
+The nodes inside approximate the model in Cycles and EEVEE; Lancer renders the model itself (export/course_models.py).
 """
 
 import bpy
@@ -14,14 +14,14 @@ _SETTINGS = LancerMaterialSettings.__annotations__
 # Models by their names, descriptions and numbers in the material's own settings.
 _ITEMS = [item for item in _SETTINGS["model"].keywords["items"] if item[0] in MODELS]
 _NAMES = {item[0]: item[1] for item in _ITEMS}
-_OLD = bpy.app.version < (4, 0)  # sockets of groups were made otherwise
+_OLD = bpy.app.version < (4, 0)  # without tree.interface
 
 
 # ---- the groups' insides -------------------------------------------------------------------------------------------------
 
 
 class _Inside:
-    """The nodes of a group under construction; each stands to the right of those that feed it."""
+    """The nodes of a group under construction; each is placed to the right of its sources."""
 
     def __init__(self, tree, sockets):
         self.tree = tree
@@ -30,7 +30,7 @@ class _Inside:
         self._depths = {self.start.name: 0}
 
     def node(self, name, kind, inputs, output=0, **settings):
-        """An output of a new node. inputs: constants and outputs of other nodes, by the names or numbers of sockets."""
+        """Add a node and return one of its outputs. inputs: constants or outputs of other nodes, by socket name or number."""
         node = self.tree.nodes.new("ShaderNode" + kind)
         node.name = node.label = name
         for setting, value in settings.items():
@@ -61,7 +61,7 @@ def _math(inside, name, operation, a, b):
 
 
 def _body(inside, color):
-    """The matt body."""
+    """Add the diffuse base."""
     return inside.node("Body", "BsdfDiffuse", {"Color": color, "Normal": inside.sockets[NORMAL]})
 
 
@@ -71,28 +71,28 @@ def _highlight(inside, color, roughness):
 
 
 def _show_kd_ks(inside, kd, ks, roughness, ior):
-    """Blender's roughness is the square root of alpha; Fresnel's share of a clear layer goes with the view."""
+    """Blender's roughness is the square root of alpha; the Fresnel term of the clear layer depends on the view direction."""
     layer = _highlight(inside, ks, _math(inside, "Square Root of Alpha", "POWER", roughness, 0.5))
     share = inside.node("Fresnel", "Fresnel", {"IOR": ior, "Normal": inside.sockets[NORMAL]})
-    # A Mix Shader with one input is that share of it.
+    # A Mix Shader with one input scales it by the factor.
     coat = inside.node("Share", "MixShader", {0: share, 2: layer})
     return inside.node("Sum", "AddShader", {0: _body(inside, kd), 1: coat})
 
 
 def _show_power(inside, kd, ks, exponent):
-    """Beckmann's lobe that is as wide as cos^n about the normal: alpha^2 = 2 / (n + 2), of which roughness is the root."""
+    """A Beckmann lobe as wide as cos^n about the normal: alpha^2 = 2 / (n + 2), roughness = sqrt(alpha)."""
     square = _math(inside, "Square of Alpha", "DIVIDE", 2.0, _math(inside, "Exponent + 2", "ADD", exponent, 2.0))
     highlight = _highlight(inside, ks, _math(inside, "Roughness", "POWER", square, 0.25))
     return inside.node("Sum", "AddShader", {0: _body(inside, kd), 1: highlight})
 
 
 def _show_phong(inside, kd, ks, shininess):
-    """The angle to the mirrored direction is about twice that of the half vector: cos^n of the one is cos^4n of the other."""
+    """The angle to the mirror direction is about twice the half vector's angle: cos^n of one is cos^4n of the other."""
     return _show_power(inside, kd, ks, _math(inside, "Blinn's Exponent", "MULTIPLY", shininess, 4.0))
 
 
 def _show_minnaert(inside, kd, darkness):
-    """Of (cos_i cos_o)^(k - 1) the view's part, as far as no more light comes back than arrives."""
+    """The factor cos_o^(k - 1) of (cos_i cos_o)^(k - 1), with a colour of at most 1."""
     facing = inside.node("Away", "LayerWeight", {"Blend": 0.5, "Normal": inside.sockets[NORMAL]}, "Facing")
     cosine = _math(inside, "At Least", "MAXIMUM", _math(inside, "Cosine", "SUBTRACT", 1.0, facing), 1e-3)
     power = _math(inside, "Power", "POWER", cosine, _math(inside, "k - 1", "SUBTRACT", darkness, 1.0))
@@ -107,7 +107,7 @@ _INSIDES = {"KD_KS": _show_kd_ks, "PHONG": _show_phong, "BLINN_PHONG": _show_pow
 
 
 def group_of(model):
-    """The file's node group of a model, made where there is none as it should be."""
+    """Return the file's unchanged node group of a model, or make one."""
     for tree in bpy.data.node_groups:
         if model_of(tree) == model and tree.library is None and is_as_made(tree):
             return tree
@@ -121,11 +121,11 @@ def _make_group(model):
     for name in names:
         _add_input(tree, name)
     normal = _add_socket(tree, NORMAL, "Vector")
-    # Without a value to show, what is not linked is the surface's own normal.
+    # Hide the value: an unlinked input means the surface's own normal.
     normal.hide_value = True
     _add_socket(tree, "BSDF", "Shader", "OUTPUT")
     inside = _Inside(tree, [*sockets, NORMAL])
-    # The ambient light is Lancer's alone.
+    # Only Lancer has ambient light.
     values = [inside.sockets[PARAMETERS[name].socket] for name in names if name != "ka"]
     inside.finish(_INSIDES[model](inside, *values))
     mark(tree, model)
@@ -133,7 +133,7 @@ def _make_group(model):
 
 
 def _add_input(tree, name):
-    """A socket like the material's own setting of that name."""
+    """Add a socket with default, range and description of the material's setting of that name."""
     setting = _SETTINGS[name].keywords
     is_color = PARAMETERS[name].kind == "color"
     socket = _add_socket(tree, PARAMETERS[name].socket, "Color" if is_color else "Float")
@@ -158,8 +158,8 @@ class LANCER_OT_add_model(bpy.types.Operator):
     bl_label = "Add Model"
     bl_description = (
         "Adds a node group of one of the course's models. Lancer renders the model itself from the node's inputs, constant or "
-        "linked; Cycles and EEVEE show the nodes inside, which come near it. Changes to these do not change Lancer's picture: "
-        "ungroup the node to have its nodes instead of the model"
+        "linked; Cycles and EEVEE show the nodes inside, which approximate it. Changes of these nodes do not change Lancer's "
+        "picture: ungroup the node to render its nodes instead of the model"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -177,7 +177,7 @@ class LANCER_OT_add_model(bpy.types.Operator):
     def execute(self, context):
         space, tree = context.space_data, _edited(context)
         if model_of(tree) is not None:
-            self.report({"ERROR"}, "Lancer: the inside of a model is not read: add the node outside of it")
+            self.report({"ERROR"}, "Lancer: nodes inside a model's group have no effect: add the node outside of it")
             return {"CANCELLED"}
         for other in tree.nodes:
             other.select = False
@@ -192,14 +192,14 @@ class LANCER_OT_add_model(bpy.types.Operator):
     def invoke(self, context, event):
         context.space_data.cursor_location_from_region(event.mouse_region_x, event.mouse_region_y)
         result = self.execute(context)
-        # As with Blender's own nodes: it follows the mouse until a click, and a right click takes it away again.
+        # Like Blender's own nodes, the new node follows the mouse until a click; a right click removes it.
         if "FINISHED" in result:
             bpy.ops.node.translate_attach_remove_on_cancel("INVOKE_DEFAULT")
         return result
 
 
 def _edited(context):
-    """The tree of shader nodes that is edited; None where there is none that may be changed."""
+    """Return the shader node tree in the editor; None if there is none that may be changed."""
     space = context.space_data
     tree = getattr(space, "edit_tree", None)
     if tree is None or space.tree_type != "ShaderNodeTree" or space.shader_type != "OBJECT" or tree.library is not None:

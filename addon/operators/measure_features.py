@@ -1,4 +1,4 @@
-"""What the features of a scene cost, measured on what F12 would render. The figures are kept in engine.last_costs."""
+"""Measure What Features Cost: the cost of each feature of the scene that F12 would render, kept in engine.last_costs."""
 
 import functools
 
@@ -9,12 +9,12 @@ from ..host.by_scene import ByScene
 from ..measure.costs import measure_costs
 from . import measuring
 
-# Of what the figures in engine.last_costs were measured, by the scene.
+# The state of each scene when the figures in engine.last_costs were measured.
 _states = ByScene()
 
 
 def _state(scene):
-    # The seconds are those of a whole frame.
+    # Costs in seconds are those of the whole frame: they depend on samples and resolution too.
     render = scene.render
     return *measuring.state(scene), scene.lancer.samples, render.resolution_x, render.resolution_percentage
 
@@ -28,12 +28,12 @@ class LANCER_OT_measure_features(measuring.Measuring, bpy.types.Operator):
     bl_label = "Measure What Features Cost"
     figures = _states
     bl_description = (
-        "Renders small pictures of the scene with and without each of its features in turn, and tells how much time each "
-        "takes. Nothing in the scene is changed. Esc stops it"
+        "Render small pictures of the scene with and without each of its features, and report the time that each feature "
+        "takes. The scene is not changed. Esc stops it"
     )
 
     seconds: bpy.props.FloatProperty(
-        name="Seconds", description="How long to measure; more seconds give narrower figures", min=0.1, default=10.0
+        name="Seconds", description="Time of the measurement; more seconds give narrower figures", min=0.1, default=10.0
     )
 
     def work(self):

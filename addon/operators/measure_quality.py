@@ -1,6 +1,6 @@
-"""What the presets of quality will cost and give on this scene: measured by an operator, told beside each of them.
+"""Measure Speed and Accuracy: forecasts of time and error for each preset of quality.
 
-The measurement is kept in this session, and is told to be old once what it depends on has changed.
+The measurement is kept until Blender quits; panels mark it as old after a change of the scene.
 """
 
 import dataclasses
@@ -16,20 +16,20 @@ from ..measure.trial_renders import measure
 from ..settings.scene_settings import QUALITIES
 from . import measuring
 
-# An interval whose ends differ by more than this factor says nothing to plan by, unless even its upper end is short (seconds).
+# An interval of time wider than this factor is not shown, unless its upper end is short (in seconds).
 _TELLING = 20.0
 _SHORT = 20.0
 
-# Kept, by the scene.
+# Kept records by scene.
 measured = ByScene()
 
 
 @dataclass
 class Kept:
     points: object  # forecast.Measured
-    pixels: int  # of the picture then
-    size: float  # of the resolution then, by which a later one is scaled
-    state: tuple  # measuring.state then
+    pixels: int  # of the picture at the measurement
+    size: float  # _size() at the measurement, for scaling to a later resolution
+    state: tuple  # measuring.state() at the measurement
 
 
 def is_old(scene):
@@ -42,13 +42,13 @@ def _size(scene):
 
 
 def _pixels(scene):
-    """Of the picture as it would be rendered now."""
+    """Return the number of pixels at the current resolution."""
     kept = measured[scene]
     return kept.pixels * _size(scene) / kept.size
 
 
 def forecasts(scene):
-    """(name, Forecast) of each preset and of the numbers that are set now."""
+    """Yield (name, Forecast) of each preset and of the current settings."""
     kept, own, pixels = measured[scene], scene.lancer, _pixels(scene)
     for name, (error, samples) in QUALITIES.items():
         yield name.capitalize(), forecast(kept.points, pixels, error, samples)
@@ -56,7 +56,7 @@ def forecasts(scene):
 
 
 def lines(scene):
-    """What a panel shows, a line each."""
+    """Yield the lines of the panel."""
     for name, told in forecasts(scene):
         error, _ = QUALITIES.get(name.upper(), (scene.lancer.target_error, 0))
         short = (
@@ -74,8 +74,8 @@ def seconds(told):
     if low == high:
         return f"about {value}"
     if told.high > _TELLING * told.low:
-        return f"at most {high}" if told.high < _SHORT else "the time cannot be told"
-    # Panels are narrow: a unit that both have is told once.
+        return f"at most {high}" if told.high < _SHORT else "the time is unknown"
+    # Panels are narrow: show a common unit once.
     number, _, unit = low.partition(" ")
     return f"about {value}, {number if high.endswith(f' {unit}') else low} to {high}"
 
@@ -89,12 +89,12 @@ class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
     bl_label = "Measure Speed and Accuracy"
     figures = measured
     bl_description = (
-        "Renders small pictures of the scene for some seconds, and tells how long each quality will take at the full size "
-        "and how near it will come. Nothing in the scene is changed. Esc stops it"
+        "Render small pictures of the scene for some seconds, and predict the time and the error of each quality at the full "
+        "size. The scene is not changed. Esc stops it"
     )
 
     seconds: bpy.props.FloatProperty(
-        name="Seconds", description="How long to measure; more seconds give narrower figures", min=0.1, default=10.0
+        name="Seconds", description="Time of the measurement; more seconds give narrower figures", min=0.1, default=10.0
     )
 
     def work(self):
@@ -107,7 +107,7 @@ class LANCER_OT_measure_quality(measuring.Measuring, bpy.types.Operator):
 
     def keep(self, scene, measurement):
         found = measurement.found
-        # F12 exports the scene, too.
+        # A render includes the export: add its time.
         self._kept.points = dataclasses.replace(found, before=found.before + measurement.exporting)
         measured[scene] = self._kept
         for line in lines(scene):

@@ -1,6 +1,6 @@
-"""Operators that look at what F12 would render, beside Blender's window: one export, a thread that works, progress, Esc.
+"""Base of operators that examine the scene that F12 would render: one export, a worker thread, progress, Esc.
 
-What they find is kept in this session only; no file and no data of the artist's changes.
+Results are kept in memory only; no file and no data of the artist changes.
 """
 
 import logging
@@ -14,16 +14,16 @@ from ..bindings.session import Cancelled
 from ..engine import render_export
 from ..host import by_scene, priority, redraw
 
-# (operator's bl_idname, fraction, text) of the work that runs, by its scene.
+# (operator's bl_idname, fraction, text) of the running work, by scene.
 running = by_scene.ByScene()
-# The threads of those beside a window, each with the timer that looks at it.
+# (thread, timer) of modal operators.
 _looked_at = []
-# How often objects, materials or lights have changed since figures are kept, by the scene.
+# Number of changes of objects, materials or lights since figures are kept, by scene.
 _changes = by_scene.ByScene()
 
 _TICK = 0.1
 
-# What noise and time hang on, apart from the number of samples and of pixels.
+# Settings that noise and time depend on, apart from the numbers of samples and pixels.
 _OWN = (
     "integrator",
     "max_bounces",
@@ -42,7 +42,7 @@ _RENDER = ("film_transparent", "use_border", "use_crop_to_border", "threads_mode
 
 
 class _Measurement(threading.Thread):
-    """It touches no data of Blender's."""
+    """The worker thread; it accesses no data of Blender."""
 
     def __init__(self, work, export):
         super().__init__(name="lancer measures", daemon=True)
@@ -55,7 +55,7 @@ class _Measurement(threading.Thread):
 
     def run(self):
         if not bpy.app.background:
-            # As a render in a window does, whose seconds are foretold.
+            # The forecast is for a render in a window, whose threads have a lower priority.
             priority.lower()
         try:
             self.found = self.work(self.snapshot, poll=self.stop.is_set, tell=self._tell)
@@ -75,9 +75,9 @@ class _Measurement(threading.Thread):
 
 
 class Measuring:
-    """What such operators share. They give work() and keep(scene, measurement).
+    """Base class: subclasses define work(), which returns the function to run, and keep(scene, measurement).
 
-    figures: the mapping in which they keep what they find, which ends with the file.
+    figures: the mapping of results by scene, cleared when another file is loaded.
     """
 
     figures = {}
@@ -116,9 +116,9 @@ class Measuring:
         if event.type != "TIMER":
             return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
         if bpy.app.is_job_running("RENDER") and not measurement.stop.is_set():
-            # Beside it everything takes longer.
+            # A render in parallel would falsify the times.
             measurement.stop.set()
-            self.report({"WARNING"}, f"Lancer: '{self.bl_label}' was stopped, as a render has begun")
+            self.report({"WARNING"}, f"Lancer: '{self.bl_label}' was stopped because a render has begun")
         self._show()
         context.window_manager.progress_update(measurement.progress[0])
         redraw.properties()
@@ -128,7 +128,7 @@ class Measuring:
         return self._ended(measurement)
 
     def cancel(self, context):
-        """Blender closes the window or loads another file."""
+        """Stop the work; Blender calls this when it closes the window or loads another file."""
         self._measurement.stop.set()
         self._measurement.join()
         self._leave(context)
@@ -139,7 +139,7 @@ class Measuring:
         fraction, text = self._measurement.progress
         text = "Stopping" if self._measurement.stop.is_set() else text
         if scene is not None:
-            # An operator's own bl_idname is spelt as that of its class in C.
+            # self.bl_idname has the spelling of the C class: use the Python class's.
             running[scene] = type(self).bl_idname, fraction, text
 
     def _leave(self, context):
@@ -156,7 +156,7 @@ class Measuring:
         except LancerError as error:
             self.report({"ERROR"}, f"Lancer: {error}")
             return None
-        # Blender writes properties of an operator in its own thread only: the work gets what it needs of them now.
+        # Operator properties are valid in Blender's thread only: work() copies them now.
         measurement = _Measurement(self.work(), export)
         _watch(True)
         self.messages = export.messages
@@ -165,7 +165,7 @@ class Measuring:
         return measurement
 
     def begun(self, context, snapshot):
-        """For what is to be noted of the scene as it is measured."""
+        """Called before the work starts, to record the state of the scene."""
 
     def _ended(self, measurement):
         kept = self._keep(measurement)
@@ -179,24 +179,24 @@ class Measuring:
             return False
         scene = by_scene.find(self._scene)
         if scene is None:
-            self.report({"WARNING"}, "Lancer: the scene of which figures were measured is gone")
+            self.report({"WARNING"}, "Lancer: the measured scene has been removed")
             return False
         self.keep(scene, measurement)
         return True
 
 
 def _missing(scene):
-    """Why there is nothing to measure now; "" where there is."""
+    """Return why no measurement can start now; "" if one can."""
     if scene is None or scene.camera is None:
         return "The scene has no camera"
-    # Two at once would slow each other down.
+    # Two in parallel would falsify their times.
     if running:
         return "A measurement or a check is running"
     return "A render is running" if bpy.app.is_job_running("RENDER") else ""
 
 
 def state(scene):
-    """Another one when what was measured is not true of the scene any more."""
+    """Return a tuple that changes when measured figures are out of date."""
     own, render = scene.lancer, scene.render
     border = (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y) if render.use_border else ()
     shape = render.resolution_x / render.resolution_y, render.pixel_aspect_x / render.pixel_aspect_y, *border
@@ -212,7 +212,7 @@ def _changed(scene, depsgraph):
 
 
 def _watch(on):
-    """Whether changes of scenes are counted: each costs a call."""
+    """Start or stop counting changes of scenes, which costs a handler call for each change."""
     handlers = bpy.app.handlers.depsgraph_update_post
     if on and _changed not in handlers:
         handlers.append(_changed)
@@ -223,13 +223,13 @@ def _watch(on):
 
 
 def _watch_figures():
-    """Only figures that are kept can become old."""
+    """Count changes only while there are figures that can become old."""
     _watch(any(cls.figures for cls in Measuring.__subclasses__()))
 
 
 @persistent
 def _forget(*_):
-    """Another file has other scenes."""
+    """Drop all figures before another file is loaded."""
     for cls in Measuring.__subclasses__():
         cls.figures.clear()
     _watch(False)
@@ -240,7 +240,7 @@ def register():
 
 
 def unregister():
-    # Blender drops an operator whose class goes, without a word to it.
+    # Blender drops a modal operator whose class is unregistered, without calling its cancel(): end the work here.
     while _looked_at:
         measurement, timer = _looked_at.pop()
         measurement.stop.set()

@@ -1,9 +1,9 @@
-"""The pages of Blender's manual that F1 over a setting of Lancer's opens: those of what Cycles has for the same purpose."""
+"""Pages of Blender's manual for F1 over Lancer's settings: those of Cycles' corresponding settings."""
 
 import bpy
 
 _SETTINGS = "render/cycles/render_settings"
-# The first pattern that fits; all letters are small.
+# Blender takes the first pattern that matches the name in lower case.
 _PAGES = (
     *((f"bpy.types.lancerscenesettings.{name}", f"{_SETTINGS}/{page}.html")
       for page, names in {
@@ -25,7 +25,7 @@ _PAGES = (
 
 
 def pages():
-    """As bpy.utils.register_manual_map wants it: (prefix, ((pattern, page), ...))."""
+    """Return (prefix, ((pattern, page), ...)) for bpy.utils.register_manual_map."""
     return "https://docs.blender.org/manual/en/{}.{}/".format(*bpy.app.version[:2]), _PAGES
 
 

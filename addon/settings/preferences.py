@@ -1,4 +1,4 @@
-"""What an artist sets for all files, in Blender's preferences of the add-on."""
+"""The add-on's preferences, which apply to all files."""
 
 import bpy
 from bpy.app.handlers import persistent
@@ -7,12 +7,12 @@ from bpy.props import EnumProperty, IntProperty
 from ..export import settings
 from .scene_settings import QUALITIES
 
-# Blender knows an add-on by its top package, above this room.
+# Blender identifies an add-on by its top package, the parent of this one.
 _ADDON = __package__.rpartition(".")[0]
 
 
 def _threads_changed(self, _context):
-    # A render may not ask Blender's context.
+    # A render thread must not access Blender's context: copy the value.
     settings.default_threads = self.threads
 
 
@@ -21,8 +21,8 @@ class LancerPreferences(bpy.types.AddonPreferences):
 
     threads: IntProperty(
         name="Threads",
-        description="How many threads render where a scene's Threads Mode is Auto-Detect; fewer than the computer has leave "
-        "it usable meanwhile. 0 = all",
+        description="Number of render threads for scenes whose Threads Mode is Auto-Detect; fewer threads than processors "
+        "keep the computer responsive. 0 = all",
         min=0,
         max=1024,
         default=0,
@@ -30,9 +30,9 @@ class LancerPreferences(bpy.types.AddonPreferences):
     )
     quality: EnumProperty(
         name="Quality of New Files",
-        description="What the render settings of a new file start with; files that were saved keep their own",
+        description="Quality of new files; saved files keep their own",
         items=(
-            ("CUSTOM", "As Lancer Comes", "256 samples, without a target error", 3),
+            ("CUSTOM", "Default", "256 samples, without a target error", 3),
             *(
                 (name, name.capitalize(), f"An error of {error * 100:g} %", number)
                 for number, (name, (error, _)) in enumerate(QUALITIES.items())
@@ -49,14 +49,14 @@ class LancerPreferences(bpy.types.AddonPreferences):
 
 
 def _found():
-    """The preferences; None where this is no add-on that was switched on, but a module that a script has imported."""
+    """Return the preferences; None if Lancer was imported by a script instead of enabled as an add-on."""
     addon = bpy.context.preferences.addons.get(_ADDON)
     return None if addon is None else addon.preferences
 
 
 @persistent
 def _start_new_file(*_):
-    """A file that was never saved has none of the artist's own settings, unless the startup file brought them."""
+    """Apply the preferred quality to a new file, unless the startup file contains settings of its own."""
     preferences = _found()
     if preferences is None or preferences.quality == "CUSTOM" or bpy.data.filepath:
         return

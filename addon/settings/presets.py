@@ -1,4 +1,4 @@
-"""Presets of Sampling and of Light Paths: a button in the header of either panel, and files where Blender keeps its own."""
+"""Presets of Sampling and Light Paths: a button in the header of each panel, files in Blender's folder of presets."""
 
 import bpy
 from bl_operators.presets import AddPresetBase
@@ -17,7 +17,7 @@ _LIGHT_PATHS = (
 
 
 def _draw(panel, context):
-    """As Blender draws presets, but where none was saved yet it tells of missing paths."""
+    """Draw the presets as Blender does, but without its warning about missing paths if none was saved yet."""
     if bpy.utils.preset_paths(panel.preset_subdir):
         PresetPanel.draw(panel, context)
         return
@@ -29,7 +29,7 @@ def _draw(panel, context):
 
 
 def _made(name, label, settings):
-    """The popover of presets and the operator that adds to them and removes from them."""
+    """Return the popover of presets and the operator that adds and removes them."""
     folder, operator, menu = f"lancer/{name}", f"render.lancer_{name}_preset_add", f"LANCER_PT_{name}_presets"
     panel = type(
         menu,

@@ -1,6 +1,6 @@
-"""Settings that Lancer adds to objects, materials, lights and worlds; and all of them, registered.
+"""Settings that Lancer adds to objects, materials, lights and worlds; registration of all settings.
 
-Items of enums carry numbers that files store: never renumber, never reuse.
+Files store the numbers of enum items: never renumber or reuse them.
 """
 
 import bpy
@@ -21,9 +21,9 @@ class LancerObjectSettings(bpy.types.PropertyGroup):
         name="Shape",
         description="Trace the mesh itself, or the exact surface that fits its bounding box",
         items=(
-            ("MESH", "Mesh", "The mesh as it is", 0),
+            ("MESH", "Mesh", "The mesh itself", 0),
             ("SPHERE", "Sphere", "An exact sphere or ellipsoid in the mesh's bounding box", 1),
-            ("PLANE", "Plane", "A plane without end through the middle of the mesh's bounding box, facing its Z", 2),
+            ("PLANE", "Plane", "An infinite plane through the centre of the mesh's bounding box, facing its Z", 2),
             ("CYLINDER", "Cylinder", "An exact closed cylinder along Z in the mesh's bounding box", 3),
             ("CONE", "Cone", "An exact closed cone with its tip at +Z in the mesh's bounding box", 4),
         ),
@@ -33,21 +33,21 @@ class LancerObjectSettings(bpy.types.PropertyGroup):
         name="Shading",
         description="How light varies over a face",
         items=(
-            ("AS_MESH", "As Mesh", "Smooth and flat faces as the mesh has them", 0),
+            ("AS_MESH", "As Mesh", "The mesh's own smooth and flat faces", 0),
             (
                 "FLAT",
                 "Flat",
-                "One direction for each face. In Classic one colour for each face, computed at its centre; in Path Tracing "
-                "light still varies over it",
+                "One normal for each face. In Classic one colour for each face, computed at its centre; in Path Tracing "
+                "light still varies over the face",
                 1,
             ),
             (
                 "GOURAUD",
                 "Gouraud",
-                "Light is computed at the vertices and blended between them (Classic; elsewhere as Phong)",
+                "Light is computed at the vertices and interpolated (Classic only; otherwise as Phong)",
                 2,
             ),
-            ("PHONG", "Phong", "Directions are blended between the vertices", 3),
+            ("PHONG", "Phong", "Normals are interpolated between the vertices", 3),
         ),
         default="AS_MESH",
     )
@@ -56,22 +56,22 @@ class LancerObjectSettings(bpy.types.PropertyGroup):
 class LancerMaterialSettings(bpy.types.PropertyGroup):
     model: EnumProperty(
         name="Model",
-        description="Where the material's look comes from",
+        description="The material's nodes, or a model of the course with settings of its own",
         items=(
             ("NODES", "Nodes", "The material's shader nodes", 0),
-            ("KD_KS", "Diffuse and Coat", "A matt body under a rough, clear layer", 1),
-            ("PHONG", "Phong", "A matt body with Phong's highlight", 2),
-            ("BLINN_PHONG", "Blinn-Phong", "A matt body with Blinn's highlight", 3),
-            ("MINNAERT", "Minnaert", "A matt body whose rim is darker, or brighter as the moon's", 4),
+            ("KD_KS", "Diffuse and Coat", "A diffuse base under a rough, clear layer", 1),
+            ("PHONG", "Phong", "A diffuse base with Phong's highlight", 2),
+            ("BLINN_PHONG", "Blinn-Phong", "A diffuse base with Blinn's highlight", 3),
+            ("MINNAERT", "Minnaert", "A diffuse surface with a darker rim, or a brighter one like the moon's", 4),
         ),
         default="NODES",
     )
-    ka: _color("Ambient", "Share of ambient light that the surface shows: the world's, and that of lamps (Classic only)", 0.0)
-    kd: _color("Diffuse", "Colour of the matt body", 0.8)
+    ka: _color("Ambient", "Share of the ambient light of world and lamps that the surface reflects (Classic only)", 0.0)
+    kd: _color("Diffuse", "Colour of the diffuse base", 0.8)
     ks: _color("Specular", "Colour of the highlight or of the clear layer", 0.2)
     roughness: FloatProperty(
         name="Roughness",
-        description="Roughness of the clear layer, as the alpha of Beckmann's formula (Blender's roughness is its square root)",
+        description="Roughness of the clear layer: alpha of the Beckmann distribution (Blender's roughness is its square root)",
         min=0.0,
         max=1.0,
         precision=4,
@@ -82,15 +82,15 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
     )
     shininess: FloatProperty(
         name="Shininess",
-        description="Exponent of the highlight: larger is smaller and sharper",
+        description="Exponent of the highlight: larger exponents make it smaller and sharper",
         min=0.0,
         soft_max=1000.0,
         default=50.0,
     )
     darkness: FloatProperty(
         name="Darkness",
-        description="Exponent k of Minnaert's law: 1 is even; more darkens the rim; less brightens it, as far as no more light "
-        "comes back than arrives",
+        description="Exponent k of Minnaert's law: 1 is Lambert's law, larger values darken the rim, smaller ones brighten it "
+        "as far as the surface reflects no more light than it receives",
         min=0.0,
         soft_max=4.0,
         default=1.5,
@@ -100,20 +100,20 @@ class LancerMaterialSettings(bpy.types.PropertyGroup):
 class LancerLightSettings(bpy.types.PropertyGroup):
     falloff: EnumProperty(
         name="Falloff",
-        description="How the light weakens with distance (Classic only; Path Tracing is always physical)",
+        description="How the light decreases with distance (Classic only; Path Tracing is always physical)",
         items=(
             ("PHYSICAL", "Physical", "With the square of the distance, as in nature", 0),
-            ("CONSTANT", "Constant", "Not at all", 1),
-            ("LINEAR", "Linear", "Evenly, to nothing at the radius", 2),
-            ("QUADRATIC", "Quadratic", "Slowly at first, to nothing at the radius", 3),
-            ("SMOOTH", "Smooth", "With soft ends, to nothing at the radius", 4),
-            ("GAUSSIAN", "Gaussian", "As a bell curve whose width is the radius", 5),
+            ("CONSTANT", "Constant", "No decrease", 1),
+            ("LINEAR", "Linear", "Linearly, to zero at the radius", 2),
+            ("QUADRATIC", "Quadratic", "Slowly at first, to zero at the radius", 3),
+            ("SMOOTH", "Smooth", "With smooth ends, to zero at the radius", 4),
+            ("GAUSSIAN", "Gaussian", "As a bell curve with the radius as its width", 5),
         ),
         default="PHYSICAL",
     )
     radius: FloatProperty(
         name="Radius",
-        description="Distance over which the light weakens",
+        description="Distance over which the light decreases",
         subtype="DISTANCE",
         min=1e-6,
         soft_max=1000.0,
@@ -121,8 +121,8 @@ class LancerLightSettings(bpy.types.PropertyGroup):
     )
     use_ambient: BoolProperty(
         name="Ambient Light",
-        description="The light reaches surfaces with an ambient colour from everywhere too, whatever their direction and what "
-        "stands between (Classic only)",
+        description="The light also adds ambient light, which surfaces with an ambient colour reflect whatever their direction "
+        "and without shadows (Classic only)",
         default=True,
     )
     use_separate_colors: BoolProperty(
@@ -137,25 +137,25 @@ class LancerLightSettings(bpy.types.PropertyGroup):
 
 def _side(direction):
     return PointerProperty(
-        name=direction, description=f"Picture that is seen when looking along {direction} of the world", type=bpy.types.Image
+        name=direction, description=f"Image for the side of the cube in the world's direction {direction}", type=bpy.types.Image
     )
 
 
 class LancerWorldSettings(bpy.types.PropertyGroup):
     use_ambient_color: BoolProperty(
         name="Ambient Color",
-        description="Give light from everywhere, which a material's Ambient shows, a colour of its own in place of the world's "
-        "mean. It is added once, whatever the lamps (Classic only)",
+        description="Use a colour of its own for the ambient light that a material's Ambient reflects, instead of the world's "
+        "mean colour. It is added once, whatever the number of lamps (Classic only)",
         default=False,
     )
-    ambient_color: _color("Ambient Color", "Light from everywhere, the same at every place (Classic only)", 0.1)
+    ambient_color: _color("Ambient Color", "Ambient light, equal everywhere and from all directions (Classic only)", 0.1)
     use_cube: BoolProperty(
         name="Cube Environment",
-        description="Surround the scene with six pictures, one for each side of a cube, in place of the world's nodes",
+        description="Surround the scene with six images, one for each side of a cube, instead of the world's nodes",
         default=False,
     )
     cube_strength: FloatProperty(
-        name="Strength", description="Factor of the pictures' brightness", min=0.0, soft_max=10.0, default=1.0
+        name="Strength", description="Factor of the images' brightness", min=0.0, soft_max=10.0, default=1.0
     )
     cube_positive_x: _side("+X")
     cube_negative_x: _side("-X")

@@ -1,4 +1,4 @@
-"""Panels: Lancer's own, a file for each tab of the Properties editor, and Blender's that it shows while it is registered."""
+"""Panels: Lancer's own, one file for each tab of the Properties editor, and Blender's panels that Lancer adopts."""
 
 import bpy
 

@@ -1,20 +1,20 @@
-"""Blender's own panels that Lancer shows: those that any engine may show, but for what has no effect here, and some of EEVEE's.
+"""Blender's own panels that Lancer shows: those for all engines except panels without effect, and some of EEVEE's.
 
-Only panels of Blender itself are taken: those of the Cycles add-on go and come with it.
+Panels of the Cycles add-on are not adopted, since they exist only while it is enabled.
 """
 
 import bpy
 
 from .panel import ID
 
-# Shown to EEVEE, and true of Lancer as they are.
+# Panels of EEVEE that apply to Lancer unchanged.
 _OF_EEVEE = {
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
     "EEVEE_MATERIAL_PT_context_material",
     "MATERIAL_PT_preview",
 }
-# What Lancer shows otherwise, or elsewhere.
+# Panels that Lancer replaces by its own.
 _REPLACED = {
     "DATA_PT_area",
     "DATA_PT_light",
@@ -27,7 +27,7 @@ _REPLACED = {
     "RENDER_PT_simplify_render",
     "RENDER_PT_simplify_viewport",
 }
-# What has no effect: stereoscopy, Freestyle, the light of volumes and strands.
+# Panels without effect: stereoscopy, Freestyle, volumes and hair.
 _WITHOUT_EFFECT = {
     "DATA_PT_camera_stereoscopy",
     "DATA_PT_volume_render",
@@ -57,7 +57,7 @@ def adopt():
 
 
 def release(own):
-    """Gives back all panels but those of own, Lancer's classes."""
+    """Release all adopted panels; own: Lancer's own classes."""
     for panel in bpy.types.Panel.__subclasses__():
         if panel not in own and ID in getattr(panel, "COMPAT_ENGINES", ()):
             panel.COMPAT_ENGINES.discard(ID)

@@ -1,10 +1,10 @@
-"""The Data tab of a camera: the lens of panoramas, which Blender's own panel shows to Cycles alone."""
+"""The Data tab of a camera: settings of panoramas, which Blender's own panel shows only for Cycles."""
 
 import bpy
 
 from .panel import LancerPanel
 
-# (name, label) of what shapes each projection, in groups that stand together.
+# (name, label) of the settings of each projection, grouped as in the panel.
 _SHAPES = {
     "EQUIRECTANGULAR": (
         (("latitude_min", "Latitude Min"), ("latitude_max", "Max")),
@@ -34,7 +34,7 @@ class LANCER_DATA_PT_panorama(LancerPanel, bpy.types.Panel):
         return super().poll(context) and context.camera is not None and context.camera.type == "PANO"
 
     def draw(self, context):
-        # The projection is the camera's own since it left the Cycles add-on, which may be off.
+        # Before 4.2 the properties belong to the Cycles add-on, which may be disabled.
         camera = context.camera
         owner = camera if hasattr(camera, "panorama_type") else getattr(camera, "cycles", None)
         column = self._column(animated=True)

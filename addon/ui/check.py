@@ -1,4 +1,4 @@
-"""The panel that lists what the last Check Scene found, with a way to each object."""
+"""The panel with the findings of the last Check Scene and a button to select each object."""
 
 import bpy
 
@@ -27,7 +27,7 @@ class LANCER_RENDER_PT_check(LancerRenderPanel, bpy.types.Panel):
             return
         messages = check_scene.last_messages[name]
         if not findings and not messages:
-            column.label(text="Nothing found that would hurt", icon="CHECKMARK")
+            column.label(text="No faults found", icon="CHECKMARK")
         for finding, left in shortened(findings):
             name = finding.object or finding.light
             row = sentence(column, context, told(finding, left), _ICONS[finding.severity], buttons=1 if name else 0)

@@ -1,24 +1,24 @@
-"""What the Material tab tells of a material: read from its nodes when it is first drawn, and again after a change.
+"""Cache of material descriptions for the Material tab, computed at the first draw after a change.
 
-Blender draws a panel many times between two changes. It tells of a change through a handler, which is there only while
-something is kept.
+Blender redraws a panel many times between two changes. A handler, registered only while the cache has entries, clears the
+cache after a change.
 """
 
 import bpy
 
 from ..export.describe import describe_material
 
-_kept = {}  # Descriptions by what they hang on
+_kept = {}  # Descriptions by the state that they depend on
 
 
 def described(material, frame):
-    """The export.describe.Description of a material at a frame."""
+    """Return the export.describe.Description of a material at a frame."""
     handlers = bpy.app.handlers.depsgraph_update_post
     if _changed not in handlers:
-        # Another file takes handlers away, and what is kept is of its predecessor.
+        # Loading a file removes the handler: entries are of the old file.
         _kept.clear()
         handlers.append(_changed)
-    # Blender tells of all changes but those of add-ons' properties.
+    # Changes of add-ons' properties do not call the handler: include them in the key.
     method = getattr(getattr(material, "cycles", None), "displacement_method", "")
     key = material.as_pointer(), material.name, frame, material.lancer.model, method
     if key not in _kept:
@@ -28,7 +28,7 @@ def described(material, frame):
 
 def _changed(*_):
     _kept.clear()
-    # A handler that leaves while handlers are called would make Blender pass over the one after it.
+    # Remove the handler later: a handler that removes itself makes Blender skip the next one.
     if not bpy.app.timers.is_registered(_leave):
         bpy.app.timers.register(_leave)
 
@@ -39,7 +39,7 @@ def _leave():
 
 
 def forget():
-    """Keeps nothing, and takes the handler away."""
+    """Clear the cache and remove handler and timer."""
     _kept.clear()
     _leave()
     if bpy.app.timers.is_registered(_leave):

@@ -78,7 +78,7 @@ class LANCER_DATA_PT_light_settings(LancerLightPanel, bpy.types.Panel):
         column = self._column()
         row = column.row()
         row.active = not _is_portal(light)
-        # Cycles' own switch in the versions that have it, where use_shadow is EEVEE's.
+        # Prefer Cycles' own switch in the versions that have it, in which use_shadow is EEVEE's.
         if not setting(row, "cast_shadow", cycles):
             row.prop(light, "use_shadow", text="Cast Shadow")
         if light.type == "AREA":

@@ -17,7 +17,7 @@ class LancerMaterialPanel(LancerPanel):
 
 
 def _has_nodes(material):
-    """Whether its look comes from its nodes."""
+    """Whether the material is rendered by its nodes."""
     return material.lancer.model == "NODES" and (bpy.app.version >= (5, 0) or material.use_nodes)
 
 
@@ -86,7 +86,7 @@ class LANCER_MATERIAL_PT_settings(LancerMaterialPanel, bpy.types.Panel):
         column.prop(material, "pass_index")
         column.separator()
         setting(column, "displacement_method", material, cycles, text="Displacement")
-        # Blender 3.5 made three ways of the switch.
+        # Blender 3.5 replaced the switch by an enum.
         if not setting(column, "emission_sampling", cycles):
             setting(column, "sample_as_light", cycles, text="Multiple Importance")
         setting(column, "use_transparent_shadow", cycles, material)

@@ -1,4 +1,4 @@
-"""The panels that tell how the last render went, its error and its speed, and what of the scene could not be shown."""
+"""Panels with error, speed and messages of the last render, and with messages of the viewport."""
 
 import bpy
 
@@ -18,7 +18,7 @@ class LANCER_RENDER_PT_messages(LancerRenderPanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         statistics = engine.last_statistics.get(context.scene.name)
         if statistics is not None:
-            # The error, then what it does not count.
+            # The error, then the biases that it does not include.
             for line in render_report.of_layers(statistics):
                 for part in line.split("; "):
                     sentence(column, context, part[0].upper() + part[1:])
@@ -31,7 +31,7 @@ class LANCER_RENDER_PT_messages(LancerRenderPanel, bpy.types.Panel):
         if messages is None:
             column.label(text="Nothing rendered yet")
             return
-        _draw_messages(column, context, messages, "All of the scene was rendered as it is")
+        _draw_messages(column, context, messages, "The whole scene is supported")
 
 
 class LANCER_RENDER_PT_viewport_messages(LancerRenderPanel, bpy.types.Panel):
@@ -44,7 +44,7 @@ class LANCER_RENDER_PT_viewport_messages(LancerRenderPanel, bpy.types.Panel):
         if messages is None:
             column.label(text="No view in Rendered shading yet")
         else:
-            _draw_messages(column, context, messages, "All of the scene is shown as it is")
+            _draw_messages(column, context, messages, "The whole scene is supported")
 
 
 def _draw_messages(column, context, messages, none):

@@ -1,4 +1,4 @@
-"""The Object tab: what it is traced as, how it is shaded, and which rays see it."""
+"""The Object tab: exact shape, shading and ray visibility."""
 
 import bpy
 
@@ -9,7 +9,7 @@ _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
 class LancerObjectPanel(LancerPanel):
-    """Of an object that has a surface."""
+    """A panel of objects with a surface."""
 
     bl_context = "object"
 
@@ -51,14 +51,14 @@ class LANCER_OBJECT_PT_ray_visibility(LancerPanel, bpy.types.Panel):
         thing = context.object
         if not super().poll(context) or thing is None:
             return False
-        # What an instance shows is seen by no more than its instancer is.
+        # The visibility of an instancer also limits that of its instances.
         return thing.type in {*_SURFACES, "LIGHT"} or thing.is_instancer
 
     def draw(self, context):
         thing = context.object
         column = self._column()
         for ray in _RAYS:
-            # A lamp casts no shadow of its own.
+            # Lamps are no occluders.
             if ray != "shadow" or thing.type != "LIGHT":
                 column.prop(thing, "visible_" + ray, text=ray.capitalize())
 

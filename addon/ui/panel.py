@@ -1,4 +1,4 @@
-"""What all of Lancer's panels share."""
+"""Base of Lancer's panels."""
 
 from ..engine.render_engine import LancerRenderEngine
 
@@ -17,7 +17,7 @@ class LancerPanel:
         return context.engine in cls.COMPAT_ENGINES
 
     def _column(self, animated=False):
-        """A column with labels at the left; animated: with dots that set keys, as Cycles has them for things of the scene."""
+        """Return a column with labels at the left; animated: with dots for keyframes, where Cycles has them."""
         self.layout.use_property_split = True
         self.layout.use_property_decorate = animated
         return self.layout.column()
@@ -28,9 +28,9 @@ def uses_classic(scene):
 
 
 def setting(column, name, *owners, **options):
-    """Shows a setting of the first owner that has it, and tells whether any has.
+    """Draw a setting of the first owner that has it; return whether any owner has it.
 
-    Versions of Blender differ in where they keep it, and Cycles, an add-on, may be off.
+    Versions of Blender differ in the owner, and the Cycles add-on may be disabled.
     """
     for owner in owners:
         if owner is not None and name in owner.bl_rna.properties:
@@ -40,7 +40,7 @@ def setting(column, name, *owners, **options):
 
 
 def nodes_of(column, tree, kind):
-    """Shows the node that is linked to that input of Cycles' output node; an error where there is no such node."""
+    """Draw the node linked to an input of Cycles' output node; an error if there is no output node."""
     output = None if tree is None else tree.get_output_node("CYCLES")
     if output is None:
         column.label(text="No output node", icon="ERROR")

@@ -1,4 +1,4 @@
-"""The Render tab: what is set before a render, in the order of Cycles."""
+"""The Render tab: settings in the order of Cycles."""
 
 import bpy
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
@@ -11,19 +11,20 @@ from .sentences import sentence
 
 _MEASURE = "lancer.measure_quality"
 
-# What an artist who comes from Cycles should know before the first render.
+# A note for artists who are used to Cycles.
 _REPLACED = (
-    "They replace Cycles' bounces and clamping. Filter Glossy and limits of single kinds of bounces are not there. Where light "
-    "differs by any of them, the messages tell."
+    "These settings replace Cycles' bounces and clamping. Filter Glossy and limits for single kinds of bounces are not "
+    "supported. Messages report differences by these settings."
 )
 
 _DENOISING = (
-    "Open Image Denoise guesses what lies under the noise. The error given is that of the picture before, the pass Noisy Image."
+    "Open Image Denoise is a guess and can remove details. The reported error is that of the picture before denoising, the "
+    "pass Noisy Image."
 )
 
 
 class LancerRenderPanel(LancerPanel):
-    """They stand in the order in which they are registered, and Blender's Grease Pencil and Color Management after them."""
+    """Panels appear in the order of registration, followed by Blender's Grease Pencil and Color Management."""
 
     bl_context = "render"
 
@@ -44,7 +45,7 @@ class LANCER_RENDER_PT_sampling(LancerRenderPanel, bpy.types.Panel):
 
 
 def _draw_forecast(column, context):
-    """What each quality would take and give, as far as it was measured."""
+    """Draw the measure button and the measured forecast of each quality."""
     scene = context.scene
     if draw_measuring(column, scene, _MEASURE):
         return
@@ -60,7 +61,7 @@ def _draw_forecast(column, context):
 
 
 def draw_measuring(column, scene, operator, doing="Measuring"):
-    """In the place of that operator's button, how far it is; False where it does not run."""
+    """Draw the progress of a running operator instead of its button; return False if it does not run."""
     what, fraction, text = measuring.running.get(scene.name, ("", 0.0, ""))
     if what != operator:
         return False
@@ -70,7 +71,7 @@ def draw_measuring(column, scene, operator, doing="Measuring"):
 
 
 class LANCER_RENDER_PT_sampling_viewport(LancerRenderPanel, bpy.types.Panel):
-    """Of 3D views in Rendered shading."""
+    """Settings of 3D views in Rendered shading."""
 
     bl_label = "Viewport"
     bl_parent_id = "LANCER_RENDER_PT_sampling"
@@ -158,7 +159,7 @@ class LANCER_RENDER_PT_classic(LancerRenderPanel, bpy.types.Panel):
 
 
 class LANCER_RENDER_PT_simplify(LancerRenderPanel, bpy.types.Panel):
-    """Blender's own would stand before all others."""
+    """Replaces Blender's own panel, which would appear before all others."""
 
     bl_label = "Simplify"
     bl_options = {"DEFAULT_CLOSED"}

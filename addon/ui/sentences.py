@@ -1,14 +1,13 @@
-"""Sentences in panels: Blender cuts out the middle of what is wider than a panel, so they take the lines that they need."""
+"""Sentences in panels, wrapped into several lines: Blender cuts out the middle of a label wider than the panel."""
 
-# In pixels at a display scale of 1, measured in Blender's own font: a letter of a usual sentence, the panel's and the label's
-# borders, an icon.
+# Pixels at a display scale of 1, measured with Blender's font: mean width of a letter, borders of panel and label, an icon.
 _LETTER, _BORDERS, _ICON = 5.9, 40, 20
-# A number and its sign are one word.
+# Keep a number and its percent sign on one line.
 _GLUED = "\N{NO-BREAK SPACE}%"
 
 
 def sentence(column, context, text, icon="NONE", buttons=0):
-    """Writes it; gives the row of its first line, where room is left for so many small buttons."""
+    """Draw a sentence; return the row of its first line, with room for that many small buttons."""
     first, *rest = _wrapped(text, _letters(context, buttons + (icon != "NONE")))
     row = column.row(align=True)
     row.label(text=first, icon=icon)
@@ -18,7 +17,7 @@ def sentence(column, context, text, icon="NONE", buttons=0):
 
 
 def _letters(context, icons):
-    """How many have room in a line; all where there is no window."""
+    """Return the number of letters that fit in a line; None without a window, for no limit."""
     if context.region is None:
         return None
     width = context.region.width / context.preferences.system.ui_scale

@@ -1,4 +1,4 @@
-"""The panel that tells an artist what the scene uses, what it takes, and what each part of it costs."""
+"""The panel with the features that the scene uses, their memory and their measured costs."""
 
 import bpy
 
@@ -34,7 +34,7 @@ class LANCER_RENDER_PT_uses(LancerRenderPanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         statistics = engine.last_statistics.get(name)
         if statistics is None:
-            column.label(text="Told after the first render")
+            column.label(text="Shown after the first render")
         else:
             for feature in statistics["uses"]:
                 sentence(column, context, feature["text"])
@@ -54,7 +54,7 @@ class LANCER_RENDER_PT_uses(LancerRenderPanel, bpy.types.Panel):
             sentence(column, context, "Measured before the last changes", "ERROR")
         if not costs.hints:
             which = "None of the features that were measured" if costs.skipped else "No feature"
-            sentence(column, context, f"{which} would surely save 3 % of the time", "CHECKMARK")
+            sentence(column, context, f"{which} would save 3 % of the time with certainty", "CHECKMARK")
         for cost in costs.hints:
             start, rest = cost.text.split("; ", 1)
             sentence(column, context, start, "INFO")
@@ -62,7 +62,7 @@ class LANCER_RENDER_PT_uses(LancerRenderPanel, bpy.types.Panel):
             told = f"about {cost.seconds:.1f} s, {_share(cost.share)} give or take {_share(cost.uncertainty)}"
             sentence(column, context, f"{told}. Without: {cost.without}")
         if costs.skipped:
-            sentence(column, context, f"There was no time for {len(costs.skipped)} more")
+            sentence(column, context, f"Not measured for lack of time: {len(costs.skipped)} more")
 
 
 CLASSES = (LANCER_RENDER_PT_uses,)

@@ -1,4 +1,4 @@
-"""The View Layer tab: passes, what takes part, and what stands for it."""
+"""The View Layer tab: passes, filters and overrides."""
 
 import bpy
 

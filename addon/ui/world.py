@@ -15,7 +15,7 @@ class LancerWorldPanel(LancerPanel):
 
 
 class LANCER_WORLD_PT_preview(LancerWorldPanel, bpy.types.Panel):
-    """Blender has such panels for materials and lamps; this one is Cycles' own."""
+    """The preview of the world, which Blender shows only for Cycles."""
 
     bl_label = "Preview"
     bl_options = {"DEFAULT_CLOSED"}
@@ -43,7 +43,7 @@ class LANCER_WORLD_PT_surface(LancerWorldPanel, bpy.types.Panel):
 
 
 class LANCER_WORLD_PT_mist(LancerWorldPanel, bpy.types.Panel):
-    """EEVEE's would stand before the surface."""
+    """Replaces EEVEE's panel, which would appear before the surface."""
 
     bl_label = "Mist Pass"
     bl_options = {"DEFAULT_CLOSED"}

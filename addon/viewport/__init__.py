@@ -1,1 +1,1 @@
-"""Rendered shading of 3D views: each has a scene and a picture of its own."""
+"""Rendered shading of 3D views; each view has a scene and a picture of its own."""

@@ -1,21 +1,21 @@
-"""A picture as a texture, drawn into the region that Blender draws."""
+"""A picture as a texture, drawn into a region of Blender's window."""
 
 import gpu
 import numpy as np
 from gpu_extras.presets import draw_texture_2d
 
-# The largest number of a texture of half precision, which shows what a screen can.
+# The largest number of a half-precision texture.
 _BRIGHTEST = 65504.0
 
 
 class Canvas:
-    """Holds the texture of one picture at a time. For Blender's main thread, while it draws."""
+    """The texture of one picture at a time. Use it in Blender's main thread during drawing."""
 
     def __init__(self):
         self._image = self._texture = None
 
     def draw(self, image, rectangle):
-        """image: (height, width, 4) float32, scene-linear and premultiplied; it fills the rectangle of the region."""
+        """Draw image, (height, width, 4) float32, scene-linear and premultiplied, into the rectangle of the region."""
         if image is not self._image:
             self._texture = _texture(image)
             self._image = image

@@ -1,4 +1,4 @@
-"""Denoising beside everything else: Open Image Denoise in a thread, which is asked whether it is over."""
+"""Denoising in a background thread, which the caller polls."""
 
 import threading
 
@@ -6,12 +6,12 @@ from ..bindings.enums import Pass
 from ..bindings.session import Cancelled
 from ..denoise import denoiser
 
-# Passes of the session that it needs beside Combined.
+# Passes of the session that denoising needs besides Combined.
 GUIDES = (Pass.ALBEDO, Pass.DENOISING_NORMAL)
 
 
 class Cleaner:
-    """Denoises what a session has now; leaving the with statement gives it up."""
+    """Denoises a session's current picture; leaving the with statement cancels the work."""
 
     def __init__(self, session):
         self._arguments = [session.read(source) for source in (Pass.COMBINED, *GUIDES)]
@@ -32,7 +32,7 @@ class Cleaner:
         return not self._thread.is_alive()
 
     def image(self):
-        """Once it is over; raises what went wrong."""
+        """Return the denoised image after is_over; raise the error if denoising failed."""
         if self._error is not None:
             raise self._error
         return self._image

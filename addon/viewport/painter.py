@@ -1,7 +1,8 @@
-"""Builds the scene that a view wants and renders what it shows, ever finer. Knows no bpy data.
+"""Building of a view's scene and progressive rendering of the view. No bpy data.
 
-The library works in threads of its own. Here nothing waits for it: step() goes on as far as it can, in the thread that calls
-it. Blender reads contexts of scripts without Python's lock in places, so a thread of Python's would end it now and then.
+The library works in threads of its own, and the painter never waits for it: step() does the work that is possible without
+waiting, in the calling thread. There is no Python thread, since Blender accesses script contexts without Python's lock in
+places and a thread can then crash it.
 """
 
 import dataclasses
@@ -22,48 +23,48 @@ from ..measure.schedule import Schedule, TimeShare
 from .cleaner import GUIDES, Cleaner
 from .sizes import PixelSizes
 
-# Seconds that work may take before what is wanted later ends it: a view that moves all the time must show something, too.
+# Seconds of work that a later request does not interrupt, so that a view in constant motion shows something too.
 _BRIEF = 0.25
-# Of copying a scene into the library, between two other things that Blender does.
+# Seconds of copying a scene into the library before Blender gets control again.
 _PIECE = 0.02
-# Of the picture that refines: seconds between two that are shown, and the share of the time for showing and for denoising.
+# While a picture refines: least seconds between updates, and the share of the time for showing and for denoising.
 _SHOW_EVERY, _SHOW_SHARE = 0.15, 0.1
 _DENOISE_EVERY, _DENOISE_SHARE = 0.3, 0.5
 
 
 class Wanted(NamedTuple):
-    contents: SceneSnapshot  # another object is another scene; its camera has no meaning
+    contents: SceneSnapshot  # compared by identity; its camera is ignored
     settings: Settings
     view: View
-    finest: int  # side of a pixel in the region's
+    finest: int  # side of a pixel in pixels of the region
     coarsest: int
     denoising: bool
 
 
 class Picture(NamedTuple):
-    image: np.ndarray  # (height, width, 4), premultiplied, scene-linear, row 0 is the bottom one
+    image: np.ndarray  # (height, width, 4), premultiplied, scene-linear, row 0 at the bottom
     wanted: Wanted
-    size: int  # side of its pixels in the region's
+    size: int  # side of its pixels in pixels of the region
     samples: int
     error: PictureError | None
     denoised: bool
 
 
 class Painter:
-    """picture is the newest one; failure is why there is none of what is wanted; messages are lines of the library's."""
+    """picture: the newest Picture; failure: why the wanted view cannot be rendered; messages: lines of the library."""
 
     def __init__(self):
         self.picture = None
         self.failure = ""
         self.messages = ()
-        self.waits = False  # for a render of others: nothing is refined beyond the sample that is being made
+        self.waits = False  # during another render: finish the current range only
         self._wanted = self._served = None
         self._scene = self._contents = None
         self._sizes = PixelSizes()
-        self._work = None  # a generator, which yields where it would have to wait
-        self._works_on = None  # the Wanted that it serves
+        self._work = None  # a generator that yields where it would have to wait
+        self._works_on = None  # the Wanted that _work serves
         self._began = 0.0
-        self._brief = False  # whether it may be finished, if it is soon, though another thing is wanted by now
+        self._brief = False  # whether _work may still finish within _BRIEF after a newer request
 
     def want(self, wanted):
         self._wanted = wanted
@@ -77,7 +78,7 @@ class Painter:
         return self.is_busy and self._contents is not self._wanted.contents
 
     def step(self):
-        """Does what can be done now."""
+        """Do all work that is possible without waiting."""
         try:
             while self.is_busy and self._advance():
                 pass
@@ -90,13 +91,13 @@ class Painter:
             self._fail(f"{type(error).__name__}: {error}")
 
     def close(self):
-        """Ends all work and frees what the library holds."""
+        """End all work and free the library's scene."""
         self._stop()
         self._drop()
         self._wanted = self._served = None
 
     def _advance(self):
-        """Whether there is more to do at once."""
+        """Take one step of the work; return whether another step is possible without waiting."""
         if self._work is None:
             self._begin(self._wanted)
         elif self._is_late():
@@ -115,7 +116,7 @@ class Painter:
         self._work = self._refine(wanted) if self._contents is wanted.contents else self._build(wanted)
 
     def _is_late(self):
-        """Whether what is being done is not wanted any more."""
+        """Whether the current work is obsolete and must end."""
         now, then = self._wanted, self._works_on
         building = self._contents is not then.contents
         if now is then or building and now.contents is then.contents:
@@ -139,7 +140,7 @@ class Painter:
             self._scene = None
 
     def _build(self, wanted):
-        # Two scenes at once would take twice the memory.
+        # Free the old scene first: two scenes would take twice the memory.
         self._drop()
         scene, contents = Scene(), wanted.contents
         try:
@@ -172,7 +173,7 @@ class Painter:
         self._served, self.failure = wanted, ""
 
     def _render(self, wanted, size, samples):
-        """The view with pixels of that size."""
+        """Render the view with pixels of that size."""
         denoising = wanted.denoising and size == wanted.finest
         passes = (Pass.COMBINED, *GUIDES) if denoising else (Pass.COMBINED,)
         settings = dataclasses.replace(wanted.settings, samples=samples, passes=passes)
@@ -186,9 +187,9 @@ class Painter:
                 while not (progress := schedule.wait(0.0)).finished:
                     yield
                 if schedule.samples == 1:
-                    # Without what every picture takes, however coarse.
+                    # progress.seconds excludes the constant cost of each picture.
                     self._sizes.learn(camera.width * camera.height, progress.seconds)
-                # To ask for the error takes as long as to draw some pictures.
+                # Reading the error takes as long as drawing several pictures: do it each time the samples have doubled.
                 if schedule.samples >= 2 * looked or samples > 1 and schedule.over:
                     looked = schedule.samples
                     schedule.look()
@@ -203,7 +204,7 @@ class Painter:
                     yield
 
     def _clean(self, session):
-        """The picture without its noise; None, with a message, where that fails."""
+        """Return the denoised picture; None, with a message, if denoising fails."""
         try:
             with Cleaner(session) as cleaner:
                 while not cleaner.is_over:

@@ -1,4 +1,4 @@
-"""One 3D view in Rendered shading: what Blender tells of its scene goes to a painter, and the newest picture to the screen."""
+"""One 3D view in Rendered shading: passes Blender's updates to a painter and draws the newest picture."""
 
 import logging
 import weakref
@@ -22,12 +22,12 @@ from .canvas import Canvas
 from .painter import Painter, Wanted
 from .sizes import coarsest
 
-# What the newest export for a view of each scene could not show as it is: Messages.
+# Messages of the newest export for a view, by scene.
 last_messages = ByScene()
 
 _TICK = 0.005  # seconds between two steps
 _MANY = 1 << 24
-# Of settings, what the scene in the library is built by.
+# Settings that affect the building of the library's scene.
 _BUILT_BY = ("accelerator", "threads")
 _NO_CAMERA = snapshot.Camera()
 _FILTERS = tuple(name for name in bpy.types.SpaceView3D.bl_rna.properties.keys() if name.startswith("show_object_viewport"))
@@ -36,23 +36,23 @@ _open = weakref.WeakSet()
 
 
 class Viewport:
-    """Belongs to one engine of Blender's, and ends with it: nothing else may hold it for long."""
+    """The view of one RenderEngine instance, which holds the only lasting reference to it."""
 
     def __init__(self, engine):
         self._engine = weakref.ref(engine)
         self._parts, self._canvas = Parts(), Canvas()
         self._contents = self._wanted = None
         self._sight = None
-        self._failure = self._blindness = ""  # why nothing could be read of the scene, of the camera
-        self._messages = Messages()  # those in last_messages
-        self._library = None  # what of the painter's messages is among them
-        self._drawn = None  # the Picture that is on the screen, and why there is none of what is wanted
+        self._failure = self._blindness = ""  # why the export of the scene, or of the camera, failed
+        self._messages = Messages()  # the entry in last_messages
+        self._library = None  # the painter's messages that are already in _messages
+        self._drawn = None  # (Picture, failure) on the screen
         self.painter = Painter()
         weakref.finalize(self, self.painter.close)
         _open.add(self)
 
     def update(self, context, depsgraph):
-        """Reads what has changed."""
+        """Export the changes of the depsgraph."""
         try:
             self._export(context, depsgraph)
             self._failure = ""
@@ -66,7 +66,7 @@ class Viewport:
         engine = self._engine()
         sight = _sight(context.space_data)
         if self._contents is None or sight != self._sight:
-            # Blender tells of no update where a view starts, or shows other objects than before.
+            # Blender sends no update when a view starts, or when its own filters change.
             self.update(context, depsgraph)
         view = self._view(context, depsgraph)
         if self._contents is not None and view is not None:
@@ -79,7 +79,7 @@ class Viewport:
         _watch()
 
     def step(self):
-        """Goes on, and has the view drawn where there is something new. Whether there may be more to come."""
+        """Let the painter work and request a redraw if there is a new picture; return whether work is left."""
         self.painter.step()
         if not self.painter.is_building and self.painter.messages is not self._library:
             self._library = self.painter.messages
@@ -102,7 +102,7 @@ class Viewport:
             redraw.properties()
 
     def _tell(self, messages):
-        """Adds what is not there yet: each drawing meets the same again."""
+        """Add new messages only: each redraw repeats the same ones."""
         known = {message.text for message in self._messages.told()}
         new = [message for message in messages.told() if message.text not in known]
         for message in new:
@@ -116,7 +116,7 @@ class Viewport:
             self._contents = contents
 
     def _view(self, context, depsgraph):
-        """The part of the region to be rendered and its camera; None where there is none."""
+        """Return the View to render; None if the export of the camera fails or no pixel is visible."""
         told = Messages()
         try:
             view = export_view(context.region, context.region_data, context.space_data, depsgraph, told)
@@ -129,7 +129,7 @@ class Viewport:
 
     def _want(self, engine, depsgraph, view):
         own = depsgraph.scene.lancer
-        # Of add-ons' settings Blender tells no update.
+        # Blender sends no update for properties of add-ons: read them at each redraw.
         settings = export_settings(depsgraph, (Pass.COMBINED,), None, Messages())
         self._set_contents(self._contents, settings)
         settings = settings.replaced(
@@ -171,12 +171,12 @@ class Viewport:
 
 
 def _same(a, b):
-    """Whether two Wanted ask for the same picture."""
+    """Whether two Wanted request the same picture."""
     return a.contents is b.contents and a[1:] == b[1:]
 
 
 def _sight(space):
-    """What a view leaves out of the scene by itself."""
+    """Return a view's own filters of objects."""
     return space.local_view is not None, *(getattr(space, name) for name in _FILTERS)
 
 
@@ -196,7 +196,7 @@ def _tick():
 
 @persistent
 def _forget(*_):
-    """Another file's scenes may have the same names."""
+    """Drop all messages before another file is loaded."""
     last_messages.clear()
 
 

@@ -107,7 +107,7 @@ def test_blender_saves_what_a_maintainer_needs(which, tmp_path):
     told = [(message["text"], message["severity"]) for message in facts["messages"]]
     assert told == [("object 'Cube': material slot 1 is empty, grey is used", "HINT")] and len(facts["exported"]) == 1
     assert facts["statistics"]["error"] > 0.0 and facts["statistics"]["accuracy"]
-    assert "It holds the geometry and the pictures of the scene" in got["console"]
+    assert "It contains the geometry and the images of the scene" in got["console"]
     for name, word in (("without.zip", "without the scene"), ("failed.zip", "without the scene: ")):
         with pytest.raises(SnapshotError, match="without a scene"):
             bug_report.load(str(tmp_path / name))

@@ -99,16 +99,16 @@ def test_panels(case):
     uses = shown["LANCER_RENDER_PT_uses"]
     assert "lancer.measure_features" in uses["plain"] and "2 objects are meshes" in uses["rendered"]
     assert [text for text in uses["rendered"] if text.startswith(("Geometry", "Acceleration", "Textures", "Film"))]
-    assert "3 materials use refraction" in uses["measured"] and "There was no time for 1 more" in uses["measured"]
+    assert "3 materials use refraction" in uses["measured"] and "Not measured for lack of time: 1 more" in uses["measured"]
     assert "without it this frame would take 22 % less time for the same samples" in uses["measured"]
     assert uses["measured"].count("3 materials use refraction") == 1
-    assert "No feature would surely save 3 % of the time" in uses["measured, nothing found"]
+    assert "No feature would save 3 % of the time with certainty" in uses["measured, nothing found"]
     assert any("50 %" in text for text in uses["measuring"]) and "lancer.measure_features" not in uses["measuring"]
     sampling = shown["LANCER_RENDER_PT_sampling"]
     assert "lancer.measure_quality" in sampling["plain"] and "lancer.measure_quality" in sampling["measuring"]
     assert sampling["measuring quality"][-2:] == ["Measuring, 25 % (Esc stops)", "All pixels alike"]
     assert "lancer.measure_quality" not in sampling["measuring quality"]
-    words = (": about ", ": at most ", ": the time cannot be told")
+    words = (": about ", ": at most ", ": the time is unknown")
     told = [text.split(":")[0] for text in sampling["quality"] if any(word in text for word in words)]
     assert told == ["Draft", "Good", "Final", "As set", "Classic, 1 sample"]
     old = "Measured before the last changes"

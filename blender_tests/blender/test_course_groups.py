@@ -161,7 +161,7 @@ def test_the_shader_editor_adds_models(case):
         "Minnaert",
     ]
     assert got["menu of Cycles"] == []
-    assert "inside of a model" in str(got["inside"])
+    assert "inside a model's group" in str(got["inside"])
 
 
 def test_adding_a_model_is_one_step_to_undo(case):

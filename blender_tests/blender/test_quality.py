@@ -34,7 +34,7 @@ def test_what_cannot_be_told_is_not_told(which, tmp_path):
     assert {
         "sure": "about 60 s",
         "wide": "about 60 s, 20 s to 5.0 min",
-        "untold": "the time cannot be told",
+        "untold": "the time is unknown",
         "short": "at most 9.0 s",
     } == {name: text for name, text in blenders.run(which, tmp_path, "quality_cases", "words").items() if name != "console"}
 
