@@ -29,6 +29,8 @@ MINUTES ?= 10
 DIR ?=
 CLONES ?=
 PX ?=
+SCENES ?=
+SEED ?=
 
 python := $(VENV)/bin/python
 core := build/core
@@ -43,7 +45,7 @@ logged = $(2) >$(1) 2>&1 || { cat $(1); exit 1; }
 platforms := linux-x64 linux-arm64 windows-x64 macos-arm64 macos-x64
 zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
-.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff features parity corpus course sanitize fuzz addon addons bindings format clean help
+.PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff features parity differ corpus course sanitize fuzz addon addons bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
 .PHONY: python-run python-test python-dev python-bench python-charts python-zig core-programs core-tests
 
@@ -125,6 +127,10 @@ course: packages-test python-test build ## measure the course's texts, chapter b
 parity: packages-run python-run build ## compare with Cycles, scene by scene: make parity [ONLY='lights*'] [QUICK=1] [BLENDER=blender]
 	@$(if $(BLENDER),"$(BLENDER)" -b --factory-startup --python-exit-code 3 -P $(tools) --,$(python) $(tools)) parity.run \
 	  $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick)
+
+differ: packages-run python-run build ## find what differs from Cycles without a message: make differ [SCENES=200] [SEED=1] [BLENDER=blender] [QUICK=1]
+	@$(python) $(tools) differ.run $(if $(SCENES),--scenes $(SCENES)) $(if $(SEED),--seed $(SEED)) \
+	  $(if $(BLENDER),--blender "$(BLENDER)") $(if $(QUICK),--quick)
 
 corpus: packages-run python-run build ## render public files by Lancer and by Cycles: make corpus [DIR=folder] [CLONES=folder] [ONLY='*'] [QUICK=1] [PX=320] [README=1]
 	@$(python) $(tools) corpus.run $(if $(DIR),--folder "$(DIR)") $(if $(CLONES),--clones "$(CLONES)") \

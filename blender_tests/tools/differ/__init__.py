@@ -1,0 +1,1 @@
+"""Random small scenes by Lancer and by Cycles, to find what differs without a message: `make differ`."""

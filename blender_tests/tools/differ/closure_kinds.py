@@ -1,0 +1,83 @@
+"""The shaders and displacements of random graphs, as node_kinds has the rest."""
+
+from .node_kinds import NORMAL, C, F, Kind
+
+SHADERS = {
+    "ShaderNodeBsdfDiffuse": Kind({"Color": C, "Roughness": F, "Normal": NORMAL}, {"BSDF": "s"}, weight=5.0),
+    "ShaderNodeBsdfPrincipled": Kind(
+        {
+            "Base Color": C, "Metallic": F, "Roughness": ("f", 0.15, 1.0), "IOR": ("f", 1.0, 2.0), "Alpha": F,
+            "Diffuse Roughness": F, "Specular IOR Level": F, "Specular Tint": C, "Anisotropic": F,
+            "Anisotropic Rotation": F, "Transmission Weight": F, "Coat Weight": F, "Coat Roughness": ("f", 0.15, 1.0),
+            "Coat IOR": ("f", 1.0, 2.0), "Coat Tint": C, "Sheen Weight": F, "Sheen Roughness": ("f", 0.15, 1.0),
+            "Sheen Tint": C, "Emission Color": C, "Emission Strength": F, "Normal": NORMAL, "Coat Normal": NORMAL,
+            "Tangent": NORMAL,
+        },
+        {"BSDF": "s"},
+        {"distribution": ("GGX", "MULTI_GGX")},
+        5.0,
+        special=("sparse",),
+    ),
+    "ShaderNodeBsdfGlossy": Kind(
+        {
+            "Color": C, "Roughness": ("f", 0.15, 0.9), "Anisotropy": ("f", -0.9, 0.9), "Rotation": F, "Normal": NORMAL,
+            "Tangent": NORMAL,
+        },
+        {"BSDF": "s"},
+        {"distribution": ("GGX", "GGX", "BECKMANN", "MULTI_GGX", "ASHIKHMIN_SHIRLEY")},
+        2.0,
+        special=("sparse",),
+    ),
+    "ShaderNodeBsdfMetallic": Kind(
+        {
+            "Base Color": C, "Edge Tint": C, "IOR": ("v", 0.5, 3.0), "Extinction": ("v", 0.5, 4.0),
+            "Roughness": ("f", 0.15, 0.9), "Anisotropy": F, "Rotation": F, "Normal": NORMAL, "Tangent": NORMAL,
+        },
+        {"BSDF": "s"},
+        {"distribution": ("GGX", "BECKMANN", "MULTI_GGX"), "fresnel_type": ("PHYSICAL_CONDUCTOR", "F82")},
+        special=("sparse",),
+    ),
+    "ShaderNodeBsdfGlass": Kind(
+        {"Color": C, "Roughness": ("f", 0.0, 0.6), "IOR": ("f", 1.0, 1.8), "Normal": NORMAL},
+        {"BSDF": "s"},
+        {"distribution": ("GGX", "BECKMANN", "MULTI_GGX")},
+        0.7,
+    ),
+    "ShaderNodeBsdfRefraction": Kind(
+        {"Color": C, "Roughness": ("f", 0.0, 0.6), "IOR": ("f", 1.0, 1.8), "Normal": NORMAL},
+        {"BSDF": "s"},
+        {"distribution": ("GGX", "BECKMANN")},
+        0.7,
+    ),
+    "ShaderNodeBsdfSheen": Kind(
+        {"Color": C, "Roughness": ("f", 0.15, 1.0), "Normal": NORMAL},
+        {"BSDF": "s"},
+        {"distribution": ("ASHIKHMIN", "MICROFIBER")},
+    ),
+    "ShaderNodeBsdfTranslucent": Kind({"Color": C, "Normal": NORMAL}, {"BSDF": "s"}),
+    "ShaderNodeBsdfTransparent": Kind({"Color": C}, {"BSDF": "s"}),
+    "ShaderNodeEmission": Kind({"Color": C, "Strength": ("f", 0.0, 2.0)}, {"Emission": "s"}, weight=2.0),
+    "ShaderNodeHoldout": Kind({}, {"Holdout": "s"}, weight=0.3),
+    "ShaderNodeMixShader": Kind({"Fac": F, "Shader": ("s", 0, 0), "Shader_001": ("s", 0, 0)}, {"Shader": "s"}, weight=3.0),
+    "ShaderNodeAddShader": Kind({"Shader": ("s", 0, 0), "Shader_001": ("s", 0, 0)}, {"Shader": "s"}),
+}  # fmt: skip
+
+DISPLACEMENTS = {
+    "ShaderNodeDisplacement": Kind(
+        {"Height": F, "Midlevel": F, "Scale": ("f", 0.0, 0.3), "Normal": NORMAL},
+        {"Displacement": "v"},
+        {"space": ("OBJECT", "WORLD")},
+        always=("Height",),
+    ),
+    "ShaderNodeVectorDisplacement": Kind(
+        {"Vector": C, "Midlevel": F, "Scale": ("f", 0.0, 0.3)},
+        {"Displacement": "v"},
+        {"space": ("TANGENT", "OBJECT", "WORLD")},
+        always=("Vector",),
+    ),
+}
+# Closures that are the same mathematics in both engines; others have tables in one of them.
+EXACT = {
+    "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfTranslucent", "ShaderNodeBsdfTransparent", "ShaderNodeEmission",
+    "ShaderNodeHoldout", "ShaderNodeMixShader", "ShaderNodeAddShader",
+}  # fmt: skip

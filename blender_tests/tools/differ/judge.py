@@ -1,0 +1,69 @@
+"""One scene by both engines: whether they differ, as `make parity` judges, and what Lancer has told of it."""
+
+import time
+
+from addon.engine import results
+from addon.messages.severity import Severity
+from scenes.parity import figures
+from scenes.parity.catalogue import Case
+from scenes.parity.figures import Limit
+from tools.parity import contest
+
+from .builder import build
+
+_SAMPLES = 32  # of each half of each engine, at first
+# Cycles keeps the data of one sample up to 0.005 pixels off the middle; see scenes/parity/passes_data.py.
+_DATA_LIMIT = Limit(0.005, 2e-3)
+
+
+def make_case(records):
+    frame = next((record.fields for record in records if record.verb == "frame"), {})
+    passes = tuple(frame.get("passes", ("Combined",)))
+    fields = {"passes": passes, "dark": (*passes, "Alpha"), "size": tuple(frame.get("size", (48, 32))), "samples": _SAMPLES}
+    fields |= {name: frame[name] for name in ("bounces", "transparent_bounces", "filter_width") if name in frame}
+    kind = frame.get("kind", "LOBES")
+    if kind == "DATA":
+        fields |= {"kind_name": "PIXELS", "limit": _DATA_LIMIT, "filter_width": 0.01, "samples": _SAMPLES // 2}
+    else:
+        fields["kind_name"] = kind
+    return Case("scene", "differ", lambda scene: _build(scene, records), **fields)
+
+
+def _build(scene, records):
+    # What the check before a render finds is of a scene's faults, which both engines show.
+    scene.lancer.use_check = False
+    # Small pictures, and several workers beside one another.
+    scene.render.threads_mode, scene.render.threads = "FIXED", 1
+    build(scene, records)
+
+
+def judge(records, folder, most_samples, first_seed=1):
+    """{"verdict": pass, fail, noise or error; "note"; "figures": of the worst pass; "told": messages of another picture}"""
+    started = time.perf_counter()
+    results.last_messages.clear()
+    case = make_case(records)
+    outcome = contest.run(case, folder, most_samples=most_samples, first_seed=first_seed)
+    answer = {
+        "verdict": outcome.verdict,
+        "note": outcome.note,
+        "samples": outcome.samples,
+        "told": _told(),
+        "engines": outcome.seconds,
+    }
+    if outcome.worst is not None:
+        numbers = figures.decisive(outcome.parts[outcome.worst][0], case.limits)
+        answer |= {"pass": outcome.worst, "mean": numbers.mean, "p99": numbers.p99, "noise": numbers.noise_mean}
+        answer["text"] = f"{outcome.worst}: mean {numbers.mean:.3%} of {case.limits.mean:.2%}, worst block {numbers.p99:.3%}"
+        answer["text"] += f" of {case.limits.p99:.2%}, noise {numbers.noise_mean:.3%}; {outcome.samples} samples"
+    else:
+        answer["text"] = outcome.note
+    return {**answer, "seconds": time.perf_counter() - started}
+
+
+def _told():
+    """Sentences that say that the picture is another than Cycles'."""
+    messages = results.last_messages.get("Scene") or ()
+    if not messages:
+        return []
+    # A picture that is missing is as magenta in Cycles.
+    return [item.text for item in messages.told() if item.key or Severity.DIFFERENT <= item.severity < Severity.WRONG]

@@ -1,0 +1,83 @@
+"""Random cameras, films, layers and passes."""
+
+import math
+
+from .record import Record
+
+_LIGHT_PASSES = (
+    "Diffuse Direct", "Diffuse Indirect", "Diffuse Color", "Glossy Direct", "Glossy Indirect", "Glossy Color",
+    "Transmission Direct", "Transmission Indirect", "Transmission Color", "Emission", "Environment", "Ambient Occlusion",
+    "Mist",
+)  # fmt: skip
+_DATA_PASSES = ("Depth", "Position", "Normal", "UV", "Object Index", "Material Index")
+_PANORAMAS = (
+    "EQUIRECTANGULAR", "FISHEYE_EQUIDISTANT", "FISHEYE_EQUISOLID", "FISHEYE_LENS_POLYNOMIAL", "MIRRORBALL",
+    "CENTRAL_CYLINDRICAL",
+)  # fmt: skip
+
+
+def frame(dice):
+    """How the scene is looked at: (fields of the settings record, other records)."""
+    film, layer = {}, {}
+    frame = {
+        "size": [48, 32],
+        "bounces": dice.pick({0: 2, 1: 4, 2: 2, 3: 1}),
+        "transparent_bounces": dice.pick((8, 8, 8, 1, 0)),
+    }
+    is_data = dice.chance(0.15)
+    if is_data:
+        frame |= {"kind": "DATA", "passes": dice.some(_DATA_PASSES, 0.5) or ["Normal"]}
+    else:
+        frame["passes"] = ["Combined", *(dice.some(_LIGHT_PASSES, 0.4) if dice.chance(0.3) else ())]
+        if dice.chance(0.2):
+            frame["filter_width"] = dice.number(0.8, 2.0)
+    if dice.chance(0.2):
+        film["film_transparent"] = True
+    # Blender 5 cannot write two passes of pixels that are not square.
+    if dice.chance(0.06) and len(frame["passes"]) == 1:
+        film["pixel_aspect_y"] = 1.5
+    if dice.chance(0.06):
+        film |= {"use_border": True, "border_min_x": 0.1, "border_max_x": 0.8, "border_min_y": 0.2, "border_max_y": 0.9}
+    if dice.chance(0.04):
+        layer["material_override"] = "@Material 1"
+    if dice.chance(0.04):
+        layer["use_sky"] = False
+    if dice.chance(0.03):
+        layer["use_solid"] = False
+    return frame, [Record("film", "Film", film), Record("layer", "Layer", layer), *_camera(dice, is_data)]
+
+
+def _camera(dice, is_data):
+    turn, height = dice.number(-0.9, 0.9), dice.number(0.5, 3.5)
+    location = [round(5 * math.sin(turn), 3), round(-5 * math.cos(turn), 3), height]
+    settings, lens = {"lens": dice.number(35.0, 60.0)}, {}
+    kind = dice.pick({"PERSP": 8, "ORTHO": 1, "PANO": 1})
+    if kind != "PERSP":
+        settings |= {"type": kind, "ortho_scale": dice.number(3.0, 6.0)}
+    if dice.chance(0.15):
+        settings |= {"shift_x": dice.number(-0.2, 0.2), "shift_y": dice.number(-0.2, 0.2)}
+    if dice.chance(0.1):
+        settings |= {"clip_start": dice.number(0.1, 4.5), "clip_end": dice.number(5.0, 9.0)}
+    if dice.chance(0.1):
+        settings |= {"sensor_fit": dice.pick(("HORIZONTAL", "VERTICAL"))}
+    fields = {"settings": settings}
+    if not is_data and dice.chance(0.1):
+        lens = {"use_dof": True, "focus_distance": dice.number(3.0, 6.0), "aperture_fstop": dice.number(0.2, 2.0)}
+        if dice.chance(0.5):
+            lens |= {
+                "aperture_blades": dice.whole(3, 6),
+                "aperture_rotation": dice.number(0, 2),
+                "aperture_ratio": dice.number(0.7, 1.5),
+            }
+        fields["dof"] = lens
+    if kind == "PANO":
+        fields["panorama"] = {
+            "panorama_type": dice.pick(_PANORAMAS),
+            "fisheye_fov": dice.number(1.0, 3.0),
+            "fisheye_lens": dice.number(8.0, 20.0),
+        }
+        location = [round(x / 2, 3) for x in location]
+    place = {"data": "@Camera", "location": location, "target": [dice.number(-0.3, 0.3), 0.0, dice.number(0.7, 1.1)]}
+    if dice.chance(0.08):
+        place["scale"] = [dice.number(0.5, 2.0)] * 3
+    return [Record("camera", "Camera", fields), Record("object", "Camera object", place)]

@@ -1,0 +1,213 @@
+"""Random node trees: from the output upstream, each input left alone, set, or linked to a node that gives a value for it."""
+
+from . import closure_kinds, node_kinds
+from .record import Record
+
+UV_MAPS = ("UVMap", "Second", "")
+ATTRIBUTES = ("Number", "Whole", "Vector", "Color", "Byte", "Flag", "Pair", "UVMap", "Missing")
+COLORS = ("Color", "Byte")
+_ALPHAS = (1.0, 1.0, 0.5, 0.0)
+_DEEPEST = 4
+
+
+class Trees:
+    """Writes records of nodes; groups are written before the trees that use them."""
+
+    def __init__(self, dice, images, objects):
+        self.dice = dice
+        self.images, self.objects = images, objects
+        self.records = []
+        self._count = 0
+        self._groups, self._group_count = [], 0
+        self.budget = 0  # nodes that this tree may still have
+
+    def material(self, tree):
+        """The tree of a material: surface, and now and then displacement."""
+        dice = self.dice
+        self.budget = dice.whole(1, 12)
+        inputs = {"Surface": self._shader(tree, 0)}
+        if dice.chance(0.03):
+            inputs["Surface"] = self._value(tree, "c", 1)
+        if dice.chance(0.08):
+            self.budget += 3
+            inputs["Displacement"] = self._node(
+                tree, dice.pick(list(closure_kinds.DISPLACEMENTS)), "v", 1, closure_kinds.DISPLACEMENTS
+            )
+        self._write(tree, "ShaderNodeOutputMaterial", {}, inputs)
+
+    def world(self, tree, image=None):
+        """A background of one colour, of a picture, or of computed nodes."""
+        dice = self.dice
+        color = dice.color(0.2, 0.9)
+        if image is not None:
+            props = {"image": f"@{image}", "projection": dice.pick(("EQUIRECTANGULAR", "EQUIRECTANGULAR", "MIRROR_BALL"))}
+            inputs = {}
+            if dice.chance(0.6):
+                place = self._write(tree, "ShaderNodeTexCoord", {}, {})
+                turned = {"Vector": [place, "Generated"], "Rotation": dice.vector(-3.0, 3.0)}
+                if dice.chance(0.3):
+                    turned["Scale"] = dice.vector(0.5, 2.0)
+                inputs = {"Vector": [self._write(tree, "ShaderNodeMapping", {}, turned), "Vector"]}
+            color = [self._write(tree, "ShaderNodeTexEnvironment", props, inputs), "Color"]
+        elif dice.chance(0.15):
+            self.budget = 4
+            color = self._value(tree, "c", 2)
+        background = self._write(tree, "ShaderNodeBackground", {}, {"Color": color, "Strength": dice.number(0.2, 1.2)})
+        self._write(tree, "ShaderNodeOutputWorld", {}, {"Surface": [background, "Background"]})
+
+    def light(self, tree):
+        """Constant light: colours and numbers that ask for no place."""
+        dice = self.dice
+        color = dice.color(0.2, 1.0)
+        if dice.chance(0.5):
+            warm = self._write(tree, "ShaderNodeBlackbody", {}, {"Temperature": dice.number(2000.0, 9000.0)})
+            color = [warm, "Color"]
+        emission = self._write(tree, "ShaderNodeEmission", {}, {"Color": color, "Strength": dice.number(0.2, 2.0)})
+        self._write(tree, "ShaderNodeOutputLight", {}, {"Surface": [emission, "Emission"]})
+
+    # ---- nodes ----
+
+    def _write(self, tree, kind, props, inputs, mute=False, **more):
+        self._count += 1
+        name = f"{tree}/{self._count}"
+        fields = {"tree": tree, "kind": kind, "props": props, "inputs": inputs, **more}
+        if mute:
+            fields["mute"] = True
+        self.records.append(
+            Record("node", name, {key: value for key, value in fields.items() if value or key in ("tree", "kind")})
+        )
+        return f"@{name}"
+
+    def _shader(self, tree, depth):
+        kinds = {name: kind.weight for name, kind in closure_kinds.SHADERS.items()}
+        if depth > 2 or self.budget <= 2:
+            kinds = {
+                name: weight for name, weight in kinds.items() if name not in ("ShaderNodeMixShader", "ShaderNodeAddShader")
+            }
+        return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), "s", depth, closure_kinds.SHADERS))
+
+    def _value(self, tree, wanted, depth):
+        """A link to a node that gives a value."""
+        if self.dice.chance(0.08) and depth < 3:
+            return self._passed_on(tree, self._group(tree, wanted, depth))
+        kinds = {name: kind.weight for name, kind in node_kinds.VALUES.items()}
+        return self._passed_on(tree, self._node(tree, self.dice.pick(kinds), wanted, depth, node_kinds.VALUES))
+
+    def _passed_on(self, tree, link):
+        """The link, now and then by way of a reroute."""
+        if self.dice.chance(0.05):
+            return [self._write(tree, "NodeReroute", {}, {"0": link}), "0"]
+        return link
+
+    def _node(self, tree, name, wanted, depth, kinds):
+        """A link to an output of a new node of the kind."""
+        dice, kind = self.dice, kinds[name]
+        self.budget -= 1
+        props = {key: dice.pick(choices) for key, choices in kind.props.items()}
+        outputs = [key for key, type_ in kind.outputs.items() if type_ == wanted and dice.chance(0.7)] or list(kind.outputs)
+        output = dice.pick(outputs)
+        if "data_type" in props and name == "ShaderNodeMix":
+            output = {"RGBA": "Result_Color", "FLOAT": "Result_Float", "VECTOR": "Result_Vector"}[props["data_type"]]
+        if name == "ShaderNodeMapRange":
+            output = "Result" if props["data_type"] == "FLOAT" else "Vector"
+        more = {}
+        for special in kind.special:
+            self._special(special, props, more)
+        inputs = {}
+        for key, (type_, low, high) in kind.inputs.items():
+            value = self._input(tree, kind, key, type_, low, high, depth)
+            if value is not None:
+                inputs[key] = value
+        return [self._write(tree, name, props, inputs, mute=wanted != "s" and dice.chance(0.04), **more), output]
+
+    def _input(self, tree, kind, key, type_, low, high, depth):
+        """A value for an input: constant, a link, or None for the node's own."""
+        dice = self.dice
+        can_link = self.budget > 0 and depth < _DEEPEST
+        if type_ == "s":
+            return self._shader(tree, depth + 1) if dice.chance(0.93) else None
+        if type_ == "n":
+            return self._at(tree, dice.pick(node_kinds.NORMALS), "v", depth) if can_link and dice.chance(0.12) else None
+        if type_ == "t":
+            return self._at(tree, dice.pick(node_kinds.PLACES), "v", depth) if can_link and dice.chance(0.6) else None
+        share = 0.85 if key in kind.always else 0.25
+        if can_link and "constant" not in kind.special and dice.chance(0.4 * share if "sparse" in kind.special else share):
+            return self._value(tree, type_, depth + 1)
+        if dice.chance(0.75 if "sparse" in kind.special else 0.15):
+            return None
+        if type_ == "f":
+            return dice.number(low, high)
+        return [dice.number(low, high) for _ in range(3)]
+
+    def _at(self, tree, name, wanted, depth):
+        return self._passed_on(tree, self._node(tree, name, wanted, depth + 1, node_kinds.VALUES))
+
+    def _group(self, tree, wanted, depth):
+        """A link to a group of a few nodes and its input; groups of one kind of output are used again."""
+        dice = self.dice
+        known = [group for group in self._groups if group[1] == wanted]
+        if known and dice.chance(0.4):
+            name, _, source = dice.pick(known)
+        else:
+            self._group_count += 1
+            name, source = f"Group {self._group_count}", dice.pick("fcv")
+            kept, self.records = self.records, []
+            budget, self.budget = self.budget, dice.whole(1, 4)
+            inside = self._value(name, wanted, 2)
+            read = self._write(name, "NodeGroupInput", {}, {})
+            mixed = self._write(
+                name,
+                "ShaderNodeMixRGB",
+                {"blend_type": "MIX"},
+                {"Fac": dice.number(), "Color1": inside, "Color2": [read, "In"]},
+            )
+            self._write(name, "NodeGroupOutput", {}, {"Out": [mixed, "Color"]})
+            group = Record("group", name, {"inputs": {"In": source}, "outputs": {"Out": wanted}})
+            self.records = [group, *self.records, *kept]
+            self.budget = budget
+            # It is known from here on: a group cannot hold itself.
+            self._groups.append((name, wanted, source))
+        value = self._value(tree, source, depth + 1) if self.budget > 0 and dice.chance(0.6) else None
+        inputs = {} if value is None else {"In": value}
+        return [self._write(tree, "ShaderNodeGroup", {"node_tree": f"@{name}"}, inputs, mute=dice.chance(0.05)), "Out"]
+
+    # ---- settings that are no choice ----
+
+    def _special(self, special, props, more):
+        dice = self.dice
+        if special == "value":
+            more["output"] = dice.number(-0.5, 1.5)
+        elif special == "color":
+            more["output"] = dice.color(0.0, 1.0)
+        elif special == "normal":
+            more["output"] = dice.vector()
+        elif special == "image":
+            if self.images and dice.chance(0.97):
+                props["image"] = f"@{dice.pick(self.images)}"
+        elif special == "mapping":
+            if dice.chance(0.08):
+                more["mapping"] = {
+                    "vector_type": dice.pick(("POINT", "TEXTURE", "VECTOR", "NORMAL")),
+                    "translation": dice.vector(), "rotation": dice.vector(-2.0, 2.0), "scale": dice.vector(0.5, 2.0),
+                    "mapping_x": dice.pick("XYZ"), "mapping_y": dice.pick("XYZ"),
+                    "mapping_z": dice.pick(("X", "Y", "Z", "NONE")),
+                }  # fmt: skip
+        elif special == "object":
+            if self.objects and dice.chance(0.15):
+                props["object"] = f"@{dice.pick(self.objects)}"
+        elif special == "uv_map":
+            props["uv_map"] = dice.pick(UV_MAPS)
+        elif special == "attribute":
+            props["attribute_name"] = dice.pick(ATTRIBUTES)
+        elif special == "layer":
+            props["layer_name"] = dice.pick(COLORS)
+        elif special == "ramp":
+            places = sorted(dice.number() for _ in range(dice.whole(2, 4)))
+            more["ramp"] = {
+                "interpolation": dice.pick(("LINEAR", "LINEAR", "CONSTANT", "EASE", "CARDINAL", "B_SPLINE")),
+                "color_mode": dice.pick(("RGB", "RGB", "HSV", "HSL")),
+                "hue_interpolation": dice.pick(("NEAR", "FAR", "CW", "CCW")),
+                "elements": [[place, [*dice.color(0.0, 1.0), dice.pick(_ALPHAS)]] for place in places],
+            }
+        elif special == "curves":
+            more["curves"] = [[dice.number(0.2, 0.8), dice.number(0.1, 0.9)] for _ in range(dice.whole(1, 4))]
