@@ -12,7 +12,7 @@ from addon.bindings import structs
 from addon.bindings.abi import Pass
 from addon.bindings.npz import save_npz
 from addon.bindings.session import Session
-from addon.bindings.snapshot import Lobe, Material, Principled, SceneSnapshot, World
+from addon.bindings.snapshot import Light, Lobe, Material, Principled, SceneSnapshot, World
 
 
 @pytest.fixture
@@ -67,6 +67,21 @@ def test_a_loaded_snapshot_equals_the_saved_one(saved):
     assert loaded == rich()
     assert loaded.meshes[1].uvs.dtype == np.float32 and loaded.instances.matrices.dtype == np.float64
     assert loaded.meshes[0].normals is None
+
+
+def test_what_is_no_number_is_the_same_data():
+    """Arrays and numbers that are NaN at the same place; beside a number, or of another type, they differ."""
+    wild = changed_to_nan()
+    assert wild == changed_to_nan() and wild != rich()
+    assert Light(radius=float("nan")) == Light(radius=float("nan")) != Light(radius=0.0)
+    halves = dataclasses.replace(rich().images[0], texels=np.zeros((1, 1, 1), np.uint8))
+    assert halves != dataclasses.replace(halves, texels=np.zeros((1, 1, 1), np.uint16))
+
+
+def changed_to_nan():
+    matrix = np.eye(4)[:3].copy()
+    matrix[1, 3] = np.nan
+    return dataclasses.replace(rich(), camera=dataclasses.replace(rich().camera, matrix=matrix))
 
 
 def test_a_file_of_another_record_is_refused(tmp_path):

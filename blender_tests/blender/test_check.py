@@ -21,7 +21,7 @@ from check_scenes import (
 )
 from tiny_scenes import move
 
-from addon.bindings.enums import Integrator, LobeKind, MathOperation, NodeKind, Pass
+from addon.bindings.enums import AlphaMode, Integrator, LobeKind, MathOperation, NodeKind, Pass
 from addon.bindings.snapshot import Image, Lobe, Material, Node, NodeRef, Principled, Settings
 from addon.checks import duplicates
 from addon.checks.check import check_snapshot
@@ -106,6 +106,14 @@ def test_pictures_outside_the_model():
     assert found(driven(1.0, roughness=NodeRef(1))) == []
     assert found(driven(3.0, color=NodeRef(1))) == [("closures", "WRONG")]
     assert found(driven(1.0, color=NodeRef(1))) == []
+    # Half of the texels are 0.6 under an alpha of one half: of the colour that is shown, 1.2.
+    veiled = np.zeros((8, 8, 4), np.float32)
+    veiled[:4] = 0.6, 0.6, 0.6, 0.5
+    painted = Material(
+        "m", lobes=(Lobe(color=NodeRef(0)),), nodes=(Node(NodeKind.IMAGE, image=0, image_count=1, inputs=(0.0,)),)
+    )
+    assert found(shown(painted, [Image("p", veiled, alpha=AlphaMode.ASSOCIATED)])) == [("closures", "WRONG")]
+    assert found(shown(painted, [Image("p", veiled, alpha=AlphaMode.STRAIGHT)])) == []
     glass = {"kind": LobeKind.GLASS, "color": (0.9,) * 3, "roughness": 0.0}
     assert found(driven(-1.0, ior=NodeRef(1), **glass)) == [("closures", "WRONG")]
     # What depends on the place is not known, and not told.
@@ -141,7 +149,9 @@ def test_lamps_that_give_nothing():
         assert (finding.kind, finding.severity, finding.light) == ("lights", Severity.HINT, lamp.name)
         # It may be animated: nobody is told unasked.
         assert found(one(ball(), lights=(LAMP, lamp)), thorough=False) == []
-    assert found(one(ball(), lights=(LAMP, dataclasses.replace(LAMP, emission=(1e-3,) * 3)))) == []
+    # The weakest that is no fault is 2^-40 of the strongest: 1.8e-11 of 20.
+    for level in (1e-3, 2e-11):
+        assert found(one(ball(), lights=(LAMP, dataclasses.replace(LAMP, emission=(level,) * 3)))) == []
     # A sharp shadow is nobody's mistake.
     assert found(one(ball(), lights=(dataclasses.replace(LAMP, radius=0.0),))) == []
 
@@ -166,6 +176,8 @@ def test_lines_say_who_where_and_what_to_do():
     )
     assert lines([finding]) == ["object 'Vase' (mesh 'Vase', material 'Glass') near (1, 2.5, 1e+07): is open; close it"]
     assert by_severity([dataclasses.replace(finding, severity=Severity.HINT), finding])[0] is finding
+    # Of one kind, what there is most of.
+    assert by_severity([finding, dataclasses.replace(finding, weight=0.5)])[0].weight == 0.5
 
 
 def test_a_mesh_shared_by_many_is_told_once():

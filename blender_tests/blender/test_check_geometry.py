@@ -264,6 +264,11 @@ def test_needles():
     # At 1e5 a step is 1/128.
     assert found(one(blades(0.02, 1e5))) == PRECISION and found(one(blades(0.2, 1e5))) == []
     assert found(one(blades(0.02, 1e3))) == []
+    # One blade of twenty is no fault.
+    one_thin = blades(0.2, 1e5)
+    points = one_thin.positions.copy()
+    points[1, 0] = points[0, 0] + np.float32(0.02)
+    assert found(one(dataclasses.replace(one_thin, positions=points))) == []
 
 
 def test_objects_smaller_than_their_place():

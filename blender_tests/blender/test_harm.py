@@ -1,9 +1,10 @@
 """In which order messages are told, and which are told at all."""
 
 import dataclasses
+import math
 
 import numpy as np
-from check_scenes import placed, scene, sheet
+from check_scenes import LAMP, placed, scene, sheet
 
 from addon.bindings.session import Session
 from addon.messages.messages import Messages
@@ -47,7 +48,17 @@ def test_merging_gives_what_is_new():
 def test_messages_of_the_library_have_their_harm():
     """From the library itself: faces that nobody can see are no fault, an object that is left out is one."""
     flat = dataclasses.replace(sheet(), triangles=np.array([[0, 1, 2], [0, 1, 1]], np.uint32))
-    with Session.upload(scene([placed(), placed(matrix=np.full((4, 4), np.nan))], [flat])) as session:
+    dark = dataclasses.replace(LAMP, matrix=np.full((3, 4), np.nan))
+    things = [placed(), placed(matrix=np.full((4, 4), np.nan))]
+    with Session.upload(scene(things, [flat], lights=(dark,))) as session:
         told = Messages.of_library(session.messages()).told()
-    assert [message.severity for message in told] == [Severity.LEFT_OUT, Severity.HINT], told
-    assert "left out" in told[0].text and "without area" in told[1].text
+    assert [message.severity for message in told] == [Severity.LEFT_OUT, Severity.LEFT_OUT, Severity.HINT], told
+    assert sorted(message.text.split("'")[0] for message in told[:2]) == ["light ", "object "]
+    assert "without area" in told[2].text
+
+
+def test_a_colour_that_is_none_is_replaced_channel_by_channel():
+    messages = Messages()
+    assert messages.color((0.5, 0.0, 2.0), "it", "colour", 1.0) == (0.5, 0.0, 2.0) and not len(messages)
+    assert messages.color((math.inf, -1.0, math.nan), "it", "colour", 1.0) == (1.0, 0.0, 1.0)
+    assert len(messages) == 1

@@ -25,7 +25,7 @@ def test_each_quality_has_its_seconds_and_error(which, tmp_path):
     start = told["As set"][1]
     assert start < got["more"][1] < got["larger"][1] and got["more"][4] < told["As set"][4]
     old = got["old"]
-    assert [name for name in old if old[name]] == ["other bounces", "moved"]
+    assert [name for name in old if old[name]] == ["other bounces", "other clamp", "moved"]
     assert got["left"] == 0
 
 

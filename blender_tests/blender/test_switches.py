@@ -53,6 +53,12 @@ def test_overrides_of_the_view_layer(case):
         assert got["radiance"] == near([1.0, 0.0, 0.0])
 
 
+def test_normal_maps_take_the_unit_normal(case):
+    """From Blender 5.2 on."""
+    got = case("normal_maps")
+    assert got["flags"] == [int(got["version"] >= [5, 2])]
+
+
 def test_panoramas(case):
     got = case("cameras")
     version = got.pop("version")
@@ -75,4 +81,5 @@ def test_panoramas(case):
         assert got[name]["panorama"] == near(numbers + [0.0] * (8 - len(numbers))), name
         assert got[name]["window"] == near([0.125, 1.125, -0.25, 0.75]), name
         assert got[name]["aperture"] == near([5, 0.5, 2.0]), name
-        assert got[name]["lens"][0] > 0.0 and got[name]["lens"][1] == near(2.0), name
+        # Half of 50 mm over f/0.5.
+        assert got[name]["lens"] == near([0.05, 2.0]), name

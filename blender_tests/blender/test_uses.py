@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import tiny_scenes as tiny
 
-from addon.bindings.enums import Coordinate, LightKind, LobeKind, NodeKind, Pass, Shading
+from addon.bindings.enums import AreaShape, Coordinate, LightKind, LobeKind, NodeKind, Pass, Shading
 from addon.bindings.session import Session
 from addon.bindings.shading import Image, Lobe, Material, Node, NodeRef, Principled, World
 from addon.bindings.snapshot import Instance, InstanceTable, Light
@@ -216,6 +216,9 @@ def test_an_area_lamp_keeps_its_power():
     assert point.kind == LightKind.SPOT and point.spot_angle == math.pi
     # Power of the area: pi L A. Of the point: 2 pi I.
     assert 2.0 * math.pi * point.emission[0] == pytest.approx(math.pi * 3.0 * 1.0, rel=1e-12)
+    round_one = dataclasses.replace(lamp, shape=AreaShape.ELLIPSE)
+    point = simpler_scene.point_lamps(tiny.scene(lights=[round_one])).lights[0]
+    assert 2.0 * math.pi * point.emission[0] == pytest.approx(math.pi * 3.0 * math.pi / 4.0, rel=1e-12)
 
 
 def test_idle_nodes_go_and_the_picture_stays():

@@ -202,6 +202,17 @@ def test_attributes_are_interpolated_by_barycentrics(library):
         assert np.allclose(hits.normal, shading, atol=1e-6 + weight)
 
 
+def test_normals_of_corners_stay_with_their_triangles(library):
+    """A square whose two triangles lean to either side along the edge that they share."""
+    leaning = np.zeros((2, 3, 3), np.float32)
+    leaning[0], leaning[1] = (0.6, 0, 0.8), (-0.6, 0, 0.8)
+    mesh = dataclasses.replace(tiny_scenes.quad(), normals=leaning)
+    with upload(library, [Instance()], [mesh]) as scene:
+        hits = scene.intersect([(0.5, -0.5, 1), (-0.5, 0.5, 1)], (0, 0, -1))
+    assert hits.primitive.tolist() == [0, 1]
+    assert np.allclose(hits.normal, [(0.6, 0, 0.8), (-0.6, 0, 0.8)], atol=1e-6)
+
+
 @pytest.mark.parametrize("shading, interpolated", [(0, True), (1, False), (3, True)])
 def test_shading_of_the_object(library, shading, interpolated):
     mesh = MeshData(

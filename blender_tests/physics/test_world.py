@@ -307,7 +307,9 @@ def test_export(which, tmp_path):
     assert got["hidden"] == [1 + 32, 2]
     assert got["resolution"] == [0, 512]
     assert got["equirectangular"] == [3, 0, 1] and got["mirror ball"] == [3, 1, 1]
-    assert got["cube"] == [3, 2, 6] and got["cube images"] == 6
+    assert got["cube"] == [3, 2, 6] and got["cube images"] == [
+        f"cube_{sign}_{axis}" for axis in "xyz" for sign in ("positive", "negative")
+    ]
     assert got["cube without a picture"] == 1
     assert got["messages"] == []
 

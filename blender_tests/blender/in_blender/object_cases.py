@@ -140,6 +140,11 @@ def settings():
     mist, light = scene.world.mist_settings, scene.world.light_settings
     mist.start, mist.depth, mist.falloff, light.distance = 2.0, 30.0, "INVERSE_QUADRATIC", 4.0
     told["second"] = _facts(export_told()[0].settings)
+    told["bounces"] = []
+    for bounces in (0, 3):
+        own.transparent_bounces = bounces
+        told["bounces"].append(export_told()[0].settings.transparent_bounces)
+    told["version"] = list(bpy.app.version)
     return told
 
 

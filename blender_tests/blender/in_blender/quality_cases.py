@@ -35,6 +35,9 @@ def measured():
     old["other bounces"] = measure_quality.is_old(scene)
     scene.lancer.max_bounces = 10
     old["bounces again"] = measure_quality.is_old(scene)
+    scene.lancer.clamp_indirect = 10.0
+    old["other clamp"] = measure_quality.is_old(scene)
+    scene.lancer.clamp_indirect = 0.0
     bpy.data.objects["Cube"].location.x += 0.5
     bpy.context.view_layer.update()
     old["moved"] = measure_quality.is_old(scene)

@@ -4,7 +4,7 @@ import bpy
 import stage
 from export_cases import export_told
 
-from addon.bindings.enums import CameraKind, MaterialFlag
+from addon.bindings.enums import CameraKind, MaterialFlag, NodeKind
 
 
 def _owner(thing, name):
@@ -128,3 +128,19 @@ def cameras():
             "lens": [got.lens_radius, got.focal_distance],
         }
     return result
+
+
+def normal_maps():
+    """The flags of a normal map's node, by the file's own nodes."""
+    stage.empty()
+    material = stage.shader(name="mapped")
+    tree = material.node_tree
+    surface = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
+    picture = tree.nodes.new("ShaderNodeTexCoord")
+    node = tree.nodes.new("ShaderNodeNormalMap")
+    tree.links.new(picture.outputs["Generated"], node.inputs["Color"])
+    tree.links.new(node.outputs["Normal"], surface.inputs["Normal"])
+    stage.cube(material=material)
+    (exported,) = (one for one in export_told()[0].materials if one.name == "mapped")
+    flags = [int(one.flags) for one in exported.nodes if one.kind == NodeKind.NORMAL_MAP]
+    return {"flags": flags, "version": list(bpy.app.version)}

@@ -96,7 +96,7 @@ def export():
     world = _exported(messages, images)
     node = next(node for node in world.nodes if int(node.kind) == 3)
     result["cube"] = [int(node.kind), int(node.option), int(node.image_count)]
-    result["cube images"] = len(images.list)
+    result["cube images"] = [image.name for image in images.list]
     result["messages"] = messages.lines()
     own.cube_positive_z = None
     lost = Messages()

@@ -1,4 +1,4 @@
-"""A copy of the project that faults are put into, with a build of its own."""
+"""A copy of the project that faults are put into."""
 
 import hashlib
 import os
@@ -22,48 +22,42 @@ class Broken(Exception):
 
 @dataclass(frozen=True)
 class Tree:
-    folder: Path
-    jobs: int
+    root: Path
 
-    @property
-    def root(self):
-        return self.folder / "tree"
+    def fill(self, texts=None):
+        """Brings the copy up to date; texts: those of files that differ from the project's.
 
-    @property
-    def build_folder(self):
-        return self.folder / "core"
-
-    def fill(self):
-        """Brings the copy up to date and returns a digest of it. Files without changes keep their time and are not compiled."""
-        digest, wanted = hashlib.sha256(), set()
-        for path in _files():
-            name, data = path.relative_to(ROOT), path.read_bytes()
-            wanted.add(name)
-            digest.update(f"{name}\0{len(data)}\0".encode() + data)
+        Files without changes keep their time, and are not compiled.
+        """
+        wanted = {path.relative_to(ROOT): path.read_bytes() for path in _files()}
+        wanted |= {Path(name): text.encode() for name, text in (texts or {}).items()}
+        for name, data in wanted.items():
             copy = self.root / name
             if not copy.exists() or copy.read_bytes() != data:
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 copy.write_bytes(data)
-                shutil.copymode(path, copy)
-        for top in _COPIED:
-            for copy in [path for path in (self.root / top).rglob("*") if path.is_file()]:
-                name = copy.relative_to(self.root)
-                if name not in wanted and name.parts[:2] != _LIBRARY:
-                    copy.unlink()
-        return digest.hexdigest()[:16]
+                if (ROOT / name).exists():
+                    shutil.copymode(ROOT / name, copy)
+        for copy in [path for top in _COPIED for path in (self.root / top).rglob("*") if path.is_file()]:
+            name = copy.relative_to(self.root)
+            if name not in wanted and name.parts[:2] != _LIBRARY:
+                copy.unlink()
 
     def take_library(self):
         """The library of the project itself, for faults of the add-on."""
         shutil.copytree(ROOT.joinpath(*_LIBRARY), self.root.joinpath(*_LIBRARY), dirs_exist_ok=True)
 
-    def build(self, targets):
+    @property
+    def program(self):
+        return self.root / "build" / "core" / "lancer_tests"
+
+    def build(self, targets, jobs):
         """Compiles the changes; the library lands in the copy's addon/lib."""
-        if not (self.build_folder / "build.ninja").exists():
-            launcher = (
-                ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_C_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-            )
-            self._run("cmake", "-S", self.root / "core", "-B", self.build_folder, "-G", "Ninja", "-DLANCER_TESTS=ON", *launcher)
-        self._run("cmake", "--build", self.build_folder, "-j", self.jobs, "--target", *targets)
+        folder = self.root / "build" / "core"
+        if not (folder / "build.ninja").exists():
+            launcher = [f"-DCMAKE_{language}_COMPILER_LAUNCHER=ccache" for language in ("C", "CXX") if shutil.which("ccache")]
+            self._run("cmake", "-S", self.root / "core", "-B", folder, "-G", "Ninja", "-DLANCER_TESTS=ON", *launcher)
+        self._run("cmake", "--build", folder, "-j", jobs, "--target", *targets)
 
     def _run(self, *command):
         # A compiler cache sees one file in each place of the project.
@@ -73,12 +67,23 @@ class Tree:
             raise Broken("\n".join((done.stdout + done.stderr).strip().splitlines()[-20:]))
 
     def put(self, fault):
+        """Puts the fault into its file, and returns the file's text without it."""
         path = self.root / fault.file
-        path.write_text(fault.applied(path.read_text(encoding="utf-8")), encoding="utf-8")
+        text = path.read_text(encoding="utf-8")
+        path.write_text(fault.applied(text), encoding="utf-8")
+        return text
 
-    def take_back(self, fault):
-        # With a new time: the object that holds the fault is older than its source again.
-        (self.root / fault.file).write_bytes((ROOT / fault.file).read_bytes())
+    def take_back(self, fault, text):
+        (self.root / fault.file).write_text(text, encoding="utf-8")
+
+
+def digest():
+    """Of all that is copied."""
+    result = hashlib.sha256()
+    for path in _files():
+        data = path.read_bytes()
+        result.update(f"{path.relative_to(ROOT)}\0{len(data)}\0".encode() + data)
+    return result.hexdigest()[:16]
 
 
 def _files():

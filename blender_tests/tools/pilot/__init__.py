@@ -1,1 +1,0 @@
-"""`make pilot`: fits the pilot's model of costs to measured times."""
