@@ -1,8 +1,9 @@
-"""Snapshot files spoiled by chance: a snapshot or SnapshotError, then a session or LancerError, and never anything else.
+"""Random corruption of snapshot files: loading raises only SnapshotError, and rendering only LancerError.
 
     python broken_files.py SEEDS.txt FOLDER FIRST COUNT [SECONDS]
 
-writes each seed into SEEDS.txt before it is tried, so that the last one there is that of a crash. One seed is one spoiled file.
+writes each seed into SEEDS.txt before its test, so that after a crash the last seed there is the faulty one. Each seed gives
+one corrupted file.
 """
 
 import dataclasses
@@ -29,7 +30,7 @@ from addon.bindings.npz import SnapshotError  # noqa: E402
 from addon.bindings.session import LancerError, Session  # noqa: E402
 from addon.bindings.snapshot import SceneSnapshot  # noqa: E402
 
-# The one under test, or another build of it.
+# The library under test, or another build of it.
 LIBRARY = load_library(os.environ.get("LANCER_LIBRARY"))
 NUMBERS = (0, 1, -1, 2, 3, 7, 255, 2**16, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 2**63, -(2**31), 10**400)
 FLOATS = (
@@ -58,7 +59,7 @@ OTHERS += (
     {"type": 5, "fields": 5},
 )
 DTYPES = ("f4", "f8", "u4", "u2", "u1", "i8", "?", "c8", "U3", "M8[s]", ">f4", "S2")
-# What would take long, and is told of elsewhere: a map of the sky, a thousand threads, a picture worth waiting for.
+# Limits of inputs that would take long and have tests elsewhere: the sky's map, threads, pixels.
 WIDEST_MAP, MOST_THREADS, MOST_PIXELS = 64, 8, 64 * 64
 
 
@@ -81,7 +82,7 @@ def spoil_bytes(data, chance):
 
 
 def places(tree, found):
-    """Every container of the tree with each of its keys."""
+    """Return (container, key) of every value in the tree."""
     keys = tree if isinstance(tree, dict) else range(len(tree)) if isinstance(tree, list) else ()
     for key in keys:
         found.append((tree, key))
@@ -131,7 +132,7 @@ def spoil_array(arrays, chance):
 
 
 def spoiled(data, seed):
-    """The file's bytes, spoiled as the seed says."""
+    """Return the file's bytes, corrupted by the seed's random numbers."""
     chance = random.Random(seed)
     if chance.randrange(4) == 0:
         return spoil_bytes(data, chance)
@@ -151,7 +152,7 @@ def spoiled(data, seed):
 
 
 def try_file(path):
-    """What became of a file: "refused file", "refused scene", "session", or "picture"."""
+    """Load and render a file; return "refused file", "refused scene", "session" or "picture"."""
     try:
         with np.errstate(all="ignore"):
             snapshot = SceneSnapshot.load(path)
@@ -168,7 +169,7 @@ def try_file(path):
             if camera.region_width * camera.region_height > MOST_PIXELS or settings.max_bounces > 64:
                 return "session"
             assert session.render_all(1)
-            # The error is infinite as long as it is not known.
+            # The pass ERROR is infinite while the error is unknown.
             assert all(np.isfinite(session.read(which)).all() for which in settings.passes if which != Pass.ERROR)
             return "picture"
     except LancerError as error:

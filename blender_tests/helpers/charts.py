@@ -1,7 +1,7 @@
-"""Maps from the unit square to directions in which a density is smooth, for histograms and for integrals.
+"""Maps from the unit square to directions in which a density is smooth, for histograms and integrals.
 
-A chart gives, for points (count, 2) of the unit square, directions and the solid angle per unit of area there; and the way
-back from directions to the square. Directions that it cannot reach come back as NaN.
+direct(u) of a chart returns, for points (count, 2) of the unit square, directions and the solid angle per unit of area;
+back(w) maps directions to the square, with NaN for directions outside the chart.
 """
 
 import numpy as np
@@ -14,12 +14,12 @@ def unit(v):
 
 
 def angle(x, y):
-    """Of a full turn, 0 to 1."""
+    """Return the angle as a fraction of a full turn, 0 to 1."""
     return np.mod(np.arctan2(y, x) / TWO_PI, 1.0)
 
 
 def frame(axis):
-    """Rows: two directions square to the axis, and the axis."""
+    """Return rows: two directions orthogonal to the axis, and the axis."""
     axis = unit(np.asarray(axis, float))
     helper = np.eye(3)[np.argmin(np.abs(axis))]
     x = unit(np.cross(helper, axis))
@@ -27,7 +27,7 @@ def frame(axis):
 
 
 class Sphere:
-    """Directions above a height along the axis, crowded near it: height = u0^crowding; and the angle around it."""
+    """Directions above a height along the axis, denser near that height: height = u0^crowding; and the angle around it."""
 
     def __init__(self, axis=(0, 0, 1), lowest=-1.0, crowding=1.0):
         self.frame, self.lowest, self.crowding = frame(axis), lowest, crowding
@@ -46,7 +46,7 @@ class Sphere:
 
 
 class Power:
-    """Directions around an axis crowded like cos^exponent: u0 = 1 - cos^(exponent + 1)."""
+    """Directions around an axis with density cos^exponent: u0 = 1 - cos^(exponent + 1)."""
 
     def __init__(self, axis, exponent):
         self.frame, self.exponent = frame(axis), exponent
@@ -54,7 +54,7 @@ class Power:
     def direct(self, u):
         k = self.exponent + 1.0
         z = np.exp(np.log1p(-u[:, 0]) / k)
-        # 1 - z^2 by expm1: crowded lobes live where z is 1 to many digits.
+        # 1 - z^2 by expm1: in narrow lobes z is 1 to many digits.
         r = np.sqrt(-np.expm1(2.0 * np.log1p(-u[:, 0]) / k))
         w = np.stack([r * np.cos(TWO_PI * u[:, 1]), r * np.sin(TWO_PI * u[:, 1]), z], axis=1) @ self.frame
         return w, TWO_PI / (k * z**self.exponent)
@@ -68,7 +68,7 @@ class Power:
 
 
 class Half:
-    """Reflections of wo at half vectors that another chart gives."""
+    """Reflections of wo at the half vectors of another chart."""
 
     def __init__(self, wo, halves):
         self.wo, self.halves = np.asarray(wo, float), halves
@@ -76,7 +76,7 @@ class Half:
     def direct(self, u):
         h, area = self.halves.direct(u)
         cosine = h @ self.wo
-        # Half vectors seen from behind reflect nothing.
+        # Back-facing half vectors reflect nothing.
         return 2.0 * cosine[:, None] * h - self.wo, area * 4.0 * np.maximum(cosine, 0.0)
 
     def back(self, w):
@@ -84,7 +84,7 @@ class Half:
 
 
 class Slopes:
-    """Directions whose slopes are spread like exp(-slope^2/alpha^2): the domain in which tiny alpha is resolved."""
+    """Directions whose slopes have the density exp(-slope^2/alpha^2), which resolves tiny alpha."""
 
     def __init__(self, alpha, side=1.0):
         self.alpha, self.side = alpha, side
@@ -105,14 +105,14 @@ class Slopes:
 
 
 def integrate_cells(chart, density, cells, points):
-    """Integrals of density over a cells x cells grid of the chart, by points^2 Gauss-Legendre nodes in each cell.
+    """Return integrals of density over a cells x cells grid of the chart, by points^2 Gauss-Legendre nodes in each cell.
 
-    Cells that the horizon cuts (some nodes are 0, some not) take the midpoint rule on five times as many points instead: it
-    knows where a jump runs to points^-1.5 of a cell.
+    Cells cut by the horizon (some nodes are 0, some not) use the midpoint rule with five times as many points, which locates
+    a jump to points^-1.5 of a cell.
     """
     x, weight = np.polynomial.legendre.leggauss(points)
     smooth, values = _tensor_rule(chart, density, cells, (x + 1.0) / 2.0, weight / 2.0)
-    # The corners find slivers that no inner node sees.
+    # The corners detect slivers that no inner node lies in.
     _, corners = _tensor_rule(chart, density, cells, np.array([1e-6, 1.0 - 1e-6]), np.array([0.5, 0.5]))
     some = np.any(values != 0.0, axis=(1, 3)) | np.any(corners != 0.0, axis=(1, 3))
     cut = some & (np.any(values == 0.0, axis=(1, 3)) | np.any(corners == 0.0, axis=(1, 3)))
@@ -137,7 +137,7 @@ def _tensor_rule(chart, density, cells, x, weight):
 
 
 def histogram(chart, w, cells):
-    """Hits per cell of directions, and the number that the chart cannot reach."""
+    """Return the counts of directions in each cell, and the number of directions outside the chart."""
     u = chart.back(np.asarray(w, float))
     inside = np.all(np.isfinite(u), axis=1)
     index = np.minimum((u[inside] * cells).astype(int), cells - 1)

@@ -1,4 +1,4 @@
-"""Small scenes for the check before a render, each with one thing that will hurt or that nearly does."""
+"""Small scenes for the checks, each with one fault or nearly one."""
 
 import numpy as np
 from tiny_scenes import look_at, move
@@ -27,7 +27,7 @@ CLEAR = Material(
 )
 VEIL = Material("veil", lobes=(Lobe(LobeKind.LAMBERT, color=(0.5, 0.5, 0.5), weight=(0.5,) * 3),), transmittance=(0.5,) * 3)
 GLOW = Material("glow", lobes=(), emission=(3.0, 3.0, 3.0))
-# Their numbers in scene().
+# The materials' numbers in scene().
 GREY_, RED_, GLASS_, CLEAR_, VEIL_, GLOW_ = range(6)
 LAMP = Light("lamp", move(2, -3, 4), LightKind.POINT, emission=(20, 20, 20), radius=0.1)
 EYE = Camera(matrix=look_at((1.0, -6.0, 3.0), (0, 0, 0)), width=32, height=32)
@@ -38,12 +38,12 @@ BOX_FACES = [face for a, b, c, d in _SIDES for face in ((a, b, c), (a, c, d))]
 
 
 def box(name="box", faces=BOX_FACES, size=1.0, shift=(0, 0, 0), **fields):
-    """A closed cube; counter-clockwise from outside."""
+    """Return a closed cube with faces counter-clockwise as seen from outside."""
     return MeshData(name, np.array(_BOX) * size + shift, faces, **fields)
 
 
 def sheet(size=4.0, name="sheet", shift=(0, 0, 0), parts=1, **fields):
-    """A square that faces +z, cut into parts x parts."""
+    """Return a square that faces +z, divided into parts x parts."""
     steps = np.linspace(-size / 2, size / 2, parts + 1)
     points = np.array([(x, y, 0.0) for y in steps for x in steps]) + shift
     corner = np.arange(parts * (parts + 1)).reshape(parts, parts + 1)[:, :-1].reshape(-1)
@@ -53,7 +53,7 @@ def sheet(size=4.0, name="sheet", shift=(0, 0, 0), parts=1, **fields):
 
 
 def ball(rings=16, radius=1.0, shift=(0, 0, 0), name="ball", smooth=True, turned=False):
-    """A closed sphere of 2 rings x rings quads and two fans."""
+    """Return a closed sphere of 2 rings x rings quads and two fans."""
     theta, phi = np.pi * np.arange(1, rings) / rings, np.pi * np.arange(2 * rings) / rings
     side = np.stack(
         (np.sin(theta)[:, None] * np.cos(phi), np.sin(theta)[:, None] * np.sin(phi), np.tile(np.cos(theta)[:, None], len(phi))),
@@ -99,7 +99,7 @@ def one(mesh, material=0, matrix=None, **fields):
 
 
 def found(snapshot, thorough=True):
-    """(kind, severity's name) of all findings, sorted."""
+    """Return (kind, name of the severity) of all findings, sorted."""
     return sorted((finding.kind, finding.severity.name) for finding in check_snapshot(snapshot, thorough))
 
 

@@ -1,4 +1,4 @@
-"""Single pixels of the course's ray tracer: the eye, the lamp and the sky that its tests share."""
+"""Single pixels of the course's ray tracer: eye, lamp and sky of its tests."""
 
 import tiny_scenes
 from tiny_scenes import move, pencil, plane, rgb
@@ -6,7 +6,7 @@ from tiny_scenes import move, pencil, plane, rgb
 from addon.bindings.abi import Integrator, LightKind
 from addon.bindings.snapshot import Light, Lobe, Material
 
-# One sample through the middle of everything has no noise: only float32 products, a dozen at 6e-8.
+# One sample through the centre of pixel and lens has no noise: the error is that of a dozen float32 products, 6e-8 each.
 EXACT = 2e-6
 EYE = (3.0, 0.0, 4.0)  # v = (0.6, 0, 0.8) at the origin
 LAMP = (-1.0, 2.0, 2.0)  # l = (-1, 2, 2)/3, distance 3

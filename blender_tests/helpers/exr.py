@@ -1,4 +1,4 @@
-"""Reads the OpenEXR files that Blender writes without compression: all layers and passes, exactly as stored."""
+"""Reader of Blender's OpenEXR files without compression: all layers and passes, exactly as stored."""
 
 import struct
 
@@ -6,12 +6,12 @@ import numpy as np
 
 _MULTIPART = 0x1000
 _TYPES = {0: np.dtype("<u4"), 1: np.dtype("<f2"), 2: np.dtype("<f4")}
-# Within a pass the file sorts channels by name; here they come as an artist counts them.
+# The file sorts a pass's channels by name; read() returns them in this order.
 _ORDER = "RGBAXYZWUVrgba"
 
 
 def write_settings(scene, path):
-    """Has the next render write such a file to path."""
+    """Let the next render write such a file to path."""
     image = scene.render.image_settings
     if hasattr(image, "media_type"):
         image.media_type = "MULTI_LAYER_IMAGE"
@@ -21,7 +21,7 @@ def write_settings(scene, path):
 
 
 def read(path, layer=None):
-    """{pass name: array (height, width, channels)} of a view layer, the first if not named; row 0 is the top row."""
+    """Return {pass name: array (height, width, channels)} of a view layer, by default the first; row 0 is the top row."""
     with open(path, "rb") as file:
         data = file.read()
     magic, version = struct.unpack_from("<ii", data)
@@ -86,7 +86,7 @@ def _channels(data):
 
 
 def _passes(parts, layer):
-    """Channels are LAYER.PASS.CHANNEL, in some files with the first two as the name of the part."""
+    """Group channels by pass. Their names are LAYER.PASS.CHANNEL, in some files with LAYER.PASS as the name of the part."""
     groups = {}
     for part in parts:
         prefix = part.get("name", b"").decode()

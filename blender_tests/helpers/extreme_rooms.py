@@ -1,4 +1,4 @@
-"""Small scenes for extreme parameters, and their pictures by both integrators and every kernel."""
+"""Small scenes for extreme parameters, and their pictures by both integrators and all kernels."""
 
 import math
 
@@ -12,13 +12,13 @@ from addon.bindings.snapshot import Instance, Light, Lobe, Material
 
 WHITE = (1.0, 1.0, 1.0)
 BOTH = (Integrator.PATH, Integrator.CLASSIC)
-# From +z to each side of a cube.
+# Rotations from +z to each side of a cube.
 TURNS = [rotate_x(math.pi / 2), rotate_x(-math.pi / 2)]
 TURNS += [tiny_scenes.rotate_y(-math.pi / 2), tiny_scenes.rotate_y(math.pi / 2), rotate_x(math.pi), np.eye(4)]
 
 
 def picture(snapshot, **settings):
-    """RGB of all pixels, and what was said; each sample must have been a number."""
+    """Return RGB of all pixels and the messages; assert that all samples are finite."""
     with Session.upload(tiny_scenes.with_settings(snapshot, **settings)) as session:
         assert session.render_all()
         pixels, statistics, messages = session.read()[..., :3].astype(float), session.statistics(), session.messages()
@@ -28,7 +28,7 @@ def picture(snapshot, **settings):
 
 
 def pictures(snapshot):
-    """By both integrators; the kernel for what the scene uses and the general one must agree in every bit."""
+    """Return the pictures of both integrators; assert that the special and the general kernel agree in every bit."""
     results = []
     for integrator in BOTH:
         special, said = picture(snapshot, integrator=integrator, features=Features.SCENE)
@@ -39,7 +39,7 @@ def pictures(snapshot):
 
 
 def room(material, lights, world=0.0, extra=(), materials=(), pixels=8, **settings):
-    """A sphere and a slanting square of the material over a grey floor."""
+    """Return a scene with a sphere and a tilted square of the material over a grey floor."""
     camera = tiny_scenes.Camera(
         matrix=tiny_scenes.look_at((2, -4, 2.5), (0, 0, 0.7)), width=pixels, height=pixels, window=(-0.35, 0.35, -0.35, 0.35)
     )

@@ -1,11 +1,11 @@
-"""Samples that were not finite, of every session that ends while somebody watches. Blender cases and tests look here alike."""
+"""Detection of invalid samples in all sessions, for tests and for cases inside Blender."""
 
 import contextlib
 
 
 @contextlib.contextmanager
 def watched(session_class):
-    """A list that grows by a line for each session which dropped samples."""
+    """Yield a list that gets a line for each closed session with invalid samples."""
     found, close = [], session_class.close
 
     def look_and_close(session):

@@ -1,4 +1,4 @@
-"""Meshes for tests: trimesh's primitives, and the real ones of ../shared/models where that folder is."""
+"""Meshes for tests: trimesh's primitives, and real meshes from ../shared/models if that folder exists."""
 
 import os
 
@@ -15,7 +15,7 @@ OPEN = ("stanford-bunny", "teapot")
 
 
 def primitives():
-    """Closed meshes from code, of 12 to a few thousand triangles, none with its triangles in a regular place."""
+    """Return closed meshes of 12 to a few thousand triangles at irregular positions."""
     rng = np.random.default_rng(1)
     shapes = {
         "box": trimesh.creation.box((1.0, 2.0, 0.5)),
@@ -33,14 +33,14 @@ def primitives():
 
 
 def model(name):
-    """A real mesh, joined at its texture seams."""
+    """Return a real mesh, joined at its texture seams."""
     path = os.path.join(MODELS, name + ".obj")
     if not os.path.isdir(MODELS):
         pytest.skip("the folder ../shared/models is missing")
     with open(path, encoding="utf-8") as file:
         lines = [line.split() for line in file]
     vertices = [[float(x) for x in words[1:4]] for words in lines if words and words[0] == "v"]
-    # Corners are position/uv/normal: positions alone join what texture seams cut.
+    # Corners are position/uv/normal: use positions only, which joins texture seams.
     polygons = [[int(corner.split("/")[0]) - 1 for corner in words[1:]] for words in lines if words and words[0] == "f"]
     faces = [(p[0], p[i], p[i + 1]) for p in polygons for i in range(1, len(p) - 1)]
     return trimesh.Trimesh(vertices, faces, process=False)
@@ -51,7 +51,7 @@ def data(mesh, name="mesh", **fields):
 
 
 def winding_number(mesh, points):
-    """1 inside of a closed mesh, 0 outside: the sum of the triangles' solid angles over 4 pi."""
+    """Return 1 for points inside a closed mesh, 0 outside: the sum of the triangles' solid angles over 4 pi."""
     corners = np.asarray(mesh.vertices, np.float32).astype(float)[mesh.faces]
     result = []
     for p in points:
@@ -74,7 +74,7 @@ def points_inside(mesh, count, seed=1):
 
 
 def rays_at(mesh, count, seed):
-    """Rays of every awkward kind against a mesh: at random places, at vertices and edges, along axes, from the surface."""
+    """Return rays that are hard for intersection: at random places, at vertices and edges, along axes, from the surface."""
     rng = np.random.default_rng(seed)
     vertices = np.asarray(mesh.vertices, np.float32).astype(float)
     corners = vertices[mesh.faces]
@@ -86,7 +86,7 @@ def rays_at(mesh, count, seed):
     kind = rng.integers(6, size=count)
     targets[kind == 1] = face[kind == 1, 0]
     targets[kind == 2] = face[kind == 2, :2].mean(axis=1)
-    # Along an axis, straight at a vertex: the slabs' and the shear's special case.
+    # Along an axis at a vertex: the special case of slabs and shear.
     axis = np.eye(3)[rng.integers(3, size=count)]
     along = kind == 3
     origins[along] = (face[:, 0] + axis * size * 2)[along]

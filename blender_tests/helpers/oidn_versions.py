@@ -1,4 +1,4 @@
-"""Open Image Denoise of this Python's bpy module, version 2, and the same behind the functions of version 1."""
+"""Open Image Denoise of this Python's bpy module, version 2, and a wrapper with the functions of version 1."""
 
 import glob
 import importlib.util
@@ -9,7 +9,7 @@ from conftest import HERE
 
 
 def newer():
-    """The library's path."""
+    """Return the path of version 2."""
     spec = importlib.util.find_spec("bpy")
     assert spec is not None, "bpy is missing: pip install bpy"
     found = glob.glob(os.path.join(os.path.dirname(spec.origin), "lib", "libOpenImageDenoise.so.*"))
@@ -18,7 +18,7 @@ def newer():
 
 
 def older(folder):
-    """(path, what the environment must hold for it), built in that folder."""
+    """Build the wrapper in folder; return (path, environment variables that it needs)."""
     path = os.path.join(str(folder), "libOpenImageDenoise.so.1.4.3")
     source = os.path.join(HERE, "helpers", "oidn_of_version_1.cpp")
     subprocess.run([os.environ.get("CXX", "g++"), "-shared", "-fPIC", "-o", path, source, "-ldl"], check=True)

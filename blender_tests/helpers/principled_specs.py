@@ -1,4 +1,4 @@
-"""Materials twice: as the shader node that Cycles gets, and as the lobe that Lancer gets. One list for each family of rules."""
+"""Pairs of a shader node for Cycles and the equal lobe for Lancer, one list for each family of rules."""
 
 import math
 
@@ -7,14 +7,14 @@ from addon.bindings.shading import Lobe, Principled
 
 ANGLES = (5.0, 30.0, 60.0, 75.0, 85.0)
 ROUGHNESSES = (0.1, 0.3, 0.6, 1.0)
-# Towards the suns, in the world of the cells: around the mirrored direction of each angle, aside of it, and far from it.
+# Directions to the suns: around the mirror direction of each angle, beside it, and far from it.
 SUNS = [
     (math.sin(math.radians(theta)) * math.cos(math.radians(phi)), math.sin(math.radians(theta)) * math.sin(math.radians(phi)),
      math.cos(math.radians(theta)))
     for theta, phi in ((5, 40), (30, 20), (55, -35), (62, 5), (80, 60), (120, 8), (140, -3), (40, 170))
 ]  # fmt: skip
 
-# Record field -> socket, as a function of its value where the meaning differs.
+# Field of the record -> socket, or a function of the value if the meaning differs.
 _SOCKETS_4 = {
     "base_color": "Base Color", "metallic": "Metallic", "roughness": "Roughness", "ior": "IOR",
     "diffuse_roughness": "Diffuse Roughness", "specular": "Specular IOR Level", "specular_tint": "Specular Tint",
@@ -29,7 +29,7 @@ _SOCKETS_3 = {
 
 _RED = (0.8, 0.3, 0.1)
 
-# What differs from an opaque plastic of that roughness: {r} is replaced by each of ROUGHNESSES.
+# Differences from an opaque plastic of that roughness; {r} stands for each of ROUGHNESSES.
 _LAYERS_4 = {
     "plastic": dict(base_color=_RED),
     "plastic, single": dict(base_color=_RED, distribution=Distribution.GGX),
@@ -107,7 +107,7 @@ def _layered(rules, layers):
 
 
 def _alone(version, rules):
-    """The wide lobes and Ashikhmin-Shirley by nodes of their own."""
+    """Yield the wide lobes and Ashikhmin-Shirley, which have shader nodes of their own."""
     preserving = int(version >= (4, 3))
     for r in ROUGHNESSES:
         color = {"Color": _RED, "Roughness": r}
@@ -142,7 +142,7 @@ def _alone(version, rules):
 
 
 def specs(version):
-    """(name, node, lobe) for a Blender of that version."""
+    """Return (name, node, lobe) for a version of Blender."""
     if version < (4, 0):
         return list(_alone(version, Rules.BLENDER_3)) + list(_layered(Rules.BLENDER_3, _LAYERS_3))
     rules = Rules.BLENDER_4 if version < (4, 5) else Rules.BLENDER_45

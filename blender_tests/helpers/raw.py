@@ -1,4 +1,4 @@
-"""Scenes filled through the bare C interface, for tests of the interface itself: nothing between the test and the call."""
+"""Scenes filled directly through the C interface, for tests of the interface itself."""
 
 import ctypes
 
@@ -8,7 +8,7 @@ from addon.bindings import abi
 from addon.bindings.abi import Status
 
 IDENTITY = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0)
-# Far from any number that a fresh library hands out.
+# A handle that the library never returns.
 FOREIGN = 0xDEADBEEF12345678
 
 
@@ -17,7 +17,7 @@ def address(array):
 
 
 class Raw:
-    """The library's calls with the pieces of a small valid scene. Calls give (status, message)."""
+    """The library's calls with the parts of a small valid scene. Calls return (status, message)."""
 
     def __init__(self, library):
         self.library = library
@@ -60,7 +60,7 @@ class Raw:
         return abi.Parameter((ctypes.c_float * 3)(*value), -1)
 
     def reference(self, node):
-        """The result of a node in place of a value."""
+        """Return a parameter that refers to the result of a node."""
         return abi.Parameter((ctypes.c_float * 3)(), node)
 
     def lobe(self, kind=abi.LobeKind.LAMBERT, principled=None, **fields):
@@ -73,18 +73,18 @@ class Raw:
         return lobe
 
     def principled(self, **fields):
-        """All inputs 0 but those that must not be, and those given."""
+        """Return a Principled with all inputs 0 except the indices of refraction and the given fields."""
         names = [name for name, kind in abi.Principled._fields_ if kind is abi.Parameter]
         values = dict.fromkeys(names, 0.0) | {"ior": 1.5, "coat_ior": 1.5, **fields}
         return abi.Principled(rules=abi.Rules.BLENDER_45, **{name: self.parameter(value) for name, value in values.items()})
 
     def node(self, kind=abi.NodeKind.COORDINATE, inputs=(), **fields):
-        """inputs: parameters; what is not given is 0."""
+        """inputs: parameters; missing ones are 0."""
         inputs = [*inputs, *(self.parameter(0.0) for _ in range(5 - len(inputs)))]
         return abi.Node(kind=kind, inputs=(abi.Parameter * 5)(*inputs), matrix=(ctypes.c_float * 12)(*IDENTITY), **fields)
 
     def nodes(self, *nodes):
-        """The fields of an owner of these nodes."""
+        """Return the fields of a material or world with these nodes."""
         return {"nodes": self.keep((abi.Node * max(len(nodes), 1))(*nodes)), "node_count": len(nodes)}
 
     def image(self, width=2, height=2, channels=4, name=b"Picture", **fields):
@@ -106,7 +106,7 @@ class Raw:
         return abi.Attribute(name=name, values=address(values), domain=domain, channels=values.shape[1])
 
     def attributes(self, *attributes):
-        """The fields of a mesh with these attributes."""
+        """Return the fields of a mesh with these attributes."""
         array = self.keep((abi.Attribute * max(len(attributes), 1))(*attributes))
         return {"attributes": array, "attribute_count": len(attributes)}
 
@@ -190,7 +190,7 @@ class Raw:
         return settings
 
     def filled(self):
-        """A scene with one mesh, one material, one light and one instance, not committed."""
+        """Return a scene with one mesh, one material, one light and one instance, not committed."""
         scene = self.scene()
         for name, piece in (
             ("lancer_scene_add_mesh", self.mesh()),
@@ -209,7 +209,7 @@ class Raw:
         return self.wait("lancer_scene_wait", scene)
 
     def wait(self, name, *arguments):
-        """Waits in steps until the call is no longer running."""
+        """Wait in steps until the call has ended."""
         status = Status.RUNNING
         while status == Status.RUNNING:
             extra = (None,) if name == "lancer_session_wait" else ()
@@ -249,7 +249,7 @@ class Raw:
 
 
 def refused(result, *words, status=Status.ERROR_ARGUMENT):
-    """The call failed with that status and its sentence holds these words."""
+    """Assert that a call failed with that status and a message that contains these words."""
     assert result[0] == status, f"{result[0].name}: {result[1]}"
     missing = [word for word in words if word not in result[1]]
     assert result[1] and not missing, f"{missing} not in {result[1]!r}"

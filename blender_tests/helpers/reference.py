@@ -1,4 +1,4 @@
-"""The formulas once more, at 50 digits and straight from the texts: nothing here comes from the core."""
+"""Reference formulas at 50 digits, written from the literature, independent of the core."""
 
 import mpmath as mp
 
@@ -6,7 +6,7 @@ mp.mp.dps = 50
 
 
 def exact(x):
-    """The number itself: a float32 or double is taken digit for digit."""
+    """Return the exact value of a float32 or double."""
     return x if isinstance(x, mp.mpf) else mp.mpf(float(x))
 
 
@@ -20,7 +20,7 @@ def beckmann_d(cos_nh, alpha):
 
 
 def fresnel(cos_lh, ior):
-    """Mean of both polarisations for light that comes from outside; ior is inside over outside; 1 beyond the critical angle."""
+    """Return the mean of both polarisations for light from outside; ior is inside over outside; 1 beyond the critical angle."""
     c, n = exact(cos_lh), exact(ior)
     if mp.isinf(n):
         return mp.mpf(1)
@@ -70,7 +70,7 @@ def beckmann_bsdf(wo, wi, alpha, ior, color=1.0):
 
 
 def sphere_hits(origin, direction, radius=1):
-    """Both parameters t of a ray against the sphere |p| = radius, or ()."""
+    """Return both parameters t of a ray's hits of the sphere |p| = radius, or ()."""
     o, d, r = vector(origin), vector(direction), mp.mpf(radius)
     a, b, c = dot(d, d), dot(o, d), dot(o, o) - r**2
     disc = b**2 - a * c
@@ -86,7 +86,7 @@ def smoothstep(x):
 
 
 def rectangle_irradiance(width, height, distance):
-    """E / L below the middle of a rectangle that faces a parallel plane; the classic corner form factor, four times."""
+    """Return E / L below the centre of a rectangle that faces a parallel plane: four times the corner form factor."""
     a, b = mp.mpf(width) / 2 / distance, mp.mpf(height) / 2 / distance
     u, v = mp.sqrt(1 + a**2), mp.sqrt(1 + b**2)
     return 2 * (a / u * mp.atan(b / u) + b / v * mp.atan(a / v))

@@ -1,4 +1,4 @@
-"""A snapshot that has a record of every kind."""
+"""A snapshot with a record of every kind."""
 
 import dataclasses
 
@@ -10,7 +10,7 @@ from addon.bindings.snapshot import Image, Lobe, Material, MeshAttribute, MeshDa
 
 
 def rich():
-    """The showroom with a record of every kind, and a mesh with every array that a mesh can have."""
+    """Return the showroom with a record of every kind, and a mesh with all possible arrays."""
     plain = quad(1.0, "rich")
     corner = np.arange(6, dtype=np.float32).reshape(2, 3, 1)
     mesh = MeshData(

@@ -1,21 +1,21 @@
-"""How sure is it: tests of significance for samplers and for images. test_significance.py proves that they reject."""
+"""Significance tests for samplers and images. test_significance.py tests that they reject wrong ones."""
 
 import math
 
 import numpy as np
 from scipy import stats
 
-# The chance of a false alarm of one whole test function. Seeds are fixed, so a test that passed once passes for ever.
+# The probability of a false alarm of one test function. Seeds are fixed, so a test that has passed once always passes.
 LEVEL = 0.001
 
 
 def sidak(level, count):
-    """The level of one of count independent tests so that all together raise a false alarm with probability level."""
+    """Return the level of each of count independent tests so that together they raise a false alarm with probability level."""
     return -math.expm1(math.log1p(-level) / count)
 
 
 def z_test(mean, standard_error, expected):
-    """Two-sided p-value of the mean of many samples against its expectation; works on arrays."""
+    """Return the two-sided p-value of the mean of many samples against its expectation; works on arrays."""
     mean, standard_error, expected = (np.asarray(x, dtype=np.float64) for x in (mean, standard_error, expected))
     difference = np.abs(mean - expected)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -25,10 +25,10 @@ def z_test(mean, standard_error, expected):
 
 
 def chi_square(observed, expected, smallest=5.0):
-    """p-value that observed counts come from the expected ones.
+    """Return the p-value of observed counts under the expected ones.
 
-    Cells that expect fewer than `smallest` are pooled, because the chi-square law holds for well-filled cells only.
-    A hit where nothing at all is expected rejects at once.
+    Cells with expected counts below `smallest` are pooled, since the chi-square distribution requires well-filled cells.
+    Hits in a cell where none are expected reject at once.
     """
     observed = np.asarray(observed, dtype=np.float64).ravel()
     expected = np.asarray(expected, dtype=np.float64).ravel()
@@ -36,7 +36,7 @@ def chi_square(observed, expected, smallest=5.0):
     if not (np.all(np.isfinite(expected)) and np.all(expected >= 0.0)):
         return 0.0
     total = observed.sum()
-    # A cell expecting less than a thousandth of a hit that holds more than a few is impossible, not unlikely.
+    # A cell with an expected count below 0.001 and more than 5 hits is impossible, not just unlikely.
     if np.any((expected < 1e-3) & (observed > 5)):
         return 0.0
     order = np.argsort(expected)
@@ -55,19 +55,19 @@ def chi_square(observed, expected, smallest=5.0):
 
 
 def uniforms(count, dimensions, seed):
-    """Independent uniform numbers in [0, 1) as float32, [count][dimensions]."""
+    """Return independent uniform numbers in [0, 1) as float32, (count, dimensions)."""
     u = np.random.default_rng(seed).random((count, dimensions)).astype(np.float32)
     return np.minimum(u, np.float32(1.0) - np.float32(2.0**-24))
 
 
 def midpoints(*counts):
-    """The middles of a regular grid in the unit cube: the midpoint rule's points, float32, [product][len(counts)]."""
+    """Return the midpoints of a regular grid in the unit cube as float32, (product of counts, len(counts))."""
     axes = [(np.arange(n) + 0.5) / n for n in counts]
     return np.stack([a.ravel() for a in np.meshgrid(*axes, indexing="ij")], axis=1).astype(np.float32)
 
 
 def mean_and_error(samples, axis=0):
-    """Mean and its standard error along an axis."""
+    """Return the mean and its standard error along an axis."""
     samples = np.asarray(samples, dtype=np.float64)
     count = samples.shape[axis]
     return samples.mean(axis=axis), samples.std(axis=axis, ddof=1) / math.sqrt(count)

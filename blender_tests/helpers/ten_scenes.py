@@ -1,4 +1,4 @@
-"""Ten small scenes that between them use every kind of geometry, lamp, lens and look-up; the same at any size and place."""
+"""Ten small scenes that together use every kind of geometry, lamp, lens and texture, at any size and place."""
 
 import dataclasses
 
@@ -13,7 +13,7 @@ from addon.bindings.snapshot import Camera, Image, Instance, Light, Lobe, Materi
 
 PIXELS = 24
 SMOOTH = MeshData.from_trimesh(trimesh.creation.icosphere(2), "smooth", smooth=True)
-# Eighths: a float holds each of them at any of the places that the tests move them to.
+# Coordinates in eighths are exact in single precision at all places to which the tests move the mesh.
 ROCK = MeshData(
     "rock",
     np.round(8 * trimesh.creation.icosphere(1).vertices * (1 + 0.3 * np.sin(np.arange(42)))[:, None]) / 8,
@@ -45,14 +45,14 @@ def everything():
 
 
 def smooth_meshes():
-    """Smooth normals, the terminator's offset, and a sun that grazes."""
+    """Smooth normals, an offset of the shadow terminator, and a sun at grazing angles."""
     things = [plane(0), mesh(0, 1, move(-1, 0, 1), terminator=0.1), mesh(0, 2, move(1.2, 0.5, 0.7) @ scale(0.7, 0.7, 0.5))]
     looks = [lambert(0.6), lambert((0.8, 0.3, 0.2)), beckmann(0.9, 0.25)]
     return small(things, looks, [sun(1.3, 0.0), sun(-0.4)], [SMOOTH], 0.1, camera((0, -6, 2), (0, 0, 0.7)))
 
 
 def crowd():
-    """Turned, mirrored and flattened copies."""
+    """Rotated, mirrored and flattened instances."""
     rng = np.random.default_rng(3)
     things = [plane(0)]
     for i in range(60):
@@ -65,7 +65,7 @@ def crowd():
 
 
 def glass():
-    """Glass of a mesh around glass of an exact ball, under a sky of nodes that is sampled as a light."""
+    """A glass mesh around an exact glass ball, under a sky of nodes that is sampled as a light."""
     nodes = (Node(NodeKind.COORDINATE, Coordinate.GENERATED), Node(NodeKind.VECTOR_MATH, 17, inputs=(NodeRef(0),)))
     things = [plane(1), sphere(0, move(-1.1, 0, 1)), mesh(0, 0, move(1.1, 0, 1)), sphere(2, move(1.1, 0, 1) @ scale(0.5))]
     world = World(NodeRef(1), nodes, map_resolution=32)
@@ -74,7 +74,7 @@ def glass():
 
 
 def closed_room():
-    """Light that only gets to the eye off several walls."""
+    """Light that reaches the eye only by several walls."""
     walls = MeshData.from_trimesh(trimesh.creation.box((4, 4, 4)), "walls")
     things = [
         mesh(0, 0, move(0, 0, 2)),
@@ -88,7 +88,7 @@ def closed_room():
 
 
 def many_lamps():
-    """Enough of them for a tree."""
+    """Enough lamps for a light tree."""
     rng = np.random.default_rng(5)
     lamps = []
     for i in range(40):
@@ -103,7 +103,7 @@ def many_lamps():
 
 
 def principled():
-    """Coats, metal and rough glass; a picture as colour and as bumps, whose height is a length."""
+    """Coats, metal and rough glass; an image as colour and as bump, whose height is a length."""
     coordinate = Node(NodeKind.COORDINATE, Coordinate.GENERATED)
     picture = Node(NodeKind.IMAGE, image=0, image_count=1, inputs=(NodeRef(0),))
     bump = Node(NodeKind.BUMP, first=0, inputs=(0.8, 0.125, NodeRef(1), (0, 0, 0), 0.1))
@@ -131,7 +131,7 @@ def principled():
 
 
 def veils():
-    """Shadow rays through layers, which a spot casts onto a floor."""
+    """Shadow rays of a spot through transparent layers onto a floor."""
     things = [plane(0), *(mesh(0, 1 + i, move(0.25 * i - 0.5, 0, 0.5 + 0.5 * i) @ rotate_x(0.2 * i)) for i in range(3))]
     looks = [lambert(0.8), *(veiled(lambert(c), 0.4) for c in ((0.8, 0.2, 0.2), (0.2, 0.8, 0.2), (0.2, 0.2, 0.8)))]
     spot = Light("spot", move(0.5, 0, 5), LightKind.SPOT, (40,) * 3, radius=0.1, spot_angle=0.9, spot_blend=0.4)
@@ -139,7 +139,7 @@ def veils():
 
 
 def course():
-    """CLASSIC with its falloffs, whose radii are lengths."""
+    """CLASSIC with falloffs, whose radii are lengths."""
     kinds = (Falloff.PHYSICAL, Falloff.LINEAR, Falloff.SMOOTH, Falloff.GAUSSIAN)
     lamps = [
         Light(f"lamp {i}", move(2 * i - 3, -2, 3), emission=(2,) * 3, falloff=f, falloff_radius=6.0)
@@ -157,7 +157,7 @@ def course():
 
 
 def parallel():
-    """An orthographic lens, whose window is a length, with every pass that knows lengths."""
+    """An orthographic lens, whose window is a length, with every pass that depends on lengths."""
     shot = showroom(PIXELS, samples=8, passes=tuple(Pass), occlusion_distance=1.0, mist_start=2.0, mist_depth=8.0)
     lens = {"lens_radius": 0.05, "focal_distance": 6.5, "clip_end": 50.0}
     return dataclasses.replace(shot, camera=camera((2, -6, 3), (0, 0, 0.8), 3.0, kind=CameraKind.ORTHOGRAPHIC, **lens))
@@ -170,7 +170,7 @@ TEN = (everything, smooth_meshes, crowd, glass, closed_room, many_lamps, princip
 
 
 def resized(shot, factor):
-    """All lengths times factor, and what lamps send out so that as much arrives. The factor is within the float range."""
+    """Return the scene with all lengths times factor, and lamps scaled for equal irradiance. The factor is a float."""
 
     def larger(matrix):
         return np.array(matrix, float) * np.array([[1, 1, 1, factor]])
@@ -188,7 +188,7 @@ def resized(shot, factor):
         )
 
     def look(material):
-        # Of all nodes here a bump alone measures in lengths.
+        # Among the nodes in these scenes only BUMP has an input that is a length.
         def node(n):
             taller = (n.inputs[0], factor * n.inputs[1], *n.inputs[2:]) if n.kind == NodeKind.BUMP else n.inputs
             return dataclasses.replace(n, inputs=taller)
@@ -221,7 +221,7 @@ def resized(shot, factor):
 
 
 def resized_meshes(shot, factor):
-    """The same, with the factor in the vertices instead of the placements; exact surfaces keep it in theirs."""
+    """Return the resized scene with the factor in the vertices of meshes instead of the transforms."""
     larger = resized(shot, factor)
     is_mesh = (shot.instances.kinds == InstanceKind.MESH)[:, None, None]
     linear = np.where(is_mesh, shot.instances.matrices[..., :3], larger.instances.matrices[..., :3])
@@ -231,7 +231,7 @@ def resized_meshes(shot, factor):
 
 
 def moved(shot, offset):
-    """Everything that far away."""
+    """Return the scene moved by offset."""
 
     def there(matrix):
         return np.array(matrix, float) + np.concatenate([np.zeros((3, 3)), np.reshape(offset, (3, 1))], axis=1)

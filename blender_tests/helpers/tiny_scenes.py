@@ -1,4 +1,4 @@
-"""The smallest scenes that ask one question each, as snapshots; and the one pixel that answers it."""
+"""Smallest scenes as snapshots, each for one fact, and renders of single pixels."""
 
 import dataclasses
 
@@ -34,7 +34,7 @@ def rotate_y(angle):
 
 
 def look_at(eye, target, up=(0.0, 0.0, 1.0)):
-    """Camera to world, 4 x 4: at eye, looking at target along local -z."""
+    """Return the matrix from camera to world, 4 x 4: at eye, looking at target along local -z."""
     eye, target, up = (np.asarray(v, float) for v in (eye, target, up))
     z = eye - target
     z /= np.linalg.norm(z)
@@ -57,7 +57,7 @@ def beckmann(color=1.0, alpha=0.3, ior=1.5, **fields):
 
 
 def veiled(material, opacity):
-    """The material at that share; the rest passes."""
+    """Return the material with that opacity; the rest of the light is transmitted."""
     lobes = tuple(dataclasses.replace(lobe, weight=rgb(opacity)) for lobe in material.lobes)
     emission = tuple(opacity * c for c in material.emission)
     return dataclasses.replace(material, lobes=lobes, emission=emission, transmittance=rgb(1.0 - opacity))
@@ -68,7 +68,7 @@ def rgb(value):
 
 
 def quad(size=2.0, name="quad"):
-    """A square in z = 0 around the origin that faces +z."""
+    """Return a square in z = 0 around the origin that faces +z."""
     r = size / 2
     return MeshData(name, [(-r, -r, 0), (r, -r, 0), (r, r, 0), (-r, r, 0)], [(0, 1, 2), (0, 2, 3)])
 
@@ -82,7 +82,7 @@ def sphere(material=0, matrix=None, **fields):
 
 
 def pencil(eye=(0.0, 0.0, 1.0), target=(0.0, 0.0, 0.0), width=1e-6, pixels=1, **fields):
-    """A parallel camera so narrow that all its pixels see one point."""
+    """Return an orthographic camera so narrow that all its pixels see one point."""
     r = width / 2
     return Camera(
         matrix=look_at(eye, target),
@@ -97,7 +97,7 @@ def pencil(eye=(0.0, 0.0, 1.0), target=(0.0, 0.0, 0.0), width=1e-6, pixels=1, **
 
 
 def one_pixel(**settings):
-    """Settings for pictures of a pixel or few."""
+    """Return settings for pictures of one or few pixels."""
     return Settings(**{"samples": 1, "threads": 1, "max_bounces": 0, "passes": (Pass.COMBINED,), **settings})
 
 
@@ -114,12 +114,12 @@ def scene(instances=(), materials=(), lights=(), meshes=(), world=0.0, camera=No
 
 
 def furnace(albedo, emission, **settings):
-    """The inside of a glowing Lambert sphere, seen from its middle."""
+    """Return the inside of an emitting Lambert sphere, seen from its centre."""
     return scene([sphere()], [lambert(albedo, emission=rgb(emission))], camera=pencil((0, 0, 0), (0, 0, -1)), **settings)
 
 
 def two_planes(distance=2.0, albedo=0.8, emission=1.0, **settings):
-    """A glowing floor under a Lambert ceiling, without end."""
+    """Return an infinite emitting floor under an infinite Lambert ceiling."""
     ceiling = move(z=distance) @ rotate_x(np.pi)
     materials = [Material("glow", lobes=(), emission=rgb(emission)), lambert(albedo)]
     camera = pencil((0, 0, distance / 2), (0, 0, distance), 1e-6)
@@ -127,7 +127,7 @@ def two_planes(distance=2.0, albedo=0.8, emission=1.0, **settings):
 
 
 def showroom(pixels=32, **settings):
-    """Many kinds of things at once: what must be equal in every configuration is compared here."""
+    """Return a scene with many kinds of objects, for comparing configurations."""
     materials = [
         lambert((0.8, 0.7, 0.6)),
         beckmann(0.9, 0.2, 1.5),
@@ -172,12 +172,12 @@ def with_settings(snapshot, **fields):
 
 
 def render(snapshot, which=Pass.COMBINED, samples=None):
-    """One pass of the whole render, (h, w, channels) in double."""
+    """Render and return one pass, (h, w, channels) in double."""
     with Session.upload(snapshot) as session:
         assert session.render_all(samples)
         return session.read(which).astype(np.float64)
 
 
 def radiance(snapshot):
-    """Mean RGB over the pixels."""
+    """Render and return the mean RGB over the pixels."""
     return render(snapshot)[..., :3].mean(axis=(0, 1))

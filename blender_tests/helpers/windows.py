@@ -1,4 +1,4 @@
-"""A screen of our own, for Blender's program in a real window."""
+"""A virtual screen for Blender's program in a real window."""
 
 import contextlib
 import os
@@ -8,7 +8,7 @@ import subprocess
 
 @contextlib.contextmanager
 def screen(width, height):
-    """The name of a display on the first free number."""
+    """Start an X server on the first free number and yield the name of its display."""
     assert shutil.which("Xvfb"), "Xvfb is missing: apt-get install xvfb xdotool imagemagick libgl1-mesa-dri"
     reading, writing = os.pipe()
     server = subprocess.Popen(
@@ -19,7 +19,7 @@ def screen(width, height):
     )
     os.close(writing)
     try:
-        # The number and its newline come one by one, and a server that cannot finish its line gives up.
+        # Read the whole line: the server writes number and newline separately and ends if it cannot write.
         with open(reading, encoding="ascii") as file:
             number = file.readline().strip()
         assert number, "Xvfb did not start"
