@@ -1,24 +1,33 @@
-"""Where the Blenders are, and how a case runs inside one: always in a process of its own, so that a crash is a failure."""
+"""Where the Blenders are, and how a case runs inside one. A crash or a hang fails its own case and costs no other."""
 
+import atexit
 import glob
 import json
 import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
+from blender_server import BlenderServer
+
 # Tools ask for Blenders, too, where there is no pytest.
-HERE, ROOT = (str(folder) for folder in Path(__file__).resolve().parents[1:3])
-RUN = os.path.join(HERE, "blender", "in_blender", "run.py")
+ROOT = str(Path(__file__).resolve().parents[2])
 MODULE, PROGRAM = "bpy module", "Blender program"
+_servers = {}
+
+
+def places(folder):
+    """The variables that keep a user's settings out."""
+    names = ("CONFIG", "SCRIPTS", "DATAFILES")
+    return {"HOME": str(folder), **{f"BLENDER_USER_{name}": os.path.join(str(folder), name.lower()) for name in names}}
 
 
 def environment(folder, **extra):
     """No user's settings, no display."""
     keep = {k: v for k, v in os.environ.items() if not k.startswith("BLENDER_") and k != "DISPLAY"}
-    places = {f"BLENDER_USER_{name}": os.path.join(str(folder), name.lower()) for name in ("CONFIG", "SCRIPTS", "DATAFILES")}
-    return {**keep, **places, "HOME": str(folder), **extra}
+    return {**keep, **places(folder), **extra}
 
 
 def program():
@@ -28,35 +37,64 @@ def program():
     return path
 
 
-def command(which, result, where, name, *arguments):
-    tail = ["--", str(result), where, name, *map(str, arguments)]
-    if which == MODULE:
-        return [sys.executable, RUN, *tail]
-    return [program(), "-b", "--factory-startup", "--python-exit-code", "3", "-P", RUN, *tail]
+def _start(which, folder, **extra):
+    path = None if which == MODULE else program()
+    return BlenderServer(path, environment(folder, **extra), os.path.join(str(folder), "blender.txt"))
 
 
-def attempt(which, folder, where, name, *arguments, **extra):
-    """(exit code, all that was said, the case's result or None). A hang of minutes is a failure."""
-    result = os.path.join(str(folder), "result.json")
-    done = subprocess.run(
-        command(which, result, where, name, *arguments),
-        env=environment(folder, **extra),
-        cwd=str(folder),
-        capture_output=True,
-        text=True,
-        errors="replace",
-        timeout=300,
+def _shared(which):
+    """The Blender of a kind that runs case after case."""
+    server = _servers.get(which)
+    if server is None or not server.is_open:
+        server = _servers[which] = _start(which, tempfile.mkdtemp(prefix="lancer-blender-"))
+    return server
+
+
+@atexit.register
+def close_all():
+    for server in _servers.values():
+        if server.is_open:
+            server.close()
+        shutil.rmtree(os.path.dirname(server.output), ignore_errors=True)
+
+
+def attempt(which, folder, where, name, *arguments, alone=False, **extra):
+    """(exit code, all that was said, the case's result or None).
+
+    alone: in a process of its own, whose start and end are part of it; so is a case with other variables of the environment,
+    which are extra.
+    """
+    alone = alone or bool(extra)
+    server = _start(which, folder, **extra) if alone else _shared(which)
+    # The folder may have the files of a case before.
+    result, log = (os.path.join(str(folder), file) for file in ("result.json", "said.txt"))
+    for path in (result, log):
+        if os.path.exists(path):
+            os.remove(path)
+    code = server.run(
+        folder=str(folder),
+        log=log,
+        environment={**places(folder), **extra},
+        where=where,
+        name=name,
+        arguments=[str(argument) for argument in arguments],
+        result=result,
     )
-    value = None
-    if os.path.exists(result):
-        with open(result, encoding="utf-8") as file:
-            value = json.load(file)
-    return done.returncode, done.stdout + done.stderr, value
+    if alone or code:
+        # A Blender in which a case has failed is not the one to run the next.
+        ended = server.close() if server.is_open else code
+        code = code or ended
+    said = "".join(_text(path) for path in ((server.output, log) if alone or not os.path.exists(log) else (log,)))
+    return code, said, json.loads(_text(result)) if os.path.exists(result) else None
 
 
-def run(which, folder, where, name, *arguments, **extra):
-    """The result of a case. A crash, a Python error: all are failures with the last lines said."""
-    code, said, value = attempt(which, folder, where, name, *arguments, **extra)
+def _text(path):
+    return Path(path).read_text(encoding="utf-8", errors="replace") if os.path.exists(path) else ""
+
+
+def run(which, folder, where, name, *arguments, **how):
+    """The result of a case, as attempt() takes it. A crash, a Python error: all are failures with the last lines said."""
+    code, said, value = attempt(which, folder, where, name, *arguments, **how)
     assert code == 0 and value is not None, f"exit code {code}\n{said[-3000:]}"
     if isinstance(value, dict):
         value["console"] = said

@@ -1,9 +1,8 @@
 // A whole surface in lanes: every lane answers with the bits that it gives alone, whatever its neighbours are.
-#include "compile/ready_lobes.h"
-#include "integrator/stages/lobe_means.h"
-#include "lane_numbers.h"
 #include "random_lobes.h"
 #include "scene/material.h"
+#include "widths/bsdf_kernel.h"
+#include "widths/each_kernel.h"
 
 #include <gtest/gtest.h>
 
@@ -14,23 +13,12 @@ using testing::all_codes;
 using testing::Code;
 using testing::Described;
 using testing::described;
-using testing::kMostLanes;
-using testing::Lanes;
-using testing::layers_of;
-using testing::lobe_of;
 using testing::near;
-using testing::put_lanes;
+using testing::Place;
 using testing::Random;
-using testing::Report;
 using testing::unit;
 
-// Where a lane looks from, what it asks for and which numbers it draws with.
-constexpr int kAsked = 3, kDrawn = 4;
-struct Place {
-  glm::vec3 wo, ns, ng, wi[kAsked];
-  glm::vec3 u[kDrawn]; // of the lobe, of the direction
-  bool inside;
-};
+constexpr int kLanes = BsdfRows::kLanes;
 
 Place place(Random &random) {
   Place at;
@@ -48,86 +36,39 @@ Place place(Random &random) {
   return at;
 }
 
-template <class F> Vec3<F> vector_of(const Place *of, const glm::vec3 Place::*member) {
-  Vec3<F> v;
-  put_lanes<F>(v, [&](int i) { return of[i].*member; });
-  return v;
-}
-
-template <class F> void begin(Bsdf<F> &bsdf, const Place *of, bool bump_correction) {
-  MaskOf<F> inside;
-  put_lanes<F>(inside, [&](int i) { return of[i].inside; });
-  bsdf.begin(vector_of<F>(of, &Place::wo), vector_of<F>(of, &Place::ns), vector_of<F>(of, &Place::ng), inside, bump_correction);
-}
-
-template <class F> void report_value(const char *name, const BsdfValue<F> &value, Report<F> &add) {
-  for (const Vec3<F> &part : value.part)
-    add(name, part);
-  add(name, value.pdf);
-}
-
-// Everything that a surface answers.
-template <class F> void report_all(Bsdf<F> &bsdf, const Place *of, Report<F> &add) {
-  bsdf.complete();
-  add("smooth", bsdf.smooth);
-  add("transmits", bsdf.transmits);
-  add("emission", bsdf.emission);
-  add("albedo", bsdf.albedo());
-  for (const Component component : {Component::Diffuse, Component::Glossy, Component::Transmission})
-    add("shown", bsdf.shown(component));
-  add("mean_normal", mean_normal(bsdf));
-  const Mixture<F> mixture = mix(bsdf, Vec3<F>(F(0.0f)), true);
-  add("mix: normal", mixture.normal);
-  add("mix: diffuse", mixture.diffuse);
-  add("mix: specular", mixture.specular);
-  add("mix: matt", mixture.matt);
-  for (int k = 0; k < kAsked; ++k) {
-    Vec3<F> wi;
-    put_lanes<F>(wi, [&](int i) { return of[i].wi[k]; });
-    report_value("eval", bsdf.eval(wi), add);
-    report_value("eval_lit", bsdf.eval_lit(wi), add);
-  }
-  for (int k = 0; k < kDrawn; ++k) {
-    Vec3<F> u;
-    put_lanes<F>(u, [&](int i) { return of[i].u[k]; });
-    const BsdfSample<F> sample = bsdf.sample(u.x, u.y, u.z);
-    add("sample: pdf", sample.pdf);
-    add("sample: wi", sample.wi);
-    add("sample: weight", sample.weight);
-    add("sample: share", sample.share[0]);
-    add("sample: share", sample.share[1]);
-    add("sample: delta", sample.delta);
-    add("sample: transmitted", sample.transmitted);
-    add("sample: component", sample.component);
-    add("sample: alpha2", sample.alpha2);
-    report_value("eval of what was drawn", bsdf.eval(sample.wi), add);
-    report_value("eval_lit of what was drawn", bsdf.eval_lit(sample.wi), add);
-  }
-}
-
 // Samples of lanes alone that are not 0.
-int count_samples(const std::vector<Report<float>> &alone) {
+int count_samples(const BsdfRows &alone) {
   int found = 0;
-  for (const Report<float> &report : alone)
-    for (const auto &entry : report.entries)
-      found += std::string(entry.name) == "sample: pdf" && std::bit_cast<float>(entry.words[0]) > 0.0f;
+  for (int k = 0; k < alone.count; ++k)
+    for (int i = 0; i < kLanes && std::string(alone.rows[k].name) == "sample: pdf"; ++i)
+      found += std::bit_cast<float>(alone.rows[k].words[i]) > 0.0f;
   return found;
 }
 
-// compute(Lanes<F>(), first lane): a report. Returns how many samples were not 0.
-template <class Compute> int expect_the_same(const Compute &compute, const std::string &what) {
-  std::vector<Report<float>> alone;
-  for (int i = 0; i < kMostLanes; ++i)
-    alone.push_back(compute(Lanes<float>(), i));
-  testing::expect_lanes_hold<Float<4>>(compute, alone, what);
-  testing::expect_lanes_hold<Float<8>>(compute, alone, what);
-  testing::expect_lanes_hold<Float<16>>(compute, alone, what);
+// run(kernel, rows) computes the rows of sixteen lanes. Returns how many samples were not 0.
+template <class Run> int expect_the_same(const Run &run, const std::string &surface) {
+  static BsdfRows alone, lanes;
+  for (const BsdfKernel *kernel : LANCER_EACH_KERNEL(bsdf_kernel)) {
+    const bool first = kernel == LANCER_EACH_KERNEL(bsdf_kernel)[0];
+    BsdfRows &rows = first ? alone : lanes;
+    run(*kernel, rows);
+    EXPECT_LE(rows.count, BsdfRows::kMost);
+    EXPECT_EQ(rows.count, alone.count);
+    for (int k = 0; k < rows.count && !first; ++k)
+      for (int i = 0; i < kLanes; ++i)
+        if (rows.rows[k].words[i] != alone.rows[k].words[i]) {
+          ADD_FAILURE() << surface << "; " << rows.rows[k].name << ": lane " << i << " of " << kernel->name << " has "
+                        << std::bit_cast<float>(rows.rows[k].words[i]) << ", alone "
+                        << std::bit_cast<float>(alone.rows[k].words[i]);
+          return 0;
+        }
+  }
   return count_samples(alone);
 }
 
 // Surfaces of lobes of these codes.
-int expect_the_same(Random &random, const std::vector<Code> &codes, const std::string &what) {
-  Place places[kMostLanes];
+int expect_the_same(Random &random, const std::vector<Code> &codes, const std::string &surface) {
+  Place places[kLanes];
   std::vector<std::vector<Described>> lobes(codes.size());
   for (Place &at : places) {
     at = place(random);
@@ -135,20 +76,12 @@ int expect_the_same(Random &random, const std::vector<Code> &codes, const std::s
       lobes[k].push_back(described(random, codes[k], at.ns));
   }
   const bool bump_correction = random.next() % 4;
-  return expect_the_same(
-      [&]<class F>(Lanes<F>, int first) {
-        Report<F> report;
-        Bsdf<F> bsdf;
-        begin(bsdf, places + first, bump_correction);
-        for (const std::vector<Described> &of : lobes)
-          if (of[0].lobe.kind == LobeKind::Principled)
-            add_principled(bsdf, lobe_of<F>(&of[size_t(first)]), layers_of<F>(&of[size_t(first)]));
-          else
-            add_lobe(bsdf, lobe_of<F>(&of[size_t(first)]));
-        report_all(bsdf, places + first, report);
-        return report;
-      },
-      what);
+  std::vector<const Described *> of;
+  for (const std::vector<Described> &lobe : lobes)
+    of.push_back(lobe.data());
+  return expect_the_same([&](const BsdfKernel &kernel,
+                             BsdfRows &rows) { kernel.described(places, of.data(), int(of.size()), bump_correction, rows); },
+                         surface);
 }
 
 TEST(BsdfWidths, EveryLobe) {
@@ -161,7 +94,7 @@ TEST(BsdfWidths, EveryLobe) {
         return;
     }
     // An eighth of the samples at least: a third of the colours are black, and some lobes are dark from behind.
-    EXPECT_GT(samples, 40 * kMostLanes * kDrawn / 8) << code.name();
+    EXPECT_GT(samples, 40 * kLanes * Place::kDraws / 8) << code.name();
   }
 }
 
@@ -224,7 +157,7 @@ TEST(BsdfWidths, LobesThatArePlanned) {
       continue;
     int samples = 0;
     for (int k = 0; k < 40; ++k) {
-      Place places[kMostLanes];
+      Place places[kLanes];
       std::vector<ReadyLobe> ready;
       for (Place &at : places) {
         at = place(random);
@@ -235,30 +168,15 @@ TEST(BsdfWidths, LobesThatArePlanned) {
         ASSERT_TRUE(one.has(PrincipledLayer::Gloss));
       }
       // Every third surface is of one material.
-      const auto material_of = [&](int lane) { return &ready[k % 3 ? size_t(lane) : 0]; };
-      samples += expect_the_same(
-          [&]<class F>(Lanes<F>, int first) {
-            LaneLobes<F> lanes;
-            for (int i = 0; i < LanesOf<F>::kWidth; ++i) {
-              lanes.of[i] = material_of(first + i);
-              lanes.inside |= uint32_t(places[first + i].inside) << i;
-              lanes.same = lanes.same && lanes.of[i] == lanes.of[0];
-            }
-            Report<F> report;
-            Bsdf<F> bsdf;
-            begin(bsdf, places + first, true);
-            if (layered)
-              add_principled(bsdf, lanes.principled_carrier(), lanes.principled(), lanes);
-            else
-              add_cached(bsdf, lanes.inputs(), lanes);
-            report_all(bsdf, places + first, report);
-            return report;
-          },
-          code.name() + ", draw " + std::to_string(k));
+      const ReadyLobe *of[kLanes];
+      for (int i = 0; i < kLanes; ++i)
+        of[i] = &ready[k % 3 ? size_t(i) : 0];
+      samples += expect_the_same([&](const BsdfKernel &kernel, BsdfRows &rows) { kernel.planned(places, of, layered, rows); },
+                                 code.name() + ", draw " + std::to_string(k));
       if (HasFailure())
         return;
     }
-    EXPECT_GT(samples, 40 * kMostLanes * kDrawn / 8) << code.name();
+    EXPECT_GT(samples, 40 * kLanes * Place::kDraws / 8) << code.name();
   }
 }
 

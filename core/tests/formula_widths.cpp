@@ -1,5 +1,6 @@
-// Every formula gives the same bits at widths 1, 4, 8 and 16, whatever the instruction set. Of numbers that are none only that
-// is the same: which of two an operation hands on is the processor's and the compiler's choice.
+// Every formula gives the bits of one lane in the lanes of each instruction set. All not-a-numbers count as equal: processor
+// and compiler choose which of two operands an operation hands on.
+#include "widths/each_kernel.h"
 #include "widths/width_kernel.h"
 
 #include "lights/light.h"
@@ -15,16 +16,7 @@
 
 namespace lancer {
 
-const WidthKernel &width_kernel() { return LANCER_CHOSEN_KERNEL(width_kernel); }
-
 namespace {
-
-// What every processor of the family runs.
-#if defined(__x86_64__)
-const WidthKernel &least_kernel = sse4::width_kernel;
-#else
-const WidthKernel &least_kernel = generic::width_kernel;
-#endif
 
 using Random = std::mt19937;
 
@@ -127,24 +119,24 @@ bool same(const WidthOutputs &a, const WidthOutputs &b, int row, int lane) {
   return x == y || (!is_number(x) && !is_number(y));
 }
 
-// Compares every formula of a list with itself at width 1. Adds up how many numbers were compared.
-void expect_same(const WidthInputs &in, const WidthFormula *formulas, const WidthFormula *least, const char *which,
-                 size_t &compared) {
+// Compares the formulas of a list, or the one named which, with the same formulas in one lane. Adds up how many numbers were
+// compared.
+void expect_same(const WidthInputs &in, const WidthFormula *WidthKernel::*list, const char *which, size_t &compared) {
   static WidthOutputs want, got;
-  for (; formulas->name; ++formulas, ++least) {
-    if (which && std::string(which) != formulas->name)
-      continue;
-    least->at[0](in, want);
-    ASSERT_GT(want.rows, 0);
-    ASSERT_LE(want.rows, WidthOutputs::kMost);
-    for (int i = 0; i < 4; ++i) {
-      formulas->at[i](in, got);
-      ASSERT_EQ(got.rows, want.rows) << formulas->name;
+  for (const WidthKernel *kernel : LANCER_EACH_KERNEL(width_kernel)) {
+    const WidthFormula *formula = kernel->*list;
+    for (const WidthFormula *one = one_lane::width_kernel.*list; one->name; ++one, ++formula) {
+      if (which && std::string(which) != one->name)
+        continue;
+      one->run(in, want);
+      ASSERT_GT(want.rows, 0);
+      ASSERT_LE(want.rows, WidthOutputs::kMost);
+      formula->run(in, got);
+      ASSERT_EQ(got.rows, want.rows) << one->name;
       for (int row = 0; row < want.rows; ++row)
         for (int lane = 0; lane < WidthInputs::kCount; ++lane)
-          ASSERT_TRUE(same(want, got, row, lane))
-              << formulas->name << " at width " << WidthFormula::kWidths[i] << " of " << width_kernel().name << ", result "
-              << row << ": " << std::hex << got.bits[row][lane] << " instead of " << want.bits[row][lane];
+          ASSERT_TRUE(same(want, got, row, lane)) << one->name << " of " << kernel->name << ", result " << row << ": "
+                                                  << std::hex << got.bits[row][lane] << " instead of " << want.bits[row][lane];
       compared += size_t(want.rows) * WidthInputs::kCount;
     }
   }
@@ -156,7 +148,7 @@ TEST(Widths, NumbersAreThoseOfOneLane) {
   size_t compared = 0;
   for (int round = 0; round < 3000; ++round) {
     fill(random, 1.0, glm::dvec3(0.0), in);
-    ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().numbers, least_kernel.numbers, nullptr, compared));
+    ASSERT_NO_FATAL_FAILURE(expect_same(in, &WidthKernel::numbers, nullptr, compared));
   }
   EXPECT_GT(compared, 10000000u);
 }
@@ -177,7 +169,7 @@ TEST(Widths, SamplesAreThoseOfOneLane) {
     in.filter = &(round % 4 ? window : box).table();
     for (int i = 0; i < 4; ++i) {
       fill(random, 1.0, glm::dvec3(0.0), in);
-      ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().samples, least_kernel.samples, nullptr, compared));
+      ASSERT_NO_FATAL_FAILURE(expect_same(in, &WidthKernel::samples, nullptr, compared));
     }
   }
   EXPECT_GT(compared, 1000000u);
@@ -187,7 +179,7 @@ TEST(Widths, LightsAreThoseOfOneLane) {
   Random random(3);
   WidthInputs in{};
   for (const LightKind kind : {LightKind::Point, LightKind::Spot, LightKind::Sun, LightKind::Area}) {
-    SCOPED_TRACE(testing::Message() << "kind " << uint32_t(kind));
+    SCOPED_TRACE(::testing::Message() << "kind " << uint32_t(kind));
     size_t compared = 0, met = 0;
     for (int round = 0; round < 2000; ++round) {
       // Some blocks of one light, some of sixteen.
@@ -198,7 +190,7 @@ TEST(Widths, LightsAreThoseOfOneLane) {
         in.light[lane] = &lights[size_t(lane)];
       fill(random, 2.0, kind == LightKind::Sun ? 100.0 * lights[0].z : lights[0].position, in);
       for (const char *formula : {"sample_light", "meet_light", "may_meet"})
-        ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, formula, compared));
+        ASSERT_NO_FATAL_FAILURE(expect_same(in, &WidthKernel::lights, formula, compared));
       for (int lane = 0; lane < WidthInputs::kCount; ++lane)
         met += meet(lights[0], {in.p[0][lane], in.p[1][lane], in.p[2][lane]}, {in.wi[0][lane], in.wi[1][lane], in.wi[2][lane]})
                    .pdf > 0.0;
@@ -213,7 +205,7 @@ TEST(Widths, ImportancesAreThoseOfOneLane) {
   WidthInputs in{};
   using Kind = TreeLight::Kind;
   for (const Kind kind : {Kind::Disk, Kind::Ball, Kind::Area, Kind::Sun, Kind::Sky, Kind::Cluster}) {
-    SCOPED_TRACE(testing::Message() << "kind " << uint32_t(kind));
+    SCOPED_TRACE(::testing::Message() << "kind " << uint32_t(kind));
     size_t compared = 0;
     for (int round = 0; round < 2000; ++round) {
       const LightKind of = kind == Kind::Sun    ? LightKind::Sun
@@ -230,7 +222,7 @@ TEST(Widths, ImportancesAreThoseOfOneLane) {
       known.energy = float(share(random));
       in.tree_light = &known;
       fill(random, 200.0, light.position, in);
-      ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "importance", compared));
+      ASSERT_NO_FATAL_FAILURE(expect_same(in, &WidthKernel::lights, "importance", compared));
     }
     EXPECT_GT(compared, 100000u);
   }
@@ -242,7 +234,7 @@ TEST(Widths, GlowingFacesAreThoseOfOneLane) {
   size_t compared = 0;
   for (int round = 0; round < 2000; ++round) {
     fill(random, round % 2 ? 2.0 : 1e5, glm::dvec3(0.0), in);
-    ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "SeenFace", compared));
+    ASSERT_NO_FATAL_FAILURE(expect_same(in, &WidthKernel::lights, "SeenFace", compared));
   }
   EXPECT_GT(compared, 100000u);
 }
@@ -263,10 +255,10 @@ TEST(Widths, ChoicesAreThoseOfOneLane) {
     for (int i = 0; i < 4; ++i) {
       fill(random, 200.0, glm::dvec3(0.0), in);
       if (in.tree.root == kNone) {
-        ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "pair_shares", compared));
+        ASSERT_NO_FATAL_FAILURE(expect_same(in, &WidthKernel::lights, "pair_shares", compared));
       }
-      ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "choose_light", compared));
-      ASSERT_NO_FATAL_FAILURE(expect_same(in, width_kernel().lights, least_kernel.lights, "choice_probability", compared));
+      ASSERT_NO_FATAL_FAILURE(expect_same(in, &WidthKernel::lights, "choose_light", compared));
+      ASSERT_NO_FATAL_FAILURE(expect_same(in, &WidthKernel::lights, "choice_probability", compared));
       // As the tree itself chooses.
       for (int lane = 0; lane < WidthInputs::kCount; ++lane) {
         const LightQuery query({in.p[0][lane], in.p[1][lane], in.p[2][lane]}, {in.n[0][lane], in.n[1][lane], in.n[2][lane]},

@@ -1,4 +1,5 @@
 // Entries pushed by a traversal: the kept lanes, in the requested order, in every instruction set.
+#include "widths/each_kernel.h"
 #include "widths/sorted_kernel.h"
 
 #include <gtest/gtest.h>
@@ -10,13 +11,11 @@
 
 namespace lancer {
 
-const SortedKernel &sorted_kernel() { return LANCER_CHOSEN_KERNEL(sorted_kernel); }
-
 namespace {
 
 constexpr uint32_t kNumbers[8] = {900, 901, 902, 903, 904, 905, 906, 907};
 
-TEST(Lanes, AreKeptInTheOrderAskedFor) {
+void expect_order(const SortedKernel &kernel) {
   std::mt19937 random(11);
   uint32_t lanes[8];
   std::iota(std::begin(lanes), std::end(lanes), 0u);
@@ -33,18 +32,18 @@ TEST(Lanes, AreKeptInTheOrderAskedFor) {
       }
       float keys[16];
       uint32_t numbers[16], count = 0;
-      const uint32_t kept = sorted_kernel().ordered(keys, numbers, key, end, kNumbers, order);
+      const uint32_t kept = kernel.ordered(keys, numbers, key, end, kNumbers, order);
       for (const uint32_t lane : lanes)
         if (mask >> lane & 1) {
-          ASSERT_LT(count, kept) << sorted_kernel().name << ", mask " << mask;
-          ASSERT_EQ(keys[count], key[lane]) << sorted_kernel().name << ", mask " << mask;
-          ASSERT_EQ(numbers[count++], kNumbers[lane]) << sorted_kernel().name << ", mask " << mask;
+          ASSERT_LT(count, kept) << kernel.name << ", mask " << mask;
+          ASSERT_EQ(keys[count], key[lane]) << kernel.name << ", mask " << mask;
+          ASSERT_EQ(numbers[count++], kNumbers[lane]) << kernel.name << ", mask " << mask;
         }
-      ASSERT_EQ(kept, count) << sorted_kernel().name << ", mask " << mask;
+      ASSERT_EQ(kept, count) << kernel.name << ", mask " << mask;
     }
 }
 
-TEST(Lanes, AreKeptBelowALimit) {
+void expect_limit(const SortedKernel &kernel) {
   constexpr float kLimit = 2.0f;
   for (uint32_t mask = 0; mask < 256; ++mask)
     for (uint32_t looked_at = 0; looked_at <= 9; ++looked_at) {
@@ -54,15 +53,25 @@ TEST(Lanes, AreKeptBelowALimit) {
         key[i] = mask >> i & 1 ? kLimit - static_cast<float>(i) : kLimit + 1.0f;
         number[i] = kNumbers[i];
       }
-      const uint32_t kept = sorted_kernel().below(keys, numbers, key, number, looked_at, kLimit);
+      const uint32_t kept = kernel.below(keys, numbers, key, number, looked_at, kLimit);
       for (uint32_t i = 0; i < std::min(looked_at, 8u); ++i)
         if (mask >> i & 1) {
-          ASSERT_LT(count, kept) << sorted_kernel().name << ", mask " << mask;
-          ASSERT_EQ(keys[count], key[i]) << sorted_kernel().name << ", mask " << mask;
-          ASSERT_EQ(numbers[count++], kNumbers[i]) << sorted_kernel().name << ", mask " << mask;
+          ASSERT_LT(count, kept) << kernel.name << ", mask " << mask;
+          ASSERT_EQ(keys[count], key[i]) << kernel.name << ", mask " << mask;
+          ASSERT_EQ(numbers[count++], kNumbers[i]) << kernel.name << ", mask " << mask;
         }
-      ASSERT_EQ(kept, count) << sorted_kernel().name << ", mask " << mask;
+      ASSERT_EQ(kept, count) << kernel.name << ", mask " << mask;
     }
+}
+
+TEST(Lanes, AreKeptInTheOrderAskedFor) {
+  for (const SortedKernel *kernel : LANCER_LANE_KERNELS(sorted_kernel))
+    expect_order(*kernel);
+}
+
+TEST(Lanes, AreKeptBelowALimit) {
+  for (const SortedKernel *kernel : LANCER_LANE_KERNELS(sorted_kernel))
+    expect_limit(*kernel);
 }
 
 } // namespace

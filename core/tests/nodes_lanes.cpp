@@ -1,24 +1,17 @@
-// Each formula of a node gives the same bits at every width: one place, and lanes of 4, 8 and 16, on one instance or on
-// several.
-#if defined(__GNUC__) && !defined(__clang__)
-// Wide lanes are made of several registers here; nothing outside of this file is called with them.
-#pragma GCC diagnostic ignored "-Wpsabi"
-#endif
-
-#include "nodes/block_site.h"
+// Each formula of a node gives the bits of one place in the lanes of each instruction set, on one instance or on several.
+#include "nodes/run.h"
 #include "nodes_cases.h"
+#include "widths/each_kernel.h"
 
 #include <bit>
 
 namespace lancer_test {
 namespace {
 
-using RunBlock = void (*)(const Program &, const Schedule &, const NodeBlock &, NodeLanes *);
-
 // Of numbers; what is none counts as one, whatever its digits.
 uint32_t bits_of(float x) { return x != x ? 0x7fc00000u : std::bit_cast<uint32_t>(x); }
 
-class NodesLanes : public testing::Test {
+class NodesLanes : public ::testing::Test {
 protected:
   Random random{7};
   NodeWorld world{random};
@@ -94,7 +87,7 @@ protected:
       }
   }
 
-  // Runs the last node with any numbers as the values of those before it; all widths are to agree with one place at a time.
+  // Runs the last node on any values of the nodes before it. Every kernel has to agree with one place at a time.
   void compare(const NodeCase &made) {
     const Program program = read_program(world.description, "test", made.nodes.data(), uint32_t(made.nodes.size()));
     const Schedule schedule{uint16_t(made.nodes.size() - 1)};
@@ -112,35 +105,27 @@ protected:
         run(program, schedule, places[size_t(i)], values);
       want.push_back(values.back());
     }
-    const struct {
-      const char *name;
-      RunBlock run;
-    } widths[] = {{"1", run_block<float>},
-                  {"4", run_block<Float<4>>},
-                  {"8", run_block<Float<8>>},
-                  {"16", run_block<Float<16>>},
-                  {node_kernel().name, node_kernel().run}};
-    for (const auto &width : widths) {
+    for (const NodeKernel *kernel : LANCER_EACH_KERNEL(node_kernel)) {
       std::vector<NodeLanes> values = given;
-      width.run(program, schedule, block, values.data());
+      kernel->run(program, schedule, block, values.data());
       for (int i = 0; i < kNodeLanes; ++i)
         for (int k = 0; k < 4; ++k)
           if (block.used >> i & 1) {
             ASSERT_EQ(bits_of(values.back().of[k][i]), bits_of(want[size_t(i)][k]))
-                << "lane " << i << ", component " << k << " at width " << width.name << ": " << values.back().of[k][i]
-                << " for " << want[size_t(i)][k];
+                << "lane " << i << ", component " << k << " of " << kernel->name << ": " << values.back().of[k][i] << " for "
+                << want[size_t(i)][k];
           }
       // Other nodes keep their values, also those of a bump's height.
       for (size_t of = 0; of + 1 < values.size(); ++of)
         for (int i = 0; i < kNodeLanes; ++i)
           if (block.used >> i & 1) {
-            ASSERT_EQ(bits_of(values[of].of[0][i]), bits_of(given[of].of[0][i])) << "node " << of << " at width " << width.name;
+            ASSERT_EQ(bits_of(values[of].of[0][i]), bits_of(given[of].of[0][i])) << "node " << of << " of " << kernel->name;
           }
     }
   }
 };
 
-TEST_F(NodesLanes, EveryFormulaAtEveryWidth) {
+TEST_F(NodesLanes, EveryFormulaInEveryKernel) {
   for (const NodeCase &made : all_cases(random)) {
     SCOPED_TRACE(made.name);
     for (int round = 0; round < 6; ++round) {

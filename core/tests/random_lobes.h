@@ -1,10 +1,10 @@
-// Lobes and Principled layers of random inputs, the ends of their ranges among them; in lanes, too.
+// Lobes and Principled layers of random inputs, the ends of their ranges among them.
 #pragma once
 
-#include "lane_numbers.h"
 #include "principled_lab.h"
 #include "scene/lobe_inputs.h"
 #include "statistics.h"
+#include "widths/bsdf_kernel.h"
 
 #include <cmath>
 #include <limits>
@@ -69,12 +69,6 @@ inline std::vector<Code> all_codes() {
   return all;
 }
 
-// One lane's lobe.
-struct Described {
-  LobeInputs<float> lobe;
-  PrincipledInputs<float> layers;
-};
-
 inline Described described(Random &random, const Code &code, const glm::vec3 &ns) {
   Described d;
   LobeInputs<float> &lobe = d.lobe;
@@ -120,57 +114,6 @@ inline Described described(Random &random, const Code &code, const glm::vec3 &ns
   in.sheen_tint = color(random);
   in.emission = color(random);
   return d;
-}
-
-template <class F> LobeInputs<F> lobe_of(const Described *of) {
-  LobeInputs<F> in;
-  in.kind = of->lobe.kind;
-  in.rules = of->lobe.rules;
-  in.distribution = of->lobe.distribution;
-  in.option = of->lobe.option;
-#define LANCER_PUT(member) put_lanes<F>(in.member, [&](int i) { return of[i].lobe.member; })
-  LANCER_PUT(weight);
-  LANCER_PUT(color);
-  LANCER_PUT(roughness);
-  LANCER_PUT(ior);
-  LANCER_PUT(shininess);
-  LANCER_PUT(edge);
-  LANCER_PUT(anisotropy);
-  LANCER_PUT(rotation);
-  LANCER_PUT(normal);
-  LANCER_PUT(tangent);
-#undef LANCER_PUT
-  return in;
-}
-
-template <class F> PrincipledInputs<F> layers_of(const Described *of) {
-  PrincipledInputs<F> in;
-  in.rules = of->layers.rules;
-  in.distribution = of->layers.distribution;
-  in.option = of->layers.option;
-#define LANCER_PUT(member) put_lanes<F>(in.member, [&](int i) { return of[i].layers.member; })
-  LANCER_PUT(base_color);
-  LANCER_PUT(metallic);
-  LANCER_PUT(roughness);
-  LANCER_PUT(ior);
-  LANCER_PUT(diffuse_roughness);
-  LANCER_PUT(specular);
-  LANCER_PUT(specular_tint);
-  LANCER_PUT(anisotropic);
-  LANCER_PUT(anisotropic_rotation);
-  LANCER_PUT(transmission);
-  LANCER_PUT(transmission_roughness);
-  LANCER_PUT(coat);
-  LANCER_PUT(coat_roughness);
-  LANCER_PUT(coat_ior);
-  LANCER_PUT(coat_tint);
-  LANCER_PUT(coat_normal);
-  LANCER_PUT(sheen);
-  LANCER_PUT(sheen_roughness);
-  LANCER_PUT(sheen_tint);
-  LANCER_PUT(emission);
-#undef LANCER_PUT
-  return in;
 }
 
 } // namespace lancer::testing

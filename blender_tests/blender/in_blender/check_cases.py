@@ -160,19 +160,19 @@ def switches():
 
 def failing():
     """A fault of the check itself: what F12 tells, and the mean of its picture."""
-    from addon.engine import render_engine as engine
-    from addon.operators import check_scene
+    from addon import engine
+    from addon.engine import quick_check
 
     scene = _room()
 
     def fail(*_, **__):
         raise ValueError("no such edge")
 
-    good, check_scene.check_snapshot = check_scene.check_snapshot, fail
+    good, quick_check.check_snapshot = quick_check.check_snapshot, fail
     try:
         messages = _told()
     finally:
-        check_scene.check_snapshot = good
+        quick_check.check_snapshot = good
     return {"messages": messages, "samples": engine.last_statistics[scene.name]["samples"]}
 
 

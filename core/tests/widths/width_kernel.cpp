@@ -5,7 +5,7 @@
 #include "lights/seen_face.h"
 #include "sampling/elementary.h"
 #include "sampling/scramble.h"
-#include "simd/kernel_choice.h"
+#include "simd/kernel_lanes.h"
 
 #include <type_traits>
 
@@ -81,17 +81,15 @@ private:
   }
 };
 
-template <class F, class Run> [[gnu::flatten]] void all_lanes(const WidthInputs &in, WidthOutputs &out) {
-  for (int first = 0; first < WidthInputs::kCount; first += LanesOf<F>::kWidth) {
+template <class Run> [[gnu::flatten]] void all_lanes(const WidthInputs &in, WidthOutputs &out) {
+  for (int first = 0; first < WidthInputs::kCount; first += kLanes) {
     Lane<F> lane{in, out, first};
     Run{}(lane);
     out.rows = lane.row;
   }
 }
 
-template <class Run> constexpr WidthFormula formula(const char *name, Run) {
-  return {name, {all_lanes<float, Run>, all_lanes<Float<4>, Run>, all_lanes<Float<8>, Run>, all_lanes<Float<16>, Run>}};
-}
+template <class Run> constexpr WidthFormula formula(const char *name, Run) { return {name, all_lanes<Run>}; }
 
 #define LANCER_OF(lane)                                                                                                        \
   using T = std::remove_reference_t<decltype(lane)>;                                                                           \

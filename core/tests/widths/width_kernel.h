@@ -1,4 +1,4 @@
-// Formulas at widths 1, 4, 8 and 16, one copy per instruction set.
+// Formulas in the lanes of a kernel, one copy per instruction set.
 #pragma once
 
 #include "lights/light_choice.h"
@@ -37,10 +37,8 @@ struct WidthOutputs {
 };
 
 struct WidthFormula {
-  static constexpr int kWidths[] = {1, 4, 8, 16};
-
   const char *name;
-  void (*at[4])(const WidthInputs &in, WidthOutputs &out); // by width
+  void (*run)(const WidthInputs &in, WidthOutputs &out);
 };
 
 struct WidthKernel {
