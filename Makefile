@@ -34,6 +34,8 @@ SEED ?=
 
 python := $(VENV)/bin/python
 core := build/core
+# A file's tests stay together, as they share what they have rendered; the order of files is conftest.py's.
+pytest = $(python) -m pytest -q blender_tests -n $(JOBS) --dist loadfile --no-loadscope-reorder
 tools := blender_tests/tools/start.py
 cmake := cmake -S core -G Ninja $(if $(WERROR),-DLANCER_WERROR=$(WERROR))
 # Ninja's progress line is for terminals; a log gets warnings and errors only.
@@ -47,7 +49,7 @@ zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
 .PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff features parity differ corpus course sanitize fuzz addon addons bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
-.PHONY: python-run python-test python-dev python-bench python-charts python-zig core-programs core-tests
+.PHONY: python-run python-test python-dev python-bench python-charts python-zig core-configured core-programs core-tests
 
 build: packages-build ## build the core into addon/lib, where the add-on loads the library
 	@mkdir -p build
@@ -59,19 +61,24 @@ render: packages-run python-run build ## render the showcase, or a file: make re
 	@$(python) scenes/render.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SNAPSHOT),--snapshot "$(SNAPSHOT)") $(if $(FRAME),--frame $(FRAME)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(SAMPLES),--samples $(SAMPLES))
 
-test: packages-test python-test core-tests addon ## run all tests except the slow ones
-	@echo "== blender_tests"
-	@$(python) -m pytest -q blender_tests -m "not slow"
+# The tests of the core are compiled and run beside those in Python, each with JOBS processes.
+test: packages-test python-test core-configured addon ## run all tests except the slow ones
+	@echo "== tests of the core, and blender_tests"
+	@$(MAKE) core-tests JOBS=$(JOBS) >build/core-tests.log 2>&1 & core=$$!; \
+	  $(pytest) -m "not slow"; python=$$?; \
+	  wait $$core; core=$$?; cat build/core-tests.log; exit $$((python | core))
 
 test-slow: packages-test python-test core-programs addon ## run the tests that take minutes
 	@echo "== a thousand renders cancelled"
 	@LANCER_CANCELS=1000 $(core)/lancer_failures --gtest_brief=1 --gtest_filter='*Cancel*'
 	@echo "== blender_tests, slow"
-	@$(python) -m pytest -q blender_tests -m slow
+	@$(pytest) -m slow
 
-core-programs: packages-test
+core-configured: packages-test
 	@mkdir -p build
 	@$(call logged,build/configure.log,$(cmake) -B $(core) -DLANCER_TESTS=ON)
+
+core-programs: core-configured
 	@echo "== core and its tests"
 	@cmake --build $(core) $(compile)
 

@@ -14,6 +14,14 @@ for folder in (ROOT, HERE, os.path.join(HERE, "helpers")):
         sys.path.insert(0, folder)
 
 
+def pytest_configure(config):
+    # Workers send their reports to the process that has started them.
+    if not hasattr(config, "workerinput"):
+        from room_times import RoomTimes
+
+        config.pluginmanager.register(RoomTimes())
+
+
 @pytest.fixture(scope="session")
 def library():
     """The library under test with typed functions; where it is missing, every test of the core fails with the reason."""
