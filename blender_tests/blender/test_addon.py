@@ -80,7 +80,7 @@ def test_broken_library(which, kind, word, tmp_path):
     else:
         whole = library.read_bytes()
         library.write_bytes(whole[: len(whole) // 2] if kind == "truncated" else b"This is no library at all." * 1000)
-    code, said, value = blenders.attempt(which, tmp_path, "addon_cases", "other_library", copy.parent)
+    code, said, value = blenders.attempt(which, tmp_path, "addon_cases", "other_library", copy.parent, alone=True)
     assert code in ((0,) if which == MODULE else (0, 1)), said[-2000:]
     told = value["error"] if value else said
     assert word in told and "install the add-on" in told and str(library) in told, said[-2000:]

@@ -36,7 +36,7 @@ def test_the_messages_of_view_layers_add_up(case):
 def test_the_error_of_a_layer_outlasts_the_next(which, tmp_path):
     """The panel keeps the error beside what the other layer tells. The program in the background ends with exit code 1."""
     path = tmp_path / "panel.json"
-    code, said, got = blenders.attempt(which, tmp_path, "message_cases", "failed_layer", path)
+    code, said, got = blenders.attempt(which, tmp_path, "message_cases", "failed_layer", path, alone=True)
     assert code == (0 if which == MODULE else 1) and "the first layer fails" in (got or said), said[-2000:]
     panel = json.loads(path.read_text(encoding="utf-8"))
     assert panel[0] == "the first layer fails" and len(panel) == 3, panel

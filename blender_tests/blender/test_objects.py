@@ -9,7 +9,7 @@ pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
 
 @pytest.fixture
 def case(which, tmp_path):
-    return lambda name, *arguments: blenders.run(which, tmp_path, "object_cases", name, *arguments)
+    return lambda name, **how: blenders.run(which, tmp_path, "object_cases", name, **how)
 
 
 def test_switches(case):
@@ -41,9 +41,9 @@ def test_instancers_narrow_what_they_bring_in(case):
 
 def test_instances_leave_nothing_allocated(case):
     """Blender tells at its exit what nobody has freed."""
-    got = case("freed")
+    got = case("freed", alone=True)
     assert got["instances"] >= 2 + 5 + 1 + 6 and "Not freed" not in got["console"]
-    assert "Not freed" not in case("freed_text")["console"]
+    assert "Not freed" not in case("freed_text", alone=True)["console"]
 
 
 def test_meshes_bring_what_their_materials_read(case):

@@ -16,7 +16,7 @@ using testing::described;
 using testing::direction;
 using testing::Random;
 
-constexpr int kDraws = 250000, kSide = 16, kCells = kSide * kSide;
+constexpr int kDraws = 64000, kSide = 16, kCells = kSide * kSide;
 
 LobeInputs<float> rough(LobeKind kind, Facets facets, float roughness, float ior = 1.5f, float anisotropy = 0.0f) {
   LobeInputs<float> inputs = described(kind, roughness, ior, 0.0f, {0.9f, 0.6f, 0.3f});

@@ -116,7 +116,7 @@ TYPED_TEST(LightTrees, ProbabilitiesAddUpToOne) {
     const TypeParam lamps = tree_of<TypeParam>(points, count % 2),
                     all = tree_of<TypeParam>(any_lights(random, count), count % 2);
     const TypeParam faces = tree_of_faces<TypeParam>(random, count);
-    for (int i = 0; i < (count < 10000 ? 50 : 2); ++i) {
+    for (int i = 0; i < (count < 100 ? 50 : count < 10000 ? 10 : 2); ++i) {
       const LightQuery query = any_query(random), through(query.p, query.n, true);
       expect_sum_of_one(lamps, with_sky, through);
       expect_sum_of_one(faces, count, through);
