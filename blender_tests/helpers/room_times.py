@@ -1,4 +1,4 @@
-"""How long each room of the tests took, and the tests over their room's budget: what `make test` ends with. No clock is judged."""
+"""How long each room of the tests took, and the tests over the budget of their room. Reported, never judged."""
 
 import collections
 
