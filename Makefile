@@ -49,7 +49,7 @@ zig = $(realpath $(wildcard build/zig/lib/python3*/site-packages/ziglang/zig))
 
 .PHONY: build render test test-slow test-platforms mutants bench accuracy tradeoff features parity differ corpus course sanitize fuzz addon addons bindings format clean help
 .PHONY: packages-build packages-run packages-test packages-fuzz packages-format packages-platforms packages-bench
-.PHONY: python-run python-test python-dev python-bench python-charts python-zig core-configured core-programs core-tests
+.PHONY: ready-run ready-test python-run python-test python-dev python-bench python-charts python-zig core-configured core-programs core-tests
 
 build: packages-build ## build the core into addon/lib, where the add-on loads the library
 	@mkdir -p build
@@ -57,12 +57,12 @@ build: packages-build ## build the core into addon/lib, where the add-on loads t
 	@echo "== core"
 	@cmake --build $(core) --target lancer $(compile)
 
-render: packages-run python-run build ## render the showcase, or a file: make render BLEND=file.blend | SNAPSHOT=report.zip [FRAME=1] [OUT=x.png] [SAMPLES=n]
+render: ready-run ## render the showcase, or a file: make render BLEND=file.blend | SNAPSHOT=report.zip [FRAME=1] [OUT=x.png] [SAMPLES=n]
 	@$(python) scenes/render.py $(if $(BLEND),--blend "$(BLEND)") $(if $(SNAPSHOT),--snapshot "$(SNAPSHOT)") $(if $(FRAME),--frame $(FRAME)) \
 	  $(if $(OUT),--output "$(OUT)") $(if $(SAMPLES),--samples $(SAMPLES))
 
 # The tests of the core are compiled and run beside those in Python, each with JOBS processes.
-test: packages-test python-test core-configured addon ## run all tests except the slow ones
+test: packages-test core-configured ready-test addon ## run all tests except the slow ones
 	@echo "== tests of the core, and blender_tests"
 	@$(MAKE) core-tests JOBS=$(JOBS) >build/core-tests.log 2>&1 & core=$$!; \
 	  $(pytest) -m "not slow"; python=$$?; \
@@ -175,6 +175,10 @@ packages-build packages-run packages-test packages-fuzz packages-format packages
 # Packages that only one peer of the benchmark needs may be missing: the benchmark reports that peer as missing.
 packages-bench: packages-run
 	@for set in povray llvm; do PYTHON='$(PYTHON)' .ci/packages.sh $$set || true; done
+
+# The library compiles while the packages of Python are installed.
+ready-run ready-test: ready-%: packages-%
+	@$(MAKE) python-$* & python=$$!; $(MAKE) build; built=$$?; wait $$python && exit $$built
 
 python-bench: packages-run
 	@$(PYTHON) .ci/environment.py $(VENV) run bench --optional bench-mitsuba bench-luxcore bench-embree

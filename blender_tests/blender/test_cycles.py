@@ -26,6 +26,8 @@ SCENES = {
 LIMIT = 0.01
 
 
+# The fast scenes of parity compare the same things in less time.
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_blocks(name, tmp_path):
     bounces, samples = SCENES[name]

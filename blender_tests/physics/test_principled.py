@@ -20,18 +20,21 @@ SAMPLES = 512
 
 
 @pytest.fixture(scope="module", params=[MODULE, PROGRAM], ids=["module", "program"])
-def measured(request, library, tmp_path_factory):
-    """The specs, what Cycles answers and a scene that holds the same materials."""
+def materials(request, library, tmp_path_factory):
+    """The version, the specs, a function that returns arrays of a Blender's case, and a scene that holds the same materials."""
     folder = tmp_path_factory.mktemp("principled")
     version = tuple(blenders.run(request.param, folder, "principled_cases", "version"))
     specs = principled_specs.specs(version)
     asked = folder / "asked.json"
     nodes = [node for _, node, _ in specs]
     asked.write_text(json.dumps({"specs": nodes, "angles": ANGLES, "suns": SUNS, "samples": SAMPLES}))
-    got = blenders.run(request.param, folder, "principled_cases", "measure", asked)
-    materials = [Material(name, lobes=(lobe,)) for name, _, lobe in specs]
-    with Scene.upload(tiny_scenes.scene([], materials), library) as scene:
-        yield version, specs, {key: np.array(got[key]) for key in ("sky", "noise", "sun")}, scene
+
+    def measured(name):
+        got = blenders.run(request.param, folder, "principled_cases", name, asked)
+        return {key: np.array(values) for key, values in got.items() if key != "console"}
+
+    with Scene.upload(tiny_scenes.scene([], [Material(name, lobes=(lobe,)) for name, _, lobe in specs]), library) as scene:
+        yield version, specs, measured, scene
 
 
 def frame(angle):
@@ -52,9 +55,10 @@ def figures(name, angle, ours, theirs):
     return f"{name}, seen at {angle} degrees: Lancer {np.round(ours, 5).tolist()}, Cycles {np.round(theirs, 5).tolist()}"
 
 
-def test_suns(measured):
+def test_suns(materials):
     """f cos of each pair of directions, without noise."""
-    version, specs, got, scene = measured
+    version, specs, measured, scene = materials
+    got = measured("suns")
     wrong = []
     for i, (name, _, lobe) in enumerate(specs):
         for j, angle in enumerate(ANGLES):
@@ -91,9 +95,11 @@ def white_sky(scene, material, wo):
     return np.mean(means, axis=0), np.std(means, axis=0, ddof=1) / math.sqrt(len(means))
 
 
-def test_sky(measured):
+@pytest.mark.slow
+def test_sky(materials):
     """All light that a surface sends to the viewer under a white sky."""
-    version, specs, got, scene = measured
+    version, specs, measured, scene = materials
+    got = measured("sky")
     wrong, noise = [], []
     for i, (name, _, lobe) in enumerate(specs):
         if not has_honest_sampler(version, lobe):

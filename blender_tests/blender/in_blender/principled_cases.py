@@ -67,9 +67,8 @@ def version():
     return list(bpy.app.version[:2])
 
 
-def measure(path):
-    """The file names specs (node, inputs, properties, tangent), angles in degrees, suns (unit vectors to them) and samples.
-    Gives sky[spec][angle][rgb] and its standard error, and sun[sun][spec][angle][rgb]: f cos under irradiance 1."""
+def _open(path):
+    """The scene of a file with specs (node, inputs, properties, tangent) and angles in degrees; the file; rows and columns."""
     with open(path, encoding="utf-8") as file:
         asked = json.load(file)
     specs, angles = asked["specs"], asked["angles"]
@@ -85,22 +84,31 @@ def measure(path):
     eye = stage.camera((columns / 2, rows / 2, 100.0), (columns / 2, rows / 2, 0.0), type="ORTHO", clip_end=1000.0)
     eye.rotation_euler = (0.0, 0.0, 0.0)
     eye.data.ortho_scale = max(rows, columns)
+    return scene, asked, rows, columns
 
-    # Suns without a disk: one sample tells the value exactly.
-    cycles.samples, cycles.max_bounces = 1, 0
+
+def suns(path):
+    """Returns f cos under irradiance 1, [sun][spec][angle][rgb], of the file's suns, which are unit vectors to them."""
+    scene, asked, rows, columns = _open(path)
+    # Suns without a disk: one sample has the exact value.
+    scene.cycles.samples, scene.cycles.max_bounces = 1, 0
     sun = stage.light("SUN", 1.0, angle=0.0)
     sun.rotation_mode = "QUATERNION"
-    suns = []
+    found = []
     for direction in asked["suns"]:
         sun.rotation_quaternion = Vector(direction).to_track_quat("Z", "Y")
-        suns.append(_cell_means(scene, rows, columns).tolist())
+        found.append(_cell_means(scene, rows, columns).tolist())
+    return {"sun": found}
 
-    bpy.data.objects.remove(sun)
+
+def sky(path):
+    """Returns the light under a white sky, [spec][angle][rgb], and its standard error, of the file's samples."""
+    scene, asked, rows, columns = _open(path)
     stage.sky((1.0, 1.0, 1.0))
-    cycles.samples, cycles.max_bounces = asked["samples"], 1
+    scene.cycles.samples, scene.cycles.max_bounces = asked["samples"], 1
     skies = []
     for seed in range(4):
-        cycles.seed = seed
+        scene.cycles.seed = seed
         skies.append(_cell_means(scene, rows, columns))
     noise = np.std(skies, axis=0, ddof=1) / 2
-    return {"sky": np.mean(skies, axis=0).tolist(), "noise": noise.tolist(), "sun": suns}
+    return {"sky": np.mean(skies, axis=0).tolist(), "noise": noise.tolist()}
