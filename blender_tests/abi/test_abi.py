@@ -1,4 +1,4 @@
-"""The C interface under wrong values: a status and one sentence that names object and value; never a crash."""
+"""The C interface with wrong values: each call returns a status and a message that names object and value."""
 
 import ctypes
 import re
@@ -69,7 +69,7 @@ def test_bad_faces_are_left_out_and_reported(raw):
     text = raw.messages(scene)
     left_out = [int(number) for number in re.findall(r"mesh 'Cube': (\d+) faces", text)]
     assert sum(left_out) == 4, text
-    # The face that is left keeps the number that the user gave it.
+    # The remaining face keeps its original number.
     hit = (abi.Hit * 1)()
     numbers = [np.array(x, np.float64) for x in ([0.25, 0.25, 1], [0, 0, -1], [0], [10])]
     assert (
@@ -122,7 +122,7 @@ def test_wrong_materials(raw):
 
 
 def test_references_to_nodes_that_are_not_there(raw):
-    """Of a lobe, of a Principled lobe, of a material and of a world: each names its owner and the node."""
+    """References of a lobe, a Principled lobe, a material and a world: each message names owner and node."""
     scene = raw.scene()
     one = raw.nodes(raw.node())
     lobe = raw.lobe()
@@ -139,7 +139,7 @@ def test_references_to_nodes_that_are_not_there(raw):
     world = raw.world(radiance=0.0, **one)
     world.radiance = raw.reference(7)
     refused(raw.call("lancer_scene_set_world", scene, ctypes.byref(world)), "world", "node 7")
-    # The same with a node that is there is no error.
+    # A reference to an existing node is valid.
     assert add(raw, scene, "material", raw.material(emission=raw.reference(0), **one))[0] == Status.OK
 
 
@@ -168,7 +168,7 @@ def test_wrong_nodes(raw):
         (kinds.LIGHT_PATH, 15),
     ):
         refused_with(raw.node(kind=kind, option=options), words=["option", str(options)])
-    # A node sees only those before it.
+    # A node may refer only to nodes before it.
     for node in (0, 1, 2**31 - 1, -2):
         refused_with(raw.node(kind=kinds.GAMMA, inputs=[raw.reference(node)]), words=[str(node)])
     refused_with(plain, raw.node(kind=kinds.BUMP, first=2), words=["first", "2"])

@@ -1,4 +1,4 @@
-"""Handles that are none, handles of the dead, null pointers: a status and one sentence, never a crash."""
+"""Invalid handles, freed handles and null pointers: each call returns a status and a message, and never crashes."""
 
 import ctypes
 
@@ -11,7 +11,7 @@ from addon.bindings.abi import Status
 
 
 def calls_on_scenes(raw):
-    """Every call that takes a scene, with otherwise sound arguments."""
+    """Return every call that takes a scene, with valid arguments except the scene."""
     array = raw.keep(np.zeros(64))
     hits = raw.keep((abi.Hit * 4)())
     pointer, out = array.ctypes.data, ctypes.addressof(hits)
@@ -87,7 +87,7 @@ def test_use_after_free_and_double_free(raw):
     session = raw.session(scene)
     assert raw.call("lancer_session_destroy", session)[0] == Status.OK
     assert raw.call("lancer_scene_destroy", scene)[0] == Status.OK
-    # A new scene must not answer to the old handle.
+    # A new scene must not reuse the old handle.
     other = raw.committed()
     for name, arguments in calls_on_scenes(raw).items():
         assert raw.call(name, scene, *arguments)[0] == Status.ERROR_HANDLE, name

@@ -1,4 +1,4 @@
-"""Sessions and probes of the C interface under wrong values: a status and one sentence that names the value; never a crash."""
+"""Sessions and probes of the C interface with wrong values: each returns a status and a message with the value, no crash."""
 
 import ctypes
 import math
@@ -28,7 +28,7 @@ WRONG_CAMERAS = {
     "matrix": (0,) * 12,
     "aperture_rotation": NAN,
 }
-# What each kind of panorama cannot be, by the place of the number.
+# Invalid parameters of each kind of panorama.
 WRONG_PANORAMAS = [
     (abi.CameraKind.EQUIRECTANGULAR, (0.0, 0.0, NAN, 1.0)),
     (abi.CameraKind.FISHEYE_EQUIDISTANT, (0.0,)),

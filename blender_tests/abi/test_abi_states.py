@@ -1,4 +1,4 @@
-"""Calls in the wrong order: a state error with one sentence, and the work that is there stays."""
+"""Calls in the wrong order: each returns a state error with a message and leaves existing work unchanged."""
 
 import ctypes
 import threading
@@ -91,7 +91,7 @@ def test_two_sessions_of_one_scene_render_at_once(raw):
 
 
 def test_a_scene_may_go_before_its_sessions(raw):
-    """A session keeps what it needs: its scene's handle may be destroyed while it renders, and the picture is the same."""
+    """A session keeps its scene's data: destroying the scene's handle during a render does not change the picture."""
     scene = raw.committed()
     pictures = []
     for destroy in (False, True):
@@ -130,7 +130,7 @@ def test_destroy_while_building(raw):
 
 
 def test_cancelled_build(raw):
-    """A build that was cancelled says so, or was done before; a cancelled scene takes no session."""
+    """A cancelled build returns CANCELLED unless it has already ended; a cancelled scene accepts no session."""
     rng = np.random.default_rng(2)
     scene = raw.scene()
     mesh = raw.mesh(positions=rng.random((300000, 3)), triangles=rng.integers(0, 300000, (400000, 3)))
@@ -166,7 +166,7 @@ def test_empty_range(raw):
 
 
 def test_empty_scene(raw):
-    """Nothing at all is a scene: black, of alpha 1."""
+    """An empty scene is valid: black, with alpha 1."""
     scene = raw.scene()
     assert raw.commit(scene)[0] == Status.OK
     session = raw.session(scene)
@@ -177,7 +177,7 @@ def test_empty_scene(raw):
 
 
 def test_messages_are_kept_per_thread(raw):
-    """A failure in one thread does not show in another."""
+    """The message of a failure in one thread is not visible in another."""
     refused(raw.call("lancer_scene_destroy", 0), Status.ERROR_HANDLE)
     here = raw.library.lancer_last_error()
     elsewhere = []
@@ -188,7 +188,7 @@ def test_messages_are_kept_per_thread(raw):
 
 
 def test_many_threads_on_one_scene(raw):
-    """Probes and sessions of one scene from several threads at once, while others come and go."""
+    """Probes and sessions of one scene run in several threads while other scenes are created and destroyed."""
     scene = raw.committed()
     failures = []
 

@@ -1,4 +1,4 @@
-"""Bug reports: what is in them, that they replay to the same bits, and that any file at all ends in words."""
+"""Bug reports: their content, replays with the same bits, and messages for invalid files."""
 
 import dataclasses
 import json
@@ -28,11 +28,11 @@ def test_a_report_holds_the_scene_and_the_facts(tmp_path):
     assert snapshot == rich() and facts == FACTS
     assert told == [1.0]
     assert os.listdir(tmp_path) == ["report.zip"]
-    # Of a large one it is told all the time.
+    # A large report calls tell() repeatedly.
     large, told = dataclasses.replace(rich(), images=(Image(texels=np.zeros((1024, 1024, 4), np.float32)),)), []
     bug_report.save(path, FACTS, large, told.append)
     assert told == sorted(told) and told[-1] == 1.0 and len(told) > 10
-    # A snapshot alone will do.
+    # load() accepts a plain snapshot too.
     rich().save(str(tmp_path / "scene.npz"))
     assert bug_report.load(str(tmp_path / "scene.npz")) == (rich(), {})
 
@@ -64,7 +64,7 @@ def test_files_that_are_no_reports(tmp_path):
         _put(path, **files)
         with pytest.raises(SnapshotError, match="report.zip|snapshot.npz"):
             bug_report.load(path)
-    # Facts of another kind are none.
+    # Facts that are no dict are ignored.
     rich().save(str(tmp_path / "scene.npz"))
     _put(path, report_json="[1]", snapshot_npz=(tmp_path / "scene.npz").read_bytes())
     assert bug_report.load(path) == (rich(), {})
@@ -73,7 +73,7 @@ def test_files_that_are_no_reports(tmp_path):
 
 
 def test_reports_spoiled_by_chance(tmp_path):
-    """Every file loads, or is refused in words. The first is spoiled where nobody reads: in the time of its first entry."""
+    """Every corrupted file loads or raises SnapshotError. The first one is corrupted in an unused field, a time stamp."""
     path, generator, ends = str(tmp_path / "report.zip"), np.random.default_rng(3), set()
     bug_report.save(path, FACTS, rich())
     with open(path, "rb") as file:
@@ -102,7 +102,7 @@ def test_blender_saves_what_a_maintainer_needs(which, tmp_path):
     assert facts["versions"]["Blender"].startswith(got["version"])
     assert facts["settings"]["lancer"]["samples"] == 16 and facts["settings"]["render"]["resolution_x"] == 48
     assert facts["settings"]["cycles"]["max_bounces"] == 10
-    # No path of the user's is among the settings.
+    # The settings contain no path of the user.
     assert "secret" not in json.dumps(facts["settings"])
     told = [(message["text"], message["severity"]) for message in facts["messages"]]
     assert told == [("object 'Cube': material slot 1 is empty, grey is used", "HINT")] and len(facts["exported"]) == 1
@@ -124,7 +124,7 @@ def replay(*arguments):
 
 
 def test_a_replay_is_the_render(tmp_path):
-    """The same snapshot gives the same bits, whoever renders it."""
+    """The same snapshot gives the same bits in Blender and in a replay."""
     got = blenders.run(MODULE, tmp_path, "report_cases", "rendered", tmp_path)
     done = replay("--snapshot", tmp_path / "report.zip", "--output", tmp_path / "again.exr")
     assert done.returncode == 0, done.stdout + done.stderr

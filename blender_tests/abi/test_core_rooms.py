@@ -1,4 +1,4 @@
-"""The core's rooms: an include goes to the file's own room or to one above it in this order."""
+"""The core's rooms: a file includes only files of its own room and of rooms before it in this order."""
 
 import re
 from pathlib import Path
@@ -8,13 +8,13 @@ from conftest import ROOT
 
 CORE = Path(ROOT, "core", "src")
 ROOMS = "simd sampling scene bsdf nodes lights accel compile integrator render".split()
-# Within the integrators: what several of them share comes first, and none knows another.
+# Order within integrator/: shared folders first; the integrators do not include each other.
 INTEGRATOR = (("",), ("stages",), ("aov",), ("path", "classic"))
 FILES = sorted(path.relative_to(CORE) for end in ("*.h", "*.cpp") for path in CORE.rglob(end))
 
 
 def includes(file):
-    """The project's own files that a file includes, each with its line."""
+    """Yield (line, path) of the project's files that a file includes."""
     for number, line in enumerate((CORE / file).read_text(encoding="utf-8").splitlines(), 1):
         found = re.match(r'\s*#\s*include\s*"([^"]+)"', line)
         if found and found.group(1) != "lancer.h":
@@ -22,7 +22,7 @@ def includes(file):
 
 
 def room_of(file):
-    """Files that lie in no room are the C interface, which may include all."""
+    """Return a file's room; None for files outside the rooms, which are the C interface and may include all rooms."""
     return file.parts[0] if len(file.parts) > 1 else None
 
 

@@ -1,4 +1,4 @@
-"""Nodes of constants by themselves."""
+"""Evaluation of single nodes with constant inputs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The library as a file: absent, broken, foreign, stale; its header, its symbols."""
+"""The library's file (missing, broken, foreign, outdated), its header and its symbols."""
 
 import os
 import re
@@ -15,7 +15,7 @@ HEADER = os.path.join(ROOT, "core", "include", "lancer.h")
 
 
 def refusal(path):
-    """The one sentence with which loading path is refused."""
+    """Return the message with which load_library refuses path."""
     with pytest.raises(abi.LancerError) as error:
         abi.load_library(path)
     text = str(error.value)
@@ -92,7 +92,7 @@ def test_versions_and_sizes(library):
 
 
 def test_header_is_c99(tmp_path):
-    """The header alone, as strict C99 and as C++, without a warning."""
+    """The header compiles alone as strict C99 and as C++ without warnings."""
     (tmp_path / "use.c").write_text(
         '#include "lancer.h"\nint main(void) { return lancer_abi_version() == LANCER_ABI_VERSION; }\n'
     )
@@ -115,7 +115,7 @@ def test_header_is_c99(tmp_path):
 
 
 def test_bindings_are_those_that_the_header_gives_now(tmp_path):
-    """Whoever changes the header says so to Python and to the core's table by `make bindings`."""
+    """After a change of the header, `make bindings` must be run for the Python bindings and the core's table."""
     subprocess.run([sys.executable, os.path.join(ROOT, ".ci", "bindings.py"), HEADER, tmp_path], check=True)
     for made in ("addon/bindings/enums.py", "addon/bindings/structs.py", "core/src/scene/principled_table.h"):
         with open(os.path.join(ROOT, made), encoding="utf-8") as file:
@@ -177,7 +177,7 @@ def test_structs_lie_as_the_compiler_lays_them(tmp_path):
 
 
 def test_exported_symbols(library):
-    """Only lancer_*: Blender's process is full of other people's symbols."""
+    """The library exports only lancer_*, since Blender's process contains many other libraries."""
     done = subprocess.run(["nm", "-D", "--defined-only", abi.library_path()], capture_output=True, text=True, check=True)
     names = {line.split()[-1].split("@")[0] for line in done.stdout.splitlines()}
     assert names == set(abi._CALLS) | set(abi._QUERIES)

@@ -1,4 +1,4 @@
-"""Which file the library is: where it is looked for, and what the process says of it. Runs on every system."""
+"""The choice of the library's file, and the list of the process's libraries. Runs on every system."""
 
 import os
 import sys
@@ -12,7 +12,7 @@ NAMES = {"win32": ("lancer.dll", "lancer-0a1b2c.dll"), "darwin": ("liblancer.dyl
 def test_the_process_names_it(library):
     path = abi.library_path()
     assert any(os.path.isfile(found) and os.path.samefile(found, path) for found in loaded_libraries.files())
-    # Of each file once, and more than this one.
+    # Each file is listed once, and other libraries too.
     assert len(loaded_libraries.files()) == len(set(loaded_libraries.files())) > 3
 
 

@@ -1,4 +1,4 @@
-"""The add-on's rooms: imports go down the ranks, and what measures or checks runs without Blender."""
+"""The add-on's rooms: imports go only to lower ranks, and some rooms run without Blender."""
 
 import ast
 from pathlib import Path
@@ -7,7 +7,7 @@ import pytest
 from conftest import ROOT
 
 ADDON = Path(ROOT, "addon")
-# A file imports files of its own room and of the rooms in lower ranks. At the top stands __init__.py alone.
+# A file imports only from its own room and from rooms of lower ranks. The top level has only __init__.py.
 RANKS = (
     "bindings messages host",
     "measure denoise checks export",
@@ -26,7 +26,7 @@ def place_of(path):
 
 
 def imported(path):
-    """Names that a file imports: those of the add-on as places, others with a dot before them."""
+    """Yield the names that a file imports: rooms of the add-on, and other modules with a dot before the name."""
     depth = len(path.relative_to(ADDON).parts)
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -34,7 +34,7 @@ def imported(path):
         elif isinstance(node, ast.ImportFrom) and node.level == 0:
             yield "." + node.module.split(".")[0]
         elif isinstance(node, ast.ImportFrom) and node.level == depth:
-            # Of `from .. import x` either x is a file or a room, or it stands in __init__.
+            # In `from .. import x`, x is a room or a name defined in __init__.
             names = [node.module.split(".")[0]] if node.module else [alias.name for alias in node.names]
             yield from (name if name in RANK else "__init__" for name in names)
 
@@ -52,7 +52,7 @@ def test_imports_go_down(place):
     for path in (path for path in FILES if place_of(path) == place):
         wanted = {name for name in imported(path) if not name.startswith(".")} - {place}
         if path.name == "bug_report.py":
-            # The release is said beside the registration alone.
+            # The version is defined in __init__.py only.
             wanted.discard("__init__")
         higher = {name for name in wanted if RANK[name] > RANK[place]}
         assert not higher, f"{path.relative_to(ADDON)} imports {sorted(higher)} from above"
@@ -65,5 +65,5 @@ def test_rooms_without_blender(place):
     for path in (ADDON / place).rglob("*.py"):
         names = set(imported(path))
         assert not names & {".bpy", ".bpy_extras", ".mathutils", ".gpu", ".blf"}, path
-        # Nor by way of another file.
+        # Indirect imports must not reach Blender either.
         assert {name for name in names if not name.startswith(".")} <= {*WITHOUT_BLENDER}, path

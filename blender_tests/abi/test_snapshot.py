@@ -1,4 +1,4 @@
-"""A snapshot in a file is the snapshot: it loads equal, compares by every number, and renders the same bits."""
+"""Snapshots in files: a loaded snapshot is equal, comparison covers every number, and renders have the same bits."""
 
 import dataclasses
 import weakref
@@ -23,7 +23,7 @@ def saved(tmp_path):
 
 
 def leaves(item, path=()):
-    """The path of every number, text and array within a record."""
+    """Yield the path of every number, string and array in a record."""
     if dataclasses.is_dataclass(item):
         for field in dataclasses.fields(item):
             yield from leaves(getattr(item, field.name), (*path, field.name))
@@ -35,7 +35,7 @@ def leaves(item, path=()):
 
 
 def changed(item, path):
-    """A copy in which the leaf at the path differs in one number."""
+    """Return a copy in which the leaf at the path differs in one number."""
     if path:
         key, rest = path[0], path[1:]
         if isinstance(item, tuple):
@@ -44,7 +44,7 @@ def changed(item, path):
     if isinstance(item, np.ndarray):
         copy = item.copy()
         flat = copy.reshape(-1)
-        # An index stays within its table: name 7 of 8 becomes name 6.
+        # Keep indices valid: name 7 of 8 becomes name 6.
         flat[-1] = np.nextafter(flat[-1], flat.dtype.type(np.inf)) if copy.dtype.kind == "f" else flat[-1] ^ 1
         return copy
     if isinstance(item, str):
@@ -55,7 +55,7 @@ def changed(item, path):
 
 
 def differs(item, path, from_this):
-    """Whether one step at the path shows; a table that no longer fits its mesh, or no pass, is refused by the record."""
+    """Whether a change at the path makes records unequal, or raises ValueError for an invalid table or pass."""
     try:
         return changed(item, path) != from_this
     except ValueError as error:
@@ -92,7 +92,7 @@ def test_a_file_of_another_record_is_refused(tmp_path):
 
 
 def test_one_number_makes_a_difference(saved):
-    """Each field in turn, by the smallest step that its type knows; the file keeps that step."""
+    """The smallest step of each field makes snapshots unequal."""
     loaded, paths = SceneSnapshot.load(saved), list(leaves(rich()))
     assert len(paths) > 200
     assert [path for path in paths if not differs(loaded, path, rich())] == []
@@ -113,7 +113,7 @@ def test_the_loaded_snapshot_renders_the_same_bits(saved):
 
     first, again = bits(rich()), bits(SceneSnapshot.load(saved))
     assert [name for name in first if first[name] != again[name]] == []
-    # Equal zeros would prove nothing.
+    # The pictures must not be constant.
     assert np.frombuffer(first["COMBINED"], np.float32).std() > 0.01
 
 
@@ -131,7 +131,7 @@ def test_a_released_snapshot_renders_the_same_bits_and_is_let_go():
 
 @pytest.mark.parametrize("record", [Principled, Lobe, Material, World])
 def test_a_record_has_the_parameters_of_its_struct(record):
-    """Those that the class names and those that it does not, which are 0 unless they are given."""
+    """The record accepts all parameters of its struct, whether the class names them or not."""
     names = [name for name, kind in getattr(structs, record.__name__)._fields_ if kind is structs.Parameter]
     assert names and set(names) <= {field.name for field in dataclasses.fields(record)}
     given = record(**{name: number for number, name in enumerate(names)})

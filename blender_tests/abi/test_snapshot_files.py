@@ -1,4 +1,4 @@
-"""Files that are no snapshots, and snapshots that are no scenes: one clear error for each, whatever is in the file."""
+"""Invalid snapshot files, and snapshots of invalid scenes: one clear error for each."""
 
 import io
 import json
@@ -19,7 +19,7 @@ SPOILED = 400
 
 
 def spoiled_by_chance(tmp_path, first, count, *seconds, **environment):
-    """How many files met which end. In a process of its own, so that a crash is a failure that names its seed."""
+    """Return {outcome: number of files}. Runs in a separate process, so that a crash fails with its seed."""
     log = str(tmp_path / "seeds.txt")
     script = os.path.join(HERE, "helpers", "broken_files.py")
     command = [sys.executable, script, log, str(tmp_path), str(first), str(count), *seconds]
@@ -33,13 +33,13 @@ def spoiled_by_chance(tmp_path, first, count, *seconds, **environment):
 def test_files_spoiled_by_chance(tmp_path):
     outcomes = spoiled_by_chance(tmp_path, 0, SPOILED)
     assert sum(outcomes.values()) == SPOILED
-    # All ends are met: a spoiler that spoils too much, or nothing, would test nothing.
+    # All outcomes must occur: else the corruption is too strong or too weak.
     assert all(outcomes.get(end, 0) >= 10 for end in ("refused file", "refused scene", "picture")), outcomes
 
 
 @pytest.fixture
 def parts(tmp_path):
-    """The tree and the arrays of a good file, and what writes them again."""
+    """Return the tree and the arrays of a valid file, and a function that writes them again."""
     path = str(tmp_path / "scene.npz")
     rich().save(path)
     with np.load(path) as archive:
@@ -55,7 +55,7 @@ def parts(tmp_path):
 
 
 def put(tree, path, value):
-    """path: keys of fields, and numbers of lists."""
+    """Set a value in the tree. path: names of fields and indices of lists."""
     for key in path[:-1]:
         tree = tree["fields"][key] if isinstance(key, str) else tree[key]
     if isinstance(path[-1], str):
@@ -64,7 +64,7 @@ def put(tree, path, value):
         tree[path[-1]] = value
 
 
-# A field, what it is in the file, and what the error must name.
+# Path of a field, its value in the file, text that the error must contain.
 WRONG_FIELDS = [
     (("camera", "width"), "wide", "Camera.width"),
     (("camera", "width"), -1, "Camera.width"),
@@ -132,7 +132,7 @@ def test_a_file_that_is_not_there_is_an_error_of_the_system(tmp_path):
 
 
 def test_half_a_character_in_a_name_is_no_obstacle(parts):
-    """Python's text and JSON hold it, UTF-8 does not."""
+    """Lone surrogates are valid in Python and JSON but not in UTF-8."""
     tree, _, write = parts
     put(tree, ("materials", 0, "name"), "half \ud800")
     put(tree, ("materials", 0, "ambient"), [-1, 0, 0])

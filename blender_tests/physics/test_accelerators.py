@@ -1,4 +1,4 @@
-"""Brute force, kd-tree and BVH give the same hits on the same rays, bit for bit; closed meshes leak nothing."""
+"""Brute force, kd-tree and BVH return equal hits, bit for bit; closed meshes leak no rays."""
 
 import meshes
 import numpy as np
@@ -34,7 +34,7 @@ def assert_same(one, other, what):
         f"{what}: {len(different)} of {len(hits)} differ, first {hits[different[0]]} against {hits2[different[0]]}"
     )
     assert np.array_equal(occluded, occluded2), what
-    # Anything met is something met: closest hit and any hit agree.
+    # Closest hit and any hit must agree.
     assert np.array_equal(occluded, hits.instance != UINT32_MAX), what
 
 
@@ -51,7 +51,7 @@ def test_primitives(library, name):
 
 @pytest.mark.parametrize("name", meshes.CLOSED + meshes.OPEN)
 def test_models(library, name):
-    """A million rays through BVH and kd-tree over the six real meshes; brute force, slow as it is, for some of them."""
+    """A million rays over six real meshes with BVH and kd-tree; slow brute force for some of the rays."""
     mesh = meshes.model(name)
     origins, directions = meshes.rays_at(mesh, 170_000, 4)
     data = [meshes.data(mesh, name)]
@@ -76,7 +76,7 @@ def test_models_by_brute_force(library, name):
 
 
 def crowd():
-    """Meshes and exact surfaces, mirrored, sheared, shared, from 1e-3 to 1e3 in size, near and far."""
+    """Return meshes and exact shapes, mirrored, sheared, instanced, with sizes from 1e-3 to 1e3, near and far."""
     rng = np.random.default_rng(7)
     shapes = [meshes.data(m, n) for n, m in meshes.primitives().items()]
     instances = []
@@ -87,7 +87,7 @@ def crowd():
         instances.append(Instance(mesh=i % len(shapes), kind=i % 5, matrix=matrix))
     instances.append(Instance(mesh=0, matrix=move(1e4, 0, 0) @ scale(1e3)))
     instances.append(Instance(mesh=1, matrix=scale(1e-3)))
-    # Two at the same place: ties are decided by the number of the instance.
+    # Two instances at the same place: the lower instance number wins.
     instances += [Instance(mesh=1, matrix=move(1, 1, 1))] * 2
     return instances, shapes
 
@@ -111,7 +111,7 @@ def test_instances(library):
 
 
 def test_coincident_surfaces_have_one_order(library):
-    """Of equal distances the smaller instance wins, in every accelerator."""
+    """At equal distances the lower instance number wins, in every accelerator."""
     mesh = meshes.primitives()["box"]
     instances = [Instance()] * 3
     origins, directions = meshes.rays_at(mesh, 20_000, 9)
@@ -121,7 +121,7 @@ def test_coincident_surfaces_have_one_order(library):
 
 
 def leaks(library, mesh, matrix, accelerator, count):
-    """Rays from inside that meet nothing, aimed at random, exactly at vertices and exactly at the middles of edges."""
+    """Return the number of rays from inside without a hit, aimed at random, at vertices and at midpoints of edges."""
     vertices = np.asarray(mesh.vertices, np.float32).astype(float)
     edges = vertices[mesh.edges_unique].mean(axis=1)
     rng = np.random.default_rng(11)

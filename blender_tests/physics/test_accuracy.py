@@ -1,4 +1,4 @@
-"""Is the error that renders tell true, on three small scenes, and what do they do about it? `make accuracy` asks twenty."""
+"""The reported error and renders to a target or time limit, on three small scenes. `make accuracy` runs twenty scenes."""
 
 import dataclasses
 import functools
@@ -34,7 +34,7 @@ def finished(session):
 
 @functools.cache
 def measured(name):
-    """(snapshot, reference) of a scene small enough to converge here; its picture has 1536 pixels."""
+    """Return (snapshot, reference) of a scene of 1536 pixels, small enough to converge here."""
     snapshot = scenes.at_size(BUILDERS[name](), 48, 32)
     parts = []
     with Scene.upload(snapshot) as scene:
@@ -58,11 +58,11 @@ def test_bars_hold_the_pixels_and_intervals_the_errors():
             inside += int(good[reference.noisy].sum())
             pixels += int(reference.noisy.sum())
             held += told.low <= reference.distance(picture) <= told.bound
-    # 95 +- 1.5 % are promised over many scenes; chance adds that of as many pixels, which are independent. At 64 samples these
-    # three fall faster than 1/N, where halves tell more than there is: 1.2 times as much holds 98.1 % within 1.96.
+    # The promise is 95 +- 1.5 % over many scenes, plus the binomial deviation of that many independent pixels. At 64 samples
+    # the variance of these three falls faster than 1/N, where halves overestimate it: errors 1.2 times too large hold 98.1 %.
     low, high = (stats.binom.ppf(p, pixels, share) for p, share in ((LEVEL, 0.935), (1.0 - LEVEL, 0.981)))
     assert low <= inside <= high, f"{inside / pixels:.4f}"
-    # Of 18 pictures 93 % are promised.
+    # The promise for pictures is 93 %.
     assert held >= stats.binom.ppf(LEVEL, SEEDS * len(BUILDERS), 0.93)
 
 
@@ -97,7 +97,7 @@ def room(**fields):
 
 @functools.cache
 def refined(threads, tile_size):
-    """What a render to a target leaves: its bits, and what it tells."""
+    """Return the reason, the bits and the PictureError of a render to a target."""
     with Session.upload(room(threads=threads, tile_size=tile_size)) as session:
         schedule = drive(session)
         told = dataclasses.replace(session.error(), clipped=0.0, missing=0.0)
@@ -140,7 +140,7 @@ def is_power_of_two(count):
 
 
 def test_what_stopping_takes_back_is_no_bias():
-    """63 of 127 samples are taken back; what clamping and the last bounce found in them was counted beside the light of 64."""
+    """Stopping discards 63 of 127 samples; their shares of clamped and missing light must be discarded too."""
     with Session.upload(room(clamp_indirect=0.05, max_bounces=1)) as session:
         session.render_all(64)
         before = session.error()
@@ -149,7 +149,7 @@ def test_what_stopping_takes_back_is_no_bias():
         session.stop()
         finished(session)
         after = session.error()
-    # Counted so both would be nearly doubled.
+    # Otherwise both shares would nearly double.
     assert after.most_samples == 64 and before.clipped > 0.01 and before.missing > 0.001
     assert after.clipped < 1.5 * before.clipped and after.missing < 1.5 * before.missing
 
@@ -166,7 +166,7 @@ def test_stopping_leaves_powers_of_two():
         finished(session)
         told, got = session.error(), session.read()
         assert is_power_of_two(told.least_samples) and is_power_of_two(told.most_samples)
-        # Every pixel is as an even render has it with one of these numbers of samples.
+        # Every pixel equals that of a render with equal samples for one of these numbers of samples.
         found = np.zeros(got.shape[:2], bool)
         count = told.least_samples
         with Session.upload(snapshot) as even:
@@ -180,7 +180,7 @@ def test_stopping_leaves_powers_of_two():
                 finished(even)
                 count *= 2
         assert found.all()
-        # It has ended, however often that is asked, and whoever cancels what is not running; and it can go on.
+        # Repeated waits and a cancel after the end have no effect, and the session can continue.
         assert not session.wait(0.0).cancelled
         session.cancel()
         assert not session.wait(0.0).cancelled
@@ -190,7 +190,7 @@ def test_stopping_leaves_powers_of_two():
 
 
 class Clock:
-    """Every look at it takes a second."""
+    """A clock that advances by one second per call."""
 
     def __init__(self):
         self.now = 0.0
@@ -208,14 +208,14 @@ def clock(monkeypatch):
 
 
 def drive_until(session, clock, schedule):
-    """When the schedule found that time was up."""
+    """Return the time at which the schedule stopped the session."""
     stopped, stop = [], session.stop
     session.stop = lambda: stopped.append(clock.now) or stop()
     drive(session, schedule)
     return stopped[0] if stopped else clock.now
 
 
-# Beside the looks that ask whether it is late there are two for each range: one when it begins, one when it ends.
+# Calls of the clock for each range besides the checks of the time limit: at its start and at its end.
 OTHER_LOOKS = 2
 
 
@@ -250,7 +250,7 @@ def test_what_comes_after_the_last_sample_is_part_of_the_time(clock):
 
 
 def test_what_remains_is_unknown_until_the_error_is():
-    """A limit of samples that stands for no end must not be told as hours before the first look at the error."""
+    """With a target a huge limit of samples must not be reported as hours before the error is first read."""
     with Session.upload(room(samples=FOREVER, target_error=0.01)) as session:
         schedule = Schedule(session)
         for _ in range(3):
@@ -292,7 +292,7 @@ def test_bars_can_be_read_while_rendering():
             assert told.low <= told.error <= told.high < np.inf
         session.stop()
         finished(session)
-        # It is not the same for ever: more samples have come.
+        # Further samples change the error.
         assert session.error().least_samples >= 2
         assert (session.read(Pass.ERROR) != before).any()
 

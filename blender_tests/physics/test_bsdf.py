@@ -1,4 +1,4 @@
-"""Every lobe through the probes: sampler against pdf, pdf against 1, reciprocity, energy, sides."""
+"""Tests of every lobe through the probes: sampler against pdf, integral of the pdf, reciprocity, energy, sides."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def direction(cosine, phi=0.7):
 
 
 def chart_of(material, wo):
-    """The chart in which the material's density from wo is gentle."""
+    """Return a chart in which the material's pdf from wo is smooth."""
     side = np.sign(wo[2])
     only = material.lobes[0] if len(material.lobes) == 1 else None
     if only is None:
@@ -68,11 +68,10 @@ def chart_of(material, wo):
 
 
 def resolvable(material, wo):
-    """Whether the histogram can judge this lobe from there.
+    """Whether the histogram can resolve this lobe from wo.
 
-    Half vectors of float32 directions carry 6e-8/|wo + wi|, cells are 0.1 alpha wide. A Phong lobe seen at grazing is cut in
-    two along its axis by the horizon, and a grazing rough lobe in the plain chart is a needle: no quadrature by cells holds
-    them.
+    Half vectors of float32 directions have an error of 6e-8/|wo + wi|, cells are 0.1 alpha wide. At grazing angles the horizon
+    cuts a Phong lobe along its axis, and a rough lobe is a needle in the hemisphere's chart: quadrature by cells fails.
     """
     only = material.lobes[0]
     if only.kind == LobeKind.PHONG or len(material.lobes) > 1:
@@ -92,11 +91,11 @@ def test_chi_square_of_the_sampler_against_its_pdf(scene, index):
         smooth = (samples.pdf > 0) & (samples.delta == 0)
         assert np.all(np.isfinite(samples.wi)) and np.all(np.isfinite(samples.weight)) and np.all(samples.weight >= 0)
         chart = chart_of(material, wo)
-        # Where lobes are mixed the chart is the plain hemisphere, in which a grazing lobe is narrow.
+        # For several lobes the chart is the hemisphere, in which a grazing lobe is narrow: use more nodes.
         nodes = 10 if len(material.lobes) == 1 else 32
         counts, outside = histogram(chart, samples.wi[smooth], cells)
         probability = integrate_cells(chart, lambda w, wo=wo: scene.bsdf(index, wo, w)[1].astype(float), cells, nodes)
-        # What is no smooth direction (a mirror, a lobe below the horizon) is one more cell.
+        # Other samples (delta lobes, directions below the horizon) are one more cell.
         rest = max(0.0, 1.0 - probability.sum())
         observed = np.append(counts.ravel(), count - counts.sum())
         expected = np.append(probability.ravel(), rest) * count
@@ -115,7 +114,7 @@ def test_sample_agrees_with_eval_and_pdf(scene, index):
         f, pdf = scene.bsdf(index, wo, samples.wi[good])
         cosine = np.abs(samples.wi[good][:, 2])
         weight = f * cosine[:, None] / pdf[:, None]
-        # The rounding of wi to float moves h by 1e-7 and the slope by 1e-7/alpha relative to alpha: D feels 2 s times that.
+        # Rounding wi to float changes h by 1e-7 and the slope by 1e-7/alpha relative to alpha: D changes by 2 s times that.
         roughness = min([lobe.roughness for lobe in MATERIALS[index].lobes if lobe.kind == LobeKind.BECKMANN], default=1.0)
         exponent = max([lobe.shininess for lobe in MATERIALS[index].lobes if lobe.kind >= LobeKind.PHONG], default=1.0)
         limit = 2e-5 + 1e-5 / roughness + 2e-6 * exponent + 2e-6 / c**2
@@ -128,7 +127,7 @@ def test_reciprocity(scene, index):
     wo = np.stack([direction(c, p) for c, p in uniforms(500, 2, 1) * [0.98, 6.28] + [0.02, 0]])
     wi = np.stack([direction(c, p) for c, p in uniforms(500, 2, 2) * [0.98, 6.28] + [0.02, 0]])
     there, back = scene.bsdf(index, wo, wi)[0], scene.bsdf(index, wi, wo)[0]
-    # The same products in another order; h differs by its rounding, which narrow lobes multiply.
+    # The order of products differs, and h differs by its rounding, which narrow lobes amplify.
     roughness = min([lobe.roughness for lobe in MATERIALS[index].lobes if lobe.kind == LobeKind.BECKMANN], default=1.0)
     exponent = max([lobe.shininess for lobe in MATERIALS[index].lobes if lobe.kind >= LobeKind.PHONG], default=1.0)
     limit = 4e-6 + 2e-6 / roughness**2 + 1e-6 * exponent
@@ -137,7 +136,7 @@ def test_reciprocity(scene, index):
 
 @pytest.mark.parametrize("index", SMOOTH, ids=NAMES)
 def test_energy(scene, index):
-    """No lobe of colour 1 gives back more than it gets; mean weight of the sampler = integral of f cos."""
+    """No lobe of colour 1 has an albedo above 1; the sampler's mean weight is the integral of f cos."""
     material = MATERIALS[index]
     for c in COSINES:
         wo = direction(c)
@@ -146,12 +145,12 @@ def test_energy(scene, index):
             chart, lambda w, wo=wo: (scene.bsdf(index, wo, w)[0][:, 0] * np.abs(w[:, 2])).astype(float), 24, 8
         ).sum()
         if len(material.lobes) == 1:
-            # float32 values and the quadrature at the horizon's edge leave a few 1e-5 of slack.
+            # float32 values and the quadrature at the horizon have errors of a few 1e-5.
             assert integral <= 1.0 + 5e-5, (c, integral)
         samples = scene.bsdf_sample(index, wo, uniforms(50000, 3, 7 + index))
         weight = np.where(samples.delta == 0, samples.weight[:, 0], 0.0)
         mean, error = mean_and_error(weight)
-        # Besides the sampler's own error, the quadrature of the rim of the horizon is good for 1e-3.
+        # Besides the sampler's standard error, the quadrature at the horizon has an error of 3e-4.
         p = z_test(mean, np.hypot(error, 3e-4 * integral), integral)
         assert p > sidak(LEVEL, len(COSINES) * len(MATERIALS)), (c, mean, error, integral)
 
@@ -174,14 +173,14 @@ def test_specular_lobes_of_the_lectures(scene):
             norm = (n + 2) * (n + 4) / (8 * np.pi * (2.0 ** (-n / 2) + n))
             want = norm * unit(wo + wi)[2] ** n
         elif material.name == "MINNAERT":
-            # Its darkest cosine is 0.4 ** (1 / (1 - n)) where n < 1: these two are above it for n = 0.5.
+            # For n < 1 cosines are clamped to at least 0.4 ** (1 / (1 - n)); both cosines here are above it for n = 0.5.
             q = 0.4 ** ((n + 1) / (1 - n)) if n < 1 else 0.0
             low = 0.4 ** (1 / (1 - n)) if n < 1 else 0.0
             area = 2 * np.pi * ((1 - q) / (n + 1) + q / 2)
             want = 0.4 * (max(wo[2], low) * max(wi[2], low)) ** (n - 1) / area
         else:
             continue
-        # Directions rounded to float32 carry 1e-7 into a base that is raised to n.
+        # Rounding of directions changes the base of the power n by 1e-7.
         assert np.isclose(scene.bsdf(index, wo, wi)[0][0, 0], want, rtol=2e-6 + 3e-7 * n, atol=1e-37), material
 
 
@@ -197,7 +196,7 @@ def test_mirror(scene):
 
 @pytest.mark.parametrize("c", [1.0, 0.8, 0.3, 0.01, -1.0, -0.9, -0.3])
 def test_smooth_dielectric(scene, c):
-    """Fresnel's share is reflected, the rest refracted by Snell, all beyond the critical angle."""
+    """The Fresnel share is reflected, the rest refracted by Snell's law; total reflection beyond the critical angle."""
     import reference
 
     index, wo = len(MATERIALS) + 1, direction(c)
@@ -216,7 +215,7 @@ def test_smooth_dielectric(scene, c):
     if not reflected.all():
         through = samples[~reflected]
         assert np.allclose(through.weight[:, 0] * through.pdf, 1 - f, rtol=2e-6)
-        # Snell: the parts along the surface are in the ratio of the indices, and opposite.
+        # Snell's law: the tangential components are opposite, in the ratio of the indices.
         assert np.allclose(through.wi[:, :2], -wo[:2] / eta, atol=3e-7)
         assert np.allclose(np.linalg.norm(through.wi, axis=1), 1.0, atol=3e-7)
     else:

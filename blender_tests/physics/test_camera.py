@@ -1,4 +1,4 @@
-"""From raster to ray by the window's formula; the lens aims at one point; the filter has its window's distribution."""
+"""Camera rays by the window's formula, the lens's focus, and the pixel filter's distribution."""
 
 import dataclasses
 import math
@@ -15,7 +15,7 @@ from addon.bindings.snapshot import Camera
 
 WINDOW = (-0.3, 0.5, -0.2, 0.25)
 MATRIX = look_at((3.0, -4.0, 2.0), (0.5, 0.0, 0.3))
-# Positions and directions are double: a few units, some dozen roundings, and the round trip through the normalised world.
+# Rounding of doubles: lengths of a few units, some dozen operations, and the transform to the normalised scene and back.
 LIMIT = 1e-13
 
 
@@ -24,7 +24,7 @@ def camera(**fields):
 
 
 def rays(library, camera, raster, lens=(0.5, 0.5)):
-    """With a thing in the scene far off, so that the core's own frame differs from the world's."""
+    """Return camera rays. A distant object makes the core's normalised frame differ from the world's."""
     snapshot = tiny_scenes.scene([tiny_scenes.sphere(0, move(30, 5, 7) @ scale(2))], [tiny_scenes.lambert()], camera=camera)
     with Session.upload(snapshot, library) as session:
         return session.probe_camera(raster, lens)
@@ -53,7 +53,7 @@ def test_orthographic(library):
     raster = raster_points()
     origins, directions = rays(library, camera(kind=CameraKind.ORTHOGRAPHIC), raster)
     local = np.concatenate([on_window(raster), np.zeros((len(raster), 1))], axis=1)
-    # Any point of the ray may be its origin.
+    # The origin may be any point on the ray.
     off = origins - (local @ MATRIX[:3, :3].T + MATRIX[:3, 3])
     off -= np.outer(off @ MATRIX[:3, 2], MATRIX[:3, 2])
     assert np.allclose(off, 0.0, rtol=0, atol=10 * LIMIT)
@@ -62,7 +62,7 @@ def test_orthographic(library):
 
 @pytest.mark.parametrize("kind", [CameraKind.PERSPECTIVE, CameraKind.ORTHOGRAPHIC])
 def test_thin_lens(library, kind):
-    """Rays start all over the aperture's disk and meet where the pinhole's ray pierces the plane in focus."""
+    """Rays start uniformly on the aperture and meet where the pinhole's ray hits the focal plane."""
     radius, focus = 0.25, 5.0
     raster = raster_points()[:6]
     u = midpoints(40, 40).astype(float)
@@ -75,12 +75,12 @@ def test_thin_lens(library, kind):
         origins, directions = rays(library, blurred, np.tile(point, (len(u), 1)), u)
         t = (focus - (origins - MATRIX[:3, 3]) @ axis) / (directions @ axis)
         assert np.allclose(origins + directions * t[:, None], focal, rtol=0, atol=100 * LIMIT)
-        # On the lens' plane the starts fill the disk evenly: the share within half the radius is a quarter.
+        # Origins are uniform on the disk: a quarter of them lies within half the radius.
         start = origins - directions * (((origins - MATRIX[:3, 3]) @ axis) / (directions @ axis))[:, None]
         centre = o - d * (((o - MATRIX[:3, 3]) @ axis) / (d @ axis))[:, None]
         r = np.linalg.norm(start - centre, axis=1)
         assert r.max() <= radius * (1 + 1e-6) and r.max() > 0.97 * radius
-        # 1600 points of a grid tell areas to about the length of the rim in cells: 2 %.
+        # 1600 grid points resolve areas to about the length of the rim in cells, 2 %.
         assert abs(np.mean(r < radius / 2) - 0.25) < 0.02
         assert np.linalg.norm((start - centre).mean(axis=0)) < 0.01 * radius
 
@@ -91,7 +91,7 @@ def equirectangular(x, y, p):
 
 
 def tilted(theta, x, y):
-    """theta off the axis -z, towards (x, y)."""
+    """Return the direction at angle theta from the axis -z, towards (x, y)."""
     r = np.hypot(x, y)
     return x / r * np.sin(theta), y / r * np.sin(theta), -np.cos(theta)
 
@@ -111,7 +111,7 @@ def polynomial(x, y, p):
 
 
 def mirror_ball(x, y, _p):
-    """A ray along -z that a ball mirrors, turned around along the axis: the ball's middle shows what lies ahead."""
+    """Reflect a ray along -z at a ball and mirror the result along the axis, so that the ball's centre looks forward."""
     nx, ny = 2 * x - 1, 2 * y - 1
     n = np.stack([nx, ny, np.sqrt(1 - nx**2 - ny**2)], axis=1)
     mirrored = np.array([0.0, 0.0, -1.0]) + 2 * n[:, 2:] * n
@@ -137,7 +137,7 @@ PANORAMAS = {
 
 @pytest.mark.parametrize("name", PANORAMAS)
 def test_panorama(library, name):
-    """By the projection's formula, with the picture moved by its window; nothing beyond a round picture's rim."""
+    """Directions follow the projection's formula with the window's shift; no rays outside a circular picture."""
     kind, formula, numbers = PANORAMAS[name]
     numbers += (0.0,) * (8 - len(numbers))
     raster = raster_points()
@@ -160,7 +160,7 @@ def test_panorama(library, name):
 
 
 def test_a_fisheye_leaves_its_corners_empty(library):
-    """No ray, no light, and solid black as in Cycles; the world within."""
+    """Corners of a fisheye have no rays and are opaque black, as in Cycles; inside the circle the world is visible."""
     view = Camera(kind=CameraKind.FISHEYE_EQUIDISTANT, panorama=(math.pi, *(0,) * 7), width=16, height=16, window=(0, 1, 0, 1))
     snapshot = tiny_scenes.scene(world=(0.5, 0.5, 0.5), camera=view)
     picture = tiny_scenes.render(snapshot)
@@ -168,24 +168,24 @@ def test_a_fisheye_leaves_its_corners_empty(library):
 
 
 def test_blades(library):
-    """A lens of three blades turned by a quarter: its starts fill that triangle, narrowed by the ratio."""
+    """Origins on a lens of three blades, rotated by a quarter turn, fill the triangle, narrowed by the ratio."""
     view = camera(kind=CameraKind.ORTHOGRAPHIC, matrix=np.eye(4), lens_radius=0.5, focal_distance=3.0)
     view = dataclasses.replace(view, aperture_blades=3, aperture_rotation=math.pi / 2, aperture_ratio=2.0)
     u = midpoints(60, 60).astype(float)
     origins, _ = rays(library, view, np.tile((40.0, 22.5), (len(u), 1)), u)
     centre, _ = rays(library, dataclasses.replace(view, lens_radius=0.0), (40.0, 22.5))
     p = (origins - centre)[:, :2] / 0.5 * [2.0, 1.0]
-    # Sides stand at half the radius; blades begin half a blade before the rotation: their middles are at rotation + k turn / 3.
+    # The sides' distance is half the radius; the sides' centres are at angles rotation + k turn / 3.
     normals = math.pi / 2 + 2 * math.pi / 3 * np.arange(3)
     across = p @ np.stack([np.cos(normals), np.sin(normals)])
     assert np.all(across <= 0.5 + 1e-6)
-    # Evenly: each side's triangle has a third, and the mean is the middle, as well as 3600 points of a grid know.
+    # Uniformly: each third of the triangle has a third of the 3600 grid points, and their mean is the centre.
     assert np.allclose(np.bincount(across.argmax(axis=1), minlength=3) / len(u), 1 / 3, atol=0.01)
     assert np.linalg.norm(p.mean(axis=0)) < 0.01 and np.linalg.norm(p, axis=1).max() > 0.95
 
 
 def test_depth_is_along_the_axis_and_clipped(library):
-    """A plane across the view at depth 4 has depth 4 in every pixel; clipped planes are not there."""
+    """A plane across the view at depth 4 has depth 4 in every pixel; clipped planes are invisible."""
     wall = tiny_scenes.plane(0, move(z=-4.0))
     for start, end, want in ((0.1, 100.0, 4.0), (0.1, 3.9, 1e10), (4.1, 100.0, 1e10)):
         view = Camera(width=8, height=6, window=(-1, 1, -0.75, 0.75), clip_start=start, clip_end=end)
@@ -197,7 +197,7 @@ def test_depth_is_along_the_axis_and_clipped(library):
 
 
 def test_picture_is_the_right_way_up(library):
-    """Row 0 is the bottom row: with a glowing ball above and to the right, the last rows' last columns are bright."""
+    """Row 0 is the bottom row: an emitting ball at the upper right lights the last rows' last columns."""
     glow = tiny_scenes.Material("glow", lobes=(), emission=(1, 1, 1))
     snapshot = tiny_scenes.scene(
         [tiny_scenes.sphere(0, move(2, 2, -5))], [glow], camera=Camera(width=9, height=9, window=(-1, 1, -1, 1))
@@ -208,7 +208,7 @@ def test_picture_is_the_right_way_up(library):
 
 
 def test_a_region_is_cut_from_the_whole(library):
-    """The pixels of a border are those of the whole picture, bit for bit; their error is told from what the border shows."""
+    """The pixels of a border equal those of the whole picture, bit for bit; the error is that of the border's pixels."""
     whole = tiny_scenes.showroom(24, samples=2)
     part = dataclasses.replace(whole, camera=dataclasses.replace(whole.camera, x=5, y=7, region_width=11, region_height=9))
     for which in set(Pass) - {Pass.ERROR}:
@@ -250,9 +250,9 @@ def test_filter(library, kind, width):
 
 
 def test_filter_reaches_the_pixel_it_should(library):
-    """With a filter of width 3 a single bright pixel's light is seen one pixel further, with width 1 not at all."""
+    """A filter of width 3 spreads light by one pixel, a filter of width 1 does not."""
     glow = tiny_scenes.Material("glow", lobes=(), emission=(1, 1, 1))
-    # A wall x > 0 in a parallel view of 8 pixels: its edge runs between pixels 3 and 4.
+    # A wall x > 0 in an orthographic view of 8 pixels: its edge is between pixels 3 and 4.
     wall = tiny_scenes.Instance(mesh=0, matrix=move(5, 0, -2))
     view = Camera(kind=CameraKind.ORTHOGRAPHIC, width=8, height=1, window=(-4, 4, -0.5, 0.5))
     for width, reached in ((1.0, [0, 0, 0, 0]), (3.0, [0, 0, 0, 1])):
@@ -270,7 +270,7 @@ def test_filter_reaches_the_pixel_it_should(library):
 
 
 def test_sampler(library):
-    """Numbers in [0, 1), each address its own, the same address the same; over 2^8 samples each pair stratified."""
+    """Numbers are in [0, 1), equal for equal addresses, different for others, and stratified in pairs over 2^8 samples."""
     first = np.array([sampler(3, 5, 7, s, 32, library=library) for s in range(256)])
     assert first.min() >= 0.0 and first.max() < 1.0
     assert np.array_equal(first[17], sampler(3, 5, 7, 17, 32, library=library))
@@ -286,7 +286,7 @@ def test_sampler(library):
 
 
 def test_rotated_camera_sees_the_rotated_world(library):
-    """The camera's matrix and nothing else turns the view."""
+    """The camera's matrix rotates the rays."""
     raster = raster_points()
     _, straight = rays(library, camera(matrix=np.eye(4)), raster)
     _, turned = rays(library, camera(matrix=rotate_x(1.0)), raster)

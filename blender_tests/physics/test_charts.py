@@ -1,4 +1,4 @@
-"""The charts measure the sphere rightly, and their way back is the way back."""
+"""The charts' solid angles and inverse maps are correct."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_back_and_forth(name):
     w, density = chart.direct(u)
     reached = density > 0
     assert reached.sum() > 900
-    # The charts use logarithms and angles of numbers of order 1: a thousand roundings of double at most.
+    # The charts use logarithms and angles of numbers of order 1: the error is at most a thousand roundings of double.
     assert np.allclose(chart.back(w[reached]), u[reached], rtol=0, atol=1e-10)
     assert np.allclose(np.linalg.norm(w, axis=1), 1.0, rtol=0, atol=1e-12)
     if area:
@@ -40,7 +40,7 @@ def test_charts_agree_about_the_integral_of_a_lobe(exponent):
 
     want = 2 * np.pi / (exponent + 1)
     for chart in (Sphere(lowest=0.0), Power((0, 0, 1), 0.5), Half(np.array([0.0, 0.0, 1.0]), Power((0, 0, 1), 2.0))):
-        # Gauss-Legendre with 8 nodes in 16 cells leaves less than 1e-4 even where the chart is not analytic at its rim.
+        # Gauss-Legendre with 8 nodes in 16 cells has an error below 1e-4 even if the chart is not analytic at its rim.
         assert np.isclose(integrate_cells(chart, lobe, 16, 8).sum(), want, rtol=1e-4), chart
 
 

@@ -1,4 +1,4 @@
-"""The course's ray tracer on single pixels, each against its formula worked out here."""
+"""The course's ray tracer: single pixels against formulas."""
 
 import dataclasses
 import math
@@ -30,7 +30,7 @@ def test_lights_add_up_and_those_behind_give_nothing():
 
 
 def test_shadow():
-    """A ball halfway to the lamp leaves black; beside or beyond it changes nothing."""
+    """A ball halfway to the lamp occludes it; a ball beside or beyond the path does not."""
     free = color([plane()], [lambert()], [lamp()])
     halfway = sphere(0, move(*np.array(LAMP) / 2) @ scale(0.1))
     beside = sphere(0, move(-0.5, 1.0, 1.2) @ scale(0.1))
@@ -55,7 +55,7 @@ def test_lab_bsdf(alpha, ior):
         material = Material("lab", lobes=lambert(0.25).lobes + tiny_scenes.beckmann(0.5, alpha, ior).lobes)
         got = color([plane()], [material], [lamp(position, 9.0)], max_bounces=0)
         f = 0.25 / math.pi + float(reference.beckmann_bsdf(wo, wi, np.float32(alpha), ior, 0.5))
-        # Directions are rounded to float32 on the way: h carries 1e-7, D answers with 2 tan/alpha^2 of it.
+        # Directions are rounded to float32: the error of h is 1e-7, and D amplifies it by 2 tan/alpha^2.
         h = (wi + wo) / np.linalg.norm(wi + wo)
         sensitivity = 4e-7 * (1 + np.hypot(h[0], h[1]) / h[2] / alpha**2)
         assert np.allclose(got, f * wi[2] * 9 / distance**2, rtol=EXACT + sensitivity), position
@@ -84,7 +84,7 @@ def test_ambient():
         [plane()], [material], world=(0.1, 0.2, 0.4), camera=pencil(EYE), integrator=Integrator.CLASSIC
     )
     assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :3], (0.05, 0.05, 0.4), rtol=EXACT)
-    # Behind a wall, so that nothing but the ambient part can arrive.
+    # An occluder leaves only the ambient part.
     wall = sphere(0, move(*np.array(LAMP) / 2) @ scale(0.1))
     got = color([plane(), wall], [material], [lamp(ambient_color=(1.0, 0.5, 0.0))])
     want = np.array([0.5, 0.25, 1.0]) * [1.0, 0.5, 0.0] * np.array([9, 18, 27]) / 9 / math.pi
@@ -93,7 +93,7 @@ def test_ambient():
 
 @pytest.mark.parametrize("lamps", [0, 1, 5])
 def test_the_ambient_term_is_one_whatever_the_lamps(lamps):
-    """I = Ka A: A of the world's own in place of the sky, added once, with no lamp's place, shadow or distance in it."""
+    """I = Ka A with the world's own ambient colour A instead of the sky's, added once whatever the lamps."""
     material = Material("ambient", lobes=(), ambient=(0.5, 0.25, 1.0))
     lights = [lamp((i, 0, 2.0 + i), ambient_color=(0, 0, 0)) for i in range(lamps)]
     snapshot = classic([plane()], [material], lights)
@@ -106,7 +106,7 @@ def test_the_ambient_term_is_one_whatever_the_lamps(lamps):
 
 
 def test_the_own_ambient_colour_is_no_light():
-    """Nothing but Ka shows it: no matt surface, no mirror, no background."""
+    """Only Ka reflects the ambient colour: no diffuse surface, mirror or background shows it."""
     world = World((0, 0, 0), ambient=(1, 1, 1))
     mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(1, 1, 1)),))
     for instances, material in (([plane()], lambert()), ([plane()], mirror), ([], lambert())):
@@ -130,13 +130,13 @@ def test_falloffs(falloff, kind):
     for d, r in ((3.0, 4.0), (3.0, 3.5), (3.0, 2.0), (300.0, 1000.0)):
         light = Light("lamp", move(z=d), kind, emission=rgb(6.0), falloff=falloff, falloff_radius=r, spot_blend=0.0)
         got = color([plane()], [lambert()], [light])
-        # 1 - d/r loses digits where d is near r: the distance is known to a rounding, the rest is at least 0.1 here.
+        # 1 - d/r loses digits for d near r: the distance has one rounding error, and 1 - d/r is at least 0.1 here.
         assert np.allclose(got, 6 * ATTENUATIONS[falloff](d, r) / math.pi, rtol=EXACT * 10, atol=0), (d, r)
 
 
 @pytest.mark.parametrize("blend", [0.0, 0.5])
 def test_spot_edges(blend):
-    """A hard edge cuts; a soft one is the smooth step of the cosine."""
+    """A spot without blend has a hard edge; with blend the edge is a smooth step of the cosine."""
     half, height = 0.4, 5.0
     for angle in (0.0, 0.3, 0.38, 0.42):
         light = Light(
@@ -170,7 +170,7 @@ def test_reflection():
 
 
 def hall(bounces, colour=0.5, **settings):
-    """Between two facing mirrors, straight across: the path ends where the depth does."""
+    """Return the radiance between two parallel mirrors, at right angles: the path ends at the depth limit."""
     glow = Material("wall", lobes=(Lobe(LobeKind.MIRROR, color=rgb(colour)),), emission=rgb(1.0))
     floor, ceiling = plane(0), plane(0, move(z=2.0) @ rotate_x(math.pi))
     return color([floor, ceiling], [glow], camera=pencil((0, 0, 1.0), (0, 0, 0)), max_bounces=bounces, **settings)
@@ -190,7 +190,7 @@ def test_threshold_stops_rays_that_cannot_matter():
 
 
 def test_refraction():
-    """Through a slab of glass: (1 - F)^2 of the sky straight on, F at each face; no light is made or lost."""
+    """A slab of glass at normal incidence transmits (1 - F)^2 of the sky and reflects F at each face, without loss."""
     glass = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=1.5),))
     slab = Instance(kind=3, matrix=scale(100.0, 100.0, 0.5))
     camera = pencil((0.3, 0.0, 3.0), (0.3, 0.0, 0.0))
@@ -200,12 +200,12 @@ def test_refraction():
             [slab], [glass], world=1.0, camera=camera, integrator=Integrator.CLASSIC, max_bounces=bounces
         )
         got = tiny_scenes.render(snapshot)[0, 0, :3]
-        # At 10 all but f^9 has left; what is cut at the limit is below the rounding.
+        # At depth 10 only f^9 of the light is left inside: the rest beyond the limit is below rounding.
         assert np.allclose(got, series, rtol=EXACT), bounces
 
 
 def test_refraction_bends_by_snell():
-    """Seen at an angle through the slab, a glowing strip stands where Snell's law puts it."""
+    """Through the slab an emitting strip is displaced by Snell's law."""
     eta, thickness, angle = 1.5, 1.0, 0.7
     inside = math.asin(math.sin(angle) / eta)
     glass = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=eta),))
@@ -233,7 +233,7 @@ def test_refraction_bends_by_snell():
 
 
 def test_total_internal_reflection():
-    """From inside beyond the critical angle all is reflected: the glowing floor is seen in full."""
+    """Beyond the critical angle all light is reflected: the emitting floor has its full radiance."""
     glass = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=1.5),))
     glow = Material("glow", lobes=(), emission=(1, 1, 1))
     camera = pencil((0, 0, -1.0), (1.5, 0, 0.0))
@@ -297,7 +297,7 @@ def test_flat_gouraud_and_phong_shading():
 
 
 def test_gouraud_under_parallel_rays():
-    """A highlight at the corners is that of the rays' own direction, wherever on the picture they start."""
+    """Highlights at the corners use the direction of the orthographic rays."""
     source, wo, n = np.array([0.5, 0.25, 3.0]), np.array([0.6, 0.0, 0.8]), 5.0
     mesh = dataclasses.replace(TILTED, normals=np.float32([(0, 0, 1)] * 3))
     shiny = Material("shiny", lobes=(Lobe(LobeKind.PHONG, color=rgb(1.0), shininess=n),))
@@ -317,8 +317,8 @@ def test_gouraud_under_parallel_rays():
 
 
 def test_a_crowded_recursion_begins_anew_in_small_parts():
-    """Glass doubles the rays of every depth. In tiles of 8 x 8 pixels a batch is small from the start; in those of 32 x 32 the
-    rays become more than are kept at once. Both give the same bits and count the same rays."""
+    """Glass doubles the rays at every depth. With tiles of 8 x 8 pixels batches stay small; with 32 x 32 the rays exceed the
+    capacity and the batch restarts in parts. Both give the same bits and the same number of rays."""
     glass = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=1.5),))
     balls = [sphere(0, scale(1.0 - 0.1 * i)) for i in range(6)]
     camera = dataclasses.replace(pencil((0, -3, 0), width=1.6, pixels=32), width=32, height=32)
@@ -331,7 +331,7 @@ def test_a_crowded_recursion_begins_anew_in_small_parts():
             found.append((session.read(0), session.statistics()))
     assert np.array_equal(found[0][0], found[1][0])
     assert found[0][1].bounce_rays == found[1][1].bounce_rays and found[0][1].camera_rays == 32 * 32
-    # The crowd has been there: more rays a sample than the 8 that 1024 samples may have under way.
+    # The capacity was exceeded: more than 8 rays per sample, the limit for 1024 samples.
     assert found[0][1].bounce_rays > 10 * 8 * 32 * 32
 
 
@@ -348,7 +348,7 @@ def test_normals_view():
 
 
 def test_one_sample_is_deterministic():
-    """With one sample the seed changes nothing: the middle of pixel, lens and lamp."""
+    """With one sample the seed has no effect: the sample uses the centres of pixel, lens and lamp."""
     pictures = [
         tiny_scenes.render(tiny_scenes.showroom(16, integrator=Integrator.CLASSIC, samples=1, seed=seed)).tobytes()
         for seed in (0, 1, 77)
@@ -362,7 +362,7 @@ def test_one_sample_is_deterministic():
 
 
 def cube_world(snapshot):
-    """The snapshot under the course's cube: one colour a side, 1 ... 6 in order."""
+    """Return the snapshot with the course's cube environment: one colour per side, 1 to 6 in order."""
     sides = tuple(Image(f"side {i}", np.full((1, 1, 3), i + 1, np.float32)) for i in range(6))
     direction = Node(NodeKind.COORDINATE, Coordinate.GENERATED)
     cube = Node(NodeKind.ENVIRONMENT, Environment.CUBE, image_count=6, inputs=(NodeRef(0),))
@@ -371,7 +371,7 @@ def cube_world(snapshot):
 
 @pytest.mark.parametrize("cheap, want", [(False, 0.25), (True, 5.0)])
 def test_environment_mapping_looks_past_what_stands_between(cheap, want):
-    """A mirror throws the view to (-0.6, 0, 0.8): the side +z, the fifth, unless the glowing ball on the way is traced."""
+    """A mirror reflects the view to (-0.6, 0, 0.8), side +z, the fifth, or to the emitting ball if rays are traced."""
     mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=rgb(1.0)),))
     glow = Material("glow", lobes=(), emission=rgb(0.25))
     ball = sphere(1, move(-3.0, 0.0, 4.0) @ scale(0.5))

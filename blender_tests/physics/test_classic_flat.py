@@ -1,4 +1,4 @@
-"""Flat shading in CLASSIC: one colour for each polygon, computed at its centre, each against its formula worked out here."""
+"""Flat shading in CLASSIC: one colour for each polygon, computed at its centre, against formulas."""
 
 import dataclasses
 import math
@@ -16,12 +16,12 @@ from addon.bindings.snapshot import Camera, Instance, Lobe, Material, MeshAttrib
 
 EYE = np.array([1.0, -2.0, 6.0])
 SOURCE = np.array([0.5, 0.25, 3.0])
-# A hexagon that is not regular, as a fan of four triangles: its area's middle is not the mean of its vertices.
+# An irregular hexagon as a fan of four triangles: its centroid is not the mean of its vertices.
 CORNERS = np.array([(-1, -1, 0), (1.5, -1, 0), (2, 0.5, 0), (1, 1, 0), (-0.5, 1.5, 0), (-1, 0.5, 0)], float)
 FAN = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)]
 HEXAGON = MeshData("hexagon", CORNERS, FAN, polygons=[0, 0, 0, 0])
 CENTER = CORNERS.mean(axis=0)
-# The middle of each triangle of the fan.
+# The centre of each triangle of the fan.
 PLACES = [CORNERS[list(face)].mean(axis=0) for face in FAN]
 
 
@@ -51,7 +51,7 @@ def test_a_polygon_has_one_colour_and_it_is_that_of_its_centre():
     for place in PLACES:
         got = seen_at(place, [HEXAGON], lambert(), [lamp(SOURCE, 9.0)])
         assert np.allclose(got, want, rtol=EXACT), place
-    # Without polygons each triangle is one.
+    # Without polygons each triangle is a polygon.
     bare = dataclasses.replace(HEXAGON, polygons=None)
     for place in PLACES:
         got = seen_at(0.9 * place + 0.1 * CORNERS[0], [bare], lambert(), [lamp(SOURCE, 9.0)])
@@ -59,7 +59,7 @@ def test_a_polygon_has_one_colour_and_it_is_that_of_its_centre():
 
 
 def test_path_lights_every_point_of_the_face():
-    """The middle of a pixel with a true point light has no noise in PATH either."""
+    """PATH varies light over the face; a point lamp and the pixel's centre give no noise."""
     for place in PLACES:
         got = seen_at(place, [HEXAGON], lambert(), [lamp(SOURCE, 9.0)], integrator=Integrator.PATH, max_bounces=0)
         assert np.allclose(got, lit(place), rtol=1e-5)
@@ -73,12 +73,12 @@ def test_the_highlight_is_that_of_the_view_of_the_centre():
     shine = np.array([0.5, 0.25, 1.0]) * (wo @ (wi * [-1, -1, 1])) ** 30
     want = (0.25 * wi[2] + shine) / math.pi * 9 / d**2
     for place in PLACES:
-        # The exponent multiplies the rounding of the directions to float.
+        # The exponent amplifies the rounding of directions.
         assert np.allclose(seen_at(place, [HEXAGON], material, [lamp(SOURCE, 9.0)]), want, rtol=EXACT + 3e-7 * 30)
 
 
 def test_parallel_rays_see_the_centre_along_themselves():
-    """One colour under an orthographic camera, too: the highlight of its direction."""
+    """Under an orthographic camera the polygon has one colour too, with the highlight of the rays' direction."""
     wo = np.array([0.6, 0.0, 0.8])
     to_light = SOURCE - CENTER
     d = np.linalg.norm(to_light)
@@ -91,7 +91,7 @@ def test_parallel_rays_see_the_centre_along_themselves():
 
 
 def test_one_shadow_ray_decides_for_the_polygon():
-    """A ball before the centre darkens all of it, a ball before another place nothing."""
+    """A ball that occludes the centre darkens the whole polygon; a ball elsewhere has no effect."""
     light = lamp(SOURCE, 9.0)
     for at, want in ((CENTER, 0.0), (PLACES[0], lit(CENTER))):
         ball = sphere(0, move(*(0.9 * at + 0.1 * SOURCE)) @ scale(0.01))
@@ -101,7 +101,7 @@ def test_one_shadow_ray_decides_for_the_polygon():
 
 
 def test_the_mirrored_ray_starts_at_the_centre():
-    """A wall of three bands above: the whole polygon shows the band that its centre mirrors."""
+    """Under a wall with three bands the whole polygon shows the band reflected at its centre."""
     mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(1, 1, 1)),))
     along = (CENTER - EYE) * [1, 1, -1]
     met = CENTER + along * (8.0 / along[2])
@@ -117,7 +117,7 @@ def test_the_mirrored_ray_starts_at_the_centre():
 
 
 def test_textures_are_those_of_the_centre():
-    """The centre lies in one triangle, and an attribute that is linear over the polygon has its value of there."""
+    """An attribute that is linear over the polygon has its value at the centre, which lies in one triangle."""
     ramp = MeshAttribute("ramp", CORNERS[:, :1] * [0.1, 0.05, 0.0] + [0.3, 0.4, 0.5], Domain.VERTEX)
     mesh = dataclasses.replace(HEXAGON, attributes=(ramp,))
     nodes = (Node(NodeKind.ATTRIBUTE, name="ramp"),)
@@ -128,11 +128,11 @@ def test_textures_are_those_of_the_centre():
 
 
 def test_a_warped_polygon_has_its_mean_normal_and_a_place_of_its_own():
-    """Newell's normal; the mean of the corners lies over both triangles, so the place below it counts."""
+    """The normal is Newell's; the centre is the point on the surface below the mean of the corners."""
     corners = np.array([(-1, -1, 0.0), (1, -1, 0.3), (1, 1, 0.0), (-1, 1, 0.3)])
     mesh = MeshData("warped", corners, [(0, 1, 2), (0, 2, 3)], polygons=[0, 0])
     area = np.cross(corners[2] - corners[0], corners[3] - corners[1])
-    # The mean is over the diagonal from corner 0 to corner 2, both triangles' common edge.
+    # The mean lies above the common edge of both triangles, from corner 0 to corner 2.
     p = np.array([0.0, 0.0, 0.0])
     want = lit(p, area / np.linalg.norm(area))
     for place in ((0.4, -0.5, 0.15), (-0.4, 0.5, 0.15)):
@@ -158,7 +158,7 @@ def test_placement_mirrors_and_stretches_the_centre():
 
 
 def test_the_picture_with_passes_is_the_picture_without_them():
-    """Depth and position stay those of the pixel."""
+    """The passes depth and position vary over the face; they do not change the picture."""
     ball = MeshData("ball", *_uv_sphere(), polygons=None)
     view = camera(24, width=0.5)
     snapshot = flat([ball], specular(LobeKind.BECKMANN, 1.0), [lamp(SOURCE, 9.0)], view)
@@ -171,7 +171,7 @@ def test_the_picture_with_passes_is_the_picture_without_them():
         session.render_all()
         position = session.read(Pass.POSITION)
     on_ball = np.linalg.norm(position, axis=-1)
-    # A facet of 16 by 8 lies at most 1 - cos(pi / 8) within the ball, and no two pixels meet it at one place.
+    # A facet of 16 by 8 lies at most 1 - cos(pi / 8) inside the ball, and each pixel has its own position on it.
     assert on_ball[12, 12] > math.cos(math.pi / 8) ** 2 and len(np.unique(position[8:16, 8:16].reshape(-1, 3), axis=0)) == 64
 
 
@@ -192,7 +192,7 @@ def test_a_sphere_has_as_many_colours_as_faces():
     snapshot = flat([ball], lambert(), [lamp((5, -4, 9), 300.0)], camera(96, width=0.5), world=0.0)
     snapshot = dataclasses.replace(snapshot, world=World((0, 0, 0), ambient=(0, 0, 0)))
     colors = np.unique(tiny_scenes.render(snapshot)[..., 0].round(9))
-    # 128 quadrilaterals, about half of them seen, and the black of the background and of the dark side.
+    # About half of the 128 faces are visible; background and the dark side are black.
     assert 20 < len(colors) < 80
 
 

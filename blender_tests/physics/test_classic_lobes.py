@@ -1,4 +1,4 @@
-"""What CLASSIC makes of lobes that the course does not know, and of lamps that are hidden from a part of the light."""
+"""CLASSIC with lobes that the course does not have, and with lamps of limited ray visibility."""
 
 import dataclasses
 import math
@@ -29,7 +29,7 @@ def smooth(kind, **fields):
     ],
 )
 def test_glass_of_every_kind_shows_what_lies_behind(glass, f):
-    """Straight down on a slab, a red floor below and a blue sky above: (1 - F)^2 of the one, F of the other."""
+    """A slab at normal incidence over a red floor under a blue sky: (1 - F)^2 of the floor, F of the sky."""
     floor = Material("floor", lobes=(), emission=(1, 0, 0))
     slab = Instance(kind=3, matrix=scale(100.0, 100.0, 0.5))
     camera = pencil((0.3, 0.0, 3.0), (0.3, 0.0, 0.0))
@@ -44,14 +44,14 @@ def gloss(roughness):
 
 
 def clear_coat(roughness):
-    """The coat of Blender 3.x over nothing else."""
+    """Return a lobe with only the clearcoat of Blender 3."""
     bare = {"base_color": (0, 0, 0), "specular": 0.0, "coat": 1.0, "coat_roughness": roughness}
     return Lobe(LobeKind.PRINCIPLED, principled=Principled(rules=Rules.BLENDER_3, **bare))
 
 
 @pytest.mark.parametrize("roughness", [0.0, 0.4])
 def test_gloss_and_clear_coat_mirror_the_sky(roughness):
-    """Ashikhmin-Shirley by its colour; the coat by a quarter of F of the index 1.5, which starts at 0.04."""
+    """Ashikhmin-Shirley reflects its colour; the clearcoat reflects a quarter of F with IOR 1.5."""
     assert np.allclose(mirrored_sky(Material("gloss", lobes=(gloss(roughness),))), (0.5, 2.0, 0.75), rtol=EXACT)
     f = float(reference.fresnel(np.float32(0.8), 1.5))
     got = mirrored_sky(Material("coat", lobes=(clear_coat(roughness),)))
@@ -67,8 +67,8 @@ def test_gloss_and_clear_coat_mirror_the_sky(roughness):
     ],
 )
 def test_mirrors_look_about_their_own_normal(lobe):
-    """Tilted by 0.6 it shows a wall at 1.2 beside the view, where the surface's own normal would show the sky. A weaker mirror
-    about the surface's normal goes along with the stronger one."""
+    """A mirror with a normal tilted by 0.6 shows a wall at 1.2 from the view; with the surface's normal it would show the sky.
+    A weaker mirror with the surface's normal follows the stronger one."""
     tilted = dataclasses.replace(lobe, normal=(math.sin(0.6), 0.0, math.cos(0.6)))
     weaker = dataclasses.replace(lobe, color=(0.25, 0.25, 0.25))
     wall = plane(1, move(x=5.0) @ tiny_scenes.rotate_y(-math.pi / 2))
@@ -82,7 +82,7 @@ def test_mirrors_look_about_their_own_normal(lobe):
 
 @pytest.mark.parametrize("glossy", [specular(LobeKind.PHONG, 10.0), specular(LobeKind.BLINN_PHONG, 10.0)])
 def test_a_lamp_may_be_hidden_from_a_part(glossy):
-    """Hidden from diffuse rays it leaves the highlight, hidden from glossy ones the rest, hidden from other rays all."""
+    """A lamp hidden from diffuse rays gives only the highlight; from glossy rays only diffuse light; from others all."""
     alone = [dataclasses.replace(glossy, lobes=(lobe,)) for lobe in glossy.lobes]
     place = (-2.5, 0.6, 4.0)
     diffuse, shine = (color([plane()], [material], [lamp(place)]) for material in alone)

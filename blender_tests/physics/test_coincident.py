@@ -1,4 +1,4 @@
-"""Two surfaces at one place, of different materials: the first one is seen, in every pixel, and lit as if it were alone."""
+"""Coincident surfaces of different materials: the first is visible in every pixel, and lit as if it were alone."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def of_two_meshes():
     return [first, Instance(mesh=1, matrix=PLACE, materials=second.materials)]
 
 
-# things, their meshes
+# Instances and their meshes.
 CASES = {
     "copies": (twice(), [QUAD]),
     "smooth copies": (twice(), [SMOOTH]),
@@ -40,7 +40,7 @@ CASES = {
 def test_the_first_is_seen(library, name, threads, accelerator):
     things, shapes = CASES[name]
     lamps = [Light("sun", rotate_x(0.5), LightKind.SUN, emission=(np.pi,) * 3)]
-    # From above and from below: the faces' other side.
+    # From above and from below, on the faces' backs.
     for height in (5.0, -5.0):
         lens = Camera(matrix=look_at((0.5, -1, height), (0, 0, 0)), width=32, height=32, window=(-0.1, 0.1, -0.1, 0.1))
 

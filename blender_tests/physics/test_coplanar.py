@@ -1,4 +1,4 @@
-"""Surfaces of different make in one plane: one of them is seen, all over and evenly lit; and glass that stands on a floor."""
+"""Surfaces of different tessellation in one plane: one of them is visible everywhere with even light; glass on a floor."""
 
 import dataclasses
 
@@ -18,7 +18,7 @@ BOX = MeshData("box", CORNERS, [t for a, b, c, d in FACES for t in ((a, b, c), (
 
 
 def grid(n, matrix=None):
-    """The square of quad(2), subdivided, its corners carried by a matrix."""
+    """Return the square of quad(2), subdivided, with its vertices transformed by a matrix."""
     x, y = np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1))
     points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size), np.ones(x.size)])
     first = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
@@ -29,11 +29,11 @@ def grid(n, matrix=None):
 
 
 def stored(matrix):
-    """As Blender has it: in floats."""
+    """Return the matrix rounded to float, as Blender stores it."""
     return matrix.astype(np.float32).astype(float)
 
 
-# The red thing, the green one, their meshes: the plane that both share is z = 0 of PLACE.
+# The red instance, the green one, their meshes: both share the plane z = 0 of PLACE.
 CASES = {
     f"a grid a rounding {side} the top of a box": (
         Instance(matrix=stored(PLACE @ move(0, 0, -1)), materials=(0,)),
@@ -74,14 +74,14 @@ def test_the_first_is_seen_and_lit(library, name, size, accelerator):
 
     seen, alone = picture([first, second]), picture([first])
     assert seen[..., 1].max() == 0.0 and seen[..., 0].min() > 0.04
-    # The same surface by the same light: what differs is how its points are rounded.
+    # The same surface and light: only the rounding of points differs.
     assert np.allclose(seen[..., 0], alone[..., 0], rtol=1e-4)
 
 
 @pytest.mark.parametrize("glass_first", [True, False])
 @pytest.mark.parametrize("place", [np.eye(4), PLACE], ids=["upright", "turned"])
 def test_no_light_passes_between_glass_and_floor(library, place, glass_first):
-    """A black floor, a lamp below it: what reaches the eye has come through the floor."""
+    """A black floor over a lamp: any light that reaches the eye has leaked through the floor."""
     block = Instance(matrix=stored(place @ move(0, 0, 1)), materials=(0,))
     floor = plane(1, stored(place))
     below = Instance(mesh=1, matrix=stored(place @ move(0, 0, -1) @ scale(20)), materials=(2,))
@@ -95,7 +95,7 @@ def test_no_light_passes_between_glass_and_floor(library, place, glass_first):
 @pytest.mark.parametrize("height", [2.0**-24, 0.0, -(2.0**-24)])
 @pytest.mark.parametrize("lamp_first", [True, False])
 def test_a_shining_face_is_there_before_those_that_do_not(library, lamp_first, height):
-    """A lamp set into a ceiling lights the floor, whatever rounding says and whichever comes first."""
+    """An emitting face in the plane of a ceiling lights the floor, whatever the rounding and the order."""
     ceiling = Instance(mesh=0, matrix=stored(PLACE), materials=(0,))
     lamp = Instance(mesh=1, matrix=stored(PLACE @ move(0, 0, height)), materials=(1,))
     floor = Instance(mesh=0, matrix=stored(PLACE @ move(0, 0, -1)), materials=(0,))
@@ -111,7 +111,7 @@ def test_a_shining_face_is_there_before_those_that_do_not(library, lamp_first, h
 
 
 def test_a_veil_of_light_on_a_ceiling_is_not_there(library):
-    """What lets light through gives way to what does not, so that no light leaks; then it lights nothing either."""
+    """A transparent emitter in the plane of an opaque face is invisible and lights nothing, so that no light leaks."""
     ceiling = Instance(mesh=0, matrix=stored(PLACE), materials=(0,))
     lamp = Instance(mesh=1, matrix=stored(PLACE @ move(0, 0, 2.0**-24)), materials=(1,))
     floor = Instance(mesh=0, matrix=stored(PLACE @ move(0, 0, -1)), materials=(0,))
@@ -122,7 +122,7 @@ def test_a_veil_of_light_on_a_ceiling_is_not_there(library):
 
 @pytest.mark.parametrize("height", [2.0**-24, -(2.0**-24)])
 def test_veils_in_one_plane_are_one_veil(library, height):
-    """Half of the light passes, whether it is the sun's or on its way to the eye: the second veil is not there."""
+    """Of two transparent faces in one plane only one counts: half of the light passes, for sun and camera rays."""
     veil = Instance(mesh=0, matrix=stored(PLACE), materials=(0,))
     other = Instance(mesh=1, matrix=stored(PLACE @ move(0, 0, height)), materials=(1,))
     floor = plane(2, stored(PLACE @ move(0, 0, -1)))

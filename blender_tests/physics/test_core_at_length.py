@@ -1,4 +1,4 @@
-"""The core's own tests with many times as many rays and samples as `make test` gives them."""
+"""The core's own tests with many more rays and samples than in `make test`."""
 
 import os
 import subprocess

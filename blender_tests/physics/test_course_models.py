@@ -1,4 +1,4 @@
-"""The course's models: Minnaert in both integrators, and every parameter of every model from a node instead of a number."""
+"""The course's models: Minnaert in both integrators, and every parameter of every model from a node."""
 
 import dataclasses
 import math
@@ -21,7 +21,7 @@ def minnaert(k, rho=0.4):
 @pytest.mark.parametrize("integrator", [Integrator.CLASSIC, Integrator.PATH])
 @pytest.mark.parametrize("k", [0.5, 1.0, 1.5, 4.0])
 def test_minnaert_under_one_lamp(k, integrator):
-    """rho (k + 1)/(2 pi) (cos_i cos_o)^(k - 1) cos_i lc; below k = 1 with q of the darkest cosine, which none here reaches."""
+    """rho (k + 1)/(2 pi) (cos_i cos_o)^(k - 1) cos_i lc; for k < 1 with q of the least cosine, which none here reaches."""
     position = np.array((-2.5, 0.6, 4.0))
     d = np.linalg.norm(position)
     cos_i, cos_o, rho = position[2] / d, 0.8, 0.4
@@ -33,7 +33,7 @@ def test_minnaert_under_one_lamp(k, integrator):
 
 @pytest.mark.parametrize("k", [0.2, 1.0, 3.0])
 def test_minnaert_in_a_furnace(k):
-    """Under an even sky a convex body shows its albedo: rho max(cos, m)^(k - 1), at most 1."""
+    """Under a uniform sky a convex body shows its albedo: rho max(cos, m)^(k - 1), at most 1."""
     rho = 0.6
     for cosine in (0.95, 0.5, 0.1):
         eye = np.array([math.sqrt(1 - cosine**2), 0, cosine])
@@ -42,7 +42,7 @@ def test_minnaert_in_a_furnace(k):
         m = rho ** (1 / (1 - k)) if k < 1 else 0.0
         want = rho * max(cosine, m) ** (k - 1)
         got = tiny_scenes.render(snapshot)[0, 0, 0]
-        # Sampled by itself each sample is the albedo; beside samples of the sky the sum of both is off by some 1e-3 at 4096.
+        # BSDF samples alone return the albedo exactly; with samples of the sky the error at 4096 samples is about 1e-3.
         assert want <= 1.0 and np.isclose(got, want, rtol=5e-3), (cosine, got, want)
 
 
@@ -69,7 +69,7 @@ CASES = [
 
 
 def textured(material, number, name):
-    """The material with one parameter from a node that gives the number that was there: half of an attribute of twice it."""
+    """Return the material with one parameter from a node with the same value: half of an attribute of twice the value."""
     owner = material if number is None else material.lobes[number]
     value = getattr(owner, name)
     nodes = (
@@ -86,7 +86,7 @@ def textured(material, number, name):
 @pytest.mark.parametrize("integrator", [Integrator.CLASSIC, Integrator.PATH])
 @pytest.mark.parametrize("model, number, name", CASES)
 def test_every_parameter_may_come_from_a_node(model, number, name, integrator):
-    """A picture of a ball on a floor is the same bits, and another one where the node's value is another."""
+    """The picture with the parameter from a node equals that with the constant, and changes with the node's value."""
     material = Material(model, lobes=MODELS[model], ambient=(0.25, 0.5, 0.125))
     changed, value = textured(material, number, name)
     pictures = []
@@ -108,7 +108,7 @@ def test_every_parameter_may_come_from_a_node(model, number, name, integrator):
         )
         pictures.append(tiny_scenes.render(snapshot))
     constant, same, other = pictures
-    # Halves of doubled numbers are exact; a material without nodes may be made ready before and rounds in another order.
+    # Halves of doubled numbers are exact, but a material without nodes is precomputed, with another order of rounding.
     assert np.allclose(constant, same, rtol=1e-5, atol=1e-7)
     unseen = name == "ambient" and integrator == Integrator.PATH
     assert np.allclose(same, other, rtol=1e-5) == unseen

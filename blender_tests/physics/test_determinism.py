@@ -1,4 +1,4 @@
-"""The same picture, bit for bit, however the work is cut: a sample has an address and nothing else counts."""
+"""Determinism: the picture has the same bits however the work is divided, since a sample depends only on its address."""
 
 import dataclasses
 import os
@@ -18,7 +18,7 @@ INTEGRATORS = [Integrator.PATH, Integrator.CLASSIC, Integrator.NORMALS]
 
 
 def bits(snapshot, pieces=None):
-    """All passes of a render as bytes; pieces: the sizes of the sample ranges it is rendered in."""
+    """Return all passes of a render as bytes; pieces: the sizes of its sample ranges."""
     with Session.upload(snapshot) as session:
         first = 0
         for count in pieces or [snapshot.settings.samples]:
@@ -57,7 +57,7 @@ def test_tile_sizes(reference, tile_size):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS, ids=lambda i: i.name)
 def test_vertices_are_counted_the_same(integrator):
-    """In lanes, all of them, however the work is cut and whatever passes there are."""
+    """Statistics count the same vertices, all in lanes, however the work is divided and whatever the passes."""
 
     def counted(**settings):
         with Session.upload(picture(integrator=integrator, **settings)) as session:
@@ -85,7 +85,7 @@ def test_features(reference, features):
 
 @pytest.mark.parametrize("name", ["lambert", "mirror", "lens", "opacity", "sky", "sun"])
 def test_special_kernels_equal_the_general_one(name):
-    """Scenes that use one thing each, so that their kernel leaves out the most."""
+    """Scenes with one feature each, whose special kernels omit the most."""
     room = showroom(24, samples=4)
     keep = {"lambert": [0], "mirror": [0, 3], "lens": [0, 1], "opacity": [0, 5], "sky": [0, 1, 2], "sun": [0, 6]}[name]
     rows = {f.name: getattr(room.instances, f.name) for f in dataclasses.fields(room.instances)}
@@ -133,7 +133,7 @@ def test_another_seed_gives_another_picture():
 
 @pytest.mark.parametrize("integrator", INTEGRATORS, ids=lambda i: i.name)
 def test_debug_sample_is_what_the_film_got(integrator):
-    """One sample: the very bits of the film. More: their mean in double, rounded once to float32 on reading."""
+    """With one sample the bits equal the film's; with more the film is their mean in double, rounded to float32."""
     snapshot = showroom(12, samples=1, integrator=integrator)
     with Session.upload(snapshot) as session:
         session.render_all()
@@ -155,7 +155,7 @@ def test_debug_sample_is_what_the_film_got(integrator):
 
 
 def test_debug_sample_tells_the_path():
-    """The vertices of a path between two known planes: where it was and what it carried."""
+    """debug_sample returns the positions and throughputs of a path between two known planes."""
     snapshot = tiny_scenes.two_planes(2.0, 0.8, 1.0, max_bounces=3)
     with Session.upload(snapshot) as session:
         rgba, vertices = session.debug_sample(0, 0, 0)
@@ -177,7 +177,7 @@ def test_debug_vertices_are_cut_at_capacity():
 
 
 def test_cancel_keeps_what_is_there():
-    """Cancelled in the middle: finished pixels hold the bits of that many samples, and rendering cannot go wrong after."""
+    """After a cancel the picture is finite and of the same scene, and further renders are refused."""
     snapshot = showroom(64, samples=100000, threads=2)
     with Session.upload(snapshot) as session:
         session.render(0, 2)
@@ -191,7 +191,7 @@ def test_cancel_keeps_what_is_there():
         assert progress.finished and progress.cancelled and progress.fraction < 1.0
         kept = session.read()
         assert np.all(np.isfinite(kept)) and not np.array_equal(kept, first)
-        # What was kept is a picture of the same scene: its mean is that of the first samples within their noise.
+        # The mean is that of the first samples within their noise.
         assert abs(kept[..., :3].mean() - first[..., :3].mean()) < 0.2 * first[..., :3].mean()
         assert np.allclose(kept[..., 3], 1.0, atol=1e-6)
         with pytest.raises(LancerError) as error:
@@ -200,7 +200,7 @@ def test_cancel_keeps_what_is_there():
 
 
 def test_reading_while_rendering():
-    """A picture read in the middle is a picture: finite, and solid where samples are."""
+    """A picture read during a render is finite, and opaque where there are samples."""
     with Session.upload(showroom(64, samples=100000, threads=2)) as session:
         session.render(0, 100000)
         for _ in range(20):
@@ -214,7 +214,7 @@ def test_reading_while_rendering():
 
 
 def under_many_lamps():
-    """Lamps that are chosen from, and found on the way of rays, through a tree of several levels."""
+    """Return a scene with many visible lamps, which are sampled and intersected through a tree of several levels."""
     room = picture(passes=(Pass.COMBINED,))
     lamp = room.lights[0]
     lights = []
@@ -247,7 +247,7 @@ open(sys.argv[1], "w").write(name + " " + h.hexdigest())
 
 
 def test_instruction_sets(tmp_path):
-    """LANCER_ISA forces a lower instruction set: other instructions, the same bits."""
+    """LANCER_ISA selects a lower instruction set, with the same bits."""
     results, places = {}, [HERE, os.path.join(HERE, "helpers"), os.path.join(HERE, "physics")]
     for isa in ("", "scalar", "sse4", "avx2", "avx512"):
         out = tmp_path / f"isa{isa}"
@@ -258,6 +258,6 @@ def test_instruction_sets(tmp_path):
         results[isa] = out.read_text().split(" ")
     hashes = {digest for *_, digest in results.values()}
     assert len(hashes) == 1, results
-    # The lowest one runs everywhere and is named; asking for more than the processor has gives the best there is.
+    # The lowest set runs everywhere; a request beyond the processor's sets selects its best one.
     assert results["scalar"][0] == "scalar"
     assert results["sse4"][0] != results[""][0] or "SSE" in results[""][0].upper(), results

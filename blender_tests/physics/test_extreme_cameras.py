@@ -1,4 +1,4 @@
-"""Cameras at the edge of sense: a picture of numbers, or words that say what is wrong."""
+"""Extreme cameras: a finite picture, or an error with a message."""
 
 import dataclasses
 
@@ -10,7 +10,7 @@ from addon.bindings.abi import CameraKind, LancerError, Pass
 from addon.bindings.session import Session
 
 SHOT = showroom(12, samples=2)
-# window: half its width; 1e-300 is a telescope's whose pixels are one, 1e300 a view of 180 degrees.
+# window: half its width; at 1e-300 all pixels have the same ray, at 1e300 the view has 180 degrees.
 LENSES = {
     **{f"window {half:g}": {"window": (-half, half, -half, half)} for half in (1e-300, 1e-30, 1e-6, 1e6, 1e30, 1e300)},
     "lens of next to nothing": {"lens_radius": 1e-300, "focal_distance": 1.0},
@@ -32,7 +32,7 @@ ANGLES = {
 
 
 def seen(**fields):
-    """All passes through a camera that is the same but for these fields."""
+    """Render with changed fields of the camera; return the number of invalid samples and all passes."""
     shot = dataclasses.replace(SHOT, camera=dataclasses.replace(SHOT.camera, **fields))
     with Session.upload(shot) as session:
         assert session.render_all()
@@ -94,7 +94,7 @@ def test_refusals(library, name):
 
 @pytest.mark.parametrize("value", [1e31, 1e200, np.inf, np.nan])
 def test_things_beyond_all_bounds_are_left_out(library, value):
-    """As wide as that, or as far away: told by name, and all else is there."""
+    """Objects that large or that far away are left out, with a message that names them; other objects are rendered."""
     matrix = np.eye(4)
     for row, column in ((0, 0), (1, 3)):
         wild = matrix.copy()

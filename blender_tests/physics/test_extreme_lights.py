@@ -1,4 +1,4 @@
-"""No light is too strong, too weak, too small or in too odd a place: closed forms, equal kernels, true told errors."""
+"""Extreme lights, by strength, size and position: closed forms, equal kernels, correct reported errors."""
 
 import dataclasses
 import math
@@ -26,7 +26,7 @@ LAMPS = {
 
 @pytest.mark.parametrize("name", [*LAMPS, "mesh", "sphere", "sky"])
 def test_emission_is_linear_to_its_ends(library, name):
-    """1e-30 and 1e30 times the light give as many times the picture, on matt and on all but smooth surfaces."""
+    """The picture is proportional to the emission from 1e-20 to 1e30, on diffuse and on nearly smooth surfaces."""
 
     def lit(material, power):
         glow = Material("glow", lobes=(), emission=(power,) * 3)
@@ -42,21 +42,21 @@ def test_emission_is_linear_to_its_ends(library, name):
         plain, _ = pictures(lit(material, 1.0))
         for power in (1e-20, 1e30):
             for got, want in zip(pictures(lit(material, power))[0], plain, strict=True):
-                # Some dozen roundings; roulette looks at shares only, so every path is the same.
+                # Some dozen roundings; Russian roulette is independent of the scale, so every path is the same.
                 assert np.allclose(got / power, want, rtol=1e-5, atol=1e-12)
         assert not np.any(pictures(lit(material, 0.0))[0][0])
 
 
 @pytest.mark.parametrize("radius", [1e-30, 1e-12, 1e-6])
 def test_smallest_lamps_are_points(library, radius):
-    """Even where the radiance of so bright a disk is no float: then it is said."""
+    """A tiny lamp equals a point lamp; a message reports when the disk's radiance exceeds float."""
     for kind, field in ((LightKind.POINT, "radius"), (LightKind.SPOT, "radius"), (LightKind.SUN, "sun_angle")):
         for power in (1.0, 1e30):
             fields = dict(kind=kind, emission=power, spot_angle=2.0, matrix=move(1, -1, 3) @ rotate_x(-0.2))
             point, _ = pictures(room(tiny_scenes.lambert(0.8), [lamp(**fields)]))
             for soft in (True, False):
                 tiny, said = pictures(room(tiny_scenes.lambert(0.8), [lamp(**fields, **{field: radius}, soft_falloff=soft)]))
-                # Directions to its parts differ by 1e-6; shadows have an edge of that width.
+                # Directions to the lamp differ by 1e-6 over its extent, and shadows have an edge of that width.
                 for got, want in zip(tiny, point, strict=True):
                     assert np.allclose(got, want, rtol=2e-4), (kind, power, soft)
                 if power / (math.pi * (radius if field == "radius" else radius / 2) ** 2) > 1e36:
@@ -65,12 +65,12 @@ def test_smallest_lamps_are_points(library, radius):
 
 @pytest.mark.parametrize("ratio", [1.0, 0.1, 1e-3])
 def test_lamp_touches_the_floor(library, ratio):
-    """A ball that lies on a plane: seen whole from everywhere on it, E = I cos / d^2; near the contact, too."""
+    """A ball lamp that touches a plane is entirely visible from it: E = I cos / d^2, near the contact too."""
     radius = 0.5
     ball = lamp(emission=3.0, matrix=move(z=radius), radius=radius, soft_falloff=False)
     x = ratio * radius
     camera = tiny_scenes.pencil((x + 1e3, 0, 1e-2), (x, 0, 0), width=1e-9, pixels=8)
-    # The camera's ray comes in below the ball.
+    # The camera's ray passes below the ball.
     snapshot = tiny_scenes.scene([tiny_scenes.plane()], [tiny_scenes.lambert()], [ball], camera=camera, samples=256)
     (path, _), _ = pictures(tiny_scenes.with_settings(snapshot, max_bounces=0))
     d2 = x * x + radius * radius
@@ -80,7 +80,7 @@ def test_lamp_touches_the_floor(library, ratio):
 
 
 def test_lamp_within_a_closed_mesh(library):
-    """Outside it is dark; inside, the wall of a hollow ball has what one reflection after the other leaves."""
+    """Outside the mesh it is dark; inside, the wall has the geometric series of reflections."""
     import trimesh
 
     albedo, power = 0.5, 2.0
@@ -101,13 +101,13 @@ def test_lamp_within_a_closed_mesh(library):
         (path, _), _ = pictures(tiny_scenes.with_settings(hollow, max_bounces=bounces, samples=64))
         want = power * albedo / math.pi * (1 - albedo ** (bounces + 1)) / (1 - albedo)
         error = path[..., 0].std(ddof=1) / 16
-        # The wall is seen at distance 1 but for roundings of directions.
+        # The distance to the wall is 1 up to rounding of directions.
         assert error < 1e-2 * want and abs(path[..., 0].mean() - want) <= 4 * error + 1e-5 * want
 
 
 @pytest.mark.parametrize("others", [0, 6])
 def test_dim_lamp_beside_a_blinding_one(library, others):
-    """1e-6 W is found where 1e12 W cannot shine, with few lamps and with a tree of them; together they add up."""
+    """A lamp of 1e-6 W is sampled where a lamp of 1e12 W is below the horizon, with few lamps and with a light tree."""
     watt = 1 / (4 * math.pi**2)
     dim = lamp(emission=1e-6 * watt, matrix=move(z=2))
     blinding = lamp(emission=1e12 * watt, matrix=move(z=-1))
@@ -121,7 +121,7 @@ def test_dim_lamp_beside_a_blinding_one(library, others):
     above = dataclasses.replace(blinding, matrix=move(z=1))
     (path, classic), _ = pictures(tiny_scenes.scene(*floor, [dim, above, *dark], camera=camera, samples=1024))
     both = want + 1e12 * watt / math.pi
-    # A 256th of the choices at most goes to the dim one, lest it be missed where the other is hidden: those miss the other.
+    # At most 1/256 of the choices goes to the dim lamp, in case the other is occluded; these samples miss the other lamp.
     deviation = math.sqrt(1 / 256 / 1024)
     assert np.allclose(path, both, rtol=4 * deviation) and np.allclose(classic, both, rtol=1e-5)
     assert abs(path[..., 0].mean() - both) <= 4 * deviation * both / 4  # of 16 pixels
@@ -129,9 +129,9 @@ def test_dim_lamp_beside_a_blinding_one(library, others):
 
 @pytest.mark.parametrize("others", [0, 6])
 def test_dim_lamp_beside_a_hidden_blinding_one(library, others):
-    """1e-6 W light a room, 1e12 W stand in a box: the picture is found, and its error tells how well.
+    """A lamp of 1e-6 W lights a room, lamps of 1e12 W are in a closed box: the picture and its error are correct.
 
-    One sample of 1024, among many lamps of 4096, asks the dim one, and brings all that the others miss.
+    One sample of 1024, with many lamps of 4096, chooses the dim lamp and carries all of the light.
     """
     watt = 1 / (4 * math.pi**2)
     dim = lamp(emission=1e-6 * watt, matrix=move(z=2))
@@ -150,11 +150,10 @@ def test_dim_lamp_beside_a_hidden_blinding_one(library, others):
     off = math.sqrt(np.mean((got - want) ** 2)) / (1.01 * want)
     low = error.low
     if not others:
-        # The choices of a pixel are even: one in 1026 asks the dim lamp, so that 1024 do once, or in one pixel of 500 never.
-        # That is sqrt(0.002) of a pixel. The halves tell far more: the hit lies in one of them.
+        # Choices are stratified: one in 1026 chooses the dim lamp, so that 1024 samples do once, or in 1 of 500 pixels never,
+        # a deviation of sqrt(0.002). The estimate from halves is far larger, since the hit lies in one half.
         deviation, low = max(deviation, 0.0028 * want), 0.0
         assert off < 4 * math.sqrt(0.002), off
     assert deviation < 0.2 * want and abs(mean - want) <= 4 * deviation, (mean, deviation, want)
-    # What the pixels are off, relative as the error is; of 256 pixels with a hit each its own root mean square is known to a
-    # tenth.
+    # The true relative error of the pixels: from 256 pixels with one hit each it is known to 10 %.
     assert 0.8 * low <= off <= 1.2 * (error.high + error.cannot_exclude), (off, error)

@@ -1,4 +1,4 @@
-"""No parameter of a surface is too extreme: finite pictures, the same from every kernel, at limits or closed forms."""
+"""Extreme parameters of surfaces: finite pictures, equal from every kernel, with correct limits or closed forms."""
 
 import dataclasses
 import math
@@ -19,7 +19,7 @@ IORS = [1.0, 1.0 + 2.0**-23, 0.9, 1.5, 1e3, 1e19]
 
 
 def materials_of(kind, roughness, ior):
-    """Every lobe of a kind that these numbers describe."""
+    """Yield materials with lobes of a kind for these parameters."""
     if kind == LobeKind.PRINCIPLED:
         for rules in (Rules.BLENDER_3, Rules.BLENDER_45):
             fields = dict(roughness=roughness, ior=ior, transmission=0.5, coat=1.0, coat_ior=ior, metallic=0.3, sheen=0.5)
@@ -35,7 +35,7 @@ def materials_of(kind, roughness, ior):
 
 @pytest.mark.parametrize("kind", LobeKind, ids=lambda kind: kind.name)
 def test_every_lobe_at_every_roughness_and_index(library, kind):
-    """White lobes under a white sky: light, and no more of it than the sky has."""
+    """White lobes under a white sky are not brighter than the sky."""
     bends = kind in (LobeKind.BECKMANN, LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION, LobeKind.PRINCIPLED)
     for roughness in ROUGHNESSES:
         for ior in IORS if bends else [1.5]:
@@ -43,13 +43,13 @@ def test_every_lobe_at_every_roughness_and_index(library, kind):
                 lights = [lamp(emission=5.0, radius=0.1), lamp(LightKind.SUN, matrix=rotate_x(0.5), sun_angle=0.01)]
                 pictures(room(material, lights, world=0.3, pixels=4))
                 (path, _), _ = pictures(room(material, [], world=1.0, pixels=4))
-                # Sheen, coat and base of Blender 3 are a sum that may pass 1; else only noise does, of 16 means.
+                # In Blender 3 sheen, coat and base may add up to more than 1; otherwise 1.05 allows for the noise of 16 pixels.
                 limit = 1.5 if kind == LobeKind.PRINCIPLED else 1.05
                 assert path.mean() <= limit, (roughness, ior, material)
 
 
 def glowing(things, materials, **camera):
-    """Squares that glow unevenly around some things: pictures without noise where things are smooth."""
+    """Return a scene surrounded by emitting squares of different colours; pictures of smooth objects have no noise."""
     glow = [Material(f"glow {i}", lobes=(), emission=(0.3 * i + 0.2, 1.0 / (i + 1), 0.5)) for i in range(6)]
     away = [move(x, y, z) for x, y, z in ((0, 4, 0), (0, -9, 0), (5, 0, 0), (-5, 0, 0), (0, 0, 5), (0, 0, -5))]
     walls = [Instance(mesh=0, matrix=m @ turn, materials=(i,)) for i, (m, turn) in enumerate(zip(away, TURNS, strict=True))]
@@ -59,14 +59,14 @@ def glowing(things, materials, **camera):
 
 
 def same(a, b, share=0.99, rtol=1e-5):
-    """All but pixels on an edge, which rounding may move to its other side: 24 x 24 pixels cross few."""
+    """Assert equal pixels except at edges, where rounding may change the side: few of 24 x 24 pixels."""
     assert np.mean(np.all(np.isclose(a, b, rtol=rtol, atol=1e-7), axis=-1)) >= share
 
 
 @pytest.mark.parametrize("index", [1.0, 1.0 + 2.0**-23])
 @pytest.mark.parametrize("kind", [LobeKind.DIELECTRIC, LobeKind.GLASS, LobeKind.REFRACTION], ids=lambda kind: kind.name)
 def test_index_one_is_not_there(library, kind, index):
-    """With the smallest index above 1 rays bend by less than 5e-4 at the very rim, and elsewhere by 1e-7."""
+    """With the smallest index above 1 refraction is less than 5e-4 at the rim and 1e-7 elsewhere: invisible."""
     for roughness in (0.0, 0.5):
         (path, classic), _ = pictures(glowing([tiny_scenes.sphere(0)], [one(kind, roughness=roughness, ior=index)], samples=1))
         (empty, _), _ = pictures(glowing([], [], samples=1))
@@ -86,9 +86,9 @@ GLASSES = [
 @pytest.mark.parametrize("kind, roughness, distribution", GLASSES)
 @pytest.mark.parametrize("ior", IORS)
 def test_a_boundary_shares_light_by_fresnel(library, kind, roughness, distribution, ior):
-    """A red floor behind it and a blue sky before it, from both of its sides: 1 - F of the one, F of the other.
+    """A boundary between a red floor and a blue sky, from both sides: 1 - F of the floor, F of the sky.
 
-    CLASSIC takes rough glass for smooth. Rays are rounded to 1e-7, and at these cosines F changes by less than ten times that.
+    CLASSIC treats rough glass as smooth. Rays are rounded to 1e-7, and at these cosines F changes by less than ten times that.
     """
     glass = one(kind, roughness=roughness, ior=ior, distribution=distribution)
     floor = Material("floor", lobes=(), emission=(1, 0, 0))
@@ -99,13 +99,13 @@ def test_a_boundary_shares_light_by_fresnel(library, kind, roughness, distributi
             camera = tiny_scenes.pencil(eye, (0, 0, 0), pixels=8)
             snapshot = tiny_scenes.scene(things, [glass, floor], world=(0, 0, 1), camera=camera, samples=64, max_bounces=1)
             want = float(reference.fresnel(cosine, index))
-            # Above an index of 3.7 F falls before it rises; that of the Glass node does not, as in Cycles.
+            # Above an index of 3.7 F decreases before it rises; the Glass node's F does not, as in Cycles.
             if kind == LobeKind.GLASS:
                 want = max(want, float(reference.fresnel(1.0, index)))
             (path, classic), _ = pictures(snapshot)
             assert np.allclose(classic, (1 - want, 0, want), rtol=0, atol=1e-6), (cosine, index, classic[0, 0], want)
             if roughness == 0.0:
-                # One of the two each time: Bernoulli's deviation bounds that of stratified numbers.
+                # Each sample takes one of the two: the Bernoulli deviation bounds that of stratified numbers.
                 assert np.allclose(path.sum(axis=-1), 1.0, rtol=0, atol=1e-6)
                 error = math.sqrt(want * (1 - want) / (64 * 64))
                 assert abs(path[..., 2].mean() - want) <= 4 * error + 1e-6, (cosine, index, path[..., 2].mean(), want)
@@ -132,8 +132,8 @@ def test_smallest_roughness_is_none(library, kind):
 
 @pytest.mark.parametrize("lobe", [(LobeKind.GLOSSY, 0.005), (LobeKind.BECKMANN, 2.1e-5), (LobeKind.BECKMANN, 1e-3)])
 def test_small_roughness_is_nearly_none(library, lobe):
-    """Lobes of some 1e-3 radians, before pixels of 0.025: an edge blurs by a tenth of a pixel at most, and half of them cross
-    one; what is left of 64 samples' noise there is less."""
+    """Lobes of some 1e-3 radians with pixels of 0.025: edges blur by at most a tenth of a pixel, in half of the pixels; the
+    noise of 64 samples is smaller."""
     kind, roughness = lobe
     sphere = [tiny_scenes.sphere(0)]
     mirror, _ = pictures(glowing(sphere, [one(LobeKind.MIRROR)], samples=64))
@@ -142,7 +142,7 @@ def test_small_roughness_is_nearly_none(library, lobe):
 
 
 def test_black_is_black(library):
-    """A black metal and a black Principled still shine along their rims, by definition."""
+    """Black lobes reflect nothing, except conductor and Principled, which by definition reflect at grazing angles."""
     lights = [lamp(emission=1e30), lamp(LightKind.SUN, emission=1e30, matrix=rotate_x(0.5))]
     kinds = [kind for kind in LobeKind if kind not in (LobeKind.CONDUCTOR, LobeKind.PRINCIPLED)]
     black = [Material("black", lobes=(Lobe(kind, color=(0, 0, 0)),)) for kind in kinds]
@@ -155,7 +155,7 @@ def test_black_is_black(library):
 @pytest.mark.parametrize("passes", [None, "all"])
 @pytest.mark.parametrize("color", [1e-44, 1e-30, 1e-10, 1e10, 1e30])
 def test_colours_far_from_one(library, color, passes):
-    """Light is linear in the colour, and no pass loses its way: the normal keeps its length."""
+    """Light is linear in the colour, and all passes stay valid: normals keep unit length."""
     material = dataclasses.replace(tiny_scenes.lambert(color), emission=(1, 1, 1))
     fields = {} if passes is None else {"passes": tuple(tiny_scenes.Pass)}
     tilted = rotate_x(0.7)
@@ -166,7 +166,7 @@ def test_colours_far_from_one(library, color, passes):
         assert np.allclose(normal, tilted[:3, 2], atol=1e-6), normal
 
 
-# What each socket is asked on, and a value outside its range for which another one stands in.
+# For each socket a lobe that has it, and a value outside its range, which is replaced.
 SOCKETS = {
     "color": (LobeKind.LAMBERT, -1.0),
     "weight": (LobeKind.GLOSSY, -0.5),
@@ -181,7 +181,7 @@ SOCKETS = {
 
 @pytest.mark.parametrize("socket", SOCKETS)
 def test_sockets_beyond_their_range(library, socket):
-    """Another number stands in, it is said, and the picture is the one of that number."""
+    """Values out of range are replaced, with a message; the picture equals that of the replacement."""
     kind, wrong = SOCKETS[socket]
     lights = [lamp(emission=5.0, radius=0.1)]
     for value in (wrong, np.nan, -np.inf):
@@ -195,7 +195,7 @@ def test_sockets_beyond_their_range(library, socket):
 
 @pytest.mark.parametrize("kind", [kind for kind in LobeKind if kind >= LobeKind.DIFFUSE], ids=lambda kind: kind.name)
 def test_nodes_that_leave_the_range(library, kind):
-    """Textures may drive any socket anywhere: a picture comes out, and none that shines by itself."""
+    """Nodes may give any socket any value: the picture stays finite and gains no light."""
     from addon.bindings.enums import Coordinate, NodeKind, VectorOperation
     from addon.bindings.snapshot import Node, NodeRef
 

@@ -1,4 +1,4 @@
-"""Closed rooms with known answers: 1/(1 - a), each depth by itself, Russian roulette, the white sky."""
+"""Furnaces with known radiance: 1/(1 - a), each depth by itself, Russian roulette, the white sky."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ PIXELS = 32
 
 
 def pixels_of(snapshot):
-    """Radiance in red of all pixels."""
+    """Return the red radiance of all pixels."""
     return tiny_scenes.render(snapshot)[..., 0].ravel()
 
 
@@ -27,7 +27,7 @@ def many(snapshot, **settings):
 
 def assert_mean(values, expected, largest_error=None):
     mean, error = mean_and_error(values)
-    # The sum of float32 radiances over a path rounds at 1e-7 a vertex; that bounds what z can tell.
+    # The sum of float32 radiances over a path rounds at 1e-7 per vertex, which limits the z-test.
     p = z_test(mean, np.hypot(error, 2e-6 * abs(expected)), expected)
     assert p > LEVEL, f"mean {mean} +- {error}, expected {expected}, p {p}"
     if largest_error is not None:
@@ -50,7 +50,7 @@ def test_closed_form(library, albedo):
 
 
 def test_russian_roulette_is_unbiased(library):
-    """The mean of deep paths is the closed form at every depth limit, and their number stays far below the limit."""
+    """The mean of deep paths is the closed form, and Russian roulette keeps their length far below the depth limit."""
     albedo = 0.9
     snapshot = many(furnace(albedo, 1.0 - albedo, max_bounces=500), samples=256)
     with tiny_scenes.Session.upload(snapshot) as session:
@@ -64,7 +64,7 @@ def test_russian_roulette_is_unbiased(library):
 
 @pytest.mark.parametrize("kind", ["cube", "mesh sphere"])
 def test_furnaces_made_of_triangles(library, kind):
-    """Also from meshes with corners: no light leaks in or out of a closed room."""
+    """Furnaces of meshes with corners: no light leaks in or out of a closed room."""
     import meshes
 
     shape = meshes.primitives()["box" if kind == "cube" else "bumpy"]
@@ -93,7 +93,7 @@ WHITE = {
 @pytest.mark.parametrize("name", WHITE)
 @pytest.mark.parametrize("shape", ["sphere", "cylinder", "cone"])
 def test_white_things_vanish_in_a_white_sky(library, name, shape):
-    """What loses no light looks like the sky behind it, from every side."""
+    """A body of albedo 1 is invisible in a white sky."""
     kind = {"sphere": 1, "cylinder": 3, "cone": 4}[shape]
     snapshot = tiny_scenes.scene(
         [Instance(kind=kind)],
@@ -106,8 +106,8 @@ def test_white_things_vanish_in_a_white_sky(library, name, shape):
         ),
     )
     values = pixels_of(snapshot)
-    # Convex bodies: every path carries exactly 1 but for its float32 products; glass loses what is still inside at the limit.
-    # Light sampling joined to BSDF sampling leaves noise for lambert only: judge that by its error.
+    # Convex bodies: every path carries exactly 1 up to float32 rounding; glass loses the light inside at the depth limit.
+    # Multiple importance sampling leaves noise for Lambert only: test it by its error.
     if name == "lambert":
         assert_mean(values, 1.0, largest_error=5e-3)
     else:
@@ -123,9 +123,9 @@ def test_white_things_vanish_in_a_white_sky(library, name, shape):
     }.items(),
 )
 def test_no_lobe_makes_light(library, name, lobe):
-    """In a white sky a plane of one lobe is at most white, from steep to grazing; and not black.
+    """In a white sky a plane of one lobe is at most white and not black, from normal to grazing views.
 
-    Phong's lobes lose what they would send below the horizon, most of it at a grazing view.
+    Phong's lobes lose the part below the horizon, most of it at a grazing view.
     """
     for height in (5.0, 1.0, 0.2):
         snapshot = tiny_scenes.scene(
@@ -139,7 +139,7 @@ def test_no_lobe_makes_light(library, name, lobe):
 
 
 def test_opacity_lets_the_rest_pass(library):
-    """A black veil of opacity 0.25 before a white sky shows 0.75 of it; alpha is 1 as the sky is opaque."""
+    """A black veil of opacity 0.25 before a white sky shows 0.75 of it; alpha is 1 since the sky is opaque."""
     veil = tiny_scenes.veiled(Material("veil", lobes=()), 0.25)
     snapshot = tiny_scenes.scene([tiny_scenes.plane()], [veil], world=1.0, camera=tiny_scenes.pencil((0, 0, 1)))
     values = pixels_of(many(snapshot, samples=64))
@@ -148,7 +148,7 @@ def test_opacity_lets_the_rest_pass(library):
 
 
 def test_film_transparent(library):
-    """The environment leaves alpha 0 and no colour; what is solid leaves alpha 1."""
+    """With a transparent film the environment has alpha 0 and no colour; solid surfaces have alpha 1."""
     for transparent, alpha in ((False, 1.0), (True, 0.0)):
         sky = tiny_scenes.render(tiny_scenes.scene(world=(1, 2, 3), film_transparent=transparent))[0, 0]
         assert sky.tolist() == ([0, 0, 0, 0] if transparent else [1, 2, 3, 1]) and sky[3] == alpha
@@ -165,7 +165,7 @@ def test_film_transparent(library):
 
 @pytest.mark.parametrize("size", [1e-6, 1e9])
 def test_the_same_room_at_any_size(library, size):
-    """Two planes, the camera and all at a millionth and a billion times the size give the same picture."""
+    """A scene of two planes scaled by 1e-6 and 1e9 gives the same picture."""
 
     def room(s):
         glow = Material("glow", lobes=(), emission=(1, 1, 1))
@@ -178,6 +178,6 @@ def test_the_same_room_at_any_size(library, size):
         return many(tiny_scenes.scene(items, [glow, tiny_scenes.lambert(0.6)], camera=camera), samples=16, max_bounces=4)
 
     one, other = pixels_of(room(1.0)), pixels_of(room(size))
-    # The same random numbers meet the same geometry: only rays that graze an edge may differ by rounding.
+    # Equal random numbers and geometry: only rays that graze an edge may differ by rounding.
     assert np.mean(np.isclose(one, other, rtol=1e-5)) > 0.99
     assert abs(one.mean() - other.mean()) < 1e-3

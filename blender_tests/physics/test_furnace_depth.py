@@ -1,4 +1,4 @@
-"""A closed room whose walls glow with 1 - a and reflect a: after k of them 1 - a^k, each depth by itself."""
+"""A closed room whose walls emit 1 - a and reflect a: after k bounces the radiance is 1 - a^k, for each depth."""
 
 import numpy as np
 import pytest
@@ -14,13 +14,13 @@ PIXELS = 32
 
 
 def room(shape, roulette, bounces, samples):
-    """A closed room seen from within. Roulette asks for the largest channel: a white one lets every path live."""
+    """Return a closed room seen from inside. Russian roulette depends on the largest channel: a white one ends no path."""
     import trimesh
 
     other = ALBEDO if roulette else 1.0
     wall = Material("wall", lobes=(Lobe(color=(ALBEDO, other, other)),), emission=(1.0 - ALBEDO,) * 3)
     ball = trimesh.creation.icosphere(subdivisions=2)
-    # Of a mesh the far side is hidden from the light's samples, which find its faces, too.
+    # In a mesh light sampling selects faces too.
     meshes = [MeshData.from_trimesh(ball)] if shape == "mesh" else []
     things = [Instance(mesh=0)] if meshes else [tiny_scenes.sphere()]
     camera = tiny_scenes.pencil((0.1, 0.2, 0.0), (0.5, 0.3, -1), pixels=PIXELS)
@@ -35,7 +35,7 @@ def judge(shape, roulette, bounces, samples, largest_error):
         assert session.render_all()
         values, seen = (session.read(which)[..., 0].astype(float).ravel() for which in (Pass.COMBINED, Pass.EMISSION))
         assert session.statistics().invalid_samples == 0
-    # One wall: what it emits.
+    # The pass Emission is that of the first wall.
     assert np.allclose(seen, 1.0 - ALBEDO, rtol=1e-6)
     mean, error = mean_and_error(values)
     want = 1.0 - ALBEDO ** (bounces + 2)
@@ -46,7 +46,7 @@ def judge(shape, roulette, bounces, samples, largest_error):
 
 @pytest.mark.parametrize("bounces", range(11))
 def test_every_depth(library, bounces):
-    """Each sample of an exact ball is right to its last digit."""
+    """Each sample inside an exact ball is correct up to rounding."""
     judge("exact", False, bounces, 16, 1e-6)
 
 
@@ -57,7 +57,7 @@ def test_every_depth_within_a_mesh(library, bounces):
 
 @pytest.mark.parametrize("bounces", range(11))
 def test_every_depth_under_roulette(library, bounces):
-    """Roulette begins with the second bounce, and of the tenth a sample's deviation is 0.13."""
+    """Russian roulette begins at the second bounce; at the tenth a sample's deviation is 0.13."""
     judge("exact", True, bounces, 64 if bounces < 4 else 576, 2e-4)
 
 

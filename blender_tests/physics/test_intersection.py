@@ -1,4 +1,4 @@
-"""Does a ray meet it: the course's checks, exact surfaces at the extremes, what a hit tells, three accelerators alike."""
+"""Intersection: the course's checks, extreme exact shapes, the data of hits, three accelerators."""
 
 import dataclasses
 
@@ -34,7 +34,7 @@ SHAPES = {
 
 
 def expected_hits(shape, origin, direction):
-    """All (t, normal) by the textbook formulas at 50 digits, in the order of t."""
+    """Return all (t, normal) by the textbook formulas at 50 digits, sorted by t."""
     linear, translation = np.asarray(shape.matrix)[:3, :3], np.asarray(shape.matrix)[:3, 3]
     if shape.kind == InstanceKind.SPHERE:
         radius = linear[0, 0]
@@ -83,7 +83,7 @@ def test_lab_rays(library, name, number, accelerator):
 
 @pytest.mark.parametrize("accelerator", Accelerator)
 def test_closest_of_all(library, accelerator):
-    """The ray's tmax shrinks from shape to shape: the nearest one wins whatever the order of adding."""
+    """The nearest shape wins whatever the order of instances."""
     origin, direction = (0.0, 0.0, 10.0), (0.0, 0.0, -1.0)
     order = [sphere(matrix=move(z=z)) for z in (-3.0, 2.0, 5.0, 0.0)]
     with upload(library, order, accelerator=accelerator) as scene:
@@ -98,7 +98,7 @@ def test_closest_of_all(library, accelerator):
 @pytest.mark.parametrize("radius", [1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9])
 @pytest.mark.parametrize("height", [1e-6, 1.0, 1e3])
 def test_sphere_distance(library, radius, height):
-    """t against 50 digits, straight down to grazing, from heights around the radius' own size and far below it."""
+    """t against 50 digits, from normal to grazing incidence, from heights around the radius and far below it."""
     radius = float(np.float64(radius))
     origin = np.array([0.0, 0.0, radius + height * min(radius, 1.0)])
     angles = np.concatenate([np.linspace(0, 1.5, 20), [1.57]])
@@ -110,8 +110,8 @@ def test_sphere_distance(library, radius, height):
     for direction, got in zip(directions, hits, strict=True):
         want = reference.sphere_hits(origin, direction, mp.mpf(radius))
         assert want and got.instance == 0
-        # The origin's distance to the surface is known to an ulp of |o| + r; at the angle theta to the normal that moves t
-        # by 1/cos theta. Eight such ulps allow for the dozen operations behind.
+        # The distance of the origin to the surface has an error of one ulp of |o| + r; at angle theta to the normal the error
+        # of t is 1/cos theta times that. Eight ulps allow for a dozen operations.
         point = [mp.mpf(float(o)) + want[0] * mp.mpf(float(d)) for o, d in zip(origin, direction, strict=True)]
         cosine = abs(float(reference.dot(reference.vector(direction), reference.normalize(point))))
         assert abs(got.t - float(want[0])) <= 8 * U * (origin[2] + radius) / cosine, (radius, height, direction)
@@ -135,7 +135,7 @@ INSIDE_OUT = {
 
 @pytest.mark.parametrize("kind", INSIDE_OUT)
 def test_exact_surfaces_by_their_equation(library, kind):
-    """Every hit lies on the surface, its normal points outwards, and just before it there is nothing."""
+    """Every hit lies on the surface with an outward normal, and the ray does not cross the surface before it."""
     matrix = sheared(3.0)
     rng = np.random.default_rng(5)
     origins = rng.normal(size=(4000, 3)) * 8 + [0, 0, 3]
@@ -150,11 +150,11 @@ def test_exact_surfaces_by_their_equation(library, kind):
         hits = scene.intersect(origins, targets - origins)
         met = hits.instance == 0
         assert met.mean() > 0.4
-        # Positions are double: object and world are a few units, 1e-12 is some thousand roundings.
+        # Positions are double, of a few units: 1e-12 is some thousand roundings.
         assert np.abs(distance(local(hits.position[met]))).max() < 1e-12
         outside = hits.position[met] + 1e-6 * hits.normal[met]
         assert np.all(distance(local(outside)) > 0), "normals point outwards"
-        # Walk along each ray to its hit, and the whole way where nothing is met: the sign of the equation never changes.
+        # Along each ray up to its hit, or all the way without one, the sign of the equation never changes.
         end = np.where(met, hits.t * (1 - 1e-9), 10.0)
         sign = np.sign(distance(local(origins)))
         for f in np.linspace(0.0, 1.0, 400):
@@ -162,7 +162,7 @@ def test_exact_surfaces_by_their_equation(library, kind):
             assert np.all(np.sign(distance(local(p))) == sign), f
 
 
-# ---- what a hit tells ----
+# ---- the data of a hit ----
 
 
 def test_attributes_are_interpolated_by_barycentrics(library):
@@ -183,7 +183,7 @@ def test_attributes_are_interpolated_by_barycentrics(library):
         with upload(library, [Instance(matrix=matrix)], [mesh]) as scene:
             hits = scene.intersect(origins, points - origins)
         assert np.all(hits.instance == 0) and np.all(hits.material == 0) and np.all(hits.primitive == 0)
-        # The given points are rounded at |p| = |M|: one ulp of double over the triangle's size.
+        # The targets are rounded at magnitude |M|: one ulp of double over the triangle's size.
         weight = 64 * U * (1 + np.abs(matrix).max() / size)
         assert np.allclose(hits.t, 1.0, atol=weight) and np.allclose(hits.u, b[:, 1], atol=weight)
         assert np.allclose(hits.v, b[:, 2], atol=weight)
@@ -191,7 +191,7 @@ def test_attributes_are_interpolated_by_barycentrics(library):
         # uv and colours: float32 sums of three products of numbers below 1.
         assert np.allclose(hits.uv, b @ mesh.uvs[0], atol=3e-7 + weight)
         assert np.allclose(hits.color, b @ mesh.colors[0], atol=3e-7 + weight)
-        # Normals go with the inverse transpose, on the side of the outward geometric normal (counter-clockwise from outside).
+        # Normals transform by the inverse transpose, on the side of the geometric normal (counter-clockwise from outside).
         normal_matrix = np.linalg.inv(matrix[:3, :3]).T
         shading = (b @ mesh.normals[0].astype(float)) @ normal_matrix.T
         shading /= np.linalg.norm(shading, axis=1, keepdims=True)
@@ -224,7 +224,7 @@ def test_shading_of_the_object(library, shading, interpolated):
 
 
 def test_slots(library):
-    """A slot beyond the last takes the last; an instance without slots has no material."""
+    """A slot index beyond the last selects the last slot; an instance without slots has no material."""
     mesh = dataclasses.replace(tiny_scenes.quad(), material_slots=np.uint16([0, 7]))
     materials = [tiny_scenes.lambert(i / 4) for i in range(4)]
     snapshot = tiny_scenes.scene(

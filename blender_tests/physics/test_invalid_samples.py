@@ -1,4 +1,4 @@
-"""Samples that are not finite: dropped, counted, told with their place, and there again when that place is replayed."""
+"""Samples that are not finite: dropped, counted, reported with their pixel, and reproduced by a replay of the sample."""
 
 import blenders
 import numpy as np
@@ -15,7 +15,7 @@ SIDE, SAMPLES = 16, 4
 
 
 def overflowing(side=SIDE, **settings):
-    """A floor right under a lamp: in its middle 1e30 W/sr over the square of 1e-6 m is beyond float's 3.4e38, beside it not."""
+    """Return a floor right under a lamp: at its centre 1e30 W/sr over (1e-6 m)^2 exceeds float's 3.4e38, elsewhere not."""
     lamp = Light("lamp", move(z=1e-6), LightKind.POINT, emission=(1e30,) * 3)
     camera = Camera(look_at((0.0, 0.0, 2.0), (0.0, 0.0, 0.0)), width=side, height=side, window=(-1e-4, 1e-4, -1e-4, 1e-4))
     return tiny_scenes.scene(
@@ -24,7 +24,7 @@ def overflowing(side=SIDE, **settings):
 
 
 def replays(session, side, samples):
-    """RGBA of each sample by itself, as (sample, y, x, 4)."""
+    """Return RGBA of each sample by itself, as (sample, y, x, 4)."""
     replayed = np.zeros((samples, side, side, 4))
     for s in range(samples):
         for y in range(side):
@@ -38,7 +38,7 @@ def invalid_of(replayed):
 
 
 def first_of(invalid):
-    """(x, y, sample) of the least sample, and then of the lowest row."""
+    """Return (x, y, sample) of the first invalid sample, by sample and then by row."""
     sample, y, x = np.argwhere(invalid)[0]
     return x, y, sample
 
@@ -54,18 +54,18 @@ def test_dropped_counted_and_replayed():
         statistics, film = session.statistics(), session.read().astype(float)
         replayed = replays(session, SIDE, SAMPLES)
     invalid = invalid_of(replayed)
-    # Some and not all, or the place told of could be any.
+    # Some samples are invalid but not all, so that the reported pixel matters.
     assert 0 < invalid.sum() < invalid.size / 2
     assert statistics.invalid_samples == invalid.sum()
     assert place_in(statistics) == first_of(invalid)
-    # What is dropped adds nothing, and all else is there: four float32 summed in double, rounded once, 6e-8 of the value.
+    # Dropped samples add nothing, all others count: four float32 summed in double and rounded once, 6e-8 of the value.
     expected = np.where(invalid[..., None], 0.0, replayed).sum(axis=0) / SAMPLES
     assert np.isfinite(film).all() and np.allclose(film, expected, rtol=1.2e-7, atol=0.0)
 
 
 @pytest.mark.overflows
 def test_any_pass_makes_a_sample_invalid_and_none_shows_it():
-    """The light passes overflow where the picture does; all passes stay finite and agree in what was dropped."""
+    """The light passes overflow where the picture does; all passes stay finite and drop the same samples."""
     wanted = (Pass.COMBINED, Pass.DEPTH, Pass.DIFFUSE_DIRECT, Pass.DIFFUSE_COLOR, Pass.NORMAL)
     with Session.upload(overflowing(passes=wanted)) as session, Session.upload(overflowing()) as alone:
         assert session.render_all() and alone.render_all()
@@ -74,7 +74,7 @@ def test_any_pass_makes_a_sample_invalid_and_none_shows_it():
 
 
 def halves(side):
-    """Which of eight tiles a pixel is in: squares of 16 pixels, and of each the two colours of a chessboard."""
+    """Return the number of each pixel's part, 0 to 7: squares of 16 pixels, each divided like a chessboard."""
     y, x = np.mgrid[:side, :side]
     return 2 * (2 * (y // 16) + x // 16) + (x + y) % 2
 
@@ -93,7 +93,7 @@ def test_told_is_what_the_film_has_while_it_is_refined():
         invalid = invalid_of(replayed)
         assert session.render_all(4)
         counts = np.full((side, side), 4)
-        # All pixels, then those that are worth it, twice.
+        # One round of all pixels, then two rounds of the pixels with the largest error.
         for share in (0.0, 0.8, 0.8):
             assert session.refine(share * session.error().bound)
             finished(session)
@@ -101,7 +101,7 @@ def test_told_is_what_the_film_has_while_it_is_refined():
             for tile in range(8):
                 inside = tiles == tile
                 means = {n: dropped[:n].sum(axis=0)[inside] / n for n in (4, 8, 16, 32)}
-                # Float32 of sums in double are rounded once, by 6e-8 of the value.
+                # Sums in double are rounded once to float32, by 6e-8 of the value.
                 (count,) = [n for n, mean in means.items() if np.allclose(film[inside], mean, rtol=1.2e-7, atol=0.0)]
                 counts[inside] = count
             error, statistics = session.error(), session.statistics()
@@ -109,7 +109,7 @@ def test_told_is_what_the_film_has_while_it_is_refined():
             taken = np.arange(32)[:, None, None] < counts
             assert statistics.invalid_samples == (invalid & taken).sum() > 0
             assert place_in(statistics) == first_of(invalid & taken)
-        # The rounds were of some pixels only, or they would tell no more than ranges do.
+        # The rounds must have refined only some pixels.
         assert error.least_samples < error.most_samples
 
 
@@ -126,7 +126,7 @@ def test_what_a_stopped_range_takes_back_is_not_told():
         assert session.error().most_samples == 8
         assert session.statistics().invalid_samples == eight.invalid_samples > 0
         assert place_in(session.statistics()) == place_in(eight)
-        # The same samples again are no more than they were.
+        # Rendering the same samples again counts them once.
         session.render(8, 8)
         finished(session)
         with Session.upload(overflowing(samples=64)) as whole:
@@ -137,7 +137,7 @@ def test_what_a_stopped_range_takes_back_is_not_told():
 @pytest.mark.overflows
 @pytest.mark.parametrize("clamp", [0.0, 1.0])
 def test_what_is_dropped_is_no_part_of_what_settings_take(clamp):
-    """The floor in a mirror: light after two scatterings, and beyond float in places."""
+    """The floor in a mirror: light after two scatterings, which overflows in some pixels."""
     lamp = Light("lamp", move(z=1e-6), LightKind.POINT, emission=(1e30,) * 3)
     mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(1.0, 1.0, 1.0)),))
     camera = Camera(look_at((0.0, 0.0, 2.0), (0.0, 0.0, 4.0)), width=SIDE, height=SIDE, window=(-1e-4, 1e-4, -1e-4, 1e-4))
@@ -149,7 +149,7 @@ def test_what_is_dropped_is_no_part_of_what_settings_take(clamp):
         assert session.render_all()
         assert session.statistics().invalid_samples > 0
         error = session.error()
-    # Of the indirect light, which is all that there is, clamping to 1 leaves less than a part in 1e30.
+    # All light is indirect: clamping to 1 leaves less than 1e-30 of it.
     assert (error.clipped, error.missing) == ((1.0, 0.0) if clamp else (0.0, 0.0))
 
 

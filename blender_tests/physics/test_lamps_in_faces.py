@@ -1,6 +1,6 @@
-"""An area lamp that lies exactly in a face, such as a ceiling: the face hides nothing of it.
+"""An area lamp that lies exactly in a face, such as a ceiling: the face does not occlude the lamp.
 
-Where its plane is no plane of the axes rounding sets corners of the face before the lamp, for some rays or for all.
+In a plane that is not parallel to the axes rounding places the face before the lamp, for some or for all shadow rays.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ from addon.bindings.abi import AreaShape, Integrator, LightKind, LobeKind
 from addon.bindings.snapshot import Camera, Instance, Light, Lobe, Material
 
 MIRROR = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(1, 1, 1)),))
-# Every lamp is also looked at by a ray: more than a few of them are found by a tree.
+# BSDF sampling also finds lamps: rays intersect few lamps one by one, many lamps by a tree.
 FEW, MANY = 1, 12
 PLACES = {
     "plain": np.eye(4),
@@ -22,9 +22,9 @@ PLACES = {
 
 
 def room(place, gap, lamps=FEW, floor=None, shutter=None, **settings):
-    """A floor and a ceiling 3 above it with lamps at a gap below the ceiling, as Blender's floats have them.
+    """Return a floor and a ceiling 3 above it, with lamps at a gap below the ceiling and transforms rounded to float.
 
-    shutter: how far below the first lamp a square is that hides it all.
+    shutter: the distance below the first lamp of a square that occludes it entirely.
     """
 
     def rounded(matrix):
@@ -65,13 +65,13 @@ CASES = {
 }
 
 
-# No rounding reaches so far below the ceiling.
+# A gap far larger than rounding.
 GAP = 1e-4
-# A lamp h above a place and r aside lights it by h^2 / (h^2 + r^2)^2 of its power: the logarithm changes by 2 / h for each
-# length of h, at most. A mirrored lamp, 4.5 away, grows by less.
+# A lamp at height h and offset r gives h^2 / (h^2 + r^2)^2 of its power: the derivative of the logarithm by h is at most 2 / h.
+# A mirrored lamp, 4.5 away, changes less.
 BY_THE_GAP = 2.0 * GAP / (3.0 - GAP)
-# The samples are the same, but where rounding tilts the plane of many lamps their tree divides them otherwise, and others are
-# chosen. That is noise: over 16 seeds the standard deviation of the mean is 1.3e-4 to 2.6e-4 at the three places. Four of them.
+# With equal samples, rounding can tilt the plane of many lamps, so that their tree divides them differently and other lamps are
+# chosen. Over 16 seeds the standard deviation of the mean is 1.3e-4 to 2.6e-4 at the three places; the limit is 4 deviations.
 BY_THE_TREE = 4.0 * 2.6e-4
 
 
@@ -85,7 +85,7 @@ def test_its_light_arrives(library, case, place):
 
 
 def test_what_stands_before_it_still_hides_it(library):
-    """A shutter that is a thousandth of the lamp away."""
+    """A shutter close below the lamp occludes it."""
     open_, shut = (render(room(PLACES["turned"], 0.1, shutter=shutter))[..., :3] for shutter in (None, 3e-4))
     assert open_.mean() > 0.02
     assert (shut == 0.0).all()

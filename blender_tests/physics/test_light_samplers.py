@@ -1,4 +1,4 @@
-"""Chi-square of each light's sampler against its pdf, and what sample and pdf say about one another."""
+"""Chi-square test of each light's sampler against its pdf, and consistency of sample and pdf."""
 
 import numpy as np
 import pytest
@@ -38,19 +38,19 @@ LIGHTS = {
     "small rectangle": area(AreaShape.RECTANGLE, (1e-3, 2e-3)),
     "ellipse": area(AreaShape.ELLIPSE),
     "spread": area(AreaShape.RECTANGLE, spread=1.2),
-    # So narrow that only a part of the lamp reaches the origin.
+    # A spread so narrow that only a part of the lamp lights the origin.
     "narrow rectangle": area(AreaShape.RECTANGLE, (3.0, 2.0), matrix=move(0.3, 0.2, 2.0), spread=0.5),
     "narrow ellipse": area(AreaShape.ELLIPSE, (1.6, 2.0), matrix=move(0.3, 0.2, 2.0), spread=0.5),
     "stretched spot": Light("lamp", move(0.2, 0, 2), LightKind.SPOT, emission=(1, 1, 1), radius=0.3, size=(1.5, 0.6)),
 }
 
 
-# Over the origin: near faces are sampled by solid angle, far ones by area.
+# Height over the origin: near faces are sampled by solid angle, far ones by area.
 MESHES = {"mesh": 2.0, "sheared mesh": 2.0, "near mesh": 0.4, "far mesh": 30.0}
 
 
 def upload(library, name):
-    """The scene and the number of the one light in it."""
+    """Upload a scene with one light."""
     if name in MESHES:
         shear = np.eye(4)
         shear[0, 1] = 0.7 if "sheared" in name else 0.0
@@ -73,14 +73,14 @@ def test_sample_agrees_with_pdf(library, name):
         assert np.allclose(np.linalg.norm(samples.wi, axis=1)[good], 1.0, rtol=0, atol=1e-6)
         assert np.all(samples.distance[good] > 0)
         pdf = scene.light_pdf(0, [(0, 0, 0)], samples.wi[good])
-        # A direction at the rim may round to the other side of it: at most one in a thousand here.
+        # Rounding may move a direction across the rim: at most one in a thousand here.
         same = np.isclose(pdf, samples.pdf[good], rtol=1e-4)
         assert same.mean() > 0.999, (samples[good][~same][:3], pdf[~same][:3])
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_chi_square(library, name):
-    """Histogram over a cap that just holds the light; expected by the midpoint rule on 32 x 32 points a cell."""
+    """A histogram over a cap around the light, against the midpoint rule with 32 x 32 points per cell."""
     cells, fine = 10, 32
     with upload(library, name) as scene:
         samples = scene.light(0, [(0, 0, 0)], uniforms(COUNT, 2, 2))
@@ -97,9 +97,9 @@ def test_chi_square(library, name):
         directions, solid_angle = chart.direct(u)
         density = scene.light_pdf(0, [(0, 0, 0)], directions).astype(float) * solid_angle
     expected = density.reshape(cells, fine, cells, fine).mean(axis=(1, 3)) / cells**2
-    # The midpoint rule knows where the rim runs to 1/fine^1.5 of a cell, 0.5 %: the total closes to a few 1e-3.
+    # The midpoint rule locates the rim to 1/fine^1.5 of a cell, 0.5 %: the total is correct to a few 1e-3.
     assert abs(expected.sum() - good.mean()) < 5e-3
-    # Cells on the rim may be wrong by that 0.5 %: less than a quarter of their standard error, which COUNT was chosen for.
+    # The error of cells on the rim, 0.5 %, is less than a quarter of their standard error with COUNT samples.
     p = chi_square(counts, expected * len(w) / expected.sum())
     assert p > sidak(LEVEL, len(NAMES)), (name, p)
 

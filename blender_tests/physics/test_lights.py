@@ -1,4 +1,4 @@
-"""Light units against closed forms: by the light probes, and by the picture of an albedo-1 Lambert plane."""
+"""Light units against closed forms, by probes and by pictures of a Lambert plane of albedo 1."""
 
 import math
 
@@ -22,7 +22,7 @@ GRID = midpoints(256, 256)
 
 
 def irradiance(light, point=(0, 0, 0), normal=(0, 0, 1), library=None):
-    """E at a point with a normal by the light's own sampler."""
+    """Return E at a point with a normal, by the light's sampler."""
     with Scene.upload(tiny_scenes.scene([], [], [light]), library) as scene:
         samples = scene.light(0, [point], GRID)
     cosine = np.maximum(0.0, samples.wi @ np.asarray(normal, float))
@@ -32,7 +32,7 @@ def irradiance(light, point=(0, 0, 0), normal=(0, 0, 1), library=None):
 
 
 def quadrature(light_points, normals, areas, radiance):
-    """E at the origin (normal +z) of a surface of constant radiance given by many small pieces."""
+    """Return E at the origin (normal +z) from a surface of constant radiance, given by many small parts."""
     d2 = np.sum(light_points**2, axis=1)
     w = light_points / np.sqrt(d2)[:, None]
     return np.sum(radiance * np.maximum(0, w[:, 2]) * np.maximum(0, -np.sum(w * normals, axis=1)) / d2 * areas)
@@ -48,19 +48,19 @@ def area(z=2.0, **fields):
 
 
 def disk_on_axis(diameter, distance):
-    """E / L below the middle of a disk that faces down."""
+    """Return E / L below the centre of a disk that faces down."""
     r = diameter / 2
     return math.pi * r * r / (distance * distance + r * r)
 
 
 def spread_factor(spread):
-    """Keeps the lamp's flux: pi over the integral of (1 - tan/tan(s/2)) cos over the cone, which is pi (1 - (s/2)/tan(s/2))."""
+    """Return the factor that keeps the flux: pi over the integral of (1 - tan/tan(s/2)) cos over the cone."""
     half = spread / 2
     return math.tan(half) / (math.tan(half) - half)
 
 
 def spread_on_axis(diameter, distance, spread):
-    """E / L below the middle of a disk whose emission fades like 1 - tan/tan(s/2): the integral over its rings."""
+    """Return E / L below the centre of a disk with emission 1 - tan/tan(s/2), by an integral over rings."""
     limit = min(diameter / 2, distance * math.tan(spread / 2))
     r = (np.arange(200000) + 0.5) / 200000 * limit
     cosine2 = distance**2 / (distance**2 + r**2)
@@ -104,21 +104,21 @@ def test_spread_is_blenders():
     assert abs(spread_factor(1.0) * fade - 11.714) < 5e-3
 
 
-# Only the picture joins light sampling to BSDF sampling, which a lamp over all of the sky needs.
+# Only pictures use multiple importance sampling, which a lamp over the whole sky requires.
 HUGE = {"huge square": (area(size=(2000, 2000)), 3 * float(reference.rectangle_irradiance(2000, 2000, 2)))}
 
 
 @pytest.mark.parametrize("name", CLOSED_FORMS)
 def test_probe(library, name):
     light, want = CLOSED_FORMS[name]
-    # A fading cone has a kink at its rim, which a grid knows to its own step.
+    # The emission of a spread has a kink at its rim, which limits the midpoint rule.
     limit = 1e-3 if name == "spread large disk" else LIMIT
     assert np.isclose(irradiance(light, library=library), want, rtol=limit, atol=0.0), name
 
 
 @pytest.mark.parametrize("name", {**CLOSED_FORMS, **HUGE})
 def test_picture(library, name):
-    """L = E/pi leaves an albedo-1 Lambert plane, without bounces."""
+    """A Lambert plane of albedo 1 has radiance E/pi without bounces."""
     light, want = {**CLOSED_FORMS, **HUGE}[name]
     # 32 x 32 pixels see the same point, each with its own stratified samples: 1024 estimates of one number.
     pixels = 1 if light.radius == 0 and light.sun_angle == 0 and light.kind != LightKind.AREA else 32
@@ -130,10 +130,10 @@ def test_picture(library, name):
     got = picture.mean(axis=0)
     error = picture[:, 0].std(ddof=1) / math.sqrt(len(picture)) if len(picture) > 1 else 0.0
     ratio = np.array(light.emission) / light.emission[0]
-    # LIMIT and the noise, at 4 standard errors; lamps that fill much of the sky are noisier, but never blindly so.
+    # LIMIT plus 4 standard errors; lamps that fill much of the sky are noisier, within a bound.
     assert error <= (2e-3 if "huge" in name or "large" in name else 1e-4) * want
     assert np.all(np.abs(got - want / math.pi * ratio) <= (LIMIT * want / math.pi + 4 * error) * ratio), got / want * math.pi
-    # The three channels carry one noise.
+    # The three channels have the same noise.
     assert np.allclose(got / ratio, got[0], rtol=1e-6)
 
 
@@ -165,7 +165,7 @@ def test_only_the_front_of_an_area_light_shines(library):
 
 @pytest.mark.parametrize("blend", [0.0, 0.15, 1.0])
 def test_spot_cone_and_blend(library, blend):
-    """The intensity is the point's, not renormalised; at the rim a smooth step over the cosine, (1 - cos(half)) blend wide."""
+    """The intensity is that of a point lamp, not renormalised; the rim is a smooth step of width (1 - cos(half)) blend."""
     half, height = 0.5, 2.0
     light = Light("spot", move(z=height), LightKind.SPOT, emission=(3, 3, 3), spot_angle=2 * half, spot_blend=blend)
     with Scene.upload(tiny_scenes.scene([], [], [light]), library) as scene:
@@ -181,7 +181,7 @@ def test_spot_cone_and_blend(library, blend):
 
 
 def test_stretched_spot(library):
-    """An object scaled unevenly stretches its spot's cone: twice as wide, half as high."""
+    """A non-uniform scale stretches the cone of a spot: twice as wide, half as high."""
     half, height = 0.5, 2.0
     fields = dict(spot_angle=2 * half, spot_blend=0.3)
     round_spot = Light("spot", move(z=height), LightKind.SPOT, emission=(3, 3, 3), **fields)
@@ -200,7 +200,7 @@ def test_stretched_spot(library):
 
 
 def test_spot_of_old_blenders(library):
-    """Before 4.0 the intensity also falls with the cosine of the angle to the axis."""
+    """Before 4.0 the intensity is also multiplied by the cosine of the angle to the axis."""
     light = Light("spot", move(z=2), LightKind.SPOT, emission=(3, 3, 3), spot_angle=2.5, spot_blend=0.0, spot_cosine=True)
     for angle in (0.0, 0.5, 1.0):
         point = (2 * math.tan(angle), 0, 0)
@@ -215,7 +215,7 @@ def test_spot_angles_of_half_and_full_turns(library):
 
 
 def test_constant_environment(library):
-    """E = pi L on an open plane, so an albedo-1 plane shows L itself; seen directly it is L."""
+    """E = pi L on an open plane: a plane of albedo 1 shows L, and so does the sky itself."""
     snapshot = tiny_scenes.scene(
         [tiny_scenes.plane()],
         [tiny_scenes.lambert()],
@@ -231,7 +231,7 @@ def test_constant_environment(library):
 
 
 def test_mesh_light_equals_area_light(library):
-    """A glowing square mesh gives what a rectangle of the same radiance gives."""
+    """An emitting square mesh gives the light of a rectangular lamp of the same radiance."""
     glow = tiny_scenes.Material("glow", lobes=(), emission=(3, 3, 3))
     lamp = tiny_scenes.Instance(mesh=0, matrix=move(z=2) @ rotate_x(np.pi), materials=(1,))
     snapshot = tiny_scenes.scene(
@@ -247,7 +247,7 @@ def test_mesh_light_equals_area_light(library):
 
 
 def test_exact_sphere_as_lamp(library):
-    """A glowing exact sphere: E = pi L r^2/d^2."""
+    """An emitting exact sphere: E = pi L r^2/d^2."""
     glow = tiny_scenes.Material("glow", lobes=(), emission=(3, 3, 3))
     snapshot = tiny_scenes.scene(
         [tiny_scenes.plane(), tiny_scenes.sphere(1, move(z=3))],
@@ -256,14 +256,14 @@ def test_exact_sphere_as_lamp(library):
         camera=tiny_scenes.pencil((3, 4, 1), pixels=32),
     )
     got = tiny_scenes.radiance(snapshot)
-    # Where the sphere is found by hemisphere sampling alone, p = 1/9 of 1e6 samples hits: 4 standard errors are 1.1 %.
+    # BSDF sampling alone hits the sphere with p = 1/9 of 1e6 samples: 4 standard errors are 1.1 %.
     limit = 4 * math.sqrt(8 / 1024**2)
     assert np.allclose(got, 3 / 9, rtol=limit)
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_export(which, tmp_path):
-    """Units are judged against Cycles; here: which rays see a lamp, shadows, stretch, portals, nodes, and what is said."""
+    """Export of ray visibility, shadows, stretch, portals, nodes and messages of lamps; units are compared with Cycles."""
     got = blenders.run(which, tmp_path, "light_cases", "export")
     new = got["version"] >= [4, 0]
     assert got["plain"] == {"hidden_from": 1, "no_shadow": False, "size": [1.0, 1.0]}

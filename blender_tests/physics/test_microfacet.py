@@ -7,8 +7,8 @@ import tiny_scenes
 
 from addon.bindings.session import Scene, microfacet
 
-# Inputs are float32 and taken digit for digit by the reference, so that only the evaluation differs: a dozen float32
-# operations of 6e-8 each stay below 1e-6, and exp(-x) adds x times the relative error of its argument.
+# The reference uses the exact float32 inputs, so that only the evaluation differs: a dozen float32 operations of 6e-8 each stay
+# below 1e-6, and exp(-x) adds x times the relative error of its argument.
 ALPHAS = [2e-5, 1e-4, 1e-3, 0.01, 0.1, 0.3, 0.7, 1.0]
 IORS = [1.0 + 2.0**-23, 1.0 + 2.0**-20, 1.001, 1.33, 1.5, 2.4, 1e9, 3e19, 0.9, 0.6, 1.0 - 2.0**-20]
 COSINES = [1.0, 0.999, 0.9, 0.7071, 0.5, 0.1, 0.01, 1e-3]
@@ -16,13 +16,13 @@ COSINES = [1.0, 0.999, 0.9, 0.7071, 0.5, 0.1, 0.01, 1e-3]
 
 def test_beckmann_d(library):
     for alpha in ALPHAS:
-        # Angles where the lobe has something to show: tan from 0 to 3 alpha, as cosines that float32 can tell apart.
+        # Angles with a significant value: tan from 0 to 3 alpha, as cosines that are distinct in float32.
         tangents = alpha * np.array([0.0, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0])
         cosines = (1.0 / np.sqrt(1.0 + tangents**2)).astype(np.float32)
         d, _, _ = microfacet(cosines, 1.0, 1.0, alpha, 1.5, library=library)
         for c, got in zip(cosines, d, strict=True):
             want = reference.beckmann_d(c, np.float32(alpha))
-            # The probe has cos only: tan^2 = (1 - c)(1 + c)/c^2 carries a few roundings, multiplied by tan^2/alpha^2.
+            # The probe takes cosines: tan^2 = (1 - c)(1 + c)/c^2 has a few roundings, multiplied by tan^2/alpha^2.
             exponent = float((1 - float(c) ** 2) / float(c) ** 2 / float(np.float32(alpha)) ** 2)
             assert abs(got - want) <= (1e-6 + 1e-6 * exponent) * want, (alpha, c, got, want)
 
@@ -37,7 +37,7 @@ def test_fresnel(library, ior):
     _, f, _ = microfacet(1.0, COSINES, 1.0, 0.3, ior, library=library)
     for c, got in zip(COSINES, f, strict=True):
         want = reference.fresnel(np.float32(c), np.float32(ior))
-        # Below IOR 1 the critical angle is near, where F' is infinite: the condition number grows the rounding tenfold.
+        # Below IOR 1 the critical angle is near, where F' is infinite: the rounding is amplified tenfold.
         limit = 1e-6 if ior >= 1.0 else 1e-5
         assert abs(got - want) <= limit * want, (ior, c, got, want)
 
@@ -62,7 +62,7 @@ def test_g1(library):
 
 
 def test_g1_at_its_seams(library):
-    # b = 1/(alpha tan) = 1.6 divides the rational form from 1; just below it the form itself would exceed 1.
+    # For b = 1/(alpha tan) >= 1.6 the term is 1; just below, the rational form itself would exceed 1.
     alpha = np.float32(0.5)
     for b in (1.5999, 1.59, 1.6001):
         c = np.float32(np.cos(np.arctan(1.0 / (b * 0.5))))
@@ -85,7 +85,7 @@ def test_whole_bsdf(library, alpha, ior):
     material = tiny_scenes.Material("lab", lobes=lobes)
     with Scene.upload(tiny_scenes.scene([], [material]), library) as scene:
         wo, wi = directions(200, 1), directions(200, 2)
-        # Half of the pairs near the mirror direction, where the lobe is.
+        # Choose half of the pairs near the mirror direction.
         wi[::2] = wo[::2] * [-1, -1, 1] + np.random.default_rng(3).normal(0, alpha / 3, (100, 3))
         wi[:, 2] = np.abs(wi[:, 2])
         wi /= np.linalg.norm(wi, axis=1, keepdims=True)
@@ -93,7 +93,7 @@ def test_whole_bsdf(library, alpha, ior):
         f, _ = scene.bsdf(0, wo, wi)
     for o, i, got in zip(wo, wi, f[:, 0], strict=True):
         want = 0.25 / reference.mp.pi + reference.beckmann_bsdf(o, i, np.float32(alpha), np.float32(ior), 0.75)
-        # h of float32 directions is known to 1e-7 / |wo + wi|, which D answers with 2 tan/alpha^2 per unit of slope.
+        # h of float32 directions has an error of 1e-7 / |wo + wi|, which D amplifies by 2 tan/alpha^2 per unit of slope.
         h = reference.normalize([a + b for a, b in zip(reference.vector(o), reference.vector(i), strict=True)])
         tangent = float(reference.mp.sqrt(1 - h[2] ** 2) / h[2])
         sensitivity = 2e-7 / float(np.linalg.norm(o.astype(float) + i)) / float(h[2]) ** 2 * 2 * (tangent / alpha**2 + 2)
@@ -101,7 +101,7 @@ def test_whole_bsdf(library, alpha, ior):
 
 
 def test_the_reference_itself():
-    """Values that follow by hand: D(1) = 1/(pi alpha^2), F(1) = ((n-1)/(n+1))^2, G1 = 1 straight on."""
+    """Values known in closed form: D(1) = 1/(pi alpha^2), F(1) = ((n-1)/(n+1))^2, G1 = 1 at normal incidence."""
     assert abs(reference.beckmann_d(1.0, 0.5) - 4 / reference.mp.pi) < 1e-40
     assert abs(reference.fresnel(1.0, 1.5) - reference.mp.mpf(1) / 25) < 1e-40
     assert reference.fresnel(0.1, 0.5) == 1

@@ -1,4 +1,4 @@
-"""Nodes and pictures through the C interface, against numpy in double: what a texel becomes, what a chain of nodes computes."""
+"""Nodes and images through the C interface, against numpy in double: texture lookups and chains of nodes."""
 
 import itertools
 
@@ -34,13 +34,13 @@ from addon.bindings.snapshot import (
 
 UV = Node(NodeKind.COORDINATE, Coordinate.UV)
 STRAIGHT = 256
-# u carries a rounding of 2^-24 of up to 3, times 37 texels, times a texel's difference of at most 1; the curve multiplies by
-# at most 2.4 / 1.055.
+# Error of a lookup: u up to 3 has a rounding of 2^-24, times 37 texels, times a difference of texels of at most 1; the sRGB
+# curve has a slope of at most 2.4 / 1.055.
 PLACE = 3 * 37 * 2.0**-24 * 2.3
 
 
 def values(nodes, uv, images=()):
-    """Values (count, 4) of the last of the nodes at uv."""
+    """Return the values (count, 4) of the last node at uv."""
     material = Material("nodes", (Lobe(LobeKind.DIFFUSE, NodeRef(len(nodes) - 1)),), nodes=tuple(nodes))
     with Scene.upload(SceneSnapshot(materials=(material,), images=tuple(images))) as scene:
         return scene.node(0, len(nodes) - 1, uv)
@@ -56,7 +56,7 @@ def srgb(c):
 
 
 def wrapped(index, size, extension):
-    """The texel at an index of an endless row, and whether there is one."""
+    """Return the texel index for an index of the infinite row, and whether the texel exists."""
     if extension == Extension.REPEAT:
         return index % size, np.ones(index.shape, bool)
     if extension == Extension.MIRROR:
@@ -67,7 +67,7 @@ def wrapped(index, size, extension):
 
 
 def weights(place, interpolation):
-    """[(index, weight)] of the neighbours of a place in texels."""
+    """Return [(index, weight)] of the neighbours of a position in texels."""
     if interpolation == Interpolation.CLOSEST:
         return [(np.floor(place).astype(int), np.ones(place.shape))]
     first = np.floor(place - 0.5).astype(int)
@@ -79,7 +79,7 @@ def weights(place, interpolation):
 
 
 def looked_up(texels, uv, extension, interpolation):
-    """Texels (height, width, 4) of numbers, at uv (count, 2)."""
+    """Return the interpolated values of texels (height, width, 4) at uv (count, 2)."""
     height, width = texels.shape[:2]
     total = np.zeros((len(uv), 4))
     for (x, wx), (y, wy) in itertools.product(
@@ -92,7 +92,7 @@ def looked_up(texels, uv, extension, interpolation):
 
 @pytest.fixture(scope="module")
 def uv():
-    """Places in and around the picture, off the borders of texels: there rounding may choose either."""
+    """Return texture coordinates in and around the image, away from borders of texels, where rounding decides."""
     rng = np.random.default_rng(1)
     return (np.floor(rng.uniform(-1, 2, (400, 2)) * 37) + rng.uniform(0.1, 0.9, (400, 2))).astype(np.float32) / np.float32(37)
 
@@ -123,7 +123,7 @@ def test_alpha_is_multiplied_in_bytes_and_divided_before_the_curve(uv, bytes_wit
         color = mean[:, :3] / mean[:, 3:] if flags else mean[:, :3]
         solid = mean[:, 3] > 0.1
         assert np.abs(got[:, 3] - mean[:, 3]).max() < PLACE
-        # Dividing by alpha enlarges the rounding by as much.
+        # Division by alpha amplifies the rounding.
         assert np.abs(got[:, :3] - srgb(color))[solid].max() < PLACE * (10 if flags else 1)
 
 
@@ -141,7 +141,7 @@ def test_a_matrix_leads_to_the_working_space():
 
 
 def test_a_chain_of_nodes(uv):
-    """A mapped picture mixed with a ramp: every result is the next one's input."""
+    """A mapped image mixed with a ramp: every result is the next node's input."""
     texels = np.random.default_rng(4).uniform(0, 1, (37, 37, 3)).astype(np.float32)
     turn, scale, shift = 0.3, (1.5, 0.5, 1.0), (0.2, -0.4, 0.0)
     chain = [
@@ -178,7 +178,7 @@ def test_bad_programs_name_material_node_and_value():
 
 
 def test_displacement_moves_what_rays_meet():
-    """A square whose material lifts it by an attribute of its mesh, placed with a scale."""
+    """A scaled square whose material displaces it by an attribute of its mesh."""
     corners = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], np.float32)
     height = MeshAttribute("height", np.array([[0.0], [1.0], [1.0], [0.0]], np.float32), Domain.VERTEX)
     mesh = MeshData("square", corners, [(0, 1, 2), (0, 2, 3)], normals=[(0, 0, 1)] * 4, attributes=(height,))

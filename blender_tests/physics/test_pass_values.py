@@ -1,4 +1,4 @@
-"""Passes whose numbers are known without any light: mist, occlusion, features for denoisers; and that parts are the whole."""
+"""Passes with known values: mist, occlusion, denoising features; and light passes that sum to Combined."""
 
 import dataclasses
 import math
@@ -18,7 +18,7 @@ PARTS = [Pass.EMISSION, Pass.ENVIRONMENT, *(p for p in Pass if Pass.DIFFUSE_DIRE
 
 
 def passes_of(snapshot, *wanted):
-    """The passes of one render, each (height, width, channels) in double."""
+    """Return the passes of one render, each (height, width, channels) in double."""
     snapshot = tiny_scenes.with_settings(snapshot, passes=(Pass.COMBINED, *wanted))
     with Session.upload(snapshot) as session:
         assert session.render_all(None)
@@ -26,7 +26,7 @@ def passes_of(snapshot, *wanted):
 
 
 def down(kind=CameraKind.ORTHOGRAPHIC, half=9.0, pixels=3, **fields):
-    """Straight down at the plane z = 0 from 4 above, a little beside the origin."""
+    """Return a camera 4 above the plane z = 0, looking straight down beside the origin."""
     matrix = tiny_scenes.look_at((1, 2, 4), (1, 2, 0), (0, 1, 0))
     window = (-half, half, -half, half)
     return Camera(matrix=matrix, kind=kind, width=pixels, height=pixels, window=window, clip_start=0.5, **fields)
@@ -40,13 +40,13 @@ def mist(integrator, camera, falloff, **fields):
 @pytest.mark.parametrize("integrator", Integrator)
 @pytest.mark.parametrize("falloff", [0.5, 1.0, 2.0])
 def test_mist_of_parallel_rays_counts_along_the_axis(integrator, falloff):
-    """4 below the camera in every pixel, however far beside it."""
+    """An orthographic camera uses the depth along the axis, 4 in every pixel."""
     assert np.allclose(mist(integrator, down(), falloff), (3 / 12) ** falloff, rtol=0, atol=EXACT)
 
 
 @pytest.mark.parametrize("integrator", [Integrator.CLASSIC, Integrator.NORMALS])
 def test_mist_of_a_perspective_counts_the_distance(integrator):
-    """One sample goes through the pixels' middles, at slopes -2, 0, 2 along both axes."""
+    """A perspective camera uses the distance; one sample passes through pixel centres, at slopes -2, 0, 2 on both axes."""
     got = mist(integrator, down(CameraKind.PERSPECTIVE, 3.0), 1.0, mist_depth=20.0)
     x, y = np.meshgrid([-2, 0, 2], [-2, 0, 2])
     assert np.allclose(got, (4 * np.sqrt(1 + x**2 + y**2) - 1) / 20, rtol=0, atol=EXACT)
@@ -67,8 +67,8 @@ def test_mist_sees_through_veils(integrator):
         mist_falloff=1.0,
     )
     got = passes_of(snapshot, Pass.MIST)[0]
-    # A path goes on with probability 0.75 / (0.75 + 0.25) and weighs as much: the ground's 0.5 is there or not. 5 errors of
-    # the mean of 4096; CLASSIC splits and has none.
+    # A path passes the veil with probability 0.75 / (0.75 + 0.25) and finds the ground's 0.5 or not: 5 standard errors of the
+    # mean of 4096 samples. CLASSIC splits and has no noise.
     error = 5 * 0.5 * math.sqrt(0.25 * 0.75 / 4096) if integrator == Integrator.PATH else EXACT
     assert np.allclose(got, 0.25 * 0.25 + 0.75 * 0.5, rtol=0, atol=error)
 
@@ -76,7 +76,7 @@ def test_mist_sees_through_veils(integrator):
 @pytest.mark.parametrize("integrator", Integrator)
 @pytest.mark.parametrize("clip", [0.1, 1.5])
 def test_denoising_depth_counts_from_where_the_camera_begins_to_see(integrator, clip):
-    """Cycles 5.0.1: the distance less the clip."""
+    """Cycles 5.0.1: the distance minus the start of clipping."""
     camera = dataclasses.replace(pencil((3, 0, 4)), clip_start=clip)
     depth = passes_of(scene([plane()], [lambert()], camera=camera, integrator=integrator), Pass.DENOISING_DEPTH)[0]
     assert np.allclose(depth, 5 - clip, rtol=EXACT)
@@ -84,7 +84,7 @@ def test_denoising_depth_counts_from_where_the_camera_begins_to_see(integrator, 
 
 @pytest.mark.parametrize("integrator", [Integrator.CLASSIC, Integrator.NORMALS])
 def test_a_perspective_begins_on_a_plane(integrator):
-    """Cycles 5.0.1: (4 - clip) / cos through the pixels' middles, at slopes -2, 0, 2 along both axes; z points forwards."""
+    """Cycles 5.0.1: (4 - clip) / cos at pixel centres, at slopes -2, 0, 2 along both axes; z points forwards."""
     snapshot = scene([plane()], [lambert()], camera=down(CameraKind.PERSPECTIVE, 3.0), integrator=integrator)
     depth, normal = passes_of(snapshot, Pass.DENOISING_DEPTH, Pass.DENOISING_NORMAL)
     x, y = np.meshgrid([-2, 0, 2], [-2, 0, 2])
@@ -108,7 +108,7 @@ def test_denoising_normal_of_a_panorama_is_in_its_own_frame(integrator):
 
 @pytest.mark.parametrize("integrator", [Integrator.PATH, Integrator.CLASSIC])
 def test_features_look_into_mirrors(integrator):
-    """A mirror of colour 0.5 shows a matt wall: the wall's albedo and normal, the albedo by what the mirror leaves of it."""
+    """A mirror of colour 0.5 shows the wall's normal, and the wall's albedo times the mirror's colour."""
     mirror = Material("mirror", lobes=(Lobe(LobeKind.MIRROR, color=(0.5, 0.5, 0.5)),))
     floor, wall = plane(0), plane(1, move(x=-4.0) @ rotate_y(math.pi / 2))
     camera = pencil((2, 0, 2), (0, 0, 0))
@@ -116,14 +116,14 @@ def test_features_look_into_mirrors(integrator):
     albedo, normal, depth = passes_of(snapshot, Pass.ALBEDO, Pass.DENOISING_NORMAL, Pass.DENOISING_DEPTH)
     r = math.sqrt(0.5)
     assert np.allclose(albedo[0, 0], (0.1, 0.2, 0.4), rtol=EXACT)
-    # The wall looks along +x: towards the camera and down in its picture.
+    # The wall's normal is +x: towards the camera and down in camera space.
     assert np.allclose(normal[0, 0], (0, -r, -r), rtol=0, atol=EXACT)
     # 2 sqrt(2) to the mirror, and half of 4 sqrt(2) beyond.
     assert np.allclose(depth, 4 * math.sqrt(2.0), rtol=EXACT)
 
 
 def test_features_of_classic_weigh_what_a_veil_splits():
-    """A veil of opacity 0.1 counts as clear: the ground behind it gives its albedo by what passes, and its normal whole."""
+    """A veil of opacity 0.1 counts as clear: the albedo of the ground is weighted by the transmittance, its normal is not."""
     snapshot = scene(
         [plane(), plane(1, move(z=2))],
         [lambert(0.5), tiny_scenes.veiled(lambert(0.8), 0.1)],
@@ -135,7 +135,7 @@ def test_features_of_classic_weigh_what_a_veil_splits():
 
 
 def test_classic_fills_what_the_camera_sees_itself():
-    """Emission, environment and colours; light by its way is not told apart."""
+    """CLASSIC fills emission, environment and colours, but not the light passes."""
     glow = Material("glow", lobes=(Lobe(color=(0.2, 0.4, 0.6)),), emission=(3.0, 2.0, 1.0))
     square = Instance(matrix=move(-0.5), materials=(0,))
     camera = Camera(
@@ -149,7 +149,7 @@ def test_classic_fills_what_the_camera_sees_itself():
 
 
 def whole(snapshot):
-    """Combined, and the parts put together again as compositors do it."""
+    """Return Combined, and the sum of the light passes as in a compositor."""
     combined, *parts = passes_of(snapshot, Pass.COMBINED, *PARTS)
     part = dict(zip(PARTS, parts, strict=True))
     total = part[Pass.EMISSION] + part[Pass.ENVIRONMENT]
@@ -163,7 +163,7 @@ SUMMED = 2.0**-20
 
 
 def test_parts_give_a_panorama_again():
-    """Beyond the rim of a fisheye's picture there is nothing in any of them."""
+    """The light passes of a fisheye sum to Combined, and are 0 outside its circle."""
     view = Camera(
         matrix=tiny_scenes.look_at((1.5, -6.0, 2.5), (0, 0, 0.8)),
         kind=CameraKind.FISHEYE_EQUIDISTANT,
@@ -178,7 +178,7 @@ def test_parts_give_a_panorama_again():
 
 
 def pane(clear):
-    """A small pane of smooth glass 2 above the ground z = 0, looked through from above; clear: it leaves the film as it was."""
+    """Return a small pane of smooth glass 2 above the ground, seen from above; clear: the film treats it as transparent."""
     glass = Material("glass", lobes=(Lobe(LobeKind.GLASS, color=(1, 1, 1), ior=1.5, roughness=0.0),))
     slab = Instance(kind=3, materials=(1,), matrix=move(z=2) @ scale(0.3, 0.3, 0.01))
     settings = {"film_transparent": True, "transparent_glass": clear, "glass_roughness": 0.1, "max_bounces": 6, "samples": 256}
@@ -186,7 +186,7 @@ def pane(clear):
 
 
 def test_clamped_parts_give_the_picture_again():
-    """Light that is seen through clear glass may be clamped: its pass is, too."""
+    """Clamping applies to the pass of light seen through clear glass too."""
     glass, slab, settings = pane(True)
     glow = Material("glow", lobes=(), emission=(9, 9, 9))
     combined, total = whole(scene([plane(0), slab], [glow, glass], clamp_indirect=1.0, **settings))
@@ -195,7 +195,7 @@ def test_clamped_parts_give_the_picture_again():
 
 
 def test_occlusion_is_that_of_the_first_surface():
-    """The pane sees the open sky; what lies behind it adds nothing, be it clear or not."""
+    """Ambient occlusion is that of the pane, which sees the open sky, not of the ground behind it."""
     for clear in (False, True):
         glass, slab, settings = pane(clear)
         got = passes_of(scene([plane(0), slab], [lambert(), glass], world=1.0, **settings), Pass.AMBIENT_OCCLUSION)[0]
@@ -206,7 +206,7 @@ def plastic(**fields):
     return Material("plastic", lobes=(Lobe(LobeKind.PRINCIPLED, principled=Principled(base_color=(0.6, 0.5, 0.4), **fields)),))
 
 
-# Whether the next rays of the surface tell of occlusion, wholly or weighed, or it sends rays for it.
+# Surfaces whose next rays measure occlusion, with or without weights, or which need rays of their own.
 SURFACES = {
     "lambert": lambert(),
     "black": lambert(0.0),
@@ -220,8 +220,8 @@ SURFACES = {
 @pytest.mark.parametrize("surface", SURFACES)
 @pytest.mark.parametrize("reach, want", [(0.0, 0.5), (4.0, None), (1.0, 1.0)])
 def test_half_of_the_sky_is_behind_a_wall(reach, want, surface):
-    """At the foot of a wall without end, 2 away: half of the cosines; or those that meet it within the reach, which are the
-    segment of the unit disk beyond 2 / reach."""
+    """Before an infinite wall, 2 away: the wall occludes half of the projected hemisphere, or, with a reach, the segment of the
+    unit disk beyond 2 / reach."""
     floor, wall = plane(0), plane(0, move(x=-2.0) @ rotate_y(math.pi / 2))
     samples = 16384
     camera = pencil((0, 0, 4))
@@ -230,6 +230,6 @@ def test_half_of_the_sky_is_behind_a_wall(reach, want, surface):
         c = 2.0 / reach
         want = 1.0 - (math.acos(c) - c * math.sqrt(1 - c * c)) / math.pi
     got = passes_of(snapshot, Pass.AMBIENT_OCCLUSION)[0]
-    # What is blocked is counted with weights of at most 2, their mean 1: no sample's variance is above 2 (1 - want).
-    # Stratified samples are not worse than independent ones: 5 standard errors.
+    # Occluded rays have weights of at most 2 with mean 1: a sample's variance is at most 2 (1 - want). The limit is 5 standard
+    # errors of independent samples; stratified ones are not worse.
     assert np.allclose(got, want, rtol=0, atol=5 * math.sqrt(2 * (1 - want) / samples) + EXACT)

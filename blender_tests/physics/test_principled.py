@@ -1,4 +1,4 @@
-"""Principled and the wide lobes against Cycles: exact values under suns, and all light under a white sky, lobe by lobe."""
+"""Principled and the wide lobes against Cycles: exact values under suns, and the albedo under a white sky."""
 
 import json
 import math
@@ -14,14 +14,14 @@ from principled_specs import ANGLES, SUNS
 from addon.bindings.session import Scene
 from addon.bindings.snapshot import Material
 
-# A third of a percent is less than an eye can tell apart. The tables of lost light agree with exact integrals to 0.1 %.
+# A third of a percent is invisible. The tables of multiple scattering agree with exact integrals to 0.1 %.
 LIMIT = 0.003
 SAMPLES = 512
 
 
 @pytest.fixture(scope="module", params=[MODULE, PROGRAM], ids=["module", "program"])
 def materials(request, library, tmp_path_factory):
-    """The version, the specs, a function that returns arrays of a Blender's case, and a scene that holds the same materials."""
+    """Return the version, the specs, a function that returns the arrays of a Blender case, and a scene with the materials."""
     folder = tmp_path_factory.mktemp("principled")
     version = tuple(blenders.run(request.param, folder, "principled_cases", "version"))
     specs = principled_specs.specs(version)
@@ -38,14 +38,14 @@ def materials(request, library, tmp_path_factory):
 
 
 def frame(angle):
-    """Tangent, bitangent and normal of a cell turned by that angle, as rows; the view is +z."""
+    """Return tangent, bitangent and normal of a cell rotated by that angle, as rows; the view is +z."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     return np.array([(c, 0.0, -s), (0.0, 1.0, 0.0), (s, 0.0, c)])
 
 
 def bends(wo, wi, ior):
-    """Whether some facet can bend wo into wi, or both are on one side. Cycles gives light to all other pairs, too: its
-    evaluation leaves that check out."""
+    """Return (n,) bool: whether a facet can refract wo into wi, or both are on one side. Cycles' evaluation lacks this test and
+    returns light for other pairs too."""
     h = -(wo + ior * wi)
     h = h * np.sign(h[:, 2:])
     return (wi[:, 2] > 0.0) | ((h @ wo > 0.0) & ((h * wi).sum(axis=1) < 0.0))
@@ -56,7 +56,7 @@ def figures(name, angle, ours, theirs):
 
 
 def test_suns(materials):
-    """f cos of each pair of directions, without noise."""
+    """Compare f cos of each pair of directions, without noise."""
     version, specs, measured, scene = materials
     got = measured("suns")
     wrong = []
@@ -67,7 +67,7 @@ def test_suns(materials):
             emission = scene.lobes(i, wo)[1]
             possible = bends(wo, wi, lobe.principled.ior if lobe.principled else 1.0)
             ours, theirs = f * np.abs(wi[:, 2:]) + emission, got["sun"][:, i, j]
-            # In the darkest directions half a percent of the brightest one, or of what a white surface gives, is nothing.
+            # In dark directions the limit is relative to 10 % of the brightest direction, or 1 % of white.
             scale = np.maximum(theirs, max(0.1 * theirs.max(), 0.01))
             allowed = LIMIT * scale
             if np.any((np.abs(ours - theirs) > allowed)[possible]):
@@ -76,16 +76,16 @@ def test_suns(materials):
 
 
 def has_honest_sampler(version, lobe):
-    """Cycles' samplers of two lobes do not follow the densities that they tell: light from a sky is not the integral of the
-    values there. Ashikhmin-Shirley keeps half vectors that face away; the coat of 3.x draws from another distribution."""
+    """Whether Cycles' sampler of the lobe matches its pdf. It does not for Ashikhmin-Shirley, which keeps back-facing half
+    vectors, and for the coat of 3.x, which samples another distribution: their light from a sky is not the integral of f."""
     if lobe.principled:
         return version >= (4, 0) or lobe.principled.coat == 0.0
     return lobe.distribution.name != "ASHIKHMIN_SHIRLEY"
 
 
 def white_sky(scene, material, wo):
-    """Mean weight of samples and its standard error, from shifts of a three-dimensional lattice (powers of the number whose
-    fourth power is itself plus 1: the generalised golden ratio)."""
+    """Return the mean weight of samples and its standard error, from shifts of a three-dimensional lattice by powers of the
+    generalised golden ratio (x^4 = x + 1)."""
     step = 1.2207440846057596 ** -np.arange(1.0, 4.0)
     grid = np.outer(np.arange(8192), step)
     means = []
@@ -97,7 +97,7 @@ def white_sky(scene, material, wo):
 
 @pytest.mark.slow
 def test_sky(materials):
-    """All light that a surface sends to the viewer under a white sky."""
+    """Compare the light that a surface reflects to the viewer under a white sky."""
     version, specs, measured, scene = materials
     got = measured("sky")
     wrong, noise = [], []
@@ -110,9 +110,9 @@ def test_sky(materials):
             ours += scene.lobes(i, wo)[1]
             theirs, error = got["sky"][i, j], np.hypot(error, got["noise"][i, j])
             noise.append(error / np.maximum(theirs, 0.1))
-            # Of 1500 values one in 16 000 lies beyond 4 standard errors by chance; with the limit on top none does.
+            # A value lies beyond 4 standard errors with probability 1/16000: with LIMIT added none of 1500 does.
             if np.any(np.abs(ours - theirs) > LIMIT * np.maximum(theirs, 0.1) + 4.0 * error):
                 wrong.append(figures(name, angle, ours, theirs))
-    # Noise that hides an error twice the limit would make this a test of nothing.
+    # The noise must be small enough for the limit.
     assert np.percentile(noise, 95) < LIMIT / 2
     assert not wrong, f"{len(wrong)} of {len(specs) * len(ANGLES)} in Blender {version}\n" + "\n".join(wrong[:20])

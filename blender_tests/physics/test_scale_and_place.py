@@ -1,9 +1,9 @@
-"""The same scene of any size, anywhere: the same picture.
+"""A scene gives the same picture at any size and place.
 
-The core measures everything in units of a power of two of the scene's own extent, about its own middle. So a power of two as
-factor changes no bit. Any other factor, and any place, changes last bits: of lamps in single precision, of all else in double.
-That is some 1e-7 of a pixel's value. A path that met another thing would show as 1 / 512 in a square of 64 pixels of 8 samples
-each; 1e-4 lies between.
+The core normalises lengths by a power of two of the scene's extent, about its centre, so that a power of two as factor changes
+no bit. Other factors and places change last bits, of lamps in single precision, of all else in double, which is some 1e-7 of a
+pixel's value. A path with another hit would change a square of 64 pixels of 8 samples each by 1 / 512; the limit 1e-4 lies
+between.
 """
 
 import dataclasses
@@ -22,9 +22,9 @@ from addon.bindings.snapshot import Camera, Instance, Light, Material, MeshData
 
 SIZES = (1e-6, 1e-3, 1e3, 1e6, 1e9)
 POWERS = (-30, -20, 20, 30)
-# The scenes are some 8 units wide: a thousand times and a million times that.
+# A thousand and a million times the scenes' extent of some 8 units.
 PLACES = ((8192.0, -4096.0, 2048.0), (2.0**23, -(2.0**22), 2.0**23))
-# Passes that are lengths or places themselves.
+# Passes of lengths or positions.
 LENGTHS = (Pass.DEPTH, Pass.POSITION, Pass.DENOISING_DEPTH)
 
 
@@ -53,7 +53,7 @@ def test_powers_of_two_change_no_bit(library, make):
         for resize in (resized, resized_meshes):
             got = passes(resize(shot, 2.0**power))
             for which, values in expected.items():
-                # Where nothing is the depth is a number by itself.
+                # The depth of the background is a constant.
                 factor = np.where(values < 1e10, 2.0**power, 1.0) if which in LENGTHS else 1.0
                 assert np.array_equal(got[which], factor * values), (power, resize.__name__, which)
 
@@ -76,7 +76,7 @@ def test_places(library, make):
 
 @pytest.mark.parametrize("far, larger", [(8192.0, 1.0), (2.0**23, 8.0)])
 def test_vertices_that_are_far_away_themselves(library, far, larger):
-    """Corners on a grid that floats still hold there, eighths or whole ones, in a mesh whose own origin stays where it was."""
+    """A mesh with distant vertices, on a grid that is exact in float there, and an unchanged object origin."""
     rock = ten_scenes.ROCK
     corners = larger * np.array(rock.positions, float)
     offset = np.array((far, -far / 2, far))
@@ -96,7 +96,7 @@ def test_vertices_that_are_far_away_themselves(library, far, larger):
     assert_same_squares(expected, passes(shot(offset)), far)
 
 
-# ---- no acne, no leak: every pixel by itself ----
+# ---- no shadow acne, no leak, in any pixel ----
 
 
 def everywhere(shot):
@@ -106,7 +106,7 @@ def everywhere(shot):
         yield f"vertices {factor}", resized_meshes(shot, factor)
     for offset in PLACES:
         yield offset, moved(shot, offset)
-        # Small and far away, as a screw on a ship.
+        # Small and far away.
         yield f"1e-3 at {offset}", moved(resized(shot, 1e-3), offset)
 
 
@@ -131,10 +131,10 @@ LIT = {
 
 @pytest.mark.parametrize("name", LIT)
 def test_what_a_lamp_lights_has_no_dark_pixel(library, name):
-    """A sun nearly along the view, and no sky: a Lambert surface shows albedo / pi times the cosine, never less.
+    """Under a sun nearly along the view, without sky, a Lambert surface shows albedo / pi times the cosine, never less.
 
-    Pixels whose surface turns away beyond a cosine of 0.3 are left out by the window: at 0.5 of the unit sphere's or ball's
-    radius the cosine to the view is 0.87, on the cone's side 0.45, and the sun stands 0.1 rad away.
+    The window excludes pixels with a cosine below 0.3: at 0.5 of the radius of sphere or ball the cosine to the view is 0.87,
+    on the cone's side 0.45, and the sun is 0.1 rad away.
     """
     lamps = [Light("sun", rotate_x(0.1), LightKind.SUN, emission=(np.pi,) * 3)]
     shot = scene(LIT[name], [lambert(1.0)], lamps, [quad(2.0), BALL], 0.0, FROM_ABOVE, samples=16)
@@ -146,10 +146,10 @@ def test_what_a_lamp_lights_has_no_dark_pixel(library, name):
 @pytest.mark.parametrize("name", LIT)
 @pytest.mark.parametrize("lamp", ["mesh", "ball"])
 def test_what_a_glowing_thing_lights_has_no_dark_pixel(library, lamp, name):
-    """Shadow rays end on what they come from: a square, or a ball, which hides its own far side.
+    """Shadow rays end on the emitter itself: a square, or a ball, which occludes its own far side.
 
-    Of 64 samples of a ball half or so meet the near side, and fewer than 8 do once in 1e11 pixels. On the cone's side the
-    cosine is a third of the brightest place's, and 5 units away the light falls off by a tenth across the window.
+    About half of 64 samples of a ball hit the near side, and fewer than 8 do in one of 1e11 pixels. On the cone's side the
+    cosine is a third of the largest, and at 5 units distance the light decreases by a tenth across the window.
     """
     glow = Material("glow", lobes=(), emission=(100.0,) * 3)
     square = Instance(mesh=2, matrix=move(z=5.0) @ rotate_x(np.pi), materials=(1,))
@@ -164,7 +164,7 @@ def test_what_a_glowing_thing_lights_has_no_dark_pixel(library, lamp, name):
 
 @pytest.mark.parametrize("kind", ["box", "ball", "sphere", "cylinder"])
 def test_a_closed_thing_stays_dark_inside(library, kind):
-    """Lamps of all kinds and a sky outside, many bounces inside: not one sample may be lit."""
+    """Inside a closed body, with lamps of all kinds and a sky outside and many bounces, no sample may be lit."""
     box = MeshData.from_trimesh(trimesh.creation.box((2, 2, 2)), "box")
     exact = {"sphere": InstanceKind.SPHERE, "cylinder": InstanceKind.CYLINDER}
     turn = rotate_x(0.3)
@@ -187,8 +187,8 @@ def test_a_closed_thing_stays_dark_inside(library, kind):
 
 @pytest.mark.parametrize("name", ["workshop", "terrace"])
 def test_from_blender(name, tmp_path):
-    """Blender keeps floats: a power of two changes no digit of theirs; 1000 rounds each number by 6e-8 of itself, which moves
-    edges by a millionth of a pixel, hence few of the 1024 samples of a square or none."""
+    """Blender stores floats: a power of two changes no digit; a factor of 1000 rounds each number by 6e-8, which moves edges by
+    1e-6 of a pixel and changes few or none of the 1024 samples of a square."""
     got = blenders.run(blenders.MODULE, tmp_path, "scale_cases", name)
     assert got["mean"] > 0.05 and got["messages"] == []
     assert got["equal"] == {"2^-10": True, "2^10": True}

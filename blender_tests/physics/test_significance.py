@@ -1,4 +1,4 @@
-"""The judges themselves: they accept right samplers, reject slightly wrong ones, and err as often as promised."""
+"""The significance tests accept correct samplers, reject slightly wrong ones, and err with the nominal probability."""
 
 import numpy as np
 from scipy import stats
@@ -6,7 +6,7 @@ from significance import LEVEL, chi_square, mean_and_error, midpoints, sidak, un
 
 
 def cosine_histogram(exponent, count, seed):
-    """Hits in 32 equal cells of cos^2 for directions of density cos^exponent; flat for exponent 1."""
+    """Return counts in 32 equal cells of cos^2 for directions of density cos^exponent; uniform for exponent 1."""
     u = uniforms(count, 1, seed)[:, 0].astype(np.float64)
     cosine = u ** (1.0 / (exponent + 1.0))
     return np.histogram(cosine**2, bins=32, range=(0.0, 1.0))[0]

@@ -1,4 +1,4 @@
-"""The world: its radiance by direction, the density by which it is sampled, and the light that it gives."""
+"""The world: its radiance by direction, the pdf of its sampling, and its light."""
 
 import dataclasses
 import math
@@ -39,7 +39,7 @@ def picture(texels):
 def sky(
     texels, projection=Environment.EQUIRECTANGULAR, interpolation=Interpolation.LINEAR, rotation=(0, 0, 0), count=1, **fields
 ):
-    """(world, images) of pictures around everything."""
+    """Return (world, images) of environment textures."""
     images = tuple(picture(t) for t in (texels if count > 1 else [texels]))
     mapping = Node(kind=NodeKind.MAPPING, inputs=(NodeRef(0), (0, 0, 0), rotation, (1, 1, 1)))
     flags = int(Extension.EXTEND if count > 1 else Extension.REPEAT) | int(interpolation) << 4
@@ -52,7 +52,7 @@ def scene(world, images, **fields):
 
 
 def even_directions(count):
-    """Midpoints of cells of equal solid angle."""
+    """Return midpoints of cells of equal solid angle."""
     z = 1 - 2 * (np.arange(count) + 0.5) / count
     phi = 2 * np.pi * (np.arange(2 * count) + 0.5) / (2 * count)
     z, phi = (a.ravel() for a in np.meshgrid(z, phi, indexing="ij"))
@@ -61,7 +61,7 @@ def even_directions(count):
 
 
 def cells(width):
-    """Middles and solid angles of the cells of a map of width by width / 2 in azimuth and polar angle."""
+    """Return centres and solid angles of the cells of a map, width by width / 2 in azimuth and polar angle."""
     height = width // 2
     phi, theta = 2 * np.pi * (np.arange(width) + 0.5) / width - np.pi, np.pi * (np.arange(height) + 0.5) / height
     edges = np.cos(np.pi * np.arange(height + 1) / height)
@@ -79,7 +79,7 @@ def gradient(width=64, height=32):
 
 
 def test_texels_stand_where_cycles_puts_them(library):
-    """u falls with the angle about z from +x half way, v rises from below; row 0 is the bottom row."""
+    """u decreases with the angle around z, 0.5 at +x; v increases upwards; row 0 is the bottom row."""
     texels = gradient(16, 8)
     world, images = sky(texels, interpolation=Interpolation.CLOSEST)
     column, row = (a.ravel() for a in np.meshgrid(np.arange(16), np.arange(8)))
@@ -87,7 +87,7 @@ def test_texels_stand_where_cycles_puts_them(library):
     directions = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=1)
     with Scene.upload(scene(world, images), library) as uploaded:
         radiance, pdf = uploaded.world(directions)
-    # Texels are float and nothing is computed from them.
+    # Texels are float and returned without arithmetic.
     assert np.array_equal(radiance, texels[row, column].astype(np.float32)) and np.all(pdf > 0)
 
 
@@ -97,20 +97,20 @@ def test_density_is_one_in_all_and_nowhere_zero(library, rotation, resolution):
     world, images = sky(gradient(), rotation=rotation, map_resolution=resolution)
     with Scene.upload(scene(world, images), library) as uploaded:
         radiance, pdf = uploaded.world(even_directions(400))
-        # Without a wish the map is as wide as the picture.
+        # By default the map is as wide as the image.
         middles, solid_angle = cells(resolution or 64)
         cell_pdf = uploaded.world(middles)[1]
     assert np.all(pdf > 0)
-    # The density is even in each cell; what is left are the roundings of single precision.
+    # The pdf is constant in each cell; the error is rounding of single precision.
     assert np.sum(cell_pdf * solid_angle) == pytest.approx(1.0, abs=1e-6)
     if resolution != 12:
-        # Where the map is as fine as the picture the density follows the channels' mean, as well as a cell's own can.
+        # With a map as fine as the image the pdf follows the channels' mean, up to the variation within a cell.
         level = radiance.mean(axis=1) / radiance.mean(axis=1).mean()
         assert np.corrcoef(pdf * 4 * np.pi, level)[0, 1] > 0.8
 
 
 def test_chi_square(library):
-    """Samples against the density that the probe tells, in cells of equal solid angle around all poles and seams."""
+    """Samples against the probe's pdf, in cells of equal solid angle, including poles and seams."""
     rows, columns, fine, count = 20, 12, 30, 200_000
     world, images = sky(gradient(), rotation=(0.3, 0.2, 0.1), map_resolution=24)
     with Scene.upload(scene(world, images), library) as uploaded:
@@ -122,7 +122,7 @@ def test_chi_square(library):
         radiance, pdf = uploaded.world(np.stack([r * np.cos(pp), r * np.sin(pp), zz], axis=1))
         told, density = uploaded.world(samples.wi)
     assert np.all(samples.pdf > 0) and np.all(np.isinf(samples.distance)) and np.all(samples.delta == 0)
-    # What comes with a sample is what the direction has; at a cell's edge rounding may fall into the neighbour.
+    # Radiance and pdf of a sample are those of its direction, except for rounding at the edges of cells.
     assert np.mean(np.isclose(samples.pdf, density, rtol=1e-5)) > 0.999
     assert np.allclose(samples.radiance, told, rtol=1e-4)
     expected = pdf.astype(float).reshape(rows, fine, columns, fine).mean(axis=(1, 3)).ravel() * 4 * np.pi / (rows * columns)
@@ -130,7 +130,7 @@ def test_chi_square(library):
     row = np.minimum(((1 - w[:, 2]) / 2 * rows).astype(int), rows - 1)
     column = np.minimum((np.mod(np.arctan2(w[:, 1], w[:, 0]) / (2 * np.pi), 1) * columns).astype(int), columns - 1)
     counts = np.bincount(row * columns + column, minlength=rows * columns)
-    # The midpoint rule knows the expected counts to a fraction of a percent, a fifth of their standard error.
+    # The error of the midpoint rule is a fraction of a percent, a fifth of the counts' standard error.
     assert chi_square(counts, expected * count / expected.sum()) > LEVEL
 
 
@@ -149,10 +149,10 @@ def test_cube_sides(library):
 TURNED = (0.9, 0.3, -0.4)
 
 
-# A texel at the picture's pole is a needle, which a map that is turned away from it sees only by chance.
+# A texel at the image's pole is a needle, which a rotated map resolves only by chance.
 @pytest.mark.parametrize("hot, rotation", [((5, 3), TURNED), ((16, 0), TURNED), ((0, 0), (0, 0, 0)), ((31, 63), (0, 0, 0))])
 def test_one_bright_texel_lights_a_plane(library, hot, rotation):
-    """E on a plane by the picture against the plain sum over all directions, for a sun of one texel."""
+    """E on a plane under a sun of one texel, against a sum over all directions."""
     texels = np.full((32, 64, 1), 0.05)
     texels[hot] = 3000.0
     world, images = sky(texels, rotation=rotation)
@@ -164,7 +164,7 @@ def test_one_bright_texel_lights_a_plane(library, hot, rotation):
         camera=tiny_scenes.pencil((1, 0, 1), pixels=16),
         samples=256,
     )
-    # Even steps of both angles, 16 a texel, also at the poles.
+    # Equal steps of both angles, 16 per texel, also at the poles.
     theta, phi = np.pi * (np.arange(512) + 0.5) / 512, 2 * np.pi * (np.arange(1024) + 0.5) / 1024
     theta, phi = (a.ravel() for a in np.meshgrid(theta, phi, indexing="ij"))
     directions = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=1)
@@ -173,13 +173,13 @@ def test_one_bright_texel_lights_a_plane(library, hot, rotation):
     want = np.mean(radiance[:, 0] * np.maximum(directions[:, 2], 0) * np.sin(theta)) * 2 * np.pi
     picture_of_it = tiny_scenes.render(floor)[..., 0].ravel()
     error = picture_of_it.std(ddof=1) / math.sqrt(len(picture_of_it))
-    # The plain sum is good to 1 % with so many midpoints on the texel's tent; the rest is noise at 4 standard errors.
+    # The sum's error is at most 1 % with that many midpoints on the texel; plus 4 standard errors of the picture.
     assert abs(picture_of_it.mean() - want) <= 0.01 * want + 4 * error
     assert error < 0.02 * want
 
 
 def test_hidden_world(library):
-    """Hidden from the camera it still lights, hidden from diffuse rays it does not."""
+    """A world hidden from the camera still lights diffuse surfaces; hidden from diffuse rays it does not."""
     floor = dict(instances=[tiny_scenes.plane()], materials=[tiny_scenes.lambert()], samples=64)
     for varying in (False, True):
         for hidden, seen, lit in ((0, 0.5, 0.5), (Ray.CAMERA, 0.0, 0.5), (Ray.DIFFUSE, 0.5, 0.0)):
@@ -195,7 +195,7 @@ def test_hidden_world(library):
 
 @pytest.mark.parametrize("integrator", [Integrator.PATH, Integrator.CLASSIC])
 def test_a_backdrop_takes_no_samples_from_lamps(library, integrator):
-    """What the camera alone sees lights nothing: surfaces have the bits, and the rays, of a scene without it."""
+    """A world visible only to the camera changes neither the bits nor the number of rays of surfaces."""
     lights = [Light("lamp", tiny_scenes.move(2, -1, 3), LightKind.POINT, emission=(20, 20, 20), radius=0.3)]
     camera = tiny_scenes.pencil((1, 0, 1), pixels=8)
     floor = dict(instances=[tiny_scenes.plane()], materials=[tiny_scenes.lambert()], lights=lights, samples=4, camera=camera)
@@ -207,14 +207,14 @@ def test_a_backdrop_takes_no_samples_from_lamps(library, integrator):
             found.append((session.read(Pass.COMBINED), session.statistics().shadow_rays))
     assert np.array_equal(found[0][0], found[1][0]) and found[0][0][..., :3].min() > 0.0
     assert found[0][1] == found[1][1] > 0
-    # By itself it is no light that could be chosen, either.
+    # Without other lights it is not sampled either.
     alone = scene(world, images, integrator=integrator, **{**floor, "lights": []})
     assert tiny_scenes.render(alone)[..., :3].max() == 0.0
 
 
 @pytest.mark.parametrize("integrator", Integrator)
 def test_a_world_that_asks_for_the_window(library, integrator):
-    """Cycles 5.0.1: every camera ray finds its own place in the picture."""
+    """Cycles 5.0.1: window coordinates of a camera ray are its position in the picture."""
     world = World(radiance=NodeRef(0), nodes=(Node(kind=NodeKind.COORDINATE, option=Coordinate.WINDOW),))
     middles = (np.arange(4) + 0.5) / 4
     x, y = np.meshgrid(middles, middles)
@@ -228,13 +228,13 @@ def test_a_world_that_asks_for_the_window(library, integrator):
             window=(0, 1, 0, 1) if kind == CameraKind.EQUIRECTANGULAR else (-1, 1, -1, 1),
         )
         got = tiny_scenes.render(scene(world, (), camera=camera, integrator=integrator, samples=1))
-        # One sample of PATH lies anywhere in its pixel, the others' in the middle; float knows directions to 1e-7.
+        # One sample of PATH lies anywhere in its pixel, that of other integrators at the centre; directions round at 1e-7.
         apart = 0.125 if integrator == Integrator.PATH else 2e-6
         assert np.allclose(got[..., 0], x, rtol=0, atol=apart + 1e-6) and np.allclose(got[..., 1], y, rtol=0, atol=apart + 1e-6)
 
 
-# The red and green that Cycles 5.0.1 shows at the pixel's middle for a mirror on the ground: parallel rays take the mirrored
-# direction for a point of the world.
+# Red and green of Cycles 5.0.1 at the pixel's centre for a mirror on the ground: with an orthographic camera the reflected
+# direction is used as a point in world space.
 @pytest.mark.parametrize("integrator", [Integrator.PATH, Integrator.CLASSIC])
 @pytest.mark.parametrize(
     "kind, seen", [(CameraKind.PERSPECTIVE, (0.338729, 1.646432)), (CameraKind.ORTHOGRAPHIC, (0.5, 0.620373))]
@@ -242,7 +242,7 @@ def test_a_world_that_asks_for_the_window(library, integrator):
 def test_a_mirror_asks_the_window_of_its_ray(library, integrator, kind, seen):
     world = World(radiance=NodeRef(0), nodes=(Node(kind=NodeKind.COORDINATE, option=Coordinate.WINDOW),))
     mirror = Material("mirror", lobes=(tiny_scenes.Lobe(tiny_scenes.LobeKind.MIRROR, color=(1, 1, 1)),))
-    # The picture is 2 wide at distance 1 over the focal length of 50 mm and the sensor of 36: 0.36; parallel rays 1.
+    # Half of the window's width: 36 mm / 50 mm / 2 for the perspective, 1 for the orthographic camera.
     half = 0.36 if kind == CameraKind.PERSPECTIVE else 1.0
     camera = Camera(
         matrix=tiny_scenes.look_at((1, -6, 3), (0, 0, 0.5)), kind=kind, width=4000, height=4000, window=(-half, half) * 2,
@@ -251,13 +251,13 @@ def test_a_mirror_asks_the_window_of_its_ray(library, integrator, kind, seen):
     snapshot = scene(
         world, (), instances=[tiny_scenes.plane()], materials=[mirror], camera=camera, integrator=integrator, max_bounces=1
     )
-    # The pixel reaches 1/8000 to either side, Cycles looked 1.3e-4 beside its middle; the mirrored place moves less than twice
-    # as fast.
+    # The pixel extends 1/8000 to each side, Cycles' sample was 1.3e-4 from its centre; the reflected position changes less than
+    # twice as fast.
     assert np.allclose(tiny_scenes.render(snapshot)[0, 0, :2], seen, rtol=0, atol=2 * (1 / 8000 + 1.3e-4))
 
 
 def test_a_texture_shines_as_it_looks(library):
-    """A square lamp, half of it dark by its texture, against the bright half alone."""
+    """A square emitter whose texture darkens one half, against an emitter of the bright half."""
     texels = np.zeros((1, 2, 1), np.float32)
     texels[0, 1] = 4.0
     shown = Node(
@@ -288,7 +288,7 @@ def test_a_texture_shines_as_it_looks(library):
 
 
 def _square(start):
-    """The unit square's part with u >= start, with that u as its texture coordinate."""
+    """Return the part u >= start of the unit square, with texture coordinates."""
     corners = [(start, 0), (1, 0), (1, 1), (start, 1)]
     return tiny_scenes.MeshData(
         "square",
@@ -316,7 +316,7 @@ def test_export(which, tmp_path):
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_a_sky_without_its_picture_is_still_sampled(which, tmp_path):
-    """Magenta, but no constant: Cycles samples as a lamp what has a texture, and its light passes what casts no shadow."""
+    """Such a sky is magenta but no constant: Cycles samples a textured sky as a light, also past objects without shadows."""
     got = blenders.run(which, tmp_path, "world_cases", "missing")
     for name in ("none", "lost"):
         varies, pictures, messages = got[name]
@@ -328,13 +328,13 @@ def test_a_sky_without_its_picture_is_magenta(library):
     world = World(radiance=NodeRef(1), nodes=(DIRECTION, Node(kind=NodeKind.ENVIRONMENT, inputs=(NodeRef(0),))))
     with Scene.upload(scene(world, ()), library) as uploaded:
         radiance, pdf = uploaded.world(even_directions(4))
-    # All directions are alike; a cell's area is told by two cosines, which near a pole differ by some thousandths of 2^-24.
+    # All directions are equal; a cell's area is a difference of two cosines, which is inaccurate near a pole.
     assert np.array_equal(radiance, np.tile(np.float32((1.0, 0.0, 1.0)), (32, 1))) and np.allclose(pdf, 0.25 / np.pi, rtol=1e-3)
 
 
 @pytest.mark.parametrize("which", [MODULE, PROGRAM])
 def test_a_cube_of_sequences_shows_their_first_files(which, tmp_path):
     got = blenders.run(which, tmp_path, "world_cases", "sequence")
-    # A tenth, two tenths ... of 255.
+    # 0.1, 0.2 ... of 255.
     assert got["red"] == [26, 51, 77, 102, 128, 153]
     assert len(got["messages"]) == 6 and all("is a sequence, of which only the file" in line for line in got["messages"])
