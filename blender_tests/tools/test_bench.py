@@ -134,20 +134,20 @@ def test_tables_replace_what_is_between_the_marks(tmp_path):
         "luxcore": {"title": "LuxCore", "version": None, "missing": "no wheel"},
     }
     figures = {**_figures(), "machine": machine, "threads": 2, "quick": False, "commit": "abc", "renderers": renderers}
-    figures["goals"] = [verdict.as_dict() for verdict in goals.judge(figures)]
     for scene in figures["scenes"].values():
         scene["title"] = "a scene"
     figures["scenes"]["alone"] = {"title": "no peers", "renderers": {"lancer": _record(1e6)}}
     page.update_tables(figures, tables, readme)
     text = tables.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
-    assert "| two: a scene | 2.00 | 2.00 | cannot |" in text and "| alone: no peers | 1.00 |  |  |" in text
-    assert "| other: a scene | 9.00 | another picture |  |" in text
-    assert "| samples/s against Cycles |" in text and "LuxCore (no wheel)" in text
-    # Users see what both of two renderers were measured at.
+    assert "LuxCore (no wheel)" in text and text.count("Commit abc.") == 1
+    assert "| samples/s against Cycles | 3.5x in geometric mean | 2.00x, least 1.00x (two), 2 scenes | missed |" in text
+    # A head, a line below it and eight ratios; scenes stand on the page alone.
+    assert sum(line.startswith("|") for line in text.splitlines()) == 10 and "a scene" not in text
+    # Users see the scenes on which both renderers were timed.
     text = readme.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
-    assert "| a scene | 4.00 | 1.00 |" in text and "Mitsuba" not in text and "alone" not in text
+    assert "| a scene | 4.00 | 1.00 |" in text and "Mitsuba" not in text and "no peers" not in text
 
 
 def test_roofline_is_the_clock_over_the_cycles_of_a_ray():

@@ -205,15 +205,21 @@ def test_the_page_has_every_row_and_asks_no_network(tmp_path):
     assert "http" not in text and json.loads((tmp_path / "corpus.json").read_text())["files"][0]["name"] == "a"
 
 
-def test_the_summary_tells_date_commit_counts_and_what_is_missing(tmp_path):
+def test_the_summary_has_date_commit_counts_and_means(tmp_path):
     path = tmp_path / "README.md"
     begin, end = marks("corpus", "corpus")
     path.write_text(f"before\n{begin}\nold\n{end}\nafter\n")
     page.update_tables(figures(), path)
     text = path.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
-    for words in ("2026-01-02, commit abc1234", "1 differs without a message", "| noise | 2 | 2 | 3 |", "`g`, `h`", "4.00x"):
+    for words in (
+        "2026-01-02, commit abc1234",
+        "1 differs without a message",
+        "| files with equal pictures | 1 | 2.00x | 0.50x | 4.00x | 4.00x |",
+    ):
         assert words in text, words
+    # The page has every file and what is missing; of the tables the README has one, of two rows.
+    assert sum(line.startswith("|") for line in text.splitlines()) == 4 and "noise" not in text
 
 
 def arguments(folder):

@@ -11,6 +11,11 @@ def judge(figures):
     return [row(figures) for row in _ROWS]
 
 
+def judge_against_others(figures):
+    """Return the first Verdicts of judge(): those of ratios to another renderer."""
+    return [row(figures) for row in _AGAINST_OTHERS]
+
+
 def shown(figures, key, lifelike=False):
     """(scene, our record, theirs) where both were timed on the same picture."""
     for name, scene in figures.get("scenes", {}).items():
@@ -208,7 +213,7 @@ def _leaks(figures):
     return replace(verdict, reached=None) if verdict.reached and rays < 1e8 else verdict
 
 
-_ROWS = (
+_AGAINST_OTHERS = (
     lambda f: _ratios("samples/s against Cycles", "3.5x in geometric mean", rate_ratios(f, "cycles"), 3.5, None),
     lambda f: _ratios(
         "samples/s against Mitsuba llvm_ad_rgb", "1x or more on every scene", rate_ratios(f, "mitsuba_llvm"), None, 1.0
@@ -228,13 +233,16 @@ _ROWS = (
         1.5,
     ),
     _rays,
+    lambda f: at_least(
+        "CLASSIC on 600 exact spheres against POV-Ray 3.7, rays/s", "5x", get(f, "classic", "times_faster"), 5.0
+    ),
+)
+_ROWS = (
+    *_AGAINST_OTHERS,
     _leaks,
     _exact,
     _build,
     _instances,
-    lambda f: at_least(
-        "CLASSIC on 600 exact spheres against POV-Ray 3.7, rays/s", "5x", get(f, "classic", "times_faster"), 5.0
-    ),
     _first_sample,
     _heavy_set_up,
     lambda f: at_most(

@@ -4,6 +4,8 @@ from tools.harness import page, verdicts
 from tools.harness.page import element, lines
 from tools.harness.places import README, TABLES
 
+from . import goals
+
 _STYLE = "img.picture { width: 192px }"
 # What is measured beside scenes and rays.
 _REST = ("first_look", "first_shown", "million", "instances", "build", "threads_scaling", "classic", "accelerators", "before")
@@ -144,38 +146,20 @@ def _roofline(figures):
 
 
 def update_tables(figures, tables=TABLES, readme=README):
-    """All figures for developers, samples/s beside Cycles for users."""
-    told = f"{describe(figures)} Commit {figures['commit']}."
-    goals = page.markdown(verdicts.HEAD, [verdicts.plain_row(goal) for goal in figures["goals"]])
-    everyone = [key for key, renderer in figures["renderers"].items() if not renderer.get("missing")]
-    page.put_between(tables, "bench", [told, _rates(figures, everyone), goals])
-    ours = [key for key in _USERS if key in everyone]
-    shown = {name: scene for name, scene in figures["scenes"].items() if _measured(scene, ours)}
-    told = f"{figures['machine']['processor']}, {figures['threads']} threads; commit {figures['commit']}."
-    page.put_between(readme, "speed", [_rates({**figures, "scenes": shown}, ours, named=False), told], program="bench")
+    """Ratios to other renderers for developers, samples/s beside Cycles for users."""
+    text = f"{describe(figures)} Commit {figures['commit']}."
+    rows = [verdicts.plain_row(verdict.as_dict()) for verdict in goals.judge_against_others(figures)]
+    page.put_between(tables, "bench", [text, page.markdown(verdicts.HEAD, rows)])
+    text = f"{figures['machine']['processor']}, {figures['threads']} threads; commit {figures['commit']}."
+    page.put_between(readme, "speed", [_rates(figures), text], program="bench")
 
 
-def _measured(scene, keys):
-    return all("samples_per_second" in scene["renderers"].get(key, {}) for key in keys)
-
-
-def _rates(figures, keys, named=True):
-    titles = [f"{figures['renderers'][key]['title']} {figures['renderers'][key]['version']}" for key in keys]
+def _rates(figures):
+    """The scenes on which both renderers of the table for users were timed."""
+    titles = [f"{figures['renderers'][key]['title']} {figures['renderers'][key]['version']}" for key in _USERS]
     rows = []
-    for name, scene in figures["scenes"].items():
-        failed = scene.get("failed")
-        cells = [""] * len(keys) if failed else [_rate(scene["renderers"].get(key)) for key in keys]
-        rows.append([f"{name}: " * named + (failed or scene["title"]), *cells])
+    for scene in figures["scenes"].values():
+        rates = [scene["renderers"].get(key, {}).get("samples_per_second") for key in _USERS]
+        if all(rates):
+            rows.append([scene["title"], *(f"{rate['median'] / 1e6:.2f}" for rate in rates)])
     return page.markdown(["million samples/s", *titles], rows)
-
-
-def _rate(record):
-    if record is None:
-        return ""
-    if "cannot" in record:
-        return "cannot"
-    if "failed" in record:
-        return "failed"
-    if not record.get("difference", {"same": True})["same"]:
-        return "another picture"
-    return f"{record['samples_per_second']['median'] / 1e6:.2f}" if "samples_per_second" in record else ""

@@ -8,7 +8,6 @@ from tools.harness.places import TABLES
 
 from . import verdicts
 
-_MOST_MISSING = 12
 _GROUPS = (("files with equal pictures", "equal"), ("all files", "all"))
 _STYLE = """
 h1 { font-size: 20px } button { margin-right: 6px }
@@ -119,25 +118,13 @@ def _megabytes(value):
 
 
 def summary(figures):
-    """The parts of the summary in a table of Markdown."""
+    """Yield machine, counts of verdicts and means, as Markdown."""
     found, machine, plan = figures["summary"], figures["machine"], figures["plan"]
     yield f"{figures['date']}, commit {figures['commit']}, Blender {figures['blender']}; {machine['processor']}, " + (
         f"{plan['threads']} threads, {plan['pixels']} pixels" + ("; a short run." if figures["quick"] else ".")
     )
     yield verdicts.sentence(found) + "."
     yield markdown(*_means(found["means"]))
-    untold = [row["name"] for row in figures["files"] if row["verdict"] in verdicts.FAULTS]
-    if untold:
-        yield "To be mended: " + ", ".join(f"`{name}`" for name in untold) + "."
-    if found["missing"]:
-        head = ["what is missing", "files made right", "in all", "files that have it"]
-        rows = [[_plain(row["key"]), row["completes"], row["total"], row["files"]] for row in found["missing"][:_MOST_MISSING]]
-        yield markdown(head, rows)
-
-
-def _plain(key):
-    """Of "node:Noise Texture" and "feature:volume"."""
-    return f"{key.removeprefix('node:')} node" if key.startswith("node:") else key.removeprefix("feature:")
 
 
 def update_tables(figures, path=TABLES):

@@ -115,6 +115,5 @@ def write(figures, folder):
 
 
 def update_tables(figures, folder, path=TABLES):
-    parts = [where(figures), markdown(*presets_table(figures)), markdown(*equal_table(figures))]
-    page.put_between(path, "tradeoff", parts)
+    page.put_between(path, "tradeoff", [where(figures), markdown(*presets_table(figures))])
     shutil.copyfile(folder / "tradeoff.png", ROOT / "scenes" / "tradeoff.png")
