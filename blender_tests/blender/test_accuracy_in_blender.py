@@ -1,4 +1,4 @@
-"""F12 and accuracy: what ends a render, what it tells, and that file, statistics and pass tell the same."""
+"""Accuracy of F12 renders: the end of a render, its reported error, and equal figures in file, statistics and pass."""
 
 import blenders
 import pytest
@@ -23,15 +23,14 @@ def test_the_error_is_told(case):
     assert 0.0 < numbers["error_low"] < numbers["error"] < numbers["error_high"] < 1.0
     assert numbers["error_cannot_exclude"] > 0.0
     assert numbers["ended_by"] == "samples" and numbers["samples"] == numbers["samples_most"] == 64
-    # Six digits are stamped.
+    # Metadata has six digits.
     for name in ("error", "error_low", "error_high", "error_cannot_exclude"):
         assert float(stamped[name]) == pytest.approx(numbers[name], rel=1e-5)
     assert stamped["samples"] == "64" and stamped["seed"] == "0" and stamped["ended_by"] == "samples"
     assert "max_bounces 10" in stamped["settings"] and "lambert" in stamped["features"] and stamped["version"]
     assert float(stamped["seconds"]) == pytest.approx(numbers["seconds"], abs=1e-3)
     assert got["layers"] == ["ViewLayer"]
-    # The pass shares the same variances over windows of another kind: the figure is the same within the distance that the
-    # interval leaves between its two kinds of sharing.
+    # The pass averages the same variances over other windows: its figure is the same within 1.5 times the interval.
     assert numbers["error_low"] / 1.5 < got["by bars"] < numbers["error_high"] * 1.5
     assert got["least bar"] >= 0.0
     assert "Lancer: error " in got["console"] and "with 95 % confidence between" in got["console"]

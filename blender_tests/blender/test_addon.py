@@ -1,4 +1,4 @@
-"""The add-on as a guest: it comes and goes without a trace, its panels draw, its settings are obeyed, it fails in words."""
+"""The add-on in Blender: registration leaves no trace, panels draw, settings have an effect, errors have messages."""
 
 import json
 import os
@@ -32,7 +32,7 @@ def case(which, tmp_path):
 
 @both
 def test_blender_ends_with_the_engine_registered(which, tmp_path):
-    """Blender as a module is known to hang or crash at exit over a registered engine: the minutes allowed are a hang."""
+    """Blender as a module can hang or crash at exit while an engine is registered; a timeout of minutes detects a hang."""
     picture = str(tmp_path / "picture.exr")
     script = NEVER_UNREGISTERED.format(root=ROOT, here=os.path.join(HERE, "blender", "in_blender"), picture=picture)
     if which == MODULE:
@@ -61,7 +61,7 @@ def test_unregister_leaves_nothing(case):
 
 @both
 def test_without_numpy(case):
-    """One sentence that says what to install; nothing stays half registered."""
+    """The error names the package to install, and nothing stays registered."""
     got = case("without_numpy")
     assert "numpy" in got["error"] and "install" in got["error"] and "\n" not in got["error"]
     assert (got["without"]["properties"], got["without"]["panels"], got["without"]["types"]) == ([], [], [])
@@ -71,7 +71,7 @@ def test_without_numpy(case):
 @both
 @pytest.mark.parametrize("kind, word", [("absent", "missing"), ("truncated", "cut short"), ("text", "not a shared library")])
 def test_broken_library(which, kind, word, tmp_path):
-    """F12 says what is wrong and what to do. The program in the background may also end with exit code 1."""
+    """F12 reports the fault and the remedy. In background mode the program may also end with exit code 1."""
     copy = tmp_path / "broken" / "addon"
     shutil.copytree(os.path.join(ROOT, "addon"), copy, ignore=shutil.ignore_patterns("__pycache__"))
     library = copy / "lib" / "liblancer.so"
@@ -93,7 +93,7 @@ def test_panels(case):
     assert got["errors"] == [] and got["foreign"] == []
     shown = got["shown"]
     assert "LANCER_RENDER_PT_sampling" in shown and all(shown.values())
-    # Panels about a thing hide where there is none; the others never do.
+    # Only panels of an object, material, light or world hide, if there is none.
     about = {name for name in shown if name.split("_PT_")[0].endswith(("OBJECT", "MATERIAL", "DATA", "WORLD"))}
     assert set(got["hidden"]) == about
     uses = shown["LANCER_RENDER_PT_uses"]
@@ -113,7 +113,7 @@ def test_panels(case):
     assert told == ["Draft", "Good", "Final", "As set", "Classic, 1 sample"]
     old = "Measured before the last changes"
     assert old not in sampling["quality"] and old in sampling["quality of other settings"]
-    # What users look for is there.
+    # The main settings are shown.
     assert {"integrator", "quality", "target_error", "samples", "time_limit"} <= set(sampling["plain"])
     for panel in ("LANCER_RENDER_PT_messages", "LANCER_RENDER_PT_viewport_messages"):
         assert shown[panel]["plain"] != shown[panel]["rendered"]
@@ -125,7 +125,7 @@ def test_panels(case):
     assert "size_y" in lamp["RECTANGLE"] and "size_y" not in lamp["DISK"]
 
 
-# Of each tab some panels that belong there, in their order, and what has no effect.
+# Some panels of each tab in their order, Blender's own panels, and words of panels without effect.
 EXPECTED = {
     "render": [
         "sampling",
@@ -158,7 +158,7 @@ WITHOUT_EFFECT = ("stereoscopy", "output_views", "freestyle", "linking", "motion
 
 @both
 def test_tabs(case):
-    """Panels stand in Cycles' order, and each does something."""
+    """Panels appear in Cycles' order, without panels that have no effect."""
     got = case("tabs", where="panel_cases")
     got.pop("console")
     for tab, names in EXPECTED.items():
@@ -173,7 +173,7 @@ def test_tabs(case):
 
 @both
 def test_a_material_is_read_once_for_many_drawings(case):
-    """The panel tells what its nodes lose, reads them anew after a change, and leaves no handler where nothing is drawn."""
+    """The panel lists what a material's nodes lose, reads them again after a change, and leaves no handler if not drawn."""
     got = case("cached", where="panel_cases")
     assert got["first"] == got["again"] == ["Diffuse Kd: 0.8 0.2 0.1"]
     (loss,) = [line for line in got["lossy"] if line not in got["first"] and "Wireframe" in line]
@@ -183,7 +183,7 @@ def test_a_material_is_read_once_for_many_drawings(case):
 
 @both
 def test_time_limit(case):
-    """A million samples would take hours: the limit ended the render, and what was done is a picture."""
+    """The time limit ends a render of a million samples, with a valid picture."""
     got = case("time_limit")
     assert 0 < got["samples"] < 10**6 and got["mean"] > 0.05
 
@@ -223,20 +223,20 @@ def test_clamp_indirect(case):
     assert -rounding <= got["least added"] and 0.0 < got["most added"] <= limit + rounding
 
 
-# One arena and nothing kept for later, for glibc's allocator (the module) and jemalloc (Debian's Blender): what stays is held.
+# One arena and no caches in glibc's allocator (the module) and jemalloc (Debian's Blender), so that growth is a leak.
 FRUGAL = {"MALLOC_ARENA_MAX": "1", "MALLOC_CONF": "narenas:1,tcache:false,dirty_decay_ms:0,muzzy_decay_ms:0"}
 
 
 @both
 def test_many_renders_keep_no_memory(which, tmp_path):
-    """Were a scene kept after its render, 15 renders would keep 15 times its bytes; half of one is for the allocator."""
+    """A leak of scenes would keep 15 times the memory; the limit, half of one scene, allows for the allocator."""
     got = blenders.run(which, tmp_path, "addon_cases", "many_renders", **FRUGAL)
     resident = got["resident"]
     assert got["triangles"] > 60_000 and len(resident) == 20
     assert resident[19] - resident[4] <= got["held"] / 2, (got["held"], resident)
 
 
-# A field of squares n by n, and the step of the road to a picture at which there is no more memory.
+# Renders a grid of n x n vertices and limits the memory at one step of the render.
 OUT_OF_MEMORY = """
 import dataclasses, json, os, resource, sys
 sys.path[:0] = [{root!r} + "/addon", {here!r}]
@@ -288,13 +288,13 @@ print(json.dumps(result))
 
 @pytest.mark.parametrize(
     "step, n, extra",
-    # Megabytes that are left: fewer than the mesh takes (144), the build of half a million triangles,
-    # the stack of the thread that builds it, or the film (6400).
+    # Megabytes left: fewer than needed by the mesh (144), the build of half a million triangles,
+    # the stack of the building thread, or the film (6400).
     [("fill", 2000, 64), ("commit", 500, 24), ("commit", 500, 8), ("film", 10, 256)]
     + [("late", 10, left) for left in range(24, 43, 3)],
 )
 def test_out_of_memory(step, n, extra):
-    """Too large a scene is an error with words; the process lives and renders the same scene when there is memory again."""
+    """Lack of memory is an error with a message; afterwards the process renders the same scene with enough memory."""
     script = OUT_OF_MEMORY.format(root=ROOT, here=os.path.join(HERE, "helpers"))
     command = [sys.executable, "-c", script, step, str(n), str(extra)]
     done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=300)

@@ -1,10 +1,10 @@
-"""Wrong scenes inside Blender: always a picture or a clear refusal, always words that name the thing, never a crash."""
+"""Invalid scenes inside Blender give a picture or an error, with messages that name the object, and never a crash."""
 
 import blenders
 import pytest
 from blenders import MODULE, PROGRAM
 
-# case -> words that one message must hold (None: nothing has to be said)
+# Case -> words that one message must contain (None: no message required).
 PICTURES = {
     "nan_vertices": ["Cube"],
     "infinite_vertices": ["Cube"],
@@ -30,7 +30,7 @@ PICTURES = {
     "no_world_no_light": None,
     "text_metaballs_and_curves": None,
 }
-# One list of words for each message that `unsupported_features` must give, and no other message may come.
+# A list of words for each message of `unsupported_features`; there must be no other messages.
 UNSUPPORTED = [
     ["object 'Cube'", "hair", "'Fluff'"],
     ["view layer", "Vector", "Cryptomatte Object", "'Rust'"],
@@ -66,7 +66,7 @@ def test_pictures_in_blender_3(name, tmp_path):
     "name, word", {"no_camera": "camera", "camera_is_no_camera": "camera", "smallest_picture": "small"}.items()
 )
 def test_refusals(which, name, word, tmp_path):
-    """Python gets the sentence as an exception; the program in the background may also end with exit code 1."""
+    """Python gets the message as an exception; in background mode the program may also end with exit code 1."""
     code, said, value = blenders.attempt(which, tmp_path, "bad_cases", name)
     assert code in ((0,) if which == MODULE else (0, 1)), said[-2000:]
     told = value["error"] if value else said
@@ -81,7 +81,7 @@ def test_unsupported_features_are_told(which, expected, tmp_path):
     for words in expected:
         assert any(all(word in line for word in words) for line in got["messages"]), (words, got["messages"])
     assert len(got["messages"]) == len(expected), got["messages"]
-    # What is rendered is not among the missing passes.
+    # Rendered passes are not reported as missing.
     rendered = ("Depth", " Z", "Mist", "Diffuse")
     assert not any(name in line for line in got["messages"] for name in rendered), got["messages"]
 
@@ -90,6 +90,6 @@ def test_unsupported_features_are_told(which, expected, tmp_path):
 def test_the_factory_scene_warns_of_nothing(which, tmp_path):
     got = blenders.run(which, tmp_path, "bad_cases", "factory_scene")
     assert got["error"] == "" and got["finite"] and got["mean"] > 0.0
-    # That Cycles' light paths are others is a hint in the panel.
+    # Cycles' different default light paths are a hint in the panel.
     (line,) = got["messages"]
     assert "Light Paths" in line and "Warning" not in got["console"], got["console"]

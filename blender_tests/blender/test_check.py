@@ -1,4 +1,4 @@
-"""The check before a render: materials and lights that hurt and those that do not, and the list that is told."""
+"""Checks of materials and lights with and without faults, and the list of findings."""
 
 import dataclasses
 
@@ -77,21 +77,21 @@ def test_indices_of_refraction():
     invisible, thin = [("closures", "WASTE")], [("closures", "HINT")]
     for kind in (LobeKind.GLASS, LobeKind.DIELECTRIC, LobeKind.REFRACTION):
         assert found(shown(of(kind, color=(1, 1, 1), ior=1.0))) == invisible
-        # Tinted it is seen.
+        # Tinted glass is visible.
         assert found(shown(of(kind, color=(1, 0.5, 1), ior=1.0))) == []
         assert found(shown(of(kind, color=(1, 1, 1), ior=1.01))) == []
         assert found(shown(of(kind, ior=0.75))) == thin and found(shown(of(kind, ior=0.75)), thorough=False) == []
-    # Without transmission an index of 1 is how one takes a highlight away.
+    # Without transmission an index of 1 is a common way to remove the highlight.
     plain = Principled(ior=1.0, base_color=(1.0,) * 3)
     assert found(shown(of(LobeKind.PRINCIPLED, principled=plain))) == []
     assert found(shown(of(LobeKind.PRINCIPLED, principled=dataclasses.replace(plain, transmission=1.0)))) == invisible
-    # Glass that bends nothing may be open.
+    # Glass without refraction may be open.
     snapshot = scene([placed(0, 0)], [sheet()], [of(LobeKind.GLASS, color=(1, 0.5, 1), ior=1.0)])
     assert found(snapshot) == []
 
 
 def test_pictures_outside_the_model():
-    """What a picture holds counts, where nodes bring it."""
+    """Values of images count after the nodes between image and socket."""
     texels = np.linspace(0.0, 1.0, 64, dtype=np.float32).reshape(8, 8, 1)
 
     def driven(factor, **fields):
@@ -116,7 +116,7 @@ def test_pictures_outside_the_model():
     assert found(shown(painted, [Image("p", veiled, alpha=AlphaMode.STRAIGHT)])) == []
     glass = {"kind": LobeKind.GLASS, "color": (0.9,) * 3, "roughness": 0.0}
     assert found(driven(-1.0, ior=NodeRef(1), **glass)) == [("closures", "WRONG")]
-    # What depends on the place is not known, and not told.
+    # Values that depend on the shading point are unknown and not reported.
     nodes = (Node(NodeKind.COORDINATE), Node(NodeKind.MATH, option=MathOperation.MULTIPLY, inputs=(NodeRef(0), 9.0)))
     assert found(shown(Material("m", lobes=(Lobe(LobeKind.GLOSSY, roughness=NodeRef(1)),), nodes=nodes))) == []
 
@@ -125,10 +125,10 @@ def test_light_that_grows_matters_to_paths():
     bright = of(LobeKind.LAMBERT, color=(2.0,) * 3)
     for integrator in (Integrator.CLASSIC, Integrator.NORMALS):
         assert found(shown(bright, integrator=integrator)) == []
-    # White paint keeps paths alive where they may go on for long.
+    # White paint is a hint if the limit of bounces is high.
     white = of(LobeKind.LAMBERT, color=(1.0,) * 3)
     assert found(shown(white, max_bounces=12)) == [] and found(shown(white, max_bounces=1024)) == [("closures", "HINT")]
-    # What no object has does not matter.
+    # Unused materials are not checked.
     assert found(scene([placed(0, 0)], [ball()], [GREY, bright])) == []
 
 
@@ -136,7 +136,7 @@ def test_nothing_gives_light():
     dark = {"lights": (), "world": (0.0, 0.0, 0.0)}
     assert found(one(ball(), **dark)) == [("lights", "WRONG")]
     assert found(one(ball(), **dark, settings=Settings(integrator=Integrator.NORMALS))) == []
-    # Who wants a mask or depths may do without.
+    # A scene for masks or depth needs no light.
     assert found(one(ball(), **dark, settings=Settings(passes=(Pass.COMBINED, Pass.MIST)))) == []
     assert found(one(ball(), GLOW_, **dark)) == [] and found(one(ball(), lights=(), world=(0.0, 0.1, 0.0))) == []
 
@@ -147,12 +147,12 @@ def test_lamps_that_give_nothing():
     for lamp in (black, weak):
         finding = only(one(ball(), lights=(LAMP, lamp)))
         assert (finding.kind, finding.severity, finding.light) == ("lights", Severity.HINT, lamp.name)
-        # It may be animated: nobody is told unasked.
+        # F12 does not report it, since the lamp may be animated.
         assert found(one(ball(), lights=(LAMP, lamp)), thorough=False) == []
     # The weakest that is no fault is 2^-40 of the strongest: 1.8e-11 of 20.
     for level in (1e-3, 2e-11):
         assert found(one(ball(), lights=(LAMP, dataclasses.replace(LAMP, emission=(level,) * 3)))) == []
-    # A sharp shadow is nobody's mistake.
+    # A lamp without radius is no fault.
     assert found(one(ball(), lights=(dataclasses.replace(LAMP, radius=0.0),))) == []
 
 
@@ -187,7 +187,7 @@ def test_a_mesh_shared_by_many_is_told_once():
 
 
 def test_many_meshes_in_one_place_are_quick_to_tell_apart():
-    """Objects whose transforms were applied all have one matrix: they are compared by what tells them apart at once."""
+    """Objects with applied transforms share one matrix: a cheap key must avoid comparing all pairs."""
     meshes = [sheet(1.0, f"sheet {number}", (number, 0, 0)) for number in range(300)]
     subject = Subject(scene([placed(number, GREY_, name=str(number)) for number in range(300)], meshes))
     asked = []
@@ -201,7 +201,7 @@ def test_many_meshes_in_one_place_are_quick_to_tell_apart():
 
 def test_empty_scenes():
     assert found(scene([])) == [] and found(scene([placed(0)], [sheet(0.0)])) == []
-    # So flat that no inverse is left, with a determinant that rounding makes.
+    # Singular matrices whose determinant is only rounding.
     for seed in range(20):
         first, second, share = np.random.default_rng(seed).normal(size=(3, 3))
         flat = np.eye(4)

@@ -1,4 +1,4 @@
-"""The check before a render: faces in one place hurt where both are seen, or light goes through; all else is harmless."""
+"""Checks of coincident faces: a fault if both are visible or light passes through them; otherwise harmless."""
 
 import dataclasses
 
@@ -47,10 +47,10 @@ def test_two_planes_at_one_height(thorough):
     assert finding.kind == "coincident" and finding.severity == Severity.WRONG
     assert {finding.object, *finding.what.split("'")} >= {"one", "two"}
     assert abs(finding.place[2]) < 1e-6 and max(map(abs, finding.place)) <= 2.0
-    # Wherever they face.
+    # Whatever their direction.
     for matrix in (rotate_x(np.pi), move(1, 1, 0)):
         assert found(two(matrix=matrix), thorough) == COINCIDENT
-    # A step of the place apart is no distance; many steps are.
+    # A distance of one step of single precision counts as 0, many steps do not.
     assert found(two(matrix=move(0.1, 0, 1e-9)), thorough) == COINCIDENT
     for height in (1e-4, 1e-5, -1e-5):
         assert found(two(matrix=move(0.1, 0, height)), thorough) == []
@@ -61,7 +61,7 @@ def test_two_planes_at_one_height(thorough):
     "turn", [np.eye(4), rotate_x(0.5), rotate_x(np.pi / 6) @ rotate_y(np.pi / 3), move(300, -20, 7) @ rotate_y(1.0)]
 )
 def test_planes_in_any_position(turn):
-    """The second stands where the first does, by another way: its matrix and its mesh are rounded, as Blender does."""
+    """Two planes in the same place by different matrices and meshes, rounded as in Blender."""
     other = sheet(2.0, shift=(0.25, 0.5, 0.0))
     matrix = (turn @ move(0.3, -0.2, 0.0)).astype(np.float32).astype(float)
     instances = [placed(0, GREY_, turn.astype(np.float32).astype(float), "one"), placed(1, RED_, matrix, "two")]
@@ -75,7 +75,7 @@ def test_planes_in_any_position(turn):
 
 @pytest.mark.parametrize("thorough", [True, False])
 def test_planes_that_look_alike(thorough):
-    """Lancer shows them as one, Cycles has each shadow the other: told where the picture shows enough of it."""
+    """Lancer renders one of them, in Cycles they shadow each other: reported if they cover enough of the picture."""
     finding = only(two(GREY_, GREY_), thorough)
     assert finding.key and finding.severity == Severity.DIFFERENT and "Cycles would show them darker" in finding.what
     assert {finding.object, *finding.what.split("'")} >= {"one", "two"}
@@ -88,7 +88,7 @@ def test_planes_that_look_alike(thorough):
     assert found(one(MeshData("both", *both), GREY_), thorough) == DARKER
     lifted = small.positions + np.float32((0.0, 0.0, 1e-4))
     assert found(one(MeshData("both", np.concatenate((large.positions, lifted)), both[1]), GREY_), thorough) == []
-    # Of two such places in one mesh what the picture shows is told, whichever is the higher.
+    # Of two such places in one mesh the visible one is reported.
     for height in (-1.0, 1.0):
         far = both[0] + np.float32((0.0, 900.0, height))
         pairs = MeshData("pairs", np.concatenate((both[0], far)), np.concatenate((both[1], both[1] + 8)))
@@ -99,7 +99,7 @@ def test_planes_that_look_alike(thorough):
     assert found(scene(tops, [box()]), thorough) == []
     tops[1] = placed(0, GREY_, move(0.3, 0.2, 0.0), name="two")
     assert found(scene(tops, [box()]), thorough) == DARKER
-    # A body on another of its kind hides where they touch, and so does a floor.
+    # Faces that touch between two bodies, or a body and a floor, are hidden.
     tower = [placed(0, GREY_, name="one"), placed(0, GREY_, move(0.2, 0.1, 1.0), name="two")]
     assert found(scene(tower, [box()]), thorough) == []
     assert found(scene([placed(0, GREY_), placed(1, GREY_, name="floor")], [box(shift=(0, 0, 0.5)), sheet()]), thorough) == []
@@ -125,7 +125,7 @@ def test_copies_that_cycles_shows_darker(thorough):
         double = dataclasses.replace(board, triangles=np.concatenate((board.triangles, board.triangles[:, turn])))
         finding = only(one(double, GREY_), thorough)
         assert finding.key and finding.severity == Severity.DIFFERENT and "Cycles would show them darker" in finding.what
-    # Light that counts twice, or red that fights grey, is another matter.
+    # Different materials in one plane are a fault in Lancer too.
     assert "Cycles" not in only(two(GREY_, RED_), thorough).what
 
 
@@ -143,7 +143,7 @@ def test_planes_that_hurt_nobody(thorough):
 
 
 def test_parts_of_one_mesh():
-    """A chessboard of two materials in one mesh is whole; a face over another is not."""
+    """A chessboard of two materials in one mesh is no fault; a face over another is."""
     board = sheet(parts=8)
     slots = np.array([(x + y) % 2 for y in range(8) for x in range(8)] * 2, np.uint16)
     assert found(one(dataclasses.replace(board, material_slots=slots), (GREY_, RED_))) == []
@@ -156,19 +156,19 @@ def test_parts_of_one_mesh():
 @pytest.mark.parametrize("floor", [placed(1, RED_, name="floor"), exact("PLANE", RED_, name="floor")])
 @pytest.mark.parametrize("thorough", [True, False])
 def test_box_on_a_floor(floor, thorough):
-    """From above a box hides where it stands; from below, through the floor's back, both would be seen."""
+    """From above a box hides the faces that touch; from below, through the floor's back, both are visible."""
     meshes = [box(shift=(0, 0, 0.5)), sheet()]
     assert found(scene([placed(0, GREY_), floor], meshes), thorough) == []
     below = dataclasses.replace(EYE, matrix=look_at((1.0, -6.0, -3.0), (0, 0, 0)))
     assert found(scene([placed(0, GREY_), floor], meshes, camera=below), thorough) == COINCIDENT
-    # Glass touches what it stands on, whoever looks: as if glued, which may be meant.
+    # Glass that touches an opaque surface is a hint from any view, since it may be intended.
     assert found(scene([placed(0, GLASS_), floor], meshes), thorough) == (TOUCHING if thorough else [])
     for gap in (1e-5, -1e-5):
         assert found(scene([placed(0, GLASS_, move(0, 0, gap)), floor], meshes), thorough) == []
 
 
 def test_glass_that_rests_or_fights():
-    """What glass stands on is there in its stead; flush with an opaque body's face, or against other glass, it is lost."""
+    """Glass on an opaque surface is a hint; glass flush with an opaque face, or against other glass, is a fault."""
     ground = box(shift=(0, 0, -0.5), name="ground")
     for other, expected in ((GREY_, TOUCHING), (VEIL_, COINCIDENT), (GLASS_, COINCIDENT)):
         assert found(scene([placed(0, GLASS_), placed(1, other)], [box(shift=(0, 0, 0.5)), ground])) == expected
@@ -177,7 +177,7 @@ def test_glass_that_rests_or_fights():
 
 
 def test_directions_at_the_border_of_cells():
-    """Directions are sorted into cells of 1/64: those that rounding puts on either hand of a border meet all the same."""
+    """Directions are grouped by cells of 1/64: pairs that rounding places on both sides of a border are found too."""
     for part in range(1, 32, 2):
         turn = rotate_y(np.arcsin(0.5 * part / 64))
         first, second = (turn @ matrix for matrix in (np.eye(4), move(0.3, 0.1, 0) @ rotate_y(1e-8)))
@@ -185,7 +185,7 @@ def test_directions_at_the_border_of_cells():
 
 
 def test_flat_parts():
-    """Parallel parts at two heights are two, and what is curved has none."""
+    """Parallel parts at two heights are two parts, and curved surfaces have none."""
     low, high = sheet(parts=4), sheet(parts=4, shift=(0, 0, 0.1))
     both = MeshData(
         "both", np.concatenate((low.positions, high.positions)), np.concatenate((low.triangles, high.triangles + 25))
@@ -195,7 +195,7 @@ def test_flat_parts():
 
 
 def test_boxes_side_by_side():
-    # Of glass they touch, though they are alike.
+    # Glass boxes touch, even with the same material.
     assert found(scene([placed(0, GLASS_, move(x, 0, 0), f"box {x}") for x in (0, 1)], [box()])) == COINCIDENT
     row = [placed(0, number % 2, move(number, 0, 0), f"box {number}") for number in range(6)]
     assert found(scene(row, [box()])) == []
@@ -219,7 +219,7 @@ def test_exact_shapes_in_one_plane():
 
 @pytest.mark.parametrize("thorough", [True, False])
 def test_copies_in_place(thorough):
-    """A copy that was not moved costs time; where light passes it costs the look."""
+    """A copy in the same place is darker in Cycles; with transparent or emitting materials it is a fault."""
     snapshot = scene([placed(0, GREY_, move(1, 2, 3), "one"), placed(0, GREY_, move(1, 2, 3), "two")], [ball()])
     finding = only(snapshot, thorough)
     assert (finding.kind, finding.severity, finding.object) == (
@@ -233,7 +233,7 @@ def test_copies_in_place(thorough):
     for material in (VEIL_, GLOW_):
         assert found(scene([placed(0, material), placed(0, material)], [ball()]), thorough) == COINCIDENT
     assert found(scene([placed(0, GREY_), placed(0, RED_)], [ball()]), thorough) == COINCIDENT
-    # In one place, but not the same: other meshes, other rays.
+    # Different meshes or ray visibility in one place are no copies.
     assert found(scene([placed(0, GREY_), placed(1, GREY_)], [ball(16), ball(20)]), thorough) == []
     seen, unseen = placed(0, GREY_), placed(0, RED_, hidden_from=Ray.CAMERA)
     assert found(scene([seen, unseen], [ball()]), thorough) == []
@@ -246,13 +246,13 @@ def test_faces_twice():
     twice = box(faces=np.concatenate((faces, np.roll(faces, 1, axis=1))))
     assert found(one(twice)) == [("coincident", "DIFFERENT")]
     assert only(one(twice, VEIL_)).faces == 12 and found(one(twice, VEIL_)) == COINCIDENT
-    # So does a back for every face, which otherwise hurts nobody who is opaque.
+    # A second face for every face's back counts too.
     backed = box(faces=np.concatenate((faces, faces[:, ::-1])))
     assert found(one(backed)) == DARKER and found(one(backed, VEIL_)) == COINCIDENT and found(one(backed, GLASS_)) == COINCIDENT
     slots = np.repeat([0, 1], 12).astype(np.uint16)
     assert found(one(dataclasses.replace(twice, material_slots=slots), (GREY_, RED_))) == COINCIDENT
     assert found(one(dataclasses.replace(twice, material_slots=slots), (GREY_, GREY_))) == [("coincident", "DIFFERENT")]
-    # What the picture hardly shows is a hint; points without area are nothing.
+    # Faces that cover little of the picture are a hint; faces without area are ignored.
     some = one(box(faces=[*BOX_FACES, BOX_FACES[0]]))
     far = dataclasses.replace(some, camera=dataclasses.replace(EYE, matrix=look_at((1.0, -600.0, 300.0), (0, 0, 0))))
     assert found(some) == found(some, thorough=False) == DARKER
@@ -262,7 +262,7 @@ def test_faces_twice():
 
 @pytest.mark.parametrize("thorough", [True, False])
 def test_small_faces_of_a_mesh_on_instances_of_another(thorough):
-    """Leaves that were made real while the instances stayed: each is a thousandth of its mesh, all are told in one line."""
+    """Leaves realised as a mesh while their instances remain: small parts of the mesh, reported in one line."""
     rng = np.random.default_rng(1)
     turns = [move(*rng.uniform(-2, 2, 3)) @ rotate_x(3 * rng.random()) @ rotate_y(3 * rng.random()) for _ in range(200)]
     leaf = sheet(0.2, name="leaf")

@@ -1,4 +1,4 @@
-"""The check before a render: glass that is no body, normals that point away, geometry lost in rounding; and near misses."""
+"""Checks of geometry: open glass, normals that point away, geometry lost in rounding; and near misses."""
 
 import dataclasses
 
@@ -36,7 +36,7 @@ def test_open_glass(material, thorough):
     assert (finding.kind, finding.severity) == ("glass", Severity.WRONG)
     assert "4 edges" in finding.what and "Solidify" in finding.advice
     assert (finding.object, finding.mesh, finding.material) == ("thing", "box", ("glass", "clear")[material == CLEAR_])
-    # The place is on the body, where it stands in the world.
+    # The reported place is on the body, in world space.
     assert np.abs(np.subtract(finding.place, (5, 0, 0))).max() <= 0.5
 
 
@@ -44,7 +44,7 @@ def test_open_glass(material, thorough):
 def test_glass_that_is_whole(thorough):
     assert found(one(box(), GLASS_), thorough) == []
     assert found(one(ball(), GLASS_, scale(1, -1, 1)), thorough) == []
-    # Faces that share places, but no vertices, as files of other programs have them.
+    # Faces with equal positions but separate vertices, as in imported files.
     split = box()
     split = dataclasses.replace(
         split, positions=split.positions[split.triangles].reshape(-1, 3), triangles=np.arange(36).reshape(-1, 3)
@@ -54,15 +54,15 @@ def test_glass_that_is_whole(thorough):
     signed = split.positions - 0.5
     signed[::2][signed[::2] == 0.0] = -0.0
     assert found(one(dataclasses.replace(split, positions=signed), GLASS_), thorough) == []
-    # An opaque thing may be open, and glass without refraction.
+    # Opaque objects may be open, and so may glass without refraction.
     assert found(one(box(faces=BOX_FACES[2:]), GREY_), thorough) == []
-    # What an opaque part closes is closed.
+    # Glass closed by an opaque part is closed.
     slots = np.array([0, 0] + [1] * 10, np.uint16)
     assert found(one(box(material_slots=slots), (GREY_, GLASS_)), thorough) == []
 
 
 def test_glass_that_ends_in_an_opaque_part():
-    """Only edges of glass count: here those of the opaque part are open."""
+    """Only open edges of glass count, not those of opaque parts."""
     faces = BOX_FACES[2:]
     slots = np.zeros(10, np.uint16)
     # A triangle away from the hole, then one beside it.
@@ -86,7 +86,7 @@ def test_wall_within_glass():
 
 
 def test_shells_of_glass():
-    """Bodies that touch along an edge are closed each; a cavity faces its air, which lies within the body."""
+    """Bodies that touch along an edge are each closed; a cavity inside a body has inward faces."""
 
     def joined(*meshes):
         starts = np.cumsum([0] + [len(mesh.positions) for mesh in meshes])
@@ -96,7 +96,7 @@ def test_shells_of_glass():
     inner = box(faces=np.array(BOX_FACES)[:, ::-1], size=0.5)
     assert found(one(joined(box(), inner), GLASS_)) == []
     assert found(one(joined(box(), box(shift=(1, 1, 0))), GLASS_)) == []
-    # Beside it the same body is inside out, though all of the mesh together is not.
+    # The same body outside is inside out, although the volume of the whole mesh is positive.
     finding = only(one(joined(box(), dataclasses.replace(inner, positions=inner.positions + np.float32(2))), GLASS_))
     assert "inside out: 12 faces" in finding.what and min(finding.place) > 1.0
 
@@ -105,7 +105,7 @@ def test_shells_of_glass():
 def test_glass_inside_out(thorough):
     assert found(one(ball(turned=True), GLASS_), thorough) == GLASS_WRONG
     assert found(one(ball(turned=True), GREY_), thorough) == []
-    # An infinitely thin body has no outside: it is nothing that could be turned.
+    # A sheet has no outside.
     assert found(one(sheet(), GREY_), thorough) == []
 
 
@@ -130,18 +130,18 @@ def test_custom_normals_that_point_away():
 
 
 def test_normals_that_lean():
-    """Up to upright is how smooth shading works; beyond it light breaks off."""
+    """Smooth normals may lean up to 90 degrees; beyond that light ends abruptly."""
     flat = sheet()
     for angle, kind in ((80, []), (89, []), (100, [("normals", "WRONG")])):
         normal = (np.sin(np.radians(angle)), 0.0, np.cos(np.radians(angle)))
         assert found(one(dataclasses.replace(flat, normals=np.tile(normal, (4, 1))))) == kind, angle
-    # Nor do all of them reversed help.
+    # Normals that are all reversed are a fault too.
     reversed_ = dataclasses.replace(ball(), normals=-ball().normals)
     assert found(one(reversed_)) == [("normals", "WRONG")]
-    # Where normals are not used they cannot hurt.
+    # Unused normals are no fault.
     assert found(scene([placed(0, shading=Shading.FLAT)], [reversed_])) == []
     assert found(one(reversed_, GLOW_)) == []
-    # Neither zeros nor a cube without hard edges point away.
+    # Zero normals and those of a smooth cube do not point away.
     assert found(one(dataclasses.replace(ball(), normals=0.0 * ball().normals))) == []
     assert found(one(box(normals=box().positions))) == []
 
@@ -154,11 +154,11 @@ def test_large_flat_faces_shaded_as_round(thorough):
     # Corners lean by the angle between a face and the diagonal.
     assert (finding.kind, finding.severity, finding.faces) == ("normals", Severity.HINT, 12) and "by 55 degrees" in finding.what
     assert finding.key
-    # What is round has no flat faces; flat shading shows them as they are; true points of light do not ask.
+    # No finding for round meshes, flat shading, and point lamps.
     assert found(one(ball(), lights=(panel,)), thorough) == []
     assert found(scene([placed(0, shading=Shading.FLAT)], [cube], lights=(panel,)), thorough) == []
     assert found(one(cube), thorough) == []
-    # Smooth edges round flat faces are what a Weighted Normal modifier makes.
+    # A Weighted Normal modifier makes flat faces with smooth edges.
     rim = dataclasses.replace(cube, normals=np.repeat(_upright(cube)[:, None], 3, axis=1))
     assert found(one(rim, lights=(panel,)), thorough) == []
 
@@ -166,7 +166,7 @@ def test_large_flat_faces_shaded_as_round(thorough):
 @pytest.mark.parametrize("thorough", [True, False])
 @pytest.mark.parametrize("whole", [0.2, 0.8])
 def test_the_larger_fault_of_normals_is_told(thorough, whole):
-    """Of a mesh some faces of which turn away at all corners and others at one: what more of its area does."""
+    """In a mesh with faces that turn away at all corners, and others at one corner, the fault with more area is reported."""
     flat = sheet(parts=20)
     up, down = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
     count = round(whole * len(flat.triangles))
@@ -183,11 +183,11 @@ def _upright(mesh):
 
 
 def _roof(slope, turned=()):
-    """Two squares that meet along the x-axis, each that many degrees down from level; of its smooth normals some are turned."""
+    """Return two squares that meet on the x axis, sloped by that many degrees, with smooth normals, some of them reversed."""
     c, s = np.cos(np.radians(slope)), np.sin(np.radians(slope))
     points = np.array([(0, 0, 0), (1, 0, 0), (0, c, -s), (1, c, -s), (0, -c, -s), (1, -c, -s)])
     normals = np.array([(0, 0, 1)] * 2 + [(0, s, c)] * 2 + [(0, -s, c)] * 2)
-    # Vertices that several programs write once for each face, at the same place.
+    # Separate vertices for each face, at equal positions.
     faces = np.array([(0, 1, 3), (0, 3, 2), (1, 0, 4), (1, 4, 5)])
     corners = normals[faces].copy()
     for face, corner in turned:
@@ -197,10 +197,10 @@ def _roof(slope, turned=()):
 
 @pytest.mark.parametrize("thorough", [True, False])
 def test_smooth_shading_round_folds(thorough):
-    """The mean at a fold turns away from neither side of a roof, but from a third face under its edge."""
+    """The mean normal at a fold turns away from neither side of a roof, but from a third face under the ridge."""
     assert found(one(_roof(80)), thorough) == []
     roof = _roof(80)
-    # The apron hangs from the ridge, inwards under the first slope: the ridge's normal turns away from it.
+    # The apron hangs from the ridge under the first slope: the ridge's normal turns away from it.
     apron = np.array([(0, 0, 0), (1, 0, 0), (0.5, 0.8, -0.6)])
     normals = np.array([(0.0, 0.0, 1.0), (0.0, 0.0, 1.0), (0.0, -0.6, -0.8)])
     folded = MeshData(
@@ -210,7 +210,7 @@ def test_smooth_shading_round_folds(thorough):
         normals=np.concatenate((roof.normals, normals[None, [1, 0, 2]])),
     )
     assert found(one(folded), thorough) == ([("normals", "HINT")] if thorough else [])
-    # Normals that turn away from all faces around are a fault wherever they are.
+    # Normals that turn away from all adjacent faces are a fault.
     for turned in ([(0, 2)], [(1, 1)], [(0, 0), (0, 1)]):
         assert found(one(_roof(30, turned)), thorough) == NORMALS, turned
 
@@ -232,14 +232,14 @@ def test_geometry_smaller_than_its_steps():
         assert found(one(ball(8, 50.0, (1e6, 0, 0), smooth=False)), thorough) == []
     finding = only(one(ball(8, 1.0, (1e6, 0, 0), smooth=False)))
     assert "0.06" in finding.what and "origin" in finding.advice and abs(finding.place[0] - 1e6) < 10.0
-    # The same near the origin, at any size; far away by its matrix, which costs its shape nothing.
+    # No finding near the origin at any size, and none if only the object's transform is far away.
     for size in (1e-6, 1.0, 1e6):
         assert found(one(ball(64, size))) == []
     assert found(one(ball(8), GREY_, move(1e5, 0, 0))) == []
 
 
 def test_fine_parts_of_a_large_mesh():
-    """A town of a kilometre has doors; a tenth of a millimetre is lost in it."""
+    """In a mesh of a kilometre details of a door's size are exact, details of 0.1 mm are lost."""
 
     def town(detail):
         big, small = sheet(1000.0), ball(8, detail, (500, 400, 0))
@@ -254,7 +254,7 @@ def test_fine_parts_of_a_large_mesh():
 
 
 def test_needles():
-    """Blades whose width is a few steps; a fan whose triangles only share a fine tip is none."""
+    """Blades with a width of a few steps are needles; a fan whose triangles share a fine tip is not."""
 
     def blades(width, far):
         base = np.arange(20)[:, None, None] * np.array([0.0, 1.0, 0.0])
@@ -287,6 +287,6 @@ def test_shear():
     assert found(one(ball(), GREY_, sheared)) == PRECISION
     sheared[2, 2] = 1e-3
     assert found(one(ball(), GREY_, sheared)) == []
-    # Flat and turned is not sheared.
+    # A flattened and rotated object is not sheared.
     assert found(one(ball(), GREY_, rotate_x(0.4) @ rotate_y(1.1) @ scale(1, 1e-9, 1))) == []
     assert found(one(ball(), GREY_, scale(1e6, 1.0, 1e-6))) == []

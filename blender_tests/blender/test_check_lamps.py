@@ -1,4 +1,4 @@
-"""The check before a render: an area lamp that lies in a face, which hides part of it in Cycles."""
+"""Check of area lamps in faces, which occlude part of them in Cycles."""
 
 import dataclasses
 
@@ -24,7 +24,7 @@ def lit(light, ceiling=None, matrix=None, **fields):
 def test_a_lamp_in_a_ceiling(thorough):
     finding = only(lit(PANEL), thorough)
     assert (finding.light, finding.severity) == ("panel", Severity.DIFFERENT) and "'ceiling'" in finding.what and finding.key
-    # A step of the place is no distance; many steps are.
+    # A distance of one step of single precision counts as 0, many steps do not.
     assert found(lit(dataclasses.replace(PANEL, matrix=move(0, 0, 3.0 - 1e-7))), thorough) == IN_A_FACE
     assert found(lit(dataclasses.replace(PANEL, matrix=move(0, 0, 3.0 - 1e-4))), thorough) == []
 
@@ -34,7 +34,7 @@ def test_in_any_position(turn):
     above = turn @ move(0, 0, 3)
     rounded = above.astype(np.float32).astype(float)
     assert found(lit(dataclasses.replace(PANEL, matrix=rounded), matrix=rounded)) == IN_A_FACE
-    # Turned out of the plane it meets it along a line.
+    # A lamp rotated out of the plane intersects it along a line only.
     assert found(lit(dataclasses.replace(PANEL, matrix=rounded @ rotate_x(0.1)), matrix=rounded)) == []
 
 

@@ -1,4 +1,4 @@
-"""What hurts is told at F12 and listed by Check Scene, in the bpy module of this Python and in Debian's Blender 3.4.1."""
+"""F12 and Check Scene report faults, in the bpy module of this Python and in Debian's Blender 3.4.1."""
 
 import blenders
 import pytest
@@ -41,9 +41,9 @@ def test_switches_and_buttons(case):
     assert len(got["on"]) == 1 and "glass is open" in got["on"][0] and got["off"] == []
     assert got["asked"] == [["glass", "WRONG", "Thing"]] and got["hidden"] == []
     assert got["selected"] == [["Thing", ["Thing"]], ["Camera", ["Camera"]]] and got["nobody"] == ["CANCELLED"]
-    # A click on the object that is being edited leaves it so; no other stays behind in Edit Mode.
+    # Selecting the edited object keeps its Edit Mode; another object in Edit Mode leaves it.
     assert got["modes"] == ["EDIT", "OBJECT"]
-    # What cannot be checked is an error in words, and leaves the last list as it was.
+    # A scene that cannot be checked gives an error and keeps the last list.
     assert "camera" in got["without camera"] and got["kept"] == []
 
 
@@ -54,7 +54,7 @@ def test_a_fault_of_the_check_costs_no_picture(case):
 
 
 def test_smooth_shading_of_folds_is_no_fault(case):
-    """What any engine shows so is a hint where somebody asks, and F12 does not speak of it, whatever the lamp."""
+    """Smooth shading of folds, equal in all engines, is a hint in Check Scene and not reported by F12."""
     got = case("smooth")
     for name, thing in (("monkey", "Suzanne"), ("letters", "Text")):
         assert got[name] == {lamp: [[["normals", "HINT", thing]], []] for lamp in ("POINT", "AREA")}

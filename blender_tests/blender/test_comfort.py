@@ -35,7 +35,7 @@ def test_every_setting_has_a_page_of_the_manual(case):
         assert url is not None, name
         prefix, _, page = url.partition("/render/")
         assert prefix.startswith("https://docs.blender.org/manual/"), url
-        # Blender's own map of this version leads there, too.
+        # The page exists in Blender's own map of this version.
         assert f"render/{page}".partition("#")[0] in got["known"], (name, url)
     pages = {name.rpartition(".")[2]: url.rpartition("/")[2] for name, url in found.items()}
     assert (
@@ -53,7 +53,7 @@ def test_a_script_needs_no_preferences(case):
 
 @pytest.fixture
 def installed(which, tmp_path):
-    """Runs Python text in a Blender whose user has the add-on in his scripts; gives what it prints as JSON."""
+    """Return a function that runs Python code in a Blender with the add-on installed and returns its results."""
     place = tmp_path / "scripts" / "addons" / "lancer"
     shutil.copytree(os.path.join(ROOT, "addon"), place, ignore=shutil.ignore_patterns("__pycache__"))
 
@@ -79,7 +79,7 @@ def installed(which, tmp_path):
 
 
 def test_preferences_are_obeyed_and_change_no_file(installed, tmp_path):
-    """New files start with the quality that is wished; saved ones keep theirs, and fixed threads are the scene's own."""
+    """New files start with the preferred quality; saved files keep theirs, and a fixed number of threads has priority."""
     got = installed(f"""
 path = {str(tmp_path / "saved.blend")!r}
 bpy.ops.preferences.addon_enable(module="lancer")
@@ -112,7 +112,7 @@ result.append(own())
 
 
 def test_preferences_outlast_the_session(installed, which):
-    """The program starts with its user's preferences and add-ons; the module with those of the factory."""
+    """The program starts with saved preferences and add-ons; the module starts with factory settings."""
     session = """
 own = bpy.context.scene.lancer if hasattr(bpy.types.Scene, "lancer") else None
 if own is None:

@@ -1,4 +1,4 @@
-"""Every setting that the export reads is in reach, and none that has no effect is shown."""
+"""Every setting that the export reads is shown in a panel, and no setting without effect is shown."""
 
 import ast
 import pathlib
@@ -10,7 +10,7 @@ from conftest import ROOT
 
 from addon.export.controls import CONTROLS, OWN
 
-# What acts and is no setting of its own in the Properties editor, and what is then.
+# Settings with an effect that are not shown in the Properties editor, and why.
 ELSEWHERE = {
     "Camera.angle_x": "Camera.angle stands for it",
     "Camera.angle_y": "Camera.angle stands for it",
@@ -23,7 +23,7 @@ ELSEWHERE = {
     "RenderSettings.border_min_x": "drawn in the view, with Ctrl+B",
     "RenderSettings.border_min_y": "drawn in the view, with Ctrl+B",
 }
-# Names in the export's text that are settings' as well and do not act on the scene of this test.
+# Names in the export's source that are also names of settings without effect on this test's scene.
 OF_OTHERS = {
     "blocker_collection": "light linking, told as not supported",
     "data": "the data-block itself",
@@ -46,7 +46,7 @@ OF_OTHERS = {
     "use_custom_distance": "told as not supported before 4.2",
     "use_shadow": "acts before 4.2 where the Cycles add-on is off",
 }
-# The export, and what beside it reads which passes are wanted.
+# The export, and the other files that read settings of passes.
 ADDON = pathlib.Path(ROOT, "addon")
 READERS = (*ADDON.glob("export/*.py"), ADDON / "engine" / "passes.py", ADDON / "denoise" / "view_layer.py")
 
@@ -62,7 +62,7 @@ def acts_in(entry, version):
 
 
 def listed(version):
-    """What the export says that it reads."""
+    """Return the settings in the export's list for a version of Blender."""
     return {f"{entry.owner}.{name}" for entry in CONTROLS if acts_in(entry, version) for name in entry.names}
 
 
@@ -78,19 +78,19 @@ def test_what_the_export_reads_is_shown(found):
 
 
 def test_what_is_not_supported_is_hidden(found):
-    """A setting that changes messages alone has no effect."""
+    """Settings that change only messages have no effect and are hidden."""
     assert {"RenderSettings.use_motion_blur", "RenderSettings.use_multiview"} <= found["tell"]
     assert not found["tell"] & found["shown"]
 
 
 def test_nothing_is_shown_twice(found):
-    """Blender's panel Viewport Display, which is there for every engine, shows three of them too."""
+    """No setting is shown twice, except three in Blender's panel Viewport Display, which is shown for every engine."""
     also = {"Material.diffuse_color", "Material.pass_index", "World.color"}
     assert {name.rpartition(".")[0] for name in found["twice"]} & found["act"] <= also
 
 
 def test_no_name_in_the_export_is_a_setting_that_nothing_is_known_of(found):
-    """A setting may be read and not act on this scene: its name is in the export's text all the same."""
+    """A setting may be read without effect on this test's scene: its name in the export's source must be known."""
     nodes = [node for path in READERS for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
     names = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
     names |= {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}

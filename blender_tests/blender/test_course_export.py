@@ -17,9 +17,9 @@ def test_polygons_come_where_classic_shades_them_flat(case):
     # Three, four and two triangles.
     numbers, means = got["CLASSIC"]["flat"]
     assert numbers == [0] * 3 + [1] * 4 + [2] * 2
-    # The mean of a face's vertices is what Blender calls its centre; both are float sums of six numbers up to 22.
+    # Blender's face centre is the mean of the vertices; both are float sums of six numbers up to 22.
     assert [pytest.approx(mean, abs=1e-5) for mean in means] == got["blender"]
-    # Triangles are polygons by themselves; nobody else asks.
+    # Triangles need no polygons, and other integrators do not request them.
     assert got["CLASSIC"]["triangle"] is None
     assert got["PATH"] == {"flat": None, "as mesh": None, "triangle": None} and got["PATH meshes"] == 2
 

@@ -16,12 +16,12 @@ LOBES = {
     "MINNAERT": ["MINNAERT"],
 }
 MODELS = tuple(LOBES)
-# Blender stores single precision; a number that went through it is compared to sixteen times its rounding of 2^-24.
+# Blender stores single precision: the tolerance is sixteen times its rounding of 2^-24.
 STORED = 1e-6
-# Pixels of CLASSIC: float32 products, a dozen at 6e-8, powers of up to 60 of a cosine that is known to 1e-7, and a camera of
-# single precision, which moves what is seen by some 1e-6 of the distance.
+# Errors of CLASSIC's pixels: a dozen float32 products at 6e-8, powers up to 60 of a cosine with an error of 1e-7, and a camera
+# in single precision, which moves the visible point by some 1e-6 of the distance.
 PIXEL = 2e-5
-# Of four rows over two units the second is 1/4 below the middle; the floor is seen at a slant of 0.8.
+# With four rows over two units the centre of the second row is 1/4 below the middle; the view's slant is 0.8.
 PLACE = -0.25 / 0.8
 
 
@@ -40,7 +40,7 @@ def test_constants_give_the_bits_of_the_material_s_own_settings(case):
         for integrator in ("PATH", "CLASSIC"):
             found = got[f"{model} {integrator}"]
             assert found["same"], (model, integrator)
-            # Ambient light is CLASSIC's alone.
+            # Only CLASSIC has ambient light.
             assert dict(found["telling"]) == {name: name != "ka" or integrator == "CLASSIC" for name, _ in found["telling"]}, (
                 model,
                 integrator,
@@ -52,7 +52,7 @@ def unit(vector):
 
 
 def minnaert(color, k, *cosines):
-    """f of lancer.h: below k = 1 no cosine counts as less than the one at which all light comes back."""
+    """Return f as in lancer.h: for k < 1 cosines are clamped to the one at which the albedo is 1."""
     least = max(color) ** (1 / (1 - k)) if k < 1 else 0.0
     q = least ** (k + 1)
     scale = 2 * math.pi * ((1 - q) / (k + 1) + q / 2)
@@ -60,7 +60,7 @@ def minnaert(color, k, *cosines):
 
 
 def classic(model, values, stage, x):
-    """The light from (x, PLACE, 0) by the formulas of the texts."""
+    """Return the radiance from (x, PLACE, 0) by the course's formulas."""
     way = np.array(stage["lamp"]) - [x, PLACE, 0.0]
     lc = stage["power"] / (4 * math.pi * way @ way)
     light, view = unit(way), unit(stage["eye"])
@@ -79,7 +79,7 @@ def classic(model, values, stage, x):
 
 
 def test_a_texture_modulates_each_parameter(case):
-    """Text 003, 3.4: each half of a texture gives what the formula says of its value; PATH gives what constants give."""
+    """Text 003, 3.4: each half of a texture gives the formula's result for its value; PATH equals the result of constants."""
     got = case("textures")
     assert len(got["pixels"]) == 16
     for key, found in got["pixels"].items():
@@ -87,7 +87,7 @@ def test_a_texture_modulates_each_parameter(case):
         for half, x in enumerate((-0.25, 0.25)):
             values = {**got["values"], name: got["halves"][name][half]}
             assert found["CLASSIC"][half] == near(classic(model, values, got["stage"], x).tolist(), PIXEL), (key, half)
-        # The same light from the same samples, in other kernels.
+        # Equal samples in other kernels.
         assert found["PATH"] == [near(pixel, PIXEL) for pixel in found["PATH of constants"]], key
         assert found["CLASSIC"][0] != near(found["CLASSIC"][1], 1e-3), key
 
@@ -118,9 +118,9 @@ def test_groups_are_known_by_more_than_their_name(case):
     changed, unknown, poor = (got[name] for name in ("changed", "of a version to come", "poor"))
     assert changed["kinds"] == poor["kinds"] == LOBES["PHONG"]
     assert [("changed" in line, "Ungroup" in line) for line in changed["messages"]] == [(True, True)]
-    # A model that this version does not know is the nodes inside.
+    # An unknown model is rendered by the nodes inside.
     assert unknown["kinds"] == ["LAMBERT", "GLOSSY"] and unknown["messages"] == []
-    # Its link inside went with the input.
+    # Removing the input also removes its link inside.
     assert [("no input 'Shininess', 50" in line, "changed" in line) for line in poor["messages"]] == [
         (False, True),
         (True, False),
@@ -130,7 +130,7 @@ def test_groups_are_known_by_more_than_their_name(case):
 
 @pytest.mark.parametrize("how", ["open", "append", "link"])
 def test_files_of_each_blender_keep_the_models(which, how, tmp_path):
-    """The file of the same Blender, and that of 3.4.1 in the newer one, which changes nodes as it opens them."""
+    """Files of the same Blender, and of 3.4.1 opened in the newer one, which converts nodes."""
     for writer in {which, PROGRAM}:
         path = tmp_path / f"{writer.split()[1]}.blend"
         blenders.run(writer, tmp_path, "course_group_cases", "save", path) if not path.exists() else None
@@ -143,7 +143,7 @@ def test_files_of_each_blender_keep_the_models(which, how, tmp_path):
 
 
 def test_cycles_shows_the_groups(case):
-    """Something is there, in the body's order of colours, and other values give another picture."""
+    """Cycles shows a finite, lit picture that changes with the values."""
     got = case("cycles")
     for model in MODELS:
         first, second = np.array(got[model])
@@ -165,5 +165,5 @@ def test_the_shader_editor_adds_models(case):
 
 
 def test_adding_a_model_is_one_step_to_undo(case):
-    """The node and its group go, and come back."""
+    """Undo removes the node and its group, redo restores them."""
     assert case("undo") == [1, -1, 1]

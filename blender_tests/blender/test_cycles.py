@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from blenders import MODULE
 
-# scene -> bounces, samples of each of four pictures
+# Scene -> (bounces, samples of each of four pictures).
 SCENES = {
     "lambert": (4, 256),
     "emission": (1, 1024),
@@ -22,7 +22,7 @@ SCENES = {
     "orthographic": (2, 256),
     "background": (1, 64),
 }
-# Of the picture's mean level: what an artist could just see side by side.
+# Relative to the picture's mean level; barely visible side by side.
 LIMIT = 0.01
 
 
@@ -43,9 +43,9 @@ def test_blocks(name, tmp_path):
         f"{ours[worst[0], worst[1]]} against {theirs[worst[0], worst[1]]}, noise {typical:.5f}, there {noise[worst]:.5f}\n"
         f"{np.array2string(difference.mean(axis=2)[::-1], precision=4, suppress_small=True)}"
     )
-    # Blocks whose own noise is far below the limit judge by the limit itself; that must be nearly all of them, or the test
-    # would test luck. The few noisier ones have 4 standard errors more: of 192 values one in 16 000 lies beyond that.
+    # Blocks with noise far below the limit must be within the limit; these must be nearly all blocks. The few noisier blocks
+    # are allowed 4 standard errors more, which one of 16 000 values exceeds.
     assert level > 0.01 and np.mean(noise < LIMIT / 4) > 0.95, figures
     assert np.all(np.abs(difference) <= LIMIT + np.where(noise < LIMIT / 4, 0.0, 4.0 * noise)), figures
-    # The noise of the mean of 192 block values is 14 times smaller: a general difference of 0.3 % is no noise.
+    # The noise of the mean of 192 values is 14 times smaller: a mean difference of 0.3 % is significant.
     assert abs(ours.mean() / level - 1.0) <= 0.003, figures

@@ -1,6 +1,6 @@
-"""Open Image Denoise through ctypes, without Blender around it: the library that this Python's bpy module brings.
+"""Open Image Denoise through ctypes, outside Blender, with the library of this Python's bpy module.
 
-Each test runs twice: with that library as it is, of version 2, and behind the functions that version 1 has in their places.
+Each test runs twice: with that library, version 2, and with a wrapper that has the functions of version 1.
 """
 
 import threading
@@ -32,7 +32,7 @@ def library(request, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def pictures():
-    """A chequered wall under a light that grows to the right: as it is, with noise, and what a camera ray finds."""
+    """Return a chequered wall under light that increases to the right: exact, noisy, albedo, normal."""
     y, x = np.mgrid[:HEIGHT, :WIDTH]
     even = ((x // 20 + y // 20) % 2 == 0)[..., None]
     albedo = np.where(even, np.float32([0.8, 0.2, 0.1]), np.float32([0.1, 0.3, 0.7]))
@@ -43,7 +43,7 @@ def pictures():
 
 
 def error(image, truth):
-    """Relative mean square error, without overflow."""
+    """Return the relative mean square error, in double to avoid overflow."""
     image, truth = image.astype(np.float64), truth.astype(np.float64)
     return np.mean((image - truth) ** 2 / (truth**2 + 0.01 * np.mean(truth) ** 2))
 
@@ -55,7 +55,7 @@ def test_noise_goes_and_guides_help(library, pictures):
     assert error(guided.image, truth) < error(alone.image, truth) < error(noisy, truth)
     assert guided.seconds > 0.0
     assert guided.version == "1.4.3" or "1.4.3" not in library._name and guided.version.startswith("2.")
-    # The images alone: colours and two guides of three floats.
+    # At least the images: colours and two guides of three floats.
     assert guided.memory_bytes >= 3 * 12 * HEIGHT * WIDTH
 
 
@@ -72,7 +72,7 @@ def test_what_is_given_stays_and_alpha_too(library, pictures):
 
 @pytest.mark.parametrize("exponent", [-100, -40, 40, 100])
 def test_brightness_does_not_matter(library, pictures, exponent):
-    """A power of two changes no digit before the network, nor after it."""
+    """Scaling by a power of two changes no digit of the result."""
     _, noisy, albedo, normal = pictures
     image = denoiser.denoise(noisy, albedo, normal, library=library).image
     scaled = denoiser.denoise(np.ldexp(noisy, exponent), albedo, normal, library=library).image
@@ -91,9 +91,9 @@ def test_a_lamp_in_the_picture_stays_as_bright(library, pictures):
     lamp = noisy.copy()
     lamp[30:50, 40:60] = 1e30
     image = denoiser.denoise(lamp, albedo, normal, library=library).image
-    # The network sees at least half of what it gets of a lamp, or takes it for noise.
+    # The network keeps at least half of a lamp's radiance, or removes it as noise.
     assert (image[32:48, 42:58] > 0.5e30).all()
-    # Away from its edge the wall is as it was.
+    # Away from the lamp the wall is denoised as usual.
     assert error(image[70:], truth[70:]) < error(noisy[70:], truth[70:])
 
 
@@ -135,7 +135,7 @@ def test_it_ends_when_it_is_told_to(library, pictures):
     with pytest.raises(Cancelled):
         denoiser.denoise(noisy, albedo, normal, library=library, poll=lambda: len(seen) > 0, tell=seen.append)
     assert len(seen) == 1 and not working()
-    # It goes on to work.
+    # The library still works afterwards.
     denoiser.denoise(noisy, albedo, normal, library=library, tell=seen.append)
     assert seen[1:] == sorted(seen[1:]) and 0.0 <= seen[1] and seen[-1] <= 1.0
 
@@ -166,7 +166,7 @@ def working():
     ids=["the one in use", "beside the TBB in use", "the newest", "deleted", "another TBB would come"],
 )
 def test_where_it_is_looked_for(tmp_path, mapped, beside, found):
-    """found: None is the last file beside, "" is none."""
+    """found: None means the last file of beside, "" no file."""
     for name in (*mapped, *beside):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)

@@ -1,11 +1,11 @@
-"""F12 with denoising: the guess takes the place of Combined, and what was rendered stays, bit for bit, as Noisy Image."""
+"""F12 with denoising: the denoised picture replaces Combined, and Noisy Image has the bits of the rendered picture."""
 
 import blenders
 import oidn_versions
 import pytest
 from blenders import MODULE, PROGRAM
 
-# Of Blender 5.2.
+# The message in Blender 5.2.
 NEWER = "view layer 'ViewLayer': these passes are not supported: Denoising Specular Albedo, Denoising Roughness"
 DECLARATION = "denoised: the error given is that of the picture before denoising"
 
@@ -40,7 +40,7 @@ def test_other_passes_are_what_they_were(case):
     check_denoised(got)
     assert (NEWER in got["messages"]) == (got["version"] >= [5, 2])
     assert {"Denoising Albedo", "Denoising Normal", "Denoising Depth", "Normal"} < set(got["passes"])
-    # What guides is the same, whether it is rendered beside the picture or by itself.
+    # The guides are equal, whether rendered as passes or separately.
     assert got["picture"] == case("plain")["picture"]
 
 
@@ -96,14 +96,14 @@ def test_a_failure_is_told(case):
 
 
 def test_a_blender_without_the_library_is_told(tmp_path):
-    """Debian builds Blender without it."""
+    """Debian builds Blender without the library."""
     got = blenders.run(PROGRAM, tmp_path, "denoising_cases", "plain")
     check_told(got, "Open Image Denoise is missing")
     assert "Open Image Denoise is missing" in got["console"]
 
 
 def test_version_1_in_a_blender_of_its_time(tmp_path):
-    """As builds of Blender 3 bring it: in the process already, and found there."""
+    """Version 1 as in builds of Blender 3: loaded in the process and found there."""
     path, environment = oidn_versions.older(tmp_path)
     got = blenders.run(PROGRAM, tmp_path, "denoising_cases", "plain", LD_PRELOAD=path, **environment)
     assert got["noisy is raw"] and got["finite"] and not got["combined is raw"] and got["stamped"] == [False, True]
@@ -113,7 +113,7 @@ def test_version_1_in_a_blender_of_its_time(tmp_path):
 def test_the_passes_are_those_of_cycles(case):
     got = case("as_cycles")
     for ours, theirs in (got["False"], got["True"]):
-        # New in Blender 5.2, and told in the README as not supported.
+        # New in Blender 5.2, and listed in the README as not supported.
         newer = {name: theirs.pop(name) for name in ("Denoising Roughness", "Denoising Specular Albedo") if name in theirs}
         assert ours == theirs and ours["Noisy Image"] == 4
         assert not newer or got["version"] >= [5, 2]

@@ -1,4 +1,4 @@
-"""Displacement by each of Blender's methods: what is moved, and what is only shaded as if it were."""
+"""Displacement by each of Blender's methods: true displacement, bump, and both."""
 
 import blenders
 import numpy as np
@@ -16,13 +16,13 @@ def test_methods(which, tmp_path):
     for method, moves, bumps in (("BUMP", False, True), ("DISPLACEMENT", True, False), ("BOTH", True, True)):
         case = got[method]
         assert case["messages"] == [] and set(case["mesh"]) == {0.0}
-        # The bump is the material's, and of every lobe that has no normal of its own.
+        # The bump applies to the material and to every lobe without a normal of its own.
         for normal in (case["normal"], case["lobe normal"]):
             assert isinstance(normal, dict) if bumps else normal == NONE, method
         assert isinstance(case["displacement"], dict) if moves else case["displacement"] == NONE, method
         rise = np.array(case["places"]) @ SLOPE[:2] if moves else np.zeros(3)
         # Vertices are stored in float.
         assert case["heights"] == pytest.approx(rise.tolist(), abs=1e-6), method
-        # The plane leans once, whoever tilts it. Coordinates below 2 are known to 2^-23, and a bump looks at least a tenth of
-        # half a pixel of 1 aside: four times their quotient.
+        # The plane is tilted once, by displacement or by bump. Coordinates below 2 have an error of 2^-23, and a bump's offset
+        # is at least a tenth of half a pixel of size 1: the tolerance is four times their quotient.
         assert case["shown"] == pytest.approx(leaning.tolist(), abs=1e-5), method

@@ -1,4 +1,4 @@
-"""What is being edited, sculpted or painted is rendered as Cycles renders it, from a file and from a real window."""
+"""Objects in Edit Mode, Sculpt Mode and paint modes are rendered as in Cycles, from a file and from a real window."""
 
 import json
 
@@ -9,14 +9,14 @@ from test_window import Window, display  # noqa: F401 - a fixture
 
 both = pytest.mark.parametrize("which", [MODULE, PROGRAM])
 MODES = ("OBJECT", "EDIT", "SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT", "TEXTURE_PAINT", "PARTICLE_EDIT")
-# Emission goes through one product and the film's sum of one sample: a rounding each.
+# Emission is rounded by one product and by the film's sum of one sample.
 ROUNDING = 2.0**-22
-# Pixels, from the middle, that show a box. No mode moves these: Plain, and Keyed, which a shape key moved by one; ...
+# Pixels, from the centre, that show a box. No mode moves Plain, and Keyed, moved by one by a shape key; ...
 STILL = [[-7, -7], [3, -4]]
-# ... Edited with its copies by modifiers, its double, the instance of its collection, Wrapped and its instance.
+# ... Edited with its copies by modifiers, its duplicate, the instance of its collection, Wrapped and its instance.
 AT_REST = [[-4, -7], [-2, -7], [-4, -5], [-2, -5], [-4, 3], [3, 2], [5, 2], [3, 4], [5, 4], [2, -7], [-6, 6]]
-# One pixel to the right, without the modifier that Edit mode hides and with the one that only renders hide; Wrapped by three.
-# Keyed shows the key that is being edited, the one that moves nothing.
+# In Edit Mode: one pixel to the right, without the modifier hidden in Edit Mode and with the one hidden in renders; Wrapped by
+# three. Keyed shows the edited key, which moves nothing.
 EDITED = [[-7, -7], [2, -4], [-3, -7], [-1, -7], [-3, 3], [-3, 1], [4, 2], [6, 2], [5, -7], [-3, 6]]
 
 
@@ -50,7 +50,7 @@ def test_an_exact_shape_stands_where_its_mesh_is_edited(case):
 
 
 def test_f12_in_edit_mode_in_a_window(display, tmp_path):  # noqa: F811
-    """Three objects in Edit mode at once, with edits that Blender was not told of; F12 shows them and leaves the mode alone."""
+    """Three objects in Edit Mode with edits that have not been flushed; F12 shows the edits and keeps the mode."""
     window = Window(str(tmp_path), display, "edit")
     try:
         window.wait_for("ready")

@@ -17,7 +17,7 @@ def case(which, tmp_path):
 def test_the_scene_that_blender_starts_with(case):
     got = case("startup")
     assert got["size"] == [27, 48] and got["mean"][3] == pytest.approx(1.0, abs=1e-5)
-    # The cube stands out against the grey sky (0.05).
+    # The cube differs from the grey sky (0.05).
     assert 0.03 < got["mean"][0] < 1.0 and got["deviation"] > 0.02
 
 
@@ -46,7 +46,7 @@ def test_aspect_fit_and_shift(case):
     """A square of 1 m, 4 m away, lens 50 on 36 mm: 1/4 * 50/36 of the fitted side."""
     got = case("shape_of_a_square")
     side = 64 * 50 / 36 / 4
-    # Edges fall within a pixel, whose grey the sums count: half a pixel is ample.
+    # Sums count partially covered pixels: half a pixel is ample.
     near = pytest.approx
     assert got["square"][:2] == near([side, side], abs=0.5)
     # A pixel twice as wide shows the square half as many pixels wide; the fit follows the wider side.
@@ -58,7 +58,7 @@ def test_aspect_fit_and_shift(case):
 
 @pytest.mark.parametrize("width", [1.5, 3.0])
 def test_the_smooth_filter_reaches_its_width_to_each_side(case, width):
-    """The share of the four-term Blackman-Harris window that lies across the edge, as Cycles has it."""
+    """Pixels beside an edge have the share of the four-term Blackman-Harris window across the edge, as in Cycles."""
 
     def below(x):
         # Integral of the window over its left part, x in 0 ... 1.
@@ -67,7 +67,7 @@ def test_the_smooth_filter_reaches_its_width_to_each_side(case, width):
         return 0.35875 * x + sum(a * math.sin(2 * math.pi * k * x) / (2 * math.pi * k) for k, a in enumerate(terms, 1))
 
     wanted = [below(0.5 - (3.5 - column) / (2 * width)) / 0.35875 for column in range(4)]
-    # Of 64 rows of 256 samples each at most half a standard deviation comes from one sample; four of the mean are allowed.
+    # A sample's standard deviation is at most a half: the tolerance is 4 standard errors of 64 rows of 256 samples.
     assert case("filter_reach", width) == pytest.approx(wanted, abs=4 * 0.5 / math.sqrt(64 * 256))
 
 
@@ -101,17 +101,17 @@ def test_statistics_for_scripts(case, which):
 
 
 def test_progress_is_told(case, which):
-    """Samples, speed and remaining time in the status line; Blender 3.4 gives its text to the console only."""
+    """The status line has samples, speed and remaining time; Blender 3.4 prints it to the console only."""
     got = case("progress")
     texts = got["texts"] if which == MODULE else got["console"].splitlines()
     told = [text for text in texts if "Sample" in text and "/256" in text and "rays/s" in text and "Remaining" in text]
     assert len(told) >= 2, texts[-5:]
-    # What an artist waits for comes first: a small window has no room for all of it.
+    # The remaining time comes first, since a small window cuts off the end.
     assert all(text.index("Remaining") < text.index("Sample") for text in told)
 
 
 def test_the_first_picture_comes_before_the_first_sample_is_done(case):
-    """Whole tiles of 32 x 32 pixels, and no need for all of the 240."""
+    """The first picture shows whole tiles of 32 x 32 pixels, before all of the 240 are done."""
     got = case("first_picture")
     assert got["blank"] + got["done"] == 640 * 360 and got["shown"] >= 2
     assert got["blank"] > 0 and got["done"] > 0

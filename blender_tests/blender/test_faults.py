@@ -1,4 +1,4 @@
-"""What is measured is what F12 renders; figures belong to their scenes; the add-on comes and goes as a whole."""
+"""Measurements use the scene that F12 renders; figures belong to their scenes; registration is all or nothing."""
 
 import subprocess
 import sys
@@ -15,15 +15,15 @@ def case(request, tmp_path):
 
 
 def test_what_is_measured_is_what_f12_renders(case):
-    """Objects hidden in one of the two, and modifiers with levels of their own, as in a render; nothing of the file changes."""
+    """A measurement uses render visibility and render levels of modifiers, and changes nothing in the file."""
     got = case("as_rendered")
     measured, rendered = got["meshes"]
-    # A cube divided twice has 6 * 4^2 quads, two triangles each; the ball with 16 segments is hidden in viewports alone.
+    # A cube subdivided twice has 6 * 4^2 quads, two triangles each; the ball with 16 segments is hidden in viewports only.
     assert measured == rendered and dict(measured)["Cube"] == 192 and [name for name, _ in measured].count("Ball.001") == 1
     assert "Ball" not in dict(measured)
     assert got["settings"] and got["camera"] and got["region"][0] == got["region"][1] == 8
     assert got["messages"][0] == got["messages"][1]
-    # No trace: no scene more, no user more, no handler of others called, the last picture and its figures in their place.
+    # No further scene or user, no call of other handlers, and the last picture and its figures are kept.
     assert got["scenes"] == ["Scene"] and got["users"] == []
     assert got["calls"][0] == got["calls"][1] and "render_complete" in got["calls"][0]
     assert got["picture"] and got["statistics"]
@@ -38,7 +38,7 @@ def test_statistics_belong_to_layers_and_scenes(case):
     got = case("layers")
     assert got["layers"] == {got["first"]: 2, "Other": 3} and got["last"] == 3
     assert got["by scene"] and got["names"] == ["Scene"]
-    # They follow their scene where it can be told from others, and never are another's.
+    # Figures follow a renamed scene where it has an identity, and never appear for another scene.
     assert not got["old name"] and not got["another scene"]
     assert got["gone"] == [[], 0, False]
 
@@ -48,11 +48,11 @@ def test_statistics_follow_a_renamed_scene(tmp_path):
 
 
 def test_layers_share_the_time_limit(case):
-    """Each gets an even share of what is left: none more than the limit, all together no more, and a sample at least."""
+    """Each layer gets an even share of the remaining time, and at least one sample."""
     got = case("time_limit")
     first, second, third = got["limits"]
     assert 0.0 < first <= 0.6 / 3.0 and 0.0 < second <= 0.3 and 0.0 < third < 0.6
-    # What the first has left over or taken too much is that of the others: half of the rest is the second's.
+    # The others share the rest of the time: half of it is the second's.
     assert second < 0.6 - second and third <= 0.6
     assert len(got["samples"]) == 3 and min(got["samples"]) >= 1
 
@@ -75,7 +75,7 @@ def test_both_eyes_are_denoised(tmp_path):
 
 def test_threads_of_a_window_give_way(tmp_path):
     got = blenders.run(MODULE, tmp_path, "fault_cases", "priority")
-    # Linux knows 19 as the lowest.
+    # 19 is the lowest priority on Linux.
     assert got["rendered"] and len(got["session"]) >= 2 and set(got["session"]) == {min(19, got["here"] + 5)}
 
 
@@ -99,7 +99,7 @@ print(load_library().lancer_abi_version())
 
 
 def test_too_little_address_space_is_told():
-    """The library is whole: to install it again would not help."""
+    """The message must not suggest a new installation, since the library is complete."""
     done = subprocess.run([sys.executable, "-c", LITTLE_ROOM.format(root=ROOT)], capture_output=True, text=True, check=True)
     told, version = done.stdout.splitlines()
     assert "not enough memory or address space" in told and "install" not in told

@@ -1,4 +1,4 @@
-"""Only what the scene requires: kernels made for a scene; what it uses, as told by a render and as measured."""
+"""Kernels made for a scene, and the features that a scene uses, as reported by a render and as measured."""
 
 import blenders
 import pytest
@@ -10,7 +10,7 @@ both = pytest.mark.parametrize("which", [MODULE, PROGRAM])
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_special_kernel_gives_the_general_picture(name, tmp_path):
-    """Bit for bit, on scenes of the project."""
+    """Both kernels give equal bits on scenes of the project."""
     got = blenders.run(MODULE, tmp_path, "uses_cases", "both_kernels", name)
     for integrator in ("PATH", "CLASSIC"):
         kernels, difference, level = got[integrator]
@@ -25,7 +25,7 @@ def test_statistics_name_features_and_memory_by_kind(which, tmp_path):
     assert used["glass"]["text"] == "1 material uses refraction" and used["glass"]["owners"] == ["Glass"]
     assert used["textures"]["owners"] == ["Pictured"] and used["triangles"]["count"] == 14
     assert used["smooth"]["count"] == 12 and used["environment"] and used["point-lights"]["owners"] == ["Light"]
-    # 16 x 16 pixels of three bytes: its alpha is not asked for.
+    # 16 x 16 pixels of three bytes, without the unused alpha.
     assert got["memory"]["texture_bytes"] == 16 * 16 * 3
     assert all(value > 0 for value in got["memory"].values()) and got["costs"] is None
 

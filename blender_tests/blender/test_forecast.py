@@ -1,4 +1,4 @@
-"""What a render will take and give: by curves whose truth is known, and by renders of a small scene."""
+"""Forecasts of time and error, from curves with known results and from renders of a small scene."""
 
 import dataclasses
 import math
@@ -19,7 +19,7 @@ REACH = 1.96
 
 
 def curve(factor, power, edges, width, samples, spread=0.0, noise=None):
-    """Points of a picture so wide, whose squared error is 1 + edges / width times that of one without end."""
+    """Return points of a picture of that width, with squared error 1 + edges / width times that of an infinite picture."""
     points = []
     for i, count in enumerate(samples):
         error = factor * count**-power * math.sqrt(1.0 + edges / width)
@@ -29,7 +29,7 @@ def curve(factor, power, edges, width, samples, spread=0.0, noise=None):
 
 
 def synthetic(power, edges=0.0, spread=0.0, generator=None):
-    """Two pictures, of 128 and of 64 pixels' width."""
+    """Return the Measured of two pictures with widths of 128 and 64 pixels."""
     refined, even = [8, 16, 32, 64, 120, 230, 450], [8, 16, 32, 64, 128, 256]
     noise = [None, None] if generator is None else [generator.normal(size=len(s)) for s in (refined, even)]
     return Measured(
@@ -43,7 +43,7 @@ def synthetic(power, edges=0.0, spread=0.0, generator=None):
 
 
 def truth(power, target, edges=0.0, spread=0.0, width=512):
-    """Samples at which the bound on the error meets the target, by bisection of its formula."""
+    """Return the samples at which the error's bound reaches the target, by bisection."""
     narrowed = math.exp(REACH * spread * 128 / width)
 
     def bound(samples):
@@ -62,9 +62,9 @@ def test_a_power_law_goes_on(power, target):
     told = forecast(synthetic(power, edges=100.0), 512**2, target, 1 << 40)
     want = truth(power, target, edges=100.0)
     assert told.ended_by == TARGET and told.samples.low <= want <= told.samples.high
-    # Between points of a power law straight lines of logarithms are exact. Beyond them the prior slope counts a little: it is
-    # sure to 0.12, four points that are sure to 0.01 tell it to 0.006, and so it is off by 0.25 % of 0.15 at most. And the
-    # light not met yet falls faster than the error.
+    # Between points of a power law linear interpolation of logarithms is exact. Beyond them the prior slope has a small weight:
+    # its deviation is 0.12, that of the fit of four points with deviation 0.01 is 0.006, so that the slope's error is at most
+    # 0.25 % of 0.15. And the share of undiscovered light falls faster than the error.
     assert told.samples.value == pytest.approx(want, rel=0.05)
     assert told.seconds.value == pytest.approx(0.5 + RATE * 512**2 * told.samples.value, rel=1e-9)
     assert told.error.value == pytest.approx(target, rel=0.05)
@@ -74,24 +74,23 @@ def test_a_power_law_goes_on(power, target):
 def test_error_that_edges_bring_falls_with_the_width(edges):
     measured = synthetic(0.5, edges)
     told, nearer = (forecast(measured, width**2, samples=256) for width in (1024, 256))
-    # 2 / 16 without edges. The two widths give the law's two parts exactly.
+    # The error is 2 / 16 without edges. The two widths determine both parts of the model exactly.
     want = 0.125 * math.sqrt(1.0 + edges / 1024)
     assert told.error.value == pytest.approx(want, rel=1e-9)
-    # The law is a guess: the longer the way to the full size, the wider the interval.
+    # The model is approximate: the larger the whole picture, the wider the interval.
     wide, narrow = (math.log(one.error.high / one.error.value) for one in (told, nearer))
     assert wide == 0.0 if edges == 0.0 else wide > 1.1 * narrow > 0.0
 
 
 @pytest.mark.parametrize("target", [0.2, 0.03])
 def test_the_interval_holds_the_truth(target):
-    """Errors that are known to a twentieth only: at least 95 % of intervals hold the samples that it takes, within the points
-    and beyond them."""
+    """With errors that are known to 5 %, at least 95 % of intervals contain the true samples, between the points and beyond."""
     generator = np.random.default_rng(4)
     inside = 0
     for _ in range(400):
         told = forecast(synthetic(0.5, 50.0, 0.05, generator), 512**2, target, 1 << 40)
         inside += told.samples.low <= truth(0.5, target, 50.0, 0.05) <= told.samples.high
-    # Of 400 at 95 % the standard deviation is 1.1 %: three of them.
+    # The standard deviation of 400 trials at 95 % is 1.1 %: three deviations.
     assert inside / 400 >= 0.95 - 0.033
 
 
@@ -103,9 +102,9 @@ def test_what_ends_a_render():
     assert late.ended_by == TIME and late.seconds.value == 60.0
     assert not late.misses(0.01) and not forecast(measured, 512**2, 0.9, 8192).misses(0.9)
     assert forecast(measured, 512**2, 0.01, 1024).misses(0.01) and not forecast(measured, 512**2, 0.0, 1024).misses(0.0)
-    # What is left after half a second before the first sample.
+    # The time limit minus half a second before the first sample.
     assert late.samples.value == pytest.approx(59.5 / (RATE * 512**2), rel=1e-6)
-    # A target is not looked at before 16 samples.
+    # A target is not checked before 16 samples.
     assert forecast(measured, 512**2, 0.9, 8192).samples.value == 16.0
     assert classic_seconds(measured, 512**2, 16) == pytest.approx(0.5 + 4 * RATE * 512**2)
     assert classic_seconds(dataclasses.replace(measured, classic_seconds=0.0), 512**2, 16) is None
@@ -120,7 +119,7 @@ def test_an_uncertain_slope_leans_on_what_is_known_before(power):
 
 
 def lamplit(width, **settings):
-    """A ball on the floor under a wide lamp: soft shadows and edges, nothing rare."""
+    """Return a ball on a floor under a wide lamp: soft shadows and edges, no fireflies."""
     lamp = Light("lamp", tiny.move(0, -2, 4) @ tiny.rotate_x(-0.4), tiny.LightKind.AREA, emission=(3, 3, 3), size=(2, 2))
     camera = Camera(
         tiny.look_at((0, -6, 2.5), (0, 0, 0.6)), width=width, height=width * 9 // 16, window=(-0.4, 0.4, -0.225, 0.225)
@@ -132,7 +131,7 @@ def lamplit(width, **settings):
 
 def test_a_render_with_a_target_takes_what_was_told():
     snapshot = lamplit(240, samples=4096)
-    # As long as it takes to come to 1 %, so that what is measured does not hang on the machine.
+    # Measure until the error is 1 %, so that the result does not depend on the machine's speed.
     measured = measure(snapshot, 1000.0)
     assert measured.refined[-1].error < 0.01 and measured.before > 0.0 and measured.classic_seconds > 0.0
     for target in (0.03, 0.012):
@@ -144,7 +143,7 @@ def test_a_render_with_a_target_takes_what_was_told():
                     pass
             samples, error = session.statistics().samples / (240 * 135), session.error()
         assert schedule.reason == told.ended_by == TARGET
-        # A square that needs a little more gets twice as many.
+        # Pixels that need slightly more samples get twice as many.
         assert told.samples.low <= samples <= 2.0 * told.samples.high
         assert told.error.low / 2.0**0.5 <= error.error <= told.error.high
 
@@ -161,7 +160,7 @@ def test_it_can_be_stopped_and_tells_how_far_it_is():
 
 
 def test_small_pictures():
-    """Of one pixel nobody knows the error; of four all of them are measured."""
+    """One pixel is too small for an error; of four pixels all are measured."""
     with pytest.raises(LancerError, match="small"):
         measure(tiny.scene([tiny.plane()], [tiny.lambert()], world=1.0), 0.1)
     measured = measure(tiny.showroom(2, time_limit=3.0), 0.1)

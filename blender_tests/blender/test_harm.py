@@ -1,4 +1,4 @@
-"""In which order messages are told, and which are told at all."""
+"""The order of messages, their counts and their severities."""
 
 import dataclasses
 import math
@@ -46,7 +46,7 @@ def test_merging_gives_what_is_new():
 
 
 def test_messages_of_the_library_have_their_harm():
-    """From the library itself: faces that nobody can see are no fault, an object that is left out is one."""
+    """Messages of the library: faces without area are a hint, an object left out is LEFT_OUT."""
     flat = dataclasses.replace(sheet(), triangles=np.array([[0, 1, 2], [0, 1, 1]], np.uint32))
     dark = dataclasses.replace(LAMP, matrix=np.full((3, 4), np.nan))
     things = [placed(), placed(matrix=np.full((4, 4), np.nan))]

@@ -18,7 +18,7 @@ bpy.ops.wm.save_userpref()
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory):
-    """A user's folder with the add-on installed from its zip."""
+    """Return a user's folder with the add-on installed from its zip."""
     folder = tmp_path_factory.mktemp("home")
     archive = blenders.zip_for_blender_3()
     command = [
@@ -68,7 +68,7 @@ def test_one_frame(home):
     assert done.returncode == 0, said
     picture = os.path.join(home, "out_0001.png")
     assert os.path.getsize(picture) > 500, said
-    # Blender falls back to another engine where this one is missing, and says nothing: the engine's own words must be there.
+    # Blender silently uses another engine if this one is missing: the output must contain the engine's own text.
     assert "rays/s" in said
 
 
@@ -88,7 +88,7 @@ def test_failure_is_seen(home):
 
 
 def test_interrupt(home):
-    """Ctrl-C ends a render that would take hours, without a crash."""
+    """Ctrl-C ends a long render without a crash."""
     path = blend(home, "long.blend", "long_render")
     process = subprocess.Popen(
         command_line(path, "-F", "PNG", "-f", "1"),
@@ -108,6 +108,6 @@ def test_interrupt(home):
         rest, _ = process.communicate(timeout=60)
     finally:
         process.kill()
-    # A signal of its own would be a crash (negative code); 100 000 samples would take far longer than the minute allowed above.
+    # A negative code is a crash; without the interrupt 100 000 samples would take far longer than the minute allowed above.
     assert process.returncode >= 0, rest[-2000:]
     assert "Traceback" not in rest

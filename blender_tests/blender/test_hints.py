@@ -1,4 +1,4 @@
-"""What features cost: the arithmetic by closed forms, and measured where the difference is a factor."""
+"""Costs of features: the arithmetic against closed forms, and measurements with a large difference."""
 
 import dataclasses
 
@@ -14,8 +14,8 @@ from addon.measure.costs import Cost, measure_costs, median_with_uncertainty, sm
 
 
 def shells(count=24):
-    """A glass onion: a path goes through twice as many surfaces, where an opaque one ends at the first."""
-    # No light is bent by glass of index 1 + 1e-3, and none of it is reflected that matters.
+    """Return nested glass spheres: paths pass through all surfaces, while opaque spheres end them at the first."""
+    # Glass of index 1.001 refracts and reflects hardly any light.
     glass = Material("glass", lobes=(Lobe(LobeKind.DIELECTRIC, color=(1, 1, 1), ior=1.001),))
     onion = [tiny.sphere(0, tiny.scale(1.0 - i / (2 * count)), name=f"shell {i}") for i in range(count)]
     camera = Camera(tiny.look_at((0, -3, 0), (0, 0, 0)), width=64, height=36, window=(-0.2, 0.2, -0.2, 0.2))
@@ -27,7 +27,7 @@ def test_costly_glass_gives_a_hint():
     told = []
     costs = measure_costs(shells(), 0.5, tell=lambda fraction, text: told.append((fraction, text)))
     hints = {hint.name: hint for hint in costs.hints}
-    # Four rays of the path and their shadows, against one and its shadow.
+    # Four path segments and their shadow rays, against one and its shadow ray.
     hint = hints["glass"]
     assert hint.share > 0.25 and hint.count == 1 and 0.0 <= hint.uncertainty < hint.share
     assert hint.text.startswith("1 material uses refraction; without it this frame would take ")
@@ -59,7 +59,7 @@ def test_it_can_be_stopped():
     with pytest.raises(Cancelled):
         measure_costs(shells(), 10.0, poll=lambda: True)
     calls = iter(range(100_000))
-    # Past the filling and building of so small a scene, within some run.
+    # After filling and building of the small scene, within a run.
     with pytest.raises(Cancelled):
         measure_costs(shells(), 1000.0, poll=lambda: next(calls) > 30)
 
@@ -73,22 +73,22 @@ def test_only_what_is_beyond_doubt_and_3_percent_is_a_hint(share, uncertainty, e
 
 @pytest.mark.parametrize("count", [6, 9, 25, 40])
 def test_the_interval_holds_the_truth(count):
-    """At least 95 % of intervals hold the median of a skewed distribution: numbers to which others' work adds at times."""
+    """At least 95 % of intervals contain the median of a skewed distribution, like times on a busy machine."""
     generator = np.random.default_rng(1)
     inside = 0
     for _ in range(2000):
         middle, half = median_with_uncertainty(list(generator.lognormal(0.0, 0.3, count) ** 3))
         inside += abs(middle - 1.0) <= half
-    # Of 2000 at 95 % the standard deviation is 0.5 %: four of them.
+    # The standard deviation of 2000 trials at 95 % is 0.5 %: four deviations.
     assert inside / 2000 >= 0.95 - 0.02
 
 
 def test_the_interval_is_as_narrow_as_order_allows():
-    """Of nine numbers at 95 % the second and the eighth: below the second the median is with 2 * 10 / 512 = 3.9 %."""
+    """Of nine values the second and the eighth: the median is outside with probability 2 * 10 / 512 = 3.9 %."""
     assert median_with_uncertainty([1, 2, 3, 4, 5, 6, 7, 8, 100]) == (5, 3)
-    # Of eight the first and the last: with the second it is 2 * 9 / 256 = 7 %.
+    # Of eight the first and the last: with the second the probability is 2 * 9 / 256 = 7 %.
     assert median_with_uncertainty([1, 2, 3, 4, 5, 6, 7, 8]) == (4.5, 3.5)
-    # Of six the least and the greatest, 2 / 64; of five even those leave 6 %.
+    # Of six the least and the greatest, 2 / 64; of five even these leave 6 %.
     assert median_with_uncertainty([1.0, 2.0, 3.0, 4.0, 5.0, 7.0]) == (3.5, 3.5)
     assert median_with_uncertainty([3.0, 1.0, 2.0]) == (2.0, float("inf"))
 

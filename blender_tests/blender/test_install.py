@@ -1,5 +1,5 @@
-"""Zips in Blender: installed, rendered with, updated while in use, disabled, removed, without a network. They are those of
-`make addon`, or the ones in the folder that LANCER_TEST_ZIPS names."""
+"""Zips in Blender, without a network: installed, used in a render, updated while in use, disabled, removed. The zips are those
+of `make addon`, or those in the folder LANCER_TEST_ZIPS."""
 
 import ast
 import glob
@@ -27,7 +27,7 @@ def release():
 
 
 def older(path, folder):
-    """The same zip as an older release, whose library says so."""
+    """Return a copy of the zip with an older version in add-on and library."""
     new, old = release(), OLDER
     dotted = [".".join(map(str, version)) for version in (new, old)]
     made = os.path.join(folder, os.path.basename(path).replace(*dotted))
@@ -37,7 +37,7 @@ def older(path, folder):
             if name.endswith("blender_manifest.toml"):
                 data = data.replace(*(text.encode() for text in dotted))
             elif name.endswith("__init__.py"):
-                # Python takes a file of the same size and second for the one that it has compiled.
+                # Change the size: Python reuses the compiled file if size and time are equal.
                 data = data.replace(str(new).encode(), str(old).encode()) + b"\n"
             elif "/liblancer" in "/" + name:
                 data = data.replace(*(text.encode() + b"\0" for text in dotted))
@@ -47,7 +47,7 @@ def older(path, folder):
 
 
 def has_extensions(which):
-    """Whether this Blender is one of 4.2 or newer."""
+    """Whether this Blender is version 4.2 or newer."""
     if which == MODULE:
         return True
     said = subprocess.run([blenders.program(), "--version"], capture_output=True, text=True, check=True).stdout
@@ -55,7 +55,7 @@ def has_extensions(which):
 
 
 def newest_zip(which):
-    """For this machine and this Blender; made when there is none."""
+    """Return the newest zip for this machine and this Blender; build it if there is none."""
     folder = os.environ.get("LANCER_TEST_ZIPS")
     if not folder:
         folder = os.path.join(ROOT, "build")
@@ -87,7 +87,7 @@ def test_install_update_remove(which, tmp_path):
     assert got["before"] == got["disabled"] == absent and not got["left"]
     for name, version in (("older", OLDER), ("newer", release())):
         assert got[name].pop("brightest") > 0.0
-        # The library that was loaded before the update would say its own release.
+        # If the old library were still loaded, it would report its own version.
         text = ".".join(map(str, version))
         assert got[name] == {**present, "release": text, "library": text}
     assert str(tmp_path) in got["folder"]

@@ -1,4 +1,4 @@
-"""What only Blender's main thread may do, and who waits for it, in the bpy module of this Python and in Debian's Blender."""
+"""Work run in Blender's main thread for other threads, in the bpy module of this Python and in Debian's Blender."""
 
 import blenders
 import pytest
@@ -16,7 +16,7 @@ def test_another_thread_has_its_work_done_by_the_main_one(case):
     got = case("asked")
     assert got["here"] is True and got["by main"] is True
     assert got["error"] == "ZeroDivisionError"
-    # Esc ends the wait; what is posted is done later, and what was given up is not.
+    # Esc ends the wait; posted work is done later, cancelled work is not.
     assert got["cancelled"] == "Cancelled" and got["before"] == [] and got["done"] == ["posted"]
 
 

@@ -1,6 +1,6 @@
-"""Materials of Blender as records, in the bpy module of this Python and in Debian's Blender 3.4.1; nothing is traced.
+"""Export of Blender's materials to records, in the bpy module of this Python and in Debian's Blender 3.4.1, without tracing.
 
-Blender stores single precision: a number that went through it is compared to 1e-6, sixteen times its rounding of 2^-24.
+Blender stores single precision: the tolerance is 1e-6, sixteen times its rounding of 2^-24.
 """
 
 import blenders
@@ -24,7 +24,7 @@ def answers():
 
 @pytest.fixture
 def case(which, answers, tmp_path):
-    """Runs a case once in each Blender, for all tests that look at it."""
+    """Return a function that runs a case once in each Blender and caches its result for all tests."""
 
     def run(name, *arguments):
         if (which, name) not in answers:
@@ -35,7 +35,7 @@ def case(which, answers, tmp_path):
 
 
 class Nodes:
-    """Values of the nodes that weights are made of, for a given number from the mesh: written out once more, by hand."""
+    """An independent evaluation of the nodes of weights, for a given value of the mesh attribute."""
 
     def __init__(self, material, number):
         self.material, self.number = material, number
@@ -86,7 +86,7 @@ def test_principled_under_newest_names(case):
     assert plain["specular_tint"] == (WHITE if new else NONE)
     assert [full[n] for n in ("metallic", "transmission", "coat", "sheen")] == near([0.25, 0.5, 0.5, 0.25])
     assert [full[n] for n in ("anisotropic", "anisotropic_rotation", "coat_roughness")] == near([0.75, 0.125, 0.03])
-    # What is stretched needs a tangent, round z of the coordinates before deformation.
+    # Anisotropic lobes need a tangent, around z of the generated coordinates.
     assert got["plain"]["lobes"][0]["tangent"] == NONE and got["plain"]["attributes"] == []
     assert got["all"]["lobes"][0]["tangent"] == {"node": 0} and got["all"]["attributes"] == ["generated"]
     assert got["all"]["node kinds"] == ["TANGENT"] and got["all"]["nodes"][0]["option"] == 2
@@ -99,7 +99,7 @@ def test_principled_alpha_and_emission(case):
     veil, unseen = got["veil"], got["unseen"]
     assert veil["lobes"][0]["weight"] == near([0.25] * 3) and veil["transmittance"] == near([0.75] * 3)
     assert unseen["lobes"] == [] and unseen["transmittance"] == WHITE
-    # Light under a coat belongs to the layers; light under nothing is the material's own.
+    # Emission under a coat belongs to the lobe; without a coat it is the material's.
     light = near([3.0, 1.5, 0.75])
     lamp, coated = got["lamp"], got["lamp under coat"]
     assert lamp["emission"] == light and lamp["lobes"][0]["principled"]["emission"] == NONE
@@ -160,7 +160,7 @@ def test_every_closure_of_this_blender(case):
     assert got["colour as shader"]["emission"] == near([0.5] * 3)
     for name in STAND_INS:
         assert got[name]["kinds"] == ["LAMBERT"] and len(got[name]["messages"]) == 1, name
-    # Whatever else there is says so.
+    # All other nodes give a message.
     silent = {*KINDS, "BsdfTransparent", "Emission", "Holdout", "Background", "MixShader", "AddShader"}
     silent |= {"colour as shader", "rough", "GGX", "BECKMANN", "ASHIKHMIN_SHIRLEY", "MULTI_GGX"}
     assert all(material["messages"] for name, material in got.items() if name not in silent)
@@ -178,11 +178,11 @@ def test_values_of_closures(case):
 
 
 def test_constant_shares_of_shaders(case):
-    """A quarter red, an eighth glass, an eighth of a hole, a quarter of a pane and of light 4, and three quarters blue."""
+    """1/4 red, 1/8 glass, 1/8 holdout, 1/4 transparent and emission of 4, and 3/4 blue."""
     got = case("mixing")["mixed"]
     assert got["nodes"] == [] and got["kinds"] == ["LAMBERT", "GLASS"]
     diffuse, glass = got["lobes"]
-    # Two diffuse lobes with other colours are one.
+    # Two diffuse lobes of different colours are merged.
     assert diffuse["color"] == near([0.25, 0.0, 0.75]) and diffuse["weight"] == WHITE
     assert glass["color"] == WHITE and glass["weight"] == near([0.125] * 3)
     assert got["holdout"] == near(0.125) and got["transmittance"] == near([0.125, 0.25, 0.25])
@@ -190,7 +190,7 @@ def test_constant_shares_of_shaders(case):
 
 
 def test_varying_shares_of_shaders(case):
-    """The same with a factor of the mesh's, which is clamped."""
+    """The mix with a factor from a mesh attribute, which is clamped."""
     got = case("mixing")["textured"]
     assert got["kinds"] == ["LAMBERT", "GLASS", "LAMBERT"] and got["attributes"] == ["shade"]
     for number, factor in ((0.0, 0.0), (0.3, 0.3), (1.0, 1.0), (1.5, 1.0), (-1.0, 0.0)):
@@ -233,7 +233,7 @@ def test_displacement_by_method(case):
         number = lobe["normal"]["node"]
         bump = material["nodes"][number]
         assert material["node kinds"][number] == "BUMP"
-        # The height is of nodes that no other value reads.
+        # No other value reads the nodes of the height.
         assert bump["first"] <= bump["inputs"][2]["node"] < number
         strength, distance, height, normal, width = bump["inputs"]
         assert (strength, distance, normal) == (1.0, 1.0, NONE) and width == (0.1 if got["version"] >= [4, 5] else 1.0)
@@ -247,7 +247,7 @@ def test_bumps_on_bumps(case):
     first = second["inputs"][3]["node"]
     assert got["node kinds"][number] == got["node kinds"][first] == "BUMP"
     assert second["flags"] == 1 and got["nodes"][first]["flags"] == 0
-    # The first is not among the nodes that are computed anew for the second's height.
+    # The first bump is not among the nodes that are evaluated again for the second's height.
     assert first < second["first"] <= second["inputs"][2]["node"] < number
     assert got["nodes"][first]["inputs"][3] == NONE
 
@@ -265,11 +265,11 @@ def test_attributes_that_a_material_reads(case):
     assert domain == "VERTEX" and np.array(values) == near(np.array([[0.1 * i, 0.5, 0.25, 0.5] for i in range(5)]))
     domain, values = reader["attributes"]["number"]
     assert domain == "FACE" and np.array(values)[:, 0] == near(np.array(face, float))
-    # The modifier moved the vertices; where they were, over the bounds of the mesh, is what GENERATED reads.
+    # The modifier moved the vertices; GENERATED has the positions before it, relative to the mesh's bounds.
     assert np.abs(np.array(reader["positions"]) - original).max() > 0.05
     domain, values = reader["attributes"]["generated"]
     assert domain == "VERTEX" and np.array(values) == near((original - [-1, -1, 0]) / 2.0)
-    # Tangents lie in the faces, along u, which grows with x.
+    # Tangents lie in the faces, along u, which increases with x.
     domain, values = reader["attributes"]["tangent:Second"]
     values = np.array(values)
     assert domain == "CORNER" and np.linalg.norm(values[:, :3], axis=1) == near(np.ones(18), 1e-5)
@@ -278,24 +278,24 @@ def test_attributes_that_a_material_reads(case):
 
 def test_random_trees_never_fail(case):
     got = case("fuzz", 120)
-    # As many as a blind chance gives; none of them refers to what comes later, or holds what the core cannot take.
+    # Random trees give enough variety; no node refers to a later one or has values that the core refuses.
     assert got["kinds"] > 80 and got["lobes"] > 20 and got["nodes"] > 20
     assert got["backward"] == got["wild"] == 0
 
 
 def test_the_panel_tells_the_lobes_of_principled(case):
-    """As the core has them, straight on; it is asked once for each change."""
+    """The panel shows the core's lobes at normal incidence, computed once for each change."""
     got = case("panel")
     assert got["asked"] == ["matt", "metal", "coated", "coated"]
     said = got["said"]
     assert all(line == lines[0] for lines in said.values() for line in lines)
     (matt,), (metal,), coated = (said[name][0] for name in ("matt", "metal", "coated"))
     assert matt.endswith("iffuse Kd: 0.8 0.4 0.2")
-    # Metal gives its base colour straight on, less what its facets shadow: about half of alpha^2, 0.09^2.
+    # At normal incidence the albedo of metal is its base colour minus the loss by masking, about half of alpha^2 = 0.09^2.
     name, told = metal.split(": ")
     albedo, roughness, *_ = told.split(", ")
     assert name.endswith("Ks") and 0.5 * (1.0 - 0.09**2) < float(albedo) <= 0.5 and roughness == "roughness 0.3"
-    # By version the coat takes light from what lies below.
+    # From 4.0 on the coat reduces the light of the base.
     coat, diffuse = sorted(coated[:2], key=lambda line: "Kd" in line)
     assert ["Clearcoat leaves" in line for line in coated[2:]] == ([] if got["version"] >= [4, 0] else [True])
     assert "roughness 0.1, IOR 1.5" in coat and 0.7 < float(diffuse.split("Kd: ")[1]) <= 0.8

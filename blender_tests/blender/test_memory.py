@@ -1,4 +1,4 @@
-"""Many renders in one process: the memory that the tenth has left is what the last one leaves."""
+"""Many renders in one process: the memory after the last render equals that after the tenth."""
 
 import os
 import subprocess
@@ -10,11 +10,11 @@ from blenders import MODULE
 from conftest import HERE
 
 FEW, MANY = 30, 300
-# What a process may have grown by after the tenth of its renders.
+# Greatest relative growth of the process after its tenth render.
 MOST_GROWTH = 0.01
 
-# Renders a snapshot of many things again and again, every second time with a round of refinement; the tenth and the last say
-# what the process holds.
+# Renders a rich snapshot repeatedly, every second time with a round of refinement, and prints the memory after the tenth and
+# the last render.
 LOOP = """
 import sys
 sys.path[:0] = sys.argv[2:]
@@ -43,7 +43,7 @@ print(held_after[9]["resident"], held_after[-1]["resident"], held_after[9]["give
 
 
 def through_bindings(renders):
-    """(resident and given bytes after the tenth render), the same after the last."""
+    """Return the memory after the tenth and after the last render, resident and allocated bytes."""
     places = [HERE, os.path.join(HERE, "helpers"), os.path.join(HERE, "blender", "in_blender")]
     command = [sys.executable, "-c", LOOP, str(renders), *places]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -68,7 +68,7 @@ def test_many_renders_leave_nothing():
 
 
 def assert_steady_in_blender(tmp_path, renders):
-    """Blender keeps something of every render, whoever makes it: an engine that does nothing tells how much."""
+    """Subtract Blender's own growth per render, measured with an empty engine."""
     got = {engine: blenders.run(MODULE, tmp_path, "memory_cases", "renders", engine, renders) for engine in ("LANCER", "EMPTY")}
     for kind in ("given", "resident"):
         tenth, last = got["LANCER"][kind]

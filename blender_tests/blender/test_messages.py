@@ -1,4 +1,4 @@
-"""What a render tells, in the bpy module of this Python and in Debian's Blender 3.4.1."""
+"""Messages of renders, in the bpy module of this Python and in Debian's Blender 3.4.1."""
 
 import json
 
@@ -15,10 +15,10 @@ def case(which, tmp_path):
 
 
 def test_each_render_tells_its_own(case):
-    """Persistent Data keeps the engine from render to render, but not what it said."""
+    """Persistent Data keeps the engine between renders, but not its messages."""
     got = case("persistent")
     assert len(got["first"]) == 3 and got["second"] == got["first"]
-    # The cube that is gone takes its message along.
+    # The message of the removed cube is gone.
     assert got["fewer"] == [line for line in got["first"] if "'Cube.001'" not in line] and len(got["fewer"]) == 2
     assert got["animation"] == got["fewer"]
     assert got["samples"][0] == got["samples"][1]
@@ -28,13 +28,13 @@ def test_the_messages_of_view_layers_add_up(case):
     got = case("layers")
     for kept in (False, True):
         alone, both = got[f"second {kept}"], got[f"both {kept}"]
-        # Each layer shows all: what one alone says once, both say twice.
+        # Each layer has all objects: counts double with both layers.
         assert len(alone) == 3 and alone[0].endswith("magenta is used (2 times)")
         assert both == [alone[0].replace("(2 times)", "(4 times)"), f"{alone[1]} (2 times)", f"{alone[2]} (2 times)"]
 
 
 def test_the_error_of_a_layer_outlasts_the_next(which, tmp_path):
-    """The panel keeps the error beside what the other layer tells. The program in the background ends with exit code 1."""
+    """The panel keeps the first layer's error beside the second layer's messages. In background mode the exit code is 1."""
     path = tmp_path / "panel.json"
     code, said, got = blenders.attempt(which, tmp_path, "message_cases", "failed_layer", path, alone=True)
     assert code == (0 if which == MODULE else 1) and "the first layer fails" in (got or said), said[-2000:]
@@ -45,7 +45,7 @@ def test_the_error_of_a_layer_outlasts_the_next(which, tmp_path):
 
 def test_light_paths_that_differ_are_told_in_one_line(case):
     got = case("light_paths", "setting_cases")
-    # As Blender starts with them they are no fault; only what somebody has set in Cycles is one.
+    # Cycles' defaults are a hint; only changed settings of Cycles are a difference.
     severities = got.pop("severities")
     hints = {"start", "few bounces here", "same number", "same clamp", "own clamp", "clamped here alone"}
     assert {name: severity for name, (severity,) in severities.items()} == {
@@ -58,7 +58,7 @@ def test_light_paths_that_differ_are_told_in_one_line(case):
     rest = "Filter Glossy 1 and Clamp Indirect 10"
     kinds = "Diffuse 4, Glossy 4"
     assert got["start"] == line(f"Total 12, {kinds}, {rest}", "Max Bounces 10")
-    # Four bounces of a kind are no limit where three end the path.
+    # A limit of four bounces of a kind has no effect with a total of three.
     assert got["few bounces here"] == line(f"Total 12, {rest}", "Max Bounces 3")
     assert got["same number"] == line(f"{kinds}, {rest}", "Max Bounces 10")
     assert got["few bounces there"] == line(f"Total 3, {rest}", "Max Bounces 10")
@@ -66,7 +66,7 @@ def test_light_paths_that_differ_are_told_in_one_line(case):
     assert got["same clamp"] == line(f"Total 12, {kinds} and Filter Glossy 1", "Max Bounces 10 and Clamp Indirect 10")
     assert got["own clamp"] == line(f"Total 12, {kinds}, {rest}", "Max Bounces 10 and Clamp Indirect 2.5")
     assert got["clamped here alone"] == line(f"Total 12, {kinds} and Filter Glossy 1", "Max Bounces 10 and Clamp Indirect 2.5")
-    # These are pictures of their own, which no settings make Cycles'.
+    # The other integrators are not compared with Cycles.
     assert got["classic"] == got["normals"] == []
 
 

@@ -1,4 +1,4 @@
-"""Objects' own switches, the film's and the world's, as they arrive in the snapshot."""
+"""Switches of objects, film and world in the snapshot."""
 
 import blenders
 import pytest
@@ -26,7 +26,7 @@ def test_switches(case):
         "hole": [[[], True]],
         "hole of a collection": [[[], True]],
         "indirect": [[["CAMERA"], False]],
-        # A hole is seen by the camera, or it would be none.
+        # A holdout must be visible to the camera.
         "hole, not indirect": [[[], True]],
         "catcher": [[[], False]],
     }
@@ -40,7 +40,7 @@ def test_instancers_narrow_what_they_bring_in(case):
 
 
 def test_instances_leave_nothing_allocated(case):
-    """Blender tells at its exit what nobody has freed."""
+    """Blender reports memory blocks that are not freed at exit."""
     got = case("freed", alone=True)
     assert got["instances"] >= 2 + 5 + 1 + 6 and "Not freed" not in got["console"]
     assert "Not freed" not in case("freed_text", alone=True)["console"]

@@ -37,12 +37,12 @@ def test_failures_are_told_and_over(case):
 
 
 def test_denoising(tmp_path):
-    """The module brings Open Image Denoise; Debian's program has none."""
+    """The module has Open Image Denoise, Debian's program does not."""
     got = blenders.run(MODULE, tmp_path, "painter_cases", "denoises")
     assert (
         got["denoised"] == [False, True] and got["alpha"] and got["failure"] == "" and got["threads"] == [] and got["left"] == 0
     )
-    # Of noise that is a tenth of the picture and more, at four samples, hardly any is left.
+    # Noise of 10 % and more, at four samples, is nearly removed.
     assert got["roughness"][1] < 0.5 * got["roughness"][0]
 
 
@@ -53,13 +53,13 @@ def test_a_denoiser_that_fails_is_told(case):
 
 
 def test_the_first_picture_is_as_coarse_as_it_must_be():
-    """At a million pixels a second 0.07 s are 70 000 pixels: of 960 x 540 a picture of 240 x 135 is the finest below it."""
+    """At a million pixels per second 0.07 s are 70 000 pixels: 240 x 135 is the finest size of 960 x 540 below that."""
     sizes, region = PixelSizes(), Rectangle(960, 540)
     assert coarsest(region, 1, 64) == 8 and coarsest(region, 2, 64) == 8 and coarsest(Rectangle(60, 60), 1, 64) == 1
     assert sizes.first(region, 1, 8) == 8
     sizes.learn(1_000_000, 1.0)
     assert sizes.first(region, 1, 8) == 4 and sizes.first(region, 1, 2) == 2 and sizes.first(region, 8, 8) == 8
-    # The finest takes 0.52 s, longer than a step should: one more comes before it.
+    # The finest takes 0.52 s, longer than a step may take: one more size comes before it.
     assert sizes.after(4, region, 1) == 2 and sizes.after(2, region, 1) == 1
     for _ in range(20):
         sizes.learn(100_000_000, 1.0)

@@ -1,4 +1,4 @@
-"""Passes under the names that each Blender has for them, with numbers that are known."""
+"""Passes by their names in each version of Blender, with known values."""
 
 import blenders
 import pytest
@@ -6,7 +6,7 @@ from blenders import MODULE, PROGRAM
 
 pytestmark = pytest.mark.parametrize("which", [MODULE, PROGRAM])
 
-# Names from Blender 5 on, those before, channels.
+# Name from Blender 5 on, name before, channels.
 NAMES = [
     ("Combined", "Combined", 4),
     ("Depth", "Depth", 1),
@@ -43,14 +43,14 @@ def test_every_pass_is_there_and_filled(case):
     got = case("every_pass")
     wanted = {row[0] if got["version"] >= [5, 0] else row[1]: row[2] for row in NAMES}
     assert {name: look["channels"] for name, look in got["passes"].items()} == wanted
-    # The scene has something for each: none is of one value.
+    # No pass is constant.
     assert [name for name, look in got["passes"].items() if not look["finite"] or look["low"] == look["high"]] == []
     assert got["indices"] == [0, 7] and got["materials"] == [0, 9]
     assert [line for line in got["messages"] if "pass" in line] == []
 
 
 def test_parts_give_the_picture_again(case):
-    """Every number is rounded to float a few times on its way, and the sum has seven terms."""
+    """The light passes sum to Combined, up to rounding of a sum with seven terms."""
     assert case("every_pass")["difference"] < 2.0**-20
 
 
@@ -70,23 +70,23 @@ def test_albedo_may_come_alone(case):
 
 def test_known_numbers(case):
     got = case("known_numbers")
-    # Of parallel rays it counts along the axis, in the middle and beside it.
+    # With an orthographic camera mist uses the depth along the axis, in the centre and beside it.
     for falloff, exponent in (("QUADRATIC", 2.0), ("LINEAR", 1.0), ("INVERSE_QUADRATIC", 0.5)):
         assert got["mist"][falloff] == [pytest.approx((3.0 / 12.0) ** exponent)] * 2, falloff
     assert got["sky mist"] == 1.0
     assert got["Depth"][0] == pytest.approx([4.0]) and got["Depth"][1] == pytest.approx([1e10])
-    # The middle pixel is a square of 2/3 m about the origin; sample 0 lies somewhere in it.
+    # The centre pixel is a square of 2/3 m around the origin, which contains sample 0.
     x, y, z = got["Position"][0]
     assert abs(x) <= 1 / 3 and abs(y) <= 1 / 3 and abs(z) < 1e-6 and got["Position"][1] == [0, 0, 0]
     assert got["Normal"] == [pytest.approx([0, 0, 1]), [0, 0, 0]]
     # The file's reader sorts the third channel, A, to the front.
     w, u, v = got["UV"][0]
-    # A mean over the pixel, which spans a third of the plane's side.
+    # The mean over the pixel, which covers a third of the plane's side.
     assert abs(u - 0.5) < 1 / 6 and abs(v - 0.5) < 1 / 6 and w == 1.0 and got["UV"][1] == [0, 0, 0]
     # Camera space: z points into the picture.
     assert got["Denoising Normal"][0] == pytest.approx([0, 0, -1], abs=1e-6)
     assert got["Denoising Albedo"][0] == pytest.approx([0.8, 0.4, 0.2])
-    # Cycles counts from the camera's clip start, 0.1.
+    # Cycles measures from the camera's clip start, 0.1.
     assert got["Denoising Depth"][0] == pytest.approx([3.9])
     assert got["open"] == [1.0, 1.0, 1.0]
     assert got["under a lid, 0.5"] == [1.0, 1.0, 1.0] and got["under a lid, 1e+06"] == [0.0, 0.0, 0.0]

@@ -1,4 +1,4 @@
-"""Pictures of materials, read in a render, in the bpy module of this Python and in Debian's Blender 3.4.1."""
+"""Images of materials, read in a render, in the bpy module of this Python and in Debian's Blender 3.4.1."""
 
 import blenders
 import numpy as np
@@ -15,14 +15,14 @@ def case(which, tmp_path):
 
 
 def ramp(channels=4):
-    """The bytes of the pictures that the cases make."""
+    """Return the bytes of the images in the cases."""
     return np.arange(8 * 8 * channels).reshape(8, 8, channels) * 37 % 256
 
 
 def test_bit_depth_and_alpha(case):
     got = case("depths")
     images = {picture["name"]: picture for picture in got["images"]}
-    # Two materials show the first picture, which is there once.
+    # Two materials share the first image, which is exported once.
     assert got["ranges"] == [[0, 1], [0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1]]
     wanted = {
         "opaque": (3, "uint8", "SRGB", "STRAIGHT"),
@@ -49,7 +49,7 @@ def test_deep_files_keep_their_values_and_get_the_curve(case):
     by_image = got["version"] >= [5, 1]
     for kind in ("PNG", "TIFF", "OPEN_EXR"):
         stored = ramp() / 255.0
-        # Colour that PNG and TIFF store is straight and that of EXR multiplied, until Cycles took the image's word for it.
+        # PNG and TIFF store straight alpha, EXR associated alpha; newer versions of Cycles follow the image's setting.
         straight = "STRAIGHT" if by_image or kind != "OPEN_EXR" else "ASSOCIATED"
         premultiplied = "ASSOCIATED" if by_image or kind == "OPEN_EXR" else "STRAIGHT"
         alphas = {"STRAIGHT": straight, "PREMUL": premultiplied, "CHANNEL_PACKED": "CHANNEL_PACKED", "NONE": "NONE"}
@@ -59,7 +59,7 @@ def test_deep_files_keep_their_values_and_get_the_curve(case):
             check_stored(picture, kind, stored[..., :3] if mode == "NONE" else stored)
         assert (images[f"{kind} data"]["transfer"], images[f"{kind} data"]["alpha"]) == ("LINEAR", "CHANNEL_PACKED")
         check_stored(images[f"{kind} data"], kind, stored)
-        # Decoded before interpolation: what Blender packs, and what takes more than the curve of sRGB.
+        # Decoded before interpolation: packed images, and colour spaces that need more than the sRGB curve.
         for name in ("packed", "other"):
             picture = images[f"{kind} {name}"]
             assert picture["transfer"] == "LINEAR" and picture["type"] == "float32", picture["name"]
@@ -68,7 +68,7 @@ def test_deep_files_keep_their_values_and_get_the_curve(case):
 
 
 def check_stored(picture, kind, values):
-    """Texels are those of the file: whole steps of 16 bits, or floats."""
+    """Assert texels equal to the file's values: 16-bit integers, or floats."""
     texels = np.array(picture["texels"])
     if kind == "OPEN_EXR" and picture["type"] == "float32":
         assert np.array_equal(texels.astype(np.float32), values.astype(np.float32)), picture["name"]
@@ -87,10 +87,10 @@ def test_colour_spaces_as_blender_converts_them(case):
             values = values / 255.0
         values = values @ np.array(picture["matrix"]).reshape(3, 3).T
         wanted = np.array(got["wanted"][picture["name"]])
-        # Single precision through a file and curves that are up to 2^4 steep: 2^-24 times 2^4 times the value, and some steps.
+        # Single precision through a file and curves with slopes up to 2^4: 2^-24 times 2^4 times the value, and some steps.
         assert np.abs(values - wanted).max() < 4e-6 * np.abs(wanted).max(), picture["name"]
         kinds[picture["name"]] = picture["type"]
-    # What is a matrix stays in bytes.
+    # Colour spaces that are a matrix keep bytes.
     assert sorted(kinds.values()) == ["float32", "uint8"] and kinds["Filmic sRGB"] == "float32"
     assert got["unchanged"]
 
@@ -102,13 +102,13 @@ def test_tiles_sequences_and_what_is_missing(case):
     for tile, shift in zip(tiles, (0, 50, 100), strict=True):
         assert np.array_equal(tile["texels"], (ramp(3) + shift) % 256)
     images = {picture["name"]: picture for picture in got["images"]}
-    # Frame 11 of a sequence that starts at 10 is its second picture.
+    # Frame 11 of a sequence that starts at 10 is its second image.
     assert np.array_equal(images["sequence"]["texels"], (ramp(3) + 20) % 256)
     assert np.array_equal(images["in the file"]["texels"], (ramp(3) + 30) % 256)
     assert images["deep"]["type"] == "uint16" and np.array_equal(images["deep"]["texels"], ramp(3) * 257)
     assert got["ranges"] == [[0, 3], [3, 1], [4, 1], [5, 1]] and "lost" not in images
     told = got["messages"]
-    # What is magenta hurts more than what is left out.
+    # Magenta is more severe than left out.
     assert len(told) == 3 and "material 'Lost'" in told[0] and "image 'lost'" in told[0]
     assert "has no image" in told[1] and "tile 1012 of image 'tiles'" in told[2]
     assert got["unchanged"]

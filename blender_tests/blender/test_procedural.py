@@ -1,10 +1,10 @@
-"""Textures that are computed, and curves: the core's nodes beside Cycles of the same Blender, at the same places."""
+"""Procedural textures and curves: the core's nodes against Cycles of the same Blender, at equal points."""
 
 import blenders
 import pytest
 from blenders import MODULE, PROGRAM
 
-# The side of each setting's square in pixels; what is asked of a million points holds for these as well.
+# The side of each setting's square in pixels.
 SIDE = 24
 SHARE = 0.999  # of the points are within a thousandth of the range of Cycles' values
 
@@ -14,7 +14,7 @@ def _judged(which, folder, name, least):
     got.pop("console")
     assert len(got) >= least
     assert all(points == SIDE * SIDE for points, *_ in got.values())
-    # A setting that shows one value alone proves little; some of noise without octaves do.
+    # Few settings may be constant; some of noise without octaves are.
     flat = [setting for setting, (_, span, *_) in got.items() if span <= 1e-3]
     assert len(flat) <= len(got) / 5, flat
     wrong = {setting: numbers for setting, numbers in got.items() if numbers[2] < SHARE}

@@ -1,4 +1,4 @@
-"""Measure Speed and Accuracy, in Blender: what it tells, what it changes, and when it is old."""
+"""Measure Speed and Accuracy in Blender: its forecasts, its effect on the file, and when it is old."""
 
 import blenders
 import pytest
@@ -13,15 +13,15 @@ def test_each_quality_has_its_seconds_and_error(which, tmp_path):
     assert list(told) == ["Draft", "Good", "Final", "As set"]
     for low, value, high, error_low, error, error_high in told.values():
         assert 0.0 < low <= value <= high and 0.0 < error_low <= error <= error_high
-    # A preset names the error that is not exceeded: less is to be expected. And each takes longer than the one before.
+    # The expected error is below a preset's target, and each preset takes longer than the one before.
     assert [told[name][4] <= limit for name, limit in (("Draft", 0.1), ("Good", 0.03), ("Final", 0.01))] == [True] * 3
     assert told["Draft"][1] <= told["Good"][1] <= told["Final"][1]
     assert got["lines"][0].startswith("Draft: ") and got["lines"][-1].startswith("Classic, 64 samples: about ")
     assert all(f"Info: Lancer: {line}" in got["console"] for line in got["lines"])
-    # The interval that the render gives itself, and that which it was told beforehand, have something in common.
+    # The interval of the render and that of the forecast overlap.
     _, _, low, high = got["rendered"]
     assert told["As set"][3] <= high and low <= told["As set"][5]
-    # Twice the samples, and four times the pixels.
+    # Twice the samples take longer, and four times the pixels longer still.
     start = told["As set"][1]
     assert start < got["more"][1] < got["larger"][1] and got["more"][4] < told["As set"][4]
     old = got["old"]

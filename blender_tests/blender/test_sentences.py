@@ -1,4 +1,4 @@
-"""Sentences in panels: all words, in lines that have room."""
+"""Sentences in panels: all words, in lines that fit."""
 
 import importlib.util
 import os
@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 from conftest import ROOT
 
-# Without the panels beside it, which need Blender.
+# Load the file alone: the other files of its room need Blender.
 _spec = importlib.util.spec_from_file_location("sentences", os.path.join(ROOT, "addon", "ui", "sentences.py"))
 _sentences = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(_sentences)
@@ -39,7 +39,7 @@ def written(text, width=None, scale=1.0, **options):
 def test_every_word_is_written_and_no_line_is_longer_than_the_panel(width):
     lines = [text for text, _ in written(TEXT, width)]
     assert " ".join(lines) == TEXT
-    # No letter of a sentence's average is narrower than five pixels; a single word may be longer than any panel.
+    # The mean width of letters is at least five pixels; a single word may be longer than the panel.
     assert all(len(line) * 5.0 <= width or " " not in line.replace(" %", "%") for line in lines)
     # A number and its sign stay together.
     assert not any(line.startswith("%") for line in lines)

@@ -1,4 +1,4 @@
-"""What a render says of its accuracy: a target that was missed, what would reach it, and of which view layer."""
+"""Sentences about a render's accuracy: a missed target, the settings that would reach it, the view layer's name."""
 
 import math
 
@@ -21,14 +21,14 @@ def told(values, **settings):
 
 
 def test_a_target_that_was_missed_is_told_first_with_what_helps():
-    # A fifth of the error takes 25 times the samples: 2500.
+    # A fifth of the error requires 25 times the samples: 2500.
     first, second, *_ = told(numbers(0.25, 0.5))
     assert first == "10 % was not reached: 25 %, at most 50 %; it would take about 2500 Samples"
     assert second.startswith("error 25 %, with 95 % confidence between 20 % and 45 %")
-    # Of 10 s beside the samples there are still 10 s.
+    # The 10 s besides the samples stay 10 s.
     first, *_ = told(numbers(0.25, 0.5, TIME, 16), samples=1024, time_limit=30.0)
     assert first == "10 % was not reached: 25 %, at most 50 %; it would take a Time Limit of about 8.5 min"
-    # More time alone would end at the samples.
+    # With more time alone the limit of samples would end the render.
     first, *_ = told(numbers(0.25, 0.5, TIME, 16), samples=128, time_limit=30.0)
     assert first.endswith("it would take about 400 Samples and a Time Limit of about 8.5 min")
     # Two digits, rounded up: fewer would be too few.
@@ -40,7 +40,7 @@ def test_a_target_that_was_missed_is_told_first_with_what_helps():
     "values, settings",
     [
         (numbers(0.05, 0.09, TARGET), {}),
-        # It was looked at for the last time before the last samples came.
+        # The error was read for the last time before the last samples.
         (numbers(0.05, 0.09, SAMPLES), {}),
         (numbers(0.25, 0.5, CANCELLED), {}),
         (numbers(0.25, 0.5), {"target_error": 0.0}),

@@ -1,4 +1,4 @@
-"""What Lancer does not support is named, and something plain stands in for it: never black, and never silently."""
+"""Unsupported features give a message and a plain stand-in, never black and never without a message."""
 
 import blenders
 import pytest
@@ -64,6 +64,6 @@ def test_what_stands_beside_transparent(which, tmp_path):
     for name, material in got.items():
         told = ["which Cycles 3 mixes with theirs" in text for text in material["messages"]]
         assert told == ([True] if which == PROGRAM and name in ("leaf", "frosted") else []), name
-    # Half of it: its light between facets goes with powers of its own colour, which stays whole.
+    # The weight stays separate: rough diffuse is not linear in its colour.
     (clay,) = got["clay"]["lobes"]
     assert clay["color"] == pytest.approx([0.5, 0.25, 0.125]) and clay["weight"] == pytest.approx([0.5] * 3)

@@ -1,4 +1,4 @@
-"""Switches that one number or flag of the snapshot stands for; Blender stores single precision."""
+"""Switches that become one number or flag of the snapshot; Blender stores single precision."""
 
 import blenders
 import pytest
@@ -62,7 +62,7 @@ def test_normal_maps_take_the_unit_normal(case):
 def test_panoramas(case):
     got = case("cameras")
     version = got.pop("version")
-    # The picture of 2 x 1 covers the sensor's width, and half of that in height.
+    # The image of 2 x 1 covers the sensor's width, and half of that in height.
     expected = {
         "EQUIRECTANGULAR": ("EQUIRECTANGULAR", [-0.5, 0.25, -2.0, 1.5]),
         "FISHEYE_EQUIDISTANT": ("FISHEYE_EQUIDISTANT", [2.5]),
@@ -71,7 +71,7 @@ def test_panoramas(case):
         "MIRRORBALL": ("MIRROR_BALL", []),
         "CENTRAL_CYLINDRICAL": ("CYLINDRICAL", [-1.0, 2.0, -0.5, 0.75, 1.25]),
     }
-    # The youngest of them.
+    # The newest projection is missing in old versions.
     if "CENTRAL_CYLINDRICAL" not in got:
         assert version < [4, 4]
         expected.pop("CENTRAL_CYLINDRICAL")

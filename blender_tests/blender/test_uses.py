@@ -1,4 +1,4 @@
-"""What a scene is said to use: with the core's own word beside it, and the scene without each feature."""
+"""The features of a scene, compared with the core's list, and the scene without each feature."""
 
 import dataclasses
 import math
@@ -15,7 +15,7 @@ from addon.measure import scene_features, simpler_scene
 from addon.measure.parameters import without_idle_nodes
 from addon.measure.scene_features import kernel_in_words, used_features, without
 
-# Ours and the core's words for the same thing.
+# The add-on's and the core's names of the same feature.
 SAME = {
     "glass": "glass",
     "transparency": "transparency",
@@ -47,7 +47,7 @@ def checks():
 
 
 def everything():
-    """All of the showroom, and what it lacks."""
+    """Return the showroom with the features that it lacks."""
     base = tiny.showroom(passes=(Pass.COMBINED, Pass.DEPTH), max_bounces=8)
     bump = Node(NodeKind.BUMP, inputs=(1.0, 0.1, NodeRef(1), NodeRef(2), 0.1), first=0)
     normal = Node(NodeKind.COORDINATE, option=Coordinate.SHADING_NORMAL)
@@ -85,7 +85,7 @@ def everything():
 
 
 def _instances(snapshot):
-    """The table as the list it was built of."""
+    """Return the table as a list of Instance."""
     table = snapshot.instances
     return [
         Instance(
@@ -117,7 +117,7 @@ def test_the_whole_scene_has_all_that_can_be_taken_away():
 
 @pytest.mark.parametrize("name", [None, *REMOVABLE])
 def test_the_core_finds_the_same(name):
-    """Of the whole scene, and of it without each feature, which is then gone for both, while nothing new has come."""
+    """Add-on and core list the same features, for the whole scene and without each feature."""
     snapshot = everything()
     before = names(snapshot)
     if name is not None:
@@ -125,7 +125,7 @@ def test_the_core_finds_the_same(name):
     ours, core = names(snapshot), core_names(snapshot)
     assert {core_name for own, core_name in SAME.items() if own in ours} == core & set(SAME.values())
     if name is not None:
-        # Shapes as meshes share meshes; a lamp that becomes a point may be the first spot. Nothing else is new.
+        # The feature is gone and no new one appears.
         assert name not in ours and ours <= before
 
 
@@ -138,7 +138,7 @@ def test_what_is_left_can_be_rendered(name):
 def test_counts_and_owners():
     found = {feature.name: feature for feature in used_features(everything())}
     assert (found["glass"].count, found["glass"].owners, found["glass"].text) == (1, ("glass",), "1 material uses refraction")
-    # The floor below and the plane that reflections do not see.
+    # The floor, and the plane that is hidden from reflections.
     assert found["planes"].count == 2 and found["planes"].owners == ("floor", "hidden")
     assert found["soft-lamps"].owners == ("point", "area", "sun")
     assert found["bounces"].text == "Light is followed for 8 bounces"
@@ -164,7 +164,7 @@ def test_an_empty_scene_uses_nothing():
 
 
 def test_pictures_become_their_mean():
-    """Half of it is (204, 51, 0) of 255, half (0, 51, 102)."""
+    """Half of the image is (204, 51, 0) of 255, half (0, 51, 102)."""
     material = next(m for m in without(everything(), "textures").materials if m.name == "pictured")
     # Interpolated texels are floats of rounded sums: a few units of 2^-24.
     assert material.lobes[0].principled.base_color == pytest.approx((0.4, 0.2, 0.2), rel=1e-6)
@@ -172,7 +172,7 @@ def test_pictures_become_their_mean():
 
 
 def test_what_pictures_cut_out_stays():
-    """A leaf's alpha belongs to both its lobe and its holes: only its colour becomes a constant."""
+    """A leaf's alpha controls both its lobe and its transmittance: only its colour becomes a constant."""
     alpha = Node(NodeKind.ALPHA, inputs=(NodeRef(1),))
     rest = Node(NodeKind.MATH, inputs=(1.0, NodeRef(2)), option=1)
     lobe = Lobe(color=PICTURE, weight=NodeRef(2))
@@ -210,7 +210,7 @@ def test_a_sky_becomes_its_mean():
 
 
 def test_an_area_lamp_keeps_its_power():
-    """Over the half space in front of it, a quarter of pi^2 radiance area ... as a point that shines alike everywhere there."""
+    """An area lamp becomes a point lamp with equal power and equal intensity over the half space."""
     lamp = Light("area", kind=LightKind.AREA, emission=(3.0, 3.0, 3.0), size=(2.0, 0.5))
     point = simpler_scene.point_lamps(tiny.scene(lights=[lamp])).lights[0]
     assert point.kind == LightKind.SPOT and point.spot_angle == math.pi
@@ -222,7 +222,7 @@ def test_an_area_lamp_keeps_its_power():
 
 
 def test_idle_nodes_go_and_the_picture_stays():
-    """A bump's height is a range of nodes, which moves with the nodes that go before it."""
+    """Removing unused nodes renumbers a bump's range of nodes and keeps the picture."""
     snapshot = everything()
     number = next(i for i, m in enumerate(snapshot.materials) if m.name == "bumpy")
     material = snapshot.materials[number]
@@ -245,7 +245,7 @@ def test_idle_nodes_go_and_the_picture_stays():
 
 
 def test_exact_shapes_become_meshes_of_nearly_the_same_outline():
-    """Seen from above, 48 sides cover 48/(2 pi) sin(2 pi/48) of a circle's disk."""
+    """Seen from above, 48 sides cover 48/(2 pi) sin(2 pi/48) of a disk."""
     share = 48 / (2 * math.pi) * math.sin(2 * math.pi / 48)
     for shape in (tiny.sphere, None):
         instance = tiny.sphere() if shape else Instance(kind=3, materials=(0,))
@@ -253,7 +253,7 @@ def test_exact_shapes_become_meshes_of_nearly_the_same_outline():
         glow = Material("glow", lobes=(), emission=(1, 1, 1))
         snapshot = tiny.scene([instance], [glow], camera=camera)
         round_, flat = (tiny.render(s, samples=4)[..., 0].sum() for s in (snapshot, without(snapshot, "exact-shapes")))
-        # Only the pixels of the outline are sampled: 2 pi 85 of them, each known to 1/4, err by at most 1 in 100 together.
+        # Only the 2 pi 85 pixels of the outline have an error, each of at most 1/4.
         assert flat / round_ == pytest.approx(share, abs=1e-3)
 
 
@@ -270,7 +270,7 @@ def test_texture_bytes_are_by_themselves():
 
 
 def test_kernels_have_words():
-    """Every kernel that scenes here run with has a sentence of its own."""
+    """Every kernel has a description."""
     kernels = set()
     for snapshot in (everything(), without(everything(), "transparency"), tiny.scene([tiny.plane()], [tiny.lambert()])):
         for integrator in (0, 1, 2):

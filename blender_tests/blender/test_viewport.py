@@ -1,4 +1,4 @@
-"""Rendered shading in a real window of Blender: what is shown, what edits do to it, and how it ends."""
+"""Rendered shading in a real window of Blender: its picture, edits, and its end."""
 
 import json
 import os
@@ -12,7 +12,7 @@ import windows
 from conftest import HERE
 
 SCREEN = (1280, 800)
-# What the program says of files, of itself, and of a system that does not list its disks; Blender 4.3 of its own keymap, too.
+# Expected output of the program about files, itself, a system without a list of disks, and Blender 4.3's keymap.
 _KNOWN = (
     "register_class(...):",
     "could not get a list of mounted file-systems",
@@ -36,10 +36,10 @@ def display():
 @pytest.fixture
 def window(display, tmp_path):
     def run(case, *arguments, meanwhile=lambda process: None, **extra):
-        """The result of a case of in_blender/viewport_*.py; whatever else is said on the terminal fails."""
+        """Run a case of in_blender/viewport_*.py and return its result; fail for any other output on the terminal."""
         script = os.path.join(HERE, "blender", "in_blender", "window_viewport.py")
         place = ["-p", "0", "0", *map(str, SCREEN)]
-        # Line by line: Blender has more than one buffer for the same pipe, and would break lines of one with those of another.
+        # Line buffering: Blender has several buffers for the same pipe, which would break each other's lines.
         start = ["stdbuf", "-oL", blenders.program(), "--factory-startup", *place, "-P", script]
         process = subprocess.Popen(
             [*start, "--", str(tmp_path), case, *map(str, arguments)],
@@ -68,7 +68,7 @@ def window(display, tmp_path):
 
 def test_a_view_shows_points_where_blender_shows_them(window):
     got = window("places")
-    # Blender projects in single precision: 2^-24 of some thousand pixels, times the dozen operations of two matrices.
+    # Blender projects in single precision: 2^-24 of some thousand pixels, times a dozen operations.
     assert {name: far for name, (far, *_) in got.items() if far > 1e-3} == {}
     rectangles = {name: values[1:5] for name, values in got.items()}
     width, height = got["free"][5:]
@@ -80,9 +80,9 @@ def test_a_view_shows_points_where_blender_shows_them(window):
 
 
 def test_a_view_through_the_camera_is_what_f12_renders(window):
-    """The same samples, but for the border's rounding to whole pixels, half of one: edges of 8 x 8 blocks move by 1/16.
+    """Equal samples except for the border's rounding by up to half a pixel, which moves edges in 8 x 8 blocks by 1/16.
 
-    Of blocks as these some tenth has an edge with a contrast of at most the mean, so 1/160 is left of it.
+    About a tenth of the blocks has an edge, with a contrast of at most the mean: the limit is 1/160.
     """
     got = window("alike")
     assert set(got) == {"camera", "shifted", "blurred", "panoramic", "camera_orthographic"}
@@ -93,10 +93,10 @@ def test_a_view_refines(window):
     got = window("refining")
     assert got["done"]
     sizes, samples = zip(*got["drawn"], strict=True)
-    # Ever finer, then ever more samples.
+    # First finer pixels, then more samples.
     assert list(sizes) == sorted(sizes, reverse=True) and sizes[-1] == 1
     assert list(samples) == sorted(samples) and samples[-1] == 16
-    # A scene as small as this may be built before the first drawing.
+    # A small scene may be built before the first redraw.
     assert set(got["waiting"]) <= {"Building the scene", ""}
     assert got["last"].startswith("Sample 16/16 | Error ")
 
@@ -112,7 +112,7 @@ def test_what_changes_no_picture_renders_nothing(window):
 
 
 def test_colours_on_the_screen_are_those_of_the_display_transform(window, display, tmp_path):
-    """sRGB's curve of 0.5, 0.25 and 0.1 gives 187.5, 136.96 and 88.9. From outside: Blender 4.3's own shot is black here."""
+    """The sRGB curve maps 0.5, 0.25 and 0.1 to 187.5, 136.96 and 88.9. Blender 4.3's own screenshot is black: use another."""
     middle, seen = tmp_path / "middle.json", []
 
     def shoot(process):
@@ -130,19 +130,19 @@ def test_colours_on_the_screen_are_those_of_the_display_transform(window, displa
 def test_a_picture_is_drawn_the_right_way_up_with_its_alpha(window):
     got = window("canvas")
     assert got["low"] == [0.25, 0.0, 0.0, 1.0] and got["corner"] == [0.125, 0.125, 0.125, 0.5]
-    # The brightest that a texture of half precision holds.
+    # The largest number of half precision.
     assert got["high"] == [0.0, 65504.0, 0.0, 1.0]
     assert got["outside"] == got["left"] == [0.0] * 4
 
 
 def test_a_view_renders_what_it_shows(window):
-    """Four objects and a lamp; the ball alone in local view, where its lamp is not."""
+    """Four objects and a lamp; in local view only the ball."""
     got = window("filtered")
     assert got == {"all": [4, 1], "local": [1, 0], "without lamps": [4, 0], "done": True, "size": 2}
 
 
 def test_a_view_tells_what_it_loses(window):
-    """What the export, the library and denoising leave out, each once; and a camera that cannot be looked through."""
+    """The view reports messages of export, library and denoising, each once, and an unusable camera."""
     got = window("tells")
     for word in ("Wireframe", "without area", "shown with its noise"):
         assert [line for line in got["lines"] if word in line and "times)" not in line], word
@@ -152,7 +152,7 @@ def test_a_view_tells_what_it_loses(window):
 
 
 def test_a_view_is_denoised(window, tmp_path):
-    """By the library of this Python's Blender, which Debian's has not. An edit ends it, and nothing is left of it."""
+    """Denoising by the library of this Python's bpy, which Debian's Blender lacks. An edit cancels it without leftovers."""
     path, places = oidn_versions.older(tmp_path)
     got = window("cleans", LD_PRELOAD=path, **places)
     assert [got[name]["denoised"] for name in ("on", "edited", "off")] == [True, True, False]
@@ -162,7 +162,7 @@ def test_a_view_is_denoised(window, tmp_path):
 
 
 def test_previews_show_materials_worlds_and_lamps(window):
-    """Each in its own colour, which has at least half as much again as the others."""
+    """Each preview has its own colour, whose channel is at least 1.5 times the others."""
     got = window("previews")
     assert got["rendered"] >= 3
     for name, channel in (("material", 0), ("world", 2), ("light", 1)):
@@ -173,12 +173,12 @@ def test_previews_show_materials_worlds_and_lamps(window):
 def test_an_animation_plays(window):
     got = window("plays")
     assert got["frames"] > 2 and got["at"] > 2
-    # Whatever of an object is animated may have changed, but for its shape.
+    # An animated object is read again, except its mesh.
     assert got["read"] == {"objects": 4, "meshes": 0, "shaders": 0, "images": 0}
 
 
 def test_changing_the_size_of_a_view_leaks_no_copy_of_the_scene(window):
-    """Twenty changes: a copy left behind by each would be twenty copies, of the arrays alone."""
+    """A leak of the scene's copy at each of twenty changes would be twenty copies of the arrays."""
     got = window("resized")
     assert got["copy"] > 8.0 and got["growth"] < 3.0 * got["copy"]
 

@@ -1,4 +1,4 @@
-"""F12 pressed in a real window of Debian's Blender 3.4.1: the picture refines, the window answers, Esc stops and keeps it."""
+"""F12 in a real window of Debian's Blender 3.4.1: the picture refines, the window responds, Esc stops and keeps it."""
 
 import json
 import os
@@ -13,13 +13,13 @@ import windows
 from conftest import HERE, ROOT
 
 SCREEN = (1280, 800)
-# Bytes of the pictures that in_blender/window_pictures.py shows.
+# Colours of the images in in_blender/window_pictures.py.
 TILES, FRAME = ((60, 120, 180), (180, 60, 120)), (120, 180, 60)
 
 
 @pytest.fixture(scope="module")
 def display():
-    """A screen of our own on the first free display number."""
+    """Return a virtual screen on the first free display number."""
     for tool in ("Xvfb", "xdotool", "import", "convert"):
         assert shutil.which(tool), f"{tool} is missing: apt-get install xvfb xdotool imagemagick libgl1-mesa-dri"
     with windows.screen(*SCREEN) as name:
@@ -54,7 +54,7 @@ class Window:
         return [at for at, what in self.log() if what == word]
 
     def wait_for(self, word, count=1, patience=90):
-        """Until the log has the word that often; a Blender that is gone or silent for so long fails."""
+        """Wait until the log has the word that often; fail if Blender has ended or does not write it in time."""
         limit = time.monotonic() + patience
         while len(self.times(word)) < count:
             said = open(self.output.name, encoding="utf-8", errors="replace").read()[-2000:]
@@ -68,14 +68,14 @@ class Window:
         subprocess.run(["xdotool", "mousemove", *middle, "key", key], env=self.environment, check=True)
 
     def shot(self, name):
-        """The screen as (h, w, 3), also kept as a file."""
+        """Return a screenshot as (h, w, 3), and keep it as a file."""
         path = os.path.join(self.folder, name)
         subprocess.run(["import", "-window", "root", path], env=self.environment, check=True)
         raw = subprocess.run(["convert", path, "-depth", "8", "rgb:-"], check=True, capture_output=True).stdout
         return np.frombuffer(raw, np.uint8).reshape(SCREEN[1], SCREEN[0], 3).astype(float)
 
     def shot_once_rendered(self, name, before):
-        """The first shot in which the middle of the screen is another than before."""
+        """Return the first screenshot in which the centre of the screen differs from before."""
         for _ in range(60):
             now = self.shot(name)
             if np.mean(np.abs(middle(now) - middle(before)).mean(axis=2) > 8) > 0.5 and len(np.unique(middle(now))) > 30:
@@ -83,7 +83,7 @@ class Window:
         raise AssertionError("no picture on the screen")
 
     def shot_once_refined(self, name, first):
-        """The first shot whose middle has a good deal less noise than that of another."""
+        """Return the first screenshot whose centre has clearly less noise than that of first."""
         for _ in range(120):
             now = self.shot(name)
             if roughness(middle(now)) < 0.8 * roughness(middle(first)):
@@ -104,12 +104,12 @@ class Window:
 
 
 def roughness(picture):
-    """Mean absolute difference of neighbours, twice over: noise, not shading."""
+    """Return the mean absolute second difference of neighbours, which measures noise instead of shading."""
     return np.abs(np.diff(picture, n=2, axis=1)).mean()
 
 
 def middle(shot):
-    """The middle of the render window's picture: it stands centred on the screen."""
+    """Return the centre of the render window's picture, which is centred on the screen."""
     h, w, _ = shot.shape
     return shot[h // 2 - 100 : h // 2 + 120, w // 2 - 160 : w // 2 + 160]
 
@@ -124,18 +124,18 @@ def test_f12_in_a_window(display, tmp_path):
         # The first picture on the screen, then one with less noise.
         first = window.shot_once_rendered("first.png", before)
         second = window.shot_once_refined("second.png", first)
-        # The window answers: its timer comes again and again. How soon is measured by `make bench`.
+        # The window responds: its timer keeps running. `make bench` measures the latency.
         window.wait_for("tick", len(window.times("tick")) + 10)
         # Esc stops it and keeps the picture.
         window.press("Escape")
         window.wait_for("render_cancel")
         time.sleep(1.0)
         kept = window.shot("kept.png")
-        # More samples may have come before it stopped: it is like the picture before, and unlike what was there without one.
+        # Further samples may have come before the stop: the picture is like the one before, and unlike an empty window.
         changed = [np.abs(middle(kept) - middle(other)).mean() for other in (second, before)]
         assert changed[0] < 0.5 * changed[1], "the picture is gone"
         assert roughness(middle(kept)) <= 1.1 * roughness(middle(second))
-        # And it can be done again.
+        # Render again.
         window.press("F12")
         window.wait_for("render_pre", 2)
         time.sleep(1.0)
@@ -152,13 +152,13 @@ def test_f12_in_a_window(display, tmp_path):
 
 
 def test_features_are_measured_beside_the_window(display, tmp_path):
-    """The window answers while the scene's features are measured, and Esc stops that with nothing kept."""
+    """The window responds during a measurement of features, and Esc stops it without results."""
     window = Window(str(tmp_path), display)
     try:
         window.wait_for("ready")
         window.tell("measure")
         window.wait_for("running_modal")
-        # A timer goes on beside it: nothing holds the window for the seconds that it takes.
+        # A timer keeps running: the measurement does not block the window.
         window.wait_for("tick", len(window.times("tick")) + 5)
         window.tell("measuring?")
         window.wait_for("measuring")
@@ -176,14 +176,14 @@ def test_features_are_measured_beside_the_window(display, tmp_path):
 
 
 def test_panels_tell_what_goes_on(display, tmp_path):
-    """Progress, figures and buttons are drawn when they change, wherever the pointer is, and go with their file."""
+    """Progress, figures and buttons are redrawn when they change, wherever the pointer is, and end with their file."""
     window = Window(str(tmp_path), display, "panels")
     try:
         window.wait_for("ready")
         window.tell("measure quality")
         window.wait_for("running_modal")
         window.wait_for("draws-progress", 2)
-        # A render ends the measurement, which would count its time, and no other can be begun beside it.
+        # A render stops the measurement, and no other can start during it.
         window.press("F12")
         window.wait_for("render_pre")
         window.wait_for("draws-button", len(window.times("draws-button")) + 1)
@@ -191,14 +191,14 @@ def test_panels_tell_what_goes_on(display, tmp_path):
         window.wait_for("refused")
         window.press("Escape")
         cancelled = window.wait_for("render_cancel")
-        # The pointer is in the render window: the panel is drawn anew by itself.
+        # The pointer is in the render window: the panel must redraw by itself.
         assert window.wait_for("draws-figures") > cancelled
-        # It can be measured again, and another file ends that, and knows nothing of all this.
+        # Measure again; loading another file ends the measurement and drops all figures.
         window.tell("measure quality")
         window.wait_for("running_modal", 2)
         window.tell("load")
         window.wait_for("knows-nothing")
-        # Nor does a measurement outlive the add-on.
+        # Disabling the add-on ends a measurement.
         window.tell("measure quality")
         window.wait_for("running_modal", 3)
         window.tell("switch")
@@ -210,8 +210,8 @@ def test_panels_tell_what_goes_on(display, tmp_path):
 
 
 def test_the_add_on_goes_while_it_renders(display, tmp_path):
-    """Switched off in the midst of a render it ends that first, and can be switched on and render again; then Blender quits
-    while it renders."""
+    """Disabling the add-on during a render ends the render first; it can be enabled and render again; then Blender quits during
+    a render."""
     window = Window(str(tmp_path), display)
     try:
         window.wait_for("ready")
@@ -219,7 +219,7 @@ def test_the_add_on_goes_while_it_renders(display, tmp_path):
         window.wait_for("render_pre")
         window.wait_for("tick", len(window.times("tick")) + 5)
         window.tell("off")
-        # The whole job of Blender's is over then.
+        # Blender's whole render job has ended.
         assert window.wait_for("off") >= window.wait_for("render_cancel")
         window.wait_for("tick", len(window.times("tick")) + 5)
         window.tell("on")
@@ -237,7 +237,7 @@ def test_the_add_on_goes_while_it_renders(display, tmp_path):
 
 
 def test_nothing_runs_for_other_engines(display, tmp_path):
-    """The timer that serves renders is there only while a scene's engine is Lancer."""
+    """The timer for renders runs only while a scene's engine is Lancer."""
     window = Window(str(tmp_path), display)
     try:
         window.wait_for("ready")
@@ -252,7 +252,7 @@ def test_nothing_runs_for_other_engines(display, tmp_path):
 
 
 def test_check_scene_leaves_the_window_alive(display, tmp_path):
-    """A check that takes for ever is looked at beside the window, and Esc ends it with nothing listed."""
+    """The window responds during a long check, and Esc stops it without findings."""
     window = Window(str(tmp_path), display)
     try:
         window.wait_for("ready")
@@ -273,13 +273,13 @@ def test_check_scene_leaves_the_window_alive(display, tmp_path):
 
 
 def linear(color):
-    """Bytes of sRGB as light."""
+    """Return linear values of sRGB bytes."""
     c = np.array(color) / 255.0
     return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
 
 
 def test_pictures_from_files_in_a_window(display, tmp_path):
-    """Tiles, a sequence, premultiplied bytes and a space that is no curve: read while the window lives, by whom it is safe."""
+    """Tiles, a sequence, premultiplied bytes and a colour space that is no curve, read in a window by the right threads."""
     window = Window(str(tmp_path), display, "pictures")
     try:
         window.wait_for("ready")
@@ -291,7 +291,7 @@ def test_pictures_from_files_in_a_window(display, tmp_path):
     finally:
         code = window.close()
     assert code == 0, f"Blender ended with {code}"
-    # The main thread alone makes data, and none of it is the user's; the files themselves are read beside it.
+    # Only the main thread creates data, outside the user's; the render thread reads the files.
     work = {word for word in said if "-by-" in word}
     assert work == {"load-by-main-adds-0", "write-by-main-adds-0", "read-by-render-adds-0"}
     with open(tmp_path / "colors.json", encoding="utf-8") as file:
@@ -299,5 +299,5 @@ def test_pictures_from_files_in_a_window(display, tmp_path):
     wanted = [linear(color) for color in (*TILES, FRAME)]
     # Curves in single precision: 2^-23 times the 2.4 of the exponent, and a few steps of the same size for the film.
     assert np.allclose(result["colors"][:3], wanted, rtol=2.0**-19, atol=0.0)
-    # The script's render, all of it in the main thread, sees the same, of the others too.
+    # A script's render, entirely in the main thread, gives the same pictures.
     assert result["difference"] == 0.0 and np.min(result["colors"]) > 0.0
