@@ -133,7 +133,7 @@ def _clear(material, ranges):
                 told.add("invisible")
                 yield (
                     Severity.WASTE,
-                    f"glass with IOR {low:.7g} neither refracts nor reflects light: it cannot be seen",
+                    f"glass with IOR {low:.7g} neither refracts nor reflects light: it is invisible",
                     "use 1.33 for water, 1.5 for glass",
                     1.0,
                 )
