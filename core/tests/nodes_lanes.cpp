@@ -77,7 +77,7 @@ protected:
       put(behind ? -s.ng : s.ng, block.ng, i);
       put(at.wo, block.wo, i);
     }
-    // What is not used may hold anything.
+    // Unused registers may hold anything.
     for (int i = 0; i < kNodeLanes; ++i)
       if (!(block.used >> i & 1)) {
         block.instance[i] = block.primitive[i] = 0xdeadbeef;

@@ -36,7 +36,7 @@ inline float index(Random &random) {
                            : one_of(random, {1.0f, 1.5f, 1.00001f, 0.7f, std::numeric_limits<float>::infinity()});
 }
 
-// What is the same in all lanes: one code.
+// The members that are equal in all lanes.
 struct Code {
   LobeKind kind;
   Rules rules;

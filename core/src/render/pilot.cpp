@@ -13,7 +13,7 @@ namespace lancer {
 namespace {
 
 // Of each pixel. Sixteen understate what splitting brings (variance of two paths 0.52 to 1.06 of that of one, six public files;
-// 0.47 to 0.54 in pictures of 64 samples, 0.42 to 0.77 told by 32).
+// 0.47 to 0.54 in pictures of 64 samples, 0.42 to 0.77 reported by 32).
 constexpr uint32_t kSamples = 32;
 constexpr uint32_t kBatch = 1024;
 // Pixels that are looked at: one for so many samples of the picture, which then takes 1 to 9 % longer (64 samples of seven

@@ -1,4 +1,4 @@
-// What simd/sorted_lanes.h keeps of eight lanes, one copy per instruction set.
+// The functions of simd/sorted_lanes.h for eight lanes, one copy per instruction set.
 #pragma once
 
 #include "simd/kernel_choice.h"

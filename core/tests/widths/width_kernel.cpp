@@ -230,7 +230,7 @@ constexpr WidthFormula kSamples[] = {
 constexpr WidthFormula kLights[] = {
     formula("sample_light",
             [](Lane &lane) {
-              // Lanes that are not asked keep what they have.
+              // Masked lanes keep their values.
               LightSampleLanes<F> sample{lane.of(lane.in.wi), lane.of(lane.in.wi), D(1.0), D(2.0), lane.normal(), lane.odd()};
               const M asked = !equal(lane.word(1) & U(7u), U(0u));
               sample_light(EachLight<F>{lane.in.light + lane.first}, lane.of(lane.in.p), lane.unit(0), lane.unit(1), asked,
@@ -279,7 +279,7 @@ constexpr WidthFormula kLights[] = {
                   choose_light(lane.query(), lane.in.tree, lane.of(lane.in.choice), M(equal(lane.word(0), lane.word(0))));
               lane.put(choice.number);
               lane.put(choice.probability);
-              // What is left of a choice of nothing is nothing.
+              // A choice of no light leaves no random number.
               lane.put(select(M(choice.probability > D(0.0)), choice.u, D(0.0)));
             }),
     formula("choice_probability", [](Lane &lane) { lane.put(choice_probability(lane.query(), lane.in.tree, 0)); }),

@@ -8,7 +8,7 @@
 
 namespace lancer {
 
-// What formulas are asked about: sixteen of everything, each lane its own, and what all lanes share.
+// Inputs of all formulas: sixteen of each kind, one for each lane, and the inputs that all lanes share.
 struct alignas(64) WidthInputs {
   static constexpr int kCount = 16;
 
