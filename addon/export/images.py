@@ -11,6 +11,7 @@ from ..host import main_thread
 from ..host.by_scene import identity
 from ..messages.severity import Severity
 from .colorspace import IDENTITY, conversion, convert, floats, loaded, stored
+from .gaps import mended
 
 _VALUES_AT_ONCE = 1 << 18  # converted in one pass, small enough for the processor's cache
 _WHITE = 65535.0
@@ -122,7 +123,7 @@ def _read_file(image, path, tell, tile=0):
         return []
     try:
         with stored(path) as source:
-            return _read(image, source, tell, _space(image), tile, is_stored=True)
+            return _read(image, source, tell, _space(image), tile, path)
     except RuntimeError:
         return []
 
@@ -159,11 +160,13 @@ def _read_packed(image, number, tell):
             os.remove(path)
 
 
-def _read(image, source, tell, space, tile=0, is_stored=False):
+def _read(image, source, tell, space, tile=0, path=""):
     """Return a list with the image of source under the settings of image; empty if it has no pixels.
 
-    is_stored: floating point values are in the image's colour space, as bytes always are; else in the working space.
+    path: the file that source reads with its stored values; its floating point values are in the image's colour space, as bytes
+    always are. Without a path they are in the working space.
     """
+    is_stored = bool(path)
     if min(source.size) < 1 or source.channels < 1:
         # Blender knows the type only after it has read the file, and gives scripts no pixels of the layers.
         if source.type == "MULTILAYER":
@@ -172,6 +175,8 @@ def _read(image, source, tell, space, tile=0, is_stored=False):
             return [_picture(image, np.full((1, 1, 3), 0.5, np.float32), Transfer.LINEAR, AlphaMode.NONE, tile, IDENTITY)]
         return []
     values = floats(source)
+    if source.is_float and not np.isfinite(values).all():
+        values = _mended(image, values, tell, path)
     name, is_data = space
     alpha = _alpha_mode(image, source, is_data, is_stored)
     if values.shape[2] == 2:
@@ -190,6 +195,16 @@ def _read(image, source, tell, space, tile=0, is_stored=False):
         transfer, matrix = found
     texels = _floating(values) if source.is_float else _quantised(values, 255.0, np.uint8)
     return [_picture(image, texels, transfer, alpha, tile, matrix)]
+
+
+def _mended(image, values, tell, path):
+    count = int((~np.isfinite(values).all(axis=2)).sum())
+    packed = image.packed_file.data if image.packed_file is not None else b""
+    values, is_finite = mended(values, path, packed)
+    # The core reports the texels that are left.
+    if is_finite:
+        tell(f"image '{image.name}': {count} texels are not finite and are read as in Cycles", "")
+    return values
 
 
 def _picture(image, texels, transfer, alpha, tile, matrix):
@@ -241,8 +256,6 @@ def _divide(values):
 def _floating(values):
     """Return texels as float32, or as uint16 if all are multiples of 1/65535, as those of 16-bit files are."""
     values = np.ascontiguousarray(values)
-    if not np.isfinite(values).all():
-        values[~np.isfinite(values).all(axis=2)] = 0.0
     sample = values.reshape(-1)[:: max(1, values.size // 4096)]
     if _is_stepped(sample) and _is_stepped(values):
         return _quantised(values, _WHITE, np.uint16)
@@ -251,7 +264,8 @@ def _floating(values):
 
 def _is_stepped(values):
     """Whether all values are multiples of 1/65535 up to the rounding of single precision, which is 2^-9 of a step."""
-    if values.min() < 0.0 or values.max() > 1.0:
+    # Inverted: values that are not finite are no multiples.
+    if not (values.min() >= 0.0 and values.max() <= 1.0):
         return False
     steps = values * _WHITE
     return bool((np.abs(steps - np.rint(steps)) <= 2.0**-8).all())

@@ -245,16 +245,25 @@ TEST(ImagesLookup, RefusesWhatCannotBeRead) {
   }
 }
 
-TEST(ImagesLookup, TexelsThatAreNoNumberAreCleared) {
+TEST(ImagesLookup, WhatReadsATexelThatIsNoNumberIsBlack) {
   Description description;
-  const std::vector<float> texels = {1, NAN, 3, 1, 1, 2, 3, 1};
-  lancer_image image = image_of(texels, 2, 1);
+  const std::vector<float> texels = {1, NAN, 3, 1, 1, 2, 3, 1, 1, 2, 3, INFINITY, 1, 2, 3, 1};
+  lancer_image image = image_of(texels, 4, 1);
   image.name = "holes";
   add_image(description, image);
   const Image &kept = description.images[0];
-  EXPECT_EQ(lookup(kept, {0.25f, 0.5f}, Extension::Repeat, Interpolation::Closest, false), glm::vec4(0.0f));
-  EXPECT_EQ(lookup(kept, {0.75f, 0.5f}, Extension::Repeat, Interpolation::Closest, false), glm::vec4(1, 2, 3, 1));
-  EXPECT_EQ(description.messages.text(), "image 'holes': 1 texels that are not finite were set to 0\n");
+  const auto at = [&](float u, Interpolation interpolation) {
+    return lookup(kept, {u, 0.5f}, Extension::Extend, interpolation, false);
+  };
+  EXPECT_EQ(at(0.125f, Interpolation::Closest), glm::vec4(0, 0, 0, 1));
+  EXPECT_EQ(at(0.375f, Interpolation::Closest), glm::vec4(1, 2, 3, 1));
+  EXPECT_EQ(at(0.625f, Interpolation::Closest), glm::vec4(1, 2, 3, 0));
+  EXPECT_EQ(lookup_alpha(kept, {0.625f, 0.5f}, Extension::Extend, Interpolation::Closest), 0.0f);
+  // Between a texel that is a number and one that is none.
+  EXPECT_EQ(at(0.25f, Interpolation::Linear), glm::vec4(0, 0, 0, 1));
+  EXPECT_EQ(at(0.5f, Interpolation::Linear), glm::vec4(1, 2, 3, 0));
+  EXPECT_EQ(at(0.875f, Interpolation::Linear), glm::vec4(1, 2, 3, 1));
+  EXPECT_EQ(description.messages.text(), "image 'holes': 2 texels are not finite, look-ups that read one give black\n");
 }
 
 TEST(ImagesLookup, TheAlphaAloneIsThatOfTheWhole) {

@@ -23,7 +23,12 @@ def from_file(kind, pixels, colorspace="sRGB", name="Picture"):
 
 def write(kind, stem, pixels):
     """Writes such a file and returns its path: stem with the ending of the format."""
-    encode, ending = {"PNG": (_png, ".png"), "TIFF": (_tiff, ".tif")}.get(kind, (None, ""))
+    encode, ending = {
+        "PNG": (_png, ".png"),
+        "TIFF": (_tiff, ".tif"),
+        "EXR 16": (_exr_16, ".exr"),
+        "EXR 32": (_exr_32, ".exr"),
+    }.get(kind, (None, ""))
     if encode is None:
         return _by_blender(kind, stem, pixels)
     with open(stem + ending, "wb") as file:
@@ -57,6 +62,39 @@ def _tiff(rows):
     entries = b"".join(struct.pack("<HHII", tag, kind, count, values.get(tag, value)) for tag, kind, count, value in fields)
     head = struct.pack("<2sHIH", b"II", 42, 8, len(fields))
     return head + entries + struct.pack("<I", 0) + struct.pack("<H", 16) * channels + data
+
+
+def _exr_16(rows):
+    return _exr(rows, "<f2", 1)
+
+
+def _exr_32(rows):
+    return _exr(rows, "<f4", 2)
+
+
+def _exr(rows, dtype, number):
+    """Rows without compression, of any numbers; number: of the type of its channels, which are sorted by name."""
+    height, width, channels = rows.shape
+    names = {1: "Y", 3: "BGR", 4: "ABGR"}[channels]
+    listed = b"".join(name.encode() + struct.pack("<xiiii", number, 0, 1, 1) for name in names) + b"\0"
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    fields = (
+        (b"channels", b"chlist", listed),
+        (b"compression", b"compression", b"\0"),
+        (b"dataWindow", b"box2i", window),
+        (b"displayWindow", b"box2i", window),
+        (b"lineOrder", b"lineOrder", b"\0"),
+        (b"pixelAspectRatio", b"float", struct.pack("<f", 1.0)),
+        (b"screenWindowCenter", b"v2f", struct.pack("<2f", 0.0, 0.0)),
+        (b"screenWindowWidth", b"float", struct.pack("<f", 1.0)),
+    )
+    head = struct.pack("<ii", 20000630, 2)
+    head += b"".join(name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data for name, kind, data in fields) + b"\0"
+    # Channels of a row follow one another.
+    lines = rows[:, :, ::-1].transpose(0, 2, 1).astype(dtype)
+    size = lines[0].nbytes
+    places = struct.pack(f"<{height}q", *(len(head) + 8 * height + y * (8 + size) for y in range(height)))
+    return head + places + b"".join(struct.pack("<ii", y, size) + line.tobytes() for y, line in enumerate(lines))
 
 
 def _by_blender(kind, stem, pixels):

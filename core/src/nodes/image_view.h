@@ -24,6 +24,7 @@ struct ImageView {
   bool large = false;       // offsets exceed 32 bits
   bool straight = false;    // divide the colour by alpha
   bool keeps_alpha = false; // alpha is the fourth channel; else 1
+  bool has_gaps = false;    // some texels are not finite
 };
 
 // Returns the view of nodes with these flags. Valid as long as the image is neither changed nor moved.
@@ -41,6 +42,7 @@ LANCER_LANE ImageView image_view(const Image &image, uint32_t flags) {
   r.curve = image.transfer == Transfer::Srgb;
   r.large = static_cast<uint64_t>(image.width) * image.height * image.channels * r.texel_bytes >= uint64_t(1) << 31;
   r.keeps_alpha = image.channels == 4 && image.alpha != AlphaMode::None;
+  r.has_gaps = image.has_gaps;
   r.straight = (flags & 256) && multiplied && image.channels > 1;
   return r;
 }

@@ -255,6 +255,11 @@ template <class F> LANCER_LANE Texel<F> look_up(const ImageView &image, const F 
     c = {F(m[0].x) * c.x + F(m[1].x) * c.y + F(m[2].x) * c.z, F(m[0].y) * c.x + F(m[1].y) * c.y + F(m[2].y) * c.z,
          F(m[0].z) * c.x + F(m[1].z) * c.y + F(m[2].z) * c.z};
   }
+  if (image.has_gaps) {
+    const auto whole = is_finite(c.x) & is_finite(c.y) & is_finite(c.z);
+    c = select(whole, c, Vector3<F>(zero));
+    texel.alpha = select(is_finite(texel.alpha), texel.alpha, zero);
+  }
   return select(place, texel, Texel<F>::zero());
 }
 
@@ -264,7 +269,8 @@ template <class F> LANCER_LANE F look_up_alpha(const ImageView &image, const F &
   const auto place = is_finite(u) & is_finite(v);
   if (image.channels == 1)
     return select(place, F(1.0f), zero);
-  return select(place, found_at<Alpha<F>>(image, select(place, u, zero), select(place, v, zero)).alpha, zero);
+  const F alpha = found_at<Alpha<F>>(image, select(place, u, zero), select(place, v, zero)).alpha;
+  return select(image.has_gaps ? place & is_finite(alpha) : place, alpha, zero);
 }
 
 } // namespace

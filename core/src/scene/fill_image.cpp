@@ -27,21 +27,18 @@ template <class Texel> void associate(Image &image) {
       texel[c] = multiplied(texel[c], texel[3]);
 }
 
-// Clears texels with a non-finite number in any channel: replacing only that number would give a wrong hue.
-size_t clear_not_finite(Image &image) {
-  auto *texel = reinterpret_cast<float *>(image.texels.get());
+// Returns the number of texels that are not finite. They stay: a look-up that reads one gives black.
+size_t count_gaps(const Image &image) {
+  const auto *texel = reinterpret_cast<const float *>(image.texels.get());
   const size_t count = size_t(image.width) * image.height;
-  size_t cleared = 0;
+  size_t gaps = 0;
   for (size_t i = 0; i < count; ++i, texel += image.channels) {
     bool finite = true;
     for (uint32_t c = 0; c < image.channels; ++c)
       finite &= std::isfinite(texel[c]);
-    if (finite)
-      continue;
-    std::fill(texel, texel + image.channels, 0.0f);
-    ++cleared;
+    gaps += !finite;
   }
-  return cleared;
+  return gaps;
 }
 
 void check_image(const std::string &object, const lancer_image &source) {
@@ -93,9 +90,9 @@ void add_image(Description &description, const lancer_image &source) {
     throw Error(Fault::Memory, texels + " need " + std::to_string(image.bytes() / 1000000) + " MB, more than is free");
   }
   std::memcpy(image.texels.get(), source.texels, image.bytes());
-  if (image.kind == TexelKind::Float) {
-    if (const size_t cleared = clear_not_finite(image))
-      description.messages.add(object, std::to_string(cleared) + " texels that are not finite were set to 0");
+  if (const size_t gaps = image.kind == TexelKind::Float ? count_gaps(image) : 0) {
+    image.has_gaps = true;
+    description.messages.add(object, std::to_string(gaps) + " texels are not finite, look-ups that read one give black");
   }
   if (image.alpha == AlphaMode::Straight && image.channels == 4) {
     if (image.kind == TexelKind::U8)

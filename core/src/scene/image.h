@@ -44,6 +44,7 @@ struct Image {
   AlphaMode alpha = AlphaMode::Straight;
   uint32_t tile = 0; // UDIM; 0 = none
   bool has_matrix = false;
+  bool has_gaps = false;  // texels that are not finite
   glm::mat3 matrix{1.0f}; // decoded RGB to the working space
   Texels texels;          // [height][width][channels]
 
