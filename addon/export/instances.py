@@ -10,6 +10,7 @@ from ..bindings.snapshot import InstanceTable
 from ..messages.severity import Severity
 from .apart import read_infos
 from .checks import check_hair
+from .flat import report_flat
 from .lights import export_light
 from .objects import Objects
 
@@ -142,7 +143,7 @@ class Instances:
         infos = None
         if any(self._objects.materials.tell_apart(look.slots) for look in looks):
             infos = read_infos(self.depsgraph.object_instances, entries, _POLL_EVERY, poll)
-        return InstanceTable(
+        table = InstanceTable(
             matrices=matrices,
             kinds=column([look.kind for look in looks]),
             meshes=column([look.mesh for look in looks]),
@@ -158,6 +159,8 @@ class Instances:
             slots=slots,
             infos=infos,
         )
+        report_flat(table, self.meshes, self.messages)
+        return table
 
     def _narrowed_by(self, instancer):
         if instancer is None:

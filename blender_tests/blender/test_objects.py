@@ -33,6 +33,14 @@ def test_switches(case):
     assert [line for line in got["messages"] if "catcher" in line] == got["messages"] and len(got["messages"]) == 1
 
 
+def test_flat_objects_that_cycles_shows_otherwise(case):
+    """Cycles hides those with a shared mesh, and mirrors the normals of smooth ones to the wrong side."""
+    assert sorted(case("flat")) == [
+        "object 'shared': is flat by a scale of 0 and shares its mesh, Cycles leaves it out",
+        "object 'turned': is flat by a scale of 0 and smooth, Cycles turns its normals away from the light",
+    ]
+
+
 def test_instancers_narrow_what_they_bring_in(case):
     got = case("instancers")
     assert got["rows"] == {"piece": [[["GLOSSY"], False], [["CAMERA", "GLOSSY"], False], [["GLOSSY"], True]]}

@@ -187,6 +187,62 @@ def sheared_mesh(scene):
     camera(scene)
 
 
+def _sheet(axis, smooth=False):
+    """A bulged sheet that looks along an axis."""
+    count = 5
+    places = [(-0.7 + 0.35 * i, -0.7 + 0.35 * j) for j in range(count) for i in range(count)]
+    points = [(x, y, 0.4 - x * x - 0.5 * y * y + 0.2 * x) for x, y in places]
+    points = [tuple(point[(k - axis - 1) % 3] for k in range(3)) for point in points]
+    squares = [count * j + i for j in range(count - 1) for i in range(count - 1)]
+    mesh = parts.mesh_from_points("Sheet", points, [(a, a + 1, a + count + 1, a + count) for a in squares])
+    mesh.polygons.foreach_set("use_smooth", [smooth] * len(mesh.polygons))
+    return mesh
+
+
+# Each looks upwards, leaning a little.
+_LEANING = {"x": (0, (0.2, -1.37, 0.3)), "y": (1, (1.37, 0.1, 0.3)), "z": (2, (0.2, 0.2, 0.3))}
+_TAN = (0.8, 0.5, 0.3)
+
+
+@variants(values={**{name: (name, False) for name in _LEANING}, "smooth": (("z", True), {"quick": True})})
+def flattened(scene, value):
+    """Scaled to 0 along an axis, as artists flatten."""
+    name, smooth = value
+    axis, rotation = _LEANING[name]
+    floor(scene)
+    scale = tuple(0.0 if k == axis else 1.2 for k in range(3))
+    parts.place(scene, "Sheet", _sheet(axis, smooth), shader("ShaderNodeBsdfDiffuse", Color=_TAN), (0, 0, 0.8), scale, rotation)
+    lamp(scene)
+    sky(scene)
+    camera(scene)
+
+
+@case(quick=True)
+def flattened_by_a_parent(scene):
+    """Sheared at once."""
+    floor(scene)
+    parent = bpy.data.objects.new("Parent", None)
+    parent.location, parent.scale = (0, 0, 0.8), (1, 1.3, 0)
+    scene.collection.objects.link(parent)
+    thing = parts.place(
+        scene, "Sheet", _sheet(2), shader("ShaderNodeBsdfDiffuse", Color=_TAN), (0.2, 0, 0), rotation=(0.5, 0.3, 0.4)
+    )
+    thing.parent = parent
+    lamp(scene)
+    sky(scene)
+    camera(scene)
+
+
+@case(bounces=1)
+def flattened_light(scene):
+    """Emission scales with the area that is left."""
+    floor(scene)
+    glow = shader("ShaderNodeEmission", Color=(1.0, 0.8, 0.5), Strength=4.0)
+    sheet = parts.place(scene, "Sheet", _sheet(2), glow, (0, 0, 1.2), (1.2, 1.2, 0), (2.8, 0.3, 0.3))
+    sheet.visible_camera = False
+    camera(scene)
+
+
 @case()
 def modifier_evaluated(scene):
     floor(scene)

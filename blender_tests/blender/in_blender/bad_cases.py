@@ -82,6 +82,12 @@ def singular_matrix():
     return _outcome()
 
 
+def no_area():
+    stage.room()
+    bpy.data.objects["Cube"].scale = (1, 0, 0)
+    return _outcome()
+
+
 def nan_matrix():
     stage.room()
     bpy.data.objects["Cube"].location = (NAN, 0, 0)

@@ -50,6 +50,20 @@ def switches():
     return {"rows": _rows(snapshot), "messages": messages.lines()}
 
 
+def flat():
+    """Messages for objects that a scale of 0 flattens, by name."""
+    stage.empty()
+    _named("plain", scale=(1, 1, 0))
+    _named("smooth", scale=(1, 1, 0)).data.polygons.foreach_set("use_smooth", [True] * 6)
+    # The sum of the cofactors' diagonal is below 0.
+    _named("turned", scale=(-1, 1, 0)).data.polygons.foreach_set("use_smooth", [True] * 6)
+    first = _named("shared", scale=(1, 0, 1))
+    stage.link("other", first.data)
+    _named("line", scale=(1, 0, 0))
+    _, messages = export_told()
+    return messages.lines()
+
+
 def instancers():
     """A collection brought in three times: as it is, by a hidden empty, and by one that is a hole."""
     stage.empty()

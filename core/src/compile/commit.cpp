@@ -112,6 +112,7 @@ std::shared_ptr<const Scene> commit(Description description, AcceleratorKind kin
   // Displace vertices before computing bounds and lights from them.
   if (features.bits & kFeatureDisplacement)
     displace(description, context);
+  flatten(description, context);
   scene->normalisation = normalise(world_bounds(description, context));
   // Place everything in the normalised world.
   scene->geometry = std::move(description.geometry);

@@ -24,6 +24,9 @@ void report_limits(const std::string &object, const Material &material, Messages
 // different displacing materials is copied for each list of them.
 void displace(Description &description, const BuildContext &context);
 
+// Gives each instance with a flattening placement a copy of its mesh that lies in the plane.
+void flatten(Description &description, const BuildContext &context);
+
 // Returns a described light in the normalised world.
 Light place_light(const LightDescription &from, const Normalisation &normalisation);
 

@@ -1,7 +1,8 @@
-// Checks and copies placements: existing meshes and materials, invertible maps.
+// Checks and copies placements: existing meshes and materials, invertible or flattening maps.
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"
+#include "scene/flat_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,26 +14,40 @@ namespace {
 // Larger scales would overflow squares of squares in double.
 constexpr double kLargestScale = 1.2676506002282294e30; // 2^100
 
-// Returns why a placement cannot be traced; an empty string if it can.
-std::string fault_of(const Affine &map) {
+// A placement for the tracer; fault: why there is none, or empty.
+struct Placement {
+  Affine map;
+  glm::dvec3 flat_axis{0.0};
+  std::string fault;
+};
+
+Placement failed(const std::string &fault) { return {{}, glm::dvec3(0.0), fault}; }
+
+// The placement of a singular map: a mesh or a plane with an area in the image of the map stays visible.
+Placement flattened(const Affine &map, uint32_t kind) {
+  const std::optional<FlatMap> flat = flat_map(map);
+  if (flat && kind == LANCER_MESH)
+    return {flat->map, flat->axis, ""};
+  if (flat && kind == LANCER_PLANE && flat->axis.z * flat->axis.z == 1.0)
+    return {flat->map, glm::dvec3(0.0), ""};
+  if (flat && kind != LANCER_PLANE)
+    return failed("its matrix is singular (a scale of 0), which no exact shape can have");
+  return failed("its matrix is singular and leaves it no area");
+}
+
+Placement placement_of(const Affine &map, uint32_t kind) {
   if (!map.finite())
-    return "its matrix is not finite";
-  double columns[3];
-  for (int i = 0; i < 3; ++i)
-    columns[i] = glm::length(map.linear[i]);
-  for (double length : columns) {
-    if (length == 0.0)
-      return "its matrix is singular (a scale of 0)";
-    if (!(length < kLargestScale) || !(length > 1.0 / kLargestScale))
-      return "its scale is outside 2^-100 ... 2^100";
+    return failed("its matrix is not finite");
+  for (int i = 0; i < 3; ++i) {
+    const double length = glm::length(map.linear[i]);
+    if (length != 0.0 && (!(length < kLargestScale) || !(length > 1.0 / kLargestScale)))
+      return failed("its scale is outside 2^-100 ... 2^100");
   }
   if (!(largest_coordinate(map.translation) < kLargestScale))
-    return "its position is beyond 2^100";
-  // Test the determinant of the unit columns, which does not depend on scale. At double's roundoff the map is singular.
-  const glm::dmat3 directions(map.linear[0] / columns[0], map.linear[1] / columns[1], map.linear[2] / columns[2]);
-  if (!(std::abs(glm::determinant(directions)) > std::ldexp(1.0, -50)))
-    return "its matrix is singular";
-  return "";
+    return failed("its position is beyond 2^100");
+  if (is_singular(map.linear))
+    return flattened(map, kind);
+  return {map, glm::dvec3(0.0), ""};
 }
 
 void check_instance(const Description &description, const std::string &object, const lancer_instance &given,
@@ -83,12 +98,13 @@ void add_instances(Description &description, uint32_t count, const lancer_instan
     const lancer_instance &given = instances[i];
     Instance instance;
     instance.number = description.instances_given + i;
-    instance.to_world = Affine::from_rows(given.matrix);
-    const std::string fault = fault_of(instance.to_world);
-    if (!fault.empty()) {
-      description.messages.add(label("object", name_of(given), instance.number), fault + "; it was left out");
+    const Placement placement = placement_of(Affine::from_rows(given.matrix), given.kind);
+    if (!placement.fault.empty()) {
+      description.messages.add(label("object", name_of(given), instance.number), placement.fault + "; it was left out");
       continue;
     }
+    instance.to_world = placement.map;
+    instance.flat_axis = placement.flat_axis;
     instance.kind = static_cast<ShapeKind>(given.kind);
     instance.shading = static_cast<Shading>(given.shading);
     instance.mesh = given.kind == LANCER_MESH ? given.mesh : 0;
