@@ -147,6 +147,11 @@ class NodeKind(IntEnum):
     COLOR_MODEL = 28
 
 
+class AttributeFlag(IntFlag):
+    OPAQUE = 1
+    FIRST = 2
+
+
 class ColorModel(IntEnum):
     """Conversion between linear RGB and hue, saturation and value (HSV) or lightness (HSL)."""
 

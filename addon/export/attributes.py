@@ -1,32 +1,38 @@
 """Mesh attributes that materials read by name: UV maps, colours, tangents, coordinates before deformation."""
 
+import bpy
 import numpy as np
 
 from ..bindings.enums import Domain
 from ..bindings.snapshot import MeshAttribute
+from .edges import at_vertices
 from .tangents import corner_tangents
 
 _TANGENT = "tangent:"
 _NAMED = "named:"
 # Requested like an attribute: the polygon of each triangle, for flat shading.
 POLYGONS = "polygons:"
-_DOMAINS = {"POINT": Domain.VERTEX, "FACE": Domain.FACE, "CORNER": Domain.CORNER}
-# Blender's attribute types: the field that holds a value, the type of its numbers, and how many of them are used.
+# Requested like an attribute: the rendered colours with their alpha, where a node gives no name.
+RENDER_COLOR = "render color:"
+_DOMAINS = {"POINT": Domain.VERTEX, "EDGE": Domain.VERTEX, "FACE": Domain.FACE, "CORNER": Domain.CORNER}
+# The attribute types that Cycles reads: the field that holds a value, the type of its numbers, and how many of them are used.
 _TYPES = {
     "FLOAT": ("value", np.float32, 1),
     "INT": ("value", np.int32, 1),
-    "INT8": ("value", np.int32, 1),
     "BOOLEAN": ("value", bool, 1),
     "FLOAT2": ("vector", np.float32, 2),
     "FLOAT_VECTOR": ("vector", np.float32, 3),
     "FLOAT_COLOR": ("color", np.float32, 4),
     "BYTE_COLOR": ("color", np.float32, 4),
+    "QUATERNION": ("value", np.float32, 4),
 }
+if bpy.app.version >= (4, 1):
+    _TYPES["INT8"] = ("value", np.int32, 1)
 
 
 def attribute_name(name):
     """Return the name of a Blender attribute in a snapshot, in which some names are reserved."""
-    is_taken = name in ("generated", POLYGONS) or name.startswith((_TANGENT, _NAMED)) or name.endswith(" ")
+    is_taken = name in ("generated", POLYGONS, RENDER_COLOR) or name.startswith((_TANGENT, _NAMED)) or name.endswith(" ")
     return _NAMED + name if is_taken else name
 
 
@@ -35,8 +41,8 @@ def tangents_name(uv_map):
 
 
 def named_attributes(wanted):
-    """Return Blender's names of the wanted attributes, without generated coordinates, tangents and polygons."""
-    own = (_TANGENT, POLYGONS)
+    """Return the names in Blender of the wanted attributes of a mesh, without those that Lancer computes."""
+    own = (_TANGENT, POLYGONS, RENDER_COLOR)
     return sorted(_name_in_blender(name) for name in wanted if name != "generated" and not name.startswith(own))
 
 
@@ -61,27 +67,49 @@ def read_attributes(mesh, data, wanted, corners, faces, poll):
     return tuple(attribute for attribute in found if attribute is not None)
 
 
-def _generated(mesh):
-    """Return the positions before modifiers, mapped to 0 to 1 over the texture space."""
+def _undeformed(mesh):
+    """Return the positions before modifiers, (vertices, 3)."""
     places = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.vertices.foreach_get("undeformed_co", places)
+    return places.reshape(-1, 3)
+
+
+def _generated(mesh):
+    """Return the positions before modifiers, mapped to 0 to 1 over the texture space."""
     middle, half = np.array(mesh.texspace_location), np.array(mesh.texspace_size)
     half = np.where(half == 0.0, 1.0, half)
-    return MeshAttribute("generated", (places.reshape(-1, 3) - middle) / (2.0 * half) + 0.5, Domain.VERTEX)
+    return MeshAttribute("generated", (_undeformed(mesh) - middle) / (2.0 * half) + 0.5, Domain.VERTEX)
 
 
 def _tangents(mesh, data, name, corners, poll):
     """Return (x, y, z, sign) of the tangent along u at each corner; None if the mesh lacks the UV map."""
     layer = _tangents_layer(mesh, name)
-    if layer is None:
+    if layer is not None:
+        uvs = _at_corners(read_uv_map(layer), corners).reshape(-1, 3, 2)
+    elif _is_spherical(mesh, name):
+        uvs = _spherical(_undeformed(mesh))[data.triangles]
+    else:
         return None
-    uvs = _at_corners(read_uv_map(layer), corners).reshape(-1, 3, 2)
     return MeshAttribute(name, corner_tangents(data.positions, data.triangles, data.normals, uvs, poll), Domain.CORNER)
 
 
 def _tangents_layer(mesh, name):
     uv_map = _name_in_blender(name[len(_TANGENT) :])
     return mesh.uv_layers.get(uv_map) if uv_map else render_uv_map(mesh)
+
+
+def _is_spherical(mesh, name):
+    """Whether a spherical map replaces the UV map: the name is empty, and the mesh has no UV map."""
+    return name == _TANGENT and len(mesh.uv_layers) == 0
+
+
+def _spherical(places):
+    """Return longitude and latitude of positions seen from the origin, 0 to 1, (count, 2)."""
+    x, y, z = places.T.astype(np.float32)
+    length = np.sqrt(x * x + y * y + z * z)
+    turn = np.where((x == 0.0) & (y == 0.0), 0.5, np.arctan2(x, y) / np.float32(2.0 * np.pi))
+    height = np.arccos(np.clip(z / np.where(length > 0.0, length, 1.0), -1.0, 1.0)) / np.float32(np.pi)
+    return np.where(length > 0.0, (0.5 - turn, 1.0 - height), 0.0).T.astype(np.float32)
 
 
 def attribute_sources(mesh, wanted):
@@ -91,9 +119,12 @@ def attribute_sources(mesh, wanted):
             yield _generated(mesh).values
         elif name.startswith(_TANGENT):
             layer = _tangents_layer(mesh, name)
-            yield None if layer is None else read_uv_map(layer)
+            if layer is not None:
+                yield read_uv_map(layer)
+            else:
+                yield _undeformed(mesh) if _is_spherical(mesh, name) else None
         else:
-            values, domain = _values(mesh, name) or (None, None)
+            values, domain = _found(mesh, name) or (None, None)
             yield values
             yield domain
 
@@ -111,7 +142,7 @@ def read_uv_map(layer):
 
 
 def _named(mesh, name, corners, faces):
-    found = _values(mesh, name)
+    found = _found(mesh, name)
     if found is None:
         return None
     values, domain = found
@@ -122,18 +153,34 @@ def _named(mesh, name, corners, faces):
     return MeshAttribute(name, values, domain)
 
 
-def _values(mesh, name):
-    """Return (values, domain) of a named attribute; None if the mesh lacks it or its type or domain is not supported."""
+def _found(mesh, name):
+    """Return (values, domain) of a named attribute; None if the mesh lacks it or Cycles does not read its type."""
+    if name == RENDER_COLOR:
+        return _values(mesh, color_attribute(mesh))
     layer = mesh.uv_layers.get(_name_in_blender(name))
     if layer is not None:
         return read_uv_map(layer), Domain.CORNER
-    attribute = mesh.attributes.get(_name_in_blender(name))
+    return _values(mesh, mesh.attributes.get(_name_in_blender(name)))
+
+
+def color_attribute(mesh):
+    """Return the colour attribute for rendering; None if the mesh has no colours."""
+    if len(mesh.color_attributes) == 0:
+        return None
+    # Files of old versions may have no attribute marked for rendering: take the first.
+    index = mesh.color_attributes.render_color_index
+    return mesh.color_attributes[index if 0 <= index < len(mesh.color_attributes) else 0]
+
+
+def _values(mesh, attribute):
     if attribute is None or attribute.data_type not in _TYPES or attribute.domain not in _DOMAINS or not len(attribute.data):
         return None
     field, dtype, width = _TYPES[attribute.data_type]
     values = np.empty(len(attribute.data) * width, dtype)
     attribute.data.foreach_get(field, values)
-    return values.reshape(-1, width).astype(np.float32), _DOMAINS[attribute.domain]
+    values = values.reshape(-1, width)
+    values = at_vertices(mesh, attribute, values) if attribute.domain == "EDGE" else values.astype(np.float32)
+    return values, _DOMAINS[attribute.domain]
 
 
 def _at_corners(values, corners):

@@ -3,15 +3,18 @@
 import numpy as np
 from mathutils import Euler
 
-from ..bindings.enums import Coordinate, MappingType, NodeKind, ObjectFact, PathFact, VectorOperation
+from ..bindings.enums import AttributeFlag, Coordinate, MappingType, NodeKind, ObjectFact, PathFact, VectorOperation
 from ..bindings.shading import NodeRef
 from ..host.by_scene import identity
 from .arithmetic import THIRDS, divide
-from .attributes import attribute_name, tangents_name
+from .attributes import RENDER_COLOR, attribute_name, tangents_name
 from .maths import transformed
 
 _RADIAL = {"X": 0, "Y": 1, "Z": 2}
 _ALONG_U = 3
+# Names of attributes that Cycles computes itself.
+_UNREAD = {"N", "generated_transform", "pointiness", "random_per_island", "tangent", "tangent_sign"}
+_TANGENTS = (".tangent", ".tangent_sign")
 
 _TEXTURE_COORDINATES = {
     "Generated": Coordinate.GENERATED,
@@ -89,27 +92,44 @@ def _uv_map(graph, site, output):
     return coordinate(graph, Coordinate.UV, site.node.uv_map)
 
 
-def _named(graph, name):
+def _named(graph, name, flags=0):
     # Cycles gives this name to Generated coordinates, even if the mesh has an attribute of that name.
     key = name if name == "generated" else attribute_name(name)
     if name:
         graph.attributes.add(key)
-    return graph.emit(NodeKind.ATTRIBUTE, name=key)
+    return graph.emit(NodeKind.ATTRIBUTE, name=key, flags=int(flags))
 
 
 def _attribute(graph, site, output):
     node = site.node
-    if getattr(node, "attribute_type", "GEOMETRY") != "GEOMETRY" or not node.attribute_name:
+    name, is_alpha = node.attribute_name, output.identifier == "Alpha"
+    if getattr(node, "attribute_type", "GEOMETRY") != "GEOMETRY" or not name:
         return None
-    value = _named(graph, node.attribute_name)
-    if output.identifier == "Fac":
-        return graph.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS)
-    return graph.emit(NodeKind.ALPHA, value) if output.identifier == "Alpha" else value
+    if name in _UNREAD or name.endswith(_TANGENTS):
+        return None
+    if is_alpha:
+        if name == "vertex_color":
+            return _render_alpha(graph, AttributeFlag.OPAQUE)
+        return 1.0 if name == "uv" else graph.emit(NodeKind.ALPHA, _named(graph, name, AttributeFlag.OPAQUE))
+    is_number = output.identifier == "Fac"
+    if name == "uv":
+        value = coordinate(graph, Coordinate.UV)
+        return graph.component(value, 0) if is_number else value
+    value = _named(graph, "" if name == "vertex_color" else name, AttributeFlag.FIRST if is_number else 0)
+    return graph.vector_op(VectorOperation.DOT_PRODUCT, value, THIRDS) if is_number else value
 
 
 def _vertex_color(graph, site, output):
-    value = _named(graph, site.node.layer_name)
-    return graph.emit(NodeKind.ALPHA, value) if output.identifier == "Alpha" else value
+    name = site.node.layer_name
+    if output.identifier != "Alpha":
+        return _named(graph, name)
+    return graph.emit(NodeKind.ALPHA, _named(graph, name)) if name else _render_alpha(graph)
+
+
+def _render_alpha(graph, flags=0):
+    """Return the alpha of the rendered colours, a separate attribute: the core keeps a mesh's own colours without alpha."""
+    graph.attributes.add(RENDER_COLOR)
+    return graph.emit(NodeKind.ALPHA, graph.emit(NodeKind.ATTRIBUTE, name=RENDER_COLOR, flags=int(flags)))
 
 
 def _geometry(graph, site, output):

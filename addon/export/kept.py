@@ -12,8 +12,8 @@ import bpy
 import numpy as np
 
 from .arrays import built_in, corner_vertices, look
-from .attributes import attribute_sources, read_uv_map, render_uv_map
-from .mesh import color_attribute, face_slots, read_positions
+from .attributes import attribute_sources, color_attribute, read_uv_map, render_uv_map
+from .mesh import face_slots, read_positions
 
 _NEW_NORMALS = bpy.app.version >= (4, 1)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bindings.snapshot import MeshData
 from .arrays import at_corners, built_in, corner_vertices, gather, read, triangle_faces
-from .attributes import POLYGONS, read_attributes, read_uv_map, render_uv_map
+from .attributes import POLYGONS, color_attribute, read_attributes, read_uv_map, render_uv_map
 from .shading_normals import shading_normals
 
 _SAMPLE = 8
@@ -35,8 +35,8 @@ def shown_mesh(thing, owner):
 def export_mesh(mesh, name, poll, wanted=frozenset()):
     """Return the MeshData of a mesh: its shading normals, render UV map, colours and the wanted attributes.
 
-    wanted: names from attribute_name() and tangents_name(), "generated", POLYGONS. poll is called between arrays and ends
-    the export by an exception.
+    wanted: names from attribute_name() and tangents_name(), "generated", POLYGONS, RENDER_COLOR. poll is called between
+    arrays and ends the export by an exception.
     """
     positions = read_positions(mesh)
     poll()
@@ -105,15 +105,6 @@ def _uvs(mesh, corners, poll):
         return None
     values = read_uv_map(layer)
     return at_corners(values, corners, poll) if len(values) else None
-
-
-def color_attribute(mesh):
-    """Return the colour attribute for rendering; None if the mesh has no colours."""
-    if len(mesh.color_attributes) == 0:
-        return None
-    # Files of old versions may have no attribute marked for rendering: take the first.
-    index = mesh.color_attributes.render_color_index
-    return mesh.color_attributes[index if 0 <= index < len(mesh.color_attributes) else 0]
 
 
 def _colors(mesh, corners, triangles, poll):

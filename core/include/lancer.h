@@ -214,7 +214,7 @@ typedef struct lancer_parameter {
 enum lancer_node_kind {
   /* option LANCER_COORDINATE_*; matrix: world to object for OBJECT with flag 1; name: the UV map of UV ("" = the mesh's own) */
   LANCER_NODE_COORDINATE = 0,
-  LANCER_NODE_ATTRIBUTE = 1, /* name: of the attribute; "" = the mesh's own colours */
+  LANCER_NODE_ATTRIBUTE = 1, /* name: of the attribute; "" = the mesh's own colours; flags: LANCER_ATTRIBUTE_* */
   /* images [image, image + image_count): one image or the tiles of one; inputs: vector. option: projection LANCER_PROJECT_*;
    * flags: extension LANCER_EXTEND_* in bits 0-3, interpolation LANCER_INTERPOLATE_* in bits 4-7, 256 = return straight
    * colour (divided by alpha) according to the image's alpha mode; input 1: blend of BOX. The vector is used as given: 0 ...
@@ -264,6 +264,10 @@ enum lancer_node_kind {
   LANCER_NODE_LIGHT_PATH = 27,  /* of the ray that has hit the surface or reached the world; option LANCER_PATH_* */
   LANCER_NODE_COLOR_MODEL = 28, /* inputs: colour; option LANCER_COLOR_* */
   LANCER_NODE_COUNT = 29
+};
+enum lancer_attribute_flag {
+  LANCER_ATTRIBUTE_OPAQUE = 1, /* alpha is 1 on a mesh without the attribute; else 0 */
+  LANCER_ATTRIBUTE_FIRST = 2   /* of two channels the first is in x, y, z, for a node that reads one number */
 };
 /* Conversion between linear RGB and hue, saturation and value (HSV) or lightness (HSL). */
 enum lancer_color_model {

@@ -100,6 +100,15 @@ TEST(NodesCoordinates, AttributesOfEveryDomain) {
   EXPECT_EQ(value("height"), glm::vec4(2.75f, 2.75f, 2.75f, 1.0f));
   EXPECT_EQ(value(""), glm::vec4(0.25f, 0.25f, 0.5f, 1.0f));
   EXPECT_EQ(value("none such"), glm::vec4(0.0f));
+  const auto flagged_value = [&](const char *name, uint32_t flags) {
+    return stage.value({flagged(named(node(LANCER_NODE_ATTRIBUTE), name), flags)});
+  };
+  EXPECT_EQ(flagged_value("none such", LANCER_ATTRIBUTE_OPAQUE), glm::vec4(0, 0, 0, 1));
+  EXPECT_EQ(flagged_value("paint", LANCER_ATTRIBUTE_OPAQUE), glm::vec4(5, 6, 7, 8));
+  EXPECT_EQ(flagged_value("second map", LANCER_ATTRIBUTE_FIRST), glm::vec4(0.25f, 0.25f, 0.25f, 1.0f));
+  EXPECT_EQ(flagged_value("paint", LANCER_ATTRIBUTE_FIRST), glm::vec4(5, 6, 7, 8));
+  // An attribute that is no map gives its own numbers.
+  EXPECT_EQ(glm::vec3(stage.value({named(node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV), "paint")})), glm::vec3(5, 6, 7));
   expect_near(glm::vec3(stage.value({named(node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV), "second map")})),
               {0.25f, 0.5f, 0.0f});
   EXPECT_EQ(glm::vec3(stage.value({named(node(LANCER_NODE_COORDINATE, LANCER_COORDINATE_UV), "none such")})), glm::vec3(0.0f));
@@ -124,6 +133,8 @@ TEST(NodesCoordinates, ExactSurfacesHaveTheirParametrisation) {
   expect_near(value(LANCER_COORDINATE_NORMAL), {0, 1, 0});
   EXPECT_NEAR(value(LANCER_COORDINATE_UV).y, 0.5f, 1e-6f);
   EXPECT_EQ(stage.value_at({named(node(LANCER_NODE_ATTRIBUTE), "any")}, &surface), glm::vec4(0.0f));
+  const auto opaque = flagged(named(node(LANCER_NODE_ATTRIBUTE), "any"), LANCER_ATTRIBUTE_OPAQUE);
+  EXPECT_EQ(stage.value_at({opaque}, &surface), glm::vec4(0, 0, 0, 1));
 }
 
 TEST(NodesCoordinates, TransformOfPointVectorNormal) {

@@ -18,6 +18,7 @@ SUBJECTS = (
     "textures_images",
     "textures_files",
     "textures_coordinates",
+    "inputs",
     "textures_normals",
     "textures_computed",
     "lights_shapes",

@@ -46,12 +46,17 @@ template <class F> Vector3<F> uv(const Site<F> &site, uint32_t name) {
   if (!site.placed)
     return r;
   if (any(site.on_mesh)) {
-    const CornerUVs<F> c = corner_uvs(site, name);
+    const AttributeLanes<F> attribute = find_attributes(site, name);
+    const CornerUVs<F> c = corner_uvs(site, attribute, name);
     const auto mixed = [&](const F(&of)[3]) __attribute__((always_inline)) {
       return select(c.found, interpolate_uv(widen(of[0]), widen(of[1]), widen(of[2]), site.bary[0], site.bary[1]), zero);
     };
     r.x = mixed(c.u);
     r.y = mixed(c.v);
+    // An attribute without two channels is returned unchanged.
+    const MaskOf<F> other = attribute.found & !c.found;
+    if (any(other))
+      r = select(other, attribute_at(site, attribute).v, r);
   }
   if (!all(site.on_mesh)) {
     const Vector3<D> p = object_position(site);
@@ -163,12 +168,20 @@ template <class F> Value<F> coordinate_node(const Node &node, const Site<F> &sit
 }
 
 template <class F> Value<F> attribute_node(const Node &node, const Site<F> &site) {
-  if (!any(site.on_mesh))
-    return nothing<F>();
-  const AttributeLanes<F> attribute = find_attributes(site, node.name);
   Value<F> r = nothing<F>();
-  if (any(attribute.found))
-    r = select(attribute.found, attribute_at(site, attribute), r);
+  if (node.flags & LANCER_ATTRIBUTE_OPAQUE)
+    r.alpha = F(1.0f);
+  if (!any(site.on_mesh))
+    return r;
+  const AttributeLanes<F> attribute = find_attributes(site, node.name);
+  if (any(attribute.found)) {
+    Value<F> given = attribute_at(site, attribute);
+    if (node.flags & LANCER_ATTRIBUTE_FIRST) {
+      const auto two = by_lane<MaskOf<F>>([&](int i) { return attribute.of[i] && attribute.of[i]->channels == 2; });
+      given.v = select(two, Vector3<F>(given.v.x), given.v);
+    }
+    r = select(attribute.found, given, r);
+  }
   if (node.name != 0 || all(attribute.found))
     return r;
   // The mesh's own colours.

@@ -63,14 +63,14 @@ template <class F> struct CornerUVs {
   F u[3], v[3];
   MaskOf<F> found;
 };
-template <class F> CornerUVs<F> corner_uvs(const Site<F> &site, uint32_t name) {
+template <class F> CornerUVs<F> corner_uvs(const Site<F> &site, const AttributeLanes<F> &attribute, uint32_t name) {
   constexpr int width = Site<F>::kWidth;
   alignas(64) float numbers[2][3][width];
   uint32_t found = 0;
-  const AttributeLanes<F> attribute = find_attributes(site, name);
   for (int i = 0; i < width; ++i) {
     glm::vec2 uvs[3] = {};
-    if (site.mesh[i] && corner_uvs(*site.mesh[i], attribute.of[i], name, site.primitive[i], uvs))
+    const bool is_map = !attribute.of[i] || attribute.of[i]->channels == 2;
+    if (site.mesh[i] && is_map && corner_uvs(*site.mesh[i], attribute.of[i], name, site.primitive[i], uvs))
       found |= 1u << i;
     for (int corner = 0; corner < 3; ++corner) {
       numbers[0][corner][i] = uvs[corner].x;

@@ -31,7 +31,7 @@ template <class F> Vector3<F> object_normal(const Site<F> &site) {
 // Returns the direction of growing u on a triangle.
 template <class F> Tangent<F> uv_tangent(const Site<F> &site, uint32_t name, const Vector3<F> &n) {
   using D = DoubleOf<F>;
-  const CornerUVs<F> uv = corner_uvs(site, name);
+  const CornerUVs<F> uv = corner_uvs(site, find_attributes(site, name), name);
   const Edges<F> e = edges_of(site);
   const auto difference = [&](const F(&of)[3], int corner) { return D(widen(of[corner]) - widen(of[0])); };
   const D u1 = difference(uv.u, 1), v1 = difference(uv.v, 1), u2 = difference(uv.u, 2), v2 = difference(uv.v, 2);

@@ -88,6 +88,8 @@ uint32_t flags_of(uint32_t kind) {
   case LANCER_NODE_MATH:
   case LANCER_NODE_NORMAL_MAP:
     return 1;
+  case LANCER_NODE_ATTRIBUTE:
+    return LANCER_ATTRIBUTE_OPAQUE | LANCER_ATTRIBUTE_FIRST;
   case LANCER_NODE_MIX:
     return 1 | 2;
   case LANCER_NODE_BUMP:

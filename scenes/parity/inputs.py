@@ -1,0 +1,168 @@
+"""What nodes read of meshes by name: attributes of every domain and type, with names empty, missing and given; and of pictures
+with texels that are not finite."""
+
+import bpy
+import numpy as np
+
+from . import image_files, images
+from .boards import output_of, set_board, size_of, tile_mesh, uneven
+from .catalogue import case, variants
+
+_TYPES = [item.identifier for item in bpy.types.Attribute.bl_rna.properties["data_type"].enum_items]
+_OUTPUTS = ("Color", "Vector", "Fac", "Alpha")
+_ATTRIBUTE, _COLOR, _MAP = "ShaderNodeAttribute", "ShaderNodeVertexColor", "ShaderNodeUVMap"
+
+
+def _value(kind, index):
+    numbers = uneven(index, 16)
+    if kind == "STRING":
+        return "word" if bpy.app.version < (4, 0) else b"word"
+    if kind == "BOOLEAN":
+        return numbers[0] > 0.5
+    if kind in ("INT", "INT8"):
+        return int(10 * numbers[0])
+    if kind in ("INT16_2D", "INT32_2D"):
+        return int(10 * numbers[0]), int(10 * numbers[1])
+    if kind == "QUATERNION":
+        length = sum(x * x for x in numbers[:4]) ** 0.5
+        return [x / length for x in numbers[:4]]
+    if kind == "FLOAT4X4":
+        return [numbers[4 * row : 4 * row + 4] for row in range(4)]
+    return numbers[0]
+
+
+def _with_attribute(kind, domain):
+    mesh = tile_mesh()
+    for index, item in enumerate(mesh.attributes.new("Given", kind, domain).data):
+        if kind in ("FLOAT_COLOR", "BYTE_COLOR"):
+            item.color = uneven(index, 4)
+        elif kind in ("FLOAT_VECTOR", "FLOAT2"):
+            item.vector = uneven(index, 3 if kind == "FLOAT_VECTOR" else 2)
+        else:
+            item.value = _value(kind, index)
+    return mesh
+
+
+@variants(
+    values={domain.lower(): domain for domain in ("POINT", "EDGE", "FACE", "CORNER")},
+    size=size_of(len(_TYPES) * len(_OUTPUTS)),
+    bounces=0,
+    quick=True,
+)
+def attribute_on(scene, domain):
+    """Each type by each output, of a square of nine vertices."""
+    tiles = []
+    for kind in _TYPES:
+        mesh = _with_attribute(kind, domain)
+        tiles += [(mesh, output_of(_ATTRIBUTE, output, {"attribute_name": "Given"})) for output in _OUTPUTS]
+    set_board(scene, tiles)
+
+
+def _painted(*colors, rendered=0, has_map=True):
+    """A mesh with colours of these (name, type, domain)."""
+    mesh = tile_mesh(has_map)
+    for number, (name, kind, domain) in enumerate(colors):
+        for index, item in enumerate(mesh.color_attributes.new(name, kind, domain).data):
+            item.color = uneven(index + 5 * number, 4)
+    if colors:
+        mesh.color_attributes.render_color_index = rendered
+        mesh.color_attributes.active_color_index = len(colors) - 1 - rendered
+    return mesh
+
+
+_PAINTED = (
+    (),
+    (("One", "FLOAT_COLOR", "POINT"),),
+    (("One", "FLOAT_COLOR", "CORNER"),),
+    (("One", "BYTE_COLOR", "POINT"),),
+    (("One", "BYTE_COLOR", "CORNER"),),
+    (("One", "FLOAT_COLOR", "POINT"), ("Two", "BYTE_COLOR", "CORNER")),
+)
+
+
+def _color_tiles():
+    tiles = []
+    for colors in _PAINTED:
+        for rendered in range(max(1, len(colors))):
+            mesh = _painted(*colors, rendered=rendered)
+            names = ("", "Missing", *(name for name, _, _ in colors))
+            for name in names:
+                tiles += [(mesh, output_of(_COLOR, output, {"layer_name": name})) for output in ("Color", "Alpha")]
+            for name in ("Missing", "vertex_color", *names[2:]):
+                tiles += [(mesh, output_of(_ATTRIBUTE, output, {"attribute_name": name})) for output in _OUTPUTS]
+    return tiles
+
+
+@case(size=size_of(7 * 12 + 6 * 6 + 2 * 6), bounces=0, quick=True)
+def colors_by_name(scene):
+    """Color Attribute and Attribute, by names that are empty, missing and given."""
+    set_board(scene, _color_tiles())
+
+
+def _with_maps(rendered):
+    mesh = tile_mesh()
+    for index, item in enumerate(mesh.uv_layers.new(name="Second").data):
+        item.uv = uneven(index, 2)
+    mesh.uv_layers[rendered].active_render = True
+    return mesh
+
+
+def _map_tiles():
+    tiles = []
+    bare = _painted(("Paint", "FLOAT_COLOR", "POINT"), has_map=False)
+    for mesh in (_with_maps(0), _with_maps(1), bare):
+        for name in ("", "Missing", "UVMap", "Second", "Paint"):
+            tiles.append((mesh, output_of(_MAP, "UV", {"uv_map": name})))
+            if name:
+                tiles += [(mesh, output_of(_ATTRIBUTE, output, {"attribute_name": name})) for output in _OUTPUTS]
+        tiles += [(mesh, output_of(_ATTRIBUTE, output, {"attribute_name": "uv"})) for output in _OUTPUTS]
+    return tiles
+
+
+@case(size=size_of(3 * (5 + 16 + 4)), bounces=0, quick=True)
+def maps_by_name(scene):
+    """UV Map and Attribute, by names that are empty, missing and given, of maps and of colours."""
+    set_board(scene, _map_tiles())
+
+
+def _picture_with_gaps(kind, channels, number):
+    """Seven by six texels, of which every third is that number."""
+    y, x = np.mgrid[0:6, 0:7]
+    pixels = np.stack([0.2 + 0.1 * x, 0.3 + 0.1 * y, 0.5 + 0.0 * x, 1.0 + 0.0 * x], axis=-1)[..., :channels].astype(np.float32)
+    pixels[(7 * y + x) % 3 == 0, :3] = number
+    if kind:
+        return image_files.from_file(kind, pixels, images.LINEAR, f"gaps {kind} {channels} {number}")
+    return images.image("Gaps", pixels, images.LINEAR, is_float=True, pack=False)
+
+
+def _set_pictures(scene, kinds, channels, numbers):
+    tiles = []
+    for kind in kinds:
+        for count in channels:
+            for number in numbers:
+                picture = _picture_with_gaps(kind, count, number)
+                for interpolation in ("Closest", "Linear", "Cubic"):
+                    props = {"image": picture, "interpolation": interpolation}
+                    tiles.append((tile_mesh(), output_of("ShaderNodeTexImage", "Color", props)))
+    set_board(scene, tiles)
+
+
+_NUMBERS = (float("nan"), float("inf"), float("-inf"))
+
+
+@case(size=size_of(3 * 3 * 3), bounces=0, quick=True, announced="not finite")
+def image_gaps(scene):
+    """As files of single precision store them."""
+    _set_pictures(scene, ("EXR 32",), (1, 3, 4), _NUMBERS)
+
+
+@case(size=size_of(3 * 3), bounces=0, announced="not finite")
+def image_gaps_held(scene):
+    """As Blender holds them."""
+    _set_pictures(scene, ("",), (4,), _NUMBERS)
+
+
+@case(size=size_of(3 * 3 * 3), bounces=0, announced="not finite")
+def image_gaps_half(scene):
+    """As files of half precision store them: before Blender 5.2 numbers of up to 98304."""
+    _set_pictures(scene, ("EXR 16",), (1, 3, 4), _NUMBERS)
