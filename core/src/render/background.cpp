@@ -6,8 +6,8 @@ namespace lancer {
 
 namespace {
 
-// Below kLeastPlanned samples, the search does not pay. Projecting kProjectedEach triangles per pixel takes about as long as
-// one sample of the background.
+// Below kLeastPlanned samples, the search costs more time than it saves. Projecting kProjectedEach triangles per pixel takes
+// about as long as one sample of the background.
 constexpr uint32_t kLeastPlanned = 8;
 constexpr uint64_t kProjectedEach = 8;
 
@@ -24,7 +24,7 @@ Background find_background(const Scene &scene, const Camera &camera, const Integ
   const glm::uvec2 pixel = background.coverage.empty_pixel();
   const SampleAddress address{pixel.x, pixel.y, 0};
   make_integrator(scene, camera, settings)->run(std::span(&address, 1), std::span(&background.sample, 1), nullptr);
-  // Samples that are not finite are dropped and counted one by one, so such a background is traced.
+  // The film drops and counts each sample that is not finite, so a background that is not finite is traced.
   return film.finite(background.sample) ? background : Background();
 }
 

@@ -1,4 +1,4 @@
-// The background of a picture, where pixels show nothing else and need not be traced.
+// The uniform background of a picture: pixels that show nothing else share one sample and are not traced.
 #pragma once
 
 #include "integrator/sample.h"
@@ -12,8 +12,8 @@ struct Background {
   SampleResult sample = SampleResult(); // of every pixel that is not covered
 };
 
-// camera: normalised. Returns a coverage of all pixels where the background varies, where few samples are planned, or where all
-// features are requested.
+// camera: normalised. Returns a coverage of all pixels if the background varies, if few samples are planned, or if all features
+// are requested.
 Background find_background(const Scene &scene, const Camera &camera, const IntegratorSettings &settings, const Film &film);
 
 // Whether all camera rays that miss the scene return the same radiance.

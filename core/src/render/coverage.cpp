@@ -8,13 +8,13 @@ namespace lancer {
 
 namespace {
 
-// A box of at most this many blocks is marked whole.
+// A box of at most this many blocks is marked without a test of its triangles.
 constexpr uint32_t kSmallBox = 4;
 
 bool seen_by_camera(uint32_t hidden_from) { return !(hidden_from & LANCER_RAY_CAMERA); }
 
-// A side of a convex polygon. inside() returns an upper bound of the signed distance of a point from the side, inwards, times
-// the side's length.
+// A side of a convex polygon. inside() returns an upper bound of a point's signed distance from the side (positive inwards)
+// times the side's length.
 struct Side {
   glm::dvec2 from, inwards; // inwards: as long as the side
   double length, doubt;     // doubt: bound of the rounding error per unit of a point's distance
@@ -63,7 +63,7 @@ bool Coverage::add_surfaces(const Geometry &geometry, const Projection &projecti
     for (const glm::vec3 &position : geometry.meshes[i].positions)
       bounds[i] = {glm::min(bounds[i].low, position), glm::max(bounds[i].high, position)};
   }
-  // Mark the pixels of each instance: its box, where the box is small or marked already, or else its triangles.
+  // Mark the pixels of each instance: those of its box if the box is small or already marked, otherwise those of its triangles.
   for (const Instance &instance : geometry.instances) {
     if (!seen_by_camera(instance.hidden_from))
       continue;
@@ -139,7 +139,7 @@ void Coverage::add_polygon(std::span<const glm::dvec2> corners, double margin) {
     const glm::dvec2 along = turn * (corners[(i + 1) % corners.size()] - corners[i]);
     sides[i] = {corners[i], {-along.y, along.x}, glm::length(along), 1e-12 * glm::length(along)};
   }
-  // Mark the blocks that are not entirely outside any side.
+  // Mark all blocks except those entirely outside some side.
   const double half = 0.5 * kBlock;
   for (uint32_t y = box.begin.y; y < box.end.y; ++y)
     for (uint32_t x = box.begin.x; x < box.end.x; ++x) {

@@ -1,4 +1,5 @@
-// The pixels that may show a surface or lamp: found before the first sample, so that the others are not traced.
+// The pixels that may show a surface or lamp, found before the first sample. All other pixels show the background and are not
+// traced.
 #pragma once
 
 #include "compile/scene.h"

@@ -11,12 +11,12 @@ namespace lancer {
 
 namespace {
 
-// Edges use a window one size larger, because few of its pixels are edges.
+// For edges the window is one size larger, because few pixels of a window are edges.
 constexpr std::array<int, 7> kRadii = {1, 2, 3, 5, 8, 12, 20};
 constexpr size_t kPlainRadii = 6;
-// (sum v)^2 / sum v^2 is the effective number of pixels that carry the variance; for n equal ones it is n / 3, since the square
-// of one difference is distributed as chi-square with one degree of freedom. 20 of them estimate their common standard error to
-// an eighth.
+// (sum v)^2 / sum v^2 is the effective number of pixels that carry the variance. For n pixels of equal noise it is n / 3,
+// because each v is the square of one difference (chi-square with one degree of freedom). 20 effective pixels estimate their
+// common standard error to an eighth.
 constexpr double kBearers = 20.0;
 
 // Sums over the variances in a window.
@@ -33,9 +33,9 @@ struct Sums {
   double degrees_of_freedom() const { return squares > 0.0 ? std::min(3.0 * sum * sum / squares, pixels) : pixels; }
 };
 
-// Returns the ratio of the number of standard errors that contain 95 % for an estimated variance to that for a known variance:
-// Student's t by the first terms of its series in 1 / freedom (Fisher, Cornish, "The percentile points of distributions having
-// known cumulants", 1960).
+// Returns Student's 95 % quantile over the Gaussian one: the factor by which an interval widens when its variance is estimated
+// with this many degrees of freedom. The value is the first terms of the series in 1 / freedom (Fisher, Cornish, "The
+// percentile points of distributions having known cumulants", 1960).
 double student_over_gaussian(double freedom) {
   constexpr double z2 = 1.96 * 1.96, z4 = z2 * z2, z6 = z4 * z2;
   const double a = (z2 + 1.0) / 4.0, b = (5.0 * z4 + 16.0 * z2 + 3.0) / 96.0;
@@ -93,8 +93,8 @@ private:
   std::vector<Sums> sums_;
 };
 
-// Returns the largest variance that samples can have if each lies between the darkest and the brightest mean of the 3 x 3 and
-// their mean is the pixel's.
+// Returns the largest variance of samples whose mean is the pixel's and whose values lie between the darkest and the brightest
+// mean of the 3 x 3 neighbourhood.
 float mixture_variance(const LuminanceMap &map, uint32_t x, uint32_t y) {
   const Window window(map, x, y, 1);
   const float own = map.mean[size_t(y) * map.width + x];
@@ -167,7 +167,7 @@ struct Half {
                                  // the other half
   double count = 0.0, planned = 0.0;
 
-  // Returns the decrease of the sum of squared errors per sample when the samples are doubled.
+  // Returns the decrease of the sum of squared errors by doubling the samples, per added sample.
   double gain() const { return other / (2.0 * planned * planned * pixels); }
 };
 

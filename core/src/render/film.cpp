@@ -105,7 +105,7 @@ void Film::add(Tile &tile, uint32_t samples, std::span<const SampleResult> resul
     carry.channels.resize(size_t(pixels) * layout_.summed_channels);
     carry.differences.assign(pixels, 0.0f);
     gather(results.subspan(size_t(s) * pixels, pixels), carry, tile.brightest.data());
-    // A new leaf joins every complete neighbour, the smaller numbers first. All pixels have the same count.
+    // A new leaf is joined with every complete neighbour, smaller sample numbers first. All pixels have the same count.
     for (uint32_t joined = 0; joined < level; ++joined) {
       if (joined + 1 == level)
         keep_differences(tile.levels[joined], joined, carry);

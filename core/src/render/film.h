@@ -11,21 +11,22 @@ namespace lancer {
 
 // The samples of a pixel are summed along one fixed binary tree over their numbers: sample s is a leaf, and two neighbouring
 // complete subtrees of equal size are always joined. While samples arrive in order, only the sums that wait for their neighbour
-// are stored, one per bit of the count, as in a binary counter. So neither threads nor tiles nor the split of the range show in
-// the bits, and any complete subtree can be computed elsewhere.
+// are stored, one per bit of the count, as in a binary counter. So the bits depend neither on threads, nor on tiles, nor on the
+// division of the range, and another machine can compute any complete subtree.
 //
 // Beside the sum of a subtree, the film stores the difference of the luminances of its two halves, from which the error of the
-// picture is estimated. All samples of a pixel are one sequence. Of its first N = 2^k points, let V(N) be the variance of the
-// mean and A and B the means of both halves: U(N) = E (A - B)^2 / 4 = V(N / 2) - V(N), as halves are scrambled like the whole.
-// U is V where the variance falls as 1 / N, and more than V where it falls faster: on twenty scenes its root was mostly 1.00 to
-// 1.10 of the root of the real error, and up to 1.8 where points first become even at 64 samples.
+// picture is estimated. All samples of a pixel are points of one sequence. For its first N = 2^k points, let V(N) be the
+// variance of their mean, and A and B the means of the two halves. Then U(N) = E (A - B)^2 / 4 = V(N / 2) - V(N), because each
+// half is scrambled like the whole. U equals V where the variance falls as 1 / N, and exceeds V where the variance falls
+// faster. On twenty scenes, sqrt(U) was mostly 1.00 to 1.10 times the real standard error, and up to 1.8 times where points
+// first become even at 64 samples.
 class Film {
 public:
-  // The pixels of its rectangle that a tile has: all, or those of one colour of a chessboard.
+  // The pixels that belong to a tile: all of its rectangle, or those of one colour of a chessboard.
   enum class Cells : uint32_t { All, Even, Odd };
 
-  // passes: bits 1u << Pass; Combined is always stored, and with a light pass the colour that it is divided by. halves: every
-  // square becomes two tiles of a chessboard; tile 2 i + 1 is the other half of tile 2 i.
+  // passes: bits 1u << Pass; Combined is always stored, and each light pass is stored together with the colour by which it is
+  // divided. halves: every square becomes two tiles of a chessboard; tile 2 i + 1 is the other half of tile 2 i.
   Film(uint32_t width, uint32_t height, uint32_t tile_size, uint32_t passes, bool halves = false);
 
   // Returns the most memory that a film of this size uses while it receives so many samples.
@@ -41,7 +42,7 @@ public:
     uint32_t x, y, width, height;
     Cells cells = Cells::All;
     uint32_t count = 0; // samples of each of its pixels
-    // By bit of count. Where the bit is not set, the level is empty or its content is meaningless.
+    // Indexed by bit of count. If the bit is not set, the level is empty or its content is meaningless.
     std::vector<Sums> levels;
     std::vector<float> first;      // [pixel][channel of sample 0]
     std::vector<float> brightest;  // [pixel] largest luminance of a sample
@@ -65,14 +66,14 @@ public:
   void add(Tile &tile, uint32_t samples, std::span<const SampleResult> results);
   // Adds samples that are equal in all pixels, to a tile that has no other samples.
   void add_even(Tile &tile, uint32_t samples, const SampleResult &result);
-  // Counts a dropped sample, which is not finite, before the samples of its batch are added. Calls must be in order of sample
-  // and pixel.
+  // Counts a sample that is dropped because it is not finite. Must be called before the samples of its batch are added. Calls
+  // must be in order of sample and pixel.
   void drop(Tile &tile, const SampleAddress &address);
   struct Dropped {
     uint64_t samples = 0;
     SampleAddress first{0, 0, 0}; // the lowest number of a sample, and among equal ones the lowest row
   };
-  // Returns the dropped samples among those that the film has.
+  // Returns the number of dropped samples and the first of them, among the samples that the film contains.
   Dropped dropped() const;
   // Forgets the samples beyond the last power of two.
   void round_down(Tile &tile);

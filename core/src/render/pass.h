@@ -30,7 +30,7 @@ inline constexpr uint32_t kPassCount = LANCER_PASS_COUNT;
 constexpr uint32_t bit(Pass pass) { return 1u << uint32_t(pass); }
 
 uint32_t channels(Pass pass);
-// Whether sample 0 alone decides: a mean of depths or indices would belong to no object.
+// Whether the pass stores the value of sample 0 alone: a mean of depths or indices would belong to no object.
 bool of_first_sample(Pass pass);
 // Returns the colour that a direct or indirect pass is divided by, or the pass itself if there is none.
 Pass divisor(Pass pass);

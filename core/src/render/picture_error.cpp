@@ -10,8 +10,9 @@ namespace lancer {
 
 namespace {
 
-// In units of the mean. No pixel of light comes near this bound; negative colours, which the mean ignores, may exceed it. Sums
-// of squares over a neighbourhood, divided by a hundredth squared, still fit into floats.
+// Bound of luminances, in units of the picture's mean. No positive luminance comes near this bound; negative colours, which the
+// mean ignores, may exceed it. With this bound, sums of squares over a neighbourhood, divided by a hundredth squared, fit into
+// floats.
 constexpr double kMost = 1e15;
 
 } // namespace
@@ -54,9 +55,9 @@ LuminanceMap::LuminanceMap(const Film &film) : width(film.width()), height(film.
 namespace {
 
 constexpr int kRadius = 3;
-// The mean square of differences may be this many times its expected value from noise. For nine pairs of equal pixels, whose
-// noise is estimated from eighteen differences, chance exceeds this factor less than once in a hundred times (F, 9 and 18
-// degrees of freedom).
+// Largest accepted ratio of the mean squared difference to its expected value from noise. For nine pairs of equal pixels, whose
+// noise is estimated from eighteen differences, the ratio exceeds this limit by chance in less than 1 % of cases (F
+// distribution, 9 and 18 degrees of freedom).
 constexpr float kNoise = 4.0f;
 
 // Processes the pairs of pixels with one offset: p, and q = p + (dx, dy).
@@ -209,8 +210,9 @@ PictureError picture_error(const LuminanceMap &map, const RelativeVariance &rela
   if (!map.known)
     return result;
   const double low = std::sqrt(mean_over(map, relative.own)), high = std::sqrt(mean_over(map, relative.shared));
-  // The sum of squared true errors and that of the measured ones are each distributed as chi-square: for Gaussian errors, the
-  // variance of their difference is 4/3 of the sum of squares of the measured values; for others it is larger.
+  // The sum of squared true errors and the sum of squared measured errors are each distributed as chi-square. For Gaussian
+  // errors, the variance of their difference is 4/3 of the sum of squares of the measured values; for other distributions it is
+  // larger.
   double sum = 0.0, squares = 0.0;
   for (size_t i = 0; i < map.size(); ++i) {
     const double value = double(relative.own[i]) / map.count[i];

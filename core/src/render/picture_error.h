@@ -26,15 +26,15 @@ struct LuminanceMap {
   bool dark = false;
 };
 
-// The neighbours of a pixel whose luminances differ from its own by no more than noise explains.
+// The similar neighbours of a pixel: those whose luminances differ from the pixel's by no more than noise explains.
 
 // [height][width], over each pixel and the similar pixels of the 7 x 7 around it: their number, the sum of their luminances,
 // and the sum of the variances of one sample of each.
 //
-// Two pixels are similar where their luminances and those of the 3 x 3 around them differ by no more than noise explains, all
-// nine together. A test of single pixels fails where it matters: two halves estimate one pixel's variance so poorly that every
-// tenth pixel looks noisy enough to be similar to any other, such as the edge of a lit object to the black beside it (Buades,
-// Coll, Morel, "A non-local algorithm for image denoising", 2005, compare neighbourhoods in the same way).
+// Two pixels are similar if the luminances of the 3 x 3 pixels around each, taken together, differ by no more than noise
+// explains. A test of single pixels would fail: two halves estimate one pixel's variance so poorly that every tenth pixel looks
+// noisy enough to be similar to any other. The edge of a lit object would then be similar to the black beside it. Buades, Coll,
+// Morel, "A non-local algorithm for image denoising", 2005, compare neighbourhoods in the same way.
 struct SimilarNeighbours {
   std::vector<float> count, mean, variance;
 
@@ -65,10 +65,10 @@ struct RelativeVariance {
 };
 
 // confidence: of the interval, in (0, 1). A pixel's own halves underestimate the error where light is rare: pixels that have
-// missed the light look both dark and certain. Its neighbours' halves overestimate the error along edges. The interval reaches
-// from the first estimate to the second, widened at both ends by the spread of such sums. Its lower end also allows for
-// variance that falls as N^-2, where halves report three times the variance: edges alone fall as N^-1.5, light mostly as N^-1
-// (film.h).
+// missed the light look both dark and certain. The neighbours' halves overestimate the error along edges. The interval reaches
+// from the first estimate to the second, widened at both ends by the spread of such sums. Its lower end also allows for a
+// variance that falls as N^-2, where halves report three times the variance (film.h): the variance of edges alone falls as
+// N^-1.5, that of light mostly as N^-1.
 PictureError picture_error(const LuminanceMap &map, const RelativeVariance &relative, double confidence);
 
 // The error of each pixel.
@@ -80,22 +80,24 @@ PictureError picture_error(const LuminanceMap &map, const RelativeVariance &rela
 // pixels of all kinds, 95 % of the true values then lie within 1.96 standard errors (Rousselle, Manzi, Zwicker, "Robust
 // Denoising using Feature and Color Information", 2013, average variances in the same way).
 //
-// The edge of a clean surface has noise that its flanks lack: pixels share with pixels of their kind alone. A pixel between a
-// darker and a brighter neighbour is an edge where the largest variance of a mixture of these two (Bhatia, Davis, "A better
-// bound on the variance", 2000) exceeds all the noise around it; edges share with edges of about the same mixture variance.
+// The edge of a clean surface has noise that the pixels beside the edge lack. So edges share variances with edges alone, and
+// other pixels with other pixels. A pixel between a darker and a brighter neighbour is an edge where the largest variance of a
+// mixture of these two (Bhatia, Davis, "A better bound on the variance", 2000) exceeds all the noise around it; edges share
+// with edges of about the same mixture variance.
 std::vector<float> error_bars(const LuminanceMap &map);
 
-// The choice of tiles to sample next: those whose further samples lower the error of the picture most.
+// The choice of the tiles to sample next: the tiles whose further samples lower the error of the picture most.
 
-// The tiles of a film in halves whose samples should be doubled next, those first whose doubling lowers the error most for its
-// cost: as many as the target needs, or all where target is 0. The film must have been sampled in powers of two.
+// The tiles of a film in halves whose samples should be doubled next. Tiles are sorted by the decrease of the error per added
+// sample; there are as many as the target needs, or all if target is 0. Each tile's number of samples must be a power of two.
 //
-// The other half decides whether a half is refined. A decision by a half's own samples would keep samples that happen to be
-// dark and add to samples that happen to be bright, and the picture would come out too dark (Kirk, Arvo, "Unbiased sampling
-// techniques for image synthesis", 1991). Some of this bias remains where light comes in rare flashes: the variance that the
-// other half shares also includes neighbours in this one, and rounds go on until the estimated error of the whole is small,
-// which dilutes the flashes that have been hit. With the other half's pixels alone, one flash in the half that it does not see
-// costs up to ten times the samples. Blocks of 16 x 16 were measured too dark by up to 2.6 % of the target.
+// The other half decides whether a half is refined. If a half's own samples decided, samples that happen to be dark would be
+// kept and samples that happen to be bright would be diluted, so the picture would be too dark (Kirk, Arvo, "Unbiased sampling
+// techniques for image synthesis", 1991). Some of this bias remains where light comes in rare flashes. First, the other half
+// shares variances with its neighbours, some of which are pixels of this half. Second, rounds go on until the estimated error
+// of the whole picture is small, which dilutes the flashes that have been hit. Sharing within the other half alone would take
+// up to ten times the samples after one flash in this half. Blocks of 16 x 16 were measured too dark by up to 2.6 % of the
+// target.
 //   target: of the error of the picture; most: samples that no pixel may exceed.
 struct Refinement {
   std::vector<uint32_t> tiles; // of this round, in order

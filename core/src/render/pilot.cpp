@@ -12,25 +12,27 @@ namespace lancer {
 
 namespace {
 
-// Of each pixel. Sixteen understate what splitting brings (variance of two paths 0.52 to 1.06 of that of one, six public files;
-// 0.47 to 0.54 in pictures of 64 samples, 0.42 to 0.77 reported by 32).
+// Samples of each pixel of the pilot. The variance of two paths over that of one is 0.47 to 0.54 in pictures of 64 samples (six
+// public files). A pilot of 32 samples reports 0.42 to 0.77; one of 16 samples reports 0.52 to 1.06 and so underestimates the
+// gain of splitting.
 constexpr uint32_t kSamples = 32;
 constexpr uint32_t kBatch = 1024;
-// Pixels that are looked at: one for so many samples of the picture, which then takes 1 to 9 % longer (64 samples of seven
-// public files; 18 % of one that takes 0.05 s).
+// Samples of the picture for each pixel of the pilot. The pilot lengthens a render by 1 to 9 % (64 samples, seven public
+// files), and by 18 % where the render takes 0.05 s.
 constexpr double kSamplesEach = 4096.0;
 constexpr uint32_t kFewest = 128, kMostPixels = 1024;
-// The fewest that should have noise, and how many times as many are looked at for their sake.
+// Number of pixels with noise that the pilot searches for, and the largest number of sets of pixels that it renders to find
+// them.
 constexpr size_t kFewestNoisy = 160;
 constexpr uint32_t kLooks = 16;
 constexpr uint32_t kMost = 8;
-// Least gain of another split: samples that cost more without a gain only delay the first pictures.
+// Another split must lower variance times cost below this factor: a smaller gain only delays the first pictures.
 constexpr double kWorth = 0.95;
-// Share of the pixels, those with the most noise, whose noise is clamped to the least among them: bright flashes are too rare
-// in so few samples to estimate their variance.
+// Share of the pixels, the noisiest ones, whose noise is clamped to the smallest value among them: so few samples contain too
+// few bright flashes to estimate their variance.
 constexpr double kNoisiest = 0.005;
-// Costs of a camera ray, a ray that goes on or to a light, and a vertex: in whole numbers, whose sum is the same in any order.
-// Fitted to the times of 26 public files split in four ways each, which they foretell within 10 % (one standard deviation).
+// Costs of a camera ray, of a bounce or shadow ray, and of a vertex, fitted to the times of 26 public files split in four ways
+// each. They predict these times within 10 % (one standard deviation). Integers have the same sum in any order.
 constexpr uint64_t kCameraRay = 4, kRay = 20, kVertex = 15;
 
 // Returns places that fill the unit square evenly for any count: multiples of the powers of the plastic number (Roberts, "The
@@ -87,7 +89,8 @@ void Pilot::work(uint32_t thread) {
   }
 }
 
-// Doubles each of the two numbers in turn as long as that pays, beginning with the one that pays more.
+// Doubles the number of lights and the number of paths in turn while variance times cost falls, starting with the number of
+// larger gain.
 void Pilot::search() {
   const auto doubled = [&](bool lights) {
     Splits splits = best_;
@@ -152,7 +155,8 @@ Pilot::Look Pilot::find_pixels() {
   }
   looks_ = 1;
   darkest_ = std::max(0.01 * sum / looked_at, 1e-30);
-  // The other pixels mostly show the background at the cost of a camera ray; an even background is not traced by the picture.
+  // Pixels without noise mostly show the background and cost one camera ray per sample. The picture does not trace an even
+  // background.
   const uint64_t cost_of_rays = kCameraRay * kSamples * (traced - pixels_.size());
   if (has_even_background(scene_, camera_))
     plain.cost -= cost_of_rays;
@@ -176,10 +180,9 @@ Pilot::Look Pilot::look(const Splits &splits) {
   return look;
 }
 
-// Whether variance times cost of a measurement is less than that of another, times a factor. Variance is relative to a pixel's
-// level, which for dark pixels is a share of the picture's mean, as in the error of a picture. The level is the mean over all
-// measurements: if each measurement used its own level, a pixel that one of them finds bright by chance would have less noise
-// there than in the others.
+// Whether the variance times cost of one measurement is less than `by` times that of another. The variance of a pixel is
+// relative to its level: the mean over all measurements plus 1 % of the picture's mean, as in the error of a picture. If each
+// measurement used its own level, a pixel that one measurement finds bright by chance would seem less noisy there.
 bool Pilot::is_better(const Look &look, const Look &than, double by) const {
   const auto relative = [&](const Look &of, size_t i) {
     const double level = pixels_[i].level / looks_ + darkest_;
@@ -200,7 +203,7 @@ bool Pilot::is_better(const Look &look, const Look &than, double by) const {
   return product(look) < by * product(than);
 }
 
-// Returns the cost.
+// Renders the pixels with these splits and returns the cost.
 uint64_t Pilot::run(const std::vector<Pixel> &pixels, const Splits &splits) {
   addresses_.clear();
   for (const Pixel &pixel : pixels)
@@ -222,9 +225,9 @@ double Pilot::mean_of(size_t pixel) const {
   return sum / kSamples;
 }
 
-// Sums the squared differences of neighbouring ranges of a pixel's samples: its halves, quarters and eighths. Where variance
-// falls as N^-1.5, as it mostly does, each level contributes about the same; shorter ranges would describe other samples than
-// those of a picture.
+// Sums the squared differences of neighbouring ranges of a pixel's samples: its halves, quarters and eighths. Where the
+// variance falls as N^-1.5, which is the usual case, each level contributes about the same. Shorter ranges are left out: few
+// samples are distributed unlike the many samples of a picture.
 double Pilot::noise_of(size_t pixel) const {
   constexpr uint32_t kStretches = 8;
   double sums[kStretches] = {}, noise = 0.0;

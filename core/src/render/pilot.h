@@ -11,11 +11,11 @@ namespace lancer {
 
 // Renders some pixels of the whole image with different splits and chooses the one with the least variance times cost. The
 // pilot's samples are discarded: a picture that keeps samples on which a decision was based would be biased. Variance is
-// estimated from halves, as that of the picture; cost is counted in rays and vertices. So the result does not depend on
-// threads, clocks, the seed or the rendered region.
+// estimated from halves, like the error of a picture; cost is counted in rays and vertices. So the result depends neither on
+// threads, nor on clocks, nor on the seed or the rendered region.
 class Pilot {
 public:
-  // Below this number of planned samples, the search does not pay.
+  // Below this number of planned samples, the pilot costs more time than it saves.
   static constexpr uint32_t kLeastPlanned = 16;
 
   // All references must outlive the pilot. background: pixels that need not be traced; it changes nothing but the time.
@@ -23,7 +23,7 @@ public:
   Pilot(const Scene &scene, const Camera &camera, const Background &background, const IntegratorSettings &settings,
         uint32_t threads);
 
-  // Every thread must call it once, all at the same time; each call returns when the splits are found.
+  // All threads must call work() once, at the same time; each call returns when the splits are found.
   void work(uint32_t thread);
   // The result, valid after work().
   const Splits &splits() const { return best_; }

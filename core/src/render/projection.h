@@ -35,8 +35,9 @@ public:
   glm::dvec2 pixel(const CameraPoint &point) const {
     return scale_ * (perspective_ ? glm::dvec2(point) / point.z : glm::dvec2(point)) + shift_;
   }
-  // Returns the distance from its pixel within which a point may be visible. Over a polygon, the part of the lens is largest at
-  // a corner: in the polygon's plane the inverse depth (orthographic: the depth) is a linear function of the pixel.
+  // Returns the distance in pixels around pixel(point) within which the point may be visible. Over a polygon, the lens's share
+  // of this distance is largest at a corner: in the polygon's plane the inverse depth (orthographic: the depth) is a linear
+  // function of the pixel.
   double margin(const CameraPoint &point) const {
     if (!(lens_ > 0.0))
       return filter_;

@@ -13,7 +13,7 @@ namespace lancer {
 namespace {
 
 constexpr uint32_t kTileSize = 32, kSmallestTile = 8, kLargestTile = 256;
-// Threads wait for the last tile at the end: so many tiles per thread keep the wait near a hundredth of the time.
+// At the end, threads wait for the last tile. With this many tiles per thread, the wait is about a hundredth of the time.
 constexpr uint64_t kTilesEach = 64;
 // Side of the squares whose samples are refined together. Fixed, so that refinement depends on neither tile size nor threads.
 constexpr uint32_t kRefinedSize = 16;

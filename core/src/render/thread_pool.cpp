@@ -115,7 +115,7 @@ uint32_t usable_processors([[maybe_unused]] const std::string &root) {
   if (const uint32_t allowed = allowed_processors())
     count = allowed;
   const double least = quota_of_process(root);
-  // Round up: a part of a processor is worth a thread, which waits for the rest of the time.
+  // Round up: a quota of a fraction of a processor lets one more thread run for that fraction of the time.
   if (least < count)
     count = std::max(1u, uint32_t(std::ceil(least)));
 #endif
@@ -124,10 +124,11 @@ uint32_t usable_processors([[maybe_unused]] const std::string &root) {
 
 namespace {
 
-// Small enough that free() does not return it to the system.
+// A block of this size is so small that free() does not return it to the system.
 constexpr size_t kReserve = size_t(64) << 10;
 
-// Leaves free memory for prepare_to_fail(); if there is none, the pool reports missing memory.
+// Allocates and frees a block, so that the next thread finds memory for prepare_to_fail(). Throws std::bad_alloc if there is
+// none.
 void reserve_memory() {
   const std::unique_ptr<char[]> memory(new char[kReserve]);
   // Keeps the compiler from removing the allocation.
@@ -135,7 +136,7 @@ void reserve_memory() {
 }
 
 #if defined(__SSE2__)
-// Every exception is masked; the rest is zero.
+// MXCSR with every exception masked and all other bits zero: round to nearest, with subnormals.
 constexpr uint64_t kPlainFloats = 0x1f80;
 uint64_t float_control() { return _mm_getcsr(); }
 void set_float_control(uint64_t value) { _mm_setcsr(static_cast<uint32_t>(value)); }
@@ -148,7 +149,7 @@ uint64_t float_control() {
 }
 void set_float_control(uint64_t value) { asm volatile("msr fpcr, %0" : : "r"(value)); }
 #else
-// Standard C has control of the rounding mode alone.
+// Standard C controls only the rounding mode.
 constexpr uint64_t kPlainFloats = FE_TONEAREST;
 uint64_t float_control() { return uint64_t(std::fegetround()); }
 void set_float_control(uint64_t value) { std::fesetround(int(value)); }
@@ -230,7 +231,7 @@ void ThreadPool::loop(uint32_t thread) {
     lock.unlock();
     std::exception_ptr failure;
     try {
-      // No other work starts before this one is done: a copy, which takes memory, is not needed.
+      // Call work_ itself: no other job replaces it before this one ends, and a copy would allocate memory.
       work_(thread);
     } catch (...) {
       failure = std::current_exception();

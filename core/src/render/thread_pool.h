@@ -14,8 +14,8 @@ namespace lancer {
 
 // Returns the number of processors that this process may use.
 
-// The number of threads that can run at a time: the processors that the process may run on, fewer where its control group (1 or
-// 2) has a quota of processor time. At least 1. root: prefix of the file system's paths.
+// This is the number of threads that can run at a time: at least 1, and fewer where the process's control group (cgroup version
+// 1 or 2) has a quota of processor time. root: prefix of the file system's paths.
 uint32_t usable_processors(const std::string &root = "");
 
 // Threads that wait for work and can be observed from outside.

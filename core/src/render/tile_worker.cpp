@@ -6,8 +6,8 @@ namespace {
 
 // A batch of paths that fills the queues without leaving the second-level cache.
 constexpr uint32_t kBatch = 1024;
-// Where some pixels are not covered, a batch takes more samples of the others; its results, with those of uncovered pixels,
-// fill at most this many batches.
+// If some pixels of a tile are not covered, a batch takes more samples of the covered pixels. Its results, including those of
+// uncovered pixels, fill at most this many batches.
 constexpr uint32_t kMostBatches = 2;
 
 // Returns a sample with nothing but the hit of the camera ray.
