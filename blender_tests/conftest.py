@@ -22,6 +22,14 @@ def pytest_configure(config):
         config.pluginmanager.register(RoomTimes())
 
 
+# Files whose tests take a minute or more: workers begin with these, so that none of them is left alone with one at the end.
+LONGEST = ("test_parity", "test_viewport", "test_window", "test_course_groups", "test_materials", "test_controls", "test_addon")
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))
+
+
 @pytest.fixture(scope="session")
 def library():
     """The library under test with typed functions; where it is missing, every test of the core fails with the reason."""
