@@ -26,6 +26,7 @@ def subset(engine_name, pattern):
     counts = collections.Counter(outcome.verdict for outcome in outcomes)
     return {
         "version": "{}.{}".format(*bpy.app.version),
+        "names": [outcome.case.name for outcome in outcomes],
         "lines": [run.line(outcome) for outcome in outcomes],
         "counts": dict(counts),
         "absent": [outcome.case.name for outcome in outcomes if outcome.verdict == "absent"],
