@@ -1,4 +1,4 @@
-"""What F12 tells of its accuracy: in the statistics, in the file, as a pass."""
+"""How F12 reports its accuracy: in the statistics, in the file, as a pass."""
 
 import os
 import re
@@ -56,7 +56,7 @@ def one_sample():
 
 
 def target():
-    """Renders that end by a target, and by the samples that are allowed for it."""
+    """Two renders with a target error: one reaches it, one runs out of samples first."""
     limits = ((0.05, 65536), (1e-6, 100))
     return {"renders": [_rendered(_noisy(target_error=target, samples=samples)) for target, samples in limits]}
 
@@ -71,17 +71,17 @@ def layers():
 
 
 def limit():
-    """A render that time ends."""
+    """A render that ends at its time limit."""
     return _rendered(_noisy(time_limit=1.0, samples=1 << 24))
 
 
 def biases():
-    """What clamping and a limit on bounces take from light between a cube and the ground."""
+    """A render in which clamping and the limit of bounces remove light between a cube and the ground."""
     return _rendered(_noisy(max_bounces=1, clamp_indirect=0.01))
 
 
 def broken_off():
-    """Ended as by Esc, once there is an error to tell."""
+    """A render cancelled as by Esc, once an error estimate is available."""
     ours = engine.LancerRenderEngine
     original = ours._show_progress
 

@@ -1,4 +1,4 @@
-"""The add-on as a guest in Blender: what it adds, takes away and obeys. Each function returns numbers to judge."""
+"""The add-on inside Blender: registration, preferences, limits. Each function returns the numbers that its test compares."""
 
 import ctypes
 import sys
@@ -11,7 +11,7 @@ _OWNERS = ("Scene", "Object", "Material", "Light")
 
 
 def _traces():
-    """Everything by which Blender could still know the add-on."""
+    """Return everything that the add-on registers with Blender and that is still there."""
     panels = [cls for cls in bpy.types.Panel.__subclasses__() if cls.is_registered]
     return {
         "properties": [name for name in _OWNERS if "lancer" in getattr(bpy.types, name).bl_rna.properties],
@@ -22,7 +22,7 @@ def _traces():
 
 
 def registration():
-    """What is there while registered, after unregister, and after register again; each twice, as users click."""
+    """Return the traces while registered, after unregister and after register again; each call is made twice."""
     import addon
 
     result = {"first": _traces()}
@@ -37,7 +37,7 @@ def registration():
 
 
 def _forget():
-    """As if the add-on had never been imported."""
+    """Unregister the add-on and drop its modules, as if it had never been imported."""
     import addon
 
     addon.unregister()
@@ -46,7 +46,7 @@ def _forget():
 
 
 def without_numpy():
-    """Registers as if numpy were not installed, then with it."""
+    """Register while numpy cannot be imported, then with it."""
     _forget()
     numpy = sys.modules["numpy"]
     sys.modules["numpy"] = None
@@ -66,7 +66,7 @@ def without_numpy():
 
 
 def other_library(folder):
-    """Renders with the copy of the add-on in folder: the error's text, and whether the add-on came from there."""
+    """Render with the copy of the add-on in folder. Return the error's text, and whether that copy was imported."""
     _forget()
     sys.path.insert(0, folder)
     import addon
@@ -96,7 +96,7 @@ def time_limit():
 
 
 def animated_seed():
-    """Whether the noise of frame 2 is that of frame 1: with the setting off, and on."""
+    """Return whether frames 1 and 2 have the same noise: with the setting off, and on."""
     scene = stage.room(samples=1)
     result = {}
     for on in (False, True):
@@ -134,7 +134,7 @@ def threads():
 
 
 def clamp(limit):
-    """A white corner under a point lamp: all light, all light clamped, direct light alone; the direct light clamped."""
+    """Render a white corner under a point lamp: all light, all light clamped, direct light alone, direct light clamped."""
     scene = stage.empty(16, 16, 16)
     white = stage.shader(Color=(1.0, 1.0, 1.0))
     stage.plane(material=white)
@@ -161,14 +161,14 @@ def clamp(limit):
 
 
 def _resident():
-    """Without the free pages that glibc keeps for later."""
+    """Return the resident bytes, without the free pages that glibc keeps for later allocations."""
     ctypes.CDLL(None).malloc_trim(0)
     with open("/proc/self/status", encoding="ascii") as file:
         return next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmRSS:"))
 
 
 def many_renders():
-    """Resident bytes after each of 20 renders, and what the library held for one of them."""
+    """Return the resident bytes after each of 20 renders, and the bytes that the library held for one of them."""
     scene = stage.empty(32, 32, 1)
     stage.ball(segments=248)
     stage.light()

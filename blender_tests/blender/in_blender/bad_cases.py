@@ -1,4 +1,4 @@
-"""Scenes that are wrong on purpose. Each gives a picture and messages; a refusal is told by its text."""
+"""Scenes that are wrong on purpose. Each returns facts of the picture and the messages, or the text of the error."""
 
 import bpy
 import numpy as np
@@ -17,7 +17,7 @@ def _messages():
 
 
 def _outcome():
-    """Renders what is on the stage: what came of it."""
+    """Render the scene. Return facts of the picture, the messages and the error's text."""
     try:
         pixels = stage.picture(bpy.context.scene)
         result = {"finite": bool(np.isfinite(pixels).all()), "mean": float(pixels[..., :3].mean()), "error": ""}
@@ -27,7 +27,7 @@ def _outcome():
 
 
 def _spoil(vertices):
-    """The room with some vertices of the cube replaced."""
+    """Build the room with some vertices of the cube replaced."""
     stage.room()
     data = bpy.data.objects["Cube"].data
     for index, value in vertices.items():
@@ -130,7 +130,7 @@ def zero_area_light():
 
 
 def missing_slot():
-    """Faces that name a slot which is not there, and a slot without a material."""
+    """Faces whose slot does not exist, and a slot without a material."""
     stage.room()
     cube = bpy.data.objects["Cube"]
     cube.data.materials.append(None)
@@ -159,7 +159,7 @@ def unsupported_node():
 
 
 def unsupported_features():
-    """One of each thing that has no counterpart, outside of nodes."""
+    """One of each unsupported feature, nodes excepted."""
     scene = stage.room()
     layer, cube, lamp = bpy.context.view_layer, bpy.data.objects["Cube"], bpy.data.objects["Light"]
     # Strands on the cube.
@@ -167,7 +167,7 @@ def unsupported_features():
     system = cube.modifiers.new("Fluff", "PARTICLE_SYSTEM").particle_system
     system.name = "Fluff"
     system.settings.type, system.settings.render_type, system.settings.count = "HAIR", "PATH", 5
-    # Passes and lines. Without a line set Blender has nothing to draw, for which it would want a graphics device.
+    # Passes and Freestyle. Without a line set Blender draws no lines, for which it would need a graphics device.
     layer.use_pass_mist = layer.use_pass_diffuse_direct = layer.use_pass_vector = True
     layer.use_pass_cryptomatte_object = layer.use_pass_z = True
     layer.aovs.add().name = "Rust"
@@ -175,7 +175,7 @@ def unsupported_features():
     sets = layer.freestyle_settings.linesets
     for lines in list(sets):
         sets.remove(lines)
-    # A shadow catcher, and lamps that shine on some things only.
+    # A shadow catcher, and light linking.
     cube.is_shadow_catcher = True
     scene.cycles.film_exposure = 2.0
     if bpy.app.version >= (4, 0):
@@ -185,7 +185,7 @@ def unsupported_features():
 
 
 def factory_scene():
-    """What Blender opens with."""
+    """The scene that Blender starts with."""
     bpy.ops.wm.read_factory_settings()
     scene = bpy.context.scene
     scene.render.engine = "LANCER"

@@ -1,4 +1,4 @@
-"""What hurts, built as artists build it: told at F12, and listed by Check Scene."""
+"""Flaws as artists build them: F12 warns of them, and Check Scene lists them."""
 
 import bpy
 import stage
@@ -12,7 +12,7 @@ def _glass(**inputs):
 
 
 def _add(shader, other):
-    """A material whose Add Shader has both of these nodes."""
+    """Return a material whose Add Shader adds these two nodes."""
     material = stage.shader(shader, "Sum")
     tree = material.node_tree
     first = next(node for node in tree.nodes if node.type != "OUTPUT_MATERIAL")
@@ -30,14 +30,14 @@ def _smooth(item):
 
 
 def _flip_some(item):
-    """Turns every seventh face over."""
+    """Replace the mesh by one of which every seventh face is flipped."""
     data = item.data
     faces = [list(face.vertices)[:: -1 if number % 7 == 0 else 1] for number, face in enumerate(data.polygons)]
     return _smooth(stage.mesh("Flipped", [vertex.co for vertex in data.vertices], faces, location=(0, 0, 1)))
 
 
 def _far(radius, x):
-    """A ball whose vertices lie there, while its origin is the world's."""
+    """Return a ball whose vertices are moved along x, while its origin stays at the world's."""
     item = stage.ball(radius, segments=16)
     for vertex in item.data.vertices:
         vertex.co.x += x
@@ -45,7 +45,7 @@ def _far(radius, x):
     return item
 
 
-# name: (a scene with the flaw, the same without it); each builder adds to a lit room without cube.
+# name: (builder of the flaw, builder of the same without it); each builder adds to a lit room without a cube.
 _FLAWS = {
     "open glass": (
         lambda: stage.mesh("Thing", _BOX, _SIDES[:5], _glass()),
@@ -113,7 +113,7 @@ def _told():
 
 
 def flaws():
-    """{name: [(findings, messages of F12) with the flaw, without it]}"""
+    """Return {name: [(findings, messages of F12) with the flaw, the same without it]}."""
     result = {}
     for name, builders in _FLAWS.items():
         result[name] = []
@@ -125,7 +125,7 @@ def flaws():
 
 
 def switches():
-    """Whether F12 obeys its switch, and Check Scene what is hidden from renders; what the buttons do."""
+    """Return whether F12 obeys its switch, whether Check Scene skips hidden objects, and the results of its buttons."""
     from addon.operators import check_scene
 
     scene = _room()
@@ -159,7 +159,7 @@ def switches():
 
 
 def failing():
-    """A fault of the check itself: what F12 tells, and the mean of its picture."""
+    """Make the check raise. Return the messages of F12, and the mean of its picture."""
     from addon import engine
     from addon.engine import quick_check
 
@@ -188,7 +188,7 @@ def _letters():
 
 
 def smooth():
-    """{name: {lamp: (findings, messages of F12)}} of what is smooth round sharp folds, as Blender makes it."""
+    """Return {name: {lamp: (findings, messages of F12)}} of Blender's own objects, smooth across sharp folds."""
     result = {}
     for name, build in (("monkey", _monkey), ("letters", _letters)):
         result[name] = {}

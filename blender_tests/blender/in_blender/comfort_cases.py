@@ -1,4 +1,4 @@
-"""What makes Lancer handy: presets, preferences, pages of the manual."""
+"""Presets, preferences, and links to pages of the manual."""
 
 import os
 
@@ -7,12 +7,12 @@ import stage
 
 
 def _presets(folder):
-    """Without what Python keeps beside them."""
+    """Return the preset files of a folder, without __pycache__."""
     return [name for name in os.listdir(folder) if name.endswith(".py")]
 
 
 def presets():
-    """Saves, changes, applies and removes a preset of each kind. {kind: [as saved, changed, applied, file, gone]}"""
+    """Save, change, apply and remove a preset of each kind. Return {kind: [saved, changed, applied, file, files left]}."""
     result = {}
     scene = stage.empty()
     changes = {
@@ -42,14 +42,14 @@ def presets():
         changed = put(other)
         bpy.ops.script.execute_preset(filepath=path, menu_idname=menu)
         result[kind] = [saved, changed, now(), os.path.basename(path)]
-        # As the button for removal does, which takes the preset that was applied last.
+        # As the button for removal does: it removes the preset that was applied last.
         add(remove_active=True)
         result[kind].append(_presets(folder))
     return result
 
 
 def manual():
-    """{setting or operator: page that Blender would open}, and the pages that Blender's own map knows."""
+    """Return {setting or operator: page that Blender would open}, and the pages in Blender's own map."""
     from bl_operators.wm import WM_OT_doc_view_manual
 
     import addon
@@ -79,7 +79,7 @@ def manual():
 
 
 def without_preferences():
-    """Imported by a script it is no add-on, and has no preferences: threads and quality are as they come."""
+    """Imported by a script the package has no preferences: threads and quality have their defaults."""
     from export_cases import export_told
 
     from addon.settings import preferences

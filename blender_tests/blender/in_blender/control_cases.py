@@ -1,7 +1,7 @@
-"""Every setting of a small scene, changed one by one: which of them change what is exported, and which are shown in panels.
+"""Change every setting of a small scene one by one: which of them change the snapshot, and which do panels show?
 
-What is exported is a function of the data alone, so that a setting that is read shows by what it does, whoever wrote the
-reader. It may act in some states only, a lens in perspective, the angles of a panorama in a panorama: hence the states.
+The snapshot is a function of the data alone, so that a setting is read if and only if changing it changes the snapshot.
+Some settings act in some states only, such as the angles of a panorama: hence the states.
 """
 
 import bpy
@@ -13,13 +13,13 @@ from addon.denoise import view_layer as denoise
 from addon.engine.passes import render_passes
 from addon.export.scene import ExportOptions, export_scene
 
-# What changes which data is looked at, and not how; what is no setting but the data itself.
+# Properties that select which data-block is shown, and properties that are the data itself.
 _LEFT_OUT = {"rna_type", "engine", "name", "type", "mode", "use_fake_user", "animation_data", "preview", "preview_pause"}
 _OWNERS_OF_NOTHING = (bpy.types.ID, bpy.types.AnimData)
 
 
 def exported(scene, view_layer):
-    """(snapshot and passes, messages)."""
+    """Return ((snapshot, passes), messages)."""
     view_layer.update()
     wanted = tuple(render_passes(scene, view_layer))
     options = ExportOptions(passes=tuple(item.source for item in wanted))
@@ -31,7 +31,7 @@ def exported(scene, view_layer):
 
 
 def settings_of(owner, depth):
-    """(struct, property) of all that can be set in a struct and, at a depth of 2, in what it holds."""
+    """Yield (struct, property) of each writable property of a struct and, at a depth of 2, of the structs in it."""
     for field in owner.bl_rna.properties:
         if field.identifier in _LEFT_OUT or owner.is_property_readonly(field.identifier) and field.type != "POINTER":
             continue
@@ -47,7 +47,7 @@ def settings_of(owner, depth):
 
 
 def other_values(owner, field):
-    """Some values that a setting does not have now."""
+    """Return some values other than the setting's own."""
     now = getattr(owner, field.identifier)
     if field.type == "BOOLEAN":
         values = [tuple(not x for x in now) if field.is_array else not now]
@@ -56,7 +56,7 @@ def other_values(owner, field):
     elif field.type == "INT":
         values = [now + 1, now - 1] if not field.is_array else []
     elif field.type == "FLOAT":
-        # One of both is within the limits. Matrices are results.
+        # One of the two is within the limits. Matrices are results, not settings.
         is_matrix = field.is_array and field.array_dimensions[1] > 0
         values = [] if is_matrix else [_scaled(now, 0.7), _scaled(now, 1.3)]
     elif field.type == "POINTER":
@@ -77,10 +77,10 @@ def _collections():
 
 
 def acting(scene, view_layer, owners, depth):
-    """(settings that act, settings that change messages alone, all settings) of the owners, as (type, property)."""
+    """Return (settings that act, settings that change messages alone, all settings) of the owners, as (type, property)."""
     acts, tells, known = set(), set(), set()
     for root in owners:
-        # Of changes to add-ons' settings Blender tells the depsgraph nothing.
+        # Blender does not tag the data-block when an add-on's setting changes.
         root.id_data.update_tag()
     before = exported(scene, view_layer)
     for owner, field in (setting for root in owners for setting in settings_of(root, depth)):
@@ -95,7 +95,7 @@ def acting(scene, view_layer, owners, depth):
             try:
                 setattr(owner, field.identifier, value)
             except (TypeError, ValueError, AttributeError):
-                continue  # not among the choices of this moment
+                continue  # not among the current choices
             owner.id_data.update_tag()
             after = exported(scene, view_layer)
             if after[0] != before[0]:
@@ -106,18 +106,18 @@ def acting(scene, view_layer, owners, depth):
         setattr(owner, field.identifier, kept)
         owner.id_data.update_tag()
         if key in acts:
-            # What was rounded, as an angle is that stands for a length, does not come back to the last bit.
+            # A rounded value, such as a focal length set by its angle, does not return to the same bits.
             before = exported(scene, view_layer)
     return acts, tells, known
 
 
 def _type_of(owner):
-    """Its name; each kind of lamp has a type of its own."""
+    """Return the name of a struct's type; lamps, which have a type for each kind, count as one."""
     return "Light" if isinstance(owner, bpy.types.Light) else owner.bl_rna.identifier
 
 
 def _textured():
-    """A material that shines, lets through, and is displaced, so that all its settings act."""
+    """Return a material with emission, transparency and displacement, so that all its settings act."""
     material = stage.shader(name="Textured")
     tree = material.node_tree
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
@@ -138,7 +138,7 @@ def _textured():
 
 class _Stage:
     def __init__(self):
-        self.twice = set()  # (type, property, panel) of what another panel of the same tab shows already
+        self.twice = set()  # (type, property, panel) of settings that an earlier panel of the same tab shows, too
         self.scene = scene = stage.empty(width=16, height=12, samples=1)
         self.layer = scene.view_layers[0]
         self.material = _textured()
@@ -160,7 +160,7 @@ class _Stage:
             setattr(self.layer, name, True)
 
     def shows(self, tab, thing, **fields):
-        """The settings that the panels of a tab show."""
+        """Return the settings that the panels of a tab show."""
         context = recording.Context(
             engine="LANCER",
             scene=self.scene,
@@ -178,7 +178,7 @@ class _Stage:
         return shown
 
     def states(self):
-        """(owners whose settings are looked at, how deep, what the panels of their tabs show) of one state after the other."""
+        """Yield (owners of the settings, depth, settings that the panels of their tabs show) of each state."""
         yield from self._of_scenes()
         yield from self._of_materials()
         yield from self._of_cameras()
@@ -256,7 +256,7 @@ class _Stage:
             lamp.data.use_temperature = True
 
         def now(*owners, depth=1):
-            # The type of the data-block's Python object follows its kind only when asked for anew.
+            # Only a newly fetched Python object has the type of the lamp's new kind.
             data = lamp.data
             return (data, *owners), depth, self.shows("data", lamp, light=data) | self.shows("object", lamp, light=data)
 
@@ -275,7 +275,7 @@ class _Stage:
 
 
 def controls():
-    """{what settings do: ["Type.property", ...]}: act, change messages alone, are there at all, are shown, are shown again."""
+    """Return {kind: ["Type.property", ...]}; "tell": settings that change messages alone, "twice": shown by two panels."""
     built = _Stage()
     acts, tells, known, shown = set(), set(), set(), set()
     for owners, depth, in_panels in built.states():

@@ -1,4 +1,4 @@
-"""Files as artists leave them, small ones, and what a render of them misses."""
+"""Small files as artists save them, and the features that a render of them misses."""
 
 import os
 
@@ -7,7 +7,7 @@ import stage
 
 
 def files(folder):
-    """Writes the files that test_corpus_files.py renders."""
+    """Write the files that test_corpus_files.py renders."""
     _alike()
     _save(folder, "alike.blend")
     _fog()
@@ -33,7 +33,7 @@ def _lit_cube(engine):
 
 
 def _alike():
-    """Every setting that limits light is on, as are those that end or smooth a render; two view layers."""
+    """A file with every setting on that limits light, or that ends or denoises a render; it has two view layers."""
     scene = _lit_cube("CYCLES")
     stage.camera()
     scene.render.resolution_percentage = 50
@@ -50,7 +50,7 @@ def _alike():
 
 
 def _fog():
-    """What only absorbs, in a cube without a surface."""
+    """A volume that only absorbs, in a cube without a surface shader."""
     scene = _lit_cube("CYCLES")
     stage.camera()
     material = bpy.data.materials.new("Fog")
@@ -70,7 +70,7 @@ def _without_camera():
 
 
 def missing():
-    """{key: count} and the lines of a render that lacks a feature and, twice, a node; and of the next, without the feature."""
+    """Return {key: count} and the lines of a render that lacks a feature and, twice, a node, and of one without the feature."""
     from addon.engine import render_engine as engine
 
     scene = _lit_cube("LANCER")
@@ -81,7 +81,7 @@ def missing():
         toon = stage.shader("ShaderNodeBsdfToon", f"Toon {number}")
         next(node for node in toon.node_tree.nodes if node.type == "BSDF_TOON").component = "GLOSSY"
         stage.cube(material=toon, location=(2 * number, 0, 0.5))
-    # What merely warns is nothing that is missing.
+    # A warning does not count as a missing feature.
     scene.objects["Cube"].data.materials[0] = None
     result = {}
     for name in ("first", "second"):

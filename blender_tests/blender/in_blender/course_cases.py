@@ -1,4 +1,4 @@
-"""The course's settings as the exporter reads them: polygons for flat shading, ambient light."""
+"""The course's settings in the snapshot: polygons for flat shading, ambient light."""
 
 import bpy
 import numpy as np
@@ -15,7 +15,7 @@ _FACES = [(0, 1, 2, 3, 4), (5, 6, 7, 8, 9, 10), (11, 12, 13, 14)]
 
 
 def polygons():
-    """{integrator: {object: (polygon of each triangle or None, mean of each polygon's vertices)}}, and Blender's centres."""
+    """Return {integrator: {object: (polygon of each triangle or None, mean of each polygon's vertices)}}, Blender's centres."""
     scene = stage.empty()
     first = stage.mesh("flat", _CORNERS, _FACES)
     first.lancer.shading = "FLAT"
@@ -46,7 +46,7 @@ def _of_mesh(mesh):
 
 
 def ambient():
-    """Ambient colours of the world and of a lamp, for each position of their switches."""
+    """Return the ambient colours of the world and of a lamp, for each position of their switches."""
     scene = stage.empty()
     scene.world = bpy.data.worlds.new("World")
     lamp = bpy.data.lights.new("Lamp", "POINT")

@@ -1,4 +1,4 @@
-"""The course's models as node groups: pictures of them beside the material's own settings, and what becomes of the groups."""
+"""The course's models as node groups: compared with the material's own settings; copied, linked, edited and undone."""
 
 import types
 
@@ -42,7 +42,7 @@ def own(model, **values):
 
 
 def node_of(tree, model, **values):
-    """A group node of a model, with constants."""
+    """Return a group node of a model, with constants."""
     node = tree.node("Group", node_tree=course_groups.group_of(model))
     for name in parameters_of(model):
         value = {**VALUES, **values}[name]
@@ -56,17 +56,17 @@ def grouped(model, **values):
 
 
 def lit(material, integrator, engine="LANCER"):
-    """A picture of a ball of the material in a room."""
+    """Return a picture of a ball of the material in a room."""
     scene = stage.room(engine=engine, width=24, height=24)
     scene.lancer.integrator = integrator
     faces = stage.ball(1.0, material(), location=(0, 0, 1.2)).data.polygons
-    # Blender 3 sums the normals of vertices in the order of its threads, another one in each render.
+    # Blender 3 sums the normals of vertices in the order of its threads, which differs from render to render.
     faces.foreach_set("use_smooth", [False] * len(faces))
     return stage.picture(scene)
 
 
 def constants():
-    """For each model and integrator: whether node and settings give the same bits, and whether each parameter has a say."""
+    """Return, for each model and integrator, whether node and settings give the same bits, and which parameters act."""
     result = {}
     for model in MODELS:
         for integrator in ("PATH", "CLASSIC"):
@@ -81,7 +81,7 @@ def constants():
 
 
 def _halves(tree, name):
-    """An image whose left and right half are the two values of a parameter."""
+    """Return the output of an image whose left and right half are the two values of a parameter."""
     pixels = np.ones((1, 2, 4))
     for column, value in enumerate(HALVES[name]):
         pixels[0, column, :3] = value
@@ -90,7 +90,7 @@ def _halves(tree, name):
 
 
 def _floor(make, integrator):
-    """Two pixels of a floor of the material that make() gives, one on each half, under a lamp and a grey sky."""
+    """Return two pixels of a floor of the material that make() returns, one on each half, under a lamp and a grey sky."""
     scene = stage.empty(width=4, height=4, samples=1)
     scene.lancer.integrator = integrator
     floor = stage.plane(2.0, make())
@@ -105,7 +105,7 @@ def _floor(make, integrator):
 
 
 def textures():
-    """For each model and parameter the two pixels with a texture in that socket; PATH's also with constants."""
+    """Return, for each model and parameter, the two pixels with a texture in that socket; of PATH also with constants."""
     pixels = {}
     for model in MODELS:
         for name in parameters_of(model):
@@ -125,7 +125,7 @@ def textures():
 
 
 def normals():
-    """A node that bends the normal, in the model's own socket."""
+    """Link a node that bends the normal to the model's own socket."""
     stage.empty()
     materials = []
     for model in MODELS:
@@ -137,7 +137,7 @@ def normals():
 
 
 def mixed():
-    """A quarter of a model beside a diffuse surface; the model within another group, its colour from that one's input."""
+    """Mix a quarter of a model with a diffuse BSDF; put the model into another group, whose input is the model's colour."""
     stage.empty()
     tree = Tree("mixed")
     diffuse = tree.node("BsdfDiffuse", Color=(1.0, 1.0, 1.0)).outputs[0]
@@ -158,7 +158,7 @@ def mixed():
 
 
 def identity():
-    """What is the same group to the add-on and to the exporter, whatever it is called."""
+    """Rename, copy and change groups: which does the add-on reuse, and which does the exporter read as a model?"""
     stage.empty()
     first = course_groups.group_of("PHONG")
     first.name = "Something else"
@@ -173,7 +173,7 @@ def identity():
     links = node.node_tree.links
     links.remove(next(link for link in links if link.from_node.name == "Body"))
     changed.show(node.outputs[0])
-    # The only group of the model is changed: a new node gets one as it should be.
+    # The only group of the model is a changed one: a new node gets an unchanged one.
     for tree in [tree for tree in bpy.data.node_groups if tree != node.node_tree]:
         bpy.data.node_groups.remove(tree)
     fresh = course_groups.group_of("PHONG") != node.node_tree
@@ -194,7 +194,7 @@ def identity():
 
 
 def save(path):
-    """A file with each model, for other Blenders to open."""
+    """Save a file with each model, which other Blenders open."""
     stage.empty()
     for model in MODELS:
         grouped(model).use_fake_user = True
@@ -203,7 +203,7 @@ def save(path):
 
 
 def opened(path, how):
-    """The models of a file: opened, or brought into an empty one."""
+    """Return the models of a file that is opened, or appended or linked into an empty one."""
     stage.empty()
     if how == "open":
         bpy.ops.wm.open_mainfile(filepath=path)
@@ -211,13 +211,13 @@ def opened(path, how):
         with bpy.data.libraries.load(path, link=how == "link") as (there, here):
             here.materials = list(there.materials)
     found = answer(*[bpy.data.materials[model] for model in MODELS])
-    # A group that is linked is not one to add to.
+    # New nodes do not use linked groups.
     local = [course_groups.group_of(model).library is None for model in MODELS]
     return {**found, "local": local, "groups": len(bpy.data.node_groups)}
 
 
 def cycles():
-    """Cycles' mean of a ball of each model, and how much of it the parameters that shape the highlight change."""
+    """Return Cycles' mean of a ball of each model, and how much the parameters of the highlight change it."""
     result = {}
     for model in MODELS:
         means = []
@@ -232,7 +232,7 @@ def cycles():
 
 
 def _editing(tree):
-    """The node editor of Blender's own window on a tree: what bpy.context.temp_override takes."""
+    """Show a tree in the node editor of Blender's window. Return the arguments of bpy.context.temp_override."""
     window = bpy.context.window_manager.windows[0]
     area = max(window.screen.areas, key=lambda area: area.width * area.height)
     area.type = "NODE_EDITOR"
@@ -242,7 +242,7 @@ def _editing(tree):
 
 
 def editor():
-    """The operator and its menu."""
+    """Run the operator and draw its menu."""
     scene = stage.empty()
     tree = Tree("edited")
     place = _editing(tree.tree)
@@ -271,7 +271,7 @@ def editor():
 
 
 def undo():
-    """How many groups there are after the operator, after one undo, and after one redo."""
+    """Return the number of groups after the operator, after one undo, and after one redo."""
     stage.empty()
     material = Tree("undone").material
     material.use_fake_user = True
@@ -287,7 +287,7 @@ def undo():
 
 
 def _entries(context):
-    """The menus that the add-on adds to Add, and the operators in them."""
+    """Return the menus that the add-on appends to Add, and the operators in them."""
     shown = []
 
     class Layout:

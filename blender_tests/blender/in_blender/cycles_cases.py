@@ -1,4 +1,4 @@
-"""The same scene by both engines in one Blender: 8 x 8-block means of each, for the test to compare."""
+"""Render the same scene by both engines in one Blender. The test compares the means of blocks of 8 x 8 pixels."""
 
 import math
 
@@ -9,7 +9,7 @@ SIZE, BLOCK = 64, 8
 
 
 def _unbiased(scene, bounces, samples):
-    """Both engines on the same integral: equal bounces, box filter, nothing clamped, guessed, stopped early or smoothed."""
+    """Let both engines estimate the same integral: equal bounces, box filter, no clamping, adaptive sampling or denoising."""
     cycles = scene.cycles
     cycles.device, cycles.samples, cycles.seed = "CPU", samples, 1
     cycles.use_adaptive_sampling = cycles.use_denoising = False
@@ -42,7 +42,7 @@ def compare(name, bounces, samples):
         scene.render.engine = engine
         _unbiased(scene, int(bounces), int(samples))
         pictures = []
-        # Pictures with other numbers tell the noise, block by block.
+        # Pictures with different seeds give the noise of each block.
         for seed in range(1, 5):
             scene.cycles.seed = scene.lancer.seed = seed
             pictures.append(_blocks(stage.picture(scene)))

@@ -1,4 +1,4 @@
-"""F12 with denoising: what is in the file, what stays as it was, and what is told."""
+"""F12 with denoising: the passes in the file, which of them are unchanged, and the messages."""
 
 import hashlib
 import os
@@ -16,7 +16,7 @@ from addon.engine import render_engine as engine
 
 
 def _scene(width=64, height=48, samples=4):
-    """Matt, mirroring, glass and clear things before a sky."""
+    """Build diffuse, mirror, glass and transparent objects before a sky."""
     scene = stage.empty(width, height, samples)
     stage.plane(material=stage.shader(Color=(0.6, 0.5, 0.4)))
     stage.cube(material=stage.shader(Color=(0.8, 0.2, 0.1)), location=(-1.2, 0, 0.5))
@@ -32,7 +32,7 @@ def _scene(width=64, height=48, samples=4):
 
 
 def _render(scene, denoising, layer=None):
-    """{pass: picture} of a view layer, what was told, the statistics, and the file's bytes."""
+    """Return {pass: picture} of a view layer, the messages, the statistics, and the file's bytes."""
     scene.lancer.use_denoising = denoising
     path = os.path.join(tempfile.mkdtemp(), "passes.exr")
     exr.write_settings(scene, path)
@@ -43,7 +43,7 @@ def _render(scene, denoising, layer=None):
 
 
 def _compare(scene, layer=None):
-    """The same scene without and with denoising."""
+    """Render the scene without and with denoising. Return which passes are equal, and facts of the others."""
     raw, _, before, data = _render(scene, False, layer)
     pictures, messages, statistics, stamped = _render(scene, True, layer)
     combined = pictures["Combined"]
@@ -78,7 +78,7 @@ def classic():
 
 
 def passes():
-    """Beside other passes, those for denoising among them."""
+    """Denoise beside other passes, those for denoising among them."""
     scene = _scene()
     layer = scene.view_layers[0]
     layer.use_pass_normal = layer.use_pass_diffuse_direct = True
@@ -101,7 +101,7 @@ def transparent():
 
 
 def view_layers():
-    """Two layers, of which the second does not want it."""
+    """Two view layers; the second has denoising off."""
     scene = _scene()
     names = [scene.view_layers[0].name, scene.view_layers.new("Raw").name]
     scene.view_layers["Raw"].cycles.use_denoising = False
@@ -115,7 +115,7 @@ def normals():
 
 
 def several():
-    """Many cases of one process."""
+    """Run many cases in one process."""
     return {
         case.__name__: case()
         for case in (plain, classic, passes, border, transparent, view_layers, normals, failing, as_cycles, nearer)
@@ -123,7 +123,7 @@ def several():
 
 
 def stopped(how):
-    """Ended as soon as a share is told: by what is polled, or by Ctrl-C of this Python; or even before."""
+    """Cancel denoising at its first report of progress, by the polled function or by Ctrl-C, or even before."""
     scene = _scene(samples=1)
     raw, *_ = _render(scene, False)
     original, said, result = denoise.apply, [], {}
@@ -139,7 +139,7 @@ def stopped(how):
 
     denoise.apply = apply
     if how == "interrupt":
-        # As in a terminal: what a shell starts in the background ignores Ctrl-C.
+        # As in a terminal: a process that a shell starts in the background ignores Ctrl-C.
         signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         pictures, _, statistics, data = _render(scene, True)
@@ -155,7 +155,7 @@ def stopped(how):
 
 
 def failing():
-    """The library gives up in the middle."""
+    """Let the denoiser raise an error."""
     original = denoise.denoiser.denoise
 
     def fail(*_, **__):
@@ -169,7 +169,7 @@ def failing():
 
 
 def as_cycles():
-    """The passes of both engines for the same switches."""
+    """Return the passes of both engines for the same switches."""
     names = {"version": list(bpy.app.version)}
     for store in (False, True):
         scene = _scene(16, 16, 1)
@@ -185,7 +185,7 @@ def as_cycles():
 
 
 def nearer():
-    """Errors against a converged picture: with noise and without, of 16 samples."""
+    """Return the errors of a noisy and of a denoised picture of 16 samples against a converged one."""
     scene = _scene(96, 64, 16)
     pictures = _render(scene, True)[0]
     scene.lancer.samples, scene.lancer.seed = 1024, 1

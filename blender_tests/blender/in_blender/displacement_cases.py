@@ -1,4 +1,4 @@
-"""A square whose height rises by so much per unit of x and y, by each method of displacement, as the core then has it."""
+"""A square displaced by a height of constant slope in x and y, by each method of displacement, as the core receives it."""
 
 import dataclasses
 
@@ -13,7 +13,7 @@ from addon.bindings.session import Scene, Session
 
 def _rising(method, slope):
     tree = Tree(method)
-    # The method is the material's own from 4.1 on, and Cycles' before.
+    # The method is a setting of the material from 4.1 on, and one of Cycles before.
     owner = tree.material if hasattr(tree.material, "displacement_method") else tree.material.cycles
     owner.displacement_method = method
     place = tree.node("TexCoord").outputs["Object"]
@@ -30,7 +30,7 @@ def methods(*slope):
     result = {}
     for method in ("BUMP", "DISPLACEMENT", "BOTH"):
         stage.empty(width=1, height=1)
-        # Smooth, as displaced meshes are: of a flat face in BOTH Cycles' own versions differ.
+        # Smooth, as displaced meshes are: Cycles' own versions differ for flat faces in BOTH.
         faces = stage.plane(4.0, _rising(method, slope)).data.polygons
         faces.foreach_set("use_smooth", [True] * len(faces))
         stage.camera((0, 0, 5), (0, 0, 0), type="ORTHO", ortho_scale=1.0)

@@ -1,6 +1,6 @@
 """Objects in every mode of Blender's 3D viewport, by both engines: boxes that fill whole pixels, seen from above.
 
-Each box shines in one colour, so that a pixel has no noise and both engines give the same but for the rounding of the film.
+Each box emits one colour, so that pixels have no noise and the engines differ only by the rounding of the film.
 """
 
 import os
@@ -11,18 +11,18 @@ import bpy
 import stage
 from export_cases import export_told
 
-SIZE = 16  # pixels, and metres that they show
+SIZE = 16  # pixels, and metres
 
 
 def _box(name, color, x, y):
-    """A box over one pixel, whose corners are whole."""
+    """Return a box over one pixel, whose corners have integer coordinates."""
     item = stage.cube(1.0, stage.shader("ShaderNodeEmission", name, Color=color), location=(x + 0.5, y + 0.5, 0.5))
     item.name = item.data.name = name
     return item
 
 
 def _repeated(item, offset, count=2, **fields):
-    """A second box beside the first, by a modifier."""
+    """Repeat the item by an Array modifier."""
     modifier = item.modifiers.new("Array", "ARRAY")
     modifier.count, modifier.use_relative_offset, modifier.use_constant_offset = count, False, True
     modifier.constant_offset_displace = offset
@@ -31,7 +31,7 @@ def _repeated(item, offset, count=2, **fields):
 
 
 def _instanced(tree_name, thing):
-    """A node tree that brings an object in as an instance."""
+    """Return a node tree that instances an object."""
     tree = bpy.data.node_groups.new(tree_name, "GeometryNodeTree")
     if hasattr(tree, "interface"):
         tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
@@ -44,14 +44,14 @@ def _instanced(tree_name, thing):
 
 
 def build():
-    """The scene of fill, and nothing else."""
+    """Build the objects of fill in an empty scene."""
     return fill(stage.empty(SIZE, SIZE, 1))
 
 
 def fill(scene):
-    """Boxes with modifiers that show in Edit mode or do not, a linked duplicate, and instances by collection and by nodes.
+    """Add boxes with modifiers shown or hidden in Edit mode, a linked duplicate, and instances by collection and by nodes.
 
-    Gives the scene, a box that stays as it is, and three that may be edited at once.
+    Return the scene, a box that is never edited, and three boxes to edit at once.
     """
     camera = stage.camera((0, 0, 20), (0, 0, 0), type="ORTHO", ortho_scale=float(SIZE))
     camera.rotation_euler = (0, 0, 0)
@@ -89,13 +89,13 @@ def fill(scene):
 
 
 def _move(item, offset):
-    """Moves all vertices of a mesh in Edit mode; Blender is not told."""
+    """Move all vertices of a mesh in Edit mode, without tagging it as changed."""
     for vertex in bmesh.from_edit_mesh(item.data).verts:
         vertex.co.x += offset
 
 
 def edit(edited, wrapped, keyed):
-    """Edits all three at once, and moves two of them."""
+    """Enter Edit mode with all three, and move the vertices of two of them."""
     for item in (edited, wrapped, keyed):
         item.select_set(True)
     bpy.context.view_layer.objects.active = edited
@@ -105,7 +105,7 @@ def edit(edited, wrapped, keyed):
 
 
 def _compare(scene):
-    """What told gives of the pictures of both engines, and the messages of ours."""
+    """Render by both engines. Return the result of told, and our messages."""
     pictures = []
     for engine in ("LANCER", "CYCLES"):
         scene.render.engine = engine
@@ -114,14 +114,14 @@ def _compare(scene):
 
 
 def told(ours, cycles):
-    """How far our picture is from Cycles' at most, and which of its pixels show a box, from the middle: [[x, y], ...]."""
+    """Return the largest difference from Cycles' picture, and our lit pixels, counted from the middle: [[x, y], ...]."""
     rows, columns = (ours[:, :, :3].max(axis=2) > 0.0).nonzero()
     lit = sorted(zip((columns - SIZE // 2).tolist(), (rows - SIZE // 2).tolist(), strict=True))
     return {"difference": float(abs(ours - cycles)[:, :, :3].max()), "lit": lit}
 
 
 def modes():
-    """What both engines show in each mode; the mode stays as it was."""
+    """Compare both engines in each mode, and return the mode after the render."""
     result = {}
     for mode in ("OBJECT", "EDIT", "SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT", "TEXTURE_PAINT", "PARTICLE_EDIT"):
         scene, plain, *boxes = build()
@@ -138,7 +138,7 @@ def modes():
 
 
 def saved():
-    """A file that was saved in Edit mode, opened again."""
+    """Save a file in Edit mode and open it again."""
     edit(*build()[2:])
     path = os.path.join(tempfile.mkdtemp(), "edited.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
@@ -147,7 +147,7 @@ def saved():
 
 
 def exact():
-    """An exact sphere in place of a mesh that is being edited: where it stands."""
+    """Return the place of an exact sphere whose mesh is in Edit mode."""
     stage.empty()
     item = stage.cube(2.0)
     item.lancer.shape = "SPHERE"

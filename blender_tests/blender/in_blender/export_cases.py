@@ -1,4 +1,4 @@
-"""Scenes exported and not rendered: each function returns what the snapshot holds for the test to judge."""
+"""Scenes that are exported but not rendered. Each function returns facts of the snapshot, which its test compares."""
 
 import bpy
 import numpy as np
@@ -11,12 +11,12 @@ from addon.export.scene import export_scene
 
 
 class ExportProbe(bpy.types.RenderEngine):
-    """Takes the snapshot from the depsgraph of a final render, which alone knows render visibility and render counts."""
+    """Exports the depsgraph of a final render: only it has the render visibility and the render counts."""
 
     bl_idname = "EXPORT_PROBE"
     bl_label = "Export Probe"
     caught = None
-    look = None  # at the depsgraph, where set
+    look = None  # a function that is called with the depsgraph, if set
 
     def render(self, depsgraph):
         ExportProbe.caught = export_scene(depsgraph)
@@ -25,12 +25,12 @@ class ExportProbe(bpy.types.RenderEngine):
 
 
 def export():
-    """The scene's snapshot."""
+    """Return the scene's snapshot."""
     return export_told()[0]
 
 
 def export_told():
-    """(snapshot, messages) of the scene, with a camera where it has none; an error in it is in the console."""
+    """Return (snapshot, messages) of the scene, adding a camera if it has none. The console shows an error of the export."""
     scene = bpy.context.scene
     if scene.camera is None:
         stage.camera()
@@ -109,7 +109,7 @@ def particle_instances():
 
 
 def row_of_cubes():
-    """Node instances: five cubes on a line of points."""
+    """Add instances by nodes: five cubes on a line of points."""
     tree = bpy.data.node_groups.new("Row", "GeometryNodeTree")
     if hasattr(tree, "interface"):
         tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
@@ -128,7 +128,7 @@ def row_of_cubes():
 
 
 def node_instances():
-    """Five cubes on a line of points, beside a plain cube."""
+    """Build five cubes on a line of points, beside a plain cube."""
     stage.empty()
     row_of_cubes()
     stage.cube(location=(0, 9, 0))
@@ -136,7 +136,7 @@ def node_instances():
 
 
 def _walk(depsgraph):
-    """[name, matrix, who does not see it, pass index] of each mesh that is shown, as Blender tells it entry by entry."""
+    """Return [name, matrix, ray types that it is hidden from, pass index] of each entry of the depsgraph with a mesh."""
     rows = []
     for entry in depsgraph.object_instances:
         thing = entry.object
@@ -145,7 +145,7 @@ def _walk(depsgraph):
         owners = [thing, entry.parent] if entry.is_instance else [thing]
         hidden = sorted({ray for ray in ("camera", "shadow") if not all(getattr(x, "visible_" + ray) for x in owners)})
         matrix = np.array(entry.matrix_world, float)
-        # A plane is traced from its middle, where its mesh is 2 m to the side.
+        # A plane's instance has its origin in the middle of the mesh, here 2 m to the side.
         if thing.lancer.shape == "PLANE":
             matrix = matrix @ np.array([[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], float)
         rows.append([thing.name, matrix[:3].tolist(), hidden, thing.pass_index])
@@ -153,7 +153,7 @@ def _walk(depsgraph):
 
 
 def walked():
-    """All ways in which Blender brings meshes in, in one scene: as the snapshot has them, and as Blender tells them."""
+    """Instance meshes in every way that Blender has. Return the rows of the snapshot, and those of the depsgraph."""
     scene = stage.empty()
     top = stage.link("Top", None, (1, 2, 3), (0.3, 0.2, 0.1))
     top.scale = (1.0, -2.0, 0.5)
@@ -214,7 +214,7 @@ def surfaces():
 
 
 def shapes():
-    """A box from (1, 2, 3) to (3, 6, 9) at (10, 0, 0), twice as large, as each shape; and each way to shade it."""
+    """Export a box from (1, 2, 3) to (3, 6, 9), scaled by 2 at (10, 0, 0), as each shape and with each kind of shading."""
     stage.empty()
     corners = [(x, y, z) for x in (1, 3) for y in (2, 6) for z in (3, 9)]
     for kind in InstanceKind:
@@ -229,7 +229,7 @@ def shapes():
 
 
 def roof(name, smooth=True, **place):
-    """Two slopes of 45 degrees that meet in a ridge along y."""
+    """Return two slopes of 45 degrees that meet in a ridge along y."""
     vertices = [(-1, 0, 0), (-1, 2, 0), (0, 0, 1), (0, 2, 1), (1, 0, 0), (1, 2, 0)]
     item = stage.mesh(name, vertices, [(0, 2, 3, 1), (2, 4, 5, 3)], **place)
     item.data.name = name
@@ -238,7 +238,7 @@ def roof(name, smooth=True, **place):
 
 
 def attributes():
-    """Roofs: flat, smooth, with a sharp ridge, with normals of the user's, and with UVs and colours told by place."""
+    """Roofs: flat, smooth, with a sharp ridge, with custom normals, and with UVs and colours that depend on the place."""
     stage.empty()
     roof("flat", False)
     roof("smooth")
@@ -254,7 +254,7 @@ def attributes():
     painted.uv_layers.new(name="Other")
     painted.uv_layers.new(name="Shown").active_render = True
     paint = painted.color_attributes.new("Paint", "FLOAT_COLOR", "CORNER")
-    # A new attribute may move the others, so the layer is asked for once all are there.
+    # A new attribute may move the others in memory, so the layer is fetched after the last one is added.
     layer = painted.uv_layers["Shown"]
     for polygon in painted.polygons:
         for loop in polygon.loop_indices:
@@ -270,7 +270,7 @@ def attributes():
 
 
 def sharing():
-    """One mesh three times: plain, with a material of the object's own, and mirrored."""
+    """Use one mesh three times: plain, with a material of the object, and mirrored."""
     stage.empty()
     plain = stage.cube(material=bpy.data.materials.new("of the mesh"))
     plain.name = "plain"
@@ -324,7 +324,7 @@ def cameras():
 
 
 def hidden():
-    """Of things hidden in renders, in viewports, and by their collection."""
+    """Return the exported names of objects hidden in renders, in viewports, and by their collection."""
     scene = stage.empty()
     named(stage.cube(), "shown")
     named(stage.cube(), "hidden").hide_render = True
@@ -342,7 +342,7 @@ def hidden():
 
 
 def triangulation():
-    """Corners and faces of the triangles of a quad, a triangle and a pentagon: as read at once, and as Blender tells them."""
+    """Return corners and faces of the triangles of a quad, a triangle and a pentagon: as exported, and as Blender has them."""
     stage.empty()
     places = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (1, 4, 0), (3, 4, 0), (5, 2, 1), (5, 0, 1)]
     data = stage.mesh("Faces", places, [(0, 1, 2, 3), (3, 2, 4), (2, 1, 7, 6, 5)]).data

@@ -1,4 +1,4 @@
-"""F12 as users press it: each function renders and returns numbers for the test to judge."""
+"""F12 as users press it: each function renders and returns the numbers that its test compares."""
 
 import hashlib
 import struct
@@ -13,7 +13,7 @@ def means(pixels):
 
 
 def startup():
-    """The scene that Blender starts with, switched to the engine and nothing else."""
+    """The scene that Blender starts with, of which only the engine is changed."""
     bpy.ops.wm.read_factory_settings(use_empty=False)
     scene = bpy.context.scene
     scene.render.engine = "LANCER"
@@ -39,7 +39,7 @@ def point_light():
 
 
 def fingerprint():
-    """A hash of everything that a user's file holds, down to every number of every mesh and every node."""
+    """Return a hash of the file's whole content, down to every number of every mesh and every node."""
     digest = hashlib.sha256()
 
     def feed(*values):
@@ -80,7 +80,7 @@ def fingerprint():
 
 def untouched():
     scene = stage.room()
-    stage.write_exr(scene)  # Makes Blender's own Render Result, and sets the output's format.
+    stage.write_exr(scene)  # creates the Render Result and sets the output format
     bpy.context.view_layer.update()
     before = fingerprint()
     bpy.ops.render.render()
@@ -92,7 +92,7 @@ def untouched():
 
 
 def sizes():
-    """Sizes of pictures for border, crop, percentage; and the picture's content where only a part is asked for."""
+    """Return the sizes of pictures for border, crop and percentage, and the content inside and outside of a border."""
     scene = stage.room(width=40, height=30)
     result = {"plain": stage.picture(scene).shape[:2]}
     whole = stage.picture(scene)
@@ -114,7 +114,7 @@ def sizes():
 
 
 def shape_of_a_square():
-    """Width and height in pixels of a white square that faces the camera: for pixel aspect, portrait and shift."""
+    """Return width and height in pixels of a white square that faces the camera: for pixel aspect, portrait and shift."""
     scene = stage.empty(64, 64, 16)
     stage.plane(1.0, stage.shader("ShaderNodeEmission", Strength=1.0))
     eye = stage.camera((0, 0, 4), (0, 0, 0))
@@ -143,7 +143,7 @@ def shape_of_a_square():
 
 
 def filter_reach(width):
-    """Columns across an edge between black and white, beside the edge, under the smooth filter."""
+    """Return the means of the columns beside an edge between black and white, with the Blackman-Harris filter."""
     scene = stage.empty(32, 64, 256)
     scene.lancer.pixel_filter, scene.lancer.filter_width = "BLACKMAN_HARRIS", float(width)
     corners = [(0, -99, 0), (99, -99, 0), (99, 99, 0), (0, 99, 0)]
@@ -162,7 +162,7 @@ def film_transparent():
 
 
 def view_layers():
-    """Two layers, one without the cube: both are in the file, each with its own picture."""
+    """Two view layers, one without the cube: the file has both, each with its own picture."""
     scene = stage.room()
     cube = stage.bpy.data.objects["Cube"]
     only = bpy.data.collections.new("Only here")
@@ -196,7 +196,7 @@ def engine_statistics():
 
 
 def progress():
-    """What the status line said while rendering."""
+    """Return the texts of the status line while rendering."""
     texts = []
     stage.room(width=128, height=128, samples=256)
 
@@ -205,13 +205,13 @@ def progress():
 
     bpy.app.handlers.render_stats.append(note)
     bpy.ops.render.render()
-    # Blender 4.5 as a module never ends with a handler left behind.
+    # As a module Blender 4.5 never exits while a handler is registered.
     bpy.app.handlers.render_stats.remove(note)
     return {"texts": texts}
 
 
 def first_picture():
-    """The alpha of what is shown first, and how often the picture is handed to Blender."""
+    """Return the alpha of the first picture shown, and how often pictures are handed to Blender."""
     from addon.bindings.enums import Pass
     from addon.engine import passes
 

@@ -1,4 +1,4 @@
-"""The add-on between files, scenes and view layers: what it measures, what it keeps, how it comes and goes."""
+"""The add-on between files, scenes and view layers: its measurements, its caches, registration and unregistration."""
 
 import os
 import sys
@@ -9,11 +9,11 @@ import numpy as np
 import stage
 from addon_cases import _traces
 
-_FREE = 10**6  # samples that no time limit of these cases leaves room for
+_FREE = 10**6  # more samples than any time limit of these cases allows
 
 
 def as_rendered():
-    """What is measured beside what F12 exports, and what is left of the look at it."""
+    """Return the snapshot that is measured, the one that F12 exports, and whether the measurement left anything behind."""
     import addon
     from addon.engine import render_export
 
@@ -33,7 +33,7 @@ def as_rendered():
 
     def kept(*arguments):
         snapshot, messages = export_scene(*arguments)
-        # The library takes the meshes out of it.
+        # The library removes the meshes from it later.
         exported.append((_meshes(snapshot), snapshot, messages))
         return snapshot, messages
 
@@ -68,7 +68,7 @@ def _meshes(snapshot):
 
 
 def _picture_of(name):
-    """The pixels of the last render, as they are saved."""
+    """Return the pixels of the last render, from a saved file."""
     path = os.path.join(os.getcwd(), f"{name}.exr")
     bpy.data.images["Render Result"].save_render(path)
     image = bpy.data.images.load(path)
@@ -79,7 +79,7 @@ def _picture_of(name):
 
 
 def without_camera():
-    """What measuring says where there is no camera, and what is left."""
+    """Return the error of a measurement without a camera, and whether it left anything behind."""
     from addon.bindings.abi import LancerError
     from addon.engine import render_export
 
@@ -94,7 +94,7 @@ def without_camera():
 
 
 def layers():
-    """Statistics of two view layers by both names, and of the scene after it is renamed, and after another takes its name."""
+    """Return the statistics of two view layers, of the scene after it is renamed, and after another scene takes its name."""
     from addon.engine import render_engine as engine
 
     scene = stage.room(width=16, height=12, samples=2)
@@ -123,7 +123,7 @@ def layers():
 
 
 def time_limit():
-    """(shares of the limit, samples) of three view layers, the first of which takes a third of the time by itself."""
+    """Return (shares of the limit, samples) of three view layers, the first of which takes a third of the time by itself."""
     from addon.engine import render_engine as engine
     from addon.engine.picture import Picture
 
@@ -146,7 +146,7 @@ def time_limit():
 
 
 def handlers():
-    """Whether changes of scenes are counted: at the start, with figures and without, after another file is loaded."""
+    """Return whether changes of scenes are counted: at the start, with and without results, after another file is loaded."""
     from addon.operators import measuring
 
     def counts():
@@ -166,7 +166,7 @@ def handlers():
 
 
 def refused():
-    """What is left where Blender refuses each class in turn, and whether the next call gives all."""
+    """Let Blender refuse each class in turn. Return what stays registered, and whether the next register succeeds."""
     import addon
 
     whole = _traces()
@@ -201,7 +201,7 @@ class _Refusing:
 
 
 def stereo():
-    """Whether both eyes of a denoised picture are what is denoised, and not the noisy picture."""
+    """Return whether both eyes of a denoised picture are denoised."""
     from addon.denoise import oidn  # noqa: F401 - fails early where it cannot be had
 
     scene = stage.room(width=32, height=24, samples=2)
@@ -227,7 +227,7 @@ def stereo():
 
 
 def priority():
-    """Priorities of the threads that a session has, where it is made as in a window, beside that of this thread."""
+    """Return the priorities of the threads of a session created as in a window, and that of this thread."""
     from addon.bindings.session import Session
     from addon.export.scene import export_scene
     from addon.host import priority

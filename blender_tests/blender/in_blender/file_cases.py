@@ -1,4 +1,4 @@
-"""Writes .blend files for `blender -b`."""
+"""Write .blend files for `blender -b`."""
 
 import bpy
 import stage

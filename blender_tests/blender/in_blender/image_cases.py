@@ -1,4 +1,4 @@
-"""Pictures of materials, exported in a render: what the snapshot holds of them, and what Blender's data look like after."""
+"""Images of materials, exported in a render: their pixels in the snapshot, and the state of Blender's images afterwards."""
 
 import os
 import tempfile
@@ -15,12 +15,12 @@ SIZE = 8
 
 
 def ramp(channels=4):
-    """Bytes that tell their place: (8, 8, channels)."""
+    """Return (8, 8, channels) bytes that differ from texel to texel."""
     return (np.arange(SIZE * SIZE * channels) * 37 % 256).reshape(SIZE, SIZE, channels)
 
 
 def image(name, values, space=None, is_float=False, **fields):
-    """A picture in memory. values: bytes, or floating point."""
+    """Return an image in memory. values: bytes, or floating point."""
     values = np.asarray(values, float)
     alpha = values.shape[2] == 4
     item = bpy.data.images.new(name, values.shape[1], values.shape[0], alpha=True, float_buffer=is_float)
@@ -36,7 +36,7 @@ def image(name, values, space=None, is_float=False, **fields):
 
 
 def write(path, values, space="sRGB", file_format="PNG", depth="8"):
-    """A file of that picture."""
+    """Write the values to an image file."""
     item = image("written", values, space, is_float=depth != "8")
     scene = bpy.context.scene
     settings = scene.render.image_settings
@@ -52,7 +52,7 @@ def write(path, values, space="sRGB", file_format="PNG", depth="8"):
 
 
 def show(item, name="Material", **fields):
-    """A cube whose colour is the picture."""
+    """Add a cube whose colour is the image."""
     material = stage.shader("ShaderNodeBsdfDiffuse", name)
     tree = material.node_tree
     node = tree.nodes.new("ShaderNodeTexImage")
@@ -77,7 +77,7 @@ def told(picture):
 
 
 def listed():
-    """All pictures of the user's and how they stand; the render adds its own."""
+    """Return the user's images and their state, without the images that a render adds."""
     return [
         (item.name, item.users, item.is_dirty, item.source, item.filepath, item.colorspace_settings.name, item.alpha_mode)
         for item in bpy.data.images
@@ -100,7 +100,7 @@ def answer():
 
 
 def depths():
-    """A picture of each kind: bytes with and without alpha, data, floating point, linear bytes; the first with two users."""
+    """An image of each kind: bytes with and without alpha, data, floating point, linear bytes; the first has two users."""
     stage.empty()
     opaque = image("opaque", ramp(3))
     show(opaque)
@@ -115,7 +115,7 @@ def depths():
 
 
 def spaces():
-    """A colour space that is a matrix, one that is more; and what Blender's own conversion makes of the same bytes."""
+    """A colour space that is a matrix, one that is not, and the same bytes converted by Blender."""
     stage.empty()
     old = bpy.app.version < (4, 0)
     names = ("Linear ACES", "Filmic sRGB") if old else ("ACEScg", "Filmic sRGB")
@@ -136,7 +136,7 @@ def spaces():
 
 
 def files():
-    """Tiles, one of them missing; the second frame of a sequence; sixteen bits; a file that is not there; no image at all."""
+    """Tiles, one of them missing; the second frame of a sequence; 16 bits; a missing file; no image at all."""
     scene = stage.empty()
     folder = tempfile.mkdtemp()
     for number, shift in ((1001, 0), (1002, 50), (1011, 100)):
@@ -171,7 +171,7 @@ def files():
 
 
 def deep():
-    """Files of 16 bits and of floats: as they are, with each way to take alpha, packed, painted over, in a space of its own."""
+    """Files of 16 bits and of floats: plain, with each alpha mode, packed, painted over, in another colour space."""
     stage.empty()
     values = ramp() / 255.0
     for kind in ("PNG", "TIFF", "OPEN_EXR"):
@@ -185,7 +185,7 @@ def deep():
         packed.pack()
         for item in (packed, data, other):
             show(item)
-    # Blender holds it decoded already, and does not decode it again for others.
+    # Blender has decoded it already, and does not decode it again for other readers.
     held = image_files.load(path, "sRGB")
     held.name = "held"
     held.pixels[0]
@@ -198,7 +198,7 @@ def deep():
 
 
 def layered():
-    """A file of many layers, of which Blender gives scripts none."""
+    """A file of many layers: Blender gives scripts no pixels of it."""
     scene = stage.room(width=8, height=8)
     path = stage.write_exr(scene, layers=True)
     stage.empty()

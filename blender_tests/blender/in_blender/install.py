@@ -1,4 +1,4 @@
-"""Installs, enables, renders, updates over what is loaded, renders, disables and removes, as a user does, inside a Blender:
+"""Inside a Blender: install, enable, render, update the loaded add-on, render, disable and remove it, as a user does:
 ... install.py -- RESULT.json OLDER.zip NEWER.zip. Classic zips where there are no extensions."""
 
 import json
@@ -25,7 +25,7 @@ def remove():
         names = [repo.module for repo in bpy.context.preferences.extensions.repos]
         bpy.ops.extensions.package_uninstall(repo_index=names.index("user_default"), pkg_id="lancer")
     else:
-        # Asks for an area of the preferences, which there is none of without a window: what it does there, without asking.
+        # The operator needs an area of the preferences, which needs a window: do the same without it.
         import addon_utils
 
         path = os.path.dirname(sys.modules[MODULE].__file__)
@@ -37,7 +37,7 @@ def remove():
 
 
 def render():
-    """Which release and which library make a picture now."""
+    """Return the release and the library that a render uses now."""
     scene = bpy.context.scene
     scene.render.engine = "LANCER"
     scene.lancer.quality, scene.lancer.samples = "CUSTOM", 1

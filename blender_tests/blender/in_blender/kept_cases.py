@@ -1,4 +1,4 @@
-"""Animations in which some things change and others do not: each frame beside a render of its own, and what was read for it."""
+"""Animations with changing and unchanged objects: compare each frame with a separate render; count what is exported anew."""
 
 import os
 import tempfile
@@ -22,7 +22,7 @@ def _write(path, value):
 
 
 def _pictured(name, path):
-    """A material that shows the picture in a file."""
+    """Return a material that shows the image in a file."""
     material = stage.shader("ShaderNodeEmission", name)
     tree = material.node_tree
     node = tree.nodes.new("ShaderNodeTexImage")
@@ -45,7 +45,7 @@ def _animate(owner, path, first, last):
 
 
 def _build(folder):
-    """A row of boxes, each with a change of its own; what changes by a handler does so with the number of the frame."""
+    """Build a row of boxes that change in different ways. Return the scene, and a handler that makes some of the changes."""
     scene = stage.empty(64, 16, 4)
     still = os.path.join(folder, "still.png")
     changed = os.path.join(folder, "changed.png")
@@ -72,7 +72,7 @@ def _build(folder):
     swapped.material_slots[0].link = "OBJECT"
     others = [stage.shader(Color=(0.1, 0.2 * frame, 0.1)) for frame in FRAMES]
     _row(7, "Repainted", _pictured("Repainted", changed))
-    # A second mesh that looks like the first, but for one corner of its map.
+    # A second mesh, equal to the first except for one corner of its UV map.
     twin = _row(0, "Still too", bpy.data.materials["Still"])
     twin.location.z = 1.5
     stage.light("SUN", 3.0, (0, -3, 5), (0.5, 0.3, 0))
@@ -86,7 +86,7 @@ def _build(folder):
         slotted.data.update()
         swapped.material_slots[0].material = others[frame - 1]
         _write(changed, 0.2 * frame)
-        # The system's clock may tell two changes within one of its ticks the same time.
+        # The system's clock may give two changes within one of its ticks the same time.
         os.utime(changed, ns=(frame * 10**9, frame * 10**9))
 
     return scene, change
@@ -97,7 +97,7 @@ def _read(path):
 
 
 def frames(persistent):
-    """[[the counts of each frame], how far each frame is from its own render, the kept bytes, whether they go at the end]."""
+    """Return the counts and kept bytes of each frame, its difference from a separate render, and what is kept at the end."""
     folder = tempfile.mkdtemp()
     scene, change = _build(folder)
     counts, sizes = [], []

@@ -1,4 +1,4 @@
-"""Lamps with all their switches as they arrive in a snapshot."""
+"""Lamps with all their switches, as they are exported."""
 
 import bpy
 import stage
@@ -17,7 +17,7 @@ def _told(light):
 
 
 def _nodes(thing, color=(1.0, 1.0, 1.0), strength=1.0):
-    """An Emission node under the light's output."""
+    """Link an Emission node to the light's output."""
     light = thing.data
     if bpy.app.version < (5, 2):
         light.use_nodes = True
@@ -64,7 +64,7 @@ def export():
 
 
 def unknown():
-    """What a light shines whose nodes hold a picture, or a colour that nobody knows: [watts of the plain lamp's, messages]."""
+    """Return [share of the plain lamp's power, messages] of lights whose nodes have an image or an unsupported texture."""
     result = {}
     for kind in ("TexImage", "TexMagic"):
         stage.empty()

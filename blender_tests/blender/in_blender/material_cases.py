@@ -1,4 +1,4 @@
-"""Materials exported and not rendered: their lobes and nodes as plain data for the test to judge."""
+"""Materials that are exported but not rendered: their lobes and nodes as plain data, which the test compares."""
 
 import dataclasses
 import random
@@ -16,7 +16,7 @@ from addon.messages.messages import Messages
 
 
 def told(value):
-    """Records as lists, NodeRefs as {"node": n}, enumerations as numbers."""
+    """Return plain data: records as lists, NodeRefs as {"node": n}, enumerations as numbers."""
     if isinstance(value, NodeRef):
         return {"node": value.node}
     if dataclasses.is_dataclass(value):
@@ -27,7 +27,7 @@ def told(value):
 
 
 def read(material, name="object"):
-    """(the record, its messages, the attributes that it reads)."""
+    """Return (the record, its messages, the attributes that it reads)."""
     messages = Messages()
     materials = Materials(messages)
     number = materials.number(material, name)
@@ -65,7 +65,7 @@ class Tree:
         self.output = self.tree.nodes.new("ShaderNodeOutputMaterial")
 
     def node(self, kind, **inputs):
-        """inputs: constants or output sockets, by name with _ for blanks; properties where the node has no such input."""
+        """Add a node. inputs: constants or output sockets, by name with _ for blanks, or properties without such an input."""
         node = self.tree.nodes.new(kind if kind.startswith("NodeR") else "ShaderNode" + kind)
         for name, value in inputs.items():
             sockets = [socket for socket in node.inputs if socket.enabled and name.replace("_", " ") == socket.name]
@@ -89,7 +89,7 @@ class Tree:
         return self.material
 
     def varying(self, name="shade"):
-        """A number that only the core can tell."""
+        """Return an output that varies over the surface, so that only the core can evaluate it."""
         return self.node("Attribute", attribute_name=name).outputs["Fac"]
 
 
@@ -144,7 +144,7 @@ def principled():
 
 
 def closures():
-    """One material for each closure node of this Blender, as it comes, and some as they are set."""
+    """Export a material for each closure node of this Blender with its defaults, and some with other values."""
     stage.empty()
     materials = []
     kinds = [name[len("ShaderNode") :] for name in dir(bpy.types) if name.startswith("ShaderNode")]
@@ -169,7 +169,7 @@ def closures():
 
 
 def mixing():
-    """0.25 of a sum of red and half glass, 0.75 of blue; the same by a number of the core; what adds nothing; long chains."""
+    """0.25 of a sum of red and half glass, 0.75 of blue; the same with a varying factor; black closures; long chains."""
     stage.empty()
 
     def mixed(name, factor=None):
@@ -193,7 +193,7 @@ def mixing():
         return tree.show(tree.shaders("MixShader", tree.node("BsdfGlass").outputs[0], black, **{fac(): 1.0}))
 
     def chain(name, count, value):
-        """Every step mixes half of the same blue in; or adds, which doubles, when value is None."""
+        """Mix in half of the same blue in each step; if value is None, add the closure to itself, which doubles it."""
         tree = Tree(name)
         last = tree.node("BsdfDiffuse", Color=(1.0, 0.0, 0.0)).outputs[0]
         blue = tree.node("BsdfDiffuse", Color=(0.0, 0.0, 1.0)).outputs[0]
@@ -205,7 +205,7 @@ def mixing():
         return tree.show(last)
 
     def sums(name, count):
-        """A roughness of as many additions of 1/1024 to a number of the core."""
+        """A roughness that adds 1/1024 to a varying number, count times."""
         tree = Tree(name)
         last = tree.varying()
         for _ in range(count):
@@ -226,7 +226,7 @@ def mixing():
 
 
 def displacements():
-    """Each method with a height that varies; the method of this Blender's own default."""
+    """Export each method with a varying height, and Blender's default method."""
     stage.empty()
     materials = []
     for method in ("BUMP", "DISPLACEMENT", "BOTH"):
@@ -244,7 +244,7 @@ def displacements():
 
 
 def attributes():
-    """A cut pyramid that moved, seen with a material that reads all that a mesh can have; and another that reads nothing."""
+    """A deformed frustum whose material reads every attribute of a mesh, and a mesh whose material reads none."""
     scene = stage.empty()
     tree = Tree("reader")
     uv = tree.node("UVMap", uv_map="Second").outputs[0]
@@ -271,7 +271,7 @@ def attributes():
     for i in range(5):
         mesh.color_attributes["Paint"].data[i].color = (0.1 * i, 0.5, 0.25, 0.5)
         mesh.attributes["number"].data[i].value = float(i)
-    # A lattice-free deformation: the wave moves vertices, GENERATED keeps where they were.
+    # The modifier moves vertices; GENERATED keeps their places before it.
     modifier = item.modifiers.new("Cast", "CAST")
     modifier.cast_type, modifier.factor = "SPHERE", 1.0
     stage.mesh("Plain", vertices, faces, stage.shader("ShaderNodeBsdfDiffuse", "blind"))
@@ -288,7 +288,7 @@ def attributes():
 
 
 def fuzz(count):
-    """Every node that a material can hold, set and linked at random, also in groups: what was built, and what failed."""
+    """Set and link every node of materials at random, also in groups. Return what was built, and the failures."""
     stage.empty()
     material = bpy.data.materials.new("asked")
     material.use_nodes = True
@@ -325,12 +325,12 @@ def fuzz(count):
 
 
 def finite(value):
-    """Whether single precision, in which the core computes, has the number."""
+    """Return whether the number is finite in single precision, in which the core computes."""
     return bool(np.isfinite(np.float32(value)))
 
 
 def told_numbers(value):
-    """All numbers of a record that was told."""
+    """Return all numbers of the plain data of a record."""
     if isinstance(value, (dict, list)):
         return [number for item in (value.values() if isinstance(value, dict) else value) for number in told_numbers(item)]
     return [value] if isinstance(value, float) else []
@@ -348,7 +348,7 @@ def _fill(rng, tree, kinds, count, picture, group):
                 elif field.type == "BOOLEAN":
                     setattr(node, field.identifier, rng.random() < 0.2)
             except (TypeError, AttributeError):
-                pass  # not among the choices of this moment
+                pass  # not among the current choices
         if hasattr(node, "image") and rng.random() < 0.7:
             node.image = picture
         if node.type == "GROUP":
@@ -362,7 +362,7 @@ def _fill(rng, tree, kinds, count, picture, group):
     for node in nodes:
         for socket in node.outputs:
             outputs.setdefault(socket.type == "SHADER", []).append(socket)
-    # Link like to like three times of four, so that most links mean something.
+    # Three of four links join sockets of the same kind, so that most links are valid.
     for socket in (socket for node in nodes for socket in node.inputs):
         alike = outputs.get((socket.type == "SHADER") == (rng.random() < 0.75))
         if alike and rng.random() < 0.7:
@@ -371,7 +371,7 @@ def _fill(rng, tree, kinds, count, picture, group):
 
 
 def panel():
-    """What a panel says of Principled by its core, and how often it asks the core while nothing changes."""
+    """Return a panel's lines for Principled, which the core computes, and the number of calls of the core without a change."""
     from addon.export import probe
 
     asked, ask = [], probe._ask

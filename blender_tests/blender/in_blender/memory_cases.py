@@ -1,4 +1,4 @@
-"""Pictures, one after the other, and what the process holds after them."""
+"""Render one picture after the other, and measure the memory of the process."""
 
 import gc
 
@@ -8,7 +8,7 @@ from memory_now import held
 
 
 class Empty(bpy.types.RenderEngine):
-    """Gives a black picture."""
+    """Renders a black picture."""
 
     bl_idname = "EMPTY"
     bl_label = "Empty"
@@ -20,7 +20,7 @@ class Empty(bpy.types.RenderEngine):
 
 
 def renders(engine, count):
-    """[after the tenth, after the last] of each kind of memory."""
+    """Return [bytes after the tenth, bytes after the last render] of each kind of memory."""
     bpy.utils.register_class(Empty)
     scene = stage.room(samples=2)
     scene.render.engine = engine

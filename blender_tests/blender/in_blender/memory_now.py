@@ -1,9 +1,9 @@
-"""What this process holds: of the system, and of what its allocator has given out."""
+"""Memory of this process: resident, and allocated by its allocator."""
 
 import ctypes
 import os
 
-# Stands for all arenas of jemalloc.
+# jemalloc's number for all arenas together.
 _ALL_ARENAS = 4096
 
 
@@ -13,9 +13,9 @@ class _Mallinfo2(ctypes.Structure):
 
 
 def held():
-    """Bytes: resident, and given out. Free memory goes back to the system first, so that it does not count."""
+    """Return the bytes that are resident, and allocated. Free memory is returned to the system first, so it does not count."""
     library = ctypes.CDLL(None)
-    # Debian's Blender brings jemalloc, of which the C library knows nothing.
+    # Debian's Blender uses jemalloc, which the C library's statistics do not include.
     given = _given_by_jemalloc(library) if hasattr(library, "mallctl") else _given_by_c(library)
     with open("/proc/self/statm", encoding="ascii") as file:
         pages = int(file.read().split()[1])
@@ -28,7 +28,7 @@ def _given_by_jemalloc(library):
         assert failed == 0, f"jemalloc refuses {name}: error {failed}"
 
     control(f"arena.{_ALL_ARENAS}.purge")
-    # Its figures are those of the last epoch.
+    # The statistics are those of the last epoch.
     epoch, given = ctypes.c_uint64(1), ctypes.c_size_t()
     control("epoch", new=ctypes.byref(epoch), new_size=ctypes.sizeof(epoch))
     control("stats.allocated", ctypes.byref(given), ctypes.byref(ctypes.c_size_t(ctypes.sizeof(given))))

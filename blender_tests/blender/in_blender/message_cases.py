@@ -1,4 +1,4 @@
-"""What a render tells: how often, of which render, and of what it leaves out."""
+"""Messages of renders: how often they are printed, to which render they belong, which omissions they name."""
 
 import json
 import os
@@ -9,7 +9,7 @@ import stage
 
 
 def _told():
-    """Renders; what the panel says then."""
+    """Render, and return the panel's messages."""
     from addon.engine import render_engine as engine
 
     bpy.ops.render.render()
@@ -17,7 +17,7 @@ def _told():
 
 
 def _faulty(count):
-    """Lit cubes with an empty material slot each, and one whose picture is missing in both of its uses."""
+    """Build lit cubes with an empty material slot each, and one that uses a missing image twice."""
     scene = stage.empty()
     stage.light()
     for i in range(count):
@@ -34,7 +34,7 @@ def _faulty(count):
 
 
 def persistent():
-    """The same render three times with Persistent Data, one cube fewer in the last; then two frames."""
+    """Render three times with Persistent Data, the last time with one cube fewer; then two frames."""
     from addon.engine import render_engine as engine
 
     scene = _faulty(2)
@@ -54,7 +54,7 @@ def persistent():
 
 
 def layers():
-    """Two view layers, whose messages are of one picture; then the second of them alone."""
+    """Render two view layers, which share the messages of one picture; then the second of them alone."""
     result = {}
     for persistent_data in (False, True):
         scene = _faulty(2)
@@ -67,7 +67,7 @@ def layers():
 
 
 def failed_layer(path):
-    """Two view layers, of which the first fails. Writes what the panel says then, for the program ends with the render."""
+    """Render two view layers; the first fails. Write the panel's messages to path: the program ends with the render."""
     from addon.bindings.abi import LancerError
     from addon.engine import render_engine as engine
 
@@ -97,7 +97,7 @@ def failed_layer(path):
 
 
 def left_out():
-    """One of each thing that is left out, all in one scene: what is told."""
+    """Return the messages of a scene with one of each thing that is not rendered."""
     from export_cases import export_told
 
     scene = stage.empty()
@@ -119,7 +119,7 @@ def left_out():
 
 
 def _show(tree, kinds, output):
-    """Shader nodes of these kinds under a new output node."""
+    """Link shader nodes of these kinds to a new output node."""
     tree.nodes.clear()
     end = tree.nodes.new("ShaderNode" + output)
     for kind in kinds:
@@ -128,7 +128,7 @@ def _show(tree, kinds, output):
 
 
 def custom_group():
-    """A node of an add-on's that holds a tree: Cycles goes into it as into a group."""
+    """A custom node of an add-on with a node tree, which Cycles reads like a group."""
     from export_cases import export_told
 
     class Wrapper(bpy.types.ShaderNodeCustomGroup):
@@ -157,7 +157,7 @@ def custom_group():
 
 
 def empty_passes():
-    """By integrator: which of all passes show nothing at all, and what is told."""
+    """Return, for each integrator, the passes that are all zero, and the messages."""
     import pass_cases
 
     result = {}

@@ -1,4 +1,4 @@
-"""Hilly meshes with fins whose colour is the normal that they are shaded with: how the pictures of both engines differ."""
+"""Hilly meshes with fins that show their shading normals as colours: the difference between the pictures of both engines."""
 
 import math
 import random
@@ -30,7 +30,7 @@ if bpy.app.version >= (4, 5):
 
 
 def _hills(chance, fins):
-    """Vertices and faces of three and four corners, no four in a plane; fins share an edge with two faces each."""
+    """Return vertices, and faces of three and four corners, no four in a plane; fins share an edge with two faces each."""
     vertices = [(x, y, chance.uniform(0.0, 0.6)) for y in range(_SIDE) for x in range(_SIDE)]
     faces = []
     for y in range(_SIDE - 1):
@@ -48,7 +48,7 @@ def _hills(chance, fins):
 
 
 def _near_up(chance):
-    """A unit vector that no face here looks away from."""
+    """Return a unit vector on the front side of every face here."""
     vector = np.array([chance.uniform(-0.3, 0.3), chance.uniform(-0.3, 0.3), 1.0])
     return tuple(vector / np.linalg.norm(vector))
 
@@ -76,7 +76,7 @@ def _add(seed, material, fins, flat=0.0, hard=0.0, custom=None, divided=False, a
 
 
 def _shown():
-    """A material that shines in its normal, halved and raised so that nothing is negative."""
+    """Return a material that emits its normal, halved and raised so that no component is negative."""
     material = stage.shader("ShaderNodeEmission")
     tree = material.node_tree
     geometry, halved = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeVectorMath")
@@ -88,12 +88,12 @@ def _shown():
 
 
 def _difference(kind, fins):
-    """[share of the pixels of hills that differ by more than a step of 8 bits, their number]."""
+    """Return [share of the pixels of hills that differ by more than a step of 8 bits, number of pixels of hills]."""
     scene = stage.empty(180, 60, 1)
     material = _shown()
     for seed in _SEEDS:
         _add(seed, material, fins, **KINDS[kind])
-    # No pixel's middle, the one place that it is seen at, lies on an edge of the grid.
+    # No centre of a pixel, through which its only ray passes, lies on an edge of the grid.
     camera = stage.camera((12.0137, 2.0291, 20), (0, 0, 0), type="ORTHO", ortho_scale=14.8731)
     camera.rotation_euler = (0, 0, 0)
     cycles = scene.cycles
@@ -109,5 +109,5 @@ def _difference(kind, fins):
 
 
 def shaded(fins):
-    """{kind: what _difference gives}; fins: "yes" or "no"."""
+    """Return {kind: result of _difference}; fins: "yes" or "no"."""
     return {kind: _difference(kind, fins == "yes") for kind in KINDS}

@@ -1,4 +1,4 @@
-"""What objects' own switches become: which rays do not see them, and what leaves a hole in the picture."""
+"""The switches of objects in the snapshot: the rays that they are hidden from, and holdouts."""
 
 import bpy
 import stage
@@ -8,7 +8,7 @@ from addon.bindings.enums import InstanceFlag, Ray
 
 
 def _rows(snapshot):
-    """{name: [(kinds of rays that do not see it, holdout), ...]}, one for each instance, in the order of their height."""
+    """Return {name: [(ray types that it is hidden from, holdout), ...]}, one for each instance, sorted by height."""
     table, rows = snapshot.instances, {}
     for i in sorted(range(len(table)), key=lambda i: table.matrices[i, 2, 3]):
         hidden = [ray.name for ray in Ray if table.hidden_from[i] & ray]
@@ -25,7 +25,7 @@ def _named(name, **fields):
 
 
 def _collected(name, item, parent=None):
-    """Moves the item into a collection of its own; gives that collection's place in the view layer."""
+    """Move the item into a new collection. Return the layer collection."""
     collection = bpy.data.collections.new(name)
     (parent or bpy.context.scene.collection).children.link(collection)
     bpy.context.scene.collection.objects.unlink(item)
@@ -65,7 +65,7 @@ def flat():
 
 
 def instancers():
-    """A collection brought in three times: as it is, by a hidden empty, and by one that is a hole."""
+    """Instance a collection three times: plainly, by a hidden empty, and by one that is a holdout."""
     stage.empty()
     collection = bpy.data.collections.new("Set")
     item = _named("piece", visible_glossy=False)
@@ -81,7 +81,7 @@ def instancers():
 
 
 def freed():
-    """Renders instances of every kind, of objects that nothing else shows. What they leave Blender tells at its exit."""
+    """Render instances of every kind, of objects that nothing else shows. Blender reports memory leaks at its exit."""
     scene = stage.room()
     row_of_cubes()
     for name, thing in (("Boxes", stage.cube(0.3)), ("Lamps", stage.light())):
@@ -100,7 +100,7 @@ def freed():
 
 
 def freed_text():
-    """The same of a text that is the first of all objects."""
+    """The same with a text that is the first of all objects."""
     scene = stage.room()
     others = list(scene.collection.objects)
     for thing in others:
@@ -115,7 +115,7 @@ def freed_text():
 
 
 def _textured(name, uv_map):
-    """A material that reads a UV map by its name."""
+    """Return a material that reads a UV map by its name."""
     material = stage.shader(name=name)
     tree = material.node_tree
     node = next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE")
@@ -126,7 +126,7 @@ def _textured(name, uv_map):
 
 
 def attributes():
-    """One mesh under three materials: the data is copied only where a material reads what the first copy lacks."""
+    """One mesh under three materials: it is exported twice only if a material reads an attribute that the first mesh lacks."""
     stage.empty()
     first = stage.plane(material=stage.shader(name="plain"))
     for name in ("One", "Two"):
@@ -143,7 +143,7 @@ def attributes():
 
 
 def settings():
-    """What the film's and the world's settings become."""
+    """Return the exported settings of film and world."""
     scene = stage.empty()
     own = scene.lancer
     told = {"first": _facts(export_told()[0].settings)}
@@ -169,7 +169,7 @@ def _facts(record):
 
 
 def told():
-    """Messages about empty slots without and with an override, strokes that Blender draws itself, and exact shapes."""
+    """Return messages about empty slots without and with an override, strokes that Blender draws itself, and exact shapes."""
     result = {}
     for name in ("empty slot", "override"):
         stage.empty()

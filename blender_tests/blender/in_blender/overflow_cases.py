@@ -1,4 +1,4 @@
-"""A lamp that is beyond float where it nearly touches the floor."""
+"""A lamp that nearly touches the floor, so that its irradiance overflows single precision."""
 
 import numpy as np
 import stage

@@ -1,4 +1,4 @@
-"""The painter of a view without a window: what it shows is what a session gives, and what is wanted later comes first."""
+"""The painter of a view without a window: it shows the pictures of a session, and serves the newest request first."""
 
 import dataclasses
 import gc
@@ -45,14 +45,14 @@ def _until(painter, condition):
 
 
 def _left(painter):
-    """What is open of the library after the end."""
+    """Close the painter. Return the number of scenes and sessions of the library that are still open."""
     painter.close()
     gc.collect()
     return sum(type(thing) in (Scene, Session) and thing._finalizer.alive for thing in gc.get_objects())
 
 
 def bits():
-    """Whether the finished pictures of two views, at two pixel sizes, are those of a session, bit for bit; how they came."""
+    """Return whether finished pictures of two views, at two pixel sizes, equal those of a session, and their sizes."""
     whole = _contents()
     painter = Painter()
     equal, sizes = [], []
@@ -69,7 +69,7 @@ def bits():
 
 
 def _sphere(rings, segments):
-    """A mesh of many triangles, made without Blender."""
+    """Return a mesh of many triangles, made without Blender."""
     theta, phi = np.meshgrid(np.linspace(0.01, 3.13, rings), np.linspace(0.0, 6.28, segments, endpoint=False), indexing="ij")
     places = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=2).reshape(-1, 3)
     first = (np.arange(rings - 1)[:, None] * segments + np.arange(segments)).ravel()
@@ -81,7 +81,7 @@ def _sphere(rings, segments):
 
 
 def newest():
-    """A heavy scene, then a light one: the heavy one is given up. A view that moves all the time is shown all the time."""
+    """Request a heavy scene, then a light one: the heavy one is abandoned. A view that keeps moving is still shown."""
     light = _contents(samples=100000)
     meshes = (_sphere(1200, 1200),)
     heavy = light.replaced(meshes=meshes, instances=snapshot.InstanceTable.build([{"mesh": 0, "name": "sphere"}]))
@@ -109,7 +109,7 @@ def newest():
 
 
 def fails():
-    """What cannot be rendered is told, and what is wanted after it is rendered."""
+    """A scene that cannot be rendered is reported, and the next request is rendered."""
     whole = _contents()
     painter = Painter()
     view = _view(whole)
@@ -124,7 +124,7 @@ def fails():
 
 
 def denoiser_fails():
-    """The picture stays as it is, and why is told once."""
+    """If denoising fails, the picture stays noisy, and the reason is reported once."""
 
     def broken(*_, **__):
         raise LancerError("Open Image Denoise: out of order")
@@ -148,7 +148,7 @@ def denoiser_fails():
 
 
 def denoises():
-    """The finished picture with and without denoising: how much of the noise is left, and whether alpha is as it was."""
+    """Return the share of the noise that is left in a finished picture after denoising, and whether alpha is unchanged."""
     whole = _contents(samples=4)
     painter = Painter()
     view = _view(whole, 192, 128)

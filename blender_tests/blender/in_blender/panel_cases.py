@@ -1,4 +1,4 @@
-"""Lancer's panels, and Blender's that it shows, drawn without a window."""
+"""Draw Lancer's panels, and Blender's panels that it supports, without a window."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ import stage
 
 
 def _variants(context):
-    """The context again and again, with other choices made."""
+    """Yield the name of each state that the context and the scene are put into."""
     from addon.engine import render_engine as engine
     from addon.measure.costs import Cost, Costs
     from addon.operators import measuring
@@ -60,7 +60,7 @@ def _variants(context):
     lamp = next(item for item in bpy.data.objects if item.type == "LIGHT")
     for kind in ("SUN", "SPOT", "AREA", "POINT"):
         lamp.data.type = kind
-        # The type of the data-block's Python object follows its kind only when asked for anew.
+        # Only a newly fetched Python object has the type of the lamp's new kind.
         context.light = lamp.data
         yield kind
         if kind == "AREA":
@@ -70,7 +70,7 @@ def _variants(context):
 
 
 def panels():
-    """Draws every panel in many states: what was shown, and what went wrong."""
+    """Draw every panel in many states. Return the words that they show, and the errors."""
     from addon import ui
 
     scene = stage.room(width=16, height=16, samples=1)
@@ -103,7 +103,7 @@ def panels():
 
 
 def tabs():
-    """{tab and thing: the names of the panels that are shown there, Lancer's own in the order in which they stand}."""
+    """Return {tab and thing: the names of the panels that it shows; Lancer's own in their order}."""
     scene = stage.room()
     context = recording.Context(engine="LANCER", scene=scene, view_layer=scene.view_layers[0], world=scene.world)
     shown = {tab: _names(context, tab) for tab in ("render", "output", "view_layer", "scene", "world")}
@@ -127,7 +127,7 @@ def _names(context, tab):
 
 
 def cached():
-    """How often a material's nodes are read while it is drawn, changed and drawn again, and which handlers stay then."""
+    """Return how often a material's nodes are read while it is drawn, changed and drawn again, and the handlers that stay."""
     from addon import ui
     from addon.ui import described
 

@@ -1,4 +1,4 @@
-"""The parity scenes that are flagged as quick, small and with few samples; and the runner itself, with made-up engines."""
+"""The parity scenes that are flagged as quick, small and with few samples; and the runner itself, with fake engines."""
 
 import collections
 import json
@@ -16,8 +16,8 @@ from scenes.parity import catalogue
 
 
 def subset(engine_name, pattern):
-    """What noise explains is no failure here: to a limit comes 1.5 times the noise's mean, and to that of the 99th percentile
-    four standard deviations of a block, all of it measured from the difference of two halves with different seeds."""
+    """Compare the quick scenes. A difference that noise explains is no failure: a limit grows by 1.5 times the mean noise, that
+    of the 99th percentile by four standard deviations of a block; two halves with different seeds give the noise."""
     outcomes = []
     with tempfile.TemporaryDirectory() as folder:
         for case in catalogue.select(pattern, quick=True):
@@ -34,7 +34,7 @@ def subset(engine_name, pattern):
 
 
 def runner():
-    """What the runner makes of pictures that no engine rendered."""
+    """Return the runner's verdicts on made-up pictures."""
     result = {}
     with tempfile.TemporaryDirectory() as folder:
         for name, fields, ours, theirs, few in _contests():
@@ -48,7 +48,7 @@ _GREY = np.full((32, 48, 3), 0.5)
 
 
 def _contests():
-    """(name, fields of the case, our picture, theirs, few samples): a picture is a function of the seed."""
+    """Yield (name, fields of the case, our picture, theirs, few samples); a picture is a function of the seed."""
 
     def grey(_):
         return {"Combined": _GREY}
@@ -107,7 +107,7 @@ def _contest(folder, name, fields, ours, theirs, few=False):
     case = catalogue.Case(name, "test", **{"build": lambda scene: None, **fields})
     genuine, engines.render = engines.render, render
     try:
-        # More samples than one round would only repeat the same noise.
+        # A second round of samples would only repeat the same noise.
         return contest.run(case, folder, most_samples=case.samples // 2, noise_aware=few)
     finally:
         engines.render = genuine
@@ -150,7 +150,7 @@ def _page():
 
 
 def _exit_code(verdict):
-    """What `make parity` ends with, where one scene passed and another came out so."""
+    """Return the exit code of `make parity` if one scene passes and another has this verdict."""
     verdicts = iter(("pass", verdict))
     genuine, argv = contest.run, sys.argv
     contest.run = lambda case, *_, **__: contest.Outcome(case, next(verdicts))

@@ -1,4 +1,4 @@
-"""A window's exports after one edit each: what was read, and whether the snapshot is that of an export of everything."""
+"""The exports of a 3D view, each after one edit: what is read, and whether the snapshot equals that of a full export."""
 
 import dataclasses
 import os
@@ -26,7 +26,7 @@ def _picture(name, value):
 
 
 def _fed(name, kind, output, make):
-    """A material whose colour comes from a node of that kind, which make(node) sets."""
+    """Return a material whose colour comes from a node of this kind; make(node) sets the node's properties."""
     material = stage.shader(name=name)
     tree = material.node_tree
     node = tree.nodes.new(kind)
@@ -44,7 +44,7 @@ def _grouped(name, group):
 
 
 def _placed(name, thing):
-    """Coloured by the coordinates of another object."""
+    """Return a material coloured by the coordinates of another object."""
     return _fed(name, "ShaderNodeTexCoord", "Object", lambda node: setattr(node, "object", thing))
 
 
@@ -70,9 +70,9 @@ def _box(number, name, material, data=None):
 
 
 def _build():
-    """Seven objects that show meshes, five of these; six materials and a world; two pictures."""
+    """Build seven objects with five meshes, six materials, a world, and two images."""
     scene = stage.empty()
-    # One of Cycles' settings of which the export tells.
+    # One of Cycles' settings that the export warns of.
     scene.cycles.diffuse_bounces = 2
     first, second = _picture("first", 0.25), _picture("second", 0.75)
     plain = _box(0, "Plain", stage.shader(name="Plain", Color=(0.8, 0.4, 0.2)))
@@ -162,7 +162,7 @@ EDITS = {
 
 
 class _Window:
-    """Exports at each of the depsgraph's updates, as a window does."""
+    """Exports at each update of the depsgraph, as a 3D view does."""
 
     def __init__(self):
         self.parts = Parts()
@@ -177,7 +177,7 @@ class _Window:
 
 
 def _plain(given):
-    """With pictures, materials and meshes in the places where they are asked for: their numbers may differ."""
+    """Return the snapshot with images, materials and meshes in place of their indices, which may differ."""
     table = given.instances
     rows = [
         (given.meshes[mesh], tuple(_material(given, table.slots[first + i]) for i in range(count)), matrix.tolist())
@@ -197,7 +197,7 @@ def _with_pictures(given, shader):
 
 
 def edits():
-    """{edit: counts of all exports that it led to, same snapshot, same messages}"""
+    """Return {edit: counts of all exports that it caused, same snapshot, same messages}."""
     _build()
     window = _Window()
     results = {}

@@ -1,4 +1,4 @@
-"""Passes as compositors find them: what a view layer asks for is in the file, under its name, with what it should show."""
+"""Passes as compositors read them: each pass that a view layer enables is in the file, with its name and its values."""
 
 import os
 import tempfile
@@ -15,7 +15,7 @@ _SWITCHES = [f"{component}_{part}" for component in _COMPONENTS for part in ("di
 
 
 def _read(scene):
-    """{pass: (height, width, channels)}, row 0 at the top, and what the engine said."""
+    """Return {pass: (height, width, channels)}, row 0 at the top, and the messages."""
     from addon.engine import render_engine as engine
 
     path = os.path.join(tempfile.mkdtemp(), "passes.exr")
@@ -30,13 +30,13 @@ def _ask(layer, *switches, on=True):
 
 
 def _gallery():
-    """Something for each pass: matt, metal, glass and glowing things under a lamp and a sky."""
+    """Build something for each pass: diffuse, metal, glass and emissive objects under a lamp and a sky."""
     scene = stage.empty(48, 32, 16)
     floor = stage.plane(material=stage.shader(Color=(0.6, 0.5, 0.0)))
     layer = floor.data.uv_layers.new(name="Map")
     layer.data.foreach_set("uv", np.float32([0, 0, 1, 0, 1, 1, 0, 1]))
     stage.cube(material=stage.shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.6, 0.3), Roughness=0.2), location=(-1.2, 0, 0.5))
-    # One pane: what is right behind it is its direct light, what is lit there its indirect.
+    # One pane: emitters seen through it are its direct light, lit surfaces its indirect light.
     pane = stage.plane(1.2, stage.shader("ShaderNodeBsdfGlass", IOR=1.1), location=(1.0, -1, 0.7), rotation=(1.5, 0, 0))
     pane.pass_index = 7
     stage.cube(1.4, stage.shader("ShaderNodeEmission", Color=(1.0, 0.5, 0.2), Strength=3.0), location=(1.4, 1.5, 0.7))
@@ -69,7 +69,7 @@ def every_pass():
         title = f"{name.capitalize()} {part.capitalize()}" if long_names else short[name] + short[part]
         return pictures[title].astype(np.float64)
 
-    # The rule by which compositors put a picture together again.
+    # The sum by which compositors rebuild the picture from its passes.
     total = pictures["Emission" if long_names else "Emit"] + pictures["Environment" if long_names else "Env"].astype(np.float64)
     for name in _COMPONENTS:
         total = total + component(name, "color") * (component(name, "direct") + component(name, "indirect"))
@@ -92,7 +92,7 @@ def no_pass():
 
 
 def missing_passes():
-    """A pass that is not rendered is named."""
+    """Return the messages about passes that are not supported."""
     scene = _gallery()
     _ask(scene.view_layers[0], "vector", "cryptomatte_object")
     return _read(scene)[1]
@@ -106,7 +106,7 @@ def albedo_alone():
 
 
 def known_numbers():
-    """A plane 4 m below a camera that looks straight down, at the middle pixel, under several settings of the passes."""
+    """Return the passes' middle pixel, of a plane 4 m below a camera that looks straight down, under several settings."""
     scene = stage.empty(9, 9, 4)
     floor = stage.plane(2.0, stage.shader(Color=(0.8, 0.4, 0.2)))
     floor.pass_index = 3
@@ -123,20 +123,20 @@ def known_numbers():
     for falloff in ("QUADRATIC", "LINEAR", "INVERSE_QUADRATIC"):
         mist.falloff = falloff
         pictures, _ = _read(scene)
-        # In the middle, and two thirds of a metre beside it: the plane reaches 1 m far.
+        # In the middle, and two thirds of a metre beside it: the plane ends at 1 m.
         result["mist"][falloff] = [float(pictures["Mist"][4, column, 0]) for column in (4, 5)]
     result["sky mist"] = float(pictures["Mist"][0, 0, 0])
     for name in ("Depth", "Position", "Normal", "UV", "Denoising Normal", "Denoising Albedo", "Denoising Depth"):
         result[name] = [pictures[name][4, 4].tolist(), pictures[name][0, 0].tolist()]
     occlusion = "Ambient Occlusion" if bpy.app.version >= (5, 0) else "AO"
     result["open"] = pictures[occlusion][4, 4].tolist()
-    # A lid 1 m above, seen by no camera ray: it hides all of the sky near the middle.
+    # A lid 1 m above, hidden from camera rays: it occludes the whole sky near the middle.
     lid = stage.plane(200.0, location=(0, 0, 1))
     lid.visible_camera = False
     for distance in (0.5, 1e6):
         scene.world.light_settings.distance = distance
         result[f"under a lid, {distance:g}"] = _read(scene)[0][occlusion][4, 4].tolist()
-    # A veil of opacity 0.3 above: the threshold decides which of both is the surface.
+    # A veil of opacity 0.3 above: the threshold decides which of the two is the first surface.
     lid.visible_camera = True
     lid.data.materials.append(_veil(0.3))
     for threshold in (0.2, 0.4):
@@ -159,7 +159,7 @@ def _veil(opacity):
 
 
 def sockets():
-    """What the compositor's node of the render shows, before any render, for Lancer's own switches."""
+    """Return the sockets of the compositor's Render Layers node, before any render, for Lancer's own switches."""
     scene = stage.room(width=16, height=16, samples=1)
     if bpy.app.version >= (5, 0):
         tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositing", "CompositorNodeTree")

@@ -1,7 +1,7 @@
-"""What Cycles answers for shader nodes: light under a white sky, and exact values under suns, cell by cell of one picture.
+"""Cycles' values of shader nodes: under a white sky, and exactly under suns, cell by cell of one picture.
 
 Each cell is a small plane turned about y, seen from straight above; its shading frame is tangent (cos, 0, -sin), bitangent y
-and normal (sin, 0, cos) of that angle. No plane is there for any ray but the camera's, so that all answer the light alone.
+and normal (sin, 0, cos) of that angle. Only camera rays hit the planes, so that no plane lights or shades another.
 """
 
 import json
@@ -16,7 +16,7 @@ PIXELS = 6
 
 
 def _socket(node, name):
-    """Disabled sockets share names with those in use."""
+    """Return the enabled socket of that name; disabled sockets may have the same name."""
     found = [s for s in node.inputs if s.name == name and s.enabled]
     assert found, f"{node.bl_idname} has no input {name}: {[s.name for s in node.inputs if s.enabled]}"
     return found[0]

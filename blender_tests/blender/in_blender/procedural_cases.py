@@ -1,7 +1,7 @@
-"""Textures that are computed, and curves: what Cycles shows of them, beside what the core's nodes give at the same places.
+"""Procedural textures and curves: compare Cycles' values with those of the core's nodes at the same places.
 
-A case renders squares side by side with Cycles, one for each setting of a node, and once more the texture coordinates that
-its rays have met there, which the core is then asked for.
+A case renders squares side by side with Cycles, one for each setting of a node, and then the texture coordinates of the same
+hits, at which the core evaluates its nodes.
 """
 
 import itertools
@@ -14,14 +14,14 @@ from export_cases import export
 
 from addon.bindings.session import Scene
 
-# Light is not negative: every value is shown above this, of which single precision keeps 2^-20.
+# Light is not negative: this offset is added to every value; single precision keeps 2^-20 of the sum.
 LIFT = 16.0
-_WIDE = (4, 0)  # the Blender since which octaves of cells, and unnormalised noise, are there
-_SHARPEST = 0.0 if bpy.app.version >= _WIDE else 0.05  # smoothness; before, 0 divided by 0 where two points were as far
+_WIDE = (4, 0)  # the first Blender with octaves of Voronoi cells and with unnormalised noise
+_SHARPEST = 0.0 if bpy.app.version >= _WIDE else 0.05  # smoothness; before, 0 divides by 0 between two equally far points
 
 
 class Board:
-    """Squares of pixels in rows, each lit by one value."""
+    """Squares of pixels in rows, each showing one output."""
 
     COLUMNS = 16
 
@@ -32,7 +32,7 @@ class Board:
         self.tree = None
 
     def square(self, name, build):
-        """build(tree, vector) gives the output socket to show; vector is a socket with coordinates in all directions."""
+        """Add a square. build(tree, vector) returns the output socket to show; vector is a socket with 3D coordinates."""
         self.tree = self._material(name)
         output = build(self.tree, self._vector())
         self._show(self._lifted(output))
@@ -51,7 +51,7 @@ class Board:
         return material.node_tree
 
     def _vector(self):
-        """By single operations, which both engines round alike."""
+        """Return a socket with coordinates, made by single operations, which both engines round alike."""
         place, parts, whole = (self.tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "SeparateXYZ", "CombineXYZ"))
         self.tree.links.new(place.outputs["UV"], parts.inputs[0])
         for axis, (a, b) in enumerate(((0, 0.6), (1, 0.3), (1, 0))):
@@ -77,14 +77,14 @@ class Board:
         self.tree.links.new(emission.outputs[0], end.inputs["Surface"])
 
     def _rendered(self):
-        """(squares, side^2, 3)."""
+        """Return the rendered values, (squares, side^2, 3)."""
         picture = stage.picture(self.scene)[:, :, :3]
         rows = picture.shape[0] // self.side
         squares = picture.reshape(rows, self.side, self.COLUMNS, self.side, 3).transpose(0, 2, 1, 3, 4)
         return squares.reshape(rows * self.COLUMNS, -1, 3)[: len(self.names)]
 
     def answer(self):
-        """{name: [points, range of Cycles' values, share within a thousandth of it, largest difference over it]}."""
+        """Return {name: [points, range of Cycles' values, share within a thousandth of it, largest difference over it]}."""
         scene, columns, rows = self.scene, self.COLUMNS, -(-len(self.names) // self.COLUMNS)
         view = stage.camera(type="ORTHO", ortho_scale=float(max(columns, rows)))
         view.location, view.rotation_euler = (columns / 2, rows / 2, 1), (0, 0, 0)
@@ -117,18 +117,18 @@ class Board:
 
 
 def _choices(node, field):
-    """The values that an enumerated property has in this Blender; none where there is no such property."""
+    """Return the values of an enumerated property in this Blender, or [] if there is no such property."""
     field = node.bl_rna.properties.get(field)
     return [] if field is None else [item.identifier for item in field.enum_items]
 
 
 def _find(sockets, name):
-    """The enabled socket of that identifier; None where there is none."""
+    """Return the enabled socket with that identifier, or None."""
     return next((socket for socket in sockets if socket.enabled and socket.identifier == name), None)
 
 
 class _Setting:
-    """A node with properties, and numbers for those of its inputs that it has."""
+    """A node with properties, and numbers for its inputs; inputs that this Blender lacks are ignored."""
 
     def __init__(self, kind, properties, numbers, output, color=False):
         self.kind, self.properties, self.numbers, self.output, self.color = kind, properties, numbers, output, color
@@ -149,7 +149,7 @@ class _Setting:
         if _find(node.inputs, "Vector") is not None:
             tree.links.new(vector, _find(node.inputs, "Vector"))
         if _find(node.inputs, "W") is not None:
-            # No two coordinates are alike: distances along them would be.
+            # The fourth coordinate differs from the others: equal ones would give equal distances along them.
             parts, total = tree.nodes.new("ShaderNodeSeparateXYZ"), tree.nodes.new("ShaderNodeMath")
             tree.links.new(vector, parts.inputs[0])
             tree.links.new(parts.outputs[0], total.inputs[0])
@@ -171,8 +171,8 @@ def _probe(kind):
 
 
 def noise(side):
-    # A coordinate is 200 and more in the second and third channel, where it is rounded by 2^-17. Each octave multiplies that:
-    # by no more than 2.5^4 = 39 here, which moves noise of a slope about 2 by 6e-4.
+    # Coordinates of the second and third channel are above 200, where they are rounded by 2^-17. The octaves multiply the
+    # rounding by up to 2.5^4 = 39 here, which moves noise of a slope about 2 by 6e-4.
     rng, settings = random.Random(1), []
     kinds = _choices(_probe("ShaderNodeTexNoise"), "noise_type") or ["FBM"]
     for dimensions, kind, output in itertools.product(("1D", "2D", "3D", "4D"), kinds, ("Fac", "Color")):
@@ -188,8 +188,8 @@ def noise(side):
             }
             properties = {"noise_dimensions": dimensions, "noise_type": kind, "normalize": plain}
             settings.append(_Setting("ShaderNodeTexNoise", properties, numbers, output))
-    # Far from the origin, where floats have few digits left, and further than the noise's period: up to where a product of the
-    # period is no longer exact in single precision, which Cycles of some Blenders rounds.
+    # Far from the origin, where floats have few digits left, and beyond the noise's period: up to where a multiple of the
+    # period is no longer exact in single precision; some versions of Cycles round it.
     for scale in (3e4, 1e5, 2e6):
         settings.append(_Setting("ShaderNodeTexNoise", {"noise_dimensions": "3D"}, {"Scale": scale, "Detail": 0.0}, "Fac"))
     return _rendered(settings, side)
@@ -261,7 +261,7 @@ def curves(side):
 
 
 def color_models(side):
-    """Hues, saturations and values of colours that vary: told apart, put together, and turned."""
+    """Separate, combine and shift the hue, saturation and value of varying colours."""
     board = Board(int(side))
     for mode in ("HSV", "HSL"):
         for i in range(3):

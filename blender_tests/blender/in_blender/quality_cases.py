@@ -10,12 +10,12 @@ def _values(told):
 
 
 def measured():
-    """The operator without a window: what it keeps and tells, whether the file is as it was, and a render that was foretold."""
+    """Run the operator without a window. Return its forecasts and lines, whether the file is unchanged, and a render's time."""
     from addon.engine import render_engine as engine
     from addon.operators import measure_quality
 
     scene = stage.room(width=64, height=36, samples=64)
-    # Matrices of new objects are made by the first look at them.
+    # The first update computes the matrices of new objects.
     bpy.context.view_layer.update()
     before = plain_data()
     result = bpy.ops.lancer.measure_quality(seconds=1.0)
@@ -58,7 +58,7 @@ def measured():
 
 
 def words():
-    """How intervals of seconds are told."""
+    """Return the words for intervals of seconds."""
     from addon.measure.forecast import Range
     from addon.operators import measure_quality
 
@@ -67,7 +67,7 @@ def words():
 
 
 def missed():
-    """The lines of a target that the samples do not suffice for."""
+    """Return the lines for a target error that the samples cannot reach."""
     from addon.operators import measure_quality
 
     scene = stage.room(width=32, height=18, samples=16)

@@ -1,4 +1,4 @@
-"""Panels drawn without a window: a layout that records what it is told to show, and a context as a tab has it."""
+"""Draw panels without a window: a layout that records its calls, and a context like that of a tab."""
 
 import inspect
 import operator
@@ -7,14 +7,14 @@ import types
 import bpy
 import gpu
 
-# The panel of displays asks for it, and without a window there is none.
+# The panel of displays calls it, and it fails without a window.
 gpu.capabilities.hdr_support_get = lambda: False
 
 _FUNCTIONS = bpy.types.UILayout.bl_rna.functions
 
 
 class Record:
-    """What was shown: (type, property) pairs, and all words and names of operators in their order."""
+    """The contents of a drawn panel: (type, property) pairs, and all words and names of operators in their order."""
 
     def __init__(self):
         self.properties = set()
@@ -22,13 +22,13 @@ class Record:
 
 
 class Layout:
-    """Stands for a UILayout, and judges calls as Blender would: what is shown must exist, icons must have known names."""
+    """Replaces a UILayout, and raises the errors that Blender would raise, for missing properties or unknown icons."""
 
     def __init__(self, record):
         object.__setattr__(self, "record", record)
 
     def __setattr__(self, name, value):
-        # active, enabled, scale_y ... change how something is shown, not what.
+        # active, enabled, scale_y ... change the look, not the contents.
         if name not in bpy.types.UILayout.bl_rna.properties:
             raise AttributeError(f"a layout has no {name}")
         object.__setattr__(self, name, value)
@@ -47,7 +47,7 @@ class _Call:
 
 
 class _Operator:
-    """Takes any property of an operator, and of macros' operators."""
+    """Accepts any property of an operator, also of operators within a macro."""
 
     def __getattr__(self, name):
         return _Operator()
@@ -97,7 +97,7 @@ def _show(record, name, owner, identifier):
 
 
 class _Panel:
-    """Stands for a panel, which exists only within a window."""
+    """Replaces a panel's instance, which exists only within a window."""
 
     def __init__(self, cls, layout):
         self._cls = cls
@@ -109,7 +109,7 @@ class _Panel:
 
 
 def draw(cls, context, record=None):
-    """The Record of all that a panel draws: its header, its presets, itself."""
+    """Return the Record of a panel's header, presets and body."""
     record = Record() if record is None else record
     for name in ("draw_header", "draw_header_preset", "draw"):
         method = getattr(cls, name, None)
@@ -119,7 +119,7 @@ def draw(cls, context, record=None):
 
 
 class Context:
-    """What a tab of the Properties editor has, in fields; the rest is Blender's own context."""
+    """The context of a tab of the Properties editor, in fields; other attributes are those of Blender's own context."""
 
     region = None
     space_data = types.SimpleNamespace(pin_id=None, use_pin_id=False, type="PROPERTIES")
@@ -128,7 +128,7 @@ class Context:
         self.__dict__.update(fields)
 
     def __getattr__(self, name):
-        # Of a tab without it, such as a camera's without a mesh, Blender tells None.
+        # Blender returns None for an attribute that a tab lacks, such as the mesh of a camera.
         return getattr(bpy.context, name, None)
 
     def path_resolve(self, path):
@@ -136,7 +136,7 @@ class Context:
 
 
 def shown_panels(context, tab):
-    """The panels that a tab of the Properties editor shows, each after the one that it stands in."""
+    """Return the panels that a tab of the Properties editor shows, each after its parent."""
     registered = [cls for cls in bpy.types.Panel.__subclasses__() if hasattr(bpy.types, cls.__name__)]
     everything = [cls for cls in registered if cls.bl_space_type == "PROPERTIES"]
     children = {}
@@ -151,5 +151,5 @@ def shown_panels(context, tab):
 
 
 def drawn(context, tab):
-    """{name: Record} of the panels that a tab shows."""
+    """Return {name: Record} of the panels that a tab shows."""
     return {cls.__name__: draw(cls, context) for cls in shown_panels(context, tab)}

@@ -16,7 +16,7 @@ def _room():
 
 
 def saved(folder):
-    """A whole report, one without the scene, one of a scene that cannot be exported, and one that cannot be written."""
+    """Save a whole report, one without the scene, one of a scene that cannot be exported, and one that cannot be written."""
     scene = _room()
     scene.render.filepath = "/secret/place"
     bpy.ops.render.render()
@@ -43,7 +43,7 @@ def saved(folder):
 
 
 def rendered(folder):
-    """F12's picture in a file, and a report of the same scene."""
+    """Save F12's picture, and a report of the same scene."""
     scene = _room()
     exr.write_settings(scene, os.path.join(folder, "picture.exr"))
     bpy.ops.render.render(write_still=True)
@@ -59,6 +59,6 @@ def _pixels(path):
 
 
 def same(one, other):
-    # The first row is the top one there, the lowest here.
+    # exr.read returns the top row first, _pixels the bottom row.
     first, second = exr.read(one)["Combined"][::-1], _pixels(other)
     return {"shape": list(second.shape), "same": bool(np.array_equal(first, second))}

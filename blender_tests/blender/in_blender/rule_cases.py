@@ -1,4 +1,4 @@
-"""Small rules of Cycles that the exporter follows: each case gives what both engines show for one and the same scene."""
+"""Small rules of Cycles that the exporter follows: each case returns the colours of both engines for the same scene."""
 
 import os
 import tempfile
@@ -11,7 +11,7 @@ FRAMES = 3
 
 
 def _scene():
-    """A camera that sees nothing but what faces it, and pictures of 8 x 8 pixels in which nothing varies."""
+    """Return a scene whose camera looks straight down, with pictures of 8 x 8 pixels that are all equal."""
     scene = stage.empty(8, 8, 1)
     stage.camera((0, 0, 5), (0, 0, 0)).rotation_euler = (0, 0, 0)
     scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.pixel_filter_type = 1, False, "BOX"
@@ -19,7 +19,7 @@ def _scene():
 
 
 def _both(scene):
-    """[Cycles' colour, ours] in the middle of the picture."""
+    """Return [Cycles' colour, ours] in the middle of the picture."""
     result = []
     for engine in ("CYCLES", "LANCER"):
         scene.render.engine = engine
@@ -28,7 +28,7 @@ def _both(scene):
 
 
 def _each_frame(scene):
-    """The same of every frame of an animation."""
+    """Return the same for every frame of an animation."""
     scene.frame_start, scene.frame_end = 1, FRAMES
     result = []
     for engine in ("CYCLES", "LANCER"):
@@ -49,7 +49,7 @@ def _each_frame(scene):
 
 
 def _card(name="Card"):
-    """(tree, its Emission, its output) of a card that fills the picture."""
+    """Return (tree, its Emission, its output) of a card that fills the picture."""
     material = stage.shader("ShaderNodeEmission", name)
     stage.plane(20.0, material)
     tree = material.node_tree
@@ -90,7 +90,7 @@ def outputs():
 
 
 def filters():
-    """What a view layer shows of a card before a sky."""
+    """A card before a sky, with each combination of the view layer's filters."""
     result = {}
     for name, solid, sky in (("both", True, True), ("surfaces", True, False), ("sky", False, True), ("neither", False, False)):
         scene = _scene()
@@ -114,7 +114,7 @@ def glow():
 
 
 def _lamp():
-    """A lamp of radiance 1, less before Blender 4, that faces the camera and is seen by it."""
+    """Return a lamp of radiance 1, less before Blender 4, that faces the camera and is visible to it."""
     lamp = stage.light("AREA", 9.0 * np.pi, (0, 0, 1), (np.pi, 0, 0), size=3.0)
     lamp.visible_camera = True
     return lamp
@@ -133,7 +133,7 @@ def glowing_lamp():
 
 
 def instanced_lamps():
-    """A lamp brought in by an empty that is hidden from the camera, or in a collection that is seen indirectly only."""
+    """A lamp instanced by an empty that is hidden from the camera, or in a collection that is Indirect Only."""
     result = {}
     for name in ("plain", "hidden", "indirect"):
         scene = _scene()
@@ -153,7 +153,7 @@ def instanced_lamps():
 
 
 def axes():
-    """A picture of four texels, looked up at a place of which the node's own mapping exchanges, doubles and drops axes."""
+    """An image of four texels, at coordinates whose axes the node's own mapping exchanges, doubles and drops."""
     result = {}
     for name, chosen in (("plain", "XYZ"), ("exchanged", "YXZ"), ("doubled", "XXZ"), ("dropped", ("NONE", "Y", "Z"))):
         scene = _scene()
@@ -172,7 +172,7 @@ def axes():
 
 
 def mapping_types():
-    """The node's own mapping of each type, moved, turned and scaled, over a picture that tells its place."""
+    """The node's own mapping of each type, moved, turned and scaled, over an image that differs from texel to texel."""
     result = {}
     for kind in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
         scene = _scene()
@@ -192,7 +192,7 @@ def mapping_types():
 
 
 def names(*asked):
-    """What the user calls as the exporter calls its own: attributes, and UV maps."""
+    """Attributes and UV maps of the user that have the names of the exporter's own attributes."""
     result = {}
     for name in asked or ("tangent:", "named:generated", "blank "):
         scene = _scene()

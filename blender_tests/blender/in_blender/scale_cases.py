@@ -6,14 +6,14 @@ import stage
 
 
 def _resize(factor):
-    """All lengths times factor, and lamps that send out as much more as it takes."""
+    """Multiply all lengths by the factor, and the lamps' power so that the picture stays the same."""
     for item in bpy.context.scene.objects:
         item.location *= factor
         data = item.data
         if item.type == "CAMERA":
             data.clip_start, data.clip_end = factor * data.clip_start, factor * data.clip_end
             data.dof.focus_distance *= factor
-            # The lens is focal length over f-stop wide.
+            # The lens has the diameter focal length / f-stop.
             data.dof.aperture_fstop /= factor
         elif item.type == "LIGHT":
             if data.type != "SUN":

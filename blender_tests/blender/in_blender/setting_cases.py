@@ -1,9 +1,9 @@
-"""What single settings of scenes and objects make a render tell."""
+"""Messages of a render about single settings of scenes and objects."""
 
 import bpy
 import stage
 
-# Each of these differs from Lancer's own, and says so by a word.
+# Each of these differs from Lancer's own setting, and its message has this word.
 _SETTINGS = {
     "film_exposure": (2.0, "exposure"),
     "use_fast_gi": (True, "Fast GI"),
@@ -15,7 +15,7 @@ _SETTINGS = {
     "glossy_bounces": (1, "Glossy 1"),
     "transmission_bounces": (2, "Transmission 2"),
 }
-# And these change noise or time alone, are Lancer's own, or mean the same here.
+# These change noise or time alone, are read by Lancer, or mean the same in Lancer.
 _NEUTRAL = {
     "samples": 7, "seed": 5, "transparent_max_bounces": 3, "volume_bounces": 3, "diffuse_bounces": 64, "glossy_bounces": 10,
     "pixel_filter_type": "BOX", "use_adaptive_sampling": False, "light_sampling_threshold": 0.1,
@@ -32,7 +32,7 @@ def _told_of_scene():
     return messages
 
 
-# name: (settings of Cycles, settings of Lancer), all others as Blender starts with them.
+# name: (settings of Cycles, settings of Lancer); all others have Blender's defaults.
 _LIGHT_PATHS = {
     "start": ({}, {}),
     "few bounces here": ({}, {"max_bounces": 3}),
@@ -63,7 +63,7 @@ def light_paths():
 
 
 def settings():
-    """Messages of light paths as Lancer's, of neutral changes, and of each other change by itself."""
+    """Return the messages for light paths like Lancer's, for neutral changes, and for each other change by itself."""
 
     def told():
         return _told_of_scene().lines()
@@ -101,7 +101,7 @@ def settings():
 
 
 def objects():
-    """Messages of single objects: plain, then with each setting that is not supported."""
+    """Return the messages for single objects: plain, and with each setting that is not supported."""
     from addon.export.checks import check_object
     from addon.messages.messages import Messages
 

@@ -1,4 +1,4 @@
-"""Scenes and pictures inside Blender, in words that all its versions understand."""
+"""Build scenes and render pictures inside Blender, through an interface that all its versions have."""
 
 import math
 import os
@@ -10,7 +10,7 @@ from mathutils import Euler, Vector
 
 
 def empty(width=32, height=32, samples=4, engine="LANCER"):
-    """A scene with nothing in it, ready to render small and fast."""
+    """Return an empty scene that renders small and fast."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = engine
@@ -27,7 +27,7 @@ def empty(width=32, height=32, samples=4, engine="LANCER"):
 
 
 def light_paths_alike(scene):
-    """Cycles' light paths as Lancer's, of which nothing is told then."""
+    """Set Cycles' light paths like Lancer's, so that no message warns of them."""
     cycles = scene.cycles
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = scene.lancer.max_bounces
     cycles.blur_glossy = cycles.sample_clamp_indirect = 0.0
@@ -71,7 +71,7 @@ def cube(size=1.0, material=None, **place):
 
 
 def ball(radius=1.0, material=None, segments=64, **place):
-    """A smooth UV sphere."""
+    """Return a smooth UV sphere."""
     rings = segments // 2
     vertices = [(0, 0, radius)]
     for i in range(1, rings):
@@ -112,7 +112,7 @@ def sky(color=(0.2, 0.3, 0.5), strength=1.0):
 
 
 def shader(kind="ShaderNodeBsdfDiffuse", name="Material", **inputs):
-    """A material of one shader node; inputs by socket name with _ for blanks."""
+    """Return a material of one shader node; inputs by socket name with _ for blanks."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     tree = material.node_tree
@@ -126,7 +126,7 @@ def shader(kind="ShaderNodeBsdfDiffuse", name="Material", **inputs):
 
 
 def room(**settings):
-    """A plane, a cube, a lamp, a sky and a camera."""
+    """Return a scene with a plane, a cube, a lamp, a sky and a camera."""
     scene = empty(**settings)
     plane(material=shader(Color=(0.6, 0.6, 0.6)))
     cube(material=shader(Color=(0.8, 0.2, 0.1)), location=(0, 0, 0.5))
@@ -149,12 +149,12 @@ def write_exr(scene, path=None, layers=False):
 
 
 def picture(scene):
-    """Renders and gives the linear picture, (h, w, 4); row 0 is the bottom row."""
+    """Render. Return the linear picture, (h, w, 4); row 0 is the bottom row."""
     return pixels(write_exr(scene))
 
 
 def pixels(path):
-    """The linear picture in an EXR file, (h, w, 4); row 0 is the bottom row."""
+    """Return the linear picture in an EXR file, (h, w, 4); row 0 is the bottom row."""
     image = bpy.data.images.load(path)
     width, height = image.size
     values = np.empty(width * height * 4, np.float32)
@@ -164,7 +164,7 @@ def pixels(path):
 
 
 def channels(path):
-    """The channel names of an EXR file, from the headers of all its parts."""
+    """Return the channel names of an EXR file, from the headers of all its parts."""
     with open(path, "rb") as file:
         data = file.read(65536)
     names, mark = [], b"channels\0chlist\0"

@@ -1,14 +1,14 @@
-"""What stands in for inputs and features that Lancer lacks, and what it says about them."""
+"""Substitutes for inputs and features that Lancer lacks, and the messages about them."""
 
 import bpy
 from material_cases import Tree, answer
 
-# By the first Blender that has the input.
+# {input: first Blender that has it}
 THIN = {"Thin Film Thickness": (4, 2), "Thin Wall": (5, 2)}
 
 
 def thin():
-    """{input: messages} of a Principled node for each that this Blender shall have, and of a plain one."""
+    """Return {input: messages} of a Principled node for each of the inputs that this Blender has, and of a plain one."""
     result = {}
     for name, since in {"": (0, 0), **THIN}.items():
         if bpy.app.version < since:
@@ -24,7 +24,7 @@ def thin():
 
 
 def unknown_sources():
-    """Inputs of every type that a texture feeds which Lancer does not know."""
+    """Link a texture that Lancer does not support to inputs of every type."""
     tree = Tree("fed")
     magic = tree.node("TexMagic")
     node = tree.node("BsdfGlossy", distribution="GGX", Color=(0.9, 0.1, 0.1), Roughness=0.37)
@@ -38,7 +38,7 @@ def unknown_sources():
 
 
 def samplers():
-    """{name: messages} of surfaces on either side of where Cycles' own samplers weigh the sky otherwise."""
+    """Return {name: messages} of surfaces on either side of the limits beyond which Cycles samples the sky with bias."""
     old = bpy.app.version < (4, 0)
     stretched = "BsdfAnisotropic" if old else "BsdfGlossy"
     coat = "Clearcoat" if old else "Coat_Weight"
@@ -65,7 +65,7 @@ def samplers():
 
 
 def clear_beside():
-    """{name: messages} of what stands beside a Transparent part, and the lobe of a rough Diffuse in a mix."""
+    """Return {name: messages} of closures mixed with a Transparent BSDF, and the lobe of a rough Diffuse in a mix."""
     cases = {
         "leaf": ("BsdfTranslucent", {}),
         "frosted": ("BsdfGlass", {"Roughness": 0.3}),
@@ -82,7 +82,7 @@ def clear_beside():
 
 
 def facets():
-    """{node: messages} of each that lights facets by one another, and of one that does not."""
+    """Return {node: messages} of each node with multiple scattering between microfacets, and of one without."""
     kinds = {
         "BsdfPrincipled": "MULTI_GGX",
         "BsdfGlass": "MULTI_GGX",

@@ -1,4 +1,4 @@
-"""Switches of objects, materials, view layers and cameras that one number or flag of the snapshot stands for."""
+"""Switches of objects, materials, view layers and cameras that become one number or flag of the snapshot."""
 
 import bpy
 import stage
@@ -8,7 +8,7 @@ from addon.bindings.enums import CameraKind, MaterialFlag, NodeKind
 
 
 def _owner(thing, name):
-    """Where this Blender keeps a setting: with the thing itself, or still with Cycles."""
+    """Return the owner of a setting in this Blender: the data-block, or its settings of Cycles in older versions."""
     return thing if hasattr(thing, name) else thing.cycles
 
 
@@ -34,7 +34,7 @@ def flags():
     correction = hasattr(bare.cycles, "use_bump_map_correction")
     if correction:
         bare.cycles.use_bump_map_correction = False
-    # Cycles' where it still has the setting.
+    # The setting is Cycles' own in older versions.
     owner = solid.cycles if hasattr(solid.cycles, "use_transparent_shadow") else solid
     owner.use_transparent_shadow = False
     for material in (stage.shader(name="plain"), bare, dull, solid):
@@ -45,7 +45,7 @@ def flags():
 
 
 def weak_lights():
-    """Which materials are lights, by what shines there."""
+    """Return which materials are sampled as lights, by their emission."""
     stage.empty()
     stage.cube(material=stage.shader("ShaderNodeEmission", name="dim", Color=(1.0, 0.2, 0.2, 1.0), Strength=0.5))
     stage.cube(material=stage.shader("ShaderNodeEmission", name="bright", Color=(1.0, 0.2, 0.2, 1.0), Strength=0.51))
@@ -106,7 +106,7 @@ PANORAMAS = {
 
 
 def cameras():
-    """Every panorama of this Blender on a sensor of 32 x 24 mm with an image of 2 x 1, and the lens of one."""
+    """Return every panorama of this Blender on a sensor of 32 x 24 mm with an image of 2 x 1, and the lens of one."""
     result = {"version": list(bpy.app.version)}
     for kind, fields in PANORAMAS.items():
         stage.empty(width=40, height=20)

@@ -1,4 +1,4 @@
-"""Tangents as the exporter computes them, beside Blender's own of the same triangles."""
+"""Compare the exporter's tangents with Blender's tangents of the same triangles."""
 
 import bmesh
 import bpy
@@ -10,7 +10,7 @@ from addon.export.mesh import export_mesh
 
 
 def _finish(work, name, uv):
-    """A smooth mesh of what is in the bmesh; uv(place) is its map."""
+    """Return a smooth mesh of the bmesh; uv(place) is its UV map."""
     layer = work.loops.layers.uv.new("Map")
     for face in work.faces:
         face.smooth = True
@@ -23,14 +23,14 @@ def _finish(work, name, uv):
 
 
 def _barrel(uv):
-    """Twelve sides between two faces of twelve corners."""
+    """Return a barrel of twelve sides between two faces of twelve corners."""
     work = bmesh.new()
     bmesh.ops.create_cone(work, cap_ends=True, segments=12, radius1=1.0, radius2=0.8, depth=2.0)
     return _finish(work, "barrel", uv)
 
 
 def _waves(uv):
-    """Triangles of a rolling ground."""
+    """Return a hilly ground of triangles."""
     work = bmesh.new()
     bmesh.ops.create_grid(work, x_segments=12, y_segments=9, size=1.0)
     for vertex in work.verts:
@@ -51,7 +51,7 @@ def _theirs(mesh):
 
 
 def _triangles(data, uvs):
-    """A mesh of Blender's of exported triangles."""
+    """Return a Blender mesh of the exported triangles."""
     mesh = bpy.data.meshes.new("cut")
     mesh.from_pydata([tuple(map(float, p)) for p in data.positions], [], data.triangles.tolist())
     mesh.uv_layers.new(name="Map")
@@ -61,7 +61,7 @@ def _triangles(data, uvs):
 
 
 def compare():
-    """Greatest differences of components and of signs: a plain map, a mirrored one, one on a barrel, one that is a point."""
+    """Return the largest differences of components and signs for four UV maps: plain, mirrored, on a barrel, a single point."""
     stage.empty()
     maps = {
         "plain": lambda place: (place.x + 0.1 * place.y, place.y - 0.3 * place.x),
@@ -76,7 +76,7 @@ def compare():
         result[name] += [int((ours[:, 3] < 0).sum()), len(ours)]
     barrel = _barrel(lambda place: (place.x + 0.1 * place.y, place.z - 0.3 * place.y))
     ours, data = _ours(barrel)
-    # Cut into triangles its vertices have other normals: what is compared is one mesh of both.
+    # The triangulated barrel has other vertex normals, so both tangents are computed on the triangulated mesh.
     cut = _triangles(data, data.uvs)
     again, _ = _ours(cut)
     theirs = _theirs(cut)
@@ -89,7 +89,7 @@ def compare():
 
 
 def _without():
-    """Triangles whose texture is a point: theirs and ours as they are."""
+    """Return the tangents, theirs and ours, of triangles whose UV map is a single point."""
     mesh = _waves(lambda place: (0.5, 0.5))
     ours, _ = _ours(mesh)
     theirs = _theirs(mesh)

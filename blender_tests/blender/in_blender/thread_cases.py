@@ -1,4 +1,4 @@
-"""Work for the main thread, asked for by another one, with the looks of the window's timer made by hand."""
+"""Work that another thread requests from the main thread; the case calls the function of the window's timer itself."""
 
 import os
 import tempfile
@@ -15,7 +15,7 @@ from addon.host import main_thread
 
 
 class _Asker(threading.Thread):
-    """Asks in its own thread; outcome is what came back, or the error's name."""
+    """Requests work from its own thread; outcome is the result, or the error's name."""
 
     def __init__(self, work, obey=None):
         super().__init__()
@@ -35,13 +35,13 @@ def _who():
 
 
 def asked():
-    """Whether each kind of work came back, and who did it."""
+    """Return the outcome of each kind of work, and the thread that did it."""
     result = {"here": main_thread.run(_who)}
     main_thread._serving = True
     done = []
 
     def serve(asker):
-        # Look by hand, as the timer does in a window; the pause lets the asking thread run in between.
+        # Serve as the window's timer does; the pause lets the requesting thread run in between.
         while asker.is_alive():
             main_thread.serve()
             time.sleep(0.01)
@@ -56,7 +56,7 @@ def asked():
         if len(looks) > 3:
             raise Cancelled
 
-    # Nobody serves: the user's Esc ends the wait, and what was asked for is never done.
+    # Nobody serves: the user's Esc ends the wait, and the requested work is never done.
     asker = _Asker(lambda: done.append("cancelled"), obey)
     asker.join()
     main_thread.serve()
@@ -72,7 +72,7 @@ def asked():
 
 
 def stopped():
-    """How many of nine tiles are read when the user has enough after the third, and what the reading ends with."""
+    """Return how many of nine tiles are read if the user cancels after the third, and the error that ends the reading."""
     folder = tempfile.mkdtemp()
     for number in range(1001, 1010):
         write(os.path.join(folder, f"tile.{number}.png"), ramp(3))

@@ -1,4 +1,4 @@
-"""What a scene uses, told after a render and measured by the operator; its own kernel beside the general one."""
+"""The features that a scene uses, as a render reports and the operator measures them; its own kernel and the general one."""
 
 import dataclasses
 
@@ -41,7 +41,7 @@ def statistics():
 
 
 def plain_data():
-    """What a measurement may not change: every property of scene, objects, materials and cameras that holds a plain value."""
+    """Return every plain value in scenes, objects, materials, cameras, lamps and meshes: a measurement must not change them."""
     found = {}
     for group in (bpy.data.scenes, bpy.data.objects, bpy.data.materials, bpy.data.cameras, bpy.data.lights, bpy.data.meshes):
         for item in group:
@@ -56,7 +56,7 @@ def plain_data():
 
 
 def measured():
-    """The operator without a window: what it gives and keeps, and whether the file is as it was."""
+    """Run the operator without a window. Return its results, the kept results, and whether the file is unchanged."""
     from addon.engine import render_engine as engine
     from addon.operators import measure_features
 
@@ -85,7 +85,7 @@ def measured():
 
 
 def without_camera():
-    """No camera: the button is grey, and a script is told."""
+    """Without a camera the button is grey, and a script gets an error."""
     scene = stage.empty()
     stage.cube()
     try:
@@ -96,7 +96,7 @@ def without_camera():
 
 
 def both_kernels(name):
-    """(kernels, largest difference) of both pictures of a scene, for each integrator."""
+    """Return (kernels, largest difference) of both pictures of a scene, for each integrator."""
     scene = scenes.load(name)
     scene.render.engine = "LANCER"
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 48, 27, 100

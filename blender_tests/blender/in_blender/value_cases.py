@@ -1,4 +1,4 @@
-"""Value nodes with constants: what the exporter folds them to, beside what Cycles renders for the same nodes."""
+"""Value nodes with constants: compare the exporter's constants with Cycles' render of the same nodes."""
 
 import random
 
@@ -7,22 +7,22 @@ import numpy as np
 import stage
 from export_cases import export
 
-# Light is not negative: every value is shown above this.
+# Light is not negative: this offset is added to every value.
 LIFT = 128.0
-POSITIVE = ("Fac", "Factor", "Steps")  # Blender 5 takes a negative number of steps otherwise where it is constant
-ROWS = 4  # of pixels: the least that Blender renders
+POSITIVE = ("Fac", "Factor", "Steps")  # Blender 5 folds a constant negative number of steps differently
+ROWS = 4  # of pixels: the smallest height that Blender renders
 SKIPPED_OPERATIONS = {"SINH", "COSH", "EXPONENT"}  # beyond LIFT's precision for the numbers used
 
 
 class Board:
-    """Squares side by side, each lit by one value."""
+    """Squares side by side, each showing one value."""
 
     def __init__(self):
         self.scene = stage.empty(engine="CYCLES")
         self.names = []
 
     def square(self, name, build):
-        """build(tree) gives the output socket to show."""
+        """Add a square. build(tree) returns the output socket to show."""
         material = bpy.data.materials.new(name)
         material.use_nodes = True
         tree = material.node_tree
@@ -39,7 +39,7 @@ class Board:
         self.names.append(name)
 
     def answer(self):
-        """{name: [Cycles' value, ours]}."""
+        """Return {name: [Cycles' value, ours]}."""
         scene, count = self.scene, len(self.names)
         camera = stage.camera((count / 2, ROWS / 2, 1), (count / 2, ROWS / 2, 0), type="ORTHO", ortho_scale=float(count))
         camera.rotation_euler = (0, 0, 0)
@@ -57,7 +57,7 @@ def numbers(rng, width=None):
 
 
 def fill(node, rng):
-    """Random constants in every socket that has one."""
+    """Set every input with a constant to a random one."""
     for socket in node.inputs:
         if socket.type == "VALUE":
             socket.default_value = abs(numbers(rng)) if socket.name in POSITIVE else numbers(rng)
@@ -80,7 +80,7 @@ def simple(board, kind, label, rng, output=None, **settings):
 
 
 def choices(kind, field):
-    """The values that an enumerated property of a node has in this Blender."""
+    """Return the values of an enumerated property of a node in this Blender."""
     material = bpy.data.materials.new("asked")
     material.use_nodes = True
     node = material.node_tree.nodes.new(kind)
@@ -149,7 +149,7 @@ def group(name, kinds_in, kinds_out):
 
 
 def links():
-    """Groups within groups, defaults of their inputs, muted nodes, reroutes, and conversions on the way."""
+    """Groups within groups, defaults of their inputs, muted nodes, reroutes, and conversions by links."""
     board = Board()
     inner, inner_in, inner_out = group("Inner", {"c": "NodeSocketColor", "f": "NodeSocketFloat"}, {"r": "NodeSocketVector"})
     scale = inner.nodes.new("ShaderNodeVectorMath")
@@ -186,7 +186,7 @@ def links():
             board.square(f"group {output} {linked}", grouped(output, linked))
 
     def receiver(kind, linked=False, **settings):
-        """A node whose own constant tells whether a link gives anything."""
+        """Return a builder of a node whose constant shows if a link to it has no effect."""
 
         def build(tree):
             node, end = tree.nodes.new(kind), tree.nodes.new("ShaderNodeVectorMath")

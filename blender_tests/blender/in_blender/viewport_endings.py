@@ -1,4 +1,4 @@
-"""Whatever ends a 3D view that renders: again and again, and what is left of it."""
+"""End a rendering 3D view in every way, many times, and look for leftovers."""
 
 import threading
 
@@ -66,7 +66,7 @@ def _quad(view):
 
 
 def _window(view):
-    """Another window with a view of its own, closed while it renders."""
+    """Open another window with a 3D view, and close it while it renders."""
     with view.override():
         bpy.ops.wm.window_new_main()
     yield 0.1
@@ -79,7 +79,7 @@ def _window(view):
 
 
 def _f12(view):
-    """A render beside the view."""
+    """Press F12 while the view renders."""
     begun, entered, plain = [], threading.Event(), engine.LancerRenderEngine.render
 
     def render(self, depsgraph):
@@ -88,7 +88,7 @@ def _f12(view):
 
     def press():
         begun.append(bpy.ops.render.render("INVOKE_DEFAULT"))
-        # No drawing may be in Python when the render's thread comes there: see by_hand().
+        # No drawing may run Python when the render's thread starts to: see by_hand().
         assert entered.wait(PATIENCE), "the render's thread does not come"
 
     engine.LancerRenderEngine.render = render
@@ -104,7 +104,7 @@ KINDS = {
 
 
 def stress(folder, kind, count):
-    """The same thing again and again while the view renders: how often it went well, and what threads are left."""
+    """Repeat the same ending while the view renders. Return how often it succeeded, and the threads that are left."""
     build(samples=0)
     view = View()
     _load.path = f"{folder}/scene.blend"
@@ -113,7 +113,7 @@ def stress(folder, kind, count):
     went = 0
     for number in range(int(count)):
         yield from KINDS[kind](View())
-        # Another moment each time.
+        # At a different moment each time.
         yield 0.01 * (number % 12)
         View().render()
         went += yield from until(lambda: shown() is not None and shown().painter.picture is not None)
@@ -124,7 +124,7 @@ def stress(folder, kind, count):
 
 
 def leave(folder):
-    """The program is quit while the view renders; its own way out takes the add-on away."""
+    """Quit the program while the view renders; Blender unregisters the add-on at its exit."""
     build(samples=0)
     view = View()
     view.render()

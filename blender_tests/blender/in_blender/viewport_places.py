@@ -1,4 +1,4 @@
-"""Where a 3D view shows the scene: beside Blender's own projection, and beside what F12 renders through the camera."""
+"""Compare the projection of a 3D view with Blender's own, and its picture with F12's through the same camera."""
 
 import math
 
@@ -17,7 +17,7 @@ POINTS = [Vector(point) for point in ((0.3, 0.2, 0.1), (-0.8, 0.5, 0.4), (0.9, -
 
 
 def _raster(view, point):
-    """The pixel of the region at which a View's camera shows a point, by the definitions of lancer.h."""
+    """Return the pixel of the region at which a View's camera shows a point, by the definitions of lancer.h."""
     camera = view.camera
     local = np.linalg.inv(np.vstack([camera.matrix, [0, 0, 0, 1]])) @ (*point, 1.0)
     x, y = local[:2] / -local[2] if camera.kind == 0 else local[:2]
@@ -89,7 +89,7 @@ VIEWS = (
 
 
 def places(folder):
-    """{view: largest distance in pixels between where Blender and our camera see four points, rectangle, whole region}"""
+    """Return {view: largest distance in pixels of our projections of four points from Blender's, rectangle, whole region}."""
     scene = build()
     view = View()
     result = {}
@@ -119,7 +119,7 @@ def _blurred(view):
 
 
 def alike(folder):
-    """{camera: mean over 8 x 8 blocks of how far the view's picture is from F12's, relative to its mean}"""
+    """Return {camera: mean difference of 8 x 8 blocks between the view's picture and F12's, relative to F12's mean}."""
     scene = build(samples=16)
     view = View()
     view.render()

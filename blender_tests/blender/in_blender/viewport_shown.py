@@ -1,4 +1,4 @@
-"""What a 3D view shows while it refines, after edits, and of what it is asked to leave out."""
+"""The pictures of a 3D view while it refines, after edits, and with hidden objects."""
 
 import json
 import os
@@ -19,7 +19,7 @@ from addon.viewport.canvas import Canvas
 
 
 def refining(folder):
-    """From the first picture to the last: sizes and samples of what was drawn, what was said before and at the end."""
+    """Return the pixel sizes and samples of all pictures from the first to the last, and the texts before and at the end."""
     build(samples=16)
     view = View()
     with Record() as record:
@@ -32,7 +32,7 @@ def refining(folder):
 
 
 def edits(folder):
-    """After each edit: whether something was always shown, never again what was before, and how much the picture changed."""
+    """Return for each edit whether a picture was always shown, never an outdated one, and how much the picture changed."""
     scene = build(samples=4)
     view = View()
     view.render()
@@ -79,7 +79,7 @@ def edits(folder):
 
 
 def selects(folder):
-    """What a click that changes no picture costs: whether anything is rendered anew."""
+    """Return whether a click that selects an object renders anything anew."""
     build(samples=2)
     view = View()
     view.render()
@@ -92,7 +92,7 @@ def selects(folder):
 
 
 def screen(folder):
-    """A glowing wall before the view: its middle from the screen's top left goes to middle.json, until shot is there."""
+    """Show an emissive wall; write its middle, from the screen's top left, to middle.json, and wait for a file named shot."""
     scene = stage.empty(64, 64)
     stage.sky((0.5, 0.25, 0.1))
     stage.camera()
@@ -110,7 +110,7 @@ def screen(folder):
 
 
 def filtered(folder):
-    """How many objects are rendered in local view and under filters, and how fine the finest pixels are."""
+    """Return [objects, lamps] rendered in local view and under filters, and the picture's size at a preview pixel size of 2."""
     scene = build(samples=1)
     view = View()
     view.render()
@@ -144,7 +144,7 @@ def filtered(folder):
 
 
 def previews(folder):
-    """Mean colours of the icons of a red material, a blue world and a dim green lamp; how many Lancer has rendered."""
+    """Return mean colours of the icons of a red material, a blue world and a dim green lamp, and how many Lancer rendered."""
     scene = build()
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.1, 0.1, 0.9, 1.0)
     lamp = bpy.data.objects["Light"].data
@@ -171,7 +171,7 @@ def previews(folder):
 
 
 def tells(folder):
-    """The messages of a scene that loses something everywhere, the view's text, and that of a camera without scale."""
+    """Return the messages of a scene with unsupported features everywhere, the view's text, and that of a camera of scale 0."""
     scene = build(samples=2)
     tree = bpy.data.objects["Cube"].active_material.node_tree
     body = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
@@ -197,7 +197,7 @@ def tells(folder):
 
 
 def cleans(folder):
-    """With denoising, after an edit that comes while it works, and without: what is said, and how much neighbours differ."""
+    """Return the text and the difference of neighbouring pixels with denoising, after an edit during denoising, and without."""
     scene = build(samples=4)
     view = View()
 
@@ -227,7 +227,7 @@ def cleans(folder):
 
 
 def plays(folder):
-    """An animation that is played: whether pictures of several frames are shown, and nothing is read but what moves."""
+    """Play an animation. Return whether pictures of several frames are shown, and whether only moving objects are read."""
     scene = build(samples=100)
     ball = bpy.data.objects["Ball"]
     for frame, x in ((1, -1.0), (50, 1.0)):
@@ -251,10 +251,10 @@ def plays(folder):
 
 
 def resized(folder):
-    """Mebibytes that were given out over twenty changes of the view's size and are still held; and of one copy of the scene.
+    """Return the mebibytes by which allocated memory grows over twenty changes of the view's size, and those of one scene.
 
-    The old and the new picture stand side by side for a while after a change: the least of ten changes is what stays. Resident
-    memory would count what is free, too, for as long as the allocator keeps it.
+    The old and the new picture exist side by side for a while after a change, so the minimum of ten changes is taken. Resident
+    memory would include free memory that the allocator keeps.
     """
     build(samples=0)
     data = bpy.data.meshes.new("Heavy")
@@ -280,7 +280,7 @@ def resized(folder):
 
 
 def canvas(folder):
-    """What a picture of 4 x 2 pixels becomes in a framebuffer of 64 x 48: colours inside, at a corner, and outside."""
+    """Draw a picture of 4 x 2 pixels into a framebuffer of 64 x 48. Return its colours inside, at a corner, and outside."""
     yield 0.1
     image = np.zeros((2, 4, 4), np.float32)
     image[..., 3] = 1.0

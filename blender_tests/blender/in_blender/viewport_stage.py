@@ -1,4 +1,4 @@
-"""A 3D view in Rendered shading inside a real window, and what is asked of it; what waits is a generator of seconds."""
+"""A 3D view in Rendered shading inside a real window, and actions on it. Actions that wait are generators of seconds."""
 
 import gc
 import threading
@@ -26,7 +26,7 @@ class View:
         self.data = self.space.region_3d
 
     def override(self):
-        """For a moment: Blender's own loop reads such a context without Python's lock."""
+        """Return the context override. Use it briefly: Blender's own loop reads such a context without Python's lock."""
         return bpy.context.temp_override(window=self.window, screen=self.window.screen, area=self.area, region=self.region)
 
     def render(self):
@@ -36,7 +36,7 @@ class View:
 
 
 class _Hands(bpy.types.Operator):
-    """Does what is asked of it when an event comes, as a key's operator would."""
+    """Runs the requested actions at the next event, as an operator of a key would."""
 
     bl_idname = "wm.lancer_hands"
     bl_label = "Hands"
@@ -52,17 +52,17 @@ class _Hands(bpy.types.Operator):
             try:
                 self.wanted.pop(0)()
             except Exception:
-                # What is said on the terminal fails the test, and there is still somebody to leave.
+                # Text on the terminal fails the test; the operator goes on, so that the case can end Blender.
                 traceback.print_exc()
         return {"PASS_THROUGH"}
 
 
 def by_hand(action):
-    """Calls action in the window's own context, at its next event. Loading a file ends what is called so.
+    """Call action in the window's own context, at its next event. Loading a file ends the operator that does this.
 
-    A render that a script begins under an overridden context kills Blender 3.4: the rest of the operator looks into that
-    context without Python's lock while the render's thread runs handlers. And where the render's thread comes to Python while a
-    drawing is there, Blender holds scripts for drawings ever after: timers may call no operator, add-ons fail to leave.
+    A render that a script starts under an overridden context crashes Blender 3.4: the rest of the operator reads that context
+    without Python's lock while the render's thread runs handlers. And if the render's thread enters Python during a drawing,
+    Blender treats all later scripts as drawings: timers cannot call operators, add-ons cannot unregister.
     """
     if not hasattr(bpy.types, "WM_OT_lancer_hands"):
         bpy.utils.register_class(_Hands)
@@ -72,7 +72,7 @@ def by_hand(action):
 
 
 def build(samples=8):
-    """Three things of three colours on a floor, under a lamp and a sky."""
+    """Build three objects of three colours on a floor, under a lamp and a sky."""
     scene = stage.empty(160, 120)
     stage.plane(8.0, stage.shader(Color=(0.6, 0.6, 0.6)))
     stage.cube(0.8, stage.shader(Color=(0.8, 0.1, 0.1)), location=(-1, 0, 0.4))
@@ -86,12 +86,12 @@ def build(samples=8):
 
 
 def shown():
-    """The Viewport that is open, or None."""
+    """Return the open Viewport, or None."""
     return next(iter(viewport._open), None)
 
 
 def until(condition, patience=PATIENCE):
-    """Waits; whether it has come true."""
+    """Wait for a condition. Return whether it became true in time."""
     limit = time.monotonic() + patience
     while not condition():
         if time.monotonic() > limit:
@@ -101,7 +101,7 @@ def until(condition, patience=PATIENCE):
 
 
 def finished():
-    """Whether all samples of what is shown are there."""
+    """Return whether the shown picture has all its samples."""
     view = shown()
     if view is None or view.painter.picture is None or view._wanted is None:
         return False
@@ -111,7 +111,7 @@ def finished():
 
 
 def left():
-    """What is open of the library, and threads of our own."""
+    """Return the open handles of the library, and the add-on's threads."""
     gc.collect()
     handles = [thing for thing in gc.get_objects() if type(thing) in (Scene, Session)]
     things = [type(handle).__name__ for handle in handles if handle._finalizer.alive]
@@ -119,7 +119,7 @@ def left():
 
 
 class Record:
-    """Notes each drawing: when, by which generation of the scene, how fine, how many samples."""
+    """Records each drawing: its time, the generation of the scene, the pixel size, the number of samples."""
 
     def __init__(self):
         self.draws = []

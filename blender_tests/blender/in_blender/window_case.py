@@ -1,8 +1,8 @@
-"""Inside a real window: a scene that takes minutes, and a clock that shows whether Blender still answers.
+"""Inside a real window: a scene that takes minutes, and a clock that shows whether Blender still responds.
 
-Started by the program itself: blender --factory-startup -P window_case.py -- FOLDER [pictures | panels | edit]. What happens is
-written to FOLDER/log.txt, a line each: seconds, word. With pictures and with edit it is a scene of those instead, which a
-file called compare has rendered again by a script; with panels it is also said what is drawn in them.
+The program starts it: blender --factory-startup -P window_case.py -- FOLDER [pictures | panels | edit]. It writes events to
+FOLDER/log.txt, a line each: seconds, word. With pictures and with edit it builds their scenes instead, and renders them again
+by a script once a file named compare exists; with panels it also logs what panels draw.
 """
 
 import os
@@ -32,7 +32,7 @@ def say(word):
 
 
 def told(word):
-    """Whether the test has put a file of that name into the folder, once."""
+    """Return whether the test has put a file of that name into the folder, and remove the file."""
     path = os.path.join(FOLDER, word)
     if not os.path.exists(path):
         return False
@@ -41,13 +41,13 @@ def told(word):
 
 
 def measure():
-    """As the button of the panel does it."""
+    """Measure as the button of the panel does."""
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         say(next(iter(bpy.ops.lancer.measure_features("INVOKE_DEFAULT", seconds=600.0))).lower())
 
 
 def tell_of_timer():
-    """When the timer that serves renders has come or gone."""
+    """Log when the timer that serves renders is registered or removed."""
     global serves
     now = bpy.app.timers.is_registered(main_thread._tick)
     if now != serves:
@@ -95,7 +95,7 @@ def tick():
 
 
 def prepare():
-    """Not in the first moments: the window has to be there."""
+    """Register the clock; a timer calls this when the window has opened."""
     bpy.app.timers.register(tick, persistent=True)
     if KIND == ["panels"]:
         window_panels.watch(say)

@@ -1,4 +1,4 @@
-"""In a real window: meshes that are being edited, which F12 shows without leaving Edit mode. Started by window_case.py."""
+"""In a real window: F12 renders meshes that are in Edit mode, without leaving it. Started by window_case.py."""
 
 import json
 import os
@@ -11,7 +11,7 @@ _boxes = []
 
 
 def build():
-    """The scene of edit_cases; a window is there only later."""
+    """Build the scene of edit_cases, before the window has opened."""
     scene = bpy.context.scene
     scene.render.engine = "LANCER"
     scene.render.resolution_x = scene.render.resolution_y = edit_cases.SIZE
@@ -24,13 +24,13 @@ def build():
 
 
 def edit():
-    """Enters Edit mode as a user does, with three objects, and moves two of them."""
+    """Enter Edit mode as a user does, with three objects, and move two of them."""
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         edit_cases.edit(*_boxes)
 
 
 def compare(folder):
-    """Which pixels the window's picture lights, how far it is from Cycles' at most, and the mode of each object."""
+    """Write the lit pixels of the window's picture, its largest difference from Cycles', and the mode of each object."""
     result = bpy.data.images["Render Result"]
     settings = bpy.context.scene.render.image_settings
     settings.file_format, settings.color_depth = "OPEN_EXR", "32"

@@ -19,7 +19,7 @@ import addon  # noqa: E402
 
 ANSWER, ENGINE, SECONDS, THREADS = sys.argv[sys.argv.index("--") + 1 :]
 INTERVAL = 0.01
-# Before it the window of the render opens, and both engines show what they have more often.
+# In the first seconds the window of the render opens, and both engines update the picture more often.
 SETTLED = 2.0
 
 ticks = []
@@ -37,7 +37,7 @@ def tick():
 
 
 def answer():
-    """The median is that of the moments of the render, not of the ticks: half of the time is spent in gaps no longer."""
+    """Write the longest gap and the median gap, weighted by time: gaps up to the median make up half of the time."""
     gaps = sorted(b - a for a, b in zip(ticks, ticks[1:], strict=False))
     passed, half = 0.0, sum(gaps) / 2
     for gap in gaps:
@@ -47,7 +47,7 @@ def answer():
     with open(ANSWER, "w", encoding="utf-8") as file:
         json.dump({"longest": gaps[-1], "median": gap}, file)
     addon.unregister()
-    # A render goes on: nothing of it is wanted any more.
+    # The render still runs; exit without waiting for it.
     os._exit(0)
 
 
@@ -74,5 +74,5 @@ scene.cycles.samples, scene.cycles.use_adaptive_sampling, scene.cycles.use_denoi
 bpy.app.handlers.render_pre.append(lambda *_: begun.append(time.monotonic()))
 bpy.context.preferences.view.show_splash = False
 bpy.context.preferences.view.render_display_type = "WINDOW"
-# Not in the first moments: the window has to be there.
+# Some time later, when the window has opened.
 bpy.app.timers.register(render, first_interval=3.0)

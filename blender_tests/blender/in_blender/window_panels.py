@@ -1,6 +1,6 @@
-"""In a real window: which of Lancer's panels are drawn, and with what, while it measures, renders and loads another file.
+"""In a real window: the panels that Blender draws, and their contents, while it measures, renders and loads another file.
 
-Started by window_case.py. Nothing here draws: what Blender has drawn by itself is said.
+Started by window_case.py. Nothing here draws or redraws: only Blender's own drawings are logged.
 """
 
 import os
@@ -13,7 +13,7 @@ from addon.ui import messages, render
 
 
 def watch(say):
-    """Shows the render's properties, and says what is drawn there."""
+    """Show the render's properties, and log what is drawn there."""
     for area in bpy.context.window_manager.windows[0].screen.areas:
         if area.type == "PROPERTIES":
             area.spaces[0].context = "RENDER"
@@ -33,7 +33,7 @@ def watch(say):
 
 
 def measure():
-    """As the panel's button does it: "running_modal", or "refused" where the button is grey."""
+    """Measure as the panel's button does. Return "running_modal", or "refused" if the button is grey."""
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         if not bpy.ops.lancer.measure_quality.poll():
             return "refused"
@@ -41,7 +41,7 @@ def measure():
 
 
 def check(say):
-    """As the panel's button does it, of a scene whose check never ends by itself."""
+    """Check as the panel's button does, with a check that never ends by itself."""
 
     def endless(_snapshot, poll):
         try:
@@ -57,7 +57,7 @@ def check(say):
 
 
 def switch():
-    """The add-on off and on again."""
+    """Switch the add-on off and on again."""
     addon.unregister()
     addon.register()
     bpy.context.scene.render.engine = "LANCER"
@@ -65,7 +65,7 @@ def switch():
 
 
 def load(folder):
-    """Another file, whose scene has the same name: is anything known of it?"""
+    """Load another file, whose scene has the same name: no result of the old scene may be shown."""
     path = os.path.join(folder, "other.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path, copy=True)
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):

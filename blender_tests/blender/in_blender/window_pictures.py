@@ -1,6 +1,6 @@
-"""In a real window: pictures of every kind that is read from files, and who in Blender does what.
+"""In a real window: images of every kind that is read from files, and the threads that read them.
 
-Started by window_case.py. Each picture of a render covers its own part of the screen, and says what stands there.
+Started by window_case.py. Each image covers its own part of the picture, so that the picture shows the image's colour.
 """
 
 import json
@@ -14,8 +14,8 @@ import stage
 from addon.export import colorspace, images
 
 _SIZE = 256
-# Colours as bytes: two tiles, the second frame of a sequence, bytes that count as multiplied by their alpha, a space that is no
-# curve. test_window.py knows the first of them.
+# Colours as bytes: two tiles, the second frame of a sequence, premultiplied bytes, a colour space that is not a curve.
+# test_window.py has the same first ones.
 TILES, FRAME, PREMULTIPLIED, FILMIC = ((60, 120, 180), (180, 60, 120)), (120, 180, 60), (90, 30, 60), (100, 150, 200)
 
 
@@ -42,7 +42,7 @@ def _show(image, x, width=1.0):
 
 
 def build(folder):
-    """Five squares in a row, seen from above."""
+    """Build five squares in a row, seen from above."""
     for number, color in zip((1001, 1002), TILES, strict=True):
         _file(folder, f"tile.{number}.png", color)
     tiled = bpy.data.images.load(os.path.join(folder, "tile.1001.png"))
@@ -76,7 +76,7 @@ def _count():
 
 
 def watch(say):
-    """Says of all work on data, and of all reading, which thread does it, and how many images it has added to the user's."""
+    """Log the thread of all work on Blender's data and of all reading, and the number of images that it has added."""
     before = _count()
 
     def watched(name, work):
@@ -93,14 +93,14 @@ def watch(say):
 
 
 def _save(folder, name):
-    """The picture that the window shows, as it is in the render result."""
+    """Save the render result, which the window shows."""
     settings = bpy.context.scene.render.image_settings
     settings.file_format, settings.color_depth = "OPEN_EXR", "32"
     bpy.data.images["Render Result"].save_render(os.path.join(folder, name))
 
 
 def compare(folder):
-    """The colours of the five squares in the window's picture, and how far those of a script's render are from it at most."""
+    """Write the colours of the five squares in the window's picture, and their largest difference from a script's render."""
     _save(folder, "window.exr")
     bpy.ops.render.render()
     _save(folder, "script.exr")

@@ -76,7 +76,7 @@ def a_lamp(kind):
     return chosen
 
 
-# (name, tab, what is done before) in this order.
+# (name, tab, preparation or None) in this order.
 TABS = (
     ("render", "RENDER", None),
     ("render_after", "RENDER", a_render),
@@ -122,19 +122,19 @@ def properties():
 
 
 def photograph(window, area, path):
-    """By ImageMagick: Blender's own screenshots are black in some of its versions on such a display."""
+    """Save a screenshot by ImageMagick: on such a display Blender's own screenshots are black in some of its versions."""
     part = f"{area.width}x{area.height}+{area.x}+{window.height - area.y - area.height}"
     subprocess.run(["import", "-window", "root", "-crop", part, "+repage", path], check=True)
 
 
 def walk():
-    """Sets one tab after the other, and photographs each once it has had the time to be drawn."""
+    """Show one tab after the other, and save a screenshot of each after the time it needs to draw."""
     window, area = properties()
     for other in window.screen.areas:
         if other.type == "VIEW_3D":
-            # On a display without a graphics card it takes seconds to draw.
+            # Without a graphics card a 3D view takes seconds to draw.
             other.type = "CONSOLE"
-    # The Outliner takes room above it that tall tabs need.
+    # The Outliner takes space that tall tabs need.
     outliner = next(other for other in window.screen.areas if other.type == "OUTLINER")
     with bpy.context.temp_override(window=window, area=outliner, region=outliner.regions[-1]):
         bpy.ops.screen.area_close()
@@ -145,7 +145,7 @@ def walk():
                 prepare()
         if NAMES and name not in NAMES:
             continue
-        # Areas move when others go, and which tabs there are follows from what was drawn last.
+        # Areas move when others close, and a drawing updates which tabs there are.
         window, area = properties()
         area.tag_redraw()
         yield

@@ -1,8 +1,8 @@
-"""Inside a real window: how soon a 3D view in Rendered shading shows a change, and how many pictures while it turns.
+"""Inside a real window: the delay until a 3D view in Rendered shading shows a change, and its pictures while it turns.
 
 blender --factory-startup -p 0 0 960 540 -P window_view.py -- ANSWER.json ENGINE THREADS
 
-What an engine has drawn is read back from a small part of it, right after, for any engine alike.
+A small part of the framebuffer is read back right after each drawing, in the same way for every engine.
 """
 
 import json
@@ -27,11 +27,11 @@ ANSWER, ENGINE, THREADS = sys.argv[sys.argv.index("--") + 1 :]
 PART = 32
 SETTLING, RESTING, TURNING = 4.0, 1.5, 4.0  # seconds
 TIMES = 5
-STEP = 0.02  # radians of the turn, each time that Blender's loop comes by
-# A change is there when the part is brighter or darker by this factor than before: noise is less, the changes made are more.
+STEP = 0.02  # radians by which the view turns in each round of Blender's loop
+# A change is shown once the part is brighter or darker by this factor: noise is below it, the changes made are above.
 FACTOR = 1.5
 
-seen = []  # (time, mean of the part, what tells its pictures apart)
+seen = []  # (time, mean of the part, a key that differs between pictures)
 
 
 def view():
@@ -41,7 +41,7 @@ def view():
 
 
 def watch(engine):
-    """Looks at all that an engine's class draws."""
+    """Read back each drawing of an engine's class."""
     plain = engine.view_draw
 
     def view_draw(self, context, depsgraph):
@@ -55,7 +55,7 @@ def watch(engine):
 
 
 def delay(change):
-    """Seconds from a change until it is seen; a generator, as all here."""
+    """Return the seconds from a change until it is shown; a generator, as all functions here that wait."""
     before = seen[-1][1]
     started = time.monotonic()
     change()
@@ -121,7 +121,7 @@ def step():
         with open(ANSWER, "w", encoding="utf-8") as file:
             json.dump(over.value, file)
         addon.unregister()
-        # Of Cycles' thread nothing is wanted any more.
+        # Exit without waiting for Cycles' thread.
         os._exit(0)
 
 

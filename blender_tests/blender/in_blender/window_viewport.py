@@ -1,9 +1,9 @@
-"""Inside a real window: a 3D view in Rendered shading, what is done to it, and what it shows meanwhile.
+"""Inside a real window: run a case with a 3D view in Rendered shading.
 
     blender --factory-startup -P window_viewport.py -- FOLDER CASE [ARGUMENT...]
 
-runs the case of that name in one of viewport_*.py, a generator: it yields the seconds until Blender comes back to it, and its
-result goes to FOLDER/result.json. Then Blender is quit.
+runs the case of that name in one of viewport_*.py, a generator that yields the seconds until it continues, writes its result to
+FOLDER/result.json, and quits Blender.
 """
 
 import json

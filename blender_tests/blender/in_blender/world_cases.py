@@ -1,4 +1,4 @@
-"""Worlds of every kind as they arrive in a snapshot."""
+"""Worlds of every kind, as they are exported."""
 
 import os
 import tempfile
@@ -41,7 +41,7 @@ def _shown(projection, messages):
 
 
 def missing():
-    """A sky whose picture is not there, and one that is not to be sampled."""
+    """A sky whose image is missing, and one that is not sampled as a light."""
     scene = stage.empty()
     tree, background = _tree()
     texture = tree.nodes.new("ShaderNodeTexEnvironment")
@@ -106,7 +106,7 @@ def export():
 
 
 def sequence():
-    """A cube of six files that are numbered as frames; nothing is at hand that tells a frame."""
+    """A cube of six files that are numbered like frames, where no current frame is known."""
     stage.empty()
     stage.sky()
     folder = tempfile.mkdtemp()
