@@ -15,8 +15,8 @@ namespace lancer {
 
 enum class IntegratorKind : uint32_t { Path = 0, Classic = 1, Normals = 2 };
 
-// Splitting (Arvo, Kirk, "Particle transport and image synthesis", 1990) of a sample at the first surface on its path that
-// scatters into more than single directions. The part of the path before the split, and the place on the pixel, are shared.
+// Splitting of a sample (Arvo, Kirk, "Particle transport and image synthesis", 1990). The sample splits at the first surface of
+// its path that scatters into more than single directions. The place on the pixel and the path before the split are shared.
 struct Splits {
   uint32_t lights = 1; // lights sampled there
   uint32_t paths = 1;  // paths continued from there
@@ -65,7 +65,8 @@ enum LightPass : uint32_t {
   kLightPasses = 12
 };
 
-// The contribution of one sample to the film: floats only; those that are summed stand in the order of their passes.
+// The contribution of one sample to the film. All members are floats; those that the film sums are in the order of their
+// passes.
 struct SampleResult {
   glm::vec3 radiance{0.0f};
   float alpha = 0.0f;
@@ -115,15 +116,15 @@ struct Energy {
   double clipped = 0.0;                 // by clamping
   double last = 0.0, before_last = 0.0; // found by the last bounce that is followed, and by the one before
 
-  // Returns an estimate of the light of all bounces beyond the last, if each finds less than the previous one by the same
-  // factor; indirect light falls off no slower once it has spread. Infinite where the last bounce finds no less than the one
-  // before.
+  // Returns an estimate of the light of all bounces beyond the last: the sum of a geometric series with the ratio of the last
+  // two bounces. Once indirect light has spread, it falls off at least as fast as this series. Returns infinity if the last
+  // bounce finds no less light than the bounce before.
   double beyond() const {
     if (last <= 0.0)
       return 0.0;
     return last < before_last ? last * last / (before_last - last) : std::numeric_limits<double>::infinity();
   }
-  // Ignores values that are not finite: their sample is dropped.
+  // Ignores values that are not finite, because the film drops their sample.
   void clip(double light) { clipped += std::isfinite(light) ? light : 0.0; }
   Energy &operator+=(const Energy &other) {
     clipped += other.clipped;

@@ -55,7 +55,8 @@ void ClassicIntegrator::run(std::span<const SampleAddress> addresses, std::span<
   }
 }
 
-// Returns false where the rays exceed kCrowd; counts are then restored, and the part has to be rendered again.
+// Returns false if the rays exceed kCrowd; the counts are then restored, and the caller must render the part again in smaller
+// parts.
 bool ClassicIntegrator::run_part(std::span<const SampleAddress> addresses, std::span<SampleResult> results,
                                  std::vector<PathVertex> *trace) {
   const RayCounts before = counts_;

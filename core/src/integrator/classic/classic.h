@@ -19,7 +19,8 @@
 
 namespace lancer {
 
-// Light of the rays of a batch: it is found in any order and summed in the order of the rays.
+// The light of a batch's rays: add() may be called in any order; of() returns the light of each ray for a sum in the order of
+// the rays.
 class LightByRay {
 public:
   void begin(size_t rays) {
@@ -95,7 +96,7 @@ private:
     glm::vec3 emission{0.0f}, ambient{0.0f}, transmittance{0.0f}; // ambient: Ka
     glm::vec3 reflected{0.0f}, refracted{0.0f}, mirrored{0.0f}, through{0.0f};
   };
-  // The same for denoisers.
+  // Results of shading a vertex that the denoising guides read.
   struct FeaturesOf {
     Mixture<float> mixture;
     glm::vec3 wo{0.0f};
@@ -142,7 +143,7 @@ private:
   bool only_combined_;   // no other pass is requested
   bool corners_ = false; // the block's vertices are lit at the corners of their triangles
   bool crowded_ = false; // batches are rendered in small parts
-  // Of the block's lanes.
+  // By lane of the block.
   uint32_t number_[kBlockLanes]; // of the ray
   Hit lit_at_[kBlockLanes];      // the shaded place, where it differs from the hit
   // By light, corner and lane.
@@ -150,7 +151,7 @@ private:
     glm::vec3 light{0.0f}, own{0.0f};
   };
   std::vector<CornerLight> corner_light_;
-  LightByRay own_light_, shadow_light_; // of lamps by Ka; through shadow rays
+  LightByRay own_light_, shadow_light_; // of lamps without occlusion, by Ka; of shadow rays
   std::vector<Sampler> samplers_;       // per slot
   std::vector<Branch> branches_, next_branches_;
   std::vector<Ray> rays_, next_rays_;

@@ -109,7 +109,7 @@ void ClassicIntegrator::cut_holes(std::span<SampleResult> results) {
       continue;
     float &alpha = results[branch.slot].alpha;
     if (surfaces_.instance(lane).holdout) {
-      // All that the object would show becomes the hole.
+      // The object's whole share of the pixel becomes a hole.
       alpha -= mean(branch.weight * surfaces_.opacity(lane));
       surfaces_.emission[lane] = glm::vec3(0.0f);
       vertex.nothing = surfaces_.transmittance[lane] == glm::vec3(0.0f);
@@ -174,8 +174,8 @@ glm::vec2 ClassicIntegrator::light_numbers(const Branch &branch, uint32_t light)
   return samplers_[branch.slot].get2(kDimensionLamp + 2 * (branch.depth * uint32_t(scene_.lights.size()) + light));
 }
 
-// Prepares a light for the kernel: random numbers for a lamp, samples for other lights. Returns false where no surface shows
-// its light. met: the block at the places of the hits.
+// Prepares a light for the kernel: random numbers for a lamp, samples for other lights. Returns false if the light lights no
+// surface. met: the block at the places of the hits.
 bool ClassicIntegrator::ask(uint32_t number, const VertexBlock &met) {
   const LightSet &lights = scene_.lights;
   if (number < lights.lights().size()) {

@@ -1,5 +1,5 @@
-// Local illumination of the recursive ray tracer, for one light at one point without its shadow, and the mirrored and
-// transmitted shares of surfaces. F is a float, or lanes of floats.
+// Local illumination of the recursive ray tracer: one light at one point without occlusion; and the mirrored and transmitted
+// shares of surfaces. F is a float, or lanes of floats.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -113,7 +113,7 @@ LANCER_LANE Vec3<F> classic_illumination(const Bsdf<F> &bsdf, const Vec3<F> &wi_
 // The mirrored and the transmitted share of light.
 template <class F> struct BranchShares { Vec3<F> reflected{F(0.0f)}, refracted{F(0.0f)}; };
 
-// Returns the shares of a lobe, seen at that cosine to its normal.
+// Returns the shares of a lobe. cosine: between the view direction and the lobe's normal.
 template <class F> LANCER_LANE BranchShares<F> branch_shares(const Lobe<F> &lobe, F cosine) {
   BranchShares<F> shares;
   switch (lobe.shape) {

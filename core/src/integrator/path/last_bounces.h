@@ -19,11 +19,12 @@ public:
     stage_ = 0;
     before_[0] = before_[1] = 0.0;
   }
-  // Whether the light of this turn of the queues has to be noted. Each transparent surface delays a path by one turn; its light
-  // is counted as later than it is, so the estimate is too large rather than too small.
+  // Whether note() must be called in this turn of the queues. Each transparent surface delays a path by one turn. The path's
+  // light then counts as that of a later bounce, so the estimate is too large rather than too small.
   bool due(uint32_t turn) const { return turn + 1 >= max_bounces_ && stage_ < 2; }
-  // Notes the light gathered so far, after that of this turn's hits is added. slot(i): of the sample of the i-th of count
-  // paths; shared: several paths may have one sample; light(slot): the light that it has gathered.
+  // Stores the sum of the light gathered so far. Must be called after the light of this turn's hits is added. slot(i): returns
+  // the slot of the sample of path i, one of count; shared: several paths may have the same sample; light(slot): returns the
+  // light that the sample has gathered.
   template <class Slot, class Light> void note(uint32_t turn, size_t count, bool shared, Slot &&slot, Light &&light) {
     if (stage_ == 0)
       for (size_t i = 0; i < count; ++i)
@@ -45,7 +46,7 @@ public:
   }
 
 private:
-  // A sample that is not finite is dropped, and so is its share.
+  // Skips samples that are not finite, because the film drops them.
   template <class Light> double sum(Light &&light) const {
     double result = 0.0;
     for (const uint32_t slot : slots_) {

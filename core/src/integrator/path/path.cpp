@@ -94,7 +94,7 @@ void PathIntegrator::keep_vertex(const Path &path, const Surface &surface, doubl
                      film_.gathered(path), surface.instance, surface.primitive, surface.material, path.scatterings});
 }
 
-// Continues a path straight through a surface, unless it has passed all surfaces that it may.
+// Continues a path straight through a surface, unless the path has reached its limit of passed surfaces.
 void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const Ray &ray, double t, const glm::vec3 &weight) {
   if (path.crossings_left(settings_.transparent_bounces) == 0)
     return;
@@ -112,8 +112,9 @@ void PathIntegrator::pass_straight_on(Path &path, const Surface &surface, const 
 bool PathIntegrator::survives(uint32_t scatterings, float u, float sharers, glm::vec3 &beta) {
   if (scatterings <= kRouletteAfter)
     return true;
-  // End dark paths early and divide the survivors by their probability. The root of beta instead of beta itself lets paths go
-  // on longer: variance times rays falls by a twentieth in the mean of five scenes.
+  // Russian roulette: end dim paths early and divide the survivors' throughput by their probability of survival. With the
+  // square root of beta instead of beta, paths survive longer: variance times rays falls by a twentieth on average over five
+  // scenes.
   const float q = std::min(1.0f, std::sqrt(sharers * largest(beta)));
   if (u >= q)
     return false;

@@ -29,8 +29,8 @@ public:
         occlusion_reach_(settings.occlusion_distance > 0.0 ? settings.occlusion_distance * scene.normalisation.scale
                                                            : std::numeric_limits<double>::infinity()),
         last_bounces_(settings.max_bounces), queues_(scene) {
-    // Fill the defaults: a vertex takes one light and one path. Next rays can test ambient occlusion only where shadow rays see
-    // the same surfaces as they do.
+    // Fill the defaults: a vertex takes one light and one path. Next rays can replace occlusion rays only if occlusion rays
+    // meet the same surfaces as next rays.
     std::fill_n(block_.lights, kBlockLanes, 1.0);
     std::fill_n(block_.paths, kBlockLanes, 1.0);
     block_.next_rays_look = !(scene.features & (kFeatureTransparency | kFeatureVisibility));
@@ -85,7 +85,7 @@ private:
   void add_met(size_t first, uint32_t met, uint32_t number);
   void add_light_met(size_t i, uint32_t number);
   template <class Chosen> void add_light_met(size_t i, uint32_t number, const LightHit &met, const Chosen &chosen);
-  double way_end(size_t i) const; // distance from the last scattering to the end of the ray
+  double way_end(size_t i) const; // returns the distance from the last scattering to the end of the ray
   void send_shadow_of(uint32_t lane);
   void look_around(uint32_t lane);
   void send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, const glm::vec3 &weight);

@@ -17,8 +17,8 @@ void PathIntegrator::find_hits() {
       pass_clear(i);
 }
 
-// Whether a surface is present at a hit. At an absent surface, the vertex would pass straight through with weight 1 and sample
-// no light.
+// Whether a surface is present at a hit. At an absent surface, shading would continue the path straight through with weight 1
+// and sample no light.
 bool PathIntegrator::is_there(size_t ray, const Hit &hit) {
   const uint32_t material = material_of(scene_.geometry, scene_.slots, hit.instance, hit.primitive);
   if (!scene_.cutouts[material].may_end)
@@ -41,7 +41,7 @@ void PathIntegrator::pass_clear(size_t number) {
   Path &path = paths_[number];
   const Ray &ray = rays_[number];
   const Hit end = hits_[number];
-  // Mostly the number of layers suffices.
+  // In most cases, the number of layers suffices.
   const uint32_t count = clear_.count_before(number, end);
   if (count == 0)
     return;
@@ -52,12 +52,12 @@ void PathIntegrator::pass_clear(size_t number) {
     const Hit &hit = layer.hit;
     if (!closer(hit.t, hit.instance, hit.primitive, end))
       return;
-    // The path has passed all surfaces that it may: it ends here.
+    // The path has reached its limit of passed surfaces: it ends here.
     if (path.crossings_left(limit) == 0) {
       hits_[number] = hit;
       return;
     }
-    // Passes also record places of low opacity.
+    // Passes may also record a surface of low opacity.
     const bool recorded = film_.awaits_surface(path);
     if (recorded || trace_) {
       const Surface surface = surface_at(scene_.geometry, scene_.slots, ray, hit);

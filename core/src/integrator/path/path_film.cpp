@@ -7,7 +7,7 @@
 namespace lancer {
 
 void PathFilm::begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results) {
-  // Only the first samples of pixels record places.
+  // Passes of places are recorded from the first sample of each pixel alone.
   only_combined_ = passes.only_places() && (!passes.places() || addresses.front().sample > 0);
   results_ = results;
   energy = {};

@@ -19,7 +19,7 @@ public:
   void begin(std::span<const SampleAddress> addresses, std::span<SampleResult> results);
   // Adds the indirect light to the results, clamped where the settings request it.
   void end();
-  // Return the light gathered so far: by a path, and by all paths of a sample.
+  // Return the light gathered so far by a path, or by all paths of a sample.
   glm::vec3 gathered(const Path &path) const {
     const glm::vec3 before = path.split ? before_splitting(path.slot) : glm::vec3(0.0f);
     return results_[path.slot].radiance + before + indirect_[place(path)];
@@ -35,9 +35,9 @@ public:
 
   // Adds light that a path transports to the camera.
   void add(const Path &path, const glm::vec3 &radiance, bool environment);
-  // Adds light that its shadow ray has let pass.
+  // Adds the part of a light sample's contribution that its shadow ray transmits.
   void add_lit(const WaitingLight &waiting, const glm::vec3 &light);
-  // Cuts a share of a sample out of the picture.
+  // Subtracts a share from the alpha of a sample.
   void cut(const Path &path, float share) { results_[path.slot].alpha -= share; }
 
   // Whether no pass but the picture is requested: records stay unused.
@@ -53,15 +53,15 @@ public:
   void add_color(const Path &path, uint32_t component, const glm::vec3 &color) {
     results_[path.slot].light[kLightComponents + 3 * component + 2] += path.beta * color;
   }
-  // Notes that a path goes straight through a surface at t.
+  // Records that a path passes straight through a surface at t.
   void pass_on(const Path &path, double t) {
     if (!only_combined_ && path.leads)
       records_[path.slot].depth += t;
   }
-  // Notes that a path hits nothing.
+  // Records that a path hits nothing.
   void miss(const Path &path);
 
-  // Shares of the first scattering by component, set where a path leaves the camera's view.
+  // The shares of the first scattering by component. The caller sets them when a path leaves the camera's view.
   glm::vec3 (&shares(const Path &path))[2] { return shares_[place(path)].of; }
 
   // Whether a path still looks for the surface of the denoising guides.
@@ -89,7 +89,8 @@ private:
   }
   void clamp(uint32_t slot);
 
-  // State of a sample for passes beside the picture: it stays in its place while the path moves on.
+  // State of a sample for the passes other than Combined. The record stays at the sample's slot while the path moves to other
+  // queues.
   struct Record {
     double depth = 0.0;     // t of the camera ray up to its last layer
     bool seen = false;      // the first surface has been recorded

@@ -53,9 +53,9 @@ void PathIntegrator::split() {
   }
 }
 
-// Draws the requested random numbers, bits of u, in all lanes. In lanes that split, number n of count lights or paths of sample
-// s takes the numbers of sample count s + n, so that all together are as even as so many samples. A path keeps this sample
-// number until its end.
+// Draws the requested random numbers, bits of u, in all lanes. In a lane that splits, light or path n of count takes the
+// numbers of sample count s + n, where s is the number of its own sample. All of them together are then distributed as evenly
+// as count times as many samples. A path keeps its new sample number until its end.
 void PathIntegrator::draw_numbers(uint32_t wanted, uint32_t count, uint32_t number) {
   const uint32_t joint = std::min(8u, kJointDimensions - std::min(block_.dimension, kJointDimensions));
   uint32_t last = 0, points[8] = {};
@@ -69,7 +69,7 @@ void PathIntegrator::draw_numbers(uint32_t wanted, uint32_t count, uint32_t numb
           block_.u[i][lane] = u[i];
       continue;
     }
-    // Neighbours mostly have the same sample, and so the same digits.
+    // Neighbours mostly have the same sample number, and so the same digits.
     if (lane == 0 || sample != last)
       for (uint32_t i = 0; i < joint; ++i)
         points[i] = sobol::reversed_point(sample, block_.dimension + i);
@@ -106,7 +106,7 @@ void PathIntegrator::cut_holes() {
     if (path.in_view) {
       const float share = surfaces_.holdout(lane);
       if (surfaces_.instance(lane).holdout) {
-        // All that the object would show becomes the hole.
+        // The object's whole share of the pixel becomes a hole.
         film_.cut(path, mean(path.beta * surfaces_.opacity(lane)));
         surfaces_.emission[lane] = glm::vec3(0.0f);
         waiting.nothing = surfaces_.transmittance[lane] == glm::vec3(0.0f);
@@ -208,7 +208,7 @@ void PathIntegrator::record_surfaces() {
     const Waiting &waiting = waiting_[lane];
     const Path &path = paths_[waiting.number];
     block_.occlusion_asked |= uint32_t(passes_.occlusion() && !waiting.ends && path.scatterings == 0) << lane;
-    // Mostly the position suffices.
+    // In most cases, the position suffices.
     Surface surface;
     if (path.is_first(settings_.splits.paths) || passes_.uv())
       surface = surfaces_.surface(lane);
@@ -225,7 +225,7 @@ void PathIntegrator::record_surfaces() {
   }
 }
 
-// Whether a path stays in the camera's view: clear glass does not end it.
+// Whether a path stays in the camera's view, which continues through clear glass.
 bool PathIntegrator::stays_in_view(uint32_t lane) const {
   return settings_.transparent_glass && (block_.transmitted >> lane & 1) && !(block_.diffuse >> lane & 1) &&
          block_.alpha2[lane] <= settings_.glass_alpha2;
@@ -243,7 +243,8 @@ void PathIntegrator::take_emission(uint32_t lane) {
                      hits_[waiting.number].t * block_.length[lane]);
 }
 
-// Continues a lane's path straight through the surface if the path chooses so; returns whether it does.
+// Chooses at random whether a lane's path passes straight through the surface. Continues such a path, and returns whether the
+// path passes.
 bool PathIntegrator::passes_straight(uint32_t lane) {
   Path &path = paths_[waiting_[lane].number];
   const float pass = block_.pass[lane];

@@ -48,7 +48,7 @@ void PathIntegrator::add_met(size_t first, uint32_t met, uint32_t number) {
   for (uint32_t rest = met; rest != 0; rest &= rest - 1) {
     const auto lane = uint32_t(std::countr_zero(rest));
     if (place == kNone)
-      // The light belongs to the tree of many.
+      // A light that is not in the binary tree is in the tree of many lights.
       add_light_met(first + lane, number);
     else
       add_light_met(first + lane, number, {get(met_light_.radiance, lane), met_light_.pdf[lane], met_light_.distance[lane]},
@@ -150,7 +150,7 @@ void PathIntegrator::send_shadow_of(uint32_t lane) {
   lights_.write_shadow_ray(lane, ray);
 }
 
-// Tests ambient occlusion around the normal of the diffuse lobes, weighted by the cosine.
+// Samples ambient occlusion by the cosine around the mean normal of the diffuse lobes.
 void PathIntegrator::look_around(uint32_t lane) {
   const Path &path = paths_[waiting_[lane].number];
   const glm::vec3 weight = path.beta * surfaces_.opacity(lane);
@@ -164,7 +164,7 @@ void PathIntegrator::look_around(uint32_t lane) {
   if (block_.sampled >> lane & 1) {
     film_.keep_occlusion(path, occlusion);
   } else {
-    // A next ray without weight is not traced: its direction needs an occlusion ray.
+    // A next ray without weight is not traced, so its direction needs an occlusion ray.
     film_.add_open(path, -glm::vec3(occlusion));
     send_occlusion_ray(lane, get(block_.wi, lane), glm::vec3(occlusion));
   }
@@ -179,7 +179,7 @@ void PathIntegrator::send_occlusion_ray(uint32_t lane, const glm::vec3 &wi, cons
     shadows_.set_light_path(path.asking_path());
 }
 
-// Subtracts the occlusion of next rays from the first surfaces.
+// Subtracts the weight of each occluded next ray from the ambient occlusion of its first surface.
 void PathIntegrator::count_occluded() {
   for (size_t i = 0; i < paths_.size(); ++i) {
     if (paths_[i].scatterings != 1 || !paths_[i].leads)

@@ -17,27 +17,27 @@ struct Path {
   Sampler sampler;
   glm::vec3 beta{1.0f};
   glm::dvec3 from{0.0};   // last scattering point
-  glm::vec3 normal{0.0f}; // there; with transmits, the query by which light samples are chosen
+  glm::vec3 normal{0.0f}; // shading normal at that point; with from and transmits, the LightQuery of its light samples
   bool transmits = false;
   double pdf = 0.0;     // of the BSDF sample that gave the ray; 0 after the camera or a single direction
-  uint32_t slot;        // of its sample's result
+  uint32_t slot;        // of the sample's result
   bool split = false;   // the sample has split
   uint32_t branch = 0;  // number among its sample's paths
   uint32_t sharers = 1; // number of paths that share its weight
-  bool leads = true;    // chosen uniformly among them: it alone records what the camera sees
+  bool leads = true;    // the path is the leader: chosen uniformly among the branches, it alone records passes
   uint32_t scatterings = 0;
   uint32_t kinds = LANCER_RAY_CAMERA; // of the ray
   uint32_t layers = 0;                // transparent surfaces passed since the last scattering
   uint32_t passed_through = 0;        // transparent surfaces passed in all
   PathStory story;                    // for nodes that read it
-  bool in_view = true;                // the path still shows the camera's view: without reflections, through clear glass at
-                                      // most
+  bool in_view = true;                // the path has passed no surface but clear glass, so it still shows the camera's view
   bool last = false;                  // the path ends at the next surface
   double passed = 0.0;                // distance from the last scattering, through layers
   double length = 0.0;                // of the whole path
 
-  // Returns the number of layers that the path may still pass straight through: limit in all, but at least one. Beyond them,
-  // the path ends at the next surface, which shows only its own light.
+  // Returns the number of layers that the path may still pass straight through: up to limit on the whole path, and at least one
+  // unless the path is at its last surface. After these layers, the path ends at the next surface and gets only the light that
+  // this surface emits.
   uint32_t crossings_left(uint32_t limit) const {
     return last ? 0u : std::min(std::max(limit, passed_through + 1) - passed_through, kMaxCrossings - 1 - layers);
   }
@@ -46,12 +46,12 @@ struct Path {
     passed_through += count;
     last = passed_through >= limit;
   }
-  // pass: share of the paths here that pass straight through.
+  // pass: probability of passing straight through.
   bool chooses_to_pass(float pass) const {
     const uint32_t dimension = kDimensionOpacity + 2 * (scatterings * kMaxCrossings + layers);
     return pass > 0.0f && (pass >= 1.0f || sampler.get1(dimension) < pass);
   }
-  // Returns the first dimension of its current vertex.
+  // Returns the first dimension of the path's current vertex.
   uint32_t vertex_dimension() const { return kDimensionVertex + scatterings * kVertexStride; }
   // Whether the path belongs to the first sample of its pixel. paths: number of paths after a split.
   bool is_first(uint32_t paths) const { return sampler.sample() < (split ? paths : 1u); }

@@ -7,9 +7,9 @@ namespace lancer {
 
 namespace {
 
-// Bound of a computed weight that is 0. Corners 1 and 2 give exactly 0; corner 0 gives the rounding error of 1 minus both
-// quotients. Each quotient, and the determinant that they share, has an error of 2^-53 of a sum of 1: less than 2.5 * 2^-53 in
-// all.
+// Bound of the computed value of a barycentric weight whose exact value is 0. Corners 1 and 2 give exactly 0; corner 0 gives
+// the rounding error of 1 minus both quotients. Each quotient, and the determinant that they share, has an error of 2^-53 of a
+// sum of 1: less than 2.5 * 2^-53 in all.
 constexpr double kNoWeight = 0x1p-52;
 
 bool on_border(const Hit &hit) { return hit.u == 0.0 || hit.v == 0.0 || 1.0 - hit.u - hit.v <= kNoWeight; }

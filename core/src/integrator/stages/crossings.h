@@ -1,4 +1,5 @@
-// Surfaces that the rays of a batch pass during traversal: each is counted once, in whatever order they are found.
+// Surfaces that the rays of a batch pass during traversal. Each surface is counted once; the traversal may find them in any
+// order.
 #pragma once
 
 #include "scene/geometry.h"
@@ -26,8 +27,8 @@ public:
   }
   // Returns the number of crossings of a ray.
   uint32_t count(size_t ray) const { return rays_[ray].count; }
-  // Returns the crossing of a ray at this very place; null if there is none. A ray through a common edge or corner of a mesh's
-  // triangles passes one surface, not several.
+  // Returns the ray's crossing at the place of the hit; null if there is none. A ray through a common edge or corner of a
+  // mesh's triangles passes one surface, not several.
   Crossing *find(size_t ray, const Hit &hit);
   // known: result of find() for the hit. Where triangles meet, the closest one represents all.
   void put(Crossing *known, size_t ray, const Hit &hit, const glm::vec3 &transmittance);

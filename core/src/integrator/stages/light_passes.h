@@ -1,4 +1,4 @@
-// The pass of a contribution: direct or indirect, and the component of the first scattering.
+// The light passes to which a contribution is added: direct or indirect, by the component of the first scattering.
 #pragma once
 
 #include "integrator/sample.h"
@@ -23,7 +23,7 @@ public:
         features_((settings.passes & kAnyFeature) != 0), places_((settings.passes & kPlaces) != 0),
         only_places_((settings.passes & ~(kPlaces | kAlways)) == 0) {}
 
-  // Whether SampleResult::light is requested, or a part of it.
+  // Whether any part of SampleResult::light is requested.
   bool wanted() const { return wanted_; }
   // Whether light by component, or its colour, is requested.
   bool components() const { return components_; }

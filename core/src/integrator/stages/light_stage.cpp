@@ -76,8 +76,8 @@ LightStage::Chosen LightStage::choose(uint32_t asking) {
   return chosen;
 }
 
-// Continues the choice in the lanes that have chosen an emitter, together for lanes of one emitter. Returns the lanes that have
-// chosen a face of positive probability.
+// Continues the choice in the lanes that have chosen an emitter; lanes with the same emitter choose together. Returns the lanes
+// that have chosen a face of positive probability.
 uint32_t LightStage::choose_faces(uint32_t lanes) {
   uint32_t found = 0;
   while (lanes != 0) {
@@ -108,7 +108,7 @@ uint32_t LightStage::choose_faces(uint32_t lanes) {
   return found;
 }
 
-// Samples the faces that lanes have chosen. Returns the sampled lanes; those with exact surfaces are not among them.
+// Samples the faces that lanes have chosen. Returns the sampled lanes, without the lanes that have chosen an exact surface.
 uint32_t LightStage::sample_faces(uint32_t lanes) {
   faces_.used = 0;
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
@@ -221,7 +221,7 @@ void LightStage::sample_sky(uint32_t lanes) {
 
 void LightStage::add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye) {
   put(glm::normalize(d), misses_.wi, lane);
-  // A ray that hits nothing counts as one scattering more, as in Cycles.
+  // A ray that hits nothing has one scattering more in its depth, as in Cycles.
   path.depth += 1.0f;
   see_sky(lane, path, eye);
 }

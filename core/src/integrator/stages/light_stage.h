@@ -42,7 +42,8 @@ public:
   // Writes the ray from a lane to its light sample in place.
   void write_shadow_ray(uint32_t lane, Ray &ray) const { surfaces_.write_shadow_ray(lane, far_[lane], ray); }
 
-  // Directions of rays that hit nothing, in lanes: add them lane by lane, evaluate all, and read them.
+  // The sky in the directions of rays that hit nothing: add the directions lane by lane, evaluate all lanes, then read the
+  // results.
   void add_miss(uint32_t lane, const glm::dvec3 &d, LightPath<float> path, const glm::dvec3 *eye);
   void look_at_sky(uint32_t count);
   glm::vec3 sky_radiance(uint32_t lane) const;

@@ -103,7 +103,7 @@ glm::vec4 Shader::node_value(const Surface &surface, uint32_t node, const glm::v
   return values_[node];
 }
 
-// Runs nodes that read nothing of a mesh but the triangle and the place within it.
+// Runs nodes that read only the triangle and the place within it.
 void Shader::run_painted(const Material &material, const Schedule &schedule, const Hit &hit) {
   Surface surface;
   surface.instance = hit.instance;
@@ -207,7 +207,7 @@ bool read_triangle(const Mesh &mesh, const Instance &instance, uint32_t triangle
     smooth.v[i] = glm::dvec3(mesh.vertex(triangle, i));
     smooth.n[i] = glm::dvec3(n[i]);
   }
-  // A flat face among smooth ones has one normal at all of its corners.
+  // A flat face among smooth faces has the same normal at all corners.
   return smooth.n[0] != smooth.n[1] || smooth.n[1] != smooth.n[2];
 }
 

@@ -41,8 +41,8 @@ public:
   void shade(const Surface &surface, const View &view, Shaded &result);
   // Returns the share of a shadow ray's light that passes straight through. path: of the ray up to there.
   glm::vec3 transmittance(const Ray &ray, const Hit &hit, const LightPath<float> &path);
-  // Whether a mesh's surface, whose cutout may vanish, is present at a hit; where it is absent, light passes as if there were
-  // no surface.
+  // Whether the surface is present at a hit on a mesh whose cutout has may_end set. Light passes an absent surface as if there
+  // were none.
   bool is_there(uint32_t material, const Hit &hit);
   // Returns the emission alone, for light samples. path: of the vertex that samples the light.
   glm::vec3 emission(const Surface &surface, const glm::vec3 &wo, const LightPath<float> &path = {});

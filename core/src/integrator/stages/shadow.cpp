@@ -23,7 +23,7 @@ uint64_t ShadowQueue::trace_clear() {
     if (occluded_[i])
       contribution = glm::vec3(0.0f);
     else if (crossings_.count(i) > 0)
-      // Multiply the transmittances in order of distance, whatever the order of finding.
+      // Multiply the transmittances in order of distance, so that the product does not depend on the order of traversal.
       for (const Crossing &layer : crossings_.dimming_in_order(i))
         contribution *= layer.transmittance;
   }

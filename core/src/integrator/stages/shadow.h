@@ -1,4 +1,4 @@
-// Shadow rays, queued and traced as a batch: the part of each light contribution that arrives.
+// Shadow rays, queued and traced as a batch: they determine the part of each light contribution that arrives.
 #pragma once
 
 #include "integrator/sample.h"
@@ -19,8 +19,8 @@ public:
             scene.materials, [](const Material &m) { return m.transmittance.varies() && m.program.asks_light_path; })),
         crossings_(scene.geometry) {}
 
-  // Queues a contribution that is added to its waiting sum as far as the ray's transmittance allows. passed: surfaces that the
-  // path already passed straight through; they count against the same limit.
+  // Queues a contribution; trace() multiplies it by the ray's transmittance. passed: the number of surfaces that the path has
+  // already passed straight through; they count against the same limit.
   void push(const Ray &ray, const WaitingLight &waiting, const glm::vec3 &contribution, uint32_t passed = 0) {
     rays_.push_back(ray);
     waiting_.push_back({waiting, contribution, passed});

@@ -1,6 +1,6 @@
 // Prefetches texels before they are looked up. In an image of 8192 x 8192, a random look-up waits for main memory twice as long
-// as the rest of the look-up takes; with a prefetch one hit ahead it hardly waits, which saves a third of the look-ups' share
-// of a textured scene.
+// as the rest of the look-up takes. With a prefetch one hit ahead, the look-up hardly waits; this saves a third of the time of
+// look-ups in a textured scene.
 #pragma once
 
 #include "compile/scene.h"
@@ -9,7 +9,7 @@
 
 namespace lancer {
 
-// A look-up that shading a hit will make; no image: none can be predicted.
+// The look-up that the shading of a hit will make; image is null if no look-up can be predicted.
 struct ComingLookup {
   const Image *image = nullptr;
   glm::vec2 uv{0.0f};
@@ -25,7 +25,7 @@ public:
     if (any_ && hit.valid())
       ask(hit);
   }
-  // The hit must be valid.
+  // Returns the look-up that the shading of the hit will make. The hit must be valid.
   ComingLookup coming(const Hit &hit) const;
 
 private:

@@ -169,8 +169,8 @@ LANCER_LANE V3 divided(const V3 &a, const V3 &b) {
   return {select(b.x != zero, a.x / b.x, zero), select(b.y != zero, a.y / b.y, zero), select(b.z != zero, a.z / b.z, zero)};
 }
 
-// Computes the contribution of the light sample without occlusion. scatters: share of paths that are scattered, which can find
-// the same light.
+// Computes the contribution of the light sample without occlusion. scatters: share of paths that are scattered; only these can
+// find the same light by a BSDF sample.
 LANCER_LANE void light_of(VertexBlock &block, int first, const Bsdf<F> &bsdf, D scatters) {
   const F zero(0.0f);
   const D pdf = load(block.light_pdf + first);
@@ -197,12 +197,12 @@ LANCER_LANE void light_of(VertexBlock &block, int first, const Bsdf<F> &bsdf, D 
   block.lifted |= placed_bits(terminator_amount(load(block.terminator + first), bsdf.ns, bsdf.ng, wi) > zero, first);
 }
 
-// Ambient occlusion: matt surfaces sample their next rays by the same cosine, which then replace occlusion rays. The estimate
-// is 1, minus the next ray's weight where that ray is occluded, which is exact without occluders. Only directions above both
-// normals are replaced: in others, the BSDF may discard its sample, and a direction that occlusion samples there gets its own
-// ray.
+// Ambient occlusion. Matt surfaces sample next rays from the same density as occlusion rays, the cosine, so that a next ray can
+// replace an occlusion ray. The estimate is 1 minus the weight of the next ray if that ray is occluded: exactly 1 without
+// occluders. Only directions above both normals are replaced, because the BSDF may discard its sample in other directions. If
+// the direction sampled for occlusion is not above both normals, it gets a ray of its own.
 LANCER_LANE void look_around(VertexBlock &block, int first, const Bsdf<F> &bsdf, const BsdfSample<F> &sample) {
-  // The least share of cosine lobes in the BSDF's samples: weights are at most 1 over it.
+  // The least probability of cosine-sampled lobes; weights are at most 1 / kLeastCosine.
   constexpr float kLeastCosine = 0.5f;
   const M asked = some(block.occlusion_asked, first);
   if (!any(asked))

@@ -86,7 +86,7 @@ struct alignas(64) VertexBlock {
   // irradiance at normal incidence; contribution is without the branch's weight.
   Floats reflected[3], refracted[3], through_wi[3], irradiance[3];
 
-  // Bits of lanes.
+  // Each of the following is one bit per lane.
   uint32_t used = 0;
   uint32_t on_mesh = 0, smooth = 0; // input: triangles; those with smooth normals
   uint32_t exact = 0;               // input: spheres and the following shapes
