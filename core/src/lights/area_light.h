@@ -10,9 +10,9 @@ namespace lancer {
 // bound keeps the gap small enough that it hides no visible occluder.
 inline constexpr double kMostTolerances = 64.0;
 
-// Returns the length of a shadow ray towards a lamp at distance t, where cosine is between the ray and the lamp's axis. The ray
-// ends before the lamp by so much that rounding cannot turn a face in the lamp's own plane, such as the ceiling that the lamp
-// is set into, into an occluder.
+// Returns the length of a shadow ray towards a lamp at distance t. cosine: between the ray and the lamp's axis. The ray ends so
+// far before the lamp that a face in the lamp's own plane, such as the ceiling around it, does not occlude the lamp by
+// rounding.
 template <class D> LANCER_LANE D area_end(D t, D cosine, D plane_tolerance) {
   return max(t - min(plane_tolerance / cosine, D(kMostTolerances) * plane_tolerance), D(0.5) * t);
 }
@@ -47,8 +47,8 @@ template <class F> LANCER_LANE Vector3<F> area_radiance(const AreaNumbers<F> &li
   return select(light.narrowed, narrow(light.emission * share), whole);
 }
 
-// The part of an area light whose spread lets light reach a point; only this part is sampled. low and high bound a rectangle in
-// units of the half lengths; an ellipse is sampled whole.
+// The part of an area light from which light reaches a point within the spread; only this part is sampled. low and high bound a
+// rectangle in units of the half lengths; an ellipse is sampled whole.
 template <class F> struct AreaPart {
   Vector2<DoubleOf<F>> low, high;
   MaskOf<F> ellipse;
@@ -77,7 +77,8 @@ template <class F> LANCER_LANE AreaPart<F> area_part(const AreaNumbers<F> &light
 }
 
 // A lamp whose diagonal is below kLeastDiagonal times its distance is sampled uniformly in area: its distance and cosine vary
-// little over it. So is a lamp whose solid angle is below kLeastSolidAngle, where the solid angle is all rounding error.
+// little over it. The same holds for a lamp whose solid angle is below kLeastSolidAngle, where the computed solid angle is
+// mostly rounding error.
 inline constexpr double kLeastDiagonal = 1e-2, kLeastSolidAngle = 1e-9;
 
 // A rectangle, or the part of it that is sampled, seen from a point.
@@ -134,7 +135,7 @@ LANCER_LANE void sample_area(const AreaNumbers<F> &light, const Double3Of<F> &p,
   sample.pdf = select(valid, seen.pdf(distance, cosine, part.area), sample.pdf);
 }
 
-// Where rays from o along unit wi hit the part of the light that sampling would choose from.
+// The places where rays from o along unit wi hit the part of the light that sampling uses.
 template <class F> struct AreaMeeting {
   MaskOf<F> met;
   DoubleOf<F> t, cosine;

@@ -29,13 +29,14 @@ public:
                 uint32_t instance, bool of_mesh, const EmissionAt &emission, const BuildContext &context);
 
   bool empty() const { return tree_.empty(); }
-  // The choice by power, for callers that know no shading normal.
+  // The choice by power, for callers without a shading normal.
   const WeightedChoice &by_power() const { return by_power_; }
   // Chooses a face by an upper bound of the light that the point gets from each.
   LightChoice choose(const Instance &placed, const LightQuery &query, double u) const {
     return tree_.choose(to_tree(placed, query), u);
   }
-  // Choices for several points at once: each walk starts from a point and may belong to another instance of the mesh.
+  // Returns the walk that chooses a face for one point. Walks for several points are made together, and may belong to different
+  // instances of the mesh.
   LightWalk walk(const Instance &placed, const LightQuery &query, double u) const {
     return LightTree::walk(to_tree(placed, query), u);
   }

@@ -100,7 +100,7 @@ Emitter::Emitter(const Geometry &geometry, const std::vector<uint32_t> &slots, c
     return;
   double level = emission_level(materials[number].emission.value);
   if (emission_varies(materials[number])) {
-    // Average over 8 x 8 points of the curved side; the sampling of the parts does not depend on the result.
+    // Average over 8 x 8 points of the curved side. The result is the level alone; the parts are weighted by area below.
     level = 0.0;
     for (int i = 0; i < 64; ++i) {
       const glm::vec2 u((float(i % 8) + 0.5f) / 8.0f, (float(i / 8) + 0.5f) / 8.0f);

@@ -34,8 +34,7 @@ public:
   // that point.
   LightSample sample_face(const Geometry &geometry, const std::vector<uint32_t> &slots, uint32_t face, const glm::dvec3 &p,
                           const glm::vec2 &u, Surface &surface) const;
-  // Returns the density per solid angle with which sample_face() gives this surface point from p, its face being chosen
-  // already.
+  // Returns the density per solid angle with which sample_face() returns this surface point from p, once its face is chosen.
   double face_pdf(const Geometry &geometry, const glm::dvec3 &p, const Surface &surface) const;
 
   // sample() and pdf() choose the face by power alone.

@@ -14,8 +14,8 @@ namespace {
 // Width of the map where neither the user nor an image decides, and the largest width that is stored. A finer image is
 // evaluated texel by texel and averaged over the cells.
 constexpr uint32_t kPlainWidth = 1024, kLargestWidth = 2048;
-// Most evaluations over all directions: some seconds of one processor. They reach each texel of an image 8192 wide; for an
-// image 16384 wide they fall on the corners between texels, where interpolation still reaches each texel.
+// Largest number of evaluations over all directions: some seconds of one processor. They reach each texel of an image 8192
+// wide; for an image 16384 wide they fall on the corners between texels, where interpolation still reaches each texel.
 constexpr uint32_t kMostLooks = 1u << 25;
 // Share of the samples that is uniform over all directions: it finds a bright speck that the map has missed.
 constexpr float kEvenShare = 0.05f;
@@ -43,8 +43,8 @@ uint32_t image_width(const World &world, const std::vector<Image> &images) {
   return width;
 }
 
-// Whether nodes give another radiance in another direction: of the nodes without inputs, all depend on the direction except
-// Light Path and Object Info.
+// Whether the radiance depends on the direction. Of the nodes without inputs, all depend on the direction except Light Path and
+// Object Info.
 bool has_directions(const World &world) {
   return std::ranges::any_of(world.schedule, [&](uint16_t number) {
     switch (world.program.nodes[number].kind) {

@@ -91,7 +91,7 @@ struct TreeLight {
   ShineCone cone;                   // Cluster
 };
 
-// A light as the tree is built from it. A light that has no power of its own has energy 0.
+// A light as input to the builders of the trees. energy is 0 for a light without power of its own.
 struct DescribedLight {
   TreeLight light;
   LightBounds bounds; // energy in the user's units

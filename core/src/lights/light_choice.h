@@ -40,7 +40,7 @@ LANCER_LANE Importance<F> node_importance(const LightQueryLanes<F> &query, const
   return node.distant ? importance_far(query, node.shape) : importance(query, node.shape);
 }
 
-// Raises each positive upper bound to at least kRaised / count of the largest one.
+// Raises each positive upper bound to at least kRaised / count times the largest one.
 template <class F> LANCER_LANE void raise(Importance<F> *parts, uint32_t count) {
   const F zero(0.0f);
   F strongest = zero;
@@ -76,7 +76,8 @@ LANCER_LANE Vector2<DoubleOf<F>> pair_shares(const LightQueryLanes<F> &query, co
   using D = DoubleOf<F>;
   Importance<F> parts[2] = {node_importance(query, tree, pair), node_importance(query, tree, pair + 1)};
   raise(parts, 2);
-  // A cluster's lower bound is mostly 0 and would make the shares equal: five times the variance under 200 lamps.
+  // Use the upper bounds alone: the lower bound of a cluster is mostly 0 and would make the shares equal, with five times the
+  // variance under 200 lamps.
   if (pair != 0 && (tree.nodes[pair].count != 1 || tree.nodes[pair + 1].count != 1)) {
     const D zero(0.0), left = widen(parts[0].most), right = widen(parts[1].most), sum = left + right;
     return {select(sum > zero, left / sum, zero), select(sum > zero, right / sum, zero)};

@@ -1,6 +1,6 @@
 // The importance of a light or cluster at a point: the weights by which the light tree chooses. They are upper and lower bounds
-// of the arriving light, as in Cycles: where only one technique can find a light, the picture depends on these densities. Where
-// rounding in Cycles would drop a light that contributes, its probability stays positive here. F is a float, or lanes of
+// of the arriving light, as in Cycles: where only one technique can find a light, the picture depends on these densities.
+// Unlike in Cycles, rounding never drops a light that contributes: its probability stays positive. F is a float, or lanes of
 // floats: points that evaluate the same light.
 #pragma once
 
@@ -25,9 +25,9 @@ template <class F> struct LightQueryLanes {
 // Bounds of the arriving light; most > 0 wherever light may arrive.
 template <class F> struct Importance { F most, least; };
 
-// Occluders are unknown: beside a blinding light that is hidden, a dim one may give all the light. So each of n lights or
-// clusters that may contribute gets at least 1 / n of this share of the largest weight; raised weights take at most this share
-// of the choices from the others.
+// The weights ignore occluders: if a bright light is occluded, a dim one may give all the light. So each of n lights or
+// clusters that may contribute gets at least kRaised / n times the largest weight. Raised weights take at most the share
+// kRaised of all choices.
 inline constexpr float kRaised = 0x1p-8f;
 
 // A light as seen from the point.
@@ -47,7 +47,8 @@ template <class F> struct ConeCosines {
   LANCER_LANE explicit ConeCosines(float cos_e) : cos_o(1.0f), sin_o(0.0f), cos_all(cos_e), cos_full(cos_e) {}
 };
 
-// Rounding may push a cosine of 0 below zero by this much; the weight then uses this value.
+// Bound of the rounding error of a cosine. A cosine above -kCosineSlack may be positive, and the weight then uses at least
+// kCosineSlack.
 inline constexpr float kCosineSlack = 0x1p-20f;
 // Scenes and trees are about 1024 wide: no squared distance is below the rounding of a float position, and no positive
 // importance is below kLeastImportance.

@@ -39,7 +39,7 @@ struct LightBranches {
   static constexpr int kDeepest = 32, kEvenFrom = kDeepest / 2;
 
   const LightBranch *branches = nullptr; // 0 is the root
-  const LightAim *aims = nullptr;        // of each branch; null where no child is aimed
+  const LightAim *aims = nullptr;        // of each branch; null if no child of any branch is aimed
   // The slot of each branch in its parent: kBranchWidth times the parent's number, plus the child's.
   const uint32_t *slot_of = nullptr;
 };
@@ -96,8 +96,8 @@ struct LightKernel {
   const char *name;
   // Chooses a light for each walk: reads u as the random number and writes the rest of it back.
   void (*choose)(const LightBranches &tree, LightWalk *walks, uint32_t count);
-  // Returns the probability with which choose() comes to the child in that slot; number, u and probability of the walk are not
-  // read.
+  // Returns the probability with which choose() reaches the child in that slot. Does not read number, u and probability of the
+  // walk.
   double (*probability)(const LightBranches &tree, const LightWalk &walk, uint32_t slot);
   // Calls visit(context, lane, light) for all lights that the first count segments may hit; no other light can be hit.
   using Visit = void (*)(void *context, uint32_t lane, uint32_t light);

@@ -9,8 +9,8 @@ namespace lancer {
 
 namespace {
 
-// Up to this number of lights with a position, lights are chosen from as in Cycles; among more, that choice costs more per
-// light and leaves more noise.
+// Up to this number of lights with a position, the choice is that of Cycles. Among more lights, Cycles' choice would cost more
+// per light and leave more noise.
 constexpr size_t kFew = 4;
 
 } // namespace
@@ -35,7 +35,7 @@ LightSet::LightSet(std::vector<Light> lights, std::vector<Emitter> emitters, siz
   // An environment that is visible to the camera alone lights no surface.
   if (environment_.is_light() && lit_by(environment_.hidden_from()))
     described.push_back(describe_sky(environment_.mean(), environment_light()));
-  // A light that is never chosen is never hit either: both techniques of multiple importance sampling cover the same lights.
+  // Rays hit only lights that can be chosen: both techniques of multiple importance sampling must cover the same lights.
   std::vector<uint32_t> met;
   for (uint32_t i = 0; i < lights_.size(); ++i)
     if (described[i].met && described[i].bounds.energy > 0.0)

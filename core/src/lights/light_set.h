@@ -42,8 +42,8 @@ public:
   // Chooses a light, and a face of an emitter, by the possible contribution at the point. u in [0, 1); the set must not be
   // empty.
   Choice choose(const Geometry &geometry, const LightQuery &query, double u) const;
-  // choose() in two steps, for kernels that take the first: choose in the binary tree, then use the rest of u to choose within
-  // the light that the first step returned.
+  // choose() in two steps, because kernels do the first step: choose in the binary tree, then use the rest of u to choose
+  // within the light that the first step returned.
   const BinaryLightTree &binary_tree() const { return binary_tree_; }
   // In the binary tree, the number size() stands for all lights of wide_tree().
   const LightTree &wide_tree() const { return wide_tree_; }
@@ -79,8 +79,8 @@ private:
   std::vector<uint32_t> switches_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> always_, emitter_of_;
-  // Few lights are chosen from as in Cycles. Of many, all those with a position stand in wide_tree_, which is one entry of
-  // binary_tree_.
+  // A few lights are all in binary_tree_ and are chosen as in Cycles. If there are many, wide_tree_ contains all lights with a
+  // position, and is one entry of binary_tree_.
   BinaryLightTree binary_tree_;
   LightTree wide_tree_;
   bool find_ = false;

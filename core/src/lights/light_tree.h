@@ -49,7 +49,7 @@ private:
   std::vector<TreeLight> lights_;
   std::vector<uint32_t> node_of_, parent_; // LightNodes
   std::vector<uint32_t> place_of_;         // by number; kNone: never chosen
-  uint32_t root_ = 0;                      // kNone where both 0 and 1 have lights: the pair of them
+  uint32_t root_ = 0;                      // kNone if both 0 and 1 have lights: the root is then this pair
 };
 
 class LightTree {

@@ -1,5 +1,5 @@
-// The weights of all children of a branch at a point, in lanes: the upper bound of importance() of clusters, except that a
-// point within a cluster's ball is treated as on its surface. For kernels only, like simd/lanes.h.
+// The weights of all children of a branch at a point, in lanes: the upper bound of importance() for clusters. A point within a
+// cluster's ball is treated as a point on the ball's surface. For kernels only, like simd/lanes.h.
 #pragma once
 
 #include "lights/light_importance.h"

@@ -115,8 +115,8 @@ LANCER_LANE void sample_round(const L<F> &light, const Double3Of<F> &p, F u, F v
     pdf = select(ball, ball_pdf(cone, inside), pdf);
   }
   const D attenuation = select(inside, one, spot_attenuation(light, wi, spot & which));
-  // Divide the intensity by the squared distance for a point, by the projected area otherwise; inside the ball, a spot's cone
-  // is ignored.
+  // Divide the intensity by the squared distance for a point, otherwise by the projected area. Inside the ball, ignore a spot's
+  // cone.
   const D per_area = attenuation / select(point, distance * distance, D(std::numbers::pi) * radius * radius);
   sample.target = select(which, target, sample.target);
   sample.wi = select(which, wi, sample.wi);
@@ -126,8 +126,8 @@ LANCER_LANE void sample_round(const L<F> &light, const Double3Of<F> &p, F u, F v
   sample.delta = sample.delta | point;
 }
 
-// Where rays from o along unit wi hit the disk that faces o, or the ball: on its near side from outside, on its far side from
-// inside.
+// The places where rays from o along unit wi hit the disk that faces o, or the ball: its near side from outside, its far side
+// from inside.
 template <class F> struct RoundMeeting {
   MaskOf<F> met, inside;
   DoubleOf<F> distance; // of the centre

@@ -6,8 +6,8 @@
 
 namespace lancer {
 
-// Returns the weight of a sample that another technique could also have found: the power heuristic in ratio form, where
-// infinite densities give 0 or 1, never NaN.
+// Returns the MIS weight of a sample with density pdf that another technique finds with density other: the power heuristic, in
+// the form of a ratio, so that infinite densities give 0 or 1 and never NaN.
 template <class D> LANCER_LANE auto mis_weight(D pdf, D other) {
   const D ratio = other / pdf;
   return narrow(D(1.0) / (D(1.0) + ratio * ratio));

@@ -11,8 +11,9 @@ namespace lancer {
 template <class F> struct SeenFace {
   using D = DoubleOf<F>;
   using D3 = Double3Of<F>;
-  // A face whose area is below kFar times the squared distance of its middle is sampled by area, which serves as well at that
-  // distance. Outside the two bounds of the solid angle, the face is seen edge on, or the point lies on it.
+  // A face whose area is below kFar times the squared distance of its middle is sampled by area, which has as little noise at
+  // that distance. Solid angles below kLeastAngle or above kMostAngle occur where the face is seen edge on or the point lies on
+  // it.
   static constexpr double kFar = 0.01, kLeastAngle = 1e-6, kMostAngle = 6.28;
 
   D3 v0, e1, e2;

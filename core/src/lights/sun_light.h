@@ -7,7 +7,8 @@
 
 namespace lancer {
 
-// The disk in the direction whose cosine to the middle is given. The sun's irradiance is that at normal incidence.
+// Radiance and density of the sun's disk in a direction whose cosine to the disk's middle is given. emission: the irradiance at
+// normal incidence.
 template <class F> struct SunDisk {
   Vector3<F> radiance;
   DoubleOf<F> pdf;
