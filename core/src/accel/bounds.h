@@ -24,8 +24,8 @@ inline Float4 max4(Float4 a, Float4 b) { return a > b ? a : b; }
 
 // Padding of boxes in their frame, where coordinates are at most 1. The slab test of bvh_kernel.cpp works in float, u = 2^-24,
 // as b / d - q / d; a ray that hits the contents starts within sqrt(3) of the centre (placed_shape.h), so b - q is at most
-// 2.74. Its errors, as displacements of the box's planes: rounding of q 1.74u; of b 0.5u; of both products 1.74u and 1u; of the
-// difference 2.74u; of the direction and its inverse 2 * 2.74u; in all 13.2u < 16u = 2^-20.
+// 2.74. The errors, as displacements of the box's planes, are: rounding of q 1.74u; of b 0.5u; of both products 1.74u and 1u;
+// of the difference 2.74u; of the direction and its inverse 2 * 2.74u. The sum is 13.2u < 16u = 2^-20.
 inline constexpr float kBoxPad = 0x1p-20f;
 
 // Lane 3 is free for the builder; it takes part in min and max, but its result has no meaning.
@@ -52,7 +52,7 @@ struct Box {
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 };
 
-// A box that grows by minima alone: its high corner is stored negated.
+// A box whose high corner is stored negated, so that both corners grow by minima.
 struct GrowingBox {
   Float4 lo, minus_hi;
 

@@ -1,4 +1,4 @@
-// Tests of one ray against one primitive that keep the closer hit, for traversals that test primitives one by one.
+// Tests of one ray against one primitive, for traversals that test primitives one by one. Each test keeps the closer hit.
 #pragma once
 
 #include "accel/placed_shape.h"

@@ -54,8 +54,8 @@ Extent mesh_extent(const Mesh &mesh) {
   return e;
 }
 
-// Bounds a mesh by the boxes of its vertices in the cells of a grid. Rotated, these boxes stay nearly as tight as the mesh,
-// whereas a single box grows by up to a factor of 1.7: a sample of a field of rotated copies costs an eighth less.
+// Bounds a mesh by the boxes of its vertices in the cells of a grid. The bounds of these boxes stay nearly tight when the mesh
+// is rotated, whereas a single box grows by up to a factor of 1.7. In a field of rotated copies, a sample costs an eighth less.
 std::vector<Extent> mesh_cells(const Mesh &mesh, const Extent &whole) {
   constexpr uint32_t kSide = 4;
   Extent cells[kSide][kSide][kSide];
@@ -79,9 +79,9 @@ std::vector<Extent> mesh_cells(const Mesh &mesh, const Extent &whole) {
 
 glm::dmat3 magnitudes(const glm::dmat3 &m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
 
-// Bounds the displacement in object space of a point with coordinates up to reach by a round trip to the world. Each map rounds
-// to within gamma(4) of the sum of its terms' magnitudes, and the stored inverse is known to about gamma(20) of |to_object|
-// |to_world|; 32 units of 2^-53 cover all of it.
+// Returns a bound of the displacement, in object space, that a round trip to the world gives a point with coordinates up to
+// reach. Each map rounds to within gamma(4) of the sum of its terms' magnitudes, and the stored inverse is known to about
+// gamma(20) of |to_object| |to_world|; 32 units of 2^-53 cover all of it.
 glm::dvec3 round_trip(const Instance &instance, const glm::dvec3 &reach) {
   const glm::dvec3 world = magnitudes(instance.to_world.linear) * reach + glm::abs(instance.to_world.translation);
   return 0x1p-48 * (magnitudes(instance.to_object.linear) * world + glm::abs(instance.to_object.translation) + reach);

@@ -1,6 +1,6 @@
-// An instance as traversals read it, and the transformation of rays into its space. The origin moves near the instance's
-// centre, with the same numbers for every accelerator. Plain records and forced inlining: the kernels are compiled once per
-// instruction set and must not emit a shared symbol.
+// The record of an instance for traversals, and the transformation of rays into its space. The transformation moves a ray's
+// origin near the instance's centre, with the same numbers for every accelerator. Plain records and forced inlining: the
+// kernels are compiled once per instruction set and must not emit a shared symbol.
 #pragma once
 
 #include "scene/ray.h"
@@ -147,8 +147,8 @@ LANCER_LANE bool enter_shape(const PlacedShape &shape, const Ray &ray, ObjectRay
   return enter_frame(shape.frame, o, d, object_ray);
 }
 
-// Transforms the ray to the scene's frame. Returns false for rays that by definition hit nothing: a non-finite value, no
-// direction, an empty range or a NaN in the range.
+// Transforms the ray to the scene's frame. Returns false for rays that by definition hit nothing: those with a non-finite
+// value, a zero direction, an empty range or a NaN in the range.
 LANCER_LANE bool enter_world(const PlacementFrame &world, const Ray &ray, ObjectRay &world_ray) {
   const double o[3] = {ray.o.x, ray.o.y, ray.o.z}, d[3] = {ray.d.x, ray.d.y, ray.d.z};
   return ray.tmin < ray.tmax && enter_frame(world, o, d, world_ray);

@@ -23,7 +23,7 @@ Interval intersection(const Interval &a, const Interval &b) {
   return i;
 }
 
-// Solves with a discriminant that may be negative; returns false then.
+// Solves with a discriminant; returns false if it is negative.
 bool solve_squared(double a, double b, double c, double discriminant, double &first, double &second) {
   return discriminant >= 0.0 && solve(a, b, c, std::sqrt(discriminant), first, second);
 }
@@ -61,7 +61,7 @@ Interval unit_nappe(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
   c.add_square(o.x);
   c.add_square(o.y);
   c.subtract_square(0.5 * w);
-  // Along the cone's generators m is nearly zero: it needs all of its digits.
+  // Along the cone's generators m is nearly zero, so it must not lose digits by cancellation.
   const glm::dvec3 m(difference_of_products(o.y, d.z, -w, d.y), difference_of_products(-w, d.x, o.x, d.z),
                      difference_of_products(o.x, d.y, o.y, d.x));
   const double across = 0.5 * hypot(m.x, m.y), around = std::abs(m.z);
@@ -71,13 +71,13 @@ Interval unit_nappe(const glm::dvec3 &o, const glm::dvec3 &d, double slack) {
   const bool starts_here = std::abs(c.total()) <= slack;
   double first, second;
 
-  // Less steep than the cone: both roots lie on one nappe; keep them if it is the nappe with w >= 0.
+  // A line less steep than the cone: both roots lie on one nappe. Keep them if that nappe has w >= 0.
   if (a > 0.0) {
     if (!solve_squared(a, b, c.total(), discriminant, first, second) || w - (b / a) * d.z < 0.0)
       return kEmpty;
     return between(first, second, starts_here);
   }
-  // Steeper than the cone: one root on each nappe, and the line stays inside beyond it.
+  // A line steeper than the cone: one root lies on each nappe, and beyond its root the line stays inside.
   if (!solve_squared(a, b, c.total(), std::max(discriminant, 0.0), first, second))
     return kEmpty;
   if (a == 0.0)

@@ -38,7 +38,7 @@ private:
 };
 
 // Entry and exit of a line through a convex solid, and whether each is the surface point that the ray starts from. All closed
-// shapes are intersections of convex solids, so a line that enters always leaves: no gap at the rims.
+// shapes are intersections of convex solids, so a line that enters always leaves, and there is no gap at the rims.
 struct Interval {
   double entry = -__builtin_inf(), exit = __builtin_inf();
   bool entry_is_start = false, exit_is_start = false;
@@ -71,8 +71,9 @@ LANCER_LANE bool first_place(const Interval &i, double unit, bool leaves, double
   return !(leaves && i.exit_is_start) && tmin < t && t < tmax;
 }
 
-// The terms of solve() for a line and the unit sphere; the discriminant first, since most lines miss. b^2 - a c is a - |o x
-// d|^2 (Lagrange): the squared distance of the line from the centre, without the cancellation of o.o.
+// The terms of solve() for a line and the unit sphere. The discriminant is computed first, because most lines miss. It is b^2 -
+// a c = a - |o x d|^2 (Lagrange), which has no cancellation in o.o; |o x d|^2 / a is the squared distance of the line from the
+// centre.
 template <class D> struct SphereTerms {
   D a, b, c, discriminant;
 

@@ -18,10 +18,11 @@ LANCER_LANE double difference_of_products(double a, double b, double c, double d
   return (p - q) + (rest_of_product(a, b, p) - rest_of_product(c, d, q));
 }
 
-// Decides whether the origin lies within a triangle with the corners (x, y) if some of its edge functions w have rounded to
-// zero; w[i] = x[k] y[j] - y[k] x[j] with the corners j and k after i. Recomputes these edge functions to their last digit. An
-// origin exactly on an edge is moved by an infinitesimal towards +x, and by one of second order towards +y, the same for every
-// triangle: so exactly one of the triangles around an edge or a corner is hit for each crossing of their surface.
+// Returns whether the origin lies within a triangle with the corners (x, y) of which some edge functions w have rounded to
+// zero. w[i] = x[k] y[j] - y[k] x[j], where j and k are the corners after i. Recomputes these edge functions to their last
+// digit. An origin exactly on an edge is moved by an infinitesimal towards +x, and by a second-order infinitesimal towards +y.
+// The move is the same for every triangle, so a line through an edge or a corner hits exactly one of the triangles around it
+// for each crossing of their surface.
 LANCER_LANE bool within_edges(const double x[3], const double y[3], double w[3]) {
   int sides = 0;
   for (int i = 0; i < 3; ++i) {
@@ -71,8 +72,8 @@ template <class D> struct TriangleHit { D t, wb, wc, det; };
 
 namespace {
 
-// Resolves ties, the lanes of rays exactly through an edge, by within_edges(); they are rare. Returns met without the lanes
-// that miss.
+// Resolves the ties, which are rare: the lanes whose ray passes exactly through an edge, by within_edges(). Returns met without
+// the lanes that miss.
 template <class D>
 [[gnu::noinline, gnu::cold]] uint32_t settle_ties(const D (&x)[3], const D (&y)[3], uint32_t ties, uint32_t met, D (&w)[3]) {
   constexpr size_t count = sizeof(D) / sizeof(double);
@@ -100,7 +101,7 @@ template <class D>
 } // namespace
 
 // Tests each lane's line against its triangle; bit i of the result: lane i hits. corner: by number, and by axis in the ray's
-// order. Edge functions change sign exactly when their corners are swapped, so exactly one of the triangles at a shared edge is
+// order. Swapping the corners of an edge negates its edge function exactly, so exactly one of the triangles at a shared edge is
 // hit.
 template <class D>
 LANCER_LANE uint32_t intersect_triangle(const D (&corner)[3][3], const ShearedRay<D> &ray, TriangleHit<D> &hit) {

@@ -9,13 +9,13 @@ namespace lancer {
 
 inline constexpr uint32_t kBvhWidth = 8;
 inline constexpr uint32_t kBvhLeafSize = 4;
-// Below this depth nodes are halved by count, so a path is at most kBvhSahDepth + log8(2^32) < 48 nodes long, and each node on
-// it leaves at most 7 siblings on the stack.
+// Below this depth, nodes are halved by count. So a path from the root is at most kBvhSahDepth + log8(2^32) < 48 nodes long,
+// and each of its nodes leaves at most 7 siblings on the stack.
 inline constexpr uint32_t kBvhSahDepth = 36;
 inline constexpr uint32_t kBvhTreeStack = 7 * 48 + 8;
 
-// Kinds of entries on a ray's stack: the kind in the upper three bits, an offset into its array in the others, in steps of
-// kBvhStep bytes.
+// Kinds of entries on a ray's stack. The upper three bits of an entry are its kind; the others are the offset into the kind's
+// array, in steps of kBvhStep bytes.
 enum BvhKind : uint32_t {
   kBvhInner = 0,     // a node of the current tree
   kBvhTriangles = 1, // a block of the current mesh

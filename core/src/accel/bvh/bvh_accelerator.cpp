@@ -66,8 +66,8 @@ private:
       kernel.any(scene, rays.data(), occluded.data(), rays.size());
   }
 
-  // Chooses the instances whose triangles become part of the world's tree: those of meshes used once, and copies of small
-  // meshes.
+  // Chooses the instances whose triangles become part of the world's tree: instances of meshes that are used once, and copies
+  // of small meshes.
   std::vector<uint8_t> choose_unfolded(const Geometry &geometry) const {
     std::vector<uint32_t> uses(geometry.meshes.size(), 0);
     size_t triangles = 0;
@@ -81,13 +81,13 @@ private:
       const Instance &instance = geometry.instances[number];
       if (instance.kind != ShapeKind::Mesh)
         continue;
-      // Boxes in the world's frame are padded by kBoxPad: triangles should be larger than the padding.
+      // Boxes in the world's frame are padded by kBoxPad. Unfold only meshes whose triangles are larger than the padding.
       const size_t count = geometry.meshes[instance.mesh].triangles.size();
       const Float4 size = placed.boxes[i].hi - placed.boxes[i].lo;
       const float largest = std::max({size[0], size[1], size[2]});
       if (largest < 16.0f * kBoxPad * std::sqrt(static_cast<float>(count)))
         continue;
-      // Let copies take an eighth of the memory.
+      // Copies may take up to an eighth of the memory.
       if (uses[instance.mesh] > 1) {
         if ((copies + count) * 8 > triangles + 8192)
           continue;

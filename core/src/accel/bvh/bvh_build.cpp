@@ -17,7 +17,7 @@ void set_order(const Parts &parts, uint32_t count, BvhNode &node) {
     for (int axis = 0; axis < 3; ++axis)
       middle[axis][i / 4][i % 4] = parts[i].box.centroid()[axis];
   for (uint32_t octant = 0; octant < 4; ++octant) {
-    // The rank of a child is the number of farther children; of equals the first counts as farther.
+    // The rank of a child is the number of farther children. Of two children at the same distance, the first counts as farther.
     Float4 place[2];
     Int4 rank[2]{};
     for (int half = 0; half < 2; ++half)
@@ -153,8 +153,8 @@ WideTree build_wide_tree(HugeVector<BuildRef> refs, uint32_t group, const BuildC
   HugeVector<BuildRef> other(count);
   tree.leaves.resize(count);
 
-  // Build the top with all threads on one range, then the subtrees in parallel. The extent of the top depends on the size
-  // alone.
+  // Build the top of the tree with all threads on each range, then the subtrees in parallel. The size of the top depends on the
+  // number of boxes alone, so the tree does not depend on the threads.
   const RangeSplitter splitter(refs.data(), other.data(), group, context);
   std::vector<Task> tasks;
   const uint32_t task_size = std::max(count / 64, 4096u);

@@ -65,8 +65,8 @@ struct WideTree {
   HugeVector<LeafRef> leaves; // leaf after leaf
 };
 
-// group: number of primitives tested at the cost of one (1 or kBvhLeafSize), and the capacity of a leaf, whose primitives all
-// have one owner. The result depends on refs alone.
+// group: the number of primitives that are tested at the cost of one (1 or kBvhLeafSize). It is also the capacity of a leaf,
+// whose primitives all have the same owner. The result depends on refs alone.
 WideTree build_wide_tree(HugeVector<BuildRef> refs, uint32_t group, const BuildContext &context);
 
 // A tree whose leaves are blocks of triangles; the world's tree also has blocks of spheres and instances as leaves.

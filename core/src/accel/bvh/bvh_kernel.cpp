@@ -1,7 +1,7 @@
-// Traversal of the wide BVH. Compiled once per instruction set, with LANCER_ISA naming it. All copies give the same bits,
-// because no operation is contracted and boxes only cull.
-// This file must not emit a shared (weak) symbol: the linker would keep one unit's copy for all. Hence plain structs, forced
-// inlining, and no call of an inline function of another header out of line.
+// Traversal of the wide BVH. Compiled once per instruction set, with LANCER_ISA as its name. All copies give the same bits,
+// because no operation is contracted and boxes only cull. This file must emit no shared (weak) symbol: the linker would keep
+// one translation unit's copy for all instruction sets. So it uses plain structs and forced inlining, and every inline function
+// of another header must be inlined.
 #include "accel/bvh/bvh_kernel.h"
 
 #include "accel/bvh/packet.h"
@@ -12,7 +12,7 @@ namespace lancer {
 
 namespace {
 
-// Starts a ray; returns false if its answer is already known.
+// Starts a ray in a slot; returns false if the ray's result is already known.
 LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e, uint32_t lane, Slot &s) {
   s.best.t = __builtin_inf();
   s.best.u = s.best.v = 0.0;
@@ -42,7 +42,7 @@ LANCER_LANE bool start(const BvhScene &scene, const Ray &ray, const Entering &e,
   return (e.usable >> lane & 1) && s.size > 1;
 }
 
-// Counted queries discard the answer.
+// Writes the result of a ray. Queries that count work write none.
 template <Question q> LANCER_LANE void store_answer(const Hit &best, size_t number, Hit *hits, uint8_t *occluded) {
   if constexpr (q.counted)
     return;
@@ -89,7 +89,7 @@ LANCER_LANE void trace(const BvhScene &scene, const Ray *rays, Hit *hits, uint8_
       }
       if (next == count)
         return;
-      // Take the next rays: a square of the image if the batch comes in rows.
+      // Take the next rays: a square of the image if the batch consists of rows of pixels.
       const size_t left = count - next, taken = left < kPacket ? left : kPacket;
       if (next % (4 * row) == 0 && left < 4 * row)
         row = 4;

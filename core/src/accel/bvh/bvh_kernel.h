@@ -24,12 +24,12 @@ struct BvhKernel {
 // Each is bvh_kernel.cpp compiled with LANCER_ISA set to the name.
 LANCER_DECLARE_KERNEL(BvhKernel, bvh_kernel)
 
-// The work of a split on each box, one copy per instruction set, which makes a build a tenth faster.
+// The part of a split that visits every box, one copy per instruction set; the wider registers make a build a tenth faster.
 
 inline constexpr uint32_t kMaxBins = 16;
 
 // Maps centroids to bins, identically in every pass. Lane 3 of the origin is 1 and of the scale 0. Without this, a compiler
-// that sees that lane 3 is unused leaves ids in it, which are denormal as floats, and their product takes as long as all other
+// that finds lane 3 unused leaves ids in it. Ids are denormal as floats, and a product with them takes as long as all other
 // work on a box.
 struct Binning {
   Float4 origin, scale;
@@ -44,8 +44,8 @@ struct Bins {
 struct SplitKernel {
   // Sorts boxes into the first `used` bins along all three axes.
   void (*bin)(const BuildRef *refs, uint32_t count, const Binning &binning, uint32_t used, Bins &bins);
-  // By axis: moves the boxes refs[begin ... end) to positions from left on if their bin is below the given one, else to
-  // positions from right on; returns the boxes of both sides' centroids.
+  // By axis: moves each of the boxes refs[begin ... end) to the next position from left on if its bin is below the given one,
+  // otherwise to the next from right on. Returns the bounds of the centroids of both sides.
   void (*move[3])(const BuildRef *refs, uint32_t begin, uint32_t end, const Binning &binning, int32_t bin, BuildRef *to,
                   uint32_t left, uint32_t right, GrowingBox centroids[2]);
 };

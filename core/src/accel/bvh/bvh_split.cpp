@@ -15,7 +15,7 @@ namespace {
 // Boxes that one thread bins or moves at a time.
 constexpr uint32_t kPiece = 32768;
 
-// Few bins for small ranges: a sweep over many bins would cost more than binning the boxes.
+// Returns a small number of bins for small ranges, where a sweep over many bins would cost more than binning the boxes.
 uint32_t bin_count(uint32_t refs) { return std::min(kMaxBins, 4 + refs / 4); }
 
 Binning make_binning(const Box &centroids, uint32_t bins) {
@@ -44,9 +44,9 @@ struct Plane {
   int32_t bin = 0; // first bin of the right side
 };
 
-// Costs of the boxes of all three axes with their primitives; NaN for an empty side.
+// Returns the cost of a side along each of the three axes; NaN for an empty side.
 Float4 cost(const GrowingBox boxes[3], Int4 counts, uint32_t group) {
-  // The sizes are negated, which cancels in their products.
+  // The sizes are negative; the signs cancel in their products.
   const Float4 a = boxes[0].lo + boxes[0].minus_hi, b = boxes[1].lo + boxes[1].minus_hi, c = boxes[2].lo + boxes[2].minus_hi;
   const Float4 x{a[0], b[0], c[0], 0.0f}, y{a[1], b[1], c[1], 0.0f}, z{a[2], b[2], c[2], 0.0f};
   const Int4 tests = group == 4 ? (counts + 3) >> 2 : counts;

@@ -10,8 +10,8 @@
 namespace lancer {
 namespace {
 
-// Three components of one ray, one axis per lane: half the work of scalar code for single rays that enter meshes (a closed room
-// renders 2.5 % faster).
+// The three components of one ray, one axis per lane. Single rays that enter meshes take half the work of scalar code (a closed
+// room renders 2.5 % faster).
 struct Axes {
   using D4 = Double<4>;
   D4 v;
@@ -63,7 +63,7 @@ LANCER_LANE bool enter_mesh(const PlacedShape &shape, const Ray &ray, MeshRay &r
 constexpr uint32_t kPacket = 16;
 constexpr uint32_t kAllOfPacket = (1u << kPacket) - 1;
 
-// Rays as the box test reads them, one ray per lane: see Slab.
+// The input of the box test for each ray of a packet, one ray per lane: see Slab.
 struct alignas(64) PacketSlabs {
   float inverse[3][kPacket], shift[3][kPacket], tau_min[kPacket], tau_max[kPacket];
   double t0[kPacket], inverse_unit[kPacket];
@@ -146,13 +146,13 @@ LANCER_LANE void enter_world_packet(const PlacementFrame &world, Entering &e) {
   }
 }
 
-// Rays whose directions lie in a cone and that pass close to each other at the scene's centre visit the same boxes. Heuristic:
-// a wrong choice costs only time.
+// Limits of a heuristic: rays with directions in a narrow cone that pass close to each other at the scene's centre visit the
+// same boxes. A wrong choice costs only time.
 constexpr double kPacketCosine2 = 0.99;
 constexpr double kPacketWidth = 0.25; // in the scene's frame
 
-// Returns the number of rays from a ray of the batch to its neighbour in the next row of the image if the rays come in rows;
-// else 4.
+// Returns the number of rays between a ray of the batch and its neighbour in the next row of the image; 4 if the batch does not
+// consist of rows.
 LANCER_LANE size_t find_row(const Ray *rays, size_t count) {
   const auto apart = [&](size_t i) __attribute__((always_inline)) {
     const double x = rays[i].d.x - rays[0].d.x, y = rays[i].d.y - rays[0].d.y, z = rays[i].d.z - rays[0].d.z;
@@ -170,7 +170,7 @@ LANCER_LANE size_t find_row(const Ray *rays, size_t count) {
   return row;
 }
 
-// Bit i of the result: lane i has a negative direction along the axis.
+// Returns the bits of the lanes whose direction is negative along the axis.
 LANCER_LANE uint32_t lanes_down(const float *inverse) {
   uint32_t down = 0;
   for (uint32_t i = 0; i < kPacket; i += kLanes)

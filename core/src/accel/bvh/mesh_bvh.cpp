@@ -9,10 +9,10 @@ namespace lancer {
 namespace {
 
 constexpr uint32_t kPiece = 16384;
-// Number of blocks by which the prefetch of triangles is ahead; corners are prefetched at half of it.
+// Number of blocks by which triangle indices are prefetched ahead; corners are prefetched half as far ahead.
 constexpr size_t kAhead = 16;
 
-// Encodes a child as the traversal reads it.
+// Returns the entry of a child for the traversal's stack.
 uint32_t entry(uint32_t kind, size_t number, uint32_t steps) {
   if (number * steps > kBvhPlace)
     throw std::bad_alloc(); // more than 16 GiB

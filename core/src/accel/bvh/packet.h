@@ -1,5 +1,5 @@
-// Traversal of packets of coherent rays: each child's box is tested for all rays at once. Subtrees that only few rays hit are
-// left over for a traversal ray by ray. Part of bvh_kernel.cpp: everything has internal linkage.
+// Traversal of packets of coherent rays: each child's box is tested for all rays at once. Subtrees that only a few rays hit
+// become leftovers, which each ray traverses alone. Part of bvh_kernel.cpp: everything has internal linkage.
 #pragma once
 
 #include "accel/bvh/blocks.h"
@@ -8,7 +8,7 @@ namespace lancer {
 
 namespace {
 
-constexpr uint32_t kFew = 2;       // number of lanes that are faster alone
+constexpr uint32_t kFew = 2;       // at most this many lanes are faster alone
 constexpr uint32_t kLeftovers = 8; // per lane
 
 // The entries that each lane still has to visit, and its best hit so far.
@@ -20,7 +20,7 @@ struct Leftovers {
   uint32_t children[kPacket][kLeftovers];
 };
 
-// Appends a child to the leftovers of each of these lanes; returns false if a lane has no room.
+// Appends a child to the leftovers of each of these lanes; returns false if the leftovers of a lane are full.
 LANCER_LANE bool leave_over(uint32_t child, uint32_t lanes, const float *entry, Leftovers &l) {
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1)
     if (l.count[__builtin_ctz(rest)] == kLeftovers)
@@ -123,7 +123,7 @@ LANCER_LANE void visit_triangles(const TriangleBlock &block, const PacketAsks &a
     for (uint32_t k = 0; k < 3; ++k)
       for (uint32_t i = 0; i < 3; ++i)
         corner[i][k] = repeat<kTogether>(load_widened(block.corner[i][order[k]]));
-    // An odd last lane is tested twice.
+    // Of an odd number of lanes, the last one is tested twice.
     while (rest != 0) {
       uint32_t lanes[kTogether];
       for (int i = 0; i < kTogether; ++i) {
@@ -196,7 +196,7 @@ LANCER_LANE void walk(const BvhNode *nodes, uint32_t octant, const float *entry,
           near[axis] = multiply_subtract(F(node.bounds[axis][down[axis]][at]), inverse[i][axis], shift[i][axis]);
           far[axis] = multiply_subtract(F(node.bounds[axis][down[axis] ^ 1][at]), inverse[i][axis], shift[i][axis]);
         }
-        // Inactive lanes have NaN as entry and pass NaN on: max of unordered operands returns the first.
+        // Inactive lanes have NaN as entry and keep it: max of unordered operands returns the first operand.
         const F first = max(max(parent[i], near[2]), max(near[1], near[0]));
         const F last = min(min(limit[i], far[2]), min(far[1], far[0]));
         store(p.entries[size] + i * kLanes, drop_greater(first, last));

@@ -13,7 +13,7 @@ bool intersect_quadric(const PlacedShape &shape, const Ray &ray, bool leaves, do
 
 namespace {
 
-// Parameters of a query: its variants share one source.
+// The variant of a query, a template parameter of the traversal.
 struct Question {
   bool any = false;      // any hit ends the query, not only the closest
   bool filtered = false; // a filter may reject hits
@@ -28,7 +28,7 @@ template <Question q> LANCER_LANE bool left_out(const HitFilter *filter, size_t 
     return false;
 }
 
-// Finds the next hit of a ray on an exact surface, beyond t.
+// Moves t to the ray's next hit on an exact surface beyond t; returns false if there is none.
 LANCER_LANE bool next_place(const PlacedShape &shape, uint32_t instance, const Ray &ray, double &t) {
   if (t == ray.tmin)
     return intersect_quadric(shape, ray, ray.skip_instance == instance, t);
@@ -41,7 +41,7 @@ LANCER_LANE bool next_place(const PlacedShape &shape, uint32_t instance, const R
 constexpr uint32_t kSlots = 32;
 constexpr uint32_t kStackSize = 2 * kBvhTreeStack;
 
-// The ray as the float slab test reads it, in a box frame: the parameter of the plane x = b is b * inverse - shift.
+// The input of the float slab test, in a box frame: the ray meets the plane x = b at the parameter b * inverse - shift.
 struct Slab {
   float inverse[3], shift[3];
   float tau_min, tau_max;
@@ -49,7 +49,7 @@ struct Slab {
   uint32_t octant;                // bit i: the direction is negative along axis i
 };
 
-// The ray in the space of an instance, as the triangle test reads it.
+// The input of the triangle test: a ray in the space of an instance.
 struct alignas(32) MeshRay {
   double o[4];
   double shear[4]; // direction over its largest component; then one over this component
@@ -78,7 +78,7 @@ struct alignas(64) Slot {
   uint32_t children[kStackSize + 8];
 };
 
-// Rounds outwards: narrowing to float must not cut off a parameter.
+// Returns a float not below x, so that narrowing cuts off no hit.
 template <class D> LANCER_LANE auto round_up(const D &x) { return narrow(x + D(0x1p-22) * abs(x)); }
 template <class D> LANCER_LANE auto round_down(const D &x) { return narrow(x - D(0x1p-22) * abs(x)); }
 

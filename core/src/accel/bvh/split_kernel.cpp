@@ -1,5 +1,5 @@
-// Bins and moves boxes. Compiled once per instruction set, with LANCER_ISA naming it; all copies give the same trees.
-// This file must not emit a shared (weak) symbol: see bvh_kernel.cpp.
+// Bins and moves boxes. Compiled once per instruction set, with LANCER_ISA as its name; all copies give the same trees. This
+// file must emit no shared (weak) symbol: see bvh_kernel.cpp.
 #include "accel/bvh/bvh_kernel.h"
 
 #include "simd/kernel_choice.h"

@@ -39,7 +39,8 @@ LANCER_LANE void become_mesh_ray(const BvhScene &scene, uint32_t instance, const
   s.usable = visible(shape, ray) && enter_mesh(shape, ray, s.ray);
 }
 
-// Keeps the first hit on an exact surface that passes the filter, if it is closer. find(t): finds the next hit beyond t.
+// Keeps the first hit on an exact surface that passes the filter, if that hit is closer than the best hit. find(t): moves t to
+// the next hit; returns false if there is none.
 template <Question q, class Find> LANCER_LANE void try_places(uint32_t instance, const HitFilter *filter, Slot &s, Find find) {
   double t = s.tmin;
   while (find(t) && closer(t, instance, 0, s.best)) {

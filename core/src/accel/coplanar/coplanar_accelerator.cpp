@@ -62,7 +62,7 @@ private:
       for (size_t i = 0; i < rays.size(); ++i)
         search_flagged(i, hits[i], searches);
     } else {
-      // Trace again the few rays that hit the plane that they start in.
+      // Trace again the few rays that hit the plane in which they start.
       inner->closest_hit(rays, hits);
       std::vector<size_t> back;
       for (size_t i = 0; i < rays.size(); ++i) {
@@ -97,7 +97,7 @@ private:
       look_at_ends(asked, occluded);
   }
 
-  // Traces a subset of the rays by the rule.
+  // Traces a subset of the rays with the plane rule.
   template <class Answer>
   void again(std::span<const Ray> rays, const std::vector<size_t> &which, std::span<Answer> answers) const {
     if (which.empty())
@@ -173,7 +173,7 @@ private:
     searches.all.push_back({ray, &hit, *across, rule.order_of(hit), hit});
   }
 
-  // Visits all hits along the rays.
+  // Passes all hits along the rays to looks.
   template <class Looks> void look(Looks &looks) const {
     if (looks.all.empty())
       return;

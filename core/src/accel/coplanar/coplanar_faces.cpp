@@ -7,7 +7,8 @@ namespace lancer {
 
 namespace {
 
-// Comparisons per face, of boxes and of faces whose boxes overlap: bounds for many instances at one place.
+// Largest numbers of comparisons per face: of boxes, and of faces whose boxes overlap. They bound the effort for many instances
+// at one place.
 constexpr size_t kBoxes = 256, kPairs = 32;
 // Number of coplanar faces after which a face counts as heaped: two heaped faces are not compared.
 constexpr uint32_t kOthers = 64;
@@ -118,7 +119,8 @@ private:
     return true;
   }
 
-  // Extrapolates an incomplete comparison: if one face of an instance has a coplanar face, any compared face of it may.
+  // Extrapolates an incomplete comparison: if one face of an instance has a coplanar face, any compared face of the instance
+  // may have one.
   void spread() {
     std::vector<uint8_t> found(geometry.instances.size(), 0);
     for (const FaceCandidate &c : candidates)
@@ -156,7 +158,7 @@ private:
     return shared == 1 || shared == 2;
   }
 
-  // Returns false if faces that were not compared may be coplanar, too.
+  // Returns false if faces that were not compared may also be coplanar.
   bool mark(CoplanarFaces &faces) const {
     bool all = true;
     for (size_t begin = 0, end; begin < candidates.size(); begin = end) {
@@ -185,7 +187,7 @@ private:
     return all;
   }
 
-  // Marks the faces of an instance that were not compared: those in the planes of coplanar faces found.
+  // Marks those faces of an instance that were not compared but lie in the plane of a coplanar face that was found.
   void mark_planes(uint32_t instance, size_t begin, size_t end, size_t found, uint64_t *bits) const {
     // Mark all faces of an instance if many of its compared faces are coplanar with others.
     const bool all = found * 8 > end - begin;

@@ -1,6 +1,6 @@
-// The priority order among coplanar faces, which decides the one that a ray hits. Faces that others in the same plane overlap
-// are found once; a grid on each of them returns at a hit whether another covers the place; an accelerator applies the order to
-// the hits of any other accelerator.
+// The priority order among coplanar faces, which decides the face that a ray hits. Faces that other faces of their plane
+// overlap are found once. Each of them has a grid of the places that other faces cover. An accelerator applies the order to the
+// hits of any other accelerator.
 #pragma once
 
 #include "accel/accelerator.h"
@@ -20,12 +20,12 @@ struct PlaneRules {
   std::vector<uint8_t> emitting_slots{};    // by slot: its material emits; empty: none does
 };
 
-// The priority of a face: of the coplanar faces at a place, a ray hits the one with the smallest order.
+// The priority of a face: of the coplanar faces at a place, a ray hits the face with the smallest order.
 using PlaneOrder = std::tuple<bool, bool, uint32_t, uint32_t, uint32_t>;
 PlaneOrder plane_order(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive);
 bool face_emits(const Geometry &geometry, const PlaneRules &rules, uint32_t instance, uint32_t primitive);
 
-// A triangle in the coordinates of the face that it covers: inside, slope * at + offset >= 0 for all three sides.
+// A triangle in the coordinates of the face that it covers. A place is inside if slope * at + offset >= 0 for all three sides.
 struct CoverPatch {
   glm::dvec2 slope[3];
   double offset[3];
@@ -84,7 +84,7 @@ private:
   std::vector<CoverPatch> patches_;
 };
 
-// Faces that may have coplanar faces over them; a few without any may be among them.
+// Faces that coplanar faces may cover. A few of them may be uncovered.
 struct CoplanarFaces {
   std::vector<uint8_t> instances; // 1: the instance has such faces; empty if no instance has
   std::vector<uint32_t> first;    // by instance: its first word of bits
@@ -121,10 +121,10 @@ private:
 CoplanarFaces find_coplanar_faces(const Geometry &geometry, const FaceRounding &rounding, const PlaneRules &rules,
                                   const BuildContext &context);
 
-// Builds an accelerator with the priority order on top. Of faces that cover the same place of a plane within rounding, a ray
-// from either side hits the first by this order: opaque before transparent, then emitting, then smaller instance, smaller slot,
-// smaller number. A ray that starts on a face hits no other face of its plane. A scene without such faces gets the plain
-// accelerator.
+// Builds an accelerator that applies the priority order. If several faces cover one place of a plane within rounding, a ray
+// from either side hits the first in this order: opaque before transparent, emitting before others, then smaller instance,
+// smaller slot, smaller number. A ray that starts on a face hits no other face of its plane. A scene without such faces gets
+// the accelerator of the kind alone.
 std::unique_ptr<Accelerator> build_accelerator(AcceleratorKind kind, const Geometry &geometry, PlaneRules rules,
                                                const BuildContext &context);
 

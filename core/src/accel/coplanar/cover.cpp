@@ -68,7 +68,7 @@ void Cover::add_face(std::span<const CoverPatch> patches, const FaceCoordinates 
         if (patch.meets(face.low + (glm::dvec2(x, y) + 0.5) * size, kWider * size))
           use(static_cast<size_t>(y * face.side + x));
   };
-  // Choose cells of about a quarter of the size of patches that lie side by side, and larger cells for overlapping patches.
+  // Choose cells of about a quarter of a patch's size if the patches lie side by side, and larger cells if they overlap.
   face.side = std::min(kLongestSide, 1 + static_cast<int>(4.0 * std::sqrt(static_cast<double>(patches.size()))));
   std::vector<uint32_t> counts;
   for (;; face.side /= 2) {

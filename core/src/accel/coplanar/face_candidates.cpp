@@ -10,9 +10,10 @@ namespace lancer {
 
 namespace {
 
-// Limits of compared faces: all of small scenes, a share of large meshes, some of each instance; and the total.
+// The number of compared faces: kCompared, plus one of each kOfMeshes faces of the meshes, plus kOfEach of each instance that
+// touches others, at most kMost.
 constexpr size_t kCompared = 4096, kOfMeshes = 256, kOfEach = 16, kMost = 16384;
-// Compared pairs of boxes per instance: a bound for many instances at one place.
+// Largest number of compared pairs of boxes per instance. It bounds the effort for many instances at one place.
 constexpr size_t kPairs = 128;
 // Quantisation steps of planes over the scene's extent.
 constexpr double kOffsetCells = 256.0;
@@ -46,7 +47,7 @@ private:
     return met;
   }
 
-  // Chooses some of a mesh's triangles evenly, and those that are large for it.
+  // Chooses some of a mesh's triangles evenly, and all that are large in comparison with the mesh.
   std::vector<uint32_t> choose_triangles(const Mesh &mesh, double extent, size_t most) const {
     const uint32_t count = static_cast<uint32_t>(mesh.triangles.size());
     std::vector<uint32_t> chosen;
@@ -55,7 +56,7 @@ private:
         chosen.push_back(i);
       return chosen;
     }
-    // Four times the size that triangles would have if all were equal and covered a cube.
+    // Four times the size of the triangles if they were equal and covered a cube.
     const float large = static_cast<float>(4.0 * extent * std::sqrt(12.0 / count));
     const uint32_t stride = static_cast<uint32_t>(2 * count / most + 1);
     // Loads four floats; the last vertex has no float behind it.

@@ -25,8 +25,8 @@ struct FaceCandidates {
   double step = 1.0;                // quantisation step of the distance of planes
 };
 
-// Returns the same faces for every accelerator. Their number is bounded: a large mesh contributes some triangles and those that
-// are large for it; instances that touch others come first.
+// Returns the same faces for every accelerator. The number of faces is bounded: a large mesh contributes some triangles and its
+// largest ones. Instances that touch others come first.
 FaceCandidates choose_faces(const Geometry &geometry, const FaceRounding &rounding, const BuildContext &context);
 
 // Returns the number of faces of an instance; 0 if it has no flat ones.
@@ -41,8 +41,8 @@ inline bool boxes_meet(const glm::dvec3 &low, const glm::dvec3 &high, const glm:
 // Calls use() with each cell of quantised planes that may hold the face's plane. A face whose plane is too imprecise has none.
 template <class Use> void for_each_plane_cell(const FlatFace &face, double rounding, double step, Use &&use) {
   constexpr double kNormalCells = 16.0;
-  // A direction that is perpendicular to no normal found in models: a normal and its opposite are on different sides of it,
-  // whatever the rounding.
+  // A direction that is perpendicular to no normal found in models. Rounding does not change the sign of its dot product with a
+  // normal, so a normal and its opposite give the same n.
   const glm::dvec3 reference(0.5432, 0.7531, 0.3711);
   const glm::dvec3 n = glm::dot(face.n, reference) < 0.0 ? -face.n : face.n;
   const double turned = 0x1p-20 + rounding / face.height;

@@ -13,9 +13,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Half a unit in the last place of each corner is 2^-24; modelling tools need two or three operations in float to compute it.
 constexpr double kCornerRounding = 0x1p-22;
-// A placement is a product of a few matrices; a larger bound would treat instances one unit apart as coplanar.
+// A placement is a product of a few matrices, whose rounding this bound covers. A larger bound would treat instances one unit
+// apart as coplanar.
 constexpr double kPlaceRounding = 0x1p-23;
-// A distance above this share of an instance's size counts as modelled, at any distance of the instance from the origin.
+// A distance between faces above this share of the instance's size is intended, however far the instance is from the origin.
 constexpr double kMeant = 0x1p-10;
 
 glm::dmat3 magnitudes(const glm::dmat3 &m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }

@@ -1,4 +1,4 @@
-// The priority order applied to rays: which of the coplanar faces at a place a ray hits, and which it skips.
+// The priority order applied to rays: decides which of the coplanar faces at a place a ray hits or skips.
 #pragma once
 
 #include "accel/coplanar/coplanar_faces.h"
@@ -26,11 +26,11 @@ public:
   // Returns whether a ray may end on a flagged face that emits.
   bool may_end_on_light(const Ray &ray) const;
 
-  // The following take hits that are flagged.
-  // Return whether a hit lies in the plane that the ray starts or ends in, so that only rounding puts it on the ray.
+  // The hits passed to the following functions must be flagged. Return whether a hit lies in the plane that the ray starts or
+  // ends in, so that only rounding puts it on the ray.
   bool starts_in_plane(const Ray &ray, const Hit &hit) const;
   bool ends_in_plane(const Ray &ray, const Hit &hit) const;
-  // Returns the last part of a ray and some distance beyond: its hits may lie at the ray's end.
+  // Returns a ray along the last part of the given ray and somewhat beyond; its hits may lie at the given ray's end.
   static Ray around_end(const Ray &ray);
 
   // A ray across the plane of a hit that finds faces of possibly higher priority; none if there cannot be any.

@@ -9,8 +9,8 @@
 namespace lancer {
 namespace {
 
-// Costs relative to a traversal step: a triangle takes a few more operations, an instance a change of space and a tree of its
-// own.
+// Costs relative to a traversal step. A triangle takes a few more operations; an instance takes a transformation and a
+// traversal of its own tree.
 constexpr float kTriangleCost = 1.5f;
 constexpr float kInstanceCost = 8.0f;
 

@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kExactSize = 48; // up to this number of items every box face is a candidate
 constexpr uint32_t kBins = 32;
 constexpr float kEmptyBonus = 0.8f; // factor on the cost of a split that cuts off empty space
-constexpr uint32_t kMaxBad = 2;     // consecutive splits that may not pay, but may enable one that does
+constexpr uint32_t kMaxBad = 2; // largest number of consecutive splits that do not lower the cost but may prepare one that does
 
 struct Split {
   float cost = Box::kInf;
@@ -192,7 +192,8 @@ KdTree build_kdtree(const std::vector<Box> &boxes, float test_cost, const BuildC
   tree.bounds = root.box;
   tree.nodes.emplace_back();
 
-  // Build the top, then the subtrees on all threads. The extent of the top depends on the size alone.
+  // Build the top of the tree, then the subtrees on all threads. The size of the top depends on the number of boxes alone, so
+  // the tree does not depend on the threads.
   const Builder builder(boxes, test_cost, context);
   std::vector<Subtree> tasks;
   builder.build(std::move(root), tree, std::max<size_t>(boxes.size() / 64, 1024), &tasks);
