@@ -150,6 +150,11 @@ def test_cycles_shows_the_groups(case):
         assert np.isfinite(first).all() and (first > 0.0).all() and not np.allclose(first, second, rtol=1e-3), model
 
 
+def test_phongs_lobe_is_shown_as_wide_as_it_is(case):
+    """The angle to the mirrored direction is twice that of the half vector: cos^n of the one is about cos^4n of the other."""
+    assert case("widths") == [4.0, "MULTIPLY"]
+
+
 def test_the_shader_editor_adds_models(case):
     got = case("editor")
     assert sorted(got["added"]) == sorted(2 * got["models"]) and got["trees"] == len(got["models"])

@@ -31,7 +31,7 @@ def test_what_is_measured_is_what_f12_renders(case):
 
 def test_measuring_without_a_camera(case):
     got = case("without_camera")
-    assert "camera" in got["error"] and got["scenes"] == 1
+    assert "camera" in got["error"] and got["scenes"] == 1 and not any(got["offered"])
 
 
 def test_statistics_belong_to_layers_and_scenes(case):

@@ -162,7 +162,7 @@ def test_every_closure_of_this_blender(case):
         assert got[name]["kinds"] == ["LAMBERT"] and len(got[name]["messages"]) == 1, name
     # All other nodes give a message.
     silent = {*KINDS, "BsdfTransparent", "Emission", "Holdout", "Background", "MixShader", "AddShader"}
-    silent |= {"colour as shader", "rough", "GGX", "BECKMANN", "ASHIKHMIN_SHIRLEY", "MULTI_GGX"}
+    silent |= {"colour as shader", "rough", "velvet", "GGX", "BECKMANN", "ASHIKHMIN_SHIRLEY", "MULTI_GGX"}
     assert all(material["messages"] for name, material in got.items() if name not in silent)
 
 
@@ -172,6 +172,10 @@ def test_values_of_closures(case):
         lobe = got[name]["lobes"][0]
         assert lobe["distribution"] == number and lobe["tangent"] == {"node": 0}
         assert [lobe[n] for n in ("roughness", "anisotropy", "rotation")] == near([0.25, 0.5, 0.125])
+    assert got["MULTI_GGX"]["lobes"][0]["distribution"] == MULTI_GGX
+    assert got["velvet"]["lobes"][0]["distribution"] == BECKMANN
+    if "BsdfSheen" in got:
+        assert got["BsdfSheen"]["lobes"][0]["distribution"] == GGX
     rough = got["rough"]["lobes"][0]
     assert got["rough"]["kinds"] == ["DIFFUSE"] and rough["roughness"] == near(0.5)
     assert rough["color"] == near([0.5, 0.25, 0.125]) and rough["option"] == (1 if got["version"] >= [4, 3] else 0)

@@ -60,6 +60,10 @@ def test_meshes_bring_what_their_materials_read(case):
     assert got["Plane"] == [] and got["Copy 0"] == ["Two"] and got["Copy 1"] in ([], ["Two"])
 
 
+def test_generated_coordinates_fill_their_box(case):
+    assert case("generated") == [[0.0, 0.0, 0.5], [1.0, 1.0, 0.5]]
+
+
 def test_settings(case):
     got = case("settings")
     assert got["first"] == [False, False, pytest.approx(0.01), 8, 0.5, 0.0, 0.0, 100.0, 1.0]

@@ -42,6 +42,8 @@ def test_denoising(tmp_path):
     assert (
         got["denoised"] == [False, True] and got["alpha"] and got["failure"] == "" and got["threads"] == [] and got["left"] == 0
     )
+    # A coarse picture is there for a moment.
+    assert got["coarse"] and not any(denoised for _, denoised in got["coarse"])
     # Noise of 10 % and more, at four samples, is nearly removed.
     assert got["roughness"][1] < 0.5 * got["roughness"][0]
 
@@ -56,6 +58,8 @@ def test_the_first_picture_is_as_coarse_as_it_must_be():
     """At a million pixels per second 0.07 s are 70 000 pixels: 240 x 135 is the finest size of 960 x 540 below that."""
     sizes, region = PixelSizes(), Rectangle(960, 540)
     assert coarsest(region, 1, 64) == 8 and coarsest(region, 2, 64) == 8 and coarsest(Rectangle(60, 60), 1, 64) == 1
+    # The shorter side decides, whichever it is.
+    assert coarsest(Rectangle(4000, 540), 1, 64) == coarsest(Rectangle(540, 4000), 1, 64) == 8
     assert sizes.first(region, 1, 8) == 8
     sizes.learn(1_000_000, 1.0)
     assert sizes.first(region, 1, 8) == 4 and sizes.first(region, 1, 2) == 2 and sizes.first(region, 8, 8) == 8

@@ -106,7 +106,11 @@ def test_tiles_sequences_and_what_is_missing(case):
     assert np.array_equal(images["sequence"]["texels"], (ramp(3) + 20) % 256)
     assert np.array_equal(images["in the file"]["texels"], (ramp(3) + 30) % 256)
     assert images["deep"]["type"] == "uint16" and np.array_equal(images["deep"]["texels"], ramp(3) * 257)
-    assert got["ranges"] == [[0, 3], [3, 1], [4, 1], [5, 1]] and "lost" not in images
+    grid = [picture for picture in got["images"] if picture["name"] == "grid"]
+    assert [tile["tile"] for tile in grid] == [1001, 1002, 1011]
+    for tile, shift in zip(grid, (60, 70, 80), strict=True):
+        assert np.array_equal(tile["texels"], (ramp(3) + shift) % 256)
+    assert got["ranges"] == [[0, 3], [3, 1], [4, 1], [5, 1], [6, 3]] and "lost" not in images
     told = got["messages"]
     # Magenta is more severe than left out.
     assert len(told) == 3 and "material 'Lost'" in told[0] and "image 'lost'" in told[0]

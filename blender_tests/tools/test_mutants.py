@@ -32,7 +32,7 @@ def test_there_are_a_hundred_and_each_changes_another_line():
     assert max(Counter((fault.file, fault.find, fault.put) for fault in FAULTS).values()) == 1
 
 
-@pytest.mark.parametrize("side", ["addon"])
+@pytest.mark.parametrize("side", FOLDERS)
 def test_every_room_has_some_and_they_are_in_theirs(side):
     rooms = {path.parent.relative_to(FOLDERS[side]).parts[0] for path in FOLDERS[side].glob("*/*.*") if "__" not in str(path)}
     found = {fault.room: fault for fault in FAULTS if fault.is_core == (side == "core")}

@@ -216,6 +216,12 @@ def opened(path, how):
     return {**found, "local": local, "groups": len(bpy.data.node_groups)}
 
 
+def widths():
+    """The factor of Phong's exponent in the nodes that show its group, by which the lobe is as wide as Blinn-Phong's."""
+    nodes = course_groups.group_of("PHONG").nodes
+    return [float(nodes["Blinn's Exponent"].inputs[1].default_value), nodes["Blinn's Exponent"].operation]
+
+
 def cycles():
     """Return Cycles' mean of a ball of each model, and how much the parameters of the highlight change it."""
     result = {}

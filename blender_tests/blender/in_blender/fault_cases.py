@@ -90,7 +90,8 @@ def without_camera():
         text = ""
     except LancerError as error:
         text = str(error)
-    return {"error": text, "scenes": len(bpy.data.scenes)}
+    offered = [getattr(bpy.ops.lancer, name).poll() for name in ("measure_quality", "measure_features", "check_scene")]
+    return {"error": text, "scenes": len(bpy.data.scenes), "offered": offered}
 
 
 def layers():

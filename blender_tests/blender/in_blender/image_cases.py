@@ -136,7 +136,7 @@ def spaces():
 
 
 def files():
-    """Tiles, one of them missing; the second frame of a sequence; 16 bits; a missing file; no image at all."""
+    """Tiles of either way of numbering, one of them missing; a frame of a sequence; sixteen bits; no file; no image at all."""
     scene = stage.empty()
     folder = tempfile.mkdtemp()
     for number, shift in ((1001, 0), (1002, 50), (1011, 100)):
@@ -167,6 +167,14 @@ def files():
     packed.pack()
     show(packed)
     os.remove(os.path.join(folder, "frame_003.png"))
+    for number, (column, row) in enumerate(((1, 1), (2, 1), (1, 2))):
+        write(os.path.join(folder, f"grid.u{column}_v{row}.png"), (ramp(3) + 60 + 10 * number) % 256)
+    grid = bpy.data.images.load(os.path.join(folder, "grid.u1_v1.png"))
+    grid.name, grid.source, grid.filepath = "grid", "TILED", os.path.join(folder, "grid.<UVTILE>.png")
+    for number in (1002, 1011):
+        if number not in [tile.number for tile in grid.tiles]:
+            grid.tiles.new(number)
+    show(grid)
     return answer()
 
 

@@ -142,6 +142,18 @@ def attributes():
     return {table.names[table.name_indices[i]]: names[table.meshes[i]] for i in range(len(table))}
 
 
+def generated():
+    """The lowest and the highest Generated coordinates of a plane, whose height is nothing."""
+    stage.empty()
+    material = stage.shader(name="reader")
+    tree = material.node_tree
+    node = next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE")
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], node.inputs["Color"])
+    stage.plane(material=material)
+    (attribute,) = (a for mesh in export_told()[0].meshes for a in mesh.attributes)
+    return [attribute.values.min(axis=0).tolist(), attribute.values.max(axis=0).tolist()]
+
+
 def settings():
     """Return the exported settings of film and world."""
     scene = stage.empty()

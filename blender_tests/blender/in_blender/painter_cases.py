@@ -16,7 +16,7 @@ from addon.denoise import denoiser
 from addon.export.scene import export_scene
 from addon.export.view import Rectangle, View
 from addon.viewport.painter import Painter, Wanted
-from addon.viewport.sizes import coarsest
+from addon.viewport.sizes import PixelSizes, coarsest
 
 _PATIENCE = 60.0
 
@@ -152,15 +152,24 @@ def denoises():
     whole = _contents(samples=4)
     painter = Painter()
     view = _view(whole, 192, 128)
-    pictures = []
+    pictures, coarse = [], {}
+
+    def is_done():
+        # The rendered sizes of the pixels, and whether a picture of this size was denoised.
+        if painter.picture is not None and painter.picture.size > 1:
+            coarse[painter.picture.size] = painter.picture.denoised
+        return not painter.is_busy
+
     for denoising in (False, True):
+        painter._sizes = PixelSizes()
         painter.want(_wanted(whole, view, denoising=denoising))
-        _until(painter, lambda: not painter.is_busy)
+        _until(painter, is_done)
         pictures.append(painter.picture)
     noisy, clean = (picture.image for picture in pictures)
     roughness = [float(np.abs(np.diff(image[:, :, :3], n=2, axis=1)).mean()) for image in (noisy, clean)]
     return {
         "denoised": [picture.denoised for picture in pictures],
+        "coarse": sorted(coarse.items()),
         "roughness": roughness,
         "alpha": bool(np.array_equal(noisy[:, :, 3], clean[:, :, 3])),
         "failure": painter.failure,

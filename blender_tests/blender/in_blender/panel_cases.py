@@ -115,6 +115,8 @@ def tabs():
         )
         for tab in ("object", "data", "material"):
             shown[f"{tab} of a {kind}"] = _names(of, tab)
+    context = recording.Context(engine="CYCLES", scene=scene, view_layer=scene.view_layers[0], world=scene.world)
+    shown["other engine"] = [name for tab in ("render", "view_layer", "world") for name in _names(context, tab)]
     return shown
 
 

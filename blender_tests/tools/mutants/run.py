@@ -132,7 +132,7 @@ def main():
     if core:
         run.say("core and its tests")
         try:
-            trees = CoreTree([fault for fault in faults if fault.is_core], tests.targets(core), arguments.jobs)
+            trees = CoreTree(core, tests.targets(core), arguments.jobs)
         except Broken as broken:
             sys.exit(str(broken))
         run.all(trees, core, arguments.jobs)
