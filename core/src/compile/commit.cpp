@@ -67,7 +67,7 @@ Normalisation normalise(const Box &bounds) {
   return result;
 }
 
-// Marks each instance for which the predicate holds with any of its materials.
+// Returns one number per instance: 1 if the predicate holds for one of its materials.
 template <class Predicate> std::vector<uint8_t> find_instances(const Scene &scene, Predicate &&predicate) {
   std::vector<uint8_t> found;
   for (const Instance &instance : scene.geometry.instances) {

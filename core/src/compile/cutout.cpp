@@ -9,7 +9,7 @@ namespace lancer {
 
 namespace {
 
-// Returns the node that a parameter comes from if the node is of this kind, else null.
+// Returns the node whose result is the parameter, if the node is of this kind; otherwise null.
 const Node *source(const Program &program, const Parameter &parameter, uint32_t kind) {
   const Node *node = program.source(parameter);
   return node && node->kind == kind ? node : nullptr;
@@ -34,7 +34,7 @@ FlatImage flat_image(const Program &program, const Parameter &color, const std::
 }
 
 std::optional<ImageAlpha> image_alpha(const Program &program, const Parameter &value) {
-  // An addition of 0 is there for its clamp.
+  // A node that adds 0 serves only to clamp its result.
   const Node *clamp = math_source(program, value, LANCER_MATH_ADD, 1);
   if (clamp && (clamp->inputs[1].varies() || clamp->inputs[1].value.x != 0.0f))
     return {};
@@ -65,7 +65,7 @@ AlphaImage find_alpha(const Material &material, const std::vector<Image> &images
   return {flat_image(material.program, alpha->picture, images), alpha->clamped};
 }
 
-// Whether a node reads nothing but its inputs, the triangle and the place within it.
+// Whether a node reads only its inputs, the triangle and the place within it.
 bool is_painted(const Node &node) {
   switch (node.kind) {
   case LANCER_NODE_COORDINATE:

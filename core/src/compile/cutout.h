@@ -8,7 +8,7 @@
 
 namespace lancer {
 
-// An image that a mesh's UV map lays flat on the mesh.
+// An image whose place on a mesh depends on a UV map alone.
 struct FlatImage {
   uint32_t image = kNone;
   uint32_t uv_map = 0; // number of its name
@@ -18,7 +18,7 @@ struct FlatImage {
   bool known() const { return image != kNone; }
 };
 
-// Returns the image that a colour comes from; known() is false where the colour is anything else.
+// Returns the image whose colour a parameter is; known() is false if the parameter is not the colour of a flat image.
 FlatImage flat_image(const Program &program, const Parameter &color, const std::vector<Image> &images);
 
 // The alpha of an image: unchanged, or clamped to 0 ... 1 as the factor of a shader mix.

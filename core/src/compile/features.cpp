@@ -147,7 +147,7 @@ void add_material(const Material &material, Features &features) {
 
 Features find_features(const Description &description) {
   Features features;
-  // Count only what is placed: a mesh or material that no instance uses costs nothing.
+  // Count only meshes and materials that some instance uses.
   std::vector<uint32_t> uses(description.geometry.meshes.size());
   std::vector<bool> shown(description.materials.size());
   for (const Instance &instance : description.geometry.instances) {

@@ -8,7 +8,7 @@
 
 namespace lancer {
 
-// Features that a scene uses: found at commit, named in the statistics; they decide which stages run.
+// Features that a scene uses. commit() finds them, the statistics name them, and they decide which stages run.
 enum Feature : uint32_t {
   kFeatureTransparency = 1u << 0, // some material lets light pass straight through
   kFeatureTriangles = 1u << 1,
@@ -48,10 +48,10 @@ std::string feature_names(const Features &features);
 
 // Whether a lobe may refract.
 bool is_glass(const LobeDescription &lobe);
-// Whether light may pass, straight through or refracted.
+// Whether light may pass through the surface, straight or refracted.
 bool lets_light_through(const Material &material);
 
-// Classes of materials by their shading code: vertices of one class may share the lanes of a block.
+// Classes of materials by their shading code. Vertices of one class may be lanes of the same block.
 
 // Returns the class of each material. Materials without nodes share a class if their lobes differ in numbers alone; a material
 // with nodes has its own class, because its program differs.

@@ -111,7 +111,7 @@ namespace {
 // from the cache.
 constexpr uint32_t kCrowd = 2048;
 
-// Whether light does not leave equally in all directions.
+// Whether the light differs between directions.
 bool aimed(const ShineCone &cone) { return cone.cos_o > -1.0f || cone.cos_all > -1.0f; }
 
 bool any_aimed(const LightBranch &branch) {
@@ -147,7 +147,7 @@ void LightTree::add_branch(const Part &part, std::vector<DescribedLight> &lights
   const uint32_t whole = crowded_ && part.end - part.begin > kBranchWidth ? kBranchWidth : 1;
   const auto child_of = [&](uint32_t begin, uint32_t end) {
     Child child{begin, end, bounds_of(lights, begin, end), 0.0};
-    // A child of several lights without extent still has to be cut.
+    // A child with several lights must be cut even if its bounds have no extent.
     if (end - begin > whole)
       child.cost = deep ? double(end - begin) : std::max(child.bounds.cost(), std::numeric_limits<double>::min());
     return child;

@@ -11,7 +11,8 @@ namespace lancer {
 
 namespace {
 
-// Sets the light's axes: z is kept, x and y are made orthogonal to it; a vanishing axis is replaced by any direction that fits.
+// Sets the light's axes: keeps z and makes x and y orthogonal to it. An axis of length 0 is replaced by any orthogonal
+// direction.
 void set_axes(Light &light, const Affine &map) {
   const auto unit = [](const glm::dvec3 &v) { return glm::length(v) > 0.0 ? v / glm::length(v) : glm::dvec3(0.0); };
   const glm::dvec3 z = unit(map.linear[2]), x = unit(map.linear[0]), y = unit(map.linear[1]);

@@ -8,7 +8,7 @@ namespace lancer {
 
 // Normals of a mesh: of its faces, of its vertices, and after displacement.
 
-// Returns a vector along a face's normal, of the length of twice the face's area.
+// Returns a vector along a face's normal whose length is twice the face's area.
 glm::dvec3 twice_area(const Mesh &mesh, uint32_t triangle);
 // Returns the unit normal of a face, or 0 where it has no area.
 glm::dvec3 face_normal(const Mesh &mesh, uint32_t triangle);
@@ -16,11 +16,11 @@ glm::dvec3 face_normal(const Mesh &mesh, uint32_t triangle);
 // Returns one normal per vertex, or 0: the sum of the faces' normals by area, as in the course's Gouraud shading.
 std::vector<glm::vec3> normals_by_area(const Mesh &mesh);
 
-// Returns one normal per vertex for any kind of shading, so that a surface displaced along them does not tear: the mesh's own
-// normals where it has them, else the faces' normals weighted by their angles.
+// Returns one normal per vertex, so that a surface displaced along the normals does not tear: the mesh's own normals if it has
+// any, otherwise the means of the faces' normals weighted by their angles.
 std::vector<glm::vec3> vertex_normals(const Mesh &mesh);
 
-// Computes the mesh's own normals anew where they belong to these triangles (one bit each).
+// Recomputes those of the mesh's own normals that belong to the given triangles. triangles: one bit per triangle.
 void renew_normals(Mesh &mesh, const std::vector<bool> &triangles);
 
 // The places at which flat shading evaluates the one colour of a polygon.

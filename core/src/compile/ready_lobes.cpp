@@ -103,7 +103,7 @@ std::string ReadyLobe::code() const {
 }
 
 std::shared_ptr<const ReadyLobe[]> make_ready_lobes(const Material &material) {
-  // Placeholders for the results of nodes: values derived here from an input that nodes feed are not used.
+  // Placeholders for the results of nodes. Values derived from a placeholder are not used.
   const std::vector<glm::vec4> nothing(material.program.nodes.size(), glm::vec4(0.0f));
   const std::shared_ptr<ReadyLobe[]> all(new ReadyLobe[material.lobes.size()]);
   for (size_t i = 0; i < material.lobes.size(); ++i) {

@@ -21,14 +21,15 @@ struct LobeParts {
 };
 
 struct ReadyLobe {
-  // Inputs as constants give them: an input that varies is 0 here.
+  // The inputs that are constants; an input that varies is 0.
   LobeInputs<float> inputs;
   PrincipledInputs<float> principled;
   LobeParts parts;
   // By side (outside, inside) and Layer. The facets of other lobes are stored at PrincipledLayer::Gloss.
   std::shared_ptr<const CachedPlan> plans[2][kLayerCount];
 
-  // Returns a key of the code that the lobe needs, as far as nodes do not decide it: lobes of one key differ in numbers alone.
+  // Returns a key of the code that the lobe runs, as far as it does not depend on results of nodes. Lobes with equal keys
+  // differ in numbers alone.
   std::string code() const;
 
   bool has(PrincipledLayer layer) const { return plans[0][static_cast<int>(layer)] != nullptr; }

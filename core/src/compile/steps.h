@@ -10,8 +10,8 @@
 
 namespace lancer {
 
-// The largest number of lobes, and of frames (normals with or without a tangent, including the shading normal's), that can
-// overlap at one place.
+// The largest numbers of lobes and frames that can overlap at one place. A frame is a normal with or without a tangent; the
+// shading normal's frame counts.
 struct MaterialDemand {
   size_t lobes = 0, frames = 1;
 };
