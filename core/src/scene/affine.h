@@ -8,7 +8,8 @@
 
 namespace lancer {
 
-// p' = linear * p + translation, in double: composed placements are where far-away scenes lose their digits.
+// p' = linear * p + translation, in double, because in float the product of placements would lose the digits of scenes far from
+// the origin.
 struct Affine {
   glm::dmat3 linear{1.0};
   glm::dvec3 translation{0.0};

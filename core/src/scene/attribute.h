@@ -17,8 +17,8 @@ template <class D> LANCER_LANE auto interpolate_uv(const D &a, const D &b, const
   return narrow((D(1.0) - u - v) * a + u * b + v * c);
 }
 
-// The number under which a mesh keeps its vertex positions before displacement. It is no number of a name, so that no other
-// attribute or node can use it.
+// The attribute number of a mesh's vertex positions before displacement. It is not the number of any name, so that no other
+// attribute and no node can use it.
 inline constexpr uint32_t kUndisplaced = UINT32_MAX;
 
 // Returns the attribute with this name number; null if the mesh has none.
@@ -28,8 +28,8 @@ const MeshAttribute *find_attribute(const Mesh &mesh, uint32_t name);
 // missing.
 void corner_values(const Mesh &mesh, const MeshAttribute &attribute, uint32_t triangle, glm::vec4 (&values)[3]);
 
-// Reads the texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute's, which the caller may have
-// looked up. Returns false if there are none.
+// Reads the texture coordinates at a triangle's corners: the mesh's own (name 0) or an attribute's. Returns false if there are
+// none.
 bool corner_uvs(const Mesh &mesh, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
 bool corner_uvs(const Mesh &mesh, const MeshAttribute *attribute, uint32_t name, uint32_t triangle, glm::vec2 (&uvs)[3]);
 // Returns interpolated texture coordinates; 0 if there are none. bary: weights of vertices 1 and 2.

@@ -73,7 +73,8 @@ glm::dvec3 panorama_direction(const Camera &camera, const glm::dvec2 &place) {
     return std::abs(theta) > 0.5 * p[0] ? glm::dvec3(0.0) : off_axis(theta, sensor);
   }
   case CameraKind::MirrorBall: {
-    // The ball is seen from afar; its normal halves the angle between viewer and mirrored direction.
+    // The mirror ball is seen from infinity. The normal at a place of the ball halves the angle between the viewer and the
+    // mirrored direction.
     const glm::dvec2 at = 2.0 * middle;
     const double depth2 = 1.0 - glm::dot(at, at);
     if (depth2 < 0.0)

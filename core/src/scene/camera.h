@@ -20,7 +20,8 @@ enum class CameraKind : uint32_t {
 };
 
 // The camera looks along its local -z, y up. The window is the full image's rectangle: on the plane z = -1 (perspective), at
-// any depth (orthographic), in a panorama of which 0 ... 1 is the whole; it includes sensor fit, shift and pixel aspect.
+// any depth (orthographic), or as a part of the whole panorama, which is 0 ... 1. The window includes sensor fit, shift and
+// pixel aspect.
 struct Camera {
   Affine to_world;
   CameraKind kind = CameraKind::Perspective;
@@ -38,14 +39,14 @@ struct Camera {
   // Multiplies the lengths of the scene by scale.
   void scale_lengths(double scale);
 
-  // raster: pixels of the full image, (0, 0) the lower left corner; lens: a point of the lens from aperture(). t is the depth:
-  // the direction's component along the axis is 1; panoramas: the direction is unit. tmax < 0 means no ray: outside a
-  // panorama's field of view.
+  // Returns the ray through a place on the film. raster: pixels of the full image, (0, 0) the lower left corner; lens: a point
+  // of the lens from aperture(). The direction's component along the axis is 1, so that t is the depth; for panoramas, the
+  // direction is unit. Outside a panorama's field of view there is no ray, and tmax is negative.
   Ray ray(const glm::dvec2 &raster, const glm::dvec2 &lens) const;
   // Returns a point of the lens, in units of its radius, for u in [0, 1)^2.
   glm::dvec2 aperture(const glm::vec2 &u) const;
 
-  // Returns the depth of a world point as in the depth pass: along the axis; panoramas: the distance.
+  // Returns the depth of a world point as in the depth pass: along the axis, or the distance for panoramas.
   double depth(const glm::dvec3 &p) const;
   // Transforms a point or a direction to the camera's frame with z forwards, as nodes use it.
   glm::vec3 to_camera(const glm::dvec3 &p) const;

@@ -1,4 +1,4 @@
-// The scene while it is being filled: checked copies of the user's records, in the user's units.
+// The scene before commit: checked copies of the user's records, in the user's units.
 #pragma once
 
 #include "lancer.h"
@@ -13,7 +13,7 @@
 
 namespace lancer {
 
-// Reports on everything left out or replaced, one line each; equal lines are merged with a count.
+// Reports of data that were left out or replaced, one line each; equal lines are merged with a count.
 class Messages {
 public:
   void add(const std::string &object, const std::string &what);
@@ -44,7 +44,8 @@ struct Description {
   Messages messages;
 };
 
-// Each function checks and copies one record; an Error names object and value and leaves the description unchanged.
+// Each function checks one record and copies it into the description. Throws Error, which names the object and the value; the
+// description is then unchanged.
 void add_mesh(Description &description, const lancer_mesh &mesh);
 void add_instances(Description &description, uint32_t count, const lancer_instance *instances, uint32_t slot_count,
                    const uint32_t *slots, const char *names, size_t names_size);

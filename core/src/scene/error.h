@@ -1,4 +1,4 @@
-// Errors: the message names the object and the value.
+// Errors, whose messages name the object and the value.
 #pragma once
 
 #include <stdexcept>

@@ -14,7 +14,7 @@ namespace {
 void check_rigid(const Affine &map) {
   if (!map.finite())
     bad_argument("camera: its matrix is not finite");
-  // Blender's matrices are products of floats: unit to about 1e-6; a scale would exceed this by far.
+  // Blender's matrices are products of floats, so their columns are unit within about 1e-6. A scale exceeds this by far.
   const glm::dmat3 gram = glm::transpose(map.linear) * map.linear;
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
@@ -69,7 +69,7 @@ void check_panorama(const lancer_camera &source) {
 } // namespace
 
 void check_reach(const Camera &camera) {
-  // Squares of distances must fit into floats: this holds up to 2^60, also for sums of several. The scene is 2^10 wide.
+  // Squares of distances must fit into floats. Up to 2^60 this holds even for sums of several squares. The scene is 2^10 wide.
   const double place = largest_coordinate(camera.to_world.translation);
   if (!(place < 0x1p60 && camera.lens_radius < 0x1p60))
     bad_argument("camera: its distance or its lens radius is more than 1e15 times the scene's size");

@@ -1,4 +1,4 @@
-// Checks and copies images; straight alpha is multiplied into the colours once, here, in the stored bit depth.
+// Checks and copies images. Colours with straight alpha are multiplied by alpha here, once, in the stored bit depth.
 #include "scene/description.h"
 #include "scene/error.h"
 #include "scene/fill.h"

@@ -11,7 +11,7 @@ namespace lancer {
 
 namespace {
 
-// Larger scales would overflow squares of squares in double.
+// With larger scales, fourth powers of lengths would overflow double.
 constexpr double kLargestScale = 1.2676506002282294e30; // 2^100
 
 // A placement for the tracer; fault: why there is none, or empty.

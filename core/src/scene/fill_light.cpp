@@ -100,7 +100,7 @@ void add_light(Description &description, const lancer_light &source) {
     light.diffuse_color = reader.read("diffuse colour", source.diffuse_color);
     light.specular_color = reader.read("specular colour", source.specular_color);
   }
-  // A light without emission keeps its number: lights are numbered in order of adding.
+  // Add a light without emission, too, so that lights have the numbers in which the caller adds them.
   description.lights.push_back(std::move(light));
 }
 

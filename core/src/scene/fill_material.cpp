@@ -104,7 +104,7 @@ LobeDescription read_lobe(const MaterialReader &reader, const lancer_lobe &given
   lobe.option = given.option;
   lobe.weight = reader.read_color("weight", given.weight);
   lobe.normal = reader.read_vector("normal", given.normal);
-  // Check only parameters that the lobe uses: a value without effect gives no message.
+  // Check only parameters that the lobe uses, so that a value without effect gives no message.
   const bool coating = lobe.kind == LobeKind::Beckmann, blinn = lobe.kind == LobeKind::BlinnPhong,
              glass = lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction,
              metal = lobe.kind == LobeKind::Glossy || lobe.kind == LobeKind::Conductor;

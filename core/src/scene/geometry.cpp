@@ -41,7 +41,7 @@ template <class Entry> void keep(std::vector<Entry> &entries, size_t width, cons
 } // namespace
 
 bool is_usable(const glm::vec3 &vertex) {
-  // Written so that NaN is not usable.
+  // Each comparison is false for NaN, so a vertex with NaN is not usable.
   constexpr float limit = 0x1p60f;
   return std::abs(vertex.x) <= limit && std::abs(vertex.y) <= limit && std::abs(vertex.z) <= limit;
 }

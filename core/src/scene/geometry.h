@@ -50,8 +50,8 @@ struct Mesh {
   glm::vec3 vertex(uint32_t triangle, int corner) const { return positions[triangles[triangle][corner]]; }
 };
 
-// Factors by which a placement can enlarge the largest coordinate of a point, and its largest translation: for bounds of
-// rounding errors.
+// Input of bounds of rounding errors: the factors by which a placement can enlarge the largest coordinate of a point, and its
+// largest translation.
 struct Reach {
   double there = 1.0, moved = 0.0;     // object to world
   double back = 1.0, moved_back = 0.0; // world to object

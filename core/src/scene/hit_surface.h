@@ -67,9 +67,10 @@ template <class F> LANCER_LANE Vector3<F> unit(const Double3Of<F> &v) {
   return result;
 }
 
-// Returns a bound on the distance between the computed point and the surface after a round trip through the maps.
-// Each coordinate of M p + T is three products and three sums: at most gamma(4) of the sum of absolute values, and the ray that
-// leaves is mapped back with the same kind of error, enlarged again by M. 2^-49 is eight times the unit roundoff of double.
+// Returns a bound on the distance between the computed point and the surface after a round trip through the maps. Each
+// coordinate of M p + T is three products and three sums, with an error of at most gamma(4) times the sum of absolute values.
+// The ray that leaves is mapped back with an error of the same kind, which M enlarges again. 2^-49 is eight times the unit
+// roundoff of double.
 template <class F>
 LANCER_LANE DoubleOf<F> position_bound(const Placements<F> &placed, const Double3Of<F> &p_object, const Double3Of<F> &p_world) {
   using P = Placements<F>;

@@ -12,8 +12,8 @@
 
 namespace lancer {
 
-// The memory of images. Large images request large pages: a lookup in 256 MB would otherwise wait for a page table walk before
-// the texel.
+// The memory of images. Large images request large pages. With small pages, a lookup in 256 MB would wait for a page table walk
+// before it reads the texel.
 struct FreeTexels {
   void operator()(std::byte *texels) const { free_aligned(texels); }
 };

@@ -36,7 +36,7 @@ struct LightDescription {
   glm::vec3 ambient_color{1.0f}, diffuse_color{1.0f}, specular_color{1.0f};
 };
 
-// The environment as described: one radiance, or nodes over the direction.
+// The environment as described: one radiance, or nodes that compute the radiance of a direction.
 struct World {
   Program program;
   Parameter radiance;

@@ -74,8 +74,8 @@ struct PlaceValues {
 // Blender's smallest index; the lobes of CLASSIC use any index.
 inline constexpr float kSmallestIor = 1e-5f;
 
-// Reads parameters and clamps them to the range of their model; NaN becomes the lower end, or 0. Values: returns a parameter's
-// value in every lane.
+// Reads parameters and clamps them to the range of their model; NaN becomes the lower end of the range, or 0. Values: a
+// function that returns a parameter's value in every lane.
 template <class F, class Values> struct ParameterReader {
   using V = Vec3<F>;
   Values values;

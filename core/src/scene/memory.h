@@ -1,4 +1,4 @@
-// Rejection of requests that exceed the machine's memory.
+// A check of requests against the machine's memory.
 #pragma once
 
 #include <string>

@@ -28,7 +28,7 @@ Schedule Program::schedule(std::span<const Parameter> parameters) const {
     }
     if (node.kind != LANCER_NODE_BUMP)
       continue;
-    // A bump evaluates its height nodes; their inputs from before it are needed here.
+    // A bump evaluates its own height nodes. Their inputs from earlier nodes belong to this schedule.
     for (const uint16_t number : heights[node.heights]) {
       const Node &inner = nodes[number];
       for (int k = 0; k < 5; ++k)

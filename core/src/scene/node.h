@@ -39,7 +39,8 @@ struct Program {
   std::vector<Schedule> heights; // of each BUMP: the nodes among [first, this) that its height depends on
   bool asks_light_path = false;  // whether a node reads the light path
 
-  // Returns the nodes that the parameters depend on, directly or not, in order, without a BUMP's own height nodes.
+  // Returns the nodes that the parameters depend on, directly or indirectly, in order of evaluation, without the height nodes
+  // of a BUMP.
   Schedule schedule(std::span<const Parameter> parameters) const;
   // Returns the node of a value; null if it is constant.
   const Node *source(const Parameter &value) const { return value.varies() ? &nodes[size_t(value.node)] : nullptr; }

@@ -16,10 +16,11 @@ struct Ray {
   double tmin = 0.0;
   glm::dvec3 d{0.0, 0.0, 1.0};
   double tmax = std::numeric_limits<double>::infinity();
-  // The flat primitive that the ray starts on and does not hit again. kNone: none.
+  // The flat primitive on which the ray starts and which it does not hit again; kNone if there is none.
   uint32_t skip_instance = kNone;
   uint32_t skip_primitive = kNone;
-  // Bits of LANCER_RAY_*: the ray's origin. An object hidden from all of them does not exist for the ray.
+  // Bits of LANCER_RAY_*: the kind of the ray. A ray passes an object that is hidden from all of its kinds as if the object did
+  // not exist.
   uint32_t kinds = ~0u;
 };
 
@@ -41,7 +42,7 @@ struct HitFilter {
   // Returns whether a hit of rays[ray] of the batch counts. Called in any order, possibly more than once, for
   // - closest hit: every hit that is closer, by closer(), than the closest that counts, and some that are not;
   // - any hit: all hits of a ray that is not occluded.
-  // A rejected hit may count after calls for other hits, if the order makes no difference to the caller.
+  // The result for a hit may depend on earlier calls only if the caller does not depend on the order of hits.
   bool (*counts)(void *context, size_t ray, const Hit &hit);
   void *context;
 };

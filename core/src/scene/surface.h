@@ -20,9 +20,9 @@ struct Surface {
 // Returns the surface at the hit of a ray. slots: material numbers of all instances.
 Surface surface_at(const Geometry &geometry, const std::vector<uint32_t> &slots, const Ray &ray, const Hit &hit);
 
-// Attributes of the surface, computed only on request.
+// Attributes of the surface, computed separately because few callers need them.
 struct SurfaceAttributes {
-  glm::vec2 uv{0.0f};    // texture coordinates; without them barycentrics on a mesh, the parametrisation on an exact surface
+  glm::vec2 uv{0.0f}; // texture coordinates; a mesh without them has barycentric weights, an exact surface its parametrisation
   glm::vec3 color{1.0f}; // vertex colour; white without one
 };
 SurfaceAttributes attributes_at(const Geometry &geometry, const Surface &surface);
