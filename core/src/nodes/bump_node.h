@@ -53,7 +53,7 @@ template <class F> struct Steps {
   AttributeLanes<F> undisplaced; // where found, px, py and the normal are in object space
 };
 
-// Moves a site by an offset in its tangent plane (normalised world), with the attributes as bump reads them.
+// Moves a site, including the attributes that bumps read, by an offset in its tangent plane (normalised world).
 template <class F> void move(const Plane<F> &plane, const Vector3<DoubleOf<F>> &offset, Site<F> &site) {
   using D = DoubleOf<F>;
   site.p += offset;
@@ -94,7 +94,7 @@ template <class F> Steps<F> steps_at(const Node &node, const Site<F> &site) {
     r.undisplaced.found = uniform<F>(false);
     return r;
   }
-  // Without displacement: the same surface, in object space.
+  // Without displacement, both surfaces are the same; compute the steps in object space.
   const Vector3<D> x = r.x * footprint, y = r.y * footprint;
   r.px = vector_to_object(site, x);
   r.py = vector_to_object(site, y);
@@ -127,7 +127,7 @@ template <class F> Site<F> height_site(const Site<F> &site, const Steps<F> &step
   return place;
 }
 
-// Returns the normal input; on a displaced flat face its normal before displacement.
+// Returns the normal input; on a displaced flat face, the face's normal before displacement.
 template <class F> Vector3<F> flat_normal_before(const Inputs<F> &in, const Site<F> &site) {
   const Vector3<F> normal = in.normal(3, site);
   if (!any(site.on_mesh))
@@ -141,8 +141,8 @@ template <class F> Vector3<F> flat_normal_before(const Inputs<F> &in, const Site
   return select(flat, select(dot(n, site.ng) < F(0.0f), -n, n), normal);
 }
 
-// Saves values of nodes while others overwrite them. Nothing between keep() and bring_back() throws: a destructor would need
-// exception tables, which are shared symbols, in kernels.
+// Saves values of nodes before the height's nodes overwrite them. Code between keep() and bring_back() must not throw: a
+// destructor would need exception tables, which are shared symbols and must not occur in kernels.
 template <class F> class Kept {
 public:
   void keep(const Schedule &schedule, const Values<F> &values) {
@@ -170,7 +170,7 @@ template <class F> Value<F> bump_node(const Program &program, const Inputs<F> &i
   using D3 = Vector3<D>;
   const F zero(0.0f), one(1.0f);
   const Vector3<F> normal = in.node.flags & 4 ? flat_normal_before(in, site) : in.normal(3, site);
-  // The height of a bump ignores other bumps: each level would triple the evaluations.
+  // Within the height of a bump, ignore other bumps: each level would triple the evaluations.
   if (site.in_height || !site.surface)
     return solid(normal);
   const F filter = in.scalar(4);

@@ -9,7 +9,7 @@
 namespace lancer {
 namespace {
 
-// Maps p to 0 ... 1 over the bounds of each lane's mesh.
+// Maps p so that the bounds of each lane's mesh become 0 ... 1.
 template <class F> LANCER_LANE Vector3<DoubleOf<F>> in_bounds(const Site<F> &site, const Vector3<DoubleOf<F>> &p) {
   using D = DoubleOf<F>;
   const auto along = [&](int axis, const D &x) __attribute__((always_inline)) {
@@ -84,7 +84,7 @@ template <class F> Vector3<F> object_space_normal(const Site<F> &site) {
   return select(site.on_mesh, select(black(n), normal_to_object(site, site.ng), seen), shading);
 }
 
-// Evaluates a scalar function of the camera in each lane.
+// Evaluates a function of the camera lane by lane.
 template <class F, class Function> Vector3<F> ask_camera(const Vector3<DoubleOf<F>> &p, const Function &f) {
   constexpr int width = LanesOf<F>::kWidth;
   alignas(64) float numbers[3][width];
@@ -114,8 +114,8 @@ template <class F> glm::dvec3 seen_at(const Site<F> &site, int i, const glm::dve
     return p;
   if (camera.kind != CameraKind::Orthographic)
     return camera.to_world.translation + p;
-  // Parallel rays all have the same direction: a camera ray is represented by its origin; for any other ray the direction is
-  // used as a point of the user's world, as in Cycles.
+  // Camera rays of an orthographic camera all have the same direction, so the ray's origin represents the lane. For any other
+  // ray, the direction is used as a point of the user's world, as in Cycles.
   if (site.eye[i])
     return *site.eye[i];
   return site.scene.normalisation ? site.scene.normalisation->to_normalised(p) : p;
@@ -127,7 +127,7 @@ template <class F> Vector3<F> window(const Site<F> &site) {
     return narrow(user_position(site));
   return ask_camera<F>(site.p, [&](int i, const glm::dvec3 &p) {
     const glm::vec3 place = camera->to_window(seen_at(site, i, p));
-    // Directions perpendicular to a perspective camera's axis have no place in its picture.
+    // Directions perpendicular to the axis of a perspective camera have no place in the picture.
     return is_finite(place.x) && is_finite(place.y) ? place : glm::vec3(0.0f);
   });
 }

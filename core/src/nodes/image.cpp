@@ -24,8 +24,8 @@ const float *srgb_bytes() {
   return table.data();
 }
 
-// The curve's second derivative is at most 3.02, so that lines deviate by no more than 3.02 / 8 / 4096^2 = 2.3e-8; except the
-// line across 0.04045, where the slope jumps from 0.0774 to 0.0787 and the curve lies up to 7.4e-8 below it.
+// The curve's second derivative is at most 3.02, so lines deviate by at most 3.02 / 8 / 4096^2 = 2.3e-8. The exception is the
+// line across 0.04045, where the slope jumps from 0.0774 to 0.0787 and the curve is up to 7.4e-8 below the line.
 const float *srgb_lines() {
   static const std::array<float, kSrgbSteps + 2> table = [] {
     std::array<float, kSrgbSteps + 2> values{};

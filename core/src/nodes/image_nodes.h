@@ -26,7 +26,8 @@ template <class F> Value<F> look_up(const Inputs<F> &in, const Image &image, con
   return {found.color, found.alpha};
 }
 
-// Looks up each lane in an image of its own: its number among the node's images; other numbers are missing.
+// Looks up each lane in its own image, given by the number among the node's images. A number outside the node's images gives
+// missing().
 template <class F>
 Value<F> look_up_each(const Inputs<F> &in, const Site<F> &site, const WordOf<F> &number, const Place<F> &place) {
   Value<F> r = missing<F>();
@@ -120,8 +121,8 @@ template <class F> Value<F> box(const Inputs<F> &in, const Site<F> &site, const 
   return result;
 }
 
-// Looks up the side of a cube that a direction leaves through; upright as seen from inside with +z up, and +z and -z as seen by
-// a viewer who faces +y and then looks up or down.
+// Looks up the side of a cube through which a direction leaves. The sides are upright as seen from inside with +z up; +z and -z
+// are as seen by a viewer who faces +y and then looks up or down.
 template <class F> Value<F> cube(const Inputs<F> &in, const Site<F> &site, const Vector3<F> &d) {
   using U = WordOf<F>;
   const F zero(0.0f), half(0.5f);
@@ -161,7 +162,7 @@ template <class F> Value<F> environment_node(const Inputs<F> &in, const Site<F> 
   const F zero(0.0f), one(1.0f), half(0.5f);
   Place<F> place;
   if (in.node.option == LANCER_ENVIRONMENT_MIRROR_BALL) {
-    // The ball is seen along +y; its normal is halfway between the viewer and d.
+    // The mirror ball is seen along +y. The normal that mirrors the view to d is halfway between the viewer and d.
     const Vector3<F> d = unit_or_zero(given);
     const F size = F(2.0f) * sqrt(max(F(-0.5f) * (d.y - one), zero)), length = select(size > zero, size, one);
     place = {half * (d.x / length + one), half * (d.z / length + one)};

@@ -1,4 +1,4 @@
-// An image as lookups read it: its texels, plain numbers, and the lookup mode.
+// The record of an image for lookups: its texels as plain numbers, and the lookup mode.
 #pragma once
 
 #include "scene/image.h"
@@ -6,8 +6,8 @@
 
 namespace lancer {
 
-// The sRGB curve: as kSrgbSteps line segments between 0 and 1, given by their end points; at the 256 values of a byte; and at
-// any value.
+// The sRGB curve in three forms: the end points of kSrgbSteps line segments between 0 and 1; the values at the 256 values of a
+// byte; and the value at any number.
 inline constexpr uint32_t kSrgbSteps = 4096;
 const float *srgb_lines();
 const float *srgb_bytes();

@@ -1,4 +1,4 @@
-// The Light Path node: data about the ray that evaluates nodes, and about the path before it.
+// The Light Path node: data of the ray for which nodes are evaluated, and of the path before that ray.
 #pragma once
 
 #include "lancer.h"

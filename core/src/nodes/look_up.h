@@ -10,8 +10,8 @@
 namespace lancer {
 namespace {
 
-// Neighbouring texels along one axis, as whole numbers, with their weights and whether they exist. A single one has no weight.
-// Entries beyond count are unset.
+// Neighbouring texels along one axis: their indices as whole numbers, their weights, and whether they exist. The weight of a
+// single texel is not set. Entries beyond count are unset.
 template <class F> struct Taps {
   F at[4], weight[4];
   MaskOf<F> there[4];
@@ -210,7 +210,7 @@ template <class Found, class F> LANCER_LANE Found found_at(const ImageView &imag
                                   : between<1, Found>(image, across, up);
 }
 
-// Linear interpolation of the curve from 0 to 1, and one step beyond, which sums of weighted bytes may reach by rounding.
+// Interpolates the curve linearly between 0 and 1, and one step beyond 1, which sums of weighted bytes may reach by rounding.
 template <class F> LANCER_LANE F decode(const float *lines, const F &value) {
   const F zero(0.0f), steps(static_cast<float>(kSrgbSteps));
   const auto on_lines = (value >= zero) & (value < F(1.0f + 1.0f / static_cast<float>(kSrgbSteps)));

@@ -11,7 +11,8 @@
 namespace lancer {
 namespace {
 
-// As C99's fmin() and fmax(): of a number and a NaN the number. Of zeros of both signs the first, which C99 leaves open.
+// C99's fmin() and fmax(): of a number and a NaN, they return the number. Of zeros with different signs they return the first;
+// C99 does not define this case.
 template <class F> LANCER_LANE F least(const F &a, const F &b) { return select((b < a) | (a != a), b, a); }
 template <class F> LANCER_LANE F largest(const F &a, const F &b) { return select((b > a) | (a != a), b, a); }
 

@@ -1,4 +1,4 @@
-// Compiled once per instruction set, with LANCER_ISA naming it. This file must not emit a shared (weak) symbol: see
+// Compiled once per instruction set, with LANCER_ISA as its name. This file must emit no shared (weak) symbol: see
 // bvh_kernel.cpp.
 #include "nodes/block_site.h"
 #include "simd/kernel_choice.h"

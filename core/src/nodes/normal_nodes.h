@@ -64,7 +64,7 @@ template <class F> Tangent<F> tangent_at(const Node &node, const Site<F> &site, 
     }
   }
   if (!all(site.on_mesh)) {
-    // On exact surfaces the tangent is around the axis; on a plane along x.
+    // On exact surfaces, the tangent runs around the axis; on a plane, along x.
     const Vector3<D> p = object_position(site);
     const Vector3<F> around = unit_or_zero(narrow(Vector3<D>(-p.y, p.x, D(0.0))));
     const M plane = by_lane<M>([&](int i) { return site.instance[i]->kind == ShapeKind::Plane; });
@@ -136,7 +136,7 @@ template <class F> Value<F> displacement_node(const Inputs<F> &in, const Site<F>
     return solid(n * offset);
   if (in.node.option == 0)
     return solid(normal_to_object(site, n) * offset);
-  // A world length, in the user's units, converted to object space.
+  // The offset is a length in the user's world; convert it to object space.
   return solid(narrow(vector_to_object(site, widen(n) * (widen(offset) * D(site.user_scale())))));
 }
 

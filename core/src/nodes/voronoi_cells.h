@@ -218,7 +218,8 @@ static VoronoiFeature<N, F> nearest_feature(const F (&coordinate)[N], const Voro
   return feature;
 }
 
-// Blends all points nearby, each by how much nearer it is than the result so far.
+// Blends all points nearby. The weight of each point grows with the difference between the distance so far and the point's
+// distance.
 template <int N, class F> static VoronoiFeature<N, F> smooth_feature(const F (&coordinate)[N], const VoronoiShape<F> &shape) {
   const VoronoiPlace<N, F> place(coordinate);
   const F zero(0.0f), one(1.0f), half(0.5f), s = shape.smoothness;
