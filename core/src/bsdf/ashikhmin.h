@@ -33,14 +33,14 @@ template <class F> LANCER_LANE F lifted_fresnel(F cos_theta, F ior, float f0) {
   return f0 + (1.0f - f0) * (fresnel_dielectric(cos_theta, ior) - r0) / (1.0f - r0);
 }
 
-// Makes a coating of IOR 1.5 at a quarter of its strength; cos_o: for the albedo as in Cycles.
+// Makes a coating of IOR 1.5 with a quarter of its strength. cos_o: the cosine at which the albedo is evaluated, as in Cycles.
 template <class F> LANCER_LANE Lobe<F> make_clear_coat(const Vec3<F> &weight, F alpha, F cos_o) {
   Lobe<F> lobe;
   lobe.shape = LobeShape::Ashikhmin;
   lobe.variant = static_cast<uint8_t>(Gloss::ClearCoat);
   lobe.component = Component::Glossy;
   lobe.alpha_x = lobe.alpha_y = clamp01(alpha);
-  // Cycles treats it as a mirror if alpha^2 is 1e-7 or less.
+  // Cycles treats the coat as a mirror if alpha^2 is 1e-7 or less.
   lobe.delta = lobe.alpha_x * lobe.alpha_x <= 1e-7f;
   lobe.ior = F(1.5f);
   lobe.color = 0.25f * weight;

@@ -77,11 +77,11 @@ inline double beckmann_visible_slope(float a_float, float u_float) {
   return x;
 }
 
-// Samples the angle from wo's azimuth of a slope of length r = eccentricity * a: density (1 - eccentricity cos(phi)) / (2 pi).
-// Its distribution function is Kepler's equation, phi - eccentricity sin(phi) = mean anomaly.
+// Samples the angle phi between wo's azimuth and a slope of length r = eccentricity * a, with density (1 - eccentricity
+// cos(phi)) / (2 pi). The distribution function is Kepler's equation, phi - eccentricity sin(phi) = mean anomaly.
 inline float beckmann_visible_angle(float eccentricity, float u) {
   const float mean = kPi * std::abs(2.0f * u - 1.0f);
-  // Newton from above: the function is convex between 0 and pi, so every step decreases towards the root.
+  // Newton's method from above: the function is convex between 0 and pi, so every step decreases towards the root.
   float phi = std::min(mean + eccentricity, kPi);
   for (int i = 0; i < 20; ++i) {
     const float error = phi - eccentricity * sin(phi) - mean;

@@ -167,7 +167,8 @@ template <class F> BsdfSample<F> Bsdf<F>::sample(F u_lobe, F u, F v) const {
       valid = valid & ((!mine) | draws_on_side(lobes[i], through, local.cos_ng));
   }
 
-  // Weight by the sum over all smooth lobes, whichever was selected; h keeps all digits of the sampler.
+  // Weight by the sum over all smooth lobes, not by the selected lobe alone. h is the sampler's half vector with all of its
+  // digits.
   const B single = valid & direction.single, spread = valid & !direction.single;
   result.weight = select(single, direction.weight, V(zero));
   result.pdf = select(single, direction.probability, zero);

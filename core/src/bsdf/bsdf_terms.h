@@ -67,8 +67,8 @@ template <class F> LANCER_LANE void Bsdf<F>::add(const Lobe<F> &lobe) {
 }
 
 template <class F> void Bsdf<F>::complete() {
-  // Select lobes by the light that they are expected to scatter, averaged over channels: by the largest channel, a saturated
-  // base would take samples that its gloss needs.
+  // Select lobes in proportion to the light that they are expected to scatter, averaged over channels. With the largest channel
+  // instead of the average, a saturated base would take samples that its gloss needs.
   const F zero(0.0f);
   F total = zero;
   smooth = transmits = uniform<F>(false);
@@ -113,7 +113,7 @@ template <class F> Vec3<F> Bsdf<F>::shown(Component component) const {
   return total;
 }
 
-// known: by lane, the frame in which wi_known is wi.
+// known: by lane, the number of the frame in which wi_known is the local direction of wi.
 template <class F>
 void Bsdf<F>::turn_to_frames(const V &wi, const WordOf<F> &known, const V &wi_known, B single, Local &local) const {
   for (int i = 0; i < frame_count; ++i) {
@@ -123,7 +123,7 @@ void Bsdf<F>::turn_to_frames(const V &wi, const WordOf<F> &known, const V &wi_kn
   local.cos_ng = select(flat & !single, local.wi[0].z, dot(ng, wi));
 }
 
-// Evaluates lobes that only reflect, or scatter widely, without the colour. h: for lobes that reflect about it.
+// Evaluates a lobe that reflects only or scatters widely, without its colour. h: half vector, for lobes that reflect about it.
 template <class F> ColorValue<F> Bsdf<F>::smooth_value(const Lobe<F> &lobe, const V &wi, const V &h) const {
   const V &wo_l = wo_local[lobe.frame];
   LobeValue<F> grey;
@@ -177,7 +177,7 @@ template <class F> BsdfValue<F> Bsdf<F>::sum(const Local &local, const Drawn &dr
     if (lobe.frame != 0) {
       const B acts = bump_acts(lobe, drew);
       bump = select(acts, bump_factor(lobe, frames[lobe.frame].n, ns, local.wi[0].z, wi.z, bump_correction), bump);
-      // If the lobe that sampled wi is 0, the sample is lost: the sum does not include its density either.
+      // If the value of the lobe that sampled wi is 0, the sample is lost, and the sum excludes the lobe's density.
       lost = lost | (there & drew & (bump == zero));
       there = there & (bump != zero);
     }

@@ -75,7 +75,7 @@ LANCER_LANE Stretched<F> stretched(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, c
           add_frame(bsdf, n, select(is_stretched, turned, none))};
 }
 
-// The Glossy node: one roughness shrinks as the other grows.
+// The Glossy node: with anisotropy, one roughness decreases as the other increases.
 template <class F> LANCER_LANE Stretched<F> glossy_roughness(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const Vec3<F> &n) {
   const F alpha = alpha_of(inputs.roughness), anisotropy = min(max(inputs.anisotropy, F(-0.99f)), F(0.99f));
   const auto negative = anisotropy < 0.0f;
@@ -104,8 +104,8 @@ template <class F> LANCER_LANE void add_facets(Bsdf<F> &bsdf, Lobe<F> lobe, cons
   bsdf.add(lobe);
 }
 
-// Makes the facets of the nodes Glossy, Metallic and Glass, to be completed, with the weight of the node in color. By the rules
-// of Blender 3 only if they preserve energy.
+// Returns the facets of a node Glossy, Metallic or Glass, with the node's weight in color; the caller completes them. By the
+// rules of Blender 3, only for facets that preserve energy.
 template <class F>
 LANCER_LANE Lobe<F> facets_of(const LobeInputs<F> &inputs, uint8_t frame, F alpha_x, F alpha_y, MaskOf<F> inside) {
   using V = Vec3<F>;

@@ -1,4 +1,5 @@
-// Plans of facets that are the same wherever their material is hit, made once, with their tables sampled along the cosine.
+// Plans of facets that are the same at every hit of their material. They are made once, with their tables sampled along the
+// cosine.
 #pragma once
 
 #include "bsdf/principled.h"

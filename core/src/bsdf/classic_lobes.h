@@ -27,10 +27,9 @@ template <class F> LANCER_LANE DeltaDirection<F> smooth_coating_sample(const Lob
   return {reflect_local(wo), fresnel_dielectric(wo.z, lobe.ior), F(1.0f)};
 }
 
-// Smooth glass: reflects with probability F, else refracts. wo.z > 0; the lobe's index is that of the far side over that of
-// the near side. u in [0, 1).
-// The radiance is not scaled by 1/eta^2 on transmission: a path that leaves the glass again would undo the factor, and Cycles
-// omits it also for lights and cameras inside glass.
+// Smooth glass: reflects with probability F, else refracts. wo.z > 0; the lobe's index is that of the far side over that of the
+// near side. u in [0, 1). Transmission does not scale the radiance by 1/eta^2: a path that leaves the glass again would undo
+// the factor. Cycles omits the factor for lights and cameras inside glass, too.
 template <class F> LANCER_LANE DeltaDirection<F> dielectric_sample(const Lobe<F> &lobe, const Vec3<F> &wo, F u) {
   const F eta = lobe.ior;
   const auto straight = eta == F(1.0f);
@@ -53,7 +52,7 @@ template <class F> LANCER_LANE F coating_d(const Lobe<F> &lobe, const Vec3<F> &w
 // f; d: coating_d().
 template <class F>
 LANCER_LANE F coating_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi, const Vec3<F> &h, F d) {
-  // Divide each G1 by its cosine at once: both vanish together at the horizon.
+  // Compute each quotient of G1 and cosine as a whole, because both vanish at the horizon.
   const F a_o = beckmann_a(wo, lobe.alpha_x), a_i = beckmann_a(wi, lobe.alpha_x);
   const F reflectance = fresnel_dielectric(dot(wo, h), lobe.ior);
   return select(d != F(0.0f), 0.25f * d * reflectance * (beckmann_g1(a_o) / wo.z) * (beckmann_g1(a_i) / wi.z), F(0.0f));

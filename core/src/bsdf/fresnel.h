@@ -16,8 +16,9 @@ template <class F> struct Fresnel {
 };
 
 // cos_i: cosine on the incident side, clamped to at least 0. eta: index beyond the boundary over index before it; infinite =
-// mirror. Double covers the whole range of float indices: e^2 neither overflows nor vanishes, and the small differences near
-// eta = 1 keep at least 8 digits. So one formula covers all cases, and F is exact to the rounding of the result.
+// mirror. The computation is in double, for the whole range of float indices: e^2 neither overflows nor vanishes, and the small
+// differences near eta = 1 keep at least 8 digits. So one formula covers all cases, and F is exact to the rounding of the
+// result.
 template <class F> LANCER_LANE Fresnel<F> fresnel(F cos_i, F eta) {
   using D = DoubleOf<F>;
   const D c = min(max(widen(cos_i), D(0.0)), D(1.0));

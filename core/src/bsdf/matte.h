@@ -18,7 +18,7 @@ namespace lancer {
 // largest channel. With
 //   c = max(cos, m) in both powers, and A = integral of c_i^(k - 1) cos_i = 2 pi ((1 - m^(k+1)) / (k + 1) + m^(k+1) / 2),
 //   f = (c_i c_o)^(k - 1) / A, albedo rho c_o^(k - 1) <= 1, equal to rho at c_o = 1.
-// f stays reciprocal, is the plain law if m vanishes (k >= 1, or a dark colour), and Lambert for k < 1 and white.
+// f remains reciprocal. It is the law above if m is 0 (k >= 1, or a dark colour), and Lambert if k < 1 and the colour is white.
 
 // Lower bound on logarithms of cosines, so that their powers of two stay in the range of float.
 inline constexpr float kLowestLogCosine = -40.0f;
@@ -28,7 +28,7 @@ template <class F> LANCER_LANE F minnaert_log_cosine(const Lobe<F> &lobe, const 
   return select(w.z > 0.0f, max(-0.5f * log1p(tan2_theta(w)), lobe.alpha_x), lobe.alpha_x);
 }
 
-// Returns the bounded (cos of w)^(k - 1).
+// Returns max(cos of w, m)^(k - 1).
 template <class F> LANCER_LANE F minnaert_power(const Lobe<F> &lobe, const Vec3<F> &w) {
   return exp((lobe.shininess - 1.0f) * minnaert_log_cosine(lobe, w));
 }
@@ -201,7 +201,8 @@ template <class V> LANCER_LANE ColorValue<NumberOf<V>> dust_sheen_eval(const V &
 }
 
 // 0 if wi is on the wrong side: above for translucency, below for all others. Velvet and dust are also 0 if wo is behind the
-// normal; the others continue as at the horizon, for coarse meshes whose interpolated normals face away from the viewer.
+// normal. The other lobes use their values at the horizon there, for coarse meshes whose interpolated normals face away from
+// the viewer.
 template <class F> LANCER_LANE ColorValue<F> matte_eval(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi) {
   const F zero(0.0f);
   const MaskOf<F> above = wi.z > zero, seen = above & (wo.z > zero);

@@ -40,7 +40,8 @@ LANCER_LANE Lobe<F> make_microfacet(Scatter scatter, uint8_t frame, const Vec3<F
   return lobe;
 }
 
-// further: the share kept by each further bounce; the node's colour, if color has it multiplied with other weights.
+// further: the share of light that each further bounce keeps, that is, the node's colour; color may contain other weights as
+// well.
 template <class F> LANCER_LANE void set_constant(Lobe<F> &lobe, const Vec3<F> &further) {
   lobe.fresnel = FresnelKind::None;
   lobe.f0 = further;
@@ -73,7 +74,8 @@ template <class F> LANCER_LANE void set_f82(Lobe<F> &lobe, const Vec3<F> &f0, co
   lobe.b = schlick_at_edge(f0) * F(kEdgeScale) * (Vec3<F>(F(1.0f)) - tint);
 }
 
-// Sets the dielectric whose curve Schlick's follows; a perfect reflector is at the end of the curve everywhere.
+// Sets the dielectric whose Fresnel curve Schlick's curve follows. A perfect reflector has the end value of the curve
+// everywhere.
 template <class F> LANCER_LANE void set_curve(Lobe<F> &lobe, F ior) {
   lobe.ior = ior;
   const F lowest = f0_of_ior(ior), range = 1.0f - lowest;
@@ -154,7 +156,7 @@ template <class F> LANCER_LANE Vec3<F> further_bounce(const Lobe<F> &lobe) {
 // Returns the share of the light lost by single scattering that further bounces return (Turquin 2019, with Kulla and Conty's
 // colour).
 template <class F> LANCER_LANE Vec3<F> further_light(const Lobe<F> &lobe, F roughness) {
-  // Beyond 1 the sum over all bounces would diverge.
+  // With a factor above 1, the sum over all bounces would diverge.
   const Vec3<F> one(F(1.0f)), bounce = min(further_bounce(lobe), one);
   const MaskOf<F> whole = same(bounce, one);
   if (all(whole))
@@ -213,7 +215,8 @@ LANCER_LANE Vec3<F> reflected_albedo(const MicrofacetPlan<F> &plan, F cos_o, con
   return select(black(smooth.reflected), V(F(0.0f)), mean);
 }
 
-// Returns whether only the mean over the facets is needed, and a smooth surface would not be black either.
+// Whether the albedo needs only the mean over the facets: it does not need the response of a smooth surface, which would not be
+// black.
 template <class F> LANCER_LANE bool needs_no_smooth_response(const Lobe<F> &lobe) {
   return lobe.fresnel == FresnelKind::Schlick && !refracts(lobe) && !any(black(lobe.f0));
 }

@@ -82,7 +82,8 @@ template <class F> LANCER_LANE F facet_g2(const Lobe<F> &lobe, const Vec3<F> &wo
   const F both = select(seen > 0.0f, z / seen, F(0.0f));
   if (!lobe.beckmann)
     return both;
-  // By Cycles' fit the facets visible from both directions exceed those visible from one by up to 0.3 %: a gain of energy.
+  // By Cycles' fit, the share of facets visible from both directions exceeds the share visible from one of them by up to 0.3 %,
+  // which would be a gain of energy.
   return min(both, min(beckmann_seen(lobe, wo), beckmann_seen(lobe, wi)) / wo.z);
 }
 
@@ -111,7 +112,7 @@ template <class F> LANCER_LANE Vec3<F> refraction_half_vector(const Vec3<F> &wo,
   return select(says, copysign(1.0f / sqrt(length2), sum.z) * sum, Vec3<F>(F(0.0f)));
 }
 
-// any_sides: evaluate also if both directions are on one side of h, where no facet sends light; see Bsdf::eval_lit.
+// any_sides: also evaluate directions on the same side of h, which no facet connects; see Bsdf::eval_lit.
 template <class F>
 LANCER_LANE ColorValue<F> microfacet_eval_through(const Lobe<F> &lobe, const Vec3<F> &wo, const Vec3<F> &wi, const Vec3<F> &h,
                                                   bool any_sides = false) {

@@ -55,7 +55,7 @@ template <class F> LANCER_LANE Vec3<F> reflecting_normal(const Bsdf<F> &bsdf, co
   return select(rises, normal, normalize(sin_t * side + cos_t * bsdf.ng));
 }
 
-// Returns the normal of lobes that need not reflect: unchanged, but adjusted in Blender 3.x.
+// Returns the normal of lobes that need not reflect: n itself, but the reflecting normal by the rules of Blender 3.
 template <class F> LANCER_LANE Vec3<F> wide_normal(const Bsdf<F> &bsdf, const Vec3<F> &n, Rules rules) {
   return rules == Rules::Blender3 ? reflecting_normal(bsdf, n) : n;
 }
@@ -79,7 +79,7 @@ template <class F> uint8_t add_frame(Bsdf<F> &bsdf, const Vec3<F> &n, const Vec3
   Frame<F> frame;
   if (!is_plain)
     frame = Frame<F>(normal, t);
-  // Reuse an existing frame: in every lane the first equal one, so that no lane depends on its neighbours.
+  // Reuse an existing frame. Every lane uses the first equal frame, so that no lane depends on its neighbours.
   const U nobody(~0u);
   U found = nobody;
   for (int i = 0; i < bsdf.frame_count; ++i) {
@@ -115,8 +115,8 @@ template <class F> bool ends_smoothly(const Lobe<F> &lobe) {
   return lobe.shape == LobeShape::Lambert || lobe.shape == LobeShape::Matte || lobe.shape == LobeShape::Sheen;
 }
 
-// Returns where bump attenuates a direction, as in Cycles: for a lobe's own samples only if it reflects widely, for all other
-// light for every lobe but velvet.
+// Returns the lanes where bump attenuates a direction, as in Cycles. It attenuates a lobe's own samples only if the lobe
+// reflects widely; it attenuates all other light for every lobe except velvet.
 template <class F> LANCER_LANE MaskOf<F> bump_acts(const Lobe<F> &lobe, MaskOf<F> drawn) {
   if (matte_transmits(lobe))
     return !drawn;
@@ -152,7 +152,8 @@ LANCER_LANE F bump_factor(const Lobe<F> &lobe, const Vec3<F> &n, const Vec3<F> &
   } else {
     if (smooth_end && correction)
       kept = conty_shadowing(cos_ns, cos_tilt);
-    // 0 on the other side of the surface than the lobe assumes; Blender 3.x checks this for wide lobes only.
+    // The factor is 0 if the direction is on one side of ns and on the other side of n. Blender 3.x checks this for wide lobes
+    // only.
     if (lobe.rules != Rules::Blender3)
       kept = select(cos_ns * cos_tilt * cos_n < 0.0f, F(0.0f), kept);
   }

@@ -10,7 +10,8 @@ inline constexpr float kLeastLayer = 1e-5f;
 
 enum class PrincipledLayer : uint8_t { Sheen, Coat, Emission, Metal, Glass, Gloss, Diffuse };
 inline constexpr int kLayerCount = 7;
-// The light that a layer leaves for the layers below it: all, the unscattered part, or the part outside its share.
+// The light that a layer leaves for the layers below: all light, the light that it does not scatter, or the light outside its
+// share.
 enum class Leaves : uint8_t { All, Unscattered, Unshared };
 // Listed top to bottom.
 struct LayerRow {
@@ -130,7 +131,7 @@ LANCER_LANE MicrofacetPlan<F> plan_layer(PrincipledLayer layer, const LobeInputs
   return plan_microfacet(lobe, uniform<F>(preserving));
 }
 
-// Plans every layer at its hit.
+// Stands for plans when every layer is planned at the hit.
 template <class F> struct NoPlans {
   LANCER_LANE bool has(PrincipledLayer) const { return false; }
   LANCER_LANE Lobe<F> seen(PrincipledLayer, F, const Vec3<F> &) const { return {}; }
@@ -154,7 +155,7 @@ void add_layers(Bsdf<F> &bsdf, const LobeInputs<F> &inputs, const PrincipledInpu
     if (!any(there))
       continue;
     const auto weighted = [&](const V &color) __attribute__((always_inline)) { return select(there, color, none); };
-    // A lane without the layer must not create a frame that later lobes would find.
+    // A lane without the layer must not add a frame, because later lobes would find that frame.
     const auto framed = [&](const V &normal) __attribute__((always_inline)) {
       return add_frame(bsdf, select(there, normal, none));
     };

@@ -57,7 +57,7 @@ LANCER_LANE void add_glass3(Bsdf<F> &bsdf, uint8_t frame, const Vec3<F> &weight,
 template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const PrincipledInputs<F> &in) {
   using V = Vec3<F>;
   const V one(F(1.0f)), none(F(0.0f));
-  // All normals, including the diffuse one, are adjusted so that the mirror direction is above the surface.
+  // All normals, including that of the diffuse lobe, are tilted so that the mirror direction is above the surface.
   const V n = reflecting_normal(bsdf, lobe.normal);
   const Grain<F> grain = grain_of(lobe, in.roughness, in.anisotropic);
   const V tangent =
@@ -85,7 +85,7 @@ template <class F> void add_sum3(Bsdf<F> &bsdf, const LobeInputs<F> &lobe, const
     bsdf.add(dust);
   }
 
-  // One reflection for plastic and metal: its value at normal incidence varies from the specular level to the base colour.
+  // Plastic and metal are one lobe, whose reflectance at normal incidence varies from the specular level to the base colour.
   const MaskOf<F> is_glossy = (1.0f - glass > kLeastLayer) & ((in.specular > kLeastLayer) | (in.metallic > kLeastLayer));
   if (any(is_glossy)) {
     const V hue = mix(one, hue_of(in.base_color, {0.3f, 0.6f, 0.1f}), in.specular_tint.x);

@@ -31,7 +31,7 @@ template <class F> LANCER_LANE SheenFit<F> sheen_fit(F cos_o, F roughness) {
   return {fit[0], fit[1], fit[2]};
 }
 
-// color is black if the layer has no effect: Cycles drops it if a or the albedo is below 1e-5.
+// color is black if the layer has no effect: Cycles drops the layer if a or the albedo is below 1e-5.
 template <class F> LANCER_LANE Lobe<F> make_sheen(const Vec3<F> &weight, F roughness, F cos_o) {
   SheenFit<F> fit = sheen_fit(cos_o, roughness);
   const auto nothing = (fit.a < 1e-5f) | (fit.albedo < 1e-5f);
