@@ -25,7 +25,7 @@ inline void *allocate_aligned(size_t alignment, size_t bytes) {
 #else
   void *const memory = std::aligned_alloc(alignment, bytes);
 #if defined(__linux__)
-  // A hint: without large pages everything works, but slower.
+  // The call is a hint: without large pages, the memory is slower but valid.
   if (memory && alignment >= kLargePage)
     (void)madvise(memory, bytes, MADV_HUGEPAGE);
 #endif

@@ -32,7 +32,7 @@ uint32_t saved_registers() {
   return low;
 }
 
-// Queries the processor directly: __builtin_cpu_supports may be backed by a runtime library that reports nothing.
+// Queries the processor directly, because some runtime libraries behind __builtin_cpu_supports report no features.
 InstructionSet best_set() {
   const uint32_t basic = ask(1).c, more = ask(7).b, extended = ask(0x80000001).c;
   // Require all of x86-64-v3: the compiler may use any of it.

@@ -1,4 +1,4 @@
-// Kernels are compiled once per instruction set, with LANCER_ISA naming it; one copy of each runs.
+// The choice of a kernel's copy. A kernel is compiled once per instruction set, with LANCER_ISA as its name, and one copy runs.
 #pragma once
 
 // The instruction set's name as text.

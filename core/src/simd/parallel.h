@@ -23,8 +23,9 @@ inline void poll_cancel(const BuildContext &context) {
     throw BuildCancelled{};
 }
 
-// Allocates the per-thread data of exceptions. It is allocated on first use, and without memory for it the process ends: so a
-// thread allocates it before its work may use up all memory. volatile, because the compiler would remove an unused call.
+// Allocates the per-thread data of exceptions. The C++ runtime allocates these data on first use, and ends the process if there
+// is no memory for them. So a thread calls this function before its work may use up all memory. volatile, because the compiler
+// would remove an unused call.
 inline void prepare_to_fail() { [[maybe_unused]] const volatile int exceptions = std::uncaught_exceptions(); }
 
 // Calls piece(0) ... piece(count - 1) in any order; the first exception ends the loop and is rethrown here.

@@ -97,7 +97,7 @@ template <class F, class Function> LANCER_LANE F from_lanes(const Function &f) {
   if constexpr (LanesOf<F>::kWidth == 1)
     return f(0);
   else {
-    // Through memory: insertions into a register would wait for each other.
+    // Write the lanes to memory: insertions into a register would wait for each other.
     alignas(64) decltype(f(0)) of[LanesOf<F>::kWidth];
     for (int i = 0; i < LanesOf<F>::kWidth; ++i)
       of[i] = f(i);

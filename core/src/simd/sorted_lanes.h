@@ -13,7 +13,7 @@ template <int W> LANCER_LANE Float<W> load_anywhere(const float *p) {
   return r;
 }
 
-// Returns a b - c with or without contraction, depending on the processor: not the same bits everywhere.
+// Returns a b - c, contracted if the processor can contract: the bits differ between processors.
 template <int W> LANCER_LANE Float<W> multiply_subtract(Float<W> a, Float<W> b, Float<W> c) {
 #if defined(__AVX512F__)
   if constexpr (W == 16)
