@@ -137,7 +137,7 @@ double sin(double x) {
   if (std::abs(x) < 0x1p-27)
     return x;
   const QuarterTurns at = quarter_turns(x);
-  // Compute both: an unpredictable branch costs more than the other value.
+  // Compute both values: an unpredictable branch costs more than a second value.
   const double both[2] = {sine_near(at.high, at.low), cosine_near(at.high, at.low)};
   return signed_by(both[at.quarters & 1], at.quarters >> 1);
 }

@@ -48,8 +48,8 @@ public:
 
   // Returns the number of steps in the guide of this many weights.
   static constexpr std::size_t guide_steps(std::size_t size) { return size / kPerStep + 1; }
-  // For other searches: sums of weights up to each entry, the last is 1; and the entries at equal steps of the number. If
-  // nothing can be selected the sums are 0 and the guide is empty.
+  // For searches outside this class: sums() returns the sums of the weights up to each entry, of which the last is 1; guide()
+  // returns the entries at equal steps of the number. If nothing can be selected, the sums are 0 and the guide is empty.
   const std::vector<double> &sums() const { return cdf_; }
   const std::vector<uint32_t> &guide() const { return guide_; }
 

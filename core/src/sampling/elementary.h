@@ -65,7 +65,7 @@ double hypot(double x, double y);
 double erf(double x);
 double erfc(double x);
 
-// For float only: the product with a double logarithm would lose a dozen bits of a double result.
+// pow() exists for float only: for double, the product with a double logarithm would lose a dozen bits.
 float pow(float x, float y);
 
 [[gnu::always_inline]] inline float exp(float x) { return static_cast<float>(exp(static_cast<double>(x))); }

@@ -21,7 +21,8 @@ double exp(double x) {
     return x + kInfinity; // or NaN
   if (x < -746.0)
     return 0.0;
-  // In two steps, because the whole power overflows at either end of the range; only the second step can round.
+  // Multiply by the power of two in two steps, because the whole power leaves the range of double at both ends; only the second
+  // step can round.
   const ExpParts<double> at = exp_parts(x);
   const double half = std::floor(0.5 * at.whole);
   return (1.0 + exp_near_zero(at.rest)) * power_of_two(half) * power_of_two(at.whole - half);
@@ -117,7 +118,8 @@ float pow(float x, float y) {
   if (x == 1.0f || y == 0.0f)
     return 1.0f;
   const double a = std::abs(static_cast<double>(x)), b = static_cast<double>(y);
-  // Exponents up to 104 matter to a float: the product's rounding error is within a relative 2^-46.
+  // Results within the range of float have exponents of at most 104, so the product's rounding error is within a relative
+  // 2^-46.
   const float power = a == 1.0 ? 1.0f : static_cast<float>(exp(b * log(a)));
   if (!std::signbit(x))
     return power;

@@ -21,7 +21,8 @@ template <class U> LANCER_LANE constexpr U hash(U x) {
   return x ^ (x >> 16);
 }
 
-// Extends the hash h of an address by another coordinate. The order of coordinates matters; for one h no two values collide.
+// Extends the hash h of an address by another coordinate. The result depends on the order of coordinates; for the same h,
+// different values give different results.
 template <class U> LANCER_LANE constexpr U hash_combine(U h, std::type_identity_t<U> value) {
   return hash((h ^ value * U(0x9e3779b1u)) + U(0x7f4a7c15u));
 }
@@ -69,8 +70,8 @@ template <class U> LANCER_LANE constexpr U reversed_second_dimension(U index) {
 // Owen's nested scrambling of the digits of a Sobol sequence. Digits are reversed: bit 0 is the first after the binary point. U
 // is uint32_t or lanes of it.
 
-// Flips each digit by a hash of the digits before it. Sums, and products with even numbers, carry upwards only, which gives
-// exactly this dependence.
+// Flips each digit by a hash of the digits before it. Sums and products with even numbers carry upwards only, so a digit of the
+// result depends on lower digits alone.
 template <class U> LANCER_LANE U nested_scramble(U x, std::type_identity_t<U> seed) {
   x = x ^ x * U(0x3d20adeau);
   x = x + seed;

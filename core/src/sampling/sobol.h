@@ -1,4 +1,4 @@
-// The random numbers of samples: a number has an address, and an address always returns the same number.
+// The random numbers of samples. Each number has an address, and the same address always gives the same number.
 #pragma once
 
 #include <array>
@@ -52,8 +52,7 @@ public:
     return numbers;
   }
 
-  // The source of the numbers, for kernels that generate those of many pixels: the key of seed and pixel, and the sample's
-  // number.
+  // The state from which kernels generate the numbers of many pixels: the key of seed and pixel, and the sample's number.
   uint32_t pixel() const { return pixel_; }
   uint32_t sample() const { return sample_; }
   uint32_t reversed_sample() const { return reversed_; }

@@ -14,7 +14,7 @@ template <class D> struct SphericalRectangle {
   D z, solid_angle;
 
   LANCER_LANE SphericalRectangle(const Vector2<D> &low_, const Vector2<D> &high_, const D &z_) : low(low_), high(high_), z(z_) {
-    // Subtract the solid angle up to low.x from that up to high.x.
+    // The solid angle is that up to high.x minus that up to low.x.
     left_ = between(low.x);
     solid_angle = between(high.x) - left_;
   }
@@ -23,7 +23,7 @@ template <class D> struct SphericalRectangle {
   // parametrization for spherical rectangles", 2013). solid_angle must exceed its rounding error.
   LANCER_LANE Vector2<D> sample(const D &u, const D &v) const {
     const D zero(0.0);
-    // Cut at an x such that the part below has the share u of the solid angle.
+    // Cut the rectangle at the x below which lies the share u of the solid angle.
     const SinCos<D> cut = sin_cos_turn(wrapped((u * solid_angle + left_) * D(0.5 * std::numbers::inv_pi)));
     // n.z of the planes through the lower and upper sides; the angles there are those of the cut.
     const D over_low = sqrt(z * z + low.y * low.y), over_high = sqrt(z * z + high.y * high.y);

@@ -26,7 +26,7 @@ template <class D> struct SphericalTriangle {
   // be above 0.
   LANCER_LANE V sample(const D &u, const D &v) const {
     const D zero(0.0), one(1.0);
-    // Cut off a triangle that keeps a and b and has the share u of the area: c moves along its arc with a.
+    // Move c along its arc with a, so that the triangle of a, b and the moved c has the share u of the area.
     const V c_along = across(c, a);
     const D cos_alpha = min(max(dot(across(b, a), c_along), -one), one);
     const D sin_alpha = sqrt((one - cos_alpha) * (one + cos_alpha));

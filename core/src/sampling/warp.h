@@ -12,7 +12,7 @@ namespace lancer {
 inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 
-// Uniform on the unit disk; squares around the centre become circles, so that neighbours stay neighbours.
+// Returns a uniform point of the unit disk. Squares around the centre become circles, so neighbours remain neighbours.
 template <class F> LANCER_LANE Vector2<F> warp_disk(F u, F v) {
   const F a = F(2.0f) * u - F(1.0f), b = F(2.0f) * v - F(1.0f), zero(0.0f);
   const MaskOf<F> wide = abs(a) > abs(b), middle = (a == zero) & (b == zero);
@@ -25,7 +25,7 @@ LANCER_LANE glm::vec2 warp_disk(const glm::vec2 &u) { return warp_disk(u.x, u.y)
 // Directions around +z with a density proportional to the cosine.
 template <class F> LANCER_LANE Vector3<F> warp_cosine_hemisphere(F u, F v) {
   const Vector2<F> p = warp_disk(u, v);
-  // The disk's radius is known before it is rotated: (1 - r)(1 + r) keeps its digits at grazing angles.
+  // Compute the cosine from the disk's radius r before the rotation: (1 - r)(1 + r) keeps its digits at grazing angles.
   const F r = max(abs(F(2.0f) * u - F(1.0f)), abs(F(2.0f) * v - F(1.0f)));
   return {p.x, p.y, sqrt((F(1.0f) - r) * (F(1.0f) + r))};
 }
