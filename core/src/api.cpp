@@ -11,7 +11,7 @@ namespace {
 
 using namespace lancer;
 
-// Runs fill on a scene that is not committed yet.
+// Calls fill with the description of a scene that is not committed yet.
 template <class Fill> lancer_status fill_scene(lancer_scene handle, const void *record, const char *name, Fill &&fill) {
   return guard([&] {
     const auto object = scene_of(handle);
@@ -115,7 +115,7 @@ lancer_status lancer_scene_commit(lancer_scene scene, uint32_t accelerator, uint
     context.cancel = &object->cancel;
     object->builder = std::make_unique<ThreadPool>(1);
     object->cancel = false;
-    // The object owns the thread, so a plain pointer outlives the work.
+    // The object owns the thread, so the pointer is valid for as long as the thread works.
     SceneObject *const target = object.get();
     object->builder->start([target, accelerator, context](uint32_t) {
       target->scene =

@@ -15,7 +15,7 @@ void require_arrays(uint32_t count, std::initializer_list<const void *> arrays) 
       require(array, "probe: an array");
 }
 
-// Runs ask on a committed scene; arrays may be NULL only where count is 0.
+// Calls ask with a committed scene. Arrays may be NULL only if count is 0.
 template <class Ask>
 lancer_status probe_scene(lancer_scene handle, uint32_t count, std::initializer_list<const void *> arrays, Ask &&ask) {
   return guard([&] {

@@ -11,7 +11,7 @@
 
 namespace lancer {
 
-// A fixed buffer, so that reporting missing memory needs no memory.
+// The message of the last failure. The buffer is fixed, so that a report of missing memory allocates none.
 inline thread_local char last_error[1024] = "";
 
 inline lancer_status fail(lancer_status status, const char *text) {

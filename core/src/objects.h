@@ -1,4 +1,4 @@
-// Handles of the C interface and the objects that they stand for: a scene from its creation to its commit, and a session.
+// Handles of the C interface and their objects: scenes, before and after commit, and sessions.
 #pragma once
 
 #include "guard.h"
