@@ -6,7 +6,7 @@
  *   - The message is kept per thread until that thread's next call.
  *   - Handles are numbers. A freed, foreign or zero handle returns LANCER_ERROR_HANDLE and never crashes.
  *   - Arrays are copied during the call; the caller may free them when the call returns.
- *   - No call blocks for long: *_commit and *_render start work, *_wait watches it.
+ *   - No call blocks for long: *_commit and *_render start work, *_wait waits for it and reports its progress.
  *   - Calls on different handles may come from different threads at once; calls on one handle are serialised.
  *
  * Units and frames
@@ -851,12 +851,12 @@ LANCER_API lancer_status lancer_session_cancel(lancer_session session);
  * and the session can continue: by lancer_session_render if all pixels have the same number, otherwise by
  * lancer_session_refine. */
 LANCER_API lancer_status lancer_session_stop(lancer_session session);
-/* Starts a round that doubles the samples of the pixels with the largest reduction of error per cost: as many pixels as
- * bring the bound on the error (high + cannot_exclude at that confidence) below target, or all of them in that order if
- * target is 0; none beyond settings.samples. target is finite and not negative. The need of a pixel is estimated from other
- * pixels' samples, which keeps its mean unbiased. Returns LANCER_OK when started (watch it with lancer_session_wait) and
- * LANCER_CANCELLED when nothing is left to double. Needs settings.refines, and a power of two as the number of samples of
- * every pixel. */
+/* Starts a round that doubles the samples of the pixels with the largest reduction of error per cost. It doubles as many pixels
+ * as bring the bound on the error (high + cannot_exclude at that confidence) below target, or all pixels if target is 0, but
+ * none beyond settings.samples. target is finite and not negative. A pixel is chosen by the samples of other pixels, which
+ * avoids most of the bias that a choice by its own samples would cause. Returns LANCER_OK when the round has started
+ * (lancer_session_wait waits for it) and LANCER_CANCELLED when nothing is left to double. Needs settings.refines, and a power
+ * of two as the number of samples of every pixel. */
 LANCER_API lancer_status lancer_session_refine(lancer_session session, double target, double confidence);
 /* Copies one pass of the region: [region_height][region_width][channels]; float_count must be exactly that. Allowed while
  * rendering. */

@@ -30,8 +30,8 @@ template <class F> struct BsdfSample {
 
 // Contract
 //   Place     begin() sets wo: unit, away from the surface; ng: unit, on the side of wo; ns: unit, flipped together with ng.
-//   Where a mesh's normals oppose their face, ns points below the surface, and the result is that of Cycles. inside: wo is
-//             behind the outward side. All directions are in world space.
+//             Where a mesh's normals oppose their face, ns points below the surface, and the result is that of Cycles. inside:
+//             wo is behind the outward side. All directions are in world space.
 //   Lobes     add_lobe and add_principled (build.h) add lobes; complete() computes their probabilities. A lobe may have its own
 //             normal. It reflects on the side of its normal and transmits to the other; lobes that need wo on this side are 0
 //             if wo is behind their normal.
@@ -39,19 +39,19 @@ template <class F> struct BsdfSample {
 //   eval_lit  f |cos| for light samples as Cycles weights them: rough boundaries also transmit between directions on one side
 //             of their half vector. No facet connects such directions, so the lobe's own sampler never samples them, and the
 //             result depends on the density of the other technique, as in Cycles. sample() also weights with this value if
-//             another lobe samples such a direction. Its pdf includes directions that cross the surface to the wrong side of
-//             ng.
+//             another lobe samples such a direction. The pdf of eval_lit includes directions that cross the surface to the
+//             wrong side of ng.
 //   pdf       per solid angle; the pdf of eval integrates to 1 minus the probability of single directions minus the loss at
 //             the horizon.
 //   Sides     A lobe decides by its own normal whether wi is reflected or transmitted. Two other normals matter:
 //             - ns, if the lobe's normal differs from ns (bump): the value is 0 if wi is on one side of ns and on the other
-//             side of the lobe's normal. Diffuse lobes fall off smoothly towards that limit if bump_correction is set.
+//               side of the lobe's normal. Diffuse lobes fall off smoothly towards that limit if bump_correction is set.
 //               Reflecting and transmitting lobes keep their own samples beyond ns, as in Cycles.
 //             - ng: sample() samples no direction to the wrong side of ng, so the pdf is 0 there, except for refracting lobes
-//             by the rules of Blender 3, as in Cycles 3. The value is not 0 there: lights illuminate the smooth surface that
-//             interpolated normals describe, and the shadow ray finds occluders.
+//               by the rules of Blender 3, as in Cycles 3. The value is not 0 there: lights illuminate the smooth surface that
+//               interpolated normals describe, and the shadow ray finds occluders.
 //   Lanes     F is float or lanes of it: every lane is a hit of its own, with lobes of the same code. In a lane where a lobe is
-//   black, the lobe is absent.
+//             black, the lobe is absent.
 template <class F> struct Bsdf {
   using V = Vec3<F>;
   using B = MaskOf<F>;
